@@ -1,4 +1,5 @@
-//! All links against all triangles, on one thread, against a loop of parry's `distance(Cylinder, Triangle)`.
+//! All links against all triangles, on one thread, against a loop of parry's `distance(Cylinder,
+//! Triangle)`.
 
 use continuum_demo::levels::levels;
 use continuum_demo::subdivide::{in_four, shuffled};
@@ -29,7 +30,10 @@ fn exhaustive(criterion: &mut Criterion) {
     .map(|(name, robot)| (name, robot.expect("a valid robot")));
 
     let mut group = criterion.benchmark_group("exhaustive");
-    group.sample_size(10).measurement_time(Duration::from_secs(1)).warm_up_time(Duration::from_millis(300));
+    group
+        .sample_size(10)
+        .measurement_time(Duration::from_secs(1))
+        .warm_up_time(Duration::from_millis(300));
     let cylinders = timing::cylinders(&models[2].1);
     let triangles: Vec<_> = mesh.triangles().step_by(SAMPLE).collect();
     group.throughput(Throughput::Elements((cylinders.len() * triangles.len()) as u64));

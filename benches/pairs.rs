@@ -1,4 +1,5 @@
-//! One link against one triangle: this crate's kernels against parry's GJK, over the same random pairs in one run.
+//! One link against one triangle: this crate's kernels against parry's GJK, over the same random
+//! pairs in one run.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use parry_continuum::distance::{Vec3, triangle_modified_cylinder};
@@ -18,10 +19,12 @@ struct Pair {
 fn pairs(count: usize) -> Vec<Pair> {
     let mut state = 1_u64;
     let mut number = || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        state =
+            state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (state >> 11) as f64 * 2.0_f64.powi(-53)
     };
-    let mut point = |spread: f64| Vector::new(number() - 0.5, number() - 0.5, number() - 0.5) * spread;
+    let mut point =
+        |spread: f64| Vector::new(number() - 0.5, number() - 0.5, number() - 0.5) * spread;
     (0..count)
         .map(|_| {
             let (centre, away) = (point(1.0), point(4.0));
@@ -40,11 +43,15 @@ fn narrow_phase(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("pairs");
     group.throughput(Throughput::Elements(pairs.len() as u64));
     let mut bench = |name: &str, distance: &dyn Fn(&Pair) -> f64| {
-        group.bench_function(name, |bencher| bencher.iter(|| pairs.iter().map(distance).sum::<f64>()));
+        group.bench_function(name, |bencher| {
+            bencher.iter(|| pairs.iter().map(distance).sum::<f64>())
+        });
     };
-    let triangle = |pair: &Pair| Triangle::new(pair.triangle[0], pair.triangle[1], pair.triangle[2]);
+    let triangle =
+        |pair: &Pair| Triangle::new(pair.triangle[0], pair.triangle[1], pair.triangle[2]);
     bench("parry cylinder", &|pair| {
-        let turn = Rotation::from_rotation_arc(Vector::Y, (pair.end - pair.start).normalize_or(Vector::Y));
+        let turn =
+            Rotation::from_rotation_arc(Vector::Y, (pair.end - pair.start).normalize_or(Vector::Y));
         let pose = Pose::from_parts((pair.start + pair.end) * 0.5, turn);
         let cylinder = Cylinder::new(0.5 * (pair.end - pair.start).length(), pair.radius);
         query::distance(&pose, &cylinder, &Pose::IDENTITY, &triangle(pair))
@@ -59,12 +66,15 @@ fn narrow_phase(criterion: &mut Criterion) {
     });
     let to_f64 = |v: Vector| Vec3::from(v.to_array());
     let to_f32 = |v: Vector| Vec3::from(v.to_array().map(|x| x as f32));
-    for (name, flat) in
-        [("capsule", [false, false]), ("modified cylinder", [true, false]), ("cylinder", [true, true])]
-    {
+    for (name, flat) in [
+        ("capsule", [false, false]),
+        ("modified cylinder", [true, false]),
+        ("cylinder", [true, true]),
+    ] {
         bench(&format!("{name}, f64"), &|pair| {
             let tri = black_box(pair.triangle).map(to_f64);
-            triangle_modified_cylinder(tri, to_f64(pair.start), to_f64(pair.end), pair.radius, flat).distance
+            triangle_modified_cylinder(tri, to_f64(pair.start), to_f64(pair.end), pair.radius, flat)
+                .distance
         });
         bench(&format!("{name}, f32"), &|pair| {
             let tri = black_box(pair.triangle).map(to_f32);

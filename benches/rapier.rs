@@ -1,7 +1,9 @@
-//! A step of a rapier world with a robot in a ventricle: one body per link, or one collider for the chain.
+//! A step of a rapier world with a robot in a ventricle: one body per link, or one collider for the
+//! chain.
 //!
-//! The robot sways into the wall and back while its tubes turn, so that its shape differs at every step. Everything
-//! is kinematic: the bodies cost nothing to move, what is left are the broad and the narrow phase.
+//! The robot sways into the wall and back while its tubes turn, so that its shape differs at every
+//! step. Everything is kinematic: the bodies cost nothing to move, what is left are the broad and
+//! the narrow phase.
 
 use continuum_demo::{ctr, ventricle};
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
@@ -20,8 +22,12 @@ fn robot(step: usize) -> (Chain, Pose) {
     let mut joints = ventricle::goal();
     joints.angles[1] += 0.05 * phase.sin();
     let line = ctr::three_tubes().centreline(&joints, LINKS);
-    let aside = Pose::from_translation(Vector::new(0.9, 0.5, -0.3) * (1.6 * (0.5 - 0.5 * phase.cos())));
-    (Chain::from_centreline(&line.points, &line.radii).expect("a robot"), aside * ventricle::entry())
+    let aside =
+        Pose::from_translation(Vector::new(0.9, 0.5, -0.3) * (1.6 * (0.5 - 0.5 * phase.cos())));
+    (
+        Chain::from_centreline(&line.points, &line.radii).expect("a robot"),
+        aside * ventricle::entry(),
+    )
 }
 
 fn place(link: &ModifiedCylinder, base: &Pose) -> Pose {
@@ -30,16 +36,25 @@ fn place(link: &ModifiedCylinder, base: &Pose) -> Pose {
 
 fn world(wall: &TriMesh) -> PhysicsWorld {
     let mut world = PhysicsWorld { gravity: Vector::ZERO, ..Default::default() };
-    rapier::install(&mut world.narrow_phase, &mut world.integration_parameters, 2.0).expect("a size");
+    rapier::install(&mut world.narrow_phase, &mut world.integration_parameters, 2.0)
+        .expect("a size");
     world.integration_parameters.dt = 1e-3;
     world.insert(RigidBodyBuilder::fixed(), ColliderBuilder::new(SharedShape::new(wall.clone())));
     world
 }
 
-fn kinematic(world: &mut PhysicsWorld, shape: SharedShape, pose: Pose) -> (RigidBodyHandle, ColliderHandle) {
+fn kinematic(
+    world: &mut PhysicsWorld,
+    shape: SharedShape,
+    pose: Pose,
+) -> (RigidBodyHandle, ColliderHandle) {
     let collider = ColliderBuilder::new(shape)
         .active_collision_types(ActiveCollisionTypes::KINEMATIC_FIXED)
-        .collision_groups(InteractionGroups::new(Group::GROUP_1, !Group::GROUP_1, InteractionTestMode::And));
+        .collision_groups(InteractionGroups::new(
+            Group::GROUP_1,
+            !Group::GROUP_1,
+            InteractionTestMode::And,
+        ));
     world.insert(RigidBodyBuilder::kinematic_position_based().pose(pose), collider)
 }
 
@@ -58,7 +73,12 @@ fn step(criterion: &mut Criterion) {
         let mut per_link = world(&wall);
         let (chain, pose) = &robots[0];
         let along = |link: &ModifiedCylinder| {
-            ModifiedCylinder::new(Vector::ZERO, Vector::Z * link.length(), link.radius(), link.caps())
+            ModifiedCylinder::new(
+                Vector::ZERO,
+                Vector::Z * link.length(),
+                link.radius(),
+                link.caps(),
+            )
         };
         let bodies: Vec<_> = chain
             .links()

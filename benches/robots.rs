@@ -1,4 +1,5 @@
-//! Two robots, and one and itself: this crate's search beside every exact pair in turn, and parry's own shapes.
+//! Two robots, and one and itself: this crate's search beside every exact pair in turn, and parry's
+//! own shapes.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use parry_continuum::distance::{Vec3, modified_cylinder_modified_cylinder};
@@ -31,7 +32,8 @@ fn coil(links: i32) -> Chain {
 }
 
 fn apart(one: &ModifiedCylinder, two: &ModifiedCylinder) -> f64 {
-    let axis = |link: &ModifiedCylinder| [link.start(), link.end()].map(|p| Vec3::from(p.to_array()));
+    let axis =
+        |link: &ModifiedCylinder| [link.start(), link.end()].map(|p| Vec3::from(p.to_array()));
     let flat = |link: &ModifiedCylinder| link.caps().map(|cap| cap == Cap::Flat);
     modified_cylinder_modified_cylinder(
         axis(one),
@@ -53,7 +55,8 @@ fn capsules(robot: &Chain) -> Compound {
 
 fn two_robots(criterion: &mut Criterion) {
     let (a, b) = (bent(1.0), bent(-1.0));
-    let poses: Vec<_> = (0..60).map(|k| Pose::translation(30.0 + 0.2 * f64::from(k), 1.0, 0.0)).collect();
+    let poses: Vec<_> =
+        (0..60).map(|k| Pose::translation(30.0 + 0.2 * f64::from(k), 1.0, 0.0)).collect();
     let mut group = criterion.benchmark_group("two robots of 30 links");
     let mut step = 0;
     let mut next = move |poses: &[Pose]| {
@@ -66,7 +69,9 @@ fn two_robots(criterion: &mut Criterion) {
     let here = Pose::IDENTITY;
     bench("between", &mut |pose| between(&a, &here, &b, pose).expect("an answer").distance);
     let mut pair = RobotPair::new();
-    bench("RobotPair::minimum", &mut |pose| pair.minimum(&a, &here, &b, pose).expect("an answer").distance);
+    bench("RobotPair::minimum", &mut |pose| {
+        pair.minimum(&a, &here, &b, pose).expect("an answer").distance
+    });
     bench("clears_between", &mut |pose| {
         f64::from(u8::from(clears_between(&a, &here, &b, pose, 1.0).expect("an answer")))
     });
@@ -99,7 +104,8 @@ fn one_robot(criterion: &mut Criterion) {
         group.bench_function(format!("every exact pair, {links} links"), |bencher| {
             bencher.iter(|| {
                 let links = black_box(&robot).links();
-                let pairs = (0..links.len()).flat_map(|i| (i + 2..links.len()).map(move |j| (i, j)));
+                let pairs =
+                    (0..links.len()).flat_map(|i| (i + 2..links.len()).map(move |j| (i, j)));
                 pairs.map(|(i, j)| apart(&links[i], &links[j])).fold(f64::INFINITY, f64::min)
             });
         });

@@ -1,4 +1,5 @@
-//! The root finders on random polynomials, and as routes from a segment to a disc beside the convex one.
+//! The root finders on random polynomials, and as routes from a segment to a disc beside the convex
+//! one.
 
 use continuum_studies::Number;
 use continuum_studies::quartic::{QuarticAsPrinted, RecentredQuartic};
@@ -23,7 +24,10 @@ fn group<'a>(criterion: &'a mut Criterion, name: &str) -> BenchmarkGroup<'a, Wal
     group
 }
 
-fn finder<F: RootFinder, T: Real, const M: usize>(group: &mut BenchmarkGroup<WallTime>, name: &str) {
+fn finder<F: RootFinder, T: Real, const M: usize>(
+    group: &mut BenchmarkGroup<WallTime>,
+    name: &str,
+) {
     let mut random = Random::new(M as u64);
     let polynomials: Vec<[T; M]> =
         (0..COUNT).map(|_| std::array::from_fn(|_| T::of(random.between(-100.0, 100.0)))).collect();

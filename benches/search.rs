@@ -1,4 +1,5 @@
-//! Per-link closest pairs by search, against parry on the same mesh and links, in one run; and the side of a point.
+//! Per-link closest pairs by search, against parry on the same mesh and links, in one run; and the
+//! side of a point.
 
 use continuum_demo::{cavity, steer, timing};
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
@@ -11,7 +12,8 @@ use std::time::Duration;
 
 fn parry_clears(mesh: &TriMesh, cylinders: &[(Pose, Cylinder)], pose: &Pose, margin: f64) -> bool {
     cylinders.iter().all(|(place, cylinder)| {
-        let found = query::closest_points(&(*pose * *place), cylinder, &Pose::IDENTITY, mesh, margin);
+        let found =
+            query::closest_points(&(*pose * *place), cylinder, &Pose::IDENTITY, mesh, margin);
         found.expect("a supported pair") == query::ClosestPoints::Disjoint
     })
 }

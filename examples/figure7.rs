@@ -1,8 +1,10 @@
-//! Draws the seven ways to cap a chain (Fig. 7 of the paper): `cargo run --release --example figure7`.
+//! Draws the seven ways to cap a chain (Fig. 7 of the paper): `cargo run --release --example
+//! figure7`.
 //!
-//! Cylinders leave a gap at every joint, capsules have round ends. Round caps inside and flat ones at both ends are
-//! right only while segments are longer than the radius and the radius does not change; otherwise caps stick out.
-//! Algorithm 1 (`Chain::from_centreline`) places round caps only where they stay inside.
+//! Cylinders leave a gap at every joint, capsules have round ends. Round caps inside and flat ones
+//! at both ends are right only while segments are longer than the radius and the radius does not
+//! change; otherwise caps stick out. Algorithm 1 (`Chain::from_centreline`) places round caps only
+//! where they stay inside.
 
 use clap::Parser;
 use continuum_demo::canvas::{Align, Canvas, Colour, hex, mix};
@@ -84,12 +86,19 @@ fn panels() -> Result<Vec<Panel>, RobotError> {
     let long = Curve::new(3.6, 1.5, &[1.0; 4]);
     let short = Curve::new(2.6, 0.4, &[1.0; 9]);
     let tubes = Curve::new(6.0, 1.0, &[1.5, 1.5, 1.5, 1.0, 1.0, 1.0, 0.5, 0.5, 0.5]);
-    let panel = |letter, title, remark, adequate, links| Panel { letter, title, remark, adequate, links };
+    let panel =
+        |letter, title, remark, adequate, links| Panel { letter, title, remark, adequate, links };
     Ok(vec![
         panel('a', "cylinders", "a gap at every joint", false, long.cylinders()?),
         panel('b', "capsules", "longer by a radius at both ends", false, long.capsules()?),
         panel('c', "flat ends, short links", "inner round caps stick out", false, short.naive()?),
-        panel('d', "flat ends, three tubes", "round caps stick out at steps", false, tubes.naive()?),
+        panel(
+            'd',
+            "flat ends, three tubes",
+            "round caps stick out at steps",
+            false,
+            tubes.naive()?,
+        ),
         panel('e', "flat ends, long links", "closed, and flat where it ends", true, long.naive()?),
         panel(
             'f',
@@ -136,7 +145,13 @@ fn draw(panels: &[Panel]) -> Canvas {
         canvas.frame(card, 16.0, 3.0, mix(verdict, [1.0; 3], 0.45));
         let foot = y + CARD[1] as f32;
         canvas.panel([x + 24.0, foot - 96.0, x + 74.0, foot - 46.0], 25.0, verdict, 1.0);
-        canvas.text(&panel.letter.to_string(), [x + 49.0, foot - 63.0], Align::Centre, 22.0, [1.0; 3]);
+        canvas.text(
+            &panel.letter.to_string(),
+            [x + 49.0, foot - 63.0],
+            Align::Centre,
+            22.0,
+            [1.0; 3],
+        );
         canvas.text(panel.title, [x + 92.0, foot - 74.0], Align::Left, 19.0, INK);
         canvas.text(panel.remark, [x + 92.0, foot - 36.0], Align::Left, 16.5, PALE);
     }

@@ -1,5 +1,6 @@
-//! Writes a query to one file, to be attached to a report of a wrong distance: robot, pose, mesh and answer as JSON, every
-//! number with all its digits. Copy `report` into your program, which needs the feature `serde-serialize`.
+//! Writes a query to one file, to be attached to a report of a wrong distance: robot, pose, mesh
+//! and answer as JSON, every number with all its digits. Copy `report` into your program, which
+//! needs the feature `serde-serialize`.
 //!
 //! `cargo run --example report` writes `target/report.json`, reads it back, and asks again.
 
@@ -15,7 +16,8 @@ use std::path::Path;
 #[derive(Deserialize, Serialize)]
 struct Report {
     robot: Chain,
-    /// The robot's pose in the mesh's frame: its origin, and its rotation as a quaternion x, y, z, w.
+    /// The robot's pose in the mesh's frame: its origin, and its rotation as a quaternion x, y, z,
+    /// w.
     origin: [f64; 3],
     rotation: [f64; 4],
     vertices: Vec<[f64; 3]>,
@@ -45,8 +47,10 @@ fn report(
 fn main() -> Result<(), Box<dyn Error>> {
     let (vertices, triangles) = Ball::new(10.0).to_trimesh(64, 32);
     let mesh = TriMesh::new(vertices, triangles)?;
-    let robot =
-        Chain::from_centreline(&[Vector::ZERO, Vector::Z * 3.0, Vector::new(1.0, 0.0, 5.0)], &[0.5; 2])?;
+    let robot = Chain::from_centreline(
+        &[Vector::ZERO, Vector::Z * 3.0, Vector::new(1.0, 0.0, 5.0)],
+        &[0.5; 2],
+    )?;
     let pose = Pose::from_parts(Vector::new(0.1, 0.2, 0.3), Rot3::from_rotation_x(0.4));
     let answer = BvhSearch::new(&mesh)?.minimum(&robot, &pose)?;
     let file = Path::new("target/report.json");

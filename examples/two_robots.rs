@@ -1,10 +1,11 @@
 //! Two concentric tube robots in one brain ventricle: which is tightest, and where?
 //!
-//! `cargo run --release --example two_robots` sends a robot through either frontal horn. At every step one scene is asked:
-//! whether each robot keeps its margin from the wall and from the other one, and where the least room is left. At the
-//! end there are the time per question, and a picture of the last step at which all is clear, with the closest points. `--mesh` takes real anatomy instead
-//! (in millimetres, or with `--scale`); `--base` and `--axis` place the first robot in it, and the second stands
-//! `--beside` it.
+//! `cargo run --release --example two_robots` sends a robot through either frontal horn. At every
+//! step one scene is asked: whether each robot keeps its margin from the wall and from the other
+//! one, and where the least room is left. At the end there are the time per question, and a picture
+//! of the last step at which all is clear, with the closest points. `--mesh` takes real anatomy
+//! instead (in millimetres, or with `--scale`); `--base` and `--axis` place the first robot in it,
+//! and the second stands `--beside` it.
 
 use clap::Parser;
 use continuum_demo::anatomy::{Anatomy, no_goal};
@@ -15,12 +16,15 @@ use continuum_demo::{command, steer, timing, ventricle};
 use parry_continuum::Chain;
 use parry_continuum::parry::math::{Pose, Real, Rot3, Vector};
 use parry_continuum::parry::shape::{SharedShape, TriMesh};
-use parry_continuum::proximity::{Between, BvhSearch, RobotPair, Scene, StructureProximity, Tightest};
+use parry_continuum::proximity::{
+    Between, BvhSearch, RobotPair, Scene, StructureProximity, Tightest,
+};
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Duration;
 
-/// Send two concentric tube robots into one brain ventricle, and tell at every step where the least room is left.
+/// Send two concentric tube robots into one brain ventricle, and tell at every step where the least
+/// room is left.
 #[derive(Parser)]
 struct Options {
     #[command(flatten)]
@@ -67,8 +71,9 @@ fn steer(options: &Options) -> Result<(), String> {
     let first = options.anatomy.pose(&mesh)?;
     let bases = [first, beside(options, &first)];
     let robot = three_tubes();
-    let mut goal =
-        |base: &Pose| steer::find_goal(&robot, &mut search, base).map_err(|none| no_goal(&none, base));
+    let mut goal = |base: &Pose| {
+        steer::find_goal(&robot, &mut search, base).map_err(|none| no_goal(&none, base))
+    };
     let goals = if options.anatomy.is_planned() {
         [ventricle::goal(), goal(&bases[1])?]
     } else {
@@ -87,7 +92,11 @@ fn steer(options: &Options) -> Result<(), String> {
         let clears = scene.clears(&robots).map_err(text)?;
         last_clear = if clears { Some(step) } else { last_clear };
         if let Some(tightest) = scene.tightest(&robots).map_err(text)? {
-            println!("{step:4}  {:<5}  {}", if clears { "yes" } else { "no" }, told(&scene, &tightest));
+            println!(
+                "{step:4}  {:<5}  {}",
+                if clears { "yes" } else { "no" },
+                told(&scene, &tightest)
+            );
         }
     }
 
@@ -95,7 +104,8 @@ fn steer(options: &Options) -> Result<(), String> {
     let drawn = last_clear.unwrap_or(options.steps);
     let chains = chains(&robot, &goals, Real::from(drawn) / Real::from(options.steps))?;
     let robots = [(&chains[0], bases[0]), (&chains[1], bases[1])];
-    let tightest = scene.tightest(&robots).map_err(text)?.ok_or("there is nothing to be near to")?;
+    let tightest =
+        scene.tightest(&robots).map_err(text)?.ok_or("there is nothing to be near to")?;
     let mut walls = Vec::new();
     scene.per_structure(&robots, &mut walls).map_err(text)?;
     print_times(&mut scene, &robots)?;
@@ -187,7 +197,8 @@ fn draw(
             solids.push(Solid::new(ball, Pose::from_translation(end), INK, false));
         }
         if let Some(way) = (to - from).try_normalize() {
-            let middle = Pose::from_parts(from.midpoint(to), Rot3::from_rotation_arc(Vector::Y, way));
+            let middle =
+                Pose::from_parts(from.midpoint(to), Rot3::from_rotation_arc(Vector::Y, way));
             let line = SharedShape::cylinder(0.5 * (to - from).length(), 0.1 * thick);
             solids.push(Solid::new(line, middle, INK, false));
         }
@@ -200,15 +211,28 @@ fn draw(
     picture.skin.veil = 0.15;
     let [width, height] = SIZE;
     let towards = Vector::new(0.1, -1.0, -0.15);
-    let camera = Camera::framing(mesh.vertices(), towards, Vector::Z, width as Real / height as Real, 0.08);
+    let camera =
+        Camera::framing(mesh.vertices(), towards, Vector::Z, width as Real / height as Real, 0.08);
     let mut canvas = picture.render(&camera, width, height);
-    canvas.text("Two concentric tube robots in one ventricle", [40.0, 890.0], Align::Left, 28.0, INK);
+    canvas.text(
+        "Two concentric tube robots in one ventricle",
+        [40.0, 890.0],
+        Align::Left,
+        28.0,
+        INK,
+    );
     let apart = format!(
         "{:.3} mm between the robots, at links {} and {}",
         nearest.distance, nearest.links[0], nearest.links[1]
     );
     canvas.text(&apart, [40.0, 926.0], Align::Left, 19.0, INK);
-    canvas.text(&format!("the least room: {}", tightest.trim_start()), [40.0, 956.0], Align::Left, 19.0, INK);
+    canvas.text(
+        &format!("the least room: {}", tightest.trim_start()),
+        [40.0, 956.0],
+        Align::Left,
+        19.0,
+        INK,
+    );
     for (robot, colour) in COLOURS.into_iter().enumerate() {
         let y = 926.0 + 30.0 * robot as f32;
         canvas.panel([1250.0, y - 16.0, 1268.0, y + 2.0], 9.0, colour, 1.0);

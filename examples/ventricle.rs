@@ -1,11 +1,14 @@
-//! Steers a concentric tube robot into a brain ventricle and prints how far each of its links is from the wall.
+//! Steers a concentric tube robot into a brain ventricle and prints how far each of its links is
+//! from the wall.
 //!
-//! `cargo run --release --example ventricle` grows a ventricle and sends the robot through the foramen of Monro into
-//! the third ventricle. At every step two engines find the closest points of every link; they must agree. At the end
-//! there are a table, the time per query, and a picture. `--tolerance 0.01` also bounds the clearance of the curve itself,
-//! and the picture then shows the pieces that it took: long where the wall is far, short where it is near. With
-//! `--features gpu` and `--engine gpu` the second engine is the GPU. `--mesh` takes real anatomy instead (in millimetres,
-//! or with `--scale`); `--base` and `--axis` place the robot in it, otherwise it starts at the deepest point inside.
+//! `cargo run --release --example ventricle` grows a ventricle and sends the robot through the
+//! foramen of Monro into the third ventricle. At every step two engines find the closest points of
+//! every link; they must agree. At the end there are a table, the time per query, and a picture.
+//! `--tolerance 0.01` also bounds the clearance of the curve itself, and the picture then shows the
+//! pieces that it took: long where the wall is far, short where it is near. With `--features gpu`
+//! and `--engine gpu` the second engine is the GPU. `--mesh` takes real anatomy instead (in
+//! millimetres, or with `--scale`); `--base` and `--axis` place the robot in it, otherwise it
+//! starts at the deepest point inside.
 
 use clap::{Parser, ValueEnum};
 use continuum_demo::anatomy::{Anatomy, no_goal, show};
@@ -13,7 +16,9 @@ use continuum_demo::ctr::{Centreline, Joints, Robot, three_tubes};
 use continuum_demo::{command, figure, steer, timing, ventricle};
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::shape::TriMesh;
-use parry_continuum::proximity::{BvhSearch, Clearance, Exhaustive, LinkProximity, Proximity, TubePiece};
+use parry_continuum::proximity::{
+    BvhSearch, Clearance, Exhaustive, LinkProximity, Proximity, TubePiece,
+};
 use parry_continuum::{Cap, Chain, RobotError, stations};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -25,16 +30,18 @@ struct Options {
     #[command(flatten)]
     anatomy: Anatomy,
 
-    /// The ends of each link: all round (capsule), all flat (cylinder), or what fits each joint (fitted)
+    /// The ends of each link: all round (capsule), all flat (cylinder), or what fits each joint
+    /// (fitted)
     #[arg(long, value_enum, default_value_t = Model::Fitted)]
     model: Model,
 
-    /// Take the fewest links within this distance of the curve, in millimetres, and bound the curve's own clearance as
-    /// closely [default: 30 links, no bounds]
+    /// Take the fewest links within this distance of the curve, in millimetres, and bound the
+    /// curve's own clearance as closely [default: 30 links, no bounds]
     #[arg(long, value_name = "MM", value_parser = command::length, allow_negative_numbers = true)]
     tolerance: Option<Real>,
 
-    /// Where the second engine, which looks at every triangle, runs: on the CPU, or on the GPU (cargo feature `gpu`)
+    /// Where the second engine, which looks at every triangle, runs: on the CPU, or on the GPU
+    /// (cargo feature `gpu`)
     #[arg(long, value_enum, default_value_t = Engine::Exhaustive)]
     engine: Engine,
 
@@ -100,7 +107,10 @@ fn steer(options: &Options) -> Result<(), String> {
     let robot = three_tubes();
     let base = options.anatomy.pose(&mesh)?;
     if !steer::is_inside(&mesh, base.translation) {
-        eprintln!("note: {} is outside the mesh; --base x,y,z places the robot", show(base.translation));
+        eprintln!(
+            "note: {} is outside the mesh; --base x,y,z places the robot",
+            show(base.translation)
+        );
     }
     let goal = if options.anatomy.is_planned() {
         ventricle::goal()
@@ -115,7 +125,8 @@ fn steer(options: &Options) -> Result<(), String> {
     );
 
     // The way in: both engines at every step.
-    let scale = mesh.local_aabb().extents().length() + mesh.local_aabb().center().abs().max_element();
+    let scale =
+        mesh.local_aabb().extents().length() + mesh.local_aabb().center().abs().max_element();
     let bar = command::progress(options.steps, "steps")?;
     let (mut found, mut checked) = (Vec::new(), Vec::new());
     let (mut chains, mut apart) = (Vec::new(), 0.0);
@@ -149,7 +160,8 @@ fn steer(options: &Options) -> Result<(), String> {
     let curve = match options.tolerance {
         Some(tolerance) => {
             let curve = robot.shape(&goal).map_err(text)?;
-            let found = search.clearance_pieces(&curve, &base, tolerance, &mut pieces).map_err(text)?;
+            let found =
+                search.clearance_pieces(&curve, &base, tolerance, &mut pieces).map_err(text)?;
             println!(
                 "\nthe curve itself keeps between {:.6} and {:.6} mm; triangle {} is nearest, {:.2} mm along the robot",
                 found.lower, found.upper, found.triangle, found.arc_length
@@ -159,7 +171,8 @@ fn steer(options: &Options) -> Result<(), String> {
         }
         None => None,
     };
-    let times = print_times(&mesh, &chains, &base, &mut search, (&exhaustive_name, &mut *exhaustive))?;
+    let times =
+        print_times(&mesh, &chains, &base, &mut search, (&exhaustive_name, &mut *exhaustive))?;
 
     let caption = caption(options, &mesh, chain, nearest(&found, curve, &pieces), times);
     let picture = figure::draw(&mesh, chain, &base, &found, &pieces, &caption);
@@ -235,7 +248,8 @@ fn print_pieces(pieces: &[TubePiece]) {
     }
 }
 
-/// Times each engine and parry in turns, and prints them. Returns search (the first time and again), exhaustive and parry.
+/// Times each engine and parry in turns, and prints them. Returns search (the first time and
+/// again), exhaustive and parry.
 fn print_times(
     mesh: &TriMesh,
     chains: &[Chain],
@@ -267,7 +281,11 @@ fn print_times(
     let [first, again, all, parry] = medians[..] else { return Err("a time is missing".into()) };
     println!("\ntime per query of all {} links (median, taken in turns)", chain.links().len());
     let row = |name: &str, time: Duration| {
-        println!("  {name:<46} {:>11.1} µs   {:>8.2} x", time.as_secs_f64() * 1e6, ratio(parry, time));
+        println!(
+            "  {name:<46} {:>11.1} µs   {:>8.2} x",
+            time.as_secs_f64() * 1e6,
+            ratio(parry, time)
+        );
     };
     row("parry distance(Cylinder, TriMesh), link by link", parry);
     row("search, first time", first);
@@ -280,8 +298,13 @@ fn ratio(of: Duration, to: Duration) -> f64 {
     of.as_secs_f64() / to.as_secs_f64()
 }
 
-/// Where the robot is closest: between the bounds of the curve if they were asked for, otherwise by its links.
-fn nearest(links: &[LinkProximity], curve: Option<Clearance>, pieces: &[TubePiece]) -> Option<String> {
+/// Where the robot is closest: between the bounds of the curve if they were asked for, otherwise by
+/// its links.
+fn nearest(
+    links: &[LinkProximity],
+    curve: Option<Clearance>,
+    pieces: &[TubePiece],
+) -> Option<String> {
     if let Some(curve) = curve {
         let (lower, upper, arc_length) = (curve.lower, curve.upper, curve.arc_length);
         let count = pieces.len();
@@ -309,8 +332,16 @@ fn caption(
     let count = chain.links().len();
     let links = format!("{count} {}", if count == 1 { one } else { many });
     let mut notes = Vec::from_iter(nearest);
-    notes.push(format!("all links: search {} the first time, {} again", clock(first), clock(again)));
-    notes.push(format!("every triangle {}, parry link by link {}", clock(exhaustive), clock(parry)));
+    notes.push(format!(
+        "all links: search {} the first time, {} again",
+        clock(first),
+        clock(again)
+    ));
+    notes.push(format!(
+        "every triangle {}, parry link by link {}",
+        clock(exhaustive),
+        clock(parry)
+    ));
     figure::Caption {
         title: format!("A concentric tube robot in {}", options.anatomy.name()),
         subtitle: format!("{links} against {} triangles", mesh.num_triangles()),

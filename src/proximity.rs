@@ -1,7 +1,8 @@
 //! Robot against mesh, and robot against robot: distances, contacts, margins and motions.
 //!
-//! Build an engine once for each mesh and ask it often. [`BvhSearch`] answers everything; [`Exhaustive`] and the GPU's
-//! engine answer what the trait [`Proximity`] has, with the same distances.
+//! Build an engine once for each mesh and ask it often. [`BvhSearch`] answers everything;
+//! [`Exhaustive`] and the GPU's engine answer what the trait [`Proximity`] has, with the same
+//! distances.
 //!
 //! **A chain of links, exactly**
 //!
@@ -85,9 +86,10 @@
 //! | see the mesh as the engine has it now | [`vertices`](Proximity::vertices), [`triangles`](Proximity::triangles) |
 //! | start without what the last queries left | [`forget`](BvhSearch::forget) |
 //!
-//! Every answer that names a place has a [`Witness`] and reads as one: `answer.on_mesh`, `answer.arc_length`. A margin is
-//! kept by what is farther away than it. Yes or no about links is a `bool`, because it is exact; about tubes and motions it
-//! is a [`Decision`], which may be `Undecided`. An error says what to change, and its `kind()` is one word for programs.
+//! Every answer that names a place has a [`Witness`] and reads as one: `answer.on_mesh`,
+//! `answer.arc_length`. A margin is kept by what is farther away than it. Yes or no about links is
+//! a `bool`, because it is exact; about tubes and motions it is a [`Decision`], which may be
+//! `Undecided`. An error says what to change, and its `kind()` is one word for programs.
 //!
 //! ```
 //! use parry_continuum::Chain;
@@ -103,17 +105,17 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! The book has more on [the queries](crate::book::queries), [several robots](crate::book::robots), [threads](crate::book::threads) and
-//! [controllers](crate::book::control).
+//! The book has more on [the queries](crate::book::queries), [several robots](crate::book::robots),
+//! [threads](crate::book::threads) and [controllers](crate::book::control).
 
 #[cfg(feature = "gpu")]
 pub use crate::answer::DeviceFailure;
 pub use crate::answer::{
     Between, Certificate, Clearance, Contact, ContactFeature, Decision, Derivative, InsideAnswer,
     LinkFeature, LinkProximity, MeshError, MotionAnswer, MotionClearance, PlacementFault, Proof,
-    ProximityError, RobotClearance, RobotMotionAnswer, RobotProximity, RobotsInContact, SceneContact,
-    SceneError, ShapeInContact, Side, StructureProximity, Tightest, TriangleFeature, TubePiece,
-    UndecidedReason, Witness, Work,
+    ProximityError, RobotClearance, RobotMotionAnswer, RobotProximity, RobotsInContact,
+    SceneContact, SceneError, ShapeInContact, Side, StructureProximity, Tightest, TriangleFeature,
+    TubePiece, UndecidedReason, Witness, Work,
 };
 pub use crate::engine::{
     BvhSearch, Exhaustive, Proximity, RobotPair, SearchPrecision, between, clears_between,

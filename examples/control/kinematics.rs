@@ -27,8 +27,10 @@ impl Kinematics {
         let robot = three_tubes();
         let joints = robot.on_the_way(&ventricle::goal(), 0.97);
         let radii = robot.sections.iter().zip(LINKS);
-        let radii = radii.flat_map(|(section, links)| std::iter::repeat_n(section.radius, links)).collect();
-        let mut new = Self { robot, joints, points: Vec::new(), velocities: Default::default(), radii };
+        let radii =
+            radii.flat_map(|(section, links)| std::iter::repeat_n(section.radius, links)).collect();
+        let mut new =
+            Self { robot, joints, points: Vec::new(), velocities: Default::default(), radii };
         new.update();
         new
     }
@@ -77,7 +79,8 @@ impl Kinematics {
         std::array::from_fn(|joint| self.velocities[joint][self.points.len() - 1])
     }
 
-    /// How a contact's distance changes with each joint: that of the axis point and the turn of its link, n . J.
+    /// How a contact's distance changes with each joint: that of the axis point and the turn of its
+    /// link, n . J.
     pub fn rates(&self, robot: &Chain, pose: &Pose, contact: &Contact) -> Option<[Real; JOINTS]> {
         let link = contact.link as usize;
         let along = robot.links()[link].end() - robot.links()[link].start();

@@ -1,9 +1,10 @@
-//! Lets a concentric tube robot follow a target into the wall of a brain ventricle, and keeps it 0.5 mm away.
+//! Lets a concentric tube robot follow a target into the wall of a brain ventricle, and keeps it
+//! 0.5 mm away.
 //!
-//! `cargo run --release --example control` simulates a loop of 1 kHz twice: once the joints follow the target as well as
-//! they can, and the robot touches; once each contact within 3 mm is one linear inequality in the joint speeds, and it
-//! does not. At the end there are the clearances, how long a tick takes, and a plot. `--latency` measures over 100,000
-//! ticks.
+//! `cargo run --release --example control` simulates a loop of 1 kHz twice: once the joints follow
+//! the target as well as they can, and the robot touches; once each contact within 3 mm is one
+//! linear inequality in the joint speeds, and it does not. At the end there are the clearances, how
+//! long a tick takes, and a plot. `--latency` measures over 100,000 ticks.
 
 mod barrier;
 mod kinematics;
@@ -46,8 +47,8 @@ const APPROACH: Real = 15.0;
 /// How fast the tip makes up for its error, per second.
 const FOLLOW: Real = 10.0;
 
-/// What a run has seen: at each tick the clearance and the distance of the tip from the target, and the times of
-/// kinematics, robot and query.
+/// What a run has seen: at each tick the clearance and the distance of the tip from the target, and
+/// the times of kinematics, robot and query.
 pub struct Run {
     pub clearance: Vec<Real>,
     pub tip_error: Vec<Real>,
@@ -73,7 +74,9 @@ fn control(options: &Options) -> Result<(), String> {
     for (name, run) in [("without the fixture", &free), ("with the fixture", &kept)] {
         let least = run.clearance.iter().copied().fold(Real::INFINITY, Real::min);
         let error = run.tip_error.iter().copied().fold(0.0, Real::max);
-        println!("{name:>20}: never nearer than {least:.3} mm, the tip at most {error:.2} mm off the target");
+        println!(
+            "{name:>20}: never nearer than {least:.3} mm, the tip at most {error:.2} mm off the target"
+        );
     }
     println!("\nmicroseconds a tick, {ticks} ticks of the second run");
     for (name, times) in ["kinematics", "robot", "query"].into_iter().zip(&kept.times) {
@@ -83,9 +86,9 @@ fn control(options: &Options) -> Result<(), String> {
         let [median, rare, worst] = [times[last / 2], times[last - last / 1000], times[last]];
         println!("  {name:<10}  p50 {median:8.1}   p99.9 {rare:8.1}   largest {worst:8.1}");
     }
-    plot::draw(&free, &kept, MARGIN, TICK)
-        .save(&out)
-        .map_err(|error| format!("cannot write {} ({error}); choose another --out", out.display()))?;
+    plot::draw(&free, &kept, MARGIN, TICK).save(&out).map_err(|error| {
+        format!("cannot write {} ({error}); choose another --out", out.display())
+    })?;
     println!("\nplot: {}", out.display());
     Ok(())
 }
@@ -99,7 +102,8 @@ fn target(start: Vector, time: Real) -> Vector {
 /// A loop of `ticks`, with the fixture or without.
 fn run(mut search: BvhSearch, ticks: u32, with_fixture: bool) -> Result<Run, String> {
     let mut kinematics = Kinematics::new();
-    let mut robot = Chain::from_centreline(kinematics.points(), kinematics.radii()).map_err(text)?;
+    let mut robot =
+        Chain::from_centreline(kinematics.points(), kinematics.radii()).map_err(text)?;
     let pose = ventricle::entry();
     let (mut contacts, mut limits) = (Vec::new(), Vec::new());
     let start = kinematics.tip();
@@ -120,7 +124,9 @@ fn run(mut search: BvhSearch, ticks: u32, with_fixture: bool) -> Result<Run, Str
         filled = Instant::now();
         search.within(&robot, &pose, NEAR, 0.0, &mut contacts).map_err(text)?;
         let answered = Instant::now();
-        for (times, time) in run.times.iter_mut().zip([moved - begin, filled - moved, answered - filled]) {
+        for (times, time) in
+            run.times.iter_mut().zip([moved - begin, filled - moved, answered - filled])
+        {
             times.push(time);
         }
 

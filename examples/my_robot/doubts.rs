@@ -1,4 +1,5 @@
-//! What looks like a mistake, though an answer exists: a robot in another frame or unit than the wall.
+//! What looks like a mistake, though an answer exists: a robot in another frame or unit than the
+//! wall.
 
 use crate::Options;
 use crate::frames::{half_turn, name};
@@ -22,7 +23,8 @@ struct Remedy {
 pub fn doubts(my: &Options, robots: &[Robot], wall: &Wall, pose: &Pose) -> Vec<String> {
     // Where all shapes are, moved and scaled anew.
     let around = |scale: f64, pose: &Pose| {
-        let points = robots.iter().flat_map(|robot| &robot.points).filter(|point| point.is_finite());
+        let points =
+            robots.iter().flat_map(|robot| &robot.points).filter(|point| point.is_finite());
         Aabb::from_points(points.map(|&point| *pose * (point * scale)))
     };
     let size = |around: &Aabb| around.extents().length();
@@ -41,7 +43,9 @@ pub fn doubts(my: &Options, robots: &[Robot], wall: &Wall, pose: &Pose) -> Vec<S
     }
     if !robot.intersects(&wall.bounds) {
         let gap = (robot.mins - wall.bounds.maxs).max(wall.bounds.mins - robot.maxs).max_element();
-        doubts.push(format!("the robot's box and the wall's do not overlap; they are {gap:.3} apart"));
+        doubts.push(format!(
+            "the robot's box and the wall's do not overlap; they are {gap:.3} apart"
+        ));
     }
     let helps = |remedy: &Remedy| {
         let pose = if remedy.turns { half_turn() * *pose } else { *pose };

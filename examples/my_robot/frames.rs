@@ -49,7 +49,10 @@ pub fn turn(my: &Options, robot: &Robot, wall: &Wall) -> Result<Option<[Frame; 2
     if let (Some(stated), Some(asked)) = (robot.frame, asked)
         && stated != asked
     {
-        return Err(format!("the centreline's file says that it is {}; leave out --frame", name(stated)));
+        return Err(format!(
+            "the centreline's file says that it is {}; leave out --frame",
+            name(stated)
+        ));
     }
     match (robot.frame.or(asked), wall.frame) {
         (Some(own), Some(other)) => Ok((own != other).then_some([own, other])),

@@ -1,4 +1,5 @@
-//! `cargo run --release --example my_robot -- --mesh examples/data/wall.stl --centreline examples/data/shape.csv`
+//! `cargo run --release --example my_robot -- --mesh examples/data/wall.stl --centreline
+//! examples/data/shape.csv`
 
 mod doubts;
 mod frames;
@@ -19,30 +20,36 @@ use wall::Wall;
 /// How far is my robot from my wall, link by link? All lengths are in one unit, that of the mesh.
 #[derive(Parser)]
 struct Options {
-    /// The wall: an STL, OBJ, PLY, .vtp or .vtk file, or a segmentation in NIfTI, NRRD or MetaImage (which comes in millimetres)
+    /// The wall: an STL, OBJ, PLY, .vtp or .vtk file, or a segmentation in NIfTI, NRRD or
+    /// MetaImage (which comes in millimetres)
     #[arg(long)]
     mesh: PathBuf,
     /// The label of the wall in a segmentation [default: all that are not 0]
     #[arg(long, value_parser = |s: &str| s.parse::<u32>().or(Err("write a whole number")))]
     label: Option<u32>,
-    /// Points along the robot. A text file (.csv, .tsv, .txt, .dat) has a line for each: x,y,z and optionally the radius of
-    /// the segment that begins there; a heading and lines that begin with # are passed over. Or a .vtp, .vtk or .mrk.json file
+    /// Points along the robot. A text file (.csv, .tsv, .txt, .dat) has a line for each: x,y,z and
+    /// optionally the radius of the segment that begins there; a heading and lines that begin
+    /// with # are passed over. Or a .vtp, .vtk or .mrk.json file
     #[arg(long, required_unless_present = "shapes")]
     centreline: Option<PathBuf>,
-    /// Which line of a .vtp, .vtk or .mrk.json file with several, counted from 0. A list of fiducials needs it too
+    /// Which line of a .vtp, .vtk or .mrk.json file with several, counted from 0. A list of
+    /// fiducials needs it too
     #[arg(long, value_parser = |s: &str| s.parse::<usize>().or(Err("write a whole number")))]
     line: Option<usize>,
-    /// Many shapes instead of one: lines of shape,x,y,z and optionally the radius. Lines that follow one another with the same
-    /// number of a shape are one robot. Prints a CSV with a line for each
+    /// Many shapes instead of one: lines of shape,x,y,z and optionally the radius. Lines that
+    /// follow one another with the same number of a shape are one robot. Prints a CSV with a
+    /// line for each
     #[arg(long, conflicts_with_all = ["centreline", "tolerance"])]
     shapes: Option<PathBuf>,
     /// The radius of all segments, if the file has none
     #[arg(long, allow_negative_numbers = true, value_parser = radius)]
     radius: Option<f64>,
-    /// Multiplies the robot's coordinates and the radii in its file (not --radius), for example 1000 for metres to millimetres
+    /// Multiplies the robot's coordinates and the radii in its file (not --radius), for example
+    /// 1000 for metres to millimetres
     #[arg(long, allow_negative_numbers = true, value_parser = positive)]
     scale: Option<f64>,
-    /// The frame of the centreline, if it is not that of the mesh and the file does not say: x and y change sign between the two
+    /// The frame of the centreline, if it is not that of the mesh and the file does not say: x and
+    /// y change sign between the two
     #[arg(long, conflicts_with = "pose")]
     frame: Option<Axes>,
     /// The frame of the mesh, if its file does not say
@@ -51,7 +58,8 @@ struct Options {
     /// A file with a 4x4 matrix, row by row: it brings the robot into the frame of the mesh
     #[arg(long)]
     pose: Option<PathBuf>,
-    /// Also bound the clearance of the curve through the points: how far apart the two bounds may be
+    /// Also bound the clearance of the curve through the points: how far apart the two bounds may
+    /// be
     #[arg(long, allow_negative_numbers = true, value_parser = positive)]
     tolerance: Option<f64>,
     /// Print JSON, with all digits

@@ -35,7 +35,11 @@ impl Report<'_> {
         };
         writeln!(out, "base: {base}")?;
         for l in &self.links {
-            writeln!(out, "link {}: {:.6}, from {:.6} to {:.6}", l.link, l.distance, l.on_robot, l.on_mesh)?;
+            writeln!(
+                out,
+                "link {}: {:.6}, from {:.6} to {:.6}",
+                l.link, l.distance, l.on_robot, l.on_mesh
+            )?;
         }
         if let Some(curve) = &self.curve {
             let doubt = if curve.resolved { "" } else { ", farther apart than --tolerance" };

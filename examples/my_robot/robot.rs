@@ -23,7 +23,11 @@ pub fn centreline(path: &Path, my: &Options) -> Result<Robot, Box<dyn Error>> {
     let options = mesh_files::Options::scaled(my.scale.unwrap_or(1.0)).with_line(my.line);
     let line = mesh_files::load_centreline(path, &options)?;
     if line.skipped_points > 0 {
-        eprintln!("note: left out of {}: {} points without a place", path.display(), line.skipped_points);
+        eprintln!(
+            "note: left out of {}: {} points without a place",
+            path.display(),
+            line.skipped_points
+        );
     }
     Ok(robot(0.0, line, path, my)?)
 }
@@ -32,8 +36,9 @@ pub fn centreline(path: &Path, my: &Options) -> Result<Robot, Box<dyn Error>> {
 pub fn shapes(path: &Path, my: &Options) -> Result<Vec<Robot>, Box<dyn Error>> {
     let options = mesh_files::Options::scaled(my.scale.unwrap_or(1.0));
     let shapes = mesh_files::load_shapes(path, &options)?;
-    let of =
-        |(number, line)| robot(number, line, path, my).map_err(|error| format!("shape {number}: {error}"));
+    let of = |(number, line)| {
+        robot(number, line, path, my).map_err(|error| format!("shape {number}: {error}"))
+    };
     Ok(shapes.into_iter().map(of).collect::<Result<_, _>>()?)
 }
 

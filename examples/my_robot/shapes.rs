@@ -14,7 +14,12 @@ use std::io::{BufWriter, Write, stdout};
 /// How many are asked for at once.
 const AT_ONCE: usize = 4096;
 
-pub fn print(my: &Options, robots: &[Robot], wall: &mut Wall, pose: &Pose) -> Result<(), Box<dyn Error>> {
+pub fn print(
+    my: &Options,
+    robots: &[Robot],
+    wall: &mut Wall,
+    pose: &Pose,
+) -> Result<(), Box<dyn Error>> {
     let progress = ProgressBar::new(robots.len() as u64);
     let mut out = BufWriter::new(stdout().lock());
     let mut objects = Vec::new();
@@ -27,8 +32,11 @@ pub fn print(my: &Options, robots: &[Robot], wall: &mut Wall, pose: &Pose) -> Re
     for some in robots.chunks(AT_ONCE) {
         let chains: Vec<_> =
             some.iter().map(|robot| Chain::from_centreline(&robot.points, &robot.radii)).collect();
-        let asked: Vec<_> =
-            chains.iter().filter_map(|chain| chain.as_ref().ok()).map(|chain| (chain, *pose)).collect();
+        let asked: Vec<_> = chains
+            .iter()
+            .filter_map(|chain| chain.as_ref().ok())
+            .map(|chain| (chain, *pose))
+            .collect();
         let mut found = Vec::new();
         wall.search.minimum_batch(&asked, &mut found)?;
         let mut found = found.into_iter();
@@ -58,7 +66,8 @@ pub fn print(my: &Options, robots: &[Robot], wall: &mut Wall, pose: &Pose) -> Re
 fn line(number: f64, answer: &Result<LinkProximity, String>) -> String {
     match answer {
         Ok(found) => {
-            let [robot, mesh] = [found.on_robot, found.on_mesh].map(|p| format!("{},{},{}", p.x, p.y, p.z));
+            let [robot, mesh] =
+                [found.on_robot, found.on_mesh].map(|p| format!("{},{},{}", p.x, p.y, p.z));
             let LinkProximity { distance, .. } = found;
             format!(
                 "{number},{distance},{},{},{},{robot},{mesh},",

@@ -19,7 +19,8 @@ pub struct Wall {
 impl Wall {
     pub fn load(my: &Options) -> Result<Self, Box<dyn Error>> {
         let file = my.mesh.display();
-        let mesh = mesh_files::load_with(&my.mesh, &mesh_files::Options::default().with_label(my.label))?;
+        let mesh =
+            mesh_files::load_with(&my.mesh, &mesh_files::Options::default().with_label(my.label))?;
         if mesh.skipped_faces > 0 {
             eprintln!("note: left out of {file}: {} faces without area", mesh.skipped_faces);
         }
@@ -28,7 +29,9 @@ impl Wall {
         if let (Some(stated), Some(asked)) = (stated, asked)
             && stated != asked
         {
-            return Err(format!("{file} says that it is {}; leave out --mesh-frame", name(stated)).into());
+            return Err(
+                format!("{file} says that it is {}; leave out --mesh-frame", name(stated)).into()
+            );
         }
         let (vertices, triangles) = mesh.into_parts::<Vector>();
         let bounds = Aabb::from_points(vertices.iter().copied());

@@ -1,4 +1,5 @@
-//! The picture of a way: six moments of it, the wall cut open in front of the robot, each link in the colour of its distance.
+//! The picture of a way: six moments of it, the wall cut open in front of the robot, each link in
+//! the colour of its distance.
 
 use super::edges::{Edges, Place, text};
 use continuum_demo::canvas::{Align, Canvas, Colour, hex};
@@ -51,13 +52,20 @@ impl Moment {
 }
 
 /// Draws the way through what is called `name`.
-pub fn draw(mesh: &TriMesh, name: &str, edges: &mut Edges, path: &[Place]) -> Result<Canvas, String> {
+pub fn draw(
+    mesh: &TriMesh,
+    name: &str,
+    edges: &mut Edges,
+    path: &[Place],
+) -> Result<Canvas, String> {
     let moments = moments(edges, path)?;
     let ends = |link: &ModifiedCylinder| [edges.base * link.start(), edges.base * link.end()];
-    let places: Vec<_> = moments.iter().flat_map(|moment| moment.chain.links()).flat_map(ends).collect();
+    let places: Vec<_> =
+        moments.iter().flat_map(|moment| moment.chain.links()).flat_map(ends).collect();
     let side = if edges.base.translation.x < mesh.local_aabb().center().x { 1.0 } else { -1.0 };
     let aspect = PANEL[0] as Real / PANEL[1] as Real;
-    let mut camera = Camera::framing(&places, Vector::new(side, -0.55, -0.32), Vector::Z, aspect, 0.12);
+    let mut camera =
+        Camera::framing(&places, Vector::new(side, -0.55, -0.32), Vector::Z, aspect, 0.12);
     let depths = places.iter().map(|&p| (p - camera.eye).dot(camera.forward) - 2.0);
     camera.cut = depths.fold(Real::INFINITY, Real::min).max(0.0);
 
@@ -72,8 +80,10 @@ pub fn draw(mesh: &TriMesh, name: &str, edges: &mut Edges, path: &[Place]) -> Re
         let solids = moment.chain.links().iter().zip(&moment.found).map(solid).collect();
         let mut picture = Picture::new(Some(mesh), solids);
         // Folds of the wall between the eye and the robot let it show through.
-        picture.skin = Skin { near: 0.0, rim: 0.4, glint: 0.05, far: 0.85, edges: [0.03, 0.2], veil: 0.25 };
-        let at = [GAP + number % GRID[0] * (PANEL[0] + GAP), HEAD + number / GRID[0] * (PANEL[1] + GAP)];
+        picture.skin =
+            Skin { near: 0.0, rim: 0.4, glint: 0.05, far: 0.85, edges: [0.03, 0.2], veil: 0.25 };
+        let at =
+            [GAP + number % GRID[0] * (PANEL[0] + GAP), HEAD + number / GRID[0] * (PANEL[1] + GAP)];
         canvas.paste(&picture.render(&camera, PANEL[0], PANEL[1]), at, 12.0);
         let [x, y] = at.map(|place| place as f32);
         canvas.frame([x, y, x + PANEL[0] as f32, y + PANEL[1] as f32], 12.0, 2.0, PALE);

@@ -19,8 +19,8 @@ const LEAST: Real = 0.1;
 /// What a turn of 1 rad counts beside an extension by 1 mm: about the robot's reach across, mm.
 const REACH: Real = 8.0;
 
-/// A place in joint space: three extensions, mm, and the angles of the two curved tubes, rad. The straight tube's angle
-/// does not matter.
+/// A place in joint space: three extensions, mm, and the angles of the two curved tubes, rad. The
+/// straight tube's angle does not matter.
 pub type Place = [Real; 5];
 
 /// The robot drawn in.
@@ -102,13 +102,18 @@ impl Edges<'_> {
 
     /// Whether the robot keeps the margin on the way, by this check.
     pub fn is_clear(&mut self, from: &Place, to: &Place) -> Result<bool, String> {
-        let motion =
-            Watched { motion: self.motion(from, to)?, shapes: Cell::default(), time: Cell::default() };
+        let motion = Watched {
+            motion: self.motion(from, to)?,
+            shapes: Cell::default(),
+            time: Cell::default(),
+        };
         let begin = Instant::now();
         let is_clear = match self.check {
-            Check::Proof => {
-                self.search.clears_motion(&motion, self.margin, RESOLUTION).map_err(text)?.is_clear()
-            }
+            Check::Proof => self
+                .search
+                .clears_motion(&motion, self.margin, RESOLUTION)
+                .map_err(text)?
+                .is_clear(),
             Check::Steps(step) => self.is_clear_in_steps(&motion, step)?,
         };
         self.costs.all += begin.elapsed();
@@ -122,7 +127,8 @@ impl Edges<'_> {
         let mut tube = motion.motion.tube(0.0).map_err(text)?;
         for t in motion.motion.steps(step) {
             let pose = motion.shape(t, &mut tube).map_err(text)?;
-            let decision = self.search.tube_clears(&tube, &pose, self.margin, RESOLUTION).map_err(text)?;
+            let decision =
+                self.search.tube_clears(&tube, &pose, self.margin, RESOLUTION).map_err(text)?;
             if decision != Decision::Clear {
                 return Ok(false);
             }
@@ -136,7 +142,9 @@ impl Edges<'_> {
         let tubes: Vec<_> = places.iter().map(tube).collect::<Result<_, String>>()?;
         let tubes: Vec<_> = tubes.iter().map(|(tube, pose)| (tube, *pose)).collect();
         let mut decisions = Vec::new();
-        self.search.tube_clears_batch(&tubes, self.margin, RESOLUTION, &mut decisions).map_err(text)?;
+        self.search
+            .tube_clears_batch(&tubes, self.margin, RESOLUTION, &mut decisions)
+            .map_err(text)?;
         let is_clear = decisions.into_iter().map(|decision| decision == Ok(Decision::Clear));
         Ok(places
             .into_iter()

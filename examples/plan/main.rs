@@ -1,11 +1,12 @@
 //! Plans the way of a concentric tube robot into a brain ventricle, every moment of it proven.
 //!
-//! `cargo run --release --example plan` grows a ventricle and looks for a way from the burr hole through the foramen of
-//! Monro into the third ventricle, in the space of the robot's joints. Whether an edge keeps the margin is proven by
-//! `clears_motion`; the same planner is then run with edges that are checked by steps, and what these accept is looked
-//! at again. `--picture` draws the shapes of the way, `--clearance` how near it
-//! comes to the wall over time. `--mesh` takes real anatomy instead (in millimetres, or with
-//! `--scale`); `--base` and `--axis` place the robot in it.
+//! `cargo run --release --example plan` grows a ventricle and looks for a way from the burr hole
+//! through the foramen of Monro into the third ventricle, in the space of the robot's joints.
+//! Whether an edge keeps the margin is proven by `clears_motion`; the same planner is then run with
+//! edges that are checked by steps, and what these accept is looked at again. `--picture` draws the
+//! shapes of the way, `--clearance` how near it comes to the wall over time. `--mesh` takes real
+//! anatomy instead (in millimetres, or with `--scale`); `--base` and `--axis` place the robot in
+//! it.
 
 mod draw;
 mod edges;
@@ -47,7 +48,8 @@ struct Options {
     #[arg(long, value_name = "PATH")]
     picture: Option<PathBuf>,
 
-    /// Draw how near the way comes to the wall over time into this file, or as clearance.png into this directory
+    /// Draw how near the way comes to the wall over time into this file, or as clearance.png into
+    /// this directory
     #[arg(long, value_name = "PATH")]
     clearance: Option<PathBuf>,
 }
@@ -107,7 +109,8 @@ fn run(options: &Options) -> Result<(), String> {
     for pair in path.windows(2) {
         if !edges.is_clear(&pair[0], &pair[1])? {
             return Err(
-                "a shortened edge is not clear; please report it with the command that you ran".into()
+                "a shortened edge is not clear; please report it with the command that you ran"
+                    .into(),
             );
         }
     }
@@ -124,7 +127,9 @@ fn run(options: &Options) -> Result<(), String> {
     if let Some(file) = clearance {
         let found = OverTime::new(&mut edges, &path)?;
         let [proven, seen] = found.least();
-        println!("no shape of the way is nearer than {proven:.3} mm; steps of 0.5 mm come to {seen:.3} mm");
+        println!(
+            "no shape of the way is nearer than {proven:.3} mm; steps of 0.5 mm come to {seen:.3} mm"
+        );
         save(&found.draw(options.margin), &file, "--clearance")?;
     }
     Ok(())
@@ -133,9 +138,9 @@ fn run(options: &Options) -> Result<(), String> {
 /// # Errors
 /// The file cannot be written; `option` chooses another.
 fn save(canvas: &Canvas, file: &Path, option: &str) -> Result<(), String> {
-    canvas
-        .save(file)
-        .map_err(|error| format!("cannot write {} ({error}); choose another {option}", file.display()))?;
+    canvas.save(file).map_err(|error| {
+        format!("cannot write {} ({error}); choose another {option}", file.display())
+    })?;
     println!("picture: {}", file.display());
     Ok(())
 }

@@ -1,4 +1,5 @@
-//! How near a way comes to the wall over time: proven bounds on each part of it, beside what steps see.
+//! How near a way comes to the wall over time: proven bounds on each part of it, beside what steps
+//! see.
 
 use super::edges::{Edges, Place, text};
 use continuum_demo::canvas::{Align, Canvas, Colour, hex};
@@ -89,7 +90,8 @@ impl OverTime {
     /// Draws both, with the margin that is kept.
     pub fn draw(&self, margin: Real) -> Canvas {
         let mut canvas = Canvas::new(SIZE[0], SIZE[1], |_, _| hex(0xffffff));
-        let [left, right, top, bottom] = [80.0, SIZE[0] as f32 - 40.0, 110.0, SIZE[1] as f32 - 60.0];
+        let [left, right, top, bottom] =
+            [80.0, SIZE[0] as f32 - 40.0, 110.0, SIZE[1] as f32 - 60.0];
         let edges = self.bounds.len() as Real / Real::from(PARTS);
         let uppers = self.bounds.iter().map(|bounds| bounds[1]);
         let levels = ticks(uppers.fold(2.0 * margin, Real::max).max(TOLERANCE));
@@ -113,18 +115,44 @@ impl OverTime {
         }
         line([left, y(margin)], [right, y(margin)], 1.5, INK);
         canvas.text("How near the way comes to the wall, mm", [left, 44.0], Align::Left, 22.0, INK);
-        let note = format!("lines: the least of each part, between two proven bounds {TOLERANCE} mm apart");
+        let note = format!(
+            "lines: the least of each part, between two proven bounds {TOLERANCE} mm apart"
+        );
         canvas.text(&note, [left, 76.0], Align::Left, 15.0, BOUNDS);
-        canvas.text(&format!("ticks: what steps of {STEP} mm see"), [right, 76.0], Align::Right, 15.0, STEPS);
+        canvas.text(
+            &format!("ticks: what steps of {STEP} mm see"),
+            [right, 76.0],
+            Align::Right,
+            15.0,
+            STEPS,
+        );
         // Below the line, where no way that keeps the margin comes.
         canvas.text("margin", [right, y(margin) + 19.0], Align::Right, 13.0, INK);
         for value in levels {
-            canvas.text(&format!("{value}"), [left - 10.0, y(value) + 5.0], Align::Right, 13.0, INK);
+            canvas.text(
+                &format!("{value}"),
+                [left - 10.0, y(value) + 5.0],
+                Align::Right,
+                13.0,
+                INK,
+            );
         }
         for edge in 0..=edges as u32 {
-            canvas.text(&format!("{edge}"), [x(edge.into()), bottom + 24.0], Align::Centre, 13.0, INK);
+            canvas.text(
+                &format!("{edge}"),
+                [x(edge.into()), bottom + 24.0],
+                Align::Centre,
+                13.0,
+                INK,
+            );
         }
-        canvas.text("edge of the way", [0.5 * (left + right), bottom + 46.0], Align::Centre, 13.0, INK);
+        canvas.text(
+            "edge of the way",
+            [0.5 * (left + right), bottom + 46.0],
+            Align::Centre,
+            13.0,
+            INK,
+        );
         canvas
     }
 }

@@ -1,5 +1,6 @@
-//! RRT-Connect (Kuffner and LaValle, 2000): two trees, one from each end, take turns to grow towards random places and
-//! towards each other. Only clear places are worth growing to, so these are drawn in batches.
+//! RRT-Connect (Kuffner and LaValle, 2000): two trees, one from each end, take turns to grow
+//! towards random places and towards each other. Only clear places are worth growing to, so these
+//! are drawn in batches.
 
 use super::edges::{Edges, Place, along, any_place, length, way};
 use continuum_demo::steer::Random;
@@ -29,8 +30,14 @@ impl Tree {
         (0..self.places.len()).min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(0)
     }
 
-    /// Grows by edges towards a place: one, or as many as are clear. Returns the last place, and whether it is that.
-    fn grow(&mut self, edges: &mut Edges, to: &Place, is_greedy: bool) -> Result<(usize, bool), String> {
+    /// Grows by edges towards a place: one, or as many as are clear. Returns the last place, and
+    /// whether it is that.
+    fn grow(
+        &mut self,
+        edges: &mut Edges,
+        to: &Place,
+        is_greedy: bool,
+    ) -> Result<(usize, bool), String> {
         let mut last = self.nearest(to);
         loop {
             let from = self.places[last];
@@ -106,7 +113,8 @@ pub fn plan(edges: &mut Edges, ends: [Place; 2], seed: u64) -> Result<Plan, Stri
     Ok(Plan { path, accepted, drawn, clear })
 }
 
-/// The path with detours left out: edges between places that are not neighbours, where they are clear.
+/// The path with detours left out: edges between places that are not neighbours, where they are
+/// clear.
 pub fn shorten(edges: &mut Edges, mut path: Vec<Place>, seed: u64) -> Result<Vec<Place>, String> {
     let mut random = Random(seed);
     for _ in 0..20 * path.len() {

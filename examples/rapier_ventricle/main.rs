@@ -1,10 +1,11 @@
 //! Pushes an elastic concentric tube robot into a brain ventricle, in a rapier world.
 //!
-//! `cargo run --release --example rapier_ventricle` lets the three tubes come out along the planned way into the third
-//! ventricle, then pushes the base on. Where the robot touches the wall, contact forces bend it. At every step the
-//! crate's search finds the clearance of every link. Into `target/rapier_ventricle` (or `--out`) go `steps.csv` and
-//! `links.csv` with clearances, forces and the deviation from the kinematic shape, a film as numbered pictures, and
-//! a sheet of six moments. Two runs give the same files. `--mesh` takes real anatomy instead (in millimetres, or
+//! `cargo run --release --example rapier_ventricle` lets the three tubes come out along the planned
+//! way into the third ventricle, then pushes the base on. Where the robot touches the wall, contact
+//! forces bend it. At every step the crate's search finds the clearance of every link. Into
+//! `target/rapier_ventricle` (or `--out`) go `steps.csv` and `links.csv` with clearances, forces
+//! and the deviation from the kinematic shape, a film as numbered pictures, and a sheet of six
+//! moments. Two runs give the same files. `--mesh` takes real anatomy instead (in millimetres, or
 //! with `--scale`).
 
 mod film;
@@ -74,8 +75,8 @@ fn simulate(options: &Options) -> Result<(), String> {
 
     let thick = plan.robot.sections.iter().map(|section| section.radius).fold(0.0, Real::max);
     let end = plan.at(plan.duration());
-    let places =
-        [plan.entry, plan.base(end)].map(|base| plan.shape(end).points.iter().map(|p| base * p).collect());
+    let places = [plan.entry, plan.base(end)]
+        .map(|base| plan.shape(end).points.iter().map(|p| base * p).collect());
     let studio = Studio::new(&mesh, &places.map(|places: Vec<_>| places).concat(), thick);
 
     let mut world = world_around(&mesh, 2.0 * thick)?;
@@ -157,7 +158,8 @@ fn advance(
     clocks.queries.push(begin.elapsed());
 
     let planned: Vec<_> = rest.points.iter().map(|p| base * p).collect();
-    let deviations = points.iter().zip(&planned).skip(1).map(|(is, planned)| (*is - *planned).length());
+    let deviations =
+        points.iter().zip(&planned).skip(1).map(|(is, planned)| (*is - *planned).length());
     Ok(Moment {
         time,
         out: progress.out,
@@ -199,8 +201,10 @@ impl Clocks {
             [("rapier's step", &mut self.steps), ("clearance of all links", &mut self.queries)]
         {
             times.sort();
-            let at = |share: f64| times.get((share * (times.len().max(1) - 1) as f64) as usize).copied();
-            let [median, slowest] = [0.5, 1.0].map(|share| at(share).unwrap_or_default().as_secs_f64());
+            let at =
+                |share: f64| times.get((share * (times.len().max(1) - 1) as f64) as usize).copied();
+            let [median, slowest] =
+                [0.5, 1.0].map(|share| at(share).unwrap_or_default().as_secs_f64());
             println!(
                 "  {name:<22} {:>8.1} µs {:>8.1} µs   {:>6.1} %",
                 median * 1e6,
@@ -239,7 +243,10 @@ impl Summary {
             plan.robot.length(&plan.goal),
             plan.push
         );
-        println!("until it touched, it was within {:.3} mm of the kinematic shape", self.free_deviation);
+        println!(
+            "until it touched, it was within {:.3} mm of the kinematic shape",
+            self.free_deviation
+        );
         match self.first_touch {
             Some(time) => println!(
                 "it touched the wall after {time:.2} s, with up to {:.0} mN, and was bent away by up to {:.2} mm",

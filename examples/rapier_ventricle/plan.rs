@@ -1,10 +1,12 @@
-//! What the robot is told to do: its tubes come out along a planned shape, then its base is pushed on.
+//! What the robot is told to do: its tubes come out along a planned shape, then its base is pushed
+//! on.
 
 use continuum_demo::ctr::{Joints, Robot};
 use continuum_demo::rod::RestShape;
 use parry_continuum::parry::math::{Pose, Real, Vector};
 
-/// Bending stiffness that stands for 1 in the robot's ratios, in mN mm^2: soft, as a robot of polymer tubes is.
+/// Bending stiffness that stands for 1 in the robot's ratios, in mN mm^2: soft, as a robot of
+/// polymer tubes is.
 const STIFFNESS: Real = 9e4;
 
 /// Speeds of the tubes and of the base, in mm/s, and the time at the end to come to rest in, in s.
@@ -67,10 +69,11 @@ impl Plan {
         self.entry * Pose::from_translation(Vector::Z * progress.pushed)
     }
 
-    /// The kinematic shape: a joint at every station that is out, and the tip. A last link that would be shorter than
-    /// a quarter of its final length is part of the one before.
+    /// The kinematic shape: a joint at every station that is out, and the tip. A last link that
+    /// would be shorter than a quarter of its final length is part of the one before.
     pub fn shape(&self, progress: Progress) -> RestShape {
-        let joints = self.robot.on_the_way(&self.goal, progress.out / self.robot.length(&self.goal));
+        let joints =
+            self.robot.on_the_way(&self.goal, progress.out / self.robot.length(&self.goal));
         let (mut arc_lengths, mut sections) = (vec![0.0], Vec::new());
         for (k, &(end, section)) in self.stations.iter().enumerate() {
             let start = if k == 0 { 0.0 } else { self.stations[k - 1].0 };
@@ -87,7 +90,10 @@ impl Plan {
             points: frames.iter().map(|frame| frame.translation).collect(),
             radii: sections.iter().map(|&section| self.robot.sections[section].radius).collect(),
             // The tubes of a section and of all further in lie in each other there.
-            stiffness: sections.iter().map(|&section| STIFFNESS * self.stiffness_from(section)).collect(),
+            stiffness: sections
+                .iter()
+                .map(|&section| STIFFNESS * self.stiffness_from(section))
+                .collect(),
         }
     }
 

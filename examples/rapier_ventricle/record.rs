@@ -1,5 +1,5 @@
-//! What every step of the simulation was like, as two CSV files. No time of the clock is in them, so that two runs
-//! can be compared.
+//! What every step of the simulation was like, as two CSV files. No time of the clock is in them,
+//! so that two runs can be compared.
 
 use parry_continuum::Chain;
 use parry_continuum::parry::math::{Real, Vector};
@@ -86,9 +86,15 @@ impl Recorder {
             moment.force(),
             moment.tip_deviation(),
         )?;
-        for ((found, force), deviation) in moment.found.iter().zip(&moment.forces).zip(&moment.deviations) {
+        for ((found, force), deviation) in
+            moment.found.iter().zip(&moment.forces).zip(&moment.deviations)
+        {
             let (link, triangle) = (found.link, found.triangle);
-            writeln!(self.links, "{step},{link},{:.6},{triangle},{force:.4},{deviation:.6}", found.distance)?;
+            writeln!(
+                self.links,
+                "{step},{link},{:.6},{triangle},{force:.4},{deviation:.6}",
+                found.distance
+            )?;
         }
         Ok(())
     }

@@ -1,7 +1,7 @@
 //! Answers as their fields: written as they are, and read back only if an answer can have them.
 
-/// What serde sees of an answer: its fields, under the name that is written. `$check` says what is wrong with fields that no
-/// answer has.
+/// What serde sees of an answer: its fields, under the name that is written. `$check` says what is
+/// wrong with fields that no answer has.
 macro_rules! checked_fields {
     ($written:literal, $name:ident { $($(#[$of_field:meta])* $field:ident: $type:ty),+ $(,)? }, $check:expr) => {
         #[cfg(feature = "serde-serialize")]

@@ -8,17 +8,22 @@ use std::ops::{Deref, DerefMut};
 /// Where a tube is closest to a mesh, between bounds. All in the mesh's frame and unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde-serialize", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde-serialize", serde(try_from = "serialised::Fields", into = "serialised::Fields"))]
+#[cfg_attr(
+    feature = "serde-serialize",
+    serde(try_from = "serialised::Fields", into = "serialised::Fields")
+)]
 #[non_exhaustive]
 pub struct Clearance {
     /// The clearance is at least this.
     pub lower: Real,
     /// The clearance is at most this: 0 where the tube touches the mesh.
     pub upper: Real,
-    /// Whether the bounds are as close as was asked for: no farther apart than the tolerance and `uncertainty`.
+    /// Whether the bounds are as close as was asked for: no farther apart than the tolerance and
+    /// `uncertainty`.
     pub resolved: bool,
-    /// What the errors cost that the tube states for itself, and no finer tolerance can mend; and near a flat face whose
-    /// direction is not known ([`Tube::fit`](crate::Tube::fit)), what that costs.
+    /// What the errors cost that the tube states for itself, and no finer tolerance can mend; and
+    /// near a flat face whose direction is not known ([`Tube::fit`](crate::Tube::fit)), what
+    /// that costs.
     pub uncertainty: Real,
     /// The section of constant radius at the place that realises `upper`, counted from the base.
     pub section: u32,
@@ -49,7 +54,8 @@ impl Clearance {
     }
 }
 
-/// Whether the bounds of two answers to one question are as close together as was asked for, and the uncertainty that it takes.
+/// Whether the bounds of two answers to one question are as close together as was asked for, and
+/// the uncertainty that it takes.
 pub(super) fn resolve(apart: Real, [one, other]: [Real; 2], tolerance: Real) -> (bool, Real) {
     let (least, most) = (one.min(other), one.max(other));
     if apart <= tolerance + least { (true, least) } else { (apart <= tolerance + most, most) }
@@ -87,7 +93,9 @@ checked_fields!(
             ));
         }
         if !(uncertainty.is_finite() && uncertainty >= 0.0) {
-            return Err(format!("the uncertainty is {uncertainty}; it must be finite and at least 0"));
+            return Err(format!(
+                "the uncertainty is {uncertainty}; it must be finite and at least 0"
+            ));
         }
         Ok(())
     }

@@ -7,9 +7,10 @@ use std::ops::{Deref, DerefMut};
 
 /// Where a link is near a mesh, and in which direction. All in the mesh's frame and unit.
 ///
-/// Where the two touch or overlap, the distance is 0 and both points are the same. `depth` and `normal` then give the least
-/// translation that separates the link from this triangle, and `fraction`, `lever`, `feature` and `kink` belong to the points
-/// that separate last. This leads out of one triangle, and not out of the wall that it is part of.
+/// Where the two touch or overlap, the distance is 0 and both points are the same. `depth` and
+/// `normal` then give the least translation that separates the link from this triangle, and
+/// `fraction`, `lever`, `feature` and `kink` belong to the points that separate last. This leads
+/// out of one triangle, and not out of the wall that it is part of.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Contact {
@@ -21,27 +22,31 @@ pub struct Contact {
     pub feature: ContactFeature,
     /// The distance between link and triangle, 0 where they touch or overlap.
     pub distance: Real,
-    /// The distance with a sign. Where the two are apart it is the distance; where they overlap, minus the length of the least
-    /// translation that separates the link from this triangle. It is always there, and the same as the dispatcher's
-    /// `contact` gives for link and triangle.
+    /// The distance with a sign. Where the two are apart it is the distance; where they overlap,
+    /// minus the length of the least translation that separates the link from this triangle.
+    /// It is always there, and the same as the dispatcher's `contact` gives for link and
+    /// triangle.
     ///
-    /// Beside the link and beyond a round cap it is the distance between axis and triangle less the radius, as long as
-    /// the axis does not cross the triangle and no flat cap is nearer.
+    /// Beside the link and beyond a round cap it is the distance between axis and triangle less
+    /// the radius, as long as the axis does not cross the triangle and no flat cap is nearer.
     pub depth: Option<Real>,
-    /// The unit vector from the wall to the robot. Where they overlap, moving the link by `-depth` along it separates the two.
+    /// The unit vector from the wall to the robot. Where they overlap, moving the link by `-depth`
+    /// along it separates the two.
     ///
-    /// Beside the link and beyond a round cap it points from the triangle to the link's axis. At a flat cap, and where the axis
-    /// crosses the triangle, it points to the nearer side. There is none where the opposite way out is as short, up to
-    /// rounding (16 u of the extent): the axis then lies in the plane of the triangle and meets it, and neither side is the
+    /// Beside the link and beyond a round cap it points from the triangle to the link's axis. At a
+    /// flat cap, and where the axis crosses the triangle, it points to the nearer side. There
+    /// is none where the opposite way out is as short, up to rounding (16 u of the extent):
+    /// the axis then lies in the plane of the triangle and meets it, and neither side is the
     /// robot's.
     pub normal: Option<Vector>,
     /// The two closest points, and where they are. The arc length is that of `fraction`.
     pub witness: Witness,
-    /// From the point of the axis at `fraction` to the link's closest point, or the one that separates last. A turn of the link
-    /// moves that point by this arm.
+    /// From the point of the axis at `fraction` to the link's closest point, or the one that
+    /// separates last. A turn of the link moves that point by this arm.
     pub lever: Vector,
-    /// Whether the distance, or the depth, has a kink here: its derivative depends on the direction of the motion, and the one
-    /// that is computed is that of the points named here. Up to rounding, this is where
+    /// Whether the distance, or the depth, has a kink here: its derivative depends on the
+    /// direction of the motion, and the one that is computed is that of the points named here.
+    /// Up to rounding, this is where
     ///
     /// - other points are as near: an edge or a face lies along the link, or across a flat cap;
     /// - another way out is as short, where the two overlap;
@@ -50,21 +55,24 @@ pub struct Contact {
 }
 
 impl Contact {
-    /// How fast the distance changes with a joint q, or with time, while the wall stands still: the derivative of
-    /// [`depth`](Self::depth), which is the [`distance`](Self::distance) where the two are apart.
+    /// How fast the distance changes with a joint q, or with time, while the wall stands still: the
+    /// derivative of [`depth`](Self::depth), which is the [`distance`](Self::distance) where
+    /// the two are apart.
     ///
-    /// - `velocity` is dc/dq, the velocity of the centreline's point at [`arc_length`](Witness::arc_length).
-    /// - `angular_velocity` is how the link turns there: dt/dq = angular_velocity x t for its direction t. A turn about the
-    ///   link's own axis has no effect.
+    /// - `velocity` is dc/dq, the velocity of the centreline's point at
+    ///   [`arc_length`](Witness::arc_length).
+    /// - `angular_velocity` is how the link turns there: dt/dq = angular_velocity x t for its
+    ///   direction t. A turn about the link's own axis has no effect.
     ///
-    /// Both are in the mesh's frame. Beside the link and beyond a round cap only the velocity counts. At a flat cap the turn
-    /// moves the closest point too:
+    /// Both are in the mesh's frame. Beside the link and beyond a round cap only the velocity
+    /// counts. At a flat cap the turn moves the closest point too:
     ///
     /// ```text
     /// normal . (velocity + angular_velocity x lever)
     /// ```
     ///
-    /// `None` where there is no normal. At a [`kink`](Self::kink) this is the derivative for one of several points.
+    /// `None` where there is no normal. At a [`kink`](Self::kink) this is the derivative for one of
+    /// several points.
     ///
     /// ```
     /// use parry_continuum::Chain;
@@ -91,8 +99,9 @@ impl Contact {
         Some(self.normal?.dot(velocity + angular_velocity.cross(self.lever)))
     }
 
-    /// [`rate`](Self::rate) for each joint of a robot: `jacobian(arc_length, joint)` gives velocity and angular velocity
-    /// of the centreline at an arc length. `out` is cleared first, and stays empty where there is no rate.
+    /// [`rate`](Self::rate) for each joint of a robot: `jacobian(arc_length, joint)` gives velocity
+    /// and angular velocity of the centreline at an arc length. `out` is cleared first, and
+    /// stays empty where there is no rate.
     ///
     /// ```
     /// # use parry_continuum::Chain;

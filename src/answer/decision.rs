@@ -8,7 +8,8 @@ pub enum Decision {
     Clear,
     /// The clearance is at most the margin. This is proven.
     Contact,
-    /// Neither: the clearance is within the resolution of the margin; or the input, or a limit on the work, leaves it open.
+    /// Neither: the clearance is within the resolution of the margin; or the input, or a limit on
+    /// the work, leaves it open.
     Undecided,
 }
 
@@ -26,8 +27,8 @@ pub enum UndecidedReason {
 }
 
 impl Decision {
-    /// The better of two answers to one question: one that decides, or else one that is no error. The second is asked for only if
-    /// the first does not decide.
+    /// The better of two answers to one question: one that decides, or else one that is no error.
+    /// The second is asked for only if the first does not decide.
     ///
     /// # Errors
     /// Both are errors.

@@ -13,7 +13,9 @@ use thiserror::Error;
 #[non_exhaustive]
 pub enum MeshError {
     /// A vertex has a coordinate that is NaN or infinite.
-    #[error("vertex {vertex} of the mesh has a coordinate that is not finite ({value}); repair its vertices")]
+    #[error(
+        "vertex {vertex} of the mesh has a coordinate that is not finite ({value}); repair its vertices"
+    )]
     NotFinite {
         /// The vertex's position in the mesh.
         vertex: usize,
@@ -33,7 +35,9 @@ pub enum MeshError {
         limit: Real,
     },
     /// New vertices must be as many as the old ones.
-    #[error("the mesh has {expected} vertices but {got} were given; build a new engine for a new mesh")]
+    #[error(
+        "the mesh has {expected} vertices but {got} were given; build a new engine for a new mesh"
+    )]
     VertexCount {
         /// How many vertices the mesh has.
         expected: usize,
@@ -65,7 +69,8 @@ pub enum ProximityError {
     /// The robot's pose has a component that is NaN or infinite.
     #[error("the robot's pose is not finite; check its translation and rotation")]
     PoseNotFinite,
-    /// The rotation of the robot's pose scales: the length of its quaternion is not 1, even for single precision.
+    /// The rotation of the robot's pose scales: the length of its quaternion is not 1, even for
+    /// single precision.
     #[error("the robot's pose has a quaternion of length {length}; normalise its rotation")]
     PoseNotRigid {
         /// The length of the quaternion.
@@ -87,8 +92,8 @@ pub enum ProximityError {
         /// What is wrong with it.
         fault: PlacementFault,
     },
-    /// A joint is so sharp that its links overlap over more than half of the shorter one, which leaves no saying which parts
-    /// of the robot are neighbours.
+    /// A joint is so sharp that its links overlap over more than half of the shorter one, which
+    /// leaves no saying which parts of the robot are neighbours.
     #[error(
         "joint {joint} bends by {angle} rad between links of radius {radius}, the shorter of which has the length {length}; \
          make the radius smaller, or spread the bend over more points"
@@ -103,8 +108,8 @@ pub enum ProximityError {
         /// The length of the shorter link.
         length: Real,
     },
-    /// A tube bends within its own radius, or may do so as far as its curvature is known, which leaves no saying which parts of it
-    /// are neighbours.
+    /// A tube bends within its own radius, or may do so as far as its curvature is known, which
+    /// leaves no saying which parts of it are neighbours.
     #[error(
         "near the arc length {arc_length} the tube has the curvature {curvature} and the radius {radius}; their product must be \
          below 1, so check the unit of length; if the points are measured, fit them with a `deviation` as large as their noise \
@@ -329,8 +334,8 @@ impl ProximityError {
         Self::Placement { parameter, fault }
     }
 
-    /// What went wrong in one word, the same in Rust and Python: the variant in snake case, or that of the error
-    /// that it passes on.
+    /// What went wrong in one word, the same in Rust and Python: the variant in snake case, or that
+    /// of the error that it passes on.
     pub fn kind(&self) -> &'static str {
         match self {
             Self::Motion(error) | Self::OneMotion { fault: error, .. } => error.kind(),

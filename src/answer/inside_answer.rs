@@ -14,7 +14,8 @@ pub struct InsideAnswer {
 }
 
 impl InsideAnswer {
-    /// Whether the base is inside and every link keeps the margin: then, in a closed mesh, all of the robot is inside.
+    /// Whether the base is inside and every link keeps the margin: then, in a closed mesh, all of
+    /// the robot is inside.
     pub fn holds(&self) -> bool {
         self.base == Side::Inside && self.clears
     }

@@ -8,7 +8,10 @@ use std::ops::{Deref, DerefMut};
 /// Where one link of a robot is closest to a mesh, in the mesh's frame and unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde-serialize", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde-serialize", serde(try_from = "serialised::Fields", into = "serialised::Fields"))]
+#[cfg_attr(
+    feature = "serde-serialize",
+    serde(try_from = "serialised::Fields", into = "serialised::Fields")
+)]
 #[non_exhaustive]
 pub struct LinkProximity {
     /// The link's position in [`Chain::links`](crate::Chain::links).

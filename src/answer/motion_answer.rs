@@ -9,16 +9,22 @@ use parry3d_f64::math::Real;
 /// Whether a motion keeps a margin from the mesh, until when, and which shape does not.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde-serialize", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde-serialize", serde(try_from = "serialised::Fields", into = "serialised::Fields"))]
+#[cfg_attr(
+    feature = "serde-serialize",
+    serde(try_from = "serialised::Fields", into = "serialised::Fields")
+)]
 #[non_exhaustive]
 pub struct MotionAnswer {
-    /// Whether the margin is kept at every time from 0 to 1. `Undecided`: no shape was found that is at most the margin away,
-    /// but one that is so by the resolution more; or one in which the end of a link becomes flat or round, so close to the
-    /// mesh that this decides; or the limit of work was reached. `reason` says which.
+    /// Whether the margin is kept at every time from 0 to 1. `Undecided`: no shape was found that
+    /// is at most the margin away, but one that is so by the resolution more; or one in which
+    /// the end of a link becomes flat or round, so close to the mesh that this decides; or the
+    /// limit of work was reached. `reason` says which.
     pub decision: Decision,
-    /// The first interval of time in which the margin may not be kept: it is kept before it. `[1, 1]` where it always is.
+    /// The first interval of time in which the margin may not be kept: it is kept before it. `[1,
+    /// 1]` where it always is.
     pub interval: [Real; 2],
-    /// Where the decision is `Contact`, a shape that does not keep it, which stands at the end of the interval.
+    /// Where the decision is `Contact`, a shape that does not keep it, which stands at the end of
+    /// the interval.
     pub contact: Option<ShapeInContact>,
     /// Where the decision is `Undecided`, why.
     pub reason: Option<UndecidedReason>,

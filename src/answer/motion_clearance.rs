@@ -4,17 +4,22 @@ use super::Witness;
 use parry3d_f64::math::Real;
 use std::ops::{Deref, DerefMut};
 
-/// When and where a motion comes nearest to a mesh, between bounds. All in the mesh's frame and unit.
+/// When and where a motion comes nearest to a mesh, between bounds. All in the mesh's frame and
+/// unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde-serialize", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde-serialize", serde(try_from = "serialised::Fields", into = "serialised::Fields"))]
+#[cfg_attr(
+    feature = "serde-serialize",
+    serde(try_from = "serialised::Fields", into = "serialised::Fields")
+)]
 #[non_exhaustive]
 pub struct MotionClearance {
     /// No shape of the motion is nearer than this.
     pub lower: Real,
     /// The shape at `t` is no farther away than this: 0 where it touches the mesh.
     pub upper: Real,
-    /// Whether the bounds are as close as was asked for: no farther apart than the tolerance and `uncertainty`.
+    /// Whether the bounds are as close as was asked for: no farther apart than the tolerance and
+    /// `uncertainty`.
     pub resolved: bool,
     /// What the errors that shapes state for themselves cost, and no finer tolerance can mend.
     pub uncertainty: Real,
@@ -62,12 +67,14 @@ mod serialised {
 
     impl From<MotionClearance> for Fields {
         fn from(found: MotionClearance) -> Self {
-            let MotionClearance { lower, upper, resolved, uncertainty, t, section, witness } = found;
+            let MotionClearance { lower, upper, resolved, uncertainty, t, section, witness } =
+                found;
             Self { lower, upper, resolved, uncertainty, t, section, witness }
         }
     }
 
-    /// No engine gives bounds that are negative, in the wrong order or not finite, or a time outside of the motion.
+    /// No engine gives bounds that are negative, in the wrong order or not finite, or a time
+    /// outside of the motion.
     impl TryFrom<Fields> for MotionClearance {
         type Error = String;
 
@@ -79,7 +86,9 @@ mod serialised {
                 ));
             }
             if !(uncertainty.is_finite() && uncertainty >= 0.0) {
-                return Err(format!("the uncertainty is {uncertainty}; it must be finite and at least 0"));
+                return Err(format!(
+                    "the uncertainty is {uncertainty}; it must be finite and at least 0"
+                ));
             }
             if !(0.0..=1.0).contains(&t) {
                 return Err(format!("times of a motion are from 0 to 1, not {t}"));

@@ -2,11 +2,13 @@
 
 use std::fmt;
 
-/// A proof that a robot keeps more than a margin away from a mesh, as a text to be written to a file.
+/// A proof that a robot keeps more than a margin away from a mesh, as a text to be written to a
+/// file.
 ///
-/// Whoever has the mesh can check it, without this library: `docs/book/check_proof.py` is a short program in plain Python that
-/// calculates in whole numbers. It answers yes or no, and prints the premises of the proof and what it does not cover: the side of
-/// the wall. The [page on proofs](crate::book::proofs) has the format and the reasoning.
+/// Whoever has the mesh can check it, without this library: `docs/book/check_proof.py` is a short
+/// program in plain Python that calculates in whole numbers. It answers yes or no, and prints the
+/// premises of the proof and what it does not cover: the side of the wall. The [page on
+/// proofs](crate::book::proofs) has the format and the reasoning.
 ///
 /// The text is what [`to_string`](ToString::to_string) gives.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -6,17 +6,22 @@ use parry3d_f64::math::{Real, Vector};
 /// How near two tubes are, between bounds, in the frame and unit of the poses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde-serialize", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde-serialize", serde(try_from = "serialised::Fields", into = "serialised::Fields"))]
+#[cfg_attr(
+    feature = "serde-serialize",
+    serde(try_from = "serialised::Fields", into = "serialised::Fields")
+)]
 #[non_exhaustive]
 pub struct RobotClearance {
     /// The clearance is at least this.
     pub lower: Real,
     /// The clearance is at most this: 0 where the tubes touch or overlap.
     pub upper: Real,
-    /// Whether the bounds are as close as was asked for: no farther apart than the tolerance and `uncertainty`.
+    /// Whether the bounds are as close as was asked for: no farther apart than the tolerance and
+    /// `uncertainty`.
     pub resolved: bool,
-    /// What the errors cost that the tubes state for themselves, and no finer tolerance can mend; and near a flat face whose
-    /// direction is not known ([`Tube::fit`](crate::Tube::fit)), what that costs.
+    /// What the errors cost that the tubes state for themselves, and no finer tolerance can mend;
+    /// and near a flat face whose direction is not known ([`Tube::fit`](crate::Tube::fit)),
+    /// what that costs.
     pub uncertainty: Real,
     /// The sections of constant radius that realise `upper`, counted from each base.
     pub sections: [u32; 2],
@@ -61,7 +66,9 @@ mod serialised {
 
     impl From<RobotClearance> for Fields {
         fn from(found: RobotClearance) -> Self {
-            let RobotClearance { lower, upper, resolved, uncertainty, sections, arc_lengths, .. } = found;
+            let RobotClearance {
+                lower, upper, resolved, uncertainty, sections, arc_lengths, ..
+            } = found;
             let (on_first, on_second) = (found.on_first.to_array(), found.on_second.to_array());
             Self { lower, upper, resolved, uncertainty, sections, on_first, on_second, arc_lengths }
         }
@@ -81,13 +88,24 @@ mod serialised {
                 ));
             }
             if !(uncertainty.is_finite() && uncertainty >= 0.0) {
-                return Err(format!("the uncertainty is {uncertainty}; it must be finite and at least 0"));
+                return Err(format!(
+                    "the uncertainty is {uncertainty}; it must be finite and at least 0"
+                ));
             }
             let is_finite = on_first.is_finite() && on_second.is_finite();
             if !(is_finite && arc_lengths.iter().all(|length| length.is_finite())) {
                 return Err("a place is not finite; repair the answer".to_owned());
             }
-            Ok(Self { lower, upper, resolved, uncertainty, sections, on_first, on_second, arc_lengths })
+            Ok(Self {
+                lower,
+                upper,
+                resolved,
+                uncertainty,
+                sections,
+                on_first,
+                on_second,
+                arc_lengths,
+            })
         }
     }
 }

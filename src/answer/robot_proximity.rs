@@ -4,13 +4,18 @@ use parry3d_f64::math::{Real, Vector};
 
 /// Where two links are closest, one of each robot, in the frame and unit of the poses.
 ///
-/// Of one robot and itself the first link is the one nearer to the base, and all is in the robot's own frame.
+/// Of one robot and itself the first link is the one nearer to the base, and all is in the robot's
+/// own frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde-serialize", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde-serialize", serde(try_from = "serialised::Fields", into = "serialised::Fields"))]
+#[cfg_attr(
+    feature = "serde-serialize",
+    serde(try_from = "serialised::Fields", into = "serialised::Fields")
+)]
 #[non_exhaustive]
 pub struct RobotProximity {
-    /// The links' positions in [`Chain::links`](crate::Chain::links), of the first robot and of the second.
+    /// The links' positions in [`Chain::links`](crate::Chain::links), of the first robot and of
+    /// the second.
     pub links: [u32; 2],
     /// The distance between the two links, 0 where they touch or overlap.
     pub distance: Real,
@@ -18,7 +23,8 @@ pub struct RobotProximity {
     pub on_first: Vector,
     /// The second link's point; the same as `on_first` where they touch or overlap.
     pub on_second: Vector,
-    /// Where along each robot's centreline, from the base: the place on the link's axis nearest to the other's point.
+    /// Where along each robot's centreline, from the base: the place on the link's axis nearest to
+    /// the other's point.
     pub arc_lengths: [Real; 2],
 }
 
@@ -53,9 +59,12 @@ mod serialised {
 
         fn try_from(fields: Fields) -> Result<Self, String> {
             let Fields { links, distance, on_first, on_second, arc_lengths } = fields;
-            let (on_first, on_second) = (Vector::from_array(on_first), Vector::from_array(on_second));
+            let (on_first, on_second) =
+                (Vector::from_array(on_first), Vector::from_array(on_second));
             if !(distance.is_finite() && distance >= 0.0) {
-                return Err(format!("the distance is {distance}; it must be finite and at least 0"));
+                return Err(format!(
+                    "the distance is {distance}; it must be finite and at least 0"
+                ));
             }
             if !(on_first.is_finite()
                 && on_second.is_finite()

@@ -2,15 +2,20 @@
 
 use parry3d_f64::math::{Real, Vector};
 
-/// Two shapes through which motions pass at the same time, at most the margin apart, in the frame and unit of the motions.
+/// Two shapes through which motions pass at the same time, at most the margin apart, in the frame
+/// and unit of the motions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde-serialize", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde-serialize", serde(try_from = "serialised::Fields", into = "serialised::Fields"))]
+#[cfg_attr(
+    feature = "serde-serialize",
+    serde(try_from = "serialised::Fields", into = "serialised::Fields")
+)]
 #[non_exhaustive]
 pub struct RobotsInContact {
     /// The time of the shapes, from 0 to 1.
     pub t: Real,
-    /// Their clearance is at most this, which is at most the margin: 0 where they touch or overlap.
+    /// Their clearance is at most this, which is at most the margin: 0 where they touch or
+    /// overlap.
     pub upper: Real,
     /// The sections of constant radius that realise `upper`, counted from each base.
     pub sections: [u32; 2],
@@ -54,7 +59,8 @@ mod serialised {
 
         fn try_from(fields: Fields) -> Result<Self, String> {
             let Fields { t, upper, sections, on_first, on_second, arc_lengths } = fields;
-            let (on_first, on_second) = (Vector::from_array(on_first), Vector::from_array(on_second));
+            let (on_first, on_second) =
+                (Vector::from_array(on_first), Vector::from_array(on_second));
             if !(0.0..=1.0).contains(&t) {
                 return Err(format!("times of a motion are from 0 to 1, not {t}"));
             }

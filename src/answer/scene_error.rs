@@ -27,7 +27,9 @@ pub enum SceneError {
     #[error("between robots: {0}")]
     BetweenRobots(ProximityError),
     /// There is no structure with this number.
-    #[error("there is no structure {structure} among {structures}; give the number that `add` returned")]
+    #[error(
+        "there is no structure {structure} among {structures}; give the number that `add` returned"
+    )]
     NoSuchStructure {
         /// The number that was given.
         structure: usize,
@@ -37,12 +39,13 @@ pub enum SceneError {
 }
 
 impl SceneError {
-    /// What went wrong in one word, the same in Rust and Python: that of the error that it passes on.
+    /// What went wrong in one word, the same in Rust and Python: that of the error that it passes
+    /// on.
     pub fn kind(&self) -> &'static str {
         match self {
-            Self::Structure { error, .. } | Self::Robot { error, .. } | Self::BetweenRobots(error) => {
-                error.kind()
-            }
+            Self::Structure { error, .. }
+            | Self::Robot { error, .. }
+            | Self::BetweenRobots(error) => error.kind(),
             Self::NoSuchStructure { .. } => "no_such_structure",
         }
     }

@@ -5,10 +5,14 @@ use super::checked_fields::checked_fields;
 use parry3d_f64::math::Real;
 use std::ops::{Deref, DerefMut};
 
-/// A shape that a motion passes through and that is at most the margin away, in the mesh's frame and unit.
+/// A shape that a motion passes through and that is at most the margin away, in the mesh's frame
+/// and unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde-serialize", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde-serialize", serde(try_from = "serialised::Fields", into = "serialised::Fields"))]
+#[cfg_attr(
+    feature = "serde-serialize",
+    serde(try_from = "serialised::Fields", into = "serialised::Fields")
+)]
 #[non_exhaustive]
 pub struct ShapeInContact {
     /// The time of the shape, from 0 to 1.

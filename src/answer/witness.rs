@@ -2,12 +2,17 @@
 
 use parry3d_f64::math::{Real, Vector};
 
-/// Two points that realise a distance, and where on robot and mesh they are, in the mesh's frame and unit.
+/// Two points that realise a distance, and where on robot and mesh they are, in the mesh's frame
+/// and unit.
 ///
-/// Every answer that names a place has one, and reads as it: `answer.on_mesh` is `answer.witness.on_mesh`.
+/// Every answer that names a place has one, and reads as it: `answer.on_mesh` is
+/// `answer.witness.on_mesh`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde-serialize", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde-serialize", serde(try_from = "serialised::Fields", into = "serialised::Fields"))]
+#[cfg_attr(
+    feature = "serde-serialize",
+    serde(try_from = "serialised::Fields", into = "serialised::Fields")
+)]
 #[non_exhaustive]
 pub struct Witness {
     /// The robot's point.
@@ -16,11 +21,11 @@ pub struct Witness {
     pub on_mesh: Vector,
     /// The triangle's position in the mesh.
     pub triangle: u32,
-    /// Where along the robot's centreline, from the base: the place nearest to `on_mesh` on the axis of the link, or on that
-    /// of the tube.
+    /// Where along the robot's centreline, from the base: the place nearest to `on_mesh` on the
+    /// axis of the link, or on that of the tube.
     pub arc_length: Real,
-    /// The segment of the robot's input there, between points `segment` and `segment + 1`. Of a tube that has no points it is
-    /// the section of constant radius.
+    /// The segment of the robot's input there, between points `segment` and `segment + 1`. Of a
+    /// tube that has no points it is the section of constant radius.
     pub segment: u32,
 }
 

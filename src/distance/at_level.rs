@@ -1,4 +1,5 @@
-//! Any kernel on packs of an instruction set of one's choice: how the accuracy of packs is measured.
+//! Any kernel on packs of an instruction set of one's choice: how the accuracy of packs is
+//! measured.
 
 use super::lanes::{Lane, Pack};
 use super::{Scalar, dispatch};

@@ -1,10 +1,12 @@
 //! Numbers of about 32 digits, so that a kernel's own text can be run at twice the precision.
 //!
-//! A number is the unevaluated sum of two `f64` (Dekker 1971; Hida, Li and Bailey 2001). With v = 2^-53, sums err by at
-//! most 4 v^2 of their value, products by 5 v^2, quotients and roots by less than 16 v^2 (Joldes, Muller and Popescu
-//! 2017), as long as nothing overflows or falls below 1e-290.
+//! A number is the unevaluated sum of two `f64` (Dekker 1971; Hida, Li and Bailey 2001). With v =
+//! 2^-53, sums err by at most 4 v^2 of their value, products by 5 v^2, quotients and roots by less
+//! than 16 v^2 (Joldes, Muller and Popescu 2017), as long as nothing overflows or falls below
+//! 1e-290.
 //!
-//! The operations are called, not inlined: they take long enough, and a kernel has thousands of them to be compiled.
+//! The operations are called, not inlined: they take long enough, and a kernel has thousands of
+//! them to be compiled.
 
 use super::scalar::{Scalar, Sealed};
 use std::ops::{Add, Div, Mul, Neg, Sub};

@@ -1,16 +1,17 @@
 //! What is computed once per triangle: a basis of its plane that stays accurate on slivers.
 //!
-//! A point p relative to the apex is p = alpha e1 + beta e2 + r with r normal to the plane. Two measures
-//! keep this exact to rounding on triangles whose height is 1e-12 of their length, where the textbook
-//! formula |<n, p>| falls below the true distance by millions of units:
+//! A point p relative to the apex is p = alpha e1 + beta e2 + r with r normal to the plane. Two
+//! measures keep this exact to rounding on triangles whose height is 1e-12 of their length, where
+//! the textbook formula |<n, p>| falls below the true distance by millions of units:
 //!
-//! 1. **The apex lies opposite the longest edge**, so e1 and e2 are the two shorter edges, and their cross
-//!    product is freed of its component along the longest edge. What tilt is left turns the plane about
-//!    the longest edge and moves the apex by no more than rounding, so the normal is that of a triangle
-//!    which cannot be told from the given one.
-//! 2. **The coordinates are refined**: alpha and beta come from the dual basis, then again from what they
-//!    leave over. The distance is |r|, the distance to an actual point of the triangle.
-//! 3. **Zero area**: the dual basis is zero and the face is marked as having no interior. The edges serve.
+//! 1. **The apex lies opposite the longest edge**, so e1 and e2 are the two shorter edges, and
+//!    their cross product is freed of its component along the longest edge. What tilt is left turns
+//!    the plane about the longest edge and moves the apex by no more than rounding, so the normal
+//!    is that of a triangle which cannot be told from the given one.
+//! 2. **The coordinates are refined**: alpha and beta come from the dual basis, then again from
+//!    what they leave over. The distance is |r|, the distance to an actual point of the triangle.
+//! 3. **Zero area**: the dual basis is zero and the face is marked as having no interior. The edges
+//!    serve.
 
 use super::scalar::Scalar;
 use super::vec3::Vec3;
@@ -58,14 +59,16 @@ impl<T: Scalar> Face<T> {
         Self { vertices, across, dual: [e2.cross(across) * inverse, across.cross(e1) * inverse] }
     }
 
-    /// Whether the edge from the first corner to the second is the longest, and if it is not, whether the next one is.
+    /// Whether the edge from the first corner to the second is the longest, and if it is not,
+    /// whether the next one is.
     #[inline(always)]
     fn longest([a, b, c]: [Vec3<T>; 3]) -> [T::Mask; 2] {
         let (ab, bc, ca) = ((b - a).norm_squared(), (c - b).norm_squared(), (a - c).norm_squared());
         [bc.le(ab) & ca.le(ab), ca.le(bc)]
     }
 
-    /// Which of a triangle's corners comes first in [`Face::vertices`]; the others follow in their order.
+    /// Which of a triangle's corners comes first in [`Face::vertices`]; the others follow in their
+    /// order.
     #[inline(always)]
     pub(crate) fn first_of(corners: [Vec3<T>; 3]) -> usize
     where
@@ -105,8 +108,9 @@ impl<T: Scalar> Face<T> {
         dual.x.zero().lt(dual.norm_squared())
     }
 
-    /// The same triangle in coordinates from `origin`. Far from the triangle that rounds its vertices, but not its
-    /// plane: a normal of the rounded ones would contradict the basis, or be 0.
+    /// The same triangle in coordinates from `origin`. Far from the triangle that rounds its
+    /// vertices, but not its plane: a normal of the rounded ones would contradict the basis, or
+    /// be 0.
     #[inline(always)]
     pub(crate) fn seen_from(&self, origin: Vec3<T>) -> Self {
         let [a, b, c] = self.vertices;
@@ -135,11 +139,12 @@ impl<T: Scalar> Face<T> {
         self.vertices[0].along(e1, alpha).along(e2, beta)
     }
 
-    /// Whether a point of the plane lies in the triangle. One pass serves: what it gets wrong is within rounding
-    /// of the lines of the edges.
+    /// Whether a point of the plane lies in the triangle. One pass serves: what it gets wrong is
+    /// within rounding of the lines of the edges.
     ///
-    /// At the sharp corner of a sliver two lines stay within rounding of each other far beyond the corner. Such corners
-    /// are ends of the longest edge, along which the point must not lie beyond them by more than about `rounding`.
+    /// At the sharp corner of a sliver two lines stay within rounding of each other far beyond the
+    /// corner. Such corners are ends of the longest edge, along which the point must not lie
+    /// beyond them by more than about `rounding`.
     #[inline(always)]
     pub(crate) fn holds_point(&self, point: Vec3<T>, rounding: T) -> T::Mask {
         let [apex, from, to] = self.vertices;

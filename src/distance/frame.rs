@@ -1,9 +1,10 @@
 //! A frame in which a problem's numbers are near one.
 //!
-//! Kernels multiply up to eight lengths, so lengths far from one would overflow or vanish. Every public
-//! function of `distance` therefore moves its problem to an origin of its own and multiplies it by a
-//! power of two, which is exact: multiplying the input by 2^k multiplies the answer by 2^k bit for bit.
-//! The move makes the rounding depend on the problem's extent and not on where it lies.
+//! Kernels multiply up to eight lengths, so lengths far from one would overflow or vanish. Every
+//! public function of `distance` therefore moves its problem to an origin of its own and multiplies
+//! it by a power of two, which is exact: multiplying the input by 2^k multiplies the answer by 2^k
+//! bit for bit. The move makes the rounding depend on the problem's extent and not on where it
+//! lies.
 
 use super::{Closest, Scalar, Vec3};
 
@@ -11,14 +12,16 @@ use super::{Closest, Scalar, Vec3};
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Frame<T> {
     origin: Vec3<T>,
-    /// Brings coordinates above 1 down to 1 before they are subtracted, lest the difference overflow.
+    /// Brings coordinates above 1 down to 1 before they are subtracted, lest the difference
+    /// overflow.
     shrink: T,
     /// Brings the differences to 1.
     fit: T,
 }
 
 impl<T: Scalar> Frame<T> {
-    /// The frame at `origin` in which all `points` and `length` are at most 2, and some is at least 1.
+    /// The frame at `origin` in which all `points` and `length` are at most 2, and some is at least
+    /// 1.
     #[inline(always)]
     pub(crate) fn around<const N: usize>(origin: Vec3<T>, points: [Vec3<T>; N], length: T) -> Self {
         let mut largest = origin.largest().max(length);

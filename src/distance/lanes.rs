@@ -1,7 +1,9 @@
-//! Packs of `f32` or `f64` that take a [`Scalar`]'s place: the kernels run on 2 to 16 triangles at once.
+//! Packs of `f32` or `f64` that take a [`Scalar`]'s place: the kernels run on 2 to 16 triangles at
+//! once.
 //!
-//! The width is that of the instruction set chosen at run time by [`dispatch!`](super::dispatch). A constant needs
-//! the instruction set's token, which every pack carries; hence [`Scalar::lit`] takes a `self`.
+//! The width is that of the instruction set chosen at run time by [`dispatch!`](super::dispatch). A
+//! constant needs the instruction set's token, which every pack carries; hence [`Scalar::lit`]
+//! takes a `self`.
 
 use super::scalar::{CBRT_BITS_F32, CBRT_BITS_F64, Mask, Scalar, Sealed};
 use fearless_simd::prelude::*;
@@ -38,8 +40,8 @@ pub(crate) fn set_bits(mut left: u64) -> impl Iterator<Item = usize> {
     })
 }
 
-/// Whether the instructions for the larger and the smaller of two numbers are those of x86, which are [`Scalar::max`] and
-/// [`Scalar::min`]: they return their second operand where one is NaN, and for two zeros. `fearless_simd` promises no
+/// Whether the instructions for the larger and the smaller of two numbers are those of x86, which
+/// are [`Scalar::max`] and [`Scalar::min`]: they return their second operand where one is NaN, and for two zeros. `fearless_simd` promises no
 /// such thing; a test does.
 const COMPARES_AND_SELECTS: bool = cfg!(all(target_arch = "x86_64", target_feature = "sse2"));
 

@@ -29,12 +29,15 @@ fn a_level_runs_as_itself_and_sse4_2_as_sse2() {
     assert!(best.as_sse2().is_some_and(|token| matches!(run(token.level()), Level::Sse2(_))));
 }
 
-/// Numbers in [-1, 1), every seventh of them on a coarse lattice, where ties and parallels are common.
+/// Numbers in [-1, 1), every seventh of them on a coarse lattice, where ties and parallels are
+/// common.
 fn numbers(count: usize, seed: u64) -> Vec<f64> {
     let mut state = seed;
     (0..count)
         .map(|i| {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
             let number = (state >> 11) as f64 * 2.0_f64.powi(-52) - 1.0;
             if i / 21 % 7 == 0 { (number * 4.0).round() / 4.0 } else { number }
         })
@@ -103,14 +106,16 @@ where
 }
 
 fn compare_choices<E: Lane>() {
-    let numbers = [0.0, -0.0, 1.0, -1.5, 3.0, f64::INFINITY, f64::NEG_INFINITY, f64::NAN].map(E::round);
+    let numbers =
+        [0.0, -0.0, 1.0, -1.5, 3.0, f64::INFINITY, f64::NEG_INFINITY, f64::NAN].map(E::round);
     // Numbers that are not are all alike.
     let bits = |number: E| Some(number.into().to_bits()).filter(|_| !number.into().is_nan());
     for one in numbers {
         for other in numbers {
             let expected = [one.max(other), one.min(other), one.over(other)].map(bits);
             for level in levels() {
-                let found = dispatch!(level, simd => choices::<E::Pack<_>>(simd, one, other)).map(bits);
+                let found =
+                    dispatch!(level, simd => choices::<E::Pack<_>>(simd, one, other)).map(bits);
                 assert_eq!(found, expected, "{level:?}: {} {}", one.into(), other.into());
             }
         }
@@ -143,7 +148,11 @@ fn compare_helpers<E: Lane>(exponents: std::ops::Range<i32>) {
             for level in levels() {
                 let [root, unity] = dispatch!(level, simd => helpers::<E::Pack<_>>(simd, value));
                 let exact = value.into().cbrt();
-                assert!((root.into() / exact - 1.0).abs() < 0.06, "{level:?}: {} {exact}", root.into());
+                assert!(
+                    (root.into() / exact - 1.0).abs() < 0.06,
+                    "{level:?}: {} {exact}",
+                    root.into()
+                );
                 assert_eq!(unity.into(), value.power_of_two_to_unity().into(), "{level:?}");
                 let scaled = unity.into() * value.into();
                 assert!((1.0..2.0).contains(&scaled) || exponent.abs() > 120, "{scaled}");

@@ -1,10 +1,11 @@
 //! The narrow phase: exact distances between pairs of simple shapes (paper, section III).
 //!
-//! One public function per pair, in a file of its own with its derivation. All are branch-free and generic
-//! over [`Scalar`]: `f32`, `f64`, and [`DoubleDouble`] as a reference. Each scales its problem by an exact power
-//! of two, so finite input of any size gives a finite answer, unless the distance itself is beyond the largest
-//! number: then it is infinite. Errors stay within a few units in the last place of the problem's extent, the
-//! largest difference between two of its coordinates or its radius.
+//! One public function per pair, in a file of its own with its derivation. All are branch-free and
+//! generic over [`Scalar`]: `f32`, `f64`, and [`DoubleDouble`] as a reference. Each scales its
+//! problem by an exact power of two, so finite input of any size gives a finite answer, unless the
+//! distance itself is beyond the largest number: then it is infinite. Errors stay within a few
+//! units in the last place of the problem's extent, the largest difference between two of its
+//! coordinates or its radius.
 //!
 //! ```
 //! use parry_continuum::distance::{Closest, Vec3, triangle_modified_cylinder};
@@ -88,7 +89,8 @@ pub struct Closest<T> {
 }
 
 impl<T: Scalar> Closest<T> {
-    /// The same, with one common point where the distance is 0: rounding may have put the two points apart.
+    /// The same, with one common point where the distance is 0: rounding may have put the two
+    /// points apart.
     #[inline(always)]
     pub(crate) fn met(self) -> Self {
         let meet = self.distance.le(self.distance.zero());

@@ -1,14 +1,15 @@
 //! Plane against disc (paper, equations (20) and (21), corrected).
 //!
-//! 1. **Tilted.** The disc's point nearest to the plane lies along u, the part of the plane's normal that
-//!    lies in the disc's plane: at the rim, or where the plane cuts that diameter. The clamp makes the
-//!    difference: without it the point overshoots as soon as the disc crosses the plane.
+//! 1. **Tilted.** The disc's point nearest to the plane lies along u, the part of the plane's
+//!    normal that lies in the disc's plane: at the rim, or where the plane cuts that diameter. The
+//!    clamp makes the difference: without it the point overshoots as soon as the disc crosses the
+//!    plane.
 //! 2. **Parallel.** u = 0: every point is as near; the centre is taken.
 
 use super::{Closest, Mask, Scalar, Vec3, frame::Frame};
 
-/// The distance between the plane through `point` with the given normal and a solid disc; (20), (21).
-/// Neither normal needs unit length.
+/// The distance between the plane through `point` with the given normal and a solid disc; (20),
+/// (21). Neither normal needs unit length.
 #[inline(always)]
 pub fn plane_disc<T: Scalar>(
     plane_point: Vec3<T>,
@@ -32,7 +33,8 @@ pub(crate) struct NearestOnPlane<T> {
     pub distance: T,
 }
 
-/// The point nearest to the plane at signed `height` along its unit normal, for the disc around the origin.
+/// The point nearest to the plane at signed `height` along its unit normal, for the disc around the
+/// origin.
 #[inline(always)]
 pub(crate) fn from_centre<T: Scalar>(
     height: T,

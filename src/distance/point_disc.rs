@@ -1,7 +1,7 @@
 //! Point against disc (paper, equations (9) to (12)).
 //!
-//! With l the height above the disc's plane and rho the distance from its axis, the solid disc is at
-//! sqrt(l^2 + max(0, rho - R)^2): a form without a division.
+//! With l the height above the disc's plane and rho the distance from its axis, the solid disc is
+//! at sqrt(l^2 + max(0, rho - R)^2): a form without a division.
 //!
 //! 1. **Above the interior**, rho <= R: the disc point is the foot.
 //! 2. **Outside**, rho > R: the disc point is on the rim.
@@ -9,10 +9,15 @@
 
 use super::{Closest, Mask, Scalar, Vec3, frame::Frame};
 
-/// The distance between a point and a solid disc with the given centre, normal (of any length) and radius;
-/// (9) to (12). A zero normal makes the disc a ball.
+/// The distance between a point and a solid disc with the given centre, normal (of any length) and
+/// radius; (9) to (12). A zero normal makes the disc a ball.
 #[inline(always)]
-pub fn point_disc<T: Scalar>(point: Vec3<T>, centre: Vec3<T>, normal: Vec3<T>, radius: T) -> Closest<T> {
+pub fn point_disc<T: Scalar>(
+    point: Vec3<T>,
+    centre: Vec3<T>,
+    normal: Vec3<T>,
+    radius: T,
+) -> Closest<T> {
     let frame = Frame::around(centre, [point], radius);
     let point = frame.point(point);
     let (distance, on_disc) = from_centre(point, normal.normalised(), frame.length(radius));
@@ -21,7 +26,11 @@ pub fn point_disc<T: Scalar>(point: Vec3<T>, centre: Vec3<T>, normal: Vec3<T>, r
 
 /// The distance of `point` from the disc around the origin, and the disc's point.
 #[inline(always)]
-pub(crate) fn from_centre<T: Scalar>(point: Vec3<T>, unit_normal: Vec3<T>, radius: T) -> (T, Vec3<T>) {
+pub(crate) fn from_centre<T: Scalar>(
+    point: Vec3<T>,
+    unit_normal: Vec3<T>,
+    radius: T,
+) -> (T, Vec3<T>) {
     let height = point.dot(unit_normal);
     let radial = point.along(unit_normal, -height);
     let rho = radial.norm();

@@ -40,20 +40,23 @@ pub(crate) struct Link<T: Scalar> {
 impl<T: Scalar> Link<T> {
     #[inline(always)]
     pub(crate) fn new(end: Vec3<T>, radius: T, flat: [T::Mask; 2]) -> Self {
-        let axis = Vec3::select(gives_direction(end.norm_squared()), end.normalised(), Vec3::zero(radius));
+        let axis =
+            Vec3::select(gives_direction(end.norm_squared()), end.normalised(), Vec3::zero(radius));
         Self { end, axis, radius, flat }
     }
 
     /// How far the axis reaches along `v`, from the link's start and in units of 1 / |v|.
     ///
-    /// A vector from the axis to a point near it is not quite at a right angle to the axis, for rounding, and far from
-    /// its foot the axis then sticks out of the plane through the foot. So planes are set before the ends instead.
+    /// A vector from the axis to a point near it is not quite at a right angle to the axis, for
+    /// rounding, and far from its foot the axis then sticks out of the plane through the foot.
+    /// So planes are set before the ends instead.
     #[inline(always)]
     pub(crate) fn reach_along(&self, v: Vec3<T>) -> T {
         v.dot(self.end).max(self.radius.zero())
     }
 
-    /// The distance of a point from the solid link, and the link's nearest point (the point itself inside).
+    /// The distance of a point from the solid link, and the link's nearest point (the point itself
+    /// inside).
     #[inline(always)]
     pub(crate) fn closest_to(&self, point: Vec3<T>) -> (T, Vec3<T>) {
         let zero = self.radius.zero();
@@ -61,7 +64,8 @@ impl<T: Scalar> Link<T> {
         let beyond_end = zero.lt(from_end.dot(self.axis));
         let before_start = !beyond_end & point.dot(self.axis).lt(zero);
 
-        // Cases 2 and 3 measure from the end that the point is beyond; case 1 from the nearest axis point.
+        // Cases 2 and 3 measure from the end that the point is beyond; case 1 from the nearest axis
+        // point.
         let centre = Vec3::select(beyond_end, self.end, Vec3::zero(zero));
         let relative = point - centre;
         let radial = relative.along(self.axis, -relative.dot(self.axis));
@@ -79,7 +83,8 @@ impl<T: Scalar> Link<T> {
     }
 }
 
-/// Whether a segment's squared length is large enough to tell its ends apart: not below the normal numbers.
+/// Whether a segment's squared length is large enough to tell its ends apart: not below the normal
+/// numbers.
 #[inline(always)]
 pub(crate) fn gives_direction<T: Scalar>(squared: T) -> T::Mask {
     squared.zero().lt(squared * squared.lit(2.0 * T::UNIT_ROUNDOFF))

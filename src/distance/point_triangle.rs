@@ -1,8 +1,8 @@
 //! Point against triangle.
 //!
 //! 1. **Face.** Where the foot on the plane lies inside, the distance is that to the foot.
-//! 2. **Edges.** The nearest of the three edges. An edge is always an upper bound, and the face, where it
-//!    counts, is never farther; so the answer is the least of the four.
+//! 2. **Edges.** The nearest of the three edges. An edge is always an upper bound, and the face,
+//!    where it counts, is never farther; so the answer is the least of the four.
 
 use super::{Closest, Mask, Scalar, Vec3, face::Face, frame::Frame};
 
@@ -18,7 +18,8 @@ pub fn point_triangle<T: Scalar>(point: Vec3<T>, triangle: [Vec3<T>; 3]) -> Clos
     for other in [on_segment(origin, b, c), on_segment(origin, c, a)] {
         foot = Vec3::select(other.norm_squared().lt(foot.norm_squared()), other, foot);
     }
-    let face_nearer = projection.inside & projection.residual.norm_squared().lt(foot.norm_squared());
+    let face_nearer =
+        projection.inside & projection.residual.norm_squared().lt(foot.norm_squared());
     let distance = face_nearer.select(projection.residual.norm(), foot.norm());
     frame.answer(Closest {
         distance,

@@ -1,12 +1,13 @@
 //! What a kernel needs of a number, so that one text serves `f64`, `f32` and lanes of either.
 //!
-//! Kernels choose by [`Mask::select`] and never branch, because lanes of one pack may choose differently.
-//! Comparisons with NaN are false, so `x.max(lo).min(hi)` turns a NaN `x` into a bound: `x` comes first.
+//! Kernels choose by [`Mask::select`] and never branch, because lanes of one pack may choose
+//! differently. Comparisons with NaN are false, so `x.max(lo).min(hi)` turns a NaN `x` into a
+//! bound: `x` comes first.
 
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
-/// Keeps [`Scalar`] and [`Mask`] from being implemented elsewhere, so that they can grow. The project's own tests and
-/// studies do: their numbers count or imitate lanes.
+/// Keeps [`Scalar`] and [`Mask`] from being implemented elsewhere, so that they can grow. The
+/// project's own tests and studies do: their numbers count or imitate lanes.
 pub trait Sealed {}
 
 impl Sealed for bool {}
@@ -14,7 +15,9 @@ impl Sealed for f32 {}
 impl Sealed for f64 {}
 
 /// A truth value for each lane of a [`Scalar`]. It is sealed.
-pub trait Mask<T>: Sealed + Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> {
+pub trait Mask<T>:
+    Sealed + Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self>
+{
     /// `yes` where the mask is true, `no` elsewhere.
     fn select(self, yes: T, no: T) -> T;
 }
@@ -52,12 +55,14 @@ pub trait Scalar:
     #[doc(hidden)]
     const UNIT_ROUNDOFF: f64;
 
-    /// How many times a foot on a triangle's plane is refined: each time wins the digits that the plane's basis
-    /// has, which are few on a sliver. Two serve a height of 1e-5 of the length, three one of 1e-12.
+    /// How many times a foot on a triangle's plane is refined: each time wins the digits that the
+    /// plane's basis has, which are few on a sliver. Two serve a height of 1e-5 of the length,
+    /// three one of 1e-12.
     #[doc(hidden)]
     const FACE_PASSES: usize;
 
-    /// How many Halley steps bring segment-disc to rounding level: 2 in single, 3 in double precision.
+    /// How many Halley steps bring segment-disc to rounding level: 2 in single, 3 in double
+    /// precision.
     #[doc(hidden)]
     const HALLEY_STEPS: usize;
 
@@ -82,7 +87,8 @@ pub trait Scalar:
     /// The cube root of the magnitude within 5 %: a start value, never an answer.
     #[doc(hidden)]
     fn cbrt_estimate(self) -> Self;
-    /// The power of two `p` with `1 <= self * p < 2`, or 1 for 0. Saturates at the ends of the range.
+    /// The power of two `p` with `1 <= self * p < 2`, or 1 for 0. Saturates at the ends of the
+    /// range.
     #[doc(hidden)]
     fn power_of_two_to_unity(self) -> Self;
 
@@ -115,11 +121,13 @@ pub trait Scalar:
     #[inline(always)]
     fn over(self, divisor: Self) -> Self {
         let positive = self.zero().lt(divisor);
-        // The divisor is replaced before the division: shading languages may assume that no NaN arises.
+        // The divisor is replaced before the division: shading languages may assume that no NaN
+        // arises.
         positive.select(self, self.zero()) / positive.select(divisor, self.one())
     }
-    /// `self.over(whole)` for a number between 0 and `whole`, where `inverse`, which is `whole.one().over(whole)`, is at
-    /// hand. Packs of single precision multiply by it: they only rule out.
+    /// `self.over(whole)` for a number between 0 and `whole`, where `inverse`, which is
+    /// `whole.one().over(whole)`, is at hand. Packs of single precision multiply by it: they
+    /// only rule out.
     #[doc(hidden)]
     #[inline(always)]
     fn share_of(self, whole: Self, inverse: Self) -> Self {
@@ -135,8 +143,8 @@ impl<T> Mask<T> for bool {
     }
 }
 
-/// Added to a third of a number's bits, gives the bits of its cube root within 5 %: two thirds of the exponent's
-/// bias, less what centres the error.
+/// Added to a third of a number's bits, gives the bits of its cube root within 5 %: two thirds of
+/// the exponent's bias, less what centres the error.
 pub(super) const CBRT_BITS_F32: u32 = 0x2a51_0554;
 /// As [`CBRT_BITS_F32`].
 pub(super) const CBRT_BITS_F64: u64 = 0x2a9f_7893_782d_a1ce;
@@ -180,7 +188,8 @@ macro_rules! scalar {
             }
             #[inline(always)]
             fn power_of_two_to_unity(self) -> Self {
-                // The exponent mirrored at 0, and kept where a quarter of the power and its inverse are normal.
+                // The exponent mirrored at 0, and kept where a quarter of the power and its inverse
+                // are normal.
                 let exponent = (self.to_bits() >> $mantissa_bits) & (2 * $bias + 1);
                 let mirrored = (2 * $bias - exponent.min(2 * $bias - 3)).min(2 * $bias - 3);
                 if self == 0.0 { 1.0 } else { $float::from_bits(mirrored << $mantissa_bits) }

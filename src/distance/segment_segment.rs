@@ -1,20 +1,21 @@
 //! Segment against segment (paper, equations (1) to (8), corrected).
 //!
-//! With S(s) = S0 + s e, U(t) = U0 + t f and w = S0 - U0, minimise |w + s e - t f|^2 over the unit square.
-//! Write a = <e,e>, b = <e,f>, c = <f,f>.
+//! With S(s) = S0 + s e, U(t) = U0 + t f and w = S0 - U0, minimise |w + s e - t f|^2 over the unit
+//! square. Write a = <e,e>, b = <e,f>, c = <f,f>.
 //!
-//! 1. **Skew lines.** The free minimiser is s = <w x f, n> / <n,n> with n = f x e. The cross product keeps
-//!    its digits where the determinant a c - b^2 of the normal equations loses half of them: for nearly
-//!    parallel lines. For every t the best s on the line is s(t) = (b t - <e,w>) / a, monotone in t, so a
-//!    minimiser with t in `[0, 1]` has s between s(0) and s(1); and since the minimum over t is convex in s,
-//!    clamping s first to that interval and then to `[0, 1]` is exact.
-//! 2. **Parallel lines.** n = 0 leaves s free: any point of the interval between s(0) and s(1) is as good
-//!    as another, and the clamps bring s there.
+//! 1. **Skew lines.** The free minimiser is s = <w x f, n> / <n,n> with n = f x e. The cross
+//!    product keeps its digits where the determinant a c - b^2 of the normal equations loses half
+//!    of them: for nearly parallel lines. For every t the best s on the line is s(t) = (b t -
+//!    <e,w>) / a, monotone in t, so a minimiser with t in `[0, 1]` has s between s(0) and s(1); and
+//!    since the minimum over t is convex in s, clamping s first to that interval and then to `[0,
+//!    1]` is exact.
+//! 2. **Parallel lines.** n = 0 leaves s free: any point of the interval between s(0) and s(1) is
+//!    as good as another, and the clamps bring s there.
 //! 3. **Degenerate segments.** a = 0 or c = 0: the parameter is 0.
 //!
-//! Then t follows from s, and s once more from t: a half step that costs little and removes the rounding
-//! of the first quotient. A parameter at an end is exactly 0 or 1; in packs of single precision that of the first
-//! segment may be a rounding below 1.
+//! Then t follows from s, and s once more from t: a half step that costs little and removes the
+//! rounding of the first quotient. A parameter at an end is exactly 0 or 1; in packs of single
+//! precision that of the first segment may be a rounding below 1.
 
 use super::{Closest, Scalar, Vec3, frame::Frame};
 

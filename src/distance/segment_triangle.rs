@@ -1,20 +1,22 @@
 //! Segment against triangle, with the parameter of the closest point on the segment.
 //!
-//! 1. **Piercing.** The segment's ends lie on either side of the plane and the crossing is inside: 0. The
-//!    crossing is found as a point and then looked up in the triangle. To interpolate the plane's coordinates of
-//!    the ends would not do on a sliver, where they are as large as length / height and as wrong. A segment with ends on
-//!    either side that passes an edge as near as rounding can tell meets it: else it might miss both triangles that
-//!    have the edge, and slip through a wall without a hole.
+//! 1. **Piercing.** The segment's ends lie on either side of the plane and the crossing is inside:
+//!    0. The crossing is found as a point and then looked up in the triangle. To interpolate the
+//!    plane's coordinates of the ends would not do on a sliver, where they are as large as length /
+//!    height and as wrong. A segment with ends on either side that passes an edge as near as
+//!    rounding can tell meets it: else it might miss both triangles that have the edge, and slip
+//!    through a wall without a hole.
 //! 2. **An end above the interior.** The end's foot on the plane lies inside.
 //! 3. **An edge.** Segment-segment with each of the three edges.
 //!
-//! The ends count only against the interior, and the edges by segment-segment, so the parameter is exact to
-//! rounding and exactly 0 or 1 at an end. The caps of a link hang on that parameter.
+//! The ends count only against the interior, and the edges by segment-segment, so the parameter is
+//! exact to rounding and exactly 0 or 1 at an end. The caps of a link hang on that parameter.
 
 use super::face::{Face, Projection};
 use super::{Closest, Mask, Scalar, Vec3, frame::Frame, segment_segment};
 
-/// How far a segment that meets an edge may be from it for rounding, in units of u and the largest coordinate.
+/// How far a segment that meets an edge may be from it for rounding, in units of u and the largest
+/// coordinate.
 const AT_AN_EDGE: f64 = 4.0;
 
 /// The distance between a segment and a triangle.
@@ -65,7 +67,8 @@ impl<T: Scalar> AxisTriangle<T> {
     }
 }
 
-/// As [`segment_triangle`], for the segment from the origin to `end` and numbers near one; and whether the two meet.
+/// As [`segment_triangle`], for the segment from the origin to `end` and numbers near one; and
+/// whether the two meet.
 #[inline(always)]
 pub(crate) fn from_start<T: Scalar>(end: Vec3<T>, face: &Face<T>) -> (AxisTriangle<T>, T::Mask) {
     let (zero, one) = (end.x.zero(), end.x.one());
@@ -107,5 +110,10 @@ fn edge<T: Scalar>(end: Vec3<T>, from: Vec3<T>, to: Vec3<T>) -> AxisTriangle<T> 
 #[inline(always)]
 fn above<T: Scalar>(face: &Face<T>, s: T, foot: &Projection<T>) -> AxisTriangle<T> {
     let squared = foot.residual.norm_squared();
-    AxisTriangle { squared, s, on_triangle: face.at(foot.alpha, foot.beta), edges_squared: [squared; 3] }
+    AxisTriangle {
+        squared,
+        s,
+        on_triangle: face.at(foot.alpha, foot.beta),
+        edges_squared: [squared; 3],
+    }
 }

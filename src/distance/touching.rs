@@ -62,7 +62,8 @@ pub(crate) fn extent<T: Scalar, const N: usize>(points: [Vec3<T>; N], length: T)
     (high - low).largest().max(length)
 }
 
-/// The same, but where the mask is true and the distance is no more than rounding it is 0, with one common point.
+/// The same, but where the mask is true and the distance is no more than rounding it is 0, with one
+/// common point.
 #[inline(always)]
 pub(crate) fn settle<T: Scalar>(closest: Closest<T>, at_cap: T::Mask, extent: T) -> Closest<T> {
     let (zero, limit) = (extent.zero(), extent * extent.lit(ROUNDING * T::UNIT_ROUNDOFF));

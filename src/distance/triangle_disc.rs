@@ -1,22 +1,23 @@
 //! Triangle against solid disc (paper, equations (22) to (25), corrected).
 //!
 //! 1. **Edges.** If the triangle's closest point is on its boundary, segment-disc finds it.
-//! 2. **Face, apart.** If it is in the interior, the line between the closest points is normal to the plane,
-//!    so the disc's point is its nearest to the plane: on the rim, or (parallel) the centre serves, unless an
-//!    edge passes over the disc.
-//! 3. **Face, crossing.** If the disc crosses the plane, plane-disc returns the middle of the chord that the
-//!    disc cuts out of the plane. Either it lies in the triangle, or the chord leaves the triangle through an
-//!    edge, or the two are apart; the edges find the last two.
+//! 2. **Face, apart.** If it is in the interior, the line between the closest points is normal to
+//!    the plane, so the disc's point is its nearest to the plane: on the rim, or (parallel) the
+//!    centre serves, unless an edge passes over the disc.
+//! 3. **Face, crossing.** If the disc crosses the plane, plane-disc returns the middle of the chord
+//!    that the disc cuts out of the plane. Either it lies in the triangle, or the chord leaves the
+//!    triangle through an edge, or the two are apart; the edges find the last two.
 //!
-//! The face's candidate is the distance between two actual points, the disc's and its foot on the triangle.
+//! The face's candidate is the distance between two actual points, the disc's and its foot on the
+//! triangle.
 
 use super::{Closest, Convex, DiscSolver, Scalar, Vec3, face::Face, frame::Frame, plane_disc};
 
 /// How far rounding may bring a point of the triangle from it, in units of u and numbers near one.
 const ROUNDING: f64 = 32.0;
 
-/// The distance between a triangle and a solid disc with the given centre, normal (of any length but 0) and
-/// radius; (22) to (25).
+/// The distance between a triangle and a solid disc with the given centre, normal (of any length
+/// but 0) and radius; (22) to (25).
 #[inline(always)]
 pub fn triangle_disc<T: Scalar>(
     triangle: [Vec3<T>; 3],
@@ -56,8 +57,8 @@ pub(crate) fn from_centre<S: DiscSolver<T>, T: Scalar>(
     let plane_normal = face.normal();
     let nearest = plane_disc::from_centre(plane_normal.dot(a), plane_normal, normal, radius);
     let projection = face.project(nearest.point);
-    // A sliver whose height is rounding may seem to hold what is far from it; but no point of a triangle is farther from
-    // its longest edge than its height.
+    // A sliver whose height is rounding may seem to hold what is far from it; but no point of a
+    // triangle is farther from its longest edge than its height.
     let within_height = edges.distance.le(face.height() + radius.lit(ROUNDING * T::UNIT_ROUNDOFF));
     let crosses = nearest.distance.le(radius.zero()) & within_height;
     let apart = Closest {

@@ -1,8 +1,9 @@
 //! Packs of `f64` with the bits of single numbers, on every instruction set.
 //!
-//! [`F64s`] rounds a product and a sum once where the instruction set can, and estimates cube roots in another way than
-//! a single number does. Here every lane computes what `f64` computes, operation by operation, so that an answer does
-//! not depend on the machine, nor on which other answers it was computed with.
+//! [`F64s`] rounds a product and a sum once where the instruction set can, and estimates cube roots
+//! in another way than a single number does. Here every lane computes what `f64` computes,
+//! operation by operation, so that an answer does not depend on the machine, nor on which other
+//! answers it was computed with.
 
 use super::lanes::{F64Mask, F64s, Pack};
 use super::scalar::{Mask, Scalar, Sealed};

@@ -13,13 +13,14 @@ use parry3d_f64::shape::TriMesh;
 use std::iter::once;
 use std::sync::Arc;
 
-/// Proximity queries that visit every triangle: the work grows with the number of triangles, and moving the
-/// mesh leaves nothing to be built anew.
+/// Proximity queries that visit every triangle: the work grows with the number of triangles, and
+/// moving the mesh leaves nothing to be built anew.
 ///
-/// `T` is the precision of the search, `f64` or `f32`. What rounding leaves in question is measured again in
-/// `f64`, so both return the double-precision answer, and `f32` is the faster. Triangles are taken 2 to 16 at a
-/// time with the widest instructions of the machine, and (feature `parallel`) on all its cores. Where single precision
-/// is too coarse, because a triangle or the robot lies very far out, the search is in double precision whatever `T`.
+/// `T` is the precision of the search, `f64` or `f32`. What rounding leaves in question is measured
+/// again in `f64`, so both return the double-precision answer, and `f32` is the faster. Triangles
+/// are taken 2 to 16 at a time with the widest instructions of the machine, and (feature
+/// `parallel`) on all its cores. Where single precision is too coarse, because a triangle or the
+/// robot lies very far out, the search is in double precision whatever `T`.
 ///
 /// Every triangle is visited, but most need no more than a look at the sphere around them.
 ///
@@ -82,11 +83,12 @@ impl<T: SearchPrecision> Exhaustive<T> {
         Ok(Self::of(Mesh::new(mesh)?))
     }
 
-    /// An engine for triangles, each given by the positions of its corners among the vertices; both are copied. It spares
-    /// the hierarchy that a [`TriMesh`] builds for itself.
+    /// An engine for triangles, each given by the positions of its corners among the vertices; both
+    /// are copied. It spares the hierarchy that a [`TriMesh`] builds for itself.
     ///
     /// # Errors
-    /// There are no triangles, a vertex is not finite or out of range, or a triangle names one that is not there.
+    /// There are no triangles, a vertex is not finite or out of range, or a triangle names one that
+    /// is not there.
     pub fn from_triangles(vertices: &[Vector], triangles: &[[u32; 3]]) -> Result<Self, MeshError> {
         Ok(Self::of(Mesh::from_triangles(vertices, triangles)?))
     }
@@ -103,17 +105,19 @@ impl<T: SearchPrecision> Exhaustive<T> {
         }
     }
 
-    /// Whether cheap, exact bounds may spare a visited triangle its narrow phase. They may unless told otherwise.
+    /// Whether cheap, exact bounds may spare a visited triangle its narrow phase. They may unless
+    /// told otherwise.
     ///
-    /// Without them every pair of link and triangle costs its full distance, discs included: the work of the
-    /// paper, for comparison with it.
+    /// Without them every pair of link and triangle costs its full distance, discs included: the
+    /// work of the paper, for comparison with it.
     #[cfg(feature = "laboratory")]
     #[doc(hidden)]
     pub fn set_culling(&mut self, culling: bool) {
         self.culling = culling;
     }
 
-    /// Uses another instruction set than the widest of this machine: for the comparison of instruction sets.
+    /// Uses another instruction set than the widest of this machine: for the comparison of
+    /// instruction sets.
     #[cfg(feature = "laboratory")]
     #[doc(hidden)]
     pub fn set_level(&mut self, level: Level) {
@@ -130,11 +134,13 @@ impl<T: SearchPrecision> Exhaustive<T> {
         robots: impl Iterator<Item = Result<PlacedRobot<'a>, ProximityError>>,
         aim: PassGoal,
     ) {
-        self.work += self.pass.run(self.level, self.culling, &self.triangles, robots, 0..usize::MAX, aim);
+        self.work +=
+            self.pass.run(self.level, self.culling, &self.triangles, robots, 0..usize::MAX, aim);
     }
 
-    /// Answers many robots, some together: all their links meet a chunk of the mesh while it is in the cache. `answer` gets
-    /// the place of each among those of the last pass, but for those that are refused.
+    /// Answers many robots, some together: all their links meet a chunk of the mesh while it is in
+    /// the cache. `answer` gets the place of each among those of the last pass, but for those
+    /// that are refused.
     fn run_batch<A>(
         &mut self,
         robots: &[(&Chain, Pose)],
@@ -158,7 +164,8 @@ impl<T: SearchPrecision> Exhaustive<T> {
         }
     }
 
-    /// The nearest of a robot's links; of several the one with the lowest triangle, then the lowest link.
+    /// The nearest of a robot's links; of several the one with the lowest triangle, then the lowest
+    /// link.
     fn least(&self, number: usize) -> Option<LinkProximity> {
         let order = |a: &LinkProximity, b: &LinkProximity| {
             a.distance.total_cmp(&b.distance).then(a.triangle.cmp(&b.triangle))
@@ -167,7 +174,8 @@ impl<T: SearchPrecision> Exhaustive<T> {
     }
 }
 
-/// So many links of a batch meet the mesh at once, or those of one robot: each thread keeps what it found for each.
+/// So many links of a batch meet the mesh at once, or those of one robot: each thread keeps what it
+/// found for each.
 const LINKS_AT_ONCE: usize = 1 << 12;
 
 /// How many of the first robots, one at least, meet the mesh at once.
@@ -215,8 +223,11 @@ impl<T: SearchPrecision> Engine for Exhaustive<T> {
         query: ContactQuery,
         out: &mut Vec<Contact>,
     ) -> Result<(), ProximityError> {
-        let Self { level, culling, ref triangles, ref mut pass, ref mut minima, ref mut work, .. } = *self;
-        let mut contacts = ContactCollector::new(level, Wall::of(&triangles.mesh), robot, query, minima, out);
+        let Self {
+            level, culling, ref triangles, ref mut pass, ref mut minima, ref mut work, ..
+        } = *self;
+        let mut contacts =
+            ContactCollector::new(level, Wall::of(&triangles.mesh), robot, query, minima, out);
         let (links, mut first, mut count) = (robot.links().len(), 0, robot.links().len());
         while first < links {
             let end = first + count;
@@ -234,7 +245,8 @@ impl<T: SearchPrecision> Engine for Exhaustive<T> {
             };
             for pairs in within.chunk_by(|one, other| one.0 == other.0) {
                 let triangles = pairs.iter().map(|pair| pair.1);
-                contacts.add(first + pairs[0].0 as usize, |_, near| near.add_unclassified(triangles));
+                contacts
+                    .add(first + pairs[0].0 as usize, |_, near| near.add_unclassified(triangles));
             }
             first = end;
         }
@@ -265,7 +277,8 @@ impl<T: SearchPrecision> Engine for Exhaustive<T> {
         out.resize_with(robots.len(), || Ok(LinkProximity::placeholder()));
         self.run_batch(robots, PassGoal::Least(Real::INFINITY), out, |engine, number, out| {
             let least = engine.least(number);
-            *out = Ok(least.unwrap_or_else(|| any_triangle(engine.mesh(), engine.pass.first_link(number))));
+            *out = Ok(least
+                .unwrap_or_else(|| any_triangle(engine.mesh(), engine.pass.first_link(number))));
         });
         Ok(())
     }

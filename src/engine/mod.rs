@@ -12,5 +12,6 @@ pub use proximity::Proximity;
 pub(crate) use proximity::placed;
 pub(crate) use proximity::{Engine, any_triangle};
 pub use robot_pair::{
-    RobotPair, between, clears_between, motion_self_clears, self_clears, self_minimum, tube_self_clears,
+    RobotPair, between, clears_between, motion_self_clears, self_clears, self_minimum,
+    tube_self_clears,
 };

@@ -8,15 +8,15 @@ use parry3d_f64::math::{Pose, Real, Vector};
 
 /// An engine that answers proximity queries between a robot and the mesh it was built for.
 ///
-/// `pose` is the robot's pose in the mesh's frame, and answers are in that frame too. Distances are to the mesh's surface and
-/// unsigned: a link that touches nothing may be on either side of it.
+/// `pose` is the robot's pose in the mesh's frame, and answers are in that frame too. Distances are
+/// to the mesh's surface and unsigned: a link that touches nothing may be on either side of it.
 ///
-/// All engines give the same distances. Where several triangles are equally close, or touch, [`BvhSearch`](super::BvhSearch)
-/// and [`Exhaustive`](super::Exhaustive) name the one with the lowest number, and of the links that share it the lowest, on
-/// any number of threads.
+/// All engines give the same distances. Where several triangles are equally close, or touch,
+/// [`BvhSearch`](super::BvhSearch) and [`Exhaustive`](super::Exhaustive) name the one with the
+/// lowest number, and of the links that share it the lowest, on any number of threads.
 ///
-/// The batches take many robots, such as a planner's samples, and answer them on all cores, in the order given. Each robot has
-/// a `Result` of its own: one that is refused costs the others nothing.
+/// The batches take many robots, such as a planner's samples, and answer them on all cores, in the
+/// order given. Each robot has a `Result` of its own: one that is refused costs the others nothing.
 ///
 /// A query that returns an error leaves `out` empty.
 ///
@@ -47,8 +47,9 @@ pub trait Proximity: Engine {
         Ok(found.unwrap_or_else(|| any_triangle(self.mesh(), &robot.link(0))))
     }
 
-    /// The closest link and triangle, if they are at most `bound` apart: [`minimum`](Proximity::minimum) for less work
-    /// where nothing is as near. Several meshes are asked in turn, each for what is nearer than the last:
+    /// The closest link and triangle, if they are at most `bound` apart:
+    /// [`minimum`](Proximity::minimum) for less work where nothing is as near. Several meshes
+    /// are asked in turn, each for what is nearer than the last:
     ///
     /// ```
     /// use parry_continuum::Chain;
@@ -76,8 +77,9 @@ pub trait Proximity: Engine {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///
-    /// A bound below zero asks for nothing, and the answer is `None`. In the example above it is below zero where one margin is
-    /// violated by more than another mesh's margin: that mesh cannot be tighter.
+    /// A bound below zero asks for nothing, and the answer is `None`. In the example above it is
+    /// below zero where one margin is violated by more than another mesh's margin: that mesh
+    /// cannot be tighter.
     ///
     /// # Errors
     /// The bound is NaN, the pose is not finite, or it moves a link out of range.
@@ -92,8 +94,8 @@ pub trait Proximity: Engine {
         if bound < 0.0 { Ok(None) } else { self.ask_nearest(robot, bound) }
     }
 
-    /// Whether the robot keeps more than `margin` away from the mesh: exactly `minimum().distance > margin`,
-    /// for less work.
+    /// Whether the robot keeps more than `margin` away from the mesh: exactly `minimum().distance >
+    /// margin`, for less work.
     ///
     /// # Errors
     /// The margin is negative or NaN, the pose is not finite, or it moves a link out of range.
@@ -102,19 +104,22 @@ pub trait Proximity: Engine {
         self.ask_clears(PlacedRobot::new(robot, pose)?, margin)
     }
 
-    /// Every contact at most `margin` away, link by link and nearest first: where the distance between a link and the mesh has
-    /// a local minimum. `out` is cleared first.
+    /// Every contact at most `margin` away, link by link and nearest first: where the distance
+    /// between a link and the mesh has a local minimum. `out` is cleared first.
     ///
-    /// A place of the mesh is a local minimum for a link if every way on the mesh to a nearer place first leads farther away.
+    /// A place of the mesh is a local minimum for a link if every way on the mesh to a nearer place
+    /// first leads farther away.
     ///
     /// - A wall that bends towards the link is one contact, however many triangles it has.
     /// - A link in a narrow lumen has a contact on each side.
     /// - A piece of wall that is equally near everywhere, up to rounding, is one contact.
-    /// - A connected piece of wall inside the link is one contact. It names the triangle nearest to the axis.
-    /// - The closest point that [`per_link`](Proximity::per_link) finds is among them if it is within the margin, or another
-    ///   place as near on the same piece of wall.
+    /// - A connected piece of wall inside the link is one contact. It names the triangle nearest to
+    ///   the axis.
+    /// - The closest point that [`per_link`](Proximity::per_link) finds is among them if it is
+    ///   within the margin, or another place as near on the same piece of wall.
     ///
-    /// Triangles are joined where they have corners at the same place, whether they share an index or not.
+    /// Triangles are joined where they have corners at the same place, whether they share an index
+    /// or not.
     ///
     /// ```
     /// use parry_continuum::Chain;
@@ -137,25 +142,28 @@ pub trait Proximity: Engine {
     /// ```
     ///
     /// # Prominence
-    /// A rough wall has a contact at each of its bumps. The prominence of a contact is how much farther every way on the mesh
-    /// to a nearer place first leads; it is infinite where no such way stays within the margin. `prominence` is the least that
-    /// a contact must have, in the mesh's unit. With 0 each local minimum is a contact. For a surface made of voxels, the size
-    /// of a voxel leaves a few contacts for each link.
+    /// A rough wall has a contact at each of its bumps. The prominence of a contact is how much
+    /// farther every way on the mesh to a nearer place first leads; it is infinite where no
+    /// such way stays within the margin. `prominence` is the least that a contact must have, in
+    /// the mesh's unit. With 0 each local minimum is a contact. For a surface made of voxels, the
+    /// size of a voxel leaves a few contacts for each link.
     ///
     /// No wall is lost, whatever the prominence:
     ///
     /// - Each connected piece of wall within the margin keeps its nearest contact.
-    /// - Contacts whose normals differ by more than 60 degrees are never merged, so that both sides of a groove stay. The way
-    ///   that counts is the one to a nearer contact that is kept and whose normal is within 60 degrees.
-    /// - So each contact that is left out has a nearer one that stands for it. The direction in which that one pushes the link
-    ///   is within 60 degrees of its own.
+    /// - Contacts whose normals differ by more than 60 degrees are never merged, so that both sides
+    ///   of a groove stay. The way that counts is the one to a nearer contact that is kept and
+    ///   whose normal is within 60 degrees.
+    /// - So each contact that is left out has a nearer one that stands for it. The direction in
+    ///   which that one pushes the link is within 60 degrees of its own.
     /// - A contact without a [`normal`](Contact::normal) stays.
     ///
-    /// A contact that is kept is the same as without a prominence. With a smaller margin there may be more of them within it: a
-    /// way beyond the margin joins nothing.
+    /// A contact that is kept is the same as without a prominence. With a smaller margin there may
+    /// be more of them within it: a way beyond the margin joins nothing.
     ///
     /// # Errors
-    /// The margin or the prominence is negative or NaN, the pose is not finite, or it moves a link out of range.
+    /// The margin or the prominence is negative or NaN, the pose is not finite, or it moves a link
+    /// out of range.
     fn within(
         &mut self,
         robot: &Chain,
@@ -170,8 +178,8 @@ pub trait Proximity: Engine {
         self.ask_contacts(PlacedRobot::new(robot, pose)?, ContactQuery { margin, prominence }, out)
     }
 
-    /// [`per_link`](Self::per_link) for many robots. `out` gets the answer of each, or why there is none; inner vectors are used
-    /// again.
+    /// [`per_link`](Self::per_link) for many robots. `out` gets the answer of each, or why there is
+    /// none; inner vectors are used again.
     ///
     /// # Errors
     /// The engine's device failed. `out` is then empty.
@@ -183,7 +191,8 @@ pub trait Proximity: Engine {
         self.ask_per_link_batch(robots, out).inspect_err(|_| out.clear())
     }
 
-    /// [`minimum`](Self::minimum) for many robots. `out` gets the answer of each, or why there is none.
+    /// [`minimum`](Self::minimum) for many robots. `out` gets the answer of each, or why there is
+    /// none.
     ///
     /// ```
     /// use parry_continuum::Chain;
@@ -211,7 +220,8 @@ pub trait Proximity: Engine {
         self.ask_minimum_batch(robots, out).inspect_err(|_| out.clear())
     }
 
-    /// [`clears`](Self::clears) for many robots. `out` gets the answer of each, or why there is none.
+    /// [`clears`](Self::clears) for many robots. `out` gets the answer of each, or why there is
+    /// none.
     ///
     /// # Errors
     /// The margin is negative or NaN, or the engine's device failed. `out` is then empty.
@@ -226,13 +236,14 @@ pub trait Proximity: Engine {
         self.ask_clears_batch(robots, margin, out).inspect_err(|_| out.clear())
     }
 
-    /// An answer with its normal, its place on the robot and the features that are nearest, of the mesh that the engine
-    /// has now. Give the same robot and pose as to the query.
+    /// An answer with its normal, its place on the robot and the features that are nearest, of the
+    /// mesh that the engine has now. Give the same robot and pose as to the query.
     ///
     /// # Errors
-    /// The answer's link or triangle does not exist, or the pose is not finite or moves the link out of range. Or the answer
-    /// does not fit the two: it is about another robot or another pose, or the mesh has moved since. It fits if it is off by
-    /// no more than 16 units in the last place of the largest coordinate and of the extent of link and triangle.
+    /// The answer's link or triangle does not exist, or the pose is not finite or moves the link
+    /// out of range. Or the answer does not fit the two: it is about another robot or another
+    /// pose, or the mesh has moved since. It fits if it is off by no more than 16 units in the
+    /// last place of the largest coordinate and of the extent of link and triangle.
     ///
     /// ```
     /// use parry_continuum::Chain;
@@ -253,12 +264,17 @@ pub trait Proximity: Engine {
     /// assert!(search.contact(&robot, &Pose::IDENTITY, &closest).is_err());
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    fn contact(&self, robot: &Chain, pose: &Pose, answer: &LinkProximity) -> Result<Contact, ProximityError> {
+    fn contact(
+        &self,
+        robot: &Chain,
+        pose: &Pose,
+        answer: &LinkProximity,
+    ) -> Result<Contact, ProximityError> {
         contact(self.mesh(), robot, pose, answer)
     }
 
-    /// [`contact`](Self::contact) of every answer, in order. It takes a fraction of the time, because several are computed at
-    /// once. `out` is cleared first.
+    /// [`contact`](Self::contact) of every answer, in order. It takes a fraction of the time,
+    /// because several are computed at once. `out` is cleared first.
     ///
     /// # Errors
     /// Those of the first answer that has one; `out` is then empty.
@@ -287,10 +303,12 @@ pub trait Proximity: Engine {
         contacts(self.mesh(), robot, pose, answers, out)
     }
 
-    /// How an answer's distance changes with the ends of the link, its radius and the triangle's corners, of the mesh that the
-    /// engine has now. Give the same robot and pose as to the query.
+    /// How an answer's distance changes with the ends of the link, its radius and the triangle's
+    /// corners, of the mesh that the engine has now. Give the same robot and pose as to the
+    /// query.
     ///
-    /// `None` where there is no normal, because neither side of the triangle is the robot's: see [`Contact::normal`].
+    /// `None` where there is no normal, because neither side of the triangle is the robot's: see
+    /// [`Contact::normal`].
     ///
     /// # Errors
     /// As [`contact`](Self::contact).
@@ -323,22 +341,25 @@ pub trait Proximity: Engine {
         self.mesh().vertices()
     }
 
-    /// The mesh's triangles, each as the positions of its corners among the [`vertices`](Self::vertices).
+    /// The mesh's triangles, each as the positions of its corners among the
+    /// [`vertices`](Self::vertices).
     fn triangles(&self) -> &[[u32; 3]] {
         self.mesh().indices()
     }
 
-    /// Moves the mesh's vertices; the triangles stay as they are. Answers given before are about the mesh as it was, and
-    /// [`contact`](Self::contact) refuses those that no longer fit.
+    /// Moves the mesh's vertices; the triangles stay as they are. Answers given before are about
+    /// the mesh as it was, and [`contact`](Self::contact) refuses those that no longer fit.
     ///
-    /// The next question that this engine is asked is about the new vertices. Its clones keep the mesh that they had, and a
-    /// clone made afterwards has the new one. While a clone lives that shares the mesh, the mesh and all that was built for it
-    /// are copied first.
+    /// The next question that this engine is asked is about the new vertices. Its clones keep the
+    /// mesh that they had, and a clone made afterwards has the new one. While a clone lives
+    /// that shares the mesh, the mesh and all that was built for it are copied first.
     ///
-    /// The vertices are copied and what bounds them is fitted to them, on all cores, in a time that grows with the mesh.
-    /// The division of the mesh into nodes stays as it was: build a new engine where the mesh has become another shape, so
-    /// that searches are fast again. What else has to be built depends on the question. Where the table names something, the
-    /// first such question after the move waits for it, unless [`prepare`](super::BvhSearch::prepare) is called before:
+    /// The vertices are copied and what bounds them is fitted to them, on all cores, in a time that
+    /// grows with the mesh. The division of the mesh into nodes stays as it was: build a new
+    /// engine where the mesh has become another shape, so that searches are fast again. What
+    /// else has to be built depends on the question. Where the table names something, the first
+    /// such question after the move waits for it, unless [`prepare`](super::BvhSearch::prepare) is
+    /// called before:
     ///
     /// | question | what is built after a move |
     /// |---|---|
@@ -348,13 +369,15 @@ pub trait Proximity: Engine {
     /// | [`side`](super::BvhSearch::side), [`clears_inside`](super::BvhSearch::clears_inside) | what each part of the mesh is from far away |
     /// | any, about what single precision does not resolve | nothing: a second hierarchy that was built is fitted too, which made the move take two to three times as long |
     ///
-    /// The places of the last answers stay, and the next searches start there. The distances that were known are dropped.
+    /// The places of the last answers stay, and the next searches start there. The distances that
+    /// were known are dropped.
     ///
-    /// [`Exhaustive`](super::Exhaustive) refills its blocks of triangles, and the GPU's engine sends the vertices with the
-    /// next query.
+    /// [`Exhaustive`](super::Exhaustive) refills its blocks of triangles, and the GPU's engine
+    /// sends the vertices with the next query.
     ///
     /// # Errors
-    /// The number of vertices differs or one of them is not finite or out of range. The engine then keeps the old ones.
+    /// The number of vertices differs or one of them is not finite or out of range. The engine then
+    /// keeps the old ones.
     fn set_vertices(&mut self, vertices: &[Vector]) -> Result<(), MeshError> {
         self.mesh().check_moved(vertices)?;
         self.move_vertices(vertices);
@@ -362,8 +385,8 @@ pub trait Proximity: Engine {
     }
 }
 
-/// What an engine does itself: all else is the same for all engines, and stands in [`Proximity`]. Robots are placed,
-/// margins and bounds at least 0.
+/// What an engine does itself: all else is the same for all engines, and stands in [`Proximity`].
+/// Robots are placed, margins and bounds at least 0.
 pub(crate) trait Engine {
     /// The mesh as it is now.
     fn mesh(&self) -> &Mesh;
@@ -375,8 +398,8 @@ pub(crate) trait Engine {
         out: &mut Vec<LinkProximity>,
     ) -> Result<(), ProximityError>;
 
-    /// The closest link and triangle, if they are at most `bound` apart. Without a bound there is none only where rounding
-    /// hides all distances.
+    /// The closest link and triangle, if they are at most `bound` apart. Without a bound there is
+    /// none only where rounding hides all distances.
     fn ask_nearest(
         &mut self,
         robot: PlacedRobot,

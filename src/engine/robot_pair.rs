@@ -1,10 +1,12 @@
 //! Two robots beside one another.
 
 use crate::answer::{Decision, ProximityError, RobotClearance, RobotMotionAnswer, RobotProximity};
-use crate::query::motion::{MarginQuery, MotionPair, MotionsMemory, SelfMotionMemory, self_clears_motion};
+use crate::query::motion::{
+    MarginQuery, MotionPair, MotionsMemory, SelfMotionMemory, self_clears_motion,
+};
 use crate::query::robots::{
-    PairMemory, RobotWithItself, SelfMemory, SelfTubeMemory, TubesMemory, TwoRobots, clearance_between,
-    place_tubes, self_clears_tube, tubes_clear,
+    PairMemory, RobotWithItself, SelfMemory, SelfTubeMemory, TubesMemory, TwoRobots,
+    clearance_between, place_tubes, self_clears_tube, tubes_clear,
 };
 use crate::query::{check_decision, check_margin, check_not_negative};
 use crate::robot::{Chain, Motion, Tube};
@@ -12,12 +14,12 @@ use parry3d_f64::math::{Pose, Real};
 
 /// Questions about two robots, exactly: which links are closest, and whether all keep a margin.
 ///
-/// It remembers what was nearest, which bounds the next query: any robots and poses may follow, and small motions are
-/// answered fastest. A clone has the memory too; each thread should have one of its own. [`between`] and [`clears_between`]
-/// are the same without a memory.
+/// It remembers what was nearest, which bounds the next query: any robots and poses may follow, and
+/// small motions are answered fastest. A clone has the memory too; each thread should have one of
+/// its own. [`between`] and [`clears_between`] are the same without a memory.
 ///
-/// Both poses bring their robot into one frame, in which the answers are. Distances are unsigned, 0 where the robots touch
-/// or overlap, and exact as those to a mesh.
+/// Both poses bring their robot into one frame, in which the answers are. Distances are unsigned, 0
+/// where the robots touch or overlap, and exact as those to a mesh.
 ///
 /// ```
 /// use parry_continuum::{Chain, proximity::RobotPair};
@@ -62,7 +64,8 @@ impl RobotPair {
         self.tubes.forget();
     }
 
-    /// The two links that are closest. Of equal distances the lowest link of `a` counts, then the lowest of `b`.
+    /// The two links that are closest. Of equal distances the lowest link of `a` counts, then the
+    /// lowest of `b`.
     ///
     /// # Errors
     /// A pose is not finite or not rigid, or moves a link out of range.
@@ -93,8 +96,8 @@ impl RobotPair {
         Ok(())
     }
 
-    /// Whether all links of one robot are farther than `margin` from all of the other: true exactly when the distance of
-    /// [`minimum`](Self::minimum) is more than it.
+    /// Whether all links of one robot are farther than `margin` from all of the other: true exactly
+    /// when the distance of [`minimum`](Self::minimum) is more than it.
     ///
     /// # Errors
     /// As [`minimum`](Self::minimum), or the margin is negative or NaN.
@@ -110,10 +113,12 @@ impl RobotPair {
         Ok(TwoRobots::new([a, b], [pose_a, pose_b], POSES)?.clears(margin, &mut self.memory))
     }
 
-    /// Every place where the robots are at most `margin` apart, in the order of the links. `out` is cleared first.
+    /// Every place where the robots are at most `margin` apart, in the order of the links. `out` is
+    /// cleared first.
     ///
-    /// A place is a pair of links of which no neighbours, one link on along either robot or both, are closer. Neighbours that
-    /// are as close count as one place, at the lowest links: two robots that overlap along a stretch do so once.
+    /// A place is a pair of links of which no neighbours, one link on along either robot or both,
+    /// are closer. Neighbours that are as close count as one place, at the lowest links: two
+    /// robots that overlap along a stretch do so once.
     ///
     /// # Errors
     /// As [`clears`](Self::clears).
@@ -132,15 +137,17 @@ impl RobotPair {
         Ok(())
     }
 
-    /// How near two tubes are, between bounds that are at most `tolerance` apart where the tubes allow that.
+    /// How near two tubes are, between bounds that are at most `tolerance` apart where the tubes
+    /// allow that.
     ///
-    /// The bounds hold for the tubes as they were given, all rounding included: `lower` <= clearance <= `upper`, and `upper` is
-    /// realised by the points of the answer. There are always bounds, and [`resolved`](RobotClearance::resolved) says whether they
-    /// are as close as was asked for, as of [`BvhSearch::clearance`](crate::proximity::BvhSearch::clearance). What both tubes
-    /// state as their own errors is in both bounds.
+    /// The bounds hold for the tubes as they were given, all rounding included: `lower` <=
+    /// clearance <= `upper`, and `upper` is realised by the points of the answer. There are
+    /// always bounds, and [`resolved`](RobotClearance::resolved) says whether they are as close
+    /// as was asked for, as of [`BvhSearch::clearance`](crate::proximity::BvhSearch::clearance).
+    /// What both tubes state as their own errors is in both bounds.
     ///
-    /// The work grows with the pieces near one another, about the root of 1 / tolerance where the tubes cross, and with the
-    /// number of sections of the one times that of the other.
+    /// The work grows with the pieces near one another, about the root of 1 / tolerance where the
+    /// tubes cross, and with the number of sections of the one times that of the other.
     ///
     /// ```
     /// use parry_continuum::{Tube, proximity::RobotPair};
@@ -156,8 +163,8 @@ impl RobotPair {
     /// ```
     ///
     /// # Errors
-    /// The tolerance is negative or NaN; the curve of a tube is not finite somewhere; or a pose is not finite or not rigid, or
-    /// moves its tube out of range.
+    /// The tolerance is negative or NaN; the curve of a tube is not finite somewhere; or a pose is
+    /// not finite or not rigid, or moves its tube out of range.
     pub fn clearance(
         &mut self,
         a: &Tube,
@@ -171,12 +178,14 @@ impl RobotPair {
         clearance_between(&mut tubes, &mut self.tubes, tolerance)
     }
 
-    /// Whether two tubes keep more than `margin`. `Clear` and `Contact` are proven; `Undecided` is the answer only where the
-    /// clearance is within `resolution` of the margin, or where 65,536 pairs of pieces do not decide it.
+    /// Whether two tubes keep more than `margin`. `Clear` and `Contact` are proven; `Undecided` is
+    /// the answer only where the clearance is within `resolution` of the margin, or where
+    /// 65,536 pairs of pieces do not decide it.
     ///
     /// # Errors
-    /// The margin or the resolution is negative or NaN, samples do not allow a decision at that resolution, or as
-    /// [`clearance`](Self::clearance). A contact that is found first is the answer, whatever the curves do elsewhere.
+    /// The margin or the resolution is negative or NaN, samples do not allow a decision at that
+    /// resolution, or as [`clearance`](Self::clearance). A contact that is found first is the
+    /// answer, whatever the curves do elsewhere.
     pub fn tubes_clear(
         &mut self,
         a: &Tube,
@@ -191,17 +200,22 @@ impl RobotPair {
         tubes_clear(&mut tubes, &mut self.tubes, margin, resolution)
     }
 
-    /// Whether two robots that move at the same time keep more than `margin` between them, at every time from 0 to 1. Both motions
-    /// place their robot in one frame. A robot at rest is a [`RigidMotion`](crate::RigidMotion) from a pose to the same pose.
+    /// Whether two robots that move at the same time keep more than `margin` between them, at every
+    /// time from 0 to 1. Both motions place their robot in one frame. A robot at rest is a
+    /// [`RigidMotion`](crate::RigidMotion) from a pose to the same pose.
     ///
-    /// - `Clear` is proven from the speeds that the motions state, for every instant and not only for some.
-    /// - `Contact` names a time, and two points of the shapes at that time that are at most the margin apart.
-    /// - `Undecided`: the robots come within `resolution` of the margin and of what they state as their own errors, or an end turns
-    ///   from flat to round there; or the question ends after 65,536 shapes of each, or after a million pairs of pieces in all of
-    ///   them. The [reason](RobotMotionAnswer::reason) says which.
+    /// - `Clear` is proven from the speeds that the motions state, for every instant and not only
+    ///   for some.
+    /// - `Contact` names a time, and two points of the shapes at that time that are at most the
+    ///   margin apart.
+    /// - `Undecided`: the robots come within `resolution` of the margin and of what they state as
+    ///   their own errors, or an end turns from flat to round there; or the question ends after
+    ///   65,536 shapes of each, or after a million pairs of pieces in all of them. The
+    ///   [reason](RobotMotionAnswer::reason) says which.
     ///
-    /// The work is one query about two tubes for each time that the proof needs, which are the fewer, the slower the robots are
-    /// compared with the room between them. The speeds are trusted: see [`verify_motion`](crate::verify_motion).
+    /// The work is one query about two tubes for each time that the proof needs, which are the
+    /// fewer, the slower the robots are compared with the room between them. The speeds are
+    /// trusted: see [`verify_motion`](crate::verify_motion).
     ///
     /// ```
     /// use parry_continuum::{LinearMotion, parry::math::Vector, proximity::{Decision, RobotPair}};
@@ -220,9 +234,10 @@ impl RobotPair {
     /// ```
     ///
     /// # Errors
-    /// The margin or the resolution is negative or NaN; a motion has no shape at some time, its sections change, or a stated speed
-    /// is not finite; a robot is out of range; or the resolution is finer than rounding, than the samples of a shape allow, or
-    /// than so fast a motion can be divided.
+    /// The margin or the resolution is negative or NaN; a motion has no shape at some time, its
+    /// sections change, or a stated speed is not finite; a robot is out of range; or the
+    /// resolution is finer than rounding, than the samples of a shape allow, or than so fast a
+    /// motion can be divided.
     pub fn clears_motion(
         &mut self,
         a: &impl Motion,
@@ -239,7 +254,10 @@ impl RobotPair {
     ///
     /// # Errors
     /// As [`self_minimum`].
-    pub fn self_minimum(&mut self, robot: &Chain) -> Result<Option<RobotProximity>, ProximityError> {
+    pub fn self_minimum(
+        &mut self,
+        robot: &Chain,
+    ) -> Result<Option<RobotProximity>, ProximityError> {
         Ok(RobotWithItself::new(robot, &mut self.own)?.minimum(&mut self.own))
     }
 
@@ -297,7 +315,12 @@ impl RobotPair {
 /// assert!((closest.distance - 5.0).abs() < 1e-12);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn between(a: &Chain, pose_a: &Pose, b: &Chain, pose_b: &Pose) -> Result<RobotProximity, ProximityError> {
+pub fn between(
+    a: &Chain,
+    pose_a: &Pose,
+    b: &Chain,
+    pose_b: &Pose,
+) -> Result<RobotProximity, ProximityError> {
     RobotPair::new().minimum(a, pose_a, b, pose_b)
 }
 
@@ -326,12 +349,13 @@ pub fn clears_between(
     RobotPair::new().clears(a, pose_a, b, pose_b, margin)
 }
 
-/// Where a robot comes closest to itself, or nothing if no two of its parts can: a straight robot, or one that bends too
-/// little.
+/// Where a robot comes closest to itself, or nothing if no two of its parts can: a straight robot,
+/// or one that bends too little.
 ///
 /// Parts that are close only because they are neighbours do not count. Asked for are
 ///
-/// - two links with a turn of at least pi between them, which is the sum of the angles of the joints;
+/// - two links with a turn of at least pi between them, which is the sum of the angles of the
+///   joints;
 /// - a face (the base or the tip, if flat, or the wider side of a step, if round too) and a link,
 ///   with a turn of at least pi / 2;
 /// - two faces that look at one another: the end of a link and the start of a later one.
@@ -340,13 +364,14 @@ pub fn clears_between(
 /// from there, and the adjoining link does not hold the nearest point of the face. So the shoulders
 /// of a taper never meet. Radii that differ by less than a share of 2^-32 are no step.
 ///
-/// No other two places can be a local minimum of the distance, however the robot is bent: a closed curve turns by at least 2
-/// pi, of which the two corners of arc and chord take pi at most (Fenchel's theorem). So a bend never collides with its own
-/// neighbourhood, and no number of neighbours has to be chosen.
+/// No other two places can be a local minimum of the distance, however the robot is bent: a closed
+/// curve turns by at least 2 pi, of which the two corners of arc and chord take pi at most
+/// (Fenchel's theorem). So a bend never collides with its own neighbourhood, and no number of
+/// neighbours has to be chosen.
 ///
 /// # Errors
-/// A joint is so sharp that its links overlap over more than half of the shorter one: r tan(angle / 2) is more than half
-/// of its length. The rule is one for tubes thinner than they bend.
+/// A joint is so sharp that its links overlap over more than half of the shorter one: r tan(angle /
+/// 2) is more than half of its length. The rule is one for tubes thinner than they bend.
 ///
 /// ```
 /// use parry_continuum::{Chain, proximity::self_minimum};
@@ -365,8 +390,8 @@ pub fn self_minimum(robot: &Chain) -> Result<Option<RobotProximity>, ProximityEr
     RobotPair::new().self_minimum(robot)
 }
 
-/// Whether a robot keeps a margin to itself: true exactly when [`self_minimum`] finds nothing, or something farther than
-/// `margin`.
+/// Whether a robot keeps a margin to itself: true exactly when [`self_minimum`] finds nothing, or
+/// something farther than `margin`.
 ///
 /// # Errors
 /// As [`self_minimum`], or the margin is negative or NaN.
@@ -385,24 +410,27 @@ pub fn self_clears(robot: &Chain, margin: Real) -> Result<bool, ProximityError> 
 
 /// Whether a tube keeps more than `margin` to itself.
 ///
-/// Asked for are the parts that [`self_minimum`] asks for, of the curve itself: two places with a turn of at least pi between them,
-/// a flat face and what is in front of it with a turn of at least pi / 2, and two faces that look
-/// at one another. Pieces from all of which the robot leads nearer to the face are left out. So a
-/// bend never collides with its own neighbourhood.
+/// Asked for are the parts that [`self_minimum`] asks for, of the curve itself: two places with a
+/// turn of at least pi between them, a flat face and what is in front of it with a turn of at least
+/// pi / 2, and two faces that look at one another. Pieces from all of which the robot leads nearer
+/// to the face are left out. So a bend never collides with its own neighbourhood.
 ///
-/// `Clear` and `Contact` are proven. Errors that the tube states for itself count in all distances; which parts are asked for is told by
-/// the curve as it was given. `Undecided` is the answer only
-/// - where the distance of such parts is within `resolution` of the margin, or within what was stated;
-/// - where the margin is as wide as the tightest bend: from 1 / curvature less the radius on beside a step, and from
-///   2 / curvature less both radii on elsewhere. What is known of the curve may leave open there which parts are asked for;
+/// `Clear` and `Contact` are proven. Errors that the tube states for itself count in all distances;
+/// which parts are asked for is told by the curve as it was given. `Undecided` is the answer only
+/// - where the distance of such parts is within `resolution` of the margin, or within what was
+///   stated;
+/// - where the margin is as wide as the tightest bend: from 1 / curvature less the radius on beside
+///   a step, and from 2 / curvature less both radii on elsewhere. What is known of the curve may
+///   leave open there which parts are asked for;
 /// - where samples are so few that they do not show how far the curve turns; or
 /// - where 65,536 pairs of pieces do not decide it.
 ///
 /// # Errors
 /// - The margin or the resolution is negative or NaN.
-/// - The tube bends within its radius somewhere, as far as its curvature is known; or a chain, taken as a tube, has a joint too
-///   sharp for [`self_minimum`].
-/// - Samples do not allow a decision at that resolution, or the curve of the tube is not finite somewhere.
+/// - The tube bends within its radius somewhere, as far as its curvature is known; or a chain,
+///   taken as a tube, has a joint too sharp for [`self_minimum`].
+/// - Samples do not allow a decision at that resolution, or the curve of the tube is not finite
+///   somewhere.
 ///
 /// ```
 /// use parry_continuum::{Tube, proximity::{Decision, tube_self_clears}};
@@ -418,23 +446,29 @@ pub fn self_clears(robot: &Chain, margin: Real) -> Result<bool, ProximityError> 
 /// assert_eq!(tube_self_clears(&tube, 2.1, 0.01)?, Decision::Contact);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn tube_self_clears(tube: &Tube, margin: Real, resolution: Real) -> Result<Decision, ProximityError> {
+pub fn tube_self_clears(
+    tube: &Tube,
+    margin: Real,
+    resolution: Real,
+) -> Result<Decision, ProximityError> {
     RobotPair::new().tube_self_clears(tube, margin, resolution)
 }
 
 /// Whether a robot that moves keeps more than `margin` to itself, at every time from 0 to 1.
 ///
-/// - `Clear` is proven from the speeds and turns that the motion states: at no instant are two places closest to one another, and at
-///   most the margin apart, unless they are neighbours.
-/// - `Contact` names a time at which the shape does not keep the margin as [`tube_self_clears`] asks for it, and two points of that
-///   shape in the mesh's frame.
-/// - `Undecided`: the robot comes within `resolution` of the margin and of what it states as its own errors, or as wide margins or
-///   few samples as [`tube_self_clears`] leaves undecided; or an end turns from flat to round there; or the question ends
-///   after 65,536 shapes, or after 262,144 pairs of pieces in all of them. The [reason](RobotMotionAnswer::reason) says which.
+/// - `Clear` is proven from the speeds and turns that the motion states: at no instant are two
+///   places closest to one another, and at most the margin apart, unless they are neighbours.
+/// - `Contact` names a time at which the shape does not keep the margin as [`tube_self_clears`]
+///   asks for it, and two points of that shape in the mesh's frame.
+/// - `Undecided`: the robot comes within `resolution` of the margin and of what it states as its
+///   own errors, or as wide margins or few samples as [`tube_self_clears`] leaves undecided; or an
+///   end turns from flat to round there; or the question ends after 65,536 shapes, or after 262,144
+///   pairs of pieces in all of them. The [reason](RobotMotionAnswer::reason) says which.
 ///
-/// The work is one query about a tube beside itself for each time that the proof needs: four to eight for each rad that a part of
-/// the robot turns, and more near a contact. The speeds and turns are trusted: see [`verify_motion`](crate::verify_motion). So is
-/// that at all times the robot is one that [`tube_self_clears`] does not refuse: it bends by less than 1 / radius. Only the shapes
+/// The work is one query about a tube beside itself for each time that the proof needs: four to
+/// eight for each rad that a part of the robot turns, and more near a contact. The speeds and turns
+/// are trusted: see [`verify_motion`](crate::verify_motion). So is that at all times the robot is
+/// one that [`tube_self_clears`] does not refuse: it bends by less than 1 / radius. Only the shapes
 /// that are looked at are checked for that.
 ///
 /// ```
@@ -449,9 +483,10 @@ pub fn tube_self_clears(tube: &Tube, margin: Real, resolution: Real) -> Result<D
 /// ```
 ///
 /// # Errors
-/// The margin or the resolution is negative or NaN; the motion has no shape at some time, or one that [`tube_self_clears`] refuses;
-/// its sections change; a stated speed or turn is not finite; a turn is more than 2^18 rad; or the resolution is finer than rounding,
-/// than the samples of a shape allow, or than so fast a motion can be divided.
+/// The margin or the resolution is negative or NaN; the motion has no shape at some time, or one
+/// that [`tube_self_clears`] refuses; its sections change; a stated speed or turn is not finite; a
+/// turn is more than 2^18 rad; or the resolution is finer than rounding, than the samples of a
+/// shape allow, or than so fast a motion can be divided.
 pub fn motion_self_clears(
     motion: &impl Motion,
     margin: Real,

@@ -1,4 +1,5 @@
-//! From robots to answers: the links go to the device, and what it leaves in question is measured here.
+//! From robots to answers: the links go to the device, and what it leaves in question is measured
+//! here.
 
 use super::GpuExhaustive;
 use super::candidates::CandidateTriangle;
@@ -10,8 +11,8 @@ use crate::pair::{Nearest, PlacedRobot};
 use parry3d_f64::math::Real;
 
 impl GpuExhaustive {
-    /// Places the robots' links and has the device find their candidates. Only triangles within `margin` are of interest
-    /// if there is one.
+    /// Places the robots' links and has the device find their candidates. Only triangles within
+    /// `margin` are of interest if there is one.
     pub(super) fn search<'a>(
         &mut self,
         robots: impl Iterator<Item = Result<PlacedRobot<'a>, ProximityError>>,
@@ -41,8 +42,10 @@ impl GpuExhaustive {
             return Ok(());
         }
         let gpu = &*self.gpu.0;
-        let mut mesh =
-            self.on_device.take().unwrap_or_else(|| DeviceMesh::new(gpu, &self.mesh, self.tuning.part));
+        let mut mesh = self
+            .on_device
+            .take()
+            .unwrap_or_else(|| DeviceMesh::new(gpu, &self.mesh, self.tuning.part));
         mesh.update(gpu, &self.frame, &self.mesh);
         let nearest = self.every_pair.as_ref().unwrap_or(&gpu.nearest);
         self.query.run(gpu, &mesh, device_links, nearest)?;
@@ -76,7 +79,8 @@ impl GpuExhaustive {
 
     /// A lower bound on a link's distance by what the device computed.
     fn at_least(&self, place: usize) -> Real {
-        self.candidates(place).map_or(0.0, |(link, candidates)| link.at_least(least_distance(candidates)))
+        self.candidates(place)
+            .map_or(0.0, |(link, candidates)| link.at_least(least_distance(candidates)))
     }
 
     /// The nearest triangle of each link of a robot.
@@ -90,7 +94,8 @@ impl GpuExhaustive {
     ) -> Result<(), ProximityError> {
         for (link, place) in self.robots[robot].clone()?.enumerate() {
             // Some triangle is always the nearest; this is any other.
-            let nearest = self.nearest(place, Real::INFINITY).unwrap_or_else(|| self.first_triangle(place));
+            let nearest =
+                self.nearest(place, Real::INFINITY).unwrap_or_else(|| self.first_triangle(place));
             out.push(self.links[place].0.answer(link, &nearest));
         }
         Ok(())
@@ -100,7 +105,8 @@ impl GpuExhaustive {
         self.links[place].0.measure(0, self.mesh.corners(0))
     }
 
-    /// The nearest of a robot's links; of several the one with the lowest triangle, then the lowest link.
+    /// The nearest of a robot's links; of several the one with the lowest triangle, then the lowest
+    /// link.
     ///
     /// # Errors
     /// The robot is refused.
@@ -109,8 +115,10 @@ impl GpuExhaustive {
         let first = places.start;
         let mut best: Option<LinkProximity> = None;
         // The likeliest link first: its distance rules out most others.
-        let likeliest =
-            places.clone().min_by(|&a, &b| self.at_least(a).total_cmp(&self.at_least(b))).unwrap_or(first);
+        let likeliest = places
+            .clone()
+            .min_by(|&a, &b| self.at_least(a).total_cmp(&self.at_least(b)))
+            .unwrap_or(first);
         for place in std::iter::once(likeliest).chain(places.filter(|&place| place != likeliest)) {
             let bound = best.map_or(Real::INFINITY, |best| best.distance);
             if self.at_least(place) <= bound

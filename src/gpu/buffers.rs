@@ -36,7 +36,8 @@ impl Buffers {
         let device = &gpu.device;
         let (links, parts) = (plan.links_per_submission as u64, mesh.parts.len() as u64);
         let rounds = links.div_ceil(u64::from(plan.links_per_round));
-        let blocks: u64 = mesh.parts.iter().map(|part| u64::from(plan.blocks(part.triangles))).sum();
+        let blocks: u64 =
+            mesh.parts.iter().map(|part| u64::from(plan.blocks(part.triangles))).sum();
         let found = Self::found_size(plan.links_per_submission, mesh);
         let distances = Self::distances_size(plan.links_per_submission, mesh, device.precision());
 
@@ -48,12 +49,12 @@ impl Buffers {
         );
         let link_buffer = device.buffer(links * LinkRecord::size(device.precision()), up);
         let limits = device.buffer(links * 4, up);
-        let block_bounds =
-            device.buffer(u64::from(plan.links_per_round) * blocks * BLOCK_BOUNDS, BufferUsages::STORAGE);
+        let block_bounds = device
+            .buffer(u64::from(plan.links_per_round) * blocks * BLOCK_BOUNDS, BufferUsages::STORAGE);
         let found_buffer = device.buffer(found, down | BufferUsages::COPY_DST);
         let distance_buffer = device.buffer(distances, down);
-        let readback =
-            device.buffer(READINGS + found + distances, BufferUsages::MAP_READ | BufferUsages::COPY_DST);
+        let readback = device
+            .buffer(READINGS + found + distances, BufferUsages::MAP_READ | BufferUsages::COPY_DST);
         let groups = mesh
             .parts
             .iter()

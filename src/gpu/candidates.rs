@@ -41,7 +41,8 @@ impl Candidates {
         (&self.all[range.clone()], *too_many)
     }
 
-    /// Adds the candidates of the next so many links, as kernels/collect.wgsl wrote them for this submission.
+    /// Adds the candidates of the next so many links, as kernels/collect.wgsl wrote them for this
+    /// submission.
     ///
     /// # Errors
     /// It did not write them: what is there says nothing.
@@ -57,7 +58,8 @@ impl Candidates {
         let (found, distances) = bytes.split_at(Buffers::found_size(links, mesh) as usize);
         let (words, _) = found.as_chunks::<4>();
         let word = |place: usize| u32::from_ne_bytes(words[place]);
-        let (slot_words, slot_bytes) = (SLOT as usize, CAPACITY as usize * precision.size() as usize);
+        let (slot_words, slot_bytes) =
+            (SLOT as usize, CAPACITY as usize * precision.size() as usize);
         for link in 0..links {
             let begin = self.all.len();
             let mut too_many = false;

@@ -24,11 +24,12 @@ use std::time::Duration;
 
 /// Proximity queries that visit every triangle, on the GPU.
 ///
-/// The mesh is uploaded once. A query sends the links and gets back, for each of them, the few triangles that
-/// rounding leaves in question; those are measured here in double precision. So the distances are those of
-/// [`Exhaustive<f64>`](crate::proximity::Exhaustive) whatever the precision of the search. A link with more than 64
-/// such triangles, for example a cylinder that lies along a flat wall, is measured against all triangles on the CPU;
-/// [`GpuExhaustive::answered_on_cpu`] counts such links. Answers are the same every time on one device.
+/// The mesh is uploaded once. A query sends the links and gets back, for each of them, the few
+/// triangles that rounding leaves in question; those are measured here in double precision. So the
+/// distances are those of [`Exhaustive<f64>`](crate::proximity::Exhaustive) whatever the precision
+/// of the search. A link with more than 64 such triangles, for example a cylinder that lies along a
+/// flat wall, is measured against all triangles on the CPU; [`GpuExhaustive::answered_on_cpu`]
+/// counts such links. Answers are the same every time on one device.
 ///
 /// ```no_run
 /// use parry_continuum::gpu::{GpuExhaustive, Precision};
@@ -65,13 +66,15 @@ pub struct GpuExhaustive {
     pub(super) mesh: Mesh,
     pub(super) frame: SearchFrame,
     pub(super) tuning: Tuning,
-    /// None after a failure: what is left on the device then is not known, so that it is made anew.
+    /// None after a failure: what is left on the device then is not known, so that it is made
+    /// anew.
     pub(super) on_device: Option<DeviceMesh>,
     /// The kernel without culling, where that is wanted.
     pub(super) every_pair: Option<ComputePipeline>,
     pub(super) answered_on_cpu: u64,
     pub(super) query: Query,
-    /// Every link of the query, and its place among `device_links` unless it is too far out for the device.
+    /// Every link of the query, and its place among `device_links` unless it is too far out for
+    /// the device.
     pub(super) links: Vec<(PlacedLink, Option<usize>)>,
     pub(super) device_links: Vec<DeviceLink>,
     /// The links of each robot.
@@ -106,8 +109,8 @@ impl GpuExhaustive {
     /// An engine for `mesh` on a GPU that is open already.
     ///
     /// # Errors
-    /// The mesh has no triangles, or a vertex is not finite or out of range; the mesh does not fit into the GPU's
-    /// memory; or the GPU has failed.
+    /// The mesh has no triangles, or a vertex is not finite or out of range; the mesh does not fit
+    /// into the GPU's memory; or the GPU has failed.
     pub fn on(gpu: &Gpu, mesh: &TriMesh) -> Result<Self, GpuError> {
         Self::tuned(gpu, Mesh::new(mesh)?, Tuning::default())
     }
@@ -116,7 +119,11 @@ impl GpuExhaustive {
     ///
     /// # Errors
     /// As [`GpuExhaustive::on`]; or a triangle names a vertex that is not there.
-    pub fn from_triangles(gpu: &Gpu, vertices: &[Vector], triangles: &[[u32; 3]]) -> Result<Self, GpuError> {
+    pub fn from_triangles(
+        gpu: &Gpu,
+        vertices: &[Vector],
+        triangles: &[[u32; 3]],
+    ) -> Result<Self, GpuError> {
         Self::tuned(gpu, Mesh::from_triangles(vertices, triangles)?, Tuning::default())
     }
 
@@ -151,10 +158,11 @@ impl GpuExhaustive {
         self.gpu.adapter()
     }
 
-    /// Whether cheap, exact bounds may spare a visited triangle its narrow phase. They may unless told otherwise.
+    /// Whether cheap, exact bounds may spare a visited triangle its narrow phase. They may unless
+    /// told otherwise.
     ///
-    /// Without them every pair of link and triangle costs its full distance, discs included: the work of the
-    /// paper, for comparison with it.
+    /// Without them every pair of link and triangle costs its full distance, discs included: the
+    /// work of the paper, for comparison with it.
     ///
     /// # Errors
     /// The driver does not compile the kernel for that.
@@ -169,8 +177,9 @@ impl GpuExhaustive {
     }
 
     /// As `set_culling(false)`, by another route from a segment to a disc: WGSL with the function
-    /// `segment_disc_from_centre(start: vec3<real>, end: vec3<real>, normal: vec3<real>, radius: real) -> Closest` for a
-    /// disc around the origin with a unit normal. The answers are the same if what it finds is never too near.
+    /// `segment_disc_from_centre(start: vec3<real>, end: vec3<real>, normal: vec3<real>, radius:
+    /// real) -> Closest` for a disc around the origin with a unit normal. The answers are the
+    /// same if what it finds is never too near.
     ///
     /// # Errors
     /// The driver does not compile the kernel for that.
@@ -181,14 +190,15 @@ impl GpuExhaustive {
         Ok(())
     }
 
-    /// How long the GPU computed for the last query, without transfers and the CPU's share; `None` if it keeps no
-    /// time.
+    /// How long the GPU computed for the last query, without transfers and the CPU's share; `None`
+    /// if it keeps no time.
     pub fn device_time(&self) -> Option<Duration> {
         self.query.device_time
     }
 
-    /// How many links had to be measured against every triangle on the CPU since the engine was built: too many
-    /// triangles were equally near, or the link lay too far out for the precision of the search.
+    /// How many links had to be measured against every triangle on the CPU since the engine was
+    /// built: too many triangles were equally near, or the link lay too far out for the
+    /// precision of the search.
     pub fn answered_on_cpu(&self) -> u64 {
         self.answered_on_cpu
     }

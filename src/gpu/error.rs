@@ -8,8 +8,8 @@ use thiserror::Error;
 #[strum(serialize_all = "snake_case")]
 #[non_exhaustive]
 pub enum GpuError {
-    /// The GPU cannot be opened, or failed while the engine was built. In single precision, which finds the same
-    /// distances, more GPUs can be opened than in double.
+    /// The GPU cannot be opened, or failed while the engine was built. In single precision, which
+    /// finds the same distances, more GPUs can be opened than in double.
     #[error(transparent)]
     Device(#[from] DeviceError),
     /// The GPU's memory does not hold the mesh.
@@ -28,8 +28,8 @@ pub enum GpuError {
 }
 
 impl GpuError {
-    /// What went wrong in one word, the same in Rust and Python: the variant in snake case, or that of the error that it
-    /// passes on.
+    /// What went wrong in one word, the same in Rust and Python: the variant in snake case, or that
+    /// of the error that it passes on.
     pub fn kind(&self) -> &'static str {
         match self {
             Self::Device(error) => error.kind(),

@@ -1,6 +1,6 @@
-//! What this project's own studies and tests build on (hidden feature `laboratory`): the shaders' text, for kernels that
-//! ask the narrow phase alone, and for whoever checks or translates all of it without a GPU. It is no part of the
-//! interface and changes at any time.
+//! What this project's own studies and tests build on (hidden feature `laboratory`): the shaders'
+//! text, for kernels that ask the narrow phase alone, and for whoever checks or translates all of
+//! it without a GPU. It is no part of the interface and changes at any time.
 
 use super::wgsl;
 use gpu_batch::{Precision, Shader};
@@ -21,7 +21,8 @@ pub fn kernels(precision: Precision) -> Vec<Shader> {
     ]
 }
 
-/// What [`GpuExhaustive::compute_every_pair`](super::GpuExhaustive::compute_every_pair) compiles for a route.
+/// What [`GpuExhaustive::compute_every_pair`](super::GpuExhaustive::compute_every_pair) compiles
+/// for a route.
 pub fn every_pair(precision: Precision, route: &str) -> Shader {
     wgsl::nearest(precision, route)
 }

@@ -11,7 +11,8 @@ pub(super) const MOST_LINKS: u32 = 32;
 pub(super) const SAMPLES: u32 = 1 << 14;
 /// Candidates of a link and part that come back.
 pub(super) const CAPACITY: u32 = 64;
-/// Words of a link and part: what says that it was written, how many candidates there are, and their triangles.
+/// Words of a link and part: what says that it was written, how many candidates there are, and
+/// their triangles.
 pub(super) const SLOT: u32 = 2 + CAPACITY;
 /// Bytes for the bounds of a block and a link.
 pub(super) const BLOCK_BOUNDS: u64 = 8;

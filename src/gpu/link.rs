@@ -6,7 +6,8 @@ use crate::mesh::SearchFrame;
 use crate::pair::{PlacedLink, SearchLink};
 use parry3d_f64::math::Real;
 
-/// Shaders pass bounds on in single precision, so that links farther out are none for double precision either.
+/// Shaders pass bounds on in single precision, so that links farther out are none for double
+/// precision either.
 const FARTHEST: Real = <f32 as Lane>::FARTHEST;
 
 /// A link as the GPU sees it, and the way from what the GPU finds to the mesh's unit.
@@ -26,8 +27,8 @@ enum DeviceSearch {
 }
 
 impl DeviceLink {
-    /// A link of which only triangles at most `bound` away are of interest, if there is a bound. None where it lies too
-    /// far out for the search.
+    /// A link of which only triangles at most `bound` away are of interest, if there is a bound.
+    /// None where it lies too far out for the search.
     pub(super) fn new(
         link: &PlacedLink,
         frame: &SearchFrame,
@@ -49,7 +50,8 @@ impl DeviceLink {
         let point = |Vec3 { x, y, z }: Vec3<E>| [x, y, z].map(number);
         let [flat_start, flat_end] = link.flat.map(|flat| if flat { 1.0 } else { 0.0 });
         // A bound is rounded up; beyond FAR it bounds nothing.
-        let limit = bound.map_or(FAR, |bound| (number(link.axis_limit(bound)) as f32).next_up().min(FAR));
+        let limit =
+            bound.map_or(FAR, |bound| (number(link.axis_limit(bound)) as f32).next_up().min(FAR));
         let record = LinkRecord {
             start: point(link.start),
             length: number(link.length),
@@ -60,7 +62,11 @@ impl DeviceLink {
             flat_start,
             flat_end,
         };
-        let reach = record.start.iter().chain(&record.end).fold(record.radius, |reach, x| reach.max(x.abs()));
+        let reach = record
+            .start
+            .iter()
+            .chain(&record.end)
+            .fold(record.radius, |reach, x| reach.max(x.abs()));
         (reach <= FARTHEST).then(|| Self { record, limit, searched: searched(link) })
     }
 
@@ -69,7 +75,8 @@ impl DeviceLink {
         self.limit < FAR
     }
 
-    /// What a triangle is at least from the link, in the mesh's unit, by the distance that the GPU computed.
+    /// What a triangle is at least from the link, in the mesh's unit, by the distance that the GPU
+    /// computed.
     pub(super) fn at_least(&self, distance: Real) -> Real {
         match &self.searched {
             DeviceSearch::Single(link) => link.at_least(distance),

@@ -11,7 +11,8 @@ pub(super) fn least_distance(candidates: &[CandidateTriangle]) -> Real {
     candidates.iter().map(|candidate| candidate.distance).fold(Real::INFINITY, Real::min)
 }
 
-/// The nearest of some triangles, of those at most `bound` away. Once one touches, only lower ones are measured.
+/// The nearest of some triangles, of those at most `bound` away. Once one touches, only lower ones
+/// are measured.
 pub(super) fn nearest_of(
     link: &PlacedLink,
     triangles: impl Iterator<Item = u32>,

@@ -28,15 +28,16 @@ pub(super) struct DevicePart {
     pub triangles: u32,
     pub spheres: Buffer,
     pub faces: Buffer,
-    /// The mesh's vertices that they have, in order, so that memory is read in order when they move.
+    /// The mesh's vertices that they have, in order, so that memory is read in order when they
+    /// move.
     vertices: Vec<u32>,
     pub vertex_buffer: Buffer,
     group: BindGroup,
 }
 
 impl DeviceMesh {
-    /// Room for a mesh, in parts of at most `most` triangles, or as many as a buffer takes. Whether the device has that
-    /// room, its failures show.
+    /// Room for a mesh, in parts of at most `most` triangles, or as many as a buffer takes. Whether
+    /// the device has that room, its failures show.
     pub(super) fn new(gpu: &Opened, mesh: &Mesh, most: usize) -> Self {
         let fit = (gpu.device.largest_binding() / (FACE * gpu.device.precision().size())) as usize;
         let mut places = vec![u32::MAX; mesh.vertices().len()];
@@ -54,8 +55,8 @@ impl DeviceMesh {
         self.is_current = false;
     }
 
-    /// Sends the vertices where that is called for: only they travel, the rest is computed on the device. Whether they
-    /// arrive, the query that follows reports it.
+    /// Sends the vertices where that is called for: only they travel, the rest is computed on the
+    /// device. Whether they arrive, the query that follows reports it.
     pub(super) fn update(&mut self, gpu: &Opened, frame: &SearchFrame, mesh: &Mesh) {
         if std::mem::replace(&mut self.is_current, true) {
             return;
@@ -86,7 +87,8 @@ impl DeviceMesh {
 }
 
 impl DevicePart {
-    /// `places` says for each vertex of the mesh where it is in the part; none is set before or after.
+    /// `places` says for each vertex of the mesh where it is in the part; none is set before or
+    /// after.
     fn new(gpu: &Opened, first: u32, triangles: &[[u32; 3]], places: &mut [u32]) -> Self {
         let indices = triangles.as_flattened();
         let mut vertices = Vec::new();
@@ -99,7 +101,8 @@ impl DevicePart {
         for (place, &vertex) in (0..).zip(&vertices) {
             places[vertex as usize] = place;
         }
-        let bytes: Vec<_> = indices.iter().flat_map(|&index| places[index as usize].to_ne_bytes()).collect();
+        let bytes: Vec<_> =
+            indices.iter().flat_map(|&index| places[index as usize].to_ne_bytes()).collect();
         for &vertex in &vertices {
             places[vertex as usize] = u32::MAX;
         }
@@ -116,7 +119,15 @@ impl DevicePart {
             &gpu.prepare_layout,
             &[&vertex_buffer, &index_buffer, &spheres, &faces].map(Buffer::as_entire_binding),
         );
-        Self { first, triangles: triangles.len() as u32, spheres, faces, vertices, vertex_buffer, group }
+        Self {
+            first,
+            triangles: triangles.len() as u32,
+            spheres,
+            faces,
+            vertices,
+            vertex_buffer,
+            group,
+        }
     }
 
     /// The vertices as a shader reads them.
@@ -128,8 +139,10 @@ impl DevicePart {
         to: &mut Vec<u8>,
     ) {
         to.resize(self.vertices.len() * 3 * SIZE, 0);
-        let mut shares: Vec<_> =
-            to.chunks_mut(Mesh::TASK_SIZE * 3 * SIZE).zip(self.vertices.chunks(Mesh::TASK_SIZE)).collect();
+        let mut shares: Vec<_> = to
+            .chunks_mut(Mesh::TASK_SIZE * 3 * SIZE)
+            .zip(self.vertices.chunks(Mesh::TASK_SIZE))
+            .collect();
         each(&mut shares, |_, (bytes, vertices)| {
             for (bytes, &vertex) in bytes.chunks_exact_mut(3 * SIZE).zip(*vertices) {
                 let Vec3 { x, y, z } = frame.point::<E>(mesh.vertices()[vertex as usize]);

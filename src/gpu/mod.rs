@@ -1,12 +1,12 @@
 //! Exhaustive queries on the GPU, through `wgpu`: Vulkan, Metal or Direct3D 12 (feature `gpu`).
 //!
-//! [`GpuExhaustive`] is an engine like those of [`proximity`](crate::proximity), with the same trait and the same
-//! distances. It pays where the mesh is large or moves, or where many robots are asked for at once
-//! ([`per_link_batch`](crate::proximity::Proximity::per_link_batch) answers them in one go); a single query waits for
-//! the GPU and back, some hundred microseconds.
+//! [`GpuExhaustive`] is an engine like those of [`proximity`](crate::proximity), with the same
+//! trait and the same distances. It pays where the mesh is large or moves, or where many robots are
+//! asked for at once ([`per_link_batch`](crate::proximity::Proximity::per_link_batch) answers them
+//! in one go); a single query waits for the GPU and back, some hundred microseconds.
 //!
-//! The kernels are the narrow phase of [`distance`](crate::distance), function by function, in WGSL. Each is one text
-//! for both precisions.
+//! The kernels are the narrow phase of [`distance`](crate::distance), function by function, in
+//! WGSL. Each is one text for both precisions.
 //!
 //! The way of a query, from top to bottom:
 //!

@@ -4,18 +4,21 @@ use gpu_batch::wgpu::{BindGroupLayout, ComputePipeline};
 use gpu_batch::{Adapter, Binding, Device, DeviceError, Precision, Shader};
 use std::sync::Arc;
 
-/// A GPU, opened and with its kernels compiled, which takes a moment; engines for several meshes can share it.
+/// A GPU, opened and with its kernels compiled, which takes a moment; engines for several meshes
+/// can share it.
 ///
 /// Copies stand for the same GPU.
 #[derive(Clone)]
 pub struct Gpu(pub(super) Arc<Opened>);
 
 impl Gpu {
-    /// The fastest GPU of this machine, to search in this precision. The distances are those of double precision either
-    /// way. The environment variables of `wgpu`, such as `WGPU_BACKEND`, narrow the choice.
+    /// The fastest GPU of this machine, to search in this precision. The distances are those of
+    /// double precision either way. The environment variables of `wgpu`, such as
+    /// `WGPU_BACKEND`, narrow the choice.
     ///
     /// # Errors
-    /// There is no GPU, its driver refuses it or a kernel, or it lacks double precision and that was asked for.
+    /// There is no GPU, its driver refuses it or a kernel, or it lacks double precision and that
+    /// was asked for.
     pub fn open(precision: Precision) -> Result<Self, GpuError> {
         Ok(Self(Arc::new(Opened::new(Device::open(precision)?)?)))
     }
@@ -67,7 +70,8 @@ impl Opened {
         let query_layout = device.layout(&[Uniform, Read, Write, Read, Read, Write, Write, Write]);
         let precision = device.precision();
         let prepare = wgsl::prepare(precision);
-        let query = |kernel: Shader| device.compile(kernel.entry_point, &kernel, &query_layout, &[]);
+        let query =
+            |kernel: Shader| device.compile(kernel.entry_point, &kernel, &query_layout, &[]);
         Ok(Self {
             prepare: device.compile(prepare.entry_point, &prepare, &prepare_layout, &[])?,
             sample: query(wgsl::sample(precision))?,

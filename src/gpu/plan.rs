@@ -23,7 +23,13 @@ pub(super) struct Tuning {
 
 impl Default for Tuning {
     fn default() -> Self {
-        Self { part: usize::MAX, threads: 1 << 19, triangles_of_thread: 8, round: 64 << 20, answer: 64 << 20 }
+        Self {
+            part: usize::MAX,
+            threads: 1 << 19,
+            triangles_of_thread: 8,
+            round: 64 << 20,
+            answer: 64 << 20,
+        }
     }
 }
 
@@ -48,10 +54,12 @@ impl Plan {
         let slot = (u64::from(SLOT) * 4 + u64::from(CAPACITY) * NUMBER) * mesh.parts.len() as u64;
         let links_per_submission = (tuning.answer.min(largest) / slot).clamp(1, links as u64);
 
-        let pairs_of_thread = (mesh.triangles() * links_per_submission).div_ceil(tuning.threads).max(1);
+        let pairs_of_thread =
+            (mesh.triangles() * links_per_submission).div_ceil(tuning.threads).max(1);
         let groups = links_per_submission.div_ceil(pairs_of_thread.min(MOST_LINKS.into()));
         let links_at_once = links_per_submission.div_ceil(groups);
-        let largest_part = mesh.parts.iter().map(|part| u64::from(part.triangles)).max().unwrap_or(1);
+        let largest_part =
+            mesh.parts.iter().map(|part| u64::from(part.triangles)).max().unwrap_or(1);
         let threads = u64::from(THREADS);
         let triangles_at_once = pairs_of_thread
             .div_ceil(links_at_once)
@@ -59,7 +67,8 @@ impl Plan {
             .max(largest_part.div_ceil(threads * dimension));
 
         let block = threads * triangles_at_once;
-        let blocks: u64 = mesh.parts.iter().map(|part| u64::from(part.triangles).div_ceil(block)).sum();
+        let blocks: u64 =
+            mesh.parts.iter().map(|part| u64::from(part.triangles).div_ceil(block)).sum();
         let kept = tuning.round.min(largest) / (blocks * BLOCK_BOUNDS);
         Self {
             links_at_once: links_at_once as u32,

@@ -1,10 +1,12 @@
 //! One query on the device: links up, kernels in four steps, candidates back.
 //!
 //! 1. `sample`: the spheres of a sample of the triangles give each link a first limit.
-//! 2. `nearest`: all triangles against all links. What its sphere does not rule out costs the distance from the axis
-//!    and the bounds of a flat cap; each block of triangles keeps the least bounds.
+//! 2. `nearest`: all triangles against all links. What its sphere does not rule out costs the
+//!    distance from the axis and the bounds of a flat cap; each block of triangles keeps the least
+//!    bounds.
 //! 3. `reduce`: the least of all blocks is the link's limit.
-//! 4. `collect`: in the blocks that may be as near, the discs of flat caps decide; what is as near comes back.
+//! 4. `collect`: in the blocks that may be as near, the discs of flat caps decide; what is as near
+//!    comes back.
 
 use super::buffers::Buffers;
 use super::candidates::{CandidateTriangle, Candidates};
@@ -21,8 +23,8 @@ use std::time::Duration;
 pub(super) struct Query {
     tuning: Tuning,
     watch: Watch,
-    /// The number of the last submission. It is odd: no number of blocks makes its multiple 0, which is what buffers are
-    /// cleared to.
+    /// The number of the last submission. It is odd: no number of blocks makes its multiple 0,
+    /// which is what buffers are cleared to.
     submission: u32,
     buffers: Option<Buffers>,
     bytes: Vec<u8>,
@@ -50,7 +52,8 @@ impl Query {
         self.candidates.of(link)
     }
 
-    /// Finds the candidates of every link; there is at least one. `nearest` is the kernel of step 2.
+    /// Finds the candidates of every link; there is at least one. `nearest` is the kernel of step
+    /// 2.
     ///
     /// # Errors
     /// The device has failed since the last query, or did not answer.
@@ -102,8 +105,9 @@ impl Query {
         let Self { watch, candidates, device_time, submission, .. } = self;
         device.run_and_read(watch, encoder.finish(), to, end + distances, |bytes| {
             let (readings, bytes) = bytes.split_at(READINGS as usize);
-            *device_time =
-                device_time.zip(Clock::time_between(device, readings)).map(|(sum, more)| sum + more);
+            *device_time = device_time
+                .zip(Clock::time_between(device, readings))
+                .map(|(sum, more)| sum + more);
             candidates.read(mesh, buffers, device.precision(), *submission, links.len(), bytes)
         })
     }
@@ -116,7 +120,9 @@ impl Query {
             fill(bytes);
             queue.write_buffer(buffer, 0, bytes);
         };
-        write(&buffers.links, &|bytes| links.iter().for_each(|link| link.record.write(precision, bytes)));
+        write(&buffers.links, &|bytes| {
+            links.iter().for_each(|link| link.record.write(precision, bytes))
+        });
         write(&buffers.limits, &|bytes| {
             links.iter().for_each(|link| bytes.extend(link.limit.to_bits().to_ne_bytes()));
         });
@@ -159,7 +165,8 @@ fn record_passes(
     nearest: &ComputePipeline,
 ) {
     let timestamp_writes = buffers.clock.as_ref().map(Clock::writes);
-    let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: None, timestamp_writes });
+    let mut pass =
+        encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: None, timestamp_writes });
     let parts = 0..mesh.parts.len();
     let mut first_record = 0;
     while links > 0 {

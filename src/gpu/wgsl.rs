@@ -1,10 +1,13 @@
 //! The shaders' text.
 //!
-//! What the host knows too, constants and records, is declared once, in Rust, and precedes the text. A function has the
-//! name of its twin in `distance` or `proximity` (with the name of the twin's file before it where that is needed) and
-//! does the same in the same order. `real` is `f32` or `f64`.
+//! What the host knows too, constants and records, is declared once, in Rust, and precedes the
+//! text. A function has the name of its twin in `distance` or `proximity` (with the name of the
+//! twin's file before it where that is needed) and does the same in the same order. `real` is `f32`
+//! or `f64`.
 
-use super::layout::{CAPACITY, FACE_VECTORS, FAR, LinkRecord, MOST_LINKS, Round, SAMPLES, SLOT, THREADS};
+use super::layout::{
+    CAPACITY, FACE_VECTORS, FAR, LinkRecord, MOST_LINKS, Round, SAMPLES, SLOT, THREADS,
+};
 use crate::distance::Scalar;
 use gpu_batch::wgsl::{constant, prelude};
 use gpu_batch::{Precision, Record, Shader};
@@ -86,8 +89,8 @@ fn of_query(entry_point: &'static str, kernel: &str, precision: Precision, route
     Shader::new(entry_point, text)
 }
 
-/// The narrow phase from point and segment to link and triangle, but for a route from a segment to a disc, such as
-/// [`CONVEX`].
+/// The narrow phase from point and segment to link and triangle, but for a route from a segment to
+/// a disc, such as [`CONVEX`].
 pub fn narrow_phase(precision: Precision) -> String {
     passes(precision) + NARROW_PHASE
 }

@@ -1,15 +1,16 @@
 //! A link in its own axial frame: where a point lies along the axis and how far from it.
 //!
-//! Every closed form of this folder is written in two coordinates: `z` along the unit axis from the start
-//! point and `rho` away from it. Two choices keep them accurate to the rounding of the problem's extent:
+//! Every closed form of this folder is written in two coordinates: `z` along the unit axis from the
+//! start point and `rho` away from it. Two choices keep them accurate to the rounding of the
+//! problem's extent:
 //!
-//! 1. Coordinates are differences from the link's start point, so that a link far from the origin loses
-//!    nothing.
-//! 2. They are halved before they are subtracted and then scaled by a power of two, so that the largest is
-//!    about 1: nothing overflows, no square underflows that matters, and a problem multiplied by 2^k gives
-//!    the same bits.
-//! 3. The axis is normalised by its own power of two, so that a short link seen from far away keeps its
-//!    direction.
+//! 1. Coordinates are differences from the link's start point, so that a link far from the origin
+//!    loses nothing.
+//! 2. They are halved before they are subtracted and then scaled by a power of two, so that the
+//!    largest is about 1: nothing overflows, no square underflows that matters, and a problem
+//!    multiplied by 2^k gives the same bits.
+//! 3. The axis is normalised by its own power of two, so that a short link seen from far away keeps
+//!    its direction.
 
 use crate::distance::Scalar;
 pub(super) use crate::distance::depth::{perpendicular, unit, unit_across};
@@ -43,8 +44,8 @@ pub(super) struct AxialFrame {
 }
 
 impl AxialFrame {
-    /// The frame of `link` in a unit that suits it and `point`, and `point` in that frame; nothing when
-    /// `point` is not finite.
+    /// The frame of `link` in a unit that suits it and `point`, and `point` in that frame; nothing
+    /// when `point` is not finite.
     pub fn around(link: &ModifiedCylinder, point: Vector) -> Option<(Self, Vector)> {
         if !point.is_finite() {
             return None;

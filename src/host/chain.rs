@@ -1,14 +1,15 @@
 //! The chain as one of parry's composite shapes: its parts are its links.
 //!
-//! Neighbouring links overlap, and what a query means then depends on the side it comes from. **From
-//! outside** the chain is the union of its links: the closest point and the first hit of the union are the
-//! best over the links, so they are exact. **From inside** queries see the links one by one, like those of
-//! parry's `Compound`: a hollow ray stops at the next surface of any link, a point is projected to the
-//! nearest surface of any link, also where that surface lies within another link. So the depth of a point
-//! inside is never overstated. Whether a point is inside is exact everywhere.
+//! Neighbouring links overlap, and what a query means then depends on the side it comes from.
+//! **From outside** the chain is the union of its links: the closest point and the first hit of the
+//! union are the best over the links, so they are exact. **From inside** queries see the links one
+//! by one, like those of parry's `Compound`: a hollow ray stops at the next surface of any link, a
+//! point is projected to the nearest surface of any link, also where that surface lies within
+//! another link. So the depth of a point inside is never overstated. Whether a point is inside is
+//! exact everywhere.
 //!
-//! Contact manifolds see one surface: a cap makes no contacts where a neighbour covers it and makes them (see
-//! [`inner_points`](super::inner_points)).
+//! Contact manifolds see one surface: a cap makes no contacts where a neighbour covers it and makes
+//! them (see [`inner_points`](super::inner_points)).
 
 use super::mass;
 use crate::robot::length;
@@ -20,8 +21,8 @@ use parry3d_f64::partitioning::Bvh;
 use parry3d_f64::query::details::NormalConstraints;
 use parry3d_f64::query::{PointProjection, PointQuery, Ray, RayCast, RayIntersection};
 use parry3d_f64::shape::{
-    CompositeShape, CompositeShapeRef, FeatureId, Shape, ShapeType, SubShapeId, TypedCompositeShape,
-    TypedShape,
+    CompositeShape, CompositeShapeRef, FeatureId, Shape, ShapeType, SubShapeId,
+    TypedCompositeShape, TypedShape,
 };
 use std::f64::consts::FRAC_PI_2;
 
@@ -31,7 +32,8 @@ impl Shape for Chain {
         self.local_aabb()
     }
 
-    /// Around the middle of the chain's box, reaching to the farthest of the balls around its links.
+    /// Around the middle of the chain's box, reaching to the farthest of the balls around its
+    /// links.
     fn compute_local_bounding_sphere(&self) -> BoundingSphere {
         let center = self.local_aabb().center();
         let reach = |link: &ModifiedCylinder| {
@@ -47,7 +49,8 @@ impl Shape for Chain {
 
     /// The chain of the scaled links, if every link has one: see the link's `scale_dyn`.
     fn scale_dyn(&self, scale: Vector, num_subdivisions: u32) -> Option<Box<dyn Shape>> {
-        let image = self.try_map(|link| link.scale_dyn(scale, num_subdivisions)?.as_shape().copied())?;
+        let image =
+            self.try_map(|link| link.scale_dyn(scale, num_subdivisions)?.as_shape().copied())?;
         Some(Box::new(image))
     }
 
@@ -56,8 +59,8 @@ impl Shape for Chain {
         boxes.reduce(|all, one| all.merged(&one)).unwrap_or_else(Aabb::new_invalid)
     }
 
-    /// The sum over the links, so that what two links share counts twice: for a tube, about the half balls
-    /// and wedges at its joints.
+    /// The sum over the links, so that what two links share counts twice: for a tube, about the
+    /// half balls and wedges at its joints.
     fn mass_properties(&self, density: Real) -> MassProperties {
         mass::mass_properties_of_all(self.links(), density)
     }
@@ -152,11 +155,13 @@ fn nearest_link(chain: &Chain, point: Vector, solid: bool) -> Option<NearestLink
     Some(NearestLink { link, distance, is_inside })
 }
 
-/// Exact from outside, link by link from inside (see the head of this file). The sub-shape of a projection is
-/// its link.
+/// Exact from outside, link by link from inside (see the head of this file). The sub-shape of a
+/// projection is its link.
 impl PointQuery for Chain {
     fn project_local_point(&self, pt: Vector, solid: bool) -> PointProjection {
-        let Some(nearest) = nearest_link(self, pt, solid) else { return PointProjection::new(false, pt) };
+        let Some(nearest) = nearest_link(self, pt, solid) else {
+            return PointProjection::new(false, pt);
+        };
         let mut projection = self.links()[nearest.link].project_local_point(pt, solid);
         projection.is_inside = nearest.is_inside;
         projection.with_subshape(nearest.link as u32)
@@ -166,7 +171,8 @@ impl PointQuery for Chain {
         let Some(nearest) = nearest_link(self, pt, false) else {
             return (PointProjection::new(false, pt), FeatureId::Unknown);
         };
-        let (mut projection, feature) = self.links()[nearest.link].project_local_point_and_get_feature(pt);
+        let (mut projection, feature) =
+            self.links()[nearest.link].project_local_point_and_get_feature(pt);
         projection.is_inside = nearest.is_inside;
         (projection.with_subshape(nearest.link as u32), feature)
     }
@@ -184,8 +190,8 @@ impl PointQuery for Chain {
     }
 }
 
-/// Exact from outside, link by link from inside (see the head of this file). The sub-shape of a hit is its
-/// link.
+/// Exact from outside, link by link from inside (see the head of this file). The sub-shape of a hit
+/// is its link.
 impl RayCast for Chain {
     fn cast_local_ray_and_get_normal(
         &self,

@@ -1,17 +1,18 @@
-//! Shapes that consist of others, part by part: the boxes of parts choose which are asked, loosened by what rounding can
-//! have taken from them.
+//! Shapes that consist of others, part by part: the boxes of parts choose which are asked, loosened
+//! by what rounding can have taken from them.
 //!
-//! parry's own routines compare the boxes as they are. Of two shapes that touch, the boxes may miss each other by a unit in
-//! the last place, and a ray that grazes a box may be rounded past it. All that is left out here is proven to be further away
-//! than rounding can be wrong; so what the parts say is what the whole says.
+//! parry's own routines compare the boxes as they are. Of two shapes that touch, the boxes may miss
+//! each other by a unit in the last place, and a ray that grazes a box may be rounded past it. All
+//! that is left out here is proven to be further away than rounding can be wrong; so what the parts
+//! say is what the whole says.
 
 use super::height_field::rounding;
 use parry3d_f64::bounding_volume::{Aabb, BoundingVolume};
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::partitioning::BvhNode;
 use parry3d_f64::query::{
-    ClosestPoints, Contact, QueryDispatcher, Ray, RayCast, ShapeCastHit, ShapeCastOptions, ShapeIntersection,
-    Unsupported,
+    ClosestPoints, Contact, QueryDispatcher, Ray, RayCast, ShapeCastHit, ShapeCastOptions,
+    ShapeIntersection, Unsupported,
 };
 use parry3d_f64::shape::{CompositeShape, Shape};
 use std::cell::Cell;
@@ -28,8 +29,9 @@ impl<D: QueryDispatcher> CompositePair<'_, D> {
     /// The first part that is found to meet the other shape.
     pub fn intersection_test(&self) -> Result<ShapeIntersection, Unsupported> {
         for id in self.parts.bvh().intersect_aabb(&self.around(0.0)) {
-            let found =
-                self.ask(id, |_, pos12, part| self.dispatcher.intersection_test(pos12, part, self.other))?;
+            let found = self.ask(id, |_, pos12, part| {
+                self.dispatcher.intersection_test(pos12, part, self.other)
+            })?;
             if let Some((_, found)) = found.filter(|(_, found)| found.intersecting) {
                 return Ok(ShapeIntersection { subshape1: id, ..found });
             }
@@ -41,8 +43,9 @@ impl<D: QueryDispatcher> CompositePair<'_, D> {
     pub fn contact(&self, prediction: Real) -> Result<Option<Contact>, Unsupported> {
         let mut best: Option<Contact> = None;
         for id in self.parts.bvh().intersect_aabb(&self.around(prediction.max(0.0))) {
-            let found =
-                self.ask(id, |_, pos12, part| self.dispatcher.contact(pos12, part, self.other, prediction))?;
+            let found = self.ask(id, |_, pos12, part| {
+                self.dispatcher.contact(pos12, part, self.other, prediction)
+            })?;
             let Some((place, Some(mut contact))) = found else { continue };
             if best.is_none_or(|best| contact.dist < best.dist) {
                 if let Some(place) = place {
@@ -62,19 +65,25 @@ impl<D: QueryDispatcher> CompositePair<'_, D> {
         let best = self.parts.bvh().find_best(
             bound,
             |node: &BvhNode, _| {
-                (node.mins() - around.maxs).max(around.mins - node.maxs()).max(Vector::ZERO).length()
+                (node.mins() - around.maxs)
+                    .max(around.mins - node.maxs())
+                    .max(Vector::ZERO)
+                    .length()
             },
             |id, _| {
                 let found = self
                     .ask(id, |_, pos12, part| {
-                        let points = self.dispatcher.closest_points(pos12, part, self.other, max_dist)?;
+                        let points =
+                            self.dispatcher.closest_points(pos12, part, self.other, max_dist)?;
                         Ok(match points {
                             ClosestPoints::Disjoint => None,
                             ClosestPoints::Intersecting => Some((0.0, points)),
                             ClosestPoints::WithinMargin(point1, point2) => {
-                                // It is within the margin, however its length is rounded, and of points that
-                                // coincide another part may still say that it is met.
-                                let length = (point1 - pos12 * point2).length().max(Real::MIN_POSITIVE);
+                                // It is within the margin, however its length is rounded, and of
+                                // points that coincide another part
+                                // may still say that it is met.
+                                let length =
+                                    (point1 - pos12 * point2).length().max(Real::MIN_POSITIVE);
                                 Some((length.min(bound.next_down()), points))
                             }
                         })
@@ -105,14 +114,15 @@ impl<D: QueryDispatcher> CompositePair<'_, D> {
         let (refused, latest) = (Cell::new(false), options.max_time_of_impact);
         let around = self.around(options.target_distance.max(0.0));
         let ray = Ray::new(Vector::ZERO, vel12);
-        // The search wants hits strictly earlier than its bound, and goes through all that is never met for a bound above
-        // the largest number.
+        // The search wants hits strictly earlier than its bound, and goes through all that is never
+        // met for a bound above the largest number.
         let bound = latest.next_up().min(Real::MAX);
         let first = self.parts.bvh().find_best(
             bound,
             |node: &BvhNode, so_far| {
                 // Where the other shape's box, shrunk to a point, meets the part's, grown by it.
-                let grown = Aabb { mins: node.mins() - around.maxs, maxs: node.maxs() - around.mins };
+                let grown =
+                    Aabb { mins: node.mins() - around.maxs, maxs: node.maxs() - around.mins };
                 grown.cast_local_ray(&ray, so_far, true).unwrap_or(Real::MAX)
             },
             |id, _| {
@@ -133,7 +143,8 @@ impl<D: QueryDispatcher> CompositePair<'_, D> {
         Ok(first.filter(|hit| hit.time_of_impact <= latest))
     }
 
-    /// What `query` says of a part, whose place it is told with the other shape's pose in the part's frame; and that place.
+    /// What `query` says of a part, whose place it is told with the other shape's pose in the
+    /// part's frame; and that place.
     fn ask<T>(
         &self,
         id: u32,

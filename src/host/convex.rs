@@ -1,11 +1,14 @@
-//! A link and another convex shape, by iterations of the inner dispatcher, and what is done where these fail.
+//! A link and another convex shape, by iterations of the inner dispatcher, and what is done where
+//! these fail.
 //!
-//! parry's GJK and EPA give up on some pairs that touch: from a distance of 1e-14 to an overlap of 1e-2 they may say that
-//! there is no contact however far one looks, or that GJK has not converged. For any unit vector `n` the gap between the
-//! two shapes' supports along `n` is at most their distance, and where it is below 0 a translation by it along `n` separates
-//! them. So all that is missing is a good `n`, and the link without its outermost [layer](super::shrunk_links) gives one; where it is
-//! off, by about the layer's depth, that costs the gap about its square. The layers are tried from thin to thick; what
-//! still meets the innermost is parted along the best of a few directions that both shapes have.
+//! parry's GJK and EPA give up on some pairs that touch: from a distance of 1e-14 to an overlap of
+//! 1e-2 they may say that there is no contact however far one looks, or that GJK has not converged.
+//! For any unit vector `n` the gap between the two shapes' supports along `n` is at most their
+//! distance, and where it is below 0 a translation by it along `n` separates them. So all that is
+//! missing is a good `n`, and the link without its outermost [layer](super::shrunk_links) gives
+//! one; where it is off, by about the layer's depth, that costs the gap about its square. The
+//! layers are tried from thin to thick; what still meets the innermost is parted along the best of
+//! a few directions that both shapes have.
 
 use super::axial::{perpendicular, unit};
 use super::layers::shrunk_links;
@@ -108,8 +111,9 @@ impl<'a, L: QueryDispatcher> ConvexPair<'a, L> {
         })
     }
 
-    /// The contact of an overlap, or of what is not plain, or a better one. Of shapes that all but touch EPA may say that they
-    /// overlap by as much as their size, and of others less than separates them.
+    /// The contact of an overlap, or of what is not plain, or a better one. Of shapes that all but
+    /// touch EPA may say that they overlap by as much as their size, and of others less than
+    /// separates them.
     fn least(&self, contact: Contact) -> Result<Option<Contact>, Unsupported> {
         let [g1, g2] = self.shapes;
         let points = self.inner.closest_points(self.pos12, g1, g2, Real::MAX)?;
@@ -123,7 +127,11 @@ impl<'a, L: QueryDispatcher> ConvexPair<'a, L> {
         }
         let on_second = contact.point1 + contact.normal1 * dist;
         let falls_short = dist < contact.dist - rounding;
-        let point2 = if falls_short { self.pos12.inverse_transform_point(on_second) } else { contact.point2 };
+        let point2 = if falls_short {
+            self.pos12.inverse_transform_point(on_second)
+        } else {
+            contact.point2
+        };
         Ok(Some(Contact { dist, point2, ..contact }))
     }
 
@@ -145,18 +153,21 @@ impl<'a, L: QueryDispatcher> ConvexPair<'a, L> {
 
     /// The contact along the normal that the link without a layer gives. It separates the two.
     fn contact_of_layers(&self) -> Result<Option<Contact>, Unsupported> {
-        let Some((gap, normal, near)) = self.widest_of_layers()?.or_else(|| self.widest_of_axes()) else {
+        let Some((gap, normal, near)) = self.widest_of_layers()?.or_else(|| self.widest_of_axes())
+        else {
             return Ok(None);
         };
         // On the planes between which the gap is.
-        let [begin, end] = [self.support(0, normal), self.support(1, -normal)].map(|point| point.dot(normal));
+        let [begin, end] =
+            [self.support(0, normal), self.support(1, -normal)].map(|point| point.dot(normal));
         let onto = |height: Real| near + normal * (height - near.dot(normal));
         let [point1, point2] = [onto(begin), self.pos12.inverse_transform_point(onto(end))];
         let normal2 = self.pos12.rotation.inverse() * -normal;
         Ok(Some(Contact::new(point1, point2, normal, normal2, gap)))
     }
 
-    /// The widest gap along a way from the link without a layer to the other shape, and the point of the link's core.
+    /// The widest gap along a way from the link without a layer to the other shape, and the point
+    /// of the link's core.
     fn widest_of_layers(&self) -> Result<Option<(Real, Vector, Vector)>, Unsupported> {
         let mut best: Option<(Real, Vector, Vector)> = None;
         let rounding = ROUNDING * largest(self.pos12, self.shapes[0], self.shapes[1]);
@@ -179,7 +190,8 @@ impl<'a, L: QueryDispatcher> ConvexPair<'a, L> {
         Ok(best)
     }
 
-    /// The widest gap along the way between the shapes' boxes, the link's axis and across it, and the coordinate axes.
+    /// The widest gap along the way between the shapes' boxes, the link's axis and across it, and
+    /// the coordinate axes.
     fn widest_of_axes(&self) -> Option<(Real, Vector, Vector)> {
         let boxes = [self.shapes[0].compute_local_aabb(), self.shapes[1].compute_aabb(self.pos12)];
         let axis = self.placed(self.link.axis());
@@ -188,14 +200,20 @@ impl<'a, L: QueryDispatcher> ConvexPair<'a, L> {
         let centre = 0.5 * self.link.start() + 0.5 * self.link.end();
         let middle = if self.link_is_first { centre } else { self.pos12 * centre };
         let ways = [between, axis, across, axis.cross(across), axis.cross(axis.cross(between))];
-        let ways = ways.into_iter().chain(Vector::AXES).filter_map(unit).flat_map(|normal| [normal, -normal]);
-        let widest = ways.map(|normal| (self.gap(normal), normal)).max_by(|a, b| a.0.total_cmp(&b.0));
+        let ways = ways
+            .into_iter()
+            .chain(Vector::AXES)
+            .filter_map(unit)
+            .flat_map(|normal| [normal, -normal]);
+        let widest =
+            ways.map(|normal| (self.gap(normal), normal)).max_by(|a, b| a.0.total_cmp(&b.0));
         widest.map(|(gap, normal)| (gap, normal, middle))
     }
 
-    /// Whether the two are apart and a plane across the unit vector from one to the other keeps them so by what GJK says, but
-    /// for half of it. Of shapes that touch GJK may say that they are as far apart as they are large, and of those that
-    /// overlap that they all but touch. Where it is right rounding may still have turned the way between points that are
+    /// Whether the two are apart and a plane across the unit vector from one to the other keeps
+    /// them so by what GJK says, but for half of it. Of shapes that touch GJK may say that they
+    /// are as far apart as they are large, and of those that overlap that they all but touch.
+    /// Where it is right rounding may still have turned the way between points that are
     /// close to each other: what is not plain is asked about further.
     fn is_plain(&self, normal: Vector, distance: Real) -> bool {
         distance > 0.0 && self.gap(normal) > 0.5 * distance

@@ -1,10 +1,13 @@
-//! The least translation that separates a link from another convex shape of parry's that it overlaps.
+//! The least translation that separates a link from another convex shape of parry's that it
+//! overlaps.
 //!
-//! What parry's EPA finds is one candidate. The others are the normals in which the least translation can be by the shapes'
-//! features, as for a [link and a triangle](crate::distance::depth): the shape's faces, the link's axis, what is perpendicular to the axis and
-//! an edge; and, of the corner that lies foremost along the best of these, with its edges, the ways to the axis, to the centres of
-//! round caps and to rims. Each is measured by the two supports, whatever it is, so that the translation separates. A shape
-//! with round parts of its own has a continuum of faces: of it EPA's answer and the axes are all there is.
+//! What parry's EPA finds is one candidate. The others are the normals in which the least
+//! translation can be by the shapes' features, as for a [link and a
+//! triangle](crate::distance::depth): the shape's faces, the link's axis, what is perpendicular to
+//! the axis and an edge; and, of the corner that lies foremost along the best of these, with its
+//! edges, the ways to the axis, to the centres of round caps and to rims. Each is measured by the
+//! two supports, whatever it is, so that the translation separates. A shape with round parts of its
+//! own has a continuum of faces: of it EPA's answer and the axes are all there is.
 
 use super::axial::{perpendicular, unit, unit_across};
 use super::convex::ConvexPair;
@@ -37,7 +40,8 @@ struct PlacedConvex<'a> {
 type Gap = (Real, Vector);
 
 impl<L: QueryDispatcher> ConvexPair<'_, L> {
-    /// The contact with the least of the translations that separate the two, if it is one of an overlap.
+    /// The contact with the least of the translations that separate the two, if it is one of an
+    /// overlap.
     pub(super) fn shallowest(&self, contact: Contact) -> Contact {
         if contact.dist > 0.0 {
             return contact;
@@ -61,8 +65,11 @@ impl<L: QueryDispatcher> ConvexPair<'_, L> {
                 break;
             }
         }
-        let near =
-            if best.1.dot(found.1) > SAME_NORMAL { contact.point1 } else { self.touching(&placed, best) };
+        let near = if best.1.dot(found.1) > SAME_NORMAL {
+            contact.point1
+        } else {
+            self.touching(&placed, best)
+        };
         self.report(best, near)
     }
 
@@ -71,7 +78,8 @@ impl<L: QueryDispatcher> ConvexPair<'_, L> {
         if gap > best.0 { (gap, normal) } else { best }
     }
 
-    /// Where the link touches the other shape once they are moved apart, by going from the one to the other and back.
+    /// Where the link touches the other shape once they are moved apart, by going from the one to
+    /// the other and back.
     fn touching(&self, placed: &PlacedConvex, (gap, normal): Gap) -> Vector {
         // The other is moved away from the link.
         let (out, toward_second) =
@@ -102,7 +110,8 @@ impl<L: QueryDispatcher> ConvexPair<'_, L> {
 }
 
 impl PlacedConvex<'_> {
-    /// The normals of the other shape's faces, the link's axis, and what is perpendicular to it and to an edge.
+    /// The normals of the other shape's faces, the link's axis, and what is perpendicular to it and
+    /// to an edge.
     fn faces_and_products(&self, consider: &mut impl FnMut(Vector)) {
         let rotation = self.pose.rotation;
         let axis = self.axis;
@@ -129,7 +138,8 @@ impl PlacedConvex<'_> {
                 for edge in hull.edges() {
                     let Some(direction) = unit(rotation * edge.dir) else { continue };
                     let normal = product(direction);
-                    let faces = edge.faces.map(|face| rotation * hull.faces()[face as usize].normal);
+                    let faces =
+                        edge.faces.map(|face| rotation * hull.faces()[face as usize].normal);
                     if normal.is_some_and(|n| is_between(n, faces, direction)) {
                         both_ways(normal);
                     }
@@ -171,9 +181,9 @@ impl PlacedConvex<'_> {
                     both_ways(unit(offset));
                     edges.iter().for_each(|&edge| both_ways(unit_across(offset, edge)));
                 }
-                Some(way) => {
-                    edges.iter().for_each(|&edge| both_ways(across_rim(way, link.radius(), offset, edge)))
-                }
+                Some(way) => edges
+                    .iter()
+                    .for_each(|&edge| both_ways(across_rim(way, link.radius(), offset, edge))),
             }
         }
     }
@@ -198,7 +208,9 @@ impl PlacedConvex<'_> {
             }
         };
         match self.core() {
-            TypedShape::Cuboid(_) => Vector::AXES.iter().for_each(|&axis| add(unit(rotation * axis))),
+            TypedShape::Cuboid(_) => {
+                Vector::AXES.iter().for_each(|&axis| add(unit(rotation * axis)))
+            }
             TypedShape::ConvexPolyhedron(hull) => {
                 let nearest = nearest_vertex(hull, self.pose.inverse_transform_point(corner));
                 let at_corner = hull.edges().iter().filter(|edge| edge.vertices.contains(&nearest));
@@ -209,11 +221,14 @@ impl PlacedConvex<'_> {
         count
     }
 
-    /// The other shape without its border: what is round around a shape leaves its normals as they are.
+    /// The other shape without its border: what is round around a shape leaves its normals as they
+    /// are.
     fn core(&self) -> TypedShape<'_> {
         match self.other.as_typed_shape() {
             TypedShape::RoundCuboid(round) => TypedShape::Cuboid(&round.inner_shape),
-            TypedShape::RoundConvexPolyhedron(round) => TypedShape::ConvexPolyhedron(&round.inner_shape),
+            TypedShape::RoundConvexPolyhedron(round) => {
+                TypedShape::ConvexPolyhedron(&round.inner_shape)
+            }
             shape => shape,
         }
     }
@@ -222,7 +237,8 @@ impl PlacedConvex<'_> {
 /// Of a corner with more edges only so many are looked at.
 const MAX_EDGES: usize = 16;
 
-/// Whether a normal or its opposite is one that an edge between two faces has. All but the normal lie across the edge.
+/// Whether a normal or its opposite is one that an edge between two faces has. All but the normal
+/// lie across the edge.
 fn is_between(n: Vector, [a, b]: [Vector; 2], edge: Vector) -> bool {
     let turn = |from: Vector, to: Vector| from.cross(to).dot(edge);
     let whole = turn(a, b);

@@ -1,12 +1,13 @@
-//! The crest of a link: its outline in the plane of its axis and a contact's normal, on the triangle's side.
+//! The crest of a link: its outline in the plane of its axis and a contact's normal, on the
+//! triangle's side.
 //!
-//! It is the line of the barrel that lies furthest along the normal, and at a round end it goes on around the
-//! cap to the cap's point furthest along the normal. A surface that is only touched by the crest cannot be
-//! touched by anything else of barrel or cap. Its ends are what the link stands on (see
-//! [`support_points`](super::support_points)); these count as well:
+//! It is the line of the barrel that lies furthest along the normal, and at a round end it goes on
+//! around the cap to the cap's point furthest along the normal. A surface that is only touched by
+//! the crest cannot be touched by anything else of barrel or cap. Its ends are what the link stands
+//! on (see [`support_points`](super::support_points)); these count as well:
 //!
-//! 1. **Edges across it**, where they cross its plane. Near a round cap's own lowest point an edge is left out:
-//!    that point speaks for it, and one beside it would hinder the cap from rolling.
+//! 1. **Edges across it**, where they cross its plane. Near a round cap's own lowest point an edge
+//!    is left out: that point speaks for it, and one beside it would hinder the cap from rolling.
 //! 2. **An edge along it**, with the two ends of what is beside the barrel.
 
 use super::feature::{self, SAME_POINT};
@@ -18,7 +19,8 @@ use parry3d_f64::shape::PackedFeatureId;
 
 /// An edge that stays within this share of the radius from the crest lies along it.
 const ALONG_CREST: Real = 0.01;
-/// What is within this share of the radius from the crest is near it: the surface leans by 30 degrees at most.
+/// What is within this share of the radius from the crest is near it: the surface leans by 30
+/// degrees at most.
 const NEAR_CREST: Real = 0.5;
 /// The share of its radius around a round cap's lowest point in which no edge counts.
 const LOWEST: Real = 0.25;
@@ -32,7 +34,8 @@ pub(super) fn collect(meeting: &mut Meeting) {
             for (q, id) in ends.into_iter().zip([feature::ALONG_EDGE, feature::ALONG_EDGE + 1]) {
                 let dist = crest.drop(q);
                 let on_link = q - meeting.normal * dist;
-                // Beside the crest the way back is a little longer, and can lead past the barrel's end.
+                // Beside the crest the way back is a little longer, and can lead past the barrel's
+                // end.
                 let slack = SAME_POINT * meeting.size;
                 if (-slack..=crest.length + slack).contains(&on_link.dot(crest.axis)) {
                     meeting.add(on_link, dist, PackedFeatureId::edge(id), edge);
@@ -73,7 +76,8 @@ impl Crest {
         Some(Self { axis, normal, lateral, side, across, slope, radius, length })
     }
 
-    /// How far the barrel is from a point, back along the normal, if that leads to the barrel near the crest.
+    /// How far the barrel is from a point, back along the normal, if that leads to the barrel near
+    /// the crest.
     pub fn near(&self, q: Vector) -> Option<Real> {
         let dist = self.drop(q);
         let is_over = (0.0..=self.length).contains(&(q - self.normal * dist).dot(self.axis));
@@ -87,7 +91,8 @@ impl Crest {
         (q.dot(self.lateral) - height) / self.across
     }
 
-    /// Where along the axis a point of the triangle, taken back along the normal, meets the crest's line.
+    /// Where along the axis a point of the triangle, taken back along the normal, meets the crest's
+    /// line.
     fn along(&self, q: Vector) -> Real {
         q.dot(self.axis) - (q.dot(self.lateral) - self.radius) / self.across * self.slope
     }
@@ -116,7 +121,8 @@ impl Crest {
         ((y0 <= 0.0) != (y1 <= 0.0)).then(|| v.lerp(w, y0 / (y0 - y1)))
     }
 
-    /// Case 1: how far the crest is from a point of its plane, back along the normal, if it is there.
+    /// Case 1: how far the crest is from a point of its plane, back along the normal, if it is
+    /// there.
     fn below(&self, meeting: &Meeting, q: Vector) -> Option<Real> {
         let z = self.along(q);
         if (0.0..=self.length).contains(&z) {

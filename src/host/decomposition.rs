@@ -42,15 +42,19 @@ impl<'a> Decomposition<'a> {
 /// Whether parry finds the cells of a shape.
 ///
 /// # Errors
-/// [`Unsupported`] for height fields and voxels that a negative scale mirrors: of these parry looks for cells between a
-/// box's upper corner and its lower one, where there are none.
+/// [`Unsupported`] for height fields and voxels that a negative scale mirrors: of these parry looks
+/// for cells between a box's upper corner and its lower one, where there are none.
 pub(super) fn check_scale(shape: &dyn Shape) -> Result<(), Unsupported> {
-    let scale =
-        shape.as_heightfield().map(HeightField::scale).or_else(|| shape.as_voxels().map(Voxels::voxel_size));
+    let scale = shape
+        .as_heightfield()
+        .map(HeightField::scale)
+        .or_else(|| shape.as_voxels().map(Voxels::voxel_size));
     if scale.is_some_and(|scale| scale.min_element() < 0.0) { Err(Unsupported) } else { Ok(()) }
 }
 
 /// Whether `shape` consists of others.
 pub(super) fn has_parts(shape: &dyn Shape) -> bool {
-    shape.as_composite_shape().is_some() || shape.as_heightfield().is_some() || shape.as_voxels().is_some()
+    shape.as_composite_shape().is_some()
+        || shape.as_heightfield().is_some()
+        || shape.as_voxels().is_some()
 }

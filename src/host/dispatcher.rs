@@ -17,16 +17,16 @@ use super::thin_shape::ThinShape;
 use super::voxels;
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::query::{
-    ClosestPoints, Contact, DefaultQueryDispatcher, NonlinearRigidMotion, QueryDispatcher, ShapeCastHit,
-    ShapeCastOptions, ShapeDistance, ShapeIntersection, Unsupported, details,
+    ClosestPoints, Contact, DefaultQueryDispatcher, NonlinearRigidMotion, QueryDispatcher,
+    ShapeCastHit, ShapeCastOptions, ShapeDistance, ShapeIntersection, Unsupported, details,
 };
 use parry3d_f64::shape::Shape;
 
 /// Answers parry's queries for links and chains, and passes all other pairs to `L`.
 ///
-/// It is a *root* dispatcher: give it to parry or rapier as it is, and put a dispatcher of your own inside, as `L`. It must
-/// not stand at the end of a chain of dispatchers, because parry's own never asks the others about the parts of a composite
-/// shape.
+/// It is a *root* dispatcher: give it to parry or rapier as it is, and put a dispatcher of your own
+/// inside, as `L`. It must not stand at the end of a chain of dispatchers, because parry's own
+/// never asks the others about the parts of a composite shape.
 ///
 /// What is answered for a link or a chain against another shape, in either order:
 ///
@@ -45,38 +45,42 @@ use parry3d_f64::shape::Shape;
 /// absolute. `tests/host/pairs.rs` and `tests/host/depths.rs` enforce these numbers. In the last
 /// column, what is smaller than 2^-40 of the other shape or of the way between them is refused.
 ///
-/// **The shortest translation.** The one that separates a link from another convex shape may be longer than the shortest that
-/// a search of all directions finds. It is longer by at most
+/// **The shortest translation.** The one that separates a link from another convex shape may be
+/// longer than the shortest that a search of all directions finds. It is longer by at most
 ///
 /// - 1e-12 for a round link against a round link or a `Capsule`;
-/// - 1e-6 for other links, and for a `Cylinder`, a `Cuboid`, a `ConvexPolyhedron` and a `RoundCuboid`;
+/// - 1e-6 for other links, and for a `Cylinder`, a `Cuboid`, a `ConvexPolyhedron` and a
+///   `RoundCuboid`;
 /// - 0.01 for a `Cone` and a `RoundCylinder`.
 ///
-/// A `Ball`, a `Capsule` and a `Cylinder` are links: one without length, one with two round caps, one with two flat caps. A
-/// `Cylinder` without height is not, and stays in the last column. Another shape that is no more than a line, such as a cone
-/// of radius 0, counts as a segment.
+/// A `Ball`, a `Capsule` and a `Cylinder` are links: one without length, one with two round caps,
+/// one with two flat caps. A `Cylinder` without height is not, and stays in the last column.
+/// Another shape that is no more than a line, such as a cone of radius 0, counts as a segment.
 ///
-/// **Distances** are to the triangles themselves and unsigned: 0 for a link that touches or crosses one. Touching is
-/// `Intersecting`, and a margin is kept only by what is farther away than it.
+/// **Distances** are to the triangles themselves and unsigned: 0 for a link that touches or crosses
+/// one. Touching is `Intersecting`, and a margin is kept only by what is farther away than it.
 ///
-/// **Predictions.** Nothing that is farther away than the prediction is returned. A negative prediction asks for an overlap at
-/// least as deep. Of a manifold it is the nearest point that counts.
+/// **Predictions.** Nothing that is farther away than the prediction is returned. A negative
+/// prediction asks for an overlap at least as deep. Of a manifold it is the nearest point that
+/// counts.
 ///
 /// **Manifolds.** The least `dist` of a pair's manifolds is that of `contact`. The flags of a mesh
 /// or a height field that fix internal edges may turn a normal, and remove no contact: an edge
 /// without a neighbour constrains nothing, and a one-sided surface holds from behind as well, where
 /// nothing touches its front as deep.
 ///
-/// **Nonlinear casts** that do not stop at the start ignore what touches there until the link's core would meet the other
-/// shape. At that time half of what keeps the link from passing through is left.
+/// **Nonlinear casts** that do not stop at the start ignore what touches there until the link's
+/// core would meet the other shape. At that time half of what keeps the link from passing through
+/// is left.
 ///
-/// **Composite shapes** (`Compound`, `TriMesh`, `Polyline`, `HeightField`, `Voxels`, [`Chain`](crate::Chain)) are taken apart
-/// by this dispatcher at each level. `L` is asked only about pairs that cannot be taken apart. The sub-shape ids of an
-/// answer name the link, the triangle or the part of each side.
+/// **Composite shapes** (`Compound`, `TriMesh`, `Polyline`, `HeightField`, `Voxels`,
+/// [`Chain`](crate::Chain)) are taken apart by this dispatcher at each level. `L` is asked only
+/// about pairs that cannot be taken apart. The sub-shape ids of an answer name the link, the
+/// triangle or the part of each side.
 ///
 /// # Errors
-/// [`Unsupported`] if any pair within the query is, so that a pair that cannot be answered never looks like a free one. Also
-/// if
+/// [`Unsupported`] if any pair within the query is, so that a pair that cannot be answered never
+/// looks like a free one. Also if
 ///
 /// - a pose, a velocity or a triangle that is visited is not finite or beyond 1e150;
 /// - a rotation is not of unit length, or a margin is NaN;
@@ -149,7 +153,12 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
         }
     }
 
-    fn distance(&self, pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape) -> Result<ShapeDistance, Unsupported> {
+    fn distance(
+        &self,
+        pos12: &Pose,
+        g1: &dyn Shape,
+        g2: &dyn Shape,
+    ) -> Result<ShapeDistance, Unsupported> {
         check_pose(pos12)?;
         let thin = ThinShape::of(g1, g2);
         let [g1, g2] = thin.pair(g1, g2);
@@ -171,7 +180,9 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
                 HeightFieldPair { dispatcher: self, field, pos12, other: g2 }.distance()
             }
             Decomposition::Voxels(_) => Err(Unsupported),
-            Decomposition::OfSecond => self.distance(&pos12.inverse(), g2, g1).map(ShapeDistance::swapped),
+            Decomposition::OfSecond => {
+                self.distance(&pos12.inverse(), g2, g1).map(ShapeDistance::swapped)
+            }
             Decomposition::None => {
                 if let Some(links) = LinkPair::of(pos12, g1, g2)? {
                     return Ok(ShapeDistance::new(links.distance()));
@@ -247,12 +258,13 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
                 CompositePair { dispatcher: self, parts, pos12, other: g2 }.closest_points(max_dist)
             }
             Decomposition::Field(field) => {
-                HeightFieldPair { dispatcher: self, field, pos12, other: g2 }.closest_points(max_dist)
+                HeightFieldPair { dispatcher: self, field, pos12, other: g2 }
+                    .closest_points(max_dist)
             }
             Decomposition::Voxels(_) => Err(Unsupported),
-            Decomposition::OfSecond => {
-                self.closest_points(&pos12.inverse(), g2, g1, max_dist).map(|points| points.flipped())
-            }
+            Decomposition::OfSecond => self
+                .closest_points(&pos12.inverse(), g2, g1, max_dist)
+                .map(|points| points.flipped()),
             Decomposition::None => {
                 if let Some(links) = LinkPair::of(pos12, g1, g2)? {
                     return Ok(links.closest_points(pos12, max_dist));
@@ -287,11 +299,16 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
         }
         match Decomposition::of(g1, g2)? {
             Decomposition::Composite(parts) => {
-                CompositePair { dispatcher: self, parts, pos12, other: g2 }.cast_shapes(local_vel12, options)
+                CompositePair { dispatcher: self, parts, pos12, other: g2 }
+                    .cast_shapes(local_vel12, options)
             }
-            Decomposition::Field(field) => HeightFieldPair { dispatcher: self, field, pos12, other: g2 }
-                .cast_shapes(local_vel12, options),
-            Decomposition::Voxels(cells) => voxels::cast(self, (pos12, local_vel12), cells, g2, options),
+            Decomposition::Field(field) => {
+                HeightFieldPair { dispatcher: self, field, pos12, other: g2 }
+                    .cast_shapes(local_vel12, options)
+            }
+            Decomposition::Voxels(cells) => {
+                voxels::cast(self, (pos12, local_vel12), cells, g2, options)
+            }
             Decomposition::OfSecond => {
                 let local_vel21 = -(pos12.rotation.inverse() * local_vel12);
                 let hit = self.cast_shapes(&pos12.inverse(), local_vel21, g2, g1, options)?;
@@ -301,13 +318,17 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
                 if let Some(pair) = LinkTrianglePair::of(g1, g2)? {
                     return straight_cast::cast_triangle(&pair, pos12, local_vel12, options);
                 }
-                if let Some(hit) = straight_cast::cast_link(pos12, local_vel12, (g1, g2), options)? {
+                if let Some(hit) = straight_cast::cast_link(pos12, local_vel12, (g1, g2), options)?
+                {
                     return Ok(hit);
                 }
-                if let Some(hit) = straight_cast::cast_convex(self, pos12, local_vel12, (g1, g2), options)? {
+                if let Some(hit) =
+                    straight_cast::cast_convex(self, pos12, local_vel12, (g1, g2), options)?
+                {
                     return Ok(hit);
                 }
-                let hit = self.inner(pos12, g1, g2)?.cast_shapes(pos12, local_vel12, g1, g2, options)?;
+                let hit =
+                    self.inner(pos12, g1, g2)?.cast_shapes(pos12, local_vel12, g1, g2, options)?;
                 check_margin(hit.map_or(0.0, |hit| hit.time_of_impact)).map(|()| hit)
             }
         }
@@ -327,7 +348,8 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
             check_pose(&motion.position_at_time(start_time))?;
             check_pose(&motion.position_at_time(end_time))?;
         }
-        // parry's tolerances are absolute in time too: late times would leave it no way to meet them.
+        // parry's tolerances are absolute in time too: late times would leave it no way to meet
+        // them.
         if (start_time, end_time) != (0.0, 1.0) {
             let duration = end_time - start_time;
             if duration < 0.0 {
@@ -339,9 +361,12 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
                 angvel: motion.angvel * duration,
                 ..*motion
             });
-            let hit = self.cast_shapes_nonlinear(&from1, g1, &from2, g2, 0.0, 1.0, stop_at_penetration)?;
+            let hit =
+                self.cast_shapes_nonlinear(&from1, g1, &from2, g2, 0.0, 1.0, stop_at_penetration)?;
             let at = |share: Real| start_time + share * duration;
-            return Ok(hit.map(|hit| ShapeCastHit { time_of_impact: at(hit.time_of_impact), ..hit }));
+            return Ok(
+                hit.map(|hit| ShapeCastHit { time_of_impact: at(hit.time_of_impact), ..hit })
+            );
         }
         let thin = ThinShape::of(g1, g2);
         let [g1, g2] = thin.pair(g1, g2);
@@ -422,7 +447,9 @@ impl<L: QueryDispatcher> ContinuumDispatcher<L> {
     ) -> Result<Option<Contact>, Unsupported> {
         let [g1, g2] = pair.shapes();
         match ConvexPair::of(&self.0, &pair.pos12, g1, g2) {
-            Some(convex) => Ok(convex.contact(prediction)?.map(|contact| convex.shallowest(contact))),
+            Some(convex) => {
+                Ok(convex.contact(prediction)?.map(|contact| convex.shallowest(contact)))
+            }
             None => self.0.contact(&pair.pos12, g1, g2, prediction),
         }
     }
@@ -432,8 +459,14 @@ impl<L> ContinuumDispatcher<L> {
     /// The dispatcher for a pair that cannot be taken apart, nor is answered here.
     ///
     /// # Errors
-    /// [`Unsupported`] for a link out of the range of parry's iterations, where they panic or answer NaN.
-    pub(super) fn inner(&self, pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape) -> Result<&L, Unsupported> {
+    /// [`Unsupported`] for a link out of the range of parry's iterations, where they panic or
+    /// answer NaN.
+    pub(super) fn inner(
+        &self,
+        pos12: &Pose,
+        g1: &dyn Shape,
+        g2: &dyn Shape,
+    ) -> Result<&L, Unsupported> {
         let is_robot = links_of(g1).or(links_of(g2)).is_some();
         if is_robot && !range::is_iterated(pos12, g1, g2) { Err(Unsupported) } else { Ok(&self.0) }
     }

@@ -27,7 +27,8 @@ pub(super) const RIM_CROSSINGS: u32 = ALONG_EDGE + 2;
 pub(super) const RIM_ENDS: [[u32; 2]; 2] =
     [[RIM_CROSSINGS, RIM_CROSSINGS + 1], [RIM_CROSSINGS + 2, RIM_CROSSINGS + 3]];
 
-/// The name of an end of the crest, or of a round cap's lowest point, which it is when the link lies.
+/// The name of an end of the crest, or of a round cap's lowest point, which it is when the link
+/// lies.
 pub(super) fn crest_end(end: usize) -> PackedFeatureId {
     PackedFeatureId::vertex(end as u32)
 }
@@ -37,8 +38,9 @@ pub(super) fn square_corner(end: usize, corner: usize) -> PackedFeatureId {
     PackedFeatureId::vertex(SQUARE + (4 * end + corner) as u32)
 }
 
-/// The outward unit normal of `feature` at a point on it; on a rim, the bisector of the two faces that meet
-/// there. Nothing for a feature that the link does not have, and where there is no normal (on a wire).
+/// The outward unit normal of `feature` at a point on it; on a rim, the bisector of the two faces
+/// that meet there. Nothing for a feature that the link does not have, and where there is no normal
+/// (on a wire).
 pub(super) fn normal(link: &ModifiedCylinder, feature: FeatureId, point: Vector) -> Option<Vector> {
     let (frame, from_start) = AxialFrame::around(link, point)?;
     let lateral = || unit_across(from_start, frame.axis);

@@ -1,5 +1,5 @@
-//! The foot of a contact on a link's axis, and whether the link answers there as its capsule does: see
-//! `distance/depth/foot.rs`.
+//! The foot of a contact on a link's axis, and whether the link answers there as its capsule does:
+//! see `distance/depth/foot.rs`.
 
 use super::axial::axis_or_x;
 use crate::distance::depth::to_flat;

@@ -1,9 +1,11 @@
-//! Height fields and moving composites, element by element: what parry has no version of that serves here.
+//! Height fields and moving composites, element by element: what parry has no version of that
+//! serves here.
 //!
-//! parry's cast against a height field looks at the starting cells only when the motion has no height component, and its
-//! nonlinear cast against a composite bisects for the balls around the parts, without end where a number is large. None
-//! of its queries on fields names the element that answered. So the elements are visited here: those whose boxes meet the box that
-//! the other shape occupies, reaches or sweeps, loosened by what rounding can have taken from it.
+//! parry's cast against a height field looks at the starting cells only when the motion has no
+//! height component, and its nonlinear cast against a composite bisects for the balls around the
+//! parts, without end where a number is large. None of its queries on fields names the element that
+//! answered. So the elements are visited here: those whose boxes meet the box that the other shape
+//! occupies, reaches or sweeps, loosened by what rounding can have taken from it.
 
 use parry3d_f64::bounding_volume::{Aabb, BoundingVolume};
 use parry3d_f64::math::{Pose, Real, Vector};
@@ -65,7 +67,8 @@ impl<D: QueryDispatcher> HeightFieldPair<'_, D> {
         let start = self.around(options.target_distance.max(0.0));
         let swept = swept(&start, self.field.root_aabb(), vel12 * options.max_time_of_impact);
         let first = least_element(self.field, &swept, |element| {
-            let hit = self.dispatcher.cast_shapes(self.pos12, vel12, element, self.other, options)?;
+            let hit =
+                self.dispatcher.cast_shapes(self.pos12, vel12, element, self.other, options)?;
             Ok(hit.map(|hit| (hit.time_of_impact, hit)))
         })?;
         Ok(first.map(|(id, hit)| ShapeCastHit { subshape1: id, ..hit }))
@@ -117,11 +120,13 @@ pub(super) fn cast_nonlinear(
 
 /// What rounding can have taken from the meeting of two boxes.
 pub(super) fn rounding(bounds: &Aabb, root: &Aabb) -> Real {
-    let size = [bounds.mins, bounds.maxs, root.mins, root.maxs].map(|corner| corner.abs().max_element());
+    let size =
+        [bounds.mins, bounds.maxs, root.mins, root.maxs].map(|corner| corner.abs().max_element());
     16.0 * Real::EPSILON * size.into_iter().fold(0.0, Real::max)
 }
 
-/// What a box sweeps along `path`, as far as there is something in `root`: the path may be infinite.
+/// What a box sweeps along `path`, as far as there is something in `root`: the path may be
+/// infinite.
 pub(super) fn swept(start: &Aabb, root: &Aabb, path: Vector) -> Aabb {
     let mut swept = *start;
     for i in 0..3 {
@@ -134,8 +139,8 @@ pub(super) fn swept(start: &Aabb, root: &Aabb, path: Vector) -> Aabb {
     swept
 }
 
-/// A box in the first shape's frame that the second does not leave: in that frame the centre of the ball around it
-/// travels no further than both move and turn it together.
+/// A box in the first shape's frame that the second does not leave: in that frame the centre of the
+/// ball around it travels no further than both move and turn it together.
 pub(super) fn reached(
     motion1: &NonlinearRigidMotion,
     (motion2, other): (&NonlinearRigidMotion, &dyn Shape),
@@ -167,8 +172,8 @@ pub(super) fn cast_parts_nonlinear(
     stop_at_penetration: bool,
 ) -> Result<Option<ShapeCastHit>, Unsupported> {
     // What has no bounds, as a half-space, meets any part.
-    let bounds =
-        reached(motion1, (motion2, other), (start_time, end_time)).unwrap_or(parts.bvh().root_aabb());
+    let bounds = reached(motion1, (motion2, other), (start_time, end_time))
+        .unwrap_or(parts.bvh().root_aabb());
     let mut first: Result<Option<ShapeCastHit>, Unsupported> = Ok(None);
     for id in parts.bvh().intersect_aabb(&bounds) {
         parts.map_part_at(id, &mut |place, part, _| {

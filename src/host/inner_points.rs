@@ -6,8 +6,8 @@
 //! deep*. Of all links that touch the same part of the wall, the points are visited from the
 //! deepest. A point is hidden where
 //!
-//! 1. its normal leans out over the end of the link that it is at: sideways contacts stay, also where two links lie
-//!    on the same floor;
+//! 1. its normal leans out over the end of the link that it is at: sideways contacts stay, also
+//!    where two links lie on the same floor;
 //! 2. it lies inside another link, or on its surface;
 //! 3. that link has kept a point against the same part, which is at least as deep.
 //!
@@ -64,26 +64,30 @@ pub(super) fn remove_inner_points<M, C>(
     if links.len() < 2 {
         return;
     }
-    let mut order: Vec<usize> = (0..manifolds.len()).filter(|&m| !manifolds[m].points.is_empty()).collect();
+    let mut order: Vec<usize> =
+        (0..manifolds.len()).filter(|&m| !manifolds[m].points.is_empty()).collect();
     order.sort_by_key(|&m| {
         let (link, other) = side.names(&manifolds[m]);
         (other, link)
     });
     let (mut points, mut hidden, mut touching) = (Vec::new(), Vec::new(), Vec::new());
-    for group in order.chunk_by(|&m, &n| side.names(&manifolds[m]).1 == side.names(&manifolds[n]).1) {
+    for group in order.chunk_by(|&m, &n| side.names(&manifolds[m]).1 == side.names(&manifolds[n]).1)
+    {
         if group.len() < 2 {
             continue;
         }
         points.clear();
         touching.clear();
         for &m in group {
-            points.extend(manifolds[m].points.iter().enumerate().map(|(p, point)| (point.dist, m, p)));
+            points.extend(
+                manifolds[m].points.iter().enumerate().map(|(p, point)| (point.dist, m, p)),
+            );
         }
         points.sort_by(|a, b| a.0.total_cmp(&b.0));
         let mut left = &mut points[..];
         while let Some(&(deepest, ..)) = left.first() {
-            let (equal, others) =
-                left.split_at_mut(left.partition_point(|point| point.0 <= deepest + rounding).max(1));
+            let (equal, others) = left
+                .split_at_mut(left.partition_point(|point| point.0 <= deepest + rounding).max(1));
             equal.sort_unstable_by_key(|&(_, m, p)| (side.names(&manifolds[m]).0, m, p));
             left = others;
             for &(_, m, p) in &*equal {
@@ -92,7 +96,8 @@ pub(super) fn remove_inner_points<M, C>(
                 let point = &manifold.points[p];
                 let at = if side == WhichShape::First { point.local_p1 } else { point.local_p2 };
                 let Some(link) = links.get(index) else { continue };
-                let is_covered = |other: usize| other != index && is_inside(at, &links[other], link);
+                let is_covered =
+                    |other: usize| other != index && is_inside(at, &links[other], link);
                 let is_out = leans_out(link, at, side.normal(manifold));
                 if is_out && touching.iter().any(|&other| is_covered(other)) {
                     hidden.push((m, p));

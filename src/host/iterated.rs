@@ -44,7 +44,9 @@ impl<'a> IteratedPair<'a> {
             return Err(Unsupported);
         }
         let scale = SIZE * largest(pos12, g1, g2).power_of_two_to_unity();
-        let (Some(first), Some(second)) = (image(g1, scale), image(g2, scale)) else { return Ok(as_it_is) };
+        let (Some(first), Some(second)) = (image(g1, scale), image(g2, scale)) else {
+            return Ok(as_it_is);
+        };
         let pos12 = Pose::from_parts(pos12.translation * scale, pos12.rotation);
         Ok(Self { pos12, images: Some([first, second]), unit: 1.0 / scale, ..as_it_is })
     }
@@ -86,21 +88,31 @@ impl<'a> IteratedPair<'a> {
 fn image(shape: &dyn Shape, scale: Real) -> Option<Box<dyn Shape>> {
     if let Some(link) = shape.as_shape::<ModifiedCylinder>() {
         let (start, end) = (link.start() * scale, link.end() * scale);
-        return Some(Box::new(ModifiedCylinder::unchecked(start, end, link.radius() * scale, link.caps())));
+        return Some(Box::new(ModifiedCylinder::unchecked(
+            start,
+            end,
+            link.radius() * scale,
+            link.caps(),
+        )));
     }
     let all = Vector::splat(scale);
     Some(match shape.as_typed_shape() {
-        TypedShape::RoundCuboid(round) => rounded(round.inner_shape.scaled(all), round.border_radius * scale),
+        TypedShape::RoundCuboid(round) => {
+            rounded(round.inner_shape.scaled(all), round.border_radius * scale)
+        }
         TypedShape::RoundTriangle(round) => {
             rounded(round.inner_shape.scaled(all), round.border_radius * scale)
         }
         TypedShape::RoundCylinder(round) => {
-            let inner =
-                Cylinder::new(round.inner_shape.half_height * scale, round.inner_shape.radius * scale);
+            let inner = Cylinder::new(
+                round.inner_shape.half_height * scale,
+                round.inner_shape.radius * scale,
+            );
             rounded(inner, round.border_radius * scale)
         }
         TypedShape::RoundCone(round) => {
-            let inner = Cone::new(round.inner_shape.half_height * scale, round.inner_shape.radius * scale);
+            let inner =
+                Cone::new(round.inner_shape.half_height * scale, round.inner_shape.radius * scale);
             rounded(inner, round.border_radius * scale)
         }
         TypedShape::RoundConvexPolyhedron(round) => {

@@ -1,8 +1,8 @@
 //! A link without its outermost layer, which what touches the link does not touch.
 //!
-//! Without the layer of depth `t` the link is a link again, shorter by `t` at each flat end and thinner by `t`. For all that it
-//! meets but a rim aslant, the nearest point of what is left has the very normal of the link's own surface, and at a rim one that
-//! is off by about `t`.
+//! Without the layer of depth `t` the link is a link again, shorter by `t` at each flat end and
+//! thinner by `t`. For all that it meets but a rim aslant, the nearest point of what is left has
+//! the very normal of the link's own surface, and at a rim one that is off by about `t`.
 
 use crate::robot::{Cap, ModifiedCylinder};
 use parry3d_f64::math::Real;

@@ -1,18 +1,23 @@
-//! Points around what two flat caps that face one another have in common, seen along the contact's normal.
+//! Points around what two flat caps that face one another have in common, seen along the contact's
+//! normal.
 //!
-//! Along the normal `n` both discs cast ellipses onto the plane across it, and what these have in common is convex. Let `x` be
-//! a place in that plane, seen from the first centre, and `c` the second. Above it lie a point of each cap's plane,
+//! Along the normal `n` both discs cast ellipses onto the plane across it, and what these have in
+//! common is convex. Let `x` be a place in that plane, seen from the first centre, and `c` the
+//! second. Above it lie a point of each cap's plane,
 //!
 //! ```text
 //! p = x - n (x . a1) / (n . a1),   q = x + n ((c - x) . a2) / (n . a2),
 //! ```
 //!
-//! with the unit axes `a1` and `a2`, and `x` is in both ellipses where `|p| <= r1` and `|q - c| <= r2`. Along a ray in the plane
-//! either is a quadratic equation. So every point here is on both caps, and where a ray ends, on a rim:
+//! with the unit axes `a1` and `a2`, and `x` is in both ellipses where `|p| <= r1` and `|q - c| <=
+//! r2`. Along a ray in the plane either is a quadratic equation. So every point here is on both
+//! caps, and where a ray ends, on a rim:
 //!
-//! 1. **Four rays** from the middle of what the line between the centres has in common with both, in directions that stay
-//!    where they are on the first link, so that a link at rest keeps its points.
-//! 2. **Two rays along the rims' common chord**, where it is longer than what is left between them: the tips of a narrow lens.
+//! 1. **Four rays** from the middle of what the line between the centres has in common with both,
+//!    in directions that stay where they are on the first link, so that a link at rest keeps its
+//!    points.
+//! 2. **Two rays along the rims' common chord**, where it is longer than what is left between them:
+//!    the tips of a narrow lens.
 
 use super::axial::{perpendicular, unit};
 use super::feature;
@@ -21,10 +26,12 @@ use crate::robot::ModifiedCylinder;
 use parry3d_f64::math::{Real, Vector};
 use parry3d_f64::shape::PackedFeatureId;
 
-/// Of two discs that have more of the narrower one's width in common than this share, the four rays show enough.
+/// Of two discs that have more of the narrower one's width in common than this share, the four rays
+/// show enough.
 const NARROW: Real = 0.9;
 
-/// Hands the points to `add`: on the first link, how far it is from there to the second along the unit normal, and the names.
+/// Hands the points to `add`: on the first link, how far it is from there to the second along the
+/// unit normal, and the names.
 pub(super) fn collect(
     first: &ModifiedCylinder,
     second: &ModifiedCylinder,
@@ -34,8 +41,16 @@ pub(super) fn collect(
     for end1 in (0..2).filter(|&end| faces_flat(first, normal, end)) {
         for end2 in (0..2).filter(|&end| faces_flat(second, -normal, end)) {
             let discs = [
-                Disc { centre: centre(first, end1), axis: outward(first, end1), radius: first.radius() },
-                Disc { centre: centre(second, end2), axis: outward(second, end2), radius: second.radius() },
+                Disc {
+                    centre: centre(first, end1),
+                    axis: outward(first, end1),
+                    radius: first.radius(),
+                },
+                Disc {
+                    centre: centre(second, end2),
+                    axis: outward(second, end2),
+                    radius: second.radius(),
+                },
             ];
             collect_between(&discs, normal, [end1, end2], &mut add);
         }
@@ -106,10 +121,13 @@ impl Disc {
         way - normal * (way.dot(self.axis) / normal.dot(self.axis))
     }
 
-    /// How far a ray from a place leads until it leaves the disc as it is seen along the normal, if it starts within.
+    /// How far a ray from a place leads until it leaves the disc as it is seen along the normal, if
+    /// it starts within.
     fn ray(&self, from: Vector, way: Vector, normal: Vector) -> Option<Real> {
-        let (start, way) =
-            (from + normal * self.height(from, normal) - self.centre, self.along_normal(way, normal));
+        let (start, way) = (
+            from + normal * self.height(from, normal) - self.centre,
+            self.along_normal(way, normal),
+        );
         let (squared, half) = (way.length_squared(), start.dot(way));
         let within = self.radius * self.radius - start.length_squared();
         if within < 0.0 || squared <= 0.0 {

@@ -1,19 +1,21 @@
 //! When a moving link meets a moving convex shape: conservative advancement, never late.
 //!
-//! Both travel and turn at constant speeds. While they are apart there is a plane between them that touches the other
-//! shape, the *wall*: that of their contact. It moves and turns with the wall, which stays behind it whatever
-//! happens. So the link is clear for as long as [`plane_gap`](super::plane_gap) proves that its two ends stay on their
-//! side. Then the two are measured again. Close to each other the steps are Newton's, from the safe side. They end
+//! Both travel and turn at constant speeds. While they are apart there is a plane between them that
+//! touches the other shape, the *wall*: that of their contact. It moves and turns with the wall,
+//! which stays behind it whatever happens. So the link is clear for as long as
+//! [`plane_gap`](super::plane_gap) proves that its two ends stay on their side. Then the two are
+//! measured again. Close to each other the steps are Newton's, from the safe side. They end
 //! where the two are as close as [`TOUCHING`] of their size or rounding.
 //!
-//! (parry's cast bisects for a root along a direction, which need not be the first, within tolerances of its own that
-//! late times cannot resolve: there it does not come back.)
+//! (parry's cast bisects for a root along a direction, which need not be the first, within
+//! tolerances of its own that late times cannot resolve: there it does not come back.)
 //!
-//! **What touches at the start.** A host that does not stop there wants to know when the link would go through: rapier
-//! does, for fast bodies, and takes a hit at the very start for none. So what is cast is the link's *core*: the inside
-//! of its axis, swollen by half of the room that it has. A core is clear at the start unless the link is through
-//! already, and where it meets the wall half of the room is left. (parry's cast says that the link is held at the
-//! start, which frees it: it then passes a mesh with the end that did not touch.)
+//! **What touches at the start.** A host that does not stop there wants to know when the link would
+//! go through: rapier does, for fast bodies, and takes a hit at the very start for none. So what is
+//! cast is the link's *core*: the inside of its axis, swollen by half of the room that it has. A
+//! core is clear at the start unless the link is through already, and where it meets the wall half
+//! of the room is left. (parry's cast says that the link is held at the start, which frees it: it
+//! then passes a mesh with the end that did not touch.)
 
 use super::axial::unit;
 use super::link_pair::{LinkPair, links_of_pair};
@@ -25,20 +27,25 @@ use super::straight_cast::iterated_contact;
 use super::support_points::{centre, outward};
 use crate::robot::{Cap, ModifiedCylinder};
 use parry3d_f64::math::{Pose, Real, Vector};
-use parry3d_f64::query::{NonlinearRigidMotion, QueryDispatcher, ShapeCastHit, ShapeCastStatus, Unsupported};
+use parry3d_f64::query::{
+    NonlinearRigidMotion, QueryDispatcher, ShapeCastHit, ShapeCastStatus, Unsupported,
+};
 use parry3d_f64::shape::{Shape, SupportMap, Triangle};
 
-/// The share of a link's size at which it counts as touching a triangle, a half-space or another link.
+/// The share of a link's size at which it counts as touching a triangle, a half-space or another
+/// link.
 const TOUCHING: Real = 1e-9;
 /// The same for other shapes, whose contacts come from iterations.
 const ITERATED: Real = 1e-5;
 /// What rounding leaves of the largest coordinate.
 const ROUNDING: Real = 64.0 * Real::EPSILON;
-/// More than any motion takes that is not a grazing one. After that the moment reached is the answer: early, not late.
+/// More than any motion takes that is not a grazing one. After that the moment reached is the
+/// answer: early, not late.
 const MAX_STEPS: usize = 200;
 
-/// The first hit of two shapes, if one is a link and the other convex, or the one a robot and the other a half-space,
-/// in either order. `dispatcher` gives the contacts with walls other than triangles and half-spaces.
+/// The first hit of two shapes, if one is a link and the other convex, or the one a robot and the
+/// other a half-space, in either order. `dispatcher` gives the contacts with walls other than
+/// triangles and half-spaces.
 ///
 /// # Errors
 /// [`Unsupported`] for what is not finite, out of range, or refused by the dispatcher.
@@ -80,7 +87,11 @@ fn pair<'a>(g1: &'a dyn Shape, g2: &'a dyn Shape) -> Result<Option<RobotAndWall<
             return Ok(Some((std::slice::from_ref(link), MovingWall::Link(other), robot_is_first)));
         }
         if let (Some(link), Some(support)) = (robot.as_shape(), wall.as_support_map()) {
-            return Ok(Some((std::slice::from_ref(link), MovingWall::Convex(wall, support), robot_is_first)));
+            return Ok(Some((
+                std::slice::from_ref(link),
+                MovingWall::Convex(wall, support),
+                robot_is_first,
+            )));
         }
     }
     Ok(None)
@@ -121,7 +132,11 @@ struct CastMoment {
 
 impl<D: QueryDispatcher> Cast<'_, D> {
     /// The first hit, the link's side first.
-    fn of(&self, link: &ModifiedCylinder, stop_at_start: bool) -> Result<Option<ShapeCastHit>, Unsupported> {
+    fn of(
+        &self,
+        link: &ModifiedCylinder,
+        stop_at_start: bool,
+    ) -> Result<Option<ShapeCastHit>, Unsupported> {
         let start = self.at(self.start_time, link)?;
         if start.distance > start.touching {
             return self.advance(link, start);
@@ -134,16 +149,22 @@ impl<D: QueryDispatcher> Cast<'_, D> {
         self.advance(&core, start)
     }
 
-    /// What must not touch the wall if the link does at the start: nothing if it is through already. Room counts that the
-    /// whole link can tell from a touch: a core thinner than that would be nothing to the iterations.
-    fn core(&self, link: &ModifiedCylinder, touching: Real) -> Result<Option<ModifiedCylinder>, Unsupported> {
+    /// What must not touch the wall if the link does at the start: nothing if it is through
+    /// already. Room counts that the whole link can tell from a touch: a core thinner than that
+    /// would be nothing to the iterations.
+    fn core(
+        &self,
+        link: &ModifiedCylinder,
+        touching: Real,
+    ) -> Result<Option<ModifiedCylinder>, Unsupported> {
         let inset = link.radius().min(0.25 * link.length());
         let trimmed = [0, 1].map(|end| match link.caps()[end] {
             Cap::Round => centre(link, end),
             Cap::Flat => centre(link, end) - outward(link, end) * inset,
         });
-        let capsule =
-            |radius| ModifiedCylinder::capsule(trimmed[0], trimmed[1], radius).map_err(|_| Unsupported);
+        let capsule = |radius| {
+            ModifiedCylinder::capsule(trimmed[0], trimmed[1], radius).map_err(|_| Unsupported)
+        };
         let start = self.at(self.start_time, &capsule(0.0)?)?;
         let radius = 0.5 * start.distance.min(link.radius());
         if radius > 2.0 * touching { capsule(radius).map(Some) } else { Ok(None) }
@@ -202,11 +223,14 @@ impl<D: QueryDispatcher> Cast<'_, D> {
             MovingWall::Link(other) => {
                 share = TOUCHING;
                 let other = other.transformed(&pos12);
-                largest =
-                    largest.max(other.radius()).max(in_range(other.start())?).max(in_range(other.end())?);
+                largest = largest
+                    .max(other.radius())
+                    .max(in_range(other.start())?)
+                    .max(in_range(other.end())?);
                 let contact = LinkPair::between(link, &other)?.link_contact().ok_or(Unsupported)?;
                 (on_link, normal) = (contact.on_link, contact.normal);
-                (on_wall, distance) = touched_plane(link, &contact, |n| other.local_support_point_toward(n));
+                (on_wall, distance) =
+                    touched_plane(link, &contact, |n| other.local_support_point_toward(n));
             }
             MovingWall::Convex(shape, support) => {
                 share = ITERATED;
@@ -247,7 +271,8 @@ impl<D: QueryDispatcher> Cast<'_, D> {
             };
             // Seen from the wall's centre of rotation, from which its plane is as far at all times.
             let place = robot_pose * centre(link, end) - wall_pose * self.motion.local_center;
-            let swing = spin.cross(robot_pose.rotation * (centre(link, end) - self.robot.local_center));
+            let swing =
+                spin.cross(robot_pose.rotation * (centre(link, end) - self.robot.local_center));
             let fastest = drift.length() + swing.length();
             let furthest = place.length() + fastest * span;
             clear = clear.min(
@@ -266,8 +291,8 @@ impl<D: QueryDispatcher> Cast<'_, D> {
     }
 }
 
-/// A point of the plane across a contact's normal that the wall touches, and how far the link is from that plane: the two
-/// themselves say so. 0 where they overlap.
+/// A point of the plane across a contact's normal that the wall touches, and how far the link is
+/// from that plane: the two themselves say so. 0 where they overlap.
 fn touched_plane(
     link: &ModifiedCylinder,
     contact: &LinkContact,

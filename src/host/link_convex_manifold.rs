@@ -1,8 +1,10 @@
-//! The contact manifold of a link and another convex shape that has no closed form: parry's clipping of the polygons that
-//! stand for the two surfaces, along the normal of the contact that the dispatcher names for the pair.
+//! The contact manifold of a link and another convex shape that has no closed form: parry's
+//! clipping of the polygons that stand for the two surfaces, along the normal of the contact that
+//! the dispatcher names for the pair.
 //!
-//! The contact's own points are among the manifold's, and none is deeper: the polygons only stand for what is round. (parry's
-//! routine asks GJK and EPA anew, from where the last step left them, and need not come to the same contact.)
+//! The contact's own points are among the manifold's, and none is deeper: the polygons only stand
+//! for what is round. (parry's routine asks GJK and EPA anew, from where the last step left them,
+//! and need not come to the same contact.)
 
 use super::iterated::IteratedPair;
 use parry3d_f64::query::{Contact, ContactManifold, TrackedContact, Unsupported};
@@ -21,13 +23,23 @@ pub(super) fn update<M, C: Default + Copy>(
     let (pos12, unit) = (&pair.pos12, pair.unit);
     let [g1, g2] = pair.shapes();
     let polygons = (g1.as_polygonal_feature_map(), g2.as_polygonal_feature_map());
-    let (Some((polygons1, border1)), Some((polygons2, border2))) = polygons else { return Ok(false) };
+    let (Some((polygons1, border1)), Some((polygons2, border2))) = polygons else {
+        return Ok(false);
+    };
     let before = std::mem::take(&mut manifold.points);
     let Some(contact) = contact()? else { return Ok(true) };
     let (normal1, normal2) = (contact.normal1, contact.normal2);
     let (mut feature1, mut feature2) = (PolygonalFeature::default(), PolygonalFeature::default());
-    polygons1.local_support_feature_toward(normal1, contact.point1 - normal1 * border1, &mut feature1);
-    polygons2.local_support_feature_toward(normal2, contact.point2 - normal2 * border2, &mut feature2);
+    polygons1.local_support_feature_toward(
+        normal1,
+        contact.point1 - normal1 * border1,
+        &mut feature1,
+    );
+    polygons2.local_support_feature_toward(
+        normal2,
+        contact.point2 - normal2 * border2,
+        &mut feature2,
+    );
     let features = (&feature1, &feature2);
     PolygonalFeature::contacts(
         pos12,

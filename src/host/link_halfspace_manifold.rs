@@ -1,8 +1,10 @@
-//! The contact manifold of a link and a half-space: what the link stands on (see [`support_points`](super::support_points)), and how
-//! high each of these points is over the plane. The lowest has the height of the link's lowest point: where a flat cap all
-//! but lies on the plane, rounding alone decides which of its rim's points that is.
+//! The contact manifold of a link and a half-space: what the link stands on (see
+//! [`support_points`](super::support_points)), and how high each of these points is over the plane.
+//! The lowest has the height of the link's lowest point: where a flat cap all but lies on the
+//! plane, rounding alone decides which of its rim's points that is.
 //!
-//! Where the nearest is within the prediction, all count, so that the host sees what a fast link is about to reach.
+//! Where the nearest is within the prediction, all count, so that the host sees what a fast link is
+//! about to reach.
 
 use super::axial::unit;
 use super::feature::{self, SAME_POINT};
@@ -12,8 +14,8 @@ use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::query::{ContactManifold, TrackedContact, Unsupported};
 use parry3d_f64::shape::{PackedFeatureId, Shape, SupportMap};
 
-/// Brings the manifold up to date, if the shapes are a link and a half-space, in either order. Returns whether they
-/// are.
+/// Brings the manifold up to date, if the shapes are a link and a half-space, in either order.
+/// Returns whether they are.
 ///
 /// # Errors
 /// [`Unsupported`] if the half-space's normal has no direction, or for numbers out of range.
@@ -38,9 +40,18 @@ pub(super) fn update<M, C: Default + Copy>(
     let point_at = |on_link: Vector, name: PackedFeatureId| {
         let height = height_of(on_link);
         let below = pose * on_link - plane * height;
-        TrackedContact::flipped(on_link, below, name, PackedFeatureId::face(0), height, !link_is_first)
+        TrackedContact::flipped(
+            on_link,
+            below,
+            name,
+            PackedFeatureId::face(0),
+            height,
+            !link_is_first,
+        )
     };
-    support_points::points(link, down, |on_link, name| manifold.points.push(point_at(on_link, name)));
+    support_points::points(link, down, |on_link, name| {
+        manifold.points.push(point_at(on_link, name))
+    });
     let lowest = link.local_support_point_toward(down);
     // Rounded as `contact` rounds it.
     let nearest = plane.dot(link.transformed(&pose).local_support_point_toward(-plane));
@@ -58,7 +69,8 @@ pub(super) fn update<M, C: Default + Copy>(
         manifold.points.clear();
         return Ok(true);
     }
-    (manifold.local_n1, manifold.local_n2) = if link_is_first { (down, plane) } else { (plane, down) };
+    (manifold.local_n1, manifold.local_n2) =
+        if link_is_first { (down, plane) } else { (plane, down) };
     manifold.match_contacts(&before);
     Ok(true)
 }

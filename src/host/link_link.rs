@@ -1,13 +1,15 @@
 //! The contact of two links of which at most one meets the other with a flat cap, in closed form.
 //!
-//! 1. **Barrels and round caps** meet as capsules do: the axes' nearest points give the normal, and the distance less
-//!    the two radii.
-//! 2. **A flat cap, and a barrel or a round cap**: the nearest points of the one link and the other's axis, which is a
-//!    triangle without a height to the narrow phase, less the other's radius.
+//! 1. **Barrels and round caps** meet as capsules do: the axes' nearest points give the normal, and
+//!    the distance less the two radii.
+//! 2. **A flat cap, and a barrel or a round cap**: the nearest points of the one link and the
+//!    other's axis, which is a triangle without a height to the narrow phase, less the other's
+//!    radius.
 //!
-//! [`foot`](super::foot) derives where that is exact. Where the axes of two round links come so close that the way between
-//! them gives no direction, the normal is that of [`depth`](crate::distance::depth). Two flat caps, and a flat cap deep in the
-//! other link, have no closed form here: [`LinkPair`](super::link_pair::LinkPair) measures them.
+//! [`foot`](super::foot) derives where that is exact. Where the axes of two round links come so
+//! close that the way between them gives no direction, the normal is that of
+//! [`depth`](crate::distance::depth). Two flat caps, and a flat cap deep in the other link, have no
+//! closed form here: [`LinkPair`](super::link_pair::LinkPair) measures them.
 
 use super::axial::unit;
 use super::foot::AxisFoot;
@@ -19,9 +21,11 @@ use parry3d_f64::math::{Real, Vector};
 
 /// What rounding can do to a distance, as a share of the largest coordinate.
 const ROUNDING: Real = 8.0 * Real::EPSILON;
-/// Axes closer than this share of the largest coordinate give no direction: half of its digits would be rounding.
+/// Axes closer than this share of the largest coordinate give no direction: half of its digits
+/// would be rounding.
 pub(super) const DIRECTION: Real = 1.5e-8;
-/// Axes closer than this share of the largest coordinate give a direction that has lost digits; features have them all.
+/// Axes closer than this share of the largest coordinate give a direction that has lost digits;
+/// features have them all.
 pub(super) const FINE_DIRECTION: Real = 1e-2;
 
 /// Where two links meet.
@@ -41,8 +45,8 @@ pub(super) enum Answer {
     Unknown,
 }
 
-/// Cases 1 and 2, for links whose coordinates are at most `extent`, and a margin of at least 0: where an axis lies in the other
-/// link, no distance says how deep they overlap.
+/// Cases 1 and 2, for links whose coordinates are at most `extent`, and a margin of at least 0:
+/// where an axis lies in the other link, no distance says how deep they overlap.
 pub(super) fn touch(
     first: &ModifiedCylinder,
     second: &ModifiedCylinder,
@@ -69,16 +73,23 @@ pub(super) fn touch(
             Some(normal) => pair.refined(normal).normal,
             None => pair.widest([]).normal,
         };
-        return Answer::TouchPoint(TouchPoint { dist, normal, on_first: feet[0] + normal * first.radius() });
+        return Answer::TouchPoint(TouchPoint {
+            dist,
+            normal,
+            on_first: feet[0] + normal * first.radius(),
+        });
     }
     for (solid, swollen, is_swapped) in [(first, second, false), (second, first, true)] {
-        let (apart, on_solid, on_axis) = closest(solid, [swollen.start(), swollen.end(), swollen.end()]);
+        let (apart, on_solid, on_axis) =
+            closest(solid, [swollen.start(), swollen.end(), swollen.end()]);
         let dist = apart - swollen.radius();
         if dist > margin + rounding {
             return Answer::Apart;
         }
         let is_exact = AxisFoot::new(swollen, on_axis).to_flat > rounding - dist.min(0.0);
-        if let (Some(out), true) = (unit(on_axis - on_solid), is_exact && apart > DIRECTION * extent) {
+        if let (Some(out), true) =
+            (unit(on_axis - on_solid), is_exact && apart > DIRECTION * extent)
+        {
             let first_out = if is_swapped { -out } else { out };
             let pair = pair(first, second);
             let gap = if apart > FINE_DIRECTION * extent {
@@ -100,7 +111,7 @@ pub(super) fn touch(
 
 /// The two links as the narrow phase knows them.
 pub(super) fn pair(first: &ModifiedCylinder, second: &ModifiedCylinder) -> LinkLink {
-    let [first, second] =
-        [first, second].map(|link| SolidLink::new(link.start(), link.end(), link.radius(), link.flat()));
+    let [first, second] = [first, second]
+        .map(|link| SolidLink::new(link.start(), link.end(), link.radius(), link.flat()));
     LinkLink { first, second }
 }

@@ -1,13 +1,18 @@
 //! The contact manifold of two links.
 //!
-//! Every point is a pair, one on each link's surface, `dist` apart along the contact's normal, exactly:
+//! Every point is a pair, one on each link's surface, `dist` apart along the contact's normal,
+//! exactly:
 //!
-//! 1. **Of barrels along each other**, the ends of either crest that lie over the other's barrel, near its own crest.
-//! 2. **Where the other's crest comes over a flat cap's rim** and leaves it, as in [`rim`](super::rim).
+//! 1. **Of barrels along each other**, the ends of either crest that lie over the other's barrel,
+//!    near its own crest.
+//! 2. **Where the other's crest comes over a flat cap's rim** and leaves it, as in
+//!    [`rim`](super::rim).
 //! 3. **Of two flat caps**, points around what they have in common, by [`lens`](super::lens).
-//! 4. **The closest points themselves**, if none of the others are as close: barrels that cross, a round cap.
+//! 4. **The closest points themselves**, if none of the others are as close: barrels that cross, a
+//!    round cap.
 //!
-//! No pair of points is closer along the normal than the contact says: it is the gap between the two links along it.
+//! No pair of points is closer along the normal than the contact says: it is the gap between the
+//! two links along it.
 
 use super::crest::Crest;
 use super::feature::{self, SAME_POINT};
@@ -20,8 +25,9 @@ use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::query::{ContactManifold, TrackedContact, Unsupported};
 use parry3d_f64::shape::{PackedFeatureId, Shape};
 
-/// The cosine between axes from which barrels lie along each other: 22.5 degrees, as for the edges of parry's polygons.
-/// Where they cross at a larger angle they roll on one point, and a second would come and go.
+/// The cosine between axes from which barrels lie along each other: 22.5 degrees, as for the edges
+/// of parry's polygons. Where they cross at a larger angle they roll on one point, and a second
+/// would come and go.
 const ALONG: Real = 0.924;
 
 /// Brings the manifold up to date, if the shapes are two links. Returns whether they are.
@@ -46,7 +52,9 @@ pub(super) fn update<M, C: Default + Copy>(
     }
     meeting.add_across_cap(&first, &second, normal, false);
     meeting.add_across_cap(&second, &first, -normal, true);
-    lens::collect(&first, &second, normal, |on_first, dist, names| meeting.add(on_first, dist, names));
+    lens::collect(&first, &second, normal, |on_first, dist, names| {
+        meeting.add(on_first, dist, names)
+    });
     meeting.add_closest(touch.on_first, touch.dist);
     for LinkLinkPoint { on_first, dist, names } in meeting.points {
         let [point1, point2] = [on_first, on_first + normal * dist].map(|point| pair.place(point));
@@ -64,9 +72,10 @@ fn from(link: &ModifiedCylinder, origin: Vector) -> ModifiedCylinder {
     link.transformed(&Pose::from_translation(-origin))
 }
 
-/// The name on the other link of what lies over a cap: a corner or an edge of the triangle that stands for its crest, which goes
-/// there and back. Both ends may lie over one cap, and where one is on the rim, to rounding, the way there may have one
-/// crossing and the way back the other: each has a name of its own.
+/// The name on the other link of what lies over a cap: a corner or an edge of the triangle that
+/// stands for its crest, which goes there and back. Both ends may lie over one cap, and where one
+/// is on the rim, to rounding, the way there may have one crossing and the way back the other: each
+/// has a name of its own.
 fn of_crest(of_triangle: PackedFeatureId) -> PackedFeatureId {
     let is = |corner| of_triangle == PackedFeatureId::vertex(corner);
     if is(0) {
@@ -89,7 +98,8 @@ struct LinkLinkPoint {
 /// The contact points of two links so far.
 struct LinkLinkMeeting {
     points: Vec<LinkLinkPoint>,
-    /// The largest coordinate. Points that are closer together than [`SAME_POINT`] of it are one: the nearest.
+    /// The largest coordinate. Points that are closer together than [`SAME_POINT`] of it are one:
+    /// the nearest.
     extent: Real,
 }
 
@@ -123,7 +133,9 @@ impl LinkLinkMeeting {
         is_second: bool,
     ) {
         let faces = (0..2).any(|end| support_points::faces_flat(link, normal, end));
-        let Some(lateral) = support_points::lateral(other, -normal).filter(|_| faces) else { return };
+        let Some(lateral) = support_points::lateral(other, -normal).filter(|_| faces) else {
+            return;
+        };
         let [v, w] = [other.start(), other.end()].map(|centre| centre + lateral * other.radius());
         let mut below = Meeting::new(link, [v, w, w], normal, self.extent);
         rim::collect(&mut below);
@@ -138,7 +150,8 @@ impl LinkLinkMeeting {
         }
     }
 
-    /// Case 4. Of others that are all but as close the nearest stands for them, with their distance; the rest keep theirs.
+    /// Case 4. Of others that are all but as close the nearest stands for them, with their
+    /// distance; the rest keep theirs.
     fn add_closest(&mut self, on_first: Vector, dist: Real) {
         let least = self.points.iter().map(|point| point.dist).fold(Real::INFINITY, Real::min);
         if least > dist + SAME_POINT * self.extent {

@@ -1,14 +1,17 @@
-//! Two links, or a link and one of parry's shapes that is a link too: a ball, a capsule or a cylinder.
+//! Two links, or a link and one of parry's shapes that is a link too: a ball, a capsule or a
+//! cylinder.
 //!
 //! How far they are apart, and where, is what the narrow phase says, exact for all caps.
 //!
-//! Their contact is that of the [closed forms](super::link_link) where there is one. Otherwise two flat caps meet, or a flat cap
-//! is deep in the other link. While the two are apart, the contact is at their nearest points. Where they overlap it is the
-//! widest gap of [`depth`](crate::distance::depth).
+//! Their contact is that of the [closed forms](super::link_link) where there is one. Otherwise two
+//! flat caps meet, or a flat cap is deep in the other link. While the two are apart, the contact is
+//! at their nearest points. Where they overlap it is the widest gap of
+//! [`depth`](crate::distance::depth).
 //!
-//! **The direction between points that are close to one another**, or one, is rounding. Then the directions of the features are
-//! tried, and those from the one link without its outermost [layers](super::shrunk_links) to the other, which the narrow phase
-//! measures as well: whatever the rims do, the thinnest layer whose loss parts the two shows a way out.
+//! **The direction between points that are close to one another**, or one, is rounding. Then the
+//! directions of the features are tried, and those from the one link without its outermost
+//! [layers](super::shrunk_links) to the other, which the narrow phase measures as well: whatever
+//! the rims do, the thinnest layer whose loss parts the two shows a way out.
 
 use super::axial::unit;
 use super::layers::{shrunk_links, thickest_layer};
@@ -53,7 +56,10 @@ impl LinkPair {
     ///
     /// # Errors
     /// [`Unsupported`] for numbers out of range.
-    pub fn between(first: &ModifiedCylinder, second: &ModifiedCylinder) -> Result<Self, Unsupported> {
+    pub fn between(
+        first: &ModifiedCylinder,
+        second: &ModifiedCylinder,
+    ) -> Result<Self, Unsupported> {
         let placed = [*first, *second];
         for link in &placed {
             in_range(link.start()).and(in_range(link.end()))?;
@@ -80,7 +86,10 @@ impl LinkPair {
         if nearest.distance <= 0.0 {
             ClosestPoints::Intersecting
         } else if nearest.distance <= max_dist {
-            ClosestPoints::WithinMargin(nearest.on_first, pos12.inverse_transform_point(nearest.on_second))
+            ClosestPoints::WithinMargin(
+                nearest.on_first,
+                pos12.inverse_transform_point(nearest.on_second),
+            )
         } else {
             ClosestPoints::Disjoint
         }
@@ -93,17 +102,27 @@ impl LinkPair {
         let (point1, dist) = (self.place(touch.on_first), self.length(touch.dist));
         let point2 = self.place(touch.on_first + touch.normal * touch.dist);
         let normal2 = pos12.rotation.inverse() * -touch.normal;
-        let contact =
-            Contact::new(point1, pos12.inverse_transform_point(point2), touch.normal, normal2, dist);
+        let contact = Contact::new(
+            point1,
+            pos12.inverse_transform_point(point2),
+            touch.normal,
+            normal2,
+            dist,
+        );
         (dist <= prediction).then_some(contact)
     }
 
     /// Their contact however far they are apart, in the first shape's frame.
     pub fn link_contact(&self) -> Option<LinkContact> {
         let touch = self.touch(Real::INFINITY)?;
-        let [on_link, on_other] =
-            [touch.on_first, touch.on_first + touch.normal * touch.dist].map(|point| self.place(point));
-        Some(LinkContact { distance: self.length(touch.dist), on_link, on_other, normal: touch.normal })
+        let [on_link, on_other] = [touch.on_first, touch.on_first + touch.normal * touch.dist]
+            .map(|point| self.place(point));
+        Some(LinkContact {
+            distance: self.length(touch.dist),
+            on_link,
+            on_other,
+            normal: touch.normal,
+        })
     }
 
     /// Where [`links`](Self::links) meet, if they are no further apart than `margin`, which is in
@@ -170,7 +189,11 @@ impl LinkPair {
                 if dist <= 0.0 {
                     // Rounding may say of what touches that it does not.
                     let dist = gap.width.min(0.0);
-                    return Some(TouchPoint { dist, normal: gap.normal, on_first: pair.touching_point(gap) });
+                    return Some(TouchPoint {
+                        dist,
+                        normal: gap.normal,
+                        on_first: pair.touching_point(gap),
+                    });
                 }
                 gap.normal
             }
@@ -207,7 +230,9 @@ pub(super) fn links_of_pair(g1: &dyn Shape, g2: &dyn Shape) -> Option<[ModifiedC
 /// The link that a shape is.
 fn link_of(shape: &dyn Shape) -> Option<ModifiedCylinder> {
     match shape.as_typed_shape() {
-        TypedShape::Ball(ball) => ModifiedCylinder::capsule(Vector::ZERO, Vector::ZERO, ball.radius).ok(),
+        TypedShape::Ball(ball) => {
+            ModifiedCylinder::capsule(Vector::ZERO, Vector::ZERO, ball.radius).ok()
+        }
         TypedShape::Capsule(capsule) => ModifiedCylinder::try_from(capsule).ok(),
         TypedShape::Cylinder(cylinder) => {
             let half = Vector::Y * cylinder.half_height;

@@ -1,21 +1,23 @@
-//! The contact of a link and a triangle: how far apart they are, or by how much to move them apart, and along
-//! what.
+//! The contact of a link and a triangle: how far apart they are, or by how much to move them apart,
+//! and along what.
 //!
-//! The directions and the gaps along them are those of `distance/depth`: there `gap(n)` is how far the triangle begins
-//! beyond the end of the link in the direction `n`.
+//! The directions and the gaps along them are those of `distance/depth`: there `gap(n)` is how far
+//! the triangle begins beyond the end of the link in the direction `n`.
 //!
-//! 1. **Apart.** Points and distance are the narrow phase's. Their difference makes a poor normal where they
-//!    are close, since rounding turns it by the extent over the distance. The normals of the features don't
-//!    suffer from that: the face's, the axis, the products of axis and edges, and the direction from the axis
-//!    to the triangle made perpendicular to either. The one with the largest gap is the contact's normal. Where none of
-//!    them keeps the two apart, as with a rim that all but touches an edge aslant, those of case 3 are tried too.
-//! 2. **The triangle enters, the axis is outside by more than rounding, and no flat cap is near.** A capsule is its axis swollen by a ball, so
-//!    the least translation is along the way from the axis to the triangle, and `radius - F` long for their
-//!    distance `F`. What a flat cap cuts away makes no shorter way out as long as it is at least as far along the axis
-//!    as the overlap is deep: see `distance/depth/foot.rs`.
+//! 1. **Apart.** Points and distance are the narrow phase's. Their difference makes a poor normal
+//!    where they are close, since rounding turns it by the extent over the distance. The normals of
+//!    the features don't suffer from that: the face's, the axis, the products of axis and edges,
+//!    and the direction from the axis to the triangle made perpendicular to either. The one with
+//!    the largest gap is the contact's normal. Where none of them keeps the two apart, as with a
+//!    rim that all but touches an edge aslant, those of case 3 are tried too.
+//! 2. **The triangle enters, the axis is outside by more than rounding, and no flat cap is near.**
+//!    A capsule is its axis swollen by a ball, so the least translation is along the way from the
+//!    axis to the triangle, and `radius - F` long for their distance `F`. What a flat cap cuts away
+//!    makes no shorter way out as long as it is at least as far along the axis as the overlap is
+//!    deep: see `distance/depth/foot.rs`.
 //! 3. **Otherwise**, the direction with the largest gap among those of case 1 and those of
-//!    `distance/depth/separation.rs`, where the least translation must be. Moved apart by it the two touch,
-//!    and the touching points are the contact's.
+//!    `distance/depth/separation.rs`, where the least translation must be. Moved apart by it the
+//!    two touch, and the touching points are the contact's.
 
 use super::axial::{power_of_two, unit};
 use super::foot::AxisFoot;
@@ -40,7 +42,8 @@ impl<'a> LinkTrianglePair<'a> {
     /// # Errors
     /// [`Unsupported`] if the triangle is not finite.
     pub fn of(g1: &'a dyn Shape, g2: &'a dyn Shape) -> Result<Option<Self>, Unsupported> {
-        let (first, second) = (g1.as_shape::<ModifiedCylinder>(), g2.as_shape::<ModifiedCylinder>());
+        let (first, second) =
+            (g1.as_shape::<ModifiedCylinder>(), g2.as_shape::<ModifiedCylinder>());
         let (link, triangle, link_is_first) = match (first, second) {
             (Some(link), None) => (link, g2.as_triangle(), true),
             (None, Some(link)) => (link, g1.as_triangle(), false),
@@ -61,7 +64,8 @@ impl<'a> LinkTrianglePair<'a> {
     }
 }
 
-/// Where a link and what it is beside meet, a triangle, another link or a convex shape, in the frame of both.
+/// Where a link and what it is beside meet, a triangle, another link or a convex shape, in the
+/// frame of both.
 #[derive(Clone, Copy)]
 pub(super) struct LinkContact {
     /// Distance, or minus the length of the least separating translation.
@@ -78,12 +82,13 @@ pub(super) struct LinkContact {
 pub(super) fn closest(link: &ModifiedCylinder, triangle: [Vector; 3]) -> (Real, Vector, Vector) {
     let flat = link.flat();
     let (start, end) = (Vec3::from(link.start()), Vec3::from(link.end()));
-    let closest = triangle_modified_cylinder(triangle.map(Vec3::from), start, end, link.radius(), flat);
+    let closest =
+        triangle_modified_cylinder(triangle.map(Vec3::from), start, end, link.radius(), flat);
     (closest.distance, Vector::from(closest.point2), Vector::from(closest.point1))
 }
 
-/// The contact of `link` and a finite `triangle` at whatever distance. Nothing if the numbers leave the range
-/// of f64.
+/// The contact of `link` and a finite `triangle` at whatever distance. Nothing if the numbers leave
+/// the range of f64.
 pub(super) fn contact(link: &ModifiedCylinder, triangle: [Vector; 3]) -> Option<LinkContact> {
     let local = Local::new(link, triangle)?;
     let found = local.contact_within(Real::INFINITY)?;
@@ -111,14 +116,20 @@ impl Local {
         let origin = link.start();
         let span = link.end() - origin;
         let offsets = triangle.map(|vertex| vertex - origin);
-        let extent = offsets.iter().fold(span.abs(), |most, offset| most.max(offset.abs())).max_element();
+        let extent =
+            offsets.iter().fold(span.abs(), |most, offset| most.max(offset.abs())).max_element();
         let (down, unit) = power_of_two(extent.max(link.radius()));
         let end = span * down;
         // A link too short for the scene is as good as a ball.
         let caps = if end == Vector::ZERO { [Cap::Round; 2] } else { link.caps() };
         let link = ModifiedCylinder::new(Vector::ZERO, end, link.radius() * down, caps).ok()?;
         let triangle = offsets.map(|offset| offset * down);
-        triangle.iter().all(|vertex| vertex.is_finite()).then_some(Self { origin, unit, link, triangle })
+        triangle.iter().all(|vertex| vertex.is_finite()).then_some(Self {
+            origin,
+            unit,
+            link,
+            triangle,
+        })
     }
 
     /// The contact, in local units, if the two are at most `margin` apart.
@@ -134,7 +145,10 @@ impl Local {
         let from_axis = Vector::from(to_axis.point2) - on_axis;
         let outward = unit(from_axis);
         let to_flat = AxisFoot::new(link, on_axis).to_flat;
-        let pair = depth::LinkTriangle::new(Link::new(link.end().into(), radius, link.flat()), self.triangle);
+        let pair = depth::LinkTriangle::new(
+            Link::new(link.end().into(), radius, link.flat()),
+            self.triangle,
+        );
 
         if let (Some(outward), true) = (outward, to_flat > ROUNDING) {
             let distance = to_axis.distance - radius;
@@ -163,7 +177,8 @@ impl Local {
         // Case 3.
         let depth::Way { gap, normal } = pair.least_translation(outward);
         let distance = gap.min(0.0);
-        let (_, on_link, on_moved) = closest(link, self.triangle.map(|vertex| vertex - normal * distance));
+        let (_, on_link, on_moved) =
+            closest(link, self.triangle.map(|vertex| vertex - normal * distance));
         Some(LinkContact { distance, on_link, on_other: on_moved + normal * distance, normal })
     }
 }

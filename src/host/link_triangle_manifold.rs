@@ -1,14 +1,15 @@
 //! The contact manifold of a link and a triangle: points that share the contact's normal.
 //!
-//! The normal is the contact's own (see [`link_triangle`](super::link_triangle)), led through the constraints that a
-//! mesh puts on it. Every point is a pair, one on the link's surface and one on the triangle, `dist` apart along the
-//! normal, exactly:
+//! The normal is the contact's own (see [`link_triangle`](super::link_triangle)), led through the
+//! constraints that a mesh puts on it. Every point is a pair, one on the link's surface and one on
+//! the triangle, `dist` apart along the normal, exactly:
 //!
-//! 1. **What the link stands on**, where the triangle is below it: see [`support_points`](super::support_points).
-//! 2. **What of the triangle's outline** is below a flat cap or across or along the barrel's crest: see
-//!    [`rim`](super::rim) and [`crest`](super::crest).
-//! 3. **The closest points themselves**, if none of the others are as close: a corner against the barrel, an
-//!    edge across a cap.
+//! 1. **What the link stands on**, where the triangle is below it: see
+//!    [`support_points`](super::support_points).
+//! 2. **What of the triangle's outline** is below a flat cap or across or along the barrel's crest:
+//!    see [`rim`](super::rim) and [`crest`](super::crest).
+//! 3. **The closest points themselves**, if none of the others are as close: a corner against the
+//!    barrel, an edge across a cap.
 //!
 //! Points that coincide are one, the nearest of them, so that the least `dist` is the contact's
 //! own. Where it is within the prediction, all count, so that the host sees what a fast link is
@@ -38,7 +39,8 @@ use parry3d_f64::query::details::{NormalConstraints, NormalConstraintsPair};
 use parry3d_f64::query::{ContactManifold, TrackedContact, Unsupported};
 use parry3d_f64::shape::PackedFeatureId;
 
-/// How much deeper than the overlap a point may be where a constraint has turned the normal; as in parry.
+/// How much deeper than the overlap a point may be where a constraint has turned the normal; as in
+/// parry.
 const DEEPER: Real = 5.0;
 /// A normal turned by more than this was turned by a constraint, not by rounding.
 const TURNED: Real = 1e-9;
@@ -105,11 +107,17 @@ pub(super) fn update<M, C: Default + Copy>(
     let margin = prediction / local.unit;
     // An overlap is found first, then measured. Coordinates of the local problem are at most 1.
     let found = local.contact_within(margin.max(0.0) + BEYOND);
-    let Some(mut found) = found.filter(|found| found.distance <= margin + BEYOND) else { return Ok(None) };
+    let Some(mut found) = found.filter(|found| found.distance <= margin + BEYOND) else {
+        return Ok(None);
+    };
     found.distance = found.distance.min(margin);
     let rotation = pos12.rotation;
     let in_order = |normal: Vector| {
-        if link_is_first { (normal, rotation.inverse() * -normal) } else { (rotation * -normal, normal) }
+        if link_is_first {
+            (normal, rotation.inverse() * -normal)
+        } else {
+            (rotation * -normal, normal)
+        }
     };
     let own = in_order(found.normal);
     let mut constrained = constrained(pos12, rules.constraints, own);
@@ -130,7 +138,9 @@ pub(super) fn update<M, C: Default + Copy>(
 
     let mut meeting = Meeting::new(&local.link, local.triangle, normal, 1.0);
     rim::collect(&mut meeting);
-    support_points::points(&local.link, normal, |on_link, name| meeting.add_above_face(on_link, name));
+    support_points::points(&local.link, normal, |on_link, name| {
+        meeting.add_above_face(on_link, name)
+    });
     crest::collect(&mut meeting);
     if !is_turned {
         meeting.add_closest(found.distance, found.on_link);

@@ -6,12 +6,13 @@
 //! is
 //! - a link against a triangle, answered [here](super::link_triangle_manifold), exactly;
 //! - a link against a half-space, answered [here](super::link_halfspace_manifold), exactly;
-//! - two links, or a link and a ball, a capsule or a cylinder, answered [here](super::link_link_manifold), exactly;
-//! - a link against another convex shape, answered [here](super::link_convex_manifold), along the contact's normal with the
-//!   polygons that stand for the surfaces;
-//! - a link against what has no polygons, answered by `L`. parry keeps a manifold while it has drifted
-//!   by less than 1e-3, whatever the unit; so that a small link does not rest on a stale one, it is told each time that the
-//!   shapes have changed.
+//! - two links, or a link and a ball, a capsule or a cylinder, answered
+//!   [here](super::link_link_manifold), exactly;
+//! - a link against another convex shape, answered [here](super::link_convex_manifold), along the
+//!   contact's normal with the polygons that stand for the surfaces;
+//! - a link against what has no polygons, answered by `L`. parry keeps a manifold while it has
+//!   drifted by less than 1e-3, whatever the unit; so that a small link does not rest on a stale
+//!   one, it is told each time that the shapes have changed.
 
 use super::decomposition::{check_scale, has_parts};
 use super::dispatcher::ContinuumDispatcher;
@@ -24,8 +25,8 @@ use super::robot_surface::links_of;
 use super::strict_dispatcher::StrictDispatcher;
 use super::thin_shape::ThinShape;
 use super::{
-    inner_points, link_convex_manifold, link_halfspace_manifold, link_link_manifold, link_triangle_manifold,
-    range, robot_surface_manifold,
+    inner_points, link_convex_manifold, link_halfspace_manifold, link_link_manifold,
+    link_triangle_manifold, range, robot_surface_manifold,
 };
 use crate::robot::Chain;
 use parry3d_f64::math::{Pose, Real};
@@ -55,12 +56,18 @@ where
         check_scale(g1)?;
         check_scale(g2)?;
         let is_robot = [g1, g2].into_iter().any(|shape| links_of(shape).is_some());
-        // Boxes are loosened by the prediction, which parry wants positive, and by what rounding can have taken from the
-        // meeting of two that touch.
+        // Boxes are loosened by the prediction, which parry wants positive, and by what rounding
+        // can have taken from the meeting of two that touch.
         let has_boxes = is_robot && (has_parts(g1) || has_parts(g2));
         let rounding = if has_boxes { range::rounding_of_boxes(pos12, g1, g2) } else { 0.0 };
         let loose = prediction.max(0.0) + rounding;
-        if !robot_surface_manifold::update(pos12, (g1, g2), (prediction, loose), manifolds, workspace)? {
+        if !robot_surface_manifold::update(
+            pos12,
+            (g1, g2),
+            (prediction, loose),
+            manifolds,
+            workspace,
+        )? {
             self.update_by_parts(pos12, (g1, g2), loose, manifolds, workspace)?;
             if is_robot || prediction < 0.0 {
                 drop_beyond(prediction, manifolds);
@@ -69,7 +76,12 @@ where
         for (shape, side) in [(g1, WhichShape::First), (g2, WhichShape::Second)] {
             if let Some(chain) = shape.as_shape::<Chain>() {
                 let rounding = range::rounding_of_depths(pos12, g1, g2);
-                inner_points::remove_inner_points(chain.links(), side, (prediction, rounding), manifolds);
+                inner_points::remove_inner_points(
+                    chain.links(),
+                    side,
+                    (prediction, rounding),
+                    manifolds,
+                );
             }
         }
         Ok(())
@@ -173,20 +185,26 @@ impl<L> ContinuumDispatcher<L> {
                 }
                 ((_, Some(parts2)), (Some(field1), _)) => {
                     details::contact_manifolds_heightfield_composite_shape(
-                        watched, pos12, &pos21, field1, parts2, prediction, manifolds, workspace, false,
+                        watched, pos12, &pos21, field1, parts2, prediction, manifolds, workspace,
+                        false,
                     );
                 }
                 ((Some(parts1), _), (_, Some(field2))) => {
                     details::contact_manifolds_heightfield_composite_shape(
-                        watched, &pos21, pos12, field2, parts1, prediction, manifolds, workspace, true,
+                        watched, &pos21, pos12, field2, parts1, prediction, manifolds, workspace,
+                        true,
                     );
                 }
-                (_, (Some(_), _) | (_, Some(_))) => details::contact_manifolds_heightfield_shape_shapes(
-                    watched, pos12, g1, g2, prediction, manifolds, workspace,
-                ),
-                _ if is_either(ShapeType::TriMesh) => details::contact_manifolds_trimesh_shape_shapes(
-                    watched, pos12, g1, g2, prediction, manifolds, workspace,
-                ),
+                (_, (Some(_), _) | (_, Some(_))) => {
+                    details::contact_manifolds_heightfield_shape_shapes(
+                        watched, pos12, g1, g2, prediction, manifolds, workspace,
+                    )
+                }
+                _ if is_either(ShapeType::TriMesh) => {
+                    details::contact_manifolds_trimesh_shape_shapes(
+                        watched, pos12, g1, g2, prediction, manifolds, workspace,
+                    )
+                }
                 _ if is_either(ShapeType::Voxels) => {
                     voxels(watched, pos12, g1, g2, prediction, manifolds, workspace);
                 }
@@ -201,8 +219,9 @@ impl<L> ContinuumDispatcher<L> {
                         manifolds.push(ContactManifold::new());
                     }
                     let manifold = &mut manifolds[0];
-                    return self
-                        .contact_manifold_convex_convex(pos12, g1, g2, None, None, prediction, manifold);
+                    return self.contact_manifold_convex_convex(
+                        pos12, g1, g2, None, None, prediction, manifold,
+                    );
                 }
             }
             Ok(())

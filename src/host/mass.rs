@@ -1,23 +1,24 @@
 //! Mass properties of a link and of several, exactly.
 //!
 //! # One link
-//! A link of radius `r` and length `l` is a cylinder and, at each round end, half a ball. With the unit of
-//! mass chosen so that a volume of `pi r^2` per length weighs 1 per length, about the middle of the axis:
+//! A link of radius `r` and length `l` is a cylinder and, at each round end, half a ball. With the
+//! unit of mass chosen so that a volume of `pi r^2` per length weighs 1 per length, about the
+//! middle of the axis:
 //!
 //! | piece | mass | centre on the axis | axial `k^2` | transverse `k^2` about its own centre |
 //! |---|---|---|---|---|
 //! | cylinder | `l` | 0 | `r^2 / 2` | `r^2 / 4 + l^2 / 12` |
 //! | half ball | `2 r / 3` | `+-(l / 2 + 3 r / 8)` | `2 r^2 / 5` | `2 r^2 / 5 - (3 r / 8)^2 = 83 r^2 / 320` |
 //!
-//! `k` is the radius of gyration. The half ball's row: the second moment of half a ball about any line
-//! through the ball's centre is half the ball's, and the parallel axis theorem takes it to its own centre of
-//! mass, `3 r / 8` outwards. The whole link follows by adding masses, moments and, again by the parallel axis
-//! theorem, second moments. Every term is positive, so nothing cancels; the centre of mass leaves the middle
-//! only when one end is round and the other flat.
+//! `k` is the radius of gyration. The half ball's row: the second moment of half a ball about any
+//! line through the ball's centre is half the ball's, and the parallel axis theorem takes it to its
+//! own centre of mass, `3 r / 8` outwards. The whole link follows by adding masses, moments and,
+//! again by the parallel axis theorem, second moments. Every term is positive, so nothing cancels;
+//! the centre of mass leaves the middle only when one end is round and the other flat.
 //!
-//! The link is a body of revolution, so any frame with one axis along it is principal; here, as for parry's
-//! cylinder and capsule, that is the frame's y axis. Turning the axis round changes no inertia, so the
-//! shorter of the two turns is taken.
+//! The link is a body of revolution, so any frame with one axis along it is principal; here, as for
+//! parry's cylinder and capsule, that is the frame's y axis. Turning the axis round changes no
+//! inertia, so the shorter of the two turns is taken.
 //!
 //! # Several links
 //! Masses and inertia tensors add up. The tensor of a link about the common centre of mass is
@@ -78,8 +79,12 @@ impl LinkMass {
             axial: 0.4 * r * r,
             transverse: 83.0 / 320.0 * r * r,
         };
-        let cylinder =
-            MassOfPiece { mass: l, centre: 0.0, axial: 0.5 * r * r, transverse: 0.25 * r * r + l * l / 12.0 };
+        let cylinder = MassOfPiece {
+            mass: l,
+            centre: 0.0,
+            axial: 0.5 * r * r,
+            transverse: 0.25 * r * r + l * l / 12.0,
+        };
         let [start, end] = link.caps();
         let pieces = [cylinder, half_ball(start, -1.0), half_ball(end, 1.0)];
 
@@ -94,7 +99,13 @@ impl LinkMass {
 
         let mass = product(density, PI * r * r * column);
         let centre = link.start().midpoint(link.end()) + axis * centre;
-        Self { mass, centre, axis, axial: product(mass, axial), transverse: product(mass, transverse) }
+        Self {
+            mass,
+            centre,
+            axis,
+            axial: product(mass, axial),
+            transverse: product(mass, transverse),
+        }
     }
 }
 
@@ -107,7 +118,9 @@ pub(super) fn mass_properties_of_all(links: &[ModifiedCylinder], density: Real) 
     let of_links: Vec<LinkMass> = links.iter().map(|link| LinkMass::of(link, density)).collect();
     let total: Real = of_links.iter().map(|link| link.mass).sum();
     // Seen from the first link, so that a robot far from the origin loses no digits.
-    let Some(origin) = of_links.first().map(|link| link.centre) else { return MassProperties::default() };
+    let Some(origin) = of_links.first().map(|link| link.centre) else {
+        return MassProperties::default();
+    };
     let share = |link: &LinkMass| if total > 0.0 { link.mass / total } else { 0.0 };
     let centre: Vector = of_links.iter().map(|link| (link.centre - origin) * share(link)).sum();
     let mut inertia = [[0.0; 3]; 3];
@@ -175,8 +188,8 @@ fn product(a: Real, b: Real) -> Real {
 
 /// A rotation that takes the y axis to `axis` or to its opposite, whichever is nearer.
 ///
-/// The quaternion `(y x axis, 1 + y . axis)`, normalised, loses digits only when the two are nearly opposite,
-/// which the choice of the nearer one excludes.
+/// The quaternion `(y x axis, 1 + y . axis)`, normalised, loses digits only when the two are nearly
+/// opposite, which the choice of the nearer one excludes.
 fn rotation_from_y(axis: Vector) -> Rotation {
     let axis = if axis.y < 0.0 { -axis } else { axis };
     let turn = Vector::Y.cross(axis);

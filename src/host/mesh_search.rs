@@ -46,7 +46,11 @@ pub(super) fn search(
             Some(LeafCost { cost, nearest })
         },
     );
-    if all_finite.get() { Ok(found.map(|(_, candidate)| candidate.nearest)) } else { Err(TriangleNotFinite) }
+    if all_finite.get() {
+        Ok(found.map(|(_, candidate)| candidate.nearest))
+    } else {
+        Err(TriangleNotFinite)
+    }
 }
 
 struct LeafCost {

@@ -1,5 +1,5 @@
-//! What parry and rapier see: links and chains as shapes with exact point and ray queries, and the dispatcher
-//! that answers for pairs of shapes.
+//! What parry and rapier see: links and chains as shapes with exact point and ray queries, and the
+//! dispatcher that answers for pairs of shapes.
 
 mod axial;
 mod chain;

@@ -1,24 +1,25 @@
 //! For how long a plane stays between an end of a moving link and a point of what it moves towards.
 //!
-//! Of the two it is known how far they are apart along the plane's normal `n` (`gap`), how fast they part (`rate`) and
-//! how much of that is lost to turning (`bend`). Then after the time `s` they are at least
+//! Of the two it is known how far they are apart along the plane's normal `n` (`gap`), how fast
+//! they part (`rate`) and how much of that is lost to turning (`bend`). Then after the time `s`
+//! they are at least
 //!
 //! ```text
 //! gap + rate s - bend s^2 - reach(s)
 //! ```
 //!
-//! apart, where `reach` is the end's cap. While the normal leans out over a round cap, that is its radius. Otherwise it
-//! is the support function of the half ball or the disc along the normal, as it turns seen from the link. With the
-//! axis `a` and `m` the way in which `n` turns,
+//! apart, where `reach` is the end's cap. While the normal leans out over a round cap, that is its
+//! radius. Otherwise it is the support function of the half ball or the disc along the normal, as
+//! it turns seen from the link. With the axis `a` and `m` the way in which `n` turns,
 //!
 //! ```text
 //! reach(s) = r |p - a (p . a)|,   p = n + s m,      and r |p| once p leans out over a round cap.
 //! ```
 //!
-//! A support function is convex: over any span of time it lies below its chord. So within the span nothing meets
-//! before the first root of a parabola. The bound is exact to second order but for the chord, and the span can be
-//! shortened. (A cap does not change when it is turned about its axis, so only the turning of the axis itself counts:
-//! a cylinder may roll as fast as it likes.)
+//! A support function is convex: over any span of time it lies below its chord. So within the span
+//! nothing meets before the first root of a parabola. The bound is exact to second order but for
+//! the chord, and the span can be shortened. (A cap does not change when it is turned about its
+//! axis, so only the turning of the axis itself counts: a cylinder may roll as fast as it likes.)
 
 use parry3d_f64::math::{Real, Vector};
 
@@ -53,7 +54,8 @@ impl Support {
     fn after(&self, time: Real) -> Real {
         let toward = self.normal + self.turning * time;
         let lean = toward.dot(self.outward);
-        let reach = if self.is_round && lean >= 0.0 { toward } else { toward - self.outward * lean };
+        let reach =
+            if self.is_round && lean >= 0.0 { toward } else { toward - self.outward * lean };
         reach.length() * self.radius
     }
 }
@@ -62,7 +64,9 @@ impl PlaneGap {
     /// A time until which the plane stays between the two, at most `span`.
     pub fn time_open(&self, span: Real) -> Real {
         let support = match &self.reach {
-            Reach::Radius(radius) => return first_root(self.gap - radius, self.rate, self.bend).min(span),
+            Reach::Radius(radius) => {
+                return first_root(self.gap - radius, self.rate, self.bend).min(span);
+            }
             Reach::Support(support) => support,
         };
         let now = support.after(0.0);
@@ -82,7 +86,8 @@ impl PlaneGap {
     }
 }
 
-/// The first `s > 0` with `gap + rate s - bend s^2 = 0`; infinite if there is none, 0 without a gap.
+/// The first `s > 0` with `gap + rate s - bend s^2 = 0`; infinite if there is none, 0 without a
+/// gap.
 fn first_root(gap: Real, rate: Real, bend: Real) -> Real {
     if gap.is_nan() || gap <= 0.0 {
         return 0.0;

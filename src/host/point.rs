@@ -3,15 +3,16 @@
 //! # Derivation
 //! Let `k` be the distance from the point to the axis segment, `z` its coordinate along the axis.
 //!
-//! 1. **Beyond a flat end** (`z < 0` at a flat start, `z > length` at a flat end): the closest point lies on
-//!    the disc, at the lateral offset cut to the radius; the distance is the hypotenuse of the height above
-//!    the disc and of what was cut off.
-//! 2. **Elsewhere, `k > radius`**: the closest point of the capsule belongs to the link too, because a round
-//!    end is a half ball and the rest a barrel. The distance is `k - radius`.
-//! 3. **Elsewhere, `k <= radius`**: the point is inside. The link is the intersection of a capsule and one
-//!    half-space per flat end, and the distance from inside to the boundary of an intersection of convex sets
-//!    is the least of the distances to their boundaries: `radius - k`, `z` for a flat start, `length - z` for
-//!    a flat end. No case needs a length that exceeds the radius.
+//! 1. **Beyond a flat end** (`z < 0` at a flat start, `z > length` at a flat end): the closest
+//!    point lies on the disc, at the lateral offset cut to the radius; the distance is the
+//!    hypotenuse of the height above the disc and of what was cut off.
+//! 2. **Elsewhere, `k > radius`**: the closest point of the capsule belongs to the link too,
+//!    because a round end is a half ball and the rest a barrel. The distance is `k - radius`.
+//! 3. **Elsewhere, `k <= radius`**: the point is inside. The link is the intersection of a capsule
+//!    and one half-space per flat end, and the distance from inside to the boundary of an
+//!    intersection of convex sets is the least of the distances to their boundaries: `radius - k`,
+//!    `z` for a flat start, `length - z` for a flat end. No case needs a length that exceeds the
+//!    radius.
 //!
 //! On the axis every direction away from it is equally close; one of them is taken.
 
@@ -66,7 +67,8 @@ pub(super) fn nearest(link: &ModifiedCylinder, point: Vector) -> Option<NearestO
         feature: face,
     };
     if best.is_inside {
-        let ends = [(start_cap, z, link.start(), lateral), (end_cap, -beyond, link.end(), from_end)];
+        let ends =
+            [(start_cap, z, link.start(), lateral), (end_cap, -beyond, link.end(), from_end)];
         for (end, (cap, depth, centre, offset)) in ends.into_iter().enumerate() {
             let signed_distance = frame.restore(-depth);
             if cap == Cap::Flat && signed_distance > best.signed_distance {
@@ -104,8 +106,9 @@ fn above_disc(
     }
 }
 
-/// Exact closest points (see the head of this file). A point on the surface counts as inside. A point that is
-/// not finite projects onto itself, as everywhere in parry, and its distance is NaN or infinite.
+/// Exact closest points (see the head of this file). A point on the surface counts as inside. A
+/// point that is not finite projects onto itself, as everywhere in parry, and its distance is NaN
+/// or infinite.
 impl PointQuery for ModifiedCylinder {
     fn project_local_point(&self, pt: Vector, solid: bool) -> PointProjection {
         match nearest(self, pt) {

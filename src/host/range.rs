@@ -10,7 +10,8 @@ use std::ops::RangeInclusive;
 /// or what it makes of the smaller coordinates is out of the range of f64.
 const ITERATED_RANGE: RangeInclusive<Real> = 1.0 / COORDINATE_LIMIT..=COORDINATE_LIMIT;
 
-/// The least size of a shape beside the largest coordinate that iterations can tell from nothing: 2^-40.
+/// The least size of a shape beside the largest coordinate that iterations can tell from nothing:
+/// 2^-40.
 pub(super) const MIN_SHARE: Real = Real::from_bits((1023 - 40) << 52);
 
 /// A pose that every shape can be moved by: finite, within range, with a rotation of unit length.
@@ -39,9 +40,10 @@ pub(super) fn largest(pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape) -> Real {
     corners.map(|corner| corner.abs()).fold(Vector::ZERO, Vector::max).max_element()
 }
 
-/// What rounding can have taken from the meeting of the boxes of two shapes and of their parts; 0 for shapes without
-/// bounds. A box's corner is a sum of four products, or a vertex that is moved: a few units in the last place of the
-/// largest coordinate each. A turn makes no coordinate larger than a length, which is less than twice the largest before.
+/// What rounding can have taken from the meeting of the boxes of two shapes and of their parts; 0
+/// for shapes without bounds. A box's corner is a sum of four products, or a vertex that is moved:
+/// a few units in the last place of the largest coordinate each. A turn makes no coordinate larger
+/// than a length, which is less than twice the largest before.
 pub(super) fn rounding_of_boxes(pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape) -> Real {
     let largest = reach(g1).max(2.0 * reach(g2) + pos12.translation.abs().max_element());
     if largest <= COORDINATE_LIMIT { 16.0 * Real::EPSILON * largest } else { 0.0 }

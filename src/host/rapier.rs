@@ -1,11 +1,13 @@
 //! Links and chains in a [rapier](https://rapier.rs) world (feature `rapier`).
 //!
-//! [`install`] does what such a world needs. Where links and chains go from there is up to the scene:
-//! - **One collider for the whole robot**, a [`Chain`](crate::Chain) on one body, when something else moves the
-//!   robot and only its contacts matter.
-//! - **One body per link**, held together by joints, when contacts shall bend the robot. Neighbouring links
-//!   overlap at round joints, so build each joint with `contacts_enabled(false)`; links closer than a radius
-//!   to their next but one need an `InteractionGroups` that leaves the robot out of itself.
+//! [`install`] does what such a world needs. Where links and chains go from there is up to the
+//! scene:
+//! - **One collider for the whole robot**, a [`Chain`](crate::Chain) on one body, when something
+//!   else moves the robot and only its contacts matter.
+//! - **One body per link**, held together by joints, when contacts shall bend the robot.
+//!   Neighbouring links overlap at round joints, so build each joint with
+//!   `contacts_enabled(false)`; links closer than a radius to their next but one need an
+//!   `InteractionGroups` that leaves the robot out of itself.
 //!
 //! ```
 //! use parry_continuum::{Chain, parry::math::Vector, rapier};
@@ -50,15 +52,17 @@ use rapier3d_f64::dynamics::IntegrationParameters;
 use rapier3d_f64::geometry::NarrowPhase;
 use thiserror::Error;
 
-/// Makes a rapier world fit for links and chains. `size` is the thickness of a link in the world's unit of
-/// length: 1e-3 for a robot of a millimetre in metres, 1 for the same in millimetres.
+/// Makes a rapier world fit for links and chains. `size` is the thickness of a link in the world's
+/// unit of length: 1e-3 for a robot of a millimetre in metres, 1 for the same in millimetres.
 ///
 /// - The narrow phase gets a [`ContinuumDispatcher`].
-/// - `length_unit` becomes `size`. rapier is tuned for things of size 1: prediction, slop, the speed at which
-///   overlaps are resolved and the speed below which bodies fall asleep are all multiples of it.
-/// - Contact recycling is switched off: it would keep a contact while the link moves by up to `size / 20`.
-/// - The largest speed is lifted. It would be 400 `size` per second, which a link of a millimetre reaches by
-///   falling 8 mm.
+/// - `length_unit` becomes `size`. rapier is tuned for things of size 1: prediction, slop, the
+///   speed at which overlaps are resolved and the speed below which bodies fall asleep are all
+///   multiples of it.
+/// - Contact recycling is switched off: it would keep a contact while the link moves by up to `size
+///   / 20`.
+/// - The largest speed is lifted. It would be 400 `size` per second, which a link of a millimetre
+///   reaches by falling 8 mm.
 ///
 /// Gravity, the time step and damping remain as they are. They are in the world's own units.
 ///

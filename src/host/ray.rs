@@ -1,25 +1,25 @@
 //! Rays against a link, exactly.
 //!
 //! # Derivation
-//! The link is convex, so a line meets it in one interval `[entry, exit]`. It lies in the infinite cylinder
-//! around the axis, so the line's interval `[c0, c1]` in that cylinder decides which piece each bound belongs
-//! to. Let `z` be the coordinate along the axis of the line's point at `c0`:
+//! The link is convex, so a line meets it in one interval `[entry, exit]`. It lies in the infinite
+//! cylinder around the axis, so the line's interval `[c0, c1]` in that cylinder decides which piece
+//! each bound belongs to. Let `z` be the coordinate along the axis of the line's point at `c0`:
 //!
 //! 1. `0 <= z <= length`: the line enters through the barrel, at `c0`.
-//! 2. `z < 0`, flat start: it can only enter through the disc, where it crosses the plane `z = 0`, and does
-//!    so exactly when that is between `c0` and `c1`.
-//! 3. `z < 0`, round start: it enters where it enters the ball around the start point. (Below the plane it is
-//!    in the half ball; above, it would have crossed the plane inside the cylinder, hence inside the ball,
-//!    before.) A line that misses that ball misses the link.
+//! 2. `z < 0`, flat start: it can only enter through the disc, where it crosses the plane `z = 0`,
+//!    and does so exactly when that is between `c0` and `c1`.
+//! 3. `z < 0`, round start: it enters where it enters the ball around the start point. (Below the
+//!    plane it is in the half ball; above, it would have crossed the plane inside the cylinder,
+//!    hence inside the ball, before.) A line that misses that ball misses the link.
 //! 4. `z > length`: 2 and 3 mirrored.
 //!
-//! The exit is the same with `c1` and the directions reversed. A line parallel to the axis has `c0 = -inf`
-//! and `c1 = inf`, so that cases 2 to 4 hold for it as they stand.
+//! The exit is the same with `c1` and the directions reversed. A line parallel to the axis has `c0
+//! = -inf` and `c1 = inf`, so that cases 2 to 4 hold for it as they stand.
 //!
-//! Both quadratics are solved about the point of the line closest to the centre of what they cut (the axis,
-//! the ball): the half chord is `sqrt((radius - gap)(radius + gap))` for the line's distance `gap`, so that
-//! the radius never has to be told apart from the square of a far origin's distance. The direction need not
-//! have length 1; time is in units of it.
+//! Both quadratics are solved about the point of the line closest to the centre of what they cut
+//! (the axis, the ball): the half chord is `sqrt((radius - gap)(radius + gap))` for the line's
+//! distance `gap`, so that the radius never has to be told apart from the square of a far origin's
+//! distance. The direction need not have length 1; time is in units of it.
 
 use super::axial::{AxialFrame, perpendicular, power_of_two, unit, unit_across};
 use super::feature;
@@ -31,7 +31,8 @@ use parry3d_f64::shape::FeatureId;
 /// Where the line passes through the surface.
 #[derive(Clone, Copy)]
 struct Crossing {
-    /// In units of the line's direction, from the point of the line that is closest to the link's middle.
+    /// In units of the line's direction, from the point of the line that is closest to the link's
+    /// middle.
     time: Real,
     /// Outward unit normal.
     normal: Vector,
@@ -87,8 +88,8 @@ impl<'a> Line<'a> {
         chord(self.lateral, self.lateral_direction, self.frame.radius)
     }
 
-    /// The crossing at one bound of the interval, `side` being -1 at the entry and 1 at the exit, given where
-    /// that bound leaves the infinite cylinder.
+    /// The crossing at one bound of the interval, `side` being -1 at the entry and 1 at the exit,
+    /// given where that bound leaves the infinite cylinder.
     fn crossing(&self, bound: Real, side: Real, enters: Real, leaves: Real) -> Option<Crossing> {
         let z = self.z + bound * self.rise;
         let (end, outward, from_end) = if z < 0.0 {
@@ -119,12 +120,13 @@ impl<'a> Line<'a> {
 
     /// The normal where a wire has none: the one that faces the ray.
     fn facing(&self) -> Vector {
-        unit_across(-self.direction, self.frame.axis).unwrap_or_else(|| perpendicular(self.frame.axis))
+        unit_across(-self.direction, self.frame.axis)
+            .unwrap_or_else(|| perpendicular(self.frame.axis))
     }
 }
 
-/// The times at which `point + t direction` enters and leaves the ball (or, for vectors perpendicular to the
-/// axis, the cylinder) of `radius` around the origin.
+/// The times at which `point + t direction` enters and leaves the ball (or, for vectors
+/// perpendicular to the axis, the cylinder) of `radius` around the origin.
 fn chord(point: Vector, direction: Vector, radius: Real) -> Option<(Real, Real)> {
     let speed_squared = direction.length_squared();
     let middle = -point.dot(direction) / speed_squared;
@@ -136,7 +138,8 @@ fn chord(point: Vector, direction: Vector, radius: Real) -> Option<(Real, Real)>
     Some((middle - half, middle + half))
 }
 
-/// The ray's first contact with the link: with the solid, or with its surface when `solid` is false.
+/// The ray's first contact with the link: with the solid, or with its surface when `solid` is
+/// false.
 fn cast(link: &ModifiedCylinder, ray: &Ray, solid: bool) -> Option<RayIntersection> {
     if !ray.dir.is_finite() {
         return None;
@@ -167,7 +170,8 @@ fn cast(link: &ModifiedCylinder, ray: &Ray, solid: bool) -> Option<RayIntersecti
         }
         (false, Some((entry, exit))) => {
             let (start, end) = (time_of(entry), time_of(exit));
-            // Outside, yet between the bounds: on the surface but for rounding, at the nearer of the two.
+            // Outside, yet between the bounds: on the surface but for rounding, at the nearer of
+            // the two.
             if start < 0.0 && end < -start {
                 return None;
             }
@@ -180,9 +184,9 @@ fn cast(link: &ModifiedCylinder, ray: &Ray, solid: bool) -> Option<RayIntersecti
 
 /// Exact times of impact (see the head of this file), in units of the ray's direction.
 ///
-/// From inside, a solid is hit at time 0 with a zero normal, as for parry's capsule; a hollow link where the
-/// ray leaves, with the normal pointing inwards. A direction of length zero hits only the solid it starts in.
-/// A ray that is not finite hits nothing.
+/// From inside, a solid is hit at time 0 with a zero normal, as for parry's capsule; a hollow link
+/// where the ray leaves, with the normal pointing inwards. A direction of length zero hits only the
+/// solid it starts in. A ray that is not finite hits nothing.
 impl RayCast for ModifiedCylinder {
     fn cast_local_ray_and_get_normal(
         &self,

@@ -1,7 +1,8 @@
 //! A flat cap that faces a triangle: what of the triangle's outline lies below its disc.
 //!
-//! Points of the triangle are taken back along the normal onto the disc's plane. A corner that lands on the disc
-//! counts, and so do the two points where an edge comes below the rim and leaves it.
+//! Points of the triangle are taken back along the normal onto the disc's plane. A corner that
+//! lands on the disc counts, and so do the two points where an edge comes below the rim and leaves
+//! it.
 
 use super::feature;
 use super::link_triangle_points::Meeting;
@@ -37,7 +38,9 @@ fn collect_below(meeting: &mut Meeting, end: usize) {
         // Not for an edge that the normal runs along.
         if squared > 0.0 && gap < radius {
             let half = ((radius - gap) * (radius + gap) / squared).sqrt();
-            for (share, name) in [middle - half, middle + half].into_iter().zip(feature::RIM_ENDS[end]) {
+            for (share, name) in
+                [middle - half, middle + half].into_iter().zip(feature::RIM_ENDS[end])
+            {
                 if 0.0 < share && share < 1.0 {
                     let q = v.lerp(w, share);
                     let names = (PackedFeatureId::edge(name), PackedFeatureId::edge(j as u32));

@@ -1,9 +1,10 @@
 //! A link or a chain against a half-space, exactly.
 //!
-//! The half-space ends at the plane through its origin, and its normal points out of it. What of a link is lowest over
-//! the plane is its support point against the normal (see [`support_map`](super::support_map)). Its height is the
-//! distance where it is positive, and minus the least translation that separates the two where it is not. (parry's
-//! `contact` takes the pose the wrong way round where the half-space comes second, and it has no nonlinear cast.)
+//! The half-space ends at the plane through its origin, and its normal points out of it. What of a
+//! link is lowest over the plane is its support point against the normal (see
+//! [`support_map`](super::support_map)). Its height is the distance where it is positive, and minus
+//! the least translation that separates the two where it is not. (parry's `contact` takes the pose
+//! the wrong way round where the half-space comes second, and it has no nonlinear cast.)
 
 use super::axial::unit;
 use super::range::in_range;
@@ -38,7 +39,11 @@ impl<'a> RobotHalfSpace<'a> {
     ///
     /// # Errors
     /// [`Unsupported`] if the half-space's normal has no direction.
-    pub fn of(pos12: &Pose, g1: &'a dyn Shape, g2: &'a dyn Shape) -> Result<Option<Self>, Unsupported> {
+    pub fn of(
+        pos12: &Pose,
+        g1: &'a dyn Shape,
+        g2: &'a dyn Shape,
+    ) -> Result<Option<Self>, Unsupported> {
         let (links, plane, robot_is_first) =
             match (links_of(g1), g2.as_halfspace(), g1.as_halfspace(), links_of(g2)) {
                 (Some(links), Some(plane), _, _) => (links, plane, true),
@@ -97,7 +102,8 @@ impl<'a> RobotHalfSpace<'a> {
     ) -> Result<Option<ShapeCastHit>, Unsupported> {
         let lowest = self.lowest()?;
         // Of the robot, in the half-space's frame.
-        let velocity = if self.robot_is_first { -(self.pose.rotation * local_vel12) } else { local_vel12 };
+        let velocity =
+            if self.robot_is_first { -(self.pose.rotation * local_vel12) } else { local_vel12 };
         let speed = -velocity.dot(self.normal);
         let excess = lowest.height - options.target_distance;
         let (time_of_impact, status) = if excess > 0.0 {
@@ -116,8 +122,10 @@ impl<'a> RobotHalfSpace<'a> {
         // Where it will be then on the plane, and where it is now on the robot.
         let below = lowest.point - self.normal * lowest.height;
         let along = velocity + self.normal * speed;
-        let (witness1, witness2) =
-            self.in_order(self.pose.inverse_transform_point(lowest.point), below + along * time_of_impact);
+        let (witness1, witness2) = self.in_order(
+            self.pose.inverse_transform_point(lowest.point),
+            below + along * time_of_impact,
+        );
         let (normal1, normal2) = self.normals();
         let (subshape1, subshape2) = self.in_order(lowest.link, 0);
         Ok(Some(ShapeCastHit {

@@ -1,8 +1,9 @@
-//! A link or a chain against a triangle or a triangle mesh: the pairs that this crate answers exactly.
+//! A link or a chain against a triangle or a triangle mesh: the pairs that this crate answers
+//! exactly.
 //!
-//! A triangle is measured in the frame of the first shape, so that only the second is moved. A mesh stays
-//! where it is and the robot is moved into its frame. Answers go back to the frames of the two shapes at the
-//! end.
+//! A triangle is measured in the frame of the first shape, so that only the second is moved. A mesh
+//! stays where it is and the robot is moved into its frame. Answers go back to the frames of the
+//! two shapes at the end.
 
 use super::link_triangle::{self, LinkContact};
 use super::mesh_search::{SearchGoal, search};
@@ -52,7 +53,12 @@ impl<'a> RobotSurface<'a> {
     /// The pair, if the shapes are one.
     pub fn of(pos12: &'a Pose, g1: &'a dyn Shape, g2: &'a dyn Shape) -> Option<Self> {
         let pair = |robot, surface, robot_is_first| {
-            Some(Self { links: links_of(robot)?, surface: Surface::of(surface)?, pos12, robot_is_first })
+            Some(Self {
+                links: links_of(robot)?,
+                surface: Surface::of(surface)?,
+                pos12,
+                robot_is_first,
+            })
         };
         pair(g1, g2, true).or_else(|| pair(g2, g1, false))
     }
@@ -85,8 +91,11 @@ impl<'a> RobotSurface<'a> {
     }
 
     pub fn contact(&self, prediction: Real) -> Result<Option<Contact>, Unsupported> {
-        let Some(nearest) = self.nearest(within(prediction)?, SearchGoal::Nearest)? else { return Ok(None) };
-        let mut best = (self.contact_of(nearest.link, nearest.triangle)?, nearest.link, nearest.triangle);
+        let Some(nearest) = self.nearest(within(prediction)?, SearchGoal::Nearest)? else {
+            return Ok(None);
+        };
+        let mut best =
+            (self.contact_of(nearest.link, nearest.triangle)?, nearest.link, nearest.triangle);
         // What is within the prediction is what the distance says.
         if nearest.distance > 0.0 {
             best.0.distance = nearest.distance;
@@ -124,7 +133,8 @@ impl<'a> RobotSurface<'a> {
             let (distance, on_robot, on_surface) = link_triangle::closest(&link, triangle);
             let is_nearer = best.as_ref().is_none_or(|best| distance < best.distance);
             if distance <= margin && is_nearer {
-                best = Some(NearestPair { link: index, triangle: 0, distance, on_robot, on_surface });
+                best =
+                    Some(NearestPair { link: index, triangle: 0, distance, on_robot, on_surface });
             }
         }
         Ok(best)
@@ -161,7 +171,8 @@ impl<'a> RobotSurface<'a> {
     }
 
     fn contact_of(&self, link: usize, triangle: u32) -> Result<LinkContact, Unsupported> {
-        link_triangle::contact(&self.placed(&self.links[link])?, self.triangle(triangle)?).ok_or(Unsupported)
+        link_triangle::contact(&self.placed(&self.links[link])?, self.triangle(triangle)?)
+            .ok_or(Unsupported)
     }
 
     /// The triangles whose boxes meet the link's.
@@ -209,7 +220,9 @@ impl<'a> RobotSurface<'a> {
     /// A point of each in the frame of the shape that it belongs to, the first shape's first.
     fn points(&self, on_robot: Vector, on_surface: Vector) -> (Vector, Vector) {
         match (self.surface, self.robot_is_first) {
-            (Surface::Triangle(_), true) => (on_robot, self.pos12.inverse_transform_point(on_surface)),
+            (Surface::Triangle(_), true) => {
+                (on_robot, self.pos12.inverse_transform_point(on_surface))
+            }
             (Surface::Mesh(_), true) => (self.pos12 * on_robot, on_surface),
             (_, false) => (on_surface, self.pos12.inverse_transform_point(on_robot)),
         }

@@ -58,7 +58,8 @@ where
     let robot_pose = if robot_is_first { pos12.inverse() } else { *pos12 };
     let rounding = rounding_of_depths(pos12, g1, g2);
     let name = |manifold: &ContactManifold<M, C>| (manifold.subshape1, manifold.subshape2);
-    let mut before: HashMap<_, _> = manifolds.drain(..).map(|manifold| (name(&manifold), manifold)).collect();
+    let mut before: HashMap<_, _> =
+        manifolds.drain(..).map(|manifold| (name(&manifold), manifold)).collect();
     let (mut near, mut of_link, mut met) = (Vec::new(), Vec::new(), Vec::new());
     for (index, link) in links.iter().enumerate() {
         near.clear();
@@ -72,8 +73,9 @@ where
             } else {
                 ((*id, index as u32), (normals, None))
             };
-            let mut manifold =
-                before.remove(&ids).unwrap_or_else(|| ContactManifold::with_data(ids.0, ids.1, M::default()));
+            let mut manifold = before
+                .remove(&ids)
+                .unwrap_or_else(|| ContactManifold::with_data(ids.0, ids.1, M::default()));
             let is_free = |edge: usize| surface.is_free(*id, triangle, edge);
             let rules = TriangleRules { constraints, is_free: &is_free };
             let updated = LinkTrianglePair::new(link, triangle, robot_is_first).and_then(|pair| {
@@ -138,9 +140,8 @@ impl<'a> TriangleSurface<'a> {
             Self::Mesh(mesh) => {
                 near.extend(mesh.bvh().intersect_aabb(bounds).map(|id| (id, mesh.triangle(id))))
             }
-            Self::Field(field) => {
-                field.map_elements_in_local_aabb(bounds, &mut |id, triangle| near.push((id, *triangle)))
-            }
+            Self::Field(field) => field
+                .map_elements_in_local_aabb(bounds, &mut |id, triangle| near.push((id, *triangle))),
         }
     }
 
@@ -170,7 +171,8 @@ impl<'a> TriangleSurface<'a> {
         self.collect_near(&Aabb::new(middle, middle).loosened(rounding), &mut near);
         let holds = |other: &Triangle| {
             let corners = other.vertices().map(Vec3::from);
-            other.normal().is_some() && point_triangle(Vec3::from(middle), corners).distance <= rounding
+            other.normal().is_some()
+                && point_triangle(Vec3::from(middle), corners).distance <= rounding
         };
         !near.iter().any(|(other_id, other)| *other_id != id && holds(other))
     }

@@ -1,9 +1,10 @@
 //! The link as one of parry's shapes.
 //!
-//! Bounds are the smallest of their kind. For the ball around a link with one flat and one round end: a ball
-//! centred on the axis `c` from the flat end's centre must reach the rim, `sqrt(c^2 + r^2)`, and the pole of
-//! the half ball, `l - c + r`. The first grows with `c`, the second falls, so the smallest ball has both
-//! equal: `c = l (l + 2 r) / (2 (l + r))`, which lies between the ends.
+//! Bounds are the smallest of their kind. For the ball around a link with one flat and one round
+//! end: a ball centred on the axis `c` from the flat end's centre must reach the rim, `sqrt(c^2 +
+//! r^2)`, and the pole of the half ball, `l - c + r`. The first grows with `c`, the second falls,
+//! so the smallest ball has both equal: `c = l (l + 2 r) / (2 (l + r))`, which lies between the
+//! ends.
 
 use super::{feature, mass};
 use crate::robot::{Cap, ModifiedCylinder};
@@ -15,8 +16,8 @@ use parry3d_f64::shape::{
 };
 use std::f64::consts::FRAC_PI_2;
 
-/// A convex custom shape. Its faces are 0, the barrel, 1 and 2, the start and end cap; its edges 0 and 1, the
-/// rims of the flat caps.
+/// A convex custom shape. Its faces are 0, the barrel, 1 and 2, the start and end cap; its edges 0
+/// and 1, the rims of the flat caps.
 impl Shape for ModifiedCylinder {
     fn compute_local_aabb(&self) -> Aabb {
         self.local_aabb()
@@ -43,10 +44,10 @@ impl Shape for ModifiedCylinder {
         Box::new(*self)
     }
 
-    /// The scaled link, where it is a link again: under a scale whose three factors have the same magnitude;
-    /// for a wire, under every scale; and for a cylinder along a coordinate axis, under one whose other two
-    /// factors have the same magnitude. Otherwise nothing, because the true image has elliptic sections. The
-    /// number of subdivisions plays no part.
+    /// The scaled link, where it is a link again: under a scale whose three factors have the same
+    /// magnitude; for a wire, under every scale; and for a cylinder along a coordinate axis,
+    /// under one whose other two factors have the same magnitude. Otherwise nothing, because
+    /// the true image has elliptic sections. The number of subdivisions plays no part.
     fn scale_dyn(&self, scale: Vector, _num_subdivisions: u32) -> Option<Box<dyn Shape>> {
         let radius = self.radius() * radial_factor(self, scale.abs())?;
         let scaled = Self::new(self.start() * scale, self.end() * scale, radius, self.caps());
@@ -105,8 +106,8 @@ impl Shape for ModifiedCylinder {
     }
 }
 
-/// Where the smallest ball around a link with one flat end has its centre, from that end (see the head of
-/// this file).
+/// Where the smallest ball around a link with one flat end has its centre, from that end (see the
+/// head of this file).
 fn from_flat_end(l: Real, r: Real) -> Real {
     // l (l + 2 r) / (2 (l + r)) without the product of two lengths.
     0.5 * l * (1.0 + r / (l + r))

@@ -1,21 +1,24 @@
-//! When a link that moves straight meets a triangle, another link or another convex shape: Newton's steps, never late.
+//! When a link that moves straight meets a triangle, another link or another convex shape: Newton's
+//! steps, never late.
 //!
-//! Neither of the two turns. In the link's frame the other, the *wall*, moves at v; n is a unit vector from the link to the
-//! wall that separates them, and g the gap between them along it. After a time s the gap along the same n is g + s <n, v>,
-//! and the distance at least that, whatever n is. So where g > e nothing is within the target distance e before
-//! s = (g - e) / -<n, v>, and nothing ever is if <n, v> >= 0. There the two are measured again. Both are convex, hence so is
-//! their distance as a function of time, of which these steps are Newton's: they come from the safe side and do not pass the
-//! first root.
+//! Neither of the two turns. In the link's frame the other, the *wall*, moves at v; n is a unit
+//! vector from the link to the wall that separates them, and g the gap between them along it. After
+//! a time s the gap along the same n is g + s <n, v>, and the distance at least that, whatever n
+//! is. So where g > e nothing is within the target distance e before s = (g - e) / -<n, v>, and
+//! nothing ever is if <n, v> >= 0. There the two are measured again. Both are convex, hence so is
+//! their distance as a function of time, of which these steps are Newton's: they come from the safe
+//! side and do not pass the first root.
 //!
-//! Where g is not above e, n says nothing: the two touch. At the start, and if the host does not stop there, they are let go
-//! when they part along n; but only if n is known. Points that are close to one another have no direction between them, and
-//! two that may part or not are held.
+//! Where g is not above e, n says nothing: the two touch. At the start, and if the host does not
+//! stop there, they are let go when they part along n; but only if n is known. Points that are
+//! close to one another have no direction between them, and two that may part or not are held.
 //!
-//! They end where the distance is above the target by no more than the wall's [`CastWall::TOUCHING`] of the link's size, or by
-//! rounding: the hit is that much early at most, measured along n.
+//! They end where the distance is above the target by no more than the wall's
+//! [`CastWall::TOUCHING`] of the link's size, or by rounding: the hit is that much early at most,
+//! measured along n.
 //!
-//! (parry's cast follows a ray through the difference of the two shapes by tetrahedra. Where these have no volume, as with a
-//! link beside the flat side of a box, it may panic.)
+//! (parry's cast follows a ray through the difference of the two shapes by tetrahedra. Where these
+//! have no volume, as with a link beside the flat side of a box, it may panic.)
 
 use super::axial::unit;
 use super::link_pair::{LinkPair, links_of_pair};
@@ -54,8 +57,8 @@ trait CastWall {
     }
 }
 
-/// The first hit of a link and a triangle, of which the second of the pair moves at `local_vel12` in the frame of the
-/// first.
+/// The first hit of a link and a triangle, of which the second of the pair moves at `local_vel12`
+/// in the frame of the first.
 ///
 /// # Errors
 /// [`Unsupported`] for what is out of range.
@@ -70,7 +73,8 @@ pub(super) fn cast_triangle(
     way.cast(&TriangleWall { link: pair.link, corners }, options)
 }
 
-/// The same of two links, or a link and a shape of parry's that is a link. Nothing if the shapes are no such pair.
+/// The same of two links, or a link and a shape of parry's that is a link. Nothing if the shapes
+/// are no such pair.
 ///
 /// # Errors
 /// [`Unsupported`] for what is out of range.
@@ -85,8 +89,8 @@ pub(super) fn cast_link(
     way.cast(&LinkWall { link: &first, wall: second.transformed(pos12) }, options).map(Some)
 }
 
-/// The same of a link and a convex shape of any kind, in either order. Nothing if the shapes are no such pair.
-/// `dispatcher` gives their contacts.
+/// The same of a link and a convex shape of any kind, in either order. Nothing if the shapes are no
+/// such pair. `dispatcher` gives their contacts.
 ///
 /// # Errors
 /// [`Unsupported`] for what is out of range or refused by the dispatcher.
@@ -187,7 +191,8 @@ impl<D: QueryDispatcher> CastWall for ConvexWall<'_, D> {
     }
 }
 
-/// The contact of a link and a convex shape at a pose in the link's frame. Where they overlap the distance is 0 or less.
+/// The contact of a link and a convex shape at a pose in the link's frame. Where they overlap the
+/// distance is 0 or less.
 ///
 /// # Errors
 /// [`Unsupported`] for what the dispatcher refuses.
@@ -198,7 +203,8 @@ pub(super) fn iterated_contact(
     pose: &Pose,
 ) -> Result<LinkContact, Unsupported> {
     let gap = |normal: Vector| {
-        (support.support_point_toward(pose, -normal) - link.local_support_point_toward(normal)).dot(normal)
+        (support.support_point_toward(pose, -normal) - link.local_support_point_toward(normal))
+            .dot(normal)
     };
     let apart = match dispatcher.closest_points(pose, link, shape, Real::MAX)? {
         ClosestPoints::Disjoint => return Err(Unsupported),
@@ -224,7 +230,8 @@ pub(super) fn iterated_contact(
         normal: contact.normal1,
     });
     let start = link.start();
-    // Where the one says that they meet and the other does not, they touch; nobody knows along what.
+    // Where the one says that they meet and the other does not, they touch; nobody knows along
+    // what.
     let touch = LinkContact { distance: 0.0, on_link: start, on_other: start, normal: Vector::X };
     Ok(match (contact, apart) {
         (Some(contact), Some(apart)) if gap(contact.normal) < gap(apart.normal) => apart,
@@ -243,7 +250,12 @@ struct WallPath<'a> {
 }
 
 impl<'a> WallPath<'a> {
-    fn new(link: &'a ModifiedCylinder, link_is_first: bool, pos12: &Pose, local_vel12: Vector) -> Self {
+    fn new(
+        link: &'a ModifiedCylinder,
+        link_is_first: bool,
+        pos12: &Pose,
+        local_vel12: Vector,
+    ) -> Self {
         if link_is_first {
             return Self { link, link_is_first, pose: *pos12, velocity: local_vel12 };
         }
@@ -275,8 +287,13 @@ impl<'a> WallPath<'a> {
             let ahead = gap.min(contact.distance) - options.target_distance;
             let (rounding, touching) = (self.rounding(largest, shift)?, W::TOUCHING * size);
             if step == 0 && (excess <= 0.0 || ahead <= rounding) {
-                let is_known = contact.distance < 0.0 || gap >= contact.distance - touching - rounding;
-                let may_go = if options.stop_at_penetration { excess > 0.0 && ahead > 0.0 } else { is_known };
+                let is_known =
+                    contact.distance < 0.0 || gap >= contact.distance - touching - rounding;
+                let may_go = if options.stop_at_penetration {
+                    excess > 0.0 && ahead > 0.0
+                } else {
+                    is_known
+                };
                 if may_go && closing <= 0.0 {
                     return Ok(None);
                 }
@@ -293,11 +310,13 @@ impl<'a> WallPath<'a> {
                 break;
             }
             let next = time + ahead / closing;
-            // Written so that NaN, which only comes of what does not move, is never. Nor is anything met that would have to
-            // come from beyond the range of both.
-            let may_meet =
-                closing > 0.0 && next <= options.max_time_of_impact && is_within_reach(velocity * next);
-            if !may_meet || self.has_passed(wall, velocity * next, options.target_distance, largest) {
+            // Written so that NaN, which only comes of what does not move, is never. Nor is
+            // anything met that would have to come from beyond the range of both.
+            let may_meet = closing > 0.0
+                && next <= options.max_time_of_impact
+                && is_within_reach(velocity * next);
+            if !may_meet || self.has_passed(wall, velocity * next, options.target_distance, largest)
+            {
                 return Ok(None);
             }
             if next <= time {
@@ -310,17 +329,26 @@ impl<'a> WallPath<'a> {
         Ok(Some(self.hit(contact, time, status)))
     }
 
-    /// Whether the wall, moved so far, has the link behind it for good. Until then it was clear. (A velocity that is all but along
-    /// the plane between the two leads far away, where iterations tell nothing any more.)
-    fn has_passed<W: CastWall>(&self, wall: &W, shift: Vector, target: Real, largest: Real) -> bool {
+    /// Whether the wall, moved so far, has the link behind it for good. Until then it was clear. (A
+    /// velocity that is all but along the plane between the two leads far away, where
+    /// iterations tell nothing any more.)
+    fn has_passed<W: CastWall>(
+        &self,
+        wall: &W,
+        shift: Vector,
+        target: Real,
+        largest: Real,
+    ) -> bool {
         let Some(way) = unit(self.velocity) else { return false };
-        let passed = wall.begins(way) + shift.dot(way) - self.link.local_support_point(way).dot(way);
+        let passed =
+            wall.begins(way) + shift.dot(way) - self.link.local_support_point(way).dot(way);
         let places = [shift, self.link.start(), self.link.end()].into_iter();
         let largest = places.map(|place| place.abs().max_element()).fold(largest, Real::max);
         passed > target.max(0.0) + ROUNDING * largest
     }
 
-    /// What rounding can do to a distance after the wall, whose largest coordinate is given, has moved.
+    /// What rounding can do to a distance after the wall, whose largest coordinate is given, has
+    /// moved.
     fn rounding(&self, mut largest: Real, shift: Vector) -> Result<Real, Unsupported> {
         for place in [shift, self.link.start(), self.link.end()] {
             largest = largest.max(in_range(place)?);
@@ -346,12 +374,16 @@ impl<'a> WallPath<'a> {
     }
 }
 
-/// Whether a wall that is moved so far can meet a link at all: the wall's coordinates are within the limit, and a link
-/// reaches to twice the limit.
+/// Whether a wall that is moved so far can meet a link at all: the wall's coordinates are within
+/// the limit, and a link reaches to twice the limit.
 fn is_within_reach(shift: Vector) -> bool {
     shift.abs().max_element() <= 4.0 * COORDINATE_LIMIT
 }
 
 fn finite(contact: LinkContact) -> Result<LinkContact, Unsupported> {
-    if contact.distance.is_finite() && contact.normal.is_finite() { Ok(contact) } else { Err(Unsupported) }
+    if contact.distance.is_finite() && contact.normal.is_finite() {
+        Ok(contact)
+    } else {
+        Err(Unsupported)
+    }
 }

@@ -1,8 +1,8 @@
 //! A dispatcher that remembers whether a pair was refused.
 //!
-//! parry's queries on composite shapes skip the parts whose pair the dispatcher does not support: a refused
-//! pair reads as infinitely far away. They are handed a [`StrictDispatcher`] instead, and once one of its pairs was
-//! refused, so is the whole answer.
+//! parry's queries on composite shapes skip the parts whose pair the dispatcher does not support: a
+//! refused pair reads as infinitely far away. They are handed a [`StrictDispatcher`] instead, and
+//! once one of its pairs was refused, so is the whole answer.
 
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::query::details::NormalConstraints;
@@ -21,8 +21,8 @@ pub(super) struct StrictDispatcher<'a, D> {
 }
 
 impl<'a, D> StrictDispatcher<'a, D> {
-    /// The answer that `query` gets from `dispatcher`, unless one of the pairs that it consists of was
-    /// refused.
+    /// The answer that `query` gets from `dispatcher`, unless one of the pairs that it consists of
+    /// was refused.
     pub fn ask<T>(dispatcher: &'a D, query: impl FnOnce(&Self) -> T) -> Result<T, Unsupported> {
         let watched = Self { dispatcher, refused: AtomicBool::new(false) };
         let answer = query(&watched);
@@ -47,7 +47,12 @@ impl<D: QueryDispatcher> QueryDispatcher for StrictDispatcher<'_, D> {
         self.record(self.dispatcher.intersection_test(pos12, g1, g2))
     }
 
-    fn distance(&self, pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape) -> Result<ShapeDistance, Unsupported> {
+    fn distance(
+        &self,
+        pos12: &Pose,
+        g1: &dyn Shape,
+        g2: &dyn Shape,
+    ) -> Result<ShapeDistance, Unsupported> {
         self.record(self.dispatcher.distance(pos12, g1, g2))
     }
 
@@ -118,7 +123,9 @@ where
         manifolds: &mut Vec<ContactManifold<M, C>>,
         workspace: &mut Option<ContactManifoldsWorkspace>,
     ) -> Result<(), Unsupported> {
-        self.record(self.dispatcher.contact_manifolds(pos12, g1, g2, prediction, manifolds, workspace))
+        self.record(
+            self.dispatcher.contact_manifolds(pos12, g1, g2, prediction, manifolds, workspace),
+        )
     }
 
     fn contact_manifold_convex_convex(

@@ -1,14 +1,15 @@
 //! The support map of a link, and its polygonal features for parry's generic algorithms.
 //!
-//! The support point of a direction that leans towards one end belongs to that end: on a half ball, one
-//! radius along the direction; on a disc, one radius along the part of the direction perpendicular to the
-//! axis. (The other end's best point along that direction is at most the first end's rim, shifted back along
-//! the axis.)
+//! The support point of a direction that leans towards one end belongs to that end: on a half ball,
+//! one radius along the direction; on a disc, one radius along the part of the direction
+//! perpendicular to the axis. (The other end's best point along that direction is at most the first
+//! end's rim, shifted back along the axis.)
 //!
-//! The **features** are approximations, because parry's clipping knows polygons of at most four vertices: a
-//! flat cap is a square inscribed in its disc with one corner at the azimuth asked for, everything else a
-//! segment along the barrel whose ends are support points of the two ends. They serve contact manifolds
-//! against shapes that this crate has no closed form for; no distance, contact or ray uses them.
+//! The **features** are approximations, because parry's clipping knows polygons of at most four
+//! vertices: a flat cap is a square inscribed in its disc with one corner at the azimuth asked for,
+//! everything else a segment along the barrel whose ends are support points of the two ends. They
+//! serve contact manifolds against shapes that this crate has no closed form for; no distance,
+//! contact or ray uses them.
 
 use super::axial::{axis_or_x, perpendicular, unit, unit_across};
 use super::feature::{self, crest_end};
@@ -17,7 +18,8 @@ use crate::robot::{Cap, ModifiedCylinder};
 use parry3d_f64::math::Vector;
 use parry3d_f64::shape::{PackedFeatureId, PolygonalFeature, PolygonalFeatureMap, SupportMap};
 
-/// Exact support points (see the head of this file); the start point for a direction of length zero.
+/// Exact support points (see the head of this file); the start point for a direction of length
+/// zero.
 impl SupportMap for ModifiedCylinder {
     fn local_support_point(&self, dir: Vector) -> Vector {
         unit(dir).map_or(self.start(), |dir| self.local_support_point_toward(dir))
@@ -42,7 +44,12 @@ impl PolygonalFeatureMap for ModifiedCylinder {
         *out_feature = feature_at(self, axis, dir, azimuth);
     }
 
-    fn local_support_feature_toward(&self, dir: Vector, hint: Vector, out_feature: &mut PolygonalFeature) {
+    fn local_support_feature_toward(
+        &self,
+        dir: Vector,
+        hint: Vector,
+        out_feature: &mut PolygonalFeature,
+    ) {
         let axis = axis_or_x(self);
         let azimuth = unit_across(0.5 * hint - 0.5 * self.start(), axis)
             .or_else(|| unit_across(dir, axis))
@@ -52,7 +59,12 @@ impl PolygonalFeatureMap for ModifiedCylinder {
 }
 
 /// The polygon of unit direction `dir` with a corner at `azimuth`.
-fn feature_at(link: &ModifiedCylinder, axis: Vector, dir: Vector, azimuth: Vector) -> PolygonalFeature {
+fn feature_at(
+    link: &ModifiedCylinder,
+    axis: Vector,
+    dir: Vector,
+    azimuth: Vector,
+) -> PolygonalFeature {
     let lean = axis.dot(dir);
     let end = usize::from(lean > 0.0);
     let radius = link.radius();
@@ -63,7 +75,8 @@ fn feature_at(link: &ModifiedCylinder, axis: Vector, dir: Vector, azimuth: Vecto
         for (corner, offset) in [azimuth, across, -azimuth, -across].into_iter().enumerate() {
             polygon.vertices[corner] = centre(link, end) + offset * radius;
             polygon.vids[corner] = feature::square_corner(end, corner);
-            polygon.eids[corner] = PackedFeatureId::edge(feature::SQUARE + (4 * end + corner) as u32);
+            polygon.eids[corner] =
+                PackedFeatureId::edge(feature::SQUARE + (4 * end + corner) as u32);
         }
         polygon.fid = feature::CAP[end].into();
         polygon.num_vertices = 4;

@@ -1,10 +1,12 @@
-//! What a link stands on: the points of its surface that a plane beyond it, across a unit normal, would carry.
+//! What a link stands on: the points of its surface that a plane beyond it, across a unit normal,
+//! would carry.
 //!
 //! 1. **A round cap** that leans along the normal: its one point furthest along it.
-//! 2. **A flat cap** that faces along it: four points of its rim that stay where they are on the link, so that
-//!    they are the same from step to step. The rim's lowest point is an end of the crest.
-//! 3. **The crest** of the barrel, its line furthest along the normal: its two ends. At a round cap that leans along
-//!    the normal it ends in the cap's own lowest point.
+//! 2. **A flat cap** that faces along it: four points of its rim that stay where they are on the
+//!    link, so that they are the same from step to step. The rim's lowest point is an end of the
+//!    crest.
+//! 3. **The crest** of the barrel, its line furthest along the normal: its two ends. At a round cap
+//!    that leans along the normal it ends in the cap's own lowest point.
 
 use super::axial::{perpendicular, unit_across};
 use super::feature::{self, crest_end};

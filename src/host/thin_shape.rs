@@ -1,9 +1,10 @@
 //! Segments, and shapes that are no more than a segment or a triangle, as triangles.
 //!
-//! Such shapes are a rounded triangle with a border of 0, or a box or a cone that is a line. parry's iterations
-//! build tetrahedra from the difference of two shapes. With these the tetrahedra have no volume, and parry may panic. To
-//! this crate they are triangles, most of them without an area, and triangles are answered exactly. A thickness of up to
-//! [`MIN_SHARE`] of the shape's size is left out, and the answers are off by that much.
+//! Such shapes are a rounded triangle with a border of 0, or a box or a cone that is a line.
+//! parry's iterations build tetrahedra from the difference of two shapes. With these the tetrahedra
+//! have no volume, and parry may panic. To this crate they are triangles, most of them without an
+//! area, and triangles are answered exactly. A thickness of up to [`MIN_SHARE`] of the shape's size
+//! is left out, and the answers are off by that much.
 
 use super::range::MIN_SHARE;
 use super::robot_surface::links_of;
@@ -28,8 +29,9 @@ impl ThinShape {
     /// The pair, with a triangle in the place of the other shape, if it is one.
     pub fn pair<'a>(&'a self, g1: &'a dyn Shape, g2: &'a dyn Shape) -> [&'a dyn Shape; 2] {
         let [first, second] = &self.stand_ins;
-        let or =
-            |stand_in: &'a Option<Triangle>, shape| stand_in.as_ref().map_or(shape, |it| it as &dyn Shape);
+        let or = |stand_in: &'a Option<Triangle>, shape| {
+            stand_in.as_ref().map_or(shape, |it| it as &dyn Shape)
+        };
         [or(first, g1), or(second, g2)]
     }
 }
@@ -59,7 +61,9 @@ fn triangle_of(shape: &dyn Shape) -> Option<Triangle> {
             upright(round.inner_shape.half_height)
         }
         TypedShape::Cone(cone) if is_thin(cone.radius) => upright(cone.half_height),
-        TypedShape::RoundCone(round) if is_thin(round.border_radius) && is_thin(round.inner_shape.radius) => {
+        TypedShape::RoundCone(round)
+            if is_thin(round.border_radius) && is_thin(round.inner_shape.radius) =>
+        {
             upright(round.inner_shape.half_height)
         }
         _ => None,

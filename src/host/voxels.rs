@@ -1,13 +1,15 @@
 //! Voxels, one by one.
 //!
-//! parry's cast against voxels goes through all the empty cells on the way, however many, and none of its queries names
-//! the voxel that answered. So the voxels are visited here as [`height_field`](super::height_field) are.
+//! parry's cast against voxels goes through all the empty cells on the way, however many, and none
+//! of its queries names the voxel that answered. So the voxels are visited here as
+//! [`height_field`](super::height_field) are.
 
 use super::height_field::{reached, rounding, swept};
 use parry3d_f64::bounding_volume::{Aabb, BoundingVolume};
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::query::{
-    NonlinearRigidMotion, QueryDispatcher, ShapeCastHit, ShapeCastOptions, ShapeIntersection, Unsupported,
+    NonlinearRigidMotion, QueryDispatcher, ShapeCastHit, ShapeCastOptions, ShapeIntersection,
+    Unsupported,
 };
 use parry3d_f64::shape::{Cuboid, Shape, Voxels};
 

@@ -13,7 +13,11 @@ pub(crate) fn check_triangles(triangles: &[[u32; 3]], vertices: usize) -> Result
 }
 
 /// A triangle with the number `triangle` whose corners are among so many vertices.
-pub(crate) fn check_triangle(triangle: usize, corners: &[u32; 3], vertices: usize) -> Result<(), MeshError> {
+pub(crate) fn check_triangle(
+    triangle: usize,
+    corners: &[u32; 3],
+    vertices: usize,
+) -> Result<(), MeshError> {
     match corners.iter().find(|&&vertex| vertex as usize >= vertices) {
         Some(&vertex) => Err(MeshError::NoSuchVertex { triangle, vertex, vertices }),
         None => Ok(()),

@@ -36,8 +36,12 @@ impl Mesh {
     /// A copy of vertices and triangles.
     ///
     /// # Errors
-    /// There are no triangles, a vertex is not finite or out of range, or a triangle names one that is not there.
-    pub(crate) fn from_triangles(vertices: &[Vector], triangles: &[[u32; 3]]) -> Result<Self, MeshError> {
+    /// There are no triangles, a vertex is not finite or out of range, or a triangle names one that
+    /// is not there.
+    pub(crate) fn from_triangles(
+        vertices: &[Vector],
+        triangles: &[[u32; 3]],
+    ) -> Result<Self, MeshError> {
         if triangles.is_empty() {
             return Err(MeshError::Empty);
         }
@@ -61,14 +65,18 @@ impl Mesh {
     /// Their number differs, or one is not finite or out of range.
     pub(crate) fn check_moved(&self, vertices: &[Vector]) -> Result<(), MeshError> {
         if vertices.len() != self.vertices.len() {
-            return Err(MeshError::VertexCount { expected: self.vertices.len(), got: vertices.len() });
+            return Err(MeshError::VertexCount {
+                expected: self.vertices.len(),
+                got: vertices.len(),
+            });
         }
         check_all(vertices)
     }
 
     /// Moves the vertices to these places, which were checked.
     pub(crate) fn set_vertices(&mut self, vertices: &[Vector]) {
-        let shares = self.vertices.chunks_mut(Mesh::TASK_SIZE).zip(vertices.chunks(Mesh::TASK_SIZE));
+        let shares =
+            self.vertices.chunks_mut(Mesh::TASK_SIZE).zip(vertices.chunks(Mesh::TASK_SIZE));
         each(&mut shares.collect::<Vec<_>>(), |_, (own, moved)| own.copy_from_slice(moved));
         // Whether they stay the same is for those to find out who ask.
         self.parts_before = self.parts.take().or(self.parts_before.take());
@@ -97,11 +105,15 @@ impl Mesh {
     pub(crate) fn parts(&self) -> &SharedParts {
         self.parts.get_or_build(|| {
             let before = self.parts_before.as_ref().filter(|before| before.stay(&self.vertices));
-            before.map_or_else(|| Arc::new(SharedParts::new(&self.vertices, &self.indices)), Arc::clone)
+            before.map_or_else(
+                || Arc::new(SharedParts::new(&self.vertices, &self.indices)),
+                Arc::clone,
+            )
         })
     }
 
-    /// For each edge of a triangle the third corner of another that has it; not a number where there is none.
+    /// For each edge of a triangle the third corner of another that has it; not a number where
+    /// there is none.
     pub(crate) fn corners_across(&self, triangle: u32) -> [Vector; 3] {
         [3, 4, 5].map(|edge| {
             let across = self.parts().across(triangle, edge);
@@ -109,8 +121,8 @@ impl Mesh {
         })
     }
 
-    /// The corners of the box around all triangles. Vertices that no triangle uses do not count: exported meshes have
-    /// some anywhere.
+    /// The corners of the box around all triangles. Vertices that no triangle uses do not count:
+    /// exported meshes have some anywhere.
     pub(crate) fn bounds(&self) -> [Vector; 2] {
         match &self.used {
             None => box_around(&self.vertices, |&point| point),
@@ -132,9 +144,13 @@ fn box_around<T: Sync>(items: &[T], point: impl Fn(&T) -> Vector + Sync + Send) 
     let nothing = [Vector::INFINITY, Vector::NEG_INFINITY];
     let mut shares: Vec<_> = items.chunks(Mesh::TASK_SIZE).map(|share| (share, nothing)).collect();
     each(&mut shares, |_, (share, corners)| {
-        *corners =
-            share.iter().map(&point).fold(nothing, |[low, high], point| [low.min(point), high.max(point)]);
+        *corners = share
+            .iter()
+            .map(&point)
+            .fold(nothing, |[low, high], point| [low.min(point), high.max(point)]);
     });
     let corners = shares.into_iter().map(|(_, corners)| corners);
-    corners.fold(nothing, |[low, high], [other_low, other_high]| [low.min(other_low), high.max(other_high)])
+    corners.fold(nothing, |[low, high], [other_low, other_high]| {
+        [low.min(other_low), high.max(other_high)]
+    })
 }

@@ -12,7 +12,7 @@ pub(crate) use engine_mesh::Mesh;
 pub(crate) use search_frame::{SearchFrame, round};
 pub(crate) use shared_parts::{PART_WITHOUT, PARTS, SharedParts, ends_of};
 pub(crate) use triangle_block::{
-    BLOCK, first_of_face, load, load_vertices, place_face, place_points, place_triangle, rotated, splat,
-    store,
+    BLOCK, first_of_face, load, load_vertices, place_face, place_points, place_triangle, rotated,
+    splat, store,
 };
 pub(crate) use union_find::{find_root, unite};

@@ -1,15 +1,17 @@
 //! The mesh near one, in the precision of the search.
 //!
-//! The mesh is moved to its centre and multiplied by a power of two, then rounded to `E` (`f32` or `f64`). A
-//! distance computed there errs by less than `error` = 64 u reach, where u is the unit roundoff of `E` and reach
-//! bounds the coordinates of mesh and link in that frame: 16 u for each unit of extent (at most 2 reach) from
-//! the kernel, and 2 u reach for each of the roundings of vertices, axis and the bound it is compared with. What is
-//! computed in double precision, the way into that frame and the measured distances, adds as much of its own. A
-//! triangle whose computed distance exceeds a bound by `error` or more is therefore farther than the bound;
-//! any other is measured again in double precision. So every search returns the double-precision answer.
+//! The mesh is moved to its centre and multiplied by a power of two, then rounded to `E` (`f32` or
+//! `f64`). A distance computed there errs by less than `error` = 64 u reach, where u is the unit
+//! roundoff of `E` and reach bounds the coordinates of mesh and link in that frame: 16 u for each
+//! unit of extent (at most 2 reach) from the kernel, and 2 u reach for each of the roundings of
+//! vertices, axis and the bound it is compared with. What is computed in double precision, the way
+//! into that frame and the measured distances, adds as much of its own. A triangle whose computed
+//! distance exceeds a bound by `error` or more is therefore farther than the bound; any other is
+//! measured again in double precision. So every search returns the double-precision answer.
 //!
-//! It does so in good time only while `error` is small beside the triangles. A single triangle that reaches far out
-//! makes the frame coarse for all, and a link far from the mesh has a large reach. [`SearchLink::is_resolved`](crate::pair::SearchLink::is_resolved) finds that out, and
+//! It does so in good time only while `error` is small beside the triangles. A single triangle that
+//! reaches far out makes the frame coarse for all, and a link far from the mesh has a large reach.
+//! [`SearchLink::is_resolved`](crate::pair::SearchLink::is_resolved) finds that out, and
 //! the engines then search in double precision.
 
 use super::engine_mesh::Mesh;
@@ -24,7 +26,8 @@ pub(crate) struct SearchFrame {
     pub scale: Real,
     /// The size of a typical triangle in this frame.
     pub typical: Real,
-    /// What rounding to a subnormal number can do to a distance of the mesh's frame, seen in this one.
+    /// What rounding to a subnormal number can do to a distance of the mesh's frame, seen in this
+    /// one.
     pub least: Real,
 }
 

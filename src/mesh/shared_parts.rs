@@ -1,18 +1,19 @@
 //! The corners and edges of a mesh: which triangles have the same, at the same place.
 //!
-//! The triangles that have a corner or an edge stand in a ring around it, in which each names the next; around an edge
-//! there may be any number of them (Weiler's radial edge). So nothing is numbered but the corners, and that by their
-//! places alone: as long as those stay together that were, and none meets another, the rings stay as they are.
+//! The triangles that have a corner or an edge stand in a ring around it, in which each names the
+//! next; around an edge there may be any number of them (Weiler's radial edge). So nothing is
+//! numbered but the corners, and that by their places alone: as long as those stay together that
+//! were, and none meets another, the rings stay as they are.
 
 use parry3d_f64::math::{Real, Vector};
 use std::iter::successors;
 
-/// The parts of a triangle: its three corners, then its edges from the first corner to the second, from the second to
-/// the third and from the third to the first.
+/// The parts of a triangle: its three corners, then its edges from the first corner to the second,
+/// from the second to the third and from the third to the first.
 pub(crate) const PARTS: usize = 6;
 
-/// The part of a triangle that holds its nearest point if some of its corners have no share in it, by the bits of these
-/// corners.
+/// The part of a triangle that holds its nearest point if some of its corners have no share in it,
+/// by the bits of these corners.
 pub(crate) const PART_WITHOUT: [Option<u8>; 8] =
     [None, Some(4), Some(5), Some(2), Some(3), Some(1), Some(0), None];
 
@@ -48,8 +49,9 @@ struct Rings(Vec<Next>);
 impl SharedParts {
     pub(crate) fn new(vertices: &[Vector], indices: &[[u32; 3]]) -> Self {
         let corners = first_at_same_place(vertices);
-        let corner =
-            |part: SharedPart| corners[indices[part.triangle as usize][usize::from(part.number)] as usize];
+        let corner = |part: SharedPart| {
+            corners[indices[part.triangle as usize][usize::from(part.number)] as usize]
+        };
         let mut rings = Rings::of_one(indices.len() as u32);
         // A part in the ring around each corner.
         let mut around = vec![None; vertices.len()];
@@ -71,7 +73,8 @@ impl SharedParts {
                 let [after, before] = [(number + 1) % 3, (number + 2) % 3];
                 for (end, edge) in [(after, number + 3), (before, before + 3)] {
                     let to = corner(SharedPart { triangle, number: end });
-                    // Each edge once: from its lower end, or where both are one from that at which it begins.
+                    // Each edge once: from its lower end, or where both are one from that at which
+                    // it begins.
                     if to < from || (to == from && end == before) {
                         continue;
                     }
@@ -104,7 +107,8 @@ impl SharedParts {
         self.rings.others(SharedPart { triangle, number: part as u8 }).map(|part| part.triangle)
     }
 
-    /// All triangles that have a part of a triangle, itself first, and which of their parts that is.
+    /// All triangles that have a part of a triangle, itself first, and which of their parts that
+    /// is.
     pub(crate) fn ring(&self, triangle: u32, part: usize) -> impl Iterator<Item = (u32, usize)> {
         let own = SharedPart { triangle, number: part as u8 };
         let all = std::iter::once(own).chain(self.rings.others(own));
@@ -170,7 +174,8 @@ pub(crate) fn ends_of<T: Copy>([a, b, c]: [T; 3], part: usize) -> [T; 2] {
 
 /// For each vertex the first at the same place.
 fn first_at_same_place(vertices: &[Vector]) -> Vec<u32> {
-    // Each first one stands at its hash or behind, where there is room, which is left at every second place.
+    // Each first one stands at its hash or behind, where there is room, which is left at every
+    // second place.
     let mut firsts = vec![NONE; (2 * vertices.len()).next_power_of_two()];
     let last = firsts.len() - 1;
     let find = |(vertex, &point): (u32, &Vector)| {
@@ -210,12 +215,12 @@ mod tests {
     use super::*;
     use continuum_testing::Random;
 
-    /// A few triangles between a few points, some of which are at the same place; with edges of three triangles and more,
-    /// and triangles that have a corner twice.
+    /// A few triangles between a few points, some of which are at the same place; with edges of
+    /// three triangles and more, and triangles that have a corner twice.
     fn soup(random: &mut Random) -> (Vec<Vector>, Vec<[u32; 3]>) {
         let places: Vec<_> = (0..6).map(|_| (random.point() * 2.0).round()).collect();
-        let vertices =
-            (0..12).map(|_| places[random.below(6) as usize] * [1.0, -1.0][random.below(2) as usize]);
+        let vertices = (0..12)
+            .map(|_| places[random.below(6) as usize] * [1.0, -1.0][random.below(2) as usize]);
         let vertices = vertices.collect();
         (vertices, (0..14).map(|_| [0; 3].map(|_| random.below(12))).collect())
     }
@@ -227,20 +232,23 @@ mod tests {
             let (vertices, indices) = soup(&mut Random::new(seed));
             let parts = SharedParts::new(&vertices, &indices);
             let ends = |triangle: u32, part: usize| {
-                let [from, to] =
-                    ends_of(indices[triangle as usize].map(|vertex| vertices[vertex as usize]), part);
+                let [from, to] = ends_of(
+                    indices[triangle as usize].map(|vertex| vertices[vertex as usize]),
+                    part,
+                );
                 // An edge is the same in both directions, but not one without length and a corner.
                 (part < 3, [from, to])
             };
-            let is_same = |one: (bool, [Vector; 2]), (is_corner, [from, to]): (bool, [Vector; 2])| {
+            let is_same = |one: (bool, [Vector; 2]),
+                           (is_corner, [from, to]): (bool, [Vector; 2])| {
                 one == (is_corner, [from, to]) || one == (is_corner, [to, from])
             };
             for triangle in 0..indices.len() as u32 {
                 for part in 0..PARTS {
                     let mut found: Vec<_> = parts.others(triangle, part).collect();
                     found.sort_unstable();
-                    let of_all =
-                        (0..indices.len() as u32).flat_map(|other| (0..PARTS).map(move |part| (other, part)));
+                    let of_all = (0..indices.len() as u32)
+                        .flat_map(|other| (0..PARTS).map(move |part| (other, part)));
                     let same = of_all.filter(|&(other, part_there)| {
                         (other, part_there) != (triangle, part)
                             && is_same(ends(other, part_there), ends(triangle, part))
@@ -256,7 +264,8 @@ mod tests {
         assert!(shared > 10_000 && several > 1000 && twice > 1000, "{shared} {several} {twice}");
     }
 
-    /// Where vertices move together or apart, what triangles share is what it is at their new places.
+    /// Where vertices move together or apart, what triangles share is what it is at their new
+    /// places.
     #[test]
     fn moved_vertices_meet_and_part() {
         let (mut stayed, mut changed) = (0, 0);
@@ -279,8 +288,13 @@ mod tests {
                 let new = SharedParts::new(&moved, &indices);
                 for triangle in 0..indices.len() as u32 {
                     for part in 0..PARTS {
-                        let others = |parts: &SharedParts| parts.others(triangle, part).collect::<Vec<_>>();
-                        assert_eq!(others(mesh.parts()), others(&new), "{seed}: part {part} of {triangle}");
+                        let others =
+                            |parts: &SharedParts| parts.others(triangle, part).collect::<Vec<_>>();
+                        assert_eq!(
+                            others(mesh.parts()),
+                            others(&new),
+                            "{seed}: part {part} of {triangle}"
+                        );
                     }
                 }
                 let is_as_before = new.corners == SharedParts::new(&vertices, &indices).corners;

@@ -1,4 +1,5 @@
-//! How triangles stand in memory: in blocks of 16, each coordinate in a row of its own, to be loaded in packs.
+//! How triangles stand in memory: in blocks of 16, each coordinate in a row of its own, to be
+//! loaded in packs.
 
 use super::engine_mesh::Mesh;
 use crate::distance::lanes::{Lane, Pack};
@@ -9,7 +10,8 @@ use parry3d_f64::math::Vector;
 /// How many triangles stand together: the widest pack, so that any narrower one divides it.
 pub(crate) const BLOCK: usize = 16;
 
-/// Writes the corners of a triangle into its lane of a block, in the order in which a [`Face`] has them.
+/// Writes the corners of a triangle into its lane of a block, in the order in which a [`Face`] has
+/// them.
 #[inline(always)] // where the block's length is known, no place in it is checked
 pub(crate) fn place_face<E: Lane>(
     frame: &SearchFrame,
@@ -46,7 +48,12 @@ pub(crate) fn place_triangle<E: Lane>(
 }
 
 /// Writes three points into a lane of a block.
-pub(crate) fn place_points<E: Lane>(frame: &SearchFrame, points: [Vector; 3], rows: &mut [E], lane: usize) {
+pub(crate) fn place_points<E: Lane>(
+    frame: &SearchFrame,
+    points: [Vector; 3],
+    rows: &mut [E],
+    lane: usize,
+) {
     put(points.map(|point| frame.point(point)), rows, lane);
 }
 
@@ -59,8 +66,8 @@ fn put<E: Lane>(points: [Vec3<E>; 3], rows: &mut [E], lane: usize) {
     }
 }
 
-// Functions and not closures below a dispatch: a closure may escape inlining, and its code would then be compiled
-// without the instruction set.
+// Functions and not closures below a dispatch: a closure may escape inlining, and its code would
+// then be compiled without the instruction set.
 
 /// One point in every lane.
 #[inline(always)]
@@ -70,14 +77,27 @@ pub(crate) fn splat<L: Pack>(token: L::Token, point: Vec3<L::Element>) -> Vec3<L
 
 /// Three coordinates from the rows `row` to `row + 2`.
 #[inline(always)]
-pub(crate) fn load<L: Pack>(token: L::Token, rows: &[L::Element], row: usize, lane: usize) -> Vec3<L> {
+pub(crate) fn load<L: Pack>(
+    token: L::Token,
+    rows: &[L::Element],
+    row: usize,
+    lane: usize,
+) -> Vec3<L> {
     let rows = &rows[row * BLOCK + lane..];
-    Vec3::new(L::load(token, rows), L::load(token, &rows[BLOCK..]), L::load(token, &rows[2 * BLOCK..]))
+    Vec3::new(
+        L::load(token, rows),
+        L::load(token, &rows[BLOCK..]),
+        L::load(token, &rows[2 * BLOCK..]),
+    )
 }
 
 /// Three vertices from the first nine rows.
 #[inline(always)]
-pub(crate) fn load_vertices<L: Pack>(token: L::Token, rows: &[L::Element], lane: usize) -> [Vec3<L>; 3] {
+pub(crate) fn load_vertices<L: Pack>(
+    token: L::Token,
+    rows: &[L::Element],
+    lane: usize,
+) -> [Vec3<L>; 3] {
     [load(token, rows, 0, lane), load(token, rows, 3, lane), load(token, rows, 6, lane)]
 }
 
@@ -117,7 +137,8 @@ mod tests {
                 let rounding = 1.0 + 8.0 * E::UNIT_ROUNDOFF;
                 let longest = b.distance(c) * rounding;
                 assert!(a.distance(b) <= longest && c.distance(a) <= longest, "{seed}: {lane}");
-                let corners = mesh.corners(lane as u32).map(|corner| <[E; 3]>::from(frame.point(corner)));
+                let corners =
+                    mesh.corners(lane as u32).map(|corner| <[E; 3]>::from(frame.point(corner)));
                 for (number, placed) in [a, b, c].into_iter().enumerate() {
                     assert_eq!(
                         corners[(first + number) % 3].map(Into::into),

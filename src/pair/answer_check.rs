@@ -1,4 +1,5 @@
-//! Whether an answer is about a link and a triangle as they are now. The mesh may have moved since, or it may be another.
+//! Whether an answer is about a link and a triangle as they are now. The mesh may have moved since,
+//! or it may be another.
 
 use super::nearest::Nearest;
 use super::placed_link::PlacedLink;
@@ -8,18 +9,24 @@ use parry3d_f64::math::{Real, Vector};
 
 /// What rounding explains, of the largest coordinate and the extent together.
 ///
-/// Measured in coordinates of the pair's own, a distance and its two points err by at most 16 u of the extent; 4.4 u are
-/// the most that was ever seen. Each point is then rounded to the mesh's frame, by u of its largest coordinate and so
-/// by less than 2 u of it in length. An answer that was written as text and read again may be off by as much once more.
+/// Measured in coordinates of the pair's own, a distance and its two points err by at most 16 u of
+/// the extent; 4.4 u are the most that was ever seen. Each point is then rounded to the mesh's
+/// frame, by u of its largest coordinate and so by less than 2 u of it in length. An answer that
+/// was written as text and read again may be off by as much once more.
 pub(super) const ROUNDED: Real = 16.0 * f64::UNIT_ROUNDOFF;
 
 impl LinkProximity {
-    /// Whether this answer is that of the link and the triangle with these corners: `on_robot` lies in the link, `on_mesh` on
-    /// the triangle, and both the way between them and that between the two shapes are as long as `distance`.
+    /// Whether this answer is that of the link and the triangle with these corners: `on_robot` lies
+    /// in the link, `on_mesh` on the triangle, and both the way between them and that between
+    /// the two shapes are as long as `distance`.
     ///
     /// # Errors
     /// It is not.
-    pub(crate) fn check_answer(&self, link: &PlacedLink, corners: [Vector; 3]) -> Result<(), ProximityError> {
+    pub(crate) fn check_answer(
+        &self,
+        link: &PlacedLink,
+        corners: [Vector; 3],
+    ) -> Result<(), ProximityError> {
         self.check_answer_of(&link.measure(self.triangle, corners), || *link, corners)
     }
 
@@ -38,7 +45,11 @@ impl LinkProximity {
         let is_that = self.distance == measured.distance
             && self.on_mesh == measured.on_mesh
             && self.on_robot == measured.on_robot;
-        if is_that { Ok(()) } else { self.check_rounded_answer(measured.distance, &link(), corners) }
+        if is_that {
+            Ok(())
+        } else {
+            self.check_rounded_answer(measured.distance, &link(), corners)
+        }
     }
 
     /// The same for an answer that was rounded, or found in another way.
@@ -52,7 +63,8 @@ impl LinkProximity {
         let (distance, on_robot, on_mesh) = (self.distance, self.on_robot, self.on_mesh);
         let [a, b, c] = corners;
         let points = [link.start(), link.end(), a, b, c];
-        let largest = points.iter().fold(0.0, |most: Real, point| most.max(point.abs().max_element()));
+        let largest =
+            points.iter().fold(0.0, |most: Real, point| most.max(point.abs().max_element()));
         let limit = ROUNDED * (largest + link.extent_with(corners));
         let check = |field, off: Real| {
             // Written so that NaN does not fit.
@@ -62,7 +74,8 @@ impl LinkProximity {
             let (link, triangle) = (self.link as usize, self.triangle as usize);
             Err(ProximityError::AnswerDoesNotFit { link, triangle, field, off, limit })
         };
-        // Neither is farther out than link and triangle reach; what is can neither overflow below, nor be measured.
+        // Neither is farther out than link and triangle reach; what is can neither overflow below,
+        // nor be measured.
         let reach = 2.0 * (largest + link.radius());
         for (field, point) in [("on_mesh", on_mesh), ("on_robot", on_robot)] {
             if !point.abs().cmple(Vector::splat(reach)).all() {

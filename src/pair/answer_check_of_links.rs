@@ -1,4 +1,5 @@
-//! Whether an answer is about two links as they are now. The robots may have moved since, or they may be others.
+//! Whether an answer is about two links as they are now. The robots may have moved since, or they
+//! may be others.
 
 use super::answer_check::ROUNDED;
 use super::placed_link::PlacedLink;
@@ -6,8 +7,8 @@ use crate::answer::{ProximityError, RobotProximity};
 use parry3d_f64::math::{Real, Vector};
 
 impl RobotProximity {
-    /// Whether this answer is that of these two links: each point lies in its link, and both the way between them and that between
-    /// the links are as long as `distance`.
+    /// Whether this answer is that of these two links: each point lies in its link, and both the
+    /// way between them and that between the links are as long as `distance`.
     ///
     /// # Errors
     /// It is not.
@@ -34,7 +35,8 @@ impl RobotProximity {
             Err(ProximityError::LinksDoNotFit { links: self.links, field, off, limit })
         };
         let points = [self.on_first, self.on_second];
-        for ((field, point), link) in ["on_first", "on_second"].into_iter().zip(points).zip(&links) {
+        for ((field, point), link) in ["on_first", "on_second"].into_iter().zip(points).zip(&links)
+        {
             // What is farther out than any link can neither overflow below, nor be measured.
             if !point.abs().cmple(Vector::splat(2.0 * reach)).all() {
                 check(field, (point - link.start()).abs().max_element())?;

@@ -41,10 +41,10 @@
 //! Let all points of both links move by `points` at most, together, and their directions turn by
 //! `turn`. The way `w` then errs as if the bodies were known to `points` alone, and more by `|w|
 //! turn` along a direction. If `w . t` stays above that for the link's own axis, `y` is its start
-//! at all times; if it does for the axis before as well, and the link before is no thinner, the robot
-//! leads nearer backwards at all times. The same holds forwards with the other sign. The point of a
-//! round shoulder moves by its centre's way and by `r` times what the direction of `w` turns: if
-//! the adjoining link holds it deeper than that and its own way, it always does.
+//! at all times; if it does for the axis before as well, and the link before is no thinner, the
+//! robot leads nearer backwards at all times. The same holds forwards with the other sign. The
+//! point of a round shoulder moves by its centre's way and by `r` times what the direction of `w`
+//! turns: if the adjoining link holds it deeper than that and its own way, it always does.
 //!
 //! **Rounding.** `w` errs by at most `slack` ([`Tolerance::of_way`]); `w . n` and `w . t` may be so
 //! far below 0. `p` errs as much, so the adjoining link must hold it that far within its radius.
@@ -141,8 +141,9 @@ impl JoinedLink {
     /// sqrt(3) 4 u S, the points in the robot's frame and their difference by sqrt(3) 3 u S: 64 u S
     /// is enough.
     pub(crate) fn tolerance(&self, other: &Self) -> Tolerance {
-        let reach =
-            |link: &PlacedLink| link.start().abs().max(link.end().abs()).max_element() + link.radius();
+        let reach = |link: &PlacedLink| {
+            link.start().abs().max(link.end().abs()).max_element() + link.radius()
+        };
         Tolerance(64.0 * Real::UNIT_ROUNDOFF * reach(&self.link).max(reach(&other.link)))
     }
 
@@ -171,22 +172,30 @@ impl JoinedLink {
         }
     }
 
-    /// How far two faces are apart at least, but for rounding: as far as the second is ahead of a flat
-    /// first one's plane. Its points are its centre and what is perpendicular to its normal, up to its
-    /// radius away; of a round one, up to its radius in all directions.
+    /// How far two faces are apart at least, but for rounding: as far as the second is ahead of a
+    /// flat first one's plane. Its points are its centre and what is perpendicular to its
+    /// normal, up to its radius away; of a round one, up to its radius in all directions.
     pub(crate) fn face_gap(&self, end: usize, other: &Self, other_end: usize) -> Real {
         if !self.link.flat()[end] {
             return 0.0;
         }
         let normal = self.outward(end);
         let ahead = (other.centre(other_end) - self.centre(end)).dot(normal);
-        let sine =
-            if other.link.flat()[other_end] { normal.cross(other.outward(other_end)).length() } else { 1.0 };
+        let sine = if other.link.flat()[other_end] {
+            normal.cross(other.outward(other_end)).length()
+        } else {
+            1.0
+        };
         ahead - other.link.radius() * sine
     }
 
     /// The nearest points of two faces.
-    pub(crate) fn face_to_face(&self, end: usize, other: &Self, other_end: usize) -> NearestOfLinks {
+    pub(crate) fn face_to_face(
+        &self,
+        end: usize,
+        other: &Self,
+        other_end: usize,
+    ) -> NearestOfLinks {
         match (self.link.flat()[end], other.link.flat()[other_end]) {
             (true, true) => self.link.face_to_face([end, other_end], &other.link),
             (_, false) => self.face_to_link(end, &other.ball(other_end)),
@@ -218,11 +227,14 @@ impl JoinedLink {
         nearest: &NearestOfLinks,
         tolerance: Tolerance,
     ) -> bool {
-        let sides =
-            [(self, end, other, other_end, *nearest), (other, other_end, self, end, nearest.swapped())];
+        let sides = [
+            (self, end, other, other_end, *nearest),
+            (other, other_end, self, end, nearest.swapped()),
+        ];
         sides.into_iter().all(|(one, end, two, two_end, nearest)| {
             let way = one.way_to_face(end, two, two_end, &nearest, tolerance);
-            way.way.dot(one.outward(end)) >= -way.slack && !one.is_face_covered(end, &way, two, two_end)
+            way.way.dot(one.outward(end)) >= -way.slack
+                && !one.is_face_covered(end, &way, two, two_end)
         })
     }
 
@@ -233,8 +245,10 @@ impl JoinedLink {
         let is_round = !self.link.flat()[end] && other.link.flat() == [false; 2];
         // Which way counts depends on the distance, so neither may. Round links are nearest where
         // axis and centre are.
-        let of_axis = self.way(end, &other.link, &NearestOfLinks { distance: 0.0, ..nearest }, tolerance);
-        let of_bodies = if is_round { of_axis } else { self.way(end, &other.link, &nearest, tolerance) };
+        let of_axis =
+            self.way(end, &other.link, &NearestOfLinks { distance: 0.0, ..nearest }, tolerance);
+        let of_bodies =
+            if is_round { of_axis } else { self.way(end, &other.link, &nearest, tolerance) };
         [of_bodies, of_axis].into_iter().any(|way| {
             way.is_none_or(|way| {
                 let doubt = way.doubt(if is_round { moved.axes } else { moved.points });
@@ -287,11 +301,16 @@ impl JoinedLink {
             (along.abs() > least).then_some(usize::from(along > 0.0))
         };
         let sides = [(self, other, end_of(self, way.way)), (other, self, end_of(other, -way.way))];
-        let is_at_face = sides.iter().any(|(joined, _, end)| end.is_some_and(|end| joined.is_face(end)));
+        let is_at_face =
+            sides.iter().any(|(joined, _, end)| end.is_some_and(|end| joined.is_face(end)));
         !is_at_face
             || sides.into_iter().any(|(joined, beside, end)| {
-                let may_be_at = |face: &usize| joined.is_face(*face) && end.is_none_or(|end| end == *face);
-                [0, 1].into_iter().filter(may_be_at).any(|face| joined.face_may_count(face, beside, moved))
+                let may_be_at =
+                    |face: &usize| joined.is_face(*face) && end.is_none_or(|end| end == *face);
+                [0, 1]
+                    .into_iter()
+                    .filter(may_be_at)
+                    .any(|face| joined.face_may_count(face, beside, moved))
             })
     }
 
@@ -368,7 +387,8 @@ impl JoinedLink {
             (nearest.on_first, nearest.on_second)
         } else {
             let centre = self.centre(end);
-            let (feet, _) = PlacedLink::between(centre, centre, 0.0, [false; 2]).nearest_on_axes(&axis);
+            let (feet, _) =
+                PlacedLink::between(centre, centre, 0.0, [false; 2]).nearest_on_axes(&axis);
             (centre, feet[1])
         };
         let (way, distance) = (to - from, (to - from).length());
@@ -377,7 +397,8 @@ impl JoinedLink {
             return None;
         }
         // A round face has its point on the surface.
-        let from = if self.link.flat()[end] { from } else { from + way * (self.link.radius() / distance) };
+        let from =
+            if self.link.flat()[end] { from } else { from + way * (self.link.radius() / distance) };
         Some(Way { from, way, place: to, slack, rounding: tolerance.0 })
     }
 
@@ -392,7 +413,8 @@ impl JoinedLink {
     ) -> Way {
         let place = other.centre(other_end);
         if nearest.distance > NEAR * tolerance.0 {
-            let (way, slack) = (nearest.on_second - nearest.on_first, tolerance.of_way(nearest.distance));
+            let (way, slack) =
+                (nearest.on_second - nearest.on_first, tolerance.of_way(nearest.distance));
             return Way { from: nearest.on_first, way, place, slack, rounding: tolerance.0 };
         }
         let way = place - self.centre(end);
@@ -449,10 +471,12 @@ impl JoinedLink {
             // Where the other link ends: one point, or all ahead of its flat end.
             let is_level = axis.cross(self.outward(end)).length() * other.radius() <= way.slack;
             let is_flat = other.flat() != [false; 2];
-            return !(is_level && is_flat) || self.is_area_covered(end, way, way.place, other.radius());
+            return !(is_level && is_flat)
+                || self.is_area_covered(end, way, way.place, other.radius());
         }
         // Along the other's axis, as far as both reach.
-        let ends = [other.start(), other.end()].map(|to| self.on_face_towards(end, way.from, to - way.way));
+        let ends = [other.start(), other.end()]
+            .map(|to| self.on_face_towards(end, way.from, to - way.way));
         ends.into_iter().all(|point| next.holds(point, way))
     }
 

@@ -4,7 +4,8 @@ use super::nearest::Nearest;
 use super::placed_link::PlacedLink;
 use parry3d_f64::math::{Real, Vector};
 
-/// The nearest triangle so far of those at most so far away; of two as near the one with the lower number.
+/// The nearest triangle so far of those at most so far away; of two as near the one with the lower
+/// number.
 #[derive(Clone, Copy)]
 pub(crate) struct Best {
     bound: Real,
@@ -19,7 +20,8 @@ impl Best {
         Self { bound, nearest: None, below: u32::MAX }
     }
 
-    /// The same, where of the triangles that touch only those with a lower number than `below` are wanted.
+    /// The same, where of the triangles that touch only those with a lower number than `below` are
+    /// wanted.
     pub(crate) fn touching_below(self, below: u32) -> Self {
         Self { below, ..self }
     }
@@ -38,7 +40,8 @@ impl Best {
         self.nearest
     }
 
-    /// Only triangles with a lower number than this can still be better: nothing is nearer than what touches.
+    /// Only triangles with a lower number than this can still be better: nothing is nearer than
+    /// what touches.
     #[inline(always)]
     pub(crate) fn triangle_limit(&self) -> u32 {
         if self.bound <= 0.0 { self.below } else { u32::MAX }
@@ -46,7 +49,12 @@ impl Best {
 
     /// Measures a triangle. True if it is the best so far.
     #[inline(never)] // the same code whatever the instruction set
-    pub(crate) fn measure(&mut self, link: &PlacedLink, triangle: u32, corners: [Vector; 3]) -> bool {
+    pub(crate) fn measure(
+        &mut self,
+        link: &PlacedLink,
+        triangle: u32,
+        corners: [Vector; 3],
+    ) -> bool {
         link.measure_within(self.bound, triangle, corners).is_some_and(|nearest| self.take(nearest))
     }
 

@@ -1,11 +1,12 @@
 //! Proofs of an answer, in double-double arithmetic.
 //!
-//! A point of the link and a point of the triangle bound their distance from above. A plane between the two bounds it
-//! from below: for a direction n of unit length, the least <n, x> over the link minus the largest over the triangle.
-//! Neither needs any trust in how the points and the plane were found; a bad choice makes the bounds wide, not wrong.
-//! Found they are by the narrow phase at twice the precision, so the rounding of n, which would spoil the lower bound
-//! of links that nearly touch, is far below what `f64` can tell. Where it is not, because two answers are as near, the
-//! normals of the features (faces, edges, axis) are tried as well.
+//! A point of the link and a point of the triangle bound their distance from above. A plane between
+//! the two bounds it from below: for a direction n of unit length, the least <n, x> over the link
+//! minus the largest over the triangle. Neither needs any trust in how the points and the plane
+//! were found; a bad choice makes the bounds wide, not wrong. Found they are by the narrow phase at
+//! twice the precision, so the rounding of n, which would spoil the lower bound of links that
+//! nearly touch, is far below what `f64` can tell. Where it is not, because two answers are as
+//! near, the normals of the features (faces, edges, axis) are tried as well.
 
 use super::answer_subject::{corners, link_of, placed_link};
 use super::exact_link::{CertifiedLink, ExactFrame, ExactLink, ExactPoint, Number, SLACK, largest};
@@ -20,7 +21,8 @@ impl Certificate {
     /// Bounds on the distance between a link at a pose and a triangle.
     ///
     /// # Errors
-    /// The pose is not finite or moves the link out of range, or a vertex is not finite or out of range.
+    /// The pose is not finite or moves the link out of range, or a vertex is not finite or out of
+    /// range.
     pub fn between(
         link: &ModifiedCylinder,
         pose: &Pose,
@@ -34,18 +36,20 @@ impl Certificate {
 }
 
 impl LinkProximity {
-    /// Bounds on the distance between this answer's link and triangle, which hold rigorously, rounding included.
+    /// Bounds on the distance between this answer's link and triangle, which hold rigorously,
+    /// rounding included.
     ///
-    /// They lie within a few units in the last place of each other, or of the problem's extent where link and triangle
-    /// nearly touch; a link that penetrates has `lower` 0. Give the same robot, pose and mesh as to the query: a mesh of
-    /// your own, which need not be the engine's. Where
-    /// [`set_vertices`](crate::proximity::Proximity::set_vertices) moved that one, make it of
-    /// [`vertices`](crate::proximity::Proximity::vertices) and [`triangles`](crate::proximity::Proximity::triangles).
+    /// They lie within a few units in the last place of each other, or of the problem's extent
+    /// where link and triangle nearly touch; a link that penetrates has `lower` 0. Give the
+    /// same robot, pose and mesh as to the query: a mesh of your own, which need not be the
+    /// engine's. Where [`set_vertices`](crate::proximity::Proximity::set_vertices) moved that
+    /// one, make it of [`vertices`](crate::proximity::Proximity::vertices) and
+    /// [`triangles`](crate::proximity::Proximity::triangles).
     ///
     /// # Errors
-    /// The answer's link or triangle does not exist, the pose is not finite or moves the link out of range, a vertex of
-    /// the triangle is not finite or out of range, or the answer does not fit the two: it is about another robot, another
-    /// pose, or a mesh that has moved since.
+    /// The answer's link or triangle does not exist, the pose is not finite or moves the link out
+    /// of range, a vertex of the triangle is not finite or out of range, or the answer does not
+    /// fit the two: it is about another robot, another pose, or a mesh that has moved since.
     ///
     /// ```
     /// use parry_continuum::Chain;
@@ -61,17 +65,23 @@ impl LinkProximity {
     /// assert!(proof.upper - proof.lower < 1e-15);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn certify(&self, robot: &Chain, pose: &Pose, mesh: &TriMesh) -> Result<Certificate, ProximityError> {
+    pub fn certify(
+        &self,
+        robot: &Chain,
+        pose: &Pose,
+        mesh: &TriMesh,
+    ) -> Result<Certificate, ProximityError> {
         let link = placed_link(self, robot, pose)?;
         let corners = corners(mesh.vertices(), mesh.indices(), self.triangle as usize)?;
         self.check_answer(&link, corners)?;
         Ok(self.certified(robot, pose)?.bounds(corners))
     }
 
-    /// Bounds on the distance between this answer's link and the whole mesh, which hold rigorously: a proof that no
-    /// other triangle is nearer than `lower`.
+    /// Bounds on the distance between this answer's link and the whole mesh, which hold rigorously:
+    /// a proof that no other triangle is nearer than `lower`.
     ///
-    /// Every triangle is looked at, those near the link at twice the precision: it takes far longer than the query.
+    /// Every triangle is looked at, those near the link at twice the precision: it takes far longer
+    /// than the query.
     ///
     /// # Errors
     /// As for [`LinkProximity::certify`], for any vertex in use.
@@ -140,21 +150,24 @@ impl ExactLinkTriangle {
         let closest = triangle_modified_cylinder(self.triangle, start, along, radius, flat);
         let between = (closest.point1 - closest.point2).norm();
         let off = self.triangle_to(closest.point1) + self.link.distance_to(closest.point2);
-        // Where two cases of the narrow phase tie, the direction of another candidate may be the better one.
+        // Where two cases of the narrow phase tie, the direction of another candidate may be the
+        // better one.
         let discs = [start, along].map(|rim| triangle_disc(self.triangle, rim, axis, radius));
         let lower = [closest, discs[0], discs[1]]
             .map(|candidate| self.apart((candidate.point2 - candidate.point1).normalised()))
             .into_iter()
             .fold(Number::ZERO, Scalar::max);
         let upper = between + off;
-        // A difference of points that nearly touch is less precise than the directions of what they lie on.
+        // A difference of points that nearly touch is less precise than the directions of what they
+        // lie on.
         let is_tight = (upper - lower).le((2.0 * f64::EPSILON).into());
-        let lower = if is_tight { lower } else { self.apart_by_features().fold(lower, Scalar::max) };
+        let lower =
+            if is_tight { lower } else { self.apart_by_features().fold(lower, Scalar::max) };
         (lower - SLACK.into(), upper + SLACK.into())
     }
 
-    /// How far the planes keep link and triangle apart whose normals are those of features: the face, the axis and an
-    /// edge, an edge and an end, the axis and a vertex.
+    /// How far the planes keep link and triangle apart whose normals are those of features: the
+    /// face, the axis and an edge, an edge and an end, the axis and a vertex.
     fn apart_by_features(&self) -> impl Iterator<Item = Number> {
         let [a, b, c] = self.triangle;
         let (axis, end) = (self.link.axis, self.link.along);
@@ -189,7 +202,9 @@ impl ExactLinkTriangle {
         let edges = on_edge(a, b).min(on_edge(b, c)).min(on_edge(c, a));
         // Weights that are not negative make a point of the triangle, whatever their rounding.
         let normal = (b - a).cross(c - a);
-        let area = |p: ExactPoint, q: ExactPoint| normal.dot((p - point).cross(q - point)).max(Number::ZERO);
+        let area = |p: ExactPoint, q: ExactPoint| {
+            normal.dot((p - point).cross(q - point)).max(Number::ZERO)
+        };
         let (u, v, w) = (area(b, c), area(c, a), area(a, b));
         let sum = u + v + w;
         if sum.le(Number::ZERO) {

@@ -52,10 +52,12 @@ pub(crate) fn contacts(
     try_add_contacts(Level::new(), answers, place, check, out).inspect_err(|_| out.clear())
 }
 
-/// The link and the corners of the triangle that an answer is about, which it fits, and both measured.
+/// The link and the corners of the triangle that an answer is about, which it fits, and both
+/// measured.
 ///
 /// # Errors
-/// They do not exist, the pose is not finite or moves the link out of range, or the answer does not fit.
+/// They do not exist, the pose is not finite or moves the link out of range, or the answer does not
+/// fit.
 pub(crate) fn near(
     mesh: &Mesh,
     robot: &Chain,
@@ -69,7 +71,8 @@ pub(crate) fn near(
     Ok((link, corners, measured))
 }
 
-/// The contact of an answer about a link of the given length. `before` is that of the links before it.
+/// The contact of an answer about a link of the given length. `before` is that of the links before
+/// it.
 pub(crate) fn contact_of(
     answer: &LinkProximity,
     length: Real,

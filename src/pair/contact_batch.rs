@@ -1,4 +1,5 @@
-//! The contacts of many answers, a pack at a time: the bits are those of one contact alone, on every instruction set.
+//! The contacts of many answers, a pack at a time: the bits are those of one contact alone, on
+//! every instruction set.
 
 use super::contact::contact_of;
 use super::coordinates::Pair;
@@ -59,7 +60,8 @@ pub(crate) fn add_contacts(
     add.unwrap_or_else(|never| match never {});
 }
 
-/// The same where `place` may have none, and `check` may refuse an answer beside what is measured there.
+/// The same where `place` may have none, and `check` may refuse an answer beside what is measured
+/// there.
 ///
 /// # Errors
 /// The first that either gives. Contacts of some answers before it stand in `out`.
@@ -74,7 +76,8 @@ pub(crate) fn try_add_contacts<E>(
     for answers in answers.chunks(BATCH) {
         let mut places = [None; BATCH];
         for (lane, answer) in answers.iter().enumerate() {
-            let PlacedPair { ends, radius, flat, corners, .. } = *places[lane].insert(place(answer)?);
+            let PlacedPair { ends, radius, flat, corners, .. } =
+                *places[lane].insert(place(answer)?);
             put_pair(&mut rows, lane, corners, ends, radius, flat);
         }
         let parts = parts_at(level, &rows, answers.len());
@@ -129,13 +132,19 @@ fn parts_at(level: Level, pairs: &PairRows, count: usize) -> ContactRows {
 }
 
 #[inline(always)]
-fn fill<L: Pack<Element = f64>>(token: L::Token, pairs: &PairRows, count: usize, parts: &mut ContactRows) {
+fn fill<L: Pack<Element = f64>>(
+    token: L::Token,
+    pairs: &PairRows,
+    count: usize,
+    parts: &mut ContactRows,
+) {
     for lane in (0..count).step_by(L::LANES) {
         let pack = PairLanes::<L>::new(token, pairs, lane);
         parts.nearest.take(lane, &pack);
         let PairLanes { pair: Pair { triangle, link, unit, .. }, face, axial, closest, .. } = pack;
         let found = NearestParts::new(&triangle, &link, &axial, &closest);
-        parts.needs_closer_look |= L::bits(found.needs_closer_look(&triangle, &face, &link)) << lane;
+        parts.needs_closer_look |=
+            L::bits(found.needs_closer_look(&triangle, &face, &link)) << lane;
         for (bits, masks) in parts.caps.iter_mut().zip(found.caps) {
             *bits |= L::bits(masks) << lane;
         }
@@ -169,7 +178,8 @@ mod tests {
         };
         let (corners, start, way) = ([point(), point(), point()], point(), point());
         let radius = size * [0.0, 0.1, 0.5, 2.0][random.below(4) as usize];
-        let flat = [random.below(2) == 0, random.below(2) == 0].map(|flat| flat && way != Vector::ZERO);
+        let flat =
+            [random.below(2) == 0, random.below(2) == 0].map(|flat| flat && way != Vector::ZERO);
         let before = random.between(0.0, 9.0);
         PlacedPair { ends: [start, start + way], radius, flat, corners, before }
     }
@@ -192,7 +202,12 @@ mod tests {
             let alone = |answer: &LinkProximity| {
                 let place = &places[answer.link as usize];
                 let length = length(place.ends[1] - place.ends[0]);
-                contact_of(answer, length, place.before, &NearestFeatures::of(&link(place), place.corners))
+                contact_of(
+                    answer,
+                    length,
+                    place.before,
+                    &NearestFeatures::of(&link(place), place.corners),
+                )
             };
             let alone: Vec<_> = answers.iter().map(alone).collect();
             for level in levels() {

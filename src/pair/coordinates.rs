@@ -1,17 +1,18 @@
 //! The coordinates in which a link and a triangle are measured.
 //!
-//! Each pair of link and triangle is measured in coordinates of its own, from the link's start and multiplied by the
-//! power of two that brings the largest of them near one. So neither far parts of the scene nor its place nor its unit
-//! play a part in the rounding, and nothing overflows or vanishes. Distances and bounds outside of a pair are plain
-//! ones, in the unit of the mesh.
+//! Each pair of link and triangle is measured in coordinates of its own, from the link's start and
+//! multiplied by the power of two that brings the largest of them near one. So neither far parts of
+//! the scene nor its place nor its unit play a part in the rounding, and nothing overflows or
+//! vanishes. Distances and bounds outside of a pair are plain ones, in the unit of the mesh.
 
 use super::nearest::Nearest;
 use super::placed_link::PlacedLink;
 use crate::distance::{Closest, DoubleDouble, Link, Scalar, Vec3, gives_direction};
 use parry3d_f64::math::{Real, Vector};
 
-/// What rounding can add to a bound of a pair, in whose coordinates all numbers are below 2: 64 u, and another 64 u by which a
-/// distance at a flat cap may be measured too short, which is 16 u of an extent below 4.
+/// What rounding can add to a bound of a pair, in whose coordinates all numbers are below 2: 64 u,
+/// and another 64 u by which a distance at a flat cap may be measured too short, which is 16 u of
+/// an extent below 4.
 pub(super) const SLACK: Real = 128.0 * f64::UNIT_ROUNDOFF;
 
 /// A link in the mesh's frame, or a pack of them.
@@ -34,7 +35,8 @@ pub(super) struct Pair<T: Scalar> {
     pub link: Link<T>,
     /// What 1 is in the mesh's unit.
     pub unit: T,
-    /// The largest coordinate of link and triangle from the link's start, or the radius, in the mesh's unit.
+    /// The largest coordinate of link and triangle from the link's start, or the radius, in the
+    /// mesh's unit.
     pub extent: T,
 }
 
@@ -48,7 +50,8 @@ impl<T: Scalar> Placed<T> {
         let scale = extent.power_of_two_to_unity();
         let end = along * scale;
         // A length whose square vanishes beside the triangle gives no direction.
-        let axis = Vec3::select(gives_direction(end.norm_squared()), axis, Vec3::zero(extent.zero()));
+        let axis =
+            Vec3::select(gives_direction(end.norm_squared()), axis, Vec3::zero(extent.zero()));
         Pair {
             triangle: [a * scale, b * scale, c * scale],
             link: Link { end, axis, radius: radius * scale, flat },
@@ -64,19 +67,27 @@ impl Pair<Real> {
         let [a, b, c] = self.triangle;
         let centre = (a + b + c) * (1.0 / 3.0);
         let normal = offset_from_axis(&self.link, centre);
-        let beyond = normal.dot(a).min(normal.dot(b)).min(normal.dot(c)) - self.link.reach_along(normal);
+        let beyond =
+            normal.dot(a).min(normal.dot(b)).min(normal.dot(c)) - self.link.reach_along(normal);
         beyond.over(normal.norm()) - self.link.radius - SLACK
     }
 
     /// An answer in the mesh's frame, in which the pair's origin is `start` and 1 is `unit`.
-    pub(crate) fn report(unit: Real, start: Vector, triangle: u32, closest: Closest<Real>) -> Nearest {
+    pub(crate) fn report(
+        unit: Real,
+        start: Vector,
+        triangle: u32,
+        closest: Closest<Real>,
+    ) -> Nearest {
         let place = |point: Vec3<Real>| start + Vector::from(point) * unit;
-        Nearest::new(triangle, closest.distance * unit, place(closest.point1), || place(closest.point2))
+        Nearest::new(triangle, closest.distance * unit, place(closest.point1), || {
+            place(closest.point2)
+        })
     }
 }
 
-/// Link and triangle in the coordinates of [`PlacedLink::pair`], with twice the digits: nothing is rounded but the
-/// link's direction.
+/// Link and triangle in the coordinates of [`PlacedLink::pair`], with twice the digits: nothing is
+/// rounded but the link's direction.
 pub(crate) fn place_exactly(
     link: &PlacedLink,
     corners: [Vector; 3],
@@ -84,7 +95,8 @@ pub(crate) fn place_exactly(
     let pair = link.pair(corners);
     let scale = 1.0 / pair.unit;
     let offset = |point: Vector| {
-        let coordinate = |x: Real, from: Real| DoubleDouble::from(x * scale) - (from * scale).into();
+        let coordinate =
+            |x: Real, from: Real| DoubleDouble::from(x * scale) - (from * scale).into();
         let (to, from) = (point, link.start());
         Vec3::new(coordinate(to.x, from.x), coordinate(to.y, from.y), coordinate(to.z, from.z))
     };

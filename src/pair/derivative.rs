@@ -1,4 +1,5 @@
-//! How a distance changes with the points that link and triangle are made of; the formulas are those of [`Derivative`].
+//! How a distance changes with the points that link and triangle are made of; the formulas are
+//! those of [`Derivative`].
 
 use super::contact::near;
 use super::nearest_features::NearPair;
@@ -24,7 +25,8 @@ pub(crate) fn derivative(
         return Ok(way_out());
     }
     let exact = NearPair::exactly(&link, corners);
-    let found = if exact.parts.asks_way_out { way_out() } else { exact.derivative(DoubleDouble::rounded) };
+    let found =
+        if exact.parts.asks_way_out { way_out() } else { exact.derivative(DoubleDouble::rounded) };
     // One place decides what is a kink.
     let kink = measured.features(|| exact).kink;
     Ok(found.map(|found| Derivative { kink, ..found }))

@@ -1,7 +1,9 @@
-//! A link in double-double arithmetic, for certificates: how far it reaches along a direction, and how far a point is from it.
+//! A link in double-double arithmetic, for certificates: how far it reaches along a direction, and
+//! how far a point is from it.
 //!
-//! Both hold whatever was rounded in the numbers that they are asked with: a direction that is not quite a unit vector, and a
-//! point that is not quite where it was meant to be, are as good as any other.
+//! Both hold whatever was rounded in the numbers that they are asked with: a direction that is not
+//! quite a unit vector, and a point that is not quite where it was meant to be, are as good as any
+//! other.
 
 use super::checks::{check_ends, rigid_pose};
 use crate::answer::{Certificate, ProximityError};
@@ -12,8 +14,8 @@ use parry3d_f64::math::{Pose, Real, Vector};
 pub(super) type Number = DoubleDouble;
 pub(super) type ExactPoint = Vec3<DoubleDouble>;
 
-/// What rounding can do to any bound of a certificate, where no coordinate exceeds 2: a hundred operations, each wrong by
-/// 2^-102 of numbers below 16, and what falls below the range.
+/// What rounding can do to any bound of a certificate, where no coordinate exceeds 2: a hundred
+/// operations, each wrong by 2^-102 of numbers below 16, and what falls below the range.
 pub(super) const SLACK: f64 = f64::from_bits((1023 - 88) << 52);
 
 /// The largest magnitude of a coordinate.
@@ -30,13 +32,20 @@ pub(super) struct ExactFrame {
 }
 
 impl ExactFrame {
-    /// The frame from `origin`, in which no point and no radius exceeds 2. Nothing if all is one point.
-    pub(super) fn around<const N: usize>(origin: Vector, points: [Vector; N], radius: Real) -> Option<Self> {
-        // From the origin every coordinate is an exact double-double, and the largest is brought near one. What is small
-        // beside far coordinates must not vanish first, so these are never made smaller.
+    /// The frame from `origin`, in which no point and no radius exceeds 2. Nothing if all is one
+    /// point.
+    pub(super) fn around<const N: usize>(
+        origin: Vector,
+        points: [Vector; N],
+        radius: Real,
+    ) -> Option<Self> {
+        // From the origin every coordinate is an exact double-double, and the largest is brought
+        // near one. What is small beside far coordinates must not vanish first, so these
+        // are never made smaller.
         let far = largest(points).max(largest([origin])).max(radius);
         let coarse = far.power_of_two_to_unity().max(1.0);
-        let extent = largest(points.map(|point| point * coarse - origin * coarse)).max(radius * coarse);
+        let extent =
+            largest(points.map(|point| point * coarse - origin * coarse)).max(radius * coarse);
         (extent > 0.0).then(|| Self { origin, coarse, fine: extent.power_of_two_to_unity() })
     }
 
@@ -55,7 +64,8 @@ impl ExactFrame {
         Number::from(length * self.coarse) * self.fine.into()
     }
 
-    /// Bounds of this frame in the caller's unit: outwards by one number, for the roundings to f64 and out of the scale.
+    /// Bounds of this frame in the caller's unit: outwards by one number, for the roundings to f64
+    /// and out of the scale.
     pub(super) fn certificate(&self, lower: Number, upper: Number) -> Certificate {
         let back = |bound: Number| bound.rounded() / self.fine / self.coarse;
         Certificate { lower: back(lower).next_down().max(0.0), upper: back(upper).next_up() }
@@ -72,7 +82,11 @@ pub(super) struct CertifiedLink {
 
 impl CertifiedLink {
     /// `number` is the link's position in its chain.
-    pub(super) fn new(link: &ModifiedCylinder, pose: &Pose, number: usize) -> Result<Self, ProximityError> {
+    pub(super) fn new(
+        link: &ModifiedCylinder,
+        pose: &Pose,
+        number: usize,
+    ) -> Result<Self, ProximityError> {
         let link = link.transformed(&rigid_pose(pose)?);
         let (start, end) = (link.start(), link.end());
         check_ends(number, [start, end])?;
@@ -82,8 +96,10 @@ impl CertifiedLink {
     /// The same in exact coordinates.
     pub(super) fn exact(&self, frame: &ExactFrame) -> ExactLink {
         let along = frame.way(self.start, self.end);
-        // As the narrow phase has it, a length whose square vanishes beside the other shape gives no direction.
-        let squared = Vec3::new(along.x.rounded(), along.y.rounded(), along.z.rounded()).norm_squared();
+        // As the narrow phase has it, a length whose square vanishes beside the other shape gives
+        // no direction.
+        let squared =
+            Vec3::new(along.x.rounded(), along.y.rounded(), along.z.rounded()).norm_squared();
         let zero = Vec3::new(Number::ZERO, Number::ZERO, Number::ZERO);
         let axis = if gives_direction(squared) { along.normalised() } else { zero };
         let start = frame.point(self.start);
@@ -118,7 +134,8 @@ impl ExactLink {
         let along = direction.dot(self.axis);
         let across = (direction - self.axis * along).norm() * self.radius;
         let lowest = |height: Number, inward: Number, flat: bool| {
-            // A round cap shows its ball to directions that come from beyond its end, else only its rim.
+            // A round cap shows its ball to directions that come from beyond its end, else only its
+            // rim.
             height - if flat || inward.lt((-SLACK).into()) { across } else { self.radius }
         };
         let start = lowest(self.start.dot(direction), along, self.flat[0]);
@@ -139,8 +156,11 @@ impl ExactLink {
         let (above, below) = (from_end.dot(self.axis), -along);
         let radial = (from_start - self.axis * along).norm();
         let beside = (radial - self.radius).max(zero);
-        let (beyond, from, flat) =
-            if zero.lt(above) { (above, from_end, self.flat[1]) } else { (below, from_start, self.flat[0]) };
+        let (beyond, from, flat) = if zero.lt(above) {
+            (above, from_end, self.flat[1])
+        } else {
+            (below, from_start, self.flat[0])
+        };
         if !zero.lt(beyond) {
             beside
         } else if flat {

@@ -1,16 +1,19 @@
-//! One link against a pack of triangles, in the precision of the search: which of them may be nearer than a bound.
+//! One link against a pack of triangles, in the precision of the search: which of them may be
+//! nearer than a bound.
 
 use super::search_link::SearchLink;
 use crate::distance::lanes::Pack;
 use crate::distance::{Axial, Face, Link, Mask, Scalar, Vec3};
 use crate::mesh::splat;
 
-/// What a pack of triangles is to a link. All distances are counted from the axis: the link's own and the radius.
+/// What a pack of triangles is to a link. All distances are counted from the axis: the link's own
+/// and the radius.
 pub(crate) struct Nearer<L> {
     /// Which may be nearer than a bound, one bit per lane.
     pub nearer: u64,
-    /// Bounds on how near they are but for the link's `error`: twice the axis distance where no flat cap decides. The upper
-    /// one is no less than the radius wherever a flat cap may decide as far as this precision can tell.
+    /// Bounds on how near they are but for the link's `error`: twice the axis distance where no
+    /// flat cap decides. The upper one is no less than the radius wherever a flat cap may
+    /// decide as far as this precision can tell.
     pub lower: L,
     pub upper: L,
 }
@@ -61,7 +64,8 @@ impl<L: Pack> LinkLanes<L> {
     /// Upper bounds on the axis limits of what is in spheres: some point of it is that near.
     #[inline(always)]
     pub(crate) fn reach_of_spheres(&self, centre: Vec3<L>, radius: L) -> L {
-        // Any point of a triangle is an upper bound on F; beyond a flat cap that is one on the distance alone.
+        // Any point of a triangle is an upper bound on F; beyond a flat cap that is one on the
+        // distance alone.
         let beyond = if self.has_flat_cap { self.link.radius } else { self.length.zero() };
         self.offset_from_axis(centre).norm() + radius + beyond
     }
@@ -73,8 +77,8 @@ impl<L: Pack> LinkLanes<L> {
         L::bits(self.offset_from_axis(centre).norm_squared().lt(reach * reach))
     }
 
-    /// Which triangles are not ruled out by the plane before the axis whose normal leads from the axis to the triangle's
-    /// centre, as bits.
+    /// Which triangles are not ruled out by the plane before the axis whose normal leads from the
+    /// axis to the triangle's centre, as bits.
     #[inline(always)]
     pub(crate) fn not_behind_plane(&self, [a, b, c]: [Vec3<L>; 3], limit: L) -> u64 {
         let centre = (a + b + c) * self.length.lit(1.0 / 3.0);
@@ -85,11 +89,12 @@ impl<L: Pack> LinkLanes<L> {
         L::bits(!(limit * limit * v.norm_squared()).lt(ahead * ahead))
     }
 
-    /// Whether a triangle's centre is nearer to the axis than `certain`, and not beyond a flat cap: then the triangle is
-    /// within the bound whose certain limit that is, and need not be looked at more closely.
+    /// Whether a triangle's centre is nearer to the axis than `certain`, and not beyond a flat cap:
+    /// then the triangle is within the bound whose certain limit that is, and need not be
+    /// looked at more closely.
     ///
-    /// The centre errs by less than 4 u of the largest coordinate, and how far along the axis it is by less than 16 u;
-    /// `error` is 64 u of it.
+    /// The centre errs by less than 4 u of the largest coordinate, and how far along the axis it is
+    /// by less than 16 u; `error` is 64 u of it.
     #[inline(always)]
     pub(crate) fn has_centre_within(&self, [a, b, c]: [Vec3<L>; 3], certain: L) -> bool {
         let centre = (a + b + c) * self.length.lit(1.0 / 3.0);
@@ -129,7 +134,8 @@ impl<L: Pack> LinkLanes<L> {
         let lower = beyond_cap.select(axis.max(lower + self.link.radius), axis);
         let mut upper = beyond_cap.select(upper + self.link.radius, axis);
         if L::bits(upper.lt(self.link.radius)) != 0 {
-            // Rounding alone may have put p* behind a flat cap: then there is a gap, however near the axis is.
+            // Rounding alone may have put p* behind a flat cap: then there is a gap, however near
+            // the axis is.
             let behind = self.is_behind_flat_caps(axial.on_triangle);
             upper = behind.select(upper, upper.max(self.link.radius));
         }

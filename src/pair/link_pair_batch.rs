@@ -1,5 +1,5 @@
-//! Several pairs of links in double precision, a pack at a time: the bits are those of [`PlacedLink::measure_link`](
-//! super::PlacedLink::measure_link), on every instruction set.
+//! Several pairs of links in double precision, a pack at a time: the bits are those of
+//! [`PlacedLink::measure_link`]( super::PlacedLink::measure_link), on every instruction set.
 
 use super::measure_batch::narrowed;
 use super::pair_lanes::{BATCH, Rows, link, put_link, store};
@@ -15,8 +15,9 @@ pub(crate) type PlacedEnds = ([Vector; 2], Real, [bool; 2]);
 
 /// Pairs of links in one frame, and their nearest points.
 ///
-/// A pack is written number by number and read as a whole, and a processor waits for what it has just written in other pieces
-/// than it reads. So all pairs are put down before the first is measured.
+/// A pack is written number by number and read as a whole, and a processor waits for what it has
+/// just written in other pieces than it reads. So all pairs are put down before the first is
+/// measured.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct LinkPairBatch {
     packs: Vec<PackOfPairs>,
@@ -95,7 +96,11 @@ impl LinkPairBatch {
         let distance = found[0][lane];
         let on_first = Vector::new(found[1][lane], found[2][lane], found[3][lane]);
         let on_second = Vector::new(found[4][lane], found[5][lane], found[6][lane]);
-        NearestOfLinks { distance, on_first, on_second: if distance > 0.0 { on_second } else { on_first } }
+        NearestOfLinks {
+            distance,
+            on_first,
+            on_second: if distance > 0.0 { on_second } else { on_first },
+        }
     }
 }
 
@@ -104,15 +109,23 @@ impl PackOfPairs {
     fn measure_first(&mut self, bound: Real) {
         let [first, second] = [0, 9].map(|row| {
             let number = |place: usize| self.pairs[row + place][0];
-            let [start, end] = [0, 3].map(|end| Vector::new(number(end), number(end + 1), number(end + 2)));
+            let [start, end] =
+                [0, 3].map(|end| Vector::new(number(end), number(end + 1), number(end + 2)));
             PlacedLink::between(start, end, number(6), [number(7) > 0.0, number(8) > 0.0])
         });
         self.near = 0;
         if let Some(NearestOfLinks { distance, on_first, on_second }) =
             first.measure_link_within(bound, &second)
         {
-            let numbers =
-                [distance, on_first.x, on_first.y, on_first.z, on_second.x, on_second.y, on_second.z];
+            let numbers = [
+                distance,
+                on_first.x,
+                on_first.y,
+                on_first.z,
+                on_second.x,
+                on_second.y,
+                on_second.z,
+            ];
             for (row, number) in self.found.iter_mut().zip(numbers) {
                 row[0] = number;
             }
@@ -120,7 +133,8 @@ impl PackOfPairs {
         }
     }
 
-    /// Measures the pairs from a lane on. Returns which of those that are there are within the bound.
+    /// Measures the pairs from a lane on. Returns which of those that are there are within the
+    /// bound.
     #[inline(always)]
     fn measure<L: Pack<Element = f64>>(
         &mut self,
@@ -165,7 +179,8 @@ mod tests {
         [nearest.distance, a.x, a.y, a.z, b.x, b.y, b.z].map(f64::to_bits)
     }
 
-    /// A link on a coarse lattice every other time, where ties, parallels and touching links are common; sometimes a ball.
+    /// A link on a coarse lattice every other time, where ties, parallels and touching links are
+    /// common; sometimes a ball.
     fn link(random: &mut Random, size: f64) -> PlacedEnds {
         let step = if random.below(2) == 0 { 0.5 } else { 0.0 };
         let mut point = |most: f64| {
@@ -189,8 +204,9 @@ mod tests {
                 .map(|_| [link(&mut random, size), link(&mut random, size)])
                 .collect();
             let alone = |[first, second]: &[PlacedEnds; 2]| {
-                let [first, second] = [first, second]
-                    .map(|(ends, radius, flat)| PlacedLink::between(ends[0], ends[1], *radius, *flat));
+                let [first, second] = [first, second].map(|(ends, radius, flat)| {
+                    PlacedLink::between(ends[0], ends[1], *radius, *flat)
+                });
                 first.measure_link(&second)
             };
             let alone: Vec<_> = pairs.iter().map(alone).collect();
@@ -206,15 +222,21 @@ mod tests {
                 together.measure(level, bound);
                 let found: Vec<_> = together.near().collect();
                 let expected = alone.iter().map(|nearest| nearest.distance).enumerate();
-                let expected: Vec<_> = expected.filter(|(_, distance)| *distance <= bound).collect();
+                let expected: Vec<_> =
+                    expected.filter(|(_, distance)| *distance <= bound).collect();
                 assert_eq!(found, expected, "{level:?}, round {round}");
                 for (pair, _) in found {
-                    assert_eq!(bits(&together.nearest(pair)), bits(&alone[pair]), "{level:?}, round {round}");
+                    assert_eq!(
+                        bits(&together.nearest(pair)),
+                        bits(&alone[pair]),
+                        "{level:?}, round {round}"
+                    );
                 }
                 beyond += pairs.len() - expected.len();
             }
             touching += alone.iter().filter(|nearest| nearest.distance == 0.0).count();
-            flat += pairs.iter().filter(|pair| pair.iter().any(|link| link.2 != [false; 2])).count();
+            flat +=
+                pairs.iter().filter(|pair| pair.iter().any(|link| link.2 != [false; 2])).count();
         }
         assert!(touching > 5000 && flat > 10_000 && beyond > 10_000, "{touching} {flat} {beyond}");
     }

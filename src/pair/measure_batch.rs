@@ -16,7 +16,8 @@ use parry3d_f64::math::Real;
 /// Fewer are measured one by one: half a pack takes less time than two of them.
 const MIN_FOR_PACK: usize = 2;
 
-/// The corners of up to [`BATCH`] triangles in the mesh's frame, each coordinate in a row of its own.
+/// The corners of up to [`BATCH`] triangles in the mesh's frame, each coordinate in a row of its
+/// own.
 type CornerRows = Rows<9>;
 
 impl Best {
@@ -30,14 +31,16 @@ impl Best {
         triangles: &[u32],
     ) -> bool {
         if triangles.len() < MIN_FOR_PACK {
-            let measure = |is_best, &triangle| self.measure(link, triangle, mesh.corners(triangle)) | is_best;
+            let measure =
+                |is_best, &triangle| self.measure(link, triangle, mesh.corners(triangle)) | is_best;
             return triangles.iter().fold(false, measure);
         }
         let mut is_best = false;
         let mut answers = NearestRows::new();
         let near = measure_pack(level, link, mesh, triangles, self.bound(), &mut answers);
         for lane in set_bits(near) {
-            // Most that are not farther than the bound are as far, and most of these need no report.
+            // Most that are not farther than the bound are as far, and most of these need no
+            // report.
             if self.is_worse_than(answers.distance(lane), triangles[lane]) {
                 is_best |= self.take(answers.nearest(lane, triangles[lane]));
             }
@@ -120,7 +123,9 @@ mod tests {
     fn numbers(seed: u64) -> impl FnMut(u32) -> f64 {
         let mut state = seed;
         move |lattice| {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
             let number = (state >> 11) as f64 * 2.0_f64.powi(-52) - 1.0;
             if lattice == 0 { (number * 4.0).round() / 4.0 } else { number }
         }
@@ -132,7 +137,8 @@ mod tests {
         let mut next = numbers(3);
         let bits = |best: &Best| {
             let nearest = best.nearest().expect("no bound");
-            let points = [nearest.on_robot, nearest.on_mesh].map(|point| point.to_array().map(f64::to_bits));
+            let points =
+                [nearest.on_robot, nearest.on_mesh].map(|point| point.to_array().map(f64::to_bits));
             (nearest.triangle, nearest.distance.to_bits(), points)
         };
         let (mut touching, mut discs, mut compared) = (0, 0, 0);
@@ -143,7 +149,9 @@ mod tests {
             let radius = size * [0.0, 0.01, 0.3, 3.0][round as usize % 4];
             let caps = [Cap::Flat, Cap::Round];
             let caps = [caps[round as usize / 2 % 2], caps[round as usize / 3 % 2]];
-            let Ok(link) = ModifiedCylinder::new(start, start + way, radius, caps) else { continue };
+            let Ok(link) = ModifiedCylinder::new(start, start + way, radius, caps) else {
+                continue;
+            };
             let link = PlacedLink::new(&link, &Pose::IDENTITY);
             let corners: Vec<_> = (0..24).map(|_| start + way * 0.5 + point(3.0 * size)).collect();
             let triangles = (0..8).map(|k| [3 * k, 3 * k + 1, 3 * k + (round + k) % 3]).collect();
@@ -173,6 +181,9 @@ mod tests {
                 assert_eq!(bits(&together), bits(&alone), "{level:?}, round {round}");
             }
         }
-        assert!(touching > 1000 && discs > 5000 && compared > 20_000, "{touching} {discs} {compared}");
+        assert!(
+            touching > 1000 && discs > 5000 && compared > 20_000,
+            "{touching} {discs} {compared}"
+        );
     }
 }

@@ -1,34 +1,40 @@
 //! Which features of a link and a triangle are nearest, and the normal between them.
 //!
-//! Let q be the axis point nearest to the triangle, p the triangle's point there and F their distance. Beside the link
-//! and beyond a round cap the link's closest point lies on the way from q to p, one radius from q: the normal from wall
-//! to robot is (q - p) / F. It has a meaning where the two overlap as well: no way out is shorter, as long as a flat cap is
-//! no nearer along the axis than the overlap is deep (see `distance/depth/foot.rs`). Beyond a flat cap the closest points x
-//! of the link and y of the triangle are those of the cap's disc, and the normal is (x - y) / |x - y|.
+//! Let q be the axis point nearest to the triangle, p the triangle's point there and F their
+//! distance. Beside the link and beyond a round cap the link's closest point lies on the way from q
+//! to p, one radius from q: the normal from wall to robot is (q - p) / F. It has a meaning where
+//! the two overlap as well: no way out is shorter, as long as a flat cap is no nearer along the
+//! axis than the overlap is deep (see `distance/depth/foot.rs`). Beyond a flat cap the closest
+//! points x of the link and y of the triangle are those of the cap's disc, and the normal is (x -
+//! y) / |x - y|.
 //!
-//! One text for `f64`, packs of it and numbers of twice its digits. The difference of two points that are g apart turns by about
-//! 4 u / g, for numbers near one; below a gap of 2^-8 that is too much, and the pair is done again with 32 digits.
+//! One text for `f64`, packs of it and numbers of twice its digits. The difference of two points
+//! that are g apart turns by about 4 u / g, for numbers near one; below a gap of 2^-8 that is too
+//! much, and the pair is done again with 32 digits.
 //!
 //! # Where there is no such gap
-//! Coordinates are below 2 here, so that each is rounded by u at most before it comes here, and once more when it is seen
-//! from the link's start: two points are 2 sqrt(3) 2 u < 7 u farther apart or nearer than they should be, and what is
-//! computed of them errs by less than 9 u more. A gap of 16 u or less ([`ROUNDING`]) is none, and its direction, with however
-//! many digits, is that of the rounding. There, and where the two overlap and a flat cap is near, the features decide:
+//! Coordinates are below 2 here, so that each is rounded by u at most before it comes here, and
+//! once more when it is seen from the link's start: two points are 2 sqrt(3) 2 u < 7 u farther
+//! apart or nearer than they should be, and what is computed of them errs by less than 9 u more. A
+//! gap of 16 u or less ([`ROUNDING`]) is none, and its direction, with however many digits, is that
+//! of the rounding. There, and where the two overlap and a flat cap is near, the features decide:
 //! see `distance/depth/way_out.rs`.
 //!
 //! # Kinks
-//! With the normal n fixed, let the triangle's foremost part be where <n, .> is greatest, and the link's where it is
-//! least. The distance of two convex sets, and where they overlap the way out along n, has a derivative along every motion
-//! if only one pair of points realises it (Danskin's theorem), and more than one pair do only if both foremost parts are
-//! more than a point and lie, seen along n, over each other by more than a point:
+//! With the normal n fixed, let the triangle's foremost part be where <n, .> is greatest, and the
+//! link's where it is least. The distance of two convex sets, and where they overlap the way out
+//! along n, has a derivative along every motion if only one pair of points realises it (Danskin's
+//! theorem), and more than one pair do only if both foremost parts are more than a point and lie,
+//! seen along n, over each other by more than a point:
 //!
-//! - the link's is a line of its side, n being perpendicular to the axis; the triangle's its face, or an edge parallel
-//!   to the axis;
+//! - the link's is a line of its side, n being perpendicular to the axis; the triangle's its face,
+//!   or an edge parallel to the axis;
 //! - the link's is a flat cap, n being parallel to the axis; the triangle's an edge or its face.
 //!
-//! Rounding cannot tell a point that is farther by less than 64 u. Over a line of length l that is tilted by an angle a
-//! against a plane the distance rises by l sin a; between two lines at an angle a, F apart, by (l sin a)^2 / (2 F). What is
-//! no longer than that is a point: a cap without a radius has nothing that could be nearer than its centre.
+//! Rounding cannot tell a point that is farther by less than 64 u. Over a line of length l that is
+//! tilted by an angle a against a plane the distance rises by l sin a; between two lines at an
+//! angle a, F apart, by (l sin a)^2 / (2 F). What is no longer than that is a point: a cap without
+//! a radius has nothing that could be nearer than its centre.
 //!
 //! The corners of a triangle without area can move against one another: it counts as a kink too.
 
@@ -37,7 +43,9 @@ use super::nearest::Nearest;
 use super::placed_link::PlacedLink;
 use crate::answer::{LinkFeature, TriangleFeature};
 use crate::distance::depth::{LinkTriangle, ROUNDING, WayOut};
-use crate::distance::{Axial, Closest, DoubleDouble, Face, Link, Mask, Scalar, Vec3, point_triangle};
+use crate::distance::{
+    Axial, Closest, DoubleDouble, Face, Link, Mask, Scalar, Vec3, point_triangle,
+};
 use parry3d_f64::math::{Real, Vector};
 
 /// What rounding cannot tell, of numbers near one.
@@ -49,10 +57,12 @@ const SHORT: Real = 1.0 / 256.0;
 /// Farther than any point where numbers are near one.
 const FAR: Real = 16.0;
 
-/// Parts that lie over each other by less have a point in common: the room that [`TIE`] gives each of their ends.
+/// Parts that lie over each other by less have a point in common: the room that [`TIE`] gives each
+/// of their ends.
 const OVER_EACH_OTHER: Real = 16.0 * TIE;
 
-/// What there is to say of a link and a triangle, directions in the mesh's frame and lengths in its unit.
+/// What there is to say of a link and a triangle, directions in the mesh's frame and lengths in its
+/// unit.
 pub(crate) struct NearestFeatures {
     pub link: LinkFeature,
     pub triangle: TriangleFeature,
@@ -96,8 +106,12 @@ impl Measured {
         Pair::report(self.unit, link.start(), triangle, self.closest)
     }
 
-    /// What there is to tell. `exactly` is asked for the pair with more digits where these are too few.
-    pub(crate) fn features(&self, exactly: impl FnOnce() -> NearPair<DoubleDouble>) -> NearestFeatures {
+    /// What there is to tell. `exactly` is asked for the pair with more digits where these are too
+    /// few.
+    pub(crate) fn features(
+        &self,
+        exactly: impl FnOnce() -> NearPair<DoubleDouble>,
+    ) -> NearestFeatures {
         let Self { pair, unit, .. } = self;
         if pair.parts.asks_way_out {
             return pair.parting().features(*unit, |number| number);
@@ -114,12 +128,15 @@ impl Measured {
     }
 }
 
-/// Which parts of a link and a triangle are nearest, in coordinates from the link's start and near one.
+/// Which parts of a link and a triangle are nearest, in coordinates from the link's start and near
+/// one.
 #[derive(Clone, Copy)]
 pub(crate) struct NearestParts<T: Scalar> {
-    /// Whether it is the cap at the start, or else the one at the end. The side where it is neither.
+    /// Whether it is the cap at the start, or else the one at the end. The side where it is
+    /// neither.
     pub caps: [T::Mask; 2],
-    /// Which corner it is, the first of them; where it is none, which edge. The face where it is neither.
+    /// Which corner it is, the first of them; where it is none, which edge. The face where it is
+    /// neither.
     pub corners: [T::Mask; 3],
     pub edges: [T::Mask; 3],
     /// Where on the axis, from 0 to 1.
@@ -164,7 +181,8 @@ impl<T: Scalar> NearestParts<T> {
         let to_end = link.flat[1].select((one - axial.s) * length, far);
         // Rounding of the ends of a short axis turns a wide cap.
         let turn = one.max(link.radius.over(length));
-        let is_capsule = !at_flat_cap & (rounding * turn - depth.min(zero)).lt(to_start.min(to_end));
+        let is_capsule =
+            !at_flat_cap & (rounding * turn - depth.min(zero)).lt(to_start.min(to_end));
         let asks_way_out = gap.le(rounding) | (closest.distance.le(zero) & !is_capsule);
         let has_normal = zero.lt(apart.largest()) & !(!at_flat_cap & axial.axis_squared.le(zero));
         let normal = apart.normalised();
@@ -201,31 +219,36 @@ impl<T: Scalar> NearestParts<T> {
         self.asks_way_out | self.needs_digits(triangle, face, link)
     }
 
-    /// Where the gap is too short for these digits, or [`NearPair::is_kink`] must be asked with more. A kink needs two
-    /// corners that are foremost, and a normal that is parallel to a flat cap's axis or perpendicular to the link's; beside
-    /// a link also the third corner or an edge along it. Or a triangle without area.
+    /// Where the gap is too short for these digits, or [`NearPair::is_kink`] must be asked with
+    /// more. A kink needs two corners that are foremost, and a normal that is parallel to a
+    /// flat cap's axis or perpendicular to the link's; beside a link also the third corner or
+    /// an edge along it. Or a triangle without area.
     ///
-    /// Points of the triangle whose distances F differ by rounding, at most 9 u, may take each other's place: the way to
-    /// them turns by no more than sqrt(2 * 9 u / F), as the rest of the triangle does not come nearer. So a point at most
-    /// 2 sqrt(3) away rises by less than sqrt(216 u / F), and of two points one by twice as much more than the other:
-    /// sqrt(864 u / F). That is more than the 28 u / F by which the rounding of the points turns the normal.
+    /// Points of the triangle whose distances F differ by rounding, at most 9 u, may take each
+    /// other's place: the way to them turns by no more than sqrt(2 * 9 u / F), as the rest of
+    /// the triangle does not come nearer. So a point at most 2 sqrt(3) away rises by less than
+    /// sqrt(216 u / F), and of two points one by twice as much more than the other: sqrt(864 u
+    /// / F). That is more than the 28 u / F by which the rounding of the points turns the normal.
     #[inline(always)]
     fn needs_digits(&self, triangle: &[Vec3<T>; 3], face: &Face<T>, link: &Link<T>) -> T::Mask {
         let tie = (self.gap.lit(1024.0 * T::UNIT_ROUNDOFF)).over(self.gap).sqrt();
         let [a, b, c] = *triangle;
-        let [a_is_foremost, b_is_foremost, c_is_foremost] = are_foremost(triangle, self.normal, tie);
+        let [a_is_foremost, b_is_foremost, c_is_foremost] =
+            are_foremost(triangle, self.normal, tie);
         let [ab, bc] = [a_is_foremost & b_is_foremost, b_is_foremost & c_is_foremost];
         let ca = c_is_foremost & a_is_foremost;
         let is_level = self.normal.dot(link.end).abs().le(tie);
         let edge = Vec3::select(ab, b - a, Vec3::select(bc, c - b, a - c));
         let is_kink_beside = is_level & ((ab & bc) | is_along(edge, link, self.gap, tie));
         let faces_cap = rise_over_cap(self.normal, link).le(tie);
-        let may_be_kink = (ab | bc | ca) & (is_kink_beside | (self.at_flat_cap & (faces_cap | is_level)));
+        let may_be_kink =
+            (ab | bc | ca) & (is_kink_beside | (self.at_flat_cap & (faces_cap | is_level)));
         self.gap.lt(self.gap.lit(SHORT)) | may_be_kink | !has_area(face)
     }
 }
 
-/// Whether a point is a corner, as far as rounding can tell. (Functions, because a closure may escape inlining.)
+/// Whether a point is a corner, as far as rounding can tell. (Functions, because a closure may
+/// escape inlining.)
 #[inline(always)]
 fn is_at<T: Scalar>(point: Vec3<T>, corner: Vec3<T>) -> T::Mask {
     (point - corner).largest().le(point.x.lit(TIE))
@@ -252,8 +275,8 @@ fn are_foremost<T: Scalar>([a, b, c]: &[Vec3<T>; 3], normal: Vec3<T>, tie: T) ->
     [top.le(a), top.le(b), top.le(c)]
 }
 
-/// By how much a cap's rim rises over a plane with this normal: less what rounding does to the ends of a short axis, which
-/// turns a wide cap.
+/// By how much a cap's rim rises over a plane with this normal: less what rounding does to the ends
+/// of a short axis, which turns a wide cap.
 #[inline(always)]
 fn rise_over_cap<T: Scalar>(normal: Vec3<T>, link: &Link<T>) -> T {
     let across = normal.along(link.axis, -normal.dot(link.axis)).norm();
@@ -282,12 +305,16 @@ impl NearPair<DoubleDouble> {
 }
 
 impl<T: Scalar<Mask = bool> + PartialEq> NearPair<T> {
-    /// Of which no kink is known, with its closest points and how far the axis is from the triangle.
+    /// Of which no kink is known, with its closest points and how far the axis is from the
+    /// triangle.
     fn new(triangle: [Vec3<T>; 3], link: Link<T>) -> (Self, Closest<T>, T) {
         let face = Face::new(triangle);
         let axial = Axial::new(&link, &face);
-        let closest =
-            if axial.beyond_flat_cap() { axial.with_caps(&link, &face) } else { axial.without_caps(&link) };
+        let closest = if axial.beyond_flat_cap() {
+            axial.with_caps(&link, &face)
+        } else {
+            axial.without_caps(&link)
+        };
         let parts = NearestParts::new(&triangle, &link, &axial, &closest);
         let apart = if parts.at_flat_cap { axial.axis_squared.sqrt() } else { parts.gap };
         (Self { link, parts, kink: false, face, triangle }, closest, apart)
@@ -325,7 +352,8 @@ impl<T: Scalar<Mask = bool> + PartialEq> NearPair<T> {
             TriangleFeature::Face => {
                 let foot = self.face.project(point);
                 // The face's first vertex is another than the triangle's; the order is the same.
-                let first = (0..3).find(|&corner| corners[corner] == self.face.vertices[0]).unwrap_or(0);
+                let first =
+                    (0..3).find(|&corner| corners[corner] == self.face.vertices[0]).unwrap_or(0);
                 weights[first] = one - foot.alpha - foot.beta;
                 weights[(first + 1) % 3] = foot.alpha;
                 weights[(first + 2) % 3] = foot.beta;
@@ -334,8 +362,8 @@ impl<T: Scalar<Mask = bool> + PartialEq> NearPair<T> {
         weights
     }
 
-    /// Whether more than one pair of points is as near, with the unit vector `normal` from triangle to link and the axis
-    /// `apart` from the triangle.
+    /// Whether more than one pair of points is as near, with the unit vector `normal` from triangle
+    /// to link and the axis `apart` from the triangle.
     fn is_kink(&self, normal: Vec3<T>, apart: T, at_flat_cap: bool) -> bool {
         if !has_area(&self.face) {
             return true;
@@ -370,14 +398,16 @@ impl<T: Scalar<Mask = bool> + PartialEq> NearPair<T> {
             || (b != c && apart.lit(OVER_EACH_OTHER).lt(self.above_face() * length))
     }
 
-    /// How much of the axis is above the face, seen along the face's normal; a tie beyond its edges counts.
+    /// How much of the axis is above the face, seen along the face's normal; a tie beyond its edges
+    /// counts.
     fn above_face(&self) -> T {
         let (end, across) = (self.link.end, self.face.across);
         let [a, b, c] = self.face.vertices;
         let (mut from, mut to) = (end.x.zero(), end.x.one());
         for [start, other] in [[a, b], [b, c], [c, a]] {
             let inwards = across.cross(other - start);
-            let (height, rise) = (-inwards.dot(start) + inwards.norm() * end.x.lit(TIE), inwards.dot(end));
+            let (height, rise) =
+                (-inwards.dot(start) + inwards.norm() * end.x.lit(TIE), inwards.dot(end));
             if end.x.zero().lt(rise) {
                 from = from.max(-height.over(rise));
             } else if rise.lt(end.x.zero()) {
@@ -434,12 +464,15 @@ pub(crate) fn link_feature([start, end]: [bool; 2]) -> LinkFeature {
 
 /// The part of a triangle by what [`NearestParts`] has of its corners and edges.
 pub(crate) fn triangle_feature(corners: [bool; 3], edges: [bool; 3]) -> TriangleFeature {
-    let first = |parts: [bool; 3]| (0..).zip(parts).find(|(_, is_nearest)| *is_nearest).map(|(part, _)| part);
+    let first = |parts: [bool; 3]| {
+        (0..).zip(parts).find(|(_, is_nearest)| *is_nearest).map(|(part, _)| part)
+    };
     let corner = first(corners).map(TriangleFeature::Vertex);
     corner.or(first(edges).map(TriangleFeature::Edge)).unwrap_or(TriangleFeature::Face)
 }
 
-/// Whether an edge is as near to a link all along, `apart` from the axis, as far as rounding can tell.
+/// Whether an edge is as near to a link all along, `apart` from the axis, as far as rounding can
+/// tell.
 #[inline(always)]
 fn is_along<T: Scalar>(edge: Vec3<T>, link: &Link<T>, apart: T, tie: T) -> T::Mask {
     let sine = edge.cross(link.axis).norm().over(edge.norm());

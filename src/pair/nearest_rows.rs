@@ -5,7 +5,8 @@ use super::pair_lanes::{BATCH, PairLanes, Rows, store};
 use crate::distance::lanes::Pack;
 use parry3d_f64::math::{Real, Vector};
 
-/// The distances of several pairs and their closest points, on the triangle and on the link, in the mesh's frame.
+/// The distances of several pairs and their closest points, on the triangle and on the link, in the
+/// mesh's frame.
 pub(super) struct NearestRows(Rows<7>);
 
 impl NearestRows {
@@ -29,7 +30,9 @@ impl NearestRows {
 
     /// What was found of the pair of a lane, which is one with `triangle`.
     pub(super) fn nearest(&self, lane: usize, triangle: u32) -> Nearest {
-        let point = |row: usize| Vector::new(self.0[row][lane], self.0[row + 1][lane], self.0[row + 2][lane]);
+        let point = |row: usize| {
+            Vector::new(self.0[row][lane], self.0[row + 1][lane], self.0[row + 2][lane])
+        };
         Nearest::new(triangle, self.0[0][lane], point(1), || point(4))
     }
 }

@@ -1,5 +1,6 @@
-//! Pairs of links with triangles or links in double precision, a pack at a time, each in coordinates of its own: those of
-//! [`coordinates`](super::coordinates), with the same bits on every instruction set.
+//! Pairs of links with triangles or links in double precision, a pack at a time, each in
+//! coordinates of its own: those of [`coordinates`](super::coordinates), with the same bits on
+//! every instruction set.
 
 use super::coordinates::{Pair, Placed};
 use super::placed_link::PlacedLink;
@@ -14,8 +15,8 @@ pub(crate) const BATCH: usize = 8;
 /// What is known of each of several pairs, each number in a row of its own.
 pub(crate) type Rows<const N: usize> = [[Real; BATCH]; N];
 
-/// Pairs in the mesh's frame: the corners of the triangle, the ends of the link's axis, the radius, and 1 for each flat
-/// cap.
+/// Pairs in the mesh's frame: the corners of the triangle, the ends of the link's axis, the radius,
+/// and 1 for each flat cap.
 pub(crate) type PairRows = Rows<18>;
 
 /// Writes a pair with a link between two points in the mesh's frame.
@@ -31,7 +32,8 @@ pub(crate) fn put_pair(
     put_link(rows, 9, lane, ends, radius, flat);
 }
 
-/// Writes a link to the rows `row` to `row + 8`: the ends of its axis, its radius, and 1 for each flat cap.
+/// Writes a link to the rows `row` to `row + 8`: the ends of its axis, its radius, and 1 for each
+/// flat cap.
 #[inline(always)]
 pub(super) fn put_link<const N: usize>(
     rows: &mut Rows<N>,
@@ -49,7 +51,8 @@ pub(super) fn put_link<const N: usize>(
     rows[row + 8][lane] = end;
 }
 
-/// The links in the rows `row` to `row + 8`, with the bits of [`PlacedLink::between`], but for the axis, which is left out.
+/// The links in the rows `row` to `row + 8`, with the bits of [`PlacedLink::between`], but for the
+/// axis, which is left out.
 #[inline(always)]
 pub(super) fn link<L: Pack<Element = f64>>(
     token: L::Token,
@@ -62,7 +65,8 @@ pub(super) fn link<L: Pack<Element = f64>>(
     let radius = L::load(token, &rows[row + 6][lane..]);
     let [start_cap, end_cap] = [&rows[row + 7], &rows[row + 8]];
     let zero = radius.zero();
-    let flat = [zero.lt(L::load(token, &start_cap[lane..])), zero.lt(L::load(token, &end_cap[lane..]))];
+    let flat =
+        [zero.lt(L::load(token, &start_cap[lane..])), zero.lt(L::load(token, &end_cap[lane..]))];
     let extent = along.largest().max(radius);
     Placed { start, along, axis: Vec3::zero(zero), radius, flat, extent }
 }
@@ -86,7 +90,11 @@ pub(crate) fn corners<L: Pack<Element = f64>, const N: usize>(
     rows: &Rows<N>,
     lane: usize,
 ) -> [Vec3<L>; 3] {
-    [point::<L>(token, rows, 0, lane), point::<L>(token, rows, 3, lane), point::<L>(token, rows, 6, lane)]
+    [
+        point::<L>(token, rows, 0, lane),
+        point::<L>(token, rows, 3, lane),
+        point::<L>(token, rows, 6, lane),
+    ]
 }
 
 /// Writes the corners of a triangle to the first nine rows.

@@ -44,7 +44,8 @@ impl PlacedLink {
         Self { start, end, along, axis, radius, flat, extent, before: 0.0, segment: 0 }
     }
 
-    /// The same link, as the one that stands for a segment of the robot's input, behind links of the length `before`.
+    /// The same link, as the one that stands for a segment of the robot's input, behind links of
+    /// the length `before`.
     pub(super) fn at(self, before: Real, segment: u32) -> Self {
         Self { before, segment, ..self }
     }
@@ -122,9 +123,15 @@ impl PlacedLink {
     }
 
     /// The same if they are at most `bound` apart. Cheaper bounds spare what they can.
-    pub(super) fn measure_within(&self, bound: Real, triangle: u32, corners: [Vector; 3]) -> Option<Nearest> {
+    pub(super) fn measure_within(
+        &self,
+        bound: Real,
+        triangle: u32,
+        corners: [Vector; 3],
+    ) -> Option<Nearest> {
         let pair = self.pair(corners);
-        // Bounds are brought into the mesh's unit, and not the other way: whatever is rounded there, the distance is too.
+        // Bounds are brought into the mesh's unit, and not the other way: whatever is rounded
+        // there, the distance is too.
         if pair.at_least() * pair.unit > bound {
             return None;
         }
@@ -175,14 +182,15 @@ impl PlacedLink {
 
     /// A lower bound on the distance between the link and anything in the box.
     ///
-    /// With c the box's centre and v the way to it from the nearest axis point, the whole axis lies behind a plane
-    /// with normal v before its ends, and the box beyond the one through its corner on that side. But for rounding
-    /// the bound is |v| - <|v|, h> / |v| with h the half extents: off by about h^2 / |v|, next to nothing for a small
-    /// box. It serves better than the distance between the boxes of link and node, which a slanted link fills
-    /// badly.
+    /// With c the box's centre and v the way to it from the nearest axis point, the whole axis lies
+    /// behind a plane with normal v before its ends, and the box beyond the one through its
+    /// corner on that side. But for rounding the bound is |v| - <|v|, h> / |v| with h the half
+    /// extents: off by about h^2 / |v|, next to nothing for a small box. It serves better than
+    /// the distance between the boxes of link and node, which a slanted link fills badly.
     pub(crate) fn distance_to_box(&self, mins: Vector, maxs: Vector) -> Real {
         let (low, high) = (mins - self.start, maxs - self.start);
-        let scale = low.abs().max(high.abs()).max_element().max(self.extent).power_of_two_to_unity();
+        let scale =
+            low.abs().max(high.abs()).max_element().max(self.extent).power_of_two_to_unity();
         let half = (high - low) * (0.5 * scale);
         let centre = Vec3::from(low * scale + half);
         let end = Vec3::from(self.along * scale);

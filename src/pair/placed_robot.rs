@@ -19,10 +19,11 @@ pub(crate) struct PlacedRobot<'a> {
     stretch: Real,
     /// What rounding can do to the place of a link in a capsule.
     ///
-    /// A rotated point errs by less than 20 u |q|^2 |p| (glam's formula, the length of the error), and a moved one by u more
-    /// of where it comes to be. |q|^2 |p| is no longer than that place and the translation together, and a length at most
-    /// 1.74 times its largest coordinate: 37 u of the largest coordinates of both. Twice that, for the capsule and for the
-    /// link, is less than 128 u.
+    /// A rotated point errs by less than 20 u |q|^2 |p| (glam's formula, the length of the error),
+    /// and a moved one by u more of where it comes to be. |q|^2 |p| is no longer than that
+    /// place and the translation together, and a length at most 1.74 times its largest
+    /// coordinate: 37 u of the largest coordinates of both. Twice that, for the capsule and for
+    /// the link, is less than 128 u.
     slack: Real,
 }
 
@@ -52,7 +53,8 @@ impl<'a> PlacedRobot<'a> {
     /// A link in the mesh's frame.
     pub(crate) fn link(&self, link: usize) -> PlacedLink {
         let segment = self.robot.segment_of(link) as u32;
-        PlacedLink::new(&self.robot.links()[link], &self.pose).at(self.robot.length_before(link), segment)
+        PlacedLink::new(&self.robot.links()[link], &self.pose)
+            .at(self.robot.length_before(link), segment)
     }
 
     /// All links in the mesh's frame.
@@ -86,8 +88,8 @@ impl<'a> PlacedRobot<'a> {
         self.ends
     }
 
-    /// The ends of a link's axis, or of the axis of a capsule around links, in the mesh's frame; the radius; which caps
-    /// are flat.
+    /// The ends of a link's axis, or of the axis of a capsule around links, in the mesh's frame;
+    /// the radius; which caps are flat.
     #[inline(always)] // what it hands over is used at once
     pub(crate) fn outline(&self, node: &LinkNode) -> ([Vector; 2], Real, [bool; 2]) {
         match node {

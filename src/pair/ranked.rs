@@ -1,5 +1,5 @@
-//! The triangles near a robot's links in the order in which pieces of the wall appear: measured in double precision, a
-//! pack at a time.
+//! The triangles near a robot's links in the order in which pieces of the wall appear: measured in
+//! double precision, a pack at a time.
 
 use super::coordinates::Pair;
 use super::nearest::Nearest;
@@ -58,11 +58,13 @@ pub(crate) fn rank_each<'a>(
 
 fn ranked(found: &RankRows, lane: usize, triangle: u32) -> Ranked {
     let nearest = found.nearest.nearest(lane, triangle);
-    let rank = if nearest.distance <= 0.0 { found.to_axis[lane].min(0.0) } else { nearest.distance };
+    let rank =
+        if nearest.distance <= 0.0 { found.to_axis[lane].min(0.0) } else { nearest.distance };
     Ranked { rank, nearest, rounding: rounding(found.extent[lane]) }
 }
 
-/// What rounding can do to the distance between a link and what is no farther out than `extent`, from the link's start.
+/// What rounding can do to the distance between a link and what is no farther out than `extent`,
+/// from the link's start.
 pub(crate) fn rounding(extent: Real) -> Real {
     32.0 * f64::UNIT_ROUNDOFF * extent
 }
@@ -76,7 +78,12 @@ fn ranks_at(level: Level, pairs: &PairRows, count: usize) -> RankRows {
 }
 
 #[inline(always)]
-fn fill<L: Pack<Element = f64>>(token: L::Token, pairs: &PairRows, count: usize, ranks: &mut RankRows) {
+fn fill<L: Pack<Element = f64>>(
+    token: L::Token,
+    pairs: &PairRows,
+    count: usize,
+    ranks: &mut RankRows,
+) {
     for lane in (0..count).step_by(L::LANES) {
         let pair = PairLanes::<L>::new(token, pairs, lane);
         ranks.nearest.take(lane, &pair);

@@ -24,14 +24,15 @@ pub(crate) struct SearchLink<E> {
 }
 
 impl<E: Lane> SearchLink<E> {
-    /// A link in the frame of the search. None where it lies too far out for the precision, or its axis is too short
-    /// for its flat caps.
+    /// A link in the frame of the search. None where it lies too far out for the precision, or its
+    /// axis is too short for its flat caps.
     pub(crate) fn new(link: &PlacedLink, frame: &SearchFrame) -> Option<Self> {
         let axis = Vector::from(link.axis());
         Self::of([link.start(), link.end()], link.along(), axis, link.radius(), link.flat(), frame)
     }
 
-    /// The same from the ends of the axis in the mesh's frame, for a link that no pair is measured with.
+    /// The same from the ends of the axis in the mesh's frame, for a link that no pair is measured
+    /// with.
     #[inline]
     pub(crate) fn between(
         [start, end]: [Vector; 2],
@@ -56,7 +57,8 @@ impl<E: Lane> SearchLink<E> {
         flat: [bool; 2],
         frame: &SearchFrame,
     ) -> Option<Self> {
-        // Not from the ends after they are rounded: the direction of a short, thick link must not turn.
+        // Not from the ends after they are rounded: the direction of a short, thick link must not
+        // turn.
         let along = along * frame.scale;
         let [start, end] = ends.map(|point| (point - frame.centre) * frame.scale);
         let radius = radius * frame.scale;
@@ -83,15 +85,15 @@ impl<E: Lane> SearchLink<E> {
         })
     }
 
-    /// Whether its `error` is so small that the search rules out nearly all that is farther than the nearest
-    /// triangle.
+    /// Whether its `error` is so small that the search rules out nearly all that is farther than
+    /// the nearest triangle.
     pub(crate) fn is_resolved(&self, frame: &SearchFrame) -> bool {
         let error: Real = self.error.into();
         4.0 * error <= frame.typical
     }
 
-    /// What the bound of a node must be below for the node to hold a triangle whose axis distance is below `limit`: the
-    /// bound may be too large by three times `error`.
+    /// What the bound of a node must be below for the node to hold a triangle whose axis distance
+    /// is below `limit`: the bound may be too large by three times `error`.
     #[inline(always)]
     pub(crate) fn limit_of_bounds(&self, limit: E) -> E {
         limit + self.error + self.error + self.error
@@ -104,27 +106,29 @@ impl<E: Lane> SearchLink<E> {
         limit * limit
     }
 
-    /// What every triangle at most `limit` from the axis is nearer than: the converse of [`SearchLink::axis_limit`].
+    /// What every triangle at most `limit` from the axis is nearer than: the converse of
+    /// [`SearchLink::axis_limit`].
     pub(crate) fn bound_within(&self, limit: E) -> Real {
         let (limit, radius, error): (Real, Real, Real) =
             (limit.into(), self.radius.into(), self.error.into());
         ((limit - radius).max(0.0) + 2.0 * error) / self.scale
     }
 
-    /// What a triangle is at least from the link, if its axis distance (beyond a flat cap: its distance and the radius)
-    /// was computed as `axis_distance`.
+    /// What a triangle is at least from the link, if its axis distance (beyond a flat cap: its
+    /// distance and the radius) was computed as `axis_distance`.
     pub(crate) fn at_least(&self, axis_distance: Real) -> Real {
         let (radius, error): (Real, Real) = (self.radius.into(), self.error.into());
         (axis_distance - radius - error).max(0.0) / self.scale
     }
 
-    /// What the upper bound on a triangle's axis distance must stay below for it to be certainly at most `bound` from
-    /// the link: the error of [`SearchLink::axis_limit`] the other way.
+    /// What the upper bound on a triangle's axis distance must stay below for it to be certainly at
+    /// most `bound` from the link: the error of [`SearchLink::axis_limit`] the other way.
     pub(crate) fn certain_limit(&self, bound: Real) -> E {
         E::round(bound * self.scale) + self.radius - self.error
     }
 
-    /// What a triangle's axis distance must stay below for it to be possibly at most `bound` from the link.
+    /// What a triangle's axis distance must stay below for it to be possibly at most `bound` from
+    /// the link.
     pub(crate) fn axis_limit(&self, bound: Real) -> E {
         E::round(bound * self.scale) + self.radius + self.error
     }

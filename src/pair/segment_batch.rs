@@ -1,4 +1,5 @@
-//! Points and segments of the mesh against one link, a pack at a time: the bits are the same on every instruction set.
+//! Points and segments of the mesh against one link, a pack at a time: the bits are the same on
+//! every instruction set.
 
 use super::coordinates::Placed;
 use super::pair_lanes::{BATCH, PairLanes, Rows, corners, put_corners, store};

@@ -1,7 +1,7 @@
 //! Two placed links, and how near they are.
 //!
-//! As a link and a triangle they are measured in coordinates of their own: from the first link's start, multiplied by the
-//! power of two that brings the largest of them near one.
+//! As a link and a triangle they are measured in coordinates of their own: from the first link's
+//! start, multiplied by the power of two that brings the largest of them near one.
 
 use super::coordinates::{Placed, SLACK};
 use super::placed_link::PlacedLink;
@@ -24,10 +24,20 @@ impl NearestOfLinks {
     }
 
     /// The answer about two links with these numbers.
-    pub(crate) fn answer(&self, links: [usize; 2], [first, second]: [&PlacedLink; 2]) -> RobotProximity {
+    pub(crate) fn answer(
+        &self,
+        links: [usize; 2],
+        [first, second]: [&PlacedLink; 2],
+    ) -> RobotProximity {
         let Self { distance, on_first, on_second } = *self;
         let arc_lengths = [first.arc_length_of(on_second), second.arc_length_of(on_first)];
-        RobotProximity { links: links.map(|link| link as u32), distance, on_first, on_second, arc_lengths }
+        RobotProximity {
+            links: links.map(|link| link as u32),
+            distance,
+            on_first,
+            on_second,
+            arc_lengths,
+        }
     }
 }
 
@@ -38,8 +48,8 @@ impl PlacedLink {
         self.nearest_of_links(unit, &pair.closest(&pair.axes(), |mask| mask))
     }
 
-    /// The nearest points of the flat face at one of its ends and another link. A link whose length vanishes beside the other
-    /// has no direction: it is measured whole.
+    /// The nearest points of the flat face at one of its ends and another link. A link whose length
+    /// vanishes beside the other has no direction: it is measured whole.
     pub(crate) fn face_to_link(&self, end: usize, other: &Self) -> NearestOfLinks {
         let (pair, unit) = self.with_link(other);
         let has_direction = pair.first.axis.norm_squared() > 0.0;
@@ -51,17 +61,20 @@ impl PlacedLink {
         self.nearest_of_links(unit, &closest)
     }
 
-    /// The nearest points of the flat faces at one end of each link. A link without direction is measured whole.
+    /// The nearest points of the flat faces at one end of each link. A link without direction is
+    /// measured whole.
     pub(crate) fn face_to_face(&self, ends: [usize; 2], other: &Self) -> NearestOfLinks {
         let (pair, unit) = self.with_link(other);
-        let [first, second] = [pair.first.axis, pair.second.axis].map(|axis| axis.norm_squared() > 0.0);
+        let [first, second] =
+            [pair.first.axis, pair.second.axis].map(|axis| axis.norm_squared() > 0.0);
         if !second {
             return self.face_to_link(ends[0], other);
         }
         if !first {
             return other.face_to_link(ends[1], self).swapped();
         }
-        let centres = [end_of(&pair.first, ends[0]), pair.second_start + end_of(&pair.second, ends[1])];
+        let centres =
+            [end_of(&pair.first, ends[0]), pair.second_start + end_of(&pair.second, ends[1])];
         self.nearest_of_links(unit, &pair.closest_caps(centres))
     }
 
@@ -72,7 +85,8 @@ impl PlacedLink {
         NearestOfLinks { distance, on_first, on_second }
     }
 
-    /// The same if they are at most `bound` apart. The capsules around the links spare what they can.
+    /// The same if they are at most `bound` apart. The capsules around the links spare what they
+    /// can.
     pub(crate) fn measure_link_within(&self, bound: Real, other: &Self) -> Option<NearestOfLinks> {
         let (pair, unit) = self.with_link(other);
         let axes = pair.axes();
@@ -115,7 +129,8 @@ impl<T: Scalar> Placed<T> {
         (TwoLinks { first, second, second_start: start * scale }, scale.one() / scale)
     }
 
-    /// The link seen from its start. A length whose square vanishes beside the pair's extent gives no direction.
+    /// The link seen from its start. A length whose square vanishes beside the pair's extent gives
+    /// no direction.
     #[inline(always)]
     fn scaled(&self, scale: T) -> Link<T> {
         let end = self.along * scale;
@@ -140,8 +155,8 @@ fn end_of(link: &Link<Real>, end: usize) -> Vec3<Real> {
 mod tests {
     use super::*;
 
-    /// Axes 3 √2 apart and radii of 2, in units of the smallest number there is: less than half of it is left between them, and
-    /// the nearest points round to places on both sides of it.
+    /// Axes 3 √2 apart and radii of 2, in units of the smallest number there is: less than half of
+    /// it is left between them, and the nearest points round to places on both sides of it.
     #[test]
     fn links_whose_distance_rounds_to_0_have_one_point_in_common() {
         let unit = Real::from_bits(1);

@@ -1,26 +1,32 @@
 //! The pieces of a tube that a query has not settled, best first.
 //!
 //! # Definitions
-//! - `lower` of a piece: a lower bound on its clearance. It is the distance of its body, or the `lower` of the piece
-//!   that it is a half of, whichever is larger.
-//! - `doubt` of a piece: how far apart its bounds stay because a face's direction is not known ([`Refinable::direction_uncertainty`]).
+//! - `lower` of a piece: a lower bound on its clearance. It is the distance of its body, or the
+//!   `lower` of the piece that it is a half of, whichever is larger.
+//! - `doubt` of a piece: how far apart its bounds stay because a face's direction is not known
+//!   ([`Refinable::direction_uncertainty`]).
 //! - `found` of a piece: the upper bound on the clearance that shows from it.
-//! - A **measured** piece has its distance and its `found`. An **open** piece has the `lower` of its parent. A **distant**
-//!   piece is one within whose `lower` nothing was found: its distance is larger.
-//! - The **rank** of a measured piece: (`lower` + `doubt`, upper bound of `found`, place along the tube). The others rank
-//!   by their `lower`: open pieces as if their upper bound was 0, distant ones after all others with the same `lower`.
+//! - A **measured** piece has its distance and its `found`. An **open** piece has the `lower` of
+//!   its parent. A **distant** piece is one within whose `lower` nothing was found: its distance is
+//!   larger.
+//! - The **rank** of a measured piece: (`lower` + `doubt`, upper bound of `found`, place along the
+//!   tube). The others rank by their `lower`: open pieces as if their upper bound was 0, distant
+//!   ones after all others with the same `lower`.
 //!
 //! # Claim
-//! Let a query only ever divide the measured piece of least rank, and only if it is the first of all pieces. Then the
-//! sequence of its divisions depends on the tube and on what it is beside. It depends neither on the bounds within
-//! which pieces were searched for, nor on where a search started, nor on a tolerance.
+//! Let a query only ever divide the measured piece of least rank, and only if it is the first of
+//! all pieces. Then the sequence of its divisions depends on the tube and on what it is beside. It
+//! depends neither on the bounds within which pieces were searched for, nor on where a search
+//! started, nor on a tolerance.
 //!
-//! **Proof.** Distance, `found`, `doubt` and place are functions of the piece, and so is the `lower` of a measured piece,
-//! by induction over its parents. No piece ranks lower once it is measured. So if a measured piece is the first of all, it
-//! would be the first if all pieces were measured.
+//! **Proof.** Distance, `found`, `doubt` and place are functions of the piece, and so is the
+//! `lower` of a measured piece, by induction over its parents. No piece ranks lower once it is
+//! measured. So if a measured piece is the first of all, it would be the first if all pieces were
+//! measured.
 //!
-//! So an upper bound that an earlier query left can spare searches, and never enters a result. And a finer tolerance only
-//! goes on with the same sequence: since no `lower` falls and no upper bound rises, its bounds are never looser.
+//! So an upper bound that an earlier query left can spare searches, and never enters a result. And
+//! a finer tolerance only goes on with the same sequence: since no `lower` falls and no upper bound
+//! rises, its bounds are never looser.
 
 use super::refinable::{Body, Refinable, UpperBound};
 use crate::answer::ProximityError;
@@ -28,10 +34,12 @@ use parry3d_f64::math::Real;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-/// The part at a face is as short as a body needs that exceeds the tube by this part of what its parent's does.
+/// The part at a face is as short as a body needs that exceeds the tube by this part of what its
+/// parent's does.
 const AIM_OF_HALVES: Real = 1.0 / 8.0;
 
-/// How often a piece may be divided before it is measured. Each time its body becomes narrower by a factor of four.
+/// How often a piece may be divided before it is measured. Each time its body becomes narrower by a
+/// factor of four.
 pub(crate) const MOST_LEVELS: u8 = 2;
 
 /// How a piece has been examined.
@@ -144,7 +152,9 @@ impl<P: Copy, B: Body, F: UpperBound> PendingPieces<P, B, F> {
         let (doubt, upper, is_measured) = match &piece.state {
             PieceState::Open => (0.0, 0.0, false),
             PieceState::Distant => (0.0, Real::INFINITY, false),
-            PieceState::Measured(_, found) => (tube.direction_uncertainty(&piece.piece), found.upper(), true),
+            PieceState::Measured(_, found) => {
+                (tube.direction_uncertainty(&piece.piece), found.upper(), true)
+            }
         };
         let place = tube.place(&piece.piece);
         self.queue.push(Rank { least: piece.lower + doubt, upper, is_measured, place, slot });
@@ -177,8 +187,8 @@ impl<P: Copy, B: Body, F: UpperBound> PendingPieces<P, B, F> {
         queued.chain(&self.whole)
     }
 
-    /// Looks at a piece that was taken and is not measured: divides it if `width` of its body is too much, or measures it. Its parts
-    /// are pushed.
+    /// Looks at a piece that was taken and is not measured: divides it if `width` of its body is
+    /// too much, or measures it. Its parts are pushed.
     ///
     /// # Errors
     /// The curve is not finite there.
@@ -214,8 +224,8 @@ impl<P: Copy, B: Body, F: UpperBound> PendingPieces<P, B, F> {
         Ok(Examined::Measured(found))
     }
 
-    /// Divides a measured piece that was taken, and pushes its halves, which are open. False if it has none. A body of a
-    /// half that is wider than `narrow` is divided before it is measured.
+    /// Divides a measured piece that was taken, and pushes its halves, which are open. False if it
+    /// has none. A body of a half that is wider than `narrow` is divided before it is measured.
     pub(crate) fn divide<T>(
         &mut self,
         tube: &T,
@@ -226,10 +236,15 @@ impl<P: Copy, B: Body, F: UpperBound> PendingPieces<P, B, F> {
     where
         T: Refinable<Piece = P, Body = B, Found = F>,
     {
-        let Some(halves) = tube.halves(&piece.piece, body, AIM_OF_HALVES * body.over()) else { return false };
+        let Some(halves) = tube.halves(&piece.piece, body, AIM_OF_HALVES * body.over()) else {
+            return false;
+        };
         for half in halves {
             let (lower, state) = (piece.lower, PieceState::Open);
-            self.push(tube, PendingPiece { piece: half, lower, state, narrow, levels: MOST_LEVELS });
+            self.push(
+                tube,
+                PendingPiece { piece: half, lower, state, narrow, levels: MOST_LEVELS },
+            );
         }
         true
     }

@@ -1,4 +1,5 @@
-//! A tube in pieces: convex bodies around them, points that are in them, and the two loops that divide them.
+//! A tube in pieces: convex bodies around them, points that are in them, and the two loops that
+//! divide them.
 
 mod best_first;
 mod bounding_body;

@@ -2,7 +2,8 @@
 
 use parry3d_f64::math::Real;
 
-/// Pairs of bodies by their numbers, and how far they are apart at least; no more than so many, unless all are wanted.
+/// Pairs of bodies by their numbers, and how far they are apart at least; no more than so many,
+/// unless all are wanted.
 #[derive(Clone, Debug, Default)]
 pub(super) struct NearestPairs {
     order: Vec<(Real, [u32; 2])>,

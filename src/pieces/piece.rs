@@ -14,11 +14,13 @@ pub(crate) struct Piece {
     pub to: u32,
 }
 
-/// Which ends of a piece are so near to a flat face that a round end would stick out of it. An eighth more than the
-/// room that a ball needs, because the body around a piece is wider than the tube.
+/// Which ends of a piece are so near to a flat face that a round end would stick out of it. An
+/// eighth more than the room that a ball needs, because the body around a piece is wider than the
+/// tube.
 const ROOM: Real = 1.125;
 
-/// More pieces of a section are never begun with: what is near the wall is halved, and thin wires would begin with millions.
+/// More pieces of a section are never begun with: what is near the wall is halved, and thin wires
+/// would begin with millions.
 const MAX_PIECES: u32 = 1024;
 
 impl PlacedTube<'_> {
@@ -41,8 +43,17 @@ impl PlacedTube<'_> {
     }
 
     /// A piece whatever the shape of the tube, and the body that holds it in this one.
-    pub(super) fn section_range<'o>(&self, piece: &Piece, outer: &'o BoundingBody) -> SectionRange<'o> {
-        SectionRange { section: piece.section, shares: self.shares(piece), outer, radius: self.radius(piece) }
+    pub(super) fn section_range<'o>(
+        &self,
+        piece: &Piece,
+        outer: &'o BoundingBody,
+    ) -> SectionRange<'o> {
+        SectionRange {
+            section: piece.section,
+            shares: self.shares(piece),
+            outer,
+            radius: self.radius(piece),
+        }
     }
 
     /// Which ends of a piece must be flat if its body is not to stick out of a face nearby.
@@ -54,9 +65,9 @@ impl PlacedTube<'_> {
         ]
     }
 
-    /// The pieces to begin with, those near faces first, so that they come last from a stack: they cost most, and a
-    /// bound from the others spares most of them. The others leave their chord by about `coarse`, unless that would make
-    /// too many.
+    /// The pieces to begin with, those near faces first, so that they come last from a stack: they
+    /// cost most, and a bound from the others spares most of them. The others leave their chord
+    /// by about `coarse`, unless that would make too many.
     pub(crate) fn begin(&self, coarse: Real, pieces: &mut Vec<Piece>) {
         pieces.clear();
         for number in (0..self.sections().len() as u32).rev() {
@@ -80,8 +91,9 @@ impl PlacedTube<'_> {
             let longest = (8.0 * coarse / curvature).sqrt().min(1.0 / curvature);
             // A number out of range becomes the nearest that is in it, and NaN becomes 0.
             let count = ((length / longest).ceil() as u32).clamp(1, MAX_PIECES).min(to - from);
-            let tick =
-                |k: u32| (u64::from(from) + u64::from(to - from) * u64::from(k) / u64::from(count)) as u32;
+            let tick = |k: u32| {
+                (u64::from(from) + u64::from(to - from) * u64::from(k) / u64::from(count)) as u32
+            };
             pieces.extend((0..count).rev().map(|k| Piece {
                 section: number,
                 from: tick(k),
@@ -90,7 +102,8 @@ impl PlacedTube<'_> {
         }
     }
 
-    /// The ticks between which a section is free of its faces. The first is the second where it is not.
+    /// The ticks between which a section is free of its faces. The first is the second where it is
+    /// not.
     pub(crate) fn between_faces(&self, number: u32) -> [u32; 2] {
         let section = self.section(number);
         let [first, last] = self.faces(section).map(|face| face.is_some());
@@ -99,7 +112,8 @@ impl PlacedTube<'_> {
         if needed > 0.0 && section.end - section.start <= needed {
             return if first { [section.last; 2] } else { [section.first; 2] };
         }
-        let from = if first { self.tube.tick(section, section.start + room[0]) } else { section.first };
+        let from =
+            if first { self.tube.tick(section, section.start + room[0]) } else { section.first };
         // One before the first tick within the room.
         let to = if last {
             self.tube.tick(section, section.end - room[1]).saturating_sub(1).max(section.first)
@@ -109,8 +123,8 @@ impl PlacedTube<'_> {
         if from < to { [from, to] } else { [to.max(section.first); 2] }
     }
 
-    /// The two halves of a piece; none of one tick. At a face the part at the face is as short as a body within
-    /// `aim` of the tube needs: `k l^2`.
+    /// The two halves of a piece; none of one tick. At a face the part at the face is as short as a
+    /// body within `aim` of the tube needs: `k l^2`.
     pub(crate) fn halves(&self, piece: &Piece, aim: Real) -> Option<[Piece; 2]> {
         if piece.to - piece.from < 2 {
             return None;

@@ -7,8 +7,9 @@ use crate::pair::{PlacedLink, rigid_pose};
 use crate::robot::{COORDINATE_LIMIT, EndFace, Section, Tube};
 use parry3d_f64::math::{Pose, Real, Vector};
 
-/// Lengths below this, 2^-500, are taken for rounding. A square errs by up to 2^-1074 where it falls below the range of
-/// numbers, so a length by 2^-536; and no centreline adds up as many as would make 2^-500 of it.
+/// Lengths below this, 2^-500, are taken for rounding. A square errs by up to 2^-1074 where it
+/// falls below the range of numbers, so a length by 2^-536; and no centreline adds up as many as
+/// would make 2^-500 of it.
 const MIN_LENGTH: Real = Real::from_bits((1023 - 500) << 52);
 
 /// A tube at a pose in the frame of a mesh.
@@ -19,18 +20,21 @@ pub(crate) struct PlacedTube<'a> {
     pub(crate) pose: Pose,
     /// What rounding can do to any length that is computed here or measured.
     ///
-    /// Every coordinate of the problem is at most `reach` = the tube's reach after the pose and the mesh's. A measured
-    /// distance errs by 16 u for each unit of extent, which is at most 2 reach; a placed point by less than 16 u reach;
-    /// and no bound here adds up more than a few such terms. 128 u reach is more than all of them. Beside it stands what
+    /// Every coordinate of the problem is at most `reach` = the tube's reach after the pose and
+    /// the mesh's. A measured distance errs by 16 u for each unit of extent, which is at most
+    /// 2 reach; a placed point by less than 16 u reach; and no bound here adds up more than a
+    /// few such terms. 128 u reach is more than all of them. Beside it stands what
     /// lengths lose whose squares vanish.
     ///
-    /// In the place of the mesh's reach, that of a triangle will do that is at most some distance away from the tube:
-    /// the tube's, the distance, and the triangle's longest edge. For one that is farther away in truth can seem nearer
-    /// by no more than the error that it would have at that distance.
+    /// In the place of the mesh's reach, that of a triangle will do that is at most some distance
+    /// away from the tube: the tube's, the distance, and the triangle's longest edge. For one
+    /// that is farther away in truth can seem nearer by no more than the error that it would
+    /// have at that distance.
     pub(crate) slack: Real,
     /// The largest coordinate of the tube after the pose, or more.
     reach: Real,
-    /// Whether bodies have to hold what the tube may soon be: flat ends that need not last are then round.
+    /// Whether bodies have to hold what the tube may soon be: flat ends that need not last are
+    /// then round.
     is_moving: bool,
     /// How far directions near flat ends may be off from the tube's, if that is known.
     turn: Option<Real>,
@@ -44,11 +48,17 @@ fn slack_for(reach: Real) -> Real {
 impl<'a> PlacedTube<'a> {
     /// # Errors
     /// The tube has no section, or the pose is not finite or not rigid, or moves it out of range.
-    pub(crate) fn new(tube: &'a Tube, pose: &Pose, mesh_reach: Real) -> Result<Self, ProximityError> {
+    pub(crate) fn new(
+        tube: &'a Tube,
+        pose: &Pose,
+        mesh_reach: Real,
+    ) -> Result<Self, ProximityError> {
         let pose = rigid_pose(pose)?;
-        let radius = tube.sections().iter().fold(0.0, |most: Real, section| most.max(section.radius));
+        let radius =
+            tube.sections().iter().fold(0.0, |most: Real, section| most.max(section.radius));
         // A rotation keeps lengths, and a length is at most twice the largest coordinate.
-        let reach = pose.translation.abs().max_element() + 2.0 * tube.reach() + tube.error() + radius;
+        let reach =
+            pose.translation.abs().max_element() + 2.0 * tube.reach() + tube.error() + radius;
         if reach > COORDINATE_LIMIT {
             return Err(ProximityError::TubeOutOfRange { limit: COORDINATE_LIMIT });
         }
@@ -70,7 +80,8 @@ impl<'a> PlacedTube<'a> {
         slack_for(2.0 * self.reach) < 0.5 * self.slack
     }
 
-    /// Takes less for rounding where no triangle matters that is farther than `away`, if that is less.
+    /// Takes less for rounding where no triangle matters that is farther than `away`, if that is
+    /// less.
     pub(super) fn tighten_slack(&mut self, away: Real, longest_edge: impl FnOnce() -> Real) {
         let least = slack_for(2.0 * self.reach + away);
         // What is less by a little is not worth looking at all edges for.
@@ -89,8 +100,8 @@ impl<'a> PlacedTube<'a> {
         Self { is_moving: true, ..self }
     }
 
-    /// The same tube as if its turn had not been stated, if that is another tube of which less is known. All bounds of that
-    /// one hold for this one.
+    /// The same tube as if its turn had not been stated, if that is another tube of which less is
+    /// known. All bounds of that one hold for this one.
     pub(crate) fn without_turn(self) -> Option<Self> {
         self.tube.is_turn_all_that_is_known().then_some(Self { turn: None, ..self })
     }
@@ -107,13 +118,14 @@ impl<'a> PlacedTube<'a> {
 
     /// The flat ends of a section that bodies may end with.
     pub(crate) fn faces(&self, section: &Section) -> [Option<EndFace>; 2] {
-        let lasts = |face: &EndFace| !self.is_moving || face.persistence.is_safe() && !section.fades;
+        let lasts =
+            |face: &EndFace| !self.is_moving || face.persistence.is_safe() && !section.fades;
         let is_sure = |face: &EndFace| lasts(face) && face.tilt < Real::INFINITY;
         self.all_faces(section).map(|face| face.filter(is_sure))
     }
 
-    /// How far apart the bounds of a piece have to be because of what was stated of the direction of a face nearby, or was
-    /// not.
+    /// How far apart the bounds of a piece have to be because of what was stated of the direction
+    /// of a face nearby, or was not.
     pub(crate) fn direction_uncertainty(&self, piece: &Piece) -> Real {
         let (section, arcs) = (self.section(piece.section), self.arcs(piece));
         if self.tube.is_loose() {
@@ -123,7 +135,11 @@ impl<'a> PlacedTube<'a> {
         let near = 2.0 * (section.radius + self.tube.error());
         let away = [arcs[0] - section.start, section.end - arcs[1]];
         let of = |end: usize| {
-            if away[end] <= near { self.tube.direction_uncertainty(section, end, self.turn) } else { 0.0 }
+            if away[end] <= near {
+                self.tube.direction_uncertainty(section, end, self.turn)
+            } else {
+                0.0
+            }
         };
         of(0).max(of(1))
     }
@@ -184,7 +200,9 @@ impl<'a> PlacedTube<'a> {
             let section = self.section(*number);
             section.end - section.start
         };
-        (0..self.sections().len() as u32).max_by(|a, b| length(a).total_cmp(&length(b))).unwrap_or(0)
+        (0..self.sections().len() as u32)
+            .max_by(|a, b| length(a).total_cmp(&length(b)))
+            .unwrap_or(0)
     }
 
     /// The largest radius of its sections.
@@ -201,6 +219,10 @@ impl<'a> PlacedTube<'a> {
 
     /// A flat end in the mesh's frame.
     pub(crate) fn face(&self, face: &EndFace) -> EndFace {
-        EndFace { centre: self.pose * face.centre, outward: self.pose.rotation * face.outward, ..*face }
+        EndFace {
+            centre: self.pose * face.centre,
+            outward: self.pose.rotation * face.outward,
+            ..*face
+        }
     }
 }

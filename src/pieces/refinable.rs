@@ -3,7 +3,8 @@
 use crate::answer::ProximityError;
 use parry3d_f64::math::Real;
 
-/// What can be divided into pieces, each in a convex body, and is the nearer to something else the better it is known.
+/// What can be divided into pieces, each in a convex body, and is the nearer to something else the
+/// better it is known.
 pub(crate) trait Refinable {
     /// A piece: of one tube, or one of each.
     type Piece: Copy;
@@ -19,27 +20,36 @@ pub(crate) trait Refinable {
     /// Where a piece is: an order of pieces that do not overlap.
     fn place(&self, piece: &Self::Piece) -> [u32; 4];
 
-    /// (Apart from [`body`](Self::body), whose answer is large: a `Result` of it would be copied once more for each piece.)
+    /// (Apart from [`body`](Self::body), whose answer is large: a `Result` of it would be copied
+    /// once more for each piece.)
     ///
     /// # Errors
     /// The curve is not finite there, and so the body.
     fn check_finite(&self, piece: &Self::Piece, body: &Self::Body) -> Result<(), ProximityError>;
 
-    /// The halves of a piece whose body can become narrower, and at a face as near to the tube as `aim`.
-    fn halves(&self, piece: &Self::Piece, body: &Self::Body, aim: Real) -> Option<[Self::Piece; 2]>;
+    /// The halves of a piece whose body can become narrower, and at a face as near to the tube as
+    /// `aim`.
+    fn halves(&self, piece: &Self::Piece, body: &Self::Body, aim: Real)
+    -> Option<[Self::Piece; 2]>;
 
     /// Whether anything may be at most `bound` away from a body.
     fn may_meet(&mut self, body: &Self::Body, bound: Real) -> bool;
 
-    /// What is nearest to a body, if it is at most `bound` away; `start` is a triangle that is likely to be near, where there
-    /// are triangles.
-    fn nearest(&mut self, body: &Self::Body, bound: Real, start: Option<u32>) -> Option<Self::Nearest>;
+    /// What is nearest to a body, if it is at most `bound` away; `start` is a triangle that is
+    /// likely to be near, where there are triangles.
+    fn nearest(
+        &mut self,
+        body: &Self::Body,
+        bound: Real,
+        start: Option<u32>,
+    ) -> Option<Self::Nearest>;
 
     /// How far away that is, which bounds the clearance of the piece from below.
     fn distance(nearest: &Self::Nearest) -> Real;
 
     /// What bounds the clearance from above, as seen from there.
-    fn found(&self, piece: &Self::Piece, body: &Self::Body, nearest: &Self::Nearest) -> Self::Upper;
+    fn found(&self, piece: &Self::Piece, body: &Self::Body, nearest: &Self::Nearest)
+    -> Self::Upper;
 
     /// Whether that is in the first of two halves.
     fn is_in_first_half(&self, found: &Self::Upper, halves: &[Self::Piece; 2]) -> bool;
@@ -47,8 +57,8 @@ pub(crate) trait Refinable {
     /// The larger radius of a piece.
     fn radius(&self, piece: &Self::Piece) -> Real;
 
-    /// How far apart the bounds of a piece have to be because of what was stated of the direction of a face nearby, or was
-    /// not.
+    /// How far apart the bounds of a piece have to be because of what was stated of the direction
+    /// of a face nearby, or was not.
     fn direction_uncertainty(&self, piece: &Self::Piece) -> Real;
 
     /// Whether all of a piece is known to be what is asked about, of which something was found.
@@ -56,7 +66,8 @@ pub(crate) trait Refinable {
         true
     }
 
-    /// Whether a piece has a flat end that bodies take for round, since it may become so while it moves.
+    /// Whether a piece has a flat end that bodies take for round, since it may become so while it
+    /// moves.
     fn may_become_round(&self, _: &Self::Piece) -> bool {
         false
     }
@@ -73,13 +84,18 @@ pub(crate) trait Refinable {
     }
 
     /// # Errors
-    /// The bounds are farther apart than the resolution, but for rounding: the samples allow no more.
+    /// The bounds are farther apart than the resolution, but for rounding: the samples allow no
+    /// more.
     fn check_resolved(&self, possible: Real, resolution: Real) -> Result<(), ProximityError> {
         // Written so that NaN is an error.
         if possible <= resolution + 16.0 * self.slack() {
             Ok(())
         } else {
-            Err(ProximityError::ToleranceTooFine { parameter: "resolution", tolerance: resolution, possible })
+            Err(ProximityError::ToleranceTooFine {
+                parameter: "resolution",
+                tolerance: resolution,
+                possible,
+            })
         }
     }
 }
@@ -97,6 +113,7 @@ pub(crate) trait UpperBound: Copy {
     /// The triangle that realises it, if one does.
     fn triangle(&self) -> Option<u32>;
 
-    /// Of equal bounds the one with the least of these is the answer: triangle and section, or two sections.
+    /// Of equal bounds the one with the least of these is the answer: triangle and section, or two
+    /// sections.
     fn tie(&self) -> [u32; 2];
 }

@@ -1,10 +1,12 @@
-//! The loop that divides a tube in the shape of one moment, no finer than a question about a motion needs.
+//! The loop that divides a tube in the shape of one moment, no finer than a question about a motion
+//! needs.
 //!
-//! The centreline is taken in pieces, each in a convex body that is searched like a link. A body that keeps away settles
-//! its piece; one that does not gives a triangle, whose nearest point bounds the clearance from above, and the piece is
-//! halved where the two bounds are too far apart. So far from the wall one capsule stands for a whole section, and near
-//! it the curve is resolved as finely as the answer needs. A chain is a tube whose pieces are straight: their bodies
-//! are the links themselves.
+//! The centreline is taken in pieces, each in a convex body that is searched like a link. A body
+//! that keeps away settles its piece; one that does not gives a triangle, whose nearest point
+//! bounds the clearance from above, and the piece is halved where the two bounds are too far apart.
+//! So far from the wall one capsule stands for a whole section, and near it the curve is resolved
+//! as finely as the answer needs. A chain is a tube whose pieces are straight: their bodies are the
+//! links themselves.
 
 use super::refinable::Refinable;
 use crate::answer::ProximityError;
@@ -23,7 +25,8 @@ pub(crate) trait WorkItem<T: Refinable>: Copy {
 pub(crate) struct BodyQuery {
     /// What is farther away than this does not matter.
     pub bound: Real,
-    /// Whether the body is so wide that its halves are better looked at, if anything is near it at all.
+    /// Whether the body is so wide that its halves are better looked at, if anything is near it at
+    /// all.
     pub is_wide: bool,
     /// How near to the tube the bodies of halves are to come at a face.
     pub aim: Real,
@@ -36,7 +39,8 @@ pub(crate) struct BoundedPiece<'a, T: Refinable, P> {
     pub part: &'a P,
     pub piece: &'a T::Piece,
     pub outer: &'a T::Body,
-    /// What is nearest to the body, at a distance that bounds the clearance of the part from below.
+    /// What is nearest to the body, at a distance that bounds the clearance of the part from
+    /// below.
     pub nearest: &'a T::Nearest,
     /// What bounds it from above.
     pub found: &'a T::Upper,
@@ -75,16 +79,25 @@ pub(crate) trait RefinePolicy<T: Refinable, P> {
 
     /// # Errors
     /// The part cannot be judged.
-    fn decide(&mut self, tube: &T, near: &BoundedPiece<T, P>) -> Result<RefineAction, ProximityError>;
+    fn decide(
+        &mut self,
+        tube: &T,
+        near: &BoundedPiece<T, P>,
+    ) -> Result<RefineAction, ProximityError>;
 
     /// A part whose halves were wanted has none.
     ///
     /// # Errors
     /// It cannot be judged without.
-    fn decide_indivisible(&mut self, tube: &T, near: &BoundedPiece<T, P>) -> Result<(), ProximityError>;
+    fn decide_indivisible(
+        &mut self,
+        tube: &T,
+        near: &BoundedPiece<T, P>,
+    ) -> Result<(), ProximityError>;
 }
 
-/// Asks a question of all parts, the last one first. Those that were not needed for the answer are left in `parts`.
+/// Asks a question of all parts, the last one first. Those that were not needed for the answer are
+/// left in `parts`.
 ///
 /// # Errors
 /// The curve of the tube is not finite, or a part cannot be judged.
@@ -101,7 +114,8 @@ pub(crate) fn refine<T: Refinable, P: WorkItem<T>, Q: RefinePolicy<T, P>>(
         let piece = part.piece(tube);
         let outer = tube.body(&piece);
         tube.check_finite(&piece, &outer)?;
-        let BodyQuery { bound, is_wide, aim, start } = question.body_query(tube, &part, &piece, &outer)?;
+        let BodyQuery { bound, is_wide, aim, start } =
+            question.body_query(tube, &part, &piece, &outer)?;
         if is_wide && let Some(halves) = tube.halves(&piece, &outer, aim) {
             if tube.may_meet(&outer, bound) {
                 parts.extend(part.halves(tube, halves));
@@ -115,8 +129,13 @@ pub(crate) fn refine<T: Refinable, P: WorkItem<T>, Q: RefinePolicy<T, P>>(
             continue;
         };
         let found = tube.found(&piece, &outer, &nearest);
-        let near =
-            BoundedPiece { part: &part, piece: &piece, outer: &outer, nearest: &nearest, found: &found };
+        let near = BoundedPiece {
+            part: &part,
+            piece: &piece,
+            outer: &outer,
+            nearest: &nearest,
+            found: &found,
+        };
         match question.decide(tube, &near)? {
             RefineAction::Settled => {}
             RefineAction::Answered => return Ok(()),

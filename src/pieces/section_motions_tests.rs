@@ -13,7 +13,8 @@ type Pair = ([u32; 2], [Option<usize>; 2]);
 
 /// The pairs of sections that are asked about, or kept while the tube moves.
 fn pairs(tube: &Tube, moves: Option<&SectionMotions>) -> BTreeSet<Pair> {
-    let (mut turns, mut beginning, mut pairs) = (TubeTurns::default(), SelfPairQueue::default(), Vec::new());
+    let (mut turns, mut beginning, mut pairs) =
+        (TubeTurns::default(), SelfPairQueue::default(), Vec::new());
     tube.measure_turns(&mut turns).unwrap();
     let own = moves.map_or_else(
         || TubeWithItself::new(tube, &turns),
@@ -45,17 +46,26 @@ impl Links {
         links
     }
 
-    /// Each direction turned by at most `turn` towards a place of its own, each length by a share at most.
+    /// Each direction turned by at most `turn` towards a place of its own, each length by a share
+    /// at most.
     fn moved(&self, random: &mut Random, turn: Real, share: Real) -> Self {
         let common = random.direction();
         let towards = |random: &mut Random, direction: Vector| {
             let to = if random.below(3) == 0 { random.direction() } else { common };
             let axis = direction.cross(to).normalize_or_zero();
             let angle = [turn, turn * random.unit(), 0.0][random.below(3) as usize];
-            if axis == Vector::ZERO { direction } else { Rotation::from_axis_angle(axis, angle) * direction }
+            if axis == Vector::ZERO {
+                direction
+            } else {
+                Rotation::from_axis_angle(axis, angle) * direction
+            }
         };
         Self {
-            directions: self.directions.iter().map(|&direction| towards(random, direction)).collect(),
+            directions: self
+                .directions
+                .iter()
+                .map(|&direction| towards(random, direction))
+                .collect(),
             lengths: self
                 .lengths
                 .iter()
@@ -64,15 +74,20 @@ impl Links {
         }
     }
 
-    /// An arc of links of which the first and the last are so long that they decide where the chord leads.
+    /// An arc of links of which the first and the last are so long that they decide where the chord
+    /// leads.
     fn arc(random: &mut Random, count: usize) -> Self {
         let (turn, last) = (random.between(2.0, PI), (count - 1) as Real);
         let direction = |k: usize| {
             let angle = turn * (k as Real / last - 0.5);
             Vector::new(angle.sin(), 0.0, angle.cos())
         };
-        let length = |k: usize| if k == 0 || k + 1 == count { 10.0 } else { random.between(0.01, 0.1) };
-        Self { directions: (0..count).map(direction).collect(), lengths: (0..count).map(length).collect() }
+        let length =
+            |k: usize| if k == 0 || k + 1 == count { 10.0 } else { random.between(0.01, 0.1) };
+        Self {
+            directions: (0..count).map(direction).collect(),
+            lengths: (0..count).map(length).collect(),
+        }
     }
 
     /// The first and the last link turned away from one another.
@@ -96,7 +111,8 @@ impl Links {
     fn moves(&self, to: &Self, radii: &[Real], [here, there]: [&[Vector]; 2]) -> SectionMotions {
         let mut moves = SectionMotions::default();
         for (number, radius) in radii.iter().enumerate() {
-            let turn = self.directions[number].angle_between(to.directions[number]) * (1.0 + 1e-9) + 1e-12;
+            let turn =
+                self.directions[number].angle_between(to.directions[number]) * (1.0 + 1e-9) + 1e-12;
             let point = [0, 1].map(|end| (here[number + end] - there[number + end]).length());
             moves.push(SectionMotion {
                 points: (point[0].max(point[1]) + radius * turn) * (1.0 + 1e-9),
@@ -110,7 +126,8 @@ impl Links {
 #[test]
 fn what_is_asked_about_later_is_kept_now() {
     let mut random = Random::new(5);
-    // How often a pair of two links, a face and a link, and two faces is asked about then, and not now.
+    // How often a pair of two links, a face and a link, and two faces is asked about then, and not
+    // now.
     let mut only_later = [0; 3];
     for _ in 0..20_000 {
         let links = Links::random(&mut random, 5, 1.3);
@@ -118,9 +135,10 @@ fn what_is_asked_about_later_is_kept_now() {
         let later = links.moved(&mut random, size, 0.3 * size);
         let base = random.point() * size;
         let (points, places) = (links.points(Vector::ZERO), later.points(base));
-        let radii =
-            [[0.2; 5], [1.0, 0.2, 0.2, 0.2, 0.6], [0.4, 0.9, 0.3, 0.7, 0.1]][random.below(3) as usize];
-        let [Ok(now), Ok(then)] = [&points, &places].map(|points| Chain::from_centreline(points, &radii))
+        let radii = [[0.2; 5], [1.0, 0.2, 0.2, 0.2, 0.6], [0.4, 0.9, 0.3, 0.7, 0.1]]
+            [random.below(3) as usize];
+        let [Ok(now), Ok(then)] =
+            [&points, &places].map(|points| Chain::from_centreline(points, &radii))
         else {
             continue;
         };
@@ -133,8 +151,8 @@ fn what_is_asked_about_later_is_kept_now() {
         let (kept, at_rest) = (pairs(&now, Some(&moves)), pairs(&now, None));
         for pair @ (sections, faces) in pairs(&then, None) {
             let joints = sections[1] - sections[0];
-            // Of three joints, six directions: the angles grow by no more than 6 times the turn of each. Of more it is the local
-            // minima that are kept.
+            // Of three joints, six directions: the angles grow by no more than 6 times the turn of
+            // each. Of more it is the local minima that are kept.
             if joints > 3 && faces != [Some(1), Some(0)] {
                 continue;
             }
@@ -160,8 +178,11 @@ fn what_is_not_kept_is_no_local_minimum_later() {
             Links::random(&mut random, count, 6.0 / count as Real)
         };
         let size = [0.02, 0.1, 0.3][random.below(3) as usize];
-        let later =
-            if is_arc { links.opened(size * random.unit()) } else { links.moved(&mut random, size, 0.9) };
+        let later = if is_arc {
+            links.opened(size * random.unit())
+        } else {
+            links.moved(&mut random, size, 0.9)
+        };
         let (points, places) = (links.points(Vector::ZERO), later.points(Vector::ZERO));
         let radii = vec![0.0; count];
         let now = Tube::from(&Chain::capsules(&points, &radii).unwrap());
@@ -173,7 +194,8 @@ fn what_is_not_kept_is_no_local_minimum_later() {
                 }
                 left_out += 1;
                 let [one, two] = [later.directions[i], later.directions[j]];
-                // A local minimum comes no nearer if either place goes on towards the other one along the robot.
+                // A local minimum comes no nearer if either place goes on towards the other one
+                // along the robot.
                 for x in [places[i], places[i + 1]] {
                     for y in [places[j], places[j + 1]] {
                         let way = (y - x).normalize();

@@ -16,11 +16,10 @@ fn random_arcs(random: &mut Random) -> Arcs {
 /// The tube as a function, and from samples where these show the curvature of every arc.
 fn tubes(random: &mut Random, arcs: &Arc<Arcs>) -> Vec<Tube> {
     let curve = Arc::clone(arcs);
-    let sections = arcs.stretches.iter().map(|&Stretch { length, radius, curvature }| TubeSection {
-        length,
-        radius,
-        curvature,
-    });
+    let sections = arcs
+        .stretches
+        .iter()
+        .map(|&Stretch { length, radius, curvature }| TubeSection { length, radius, curvature });
     let function = Tube::from_function(&sections.collect::<Vec<_>>(), move |s| curve.at(s));
     let (points, radii) = arcs.samples(arcs.shortest() / random.between(3.5, 8.0), &[]);
     let given = Tube::from_samples(&points, &radii, Some(arcs.end_tangents()));
@@ -28,7 +27,8 @@ fn tubes(random: &mut Random, arcs: &Arc<Arcs>) -> Vec<Tube> {
     [function, given, measured].into_iter().flatten().collect()
 }
 
-/// Points of the tube between two arc lengths: on the rims of discs, and on the ball at a round end.
+/// Points of the tube between two arc lengths: on the rims of discs, and on the ball at a round
+/// end.
 fn points_between(
     random: &mut Random,
     arcs: &Arcs,
@@ -46,7 +46,8 @@ fn points_between(
         if is_there && section.faces[end].is_none() {
             let (centre, tangent) = arcs.at([from, to][end]);
             let is_cut = |point: Vector| {
-                section.faces[1 - end].is_some_and(|face| (point - face.centre).dot(face.outward) > -1e-9)
+                section.faces[1 - end]
+                    .is_some_and(|face| (point - face.centre).dot(face.outward) > -1e-9)
             };
             for _ in 0..20 {
                 let point = centre + random.direction() * section.radius;
@@ -59,7 +60,8 @@ fn points_between(
     }
 }
 
-/// The arc length of the curve at a length along the polyline of a tube: they share ends of sections.
+/// The arc length of the curve at a length along the polyline of a tube: they share ends of
+/// sections.
 fn true_arc(arcs: &Arcs, tube: &Tube, number: usize, tick: u32) -> Real {
     let section = &tube.sections()[number];
     let start: Real = arcs.stretches[..number].iter().map(|stretch| stretch.length).sum();
@@ -89,7 +91,8 @@ fn bodies_hold_their_pieces() {
                     let outer = placed.outer(&piece);
                     let [start, end] = [outer.body.start(), outer.body.end()].map(Vec3::from);
                     let (radius, caps) = (outer.body.radius(), outer.body.flat());
-                    let between = [from, from + size].map(|tick| true_arc(&arcs, &tube, number, tick));
+                    let between =
+                        [from, from + size].map(|tick| true_arc(&arcs, &tube, number, tick));
                     // Where the curve ends, whatever rounding makes of the arc length.
                     let section = Section { start: between[0], end: between[1], ..*section };
                     let section = Section {
@@ -99,8 +102,12 @@ fn bodies_hold_their_pieces() {
                     };
                     points_between(&mut random, &arcs, &section, between, |point| {
                         let beyond =
-                            point_modified_cylinder(Vec3::from(point), start, end, radius, caps).distance;
-                        assert!(beyond <= 0.0, "{beyond} out of {outer:?} of {piece:?} in {section:?}");
+                            point_modified_cylinder(Vec3::from(point), start, end, radius, caps)
+                                .distance;
+                        assert!(
+                            beyond <= 0.0,
+                            "{beyond} out of {outer:?} of {piece:?} in {section:?}"
+                        );
                         checked += 1;
                     });
                     flat += usize::from(outer.is_flat());
@@ -116,8 +123,9 @@ fn bodies_hold_their_pieces() {
     );
 }
 
-/// The distance of a point from the discs of the tube, by ever finer sampling; and from the half balls beyond the discs at
-/// round ends. The other half of such a ball may stick out of the section's own face, and is no part of the tube.
+/// The distance of a point from the discs of the tube, by ever finer sampling; and from the half
+/// balls beyond the discs at round ends. The other half of such a ball may stick out of the
+/// section's own face, and is no part of the tube.
 fn distance(arcs: &Arcs, tube: &Tube, number: usize, x: Vector) -> Real {
     let section = &tube.sections()[number];
     let start: Real = arcs.stretches[..number].iter().map(|stretch| stretch.length).sum();
@@ -175,9 +183,11 @@ fn witnesses_are_no_nearer_than_the_tube() {
                     let s = [s, s, section.start, section.end][random.below(4) as usize];
                     let (centre, tangent) = arcs.at(s);
                     let x = centre
-                        + tangent.cross(random.direction()) * (section.radius * random.between(0.5, 2.0))
+                        + tangent.cross(random.direction())
+                            * (section.radius * random.between(0.5, 2.0))
                         + tangent
-                            * (section.radius * [0.0, random.between(-1.0, 1.0)][random.below(2) as usize]);
+                            * (section.radius
+                                * [0.0, random.between(-1.0, 1.0)][random.below(2) as usize]);
                     let witness = placed.near(number as u32, s, x);
                     let truth = distance(&arcs, &tube, number, x);
                     assert!(
@@ -198,8 +208,9 @@ fn witnesses_are_no_nearer_than_the_tube() {
     println!("{loose}");
 }
 
-/// Sections with one flat and one round end that are shorter than their radius, straight as a chain's links and bent. A point
-/// ahead of the face is as far away as the face, though the whole ball at the other end would hold it.
+/// Sections with one flat and one round end that are shorter than their radius, straight as a
+/// chain's links and bent. A point ahead of the face is as far away as the face, though the whole
+/// ball at the other end would hold it.
 #[test]
 fn witnesses_know_that_a_short_section_ends_at_its_face() {
     let mut random = Random::new(4);
@@ -209,7 +220,10 @@ fn witnesses_know_that_a_short_section_ends_at_its_face() {
         let mut arc = |least: Real, most: Real| {
             let angle = random.between(0.0, 7.0);
             let bend = [0.0, random.between(0.3, 0.95) / radius][random.below(2) as usize];
-            (radius * random.between(least, most), Vector::new(angle.cos(), angle.sin(), 0.0) * bend)
+            (
+                radius * random.between(least, most),
+                Vector::new(angle.cos(), angle.sin(), 0.0) * bend,
+            )
         };
         let (short, long) = (arc(0.02, 0.9), arc(1.0, 3.0));
         let wider = radius * [1.0, 1.1][random.below(2) as usize];
@@ -231,7 +245,8 @@ fn witnesses_know_that_a_short_section_ends_at_its_face() {
         .unwrap();
         let straight = Tube::from(&chain);
         let curved = tubes(&mut random, &arcs);
-        for tube in std::iter::once(&straight).chain(curved.iter().filter(|tube| tube.sections().len() == 2))
+        for tube in std::iter::once(&straight)
+            .chain(curved.iter().filter(|tube| tube.sections().len() == 2))
         {
             let section = &tube.sections()[number];
             let end = number;
@@ -244,7 +259,8 @@ fn witnesses_know_that_a_short_section_ends_at_its_face() {
             for _ in 0..10 {
                 let across = face.outward.cross(random.direction()) * random.between(0.0, radius);
                 let x = face.centre + across + face.outward * (radius * random.between(-0.2, 1.0));
-                let witness = placed.near(number as u32, random.between(section.start, section.end), x);
+                let witness =
+                    placed.near(number as u32, random.between(section.start, section.end), x);
                 let truth = if is_link {
                     let [start, end] = [link.start(), link.end()].map(Vec3::from);
                     point_modified_cylinder(Vec3::from(x), start, end, radius, link.flat()).distance
@@ -265,8 +281,8 @@ fn witnesses_know_that_a_short_section_ends_at_its_face() {
     assert!(links > 300 && bent > 300 && tight > 300, "{links} {bent} {tight}");
 }
 
-/// What a ball adds to its own section is in the discs of others: the tube is its discs. The joint is about one radius
-/// behind the base, or in front of the tip, and the centreline bends.
+/// What a ball adds to its own section is in the discs of others: the tube is its discs. The joint
+/// is about one radius behind the base, or in front of the tip, and the centreline bends.
 #[test]
 fn balls_at_round_ends_lie_in_discs() {
     let mut random = Random::new(3);
@@ -275,7 +291,8 @@ fn balls_at_round_ends_lie_in_discs() {
         let (radius, narrower) = (random.between(0.2, 2.0), random.between(0.9, 1.0));
         let mut arc = |longest: Real| {
             let angle = random.between(0.0, 7.0);
-            let bend = Vector::new(angle.cos(), angle.sin(), 0.0) * (random.between(0.3, 0.95) / radius);
+            let bend =
+                Vector::new(angle.cos(), angle.sin(), 0.0) * (random.between(0.3, 0.95) / radius);
             (radius * random.between(0.9, longest), bend)
         };
         let parts = [vec![arc(1.5)], vec![arc(8.0), arc(8.0)]];
@@ -286,8 +303,10 @@ fn balls_at_round_ends_lie_in_discs() {
         }
         let arcs = Arc::new(arcs);
         let joint = arcs.stretches[0].length;
-        let stretches =
-            [([0.0, joint], arcs.stretches[0].radius), ([joint, arcs.length()], arcs.stretches[1].radius)];
+        let stretches = [
+            ([0.0, joint], arcs.stretches[0].radius),
+            ([joint, arcs.length()], arcs.stretches[1].radius),
+        ];
         let (near, from_face) = if is_turned { (0, arcs.length()) } else { (1, 0.0) };
         let (face, normal) = arcs.at(from_face);
         let normal = if is_turned { normal } else { -normal };
@@ -302,7 +321,8 @@ fn balls_at_round_ends_lie_in_discs() {
                 let to = (normal * Real::from(k) + random.direction()).normalize();
                 let to = if to.dot(outward) < 0.0 { -to } else { to };
                 let x = centre + to * section.radius;
-                let beside = stretches.map(|(ends, radius)| distance_from_discs(&arcs, ends, radius, x));
+                let beside =
+                    stretches.map(|(ends, radius)| distance_from_discs(&arcs, ends, radius, x));
                 let apart = beside[0].min(beside[1]);
                 assert!(apart <= 1e-6 * radius, "{apart} from {x} to {:?}", arcs.stretches);
                 checked += 1;
@@ -338,12 +358,14 @@ fn thin_wires_begin_with_few_pieces() {
 #[test]
 fn bodies_hold_links_of_a_long_chain() {
     let mut random = Random::new(9);
-    let points: Vec<_> = (0..=20_000).map(|k| random.point() + Vector::X * Real::from(k % 2)).collect();
+    let points: Vec<_> =
+        (0..=20_000).map(|k| random.point() + Vector::X * Real::from(k % 2)).collect();
     let chain = crate::Chain::cylinders(&points, &[0.01; 20_000]).unwrap();
     let tube = Tube::from(&chain);
     let placed = PlacedTube::new(&tube, &Pose::IDENTITY, 1.0).unwrap();
     for (number, (section, link)) in tube.sections().iter().zip(chain.links()).enumerate() {
-        let outer = placed.outer(&Piece { section: number as u32, from: section.first, to: section.last });
+        let outer =
+            placed.outer(&Piece { section: number as u32, from: section.first, to: section.last });
         let [start, end] = [outer.body.start(), outer.body.end()].map(Vec3::from);
         let across = link.axis().cross(random.direction()).normalize() * link.radius();
         for centre in [link.start(), link.end()] {

@@ -75,7 +75,12 @@ impl Refinable for TubeInMesh<'_> {
         self.search.may_meet(&outer.body, bound)
     }
 
-    fn nearest(&mut self, outer: &BoundingBody, bound: Real, start: Option<u32>) -> Option<Nearest> {
+    fn nearest(
+        &mut self,
+        outer: &BoundingBody,
+        bound: Real,
+        start: Option<u32>,
+    ) -> Option<Nearest> {
         self.search.nearest(&outer.body, Best::within(bound), [start, None]).nearest()
     }
 
@@ -91,8 +96,9 @@ impl Refinable for TubeInMesh<'_> {
         if nearest.distance > 0.0 || found.upper <= 0.0 {
             return found;
         }
-        // The body's common point with a triangle that crosses it may lie on its boundary, from where nobody sees that
-        // the tube is crossed too: one nearer to its middle shows it.
+        // The body's common point with a triangle that crosses it may lie on its boundary, from
+        // where nobody sees that the tube is crossed too: one nearer to its middle shows
+        // it.
         let middle = outer.body.start() + outer.body.along() * 0.5;
         let deeper = nearest.on_mesh + (middle - nearest.on_mesh) * 0.125;
         let deeper = self.found_at(piece.section, arc, &self.nearest_to(deeper, nearest.triangle));
@@ -125,8 +131,8 @@ impl Refinable for TubeInMesh<'_> {
 }
 
 impl TubeInMesh<'_> {
-    /// The pieces to begin with: those that leave their chord by no more than what is to be decided, or than a part of
-    /// the radius where that is less.
+    /// The pieces to begin with: those that leave their chord by no more than what is to be
+    /// decided, or than a part of the radius where that is less.
     pub(crate) fn begin(&self, scale: Real, pieces: &mut Vec<Piece>) {
         self.tube.begin(scale.max(0.25 * self.tube.widest()), pieces);
     }
@@ -150,7 +156,8 @@ impl TubeInMesh<'_> {
     pub(crate) fn first_bound(&mut self) -> MeshUpperBound {
         let longest = self.tube.longest_section();
         let (chord, arcs) = self.tube.chord(longest);
-        let nearest = self.search.nearest(&chord, Best::within(Real::INFINITY), [None; 2]).nearest();
+        let nearest =
+            self.search.nearest(&chord, Best::within(Real::INFINITY), [None; 2]).nearest();
         let nearest = nearest.unwrap_or_else(|| self.search.any(&chord));
         let arc = chord.share_of(nearest.on_mesh) * (arcs[1] - arcs[0]) + arcs[0];
         self.found_at(longest, arc, &nearest)

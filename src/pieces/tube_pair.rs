@@ -1,13 +1,16 @@
 //! Two tubes beside one another: a piece of each, and what is found between them.
 //!
-//! The bodies around two pieces are as far apart as two links, which bounds the clearance of the pieces from below. From above
-//! any point y of space does: the way from one tube to y and on to the other is no shorter than the clearance, and how far y
-//! is from a tube at most is known from any place of its centreline nearby ([`PlacedTube::near`]). It is the less the nearer
-//! y is to the shortest way between the tubes; where they overlap, a y that is in both shows it. So y begins between the
-//! bodies, and moves to the middle between the two points of the tubes that are found from there.
+//! The bodies around two pieces are as far apart as two links, which bounds the clearance of the
+//! pieces from below. From above any point y of space does: the way from one tube to y and on to
+//! the other is no shorter than the clearance, and how far y is from a tube at most is known from
+//! any place of its centreline nearby ([`PlacedTube::near`]). It is the less the nearer y is to the
+//! shortest way between the tubes; where they overlap, a y that is in both shows it. So y begins
+//! between the bodies, and moves to the middle between the two points of the tubes that are found
+//! from there.
 //!
-//! Of a pair the piece is halved whose body gains more. A pair that is farther apart than the first upper bound, or than the
-//! margin that is asked about, is none to begin with, since it cannot change the answer.
+//! Of a pair the piece is halved whose body gains more. A pair that is farther apart than the first
+//! upper bound, or than the margin that is asked about, is none to begin with, since it cannot
+//! change the answer.
 
 use super::bounding_body::BoundingBody;
 use super::nearest_pairs::NearestPairs;
@@ -123,8 +126,8 @@ impl<'a> TubePair<'a> {
         Self { tubes }
     }
 
-    /// The same tubes as if the turn of one of them, or of both, had not been stated, where that is other tubes. All bounds of
-    /// those hold for these.
+    /// The same tubes as if the turn of one of them, or of both, had not been stated, where that is
+    /// other tubes. All bounds of those hold for these.
     pub(crate) fn less_known(&self) -> impl Iterator<Item = Self> + use<'a> {
         let [first, second] = self.tubes;
         let less = [first.without_turn(), second.without_turn()];
@@ -133,14 +136,18 @@ impl<'a> TubePair<'a> {
         both.into_iter().chain(one.into_iter().flatten()).map(|tubes| Self { tubes })
     }
 
-    /// The sections of a pair and the shares of them between which its pieces lie, with their bodies and radii.
+    /// The sections of a pair and the shares of them between which its pieces lie, with their
+    /// bodies and radii.
     pub(crate) fn section_ranges<'p>(&self, pair: &'p PiecePair) -> [SectionRange<'p>; 2] {
         [0, 1].map(|k: usize| self.tubes[k].section_range(&pair.pieces[k], &pair.outers[k]))
     }
 
     /// Whether both have the sections.
     pub(crate) fn have(&self, sections: [u32; 2]) -> bool {
-        sections.iter().zip(&self.tubes).all(|(&section, tube)| (section as usize) < tube.sections().len())
+        sections
+            .iter()
+            .zip(&self.tubes)
+            .all(|(&section, tube)| (section as usize) < tube.sections().len())
     }
 
     /// A first upper bound: from where the chords of the longest sections are nearest.
@@ -161,8 +168,8 @@ impl<'a> TubePair<'a> {
         self.found_from(sections, arcs, half_way(places, radii))
     }
 
-    /// The pairs of pieces to begin with, the nearest one last: all that are not farther apart than `upper`. Where these are more
-    /// than `most` the nearest ones, and false.
+    /// The pairs of pieces to begin with, the nearest one last: all that are not farther apart than
+    /// `upper`. Where these are more than `most` the nearest ones, and false.
     ///
     /// # Errors
     /// A curve is not finite.
@@ -203,7 +210,8 @@ impl<'a> TubePair<'a> {
         Ok(is_all)
     }
 
-    /// How far two bodies are apart at least: as far as the capsules around them, less what rounding does to that.
+    /// How far two bodies are apart at least: as far as the capsules around them, less what
+    /// rounding does to that.
     pub(super) fn at_least(&self, [one, two]: &[BoundingBody; 2]) -> Real {
         let (_, apart) = one.body.nearest_on_axes(&two.body);
         apart - one.body.radius() - two.body.radius() - self.slack()
@@ -217,8 +225,8 @@ impl<'a> TubePair<'a> {
     }
 }
 
-/// The upper bound as seen from a point, and from where it moves to. `seen` is how near the two are to a point, as seen from two
-/// arc lengths.
+/// The upper bound as seen from a point, and from where it moves to. `seen` is how near the two are
+/// to a point, as seen from two arc lengths.
 pub(super) fn found_from(
     sections: [u32; 2],
     arcs: [Real; 2],
@@ -266,12 +274,21 @@ impl Refinable for TubePair<'_> {
         [one.section, one.from, two.section, two.from]
     }
 
-    fn check_finite(&self, pair: &PiecePair, bodies: &[BoundingBody; 2]) -> Result<(), ProximityError> {
+    fn check_finite(
+        &self,
+        pair: &PiecePair,
+        bodies: &[BoundingBody; 2],
+    ) -> Result<(), ProximityError> {
         let mut of_each = self.tubes.iter().zip(&pair.pieces).zip(bodies);
         of_each.try_for_each(|((tube, piece), outer)| tube.check_finite(piece, outer))
     }
 
-    fn halves(&self, pair: &PiecePair, bodies: &[BoundingBody; 2], aim: Real) -> Option<[PiecePair; 2]> {
+    fn halves(
+        &self,
+        pair: &PiecePair,
+        bodies: &[BoundingBody; 2],
+        aim: Real,
+    ) -> Option<[PiecePair; 2]> {
         let gains = |k: usize| bodies[k].narrows > 0.5 * self.tubes[k].slack();
         let halves = |k: usize| {
             let tube = &self.tubes[k];
@@ -290,7 +307,12 @@ impl Refinable for TubePair<'_> {
         self.at_least(bodies) <= bound
     }
 
-    fn nearest(&mut self, bodies: &[BoundingBody; 2], bound: Real, _: Option<u32>) -> Option<NearestOfLinks> {
+    fn nearest(
+        &mut self,
+        bodies: &[BoundingBody; 2],
+        bound: Real,
+        _: Option<u32>,
+    ) -> Option<NearestOfLinks> {
         bodies[0].body.measure_link_within(bound, &bodies[1].body)
     }
 
@@ -317,22 +339,26 @@ impl Refinable for TubePair<'_> {
         if nearest.distance > 0.0 || found.upper <= 0.0 {
             return found;
         }
-        // A common point of the bodies may be outside of both tubes; half way between the axes it is not.
+        // A common point of the bodies may be outside of both tubes; half way between the axes it
+        // is not.
         let (feet, _) = links[0].nearest_on_axes(links[1]);
         let mut found = found.nearer(self.found_from(
             sections,
             arcs_at(feet),
             half_way(feet, links.map(PlacedLink::radius)),
         ));
-        // At flat ends either may be in the plane of a face, which rounding cannot tell from what is before it.
+        // At flat ends either may be in the plane of a face, which rounding cannot tell from what
+        // is before it.
         let mut depth = 1.0;
         for _ in 0..MOST_CORES {
             if found.upper <= 0.0 {
                 break;
             }
-            let cores = [0, 1].map(|k: usize| self.tubes[k].core(&pair.pieces[k], &bodies[k], depth));
+            let cores =
+                [0, 1].map(|k: usize| self.tubes[k].core(&pair.pieces[k], &bodies[k], depth));
             let [Some(one), Some(two)] = cores else { break };
-            let Some(NearestOfLinks { on_first: point, .. }) = one.measure_link_within(0.0, &two) else {
+            let Some(NearestOfLinks { on_first: point, .. }) = one.measure_link_within(0.0, &two)
+            else {
                 break;
             };
             found = found.nearer(self.found_from(sections, arcs_at([point; 2]), point));

@@ -1,32 +1,39 @@
 //! How near a point of the mesh is to the tube at most.
 //!
-//! Let s be where a section's centreline is nearest to x. Inside the section x - c(s) is perpendicular to the tangent, so
-//! x is in the plane of the disc at s and |x - c(s)| - r away from it, or in it. The same holds at a round end, for its
-//! ball, and at a flat end of whose plane x is not ahead: there s is an end only if x is in its plane. And as s is the
-//! nearest place, any point q of the centreline will do as a bound: x is at most |x - q| - r away.
+//! Let s be where a section's centreline is nearest to x. Inside the section x - c(s) is
+//! perpendicular to the tangent, so x is in the plane of the disc at s and |x - c(s)| - r away from
+//! it, or in it. The same holds at a round end, for its ball, and at a flat end of whose plane x is
+//! not ahead: there s is an end only if x is in its plane. And as s is the nearest place, any point
+//! q of the centreline will do as a bound: x is at most |x - q| - r away.
 //!
-//! What remains is an x ahead of a flat face whose centre is the nearest place. Then, and whenever it is nearer, the
-//! face itself decides: x is h ahead and p across of its centre, and hypot(h, max(0, p - r)) away. If q is nearer to x
-//! than the face's centre, that centre is not the nearest place.
+//! What remains is an x ahead of a flat face whose centre is the nearest place. Then, and whenever
+//! it is nearer, the face itself decides: x is h ahead and p across of its centre, and hypot(h,
+//! max(0, p - r)) away. If q is nearer to x than the face's centre, that centre is not the nearest
+//! place.
 //!
-//! Where the centreline leads back to x, though, the discs around q may be nearer than the face, even if the face's centre is
-//! nearer than q. Then some place between the two is farther from x than q. From that place on, the rest of the section
-//! has no such face, and all of the above holds for it.
+//! Where the centreline leads back to x, though, the discs around q may be nearer than the face,
+//! even if the face's centre is nearer than q. Then some place between the two is farther from x
+//! than q. From that place on, the rest of the section has no such face, and all of the above holds
+//! for it.
 //!
-//! A ball at a round end is cut off by the section's own face, should it stick out of that. So where both are near, x
-//! must also be nearer to q than to the round end, or else behind the face: then the way from x to the ball is, too.
+//! A ball at a round end is cut off by the section's own face, should it stick out of that. So
+//! where both are near, x must also be nearer to q than to the round end, or else behind the face:
+//! then the way from x to the ball is, too.
 //!
-//! **Of a part of a section**, whose ends are anywhere in it, the nearest place is not one of these ends if on the way to it some place
-//! is farther from x than q. Of the part up to there, all of the above holds.
+//! **Of a part of a section**, whose ends are anywhere in it, the nearest place is not one of these
+//! ends if on the way to it some place is farther from x than q. Of the part up to there, all of
+//! the above holds.
 //!
-//! q is known to the deviation of the curve from its samples, and a face's normal to its tilt, which moves a rim by r
-//! times that. Of a face whose normal is not known the centre is in the tube, at least.
+//! q is known to the deviation of the curve from its samples, and a face's normal to its tilt,
+//! which moves a rim by r times that. Of a face whose normal is not known the centre is in the
+//! tube, at least.
 
 use super::placed_tube::PlacedTube;
 use crate::robot::{Section, length};
 use parry3d_f64::math::{Real, Vector};
 
-/// How many places between a face and a place are tried, each half as far from the latter as the one before.
+/// How many places between a face and a place are tried, each half as far from the latter as the
+/// one before.
 const MAX_TRIALS: u32 = 6;
 
 /// A point of the tube near a point of the mesh.
@@ -47,8 +54,8 @@ impl PlacedTube<'_> {
         self.near_between(number, arc, x, [None; 2])
     }
 
-    /// The same of the part of a section between two arc lengths, where it does not go to an end. Infinity is the answer if
-    /// the nearest place may be one of these two.
+    /// The same of the part of a section between two arc lengths, where it does not go to an end.
+    /// Infinity is the answer if the nearest place may be one of these two.
     pub(super) fn near_between(
         &self,
         number: u32,
@@ -69,7 +76,8 @@ impl PlacedTube<'_> {
         for (end, limit) in limits.into_iter().enumerate() {
             let Some(limit) = limit else { continue };
             let is_within = if end == 0 { limit <= foot.arc } else { foot.arc <= limit };
-            if !is_within || !self.recedes_between(section, [foot.arc, limit], x, reach + rounding) {
+            if !is_within || !self.recedes_between(section, [foot.arc, limit], x, reach + rounding)
+            {
                 return best;
             }
         }
@@ -95,7 +103,8 @@ impl PlacedTube<'_> {
             let size = across.length();
             let rim = length(Vector::new(ahead, (size - section.radius).max(0.0), 0.0))
                 + section.radius * face.tilt;
-            // However the face is turned, its centre is there, and the place. (The tilt may be infinite, and times 0 NaN.)
+            // However the face is turned, its centre is there, and the place. (The tilt may be
+            // infinite, and times 0 NaN.)
             let beside = away + foot.off;
             let least = if rim <= from_centre { rim } else { from_centre }.min(beside);
             let upper = least + rounding;
@@ -111,16 +120,23 @@ impl PlacedTube<'_> {
         }
         if is_beside {
             // What is not known is no touch.
-            let upper = if reach.is_nan() { Real::INFINITY } else { (reach - section.radius).max(0.0) };
+            let upper =
+                if reach.is_nan() { Real::INFINITY } else { (reach - section.radius).max(0.0) };
             let point = if upper > 0.0 { x + way * (upper / away).min(1.0) } else { x };
             best = TubePoint { upper, arc: foot.arc, point };
         }
         best
     }
 
-    /// Whether the centreline is seen to be farther from `x` than `least` somewhere between two arc lengths, near the
-    /// first if not farther on.
-    fn recedes_between(&self, section: &Section, [from, to]: [Real; 2], x: Vector, least: Real) -> bool {
+    /// Whether the centreline is seen to be farther from `x` than `least` somewhere between two arc
+    /// lengths, near the first if not farther on.
+    fn recedes_between(
+        &self,
+        section: &Section,
+        [from, to]: [Real; 2],
+        x: Vector,
+        least: Real,
+    ) -> bool {
         let mut step = 0.5 * (to - from);
         for _ in 0..MAX_TRIALS {
             let tick = self.tube.tick(section, from + step);
@@ -138,7 +154,8 @@ impl PlacedTube<'_> {
         false
     }
 
-    /// How far a round end is from `x`, if its ball may stick out of the face at the section's other end.
+    /// How far a round end is from `x`, if its ball may stick out of the face at the section's
+    /// other end.
     fn distance_to_overhanging_cap(&self, section: &Section, end: usize, x: Vector) -> Real {
         if section.faces[end].is_some()
             || section.end - section.start > section.room(1 - end) * section.stretch

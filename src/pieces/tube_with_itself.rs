@@ -1,65 +1,79 @@
 //! A tube beside itself: which of its parts are asked about, and what is found between two of them.
 //!
-//! The rule is that of a chain (`query::robots::robot_with_itself`, whose proofs hold for any centreline with a direction: the angles of
-//! the joints are the integral of the curvature). Neighbours are near for no other reason than that they are neighbours;
-//! places that are a local minimum of the distance have a turn of at least pi between them, or pi / 2 where one of them is a
-//! face (the base, the tip, the wider side of a step) that the other is in front of. Two faces that
-//! look at one another, the end of a section and the start of a later one, are asked about at any
-//! turn. From a place beside a face the robot must lead nowhere nearer: a piece is left out if it
-//! does so from all of its places ([`TubeWithItself::leads_on`]). Of links `pair::JoinedLink` decides, as
-//! of a chain. A place of the tube is the ball of its radius around its centreline, which the tube
-//! holds as it
+//! The rule is that of a chain (`query::robots::robot_with_itself`, whose proofs hold for any
+//! centreline with a direction: the angles of the joints are the integral of the curvature).
+//! Neighbours are near for no other reason than that they are neighbours; places that are a local
+//! minimum of the distance have a turn of at least pi between them, or pi / 2 where one of them is
+//! a face (the base, the tip, the wider side of a step) that the other is in front of. Two faces
+//! that look at one another, the end of a section and the start of a later one, are asked about at
+//! any turn. From a place beside a face the robot must lead nowhere nearer: a piece is left out if
+//! it does so from all of its places ([`TubeWithItself::leads_on`]). Of links `pair::JoinedLink`
+//! decides, as of a chain. A place of the tube is the ball of its radius around its centreline,
+//! which the tube holds as it
 //! bends by less than 1 / radius; where that would stick out of a face nearby, it is the disc.
 //!
-//! So the least distance of all such pairs is what is bounded here. How far a curve turns is known between two bounds
-//! (`robot::tube::turns`), and each is taken where it is safe:
+//! So the least distance of all such pairs is what is bounded here. How far a curve turns is known
+//! between two bounds (`robot::tube::turns`), and each is taken where it is safe:
 //!
-//! - **From below.** A pair of pieces is kept if the turn from the start of the first to the end of the second may be enough. That
-//!   leaves out no pair of places that is asked about, so the bodies of what is kept bound the distance from below.
+//! - **From below.** A pair of pieces is kept if the turn from the start of the first to the end of
+//!   the second may be enough. That leaves out no pair of places that is asked about, so the bodies
+//!   of what is kept bound the distance from below.
 //! - **From above.** A pair of places counts if the turn between them is known to be enough.
 //!
-//! **Between the two** are pairs of which nobody knows whether they are asked about. They are kept, but do not count. Let all
-//! radii between the two places be less than 1 / k, where k is the largest curvature there.
+//! **Between the two** are pairs of which nobody knows whether they are asked about. They are kept,
+//! but do not count. Let all radii between the two places be less than 1 / k, where k is the
+//! largest curvature there.
 //!
-//! - *Those that are not asked about are not near.* Let the curve turn by u <= pi in truth, while the bound k allows pi: it is at
-//!   least pi / k long. Let m be its direction where half of u is behind it. All directions are within u / 2 of m, and at the arc
-//!   length s from there within k s. So the way y - x has at least (2 / k) f(u / 2) along m, where
-//!   f(v) = sin v + (pi / 2 - v) cos v is 1 at v = pi / 2, and falls up to there. That is 2 / k - r1 - r2 between the surfaces,
+//! - *Those that are not asked about are not near.* Let the curve turn by u <= pi in truth, while
+//!   the bound k allows pi: it is at least pi / k long. Let m be its direction where half of u is
+//!   behind it. All directions are within u / 2 of m, and at the arc length s from there within k
+//!   s. So the way y - x has at least (2 / k) f(u / 2) along m, where f(v) = sin v + (pi / 2 - v)
+//!   cos v is 1 at v = pi / 2, and falls up to there. That is 2 / k - r1 - r2 between the surfaces,
 //!   as wide as the tightest bend.
-//! - *In front of a face that the curve leads away from* (the base, the tip, a step on its wider side) is nothing at u <= pi / 2: y is sin(u) / k behind the face or more, and its disc reaches less
-//!   far ahead, r2 sin u. At u <= pi let p = y + w be a point of the disc in front of the face, c the face's centre. The way
-//!   y - c has (2 / k) sin(u / 2) along m at least, and w at most r2 sin(u / 2) against it, as it is across a direction within u / 2 of
-//!   m. So p - c has (2 / k - r2) sin(u / 2) along m, and nothing along the direction of the curve at c, which is within u / 2
-//!   of m: it is 2 / k - r2 long or more. So p is 2 / k - r1 - r2 away from the face at least, as wide as the tightest bend again.
-//! - *In front of a step*, where the thinner tube comes out of it, y is at least f(u) / k ahead at u <= pi / 2 (a curve pi / (2 k)
-//!   long, by the same count from c on), so 1 / k or more, and its disc 1 / k - r2.
+//! - *In front of a face that the curve leads away from* (the base, the tip, a step on its wider
+//!   side) is nothing at u <= pi / 2: y is sin(u) / k behind the face or more, and its disc reaches
+//!   less far ahead, r2 sin u. At u <= pi let p = y + w be a point of the disc in front of the
+//!   face, c the face's centre. The way y - c has (2 / k) sin(u / 2) along m at least, and w at
+//!   most r2 sin(u / 2) against it, as it is across a direction within u / 2 of m. So p - c has (2
+//!   / k - r2) sin(u / 2) along m, and nothing along the direction of the curve at c, which is
+//!   within u / 2 of m: it is 2 / k - r2 long or more. So p is 2 / k - r1 - r2 away from the face
+//!   at least, as wide as the tightest bend again.
+//! - *In front of a step*, where the thinner tube comes out of it, y is at least f(u) / k ahead at
+//!   u <= pi / 2 (a curve pi / (2 k) long, by the same count from c on), so 1 / k or more, and its
+//!   disc 1 / k - r2.
 //!
-//! So only of a margin as wide as a bend it matters whether parts are asked about that turn by no more than is asked for. Of those
-//! that turn by more, a contact counts as soon as samples show the turn. Pairs in question that turn by less than [`MIN_TURN`] are
-//! halved no more.
+//! So only of a margin as wide as a bend it matters whether parts are asked about that turn by no
+//! more than is asked for. Of those that turn by more, a contact counts as soon as samples show the
+//! turn. Pairs in question that turn by less than [`MIN_TURN`] are halved no more.
 //!
-//! **In front of a face.** Nothing is missed: a local minimum leaves the face on its outer side (`one_robot`), so that its place
-//! is in front. A pair with a face is left out if the whole body of the other piece is behind the plane of the face, as far as the
-//! normal is known. A place counts if it is known to be in front: rather more is asked about than local minima, but
-//! places beside the rim, at a distance as wide as a bend, or beside the wider part of a step, which the tube is passing there. The
-//! face is held by a flat body that goes a little into the tube, so that rounding does not turn it (`bounding_body`). A round cap
-//! at the wider side of a chain's step is a ball around its centre.
+//! **In front of a face.** Nothing is missed: a local minimum leaves the face on its outer side
+//! (`one_robot`), so that its place is in front. A pair with a face is left out if the whole body
+//! of the other piece is behind the plane of the face, as far as the normal is known. A place
+//! counts if it is known to be in front: rather more is asked about than local minima, but
+//! places beside the rim, at a distance as wide as a bend, or beside the wider part of a step,
+//! which the tube is passing there. The face is held by a flat body that goes a little into the
+//! tube, so that rounding does not turn it (`bounding_body`). A round cap at the wider side of a
+//! chain's step is a ball around its centre.
 //!
-//! **Ways between two convex parts** (two faces, a chain's face and a link) are asked which side they leave. The bodies measured
-//! are within D of the parts, both together. So the way w that is measured, d long, is within D of one between the parts, w', of
-//! at most d + D; the shortest one, w*, has at least d - D. As differences of convex sets are convex, |w' - w*|^2 <= |w'|^2 - |w*|^2 <=
-//! 4 D (d + D). So w* leaves w by D + 2 sqrt(D (d + D)) at most, and a normal that is off by a tilt counts (d + D) tilt more. What
-//! leaves within rounding of the face's plane counts as what leaves, as for a chain; all else that is in doubt is kept, but counts not.
+//! **Ways between two convex parts** (two faces, a chain's face and a link) are asked which side
+//! they leave. The bodies measured are within D of the parts, both together. So the way w that is
+//! measured, d long, is within D of one between the parts, w', of at most d + D; the shortest one,
+//! w*, has at least d - D. As differences of convex sets are convex, |w' - w*|^2 <= |w'|^2 - |w*|^2
+//! <= 4 D (d + D). So w* leaves w by D + 2 sqrt(D (d + D)) at most, and a normal that is off by a
+//! tilt counts (d + D) tilt more. What leaves within rounding of the face's plane counts as what
+//! leaves, as for a chain; all else that is in doubt is kept, but counts not.
 //!
-//! **Errors that are stated** say where the curve may be, not how it turns. So what is asked about is decided by the curve as
-//! it is given, and errors count in every distance.
+//! **Errors that are stated** say where the curve may be, not how it turns. So what is asked about
+//! is decided by the curve as it is given, and errors count in every distance.
 //!
-//! **While it moves** places may be asked about that are not in the shape that is looked at: `section_motions` has by how much more
-//! turn, and how much farther ahead. Of what is found in that shape counts what counts at rest.
+//! **While it moves** places may be asked about that are not in the shape that is looked at:
+//! `section_motions` has by how much more turn, and how much farther ahead. Of what is found in
+//! that shape counts what counts at rest.
 //!
-//! **What counts on either side.** If two places turn by more than is asked for, what is left is shared out: all places up to
-//! the first arc length and from the second on have enough between them (`TubeTurns::room`). Within these two parts each point
-//! between them shows how near both are (`tube_point`).
+//! **What counts on either side.** If two places turn by more than is asked for, what is left is
+//! shared out: all places up to the first arc length and from the second on have enough between
+//! them (`TubeTurns::room`). Within these two parts each point between them shows how near both are
+//! (`tube_point`).
 
 use super::bounding_body::BoundingBody;
 use super::nearest_pairs::NearestPairs;
@@ -77,7 +91,8 @@ use crate::robot::{EndFace, Section, Tube, TubeTurns, is_step};
 use parry3d_f64::math::{Pose, Real, Vector};
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// Pairs of which nobody knows whether they are asked about are not halved any more where both turn by less.
+/// Pairs of which nobody knows whether they are asked about are not halved any more where both turn
+/// by less.
 const MIN_TURN: Real = 1.0 / 1024.0;
 
 /// Nor are they where they turn by less than this part of what they may turn more while they move.
@@ -86,7 +101,8 @@ const MAX_SHARE_OF_EXTRA_TURN: Real = 1.0 / 16.0;
 /// How far the body of a face goes into the tube, in radii.
 const INTO_TUBE: Real = 1.0 / 1024.0;
 
-/// What the bodies of two faces are off by rounding alone, in slacks: `off_of_bodies` without a tilt and an error.
+/// What the bodies of two faces are off by rounding alone, in slacks: `off_of_bodies` without a
+/// tilt and an error.
 const ROUNDING_OF_FACES: Real = 140.0;
 
 /// How often a place of two parts is moved to the other's.
@@ -102,7 +118,8 @@ pub(crate) struct TubeWithItself<'a> {
     moves: Option<&'a SectionMotions>,
 }
 
-/// Two pieces, the first of which comes first along the tube. Either may be a face: a piece without length.
+/// Two pieces, the first of which comes first along the tube. Either may be a face: a piece without
+/// length.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SelfPair {
     pub(super) pieces: [Piece; 2],
@@ -147,7 +164,8 @@ impl<'a> TubeWithItself<'a> {
         Ok(Self { both: TubePair::new([placed; 2]), turns, moves: None })
     }
 
-    /// The same tube as if its turn had not been stated, if that is another one. All bounds of that one hold for this one.
+    /// The same tube as if its turn had not been stated, if that is another one. All bounds of that
+    /// one hold for this one.
     pub(crate) fn less_known(&self) -> Option<Self> {
         let less = self.tube().without_turn()?;
         Some(Self { both: TubePair { tubes: [less; 2] }, ..*self })
@@ -166,7 +184,8 @@ impl<'a> TubeWithItself<'a> {
         Ok(Self { both: TubePair::new([placed; 2]), turns, moves: Some(moves) })
     }
 
-    /// The sections of a pair and the shares of them between which its pieces lie, with their bodies and radii.
+    /// The sections of a pair and the shares of them between which its pieces lie, with their
+    /// bodies and radii.
     pub(crate) fn section_ranges<'p>(&self, pair: &'p SelfPair) -> [SectionRange<'p>; 2] {
         [0, 1].map(|k: usize| self.tube().section_range(&pair.pieces[k], &pair.outers[k]))
     }
@@ -187,8 +206,9 @@ impl<'a> TubeWithItself<'a> {
         &self.both.tubes[0]
     }
 
-    /// The pairs of pieces to begin with, the nearest one last: all that are asked about and not farther apart than `upper`. Where
-    /// these are more than `most` the nearest ones, and false.
+    /// The pairs of pieces to begin with, the nearest one last: all that are asked about and not
+    /// farther apart than `upper`. Where these are more than `most` the nearest ones, and
+    /// false.
     ///
     /// # Errors
     /// A curve is not finite.
@@ -230,24 +250,31 @@ impl<'a> TubeWithItself<'a> {
         Ok(is_all)
     }
 
-    /// Adds all faces to the pieces: the tube's ends, where they are flat, and the wider sides of its steps.
+    /// Adds all faces to the pieces: the tube's ends, where they are flat, and the wider sides of
+    /// its steps.
     fn push_faces(&self, bodies: &mut Vec<SelfBody>) {
         let sections = self.tube().sections();
         for (number, section) in sections.iter().enumerate() {
             let before = number.checked_sub(1).and_then(|before| sections.get(before));
             for (end, neighbour) in [(0, before), (1, sections.get(number + 1))] {
                 let is_flat = section.faces[end].is_some();
-                if neighbour.map_or(is_flat, |neighbour| is_step(neighbour.radius, section.radius)) {
+                if neighbour.map_or(is_flat, |neighbour| is_step(neighbour.radius, section.radius))
+                {
                     let tick = if end == 0 { section.first } else { section.last };
                     let piece = Piece { section: number as u32, from: tick, to: tick };
                     let body = self.body_of_face(&piece, end);
-                    bodies.push((piece, BoundingBody { body, excess: 0.0, narrows: 0.0 }, Some(end)));
+                    bodies.push((
+                        piece,
+                        BoundingBody { body, excess: 0.0, narrows: 0.0 },
+                        Some(end),
+                    ));
                 }
             }
         }
     }
 
-    /// The flat face at an end of a section; none of a round cap, and of one whose direction nobody knows.
+    /// The flat face at an end of a section; none of a round cap, and of one whose direction nobody
+    /// knows.
     fn face(&self, piece: &Piece, end: usize) -> Option<EndFace> {
         let tube = self.tube();
         let face = tube.faces(tube.section(piece.section))[end]?;
@@ -286,18 +313,21 @@ impl<'a> TubeWithItself<'a> {
             Some(face) => {
                 let off = self.off(&face, radius);
                 let [ahead, into] = self.reach_of_face(&face, radius);
-                let (tip, back) = (face.centre + face.outward * ahead, face.centre - face.outward * into);
+                let (tip, back) =
+                    (face.centre + face.outward * ahead, face.centre - face.outward * into);
                 PlacedLink::between(tip, back, radius + off + tube.slack(), [true; 2])
             }
             None => PlacedLink::between(centre, centre, radius + wider, [false; 2]),
         }
     }
 
-    /// By how much a pair may turn between places that are as near along the tube as they can be, and as far.
+    /// By how much a pair may turn between places that are as near along the tube as they can be,
+    /// and as far.
     fn turns(&self, pair: &SelfPair) -> [Real; 2] {
         let [one, two] = &pair.pieces;
-        let turned =
-            |piece: &Piece, tick: u32| self.tube().tube.turned_at_most(self.turns, piece.section, tick);
+        let turned = |piece: &Piece, tick: u32| {
+            self.tube().tube.turned_at_most(self.turns, piece.section, tick)
+        };
         [turned(two, two.from) - turned(one, one.to), turned(two, two.to) - turned(one, one.from)]
     }
 
@@ -318,7 +348,8 @@ impl<'a> TubeWithItself<'a> {
     fn turns_enough(&self, pair: &SelfPair) -> bool {
         let [_, most] = self.turns(pair);
         let [one, two] = pair.pieces;
-        // Neighbours of a chain share a joint; and of a piece and itself nothing is asked but what turns.
+        // Neighbours of a chain share a joint; and of a piece and itself nothing is asked but what
+        // turns.
         let apart = two.section - one.section;
         let is_same = pair.faces == [Some(0), Some(0)] || pair.faces == [Some(1), Some(1)];
         let share_joint = self.turns.has_joints() && apart < 2;
@@ -389,8 +420,12 @@ impl<'a> TubeWithItself<'a> {
         let tolerance = one.tolerance(&two);
         match pair.faces {
             [None, None] => one.counts_beside(&two, tolerance),
-            [Some(end), None] => one.face_counts(end, &two, &one.face_to_link(end, &two.link), tolerance),
-            [None, Some(end)] => two.face_counts(end, &one, &two.face_to_link(end, &one.link), tolerance),
+            [Some(end), None] => {
+                one.face_counts(end, &two, &one.face_to_link(end, &two.link), tolerance)
+            }
+            [None, Some(end)] => {
+                two.face_counts(end, &one, &two.face_to_link(end, &one.link), tolerance)
+            }
             [Some(end), Some(other)] => {
                 let nearest = one.face_to_face(end, &two, other);
                 one.faces_count(end, &two, other, &nearest, tolerance)
@@ -407,9 +442,14 @@ impl<'a> TubeWithItself<'a> {
             let flat = section.faces.map(|face| face.is_some());
             PlacedLink::between(ends[0], ends[1], section.radius, flat)
         };
-        let beyond =
-            [number.checked_sub(1).and_then(|before| sections.get(before)), sections.get(number + 1)];
-        JoinedLink { link: link(&sections[number]), beyond: beyond.map(|section| section.map(link)) }
+        let beyond = [
+            number.checked_sub(1).and_then(|before| sections.get(before)),
+            sections.get(number + 1),
+        ];
+        JoinedLink {
+            link: link(&sections[number]),
+            beyond: beyond.map(|section| section.map(link)),
+        }
     }
 
     /// Whether the robot leads nearer to a face from all places of the other piece, at all times.
@@ -459,9 +499,11 @@ impl<'a> TubeWithItself<'a> {
         let off = away * (tilt + moved[1 - k].turn) + side_excess + 4.0 * errors + moved[0].points;
         let along = |place: Vector, direction: Vector| (place - centre).dot(direction);
         if along(ends[0], chord_direction) > off {
-            piece.from > section.first || self.goes_on(piece.section, 0, |axis| along(ends[0], axis) > off)
+            piece.from > section.first
+                || self.goes_on(piece.section, 0, |axis| along(ends[0], axis) > off)
         } else if along(ends[1], chord_direction) < -off {
-            piece.to < section.last || self.goes_on(piece.section, 1, |axis| along(ends[1], axis) < -off)
+            piece.to < section.last
+                || self.goes_on(piece.section, 1, |axis| along(ends[1], axis) < -off)
         } else {
             false
         }
@@ -500,8 +542,8 @@ impl<'a> TubeWithItself<'a> {
         face.is_none_or(|face| self.ahead_of_face(pair, k, &face, 1.0, self.moved(pair, k)) >= 0.0)
     }
 
-    /// How far ahead of a face some place of the other body is at most (`sign` 1), or how far behind it at most (-1), after both have
-    /// moved so much.
+    /// How far ahead of a face some place of the other body is at most (`sign` 1), or how far
+    /// behind it at most (-1), after both have moved so much.
     fn ahead_of_face(
         &self,
         pair: &SelfPair,
@@ -512,7 +554,8 @@ impl<'a> TubeWithItself<'a> {
     ) -> Real {
         let body = &pair.outers[1 - k].body;
         let ends = [body.start(), body.end()].map(|end| end - face.centre);
-        let ahead = (sign * ends[0].dot(face.outward)).max(sign * ends[1].dot(face.outward)) + body.radius();
+        let ahead = (sign * ends[0].dot(face.outward)).max(sign * ends[1].dot(face.outward))
+            + body.radius();
         let away = ends[0].length().max(ends[1].length()) + body.radius() + moved.points;
         let off = self.off(face, self.tube().radius(&pair.pieces[k]));
         ahead + moved.points + away * (face.tilt + moved.turn) + 2.0 * off
@@ -522,21 +565,27 @@ impl<'a> TubeWithItself<'a> {
     fn is_before(&self, pair: &SelfPair) -> bool {
         (0..2).all(|k| {
             let face = pair.faces[k].and_then(|end| self.face(&pair.pieces[k], end));
-            face.is_none_or(|face| self.ahead_of_face(pair, k, &face, -1.0, SectionMotion::default()) <= 0.0)
+            face.is_none_or(|face| {
+                self.ahead_of_face(pair, k, &face, -1.0, SectionMotion::default()) <= 0.0
+            })
         })
     }
 
-    /// Whether both pieces are convex bodies, all of which are asked about: two faces, or links of a chain.
+    /// Whether both pieces are convex bodies, all of which are asked about: two faces, or links of
+    /// a chain.
     fn is_whole(&self, pair: &SelfPair) -> bool {
         let count = pair.faces.iter().flatten().count();
         count == 2 || self.turns.has_joints()
     }
 
-    /// Whether the shortest way between a face and another, or a link, may leave it outwards, and the other too.
+    /// Whether the shortest way between a face and another, or a link, may leave it outwards, and
+    /// the other too.
     fn ways_leave(&self, pair: &SelfPair) -> bool {
         pair.faces == [None; 2] || !self.is_whole(pair) || {
             let nearest = self.between_faces(pair);
-            self.leave(pair, &nearest, |k| -self.doubt_of_way(pair, k, nearest.distance, self.moved(pair, k)))
+            self.leave(pair, &nearest, |k| {
+                -self.doubt_of_way(pair, k, nearest.distance, self.moved(pair, k))
+            })
         }
     }
 
@@ -547,8 +596,14 @@ impl<'a> TubeWithItself<'a> {
         self.leave(pair, nearest, |k| doubt(k) - 2.0 * rounding)
     }
 
-    /// Whether a way leaves all faces of a pair by at least so much along their normals, as far as these are known.
-    fn leave(&self, pair: &SelfPair, nearest: &NearestOfLinks, least: impl Fn(usize) -> Real) -> bool {
+    /// Whether a way leaves all faces of a pair by at least so much along their normals, as far as
+    /// these are known.
+    fn leave(
+        &self,
+        pair: &SelfPair,
+        nearest: &NearestOfLinks,
+        least: impl Fn(usize) -> Real,
+    ) -> bool {
         let way = nearest.on_second - nearest.on_first;
         [(0, way), (1, -way)].into_iter().all(|(k, way)| {
             let outward = pair.faces[k].and_then(|end| self.outward(&pair.pieces[k], end));
@@ -556,7 +611,8 @@ impl<'a> TubeWithItself<'a> {
         })
     }
 
-    /// How near a face and another, or a link, are by their bodies: of the faces themselves, since bodies go into the tube.
+    /// How near a face and another, or a link, are by their bodies: of the faces themselves, since
+    /// bodies go into the tube.
     fn between_faces(&self, pair: &SelfPair) -> NearestOfLinks {
         let [one, two] = &pair.outers;
         match pair.faces {
@@ -566,8 +622,15 @@ impl<'a> TubeWithItself<'a> {
         }
     }
 
-    /// By how much a way of the length `distance` may err along the normal of a face, after both bodies have moved so much.
-    fn doubt_of_way(&self, pair: &SelfPair, k: usize, distance: Real, moved: SectionMotion) -> Real {
+    /// By how much a way of the length `distance` may err along the normal of a face, after both
+    /// bodies have moved so much.
+    fn doubt_of_way(
+        &self,
+        pair: &SelfPair,
+        k: usize,
+        distance: Real,
+        moved: SectionMotion,
+    ) -> Real {
         let face = pair.faces[k].and_then(|end| self.face(&pair.pieces[k], end));
         let tilt = face.map_or(0.0, |face| face.tilt) + moved.turn;
         doubt_of_way(self.off_of_bodies(pair) + moved.points, distance, tilt)
@@ -580,7 +643,9 @@ impl<'a> TubeWithItself<'a> {
             let (piece, radius) = (&pair.pieces[k], self.tube().radius(&pair.pieces[k]));
             match pair.faces[k].and_then(|end| self.face(piece, end)).filter(|_| radius > 0.0) {
                 // Ahead, and aside; and where the face is.
-                Some(face) => self.reach_of_face(&face, radius)[0] + 2.0 * self.off(&face, radius) + slack,
+                Some(face) => {
+                    self.reach_of_face(&face, radius)[0] + 2.0 * self.off(&face, radius) + slack
+                }
                 None => 2.0 * (error + slack),
             }
         };
@@ -607,11 +672,13 @@ impl<'a> TubeWithItself<'a> {
             } else {
                 pair.faces == [None; 2] || is_known && self.ways_surely_leave(pair, &nearest)
             };
-        let upper = if counts { nearest.distance + self.off_of_bodies(pair) } else { Real::INFINITY };
+        let upper =
+            if counts { nearest.distance + self.off_of_bodies(pair) } else { Real::INFINITY };
         PairUpperBound { upper, sections: pair.pieces.map(|piece| piece.section), arcs, points }
     }
 
-    /// Up to where, or from where on, a part of a section counts beside the other of a pair; none where it goes to the end.
+    /// Up to where, or from where on, a part of a section counts beside the other of a pair; none
+    /// where it goes to the end.
     fn limit(&self, k: usize, section: u32, arc: Real) -> [Option<Real>; 2] {
         let inner = 1 - k;
         let section = self.tube().section(section);
@@ -679,7 +746,8 @@ impl<'a> TubeWithItself<'a> {
         });
         let (way, rounding) = (feet[1].point - feet[0].point, tube.tube.error() + tube.slack());
         let away = way.length();
-        let upper = away + feet[0].off + feet[1].off + 2.0 * rounding - both[0].radius - both[1].radius;
+        let upper =
+            away + feet[0].off + feet[1].off + 2.0 * rounding - both[0].radius - both[1].radius;
         if upper <= 0.0 {
             let common = half_way(feet.map(|foot| foot.point), both.map(|section| section.radius));
             return PairUpperBound { upper: 0.0, sections, arcs, points: [common; 2] };
@@ -714,14 +782,16 @@ impl<'a> TubeWithItself<'a> {
         let radius = tube.section(piece.section).radius;
         let rounding = 4.0 * tube.slack();
         for _ in 0..=MAX_MOVES {
-            // Into what is in front of the face for certain, with all that is found within rounding of it.
+            // Into what is in front of the face for certain, with all that is found within rounding
+            // of it.
             let offset = place - face.centre;
             let ahead = offset.dot(face.outward);
             let at_least = 4.0 * rounding + offset.length() * face.tilt;
             if ahead < at_least {
                 place += face.outward * (2.0 * at_least - ahead);
             }
-            let TubePoint { upper, arc: next, point } = tube.near_between(other.section, arc, place, limits);
+            let TubePoint { upper, arc: next, point } =
+                tube.near_between(other.section, arc, place, limits);
             if upper == Real::INFINITY {
                 break;
             }
@@ -729,7 +799,12 @@ impl<'a> TubeWithItself<'a> {
             if upper <= rounding {
                 let (near_face, on_face) = self.near_face(&face, radius, place);
                 let points = if k == 0 { [on_face, place] } else { [place, on_face] };
-                best = PairUpperBound { upper: near_face + upper, sections, arcs: in_order(arc), points };
+                best = PairUpperBound {
+                    upper: near_face + upper,
+                    sections,
+                    arcs: in_order(arc),
+                    points,
+                };
                 break;
             }
             place += (point - place) * 1.125;
@@ -749,7 +824,10 @@ impl<'a> TubeWithItself<'a> {
         let size = across.length();
         let share = if size > radius { radius / size } else { 1.0 };
         let beyond = (size - radius).max(0.0);
-        (Vector::new(ahead, beyond, 0.0).length() + self.off(face, radius), face.centre + across * share)
+        (
+            Vector::new(ahead, beyond, 0.0).length() + self.off(face, radius),
+            face.centre + across * share,
+        )
     }
 }
 
@@ -848,8 +926,9 @@ impl Refinable for TubeWithItself<'_> {
 
     fn is_in_first_half(&self, found: &PairUpperBound, halves: &[SelfPair; 2]) -> bool {
         let [low, high] = halves;
-        let k =
-            usize::from(low.pieces[0].to == high.pieces[0].to && low.pieces[0].from == high.pieces[0].from);
+        let k = usize::from(
+            low.pieces[0].to == high.pieces[0].to && low.pieces[0].from == high.pieces[0].from,
+        );
         found.arcs[k] < self.tube().arcs(&low.pieces[k])[1]
     }
 
@@ -885,10 +964,16 @@ impl Refinable for TubeWithItself<'_> {
 fn pair(one: &SelfBody, other: &SelfBody) -> SelfPair {
     let place = |piece: &Piece| (piece.section, piece.from, piece.to);
     let [one, other] = if place(&one.0) <= place(&other.0) { [one, other] } else { [other, one] };
-    SelfPair { pieces: [one.0, other.0], outers: [one.1, other.1], faces: [one.2, other.2], is_asked: true }
+    SelfPair {
+        pieces: [one.0, other.0],
+        outers: [one.1, other.1],
+        faces: [one.2, other.2],
+        is_asked: true,
+    }
 }
 
-/// By how much a way may err along a normal that is off by `tilt`, between bodies that are so far off together.
+/// By how much a way may err along a normal that is off by `tilt`, between bodies that are so far
+/// off together.
 fn doubt_of_way(off: Real, distance: Real, tilt: Real) -> Real {
     // Two roots, so that no product leaves the range of numbers.
     off + 2.0 * off.sqrt() * (distance + off).sqrt() + (distance + off) * tilt

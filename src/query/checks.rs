@@ -9,7 +9,10 @@ pub(crate) fn check_margin(margin: Real) -> Result<(), ProximityError> {
 }
 
 /// A margin, a prominence, a tolerance or a resolution, as the function that was called names it.
-pub(crate) fn check_not_negative(parameter: &'static str, value: Real) -> Result<(), ProximityError> {
+pub(crate) fn check_not_negative(
+    parameter: &'static str,
+    value: Real,
+) -> Result<(), ProximityError> {
     // Written so that NaN is an error.
     if value >= 0.0 { Ok(()) } else { Err(ProximityError::Negative { parameter, value }) }
 }

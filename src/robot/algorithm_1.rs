@@ -1,30 +1,33 @@
 //! Algorithm 1 of the paper (section III.F): which link ends are round.
 //!
-//! A round end fills the wedge that opens between two links where the centreline bends. But it also reaches one
-//! radius along the tube, and must not stick out of a face that the tube really has: its two ends, and each place
-//! where a thicker tube begins. So one walk goes along the centreline with the last such face as its *limit*, and
-//! decides how each link begins:
+//! A round end fills the wedge that opens between two links where the centreline bends. But it also
+//! reaches one radius along the tube, and must not stick out of a face that the tube really has:
+//! its two ends, and each place where a thicker tube begins. So one walk goes along the centreline
+//! with the last such face as its *limit*, and decides how each link begins:
 //!
 //! 1. **The first link** begins with a face, the first limit.
 //! 2. **A thicker link** than the one before begins with a face too, which becomes the limit.
-//! 3. **Room for a ball**: any other link begins round if its start is at least one radius away from the limit,
+//! 3. **Room for a ball**: any other link begins round if its start is at least one radius away
+//!    from the limit,
 //! 4. **Too near**: and flat if it is not.
 //!
 //! A second walk comes back from the tip and treats the links' other ends in the same way.
 //!
-//! The test is on the chord between limit and joint, as printed, without the paper's division: 0/0 at radius 0
-//! would leave the cap of a wire undecided. Equal radii may be round. A thick tube shorter than two radii keeps
-//! flat ends all along, with open wedges where it bends: that is a limit of the algorithm.
+//! The test is on the chord between limit and joint, as printed, without the paper's division: 0/0
+//! at radius 0 would leave the cap of a wire undecided. Equal radii may be round. A thick tube
+//! shorter than two radii keeps flat ends all along, with open wedges where it bends: that is a
+//! limit of the algorithm.
 //!
-//! Printed, the radius belongs to a vertex. [`from_segment_radii`] lets a vertex take the radius of the link whose
-//! end is being decided, which is meant: a radius belongs to a tube. [`from_vertex_radii`] is the rule as printed.
-//! With each link's radius the smaller of its two vertices' (the only choice that makes both steps up and steps
-//! down come out right) the two agree, except after a thick tube shorter than its radius (the printed rule
-//! compares the thin tube's first joint with the thick radius, and leaves a gap) and around a lone thick vertex,
+//! Printed, the radius belongs to a vertex. [`from_segment_radii`] lets a vertex take the radius of
+//! the link whose end is being decided, which is meant: a radius belongs to a tube.
+//! [`from_vertex_radii`] is the rule as printed. With each link's radius the smaller of its two
+//! vertices' (the only choice that makes both steps up and steps down come out right) the two
+//! agree, except after a thick tube shorter than its radius (the printed rule compares the thin
+//! tube's first joint with the thick radius, and leaves a gap) and around a lone thick vertex,
 //! which belongs to no tube and which the printed rule makes flat on both sides.
 //!
-//! Radii that are equal but for rounding are equal here (`radius_steps`): of a rod simulator's every second segment is thicker by
-//! its last bit, and would begin with a face.
+//! Radii that are equal but for rounding are equal here (`radius_steps`): of a rod simulator's
+//! every second segment is thicker by its last bit, and would begin with a face.
 
 use super::Cap;
 use super::compare::at_least_apart;

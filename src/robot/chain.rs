@@ -11,9 +11,9 @@ use std::sync::OnceLock;
 
 /// A continuum robot: links joined end to end along a centreline (paper, section III.F).
 ///
-/// A chain is the union of its links, and neighbouring links overlap where a round cap reaches into the next
-/// link. Seen from outside the union is exact. What depends on the inside, such as the volume or the way out of
-/// it, is known only link by link.
+/// A chain is the union of its links, and neighbouring links overlap where a round cap reaches into
+/// the next link. Seen from outside the union is exact. What depends on the inside, such as the
+/// volume or the way out of it, is known only link by link.
 ///
 /// The constructors differ in the caps alone:
 ///
@@ -24,15 +24,16 @@ use std::sync::OnceLock;
 /// | [`capsules`](Self::capsules) | all round | covered, but reaches one radius too far at its ends |
 /// | [`cylinders`](Self::cylinders) | all flat | never exceeded at its ends, but open at the bends |
 ///
-/// Points and radii are in one unit of length and in the robot's frame; all constructors accept magnitudes up
-/// to 1e150.
+/// Points and radii are in one unit of length and in the robot's frame; all constructors accept
+/// magnitudes up to 1e150.
 ///
 /// # Repeated points
-/// Planners repeat centreline points. A segment without length has no direction and adds nothing to the robot, so
-/// it becomes no link. It is left out only after Algorithm 1 has walked over it: repeating a point changes no
-/// link, and a segment without length but with a radius of its own counts as a step there and back. The robot's
-/// own two ends stay flat whatever is repeated there. [`segments_of`](Self::segments_of) gives such a segment to
-/// the link before it, or to the first link.
+/// Planners repeat centreline points. A segment without length has no direction and adds nothing to
+/// the robot, so it becomes no link. It is left out only after Algorithm 1 has walked over it:
+/// repeating a point changes no link, and a segment without length but with a radius of its own
+/// counts as a step there and back. The robot's own two ends stay flat whatever is repeated there.
+/// [`segments_of`](Self::segments_of) gives such a segment to the link before it, or to the first
+/// link.
 ///
 /// ```
 /// use parry_continuum::{Cap, Chain, parry::math::Vector};
@@ -58,35 +59,37 @@ pub struct Chain {
     link_tree: Vec<LinkNode>,
     /// How long the links before each one are, together.
     lengths_before: Vec<Real>,
-    /// Over the links' boxes, for parry's composite queries; leaf i is link i. Built when first asked for.
+    /// Over the links' boxes, for parry's composite queries; leaf i is link i. Built when first
+    /// asked for.
     bvh: OnceLock<Bvh>,
     /// The caps of the input's segments: memory for the next centreline.
     caps: Vec<[Cap; 2]>,
 }
 
 impl Chain {
-    /// The robot with this centreline, its tubes' radii given segment by segment, with the caps that fit (Algorithm 1 of the
-    /// paper).
+    /// The robot with this centreline, its tubes' radii given segment by segment, with the caps
+    /// that fit (Algorithm 1 of the paper).
     ///
-    /// The two ends of the robot and the wider side of each step in radius are flat, the joints in between round
-    /// where a round cap does not stick out of such a face. Radii that differ by less than 2^-32 of the first of them are no
-    /// step, so that a constant may be rounded. A joint exactly one radius from a face is round.
+    /// The two ends of the robot and the wider side of each step in radius are flat, the joints in
+    /// between round where a round cap does not stick out of such a face. Radii that differ by
+    /// less than 2^-32 of the first of them are no step, so that a constant may be rounded. A
+    /// joint exactly one radius from a face is round.
     ///
     /// # Errors
-    /// Fewer than two points, not one radius fewer than points, a coordinate or radius that is not finite or
-    /// beyond 1e150, a negative radius, or points that are all equal.
+    /// Fewer than two points, not one radius fewer than points, a coordinate or radius that is not
+    /// finite or beyond 1e150, a negative radius, or points that are all equal.
     pub fn from_centreline(points: &[Vector], segment_radii: &[Real]) -> Result<Self, RobotError> {
         let mut chain = Self::empty();
         chain.set_centreline(points, segment_radii)?;
         Ok(chain)
     }
 
-    /// The robot with this centreline whose tube has the same radius everywhere: [`from_centreline`](Self::from_centreline)
-    /// with one radius for all segments.
+    /// The robot with this centreline whose tube has the same radius everywhere:
+    /// [`from_centreline`](Self::from_centreline) with one radius for all segments.
     ///
     /// # Errors
-    /// Fewer than two points, a coordinate that is not finite or beyond 1e150, a radius that is negative or not finite, or
-    /// points that are all equal.
+    /// Fewer than two points, a coordinate that is not finite or beyond 1e150, a radius that is
+    /// negative or not finite, or points that are all equal.
     ///
     /// ```
     /// use parry_continuum::{Chain, parry::math::Vector};
@@ -99,8 +102,9 @@ impl Chain {
         Self::from_centreline(points, &radius_for_all(points, radius)?)
     }
 
-    /// Makes this chain what [`from_centreline`](Self::from_centreline) makes of the arguments, in the memory that it
-    /// has: a control loop whose robot keeps its number of points allocates nothing.
+    /// Makes this chain what [`from_centreline`](Self::from_centreline) makes of the arguments, in
+    /// the memory that it has: a control loop whose robot keeps its number of points allocates
+    /// nothing.
     ///
     /// # Errors
     /// As [`from_centreline`](Self::from_centreline). The chain is then what it was before.
@@ -113,17 +117,23 @@ impl Chain {
     /// assert_eq!(robot.links()[1].end(), Vector::new(1.0, 0.0, 1.0));
     /// # Ok::<(), parry_continuum::RobotError>(())
     /// ```
-    pub fn set_centreline(&mut self, points: &[Vector], segment_radii: &[Real]) -> Result<(), RobotError> {
+    pub fn set_centreline(
+        &mut self,
+        points: &[Vector],
+        segment_radii: &[Real],
+    ) -> Result<(), RobotError> {
         check_segments(points, segment_radii)?;
         algorithm_1::from_segment_radii(points, segment_radii, &mut self.caps);
         self.assemble(points, segment_radii, "segment_radii")
     }
 
-    /// The robot with this centreline and one radius per point, capped by Algorithm 1 as the paper prints it.
+    /// The robot with this centreline and one radius per point, capped by Algorithm 1 as the paper
+    /// prints it.
     ///
-    /// A segment takes the smaller radius of its two points; a start is round where the paper's lB says so for
-    /// that point, an end where lF does. Prefer [`from_centreline`](Self::from_centreline), where a radius belongs
-    /// to a tube: here the first joint after a thick tube shorter than its radius is left open, and so are both
+    /// A segment takes the smaller radius of its two points; a start is round where the paper's lB
+    /// says so for that point, an end where lF does. Prefer
+    /// [`from_centreline`](Self::from_centreline), where a radius belongs to a tube: here the
+    /// first joint after a thick tube shorter than its radius is left open, and so are both
     /// sides of a single thick point.
     ///
     /// ```
@@ -141,13 +151,15 @@ impl Chain {
     /// As [`from_centreline`](Self::from_centreline), with as many radii as points.
     pub fn from_vertex_radii(points: &[Vector], vertex_radii: &[Real]) -> Result<Self, RobotError> {
         check(["points", "vertex_radii"], points, vertex_radii, points.len())?;
-        let segment_radii: Vec<_> = vertex_radii.windows(2).map(|radii| radii[0].min(radii[1])).collect();
+        let segment_radii: Vec<_> =
+            vertex_radii.windows(2).map(|radii| radii[0].min(radii[1])).collect();
         let mut chain = Self::empty();
         algorithm_1::from_vertex_radii(points, vertex_radii, &mut chain.caps);
         chain.assemble(points, &segment_radii, "vertex_radii").map_err(|error| match error {
             // The radius of a segment is the smaller of two.
             RobotError::HidesLength { parameter, index, value, length } => {
-                let index = if vertex_radii[index] <= vertex_radii[index + 1] { index } else { index + 1 };
+                let index =
+                    if vertex_radii[index] <= vertex_radii[index + 1] { index } else { index + 1 };
                 RobotError::HidesLength { parameter, index, value, length }
             }
             other => other,
@@ -176,10 +188,11 @@ impl Chain {
         &self.links
     }
 
-    /// The input segments that link number `link` stands for, or an empty range if there is no such link.
+    /// The input segments that link number `link` stands for, or an empty range if there is no such
+    /// link.
     ///
-    /// Segment k joins points k and k + 1. The ranges of all links, in order, cover every segment once; exactly
-    /// one segment in each has a length.
+    /// Segment k joins points k and k + 1. The ranges of all links, in order, cover every segment
+    /// once; exactly one segment in each has a length.
     ///
     /// ```
     /// use parry_continuum::{Chain, parry::math::Vector};
@@ -193,7 +206,8 @@ impl Chain {
         self.segments.get(link).cloned().unwrap_or_default()
     }
 
-    /// The input segment that link number `link` is: the one of [`segments_of`](Self::segments_of) that has a length.
+    /// The input segment that link number `link` is: the one of [`segments_of`](Self::segments_of)
+    /// that has a length.
     pub(crate) fn segment_of(&self, link: usize) -> usize {
         if link == 0 { self.first_segment } else { self.segments_of(link).start }
     }
@@ -219,9 +233,12 @@ impl Chain {
 
     /// No coordinate of its links is larger.
     pub(crate) fn reach(&self) -> Real {
-        let within = |ends: [Vector; 2], radius| ends[0].abs().max(ends[1].abs()).max_element() + radius;
+        let within =
+            |ends: [Vector; 2], radius| ends[0].abs().max(ends[1].abs()).max_element() + radius;
         match (self.link_tree.first(), self.links.first()) {
-            (Some(LinkNode::Inner { bound, .. }), _) => within([bound.start, bound.end], bound.radius),
+            (Some(LinkNode::Inner { bound, .. }), _) => {
+                within([bound.start, bound.end], bound.radius)
+            }
             (_, Some(link)) => within([link.start(), link.end()], link.radius()),
             _ => 0.0,
         }
@@ -271,8 +288,8 @@ impl Chain {
         Ok(chain)
     }
 
-    /// Makes links of the segments that have a length; radii and `self.caps` are per segment, and `parameter` is what the
-    /// radii came from.
+    /// Makes links of the segments that have a length; radii and `self.caps` are per segment, and
+    /// `parameter` is what the radii came from.
     fn assemble(
         &mut self,
         points: &[Vector],
@@ -286,7 +303,8 @@ impl Chain {
         self.links.clear();
         self.segments.clear();
         for k in (0..radii.len()).filter(has_length) {
-            // The walk leaves every end at the same place as a limit flat on its own, except at radius 0.
+            // The walk leaves every end at the same place as a limit flat on its own, except at
+            // radius 0.
             let caps = [
                 self.caps[if self.links.is_empty() { 0 } else { k }][0],
                 self.caps[if k == last { radii.len() - 1 } else { k }][1],
@@ -327,7 +345,11 @@ impl PartialEq for Chain {
 }
 
 /// Why none of the segments has a length.
-pub(super) fn without_length(points: &[Vector], radii: &[Real], parameter: &'static str) -> RobotError {
+pub(super) fn without_length(
+    points: &[Vector],
+    radii: &[Real],
+    parameter: &'static str,
+) -> RobotError {
     match (0..radii.len()).find(|&k| points[k] != points[k + 1]) {
         Some(index) => {
             let length = super::scale::length(points[index + 1] - points[index]);
@@ -348,7 +370,8 @@ pub(super) fn check_segments(points: &[Vector], segment_radii: &[Real]) -> Resul
     check(["points", "segment_radii"], points, segment_radii, points.len().saturating_sub(1))
 }
 
-/// Enough points, as many radii as they need, and nothing out of range. `names` are those of the two parameters.
+/// Enough points, as many radii as they need, and nothing out of range. `names` are those of the
+/// two parameters.
 pub(super) fn check(
     names: [&'static str; 2],
     points: &[Vector],

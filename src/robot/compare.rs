@@ -1,9 +1,10 @@
 //! Comparisons of distances with a radius or a tolerance.
 //!
-//! A joint exactly one radius from the limit takes a round cap (Algorithm 1), and a vertex exactly one tolerance from a
-//! chord may go (`simplify`). Each is one comparison of squares in f64, of numbers brought near one so that none
-//! overflows or vanishes. It is right wherever the two lengths differ by more than 2^-50 of the larger (of the chord, for
-//! the distance from it), and for ties whose squares are exact, as those of hand-made robots are. Coordinates are rounded
+//! A joint exactly one radius from the limit takes a round cap (Algorithm 1), and a vertex exactly
+//! one tolerance from a chord may go (`simplify`). Each is one comparison of squares in f64, of
+//! numbers brought near one so that none overflows or vanishes. It is right wherever the two
+//! lengths differ by more than 2^-50 of the larger (of the chord, for the distance from it), and
+//! for ties whose squares are exact, as those of hand-made robots are. Coordinates are rounded
 //! before they come here, so that deciding the rest exactly would only move the chance.
 
 use crate::distance::Scalar;
@@ -18,8 +19,8 @@ pub(super) fn at_least_apart(p: Vector, q: Vector, radius: Real) -> bool {
 
 /// A segment that has a length, and a tolerance.
 ///
-/// The points within the tolerance make up two balls around the ends and a cylinder between them. With a tolerance of
-/// 0 these are the points for which no cross product is left after rounding.
+/// The points within the tolerance make up two balls around the ends and a cylinder between them.
+/// With a tolerance of 0 these are the points for which no cross product is left after rounding.
 pub(super) struct ToleranceSegment {
     start: Vector,
     end: Vector,
@@ -34,7 +35,8 @@ pub(super) struct ToleranceSegment {
 impl ToleranceSegment {
     pub(super) fn new(start: Vector, end: Vector, tolerance: Real) -> Self {
         let vector = end - start;
-        // What lies so far out that its square overflows after this is compared as infinite, and is not within.
+        // What lies so far out that its square overflows after this is compared as infinite, and is
+        // not within.
         let scale = vector.abs().max_element().max(tolerance).power_of_two_to_unity();
         let vector = vector * scale;
         let tolerance_squared = (tolerance * scale) * (tolerance * scale);

@@ -1,9 +1,10 @@
 //! Robots of sections of constant curvature: from curvatures to the places along the centreline.
 //!
-//! In the frame at the beginning of a section, z is along the curve. A section of the curvature k towards the direction b
-//! across z is an arc in the plane of both: after the length l it has turned by the angle k l about z x b, and gone
-//! l sin(k l) / (k l) along z and l (1 - cos(k l)) / (k l) along b (Webster and Jones, "Design and kinematic modeling of
-//! constant curvature continuum robots", 2010, equation 1). The next section begins in the frame that this one has
+//! In the frame at the beginning of a section, z is along the curve. A section of the curvature k
+//! towards the direction b across z is an arc in the plane of both: after the length l it has
+//! turned by the angle k l about z x b, and gone l sin(k l) / (k l) along z and l (1 - cos(k l)) /
+//! (k l) along b (Webster and Jones, "Design and kinematic modeling of constant curvature continuum
+//! robots", 2010, equation 1). The next section begins in the frame that this one has
 //! carried along, without twist.
 
 use super::rigid_pose::rotation_by;
@@ -11,22 +12,24 @@ use super::tube::check_sections;
 use super::{RobotError, Tube, TubeSection};
 use parry3d_f64::math::{Pose, Real, Vector};
 
-/// A stretch of constant curvature, for [`ConstantCurvature`] and [`BendingMotion`](crate::BendingMotion).
+/// A stretch of constant curvature, for [`ConstantCurvature`] and
+/// [`BendingMotion`](crate::BendingMotion).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BendingSection {
     /// Arc length of the centreline.
     pub length: Real,
     /// Radius of the tube.
     pub radius: Real,
-    /// Its curvature, 1 / length, towards x and y of the frame that is carried along the curve without twist; at the base
-    /// that is the robot's, whose curve leaves the origin along z.
+    /// Its curvature, 1 / length, towards x and y of the frame that is carried along the curve
+    /// without twist; at the base that is the robot's, whose curve leaves the origin along z.
     pub bend: [Real; 2],
 }
 
-/// The centreline of a robot of sections of constant curvature: of a tendon robot, or of concentric tubes that do not
-/// twist.
+/// The centreline of a robot of sections of constant curvature: of a tendon robot, or of concentric
+/// tubes that do not twist.
 ///
-/// The base is the origin, where the curve leaves along z. Lengths are in one unit, arc lengths begin at the base.
+/// The base is the origin, where the curve leaves along z. Lengths are in one unit, arc lengths
+/// begin at the base.
 ///
 /// ```
 /// use parry_continuum::{BendingSection, Chain, ConstantCurvature, stations};
@@ -65,7 +68,8 @@ impl ConstantCurvature {
     /// The robot of these sections, from its base to its tip.
     ///
     /// # Errors
-    /// No section; a length that is not positive, a radius that is negative, or a number that is not finite.
+    /// No section; a length that is not positive, a radius that is negative, or a number that is
+    /// not finite.
     pub fn new(sections: &[BendingSection]) -> Result<Self, RobotError> {
         check("sections", sections)?;
         let (mut start, mut frame) = (0.0, Pose::IDENTITY);
@@ -83,8 +87,8 @@ impl ConstantCurvature {
         self.arcs.last().map_or(0.0, |arc| arc.start + arc.section.length)
     }
 
-    /// The frame at an arc length: its translation is the point of the centreline, its z axis the direction of the curve.
-    /// Beyond either end the curve goes on as it is there.
+    /// The frame at an arc length: its translation is the point of the centreline, its z axis the
+    /// direction of the curve. Beyond either end the curve goes on as it is there.
     pub fn frame(&self, arc_length: Real) -> Pose {
         let number = self.arcs.partition_point(|arc| arc.start < arc_length).max(1) - 1;
         self.arcs.get(number).map_or(Pose::IDENTITY, |arc| arc.frame(arc_length))
@@ -96,27 +100,30 @@ impl ConstantCurvature {
         self.arcs.get(section).map_or(Vector::ZERO, point)
     }
 
-    /// Points along the centreline and the radii of the segments between them, ready for any constructor of a
-    /// [`Chain`](crate::Chain) and for [`stations`](crate::stations): each section in so many segments of equal length, and
-    /// at least one.
+    /// Points along the centreline and the radii of the segments between them, ready for any
+    /// constructor of a [`Chain`](crate::Chain) and for [`stations`](crate::stations): each
+    /// section in so many segments of equal length, and at least one.
     ///
     /// Segments of the length l leave an arc of the curvature k by k l^2 / 8.
     pub fn points(&self, segments: usize) -> (Vec<Vector>, Vec<Real>) {
         let segments = segments.max(1);
         let along = |arc: Arc| {
             let share = move |step: usize| step as Real / segments as Real;
-            (1..=segments)
-                .map(move |step| arc.frame(arc.start + arc.section.length * share(step)).translation)
+            (1..=segments).map(move |step| {
+                arc.frame(arc.start + arc.section.length * share(step)).translation
+            })
         };
         let points = std::iter::once(Vector::ZERO).chain(self.arcs.iter().copied().flat_map(along));
-        let radii = self.arcs.iter().flat_map(|arc| std::iter::repeat_n(arc.section.radius, segments));
+        let radii =
+            self.arcs.iter().flat_map(|arc| std::iter::repeat_n(arc.section.radius, segments));
         (points.collect(), radii.collect())
     }
 
     /// The robot as a curve.
     ///
     /// # Errors
-    /// A section with a flat end whose curvature times its radius is 1 or more; a section that ends out of range.
+    /// A section with a flat end whose curvature times its radius is 1 or more; a section that ends
+    /// out of range.
     pub fn tube(&self) -> Result<Tube, RobotError> {
         self.clone().into_tube()
     }
@@ -131,15 +138,23 @@ impl ConstantCurvature {
 }
 
 /// # Errors
-/// No section; a length that is not positive, a radius that is negative, or a number that is not finite.
-pub(super) fn check(parameter: &'static str, sections: &[BendingSection]) -> Result<(), RobotError> {
+/// No section; a length that is not positive, a radius that is negative, or a number that is not
+/// finite.
+pub(super) fn check(
+    parameter: &'static str,
+    sections: &[BendingSection],
+) -> Result<(), RobotError> {
     check_sections(parameter, &sections.iter().map(stated).collect::<Vec<_>>())
 }
 
 /// A section as a tube states it.
 fn stated(section: &BendingSection) -> TubeSection {
     let [x, y] = section.bend;
-    TubeSection { length: section.length, radius: section.radius, curvature: Vector::new(x, y, 0.0).length() }
+    TubeSection {
+        length: section.length,
+        radius: section.radius,
+        curvature: Vector::new(x, y, 0.0).length(),
+    }
 }
 
 impl Arc {

@@ -2,7 +2,8 @@ use parry3d_f64::math::{Real, Vector};
 use strum::IntoStaticStr;
 use thiserror::Error;
 
-/// Why a link or a chain could not be built. Each message names the value at fault and what to change.
+/// Why a link or a chain could not be built. Each message names the value at fault and what to
+/// change.
 #[derive(Clone, Copy, Debug, PartialEq, Error, IntoStaticStr)]
 #[strum(serialize_all = "snake_case")]
 #[non_exhaustive]
@@ -34,7 +35,9 @@ pub enum RobotError {
         limit: Real,
     },
     /// A radius is NaN, infinite, negative or beyond the accepted range.
-    #[error("radius {index} is {value}; `{parameter}` must be finite, at least 0 and at most {limit:e}")]
+    #[error(
+        "radius {index} is {value}; `{parameter}` must be finite, at least 0 and at most {limit:e}"
+    )]
     BadRadius {
         /// The parameter, as the function that was called names it.
         parameter: &'static str,
@@ -99,7 +102,9 @@ pub enum RobotError {
         index: usize,
     },
     /// A pose has a component that is NaN or infinite, or lies out of range.
-    #[error("the pose `{parameter}` has the component {value}; it must be finite and within +-{limit:e}")]
+    #[error(
+        "the pose `{parameter}` has the component {value}; it must be finite and within +-{limit:e}"
+    )]
     BadPose {
         /// The parameter, as the function that was called names it.
         parameter: &'static str,
@@ -108,7 +113,8 @@ pub enum RobotError {
         /// The largest magnitude accepted.
         limit: Real,
     },
-    /// The rotation of a pose scales: the length of its quaternion is not 1, even for single precision.
+    /// The rotation of a pose scales: the length of its quaternion is not 1, even for single
+    /// precision.
     #[error("the pose `{parameter}` has a quaternion of length {length}; normalise its rotation")]
     PoseNotRigid {
         /// The parameter, as the function that was called names it.
@@ -168,12 +174,15 @@ pub enum RobotError {
         stated: Real,
     },
     /// A motion's sections must be the same at all times, with the same radii and faces.
-    #[error("at t = {t} the motion has other sections, radii or faces than before; keep them the same")]
+    #[error(
+        "at t = {t} the motion has other sections, radii or faces than before; keep them the same"
+    )]
     SectionsChange {
         /// When.
         t: Real,
     },
-    /// The shapes of a path must have the same links: the same segments must have a length, with the same radii.
+    /// The shapes of a path must have the same links: the same segments must have a length, with
+    /// the same radii.
     #[error(
         "shape {index} of `shapes` has other links than the first: other segments without length, or other radii; make all shapes of \
          the same segments, each with a length"
@@ -182,7 +191,8 @@ pub enum RobotError {
         /// The shape, counted from 0.
         index: usize,
     },
-    /// The kinematics behind a motion has no shape: return it from [`Motion::shape`](crate::Motion::shape).
+    /// The kinematics behind a motion has no shape: return it from
+    /// [`Motion::shape`](crate::Motion::shape).
     #[error("the kinematics has no shape at t = {t}: {reason}")]
     NoShape {
         /// When.
@@ -197,7 +207,9 @@ pub enum RobotError {
         parameter: &'static str,
     },
     /// A stated speed is not a number that is at least 0.
-    #[error("the motion states the speed {value} for section {section}; it must be finite and at least 0")]
+    #[error(
+        "the motion states the speed {value} for section {section}; it must be finite and at least 0"
+    )]
     BadSpeed {
         /// The section, counted from the base.
         section: usize,
@@ -237,7 +249,9 @@ pub enum RobotError {
         parameter: &'static str,
     },
     /// A section's length is not a positive number.
-    #[error("section {index} in `{parameter}` has the length {value}; it must be finite and more than 0")]
+    #[error(
+        "section {index} in `{parameter}` has the length {value}; it must be finite and more than 0"
+    )]
     BadLength {
         /// The parameter, as the function that was called names it.
         parameter: &'static str,
@@ -247,7 +261,9 @@ pub enum RobotError {
         value: Real,
     },
     /// A section's curvature is NaN, infinite or negative.
-    #[error("section {index} in `{parameter}` has the curvature {value}; it must be finite and at least 0")]
+    #[error(
+        "section {index} in `{parameter}` has the curvature {value}; it must be finite and at least 0"
+    )]
     BadCurvature {
         /// The parameter, as the function that was called names it.
         parameter: &'static str,
@@ -257,7 +273,9 @@ pub enum RobotError {
         value: Real,
     },
     /// A direction of the centreline is zero or not finite.
-    #[error("tangent {index} in `{parameter}` is {value}; give the direction of the centreline there")]
+    #[error(
+        "tangent {index} in `{parameter}` is {value}; give the direction of the centreline there"
+    )]
     BadTangent {
         /// The parameter, as the function that was called names it.
         parameter: &'static str,
@@ -312,7 +330,9 @@ pub enum RobotError {
         speed: Real,
     },
     /// A function bends more than its section states.
-    #[error("at {arc_length} the curve has the curvature {found}, more than the {stated} stated; state more")]
+    #[error(
+        "at {arc_length} the curve has the curvature {found}, more than the {stated} stated; state more"
+    )]
     BendsMoreThanStated {
         /// Where it does.
         arc_length: Real,

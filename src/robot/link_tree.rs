@@ -1,7 +1,8 @@
-//! A binary tree over a chain's links with a capsule around each node, so that a query can leave out many links at once.
+//! A binary tree over a chain's links with a capsule around each node, so that a query can leave
+//! out many links at once.
 //!
-//! The tree halves the chain again and again and stands in depth-first order: behind a node come its children, and each
-//! node knows how many entries to skip to leave its subtree.
+//! The tree halves the chain again and again and stands in depth-first order: behind a node come
+//! its children, and each node knows how many entries to skip to leave its subtree.
 
 use super::ModifiedCylinder;
 use crate::distance::Scalar;
@@ -77,13 +78,17 @@ pub(crate) fn place_of_leaf(mut link: usize, mut links: usize) -> usize {
 }
 
 impl BoundingCapsule {
-    /// With the axis from `start` to `end`. A capsule is convex, so it holds a link if it holds the balls around
-    /// the link's ends.
+    /// With the axis from `start` to `end`. A capsule is convex, so it holds a link if it holds the
+    /// balls around the link's ends.
     fn around(start: Vector, end: Vector, links: &[ModifiedCylinder]) -> Self {
-        let balls =
-            || links.iter().flat_map(|link| [link.start(), link.end()].map(|point| (point, link.radius())));
-        let reach = balls()
-            .fold(0.0, |reach: Real, (point, radius)| reach.max(point.abs().max_element()).max(radius));
+        let balls = || {
+            links
+                .iter()
+                .flat_map(|link| [link.start(), link.end()].map(|point| (point, link.radius())))
+        };
+        let reach = balls().fold(0.0, |reach: Real, (point, radius)| {
+            reach.max(point.abs().max_element()).max(radius)
+        });
         // Near one, because the squares of tiny lengths vanish.
         let scale = reach.power_of_two_to_unity();
         let (from, to) = (start * scale, end * scale);
@@ -121,7 +126,10 @@ mod tests {
             build(&links, &mut nodes);
             for link in 0..count {
                 let place = place_of_leaf(link, count);
-                assert!(matches!(nodes[place], LinkNode::Leaf(found) if found == link), "{link} of {count}");
+                assert!(
+                    matches!(nodes[place], LinkNode::Leaf(found) if found == link),
+                    "{link} of {count}"
+                );
             }
         }
     }

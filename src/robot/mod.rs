@@ -1,4 +1,5 @@
-//! What the robot is: links with a flat or round cap at each end, and the chain that Algorithm 1 makes of them.
+//! What the robot is: links with a flat or round cap at each end, and the chain that Algorithm 1
+//! makes of them.
 
 mod aabb;
 mod algorithm_1;
@@ -32,8 +33,8 @@ pub(crate) use link_tree::{BoundingCapsule, LinkNode, distance_to_segment, place
 pub(crate) use modified_cylinder::COORDINATE_LIMIT;
 pub use modified_cylinder::ModifiedCylinder;
 pub use motion::{
-    BendingMotion, BendingRates, Course, LinearMotion, Motion, MotionPath, MovingBase, RigidMotion, Speed,
-    bending_course, bending_speed, verify_motion,
+    BendingMotion, BendingRates, Course, LinearMotion, Motion, MotionPath, MovingBase, RigidMotion,
+    Speed, bending_course, bending_speed, verify_motion,
 };
 pub(crate) use motion::{MotionDrift, SectionSignature, ShapePath, check_speed};
 pub(crate) use radius_steps::is_step;

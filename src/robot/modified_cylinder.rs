@@ -5,14 +5,14 @@ use super::{Cap, RobotError};
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::shape::Capsule;
 
-/// Largest coordinate or radius accepted. Squares of differences of such numbers are finite, and so are the
-/// results of every query.
+/// Largest coordinate or radius accepted. Squares of differences of such numbers are finite, and so
+/// are the results of every query.
 pub(crate) const COORDINATE_LIMIT: Real = 1.0e150;
 
 /// A cylinder of finite length whose ends are each flat or round (paper, section III.E).
 ///
-/// Two round caps make a capsule, two flat caps a cylinder. With radius 0 it is a wire; with length 0
-/// and two round caps it is a ball. Coordinates are in the unit and frame of whoever builds it.
+/// Two round caps make a capsule, two flat caps a cylinder. With radius 0 it is a wire; with length
+/// 0 and two round caps it is a ball. Coordinates are in the unit and frame of whoever builds it.
 ///
 /// ```
 /// use parry_continuum::{Cap, ModifiedCylinder, parry::math::Vector};
@@ -38,9 +38,14 @@ impl ModifiedCylinder {
     /// A link from `start` to `end` with the given `radius` and the caps at start and end.
     ///
     /// # Errors
-    /// A coordinate or the radius is not finite or out of range, the radius is negative, or a cap is flat
-    /// although the length is 0, or vanishes beside the radius (2^-400 of it).
-    pub fn new(start: Vector, end: Vector, radius: Real, caps: [Cap; 2]) -> Result<Self, RobotError> {
+    /// A coordinate or the radius is not finite or out of range, the radius is negative, or a cap
+    /// is flat although the length is 0, or vanishes beside the radius (2^-400 of it).
+    pub fn new(
+        start: Vector,
+        end: Vector,
+        radius: Real,
+        caps: [Cap; 2],
+    ) -> Result<Self, RobotError> {
         check_place("start", 0, start)?;
         check_place("end", 1, end)?;
         check_radii("radius", &[radius])?;
@@ -118,8 +123,8 @@ impl ModifiedCylinder {
 
     /// The same link moved by `pose`.
     ///
-    /// If a short link is moved so far out that rounding makes its two ends one, its caps become round: the ball
-    /// holds the link whichever way its lost axis pointed.
+    /// If a short link is moved so far out that rounding makes its two ends one, its caps become
+    /// round: the ball holds the link whichever way its lost axis pointed.
     #[inline]
     pub fn transformed(&self, pose: &Pose) -> Self {
         let (start, end) = (pose * self.start, pose * self.end);
@@ -128,8 +133,8 @@ impl ModifiedCylinder {
     }
 }
 
-/// Whether a link is long enough for flat caps. Where its length is 2^-400 of its radius, its square would vanish in
-/// the narrow phase.
+/// Whether a link is long enough for flat caps. Where its length is 2^-400 of its radius, its
+/// square would vanish in the narrow phase.
 pub(crate) fn has_direction(start: Vector, end: Vector, radius: Real) -> bool {
     const LEAST: Real = Real::from_bits((1023 - 400) << 52);
     (end - start).abs().max_element() > radius * LEAST
@@ -149,13 +154,22 @@ pub(crate) fn check_points(parameter: &'static str, points: &[Vector]) -> Result
 }
 
 /// The same of one point.
-pub(crate) fn check_place(parameter: &'static str, index: usize, point: Vector) -> Result<(), RobotError> {
+pub(crate) fn check_place(
+    parameter: &'static str,
+    index: usize,
+    point: Vector,
+) -> Result<(), RobotError> {
     for value in point.to_array() {
         if !value.is_finite() {
             return Err(RobotError::PointNotFinite { parameter, index, value });
         }
         if value.abs() > COORDINATE_LIMIT {
-            return Err(RobotError::PointOutOfRange { parameter, index, value, limit: COORDINATE_LIMIT });
+            return Err(RobotError::PointOutOfRange {
+                parameter,
+                index,
+                value,
+                limit: COORDINATE_LIMIT,
+            });
         }
     }
     Ok(())
@@ -164,9 +178,12 @@ pub(crate) fn check_place(parameter: &'static str, index: usize, point: Vector) 
 /// Every radius is finite, not negative and within [`COORDINATE_LIMIT`].
 pub(crate) fn check_radii(parameter: &'static str, radii: &[Real]) -> Result<(), RobotError> {
     match radii.iter().position(|radius| !(0.0..=COORDINATE_LIMIT).contains(radius)) {
-        Some(index) => {
-            Err(RobotError::BadRadius { parameter, index, value: radii[index], limit: COORDINATE_LIMIT })
-        }
+        Some(index) => Err(RobotError::BadRadius {
+            parameter,
+            index,
+            value: radii[index],
+            limit: COORDINATE_LIMIT,
+        }),
         None => Ok(()),
     }
 }

@@ -23,8 +23,8 @@ pub(super) struct RadiusRun<'a> {
 impl<'a> RadiusRuns<'a> {
     /// The stretches of a centreline that is to be thinned out within a tolerance.
     ///
-    /// A segment without length goes, together with its radius. If that differs from a neighbour's the point counts as
-    /// a change of radius.
+    /// A segment without length goes, together with its radius. If that differs from a neighbour's
+    /// the point counts as a change of radius.
     ///
     /// # Errors
     /// What neither a chain nor a tolerance can be.
@@ -41,8 +41,10 @@ impl<'a> RadiusRuns<'a> {
         let mut distinct = Vec::with_capacity(if has_repeats { points.len() } else { 0 });
         distinct.extend_from_slice(if has_repeats { &points[..1] } else { &[] });
         let (mut must_stay, mut radii) = (vec![0], vec![]);
-        // The number of distinct points so far, less one; the radius of the last segment, and of the last with a length.
-        let (mut here, mut last_radius, mut radius_before) = (0, segment_radii[0], segment_radii[0]);
+        // The number of distinct points so far, less one; the radius of the last segment, and of
+        // the last with a length.
+        let (mut here, mut last_radius, mut radius_before) =
+            (0, segment_radii[0], segment_radii[0]);
         for (ends, &radius) in points.windows(2).zip(segment_radii) {
             if radius != last_radius && must_stay.last() != Some(&here) {
                 must_stay.push(here);

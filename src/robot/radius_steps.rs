@@ -2,8 +2,8 @@
 
 use parry3d_f64::math::Real;
 
-/// Radii that differ by no more than this share, 2^-32, are one: what a simulator's many steps leave of a constant. What is
-/// meant to be a step is larger by far.
+/// Radii that differ by no more than this share, 2^-32, are one: what a simulator's many steps
+/// leave of a constant. What is meant to be a step is larger by far.
 const SAME: Real = 1.0 / (1_u64 << 32) as Real;
 
 /// A walk along a robot's radii.

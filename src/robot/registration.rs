@@ -4,8 +4,9 @@ use parry3d_f64::math::{Mat3, Pose, Real, Rot3, Vector};
 use strum::IntoStaticStr;
 use thiserror::Error;
 
-/// The entries of R^T R may be off those of the identity by so much. A matrix whose numbers have six digits after the
-/// point passes; a rotation that is off by this much moves a point at 100 mm by 0.001 mm.
+/// The entries of R^T R may be off those of the identity by so much. A matrix whose numbers have
+/// six digits after the point passes; a rotation that is off by this much moves a point at 100 mm
+/// by 0.001 mm.
 const ROUNDED: Real = 1e-5;
 
 /// Why a 4x4 matrix is no pose. The text says what to change.
@@ -63,12 +64,14 @@ impl MatrixError {
     }
 }
 
-/// The pose that a 4x4 matrix of rows stands for: a rotation, a shift in the last column, and 0 0 0 1.
+/// The pose that a 4x4 matrix of rows stands for: a rotation, a shift in the last column, and 0 0 0
+/// 1.
 ///
 /// Numbers rounded to six digits after the point will do; a rotation as near to them is taken.
 ///
 /// # Errors
-/// The matrix is not finite, its last row is not 0 0 0 1, or its rotation scales, shears or mirrors.
+/// The matrix is not finite, its last row is not 0 0 0 1, or its rotation scales, shears or
+/// mirrors.
 ///
 /// ```
 /// use parry_continuum::{parry::math::Vector, pose_from_matrix};
@@ -99,8 +102,8 @@ pub fn pose_from_matrix(rows: [[Real; 4]; 4]) -> Result<Pose, MatrixError> {
     let off = (squares - Vector::ONE).abs().max_element();
     if off.max(skew) > ROUNDED {
         let mean = squares.element_sum() / 3.0;
-        let is_even =
-            mean > 0.0 && (squares - Vector::splat(mean)).abs().max_element().max(skew) <= ROUNDED * mean;
+        let is_even = mean > 0.0
+            && (squares - Vector::splat(mean)).abs().max_element().max(skew) <= ROUNDED * mean;
         return Err(if is_even && mean.is_finite() {
             MatrixError::Scales { factor: mean.sqrt() }
         } else {

@@ -1,10 +1,11 @@
 //! Poses that keep lengths, and rotations that are the same on every machine.
 //!
-//! A rotation by the quaternion q multiplies lengths by |q|^2. So a pose with another length of q is no rigid motion. What
-//! rounding leaves is made good: a unit quaternion in single precision whose four numbers are rounded is off by 2^-24 of
-//! its length at most, and one that comes out of a few products in single precision by some times that. Up to 2^-20
-//! counts as rounding, and q is made a unit; beyond that nobody knows what was meant, and the pose is refused. Chains, tubes
-//! and motions are placed by the same rule.
+//! A rotation by the quaternion q multiplies lengths by |q|^2. So a pose with another length of q
+//! is no rigid motion. What rounding leaves is made good: a unit quaternion in single precision
+//! whose four numbers are rounded is off by 2^-24 of its length at most, and one that comes out of
+//! a few products in single precision by some times that. Up to 2^-20 counts as rounding, and q is
+//! made a unit; beyond that nobody knows what was meant, and the pose is refused. Chains, tubes and
+//! motions are placed by the same rule.
 
 use crate::distance::Scalar;
 use crate::robot::scale::length;
@@ -19,7 +20,8 @@ pub(crate) struct NotRigid {
     pub length: Real,
 }
 
-/// The pose with a rotation of unit length; as it is, if it has that but for the rounding of a few operations.
+/// The pose with a rotation of unit length; as it is, if it has that but for the rounding of a few
+/// operations.
 ///
 /// # Errors
 /// The length of its quaternion is not 1 even in single precision, or NaN.
@@ -43,8 +45,8 @@ fn quaternion_length(q: Rotation) -> Real {
     length(Vector::new(across, q.w, 0.0))
 }
 
-/// The rotation about an axis by its length. The same to the last bit on every machine, as sines of the standard library
-/// are not.
+/// The rotation about an axis by its length. The same to the last bit on every machine, as sines of
+/// the standard library are not.
 pub(crate) fn rotation_by(turn: Vector) -> Rotation {
     let half = 0.5 * length(turn);
     // Half of the sine's argument, where the sine's square vanishes.

@@ -1,8 +1,8 @@
 //! Lengths and directions that neither overflow nor underflow.
 //!
-//! The square of a length leaves the range of f64 beyond about 1e154 and below 1e-154, while coordinates up to
-//! 1e150 are accepted. Multiplying by a power of two is exact, so a square that comes near either end is taken at a size
-//! near 1 instead.
+//! The square of a length leaves the range of f64 beyond about 1e154 and below 1e-154, while
+//! coordinates up to 1e150 are accepted. Multiplying by a power of two is exact, so a square that
+//! comes near either end is taken at a size near 1 instead.
 
 use crate::distance::Scalar;
 use parry3d_f64::math::{Real, Vector};

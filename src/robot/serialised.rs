@@ -1,7 +1,7 @@
 //! Links and chains as data (feature `serde-serialize`).
 //!
-//! What is written is what the constructors take, and what is read goes through them: a link or chain that
-//! they would refuse is an error, with their message.
+//! What is written is what the constructors take, and what is read goes through them: a link or
+//! chain that they would refuse is an error, with their message.
 
 use super::chain::check;
 use super::{Cap, Chain, ModifiedCylinder};
@@ -33,8 +33,8 @@ impl TryFrom<Link> for ModifiedCylinder {
     }
 }
 
-/// A chain: the points of its joints, and per link its radius, its caps and how many segments of the input it
-/// stands for.
+/// A chain: the points of its joints, and per link its radius, its caps and how many segments of
+/// the input it stands for.
 #[derive(Serialize, Deserialize)]
 pub(super) struct Links {
     points: Vec<[Real; 3]>,
@@ -51,7 +51,10 @@ impl From<Chain> for Links {
         let links = chain.links();
         let first = links.iter().take(1).map(ModifiedCylinder::start);
         Self {
-            points: first.chain(links.iter().map(ModifiedCylinder::end)).map(|p| p.to_array()).collect(),
+            points: first
+                .chain(links.iter().map(ModifiedCylinder::end))
+                .map(|p| p.to_array())
+                .collect(),
             radii: links.iter().map(ModifiedCylinder::radius).collect(),
             caps: links.iter().map(ModifiedCylinder::caps).collect(),
             segments: (0..links.len()).map(|link| chain.segments_of(link).len()).collect(),
@@ -70,7 +73,9 @@ impl TryFrom<Links> for Chain {
         let count = data.radii.len();
         if data.caps.len() != count || data.segments.len() != count {
             let (caps, segments) = (data.caps.len(), data.segments.len());
-            return Err(format!("{count} links need as many caps and segments, got {caps} and {segments}"));
+            return Err(format!(
+                "{count} links need as many caps and segments, got {caps} and {segments}"
+            ));
         }
         let (mut links, mut segments, mut from) = (Vec::new(), Vec::new(), 0usize);
         for (index, ends) in points.windows(2).enumerate() {
@@ -81,7 +86,8 @@ impl TryFrom<Links> for Chain {
             let link = ModifiedCylinder::new(start, end, data.radii[index], data.caps[index]);
             links.push(link.map_err(|error| format!("link {index}: {error}"))?);
             let to = from.checked_add(data.segments[index]).filter(|to| *to > from);
-            let to = to.ok_or(format!("link {index} stands for {} segments", data.segments[index]))?;
+            let to =
+                to.ok_or(format!("link {index} stands for {} segments", data.segments[index]))?;
             segments.push(from..to);
             from = to;
         }

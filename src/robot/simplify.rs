@@ -1,36 +1,41 @@
 //! The fewest links that stand for a finely sampled centreline.
 //!
-//! A chord may replace a stretch of the centreline if the two are within the tolerance of each other, in both
-//! directions (Hausdorff distance). One direction says it all:
+//! A chord may replace a stretch of the centreline if the two are within the tolerance of each
+//! other, in both directions (Hausdorff distance). One direction says it all:
 //!
-//! 1. From the stretch to the chord: the distance to the chord is convex along each segment, so it is greatest at
-//!    a vertex. The direction holds if every vertex is within the tolerance of the chord.
-//! 2. From the chord to the stretch: the stretch runs from the chord's one end to its other without a gap, so for
-//!    every point c of the chord some point q of the stretch lies in the plane through c perpendicular to the
-//!    chord. Then c is the point of the chord nearest to q, and |q - c| is within the tolerance by 1.
+//! 1. From the stretch to the chord: the distance to the chord is convex along each segment, so it
+//!    is greatest at a vertex. The direction holds if every vertex is within the tolerance of the
+//!    chord.
+//! 2. From the chord to the stretch: the stretch runs from the chord's one end to its other without
+//!    a gap, so for every point c of the chord some point q of the stretch lies in the plane
+//!    through c perpendicular to the chord. Then c is the point of the chord nearest to q, and |q -
+//!    c| is within the tolerance by 1.
 //!
-//! So hooks and stretches that run back on themselves need no test of their own. The distance must be to the
-//! chord, not to its line: a hook that overshoots the end must not pass.
+//! So hooks and stretches that run back on themselves need no test of their own. The distance must
+//! be to the chord, not to its line: a hook that overshoots the end must not pass.
 //!
-//! If a long chord fails a shorter one may fail too, and the reverse, so no greedy choice is safe. The fewest links
-//! are a shortest path over admissible chords, found breadth first between each two vertices that must stay. A
-//! vertex is settled by the first chord that reaches it.
+//! If a long chord fails a shorter one may fail too, and the reverse, so no greedy choice is safe.
+//! The fewest links are a shortest path over admissible chords, found breadth first between each
+//! two vertices that must stay. A vertex is settled by the first chord that reaches it.
 //!
 //! # What it costs
 //! From most vertices there is nothing left to settle within reach, and that must be seen at once:
 //!
-//! 1. The wall (`sight.rs`) that ended the search from the vertex before mostly stands here too: nothing behind it
-//!    can be reached. That is one comparison.
-//! 2. Before the wall, the vertex that ruled out the last chord mostly rules out the next. One comparison a target.
-//! 3. Only if that fails does a search walk to the wall, vertex by vertex, and it decides nearly all chords on the way.
-//!    Those that it leaves in question are compared with vertex after vertex.
+//! 1. The wall (`sight.rs`) that ended the search from the vertex before mostly stands here too:
+//!    nothing behind it can be reached. That is one comparison.
+//! 2. Before the wall, the vertex that ruled out the last chord mostly rules out the next. One
+//!    comparison a target.
+//! 3. Only if that fails does a search walk to the wall, vertex by vertex, and it decides nearly
+//!    all chords on the way. Those that it leaves in question are compared with vertex after
+//!    vertex.
 //!
-//! On a smooth curve there are a few walks a link, and a comparison or two from every other vertex. To that comes, for
-//! each link, a part of the square of the number of points that it replaces: for chords that a walk leaves in question,
-//! and for targets before a wall. Where links replace hundreds of points it is the larger part. Where the chords that hold and those that do not
-//! alternate, as with noise about as large as the tolerance, every vertex costs a walk: as many steps as vertices
-//! times those that a chord spans. At worst every chord of a stretch is compared with all its vertices, the cube of
-//! their number.
+//! On a smooth curve there are a few walks a link, and a comparison or two from every other vertex.
+//! To that comes, for each link, a part of the square of the number of points that it replaces: for
+//! chords that a walk leaves in question, and for targets before a wall. Where links replace
+//! hundreds of points it is the larger part. Where the chords that hold and those that do not
+//! alternate, as with noise about as large as the tolerance, every vertex costs a walk: as many
+//! steps as vertices times those that a chord spans. At worst every chord of a stretch is compared
+//! with all its vertices, the cube of their number.
 
 use super::RobotError;
 use super::compare::ToleranceSegment;
@@ -38,24 +43,27 @@ use super::radius_runs::RadiusRuns;
 use super::sight::{Sight, SightLimit};
 use parry3d_f64::math::{Real, Vector};
 
-/// The fewest links that follow a centreline within a tolerance: their points and segment radii, ready for any
-/// constructor of a [`Chain`](crate::Chain).
+/// The fewest links that follow a centreline within a tolerance: their points and segment radii,
+/// ready for any constructor of a [`Chain`](crate::Chain).
 ///
-/// The points are a subset of the input's, in order. Both ends stay, and so does every point where the radius
-/// changes. Each new segment and the stretch of the input that it replaces are within `tolerance` of each other:
-/// no point of either is further than that from the other (Hausdorff distance). No other choice of points with
-/// these properties has fewer links. `tolerance` is in the unit of the points. With 0, only points exactly on the
-/// new segments go, and the centreline keeps its shape; points meant to be on an oblique straight line seldom are
-/// after rounding, so give those the rounding error as tolerance.
+/// The points are a subset of the input's, in order. Both ends stay, and so does every point where
+/// the radius changes. Each new segment and the stretch of the input that it replaces are within
+/// `tolerance` of each other: no point of either is further than that from the other (Hausdorff
+/// distance). No other choice of points with these properties has fewer links. `tolerance` is in
+/// the unit of the points. With 0, only points exactly on the new segments go, and the centreline
+/// keeps its shape; points meant to be on an oblique straight line seldom are after rounding, so
+/// give those the rounding error as tolerance.
 ///
-/// On a smooth curve the time grows with the number of points, while links replace few of them, and with its square
-/// where they replace hundreds. At worst, with noise about as large as the
-/// tolerance or with loops, it can grow with the cube of the points between two changes of radius; where time must be
-/// bounded, [`stations`](crate::stations) needs a few more links and time in proportion to the points.
+/// On a smooth curve the time grows with the number of points, while links replace few of them, and
+/// with its square where they replace hundreds. At worst, with noise about as large as the
+/// tolerance or with loops, it can grow with the cube of the points between two changes of radius;
+/// where time must be bounded, [`stations`](crate::stations) needs a few more links and time in
+/// proportion to the points.
 ///
-/// Repeated points are dropped first, together with the radius of the segment without length between them. (If
-/// that radius differs from a neighbour's the point counts as a change of radius.) A new segment always has a
-/// length: a loop is not replaced by the point where it closes, however large the tolerance.
+/// Repeated points are dropped first, together with the radius of the segment without length
+/// between them. (If that radius differs from a neighbour's the point counts as a change of
+/// radius.) A new segment always has a length: a loop is not replaced by the point where it closes,
+/// however large the tolerance.
 ///
 /// ```
 /// use parry_continuum::{parry::math::Vector, simplify};
@@ -69,7 +77,8 @@ use parry3d_f64::math::{Real, Vector};
 /// ```
 ///
 /// # Errors
-/// As [`Chain::from_centreline`](crate::Chain::from_centreline), and a tolerance that is not finite or negative.
+/// As [`Chain::from_centreline`](crate::Chain::from_centreline), and a tolerance that is not finite
+/// or negative.
 pub fn simplify(
     points: &[Vector],
     segment_radii: &[Real],
@@ -89,7 +98,8 @@ pub fn simplify(
 struct Search<'a> {
     stretch: &'a [Vector],
     tolerance: Real,
-    /// Where the path to each vertex that is settled comes from. The first vertex has no need of it.
+    /// Where the path to each vertex that is settled comes from. The first vertex has no need of
+    /// it.
     previous: Vec<Option<usize>>,
     /// The first vertex that is not settled.
     first_open: usize,
@@ -119,23 +129,27 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The vertices after the first that a shortest path of admissible chords from the first to the last visits.
+    /// The vertices after the first that a shortest path of admissible chords from the first to the
+    /// last visits.
     fn fewest_chords(mut self) -> Vec<usize> {
         let last = self.stretch.len() - 1;
         self.settle(last);
-        let mut path: Vec<_> = std::iter::successors(Some(last), |&vertex| self.previous[vertex]).collect();
+        let mut path: Vec<_> =
+            std::iter::successors(Some(last), |&vertex| self.previous[vertex]).collect();
         path.pop();
         path.reverse();
         path
     }
 
-    /// Settles vertices, those nearest in links first and of these the farthest first, until the last one is.
+    /// Settles vertices, those nearest in links first and of these the farthest first, until the
+    /// last one is.
     fn settle(&mut self, last: usize) {
         let sight = Sight::new(self.stretch, self.tolerance);
         let mut targets = Vec::new();
         let mut next = 0;
         while self.previous[last].is_none() {
-            // The queue never runs dry before the last vertex is reached: each vertex reaches the one after it.
+            // The queue never runs dry before the last vertex is reached: each vertex reaches the
+            // one after it.
             let from = self.queue[next];
             next += 1;
             while self.previous[self.first_open].is_some() {
@@ -160,7 +174,8 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Whether walls that are known or likely, and the last obstacle, rule out every open vertex, without a walk.
+    /// Whether walls that are known or likely, and the last obstacle, rule out every open vertex,
+    /// without a walk.
     fn sees_nothing_new(&self, from: usize, sight: &Sight) -> bool {
         let first = self.first_open.max(from + 1);
         // On an arc, a wall is nearest if its distances are as 1 to 1 + sqrt(2).
@@ -183,8 +198,12 @@ impl<'a> Search<'a> {
                 self.stretch[from] == self.stretch[to]
                     || from < self.obstacle
                         && self.obstacle < to
-                        && !ToleranceSegment::new(self.stretch[from], self.stretch[to], self.tolerance)
-                            .has_near(self.stretch[self.obstacle])
+                        && !ToleranceSegment::new(
+                            self.stretch[from],
+                            self.stretch[to],
+                            self.tolerance,
+                        )
+                        .has_near(self.stretch[self.obstacle])
             })
     }
 
@@ -230,7 +249,8 @@ mod tests {
         (steps, search.fewest_chords().len())
     }
 
-    /// The same curve with ever more points: far fewer comparisons than there are pairs of vertices.
+    /// The same curve with ever more points: far fewer comparisons than there are pairs of
+    /// vertices.
     #[test]
     fn most_pairs_are_never_compared() {
         for count in [500, 1000, 2000, 4000, 8000] {

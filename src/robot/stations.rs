@@ -1,29 +1,33 @@
 //! Stations along a finely sampled centreline, as close together as its bends ask for.
 //!
-//! A chord of length l leaves a curve of curvature kappa by kappa l^2 / 8, so that all chords deviate alike if their
-//! lengths go with 1 / sqrt(kappa). Curvature from neighbouring samples would be mostly noise. It is measured where it
-//! matters, over chords: a *probe* compares three vertices of a stretch with its chord. The root of their largest
-//! deviation over the tolerance is the chord's *share*, which grows with its length.
+//! A chord of length l leaves a curve of curvature kappa by kappa l^2 / 8, so that all chords
+//! deviate alike if their lengths go with 1 / sqrt(kappa). Curvature from neighbouring samples
+//! would be mostly noise. It is measured where it matters, over chords: a *probe* compares three
+//! vertices of a stretch with its chord. The root of their largest deviation over the tolerance is
+//! the chord's *share*, which grows with its length.
 //!
-//! 1. **Walk.** From each station the next is foreseen from the last share, probed, and corrected until no sample
-//!    farther on has a share within one. That gives the number of chords, and the density along the way.
+//! 1. **Walk.** From each station the next is foreseen from the last share, probed, and corrected
+//!    until no sample farther on has a share within one. That gives the number of chords, and the
+//!    density along the way.
 //! 2. **Spread.** As many chords, each with the same share.
-//! 3. **Verify.** Every vertex is compared with its chord, as in `simplify`. If a chord fails, the walk's own stations
-//!    are verified instead. Of these, those that fail are divided: a chord grows from each station to twice as many
-//!    segments as before while it holds.
+//! 3. **Verify.** Every vertex is compared with its chord, as in `simplify`. If a chord fails, the
+//!    walk's own stations are verified instead. Of these, those that fail are divided: a chord
+//!    grows from each station to twice as many segments as before while it holds.
 //!
 //! # Faces
-//! A flat face is perpendicular to the chord that ends in it. A chord of the direction v where the first segment has u
-//! moves the rim, at the radius r, by no more than r |u - v|, which must be within the tolerance. The chord after it is
-//! flat too where Algorithm 1 has no room for a ball. The rim at its beginning reaches r |u x v| ahead of its centre,
-//! which must be no more than the centre's depth behind the face and the tolerance. So stations come nearer together
-//! towards a face, as long as that asks for more than the deviation does, and at most to the depth r. A single segment
-//! of the input is let pass; at the face itself it has the face's direction anyway.
+//! A flat face is perpendicular to the chord that ends in it. A chord of the direction v where the
+//! first segment has u moves the rim, at the radius r, by no more than r |u - v|, which must be
+//! within the tolerance. The chord after it is flat too where Algorithm 1 has no room for a ball.
+//! The rim at its beginning reaches r |u x v| ahead of its centre, which must be no more than the
+//! centre's depth behind the face and the tolerance. So stations come nearer together
+//! towards a face, as long as that asks for more than the deviation does, and at most to the depth
+//! r. A single segment of the input is let pass; at the face itself it has the face's direction
+//! anyway.
 //!
 //! # What it costs
-//! A probe looks at three vertices, a station takes at most eight probes, and there are no more stations than samples.
-//! Every vertex is verified at most twice, and four times more where chords are divided. So the cost is at most
-//! proportional to the number of points.
+//! A probe looks at three vertices, a station takes at most eight probes, and there are no more
+//! stations than samples. Every vertex is verified at most twice, and four times more where chords
+//! are divided. So the cost is at most proportional to the number of points.
 
 use super::RobotError;
 use super::compare::ToleranceSegment;
@@ -32,19 +36,21 @@ use super::scale::direction;
 use crate::distance::Scalar;
 use parry3d_f64::math::{Real, Vector};
 
-/// Stations that follow a centreline within a tolerance, spread evenly by its curvature: their points and segment
-/// radii, ready for any constructor of a [`Chain`](crate::Chain).
+/// Stations that follow a centreline within a tolerance, spread evenly by its curvature: their
+/// points and segment radii, ready for any constructor of a [`Chain`](crate::Chain).
 ///
-/// As [`simplify`](crate::simplify), but for a control loop: the time grows with the number of points at most, whatever
-/// the shape. The points are a subset of the input's, in order. Both ends stay, and so does every point where the radius
-/// changes. Each new segment and the stretch of the input that it replaces are within `tolerance` of each other
-/// (Hausdorff distance); that is verified. `tolerance` is in the unit of the points.
+/// As [`simplify`](crate::simplify), but for a control loop: the time grows with the number of
+/// points at most, whatever the shape. The points are a subset of the input's, in order. Both ends
+/// stay, and so does every point where the radius changes. Each new segment and the stretch of the
+/// input that it replaces are within `tolerance` of each other (Hausdorff distance); that is
+/// verified. `tolerance` is in the unit of the points.
 ///
-/// **Faces** are followed too, which `simplify` leaves to chance: at both ends of the robot and on the wider side of
-/// each step, where a [`Chain`](crate::Chain) ends flat, the first segment is so short that no point of the face
-/// moves by more than `tolerance`. The face of the input is perpendicular to its own last segment, so sample as
-/// closely there as the face matters. That takes up to a link or two a face more than the fewest. It is not
-/// forgone: on a bent tube a tilted face is the largest error of a fine chain.
+/// **Faces** are followed too, which `simplify` leaves to chance: at both ends of the robot and on
+/// the wider side of each step, where a [`Chain`](crate::Chain) ends flat, the first segment is so
+/// short that no point of the face moves by more than `tolerance`. The face of the input is
+/// perpendicular to its own last segment, so sample as closely there as the face matters. That
+/// takes up to a link or two a face more than the fewest. It is not forgone: on a bent tube a
+/// tilted face is the largest error of a fine chain.
 ///
 /// Repeated points are dropped first, as by `simplify`.
 ///
@@ -96,9 +102,11 @@ struct StationRun<'a> {
     points: &'a [Vector],
     radius: Real,
     tolerance: Real,
-    /// The power of two that brings the stretch near one, so that squares neither overflow nor vanish where it matters.
+    /// The power of two that brings the stretch near one, so that squares neither overflow nor
+    /// vanish where it matters.
     scale: Real,
-    /// The directions of the input at the start and at the end, where these are faces whose rim can move too far.
+    /// The directions of the input at the start and at the end, where these are faces whose rim
+    /// can move too far.
     faces: [Option<Vector>; 2],
 }
 
@@ -136,8 +144,8 @@ impl<'a> StationRun<'a> {
         ends.clone().zip(ends.skip(1)).for_each(|(from, to)| self.verify_and_add(from, to, found));
     }
 
-    /// The stations next to a face, from its vertex towards another, as long as its rim asks for nearer ones than the
-    /// deviation. They end before the other vertex.
+    /// The stations next to a face, from its vertex towards another, as long as its rim asks for
+    /// nearer ones than the deviation. They end before the other vertex.
     fn grade(&self, face: usize, end: usize, direction: Vector) -> Vec<usize> {
         let mut stations = vec![];
         let vertex = |at: usize, steps: usize| if face < end { at + steps } else { at - steps };
@@ -184,7 +192,8 @@ impl<'a> StationRun<'a> {
         }
     }
 
-    /// Adds as many stations as there are chords, each with the same part of all shares, unless one of them fails.
+    /// Adds as many stations as there are chords, each with the same part of all shares, unless one
+    /// of them fails.
     fn spread_evenly(&self, from: usize, chords: &[(usize, Real)], found: &mut Vec<usize>) -> bool {
         let whole: Real = chords.iter().map(|(_, share)| share).sum();
         let part = whole / chords.len() as Real;
@@ -218,7 +227,8 @@ impl<'a> StationRun<'a> {
         true
     }
 
-    /// The first vertex after `start` that is past a fraction of the chord, and `end` at the latest.
+    /// The first vertex after `start` that is past a fraction of the chord, and `end` at the
+    /// latest.
     fn vertex_at(&self, fraction: Real, start: usize, end: usize) -> usize {
         let chord = (self.points[end] - self.points[start]) * self.scale;
         let length = fraction * chord.length_squared();
@@ -277,11 +287,13 @@ impl<'a> StationRun<'a> {
         }
     }
 
-    /// Whether a chord is within the tolerance of what it replaces, and so is the rim of a face at its end.
+    /// Whether a chord is within the tolerance of what it replaces, and so is the rim of a face at
+    /// its end.
     fn is_admissible(&self, from: usize, to: usize) -> bool {
         let ends = [(0, from), (self.points.len() - 1, to)];
         let is_face_fine = |(face, (vertex, end)): (&Option<Vector>, (usize, usize))| {
-            vertex != end || face.is_none_or(|face| self.rim_moves(from, to, face) <= self.tolerance)
+            vertex != end
+                || face.is_none_or(|face| self.rim_moves(from, to, face) <= self.tolerance)
         };
         let (start, end) = (self.points[from], self.points[to]);
         // A single segment is what it replaces.
@@ -293,8 +305,9 @@ impl<'a> StationRun<'a> {
     }
 }
 
-/// How many steps can be taken, at least one and at most `most`, while their share is at most one: the most, where the
-/// share is proportional to the steps, and mostly near it elsewhere. Also their share.
+/// How many steps can be taken, at least one and at most `most`, while their share is at most one:
+/// the most, where the share is proportional to the steps, and mostly near it elsewhere. Also their
+/// share.
 fn foresee(guess: usize, most: usize, share: impl Fn(usize) -> Real) -> (usize, Real) {
     let (mut good, mut bad) = ((1, 0.0), (most + 1, 0.0));
     // One step is always good, and its share of 0 says nothing.
@@ -307,8 +320,11 @@ fn foresee(guess: usize, most: usize, share: impl Fn(usize) -> Real) -> (usize, 
             bad = (steps, probed);
         }
         // Without tolerance a share is infinite or 0, and proportional to nothing.
-        let ideal =
-            if probed < Real::INFINITY { (steps as Real / probed) as usize } else { (good.0 + bad.0) / 2 };
+        let ideal = if probed < Real::INFINITY {
+            (steps as Real / probed) as usize
+        } else {
+            (good.0 + bad.0) / 2
+        };
         steps = ideal.clamp(good.0, (bad.0 - 1).max(good.0));
         if steps == good.0 {
             break;

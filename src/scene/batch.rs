@@ -10,7 +10,8 @@ use parry3d_f64::math::Pose;
 type Answer<T> = Result<T, SceneError>;
 
 impl Scene {
-    /// [`clears`](Self::clears) for many sets of robots, on all cores. `out` gets the answer of each set, or why there is none.
+    /// [`clears`](Self::clears) for many sets of robots, on all cores. `out` gets the answer of
+    /// each set, or why there is none.
     ///
     /// ```
     /// use parry_continuum::Chain;
@@ -29,12 +30,16 @@ impl Scene {
     /// assert_eq!(answers[3].as_ref().map_err(|error| error.kind()), Err("pose_not_finite"));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn clears_batch(&self, sets: &[&[(&Chain, Pose)]], out: &mut Vec<Result<bool, SceneError>>) {
+    pub fn clears_batch(
+        &self,
+        sets: &[&[(&Chain, Pose)]],
+        out: &mut Vec<Result<bool, SceneError>>,
+    ) {
         self.batch(sets, false, out, |scene, robots| scene.clears(robots));
     }
 
-    /// [`tightest`](Self::tightest) for many sets of robots, on all cores. `out` gets the answer of each set, or why there is
-    /// none.
+    /// [`tightest`](Self::tightest) for many sets of robots, on all cores. `out` gets the answer of
+    /// each set, or why there is none.
     ///
     /// ```
     /// use parry_continuum::Chain;

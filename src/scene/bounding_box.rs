@@ -47,15 +47,18 @@ impl BoundingBox {
 
     /// What the distance of a robot is at least, by the box around the capsule that holds it.
     ///
-    /// Rounding: with M the largest magnitude of the capsule's ends, its radius and the box' corners, each coordinate of the way
-    /// between the boxes is a difference of sums that errs by 6 u M at most, their length by less than 11 u M for that, and by less
-    /// than 14 u M for its own squares, sums and root; what is taken off errs by less than 6 u M. And what is measured may be less
-    /// than it is by 16 u of an extent of 2 M. So 64 u M are taken off.
+    /// Rounding: with M the largest magnitude of the capsule's ends, its radius and the box'
+    /// corners, each coordinate of the way between the boxes is a difference of sums that errs
+    /// by 6 u M at most, their length by less than 11 u M for that, and by less than 14 u M for
+    /// its own squares, sums and root; what is taken off errs by less than 6 u M. And what is
+    /// measured may be less than it is by 16 u of an extent of 2 M. So 64 u M are taken off.
     pub fn at_least(&self, robot: &PlacedRobot) -> Real {
         let ([start, end], radius, _) = robot.outline(&robot.link_tree()[0]);
         let Self { low, high } = *self;
-        let way = (start.min(end) - radius - high).max(low - (start.max(end) + radius)).max(Vector::ZERO);
-        let largest = start.abs().max(end.abs()).max(low.abs()).max(high.abs()).max_element().max(radius);
+        let way =
+            (start.min(end) - radius - high).max(low - (start.max(end) + radius)).max(Vector::ZERO);
+        let largest =
+            start.abs().max(end.abs()).max(low.abs()).max(high.abs()).max_element().max(radius);
         length(way) - 64.0 * Real::UNIT_ROUNDOFF * largest
     }
 

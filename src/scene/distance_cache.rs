@@ -1,18 +1,24 @@
-//! What a robot is known to keep from each structure while it moves, without a look at the structure.
+//! What a robot is known to keep from each structure while it moves, without a look at the
+//! structure.
 //!
-//! A robot that once kept a distance keeps what is left of it when it has moved on: the [`Odometer`] counts the way once for all
-//! structures. So a structure is looked at again when the robot may have reached it, and not before.
+//! A robot that once kept a distance keeps what is left of it when it has moved on: the
+//! [`Odometer`] counts the way once for all structures. So a structure is looked at again when the
+//! robot may have reached it, and not before.
 //!
-//! Rounding. The way is counted in the scene's frame, distances are measured in a mesh's. Let M be the largest coordinate of
-//! robot and structure in the scene, radius and translations included. A link is placed with an error of 74 u M in the scene, as in
-//! [`PlacedRobot`]. In the mesh's frame it is placed by the product of two poses: its rotation errs by less than 24 u and its
-//! length by as much, which moves points of the size 2 M by less than 170 u M; the rotated point, the rotated translation and that
-//! of the inverse err by 70 u M, 35 u M and 35 u M, and sums by 11 u M. So the two places of an axis' end are less than 400 u M
-//! apart. A distance errs by 16 u of an extent below 4 M, and what is subtracted here by 4 u of it. All of that is less than
-//! 1024 u M, with a flat cap's rim [accounted for](Odometer::error_from_ends); 2048 u M are taken off when a distance is noted, for what it
-//! was measured with then, and again when it is asked for, for what it would be measured with now.
+//! Rounding. The way is counted in the scene's frame, distances are measured in a mesh's. Let M be
+//! the largest coordinate of robot and structure in the scene, radius and translations included. A
+//! link is placed with an error of 74 u M in the scene, as in [`PlacedRobot`]. In the mesh's frame
+//! it is placed by the product of two poses: its rotation errs by less than 24 u and its
+//! length by as much, which moves points of the size 2 M by less than 170 u M; the rotated point,
+//! the rotated translation and that of the inverse err by 70 u M, 35 u M and 35 u M, and sums by 11
+//! u M. So the two places of an axis' end are less than 400 u M apart. A distance errs by 16 u of
+//! an extent below 4 M, and what is subtracted here by 4 u of it. All of that is less than
+//! 1024 u M, with a flat cap's rim [accounted for](Odometer::error_from_ends); 2048 u M are taken
+//! off when a distance is noted, for what it was measured with then, and again when it is asked
+//! for, for what it would be measured with now.
 //!
-//! Where coordinates are so large that a place in a mesh's frame could be out of range nothing is known, so that it is looked at.
+//! Where coordinates are so large that a place in a mesh's frame could be out of range nothing is
+//! known, so that it is looked at.
 
 use crate::distance::Scalar;
 use crate::pair::PlacedRobot;
@@ -28,7 +34,8 @@ const STEPS: Real = 8.0;
 pub(super) struct DistanceCache {
     odometer: Odometer,
     structures: Vec<CachedDistance>,
-    /// How much farther than asked a look is to go, so that it speaks for the next questions too; nothing where it would not.
+    /// How much farther than asked a look is to go, so that it speaks for the next questions too;
+    /// nothing where it would not.
     room: Option<Real>,
 }
 
@@ -53,7 +60,8 @@ impl DistanceCache {
         }
         self.structures.resize(structures, CachedDistance::UNKNOWN);
         let room = STEPS * self.odometer.last_step();
-        // For a robot that jumps nothing would be far enough, and one that rests is answered by the engines' memory.
+        // For a robot that jumps nothing would be far enough, and one that rests is answered by the
+        // engines' memory.
         self.room = (0.0 < room && room < PlacedOutline::around_all(robot).size()).then_some(room);
     }
 
@@ -69,8 +77,8 @@ impl DistanceCache {
         self.room
     }
 
-    /// Whether a look at a structure is likely to tell more than that the robot is near. After one that did not, or an answer that
-    /// the robot is near, the next is left out.
+    /// Whether a look at a structure is likely to tell more than that the robot is near. After one
+    /// that did not, or an answer that the robot is near, the next is left out.
     pub fn is_worth_a_query(&mut self, structure: usize) -> bool {
         !std::mem::take(&mut self.structures[structure].is_near)
     }
@@ -80,7 +88,8 @@ impl DistanceCache {
         self.structures[structure].is_near = true;
     }
 
-    /// Notes that the robot keeps `apart` or more from a structure of this `size`: the largest coordinate of its mesh and its pose.
+    /// Notes that the robot keeps `apart` or more from a structure of this `size`: the largest
+    /// coordinate of its mesh and its pose.
     pub fn record(&mut self, structure: usize, apart: Real, size: Real) {
         let at = (apart - self.rounding(size) + self.odometer.reading()).next_down();
         let CachedDistance { reached_at, .. } = &mut self.structures[structure];
@@ -127,7 +136,8 @@ mod tests {
         Swaps,
     }
 
-    const WAYS: [Way; 7] = [Way::Whole, Way::Start, Way::End, Way::Radius, Way::Rim, Way::Any, Way::Swaps];
+    const WAYS: [Way; 7] =
+        [Way::Whole, Way::Start, Way::End, Way::Radius, Way::Rim, Way::Any, Way::Swaps];
 
     struct Robot {
         points: [Vector; 3],
@@ -144,8 +154,12 @@ mod tests {
             let thin = [0.02, 1e-4][random.below(2) as usize];
             let (points, radius) = match way {
                 Way::Rim => ([low, low + thin, low + 2.0 * thin].map(|z| Vector::Z * z), 1.0),
-                Way::Start => ([Vector::Z * low, Vector::new(1.0, 0.0, low + 1.0), Vector::Z * 5.0], 0.3),
-                Way::End => ([Vector::Z * 5.0, Vector::new(1.0, 0.0, low + 1.0), Vector::Z * low], 0.3),
+                Way::Start => {
+                    ([Vector::Z * low, Vector::new(1.0, 0.0, low + 1.0), Vector::Z * 5.0], 0.3)
+                }
+                Way::End => {
+                    ([Vector::Z * 5.0, Vector::new(1.0, 0.0, low + 1.0), Vector::Z * low], 0.3)
+                }
                 _ => ([Vector::Z * low + flat, Vector::Z * low, Vector::Z * (low + 1.0)], 0.3),
             };
             let model = if way == Way::Rim { 1 } else { random.below(2) as usize };
@@ -178,14 +192,15 @@ mod tests {
         }
 
         fn chain(&self, size: Real) -> Chain {
-            let points: Vec<_> = self.points[2 - self.links..].iter().map(|&point| point * size).collect();
+            let points: Vec<_> =
+                self.points[2 - self.links..].iter().map(|&point| point * size).collect();
             let make = [Chain::capsules, Chain::cylinders][self.model];
             make(&points, &vec![self.radius * size; self.links]).unwrap()
         }
     }
 
-    /// No robot is nearer to a wall than is told, wherever both are and in any unit, and where it heads for the wall with what is
-    /// nearest it is told next to nothing less.
+    /// No robot is nearer to a wall than is told, wherever both are and in any unit, and where it
+    /// heads for the wall with what is nearest it is told next to nothing less.
     #[test]
     fn no_robot_is_nearer_than_told() {
         let (mut told, mut sharp) = ([0_u32; 7], [0_u32; 7]);
@@ -202,7 +217,8 @@ mod tests {
             structure.set_pose(&pose).unwrap();
 
             let (way, step) = (WAYS[kind], 10.0_f64.powf(random.between(-4.0, -1.7)));
-            let (mut robot, mut watch, mut noted) = (Robot::new(random, way), DistanceCache::default(), None);
+            let (mut robot, mut watch, mut noted) =
+                (Robot::new(random, way), DistanceCache::default(), None);
             for question in 0..40 {
                 robot.walk(random, way, step);
                 let mut local = robot.local;

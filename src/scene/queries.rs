@@ -17,16 +17,18 @@ use std::cmp::Ordering;
 
 /// Several structures, each with a margin of its own or none, and the robots among them.
 ///
-/// A structure is a mesh with a name. The margin is what a robot must keep from it; the *slack* is the distance less the
-/// margin. A structure without a margin may be touched, as a target is: it is measured by
-/// [`per_structure`](Self::per_structure) and [`contacts`](Self::contacts), and is no part of the other questions.
+/// A structure is a mesh with a name. The margin is what a robot must keep from it; the *slack* is
+/// the distance less the margin. A structure without a margin may be touched, as a target is: it is
+/// measured by [`per_structure`](Self::per_structure) and [`contacts`](Self::contacts), and is no
+/// part of the other questions.
 ///
 /// Robots are given to each question, with their poses in the scene's frame. If a
 /// [margin between robots](Self::set_robot_margin) is set, they are held against one another too.
 ///
-/// The scene remembers what its engines do, whom the last answer was about, who is asked first, and what each robot kept from each
-/// structure: one that a robot cannot have reached since is passed over by all questions but `per_structure`. Robots are told
-/// apart by their place in a question; any may follow. A clone shares the meshes and has a memory of its own: one for each thread.
+/// The scene remembers what its engines do, whom the last answer was about, who is asked first, and
+/// what each robot kept from each structure: one that a robot cannot have reached since is passed
+/// over by all questions but `per_structure`. Robots are told apart by their place in a question;
+/// any may follow. A clone shares the meshes and has a memory of its own: one for each thread.
 ///
 /// ```
 /// use parry_continuum::Chain;
@@ -87,7 +89,8 @@ impl Scene {
         Self::default()
     }
 
-    /// Adds a structure, and returns its number: structures count from 0 in the order in which they are added.
+    /// Adds a structure, and returns its number: structures count from 0 in the order in which they
+    /// are added.
     ///
     /// # Errors
     /// The margin is negative or NaN. The message has the structure's name.
@@ -136,7 +139,8 @@ impl Scene {
         Ok(())
     }
 
-    /// Moves a structure as a whole: `pose` brings its mesh's frame into the scene's. Nothing is built anew.
+    /// Moves a structure as a whole: `pose` brings its mesh's frame into the scene's. Nothing is
+    /// built anew.
     ///
     /// # Errors
     /// There is no such structure, or the pose is not finite or not rigid.
@@ -148,11 +152,17 @@ impl Scene {
         Ok(())
     }
 
-    /// Moves the vertices of a structure's mesh, in the mesh's own frame: [`Proximity::set_vertices`].
+    /// Moves the vertices of a structure's mesh, in the mesh's own frame:
+    /// [`Proximity::set_vertices`].
     ///
     /// # Errors
-    /// There is no such structure, the number of vertices differs, or one is not finite or out of range.
-    pub fn set_vertices(&mut self, structure: usize, vertices: &[Vector]) -> Result<(), SceneError> {
+    /// There is no such structure, the number of vertices differs, or one is not finite or out of
+    /// range.
+    pub fn set_vertices(
+        &mut self,
+        structure: usize,
+        vertices: &[Vector],
+    ) -> Result<(), SceneError> {
         let number = structure;
         let structure = self.structure(number)?;
         structure.set_vertices(vertices).map_err(|error| of_structure(structure, error.into()))?;
@@ -160,7 +170,8 @@ impl Scene {
         Ok(())
     }
 
-    /// The margin that robots keep from one another; nothing if they are not held against one another, which is so at first.
+    /// The margin that robots keep from one another; nothing if they are not held against one
+    /// another, which is so at first.
     ///
     /// # Errors
     /// The margin is negative or NaN.
@@ -170,19 +181,22 @@ impl Scene {
         Ok(())
     }
 
-    /// Names the pairs of robots one of which is inside the other, as a tube in the tube that guides it: they touch, and are not
-    /// held against one another. The numbers are those of the robots that are given to a question, in any order; a pair that
-    /// is not there changes nothing. What was named before is forgotten.
+    /// Names the pairs of robots one of which is inside the other, as a tube in the tube that
+    /// guides it: they touch, and are not held against one another. The numbers are those of
+    /// the robots that are given to a question, in any order; a pair that is not there changes
+    /// nothing. What was named before is forgotten.
     pub fn set_nested(&mut self, pairs: &[[usize; 2]]) {
         self.nested.clear();
         self.nested.extend(pairs.iter().map(|&[a, b]| [a.min(b), a.max(b)]));
     }
 
-    /// Whether all robots keep all margins: true exactly when the slack of [`tightest`](Self::tightest) is more than 0, or
-    /// there is none. The first margin that is not kept ends the query.
+    /// Whether all robots keep all margins: true exactly when the slack of
+    /// [`tightest`](Self::tightest) is more than 0, or there is none. The first margin that is
+    /// not kept ends the query.
     ///
     /// # Errors
-    /// A pose is not finite or not rigid, or moves a link out of range. The message has the robot's number.
+    /// A pose is not finite or not rigid, or moves a link out of range. The message has the robot's
+    /// number.
     pub fn clears(&mut self, robots: &[(&Chain, Pose)]) -> Result<bool, SceneError> {
         if self.begin(robots, None)? && !self.clears_structures(robots)? {
             return Ok(false);
@@ -220,10 +234,11 @@ impl Scene {
         asked.map(|()| self.met.is_none())
     }
 
-    /// The least slack, and whom it is between; nothing if no robot is given or nothing has a margin.
+    /// The least slack, and whom it is between; nothing if no robot is given or nothing has a
+    /// margin.
     ///
-    /// Slacks are compared without rounding. Of equal ones that of the lowest structure counts, then that of the lowest robot;
-    /// pairs of robots come last.
+    /// Slacks are compared without rounding. Of equal ones that of the lowest structure counts,
+    /// then that of the lowest robot; pairs of robots come last.
     ///
     /// # Errors
     /// As [`clears`](Self::clears).
@@ -235,7 +250,8 @@ impl Scene {
         }
         // Those that may be tightest are asked first: they rule out the others.
         let mut order = std::mem::take(&mut self.order);
-        let near = |structure: &Structure| structure.margin.map(|margin| (margin, beyond(&best, margin)));
+        let near =
+            |structure: &Structure| structure.margin.map(|margin| (margin, beyond(&best, margin)));
         let asked = self.gather(robots, near, &mut order).and_then(|()| {
             order.sort_unstable_by(nearest_first);
             for &(room, [structure, robot]) in &order {
@@ -265,8 +281,8 @@ impl Scene {
         Ok(best.map(|(_, best)| best))
     }
 
-    /// For each structure, in order, where the robots are closest to it, whether it has a margin or not. `out` is cleared
-    /// first, and stays empty where no robot is given.
+    /// For each structure, in order, where the robots are closest to it, whether it has a margin or
+    /// not. `out` is cleared first, and stays empty where no robot is given.
     ///
     /// # Errors
     /// As [`clears`](Self::clears).
@@ -281,7 +297,10 @@ impl Scene {
             for (robot, (chain, pose)) in robots.iter().enumerate() {
                 let pose = structure.in_mesh(pose);
                 let bound = best.map_or(Real::INFINITY, |best| best.nearest.distance);
-                let found = structure.search.minimum_within(chain, &pose, bound).map_err(of_robot(robot))?;
+                let found = structure
+                    .search
+                    .minimum_within(chain, &pose, bound)
+                    .map_err(of_robot(robot))?;
                 if let Some(found) = found
                     && best.is_none_or(|best| found.distance < best.nearest.distance)
                 {
@@ -298,8 +317,9 @@ impl Scene {
         Ok(())
     }
 
-    /// Every contact of every robot with every structure that is at most `reach` away: [`Proximity::within`], structure by
-    /// structure and robot by robot. `out` is cleared first.
+    /// Every contact of every robot with every structure that is at most `reach` away:
+    /// [`Proximity::within`], structure by structure and robot by robot. `out` is cleared
+    /// first.
     ///
     /// # Errors
     /// As [`clears`](Self::clears), or `reach` is negative or NaN.
@@ -320,10 +340,15 @@ impl Scene {
         let asked = self.gather(robots, |_| Some((0.0, reach)), &mut order).and_then(|()| {
             order.sort_unstable_by_key(|(_, who)| *who);
             for &(_, [number, robot]) in &order {
-                let Some(placed) = self.place_unless_clear(number, robot, robots, reach)? else { continue };
+                let Some(placed) = self.place_unless_clear(number, robot, robots, reach)? else {
+                    continue;
+                };
                 let structure = &mut self.structures[number];
                 let asked = ContactQuery { margin: reach, prominence: 0.0 };
-                structure.search.ask_contacts(placed, asked, &mut self.contacts).map_err(of_robot(robot))?;
+                structure
+                    .search
+                    .ask_contacts(placed, asked, &mut self.contacts)
+                    .map_err(of_robot(robot))?;
                 if !self.contacts.is_empty() {
                     self.watches[robot].mark_near(number);
                 }
@@ -346,7 +371,9 @@ impl Scene {
 
     fn structure(&mut self, structure: usize) -> Result<&mut Structure, SceneError> {
         let structures = self.structures.len();
-        self.structures.get_mut(structure).ok_or(SceneError::NoSuchStructure { structure, structures })
+        self.structures
+            .get_mut(structure)
+            .ok_or(SceneError::NoSuchStructure { structure, structures })
     }
 
     fn have(&self, [structure, robot]: [usize; 2], robots: &[(&Chain, Pose)]) -> bool {
@@ -359,10 +386,14 @@ impl Scene {
         self.all = None;
     }
 
-    /// A question about all of these robots begins. False if all of them are farther than `bound` from all structures, or than all
-    /// margins where it is not given. Also those are placed that are held against nothing: what is asked afterwards finds no fault
-    /// with one.
-    fn begin(&mut self, robots: &[(&Chain, Pose)], bound: Option<Real>) -> Result<bool, SceneError> {
+    /// A question about all of these robots begins. False if all of them are farther than `bound`
+    /// from all structures, or than all margins where it is not given. Also those are placed
+    /// that are held against nothing: what is asked afterwards finds no fault with one.
+    fn begin(
+        &mut self,
+        robots: &[(&Chain, Pose)],
+        bound: Option<Real>,
+    ) -> Result<bool, SceneError> {
         let all = *self.all.get_or_insert_with(|| SceneBounds::of(&self.structures));
         let (mut may_be_near, bound) = (false, bound.unwrap_or(all.margin));
         for (robot, (chain, pose)) in robots.iter().enumerate() {
@@ -390,16 +421,20 @@ impl Scene {
         robots: &[(&Chain, Pose)],
     ) -> Result<bool, SceneError> {
         let Some(margin) = self.structures[number].margin else { return Ok(true) };
-        let Some(placed) = self.place_unless_clear(number, robot, robots, margin)? else { return Ok(true) };
-        let clears = self.structures[number].search.ask_clears(placed, margin).map_err(of_robot(robot))?;
+        let Some(placed) = self.place_unless_clear(number, robot, robots, margin)? else {
+            return Ok(true);
+        };
+        let clears =
+            self.structures[number].search.ask_clears(placed, margin).map_err(of_robot(robot))?;
         if !clears {
             self.watches[robot].mark_near(number);
         }
         Ok(clears)
     }
 
-    /// The robot in the frame of a structure's mesh, or nothing if it keeps more than `bound` at a look: one that speaks for the
-    /// next questions too where the robot moves little, or else one at the boxes alone.
+    /// The robot in the frame of a structure's mesh, or nothing if it keeps more than `bound` at a
+    /// look: one that speaks for the next questions too where the robot moves little, or else
+    /// one at the boxes alone.
     fn place_unless_clear<'a>(
         &mut self,
         number: usize,
@@ -430,9 +465,10 @@ impl Scene {
         Ok(Some(placed))
     }
 
-    /// Writes to `order` which robots may be as near to which structures as is asked, and how much room these leave them at least.
-    /// `asked` tells a structure's margin, and how far away is near enough; nothing if it takes no part. Each robot is placed
-    /// once for all structures that have not moved.
+    /// Writes to `order` which robots may be as near to which structures as is asked, and how much
+    /// room these leave them at least. `asked` tells a structure's margin, and how far away is
+    /// near enough; nothing if it takes no part. Each robot is placed once for all structures
+    /// that have not moved.
     fn gather(
         &mut self,
         robots: &[(&Chain, Pose)],
@@ -472,7 +508,9 @@ impl Scene {
         if bound < 0.0 {
             return Ok(());
         }
-        let Some(placed) = self.place_unless_clear(number, robot, robots, bound)? else { return Ok(()) };
+        let Some(placed) = self.place_unless_clear(number, robot, robots, bound)? else {
+            return Ok(());
+        };
         let (structure, watch) = (&mut self.structures[number], &mut self.watches[robot]);
         let far = bound + watch.look_ahead().unwrap_or(0.0);
         let found = structure.search.ask_nearest(placed, far).map_err(of_robot(robot))?;
@@ -484,7 +522,9 @@ impl Scene {
         let slack = slack(found.distance, margin);
         let is_tighter = best.as_ref().is_none_or(|(least, best)| {
             let comes_first = match best.between {
-                Between::Structure(near) => [number, robot] < [near.structure as usize, near.robot as usize],
+                Between::Structure(near) => {
+                    [number, robot] < [near.structure as usize, near.robot as usize]
+                }
                 Between::Robots { .. } => true,
             };
             slack.lt(*least) || (slack.le(*least) && comes_first)
@@ -529,14 +569,17 @@ fn of_robot(robot: usize) -> impl Fn(ProximityError) -> SceneError {
     move |error| SceneError::Robot { robot, error }
 }
 
-/// With this margin no distance beyond this has a slack as small as the best, whatever is rounded here.
+/// With this margin no distance beyond this has a slack as small as the best, whatever is rounded
+/// here.
 fn beyond(best: &Best, margin: Real) -> Real {
     best.as_ref().map_or(Real::INFINITY, |(_, best)| (best.slack.next_up() + margin).next_up())
 }
 
-/// The pairs of so many robots that are held against one another, in order: all but those that are nested.
+/// The pairs of so many robots that are held against one another, in order: all but those that are
+/// nested.
 fn pairs_apart(robots: usize, nested: &[[usize; 2]]) -> impl Iterator<Item = [usize; 2]> {
-    let pairs = (0..robots).flat_map(move |first| (first + 1..robots).map(move |second| [first, second]));
+    let pairs =
+        (0..robots).flat_map(move |first| (first + 1..robots).map(move |second| [first, second]));
     pairs.filter(|pair| !nested.contains(pair))
 }
 
@@ -561,7 +604,8 @@ mod tests {
         scene
     }
 
-    /// Along a smooth walk most structures are passed over, and a scene says what one says that knows of no way of a robot.
+    /// Along a smooth walk most structures are passed over, and a scene says what one says that
+    /// knows of no way of a robot.
     #[test]
     fn what_cannot_be_near_is_not_looked_at() {
         let points: Vec<_> = (0..=8).map(|k| Vector::Z * Real::from(k)).collect();

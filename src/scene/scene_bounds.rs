@@ -34,12 +34,15 @@ impl SceneBounds {
         })
     }
 
-    /// Whether a robot, placed in the scene's frame, certainly keeps more than `bound` from all of them.
+    /// Whether a robot, placed in the scene's frame, certainly keeps more than `bound` from all of
+    /// them.
     ///
-    /// Rounding: where distances are measured, in a mesh's frame, the ends of the capsule that holds the robot are less than
-    /// 400 u M from where they are here, with M as in [`DistanceCache`](super::distance_cache::DistanceCache). The corners of a box err by less than 80 u M
-    /// where they are moved, and what is measured by less than 64 u M. So 1024 u M are taken off. Where coordinates are so large
-    /// that a place in a mesh's frame could be out of range, nothing is known.
+    /// Rounding: where distances are measured, in a mesh's frame, the ends of the capsule that
+    /// holds the robot are less than 400 u M from where they are here, with M as in
+    /// [`DistanceCache`](super::distance_cache::DistanceCache). The corners of a box err by less
+    /// than 80 u M where they are moved, and what is measured by less than 64 u M. So 1024 u M
+    /// are taken off. Where coordinates are so large that a place in a mesh's frame could be
+    /// out of range, nothing is known.
     pub fn are_beyond(&self, bound: Real, robot: &PlacedRobot) -> bool {
         let translation = robot.placed(Vector::ZERO).abs().max_element();
         let largest = PlacedOutline::around_all(*robot).extent().max(translation) + self.size;
@@ -56,8 +59,8 @@ mod tests {
     use continuum_testing::Random;
     use parry3d_f64::math::Pose;
 
-    /// A robot in front of a square, whose distance is that of the boxes: it is never said to keep what it does not, and next to
-    /// nothing less.
+    /// A robot in front of a square, whose distance is that of the boxes: it is never said to keep
+    /// what it does not, and next to nothing less.
     #[test]
     fn what_is_beyond_is_beyond() {
         for seed in 0..4000 {
@@ -74,8 +77,10 @@ mod tests {
                 [random.between(1.0, 9.0), random.between(0.1, 0.9)].map(|length| length * size);
             let robot = Chain::capsules(&[Vector::ZERO, Vector::Y * size], &[radius]).unwrap();
             let at = pose * Pose::translation(x, 0.0, 0.0);
-            let distance = structure.search.minimum(&robot, &structure.in_mesh(&at)).unwrap().distance;
-            let (all, placed) = (SceneBounds::of(&[structure]), PlacedRobot::new(&robot, &at).unwrap());
+            let distance =
+                structure.search.minimum(&robot, &structure.in_mesh(&at)).unwrap().distance;
+            let (all, placed) =
+                (SceneBounds::of(&[structure]), PlacedRobot::new(&robot, &at).unwrap());
             assert!(!all.are_beyond(distance, &placed), "seed {seed}");
             assert!(all.are_beyond(0.99 * distance, &placed), "seed {seed}");
         }
@@ -93,11 +98,14 @@ mod tests {
             let far = [1.0, 1e6][random.below(2) as usize];
             structure.set_pose(&random.pose(far)).unwrap();
             let points = [0; 4].map(|_| random.point() * 3.0);
-            let make = [Chain::capsules, Chain::cylinders, Chain::from_centreline][random.below(3) as usize];
+            let make = [Chain::capsules, Chain::cylinders, Chain::from_centreline]
+                [random.below(3) as usize];
             let Ok(robot) = make(&points, &[0.9, 0.1, 0.4]) else { continue };
             let at = Pose::from_translation(random.point() * 20.0) * random.pose(far);
-            let distance = structure.search.minimum(&robot, &structure.in_mesh(&at)).unwrap().distance;
-            let (all, placed) = (SceneBounds::of(&[structure]), PlacedRobot::new(&robot, &at).unwrap());
+            let distance =
+                structure.search.minimum(&robot, &structure.in_mesh(&at)).unwrap().distance;
+            let (all, placed) =
+                (SceneBounds::of(&[structure]), PlacedRobot::new(&robot, &at).unwrap());
             assert!(!all.are_beyond(distance, &placed), "seed {seed}");
             beyond += u32::from(all.are_beyond(0.5 * distance, &placed));
         }

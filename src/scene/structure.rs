@@ -11,7 +11,8 @@ use parry3d_f64::math::{Pose, Real, Vector};
 pub(super) struct Structure {
     pub name: String,
     pub margin: Option<Real>,
-    /// In a place of its own, so that the rest, which tells that a robot is far, is one small piece of memory for all structures.
+    /// In a place of its own, so that the rest, which tells that a robot is far, is one small
+    /// piece of memory for all structures.
     pub search: Box<BvhSearch>,
     /// From the mesh's frame to the scene's; none where they are one.
     pose: Option<Pose>,
@@ -24,7 +25,8 @@ pub(super) struct Structure {
 impl Structure {
     pub fn new(name: String, search: BvhSearch, margin: Option<Real>) -> Self {
         let search = Box::new(search);
-        let mut new = Self { name, margin, search, pose: None, around: BoundingBox::default(), size: 0.0 };
+        let mut new =
+            Self { name, margin, search, pose: None, around: BoundingBox::default(), size: 0.0 };
         new.update_bounds();
         new
     }

@@ -5,10 +5,11 @@ use std::sync::OnceLock;
 
 /// Something that is built at the first question for it, by the thread that asks, alone.
 ///
-/// Threads that ask meanwhile wait, tasks of a pool among them. So the builder must not wait for the pool: a thread of the
-/// pool that waits for its helpers takes up other tasks, and one of these may ask for the very thing that this thread has
-/// begun to build; and helpers that themselves wait for it never come. Neither happens where a builder has no helpers, so
-/// it has none: what [`each`](super::parallel::each) and the like do for it they do on its own thread.
+/// Threads that ask meanwhile wait, tasks of a pool among them. So the builder must not wait for
+/// the pool: a thread of the pool that waits for its helpers takes up other tasks, and one of these
+/// may ask for the very thing that this thread has begun to build; and helpers that themselves wait
+/// for it never come. Neither happens where a builder has no helpers, so it has none: what
+/// [`each`](super::parallel::each) and the like do for it they do on its own thread.
 #[derive(Clone)]
 pub(crate) struct Lazy<T>(OnceLock<T>);
 

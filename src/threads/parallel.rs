@@ -1,4 +1,5 @@
-//! The same work for many items, on all cores (feature `parallel`). Nothing else in the crate uses a pool of threads.
+//! The same work for many items, on all cores (feature `parallel`). Nothing else in the crate uses
+//! a pool of threads.
 
 #[cfg(feature = "parallel")]
 use rayon::prelude::*;
@@ -9,7 +10,8 @@ thread_local! {
     static IS_ALONE: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Does something on this thread alone: nothing in here waits for other threads of the pool, or takes up their tasks.
+/// Does something on this thread alone: nothing in here waits for other threads of the pool, or
+/// takes up their tasks.
 pub(crate) fn on_this_thread<T>(work: impl FnOnce() -> T) -> T {
     /// Puts back what was before, after a panic too.
     struct Before(bool);
@@ -31,7 +33,8 @@ pub(crate) fn threads() -> usize {
     1
 }
 
-/// Does `work` on every item, which it gets with its place. An item should be worth some microseconds.
+/// Does `work` on every item, which it gets with its place. An item should be worth some
+/// microseconds.
 pub(crate) fn each<T: Send>(items: &mut [T], work: impl Fn(usize, &mut T) + Sync + Send) {
     // To wake another thread for one item would take longer than the item.
     #[cfg(feature = "parallel")]
@@ -72,7 +75,9 @@ pub(crate) fn in_chunks<Q: Sync, A: Send, M: Default + Send>(
         let share = questions.len().div_ceil(4 * threads()).max(1);
         memories.resize_with(questions.len().div_ceil(share), M::default);
         let shares = questions.par_chunks(share).zip(answers.par_chunks_mut(share));
-        shares.zip(memories).for_each(|((questions, answers), memory)| answer(memory, questions, answers));
+        shares
+            .zip(memories)
+            .for_each(|((questions, answers), memory)| answer(memory, questions, answers));
         return;
     }
     memories.resize_with(1, M::default);
@@ -117,8 +122,8 @@ mod tests {
         answers.into_iter().flatten().collect()
     }
 
-    /// A task of a pool that does something alone has no helpers, and takes up no other task meanwhile. That holds until
-    /// it is done, and when it fails.
+    /// A task of a pool that does something alone has no helpers, and takes up no other task
+    /// meanwhile. That holds until it is done, and when it fails.
     #[test]
     fn who_is_alone_stays_on_one_thread() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(16).build().unwrap();

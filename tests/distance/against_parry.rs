@@ -1,5 +1,5 @@
-//! Beside parry's own iterative answers (GJK): the same where the problem is well conditioned, and where they
-//! differ ours carries a proof.
+//! Beside parry's own iterative answers (GJK): the same where the problem is well conditioned, and
+//! where they differ ours carries a proof.
 
 use continuum_testing::Random;
 use continuum_testing::certificate::{certify, directions, shapes};
@@ -24,7 +24,13 @@ use Kind::{Capsule as Round, Cylinder as Flat};
 
 fn problem(triangle: [[f64; 3]; 3], start: [f64; 3], end: [f64; 3], radius: f64) -> Problem {
     let v = Vector::from_array;
-    Problem { family: Family::Generic, triangle: triangle.map(v), start: v(start), end: v(end), radius }
+    Problem {
+        family: Family::Generic,
+        triangle: triangle.map(v),
+        start: v(start),
+        end: v(end),
+        radius,
+    }
 }
 
 /// parry's answer, with the link as the first argument or the second.
@@ -55,7 +61,8 @@ fn ours(problem: &Problem, kind: Kind) -> f64 {
     let distance = input.answers()[kernel].distance;
     let precise = input.map(DoubleDouble::from);
     let proofs = precise.answers();
-    let bounds = certify(&shapes(&precise)[kernel], &proofs[kernel], &directions(&precise, &proofs));
+    let bounds =
+        certify(&shapes(&precise)[kernel], &proofs[kernel], &directions(&precise, &proofs));
     let slack = 16.0 * UNIT * extent(&problem.points(), problem.radius);
     let (lower, upper) = (bounds.lower.rounded(), bounds.upper.rounded());
     assert!(upper - lower <= slack, "{lower} to {upper}: {problem:?}");
@@ -80,7 +87,12 @@ fn check_agreement(kind: Kind) {
     }
     differences.sort_by(f64::total_cmp);
     let at = |share: usize| differences[differences.len() * share / 100];
-    println!("median {:.1e}, 99 % {:.1e}, worst {:.1e}", at(50), at(99), differences[differences.len() - 1]);
+    println!(
+        "median {:.1e}, 99 % {:.1e}, worst {:.1e}",
+        at(50),
+        at(99),
+        differences[differences.len() - 1]
+    );
     assert!(at(50) < 1e-7 && at(99) < 2e-5);
     assert!(apart > 1000 && meet > 1000, "{apart} {meet}");
 }
@@ -95,8 +107,9 @@ fn cylinders_agree_in_well_conditioned_units() {
     check_agreement(Flat);
 }
 
-/// parry reports at least `factor` times the clearance there is, on the unsafe side; that of a touch is
-/// infinite. (Should one of these fail because parry has learnt to answer: good news, drop it.)
+/// parry reports at least `factor` times the clearance there is, on the unsafe side; that of a
+/// touch is infinite. (Should one of these fail because parry has learnt to answer: good news, drop
+/// it.)
 #[track_caller]
 fn assert_overestimated(problem: &Problem, kind: Kind, link_first: bool, factor: f64) -> [f64; 2] {
     let (theirs, ours) = (parry(problem, kind, link_first), ours(problem, kind));
@@ -139,7 +152,8 @@ fn parry_overestimates_a_capsules_clearance_a_hundred_times() {
     assert_overestimated(&problem, Round, true, 100.0);
 }
 
-/// A tube of half a millimetre, in metres: parry's tolerances are absolute. In millimetres it is right.
+/// A tube of half a millimetre, in metres: parry's tolerances are absolute. In millimetres it is
+/// right.
 #[test]
 fn parry_overestimates_the_clearance_of_half_a_millimetre_tubes_in_metres() {
     let cylinder = problem(
@@ -153,7 +167,11 @@ fn parry_overestimates_the_clearance_of_half_a_millimetre_tubes_in_metres() {
         5e-4,
     );
     let capsule = problem(
-        [[1.5171e-3, 3.0433e-3, 3.5e-5], [-2.878e-4, 2.7082e-3, -3.129e-4], [4.274e-4, 2.6351e-3, -4.23e-5]],
+        [
+            [1.5171e-3, 3.0433e-3, 3.5e-5],
+            [-2.878e-4, 2.7082e-3, -3.129e-4],
+            [4.274e-4, 2.6351e-3, -4.23e-5],
+        ],
         [1.8449e-3, 2.3743e-3, 1.972e-4],
         [2.6029e-3, -2.9255e-3, -2.3766e-3],
         5e-4,

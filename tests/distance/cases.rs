@@ -1,4 +1,5 @@
-//! The reference distances, through the kernels in double and single precision and through parry's traits.
+//! The reference distances, through the kernels in double and single precision and through parry's
+//! traits.
 
 use continuum_testing::narrow_phase::{
     segment_disc, segment_triangle, triangle_capsule, triangle_disc, triangle_modified_cylinder,
@@ -95,7 +96,11 @@ fn every_link_through_parrys_dispatcher() {
             match dispatcher.closest_points(&Pose::IDENTITY, g1, g2, f64::MAX).unwrap() {
                 ClosestPoints::WithinMargin(p1, p2) => {
                     let slack = 8.0 * f64::UNIT * (case.mag + case.scale);
-                    assert!(((p1 - p2).length() - found).abs() <= slack, "{}: {p1} {p2} {found}", case.id);
+                    assert!(
+                        ((p1 - p2).length() - found).abs() <= slack,
+                        "{}: {p1} {p2} {found}",
+                        case.id
+                    );
                 }
                 ClosestPoints::Intersecting => {
                     assert_eq!(found, 0.0, "{}", case.id);

@@ -1,6 +1,7 @@
-//! Every numbered case at the head of a kernel's file, and of Algorithm 1, is visited by the problems that the other
-//! tests use: the reference cases and the seeded families. Cases are told by the geometry of the input and of the
-//! answer, both in double-double arithmetic; the library is not asked which way it went.
+//! Every numbered case at the head of a kernel's file, and of Algorithm 1, is visited by the
+//! problems that the other tests use: the reference cases and the seeded families. Cases are told
+//! by the geometry of the input and of the answer, both in double-double arithmetic; the library is
+//! not asked which way it went.
 
 use continuum_testing::Random;
 use continuum_testing::certificate::{Exact, Shape};
@@ -15,13 +16,15 @@ use serde::Deserialize;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-/// How often each case was seen: file and name, and the count in reference cases and in seeded problems.
+/// How often each case was seen: file and name, and the count in reference cases and in seeded
+/// problems.
 type Census = BTreeMap<(String, String), [u32; 2]>;
 
 /// The numbered cases at the heads of the files.
 fn numbered_cases() -> BTreeSet<(String, String)> {
     let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
-    let (mut files, mut folders) = (vec![source.join("robot/algorithm_1.rs")], vec![source.join("distance")]);
+    let (mut files, mut folders) =
+        (vec![source.join("robot/algorithm_1.rs")], vec![source.join("distance")]);
     while let Some(folder) = folders.pop() {
         let entries = std::fs::read_dir(folder).expect("a directory of kernels");
         let paths = entries.map(|entry| entry.expect("an entry").path());
@@ -34,7 +37,8 @@ fn numbered_cases() -> BTreeSet<(String, String)> {
         let name = file.file_stem().expect("a name").to_string_lossy().into_owned();
         let text = std::fs::read_to_string(&file).expect("source text");
         for line in text.lines().filter_map(|line| line.strip_prefix("//! ")) {
-            let numbered = line.split_once(". **").filter(|(number, _)| number.parse::<u32>().is_ok());
+            let numbered =
+                line.split_once(". **").filter(|(number, _)| number.parse::<u32>().is_ok());
             if let Some((case, _)) = numbered.and_then(|(_, rest)| rest.split_once("**")) {
                 cases.insert((name.clone(), case.trim_end_matches('.').to_owned()));
             }
@@ -166,7 +170,8 @@ impl View {
         let slope = l * l + m * (one - radius.over(rho)) + (radius * turn * turn).over(rho);
         let from_left = if zero.lt(slope) { (radius * n).over(rho) / slope } else { top };
         let k = (radius * m * m.sqrt()).over(tau);
-        let x = ((k - one) * (k + one)).max(zero).sqrt() + exact((n + n).over(tau).rounded().cbrt());
+        let x =
+            ((k - one) * (k + one)).max(zero).sqrt() + exact((n + n).over(tau).rounded().cbrt());
         let cusp = ((x * tau - n) / m).max((radius * n).over(rho));
         if cusp.lt(from_left) && cusp.lt(top) {
             &["It does not", "Start at the cusp"]
@@ -216,11 +221,14 @@ impl View {
     fn beyond(&self) -> [bool; 2] {
         let axis = self.end - self.start;
         let point = self.triangle[0];
-        [(point - self.start).dot(axis).rounded() < 0.0, (point - self.end).dot(axis).rounded() > 0.0]
+        [
+            (point - self.start).dot(axis).rounded() < 0.0,
+            (point - self.end).dot(axis).rounded() > 0.0,
+        ]
     }
 
-    /// Where the edges' shadows are to the halves of the flat caps' shadows, seen along the edges: if link and triangle
-    /// overlap, and if the cap's shadow is an ellipse.
+    /// Where the edges' shadows are to the halves of the flat caps' shadows, seen along the edges:
+    /// if link and triangle overlap, and if the cap's shadow is an ellipse.
     fn ellipses(&self, mut seen: impl FnMut(&str, &str)) {
         let (Self { triangle, start, end, .. }, radius) = (self, exact(self.radius));
         let flat = triangle_modified_cylinder(*triangle, *start, *end, radius, [true; 2]);
@@ -272,7 +280,11 @@ impl View {
         let (ends, beyond) = (self.axis_ends(), self.beyond());
         for flat in [[true; 2], [false; 2], [true, false], [false, true]] {
             let at_flat = (0..2).any(|end| ends[end] && flat[end]);
-            let case = if at_flat { "Beyond a flat cap" } else { "Beside the barrel or beyond a round cap" };
+            let case = if at_flat {
+                "Beyond a flat cap"
+            } else {
+                "Beside the barrel or beyond a round cap"
+            };
             seen("triangle_modified_cylinder", case);
             if !at_flat && self.off(apart) {
                 seen("foot", if apart.le(exact(self.radius)) { "Overlapping" } else { "Apart" });
@@ -313,7 +325,8 @@ fn walk(points: &[Vector], radii: &[f64]) -> Vec<(&'static str, bool)> {
     cases
 }
 
-/// Counts the cases of both walks along a robot and checks that the chain has the caps that belong to them.
+/// Counts the cases of both walks along a robot and checks that the chain has the caps that belong
+/// to them.
 fn count_caps(robot: &Robot, mut seen: impl FnMut(&str, &str)) {
     let mut points: Vec<_> = robot.points.iter().map(|&point| Vector::from(point)).collect();
     let mut radii = robot.segment_radius.clone();
@@ -330,7 +343,13 @@ fn count_caps(robot: &Robot, mut seen: impl FnMut(&str, &str)) {
         }
         for ((case, round), cap) in walk(&points, &radii).into_iter().zip(caps) {
             seen("algorithm_1", case);
-            assert_eq!(cap == Cap::Round, round, "{case}: {:?} {:?}", robot.points, robot.segment_radius);
+            assert_eq!(
+                cap == Cap::Round,
+                round,
+                "{case}: {:?} {:?}",
+                robot.points,
+                robot.segment_radius
+            );
         }
     }
 }

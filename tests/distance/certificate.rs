@@ -1,5 +1,6 @@
-//! Every kernel's answers, on random problems of the kinds that break distance code, lie within bounds that prove
-//! themselves: two points that lie in the shapes, and a plane that separates them.
+//! Every kernel's answers, on random problems of the kinds that break distance code, lie within
+//! bounds that prove themselves: two points that lie in the shapes, and a plane that separates
+//! them.
 
 use continuum_testing::Random;
 use continuum_testing::certificate::{Bounds, Exact, Shape, certify, directions, shapes};
@@ -35,7 +36,12 @@ struct Seen {
 }
 
 impl Seen {
-    fn count(&mut self, [triangle, link]: &[Shape; 2], closest: &Closest<DoubleDouble>, extent: f64) {
+    fn count(
+        &mut self,
+        [triangle, link]: &[Shape; 2],
+        closest: &Closest<DoubleDouble>,
+        extent: f64,
+    ) {
         let distance = closest.distance.rounded();
         if distance == 0.0 {
             self.meet += 1;
@@ -48,15 +54,20 @@ impl Seen {
             let edges = [[0, 1], [1, 2], [2, 0]].map(|pair| pair.map(|i| corners[i]).to_vec());
             if corners.iter().any(|&corner| near((closest.point1 - corner).norm())) {
                 self.on_vertex += 1;
-            } else if edges.into_iter().any(|edge| near(Shape::Hull(edge).distance_to(closest.point1))) {
+            } else if edges
+                .into_iter()
+                .any(|edge| near(Shape::Hull(edge).distance_to(closest.point1)))
+            {
                 self.on_edge += 1;
             } else {
                 self.on_face += 1;
             }
         }
         if let Shape::Link { ends, axis, radius, flat } = link {
-            let heights = [(closest.point2 - ends[0]).dot(-*axis), (closest.point2 - ends[1]).dot(*axis)];
-            let rho = (closest.point2 - ends[0] - *axis * (closest.point2 - ends[0]).dot(*axis)).norm();
+            let heights =
+                [(closest.point2 - ends[0]).dot(-*axis), (closest.point2 - ends[1]).dot(*axis)];
+            let rho =
+                (closest.point2 - ends[0] - *axis * (closest.point2 - ends[0]).dot(*axis)).norm();
             match (0..2).find(|&end| near(-heights[end])) {
                 Some(end) if flat[end] && near((rho - *radius).abs()) => self.at_rim += 1,
                 Some(end) if flat[end] => self.over_flat_cap += 1,
@@ -83,7 +94,10 @@ fn check<T: Precision>(input: &Input<T>, worst: &mut [f64; KERNELS.len()], seen:
         let (unit, place) = (T::UNIT * extent, T::UNIT * (extent + far));
         let (shapes, closest) = (&shapes[kernel], &answers[kernel]);
         let fail = |what: &str, error: f64| {
-            panic!("{}, {what}: {error}\n{closest:?}\n{:?}\n{input:?}", KERNELS[kernel], proofs[kernel])
+            panic!(
+                "{}, {what}: {error}\n{closest:?}\n{:?}\n{input:?}",
+                KERNELS[kernel], proofs[kernel]
+            )
         };
 
         // The proof is sharper than the precision under test, down to distances that are 0 to it.
@@ -135,8 +149,14 @@ fn check_random<T: Precision>(each: u32, finest: f64) {
     println!("{seen:?}");
     let all = f64::from(each * Family::ALL.len() as u32 * 4);
     let Seen { apart, meet, close, on_vertex, on_edge, on_face, .. } = seen;
-    let shares =
-        [(apart, 0.5), (meet, 0.1), (close, 0.01), (on_vertex, 0.1), (on_edge, 0.1), (on_face, 0.02)];
+    let shares = [
+        (apart, 0.5),
+        (meet, 0.1),
+        (close, 0.01),
+        (on_vertex, 0.1),
+        (on_edge, 0.1),
+        (on_face, 0.02),
+    ];
     let Seen { beside_barrel, at_rim, over_flat_cap, at_round_cap, .. } = seen;
     let more = [(beside_barrel, 0.1), (at_rim, 0.1), (over_flat_cap, 0.01), (at_round_cap, 0.1)];
     for (count, least) in shares.into_iter().chain(more) {
@@ -170,7 +190,8 @@ fn answers_on_the_integer_lattice_lie_within_proven_bounds() {
     assert!(seen.meet > 5_000 && seen.apart > 5_000, "{seen:?}");
 }
 
-/// A segment parallel to a disc that passes over it just inside its rim: tau and N are 0 or rounding noise.
+/// A segment parallel to a disc that passes over it just inside its rim: tau and N are 0 or
+/// rounding noise.
 #[test]
 fn a_lattice_segment_that_passes_just_inside_the_rim() {
     let (a, e) = (Vec3::new(-1.0, 1.0, -1.0), Vec3::new(3.0, 1.0, -1.0));
@@ -183,9 +204,9 @@ fn a_lattice_segment_that_passes_just_inside_the_rim() {
     assert!((f64::from(single) - expected).abs() <= 16.0 * f32::UNIT * 3.0, "{single}");
 }
 
-/// Both ends of a link far shorter than the rounding of its distance are equally near. The answer must be that of the
-/// end that faces the triangle: here a flat cap of radius 1 under the plane z = 1 + x / 2, whose nearest point is the
-/// rim's (-1, 0, 0), at 0.5 / sqrt(1.25).
+/// Both ends of a link far shorter than the rounding of its distance are equally near. The answer
+/// must be that of the end that faces the triangle: here a flat cap of radius 1 under the plane z =
+/// 1 + x / 2, whose nearest point is the rim's (-1, 0, 0), at 0.5 / sqrt(1.25).
 #[test]
 fn the_flat_cap_of_a_link_shorter_than_rounding_decides() {
     fn check<T: Precision>(length: f64) {

@@ -1,8 +1,11 @@
-//! Links with flat caps that overlap something deeply, placed as scenes are made: level ends, one axis, one plane, edge-on.
-//! What is computed of faces that lie in one plane is rounding, which must not part them.
+//! Links with flat caps that overlap something deeply, placed as scenes are made: level ends, one
+//! axis, one plane, edge-on. What is computed of faces that lie in one plane is rounding, which
+//! must not part them.
 
 use continuum_testing::Random;
-use continuum_testing::narrow_phase::{modified_cylinder_modified_cylinder, triangle_modified_cylinder};
+use continuum_testing::narrow_phase::{
+    modified_cylinder_modified_cylinder, triangle_modified_cylinder,
+};
 use continuum_testing::precision::{Precision, extent, vector};
 use parry_continuum::distance::{Closest, point_modified_cylinder, point_triangle};
 use parry_continuum::parry::math::{Pose, Vector};
@@ -74,7 +77,8 @@ fn links(random: &mut Random, kind: usize) -> ([Link; 2], Vector) {
     let aside = radii[0] + radii[1] - 2.0 * less * random.between(0.1, 1.0);
     let first = [Vector::ZERO, Vector::Z * length];
     // Half way between the two barrels, on the side of the thinner.
-    let between = Vector::X * (0.5 * ((aside - radii[1]).max(-radii[0]) + radii[0].min(aside + radii[1])));
+    let between =
+        Vector::X * (0.5 * ((aside - radii[1]).max(-radii[0]) + radii[0].min(aside + radii[1])));
     let (second, place) = match kind {
         // Level at both ends, at the start, at the end of different lengths, and anywhere.
         0 => ([0.0, length], 0.5 * length),
@@ -86,8 +90,8 @@ fn links(random: &mut Random, kind: usize) -> ([Link; 2], Vector) {
         }
         // On one axis: the end of the one is in the other, or faces lie in one plane.
         4 => {
-            let shift =
-                [0.0, length - other, random.between(-0.8 * other, 0.8 * length)][random.below(3) as usize];
+            let shift = [0.0, length - other, random.between(-0.8 * other, 0.8 * length)]
+                [random.below(3) as usize];
             ([shift, shift + other], 0.5 * (shift.max(0.0) + length.min(shift + other)))
         }
         _ => ([0.0; 2], 0.0),
@@ -98,7 +102,11 @@ fn links(random: &mut Random, kind: usize) -> ([Link; 2], Vector) {
         4 => (second.map(along), along(place)),
         // Across the first, with an end or the middle on its axis; at its cap or not.
         5 | 6 => {
-            let at = if kind == 5 { length + radii[1] * random.between(-0.9, 0.3) } else { 0.5 * length };
+            let at = if kind == 5 {
+                length + radii[1] * random.between(-0.9, 0.3)
+            } else {
+                0.5 * length
+            };
             let from = [0.0, -0.5 * other, -other][random.below(3) as usize];
             let ends = [from, from + other].map(|x| Vector::X * x + along(at));
             let low = (at - radii[1]).max(0.0);
@@ -114,15 +122,16 @@ fn links(random: &mut Random, kind: usize) -> ([Link; 2], Vector) {
         }
         // In any direction from a point of the first.
         _ => {
-            let inside =
-                along(length * random.between(0.1, 0.9)) + Vector::X * (0.8 * radii[0] * random.unit());
+            let inside = along(length * random.between(0.1, 0.9))
+                + Vector::X * (0.8 * radii[0] * random.unit());
             let way = random.direction() * other;
             let share = random.between(0.1, 0.9);
             ([inside - way * share, inside + way * (1.0 - share)], inside)
         }
     };
     let flat = [caps(random), if random.below(3) == 0 { [false; 2] } else { caps(random) }];
-    let pair = [(first, 0), (second, 1)].map(|(axis, k)| Link { axis, radius: radii[k], flat: flat[k] });
+    let pair =
+        [(first, 0), (second, 1)].map(|(axis, k)| Link { axis, radius: radii[k], flat: flat[k] });
     (pair.map(|link| if random.below(2) == 0 { link } else { link.turned() }), inside)
 }
 
@@ -184,13 +193,19 @@ fn link_and_triangle(random: &mut Random, kind: usize) -> (Link, [Vector; 3], Ve
     let wide = random.between(0.1, 3.0);
     let (triangle, inside) = match kind {
         // Through the axis, with one corner, an edge in the plane of the cap.
-        0 => ([at(0.0, 0.0, length), at(wide, 0.0, z), at(-wide, 0.0, z)], at(0.0, 0.0, 0.5 * (z + length))),
+        0 => (
+            [at(0.0, 0.0, length), at(wide, 0.0, z), at(-wide, 0.0, z)],
+            at(0.0, 0.0, 0.5 * (z + length)),
+        ),
         1 => (
             [at(-wide, 0.0, length), at(wide, 0.0, length), at(0.0, 0.0, z)],
             at(0.0, 0.0, 0.5 * (z + length)),
         ),
         // Beside the axis.
-        2 => ([at(-wide, x, length), at(wide, x, length), at(0.0, x, z)], at(0.0, x, 0.5 * (z + length))),
+        2 => (
+            [at(-wide, x, length), at(wide, x, length), at(0.0, x, z)],
+            at(0.0, x, 0.5 * (z + length)),
+        ),
         // From one cap's plane to the other's.
         3 => ([at(x, -wide, 0.0), at(x, wide, 0.0), at(x, 0.0, length)], at(x, 0.0, 0.5 * length)),
         // From the axis at the cap, slanted; level with the cap, within.
@@ -207,7 +222,8 @@ fn link_and_triangle(random: &mut Random, kind: usize) -> (Link, [Vector; 3], Ve
             ([inside + one, inside + two, inside - one - two], inside)
         }
     };
-    let inside = if kind == 4 { (triangle[0] * 6.0 + triangle[1] + triangle[2]) / 8.0 } else { inside };
+    let inside =
+        if kind == 4 { (triangle[0] * 6.0 + triangle[1] + triangle[2]) / 8.0 } else { inside };
     let mut triangle = triangle;
     triangle.rotate_left(random.below(3) as usize);
     let link = if random.below(2) == 0 { link } else { link.turned() };
@@ -225,7 +241,8 @@ fn check_triangle<T: Precision>(link: &Link, triangle: [Vector; 3]) {
     let largest = points.iter().fold(0.0, |most: f64, end| most.max(end.abs().max_element()));
     let slack = 8.0 * T::UNIT * (largest + extent(&points, link.radius));
     let turn = if T::UNIT > f64::EPSILON { 8.0 } else { 1.0 };
-    let beside = point_triangle(<f64 as Precision>::vec3(point), triangle.map(<f64 as Precision>::vec3));
+    let beside =
+        point_triangle(<f64 as Precision>::vec3(point), triangle.map(<f64 as Precision>::vec3));
     for off in [link.is_outside(point), beside.distance] {
         assert!(off <= slack * turn, "{off} of {slack}: {link:?} {triangle:?}");
     }
@@ -238,13 +255,17 @@ fn triangles_deep_in_a_link_meet_it() {
     for round in 0..ROUNDS {
         let kind = round as usize % TRIANGLES;
         let (link, triangle, inside) = link_and_triangle(&mut random, kind);
-        let beside = point_triangle(<f64 as Precision>::vec3(inside), triangle.map(<f64 as Precision>::vec3));
+        let beside = point_triangle(
+            <f64 as Precision>::vec3(inside),
+            triangle.map(<f64 as Precision>::vec3),
+        );
         if link.depth_of(inside) < 1e-3 || beside.distance > 1e-12 {
             continue;
         }
         count[kind] += 1;
         let (pose, size) = placed(&mut random);
-        let (link, triangle) = (link.moved(&pose, size), triangle.map(|corner| (pose * corner) * size));
+        let (link, triangle) =
+            (link.moved(&pose, size), triangle.map(|corner| (pose * corner) * size));
         check_triangle::<f64>(&link, triangle);
         check_triangle::<f32>(&link, triangle);
     }

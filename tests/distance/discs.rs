@@ -13,7 +13,8 @@ fn the_convex_route_is_right_to_rounding_on_every_kind() {
 
 #[test]
 fn the_convex_route_where_it_once_failed() {
-    // Two steps of Halley's method from a start too far to the left of the root, and a step that rounding led astray.
+    // Two steps of Halley's method from a start too far to the left of the root, and a step that
+    // rounding led astray.
     let touching_the_rim = DiscProblem {
         ends: [
             Vector::new(0.3158080279827118, -0.5550690293312073, -0.9345921874046326),
@@ -33,6 +34,9 @@ fn the_convex_route_where_it_once_failed() {
         radius: 1.3460198640823364,
     };
     for problem in [touching_the_rim, flat_to_rounding] {
-        assert!(problem.error::<f32>(segment_disc, problem.distance()) <= 8.0 * f32::UNIT, "{problem:?}");
+        assert!(
+            problem.error::<f32>(segment_disc, problem.distance()) <= 8.0 * f32::UNIT,
+            "{problem:?}"
+        );
     }
 }

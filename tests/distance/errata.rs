@@ -1,6 +1,6 @@
-//! The paper's formulas for segments, discs and planes (sections II and III, A to D) where they err, each beside the
-//! answer that is right. What is printed stands in the test, so that the difference can be seen; a suspicion that
-//! turned out unfounded is here too.
+//! The paper's formulas for segments, discs and planes (sections II and III, A to D) where they
+//! err, each beside the answer that is right. What is printed stands in the test, so that the
+//! difference can be seen; a suspicion that turned out unfounded is here too.
 
 use continuum_testing::Random;
 use continuum_testing::narrow_phase::{segment_disc, triangle_disc};
@@ -33,8 +33,8 @@ fn clamp(x: f64, low: f64, high: f64) -> f64 {
     x.max(low).min(high)
 }
 
-/// (7) and (8) with any of their three repairs: which square goes with which parameter, the order of the inner
-/// bounds, and the sign of e in the last bound. Then the distance at (t, v).
+/// (7) and (8) with any of their three repairs: which square goes with which parameter, the order
+/// of the inner bounds, and the sign of e in the last bound. Then the distance at (t, v).
 fn paper_segments(s: [V; 2], u: [V; 2], squares: bool, order: bool, sign: bool) -> f64 {
     let (e1, e2, w) = (s[1] - s[0], u[0] - u[1], s[0] - u[0]);
     let (a, b, c, d, e) = (e1.dot(e1), e1.dot(e2), e2.dot(e2), e1.dot(w), e2.dot(w));
@@ -45,7 +45,8 @@ fn paper_segments(s: [V; 2], u: [V; 2], squares: bool, order: bool, sign: bool) 
     };
     let (for_t, for_v) = if squares { (a, c) } else { (c, a) };
     let t = parameter((e * b - d * c) / determinant, for_t, -d, -(d + b));
-    let v = parameter((d * b - e * a) / determinant, for_v, -e, if sign { -(e + b) } else { b - e });
+    let v =
+        parameter((d * b - e * a) / determinant, for_v, -e, if sign { -(e + b) } else { b - e });
     (w + e1 * t + e2 * v).norm()
 }
 
@@ -78,7 +79,8 @@ fn parallel_segments_need_the_second_parameter_from_the_first() {
     assert_close(segment_segment(s, u).distance, 1.0);
 }
 
-/// Segments that cross at the distance `height`, the tangent of their angle 2^-26, turned without rounding.
+/// Segments that cross at the distance `height`, the tangent of their angle 2^-26, turned without
+/// rounding.
 #[test]
 fn the_determinant_of_5_cancels_for_nearly_parallel_segments() {
     let turn = Rotation::new([3, 1, -2, 1]);
@@ -138,21 +140,24 @@ fn squaring_gives_the_quartic_false_roots() {
 
 #[test]
 fn the_quartic_loses_its_leading_coefficient_along_the_normal() {
-    let along = |x: f64, from: f64| segment_disc([v(x, 0.0, from), v(x, 0.0, 2.0)], ORIGIN, Z, 1.0).distance;
+    let along = |x: f64, from: f64| {
+        segment_disc([v(x, 0.0, from), v(x, 0.0, 2.0)], ORIGIN, Z, 1.0).distance
+    };
     assert_close(along(3.0, 1.0), 5.0_f64.sqrt());
     assert_close(along(3.0, -1.0), 2.0);
     assert_close(along(0.5, 1.0), 1.0);
     assert_close(along(0.5, -1.0), 0.0);
 }
 
-/// The distance of a segment from the circle around the origin in the xy plane, by sampling and bisection.
+/// The distance of a segment from the circle around the origin in the xy plane, by sampling and
+/// bisection.
 fn circle_by_search(segment: [V; 2], radius: f64) -> f64 {
     let distance = |s: f64| {
         let p = segment[0] + (segment[1] - segment[0]) * s;
         p.z.hypot(p.x.hypot(p.y) - radius)
     };
-    let best =
-        (0..=400).min_by(|&i, &j| distance(f64::from(i) / 400.0).total_cmp(&distance(f64::from(j) / 400.0)));
+    let best = (0..=400)
+        .min_by(|&i, &j| distance(f64::from(i) / 400.0).total_cmp(&distance(f64::from(j) / 400.0)));
     let (mut centre, mut step) = (f64::from(best.unwrap()) / 400.0, 1.0 / 400.0);
     while step > 1e-12 {
         let next = [centre - step, centre, centre + step].map(|s| s.clamp(0.0, 1.0));
@@ -162,7 +167,8 @@ fn circle_by_search(segment: [V; 2], radius: f64) -> f64 {
     distance(centre)
 }
 
-/// Refuted: (19) was suspected to depend on which point of a segment parallel to the plane is projected.
+/// Refuted: (19) was suspected to depend on which point of a segment parallel to the plane is
+/// projected.
 #[test]
 fn equation_19_holds_for_any_point_of_a_parallel_segment() {
     let mut random = Random::new(19);
@@ -177,14 +183,18 @@ fn equation_19_holds_for_any_point_of_a_parallel_segment() {
             let p = segment[0] + (segment[1] - segment[0]) * s;
             let over_disc = p.x.hypot(p.y) < radius;
             let equation_19 = if over_disc { 1.0 } else { circle_by_search(segment, radius) };
-            assert!((got - equation_19).abs() < 1e-9, "{segment:?} {radius}: {got} for {equation_19}");
+            assert!(
+                (got - equation_19).abs() < 1e-9,
+                "{segment:?} {radius}: {got} for {equation_19}"
+            );
             *(if over_disc { &mut inside } else { &mut outside }) += 1;
         }
     }
     assert!(inside > 80 && outside > 200, "{inside} {outside}");
 }
 
-/// (20) and (21) with any of their three repairs, as the distance from the plane. The disc is Z, R = 1.
+/// (20) and (21) with any of their three repairs, as the distance from the plane. The disc is Z, R
+/// = 1.
 fn paper_plane(point: V, normal: V, projection: bool, sign: bool, clamped: bool) -> f64 {
     let height = normal.dot(point);
     let u = normal - (if projection { Z } else { normal }) * normal.dot(Z);
@@ -236,7 +246,8 @@ fn equation_21_divides_zero_by_zero_when_parallel() {
 fn equation_23_forgets_an_edge() {
     // The printed third edge ends in a fourth vertex; the nearest edge is {1, 2}.
     let triangle = [v(5.0, 0.0, 4.0), v(2.0, -1.0, 0.0), v(2.0, 1.0, 0.0)];
-    let edge = |i: usize, j: usize| segment_disc([triangle[i], triangle[j]], ORIGIN, Z, 1.0).distance;
+    let edge =
+        |i: usize, j: usize| segment_disc([triangle[i], triangle[j]], ORIGIN, Z, 1.0).distance;
     assert!(edge(0, 1).min(edge(0, 2)) > 1.2);
     assert_close(triangle_disc(triangle, ORIGIN, Z, 1.0).distance, 1.0);
 }
@@ -253,13 +264,15 @@ fn equation_25_misses_a_disc_that_pierces_the_interior() {
     assert_close(paper_plane_around(v(0.0, 0.0, 0.3), v(0.8, 0.0, 0.6)), 0.5);
 }
 
-/// (20) and the sign of (21) repaired, the clamp missing: the rim point's distance from the xy plane, R = 1.
+/// (20) and the sign of (21) repaired, the clamp missing: the rim point's distance from the xy
+/// plane, R = 1.
 fn paper_plane_around(centre: V, disc_normal: V) -> f64 {
     let u = Z - disc_normal * Z.dot(disc_normal);
     (centre.z - u.z / u.norm()).abs()
 }
 
-/// With vertex 0 far away the two edges of (22) are nearly parallel, and the height is measured from far away.
+/// With vertex 0 far away the two edges of (22) are nearly parallel, and the height is measured
+/// from far away.
 #[test]
 fn equation_22_loses_digits_on_a_needle() {
     let turn = Rotation::new([3, 1, -2, 1]);

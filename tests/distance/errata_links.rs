@@ -1,5 +1,5 @@
-//! The paper's formulas for capsules and cylinders (section III.E) where they err, each beside the answer that is
-//! right; and a suspicion that turned out unfounded.
+//! The paper's formulas for capsules and cylinders (section III.E) where they err, each beside the
+//! answer that is right; and a suspicion that turned out unfounded.
 
 use crate::errata::{ORIGIN, V, Z, assert_close, v};
 use continuum_testing::Random;
@@ -78,8 +78,8 @@ fn point_link(p: V, length: f64, radius: f64, flat: [bool; 2]) -> f64 {
     }
 }
 
-/// Refuted: the case split of (29) and (33) by the closest axis point was suspected to fail where shapes penetrate
-/// or the radius exceeds the length.
+/// Refuted: the case split of (29) and (33) by the closest axis point was suspected to fail where
+/// shapes penetrate or the radius exceeds the length.
 #[test]
 fn the_case_split_of_29_and_33_is_exact() {
     let mut random = Random::new(29);
@@ -102,7 +102,9 @@ fn the_case_split_of_29_and_33_is_exact() {
         axis_within += u32::from(axis < radius && got > 0.0);
         decided_by_disc += u32::from(got > (axis - radius).max(0.0) + 1e-9);
     }
-    println!("{apart} apart, {meet} meet, {axis_within} near the axis, {decided_by_disc} by a disc");
+    println!(
+        "{apart} apart, {meet} meet, {axis_within} near the axis, {decided_by_disc} by a disc"
+    );
     assert!(apart > 400 && meet > 400 && axis_within > 40 && decided_by_disc > 200);
 }
 
@@ -116,7 +118,8 @@ fn a_round_cap_is_half_a_ball() {
 
 #[test]
 fn a_tie_at_the_end_does_not_fetch_the_disc() {
-    // The vertex touches the barrel 1e-9 before the end; the end is as near to rounding, its disc 1e-9 away.
+    // The vertex touches the barrel 1e-9 before the end; the end is as near to rounding, its disc
+    // 1e-9 away.
     let triangle = [v(1.0, 0.0, 1.0 - 1e-9), v(3.0, 1.0, -2.0), v(3.0, -1.0, -2.0)];
     let at_end = point_triangle(Z, triangle).distance;
     assert_eq!(at_end, 1.0);

@@ -1,5 +1,5 @@
-//! Every kernel is one text for scalars and for packs of them: run on two problems at once, it answers each as if
-//! the other were not there. A branch, or a select that mixes lanes, would show.
+//! Every kernel is one text for scalars and for packs of them: run on two problems at once, it
+//! answers each as if the other were not there. A branch, or a select that mixes lanes, would show.
 
 use continuum_testing::distance_cases;
 use continuum_testing::kernels::{Input, KERNELS};
@@ -126,7 +126,9 @@ impl Scalar for Pair {
 }
 
 fn together(first: &Input<f64>, second: &Input<f64>) -> Input<Pair> {
-    let pair = |a: Vec3<f64>, b: Vec3<f64>| Vec3::new(Pair([a.x, b.x]), Pair([a.y, b.y]), Pair([a.z, b.z]));
+    let pair = |a: Vec3<f64>, b: Vec3<f64>| {
+        Vec3::new(Pair([a.x, b.x]), Pair([a.y, b.y]), Pair([a.z, b.z]))
+    };
     Input {
         triangle: [0, 1, 2].map(|i| pair(first.triangle[i], second.triangle[i])),
         plane_normal: pair(first.plane_normal, second.plane_normal),
@@ -151,8 +153,16 @@ fn two_lanes_give_the_scalar_answers_bit_for_bit() {
                 let lanes = |v: Vec3<Pair>| [v.x, v.y, v.z].map(|x| bits(x.0[lane]));
                 let name = KERNELS[kernel];
                 assert_eq!(bits(pair.distance.0[lane]), bits(scalar.distance), "{name} {case}");
-                assert_eq!(lanes(pair.point1), <[f64; 3]>::from(scalar.point1).map(bits), "{name} {case}");
-                assert_eq!(lanes(pair.point2), <[f64; 3]>::from(scalar.point2).map(bits), "{name} {case}");
+                assert_eq!(
+                    lanes(pair.point1),
+                    <[f64; 3]>::from(scalar.point1).map(bits),
+                    "{name} {case}"
+                );
+                assert_eq!(
+                    lanes(pair.point2),
+                    <[f64; 3]>::from(scalar.point2).map(bits),
+                    "{name} {case}"
+                );
             }
         }
     }
@@ -163,8 +173,10 @@ fn two_lanes_give_the_scalar_answers_bit_for_bit() {
 fn the_lanes_take_different_cases() {
     let inputs: Vec<Input<f64>> = distance_cases().iter().map(Input::from).collect();
     for (kernel, name) in KERNELS.iter().enumerate() {
-        let meets: Vec<_> = inputs.iter().map(|input| input.answers()[kernel].distance == 0.0).collect();
-        let differ = (0..meets.len()).filter(|&i| meets[i] != meets[(i * 7 + 501) % meets.len()]).count();
+        let meets: Vec<_> =
+            inputs.iter().map(|input| input.answers()[kernel].distance == 0.0).collect();
+        let differ =
+            (0..meets.len()).filter(|&i| meets[i] != meets[(i * 7 + 501) % meets.len()]).count();
         assert!(differ > meets.len() / 100, "{name}: {differ}");
     }
 }

@@ -1,5 +1,5 @@
-//! Link against link and disc against disc: references of 30 digits, what must not change when a problem is rewritten, and
-//! other ways to the same distance.
+//! Link against link and disc against disc: references of 30 digits, what must not change when a
+//! problem is rewritten, and other ways to the same distance.
 
 use continuum_testing::Random;
 use continuum_testing::narrow_phase::{
@@ -25,7 +25,11 @@ struct Links {
 
 impl From<&LinkCase> for Links {
     fn from(case: &LinkCase) -> Self {
-        Self { axes: case.links.map(|ends| ends.map(Vector::from)), radii: case.radii, flat: case.flat }
+        Self {
+            axes: case.links.map(|ends| ends.map(Vector::from)),
+            radii: case.radii,
+            flat: case.flat,
+        }
     }
 }
 
@@ -33,7 +37,14 @@ impl Links {
     fn answer<T: Precision>(&self) -> Closest<T> {
         let [axis1, axis2] = self.axes.map(|ends| ends.map(T::vec3));
         let [radius1, radius2] = self.radii.map(T::from_f64);
-        modified_cylinder_modified_cylinder(axis1, radius1, self.flat[0], axis2, radius2, self.flat[1])
+        modified_cylinder_modified_cylinder(
+            axis1,
+            radius1,
+            self.flat[0],
+            axis2,
+            radius2,
+            self.flat[1],
+        )
     }
 
     fn distance(&self) -> f64 {
@@ -70,8 +81,14 @@ impl Links {
     /// How far a point is from one of the links.
     fn beyond(&self, link: usize, point: Vector) -> f64 {
         let [start, end] = self.axes[link].map(<f64 as Precision>::vec3);
-        point_modified_cylinder(Precision::vec3(point), start, end, self.radii[link], self.flat[link])
-            .distance
+        point_modified_cylinder(
+            Precision::vec3(point),
+            start,
+            end,
+            self.radii[link],
+            self.flat[link],
+        )
+        .distance
     }
 }
 
@@ -82,14 +99,25 @@ fn worst<T: Precision>(cases: &[LinkCase]) -> f64 {
         let closest = links.answer::<T>();
         let unit = T::UNIT * case.scale;
         let error = (closest.distance.into() - case.distance()).abs() / unit;
-        assert!(error <= 16.0, "{} {}: {error} units, {closest:?} for {}", case.id, case.cat, case.d);
+        assert!(
+            error <= 16.0,
+            "{} {}: {error} units, {closest:?} for {}",
+            case.id,
+            case.cat,
+            case.d
+        );
         let (point1, point2) = (vector(closest.point1), vector(closest.point2));
         let slack = 8.0 * T::UNIT * (case.mag + case.scale);
         let off = ((point1 - point2).length() - closest.distance.into()).abs();
         assert!(off <= slack, "{} {}: witnesses off by {off}", case.id, case.cat);
         for (link, point) in [(0, point1), (1, point2)] {
             let beyond = links.beyond(link, point);
-            assert!(beyond <= slack, "{} {}: witness {link} is {beyond} outside", case.id, case.cat);
+            assert!(
+                beyond <= slack,
+                "{} {}: witness {link} is {beyond} outside",
+                case.id,
+                case.cat
+            );
         }
         worst = worst.max(error);
     }
@@ -149,8 +177,8 @@ fn every_reference_through_parrys_dispatcher() {
     assert!(touching > 600 && parrys > 200, "{touching} {parrys}");
 }
 
-/// Moved together by a little more than they are apart, links overlap: then the distance is 0, but for what rounding says of
-/// faces that lie in one plane.
+/// Moved together by a little more than they are apart, links overlap: then the distance is 0, but
+/// for what rounding says of faces that lie in one plane.
 #[test]
 fn links_that_overlap_meet() {
     let (mut overlapping, mut missed) = (0, 0);
@@ -243,13 +271,15 @@ fn a_wire_is_as_far_as_a_flat_triangle() {
         links.radii[1] = 0.0;
         let [[start, end], [from, to]] = links.axes.map(|ends| ends.map(<f64 as Precision>::vec3));
         let expected =
-            triangle_modified_cylinder([from, to, to], start, end, links.radii[0], links.flat[0]).distance;
+            triangle_modified_cylinder([from, to, to], start, end, links.radii[0], links.flat[0])
+                .distance;
         let off = (links.distance() - expected).abs() / (UNIT * links.extent());
         assert!(off <= 16.0, "{off} units: {links:?}");
     }
 }
 
-/// Points of one disc, none of which is nearer to the other than the discs are, and some of which are nearly as near.
+/// Points of one disc, none of which is nearer to the other than the discs are, and some of which
+/// are nearly as near.
 #[test]
 fn discs_are_as_far_as_their_nearest_chords() {
     let mut random = Random::new(5);
@@ -267,7 +297,8 @@ fn discs_are_as_far_as_their_nearest_chords() {
         let chords = 400;
         let mut least = f64::INFINITY;
         for k in 0..=chords {
-            let (sin, cos) = (std::f64::consts::PI * (f64::from(k) / f64::from(chords) - 0.5)).sin_cos();
+            let (sin, cos) =
+                (std::f64::consts::PI * (f64::from(k) / f64::from(chords) - 0.5)).sin_cos();
             let ends = [1.0, -1.0].map(|side| (across * sin + along * (cos * side)) * radii[0]);
             let ends = ends.map(<f64 as Precision>::vec3);
             least = least.min(segment_disc(ends, to, n2, radii[1]).distance);
@@ -282,20 +313,28 @@ fn discs_are_as_far_as_their_nearest_chords() {
     assert!(crossing > 30 && apart > 200, "{crossing} {apart}");
 }
 
-/// Where a disc's centre is not off to one side of the other's, a number that only weighs a sign vanishes.
+/// Where a disc's centre is not off to one side of the other's, a number that only weighs a sign
+/// vanishes.
 #[test]
 fn aligned_discs_and_links_are_as_far_as_they_are() {
     let discs = |[normal1, normal2]: [Vector; 2], radii: [f64; 2], centre: Vector| {
-        let [zero, to, n1, n2] = [Vector::ZERO, centre, normal1, normal2].map(<f64 as Precision>::vec3);
-        [disc_disc(zero, n1, radii[0], to, n2, radii[1]), disc_disc(to, n2, radii[1], zero, n1, radii[0])]
-            .map(|closest| closest.distance)
+        let [zero, to, n1, n2] =
+            [Vector::ZERO, centre, normal1, normal2].map(<f64 as Precision>::vec3);
+        [
+            disc_disc(zero, n1, radii[0], to, n2, radii[1]),
+            disc_disc(to, n2, radii[1], zero, n1, radii[0]),
+        ]
+        .map(|closest| closest.distance)
     };
     assert_eq!(discs([Vector::Z, Vector::X], [2.0, 2.0], Vector::new(2.0, 1.5, 0.0)), [0.0; 2]);
     assert_eq!(discs([Vector::Z, Vector::X], [2.0, 2.0], Vector::new(4.0, 1.5, 0.0)), [2.0; 2]);
     // Found by alternating projections.
-    for (a, f, radius, expected) in
-        [(0.75, 1.75, 1.5, 0.0), (1.0, 1.75, 2.0, 0.0178), (1.0, 1.75, 1.5, 0.1485), (1.5, 1.75, 2.0, 0.7199)]
-    {
+    for (a, f, radius, expected) in [
+        (0.75, 1.75, 1.5, 0.0),
+        (1.0, 1.75, 2.0, 0.0178),
+        (1.0, 1.75, 1.5, 0.1485),
+        (1.5, 1.75, 2.0, 0.7199),
+    ] {
         let first = [Vector::Z * -4.0, Vector::ZERO];
         let second = [Vector::new(a, f, a), Vector::new(a + 4.0, f, a + 4.0)];
         let links = Links { axes: [first, second], radii: [2.0, radius], flat: [[true; 2]; 2] };
@@ -304,7 +343,8 @@ fn aligned_discs_and_links_are_as_far_as_they_are() {
         }
     }
     let mut random = Random::new(6);
-    let axes = [Vector::X, Vector::Y, Vector::Z, Vector::new(1.0, 0.0, 1.0), Vector::new(0.0, 1.0, -1.0)];
+    let axes =
+        [Vector::X, Vector::Y, Vector::Z, Vector::new(1.0, 0.0, 1.0), Vector::new(0.0, 1.0, -1.0)];
     let mut tilted = 0;
     for _ in 0..12_000 {
         let normals = [0; 2].map(|_| axes[random.below(5) as usize]);
@@ -312,7 +352,10 @@ fn aligned_discs_and_links_are_as_far_as_they_are() {
         let centre = (random.point() * 6.0).round() / 2.0;
         let [one, other] = discs(normals, radii, centre);
         let extent = centre.abs().max_element().max(radii[0]).max(radii[1]);
-        assert!((one - other).abs() <= 32.0 * UNIT * extent, "{one} {other}: {normals:?} {radii:?} {centre}");
+        assert!(
+            (one - other).abs() <= 32.0 * UNIT * extent,
+            "{one} {other}: {normals:?} {radii:?} {centre}"
+        );
         tilted += u32::from(normals[0].cross(normals[1]) != Vector::ZERO && one > 0.0);
     }
     assert!(tilted > 4000, "{tilted}");

@@ -1,4 +1,5 @@
-//! What must not change, or must change in a known way, when a problem is rewritten. No reference is needed.
+//! What must not change, or must change in a known way, when a problem is rewritten. No reference
+//! is needed.
 
 use continuum_testing::Random;
 use continuum_testing::kernels::{Input, KERNELS};
@@ -35,7 +36,10 @@ fn whole_extent(problem: &Problem) -> f64 {
 /// Asserts that two distances agree within so many units of the extent.
 #[track_caller]
 fn assert_same(what: &str, problem: &Problem, got: f64, expected: f64, unit: f64) {
-    assert!((got - expected).abs() <= 16.0 * unit, "{what}: {got} for {expected}, unit {unit}\n{problem:?}");
+    assert!(
+        (got - expected).abs() <= 16.0 * unit,
+        "{what}: {got} for {expected}, unit {unit}\n{problem:?}"
+    );
 }
 
 fn link(problem: &Problem, flat: [bool; 2]) -> f64 {
@@ -57,7 +61,13 @@ fn swapping_ends_or_arguments_changes_nothing() {
         let ([a, b, c], s, e) = (triangle.map(vec3), vec3(start), vec3(end));
         let turned = Problem { start: end, end: start, ..problem };
         for flat in CAPS {
-            assert_same("link", &problem, link(&turned, [flat[1], flat[0]]), link(&problem, flat), unit);
+            assert_same(
+                "link",
+                &problem,
+                link(&turned, [flat[1], flat[0]]),
+                link(&problem, flat),
+                unit,
+            );
         }
         let expected = segment_segment([s, e], [a, b]).distance;
         for other in [
@@ -73,8 +83,20 @@ fn swapping_ends_or_arguments_changes_nothing() {
         assert_same("segment", &problem, segment_triangle([e, s], tri).distance, expected, unit);
         let normal = vec3(end - start);
         let expected = segment_disc([a, b], e, normal, radius).distance;
-        assert_same("disc", &problem, segment_disc([b, a], e, normal, radius).distance, expected, unit);
-        assert_same("disc", &problem, segment_disc([a, b], e, -normal, radius).distance, expected, unit);
+        assert_same(
+            "disc",
+            &problem,
+            segment_disc([b, a], e, normal, radius).distance,
+            expected,
+            unit,
+        );
+        assert_same(
+            "disc",
+            &problem,
+            segment_disc([a, b], e, -normal, radius).distance,
+            expected,
+            unit,
+        );
     }
 }
 
@@ -104,7 +126,8 @@ fn the_order_of_vertices_changes_nothing() {
     }
 }
 
-/// A rotation turns every number's rounding; so the ends of a short link turn its flat caps by u extent / length.
+/// A rotation turns every number's rounding; so the ends of a short link turn its flat caps by u
+/// extent / length.
 #[test]
 fn a_rigid_motion_changes_no_distance() {
     let mut random = Random::new(3);
@@ -169,7 +192,8 @@ fn powers_of_two_scale_every_kernel_bit_for_bit_in_double_precision() {
     let mut compared = [0; 16];
     for problem in problems(4, 20) {
         let input = Input::from(&problem);
-        let exponents = [-960, -700, -300, -150, -40, -13, -2, -1, 1, 2, 13, 40, 150, 300, 700, 960];
+        let exponents =
+            [-960, -700, -300, -150, -40, -13, -2, -1, 1, 2, 13, 40, 150, 300, 700, 960];
         for (i, exponent) in exponents.into_iter().enumerate() {
             let factor = 2.0_f64.powi(exponent);
             let is_exact = |x: f64| x == 0.0 || (x.is_normal() && (x * factor).is_normal());
@@ -208,7 +232,10 @@ fn capsules_bound_modified_cylinders_bound_cylinders() {
             assert!(k <= mixed + slack && mixed <= z + slack, "{k} {mixed} {z}\n{problem:?}");
             capsule_nearer[end] += u32::from(k < mixed);
         }
-        assert!(z <= axis + slack && axis <= k + problem.radius + slack, "{z} {axis} {k}\n{problem:?}");
+        assert!(
+            z <= axis + slack && axis <= k + problem.radius + slack,
+            "{z} {axis} {k}\n{problem:?}"
+        );
     }
     println!("{capsule_nearer:?}");
     assert!(capsule_nearer.iter().all(|&count| count > 500), "{capsule_nearer:?}");
@@ -225,13 +252,16 @@ fn the_parts_of_a_triangle_are_as_near_as_the_whole() {
         let parts = [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]];
         for flat in CAPS {
             let whole = link(&problem, flat);
-            let least =
-                parts.map(|part| link_of(part, &problem, flat)).into_iter().fold(f64::INFINITY, f64::min);
+            let least = parts
+                .map(|part| link_of(part, &problem, flat))
+                .into_iter()
+                .fold(f64::INFINITY, f64::min);
             assert_same("parts", &problem, least, whole, unit);
         }
         let normal = vec3(problem.end - problem.start);
-        let disc =
-            |t: [Vector; 3]| triangle_disc(t.map(vec3), vec3(problem.end), normal, problem.radius).distance;
+        let disc = |t: [Vector; 3]| {
+            triangle_disc(t.map(vec3), vec3(problem.end), normal, problem.radius).distance
+        };
         let least = parts.map(disc).into_iter().fold(f64::INFINITY, f64::min);
         assert_same("parts", &problem, least, disc(problem.triangle), unit);
     }
@@ -247,13 +277,17 @@ fn a_shape_within_another_is_never_nearer() {
         let wider = Problem { radius: problem.radius * (1.0 + random.unit()), ..problem };
         // The old end lies beside the longer axis by rounding, and a short link's caps turn by it.
         let far = problem.points().iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
-        let turned_caps = if axis == Vector::ZERO { 1.0 } else { 1.0 + problem.radius / axis.length() };
+        let turned_caps =
+            if axis == Vector::ZERO { 1.0 } else { 1.0 + problem.radius / axis.length() };
         for flat in CAPS {
             let distance = link(&problem, flat);
             for larger in [longer, wider] {
                 let got = link(&larger, flat);
                 let slack = 16.0 * UNIT * (whole_extent(&larger) + far) * turned_caps;
-                assert!(got <= distance + slack, "{got} for at most {distance}\n{problem:?}\n{larger:?}");
+                assert!(
+                    got <= distance + slack,
+                    "{got} for at most {distance}\n{problem:?}\n{larger:?}"
+                );
                 nearer += u32::from(got < distance);
             }
         }
@@ -294,7 +328,11 @@ fn check_finite<T: Scalar + Into<f64> + std::fmt::Debug>(input: &Input<T>, limit
         for number in numbers(closest) {
             let number: f64 = number.into();
             assert!(!number.is_nan(), "{}: {closest:?}\n{input:?}", KERNELS[kernel]);
-            assert!(number.is_finite() || largest > limit, "{}: {closest:?}\n{input:?}", KERNELS[kernel]);
+            assert!(
+                number.is_finite() || largest > limit,
+                "{}: {closest:?}\n{input:?}",
+                KERNELS[kernel]
+            );
         }
         assert!(closest.distance.into() >= 0.0, "{}: {closest:?}\n{input:?}", KERNELS[kernel]);
     }

@@ -1,11 +1,15 @@
-//! Cap slivers: obtuse triangles whose three vertices are nearly collinear, as meshes of thin surfaces have them.
-//! What lies above their interior is at the distance of their plane, and that plane is hard to compute.
+//! Cap slivers: obtuse triangles whose three vertices are nearly collinear, as meshes of thin
+//! surfaces have them. What lies above their interior is at the distance of their plane, and that
+//! plane is hard to compute.
 //!
-//! The expected distance is the textbook's height above a plane, taken in double-double arithmetic from the very
-//! numbers that the kernel gets; so is the proof that the sample projects inside the face.
+//! The expected distance is the textbook's height above a plane, taken in double-double arithmetic
+//! from the very numbers that the kernel gets; so is the proof that the sample projects inside the
+//! face.
 
 use continuum_testing::Random;
-use continuum_testing::narrow_phase::{segment_triangle, triangle_disc, triangle_modified_cylinder};
+use continuum_testing::narrow_phase::{
+    segment_triangle, triangle_disc, triangle_modified_cylinder,
+};
 use continuum_testing::precision::{Precision, extent, vector};
 use parry_continuum::distance::*;
 use parry_continuum::parry::math::Vector;
@@ -38,7 +42,12 @@ impl<T: Precision> Sliver<T> {
         let triangle = [0, 1, 2].map(|i| T::vec3(corners[(first + i) % 3]));
         let [p, q, r] = triangle.map(exact);
         let normal = (q - p).cross(r - p);
-        Self { triangle, apex: p, edges: [q - p, r - p], normal: normal * (lit(1.0) / normal.norm()) }
+        Self {
+            triangle,
+            apex: p,
+            edges: [q - p, r - p],
+            normal: normal * (lit(1.0) / normal.norm()),
+        }
     }
 
     /// A point at this height above some point of the interior.
@@ -89,7 +98,8 @@ struct Errors {
 }
 
 impl Errors {
-    /// Checks a distance whose exact value is `expected` if the point that is the `nearest` is above the interior.
+    /// Checks a distance whose exact value is `expected` if the point that is the `nearest` is
+    /// above the interior.
     fn check<T: Precision>(
         &mut self,
         sliver: &Sliver<T>,
@@ -115,7 +125,8 @@ impl Errors {
     }
 }
 
-/// Runs a check on slivers down to the height/length 10^`finest` and asserts that most samples served.
+/// Runs a check on slivers down to the height/length 10^`finest` and asserts that most samples
+/// served.
 fn on_slivers<T: Precision>(
     finest: f64,
     per_sliver: u32,
@@ -162,8 +173,11 @@ fn segments<T: Precision>(finest: f64) {
             let end = rounded::<T>(end);
             let ends = [exact(low), exact(end)];
             let heights = ends.map(|end| sliver.height(end));
-            let (nearest, expected) =
-                if heights[1].lt(heights[0]) { (ends[1], heights[1]) } else { (ends[0], heights[0]) };
+            let (nearest, expected) = if heights[1].lt(heights[0]) {
+                (ends[1], heights[1])
+            } else {
+                (ends[0], heights[0])
+            };
             let closest = segment_triangle([end, low], sliver.triangle);
             errors.check(sliver, nearest, expected, &[low, end], zero, closest);
         }
@@ -182,12 +196,21 @@ fn segments_above_and_through_the_interior() {
     segments::<f32>(-4.5);
 }
 
-/// A disc whose lowest point is above the interior, parallel to the face or tilted any way: centre and radius
-/// rounded, and a point along its axis on the upper side.
-fn disc<T: Precision>(random: &mut Random, sliver: &Sliver<T>, height: f64) -> (Vec3<T>, Vec3<T>, T) {
-    let tilt = [0.0, random.magnitude(-6.0, 0.0), random.between(0.0, 1.4)][random.below(3) as usize];
+/// A disc whose lowest point is above the interior, parallel to the face or tilted any way: centre
+/// and radius rounded, and a point along its axis on the upper side.
+fn disc<T: Precision>(
+    random: &mut Random,
+    sliver: &Sliver<T>,
+    height: f64,
+) -> (Vec3<T>, Vec3<T>, T) {
+    let tilt =
+        [0.0, random.magnitude(-6.0, 0.0), random.between(0.0, 1.4)][random.below(3) as usize];
     let radius = random.magnitude(-3.0, 0.0);
-    let up = Vector::new(sliver.normal.x.rounded(), sliver.normal.y.rounded(), sliver.normal.z.rounded());
+    let up = Vector::new(
+        sliver.normal.x.rounded(),
+        sliver.normal.y.rounded(),
+        sliver.normal.z.rounded(),
+    );
     let downhill = random.perpendicular_to(up);
     let (sin, cos) = tilt.sin_cos();
     let lowest = sliver.above(random, height);
@@ -233,7 +256,8 @@ fn piercing_discs<T: Precision>(finest: f64) {
         let crossing = exact(centre) - up * (sliver.height(exact(centre)) / up.norm_squared());
         let closest = triangle_disc(sliver.triangle, centre, rounded(normal), radius);
         errors.check(sliver, crossing, DoubleDouble::ZERO, &[centre], radius, closest);
-        let closest = triangle_modified_cylinder(sliver.triangle, centre, tip, radius, [true, true]);
+        let closest =
+            triangle_modified_cylinder(sliver.triangle, centre, tip, radius, [true, true]);
         errors.check(sliver, crossing, DoubleDouble::ZERO, &[centre, tip], radius, closest);
     });
 }
@@ -247,12 +271,17 @@ fn discs_that_pierce_the_interior() {
 fn links<T: Precision>(finest: f64) {
     on_slivers::<T>(finest, 4, |random, sliver, height, errors| {
         let (centre, tip, radius) = disc::<T>(random, sliver, height);
-        let lowest = sliver.lowest(exact(centre), unit(exact(tip) - exact(centre)), lit(radius.into()));
+        let lowest =
+            sliver.lowest(exact(centre), unit(exact(tip) - exact(centre)), lit(radius.into()));
         for other in [false, true] {
             for turned in [false, true] {
-                let (ends, flat) =
-                    if turned { ([tip, centre], [other, true]) } else { ([centre, tip], [true, other]) };
-                let closest = triangle_modified_cylinder(sliver.triangle, ends[0], ends[1], radius, flat);
+                let (ends, flat) = if turned {
+                    ([tip, centre], [other, true])
+                } else {
+                    ([centre, tip], [true, other])
+                };
+                let closest =
+                    triangle_modified_cylinder(sliver.triangle, ends[0], ends[1], radius, flat);
                 // A round tip may be lower than the flat end, which is then not asked.
                 let ball = sliver.height(exact(tip)) - lit(radius.into());
                 if other || sliver.height(lowest).lt(ball) {
@@ -267,7 +296,8 @@ fn links<T: Precision>(finest: f64) {
                 let expected = sliver.height(exact(start)) - lit(ball.into());
                 let other_end = sliver.height(exact(end)) - lit(ball.into());
                 if expected.lt(other_end) {
-                    let closest = triangle_modified_cylinder(sliver.triangle, ends[0], ends[1], ball, flat);
+                    let closest =
+                        triangle_modified_cylinder(sliver.triangle, ends[0], ends[1], ball, flat);
                     errors.check(sliver, exact(start), expected, &ends, ball, closest);
                 }
             }
@@ -283,17 +313,28 @@ fn links_whose_lowest_point_is_above_the_interior() {
 
 fn vanishing<T: Precision>(lengths: std::ops::Range<i32>, widths: std::ops::Range<i32>) {
     let end = Vector::new(0.0, 0.5, -0.5);
-    for (length, width) in lengths.flat_map(|length| widths.clone().map(move |width| (length, width))) {
+    for (length, width) in
+        lengths.flat_map(|length| widths.clone().map(move |width| (length, width)))
+    {
         let (far, thin) = (2.0_f64.powi(length), 2.0_f64.powi(-width));
         let triangle = [Vector::splat(thin), Vector::X * thin, Vector::splat(0.5)].map(T::vec3);
         let start = T::vec3(Vector::new(far, thin, 0.0));
         for flat in [[true; 2], [false; 2], [true, false], [false, true]] {
             for radius in [0.0, 0.125] {
-                let found =
-                    triangle_modified_cylinder(triangle, start, T::vec3(end), T::from_f64(radius), flat);
-                // The end's foot is the corner at the origin, and the cap's nearest point has the same foot.
+                let found = triangle_modified_cylinder(
+                    triangle,
+                    start,
+                    T::vec3(end),
+                    T::from_f64(radius),
+                    flat,
+                );
+                // The end's foot is the corner at the origin, and the cap's nearest point has the
+                // same foot.
                 let error = (found.distance.into() - (0.5_f64.sqrt() - radius)).abs();
-                assert!(error <= 16.0 * T::UNIT * far, "2^{length}, 2^-{width}, {flat:?}, {radius}: {error}");
+                assert!(
+                    error <= 16.0 * T::UNIT * far,
+                    "2^{length}, 2^-{width}, {flat:?}, {radius}: {error}"
+                );
             }
         }
     }
@@ -305,7 +346,8 @@ fn slivers_whose_width_is_lost_beside_a_long_link() {
     vanishing::<f32>(8..16, 26..50);
 }
 
-/// A wire that passes a sliver right where its two long sides would meet again beyond the sharp corner touches nothing.
+/// A wire that passes a sliver right where its two long sides would meet again beyond the sharp
+/// corner touches nothing.
 fn beyond_the_sharp_corner<T: Precision>() {
     let mut random = Random::new(11);
     let (mut beside, mut through) = (0, 0);
@@ -314,18 +356,25 @@ fn beyond_the_sharp_corner<T: Precision>() {
         let width = random.perpendicular_to(length);
         let height = 2.0_f64.powi(-(random.below(60) as i32));
         let apex = length * random.between(0.01, 0.99) + width * height;
-        let gap = 2.0_f64.powi(-(2 + random.below(20) as i32)) * [1.0, -1.0][random.below(2) as usize];
+        let gap =
+            2.0_f64.powi(-(2 + random.below(20) as i32)) * [1.0, -1.0][random.below(2) as usize];
         let crossing = length * (1.0 + gap);
         let along = length.cross(width) + width * random.between(-1.0, 1.0);
         let mut triangle = [Vector::ZERO, length, apex];
         triangle.rotate_left(random.below(3) as usize);
-        let wire = [crossing - along * random.between(0.2, 2.0), crossing + along * random.between(0.2, 2.0)];
+        let wire = [
+            crossing - along * random.between(0.2, 2.0),
+            crossing + along * random.between(0.2, 2.0),
+        ];
         let found: f64 = segment_triangle(wire.map(T::vec3), triangle.map(T::vec3)).distance.into();
         // What rounding the numbers that the kernel gets adds to what the kernel may err by.
         let rounding = 8.0 * T::UNIT * extent(&[&wire[..], &triangle].concat(), 0.0);
         // Within the triangle's length it is the long side that the wire meets.
         let expected = gap.max(0.0);
-        assert!((found - expected).abs() <= rounding, "{round}: {found} beside {gap}, height {height}");
+        assert!(
+            (found - expected).abs() <= rounding,
+            "{round}: {found} beside {gap}, height {height}"
+        );
         if gap > 0.0 { beside += 1 } else { through += 1 }
     }
     assert!(beside > 40_000 && through > 40_000);

@@ -1,4 +1,5 @@
-//! The engine on the GPU beyond what all engines have in common, which tests/proximity asks of it too.
+//! The engine on the GPU beyond what all engines have in common, which tests/proximity asks of it
+//! too.
 #![cfg(feature = "gpu")]
 
 use continuum_testing::{Random, answered, gpu};
@@ -48,8 +49,8 @@ fn distances(answers: &[LinkProximity]) -> Vec<f64> {
     answers.iter().map(|answer| answer.distance).collect()
 }
 
-/// The GPU's candidates hold the double-precision minimum: the distances are those of the CPU bit for bit, with and
-/// without culling, one by one and in a batch, and no link needed the CPU.
+/// The GPU's candidates hold the double-precision minimum: the distances are those of the CPU bit
+/// for bit, with and without culling, one by one and in a batch, and no link needed the CPU.
 #[test]
 fn the_distances_are_those_of_the_cpu() {
     let (mesh, robots) = (cave(), robots(12));
@@ -83,7 +84,11 @@ fn the_distances_are_those_of_the_cpu() {
             for (((answers, expected), minimum), clear) in
                 answered(&batch).iter().zip(&expected).zip(answered(&minima)).zip(answered(&clear))
             {
-                assert_eq!(distances(answers), distances(expected), "{name}, culling {culling}, in a batch");
+                assert_eq!(
+                    distances(answers),
+                    distances(expected),
+                    "{name}, culling {culling}, in a batch"
+                );
                 let least = distances(expected).into_iter().fold(f64::INFINITY, f64::min);
                 assert_eq!((minimum.distance, clear), (least, least > 0.2));
             }
@@ -107,7 +112,8 @@ fn answers_are_the_same_every_time() {
     }
 }
 
-/// More blocks than a workgroup has threads, and more triangles than the first limits are sampled from.
+/// More blocks than a workgroup has threads, and more triangles than the first limits are sampled
+/// from.
 #[test]
 fn a_large_mesh() {
     let (vertices, indices) = Ball::new(10.0).to_trimesh(260, 130);
@@ -168,7 +174,8 @@ fn the_adapter_is_named() {
     }
 }
 
-/// Where a triangle lies just before a flat cap and another overlaps the link, the gap does not hide the overlap.
+/// Where a triangle lies just before a flat cap and another overlaps the link, the gap does not
+/// hide the overlap.
 #[test]
 fn a_gap_before_a_flat_cap_hides_no_overlap() {
     let mut random = Random::new(11);
@@ -187,13 +194,19 @@ fn a_gap_before_a_flat_cap_hides_no_overlap() {
                         + (side * cos + other * sin) * (0.1 * radius)
                 })
             };
-            let far = [Vector::splat(20.0), Vector::new(20.0, 20.0, 19.0), Vector::new(20.0, 19.0, 20.0)];
+            let far =
+                [Vector::splat(20.0), Vector::new(20.0, 20.0, 19.0), Vector::new(20.0, 19.0, 20.0)];
             let gap = 10.0_f64.powf(random.between(-12.0, -7.0));
             let corners = [across(gap, 0.1), across(-0.4 * length, 0.6), far].concat();
             let mesh = TriMesh::new(corners, vec![[0, 1, 2], [3, 4, 5], [6, 7, 8]]).unwrap();
             let robot = Chain::cylinders(&[start, end], &[radius]).unwrap();
-            let answer = GpuExhaustive::on(gpu, &mesh).unwrap().minimum(&robot, &Pose::IDENTITY).unwrap();
-            assert_eq!((answer.distance, answer.triangle), (0.0, 1), "{name}, {round}: a gap of {gap}");
+            let answer =
+                GpuExhaustive::on(gpu, &mesh).unwrap().minimum(&robot, &Pose::IDENTITY).unwrap();
+            assert_eq!(
+                (answer.distance, answer.triangle),
+                (0.0, 1),
+                "{name}, {round}: a gap of {gap}"
+            );
         }
     }
 }

@@ -1,4 +1,5 @@
-//! A chain is to parry the union of its links where that is what counts, and a compound of them elsewhere.
+//! A chain is to parry the union of its links where that is what counts, and a compound of them
+//! elsewhere.
 
 use crate::draw::{Draw, U, surface_point};
 use continuum_testing::Random;
@@ -23,7 +24,9 @@ fn chain(random: &mut Random) -> Chain {
 
 /// parry's composite of the same links.
 fn compound(chain: &Chain) -> Compound {
-    Compound::new(chain.links().iter().map(|link| (Pose::IDENTITY, SharedShape::new(*link))).collect())
+    Compound::new(
+        chain.links().iter().map(|link| (Pose::IDENTITY, SharedShape::new(*link))).collect(),
+    )
 }
 
 fn point_near(random: &mut Random, chain: &Chain) -> Vector {
@@ -46,7 +49,8 @@ fn points_see_the_union_from_outside_and_the_compound_from_inside() {
         for _ in 0..20 {
             let p = point_near(&mut random, &chain);
             let holders = chain.links().iter().filter(|link| link.contains_local_point(p)).count();
-            let nearest = chain.links().iter().map(|link| link.distance_to_local_point(p, false).abs());
+            let nearest =
+                chain.links().iter().map(|link| link.distance_to_local_point(p, false).abs());
             let nearest = nearest.fold(Real::INFINITY, Real::min);
             let signed = chain.distance_to_local_point(p, false);
             assert_eq!(signed, if holders > 0 { -nearest } else { nearest });
@@ -65,7 +69,8 @@ fn points_see_the_union_from_outside_and_the_compound_from_inside() {
             let (projection, feature) = chain.project_local_point_and_get_feature(p);
             assert_eq!(projection.point, chain.project_local_point(p, false).point);
             assert_ne!(feature, FeatureId::Unknown);
-            let normal = chain.feature_normal_at_point(projection.subshape, feature, projection.point);
+            let normal =
+                chain.feature_normal_at_point(projection.subshape, feature, projection.point);
             assert!(normal.is_some());
             inside += usize::from(holders > 0);
             in_two += usize::from(holders > 1);
@@ -85,10 +90,12 @@ fn rays_hit_the_first_link() {
     for _ in 0..300 {
         let chain = chain(&mut random);
         for _ in 0..20 {
-            let (origin, target) = (point_near(&mut random, &chain), point_near(&mut random, &chain));
+            let (origin, target) =
+                (point_near(&mut random, &chain), point_near(&mut random, &chain));
             let ray = Ray::new(origin, target - origin);
             for solid in [true, false] {
-                let each = chain.links().iter().filter_map(|link| link.cast_local_ray(&ray, 3.0, solid));
+                let each =
+                    chain.links().iter().filter_map(|link| link.cast_local_ray(&ray, 3.0, solid));
                 let first = each.reduce(Real::min);
                 let hit = chain.cast_local_ray_and_get_normal(&ray, 3.0, solid);
                 assert_eq!(hit.map(|hit| hit.time_of_impact), first);
@@ -113,7 +120,9 @@ fn nothing_is_near_a_point_that_is_not_finite() {
     let chain = chain(&mut Random::new(33));
     for bad in [Real::NAN, Real::INFINITY] {
         let p = Vector::new(bad, 0.0, 0.0);
-        assert!(!chain.distance_to_local_point(p, true).is_finite() && !chain.contains_local_point(p));
+        assert!(
+            !chain.distance_to_local_point(p, true).is_finite() && !chain.contains_local_point(p)
+        );
         assert!(!chain.project_local_point(p, true).is_inside);
         assert_eq!(chain.project_local_point_and_get_feature(p).1, FeatureId::Unknown);
         assert!(chain.cast_local_ray(&Ray::new(p, Vector::X), 9.0, true).is_none());
@@ -132,10 +141,15 @@ fn bounds_hold_the_links_and_boxes_touch_them() {
         let ball = chain.compute_local_bounding_sphere();
         for k in [-900, 300] {
             let unit = Real::powi(2.0, k);
-            let scaled = chain.scale_dyn(Vector::splat(unit), 4).unwrap().compute_local_bounding_sphere();
-            assert!((scaled.radius / unit - ball.radius).abs() < 32.0 * U, "2^{k}: {scaled:?} {ball:?}");
+            let scaled =
+                chain.scale_dyn(Vector::splat(unit), 4).unwrap().compute_local_bounding_sphere();
+            assert!(
+                (scaled.radius / unit - ball.radius).abs() < 32.0 * U,
+                "2^{k}: {scaled:?} {ball:?}"
+            );
         }
-        for (aabb, pose) in [(chain.compute_local_aabb(), Pose::IDENTITY), (chain.compute_aabb(&pose), pose)]
+        for (aabb, pose) in
+            [(chain.compute_local_aabb(), Pose::IDENTITY), (chain.compute_aabb(&pose), pose)]
         {
             let moved: Vec<_> = chain.links().iter().map(|link| link.transformed(&pose)).collect();
             for axis in Vector::AXES {
@@ -171,7 +185,8 @@ fn masses_add_up() {
         assert!((actual.local_com - expected.local_com).length() < 1e-14);
         // Two capsules in a row share a ball.
         let points = [Vector::ZERO, Vector::X, 2.0 * Vector::X];
-        let (one, two) = (Chain::capsules(&points[..2], &[0.3]), Chain::capsules(&points, &[0.3, 0.3]));
+        let (one, two) =
+            (Chain::capsules(&points[..2], &[0.3]), Chain::capsules(&points, &[0.3, 0.3]));
         let (one, two) = (one.unwrap().mass_properties(1.0), two.unwrap().mass_properties(1.0));
         assert!((two.mass() - 2.0 * one.mass()).abs() < 1e-15);
     }

@@ -6,14 +6,15 @@ use continuum_testing::Random;
 use continuum_testing::placements::{Placement, Wall};
 use parry_continuum::parry::math::{IVector, Pose, Real, Vector};
 use parry_continuum::parry::query::{
-    ClosestPoints, ContactManifold, NonlinearRigidMotion, PersistentQueryDispatcher, QueryDispatcher,
-    ShapeCastOptions,
+    ClosestPoints, ContactManifold, NonlinearRigidMotion, PersistentQueryDispatcher,
+    QueryDispatcher, ShapeCastOptions,
 };
 use parry_continuum::parry::shape::{Ball, HeightField, Shape, SharedShape, Voxels};
 use parry_continuum::parry::utils::Array2;
 use parry_continuum::{Chain, ContinuumDispatcher};
 
-/// Every pair of a robot and a composite, with the poses that bring them near each other; half of them aligned.
+/// Every pair of a robot and a composite, with the poses that bring them near each other; half of
+/// them aligned.
 pub fn composites(random: &mut Random) -> Vec<(&'static str, SharedShape, SharedShape, Pose)> {
     let mut pairs: Vec<(&'static str, SharedShape, SharedShape, Pose)> = vec![];
     let chain = tube(random);
@@ -27,7 +28,8 @@ pub fn composites(random: &mut Random) -> Vec<(&'static str, SharedShape, Shared
             ("polyline", SharedShape::new(zigzag(random))),
             ("chain", SharedShape::new(tube(random))),
         ] {
-            let place = Pose::new(Vector::new(0.0, random.between(-0.2, 0.7), 0.0), random.direction());
+            let place =
+                Pose::new(Vector::new(0.0, random.between(-0.2, 0.7), 0.0), random.direction());
             pairs.push((name, robot.clone(), other, place.inverse()));
         }
     }
@@ -46,8 +48,8 @@ pub fn composites(random: &mut Random) -> Vec<(&'static str, SharedShape, Shared
     pairs
 }
 
-/// A query on a composite is the best of the queries on its parts, which the dispatcher is asked for one by
-/// one.
+/// A query on a composite is the best of the queries on its parts, which the dispatcher is asked
+/// for one by one.
 #[test]
 fn composites_get_the_best_of_their_parts() {
     let dispatcher = ContinuumDispatcher::default();
@@ -55,7 +57,9 @@ fn composites_get_the_best_of_their_parts() {
     let mut visits = std::collections::BTreeMap::new();
     for _ in 0..40 {
         for (name, robot, other, pos12) in composites(&mut random) {
-            for (first, second, pos12) in [(&robot, &other, pos12), (&other, &robot, pos12.inverse())] {
+            for (first, second, pos12) in
+                [(&robot, &other, pos12), (&other, &robot, pos12.inverse())]
+            {
                 let (g1, g2): (&dyn Shape, &dyn Shape) = (&**first, &**second);
                 let pair = |id1: u32, id2: u32| {
                     let (parts1, parts2) = (parts(g1), parts(g2));
@@ -67,14 +71,18 @@ fn composites_get_the_best_of_their_parts() {
                 for (_, pose1, part1) in parts(g1) {
                     for (_, pose2, part2) in parts(g2) {
                         let pose = pose1.inv_mul(&(pos12 * pose2));
-                        least = least.min(dispatcher.distance(&pose, &*part1, &*part2).unwrap().distance);
+                        least = least
+                            .min(dispatcher.distance(&pose, &*part1, &*part2).unwrap().distance);
                     }
                 }
                 // GJK answers for the pairs that are not ours, at its own accuracy.
                 let tolerance = if matches!(name, "mesh" | "field") { ROUNDING } else { 1e-5 };
 
                 let answer = dispatcher.distance(&pos12, g1, g2).unwrap();
-                assert!((answer.distance - least).abs() <= tolerance, "{name}: {answer:?} for {least}");
+                assert!(
+                    (answer.distance - least).abs() <= tolerance,
+                    "{name}: {answer:?} for {least}"
+                );
                 let (pose, part1, part2) = pair(answer.subshape1, answer.subshape2);
                 let again = dispatcher.distance(&pose, &*part1, &*part2).unwrap().distance;
                 assert!(
@@ -110,13 +118,18 @@ fn composites_get_the_best_of_their_parts() {
                 );
                 let (pose, part1, part2) = pair(contact.subshape1, contact.subshape2);
                 let again = dispatcher.distance(&pose, &*part1, &*part2).unwrap().distance;
-                assert!((again - least).abs() <= tolerance.max(1e-5), "{name}: {contact:?}, but {again}");
+                assert!(
+                    (again - least).abs() <= tolerance.max(1e-5),
+                    "{name}: {contact:?}, but {again}"
+                );
 
                 if touches {
                     let near = dispatcher.closest_points(&pos12, g1, g2, 1.0).unwrap();
                     let meets = match near {
                         ClosestPoints::Intersecting => true,
-                        ClosestPoints::WithinMargin(p1, p2) => (p1 - pos12 * p2).length() <= tolerance,
+                        ClosestPoints::WithinMargin(p1, p2) => {
+                            (p1 - pos12 * p2).length() <= tolerance
+                        }
                         ClosestPoints::Disjoint => false,
                     };
                     assert!(meets, "{name}: {near:?} at {least}");
@@ -128,7 +141,11 @@ fn composites_get_the_best_of_their_parts() {
                     assert!(((p1 - pos12 * p2).length() - least).abs() <= tolerance, "{name}");
                     let far = dispatcher.closest_points(&pos12, g1, g2, 0.9 * least).unwrap();
                     assert_eq!(far, ClosestPoints::Disjoint, "{name}");
-                    assert_eq!(dispatcher.contact(&pos12, g1, g2, 0.9 * least).unwrap(), None, "{name}");
+                    assert_eq!(
+                        dispatcher.contact(&pos12, g1, g2, 0.9 * least).unwrap(),
+                        None,
+                        "{name}"
+                    );
                 } else {
                     let near = dispatcher.closest_points(&pos12, g1, g2, 1.0).unwrap();
                     assert_eq!(near, ClosestPoints::Intersecting, "{name}");
@@ -143,8 +160,10 @@ fn composites_get_the_best_of_their_parts() {
 
 #[test]
 fn voxels_are_met_and_cast_against_but_have_no_distance() {
-    let voxels =
-        Voxels::new(Vector::ONE, &[IVector::new(0, 0, 0), IVector::new(1, 0, 0), IVector::new(3, 0, 0)]);
+    let voxels = Voxels::new(
+        Vector::ONE,
+        &[IVector::new(0, 0, 0), IVector::new(1, 0, 0), IVector::new(3, 0, 0)],
+    );
     let robot = Chain::cylinders(&[-Vector::Y, Vector::ZERO, Vector::Y], &[0.25, 0.25]).unwrap();
     let dispatcher = ContinuumDispatcher::default();
     for (x, meets) in [(0.5, true), (2.5, false), (3.5, true), (-0.5, false)] {
@@ -161,8 +180,9 @@ fn voxels_are_met_and_cast_against_but_have_no_distance() {
         assert!(dispatcher.closest_points(&place, &voxels, &robot, 1.0).is_err());
     }
     let place = Pose::from_translation(Vector::new(-2.0, 0.5, 0.5));
-    let hit =
-        dispatcher.cast_shapes(&place, Vector::X, &voxels, &robot, ShapeCastOptions::default()).unwrap();
+    let hit = dispatcher
+        .cast_shapes(&place, Vector::X, &voxels, &robot, ShapeCastOptions::default())
+        .unwrap();
     assert!((hit.unwrap().time_of_impact - 1.75).abs() < 1e-4, "{hit:?}");
 }
 
@@ -171,24 +191,35 @@ fn voxels_are_met_and_cast_against_but_have_no_distance() {
 fn mirrored_height_fields_and_voxels_are_refused() {
     let field = HeightField::new(Array2::new(3, 3, vec![1.0; 9]), Vector::new(2.0, 1.0, 2.0));
     let voxels = Voxels::new(Vector::ONE, &[IVector::new(0, 0, 0), IVector::new(1, 0, 0)]);
-    let robot = Chain::capsules(&[Vector::new(-0.9, 0.9, 0.3), Vector::new(0.9, 1.1, 0.4)], &[0.25]).unwrap();
+    let robot =
+        Chain::capsules(&[Vector::new(-0.9, 0.9, 0.3), Vector::new(0.9, 1.1, 0.4)], &[0.25])
+            .unwrap();
     let dispatcher = ContinuumDispatcher::default();
     let mirrors = [Vector::new(-1.0, 1.0, 1.0), Vector::new(1.0, -1.0, 1.0)];
     for scale in mirrors.into_iter().chain([Vector::ONE]) {
-        let shapes: [SharedShape; 2] =
-            [SharedShape::new(field.clone().scaled(scale)), SharedShape::new(voxels.clone().scaled(scale))];
+        let shapes: [SharedShape; 2] = [
+            SharedShape::new(field.clone().scaled(scale)),
+            SharedShape::new(voxels.clone().scaled(scale)),
+        ];
         for wall in shapes {
             let ball = Ball::new(0.1);
             let far = Pose::from_translation(Vector::splat(1e3));
-            let meets = dispatcher.intersection_test(&far, &*wall, &ball).map(|found| found.intersecting);
+            let meets =
+                dispatcher.intersection_test(&far, &*wall, &ball).map(|found| found.intersecting);
             assert_eq!(meets.ok(), (scale == Vector::ONE).then_some(false));
             let pairs: [[&dyn Shape; 2]; 2] = [[&robot, &*wall], [&*wall, &robot]];
             for [g1, g2] in pairs {
                 let found = dispatcher.intersection_test(&Pose::IDENTITY, g1, g2);
-                let hit =
-                    dispatcher.cast_shapes(&Pose::IDENTITY, Vector::Y, g1, g2, ShapeCastOptions::default());
+                let hit = dispatcher.cast_shapes(
+                    &Pose::IDENTITY,
+                    Vector::Y,
+                    g1,
+                    g2,
+                    ShapeCastOptions::default(),
+                );
                 let still = NonlinearRigidMotion::identity();
-                let turned = dispatcher.cast_shapes_nonlinear(&still, g1, &still, g2, 0.0, 1.0, true);
+                let turned =
+                    dispatcher.cast_shapes_nonlinear(&still, g1, &still, g2, 0.0, 1.0, true);
                 let (mut manifolds, mut workspace) = (Vec::<ContactManifold<(), ()>>::new(), None);
                 let manifold = dispatcher.contact_manifolds(
                     &Pose::IDENTITY,
@@ -200,7 +231,9 @@ fn mirrored_height_fields_and_voxels_are_refused() {
                 );
                 if scale == Vector::ONE {
                     assert!(found.unwrap().intersecting);
-                    assert!(hit.unwrap().is_some() && turned.unwrap().is_some() && manifold.is_ok());
+                    assert!(
+                        hit.unwrap().is_some() && turned.unwrap().is_some() && manifold.is_ok()
+                    );
                 } else {
                     assert!(found.is_err() && hit.is_err() && turned.is_err() && manifold.is_err());
                     assert!(dispatcher.distance(&Pose::IDENTITY, g1, g2).is_err());

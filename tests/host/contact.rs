@@ -16,7 +16,11 @@ fn contact(g1: &dyn Shape, g2: &dyn Shape) -> Contact {
 /// How far the triangle begins beyond the end of the link in a direction.
 fn gap(link: &ModifiedCylinder, triangle: &Triangle, direction: Vector) -> Real {
     let reach = link.local_support_point(direction);
-    triangle.vertices().iter().map(|vertex| (vertex - reach).dot(direction)).fold(Real::INFINITY, Real::min)
+    triangle
+        .vertices()
+        .iter()
+        .map(|vertex| (vertex - reach).dot(direction))
+        .fold(Real::INFINITY, Real::min)
 }
 
 /// A link and a triangle through its inside, at times only just; half of them aligned.
@@ -41,13 +45,19 @@ fn the_translation_separates_whatever_the_link() {
         let Some((link, triangle)) = crossing(&mut random) else { continue };
         let size = U * (extent(&link, triangle.a).max(extent(&link, triangle.b)) + 4.0);
         let found = contact(&link, &triangle);
-        assert!(found.dist <= 32.0 * size && (found.normal1.length() - 1.0).abs() < 4.0 * U, "{found:?}");
+        assert!(
+            found.dist <= 32.0 * size && (found.normal1.length() - 1.0).abs() < 4.0 * U,
+            "{found:?}"
+        );
         assert_eq!(found.normal2, -found.normal1);
         if found.dist >= 0.0 {
             continue;
         }
         let apart = triangle.transformed(&Pose::from_translation(-found.normal1 * found.dist));
-        assert!(gap(&link, &apart, found.normal1) >= -32.0 * size, "{link:?} {triangle:?} {found:?}");
+        assert!(
+            gap(&link, &apart, found.normal1) >= -32.0 * size,
+            "{link:?} {triangle:?} {found:?}"
+        );
         let swapped = contact(&triangle, &link);
         assert_eq!((swapped.dist, swapped.normal2), (found.dist, found.normal1));
         checked[usize::from(link.caps() == [Cap::Round; 2])] += 1;
@@ -72,12 +82,20 @@ fn a_capsule_is_pushed_out_by_the_shortest_way_while_its_axis_is_outside() {
         checked += 1;
         let found = contact(&link, &triangle);
         let tolerance = 32.0 * U * (extent(&link, triangle.a).max(extent(&link, triangle.b)) + 4.0);
-        assert!((found.dist - (outside - link.radius())).abs() <= tolerance, "{found:?} for {outside}");
+        assert!(
+            (found.dist - (outside - link.radius())).abs() <= tolerance,
+            "{found:?} for {outside}"
+        );
         let between = found.point2 - found.point1;
         let context = || format!("{link:?} {triangle:?} {found:?} {outside:e}");
         assert!((between.dot(found.normal1) - found.dist).abs() <= tolerance, "{}", context());
-        // Where an edge all but lies along the axis, the closest points are known to the root of the rounding.
-        assert!((between - found.normal1 * found.dist).length() <= tolerance.sqrt(), "{}", context());
+        // Where an edge all but lies along the axis, the closest points are known to the root of
+        // the rounding.
+        assert!(
+            (between - found.normal1 * found.dist).length() <= tolerance.sqrt(),
+            "{}",
+            context()
+        );
         for _ in 0..50 {
             assert!(gap(&link, &triangle, random.direction()) <= found.dist + tolerance);
         }
@@ -85,12 +103,16 @@ fn a_capsule_is_pushed_out_by_the_shortest_way_while_its_axis_is_outside() {
     assert!(checked > 2000, "{checked}");
 }
 
-/// A triangle that dips 0.01 into a flat cap, half a radius from the axis: out by the cap, not by the barrel.
+/// A triangle that dips 0.01 into a flat cap, half a radius from the axis: out by the cap, not by
+/// the barrel.
 #[test]
 fn a_flat_cap_is_left_along_the_axis() {
     let link = ModifiedCylinder::cylinder(Vector::ZERO, 2.0 * Vector::Z, 1.0).unwrap();
-    let triangle =
-        Triangle::new(Vector::new(0.5, -0.2, 1.99), Vector::new(0.5, 0.2, 1.99), Vector::new(0.9, 0.0, 2.5));
+    let triangle = Triangle::new(
+        Vector::new(0.5, -0.2, 1.99),
+        Vector::new(0.5, 0.2, 1.99),
+        Vector::new(0.9, 0.0, 2.5),
+    );
     let found = contact(&link, &triangle);
     assert!((-0.0128..=-0.009).contains(&found.dist), "{found:?}");
     assert!(found.normal1.z > 0.99);
@@ -129,14 +151,17 @@ fn a_ball_on_a_sliver_and_other_poor_triangles_still_come_apart() {
         for triangle in [needle, dot] {
             let found = contact(&link, &triangle);
             let apart = triangle.transformed(&Pose::from_translation(-found.normal1 * found.dist));
-            assert!(gap(&link, &apart, found.normal1) >= -8.0 * U, "{link:?} {triangle:?}: {found:?}");
+            assert!(
+                gap(&link, &apart, found.normal1) >= -8.0 * U,
+                "{link:?} {triangle:?}: {found:?}"
+            );
             assert!(found.dist >= -3.0 && found.dist <= 0.0);
         }
     }
 }
 
-/// Neither sampled directions nor a descent from the best of them separate sooner, whatever the caps, with the
-/// axis outside the triangle or through it, thick links and wires alike.
+/// Neither sampled directions nor a descent from the best of them separate sooner, whatever the
+/// caps, with the axis outside the triangle or through it, thick links and wires alike.
 #[test]
 fn no_sampled_direction_separates_sooner() {
     let mut random = Random::new(64);
@@ -150,7 +175,9 @@ fn no_sampled_direction_separates_sooner() {
         let pierced = segment_triangle(axis, triangle.vertices().map(vec3)).distance == 0.0;
         checked[usize::from(link.caps() != [Cap::Round; 2])][usize::from(pierced)] += 1;
         let try_all = |directions: &mut dyn Iterator<Item = Vector>, best: (Real, Vector)| {
-            directions.map(|n| (gap(&link, &triangle, n), n)).fold(best, |a, b| if b.0 > a.0 { b } else { a })
+            directions
+                .map(|n| (gap(&link, &triangle, n), n))
+                .fold(best, |a, b| if b.0 > a.0 { b } else { a })
         };
         let worst = (Real::NEG_INFINITY, Vector::X);
         let mut best = try_all(&mut (0..200).map(|_| random.direction()), worst);

@@ -1,14 +1,17 @@
-//! How deep a link and another convex shape overlap: the dispatcher's table of excesses, for aligned, coaxial, coplanar and
-//! crossing placements as for any, tilted or not.
+//! How deep a link and another convex shape overlap: the dispatcher's table of excesses, for
+//! aligned, coaxial, coplanar and crossing placements as for any, tilted or not.
 //!
-//! For any unit vector the gap between the two supports along it is what a translation along it has to close: so what a
-//! contact says must be the gap along its own normal (then it separates), and no way out that a dense search finds may be
-//! shorter by more than the table says. The supports are written anew here.
+//! For any unit vector the gap between the two supports along it is what a translation along it has
+//! to close: so what a contact says must be the gap along its own normal (then it separates), and
+//! no way out that a dense search finds may be shorter by more than the table says. The supports
+//! are written anew here.
 
 use crate::draw::{CAPS, Draw};
 use continuum_testing::Random;
 use parry_continuum::parry::math::{Pose, Real, Vector};
-use parry_continuum::parry::query::{Contact, ContactManifold, PersistentQueryDispatcher, QueryDispatcher};
+use parry_continuum::parry::query::{
+    Contact, ContactManifold, PersistentQueryDispatcher, QueryDispatcher,
+};
 use parry_continuum::parry::shape::{Shape, SharedShape};
 use parry_continuum::{Cap, ContinuumDispatcher, ModifiedCylinder};
 use std::collections::BTreeMap;
@@ -36,7 +39,8 @@ pub fn gap(pose: &Pose, first: &dyn Shape, second: &dyn Shape, along: Vector) ->
 
 /// The widest gap that a walk finds from many directions.
 fn searched(random: &mut Random, gap: impl Fn(Vector) -> Real) -> (Real, Vector) {
-    let mut starts: Vec<_> = (0..400).map(|_| random.direction()).map(|way| (gap(way), way)).collect();
+    let mut starts: Vec<_> =
+        (0..400).map(|_| random.direction()).map(|way| (gap(way), way)).collect();
     starts.sort_by(|a, b| b.0.total_cmp(&a.0));
     let mut best = starts[0];
     for mut at in starts.into_iter().take(6) {
@@ -58,7 +62,8 @@ fn searched(random: &mut Random, gap: impl Fn(Vector) -> Real) -> (Real, Vector)
     best
 }
 
-/// The name of what a link is held against, and how much deeper than the least its depth may be, as a share of the sizes.
+/// The name of what a link is held against, and how much deeper than the least its depth may be, as
+/// a share of the sizes.
 const EXCESS: [(&str, Real); 9] = [
     ("round link", 1e-12),
     ("flat link", 1e-6),
@@ -77,8 +82,9 @@ fn size(random: &mut Random) -> Real {
 
 fn other(random: &mut Random, name: &str) -> SharedShape {
     let [a, b, c] = [0; 3].map(|_| size(random));
-    let link =
-        |caps| SharedShape::new(ModifiedCylinder::new(-a * Vector::Y, a * Vector::Y, b, caps).unwrap());
+    let link = |caps| {
+        SharedShape::new(ModifiedCylinder::new(-a * Vector::Y, a * Vector::Y, b, caps).unwrap())
+    };
     match name {
         "round link" => link([Cap::Round; 2]),
         "flat link" => link([CAPS[0], CAPS[2], CAPS[3]][random.index(3)]),
@@ -86,7 +92,8 @@ fn other(random: &mut Random, name: &str) -> SharedShape {
         "cylinder" => SharedShape::cylinder(a, b),
         "cuboid" => SharedShape::cuboid(a, b, c),
         "polyhedron" => {
-            let points: Vec<_> = (0..8 + random.index(20)).map(|_| random.direction() * a).collect();
+            let points: Vec<_> =
+                (0..8 + random.index(20)).map(|_| random.direction() * a).collect();
             SharedShape::convex_hull(&points).unwrap()
         }
         "cone" => SharedShape::cone(a, b),
@@ -101,9 +108,12 @@ fn place(random: &mut Random) -> (&'static str, Pose) {
     let way = [Vector::X, Vector::Y, Vector::Z, random.direction()][random.index(4)] * tilt;
     let shift = |random: &mut Random| [0.0, 0.25, 0.5, random.between(-1.5, 1.5)][random.index(4)];
     let any = random.vector(1.0);
-    let turn =
-        [Vector::ZERO, Vector::X * std::f64::consts::FRAC_PI_2, Vector::X, Vector::X * std::f64::consts::PI]
-            [random.index(4)];
+    let turn = [
+        Vector::ZERO,
+        Vector::X * std::f64::consts::FRAC_PI_2,
+        Vector::X,
+        Vector::X * std::f64::consts::PI,
+    ][random.index(4)];
     let (name, translation, turn) = match random.index(6) {
         0 => ("coaxial", Vector::Y * shift(random), Vector::ZERO),
         1 => ("parallel", Vector::new(shift(random), shift(random), 0.0), Vector::ZERO),
@@ -124,9 +134,11 @@ fn depths_are_the_least_but_for_what_the_table_says() {
     for (name, allowed) in EXCESS {
         let (mut worst, mut over, mut total) = ((0.0, String::new()), 0, 0);
         for _ in 0..100 {
-            let caps = if ["round link", "capsule"].contains(&name) { CAPS[1] } else { random.caps() };
+            let caps =
+                if ["round link", "capsule"].contains(&name) { CAPS[1] } else { random.caps() };
             let (half, radius) = (size(&mut random), size(&mut random));
-            let link = ModifiedCylinder::new(-half * Vector::Y, half * Vector::Y, radius, caps).unwrap();
+            let link =
+                ModifiedCylinder::new(-half * Vector::Y, half * Vector::Y, radius, caps).unwrap();
             let wall = other(&mut random, name);
             let (how, pose) = place(&mut random);
             for (pos12, g1, g2) in
@@ -134,7 +146,8 @@ fn depths_are_the_least_but_for_what_the_table_says() {
             {
                 let contact = dispatcher.contact(&pos12, g1, g2, 0.0).unwrap();
                 let Some(contact) = contact.filter(|contact| contact.dist < 0.0) else { continue };
-                let context = || format!("{name} {how} {caps:?} {half} {radius} {pos12:?} {contact:?}");
+                let context =
+                    || format!("{name} {how} {caps:?} {half} {radius} {pos12:?} {contact:?}");
                 *seen.entry((name, how)).or_default() += 1;
                 let own = gap(&pos12, g1, g2, contact.normal1);
                 assert!((own - contact.dist).abs() < 1e-13, "{own} {}", context());
@@ -156,7 +169,10 @@ fn depths_are_the_least_but_for_what_the_table_says() {
     }
     println!("{seen:?}");
     assert!(bad.is_empty(), "{}", bad.join("\n"));
-    assert!(EXCESS.iter().all(|(name, _)| seen.get(&(name, "coaxial")).is_some_and(|&n| n > 5)), "{seen:?}");
+    assert!(
+        EXCESS.iter().all(|(name, _)| seen.get(&(name, "coaxial")).is_some_and(|&n| n > 5)),
+        "{seen:?}"
+    );
 }
 
 /// The points are where the distance along the normal says.
@@ -178,7 +194,9 @@ fn manifold_agrees(
 ) {
     let mut manifold = ContactManifold::<(), ()>::new();
     let dispatcher = ContinuumDispatcher::default();
-    dispatcher.contact_manifold_convex_convex(pos12, g1, g2, None, None, 0.1, &mut manifold).unwrap();
+    dispatcher
+        .contact_manifold_convex_convex(pos12, g1, g2, None, None, 0.1, &mut manifold)
+        .unwrap();
     let least = manifold.points.iter().map(|point| point.dist).fold(Real::INFINITY, Real::min);
     assert!((least - contact.dist).abs() < 1e-12, "{least} {}", context());
     assert!((manifold.local_n1 - contact.normal1).length() < 1e-9, "{manifold:?} {}", context());
@@ -188,14 +206,16 @@ fn contact(pose: &Pose, first: &ModifiedCylinder, second: &ModifiedCylinder) -> 
     ContinuumDispatcher::default().contact(pose, first, second, 0.0).unwrap().unwrap()
 }
 
-/// Two round links overlap by their radii less the distance of their axes, wherever these lie: on one axis, crossing or
-/// parallel, in any unit of length.
+/// Two round links overlap by their radii less the distance of their axes, wherever these lie: on
+/// one axis, crossing or parallel, in any unit of length.
 #[test]
 fn round_links_overlap_by_their_radii_less_the_distance_of_their_axes() {
     let mut random = Random::new(402);
     let capsule = |start, end, radius| ModifiedCylinder::capsule(start, end, radius).unwrap();
     let first = capsule(Vector::ZERO, 10.0 * Vector::X, 1.0);
-    for (shift, depth) in [(4.0, 2.0), (0.0, 2.0), (9.0, 2.0), (10.0, 2.0), (11.0, 1.0), (-11.5, 0.5)] {
+    for (shift, depth) in
+        [(4.0, 2.0), (0.0, 2.0), (9.0, 2.0), (10.0, 2.0), (11.0, 1.0), (-11.5, 0.5)]
+    {
         let place = Pose::from_translation(Vector::X * shift);
         for turn in [0.0, std::f64::consts::PI] {
             let turned = place
@@ -204,15 +224,22 @@ fn round_links_overlap_by_their_radii_less_the_distance_of_their_axes() {
                 * Pose::from_translation(-5.0 * Vector::X);
             let found = contact(&turned, &first, &first);
             assert!((found.dist + depth).abs() < 1e-14, "{shift} {turn} {found:?}");
-            assert!((gap(&turned, &first, &first, found.normal1) + depth).abs() < 1e-14, "{found:?}");
+            assert!(
+                (gap(&turned, &first, &first, found.normal1) + depth).abs() < 1e-14,
+                "{found:?}"
+            );
         }
     }
     let (mut crossing, mut deep) = (0, 0);
     for _ in 0..5000 {
         let [r1, r2] = [size(&mut random), size(&mut random)];
-        let angle =
-            if random.chance(0.3) { random.log_between(1e-17, 1e-3) } else { random.between(0.0, 1.6) };
-        let height = if random.chance(0.3) { 0.0 } else { random.log_between(1e-16, 1.0) } * (r1 + r2);
+        let angle = if random.chance(0.3) {
+            random.log_between(1e-17, 1e-3)
+        } else {
+            random.between(0.0, 1.6)
+        };
+        let height =
+            if random.chance(0.3) { 0.0 } else { random.log_between(1e-16, 1.0) } * (r1 + r2);
         let (one, other) =
             (capsule(-Vector::X, Vector::X, r1), capsule(-2.0 * Vector::X, 2.0 * Vector::X, r2));
         // They cross in the middle, one above the other.
@@ -230,7 +257,11 @@ fn round_links_overlap_by_their_radii_less_the_distance_of_their_axes() {
                 .map(|link| capsule(link.start() * unit, link.end() * unit, link.radius() * unit));
             let pose = Pose { translation: pose.translation * unit, ..pose };
             let scaled = contact(&pose, &one, &other);
-            assert_eq!((scaled.dist, scaled.normal1), (found.dist * unit, found.normal1), "{angle} {height}");
+            assert_eq!(
+                (scaled.dist, scaled.normal1),
+                (found.dist * unit, found.normal1),
+                "{angle} {height}"
+            );
         }
     }
     assert!(crossing > 1000 && deep > 1500, "{crossing} {deep}");
@@ -243,7 +274,8 @@ fn cylinders_on_one_axis_part_along_it_or_across() {
         [(1.0, 10.0, 4.0), (1.0, 10.0, 9.0), (0.9, 1.8, 0.0), (0.25, 8.0, 1.0), (2.0, 1.0, 0.5)]
     {
         for tilt in [0.0, 1e-15, 1e-9, 1e-6] {
-            let link = ModifiedCylinder::cylinder(Vector::ZERO, Vector::Z * length, radius).unwrap();
+            let link =
+                ModifiedCylinder::cylinder(Vector::ZERO, Vector::Z * length, radius).unwrap();
             let pose = Pose::new(Vector::Z * shift, Vector::X * tilt);
             let found = contact(&pose, &link, &link);
             let least = (2.0 * radius).min(length - shift);
@@ -255,7 +287,8 @@ fn cylinders_on_one_axis_part_along_it_or_across() {
             assert!((own - found.dist).abs() < 1e-13, "{own} {found:?}");
             // Moved apart by it they meet no more.
             let moved = Pose::from_translation(found.normal1 * (1e-4 - found.dist)) * pose;
-            let apart = ContinuumDispatcher::default().distance(&moved, &link, &link).unwrap().distance;
+            let apart =
+                ContinuumDispatcher::default().distance(&moved, &link, &link).unwrap().distance;
             assert!(apart > 0.0, "{apart} {found:?}");
         }
     }

@@ -1,5 +1,5 @@
-//! The dispatcher answers every query for links and chains, in both orders, through every composite, and
-//! never lets a pair that it cannot answer read as a free one.
+//! The dispatcher answers every query for links and chains, in both orders, through every
+//! composite, and never lets a pair that it cannot answer read as a free one.
 
 use crate::draw::{Draw, U};
 use crate::inner::ask_everything;
@@ -23,7 +23,8 @@ fn vec3(v: Vector) -> Vec3<f64> {
 fn kernel(link: &ModifiedCylinder, triangle: &Triangle) -> Real {
     let vertices = [triangle.a, triangle.b, triangle.c].map(vec3);
     let flat = link.caps().map(|cap| cap == Cap::Flat);
-    triangle_modified_cylinder(vertices, vec3(link.start()), vec3(link.end()), link.radius(), flat).distance
+    triangle_modified_cylinder(vertices, vec3(link.start()), vec3(link.end()), link.radius(), flat)
+        .distance
 }
 
 /// A robot near a floor, apart or across it.
@@ -65,8 +66,8 @@ impl Scene {
     }
 
     fn least(&self) -> Real {
-        let all =
-            (0..self.links.len() as u32).flat_map(|l| (0..self.triangles.len() as u32).map(move |t| (l, t)));
+        let all = (0..self.links.len() as u32)
+            .flat_map(|l| (0..self.triangles.len() as u32).map(move |t| (l, t)));
         all.map(|(link, triangle)| self.pair(link, triangle)).fold(Real::INFINITY, Real::min)
     }
 
@@ -110,8 +111,9 @@ fn robots_and_surfaces_get_the_kernels_answers_in_both_orders() {
             across += 1
         }
         for (robot_first, pos12, g1, g2) in scene.orders() {
-            let named =
-                |sub1, sub2| if robot_first { scene.pair(sub1, sub2) } else { scene.pair(sub2, sub1) };
+            let named = |sub1, sub2| {
+                if robot_first { scene.pair(sub1, sub2) } else { scene.pair(sub2, sub1) }
+            };
 
             let answer = dispatcher.distance(&pos12, g1, g2).unwrap();
             assert!((answer.distance - least).abs() <= ROUNDING, "{answer:?} for {least}");
@@ -144,7 +146,10 @@ fn robots_and_surfaces_get_the_kernels_answers_in_both_orders() {
                 assert!((contact.dist - deepest).abs() <= 1e-6, "{contact:?} for {deepest}");
             }
             let between = pos12 * contact.point2 - contact.point1;
-            assert!((between - contact.normal1 * contact.dist).length() <= 1e-5, "{contact:?} {between}");
+            assert!(
+                (between - contact.normal1 * contact.dist).length() <= 1e-5,
+                "{contact:?} {between}"
+            );
         }
     }
     assert!(apart > 200 && across > 60, "{apart} apart, {across} across");
@@ -155,8 +160,13 @@ fn margins_include_what_is_exactly_that_far() {
     let dispatcher = ContinuumDispatcher::default();
     let link = ModifiedCylinder::capsule(Vector::ZERO, Vector::Z, 0.5).unwrap();
     let robot = Chain::capsules(&[Vector::ZERO, Vector::Z], &[0.5]).unwrap();
-    let wall =
-        |x| Triangle::new(Vector::new(x, -9.0, -9.0), Vector::new(x, 9.0, -9.0), Vector::new(x, 0.0, 9.0));
+    let wall = |x| {
+        Triangle::new(
+            Vector::new(x, -9.0, -9.0),
+            Vector::new(x, 9.0, -9.0),
+            Vector::new(x, 0.0, 9.0),
+        )
+    };
     let mesh = |x| {
         let Triangle { a, b, c } = wall(x);
         TriMesh::new(vec![a, b, c], vec![[0, 1, 2]]).unwrap()
@@ -169,8 +179,12 @@ fn margins_include_what_is_exactly_that_far() {
                 for (g1, g2) in [(robot, surface), (surface, robot)] {
                     let pose = Pose::IDENTITY;
                     assert_eq!(dispatcher.distance(&pose, g1, g2).unwrap().distance, gap);
-                    assert_eq!(dispatcher.intersection_test(&pose, g1, g2).unwrap().intersecting, gap == 0.0);
-                    for (margin, reached) in [(gap, true), (gap.next_down(), gap == 0.0), (-1.0, gap == 0.0)]
+                    assert_eq!(
+                        dispatcher.intersection_test(&pose, g1, g2).unwrap().intersecting,
+                        gap == 0.0
+                    );
+                    for (margin, reached) in
+                        [(gap, true), (gap.next_down(), gap == 0.0), (-1.0, gap == 0.0)]
                     {
                         let points = dispatcher.closest_points(&pose, g1, g2, margin).unwrap();
                         let expected = if gap == 0.0 {
@@ -185,7 +199,8 @@ fn margins_include_what_is_exactly_that_far() {
                             "{points:?} at {gap} within {margin}"
                         );
                     }
-                    let contact = |prediction| dispatcher.contact(&pose, g1, g2, prediction).unwrap();
+                    let contact =
+                        |prediction| dispatcher.contact(&pose, g1, g2, prediction).unwrap();
                     assert_eq!(contact(gap).map(|contact| contact.dist), Some(gap));
                     assert_eq!(contact(gap.next_down()), None);
                     assert!(contact(gap).unwrap().normal1.x.abs() == 1.0);
@@ -206,7 +221,10 @@ fn margins_mean_the_same_through_a_compound() {
     let (pose, apart, across) = (Pose::IDENTITY, wall(2.0), wall(0.375));
     for (g1, g2) in [(&apart as &dyn Shape, &link as &dyn Shape), (&link, &apart)] {
         assert_ne!(dispatcher.closest_points(&pose, g1, g2, 1.5).unwrap(), ClosestPoints::Disjoint);
-        assert_eq!(dispatcher.closest_points(&pose, g1, g2, 1.5 - 1e-9).unwrap(), ClosestPoints::Disjoint);
+        assert_eq!(
+            dispatcher.closest_points(&pose, g1, g2, 1.5 - 1e-9).unwrap(),
+            ClosestPoints::Disjoint
+        );
         assert!(dispatcher.contact(&pose, g1, g2, 1.5).unwrap().is_some());
     }
     // A negative margin asks for an overlap that deep. This one is 0.125.
@@ -214,7 +232,8 @@ fn margins_mean_the_same_through_a_compound() {
         assert!(dispatcher.contact(&pose, g1, g2, -0.1).unwrap().is_some());
         assert_eq!(dispatcher.contact(&pose, g1, g2, -0.2).unwrap(), None);
     }
-    // parry finds no part where squares of coordinates overflow, and takes that for the largest number.
+    // parry finds no part where squares of coordinates overflow, and takes that for the largest
+    // number.
     let ball = SharedShape::new(Ball::new(1.0));
     let far = Compound::new(vec![(Pose::from_translation(Vector::splat(1e200)), ball)]);
     assert!(dispatcher.distance(&pose, &far, &link).is_err());
@@ -280,7 +299,9 @@ fn endless_convex_shapes_are_refused() {
     let link = ModifiedCylinder::capsule(Vector::ZERO, Vector::X, 0.5).unwrap();
     let pose = Pose::new(Vector::splat(5.0), Vector::new(0.3, 0.2, 0.1));
     for shape in shapes {
-        for (pos12, g1, g2) in [(pose, &link as &dyn Shape, &*shape), (pose.inverse(), &*shape, &link)] {
+        for (pos12, g1, g2) in
+            [(pose, &link as &dyn Shape, &*shape), (pose.inverse(), &*shape, &link)]
+        {
             // But for motions, in which it may not even be looked at.
             let answered = ask_everything(&dispatcher, &pos12, g1, g2);
             assert_eq!(answered[..5], [false; 5], "{:?}", shape.as_typed_shape());
@@ -304,7 +325,10 @@ fn a_change_of_unit_changes_no_bit() {
             let (link, triangle) = (crate::draw::scaled(&link, unit), triangle.scaled(scale));
             let mesh = TriMesh::new(triangle.vertices().to_vec(), vec![[0, 1, 2]]).unwrap();
             let pose = Pose::from_parts(pose.translation * unit, pose.rotation);
-            assert_eq!(dispatcher.distance(&pose, &link, &triangle).unwrap().distance, expected * unit);
+            assert_eq!(
+                dispatcher.distance(&pose, &link, &triangle).unwrap().distance,
+                expected * unit
+            );
             let from_mesh = dispatcher.distance(&pose.inverse(), &mesh, &link).unwrap().distance;
             assert!((from_mesh / unit - expected).abs() <= ROUNDING);
             let scaled = dispatcher.contact(&pose, &link, &triangle, 9.0 * unit).unwrap().unwrap();

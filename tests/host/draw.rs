@@ -23,11 +23,13 @@ pub trait Draw {
     /// Uniform in a cube of this half width.
     fn vector(&mut self, reach: Real) -> Vector;
     fn caps(&mut self) -> [Cap; 2];
-    /// A link of extent about 1, from thin to flat, some along a coordinate axis, some balls and wires.
+    /// A link of extent about 1, from thin to flat, some along a coordinate axis, some balls and
+    /// wires.
     fn link(&mut self) -> ModifiedCylinder;
     /// A link at a wall, and the wall's pose: aligned with it and touching, or all but.
     fn aligned(&mut self, wall: Wall) -> (ModifiedCylinder, SharedShape, Pose);
-    /// A link and a triangle, and the triangle's pose: aligned, or as often a link near or somewhat inside of any triangle.
+    /// A link and a triangle, and the triangle's pose: aligned, or as often a link near or somewhat
+    /// inside of any triangle.
     fn meeting(&mut self) -> (ModifiedCylinder, Triangle, Pose);
 }
 
@@ -79,8 +81,8 @@ impl Draw for Random {
     }
 }
 
-/// How far `p` is outside `link` by the worst of its defining inequalities (negative inside): a membership
-/// test, not the distance. Uses nothing of the crate but the link's data.
+/// How far `p` is outside `link` by the worst of its defining inequalities (negative inside): a
+/// membership test, not the distance. Uses nothing of the crate but the link's data.
 pub fn violation(link: &ModifiedCylinder, p: Vector) -> Real {
     let span = link.end() - link.start();
     let axis = span.normalize_or_zero();
@@ -131,6 +133,11 @@ pub fn largest(link: &ModifiedCylinder, p: Vector) -> Real {
 
 /// The link with every length multiplied by `factor`.
 pub fn scaled(link: &ModifiedCylinder, factor: Real) -> ModifiedCylinder {
-    ModifiedCylinder::new(link.start() * factor, link.end() * factor, link.radius() * factor, link.caps())
-        .unwrap()
+    ModifiedCylinder::new(
+        link.start() * factor,
+        link.end() * factor,
+        link.radius() * factor,
+        link.caps(),
+    )
+    .unwrap()
 }

@@ -1,4 +1,5 @@
-//! Two flat caps that meet: contact points around all that they have in common, on both caps, and none nearer than the contact.
+//! Two flat caps that meet: contact points around all that they have in common, on both caps, and
+//! none nearer than the contact.
 
 use crate::depths::gap;
 use crate::draw::{CAPS, Draw};
@@ -17,11 +18,14 @@ type Manifold = ContactManifold<(), ()>;
 fn manifold(pose: &Pose, first: &dyn Shape, second: &dyn Shape) -> Manifold {
     let mut manifold = Manifold::new();
     let dispatcher = ContinuumDispatcher::default();
-    dispatcher.contact_manifold_convex_convex(pose, first, second, None, None, 0.2, &mut manifold).unwrap();
+    dispatcher
+        .contact_manifold_convex_convex(pose, first, second, None, None, 0.2, &mut manifold)
+        .unwrap();
     manifold
 }
 
-/// A link along y with a flat cap at the height 0, from where it reaches up or down to a cap of any kind.
+/// A link along y with a flat cap at the height 0, from where it reaches up or down to a cap of any
+/// kind.
 fn post(radius: Real, way: Real, caps: usize) -> ModifiedCylinder {
     ModifiedCylinder::new(Vector::ZERO, Vector::Y * way, radius, [CAPS[0], CAPS[2]][caps]).unwrap()
 }
@@ -35,21 +39,28 @@ fn lens_support([r1, r2]: [Real; 2], apart: Real, turn: Real) -> Real {
             Vector::new(centre + radius * at.cos(), 0.0, radius * at.sin())
         })
     };
-    let in_both = |p: &Vector| p.length() < r1 + 1e-9 && (*p - Vector::X * apart).length() < r2 + 1e-9;
-    rim(0.0, r1).chain(rim(apart, r2)).filter(in_both).map(|p| p.dot(way)).fold(Real::NEG_INFINITY, Real::max)
+    let in_both =
+        |p: &Vector| p.length() < r1 + 1e-9 && (*p - Vector::X * apart).length() < r2 + 1e-9;
+    rim(0.0, r1)
+        .chain(rim(apart, r2))
+        .filter(in_both)
+        .map(|p| p.dot(way))
+        .fold(Real::NEG_INFINITY, Real::max)
 }
 
-/// Upright posts, one on the other: the points lie on both caps and surround what they share. From its middle they reach about
-/// as far, in any direction, as a square does in a circle.
+/// Upright posts, one on the other: the points lie on both caps and surround what they share. From
+/// its middle they reach about as far, in any direction, as a square does in a circle.
 #[test]
 fn posts_stand_on_all_that_their_caps_share() {
     let mut random = Random::new(461);
     let (mut narrow, mut whole) = (0, 0);
     for round in 0..600 {
-        let radii = [random.between(0.2, 1.0), if round % 3 == 0 { 0.5 } else { random.between(0.2, 1.0) }];
+        let radii =
+            [random.between(0.2, 1.0), if round % 3 == 0 { 0.5 } else { random.between(0.2, 1.0) }];
         let radii = if round % 6 == 0 { [0.5; 2] } else { radii };
         let most = radii[0] + radii[1];
-        let apart = [0.0, random.log_between(1e-12, 1e-3), random.between(0.0, 0.97) * most][round % 3];
+        let apart =
+            [0.0, random.log_between(1e-12, 1e-3), random.between(0.0, 0.97) * most][round % 3];
         let (below, above) = (post(radii[0], -2.0, round % 2), post(radii[1], 2.0, round / 2 % 2));
         let depth = random.between(-0.1, 0.1) * radii[0].min(radii[1]);
         let turn = Pose::rotation(Vector::Y * random.between(-PI, PI));
@@ -65,7 +76,11 @@ fn posts_stand_on_all_that_their_caps_share() {
         for point in &found.points {
             assert!((point.dist + depth).abs() < 1e-9, "{}", context());
             let on_second = pose * point.local_p2;
-            assert!(point.local_p1.y.abs() < 1e-9 && (on_second.y + depth).abs() < 1e-9, "{}", context());
+            assert!(
+                point.local_p1.y.abs() < 1e-9 && (on_second.y + depth).abs() < 1e-9,
+                "{}",
+                context()
+            );
             assert!(point.local_p1.length() < radii[0] + 1e-9, "{}", context());
             let from_second = on_second.with_y(0.0) - Vector::X * apart;
             assert!(from_second.length() < radii[1] + 1e-9, "{}", context());
@@ -92,7 +107,8 @@ fn points_of_caps_keep_their_names() {
         let (below, above) = (post(radii[0], -2.0, 0), post(radii[1], 2.0, 1));
         let names = |pose: &Pose| {
             let found = manifold(pose, &below, &above);
-            let mut names: Vec<_> = found.points.iter().map(|point| (point.fid1.0, point.fid2.0)).collect();
+            let mut names: Vec<_> =
+                found.points.iter().map(|point| (point.fid1.0, point.fid2.0)).collect();
             names.sort_unstable();
             names
         };
@@ -105,8 +121,9 @@ fn points_of_caps_keep_their_names() {
     }
 }
 
-/// Any two links, aligned or not: each point is on the plane of a cap or the barrel it says, `dist` from its partner along the
-/// normal, and the nearest is the contact, which the gap along its normal proves.
+/// Any two links, aligned or not: each point is on the plane of a cap or the barrel it says, `dist`
+/// from its partner along the normal, and the nearest is the contact, which the gap along its
+/// normal proves.
 #[test]
 fn no_point_of_two_links_is_nearer_than_their_contact() {
     let mut random = Random::new(463);
@@ -121,7 +138,8 @@ fn no_point_of_two_links_is_nearer_than_their_contact() {
         };
         let contact = dispatcher.contact(&pose, &first, &*wall, 0.2).unwrap();
         let found = manifold(&pose, &first, &*wall);
-        let context = || format!("{first:?} {:?} {pose:?} {contact:?} {found:?}", wall.as_typed_shape());
+        let context =
+            || format!("{first:?} {:?} {pose:?} {contact:?} {found:?}", wall.as_typed_shape());
         let Some(contact) = contact else {
             assert!(found.points.is_empty(), "{}", context());
             continue;

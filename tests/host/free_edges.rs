@@ -8,16 +8,24 @@ use continuum_testing::placements::Wall;
 use parry_continuum::parry::math::{Pose, Real, Rot3, Vector};
 use parry_continuum::parry::query::{ContactManifold, PersistentQueryDispatcher, QueryDispatcher};
 use parry_continuum::parry::shape::{
-    HeightField, HeightFieldCellStatus, HeightFieldFlags, Shape, SharedShape, TriMesh, TriMeshFlags, Triangle,
+    HeightField, HeightFieldCellStatus, HeightFieldFlags, Shape, SharedShape, TriMesh,
+    TriMeshFlags, Triangle,
 };
 use parry_continuum::parry::utils::Array2;
 use parry_continuum::{Cap, ContinuumDispatcher, ModifiedCylinder};
 
 /// What `contact` says, and the least `dist` of the manifolds.
-fn contact_and_manifold(pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape, prediction: Real) -> [Real; 2] {
+fn contact_and_manifold(
+    pos12: &Pose,
+    g1: &dyn Shape,
+    g2: &dyn Shape,
+    prediction: Real,
+) -> [Real; 2] {
     let dispatcher = ContinuumDispatcher::default();
     let (mut manifolds, mut workspace): (Vec<ContactManifold<(), ()>>, _) = (vec![], None);
-    dispatcher.contact_manifolds(pos12, g1, g2, prediction, &mut manifolds, &mut workspace).unwrap();
+    dispatcher
+        .contact_manifolds(pos12, g1, g2, prediction, &mut manifolds, &mut workspace)
+        .unwrap();
     let points = manifolds.iter().flat_map(|manifold| &manifold.points);
     let least = points.map(|point| point.dist).fold(Real::INFINITY, Real::min);
     let contact = dispatcher.contact(pos12, g1, g2, prediction).unwrap();
@@ -26,10 +34,12 @@ fn contact_and_manifold(pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape, prediction
 
 const ORDERS: [[usize; 3]; 6] = [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]];
 
-/// The link's lowest line is at y = 0, the wall's edge along x at y = 0, before the wall moves by `gap` down.
+/// The link's lowest line is at y = 0, the wall's edge along x at y = 0, before the wall moves by
+/// `gap` down.
 #[test]
 fn the_near_edge_of_a_wall_seen_edge_on_is_in_the_manifold() {
-    let corners = [Vector::new(-4.0, 0.0, 0.0), Vector::new(0.0, -5.0, 0.0), Vector::new(4.0, 0.0, 0.0)];
+    let corners =
+        [Vector::new(-4.0, 0.0, 0.0), Vector::new(0.0, -5.0, 0.0), Vector::new(4.0, 0.0, 0.0)];
     for caps in CAPS {
         let (start, end) = (Vector::new(0.0, 0.5, -1.0), Vector::new(0.0, 0.5, 1.0));
         let link = ModifiedCylinder::new(start, end, 0.5, caps).unwrap();
@@ -40,12 +50,16 @@ fn the_near_edge_of_a_wall_seen_edge_on_is_in_the_manifold() {
                 let place = Pose::from_translation(Vector::new(0.13, -gap, 0.0));
                 let walls: [&dyn Shape; 2] = [&triangle, &mesh];
                 for wall in walls {
-                    for (pos12, g1, g2) in
-                        [(place, &link as &dyn Shape, wall), (place.inverse(), wall, &link as &dyn Shape)]
-                    {
+                    for (pos12, g1, g2) in [
+                        (place, &link as &dyn Shape, wall),
+                        (place.inverse(), wall, &link as &dyn Shape),
+                    ] {
                         let [contact, least] = contact_and_manifold(&pos12, g1, g2, 0.05);
                         let context = format!("{caps:?} {order:?} {gap:e}");
-                        assert!((contact - gap).abs() < 1e-15 * 8.0, "{context}: contact {contact}");
+                        assert!(
+                            (contact - gap).abs() < 1e-15 * 8.0,
+                            "{context}: contact {contact}"
+                        );
                         assert!((least - gap).abs() < 1e-15 * 8.0, "{context}: manifold {least}");
                     }
                 }
@@ -54,10 +68,12 @@ fn the_near_edge_of_a_wall_seen_edge_on_is_in_the_manifold() {
     }
 }
 
-/// The same with walls that lean a little, turned about the edge and about the link's axis, at every height.
+/// The same with walls that lean a little, turned about the edge and about the link's axis, at
+/// every height.
 #[test]
 fn the_least_distance_at_a_free_edge_does_not_depend_on_a_slight_tilt() {
-    let corners = [Vector::new(-3.0, 0.0, 0.0), Vector::new(0.0, -5.0, 0.0), Vector::new(3.0, 0.0, 0.0)];
+    let corners =
+        [Vector::new(-3.0, 0.0, 0.0), Vector::new(0.0, -5.0, 0.0), Vector::new(3.0, 0.0, 0.0)];
     let mut asked = 0;
     for caps in CAPS {
         for upright in [false, true] {
@@ -74,7 +90,8 @@ fn the_least_distance_at_a_free_edge_does_not_depend_on_a_slight_tilt() {
                         );
                         for order in ORDERS {
                             let triangle = Triangle::from(order.map(|k| corners[k]));
-                            let [contact, least] = contact_and_manifold(&place, &link, &triangle, 0.05);
+                            let [contact, least] =
+                                contact_and_manifold(&place, &link, &triangle, 0.05);
                             asked += 1;
                             assert!(
                                 (contact - least).abs() < 1e-13,
@@ -111,7 +128,10 @@ fn agreed(
     for ((pos12, g1, g2), found) in orders.into_iter().zip(&mut contacts) {
         let [contact, least] = contact_and_manifold(&pos12, g1, g2, prediction);
         if contact < prediction - slack {
-            assert!((contact - least).abs() <= slack, "{context}: contact {contact:e}, manifold {least:e}");
+            assert!(
+                (contact - least).abs() <= slack,
+                "{context}: contact {contact:e}, manifold {least:e}"
+            );
         }
         *found = contact;
     }
@@ -145,8 +165,10 @@ fn a_slot_holds_a_rod_under_every_flag() {
                     for y in [0.2, 0.45, 0.485, 0.4898979485566356] {
                         for x in [0.0, 0.01, -0.03] {
                             let pose = Pose::from_translation(Vector::new(-x, -y, 0.3) * unit);
-                            let context = format!("{caps:?} {flags:?} {sense} {first} at {x} {y} in {unit}");
-                            let dist = agreed(&pose, &rod, &wall, 0.05 * unit, 1e-14 * unit, &context);
+                            let context =
+                                format!("{caps:?} {flags:?} {sense} {first} at {x} {y} in {unit}");
+                            let dist =
+                                agreed(&pose, &rod, &wall, 0.05 * unit, 1e-14 * unit, &context);
                             let expected = [-0.1, 0.1].map(|edge: Real| (edge - x).hypot(y) - 0.5);
                             let expected = expected[0].min(expected[1]) * unit;
                             assert!((dist - expected).abs() < 1e-14 * unit, "{context}: {dist}");
@@ -180,7 +202,8 @@ fn a_slot_of_a_height_field_holds_a_rod_under_every_flag() {
                 field.set_cell_status(i, j, status);
             }
             for caps in CAPS {
-                let rod = ModifiedCylinder::new(-0.3 * Vector::Z, 0.3 * Vector::Z, 0.5, caps).unwrap();
+                let rod =
+                    ModifiedCylinder::new(-0.3 * Vector::Z, 0.3 * Vector::Z, 0.5, caps).unwrap();
                 // Over the slot from -0.1 to 0.1, and beside the field, which ends at 0.5.
                 for (x, edge) in [(0.01, 0.1), (-0.02, -0.1), (0.6, 0.5), (-0.58, -0.5)] {
                     for (y, side) in [(0.45, 1.0), (0.48, 1.0), (0.45, -1.0)] {
@@ -188,7 +211,10 @@ fn a_slot_of_a_height_field_holds_a_rod_under_every_flag() {
                         let context = format!("{caps:?} {flags:?} {zigzag} at {x} {y} {side}");
                         let dist = agreed(&pose, &rod, &field, 0.05, 1e-14, &context);
                         let expected = Real::hypot(x - edge, y) - 0.5;
-                        assert!((dist - expected).abs() < 1e-14, "{context}: {dist} for {expected}");
+                        assert!(
+                            (dist - expected).abs() < 1e-14,
+                            "{context}: {dist} for {expected}"
+                        );
                         counted += 1;
                     }
                 }
@@ -210,11 +236,17 @@ fn a_flag_turns_normals_and_removes_no_contact() {
         let pose = Pose::new(Vector::ZERO, turn) * placement.pose;
         for (k, flags) in FLAGS.into_iter().enumerate() {
             for sense in [false, true] {
-                let triangles =
-                    mesh.indices().iter().map(|&[a, b, c]| if sense { [a, b, c] } else { [a, c, b] });
-                let wall = TriMesh::with_flags(mesh.vertices().to_vec(), triangles.collect(), flags).unwrap();
-                let context =
-                    format!("{flags:?} {sense} {:?} {mesh:?} {pose:?}", placement.robot.0.shape_type());
+                let triangles = mesh
+                    .indices()
+                    .iter()
+                    .map(|&[a, b, c]| if sense { [a, b, c] } else { [a, c, b] });
+                let wall =
+                    TriMesh::with_flags(mesh.vertices().to_vec(), triangles.collect(), flags)
+                        .unwrap();
+                let context = format!(
+                    "{flags:?} {sense} {:?} {mesh:?} {pose:?}",
+                    placement.robot.0.shape_type()
+                );
                 let dist = agreed(&pose, &*placement.robot, &wall, 0.05, 1e-11, &context);
                 near[k] += usize::from(dist < 0.05);
                 turned += usize::from(wall.triangle_normal_constraints(0).is_some());
@@ -247,12 +279,15 @@ fn a_vessel_holds_a_robot_from_within_and_from_without() {
                     for _ in 0..12 {
                         let middle = 0.5 * (free + met);
                         let dispatcher = ContinuumDispatcher::default();
-                        let apart = dispatcher.distance(&at(middle), &*robot, &vessel).unwrap().distance;
+                        let apart =
+                            dispatcher.distance(&at(middle), &*robot, &vessel).unwrap().distance;
                         *(if apart > 0.0 { &mut free } else { &mut met }) = middle;
                     }
                     let pose = at(met + 0.01 * (met - free).signum());
-                    let context =
-                        format!("{flags:?} {unit} {:?} {pose:?}", robot.as_shape::<ModifiedCylinder>());
+                    let context = format!(
+                        "{flags:?} {unit} {:?} {pose:?}",
+                        robot.as_shape::<ModifiedCylinder>()
+                    );
                     let dist = agreed(&pose, &*robot, &vessel, 0.05 * unit, 1e-11 * unit, &context);
                     held += usize::from(dist <= 0.0);
                 }

@@ -1,5 +1,5 @@
-//! A half-space is answered exactly in every query and both orders. The reference is the lowest of many points of the
-//! surface, and of the points that the links' own definition makes lowest.
+//! A half-space is answered exactly in every query and both orders. The reference is the lowest of
+//! many points of the surface, and of the points that the links' own definition makes lowest.
 
 use crate::draw::{Draw, surface_point};
 use crate::scene::tube;
@@ -13,7 +13,8 @@ use parry_continuum::{Cap, ContinuumDispatcher, ModifiedCylinder};
 
 const ROUNDING: Real = 1e-13;
 
-/// Height of the lowest point: a round cap that looks down reaches a radius below its centre, any other as far as its rim.
+/// Height of the lowest point: a round cap that looks down reaches a radius below its centre, any
+/// other as far as its rim.
 fn lowest(link: &ModifiedCylinder, pose: &Pose, normal: Vector) -> Real {
     let axis = (link.end() - link.start()).normalize_or_zero();
     let axis = pose.rotation * axis;
@@ -96,8 +97,12 @@ fn every_query_tells_the_height_of_the_lowest_point() {
 
             let (mut found, mut workspace): (Vec<ContactManifold<(), ()>>, _) = (vec![], None);
             let prediction = height.max(0.0) + 1e-9;
-            dispatcher.contact_manifolds(&pos12, g1, g2, prediction, &mut found, &mut workspace).unwrap();
-            let points = found.iter().flat_map(|manifold| manifold.points.iter().map(move |p| (manifold, p)));
+            dispatcher
+                .contact_manifolds(&pos12, g1, g2, prediction, &mut found, &mut workspace)
+                .unwrap();
+            let points = found
+                .iter()
+                .flat_map(|manifold| manifold.points.iter().map(move |p| (manifold, p)));
             let mut deepest = Real::INFINITY;
             for (manifold, point) in points {
                 deepest = deepest.min(point.dist);
@@ -149,7 +154,10 @@ fn casts_end_at_the_target_distance() {
                     "{hit:?} for {time}"
                 );
                 // Both witnesses at the time of impact.
-                let moved = Pose::from_parts(pos12.translation + vel12 * hit.time_of_impact, pos12.rotation);
+                let moved = Pose::from_parts(
+                    pos12.translation + vel12 * hit.time_of_impact,
+                    pos12.rotation,
+                );
                 let between = moved * hit.witness2 - hit.witness1;
                 let slack = ROUNDING * (1.0 + 10.0 / down);
                 assert!(
@@ -162,7 +170,10 @@ fn casts_end_at_the_target_distance() {
             }
         }
     }
-    assert!(hits > 300 && misses > 300 && starts > 300, "{hits} hits, {misses} misses, {starts} starts");
+    assert!(
+        hits > 300 && misses > 300 && starts > 300,
+        "{hits} hits, {misses} misses, {starts} starts"
+    );
 }
 
 #[test]

@@ -5,8 +5,8 @@ use crate::scene::{floor_field, floor_mesh, tube};
 use continuum_testing::Random;
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::query::{
-    ClosestPoints, Contact, DefaultQueryDispatcher, NonlinearRigidMotion, QueryDispatcher, ShapeCastHit,
-    ShapeCastOptions, ShapeDistance, ShapeIntersection, Unsupported,
+    ClosestPoints, Contact, DefaultQueryDispatcher, NonlinearRigidMotion, QueryDispatcher,
+    ShapeCastHit, ShapeCastOptions, ShapeDistance, ShapeIntersection, Unsupported,
 };
 use parry_continuum::parry::shape::{Compound, Cuboid, Shape, SharedShape, Triangle};
 use parry_continuum::{ContinuumDispatcher, ModifiedCylinder};
@@ -19,7 +19,8 @@ struct Recorder(Mutex<Vec<String>>);
 impl Recorder {
     fn note(&self, query: &str, g1: &dyn Shape, g2: &dyn Shape) {
         let name = |shape: &dyn Shape| {
-            let composite = shape.as_composite_shape().is_some() || shape.as_heightfield().is_some();
+            let composite =
+                shape.as_composite_shape().is_some() || shape.as_heightfield().is_some();
             let link = if shape.as_shape::<ModifiedCylinder>().is_some() { "Link" } else { "" };
             format!("{link}{:?}{}", shape.shape_type(), if composite { " composite" } else { "" })
         };
@@ -73,7 +74,11 @@ fn the_inner_dispatcher_is_asked_only_for_simple_pairs_of_others() {
     let mut random = Random::new(45);
     for (name, robot, other, pos12) in composites(&mut random) {
         assert_eq!(ask_everything(&dispatcher, &pos12, &*robot, &*other), [true; 6], "{name}");
-        assert_eq!(ask_everything(&dispatcher, &pos12.inverse(), &*other, &*robot), [true; 6], "{name}");
+        assert_eq!(
+            ask_everything(&dispatcher, &pos12.inverse(), &*other, &*robot),
+            [true; 6],
+            "{name}"
+        );
     }
     let record = dispatcher.0.0.into_inner().unwrap();
     let asked = |what: &str| record.iter().any(|line| line.contains(what));
@@ -116,20 +121,25 @@ impl QueryDispatcher for Ignorant {
 fn a_pair_that_is_refused_makes_the_whole_query_refused() {
     let mut random = Random::new(46);
     let dispatcher = ContinuumDispatcher(Ignorant);
-    // A box that is touched by nothing and that nobody knows how to measure, among triangles that are known.
+    // A box that is touched by nothing and that nobody knows how to measure, among triangles that
+    // are known.
     let cuboid = SharedShape::new(Cuboid::new(Vector::splat(0.5)));
     let triangle = SharedShape::new(Triangle::new(Vector::X, Vector::Y, Vector::Z));
     let mixed = Compound::new(vec![(Pose::IDENTITY, triangle), (Pose::IDENTITY, cuboid)]);
-    for robot in [SharedShape::new(tube(&mut random)), SharedShape::new(tube(&mut random).links()[0])] {
+    for robot in
+        [SharedShape::new(tube(&mut random)), SharedShape::new(tube(&mut random).links()[0])]
+    {
         let place = Pose::from_translation(Vector::new(0.3, 0.1, 0.0));
         assert_eq!(ask_everything(&dispatcher, &place, &mixed, &*robot)[1..], [false; 5]);
         assert_eq!(ask_everything(&dispatcher, &place, &*robot, &mixed)[1..], [false; 5]);
-        // With nothing but triangles all is well. (To leave out parts of a mesh in a nonlinear cast, parry
-        // asks about balls.)
+        // With nothing but triangles all is well. (To leave out parts of a mesh in a nonlinear
+        // cast, parry asks about balls.)
         assert_eq!(ask_everything(&dispatcher, &place, &floor_mesh(), &*robot)[..5], [true; 5]);
         assert_eq!(ask_everything(&dispatcher, &place, &floor_field(), &*robot)[..5], [true; 5]);
     }
     // Found before anything was refused: they do meet.
     let link = ModifiedCylinder::capsule(Vector::ZERO, Vector::X, 0.5).unwrap();
-    assert!(dispatcher.intersection_test(&Pose::IDENTITY, &floor_mesh(), &link).unwrap().intersecting);
+    assert!(
+        dispatcher.intersection_test(&Pose::IDENTITY, &floor_mesh(), &link).unwrap().intersecting
+    );
 }

@@ -1,8 +1,8 @@
 //! Near a joint a chain keeps every contact that its links have one by one.
 //!
-//! A cap inside the neighbouring link makes no contact only while the neighbour makes it. So the deepest point of
-//! a chain's manifolds is the deepest of its links', one by one, for every convex shape. The links one by one are
-//! answered as in parry's `Compound`, which has no joints.
+//! A cap inside the neighbouring link makes no contact only while the neighbour makes it. So the
+//! deepest point of a chain's manifolds is the deepest of its links', one by one, for every convex
+//! shape. The links one by one are answered as in parry's `Compound`, which has no joints.
 
 use crate::draw::Draw;
 use continuum_testing::Random;
@@ -39,25 +39,32 @@ fn convex_shapes(random: &mut Random) -> Vec<(&'static str, SharedShape)> {
         ("half-space", SharedShape::halfspace(random.direction())),
         (
             "link",
-            SharedShape::new(ModifiedCylinder::new(points[3], points[4], 0.3 * b, random.caps()).unwrap()),
+            SharedShape::new(
+                ModifiedCylinder::new(points[3], points[4], 0.3 * b, random.caps()).unwrap(),
+            ),
         ),
         ("chain", SharedShape::new(Chain::from_centreline(&links, &[0.25, 0.25]).unwrap())),
     ]
 }
 
-/// Two or three links with a bend, the second end sometimes short, and the place of the first joint.
+/// Two or three links with a bend, the second end sometimes short, and the place of the first
+/// joint.
 fn bent(random: &mut Random) -> (Chain, Vector) {
     let joint = random.vector(0.3);
     let (back, radius) = (random.direction(), random.log_between(0.05, 0.4));
     let ahead = (random.vector(0.9) - back).normalize();
-    let mut points =
-        vec![joint + back * random.between(0.3, 1.2), joint, joint + ahead * random.log_between(0.05, 1.0)];
+    let mut points = vec![
+        joint + back * random.between(0.3, 1.2),
+        joint,
+        joint + ahead * random.log_between(0.05, 1.0),
+    ];
     if random.chance(0.3) {
         let onward = (ahead + random.vector(0.5)).normalize();
         points.push(points[2] + onward * random.between(0.1, 0.8));
     }
     let step = if random.chance(0.2) { 0.7 } else { 1.0 };
-    let radii: Vec<_> = (1..points.len()).map(|k| if k > 1 { step * radius } else { radius }).collect();
+    let radii: Vec<_> =
+        (1..points.len()).map(|k| if k > 1 { step * radius } else { radius }).collect();
     let chain = match random.index(4) {
         0 => Chain::capsules(&points, &radii),
         1 => Chain::cylinders(&points, &radii),
@@ -70,7 +77,9 @@ fn bent(random: &mut Random) -> (Chain, Vector) {
 fn deepest(pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape) -> Real {
     let (mut manifolds, mut workspace): (Vec<Manifold>, _) = (vec![], None);
     let dispatcher = ContinuumDispatcher::default();
-    dispatcher.contact_manifolds(pos12, g1, g2, PREDICTION, &mut manifolds, &mut workspace).unwrap();
+    dispatcher
+        .contact_manifolds(pos12, g1, g2, PREDICTION, &mut manifolds, &mut workspace)
+        .unwrap();
     manifolds
         .iter()
         .flat_map(|manifold| &manifold.points)
@@ -88,13 +97,20 @@ fn parts(shape: &dyn Shape) -> Vec<&dyn Shape> {
 
 /// Of the parts of both shapes, one by one.
 fn deepest_part(pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape) -> Real {
-    let pairs =
-        parts(g1).into_iter().flat_map(|part1| parts(g2).into_iter().map(move |part2| (part1, part2)));
+    let pairs = parts(g1)
+        .into_iter()
+        .flat_map(|part1| parts(g2).into_iter().map(move |part2| (part1, part2)));
     pairs.map(|(part1, part2)| deepest(pos12, part1, part2)).fold(Real::INFINITY, Real::min)
 }
 
-/// Moves `other` along the way to the joint until it meets the chain less than `depth` deep, or lies as far from it.
-fn brought_near(random: &mut Random, robot: &Chain, joint: Vector, other: &dyn Shape) -> Option<Pose> {
+/// Moves `other` along the way to the joint until it meets the chain less than `depth` deep, or
+/// lies as far from it.
+fn brought_near(
+    random: &mut Random,
+    robot: &Chain,
+    joint: Vector,
+    other: &dyn Shape,
+) -> Option<Pose> {
     let dispatcher = ContinuumDispatcher::default();
     let (way, turn) = (random.direction(), random.direction() * random.between(0.0, 3.1));
     let at = |t: Real| Pose::new(joint + way * t, turn);
@@ -124,8 +140,8 @@ fn visit(seed: u64, poses: usize) {
                 if expected < 0.0 {
                     *overlaps.entry(name).or_insert(0) += 1;
                 }
-                // A point that is deeper than the shapes are apart is false. A link on its own has one now and then,
-                // where parry's iterations end early.
+                // A point that is deeper than the shapes are apart is false. A link on its own has
+                // one now and then, where parry's iterations end early.
                 asked += 1;
                 let apart = dispatcher.distance(&pos12, g1, g2).unwrap().distance;
                 false_points += usize::from(apart > 0.0 && found < apart - TOLERANCE);
@@ -141,8 +157,8 @@ fn visit(seed: u64, poses: usize) {
     assert!(overlaps.len() == 11 && overlaps.values().all(|&n| n > poses / 4), "{overlaps:?}");
 }
 
-/// A straight chain slides over a narrow box, 0.005 deep. A link that the box has just left or not yet reached would
-/// be pushed along the axis: its way out there is shorter than sideways.
+/// A straight chain slides over a narrow box, 0.005 deep. A link that the box has just left or not
+/// yet reached would be pushed along the axis: its way out there is shorter than sideways.
 #[test]
 fn a_joint_does_not_catch_on_a_box() {
     let mut random = Random::new(103);
@@ -155,7 +171,11 @@ fn a_joint_does_not_catch_on_a_box() {
             let joint = 1.0 + random.index(4) as Real;
             let edge = joint + random.between(-0.1, 0.1);
             let half = Vector::new(random.between(0.05, 0.2), 0.3, random.between(0.1, 1.0));
-            let pose = Pose::from_translation(Vector::new(edge + half.x, -0.695, random.between(-0.2, 0.2)));
+            let pose = Pose::from_translation(Vector::new(
+                edge + half.x,
+                -0.695,
+                random.between(-0.2, 0.2),
+            ));
             let cuboid = SharedShape::cuboid(half.x, half.y, half.z);
             let (mut found, mut workspace): (Vec<Manifold>, _) = (vec![], None);
             dispatcher
@@ -190,7 +210,9 @@ fn a_chain_touches_as_deep_as_its_links_over_a_hundred_thousand_poses() {
 fn identities(pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape) -> BTreeSet<[u32; 4]> {
     let (mut manifolds, mut workspace): (Vec<Manifold>, _) = (vec![], None);
     let dispatcher = ContinuumDispatcher::default();
-    dispatcher.contact_manifolds(pos12, g1, g2, PREDICTION, &mut manifolds, &mut workspace).unwrap();
+    dispatcher
+        .contact_manifolds(pos12, g1, g2, PREDICTION, &mut manifolds, &mut workspace)
+        .unwrap();
     let of_one = |manifold: &Manifold| {
         let parts = [manifold.subshape1, manifold.subshape2];
         let names = |point: &TrackedContact<()>| [parts[0], parts[1], point.fid1.0, point.fid2.0];
@@ -218,7 +240,8 @@ fn equally_deep_neighbours_keep_their_points() {
         // A bend in a plane across the corner, so that the joint's ball is the lowest of both
         // links, and straight chains.
         let bend = [0.0, 0.4, -0.4, 0.0][round % 4];
-        let points: Vec<_> = (0..5).map(|k| Vector::new(k as Real, 0.0, bend * (k % 2) as Real)).collect();
+        let points: Vec<_> =
+            (0..5).map(|k| Vector::new(k as Real, 0.0, bend * (k % 2) as Real)).collect();
         let radii = [radius; 4];
         let chain = match round % 3 {
             0 => Chain::capsules(&points, &radii),
@@ -227,13 +250,17 @@ fn equally_deep_neighbours_keep_their_points() {
         };
         let chain = chain.unwrap();
         // Along the corner, or with the bends down.
-        let turn = if round % 2 == 0 { Vector::ZERO } else { Vector::X * std::f64::consts::FRAC_PI_2 };
+        let turn =
+            if round % 2 == 0 { Vector::ZERO } else { Vector::X * std::f64::consts::FRAC_PI_2 };
         let turned = Pose::from_parts(Vector::ZERO, Pose::new(Vector::ZERO, turn).rotation);
         let low = chain.compute_aabb(&turned).mins;
         let depth = random.log_between(1e-4, 1e-2);
         let place = Vector::new(2.0, -low.y - depth, -low.z - depth);
         let at = |nudge: Vector, spin: Vector| {
-            Pose::from_parts(place + nudge, Pose::new(Vector::ZERO, spin).rotation * turned.rotation)
+            Pose::from_parts(
+                place + nudge,
+                Pose::new(Vector::ZERO, spin).rotation * turned.rotation,
+            )
         };
         for wall in [&corner, &plane] {
             let first = identities(&at(Vector::ZERO, Vector::ZERO), &**wall, &chain);
@@ -244,7 +271,8 @@ fn equally_deep_neighbours_keep_their_points() {
                 let pose = at(random.vector(size), random.vector(size));
                 asked += 1;
                 changed += usize::from(identities(&pose, &**wall, &chain) != first);
-                changed += usize::from(identities(&pose.inverse(), &chain, &**wall).len() != first.len());
+                changed +=
+                    usize::from(identities(&pose.inverse(), &chain, &**wall).len() != first.len());
             }
         }
     }

@@ -12,7 +12,8 @@ const ROUNDS: u32 = 600;
 
 #[test]
 fn every_query_says_how_deep_they_overlap() {
-    let (mut random, dispatcher, here) = (Random::new(3), ContinuumDispatcher::default(), Pose::IDENTITY);
+    let (mut random, dispatcher, here) =
+        (Random::new(3), ContinuumDispatcher::default(), Pose::IDENTITY);
     let mut flat = 0;
     for pair in found_level_links().chain((0..ROUNDS).map(|_| random.level_links())) {
         let [a, b] = pair.links;
@@ -25,21 +26,29 @@ fn every_query_says_how_deep_they_overlap() {
             let closest = dispatcher.closest_points(&here, a, b, 0.1 * extent).unwrap();
             assert_eq!(closest, ClosestPoints::Intersecting, "{pair:?}");
             let prediction = 0.1 * a.radius();
-            let contact = dispatcher.contact(&here, a, b, prediction).unwrap().expect("they overlap");
+            let contact =
+                dispatcher.contact(&here, a, b, prediction).unwrap().expect("they overlap");
             // A round cap makes the way out longer.
             let off = contact.dist + pair.depth;
             let slack = 64.0 * f64::EPSILON * extent;
-            assert!(off <= slack && (!pair.is_flat() || off >= -slack), "{} of {pair:?}", contact.dist);
+            assert!(
+                off <= slack && (!pair.is_flat() || off >= -slack),
+                "{} of {pair:?}",
+                contact.dist
+            );
             flat += u32::from(pair.is_flat());
             let (mut manifolds, mut workspace) = (Vec::<ContactManifold<(), ()>>::new(), None);
-            dispatcher.contact_manifolds(&here, a, b, prediction, &mut manifolds, &mut workspace).unwrap();
+            dispatcher
+                .contact_manifolds(&here, a, b, prediction, &mut manifolds, &mut workspace)
+                .unwrap();
             let points = manifolds.iter().flat_map(|manifold| &manifold.points);
             let deepest = points.fold(f64::INFINITY, |least, point| least.min(point.dist));
             assert!((deepest - contact.dist).abs() <= slack, "{deepest} of {pair:?}");
             // Towards one another they touch at once.
             let way = -contact.normal1;
             let options = ShapeCastOptions::with_max_time_of_impact(10.0 * extent);
-            let hit = dispatcher.cast_shapes(&here, way, a, b, options).unwrap().expect("they overlap");
+            let hit =
+                dispatcher.cast_shapes(&here, way, a, b, options).unwrap().expect("they overlap");
             assert_eq!(hit.time_of_impact, 0.0, "{pair:?}");
         }
     }

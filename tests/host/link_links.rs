@@ -1,9 +1,11 @@
-//! The contact points of two links of which at most one meets the other with a flat cap: each is on both surfaces and as
-//! far apart as it says, and the nearest is the exact distance, or the exact depth of the overlap.
+//! The contact points of two links of which at most one meets the other with a flat cap: each is on
+//! both surfaces and as far apart as it says, and the nearest is the exact distance, or the exact
+//! depth of the overlap.
 //!
-//! The proof of a contact needs nothing of its making. For any unit vector the gap between the two links' supports along
-//! it is a lower bound on their distance; so where the gap along the contact's normal is the points' own distance, that
-//! is the distance. Where they overlap it is a way out, and no sampled way out may be shorter.
+//! The proof of a contact needs nothing of its making. For any unit vector the gap between the two
+//! links' supports along it is a lower bound on their distance; so where the gap along the
+//! contact's normal is the points' own distance, that is the distance. Where they overlap it is a
+//! way out, and no sampled way out may be shorter.
 
 use crate::draw::{Draw, U};
 use continuum_testing::Random;
@@ -36,10 +38,16 @@ fn link(random: &mut Random, caps: [Cap; 2]) -> ModifiedCylinder {
     ModifiedCylinder::new(start, end, random.between(0.1, 0.6), caps).unwrap()
 }
 
-fn manifold(pose: &Pose, first: &ModifiedCylinder, second: &ModifiedCylinder) -> ContactManifold<(), ()> {
+fn manifold(
+    pose: &Pose,
+    first: &ModifiedCylinder,
+    second: &ModifiedCylinder,
+) -> ContactManifold<(), ()> {
     let mut manifold = ContactManifold::new();
     let dispatcher = ContinuumDispatcher::default();
-    dispatcher.contact_manifold_convex_convex(pose, first, second, None, None, 0.2, &mut manifold).unwrap();
+    dispatcher
+        .contact_manifold_convex_convex(pose, first, second, None, None, 0.2, &mut manifold)
+        .unwrap();
     manifold
 }
 
@@ -55,11 +63,19 @@ fn a_capsule_and_any_link_meet_exactly() {
         let (first, second, pose) = if random.chance(0.5) {
             let (first, wall, pose) = random.aligned(Wall::Link);
             let second = wall.as_shape::<ModifiedCylinder>().unwrap();
-            (first, ModifiedCylinder::capsule(second.start(), second.end(), second.radius()).unwrap(), pose)
+            (
+                first,
+                ModifiedCylinder::capsule(second.start(), second.end(), second.radius()).unwrap(),
+                pose,
+            )
         } else {
             let any = random.caps();
             let (first, second) = (link(&mut random, any), link(&mut random, [Cap::Round; 2]));
-            (first, second, Pose::new(random.vector(1.5), random.direction() * random.between(0.0, 3.0)))
+            (
+                first,
+                second,
+                Pose::new(random.vector(1.5), random.direction() * random.between(0.0, 3.0)),
+            )
         };
         let is_capsule_first = random.chance(0.5);
         let (first, second, pose) =
@@ -79,7 +95,8 @@ fn a_capsule_and_any_link_meet_exactly() {
         let context = || format!("{first:?} {second:?} {pose:?} {found:?}");
         let Some(least) = found.points.iter().map(|point| point.dist).reduce(Real::min) else {
             nothing += 1;
-            // They are apart by more than was asked for: some plane says so, or the sampled points do.
+            // They are apart by more than was asked for: some plane says so, or the sampled points
+            // do.
             let points = (0..=200).map(|k| {
                 let at = capsule.start().lerp(capsule.end(), Real::from(k) / 200.0);
                 solid.distance_to_local_point(at, true) - capsule.radius()
@@ -88,11 +105,16 @@ fn a_capsule_and_any_link_meet_exactly() {
             continue;
         };
         let proven = gap(&first, &placed, found.local_n1);
-        assert!((-TOLERANCE..SAME_POINT).contains(&(least - proven)), "{proven} {least} {}", context());
+        assert!(
+            (-TOLERANCE..SAME_POINT).contains(&(least - proven)),
+            "{proven} {least} {}",
+            context()
+        );
         if least < 0.0 {
             overlapping += 1;
             for _ in 0..200 {
-                let way = (found.local_n1 + random.point() * random.log_between(1e-3, 10.0)).normalize();
+                let way =
+                    (found.local_n1 + random.point() * random.log_between(1e-3, 10.0)).normalize();
                 assert!(gap(&first, &placed, way) < proven + TOLERANCE, "{way} {}", context());
             }
         } else {
@@ -106,8 +128,10 @@ fn a_capsule_and_any_link_meet_exactly() {
                 first.distance_to_local_point(point.local_p1, false),
                 second.distance_to_local_point(point.local_p2, false),
             ];
-            // Where the normal leans along an axis, what lies along the crest is lower by the square of the lean.
-            let leans = [&first, &placed].map(|link| found.local_n1.dot(link.axis()).powi(2) * link.radius());
+            // Where the normal leans along an axis, what lies along the crest is lower by the
+            // square of the lean.
+            let leans = [&first, &placed]
+                .map(|link| found.local_n1.dot(link.axis()).powi(2) * link.radius());
             // One all but as close stands for the nearest, with its distance.
             let stands_for = if point.dist == least { SAME_POINT } else { 0.0 };
             let enough = 1e-12 + leans[0] + leans[1] + stands_for;
@@ -163,7 +187,8 @@ fn barrels_that_cross_meet_exactly() {
     assert!(shallow > 2000 && near_caps > 5000, "{shallow} {near_caps}");
 }
 
-/// Barrels that overlap by more across their axes than along them: the short way out is the flat caps'.
+/// Barrels that overlap by more across their axes than along them: the short way out is the flat
+/// caps'.
 #[test]
 fn where_flat_caps_are_the_way_out_barrels_do_not_answer() {
     let mut random = Random::new(163);
@@ -181,7 +206,8 @@ fn where_flat_caps_are_the_way_out_barrels_do_not_answer() {
     }
 }
 
-/// Barrels that lie along each other touch at both ends of what they have in common, and the points keep their names.
+/// Barrels that lie along each other touch at both ends of what they have in common, and the points
+/// keep their names.
 #[test]
 fn parallel_barrels_touch_at_two_points() {
     let first = ModifiedCylinder::cylinder(-Vector::X, Vector::X, 0.25).unwrap();
@@ -191,11 +217,17 @@ fn parallel_barrels_touch_at_two_points() {
         for tilt in [-0.02, -1e-9, 0.0, 1e-9, 0.02] {
             let pose = Pose::new(Vector::new(-0.5, 0.74, 0.01), Vector::new(0.0, 0.3 * tilt, tilt));
             let found = manifold(&pose, &first, &second);
-            let mut places: Vec<_> =
-                found.points.iter().map(|point| (point.local_p1.x, point.fid1, point.fid2)).collect();
+            let mut places: Vec<_> = found
+                .points
+                .iter()
+                .map(|point| (point.local_p1.x, point.fid1, point.fid2))
+                .collect();
             places.sort_by(|a, b| a.0.total_cmp(&b.0));
             assert!(places.len() == 2, "{caps:?} {tilt} {found:?}");
-            assert!((places[0].0 + 0.5).abs() < 0.03 && (places[1].0 - 1.0).abs() < 0.03, "{places:?}");
+            assert!(
+                (places[0].0 + 0.5).abs() < 0.03 && (places[1].0 - 1.0).abs() < 0.03,
+                "{places:?}"
+            );
             let now = [0, 1].map(|k| (places[k].1, places[k].2));
             assert_eq!(*names.get_or_insert(now), now, "{caps:?} {tilt}");
         }
@@ -209,7 +241,11 @@ fn a_barrel_across_a_flat_cap_touches_at_two_points() {
     let beam = ModifiedCylinder::capsule(-2.0 * Vector::X, 2.0 * Vector::X, 0.25).unwrap();
     let above = Pose::from_translation(Vector::new(0.1, 0.24, 0.3));
     for (pose, is_post_first) in [(above, true), (above.inverse(), false)] {
-        let found = if is_post_first { manifold(&pose, &post, &beam) } else { manifold(&pose, &beam, &post) };
+        let found = if is_post_first {
+            manifold(&pose, &post, &beam)
+        } else {
+            manifold(&pose, &beam, &post)
+        };
         let on_post = |k: usize| {
             let point = &found.points[k];
             if is_post_first { point.local_p1 } else { point.local_p2 }

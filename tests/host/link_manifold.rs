@@ -1,5 +1,6 @@
-//! The contact points of a link and a triangle: on both surfaces, as far apart as they say, as near as the
-//! exact distance, under the same names from step to step, and with the normals that a mesh or a chain allows.
+//! The contact points of a link and a triangle: on both surfaces, as far apart as they say, as near
+//! as the exact distance, under the same names from step to step, and with the normals that a mesh
+//! or a chain allows.
 
 use crate::draw::{CAPS, Draw, U, scaled};
 use continuum_testing::Random;
@@ -7,7 +8,9 @@ use parry_continuum::parry::math::{Pose, Real, Rot3, Vector};
 use parry_continuum::parry::query::{
     ContactManifold, PersistentQueryDispatcher, PointQuery, QueryDispatcher,
 };
-use parry_continuum::parry::shape::{Ball, FeatureId, Segment, Shape, TriMesh, TriMeshFlags, Triangle};
+use parry_continuum::parry::shape::{
+    Ball, FeatureId, Segment, Shape, TriMesh, TriMeshFlags, Triangle,
+};
 use parry_continuum::{Cap, Chain, ContinuumDispatcher, ModifiedCylinder};
 use std::collections::BTreeSet;
 
@@ -16,7 +19,9 @@ type Manifold = ContactManifold<(), ()>;
 fn manifolds(pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape, prediction: Real) -> Vec<Manifold> {
     let (mut manifolds, mut workspace) = (vec![], None);
     let dispatcher = ContinuumDispatcher::default();
-    dispatcher.contact_manifolds(pos12, g1, g2, prediction, &mut manifolds, &mut workspace).unwrap();
+    dispatcher
+        .contact_manifolds(pos12, g1, g2, prediction, &mut manifolds, &mut workspace)
+        .unwrap();
     manifolds
 }
 
@@ -36,12 +41,17 @@ fn every_point_is_on_both_surfaces_and_the_nearest_is_the_distance() {
             assert!(points.is_empty(), "{link:?} {:?} {pose:?}", wall.as_typed_shape());
             continue;
         };
-        let context = || format!("{link:?} {:?} {pose:?} {contact:?} {:?}", wall.as_typed_shape(), found[0]);
+        let context =
+            || format!("{link:?} {:?} {pose:?} {contact:?} {:?}", wall.as_typed_shape(), found[0]);
         let tolerance = 256.0 * U * 6.0;
         let least = points.iter().map(|point| point.dist).fold(Real::INFINITY, Real::min);
         // What coincides with a point that is there already is left out.
         let same = 2e-6 * (link.length() + link.radius());
-        assert!(least >= contact.dist - tolerance && least <= contact.dist + same, "{least} {}", context());
+        assert!(
+            least >= contact.dist - tolerance && least <= contact.dist + same,
+            "{least} {}",
+            context()
+        );
         assert!((found[0].local_n1 - contact.normal1).length() < 1e-9);
         let caps = CAPS.iter().position(|caps| *caps == link.caps()).unwrap();
         counts[caps][usize::from(contact.dist < 0.0)] += points.len();
@@ -64,7 +74,8 @@ fn every_point_is_on_both_surfaces_and_the_nearest_is_the_distance() {
     assert!(counts.iter().flatten().all(|&n| n > 300), "{counts:?}");
 }
 
-/// Of a link that lies along a rail, and of a cap that stands on one, both ends of what they share are contacts.
+/// Of a link that lies along a rail, and of a cap that stands on one, both ends of what they share
+/// are contacts.
 #[test]
 fn links_lie_and_stand_on_rails() {
     let mut random = Random::new(88);
@@ -80,7 +91,8 @@ fn links_lie_and_stand_on_rails() {
                 (false, Cap::Round) => (0.5, 0.0),
             };
             let pose =
-                Pose::from_translation(Vector::new(random.between(-0.3, 0.3), below - 0.01, 0.0)).inverse();
+                Pose::from_translation(Vector::new(random.between(-0.3, 0.3), below - 0.01, 0.0))
+                    .inverse();
             let found = manifolds(&pose, &link, &rail, 0.1);
             let along: Vec<_> = found[0].points.iter().map(|point| point.local_p2.x).collect();
             let least = along.iter().copied().fold(Real::INFINITY, Real::min);
@@ -118,10 +130,15 @@ fn the_unit_of_length_does_not_matter() {
 }
 
 fn floor() -> Triangle {
-    Triangle::new(Vector::new(-50.0, 0.0, -40.0), Vector::new(50.0, 0.0, -40.0), Vector::new(0.0, 0.0, 60.0))
+    Triangle::new(
+        Vector::new(-50.0, 0.0, -40.0),
+        Vector::new(50.0, 0.0, -40.0),
+        Vector::new(0.0, 0.0, 60.0),
+    )
 }
 
-/// A link that lies touches with the ends of its lowest line; one that stands on a disc touches around it.
+/// A link that lies touches with the ends of its lowest line; one that stands on a disc touches
+/// around it.
 #[test]
 fn links_lie_on_their_ends_and_stand_on_their_rim() {
     let mut random = Random::new(83);
@@ -134,7 +151,8 @@ fn links_lie_on_their_ends_and_stand_on_their_rim() {
             let along: Vec<_> = found.points.iter().map(|point| point.local_p1.x).collect();
             assert_eq!(along.len(), 2, "{caps:?} {along:?}");
             assert!(
-                (along[0].min(along[1]) + 1.0).abs() < 1e-6 && (along[0].max(along[1]) - 1.5).abs() < 1e-6
+                (along[0].min(along[1]) + 1.0).abs() < 1e-6
+                    && (along[0].max(along[1]) - 1.5).abs() < 1e-6
             );
             assert!(found.points.iter().all(|point| (point.dist + 0.001).abs() < 1e-12));
 
@@ -150,7 +168,8 @@ fn links_lie_on_their_ends_and_stand_on_their_rim() {
     }
 }
 
-/// Leaning by any angle about any side, the lowest point of the rim is exact: no corner of a polygon is.
+/// Leaning by any angle about any side, the lowest point of the rim is exact: no corner of a
+/// polygon is.
 #[test]
 fn the_lowest_point_of_a_rim_is_a_contact() {
     let mut random = Random::new(84);
@@ -180,15 +199,19 @@ fn contacts_keep_their_names() {
             let link = ModifiedCylinder::new(start, end, 0.5, caps).unwrap();
             let rest = if start == Vector::ZERO && caps[0] == Cap::Flat { 0.0 } else { 0.5 };
             let at = |place: Vector, turn: Vector| {
-                let pose =
-                    Pose::from_parts(Vector::new(1.0, rest, 2.0) + place, Rot3::from_scaled_axis(turn));
+                let pose = Pose::from_parts(
+                    Vector::new(1.0, rest, 2.0) + place,
+                    Rot3::from_scaled_axis(turn),
+                );
                 names(&manifolds(&pose.inverse(), &link, &floor(), 0.02))
             };
             let before = at(Vector::ZERO, Vector::ZERO);
             assert!(!before.is_empty());
             for _ in 0..50 {
-                let after =
-                    at(random.vector(1e-4), Vector::Y * random.between(-0.5, 0.5) + random.vector(1e-7));
+                let after = at(
+                    random.vector(1e-4),
+                    Vector::Y * random.between(-0.5, 0.5) + random.vector(1e-7),
+                );
                 assert_eq!(before, after, "{caps:?}");
             }
         }
@@ -197,7 +220,8 @@ fn contacts_keep_their_names() {
 
 /// A flat floor of many triangles. The flags decide what its inner edges do.
 fn tiles(flags: TriMeshFlags) -> TriMesh {
-    let vertices = (0..81).map(|k| Vector::new((k / 9) as Real - 4.0, 0.0, (k % 9) as Real - 4.0)).collect();
+    let vertices =
+        (0..81).map(|k| Vector::new((k / 9) as Real - 4.0, 0.0, (k % 9) as Real - 4.0)).collect();
     let cell = |k: u32| {
         let a = 9 * (k / 8) + k % 8;
         [[a, a + 1, a + 9], [a + 1, a + 10, a + 9]]
@@ -224,7 +248,9 @@ fn inner_edges_of_a_floor_are_not_felt() {
             honest += manifold.points.len();
             assert!((manifold.local_n1 - Vector::Y).length() < 1e-12, "{manifold:?}");
             // An edge along the lowest line may be a little beside it.
-            assert!(manifold.points.iter().all(|point| (-1e-9..2e-5).contains(&(point.dist + 0.005))));
+            assert!(
+                manifold.points.iter().all(|point| (-1e-9..2e-5).contains(&(point.dist + 0.005)))
+            );
         }
     }
     assert!(ghosts > 20 && honest > 600, "{ghosts} {honest}");
@@ -237,7 +263,8 @@ fn a_robot_in_a_lumen_is_held_by_walls_of_one_side_and_of_two() {
     let one_sided = wall(TriMeshFlags::FIX_INTERNAL_EDGES);
     let two_sided = wall(TriMeshFlags::FIX_INTERNAL_EDGES_TWO_SIDED);
     let robot =
-        Chain::from_centreline(&[Vector::ZERO, 2.0 * Vector::X, 4.97 * Vector::X], &[0.5, 0.5]).unwrap();
+        Chain::from_centreline(&[Vector::ZERO, 2.0 * Vector::X, 4.97 * Vector::X], &[0.5, 0.5])
+            .unwrap();
     for robot in [&robot as &dyn Shape, &robot.links()[1]] {
         let touched = |mesh: &TriMesh| {
             let found = manifolds(&Pose::IDENTITY, robot, mesh, 0.01);
@@ -251,8 +278,8 @@ fn a_robot_in_a_lumen_is_held_by_walls_of_one_side_and_of_two() {
     }
 }
 
-/// Slid along a vertex of the wall, a chain's joints are as smooth as its links: the cap of one link inside the
-/// next makes no contact that would catch.
+/// Slid along a vertex of the wall, a chain's joints are as smooth as its links: the cap of one
+/// link inside the next makes no contact that would catch.
 #[test]
 fn joints_do_not_catch() {
     let mut random = Random::new(87);
@@ -269,10 +296,14 @@ fn joints_do_not_catch() {
             let found = manifolds(&Pose::IDENTITY, &robot, &wall, 0.05);
             for manifold in found.iter().filter(|manifold| !manifold.points.is_empty()) {
                 assert!(manifold.local_n1.x.abs() < 1e-9, "{manifold:?}");
-                assert!(manifold.points.iter().all(|point| point.dist > 0.001 - 1e-9), "{manifold:?}");
+                assert!(
+                    manifold.points.iter().all(|point| point.dist > 0.001 - 1e-9),
+                    "{manifold:?}"
+                );
             }
             let points = found.iter().flat_map(|manifold| &manifold.points);
-            touched += points.filter(|p| p.dist < 0.001 + 1e-9 && (p.local_p1.x - x).abs() < 1e-6).count();
+            touched +=
+                points.filter(|p| p.dist < 0.001 + 1e-9 && (p.local_p1.x - x).abs() < 1e-6).count();
         }
     }
     assert!(touched >= 600, "{touched}");
@@ -282,7 +313,8 @@ fn random_side(way: Real) -> Real {
     if way > 0.0 { 0.3 } else { -0.2 }
 }
 
-/// At a step the wider cap is bare and touches; the narrower one is inside the wider link and does not.
+/// At a step the wider cap is bare and touches; the narrower one is inside the wider link and does
+/// not.
 #[test]
 fn a_step_touches_with_its_wider_side_alone() {
     let points = [Vector::ZERO, 2.0 * Vector::X, 4.0 * Vector::X];
@@ -311,7 +343,8 @@ fn a_step_touches_with_its_wider_side_alone() {
 #[test]
 fn points_are_named_after_features() {
     let rod = ModifiedCylinder::cylinder(Vector::ZERO, 2.0 * Vector::Y, 0.5).unwrap();
-    let needle = Triangle::new(Vector::ZERO, Vector::new(0.2, -1.0, 0.1), Vector::new(-0.2, -1.0, 0.1));
+    let needle =
+        Triangle::new(Vector::ZERO, Vector::new(0.2, -1.0, 0.1), Vector::new(-0.2, -1.0, 0.1));
     let found = &manifolds(&Pose::IDENTITY, &rod, &needle, 0.02)[0];
     let point = found.find_deepest_contact().unwrap();
     assert_eq!(point.fid2.unpack(), FeatureId::Vertex(0));

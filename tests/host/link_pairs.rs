@@ -1,5 +1,5 @@
-//! Links against links, and against the shapes of parry's that are links: every query takes a ball, a capsule or a cylinder
-//! for the link that it is, in either order and in every unit of length.
+//! Links against links, and against the shapes of parry's that are links: every query takes a ball,
+//! a capsule or a cylinder for the link that it is, in either order and in every unit of length.
 
 use crate::draw::{CAPS, Draw, U, scaled};
 use continuum_testing::Random;
@@ -9,11 +9,14 @@ use parry_continuum::parry::query::*;
 use parry_continuum::parry::shape::{Ball, Capsule, Shape};
 use parry_continuum::{ContinuumDispatcher, ModifiedCylinder};
 
-/// All that is said of a pair, in words: numbers are written so that they are read back as they were.
+/// All that is said of a pair, in words: numbers are written so that they are read back as they
+/// were.
 fn said(pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape, unit: Real) -> Vec<String> {
     let dispatcher = ContinuumDispatcher::default();
     let mut manifold = ContactManifold::<(), ()>::new();
-    dispatcher.contact_manifold_convex_convex(pos12, g1, g2, None, None, 0.3 * unit, &mut manifold).unwrap();
+    dispatcher
+        .contact_manifold_convex_convex(pos12, g1, g2, None, None, 0.3 * unit, &mut manifold)
+        .unwrap();
     let points = manifold.points.iter();
     let points: Vec<_> = points
         .map(|point| {
@@ -54,7 +57,8 @@ fn said(pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape, unit: Real) -> Vec<String>
     ]
 }
 
-/// What is left between two ways to the same number of size 1: 64 units in the last place of the largest coordinate.
+/// What is left between two ways to the same number of size 1: 64 units in the last place of the
+/// largest coordinate.
 const ROUNDING: Real = 64.0 * U * 4.0;
 
 const KINDS: [Wall; 4] = [Wall::Ball, Wall::Capsule, Wall::Cylinder, Wall::Link];
@@ -65,7 +69,8 @@ fn as_link(shape: &dyn Shape) -> ModifiedCylinder {
         return ModifiedCylinder::capsule(Vector::ZERO, Vector::ZERO, ball.radius).unwrap();
     }
     if let Some(capsule) = shape.as_capsule() {
-        return ModifiedCylinder::capsule(capsule.segment.a, capsule.segment.b, capsule.radius).unwrap();
+        return ModifiedCylinder::capsule(capsule.segment.a, capsule.segment.b, capsule.radius)
+            .unwrap();
     }
     if let Some(cylinder) = shape.as_cylinder() {
         let half = Vector::Y * cylinder.half_height;
@@ -84,9 +89,14 @@ fn a_ball_a_capsule_and_a_cylinder_are_links() {
             let other = as_link(&*wall);
             for (pos12, is_first) in [(pose, true), (pose.inverse(), false)] {
                 let said = |wall: &dyn Shape| {
-                    if is_first { said(&pos12, &link, wall, 1.0) } else { said(&pos12, wall, &link, 1.0) }
+                    if is_first {
+                        said(&pos12, &link, wall, 1.0)
+                    } else {
+                        said(&pos12, wall, &link, 1.0)
+                    }
                 };
-                // While they turn the link of this crate is the one that is measured from, in both orders.
+                // While they turn the link of this crate is the one that is measured from, in both
+                // orders.
                 let count = if is_first { 7 } else { 6 };
                 let taken = said(&other);
                 assert_eq!(said(&*wall)[..count], taken[..count], "{link:?} {other:?} {pos12:?}");
@@ -103,7 +113,9 @@ fn no_two_points_of_a_manifold_have_the_same_names() {
     let dispatcher = ContinuumDispatcher::default();
     let names = |pos12: &Pose, g1: &ModifiedCylinder, g2: &ModifiedCylinder| {
         let mut manifold = ContactManifold::<(), ()>::new();
-        dispatcher.contact_manifold_convex_convex(pos12, g1, g2, None, None, 0.3, &mut manifold).unwrap();
+        dispatcher
+            .contact_manifold_convex_convex(pos12, g1, g2, None, None, 0.3, &mut manifold)
+            .unwrap();
         let names: Vec<_> = manifold.points.iter().map(|point| (point.fid1, point.fid2)).collect();
         let are_all_new = names.iter().enumerate().all(|(k, name)| !names[..k].contains(name));
         assert!(are_all_new, "{names:?}: {g1:?} {g2:?} {pos12:?}");
@@ -123,8 +135,8 @@ fn no_two_points_of_a_manifold_have_the_same_names() {
     assert!(several > 200, "{several}");
 }
 
-/// A large ball on the way of a small link, which comes at it more and more aslant: it stops by the small one's measure, whichever
-/// of them is named first.
+/// A large ball on the way of a small link, which comes at it more and more aslant: it stops by the
+/// small one's measure, whichever of them is named first.
 #[test]
 fn a_cast_stops_by_the_measure_of_the_smaller_link() {
     let large = Ball::new(1000.0);
@@ -135,9 +147,12 @@ fn a_cast_stops_by_the_measure_of_the_smaller_link() {
         let reach = large.radius + small.radius();
         let met = ((reach - aside) * (reach + aside)).sqrt();
         let place = Pose::translation(met + 0.5, aside, 0.0);
-        let towards = dispatcher.cast_shapes(&place, -Vector::X, &large, &small, options).unwrap().unwrap();
-        let back =
-            dispatcher.cast_shapes(&place.inverse(), Vector::X, &small, &large, options).unwrap().unwrap();
+        let towards =
+            dispatcher.cast_shapes(&place, -Vector::X, &large, &small, options).unwrap().unwrap();
+        let back = dispatcher
+            .cast_shapes(&place.inverse(), Vector::X, &small, &large, options)
+            .unwrap()
+            .unwrap();
         for hit in [towards, back] {
             let late = hit.time_of_impact - 0.5;
             assert!((-1e-9..=1e-10).contains(&late), "{aside}: {late:e}");
@@ -147,7 +162,9 @@ fn a_cast_stops_by_the_measure_of_the_smaller_link() {
     let passed = ShapeCastOptions { max_time_of_impact: -1.0, ..options };
     let inside = Pose::translation(999.0, 0.0, 0.0);
     assert!(dispatcher.cast_shapes(&inside, -Vector::X, &large, &small, passed).unwrap().is_none());
-    assert!(dispatcher.cast_shapes(&inside, -Vector::X, &large, &small, options).unwrap().is_some());
+    assert!(
+        dispatcher.cast_shapes(&inside, -Vector::X, &large, &small, options).unwrap().is_some()
+    );
 }
 
 /// Multiplied by a power of two, everything is as many times as large, bit for bit.
@@ -172,7 +189,8 @@ fn the_unit_of_length_does_not_matter_to_links() {
     assert!(flat > 50, "{flat}");
 }
 
-/// What is asked in the other order is measured in the other's frame, so only rounding is between the two.
+/// What is asked in the other order is measured in the other's frame, so only rounding is between
+/// the two.
 #[test]
 fn the_order_of_two_links_does_not_matter() {
     let mut random = Random::new(453);
@@ -256,8 +274,8 @@ fn capsules_are_as_far_apart_as_parry_says() {
         });
         let pose = random.pose(2.0);
         let link = ModifiedCylinder::try_from(&first).unwrap();
-        let across =
-            (first.segment.b - first.segment.a).cross(pose.rotation * (second.segment.b - second.segment.a));
+        let across = (first.segment.b - first.segment.a)
+            .cross(pose.rotation * (second.segment.b - second.segment.a));
         let theirs = DefaultQueryDispatcher.distance(&pose, &first, &second).unwrap().distance;
         if theirs < 0.1 || across.length() < 0.1 {
             continue;
@@ -270,12 +288,16 @@ fn capsules_are_as_far_apart_as_parry_says() {
         assert!((contact.normal1 - parrys.normal1).length() < 0.02, "{contact:?} {parrys:?}");
         let (way, options) = (-pose.translation + random.vector(0.5), ShapeCastOptions::default());
         let ours = dispatcher.cast_shapes(&pose, way, &link, &second, options).unwrap();
-        let theirs = DefaultQueryDispatcher.cast_shapes(&pose, way, &first, &second, options).unwrap();
+        let theirs =
+            DefaultQueryDispatcher.cast_shapes(&pose, way, &first, &second, options).unwrap();
         if let (Some(ours), Some(theirs)) = (ours, theirs)
             && ours.normal1.dot(way).abs() > 0.1
         {
             hits += 1;
-            assert!((ours.time_of_impact - theirs.time_of_impact).abs() < 1e-4, "{ours:?} {theirs:?}");
+            assert!(
+                (ours.time_of_impact - theirs.time_of_impact).abs() < 1e-4,
+                "{ours:?} {theirs:?}"
+            );
         }
     }
     assert!(compared > 1000 && hits > 300, "{compared} {hits}");

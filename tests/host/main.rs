@@ -1,4 +1,5 @@
-//! What parry sees of links and chains: shapes, points, rays, masses, the dispatcher and contact manifolds.
+//! What parry sees of links and chains: shapes, points, rays, masses, the dispatcher and contact
+//! manifolds.
 
 mod casts;
 mod chain;

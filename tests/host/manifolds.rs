@@ -46,7 +46,8 @@ fn what_is_near_touches_in_a_manifold() {
         for (robot, other) in
             robots.into_iter().flat_map(|robot| others.iter().map(move |other| (robot, other)))
         {
-            let pose = Pose::new(Vector::new(0.0, random.between(-0.3, 0.5), 0.0), random.direction());
+            let pose =
+                Pose::new(Vector::new(0.0, random.between(-0.3, 0.5), 0.0), random.direction());
             pairs.push((SharedShape(robot.clone_dyn().into()), other.clone(), pose.inverse()));
         }
         for kind in [Wall::BoxMesh, Wall::Plate, Wall::HeightField, Wall::Compound, Wall::Chain] {
@@ -54,14 +55,21 @@ fn what_is_near_touches_in_a_manifold() {
             pairs.push((robot, wall, pose));
         }
         for (robot, other, pose) in &pairs {
-            for (g1, g2, pos12) in [(&**robot, &**other, *pose), (&**other, &**robot, pose.inverse())] {
+            for (g1, g2, pos12) in
+                [(&**robot, &**other, *pose), (&**other, &**robot, pose.inverse())]
+            {
                 let apart = dispatcher.distance(&pos12, g1, g2).unwrap().distance;
                 let found = manifolds(&dispatcher, &pos12, g1, g2, 0.02).unwrap();
                 let points: Vec<_> =
                     found.iter().flat_map(|m| m.points.iter().map(move |p| (m, p))).collect();
                 if apart < 0.015 {
                     near += 1;
-                    assert!(!points.is_empty(), "{:?} and {:?} at {apart}", g1.shape_type(), g2.shape_type());
+                    assert!(
+                        !points.is_empty(),
+                        "{:?} and {:?} at {apart}",
+                        g1.shape_type(),
+                        g2.shape_type()
+                    );
                 } else if apart > 0.025 {
                     far += 1;
                     assert!(points.iter().all(|(_, p)| p.dist > 0.0), "{points:?} at {apart}");
@@ -86,14 +94,19 @@ fn a_cylinder_lies_on_a_line_and_stands_on_a_square() {
     let vertices = corners.map(|(x, z)| Vector::new(x, 0.0, z)).to_vec();
     let floor = TriMesh::new(vertices, vec![[0, 2, 1], [0, 3, 2]]).unwrap();
     let deep = |manifolds: &[Manifold]| -> Vec<Real> {
-        manifolds.iter().flat_map(|m| m.points.iter().map(|p| p.dist)).filter(|dist| *dist < 0.0).collect()
+        manifolds
+            .iter()
+            .flat_map(|m| m.points.iter().map(|p| p.dist))
+            .filter(|dist| *dist < 0.0)
+            .collect()
     };
     let lying = ModifiedCylinder::cylinder(-Vector::X, Vector::X, 0.5).unwrap();
     let place = Pose::from_translation(Vector::new(2.0, 0.49, -3.0));
     let found = deep(&manifolds(&dispatcher, &place, &floor, &lying, 0.02).unwrap());
     assert!(found.len() >= 2 && found.iter().all(|dist| (dist + 0.01).abs() < 1e-6), "{found:?}");
 
-    let standing = ModifiedCylinder::new(Vector::ZERO, Vector::Y, 0.5, [Cap::Flat, Cap::Round]).unwrap();
+    let standing =
+        ModifiedCylinder::new(Vector::ZERO, Vector::Y, 0.5, [Cap::Flat, Cap::Round]).unwrap();
     let place = Pose::from_translation(Vector::new(2.0, -0.01, -3.0));
     let found = deep(&manifolds(&dispatcher, &place, &floor, &standing, 0.02).unwrap());
     assert!(found.len() >= 3 && found.iter().all(|dist| (dist + 0.01).abs() < 1e-6), "{found:?}");
@@ -122,17 +135,25 @@ fn every_other_shape_answers_or_is_refused() {
     let mut answered = BTreeSet::new();
     let mut random = Random::new(73);
     for caps in crate::draw::CAPS {
-        let link = ModifiedCylinder::new(Vector::new(0.0, -0.5, 0.0), Vector::Y, 0.25, caps).unwrap();
-        let chain = Chain::from_centreline(&[-Vector::Y, 0.1 * Vector::Y, Vector::Y], &[0.25; 2]).unwrap();
+        let link =
+            ModifiedCylinder::new(Vector::new(0.0, -0.5, 0.0), Vector::Y, 0.25, caps).unwrap();
+        let chain =
+            Chain::from_centreline(&[-Vector::Y, 0.1 * Vector::Y, Vector::Y], &[0.25; 2]).unwrap();
         for robot in [&link as &dyn Shape, &chain] {
             for (kind, shape) in shapes.iter().enumerate() {
                 let pose = Pose::new(random.vector(0.05), random.direction() * 0.2);
-                for (g1, g2, pos12) in [(robot, &**shape, pose), (&**shape, robot, pose.inverse())] {
+                for (g1, g2, pos12) in [(robot, &**shape, pose), (&**shape, robot, pose.inverse())]
+                {
                     let Ok(found) = manifolds(&dispatcher, &pos12, g1, g2, 0.02) else { continue };
                     answered.insert(kind);
                     let deepest = found.iter().flat_map(|m| &m.points).map(|point| point.dist);
                     let deepest = deepest.fold(Real::INFINITY, Real::min);
-                    assert!(deepest < 0.0, "{:?} against {:?}: {deepest}", caps, shape.shape_type());
+                    assert!(
+                        deepest < 0.0,
+                        "{:?} against {:?}: {deepest}",
+                        caps,
+                        shape.shape_type()
+                    );
                 }
             }
         }
@@ -153,7 +174,12 @@ impl QueryDispatcher for Ignorant {
     ) -> Result<ShapeIntersection, Unsupported> {
         Err(Unsupported)
     }
-    fn distance(&self, _: &Pose, _: &dyn Shape, _: &dyn Shape) -> Result<ShapeDistance, Unsupported> {
+    fn distance(
+        &self,
+        _: &Pose,
+        _: &dyn Shape,
+        _: &dyn Shape,
+    ) -> Result<ShapeDistance, Unsupported> {
         Err(Unsupported)
     }
     fn contact(

@@ -1,4 +1,5 @@
-//! A link's mass properties are those of its slices added up, and parry's where parry has the shape.
+//! A link's mass properties are those of its slices added up, and parry's where parry has the
+//! shape.
 
 use crate::draw::{CAPS, Draw};
 use continuum_testing::Random;
@@ -21,8 +22,14 @@ fn integral(low: Real, high: Real, f: impl Fn(Real) -> Real) -> Real {
     (0..=panels).map(|i| weight(i) * f(low + h * i as Real)).sum::<Real>() * h / 3.0
 }
 
-/// Mass, centre along the axis from the start, axial and transverse inertia about the centre, by slices.
-fn by_slices(length: Real, radius: Real, caps: [Cap; 2], density: Real) -> (Real, Real, Real, Real) {
+/// Mass, centre along the axis from the start, axial and transverse inertia about the centre, by
+/// slices.
+fn by_slices(
+    length: Real,
+    radius: Real,
+    caps: [Cap; 2],
+    density: Real,
+) -> (Real, Real, Real, Real) {
     let low = if caps[0] == Cap::Round { -radius } else { 0.0 };
     let high = length + if caps[1] == Cap::Round { radius } else { 0.0 };
     let squared = |z: Real| {
@@ -46,12 +53,25 @@ fn tensor(axis: Vector, axial: Real, transverse: Real) -> Matrix {
 }
 
 #[track_caller]
-fn assert_close(actual: &MassProperties, mass: Real, centre: Vector, inertia: Matrix, tolerance: Real) {
+fn assert_close(
+    actual: &MassProperties,
+    mass: Real,
+    centre: Vector,
+    inertia: Matrix,
+    tolerance: Real,
+) {
     let size = inertia.to_cols_array().into_iter().fold(0.0, |a: Real, b| a.max(b.abs()));
     let gap = (actual.reconstruct_inertia_matrix() - inertia).to_cols_array();
     assert!((actual.mass() - mass).abs() <= tolerance * mass, "mass {} for {mass}", actual.mass());
-    assert!((actual.local_com - centre).length() <= tolerance, "centre {} for {centre}", actual.local_com);
-    assert!(gap.into_iter().all(|g| g.abs() <= tolerance * size), "inertia off by {gap:?} of {size}");
+    assert!(
+        (actual.local_com - centre).length() <= tolerance,
+        "centre {} for {centre}",
+        actual.local_com
+    );
+    assert!(
+        gap.into_iter().all(|g| g.abs() <= tolerance * size),
+        "inertia off by {gap:?} of {size}"
+    );
 }
 
 #[test]
@@ -60,11 +80,18 @@ fn every_cap_combination_weighs_as_its_slices() {
     for _ in 0..50 {
         for caps in CAPS {
             let (length, radius) = (random.log_between(1e-2, 1e1), random.log_between(1e-2, 1e1));
-            let (start, axis, density) = (random.vector(3.0), random.direction(), random.between(0.1, 9.0));
+            let (start, axis, density) =
+                (random.vector(3.0), random.direction(), random.between(0.1, 9.0));
             let link = ModifiedCylinder::new(start, start + axis * length, radius, caps).unwrap();
             let (mass, centre, axial, transverse) = by_slices(length, radius, caps, density);
             let actual = link.mass_properties(density);
-            assert_close(&actual, mass, start + axis * centre, tensor(axis, axial, transverse), 1e-11);
+            assert_close(
+                &actual,
+                mass,
+                start + axis * centre,
+                tensor(axis, axial, transverse),
+                1e-11,
+            );
         }
     }
 }
@@ -75,7 +102,8 @@ fn capsules_cylinders_and_balls_weigh_as_parrys() {
     for _ in 0..200 {
         let (half, radius, pose) =
             (random.log_between(1e-2, 1e1), random.log_between(1e-2, 1e1), random.pose(5.0));
-        let (start, end) = (pose * Vector::new(0.0, -half, 0.0), pose * Vector::new(0.0, half, 0.0));
+        let (start, end) =
+            (pose * Vector::new(0.0, -half, 0.0), pose * Vector::new(0.0, half, 0.0));
         let pairs: [(ModifiedCylinder, MassProperties); 3] = [
             (
                 ModifiedCylinder::cylinder(start, end, radius).unwrap(),
@@ -94,12 +122,19 @@ fn capsules_cylinders_and_balls_weigh_as_parrys() {
         ];
         for (link, expected) in pairs {
             let inertia = expected.reconstruct_inertia_matrix();
-            assert_close(&link.mass_properties(3.0), expected.mass(), expected.local_com, inertia, 1e-12);
+            assert_close(
+                &link.mass_properties(3.0),
+                expected.mass(),
+                expected.local_com,
+                inertia,
+                1e-12,
+            );
         }
     }
 }
 
-/// The frame's y axis is the link's axis, also where a turn from y is nearly a half turn or nearly none.
+/// The frame's y axis is the link's axis, also where a turn from y is nearly a half turn or nearly
+/// none.
 #[test]
 fn the_principal_frame_follows_the_axis() {
     let mut random = Random::new(3);
@@ -115,7 +150,8 @@ fn the_principal_frame_follows_the_axis() {
 
 #[test]
 fn a_wire_has_no_mass_and_stays_where_it_is() {
-    let link = ModifiedCylinder::new(Vector::X, 3.0 * Vector::X, 0.0, [Cap::Flat, Cap::Round]).unwrap();
+    let link =
+        ModifiedCylinder::new(Vector::X, 3.0 * Vector::X, 0.0, [Cap::Flat, Cap::Round]).unwrap();
     let properties = link.mass_properties(7.0);
     assert_eq!(properties.mass(), 0.0);
     assert_eq!(properties.principal_inertia(), Vector::ZERO);
@@ -124,11 +160,18 @@ fn a_wire_has_no_mass_and_stays_where_it_is() {
 
 #[test]
 fn no_size_gives_a_nan() {
-    let sizes =
-        [(1e150, 1e-300), (1e30, 1e150), (1e-300, 1e-180), (1e150, 1e150), (1e-300, 1e-300), (1e150, 0.0)];
+    let sizes = [
+        (1e150, 1e-300),
+        (1e30, 1e150),
+        (1e-300, 1e-180),
+        (1e150, 1e150),
+        (1e-300, 1e-300),
+        (1e150, 0.0),
+    ];
     for (length, radius) in sizes {
         for caps in CAPS {
-            let link = ModifiedCylinder::new(Vector::ZERO, Vector::X * length, radius, caps).unwrap();
+            let link =
+                ModifiedCylinder::new(Vector::ZERO, Vector::X * length, radius, caps).unwrap();
             for density in [0.0, 1.0] {
                 let p = link.mass_properties(density);
                 let numbers = [p.inv_mass, p.local_com.length(), p.inv_principal_inertia.length()];
@@ -143,7 +186,8 @@ fn no_size_gives_a_nan() {
 fn chains(random: &mut Random) -> Vec<(&'static str, Vec<Vector>, Real)> {
     let (turn, along) = (random.pose(1.0).rotation, random.direction());
     let plane = |angle: Real| turn * Vector::new(angle.cos(), angle.sin(), 0.0);
-    let ring = |count: usize| (0..=count).map(|k| plane(2.0 * PI * k as Real / count as Real)).collect();
+    let ring =
+        |count: usize| (0..=count).map(|k| plane(2.0 * PI * k as Real / count as Real)).collect();
     let cross = |width: Real| {
         let ends = [Vector::X, -Vector::X, Vector::ZERO, Vector::Y, -Vector::Y];
         ends.map(|end| turn * (end * Vector::new(1.0, width, 1.0))).to_vec()
@@ -184,8 +228,12 @@ fn a_chain_weighs_as_the_slices_of_its_links_in_every_unit() {
                     .iter()
                     .map(|link| {
                         let axis = (link.end() - link.start()) / link.length();
-                        let (mass, centre, axial, transverse) =
-                            by_slices(link.length() / unit, radius, link.caps(), density * unit.powi(3));
+                        let (mass, centre, axial, transverse) = by_slices(
+                            link.length() / unit,
+                            radius,
+                            link.caps(),
+                            density * unit.powi(3),
+                        );
                         let centre = link.start() / unit + axis * centre;
                         (mass, centre, tensor(axis, axial, transverse))
                     })
@@ -196,8 +244,8 @@ fn a_chain_weighs_as_the_slices_of_its_links_in_every_unit() {
                 for (mass, at, own) in of_links {
                     let d = at - centre;
                     let outer = Matrix::from_cols(d * d.x, d * d.y, d * d.z);
-                    inertia +=
-                        own + (Matrix::from_diagonal(Vector::splat(d.length_squared())) - outer) * mass;
+                    inertia += own
+                        + (Matrix::from_diagonal(Vector::splat(d.length_squared())) - outer) * mass;
                 }
                 let found = chain.mass_properties(density);
                 let found = MassProperties {
@@ -230,7 +278,10 @@ fn the_unit_of_length_turns_no_axes() {
             assert_eq!(other.local_com, one.local_com * unit, "{name} {k}");
             let moments = other.inv_principal_inertia * unit * unit;
             assert_eq!(moments, one.inv_principal_inertia, "{name} {k}");
-            assert_eq!(other.principal_inertia_local_frame, one.principal_inertia_local_frame, "{name} {k}");
+            assert_eq!(
+                other.principal_inertia_local_frame, one.principal_inertia_local_frame,
+                "{name} {k}"
+            );
         }
     }
 }

@@ -8,7 +8,8 @@ use parry_continuum::parry::query::{NonlinearRigidMotion, QueryDispatcher, Shape
 use parry_continuum::parry::shape::{HalfSpace, Shape, SharedShape, Triangle};
 use parry_continuum::{Cap, ContinuumDispatcher, ModifiedCylinder};
 
-/// A motion from a place to near another, sometimes straight, sometimes still, sometimes spinning fast.
+/// A motion from a place to near another, sometimes straight, sometimes still, sometimes spinning
+/// fast.
 fn motion(random: &mut Random, from: Pose, way: Vector) -> NonlinearRigidMotion {
     let spin = [0.0, 0.5, 6.0][random.index(3)];
     NonlinearRigidMotion::new(from, random.vector(0.5), way, random.direction() * spin)
@@ -38,7 +39,11 @@ fn casts_are_never_late_and_end_where_the_shapes_touch() {
             [(0, &link, &triangle), (1, &link, &half_space), (2, &chain, &half_space)];
         for (kind, robot, wall) in cases {
             let place = random.pose(4.0);
-            let way = if kind == 0 { -place.translation + random.vector(1.5) } else { random.vector(4.0) };
+            let way = if kind == 0 {
+                -place.translation + random.vector(1.5)
+            } else {
+                random.vector(4.0)
+            };
             let robot_motion = motion(&mut random, place, way);
             let wall_way = random.vector(0.5);
             let wall_motion = if random.chance(0.5) {
@@ -49,9 +54,10 @@ fn casts_are_never_late_and_end_where_the_shapes_touch() {
             if distance(robot, &robot_motion, wall, &wall_motion, 0.0) < 1e-6 {
                 continue;
             }
-            for (g1, m1, g2, m2) in
-                [(robot, &robot_motion, wall, &wall_motion), (wall, &wall_motion, robot, &robot_motion)]
-            {
+            for (g1, m1, g2, m2) in [
+                (robot, &robot_motion, wall, &wall_motion),
+                (wall, &wall_motion, robot, &robot_motion),
+            ] {
                 let hit = dispatcher.cast_shapes_nonlinear(m1, g1, m2, g2, 0.0, 1.0, true).unwrap();
                 let at = |time| distance(g1, m1, g2, m2, time);
                 let met = (0..=500).map(|i| Real::from(i) / 500.0).find(|&time| at(time) == 0.0);
@@ -67,7 +73,9 @@ fn casts_are_never_late_and_end_where_the_shapes_touch() {
                             m2.position_at_time(hit.time_of_impact),
                         ];
                         assert!((p1 * hit.witness1 - p2 * hit.witness2).length() < 1e-7, "{hit:?}");
-                        assert!((p1.rotation * hit.normal1 + p2.rotation * hit.normal2).length() < 1e-9);
+                        assert!(
+                            (p1.rotation * hit.normal1 + p2.rotation * hit.normal2).length() < 1e-9
+                        );
                     }
                     None => {
                         misses[kind] += 1;
@@ -99,8 +107,10 @@ fn what_touches_at_the_start_does_not_get_through() {
         let raised = Pose::new(Vector::ZERO, turn);
         // Resting on the wall, or a little inside it.
         let lowest = distance_below(&link, &raised);
-        let pose =
-            Pose::from_parts(Vector::Y * (lowest - random.between(0.0, 0.4) * radius), raised.rotation);
+        let pose = Pose::from_parts(
+            Vector::Y * (lowest - random.between(0.0, 0.4) * radius),
+            raised.rotation,
+        );
         let moving = NonlinearRigidMotion::new(
             pose,
             Vector::ZERO,
@@ -113,7 +123,9 @@ fn what_touches_at_the_start_does_not_get_through() {
             let ends = [link.start() + Vector::X * inset[0], link.end() - Vector::X * inset[1]];
             ends.iter().any(|end| (pose * end).y < 0.0)
         };
-        let hit = dispatcher.cast_shapes_nonlinear(&moving, &link, &still, &wall, 0.0, 0.5, false).unwrap();
+        let hit = dispatcher
+            .cast_shapes_nonlinear(&moving, &link, &still, &wall, 0.0, 0.5, false)
+            .unwrap();
         let through = (0..=500).map(|i| Real::from(i) / 1000.0).find(|&time| is_through(time));
         match hit {
             Some(hit) => {
@@ -133,7 +145,8 @@ fn what_touches_at_the_start_does_not_get_through() {
     assert!(held > 500 && free > 100, "{held} held, {free} free");
 }
 
-/// A ball whose centre is all but on a wall has no room that could be told from none. Where there is some, half of it is left.
+/// A ball whose centre is all but on a wall has no room that could be told from none. Where there
+/// is some, half of it is left.
 #[test]
 fn a_ball_whose_centre_is_on_a_wall_is_not_refused() {
     let dispatcher = ContinuumDispatcher::default();
@@ -143,15 +156,18 @@ fn a_ball_whose_centre_is_on_a_wall_is_not_refused() {
         SharedShape::cone(0.5, 0.75),
     ];
     for (wall, at) in walls.iter().zip([Vector::X * 0.75, Vector::X * 0.75, Vector::Y * -0.5]) {
-        let (out, still) = (at.normalize(), NonlinearRigidMotion::constant_position(Pose::IDENTITY));
+        let (out, still) =
+            (at.normalize(), NonlinearRigidMotion::constant_position(Pose::IDENTITY));
         for room in [0.0, 1e-15, 1.5e-13, 1e-12, 1e-10, 1e-7, 1e-3, 0.1] {
             let centre = at + out * room;
             let ball = ModifiedCylinder::capsule(centre, centre, 0.25).unwrap();
             let comes = NonlinearRigidMotion { linvel: -out, ..still };
             for stop in [true, false] {
                 let hits = [
-                    dispatcher.cast_shapes_nonlinear(&comes, &ball, &still, &**wall, 0.0, 1.0, stop),
-                    dispatcher.cast_shapes_nonlinear(&still, &**wall, &comes, &ball, 0.0, 1.0, stop),
+                    dispatcher
+                        .cast_shapes_nonlinear(&comes, &ball, &still, &**wall, 0.0, 1.0, stop),
+                    dispatcher
+                        .cast_shapes_nonlinear(&still, &**wall, &comes, &ball, 0.0, 1.0, stop),
                 ];
                 for hit in hits {
                     let time = hit.unwrap().map(|hit| hit.time_of_impact);

@@ -1,5 +1,5 @@
-//! A triangle that goes through the inside of a link is at distance 0, not at a rounding of it, and every
-//! query says so.
+//! A triangle that goes through the inside of a link is at distance 0, not at a rounding of it, and
+//! every query says so.
 
 use crate::draw::Draw;
 use continuum_testing::Random;
@@ -28,9 +28,23 @@ fn an_overlap_is_an_overlap_to_every_query() {
         let mesh = TriMesh::new(vec![a, b, c], vec![[0, 1, 2]]).unwrap();
         let context = || format!("{link:?} {triangle:?}");
 
-        assert_eq!(dispatcher.distance(&pose, &link, &triangle).unwrap().distance, 0.0, "{}", context());
-        assert_eq!(dispatcher.distance(&pose, &mesh, &link).unwrap().distance, 0.0, "{}", context());
-        assert!(dispatcher.intersection_test(&pose, &link, &mesh).unwrap().intersecting, "{}", context());
+        assert_eq!(
+            dispatcher.distance(&pose, &link, &triangle).unwrap().distance,
+            0.0,
+            "{}",
+            context()
+        );
+        assert_eq!(
+            dispatcher.distance(&pose, &mesh, &link).unwrap().distance,
+            0.0,
+            "{}",
+            context()
+        );
+        assert!(
+            dispatcher.intersection_test(&pose, &link, &mesh).unwrap().intersecting,
+            "{}",
+            context()
+        );
         let points = dispatcher.closest_points(&pose, &triangle, &link, 0.0).unwrap();
         assert_eq!(points, ClosestPoints::Intersecting, "{}", context());
         let contact = dispatcher.contact(&pose, &link, &mesh, 0.0).unwrap();
@@ -46,7 +60,8 @@ fn a_wire_through_a_triangle_meets_it() {
     for _ in 0..5000 {
         let inside = random.vector(1.0);
         let way = random.vector(1.0);
-        let (start, end) = (inside - way * random.between(0.1, 1.0), inside + way * random.between(0.1, 1.0));
+        let (start, end) =
+            (inside - way * random.between(0.1, 1.0), inside + way * random.between(0.1, 1.0));
         let wire = ModifiedCylinder::new(start, end, 0.0, random.caps()).unwrap();
         let (a, b) = (inside + random.vector(2.0), inside + random.vector(2.0));
         let triangle = Triangle::new(a, b, inside * 3.0 - a - b);
@@ -54,7 +69,9 @@ fn a_wire_through_a_triangle_meets_it() {
         for surface in [&triangle as &dyn Shape, &mesh] {
             let distance = dispatcher.distance(&Pose::IDENTITY, &wire, surface).unwrap().distance;
             assert_eq!(distance, 0.0, "{wire:?} {triangle:?}");
-            assert!(dispatcher.intersection_test(&Pose::IDENTITY, surface, &wire).unwrap().intersecting);
+            assert!(
+                dispatcher.intersection_test(&Pose::IDENTITY, surface, &wire).unwrap().intersecting
+            );
         }
     }
 }

@@ -1,15 +1,15 @@
 //! How well each pair of convex shapes is answered: the table in the dispatcher's documentation.
 //!
-//! The reference is alternating projection: from a point of the one shape to the closest of the other and back. Both
-//! projections are exact for the shapes here, and the lengths fall towards the distance of the two. An overlap is
-//! recognised by a point that is in both.
+//! The reference is alternating projection: from a point of the one shape to the closest of the
+//! other and back. Both projections are exact for the shapes here, and the lengths fall towards the
+//! distance of the two. An overlap is recognised by a point that is in both.
 
 use crate::draw::{Draw, scaled};
 use continuum_testing::Random;
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::query::{
-    ClosestPoints, Contact, ContactManifold, PersistentQueryDispatcher, PointQuery, QueryDispatcher,
-    ShapeCastHit, ShapeCastOptions,
+    ClosestPoints, Contact, ContactManifold, PersistentQueryDispatcher, PointQuery,
+    QueryDispatcher, ShapeCastHit, ShapeCastOptions,
 };
 use parry_continuum::parry::shape::{RoundShape, Shape, SharedShape, Triangle, TypedShape};
 use parry_continuum::{Chain, ContinuumDispatcher, ModifiedCylinder};
@@ -20,8 +20,8 @@ const ROUNDING: Real = 1e-11;
 const EARLY: Real = 1e-8;
 /// What parry's GJK leaves open for shapes of size 1.
 const GJK: Real = 1e-5;
-/// By what a translation may fall short of separating: what GJK, which is asked, leaves open. (How much longer than the least
-/// it is: see [`depths`](super::depths).)
+/// By what a translation may fall short of separating: what GJK, which is asked, leaves open. (How
+/// much longer than the least it is: see [`depths`](super::depths).)
 const SEPARATED: Real = 1e-5;
 
 /// A convex shape of about size 1 and its name.
@@ -40,7 +40,9 @@ fn walls(random: &mut Random) -> Vec<(&'static str, SharedShape)> {
         ("triangle", SharedShape::new(Triangle::new(points[0], points[1], points[2]))),
         (
             "link",
-            SharedShape::new(ModifiedCylinder::new(points[0], points[1], 0.5 * c, random.caps()).unwrap()),
+            SharedShape::new(
+                ModifiedCylinder::new(points[0], points[1], 0.5 * c, random.caps()).unwrap(),
+            ),
         ),
         ("half-space", SharedShape::halfspace(random.direction())),
     ]
@@ -90,17 +92,29 @@ fn answers_are_off_by_no_more_than_the_table_says() {
                         panic!("{name} {expected}")
                     };
                     note(1, ((p1 - pos12 * p2).length() - expected).abs());
-                    note(1, g1.distance_to_local_point(p1, true).max(g2.distance_to_local_point(p2, true)));
+                    note(
+                        1,
+                        g1.distance_to_local_point(p1, true)
+                            .max(g2.distance_to_local_point(p2, true)),
+                    );
                     let contact = dispatcher.contact(&pos12, g1, g2, 99.0).unwrap().unwrap();
                     note(1, (contact.dist - expected).abs());
                     // Towards each other until they meet.
                     let (p1, p2) = (p1, pos12 * p2);
                     let options = ShapeCastOptions::with_max_time_of_impact(9.0);
                     let hit = dispatcher.cast_shapes(&pos12, p1 - p2, g1, g2, options).unwrap();
-                    note(2, hit.map_or(Real::INFINITY, |hit| (hit.time_of_impact - 1.0).abs() * expected));
+                    note(
+                        2,
+                        hit.map_or(Real::INFINITY, |hit| {
+                            (hit.time_of_impact - 1.0).abs() * expected
+                        }),
+                    );
                 } else if expected == 0.0 {
                     across += 1;
-                    assert!(dispatcher.intersection_test(&pos12, g1, g2).unwrap().intersecting, "{name}");
+                    assert!(
+                        dispatcher.intersection_test(&pos12, g1, g2).unwrap().intersecting,
+                        "{name}"
+                    );
                     // What it says separates the two, but for what the iterations leave.
                     let contact = dispatcher.contact(&pos12, g1, g2, 0.0).unwrap().unwrap();
                     let separates = |more: Real| {
@@ -135,25 +149,40 @@ fn a_pair_is_within_its_own_distance() {
     for round in 0..400 {
         let unit = [1.0, 1e-6, 1e3][round % 3];
         let link = random.link();
-        let chain = Chain::from_centreline(&[link.start(), link.end(), random.vector(1.5)], &[0.1; 2]);
-        let chain = chain.unwrap_or_else(|_| Chain::capsules(&[Vector::ZERO, Vector::X], &[0.1]).unwrap());
+        let chain =
+            Chain::from_centreline(&[link.start(), link.end(), random.vector(1.5)], &[0.1; 2]);
+        let chain =
+            chain.unwrap_or_else(|_| Chain::capsules(&[Vector::ZERO, Vector::X], &[0.1]).unwrap());
         let corners = [0; 5].map(|_| random.vector(0.8)).to_vec();
         let mut others = walls(&mut random);
-        others.push(("mesh", SharedShape::trimesh(corners, vec![[0, 1, 2], [1, 2, 3], [2, 3, 4]]).unwrap()));
+        others.push((
+            "mesh",
+            SharedShape::trimesh(corners, vec![[0, 1, 2], [1, 2, 3], [2, 3, 4]]).unwrap(),
+        ));
         for (name, wall) in others {
             let pose = random.pose(1.8);
             let all = Vector::splat(unit);
             let pose = Pose::from_parts(pose.translation * unit, pose.rotation);
-            let wall =
-                if name == "half-space" { wall } else { SharedShape(wall.scale_dyn(all, 0).unwrap().into()) };
+            let wall = if name == "half-space" {
+                wall
+            } else {
+                SharedShape(wall.scale_dyn(all, 0).unwrap().into())
+            };
             let robots = [link.scale_dyn(all, 0).unwrap(), chain.scale_dyn(all, 0).unwrap()];
             for robot in &robots {
-                for (pos12, g1, g2) in [(pose, &**robot, &*wall), (pose.inverse(), &*wall, &**robot)] {
+                for (pos12, g1, g2) in
+                    [(pose, &**robot, &*wall), (pose.inverse(), &*wall, &**robot)]
+                {
                     let apart = dispatcher.distance(&pos12, g1, g2).unwrap().distance;
                     let contact = dispatcher.contact(&pos12, g1, g2, apart).unwrap();
                     let dist = contact.map(|contact| contact.dist);
-                    let context = || format!("{name} {unit} {:?} {:?} {pos12:?}", shown(g1), shown(g2));
-                    assert!(dist.is_some_and(|dist| dist <= apart), "{dist:?} for {apart}: {}", context());
+                    let context =
+                        || format!("{name} {unit} {:?} {:?} {pos12:?}", shown(g1), shown(g2));
+                    assert!(
+                        dist.is_some_and(|dist| dist <= apart),
+                        "{dist:?} for {apart}: {}",
+                        context()
+                    );
                     *asked.entry(name).or_default() += usize::from(apart > 0.0);
                 }
             }
@@ -228,17 +257,25 @@ fn iterations_do_not_depend_on_the_unit_of_length() {
             across += usize::from(distance == 0.0);
             let contact = dispatcher.contact(&pose, &link, &*wall, 0.5).unwrap();
             let found = dispatcher.contact(&big, &big_link, &*big_wall, 0.5 * unit).unwrap();
-            let shown =
-                |contact: Contact, unit: Real| (contact.dist * unit, contact.point1 * unit, contact.normal1);
-            assert_eq!(found.map(|it| shown(it, 1.0)), contact.map(|it| shown(it, unit)), "{}", context());
+            let shown = |contact: Contact, unit: Real| {
+                (contact.dist * unit, contact.point1 * unit, contact.normal1)
+            };
+            assert_eq!(
+                found.map(|it| shown(it, 1.0)),
+                contact.map(|it| shown(it, unit)),
+                "{}",
+                context()
+            );
             let options = ShapeCastOptions::with_max_time_of_impact(9.0);
             let hit = dispatcher.cast_shapes(&pose, way, &link, &*wall, options).unwrap();
-            let found = dispatcher.cast_shapes(&big, way * unit, &big_link, &*big_wall, options).unwrap();
+            let found =
+                dispatcher.cast_shapes(&big, way * unit, &big_link, &*big_wall, options).unwrap();
             let time = |hit: Option<ShapeCastHit>| hit.map(|hit| (hit.time_of_impact, hit.normal1));
             assert_eq!(time(found), time(hit), "{}", context());
             hits += usize::from(hit.is_some());
             let least = |pose: &Pose, g1: &dyn Shape, g2: &dyn Shape, prediction: Real| {
-                let (mut manifolds, mut workspace): (Vec<ContactManifold<(), ()>>, _) = (vec![], None);
+                let (mut manifolds, mut workspace): (Vec<ContactManifold<(), ()>>, _) =
+                    (vec![], None);
                 dispatcher
                     .contact_manifolds(pose, g1, g2, prediction, &mut manifolds, &mut workspace)
                     .unwrap();
@@ -246,7 +283,8 @@ fn iterations_do_not_depend_on_the_unit_of_length() {
                 points.map(|point| (point.dist, point.local_p1)).collect::<Vec<_>>()
             };
             let points = least(&pose, &link, &*wall, 0.1);
-            let points: Vec<_> = points.into_iter().map(|(dist, p)| (dist * unit, p * unit)).collect();
+            let points: Vec<_> =
+                points.into_iter().map(|(dist, p)| (dist * unit, p * unit)).collect();
             assert_eq!(least(&big, &big_link, &*big_wall, 0.1 * unit), points, "{}", context());
         }
     }
@@ -273,10 +311,17 @@ fn clearances_in_small_units_are_no_larger_than_they_are() {
             apart += 1;
             let big = Pose::from_parts(pose.translation * unit, pose.rotation);
             let (big_link, big_wall) = (scaled(&link, unit), image(&wall, unit));
-            let distance = dispatcher.distance(&big, &big_link, &*big_wall).unwrap().distance / unit;
-            assert!((distance - expected).abs() < GJK, "{name} in {unit}: {distance} for {expected}");
-            let points = dispatcher.closest_points(&big, &big_link, &*big_wall, 99.0 * unit).unwrap();
-            let ClosestPoints::WithinMargin(p1, p2) = points else { panic!("{name} in {unit}: {points:?}") };
+            let distance =
+                dispatcher.distance(&big, &big_link, &*big_wall).unwrap().distance / unit;
+            assert!(
+                (distance - expected).abs() < GJK,
+                "{name} in {unit}: {distance} for {expected}"
+            );
+            let points =
+                dispatcher.closest_points(&big, &big_link, &*big_wall, 99.0 * unit).unwrap();
+            let ClosestPoints::WithinMargin(p1, p2) = points else {
+                panic!("{name} in {unit}: {points:?}")
+            };
             let options = ShapeCastOptions::with_max_time_of_impact(9.0);
             let way = p1 - big * p2;
             let hit = dispatcher.cast_shapes(&big, way, &big_link, &*big_wall, options).unwrap();

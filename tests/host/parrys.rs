@@ -1,15 +1,19 @@
-//! The pairs that stay parry's, and by how much their distance is off in millimetres and in metres: the table of docs/RAPIER.md,
-//! as `cargo test --test host parrys -- --ignored --nocapture` prints it.
+//! The pairs that stay parry's, and by how much their distance is off in millimetres and in metres:
+//! the table of docs/RAPIER.md, as `cargo test --test host parrys -- --ignored --nocapture` prints
+//! it.
 //!
-//! What is right is known without parry's iterations: by this crate's narrow phase for links and for triangles of a hull, less the
-//! border of what is rounded, and by projections to and fro for a cone and a disc, whose point queries are closed forms.
+//! What is right is known without parry's iterations: by this crate's narrow phase for links and
+//! for triangles of a hull, less the border of what is rounded, and by projections to and fro for a
+//! cone and a disc, whose point queries are closed forms.
 
 use crate::draw::Draw;
 use crate::pairs::projected;
 use continuum_testing::Random;
 use parry_continuum::parry::math::{Pose, Real, Rot3, Vector};
 use parry_continuum::parry::query::{DefaultQueryDispatcher, QueryDispatcher};
-use parry_continuum::parry::shape::{ConvexPolyhedron, Cuboid, Cylinder, Shape, SharedShape, TriMesh};
+use parry_continuum::parry::shape::{
+    ConvexPolyhedron, Cuboid, Cylinder, Shape, SharedShape, TriMesh,
+};
 use parry_continuum::{ContinuumDispatcher, ModifiedCylinder};
 
 const KINDS: [&str; 7] = [
@@ -27,7 +31,8 @@ fn shape(kind: usize, [a, b, c]: [Real; 3], hull: &[Vector], unit: Real) -> Shar
     let [a, b, c] = [a * unit, b * unit, c * unit];
     match kind {
         0 => SharedShape::cuboid(a, b, c),
-        1 => SharedShape::convex_hull(&hull.iter().map(|&point| point * a).collect::<Vec<_>>()).unwrap(),
+        1 => SharedShape::convex_hull(&hull.iter().map(|&point| point * a).collect::<Vec<_>>())
+            .unwrap(),
         2 => SharedShape::round_cuboid(a, b, c, 0.25 * a),
         3 => SharedShape::round_cylinder(a, b, 0.25 * a),
         4 => SharedShape::cone(a, b),
@@ -38,8 +43,9 @@ fn shape(kind: usize, [a, b, c]: [Real; 3], hull: &[Vector], unit: Real) -> Shar
 
 /// How far a link and a shape are apart.
 fn reference(link: &ModifiedCylinder, shape: &dyn Shape, pose: &Pose) -> Real {
-    let exact =
-        |wall: &dyn Shape| ContinuumDispatcher::default().distance(pose, link, wall).unwrap().distance;
+    let exact = |wall: &dyn Shape| {
+        ContinuumDispatcher::default().distance(pose, link, wall).unwrap().distance
+    };
     let of_triangles = |(vertices, triangles): (Vec<Vector>, Vec<[u32; 3]>)| {
         exact(&TriMesh::new(vertices, triangles).unwrap())
     };
@@ -61,8 +67,8 @@ fn reference(link: &ModifiedCylinder, shape: &dyn Shape, pose: &Pose) -> Real {
     projected(link, shape, pose)
 }
 
-/// How much too far apart the two are said to be, as shares of the link's radius: one in a hundred is worse than the first, none
-/// worse than the second. Negative ones count by their size.
+/// How much too far apart the two are said to be, as shares of the link's radius: one in a hundred
+/// is worse than the first, none worse than the second. Negative ones count by their size.
 fn off(kind: usize, unit: Real) -> [Real; 2] {
     let mut random = Random::new(471);
     let mut off = vec![];
@@ -75,12 +81,14 @@ fn off(kind: usize, unit: Real) -> [Real; 2] {
         // Every third time aligned, as scenes are.
         let pose = match off.len() % 3 {
             0 => {
-                let turn =
-                    [Vector::ZERO, Vector::X, Vector::Z][random.index(3)] * std::f64::consts::FRAC_PI_2;
+                let turn = [Vector::ZERO, Vector::X, Vector::Z][random.index(3)]
+                    * std::f64::consts::FRAC_PI_2;
                 let place = Vector::AXES[random.index(3)] * random.between(10.0, 25.0);
                 Pose::from_parts(place * unit, Rot3::from_scaled_axis(turn))
             }
-            _ => Pose::new(random.vector(25.0) * unit, random.direction() * random.between(0.0, 3.0)),
+            _ => {
+                Pose::new(random.vector(25.0) * unit, random.direction() * random.between(0.0, 3.0))
+            }
         };
         let wall = shape(kind, [a, b, c], &hull, unit);
         let along = Vector::Y * half;
@@ -111,7 +119,10 @@ fn off(kind: usize, unit: Real) -> [Real; 2] {
 fn what_stays_parrys_is_off_by() {
     println!("| a link and | mm, 99 % | mm, worst | m, 99 % | m, worst |\n|---|---|---|---|---|");
     for (kind, name) in KINDS.into_iter().enumerate() {
-        let [[usual, worst], [usual_in_metres, worst_in_metres]] = [1.0, 1e-3].map(|unit| off(kind, unit));
-        println!("| {name} | {usual:.0e} | {worst:.0e} | {usual_in_metres:.0e} | {worst_in_metres:.0e} |");
+        let [[usual, worst], [usual_in_metres, worst_in_metres]] =
+            [1.0, 1e-3].map(|unit| off(kind, unit));
+        println!(
+            "| {name} | {usual:.0e} | {worst:.0e} | {usual_in_metres:.0e} | {worst_in_metres:.0e} |"
+        );
     }
 }

@@ -1,5 +1,6 @@
-//! What the queries say of aligned and touching placements fits together, for every pair of the dispatcher's table, in
-//! both orders. (What `distance` says is held against other measurements in [`pairs`](super::pairs).)
+//! What the queries say of aligned and touching placements fits together, for every pair of the
+//! dispatcher's table, in both orders. (What `distance` says is held against other measurements in
+//! [`pairs`](super::pairs).)
 
 use continuum_testing::Random;
 use continuum_testing::placements::{Placement, Wall};
@@ -12,7 +13,8 @@ use parry_continuum::parry::shape::Shape;
 const PREDICTIONS: [Real; 9] = [-0.2, -1e-3, -1e-9, 0.0, 1e-12, 1e-6, 0.02, 0.5, Real::INFINITY];
 const PLACEMENTS: usize = 400;
 
-/// What is left between two queries of the same pair: rounding, or what parry's GJK leaves for shapes of size one.
+/// What is left between two queries of the same pair: rounding, or what parry's GJK leaves for
+/// shapes of size one.
 fn tolerance(kind: Wall) -> Real {
     match kind {
         Wall::Triangle | Wall::Plate | Wall::BoxMesh | Wall::HeightField => 1e-11,
@@ -47,26 +49,41 @@ impl Asked<'_> {
     }
 
     fn closest_points(&self, max_dist: Real) -> ClosestPoints {
-        ContinuumDispatcher::default().closest_points(&self.pos12, self.g1, self.g2, max_dist).unwrap()
+        ContinuumDispatcher::default()
+            .closest_points(&self.pos12, self.g1, self.g2, max_dist)
+            .unwrap()
     }
 
     fn length(&self, point1: Vector, point2: Vector) -> Real {
         (point1 - self.pos12 * point2).length()
     }
 
-    /// The least `dist` of the manifolds, made twice, because they are updated; infinite if there are no points.
+    /// The least `dist` of the manifolds, made twice, because they are updated; infinite if there
+    /// are no points.
     fn least_of_manifolds(&self, prediction: Real) -> Real {
         let (mut manifolds, mut workspace): (Vec<ContactManifold<(), ()>>, _) = (vec![], None);
         for _ in 0..2 {
             ContinuumDispatcher::default()
-                .contact_manifolds(&self.pos12, self.g1, self.g2, prediction, &mut manifolds, &mut workspace)
+                .contact_manifolds(
+                    &self.pos12,
+                    self.g1,
+                    self.g2,
+                    prediction,
+                    &mut manifolds,
+                    &mut workspace,
+                )
                 .unwrap();
         }
-        manifolds.iter().flat_map(|m| &m.points).map(|point| point.dist).fold(Real::INFINITY, Real::min)
+        manifolds
+            .iter()
+            .flat_map(|m| &m.points)
+            .map(|point| point.dist)
+            .fold(Real::INFINITY, Real::min)
     }
 }
 
-/// Asks of each placement in both orders. Returns how many were apart, touched within 1e-9, and overlapped by more.
+/// Asks of each placement in both orders. Returns how many were apart, touched within 1e-9, and
+/// overlapped by more.
 fn each(kind: Wall, seed: u64, mut ask: impl FnMut(&Asked, Real)) -> [usize; 3] {
     let mut random = Random::new(seed);
     let mut seen = [0; 3];
@@ -75,7 +92,9 @@ fn each(kind: Wall, seed: u64, mut ask: impl FnMut(&Asked, Real)) -> [usize; 3] 
         let (robot, wall) = (&*placement.robot, &*placement.wall);
         let mut distances = [0.0; 2];
         for (order, (pos12, g1, g2)) in
-            [(placement.pose, robot, wall), (placement.pose.inverse(), wall, robot)].into_iter().enumerate()
+            [(placement.pose, robot, wall), (placement.pose.inverse(), wall, robot)]
+                .into_iter()
+                .enumerate()
         {
             let asked = Asked { placement: &placement, pos12, g1, g2 };
             let distance = ContinuumDispatcher::default().distance(&pos12, g1, g2);
@@ -111,7 +130,9 @@ fn points_distances_and_tests_of_touching_placements_agree() {
             let meets = ContinuumDispatcher::default().intersection_test(pos12, *g1, *g2).unwrap();
             asked.assert(!meets.intersecting || distance <= slack, ("meets", distance));
             match asked.closest_points(Real::MAX) {
-                ClosestPoints::Intersecting => asked.assert(distance <= slack, ("closest meet", distance)),
+                ClosestPoints::Intersecting => {
+                    asked.assert(distance <= slack, ("closest meet", distance))
+                }
                 ClosestPoints::Disjoint => asked.assert(false, "no closest points"),
                 ClosestPoints::WithinMargin(point1, point2) => {
                     let length = asked.length(point1, point2);
@@ -120,13 +141,18 @@ fn points_distances_and_tests_of_touching_placements_agree() {
             }
             for max_dist in PREDICTIONS {
                 match asked.closest_points(max_dist) {
-                    ClosestPoints::Intersecting => asked.assert(distance <= slack, (max_dist, distance)),
+                    ClosestPoints::Intersecting => {
+                        asked.assert(distance <= slack, (max_dist, distance))
+                    }
                     ClosestPoints::Disjoint => {
                         asked.assert(distance >= max_dist - slack, (max_dist, distance))
                     }
                     ClosestPoints::WithinMargin(point1, point2) => {
                         let length = asked.length(point1, point2);
-                        asked.assert(length <= max_dist.max(-slack) + slack, ("beyond", max_dist, length));
+                        asked.assert(
+                            length <= max_dist.max(-slack) + slack,
+                            ("beyond", max_dist, length),
+                        );
                     }
                 }
             }
@@ -142,11 +168,19 @@ fn an_unbounded_contact_finds_what_distance_finds() {
         each(kind, 302, |asked, distance| {
             for prediction in [Real::MAX, Real::INFINITY] {
                 let contact = asked.contact(prediction).unwrap();
-                let Some(contact) = contact else { return asked.assert(false, ("no contact", distance)) };
+                let Some(contact) = contact else {
+                    return asked.assert(false, ("no contact", distance));
+                };
                 let is_as_far = (contact.dist - distance).abs() <= slack;
-                asked.assert(is_as_far || distance <= slack && contact.dist <= slack, (contact, distance));
+                asked.assert(
+                    is_as_far || distance <= slack && contact.dist <= slack,
+                    (contact, distance),
+                );
                 let between = asked.pos12 * contact.point2 - contact.point1;
-                asked.assert((between.dot(contact.normal1) - contact.dist).abs() <= 10.0 * slack, contact);
+                asked.assert(
+                    (between.dot(contact.normal1) - contact.dist).abs() <= 10.0 * slack,
+                    contact,
+                );
             }
         });
     }
@@ -158,12 +192,19 @@ fn nothing_beyond_a_prediction_is_returned_and_nothing_within_is_lost() {
         let slack = tolerance(kind);
         let mut dropped = 0;
         each(kind, 303, |asked, _| {
-            let all = asked.contact(Real::MAX).unwrap().map_or(Real::INFINITY, |contact| contact.dist);
+            let all =
+                asked.contact(Real::MAX).unwrap().map_or(Real::INFINITY, |contact| contact.dist);
             for prediction in PREDICTIONS {
                 match asked.contact(prediction).unwrap() {
                     Some(contact) => {
-                        asked.assert(contact.dist <= prediction, ("beyond", prediction, contact.dist));
-                        asked.assert((contact.dist - all).abs() <= slack, (prediction, contact.dist, all));
+                        asked.assert(
+                            contact.dist <= prediction,
+                            ("beyond", prediction, contact.dist),
+                        );
+                        asked.assert(
+                            (contact.dist - all).abs() <= slack,
+                            (prediction, contact.dist, all),
+                        );
                     }
                     None => {
                         dropped += usize::from(prediction < 0.0);
@@ -209,11 +250,12 @@ fn the_least_distance_of_a_manifold_is_the_contacts() {
     }
 }
 
-/// What is nearer than this may count as touching at the start of a nonlinear cast: 1e-5 of the sizes.
+/// What is nearer than this may count as touching at the start of a nonlinear cast: 1e-5 of the
+/// sizes.
 const NONLINEAR_TOUCH: Real = 1e-4;
 
-/// Along the way between the closest points, at speed 1, the two meet after just that distance; the opposite way convex ones
-/// never do.
+/// Along the way between the closest points, at speed 1, the two meet after just that distance; the
+/// opposite way convex ones never do.
 #[test]
 fn casts_along_the_way_between_meet_after_the_distance() {
     let dispatcher = ContinuumDispatcher::default();
@@ -233,8 +275,15 @@ fn casts_along_the_way_between_meet_after_the_distance() {
                 };
                 let end = 2.0 * distance + 1.0;
                 let (rests, comes) = (still(Vector::ZERO, Pose::IDENTITY), still(-way, pos12));
-                let turning =
-                    dispatcher.cast_shapes_nonlinear(&rests, g1, &comes, g2, 0.0, end, stop_at_penetration);
+                let turning = dispatcher.cast_shapes_nonlinear(
+                    &rests,
+                    g1,
+                    &comes,
+                    g2,
+                    0.0,
+                    end,
+                    stop_at_penetration,
+                );
                 let turning = turning.unwrap().map(|hit| hit.time_of_impact);
                 if distance > 10.0 * slack {
                     apart += 1;
@@ -255,7 +304,10 @@ fn casts_along_the_way_between_meet_after_the_distance() {
                         let time = cast(way).map(|hit| hit.time_of_impact);
                         asked.assert(time == Some(0.0), ("overlapping", contact.dist, time));
                     }
-                    asked.assert(turning == Some(0.0), ("overlapping, nonlinear", contact.dist, turning));
+                    asked.assert(
+                        turning == Some(0.0),
+                        ("overlapping, nonlinear", contact.dist, turning),
+                    );
                 }
             }
         });

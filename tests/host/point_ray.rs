@@ -1,5 +1,5 @@
-//! Point and ray queries on a link are exact: certified by separating planes, checked against each other and
-//! against parry, and unchanged by the unit of length.
+//! Point and ray queries on a link are exact: certified by separating planes, checked against each
+//! other and against parry, and unchanged by the unit of length.
 
 use crate::draw::{CAPS, Draw, scaled, surface_point};
 use crate::rays::assert_hit;
@@ -9,8 +9,9 @@ use parry_continuum::parry::math::{Real, Vector};
 use parry_continuum::parry::query::{PointQuery, Ray, RayCast};
 use parry_continuum::parry::shape::SupportMap;
 
-/// A point around, inside or on a link, at times on its axis line or very far away, and as often where pieces of its surface
-/// meet: on a rim, in the plane of a cap, above a seam between barrel and round cap, a little off or not.
+/// A point around, inside or on a link, at times on its axis line or very far away, and as often
+/// where pieces of its surface meet: on a rim, in the plane of a cap, above a seam between barrel
+/// and round cap, a little off or not.
 pub fn point_near(random: &mut Random, link: &ModifiedCylinder) -> Vector {
     let surface = surface_point(random, link);
     let t = random.between(-0.5, 1.5);
@@ -26,10 +27,12 @@ pub fn point_near(random: &mut Random, link: &ModifiedCylinder) -> Vector {
     }
 }
 
-/// A point in the plane through an end of a link: on its axis, its rim, inside or outside of it, or a little off.
+/// A point in the plane through an end of a link: on its axis, its rim, inside or outside of it, or
+/// a little off.
 fn on_a_seam(random: &mut Random, link: &ModifiedCylinder) -> Vector {
     let axis = (link.end() - link.start()).normalize_or(Vector::X);
-    let side = if random.chance(0.5) { axis.any_orthonormal_vector() } else { across(random, axis) };
+    let side =
+        if random.chance(0.5) { axis.any_orthonormal_vector() } else { across(random, axis) };
     let end = if random.chance(0.5) { link.start() } else { link.end() };
     let point = end + side * (link.radius() * [0.0, 0.5, 1.0, 1.0, 2.0][random.index(5)]);
     match random.index(3) {
@@ -49,8 +52,8 @@ pub fn reach(link: &ModifiedCylinder, direction: Vector, from: Vector) -> Real {
     (link.local_support_point(direction) - from).dot(direction)
 }
 
-/// A ray from around the link: aimed at it or past it, along its axis or across, from inside or from far
-/// away, its direction of any length.
+/// A ray from around the link: aimed at it or past it, along its axis or across, from inside or
+/// from far away, its direction of any length.
 pub fn ray_near(random: &mut Random, link: &ModifiedCylinder) -> Ray {
     let origin = point_near(random, link);
     let target = surface_point(random, link);
@@ -123,26 +126,44 @@ fn nothing_finite_gives_a_nan_and_nothing_panics() {
         for (reach, radius) in
             [(1e150, 1e150), (1e150, 1e-300), (1e30, 1e150), (1e-300, 0.0), (5e-324, 5e-324)]
         {
-            links.extend(ModifiedCylinder::new(-reach * Vector::X, reach * Vector::ONE, radius, caps));
+            links.extend(ModifiedCylinder::new(
+                -reach * Vector::X,
+                reach * Vector::ONE,
+                radius,
+                caps,
+            ));
         }
     }
     assert_eq!(links.len(), 20);
     for _ in 0..20_000 {
-        let mut any = || Vector::from([0; 3].map(|_| sizes[random.index(8)] * [1.0, -1.0][random.index(2)]));
+        let mut any =
+            || Vector::from([0; 3].map(|_| sizes[random.index(8)] * [1.0, -1.0][random.index(2)]));
         let (origin, dir) = (any(), any());
         let link = &links[random.index(20)];
-        let (point, distance) =
-            (link.project_local_point(origin, false).point, link.distance_to_local_point(origin, false));
-        let hit = link.cast_local_ray_and_get_normal(&Ray::new(origin, dir), Real::MAX, random.chance(0.5));
+        let (point, distance) = (
+            link.project_local_point(origin, false).point,
+            link.distance_to_local_point(origin, false),
+        );
+        let hit = link.cast_local_ray_and_get_normal(
+            &Ray::new(origin, dir),
+            Real::MAX,
+            random.chance(0.5),
+        );
         if origin.is_finite() {
-            assert!(!distance.is_nan() && point.is_finite(), "{link:?} {origin}: {distance} {point}");
+            assert!(
+                !distance.is_nan() && point.is_finite(),
+                "{link:?} {origin}: {distance} {point}"
+            );
             assert!(
                 hit.is_none_or(|h| h.time_of_impact >= 0.0 && h.normal.is_finite()),
                 "{link:?} {origin} {dir} {hit:?}"
             );
         } else {
             // Never a number that could be taken for a clearance.
-            assert!(!distance.is_finite() && hit.is_none(), "{link:?} {origin}: {distance} {hit:?}");
+            assert!(
+                !distance.is_finite() && hit.is_none(),
+                "{link:?} {origin}: {distance} {hit:?}"
+            );
         }
         assert!(dir.is_finite() || hit.is_none(), "{link:?} {origin} {dir} {hit:?}");
     }

@@ -25,13 +25,17 @@ fn distances_are_certified_by_a_separating_plane_outside_and_by_a_ball_inside() 
         // The witness lies on the link and realises the distance.
         let apart = (projection.point - p).length();
         assert!((apart - distance.abs()).abs() <= 8.0 * U * (coordinates + size), "{}", context());
-        assert!(violation(&link, projection.point).abs() <= 8.0 * U * (coordinates + size), "{}", context());
+        assert!(
+            violation(&link, projection.point).abs() <= 8.0 * U * (coordinates + size),
+            "{}",
+            context()
+        );
 
         if distance > 0.0 {
             outside += 1;
-            // No support point along the outward normal comes closer to `p`: a lower bound, whatever the
-            // normal is. On a rim the normal is the difference of the witnesses, which is only as good as
-            // they are apart.
+            // No support point along the outward normal comes closer to `p`: a lower bound,
+            // whatever the normal is. On a rim the normal is the difference of the
+            // witnesses, which is only as good as they are apart.
             let (normal, tolerance) = match feature {
                 FeatureId::Face(_) => (link.feature_normal_at_point(0, feature, p), 16.0),
                 _ if apart < 1e-9 * coordinates => (None, 0.0),
@@ -67,7 +71,10 @@ fn distances_are_certified_by_a_separating_plane_outside_and_by_a_ball_inside() 
     }
     assert!(certified > outside * 9 / 10, "{certified} of {outside} certified");
     assert!(outside > count / 3 && inside > count / 4, "{outside} outside, {inside} inside");
-    assert!(inner_pieces.iter().all(|&visits| visits > inside / 20), "{inner_pieces:?} of {inside}");
+    assert!(
+        inner_pieces.iter().all(|&visits| visits > inside / 20),
+        "{inner_pieces:?} of {inside}"
+    );
 }
 
 #[test]
@@ -97,12 +104,16 @@ fn points_agree_with_parrys_capsule_and_cylinder() {
         let p = random.vector(3.0);
         let capsule = ModifiedCylinder::capsule(start, end, radius).unwrap();
         let cylinder = ModifiedCylinder::cylinder(start, end, radius).unwrap();
-        let pairs: [(&dyn Shape, &dyn Shape); 2] =
-            [(&capsule, &Capsule::new(start, end, radius)), (&cylinder, &Cylinder::new(half, radius))];
+        let pairs: [(&dyn Shape, &dyn Shape); 2] = [
+            (&capsule, &Capsule::new(start, end, radius)),
+            (&cylinder, &Cylinder::new(half, radius)),
+        ];
         for (ours, theirs) in pairs {
             for solid in [false, true] {
-                let (a, b) =
-                    (ours.distance_to_local_point(p, solid), theirs.distance_to_local_point(p, solid));
+                let (a, b) = (
+                    ours.distance_to_local_point(p, solid),
+                    theirs.distance_to_local_point(p, solid),
+                );
                 assert!((a - b).abs() < 1e-14, "{a} for {b} at {p}, half {half}, radius {radius}");
             }
             assert_eq!(ours.contains_local_point(p), theirs.contains_local_point(p));
@@ -110,11 +121,12 @@ fn points_agree_with_parrys_capsule_and_cylinder() {
     }
 }
 
-/// A flat end is nearer than the round one, though the round end's half ball holds the point: 0.15 to the
-/// disc, 0.95 to the half ball.
+/// A flat end is nearer than the round one, though the round end's half ball holds the point: 0.15
+/// to the disc, 0.95 to the half ball.
 #[test]
 fn inside_a_short_link_the_far_flat_end_can_be_the_nearest() {
-    let link = ModifiedCylinder::new(Vector::ZERO, 0.1 * Vector::Z, 1.0, [Cap::Flat, Cap::Round]).unwrap();
+    let link =
+        ModifiedCylinder::new(Vector::ZERO, 0.1 * Vector::Z, 1.0, [Cap::Flat, Cap::Round]).unwrap();
     let (projection, feature) = link.project_local_point_and_get_feature(0.15 * Vector::Z);
     assert!((projection.point - Vector::ZERO).length() < 1e-16 && projection.is_inside);
     assert_eq!(feature, FeatureId::Face(1));
@@ -124,7 +136,8 @@ fn inside_a_short_link_the_far_flat_end_can_be_the_nearest() {
 fn on_the_axis_any_way_out_is_taken_but_a_whole_radius_long() {
     let mut random = Random::new(17);
     for _ in 0..2000 {
-        let (start, axis, radius) = (random.vector(1.0), random.direction(), random.log_between(1e-3, 1.0));
+        let (start, axis, radius) =
+            (random.vector(1.0), random.direction(), random.log_between(1e-3, 1.0));
         let link = ModifiedCylinder::new(start, start + axis, radius, random.caps()).unwrap();
         let p = start + axis * random.between(0.4, 0.6);
         let depth = -link.distance_to_local_point(p, false);

@@ -23,7 +23,8 @@ fn rays_hit_where_the_distance_first_vanishes() {
         let context = || format!("{link:?} by {ray:?}: {hit:?}");
 
         // Sphere tracing: a step as long as the distance can't pass the link.
-        let (mut time, mut gap, mut steps) = (0.0, link.distance_to_local_point(ray.origin, true), 0);
+        let (mut time, mut gap, mut steps) =
+            (0.0, link.distance_to_local_point(ray.origin, true), 0);
         let far = 4.0 * extent(&link, ray.origin) / speed;
         while gap > tolerance && time < far && steps < 300 {
             time += gap / speed;
@@ -36,14 +37,20 @@ fn rays_hit_where_the_distance_first_vanishes() {
                 let at_hit = link.distance_to_local_point(ray.point_at(hit.time_of_impact), false);
                 let inside = hit.time_of_impact == 0.0 && at_hit < 0.0;
                 assert!(inside || at_hit.abs() <= tolerance, "{at_hit} {}", context());
-                assert!(time * speed <= hit.time_of_impact * speed + 2.0 * tolerance, "{time} {}", context());
+                assert!(
+                    time * speed <= hit.time_of_impact * speed + 2.0 * tolerance,
+                    "{time} {}",
+                    context()
+                );
             }
             None => {
                 misses += 1;
                 // A ray that comes within rounding of the link goes no deeper.
-                let ahead = (0..100)
-                    .map(|i| ray.point_at(time + extent(&link, ray.origin) / speed * 0.02 * Real::from(i)));
-                let deepest = ahead.map(|p| link.distance_to_local_point(p, false)).fold(gap, Real::min);
+                let ahead = (0..100).map(|i| {
+                    ray.point_at(time + extent(&link, ray.origin) / speed * 0.02 * Real::from(i))
+                });
+                let deepest =
+                    ahead.map(|p| link.distance_to_local_point(p, false)).fold(gap, Real::min);
                 assert!(deepest >= -tolerance, "{deepest} {time} {}", context());
             }
         }
@@ -53,8 +60,8 @@ fn rays_hit_where_the_distance_first_vanishes() {
     assert!(marched > count * 8 / 10, "{marched} conclusive of {count}");
 }
 
-/// The far side, cast back from beyond it, is where the hollow ray from inside comes out; entry and exit
-/// normals both point against the ray and are the surface's.
+/// The far side, cast back from beyond it, is where the hollow ray from inside comes out; entry and
+/// exit normals both point against the ray and are the surface's.
 #[test]
 fn hollow_rays_leave_where_the_reversed_ray_enters() {
     let mut random = Random::new(15);
@@ -73,16 +80,24 @@ fn hollow_rays_leave_where_the_reversed_ray_enters() {
         let tolerance = 64.0 * U * (largest(&link, origin) + extent(&link, origin));
         let out = link.cast_local_ray_and_get_normal(&ray, Real::MAX, false).unwrap();
         let exit = ray.point_at(out.time_of_impact);
-        assert!(link.distance_to_local_point(exit, false).abs() <= tolerance, "{link:?} {ray:?} {out:?}");
+        assert!(
+            link.distance_to_local_point(exit, false).abs() <= tolerance,
+            "{link:?} {ray:?} {out:?}"
+        );
         let beyond = ray.point_at(out.time_of_impact + 1.0);
         assert!(!link.contains_local_point(beyond), "a convex body is left once: {link:?} {ray:?}");
-        let back = link.cast_local_ray_and_get_normal(&Ray::new(beyond, -ray.dir), 2.0, false).unwrap();
+        let back =
+            link.cast_local_ray_and_get_normal(&Ray::new(beyond, -ray.dir), 2.0, false).unwrap();
         // Where the ray leaves at a grazing angle its time is as uncertain as the angle is small.
-        let (gap, slope) = ((1.0 - back.time_of_impact).abs() * 3.0, back.normal.dot(ray.dir) / 3.0);
+        let (gap, slope) =
+            ((1.0 - back.time_of_impact).abs() * 3.0, back.normal.dot(ray.dir) / 3.0);
         let certain = gap * slope <= tolerance || gap * gap <= tolerance;
         assert!(certain, "{gap} {slope} {out:?} {back:?} for {link:?} {ray:?}");
         assert!(out.normal.dot(ray.dir) <= 1e-9 && back.normal.dot(ray.dir) >= -1e-9);
-        assert!((out.normal.length() - 1.0).abs() < 4.0 * U && (back.normal.length() - 1.0).abs() < 4.0 * U);
+        assert!(
+            (out.normal.length() - 1.0).abs() < 4.0 * U
+                && (back.normal.length() - 1.0).abs() < 4.0 * U
+        );
         if slope > 1e-3 && out.feature == back.feature {
             assert!((out.normal + back.normal).length() < 1e-6, "{out:?} {back:?}");
             let surface = link.feature_normal_at_point(0, out.feature, exit).unwrap();
@@ -158,7 +173,8 @@ fn rays_along_and_across_the_axis_hit_the_right_piece() {
     assert_hit(&link, [0.0, 0.0, 4.0], [0.0, 0.0, -1.0], true, 1.5, [0.0, 0.0, 1.0]);
     assert_hit(&link, [0.0, 0.0, 1.0], [0.0, 0.0, 1.0], false, 1.5, [0.0, 0.0, -1.0]);
     assert_hit(&link, [0.0, 0.0, 1.0], [0.0, 0.0, -1.0], false, 1.0, [0.0, 0.0, 1.0]);
-    // Beside the axis, parallel to it: onto the disc, onto the half ball at 30 degrees from its pole.
+    // Beside the axis, parallel to it: onto the disc, onto the half ball at 30 degrees from its
+    // pole.
     assert_hit(&link, [0.25, 0.0, -1.0], [0.0, 0.0, 1.0], true, 1.0, [0.0, 0.0, -1.0]);
     let up = 0.75_f64.sqrt();
     assert_hit(&link, [0.25, 0.0, 3.0], [0.0, 0.0, -1.0], true, 1.0 - 0.5 * up, [0.5, 0.0, up]);
@@ -167,8 +183,13 @@ fn rays_along_and_across_the_axis_hit_the_right_piece() {
     assert_hit(&link, [0.0, 0.0, 1.0], [0.5, 0.0, 0.0], false, 1.0, [-1.0, 0.0, 0.0]);
     // Grazing the barrel, in the plane of the disc, and just past either.
     assert_hit(&link, [0.5, -2.0, 1.0], [0.0, 1.0, 0.0], true, 2.0, [1.0, 0.0, 0.0]);
-    assert!(link.cast_local_ray(&Ray::new(Vector::new(0.0, -2.0, 0.0), Vector::Y), 9.0, true).is_some());
-    assert!(link.cast_local_ray(&Ray::new(Vector::new(0.0, -2.0, -1e-15), Vector::Y), 9.0, true).is_none());
+    assert!(
+        link.cast_local_ray(&Ray::new(Vector::new(0.0, -2.0, 0.0), Vector::Y), 9.0, true).is_some()
+    );
+    assert!(
+        link.cast_local_ray(&Ray::new(Vector::new(0.0, -2.0, -1e-15), Vector::Y), 9.0, true)
+            .is_none()
+    );
     let past = Vector::new(0.5 + 1e-15, -2.0, 1.0);
     assert!(link.cast_local_ray(&Ray::new(past, Vector::Y), 9.0, true).is_none());
     // Into the infinite cylinder below the disc and out of it again before the disc.
@@ -192,8 +213,8 @@ fn a_ray_without_direction_hits_the_solid_it_starts_in() {
     }
 }
 
-/// Rounding puts half of the surface's points outside. A ray that starts there hits at once on its way in,
-/// and not at all on its way out.
+/// Rounding puts half of the surface's points outside. A ray that starts there hits at once on its
+/// way in, and not at all on its way out.
 #[test]
 fn rays_from_the_surface_hit_inwards_only() {
     let mut random = Random::new(27);
@@ -210,7 +231,11 @@ fn rays_from_the_surface_hit_inwards_only() {
             continue;
         }
         outside += 1;
-        assert_eq!(link.cast_local_ray(&Ray::new(p, tilted), Real::MAX, true), None, "{link:?} {p} {tilted}");
+        assert_eq!(
+            link.cast_local_ray(&Ray::new(p, tilted), Real::MAX, true),
+            None,
+            "{link:?} {p} {tilted}"
+        );
         let hit = link.cast_local_ray(&Ray::new(p, -tilted), Real::MAX, true);
         let error = hit.map(|time| link.distance_to_local_point(p - tilted * time, false).abs());
         assert!(error.is_some_and(|error| error < 32.0 * U), "{link:?} {p} {tilted}: {hit:?}");

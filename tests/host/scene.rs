@@ -60,7 +60,8 @@ pub fn zigzag(random: &mut Random) -> Polyline {
     Polyline::new((0..6).map(|_| random.vector(0.8)).collect(), None)
 }
 
-/// What a shape consists of: ids, places and shapes. A shape that consists of nothing else is its own part 0.
+/// What a shape consists of: ids, places and shapes. A shape that consists of nothing else is its
+/// own part 0.
 pub fn parts(shape: &dyn Shape) -> Vec<(u32, Pose, SharedShape)> {
     if let Some(chain) = shape.as_shape::<Chain>() {
         numbered(chain.links().iter().map(|link| SharedShape::new(*link)))

@@ -1,4 +1,5 @@
-//! Links, chains and answers come back as they were, and what no constructor would make does not come back.
+//! Links, chains and answers come back as they were, and what no constructor would make does not
+//! come back.
 
 use crate::draw::Draw;
 use crate::scene::tube;
@@ -7,8 +8,8 @@ use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::shape::Ball;
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{
-    BvhSearch, Certificate, Clearance, Decision, LinkProximity, MotionAnswer, Proximity, RobotMotionAnswer,
-    RobotPair, Work,
+    BvhSearch, Certificate, Clearance, Decision, LinkProximity, MotionAnswer, Proximity,
+    RobotMotionAnswer, RobotPair, Work,
 };
 use parry_continuum::{Cap, Chain, LinearMotion, ModifiedCylinder, Tube};
 use serde_json::{Value, from_str, from_value, json, to_string, to_value};
@@ -52,15 +53,16 @@ fn refusal<T: serde::de::DeserializeOwned>(value: Value) -> String {
 
 #[test]
 fn what_no_constructor_makes_is_an_error() {
-    let link =
-        json!({"start": [0.0, 0.0, 0.0], "end": [1.0, 0.0, 0.0], "radius": 0.5, "caps": ["Flat", "Round"]});
+    let link = json!({"start": [0.0, 0.0, 0.0], "end": [1.0, 0.0, 0.0], "radius": 0.5, "caps": ["Flat", "Round"]});
     let with = |key: &str, value: Value| {
         let mut link = link.clone();
         link[key] = value;
         refusal::<ModifiedCylinder>(link)
     };
     assert_eq!(with("radius", json!(0.25)), "");
-    assert!(with("radius", json!(-1.0)).contains("radius 0 is -1; `radius` must be finite, at least 0"));
+    assert!(
+        with("radius", json!(-1.0)).contains("radius 0 is -1; `radius` must be finite, at least 0")
+    );
     assert!(with("end", json!([0.0, 0.0, 0.0])).contains("length 0"));
     assert!(with("end", json!([1e200, 0.0, 0.0])).contains("beyond"));
     assert!(with("caps", json!(["Flat", "Square"])).contains("Square"));
@@ -77,10 +79,14 @@ fn what_no_constructor_makes_is_an_error() {
     assert_eq!(with("radii", json!([0.5, 0.5])), "");
     assert!(with("radii", json!([0.5])).contains("2 radii, got 1"));
     assert!(
-        with("radii", json!([0.5, -0.4])).contains("radius 1 is -0.4; `radii` must be finite, at least 0")
+        with("radii", json!([0.5, -0.4]))
+            .contains("radius 1 is -0.4; `radii` must be finite, at least 0")
     );
     assert!(with("points", json!([])).contains("at least 2 points"));
-    assert!(with("points", json!([[0.0, 0.0, 0.0], [0.0, 0.0, 0.0], [1.0, 0.0, 0.0]])).contains("link 0"));
+    assert!(
+        with("points", json!([[0.0, 0.0, 0.0], [0.0, 0.0, 0.0], [1.0, 0.0, 0.0]]))
+            .contains("link 0")
+    );
     assert!(with("caps", json!([])).contains("as many caps"));
     assert!(with("segments", json!([1, 0])).contains("link 1 stands for 0"));
     assert!(with("segments", json!([1, u64::MAX])).contains("link 1 stands for"));
@@ -94,7 +100,8 @@ fn what_no_constructor_makes_is_an_error() {
     assert_eq!(refusal::<LinkProximity>(answer), "");
     assert!(refusal::<LinkProximity>(negative).contains("the distance is -0.5"));
 
-    let bounds = |lower: f64, upper: f64| refusal::<Certificate>(json!({"lower": lower, "upper": upper}));
+    let bounds =
+        |lower: f64, upper: f64| refusal::<Certificate>(json!({"lower": lower, "upper": upper}));
     assert_eq!(bounds(0.0, 0.5), "");
     assert!(bounds(0.5, 0.25).contains("0.5 to 0.25 bounds no distance"));
     assert!(bounds(-0.5, 0.25).contains("bounds no distance"));
@@ -114,16 +121,21 @@ fn answers_about_tubes_and_motions_come_back() {
         assert_eq!(from_str::<Decision>(&to_string(&decision).unwrap()).unwrap(), decision);
     }
 
-    // Out of the ball, and along a floor as far away as the margin but for a little, which nobody can tell.
+    // Out of the ball, and along a floor as far away as the margin but for a little, which nobody
+    // can tell.
     let corners = [[-9.0, -9.0], [9.0, -9.0], [0.0, 9.0]].map(|[x, y]| Vector::new(x, y, -2.0));
-    let mut floor = BvhSearch::new(&TriMesh::new(corners.to_vec(), vec![[0, 1, 2]]).unwrap()).unwrap();
-    let least = floor.minimum(&Chain::from_centreline(&points, &[0.5; 2]).unwrap(), &Pose::IDENTITY).unwrap();
+    let mut floor =
+        BvhSearch::new(&TriMesh::new(corners.to_vec(), vec![[0, 1, 2]]).unwrap()).unwrap();
+    let least = floor
+        .minimum(&Chain::from_centreline(&points, &[0.5; 2]).unwrap(), &Pose::IDENTITY)
+        .unwrap();
     let mut kinds = [0; 6];
     for step in 1..60 {
         let shift = Vector::new(0.05, 0.02, 0.15) * f64::from(step);
-        for (search, shift, margin) in
-            [(&mut search, shift, 0.5), (&mut floor, shift.with_z(0.0), least.distance * (1.0 - 1e-9))]
-        {
+        for (search, shift, margin) in [
+            (&mut search, shift, 0.5),
+            (&mut floor, shift.with_z(0.0), least.distance * (1.0 - 1e-9)),
+        ] {
             let to = points.map(|point| point + shift);
             let motion = LinearMotion::chain(&points, &to, &[0.5; 2]).unwrap();
             let answer = search.clears_motion(&motion, margin, 0.1).unwrap();
@@ -144,7 +156,9 @@ fn what_no_query_about_a_motion_answers_is_an_error() {
         "on_robot": [0.0, 0.0, 0.0], "on_mesh": [0.0, 0.0, 0.25],
     });
     let answer = |decision: &str, interval: [f64; 2], contact: Option<&Value>| {
-        refusal::<MotionAnswer>(json!({"decision": decision, "interval": interval, "contact": contact}))
+        refusal::<MotionAnswer>(
+            json!({"decision": decision, "interval": interval, "contact": contact}),
+        )
     };
     let with = |key: &str, value: Value| {
         let mut contact = contact.clone();
@@ -188,9 +202,15 @@ fn answers_about_two_motions_come_back_and_no_others() {
     };
     assert_eq!(with(&|_| ()), "");
     assert!(with(&|answer| answer["contact"]["t"] = json!(1.5)).contains("from 0 to 1"));
-    assert!(with(&|answer| answer["contact"]["upper"] = json!(-0.25)).contains("the clearance is -0.25"));
+    assert!(
+        with(&|answer| answer["contact"]["upper"] = json!(-0.25))
+            .contains("the clearance is -0.25")
+    );
     assert!(with(&|answer| answer["contact"]["on_first"] = json!([0.0, 0.0])).contains("length"));
-    assert!(with(&|answer| answer["interval"] = json!([0.75, 0.5])).contains("in order, not 0.75 to 0.5"));
+    assert!(
+        with(&|answer| answer["interval"] = json!([0.75, 0.5]))
+            .contains("in order, not 0.75 to 0.5")
+    );
     assert!(with(&|answer| answer["contact"] = Value::Null).contains("the contact is None"));
     assert!(with(&|answer| answer["decision"] = json!("Clear")).contains("the decision is Clear"));
 }

@@ -1,12 +1,13 @@
-//! A link is a good citizen of parry: its bounds, support points, features and scaled copies are those of the
-//! true shape.
+//! A link is a good citizen of parry: its bounds, support points, features and scaled copies are
+//! those of the true shape.
 
 use crate::draw::{CAPS, Draw, U, surface_point, violation};
 use continuum_testing::Random;
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::query::{self, PointQuery};
 use parry_continuum::parry::shape::{
-    Cuboid, FeatureId, PolygonalFeature, PolygonalFeatureMap, Shape, ShapeType, SupportMap, TypedShape,
+    Cuboid, FeatureId, PolygonalFeature, PolygonalFeatureMap, Shape, ShapeType, SupportMap,
+    TypedShape,
 };
 use parry_continuum::{Cap, ModifiedCylinder};
 
@@ -60,8 +61,8 @@ fn boxes_touch_the_link_on_all_six_sides() {
     }
 }
 
-/// Holds every surface point; and no smaller ball does, because wherever its centre moved, a surface point on
-/// the far side would be further than the radius.
+/// Holds every surface point; and no smaller ball does, because wherever its centre moved, a
+/// surface point on the far side would be further than the radius.
 #[test]
 fn bounding_spheres_are_the_smallest() {
     let mut random = Random::new(23);
@@ -69,10 +70,12 @@ fn bounding_spheres_are_the_smallest() {
         let link = random.link();
         let sphere = link.compute_local_bounding_sphere();
         let points: Vec<_> = (0..2000).map(|_| surface_point(&mut random, &link)).collect();
-        let farthest = |centre: Vector| points.iter().map(|p| (p - centre).length()).fold(0.0, Real::max);
+        let farthest =
+            |centre: Vector| points.iter().map(|p| (p - centre).length()).fold(0.0, Real::max);
         assert!(farthest(sphere.center) <= sphere.radius + 32.0 * U, "{link:?} {sphere:?}");
 
-        // The touching points, a pole by support and a rim by construction, hold the centre between them.
+        // The touching points, a pole by support and a rim by construction, hold the centre between
+        // them.
         let axis = (link.end() - link.start()).normalize_or(Vector::X);
         let side = axis.any_orthonormal_vector() * link.radius();
         let mut touching = vec![];
@@ -86,7 +89,8 @@ fn bounding_spheres_are_the_smallest() {
         assert!(touching.iter().all(|p| off(p) < 32.0 * U), "{link:?} {sphere:?}");
         let along = |p: &Vector| (p - sphere.center).dot(axis);
         assert!(
-            touching.iter().any(|p| along(p) <= 32.0 * U) && touching.iter().any(|p| along(p) >= -32.0 * U)
+            touching.iter().any(|p| along(p) <= 32.0 * U)
+                && touching.iter().any(|p| along(p) >= -32.0 * U)
         );
     }
 }
@@ -114,13 +118,19 @@ fn scaling_gives_the_true_image_or_nothing() {
         for _ in 0..20 {
             // The image of the surface is the surface of the image, and so are the pre-images.
             let p = surface_point(&mut random, &link) * scale;
-            assert!(image.distance_to_local_point(p, false).abs() < 64.0 * U * size, "{link:?} {scale}");
+            assert!(
+                image.distance_to_local_point(p, false).abs() < 64.0 * U * size,
+                "{link:?} {scale}"
+            );
         }
         let image = image.as_shape::<ModifiedCylinder>().unwrap();
         for _ in 0..20 {
             let p = surface_point(&mut random, image) / scale;
             let size = size / scale.abs().min_element();
-            assert!(link.distance_to_local_point(p, false).abs() < 64.0 * U * size, "{link:?} {scale}");
+            assert!(
+                link.distance_to_local_point(p, false).abs() < 64.0 * U * size,
+                "{link:?} {scale}"
+            );
         }
     }
     assert!(given > count * 6 / 10 && given < count * 9 / 10, "{given} of {count}");
@@ -153,7 +163,8 @@ fn the_thickness_is_that_of_the_largest_ball_inside() {
         // The deepest point is on the axis, or past its end within a half ball.
         let span = link.end() - link.start();
         let reach = if span == Vector::ZERO { 0.0 } else { link.radius() / span.length() };
-        let point = |i| link.start() + span * (Real::from(i) / 2000.0 * (1.0 + 2.0 * reach) - reach);
+        let point =
+            |i| link.start() + span * (Real::from(i) / 2000.0 * (1.0 + 2.0 * reach) - reach);
         let depth = |p| -link.distance_to_local_point(p, false);
         let deepest = (0..=2000).map(point).map(depth).fold(0.0, Real::max);
         let step = (span.length() + 2.0 * link.radius()) / 2000.0;
@@ -180,13 +191,20 @@ fn feature_polygons_lie_on_the_link_around_the_support_point() {
         }
         let corners = &polygon.vertices[..polygon.num_vertices];
         for corner in corners {
-            assert!(link.distance_to_local_point(*corner, false).abs() < 64.0 * U, "{link:?} {polygon:?}");
+            assert!(
+                link.distance_to_local_point(*corner, false).abs() < 64.0 * U,
+                "{link:?} {polygon:?}"
+            );
         }
         match polygon.num_vertices {
             4 => {
                 squares += 1;
-                let normal = (corners[1] - corners[0]).cross(corners[2] - corners[1]).normalize_or_zero();
-                assert!(link.radius() == 0.0 || normal.dot(direction).abs() > 0.5 - 1e-6, "{polygon:?}");
+                let normal =
+                    (corners[1] - corners[0]).cross(corners[2] - corners[1]).normalize_or_zero();
+                assert!(
+                    link.radius() == 0.0 || normal.dot(direction).abs() > 0.5 - 1e-6,
+                    "{polygon:?}"
+                );
             }
             2 => lines += 1,
             n => panic!("{n} corners"),
@@ -199,7 +217,8 @@ fn feature_polygons_lie_on_the_link_around_the_support_point() {
 
 #[test]
 fn normals_are_known_for_the_features_a_link_has() {
-    let link = ModifiedCylinder::new(Vector::ZERO, Vector::Z, 0.5, [Cap::Flat, Cap::Round]).unwrap();
+    let link =
+        ModifiedCylinder::new(Vector::ZERO, Vector::Z, 0.5, [Cap::Flat, Cap::Round]).unwrap();
     let normal = |feature, p: [Real; 3]| link.feature_normal_at_point(0, feature, p.into());
     assert_eq!(normal(FeatureId::Face(0), [0.5, 0.0, 0.3]), Some(Vector::X));
     assert_eq!(normal(FeatureId::Face(1), [0.1, 0.2, 0.0]), Some(-Vector::Z));
@@ -215,16 +234,21 @@ fn normals_are_known_for_the_features_a_link_has() {
 
 #[test]
 fn a_link_is_a_convex_custom_shape_that_parrys_own_algorithms_accept() {
-    let link = ModifiedCylinder::new(Vector::ZERO, Vector::X, 0.25, [Cap::Round, Cap::Flat]).unwrap();
+    let link =
+        ModifiedCylinder::new(Vector::ZERO, Vector::X, 0.25, [Cap::Round, Cap::Flat]).unwrap();
     assert_eq!(link.shape_type(), ShapeType::Custom);
     assert!(matches!(link.as_typed_shape(), TypedShape::Custom(_)));
-    assert!(link.is_convex() && link.as_support_map().is_some() && link.as_composite_shape().is_none());
+    assert!(
+        link.is_convex() && link.as_support_map().is_some() && link.as_composite_shape().is_none()
+    );
     assert_eq!(link.clone_dyn().as_shape::<ModifiedCylinder>(), Some(&link));
 
     let cube = Cuboid::new(Vector::splat(0.5));
     for (place, gap) in [(Vector::new(2.5, 0.0, 0.0), 1.0), (Vector::new(0.5, 3.0, 0.0), 2.25)] {
         let distance =
-            query::distance(&Pose::IDENTITY, &link, &Pose::from_translation(place), &cube).unwrap().distance;
+            query::distance(&Pose::IDENTITY, &link, &Pose::from_translation(place), &cube)
+                .unwrap()
+                .distance;
         assert!((distance - gap).abs() < 1e-6, "{distance} for {gap}");
     }
 }

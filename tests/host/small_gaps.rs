@@ -1,5 +1,5 @@
-//! What is small beside the unit of length: gaps, balls, overlaps that are less than what is asked for, and boxes that
-//! touch no more than rounding says.
+//! What is small beside the unit of length: gaps, balls, overlaps that are less than what is asked
+//! for, and boxes that touch no more than rounding says.
 
 use continuum_testing::Random;
 use parry_continuum::parry::math::{Pose, Real, Vector};
@@ -22,7 +22,9 @@ fn an_overlap_less_deep_than_asked_for_is_no_contact() {
     ];
     for wall in &walls {
         let place = Pose::from_translation(Vector::new(0.1, -1.477, 0.0));
-        for (pos12, g1, g2) in [(place, &link as &dyn Shape, &**wall), (place.inverse(), &**wall, &link)] {
+        for (pos12, g1, g2) in
+            [(place, &link as &dyn Shape, &**wall), (place.inverse(), &**wall, &link)]
+        {
             for prediction in [-0.024, -0.05, -0.5] {
                 assert!(
                     contact(&pos12, g1, g2, prediction).is_none(),
@@ -32,7 +34,11 @@ fn an_overlap_less_deep_than_asked_for_is_no_contact() {
             }
             for prediction in [-0.022, -1e-9, 0.0, 1.0, Real::MAX] {
                 let dist = contact(&pos12, g1, g2, prediction).unwrap().dist;
-                assert!((dist + 0.023).abs() < 1e-5, "{:?} {prediction}: {dist}", wall.shape_type());
+                assert!(
+                    (dist + 0.023).abs() < 1e-5,
+                    "{:?} {prediction}: {dist}",
+                    wall.shape_type()
+                );
             }
         }
     }
@@ -64,7 +70,10 @@ fn a_tiny_ball_beside_a_tiny_link_does_not_touch_it() {
                     (between - found.normal1 * found.dist).length() <= 1e-15 * unit,
                     "{unit:e} {found:?}"
                 );
-                assert_eq!(dispatcher.distance(&pos12, g1, g2).unwrap().distance, expected.max(0.0));
+                assert_eq!(
+                    dispatcher.distance(&pos12, g1, g2).unwrap().distance,
+                    expected.max(0.0)
+                );
                 let meets = dispatcher.intersection_test(&pos12, g1, g2).unwrap().intersecting;
                 let closest = dispatcher.closest_points(&pos12, g1, g2, Real::MAX).unwrap();
                 assert_eq!(meets, expected <= 0.0, "{unit:e} {place:?}");
@@ -126,7 +135,11 @@ fn what_touches_a_part_touches_the_whole() {
         let meets = |pos12: &Pose, g1: &dyn Shape| {
             dispatcher.intersection_test(pos12, g1, &link).unwrap().intersecting
         };
-        assert_eq!(meets(&place.inv_mul(&pos12), &part), meets(&pos12, &whole), "{r} {half} {beside}");
+        assert_eq!(
+            meets(&place.inv_mul(&pos12), &part),
+            meets(&pos12, &whole),
+            "{r} {half} {beside}"
+        );
     }
     assert!(met > 100, "{met}");
 }

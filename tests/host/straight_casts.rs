@@ -1,5 +1,5 @@
-//! Casts of links that move straight against triangles and other convex shapes: never late, and early by no
-//! more than is said.
+//! Casts of links that move straight against triangles and other convex shapes: never late, and
+//! early by no more than is said.
 
 use crate::draw::Draw;
 use crate::scene::floor_mesh;
@@ -9,7 +9,8 @@ use parry_continuum::parry::query::{QueryDispatcher, ShapeCastOptions, ShapeCast
 use parry_continuum::parry::shape::{Shape, SharedShape, Triangle};
 use parry_continuum::{Cap, ContinuumDispatcher, ModifiedCylinder};
 
-/// What a hit may be early by, for shapes of size one: the share of the size at which a link touches.
+/// What a hit may be early by, for shapes of size one: the share of the size at which a link
+/// touches.
 const EARLY: Real = 1e-8;
 /// The same where contacts come from iterations.
 const ITERATED: Real = 1e-5;
@@ -33,7 +34,8 @@ fn stops_in_time(
 ) -> [usize; 2] {
     let ours = ContinuumDispatcher::default();
     let target_distance = [0.0, 0.0, random.between(0.0, 0.5)][random.index(3)];
-    let options = ShapeCastOptions { target_distance, ..ShapeCastOptions::with_max_time_of_impact(1.5) };
+    let options =
+        ShapeCastOptions { target_distance, ..ShapeCastOptions::with_max_time_of_impact(1.5) };
     let back = -(pose.rotation.inverse() * velocity);
     let pairs: [(Pose, Vector, &dyn Shape, &dyn Shape); 2] =
         [(pose, velocity, link, wall), (pose.inverse(), back, wall, link)];
@@ -45,7 +47,8 @@ fn stops_in_time(
     if at(0.0) <= target_distance {
         return [hits, misses];
     }
-    let met = (1..=400).map(|k| 1.5 * Real::from(k) / 400.0).find(|&time| at(time) <= target_distance);
+    let met =
+        (1..=400).map(|k| 1.5 * Real::from(k) / 400.0).find(|&time| at(time) <= target_distance);
     for (pos12, velocity, g1, g2) in pairs {
         let context = || format!("{link:?} {:?} {pose:?} {velocity}", wall.as_typed_shape());
         let Some(hit) = ours.cast_shapes(&pos12, velocity, g1, g2, options).unwrap() else {
@@ -59,9 +62,14 @@ fn stops_in_time(
         assert!(met.is_none_or(|met| time <= met), "{hit:?}, met at {met:?}: {}", context());
         assert!((at(time) - target_distance).abs() < early, "{hit:?}: {}, {}", at(time), context());
         // Points that are as far apart, on either shape, along the normal.
-        let (one, other) = (hit.witness1, Pose::from_translation(velocity * time) * pos12 * hit.witness2);
+        let (one, other) =
+            (hit.witness1, Pose::from_translation(velocity * time) * pos12 * hit.witness2);
         assert!(((other - one).length() - target_distance).abs() < early, "{hit:?}: {}", context());
-        assert!(((other - one).dot(hit.normal1) - target_distance).abs() < early, "{hit:?}: {}", context());
+        assert!(
+            ((other - one).dot(hit.normal1) - target_distance).abs() < early,
+            "{hit:?}: {}",
+            context()
+        );
         assert!((pos12.rotation * hit.normal2 + hit.normal1).length() < 1e-9);
     }
     [hits, misses]
@@ -120,7 +128,8 @@ fn options_mean_what_they_mean_in_parry() {
         let options = ShapeCastOptions::with_max_time_of_impact(1.0);
         // As long as it takes, and not a moment less.
         if let Some(hit) = cast(&pose, velocity, options).filter(|hit| hit.time_of_impact > 0.0) {
-            let limit = |share: Real| ShapeCastOptions::with_max_time_of_impact(hit.time_of_impact * share);
+            let limit =
+                |share: Real| ShapeCastOptions::with_max_time_of_impact(hit.time_of_impact * share);
             assert_eq!(
                 cast(&pose, velocity, limit(1.0)).map(|hit| hit.time_of_impact),
                 Some(hit.time_of_impact)
@@ -129,7 +138,8 @@ fn options_mean_what_they_mean_in_parry() {
             limited += 1;
         }
         // What overlaps at the start.
-        let near = Pose::from_parts(pose.rotation * -triangle.center() + link.start(), pose.rotation);
+        let near =
+            Pose::from_parts(pose.rotation * -triangle.center() + link.start(), pose.rotation);
         let Some(contact) = ours.contact(&near, &link, &triangle, 0.0).unwrap() else { continue };
         let through = ShapeCastOptions { stop_at_penetration: false, ..options };
         let stopped = cast(&near, velocity, options).unwrap();
@@ -150,15 +160,23 @@ fn options_mean_what_they_mean_in_parry() {
 fn the_error_does_not_grow_with_the_triangle() {
     let (mut random, ours) = (Random::new(153), ContinuumDispatcher::default());
     for extent in [5.0, 50.0, 500.0, 5e5] {
-        let [a, b, c] = [[-1.0, -1.0], [1.0, -1.0], [0.0, 1.0]].map(|[x, z]| Vector::new(x, 0.0, z) * extent);
+        let [a, b, c] =
+            [[-1.0, -1.0], [1.0, -1.0], [0.0, 1.0]].map(|[x, z]| Vector::new(x, 0.0, z) * extent);
         let triangle = Triangle::new(a, b, c);
         for _ in 0..200 {
-            let link = ModifiedCylinder::capsule(random.vector(1.0), random.vector(1.0), 0.5).unwrap();
+            let link =
+                ModifiedCylinder::capsule(random.vector(1.0), random.vector(1.0), 0.5).unwrap();
             let lowest = link.start().y.min(link.end().y) - 0.5;
             let height = random.between(3.0, 9.0);
             let place = Pose::from_translation(Vector::new(0.1, height, 0.2));
             let hit = ours
-                .cast_shapes(&place, -2.0 * Vector::Y, &triangle, &link, ShapeCastOptions::default())
+                .cast_shapes(
+                    &place,
+                    -2.0 * Vector::Y,
+                    &triangle,
+                    &link,
+                    ShapeCastOptions::default(),
+                )
                 .unwrap()
                 .unwrap();
             let expected = 0.5 * (height + lowest);
@@ -175,8 +193,11 @@ fn the_error_does_not_grow_with_the_triangle() {
 fn what_does_not_come_nearer_does_not_meet() {
     let ours = ContinuumDispatcher::default();
     let link = ModifiedCylinder::cylinder(Vector::ZERO, Vector::X, 0.5).unwrap();
-    let triangle =
-        Triangle::new(Vector::new(-9.0, 0.0, -9.0), Vector::new(9.0, 0.0, -9.0), Vector::new(0.0, 0.0, 9.0));
+    let triangle = Triangle::new(
+        Vector::new(-9.0, 0.0, -9.0),
+        Vector::new(9.0, 0.0, -9.0),
+        Vector::new(0.0, 0.0, 9.0),
+    );
     for gap in [1e-300, 1e-13, 1e-12, 1e-6, 1e-3, 1.0] {
         let place = Pose::from_translation(Vector::Y * (0.5 + gap));
         for velocity in [Vector::ZERO, Vector::Y, Vector::X, 3.0 * Vector::Z] {
@@ -215,11 +236,14 @@ fn a_mesh_is_met_where_its_first_triangle_is() {
     assert!(hits > 50 && misses > 10, "{hits} hits, {misses} misses");
 }
 
-/// What parry's own tests of its casts ask, with links in place of balls and capsules, and meshes in place of cuboids.
+/// What parry's own tests of its casts ask, with links in place of balls and capsules, and meshes
+/// in place of cuboids.
 mod as_parry_asks {
     use super::EARLY;
     use parry_continuum::parry::math::{Pose, Vector};
-    use parry_continuum::parry::query::{QueryDispatcher, ShapeCastHit, ShapeCastOptions, ShapeCastStatus};
+    use parry_continuum::parry::query::{
+        QueryDispatcher, ShapeCastHit, ShapeCastOptions, ShapeCastStatus,
+    };
     use parry_continuum::parry::shape::{Cuboid, Shape, TriMesh};
     use parry_continuum::{ContinuumDispatcher, ModifiedCylinder};
 
@@ -254,20 +278,29 @@ mod as_parry_asks {
             for (end, caps) in
                 [(Vector::ZERO, "round"), (2.0 * Vector::X, "round"), (2.0 * Vector::X, "flat")]
             {
-                let model =
-                    if caps == "flat" { ModifiedCylinder::cylinder } else { ModifiedCylinder::capsule };
+                let model = if caps == "flat" {
+                    ModifiedCylinder::cylinder
+                } else {
+                    ModifiedCylinder::capsule
+                };
                 let link = model(-0.5 * end * unit, 0.5 * end * unit, 0.5 * unit).unwrap();
                 let place = Pose::from_translation(Vector::Y * 3.0 * unit);
-                let distance =
-                    ContinuumDispatcher::default().distance(&place.inverse(), &link, &wall).unwrap().distance;
+                let distance = ContinuumDispatcher::default()
+                    .distance(&place.inverse(), &link, &wall)
+                    .unwrap()
+                    .distance;
                 let expected = 2.5 * unit - 0.5e-10;
                 assert!((distance - expected).abs() <= 1e-15 * unit, "{unit} {caps}: {distance}");
-                let hit = cast(place, -Vector::Y, &link, &wall, ShapeCastOptions::default()).unwrap();
+                let hit =
+                    cast(place, -Vector::Y, &link, &wall, ShapeCastOptions::default()).unwrap();
                 let early = expected - hit.time_of_impact;
                 assert!((-1e-15 * unit..=EARLY * unit).contains(&early), "{unit} {caps}: {hit:?}");
                 // Past it.
-                let beside = Pose::from_translation(Vector::new(0.0, 3.0, 0.6) * unit + Vector::Z * 1e-10);
-                assert!(cast(beside, -Vector::Y, &link, &wall, ShapeCastOptions::default()).is_none());
+                let beside =
+                    Pose::from_translation(Vector::new(0.0, 3.0, 0.6) * unit + Vector::Z * 1e-10);
+                assert!(
+                    cast(beside, -Vector::Y, &link, &wall, ShapeCastOptions::default()).is_none()
+                );
             }
         }
     }
@@ -278,8 +311,14 @@ mod as_parry_asks {
         let wall = cuboid(Vector::splat(0.5));
         for (target_distance, expected) in [(0.0, 2.0), (0.5, 1.5), (2.0, 0.0)] {
             let options = ShapeCastOptions { target_distance, ..Default::default() };
-            let hit = cast(Pose::from_translation(-3.0 * Vector::X), Vector::X, &ball(0.5), &wall, options)
-                .unwrap();
+            let hit = cast(
+                Pose::from_translation(-3.0 * Vector::X),
+                Vector::X,
+                &ball(0.5),
+                &wall,
+                options,
+            )
+            .unwrap();
             assert!((0.0..=EARLY).contains(&(expected - hit.time_of_impact)), "{hit:?}");
         }
     }
@@ -288,11 +327,13 @@ mod as_parry_asks {
     #[test]
     fn what_just_touches_is_not_within() {
         let wall = cuboid(Vector::ONE);
-        for (height, status) in
-            [(1.5, ShapeCastStatus::Converged), (1.375, ShapeCastStatus::PenetratingOrWithinTargetDist)]
-        {
+        for (height, status) in [
+            (1.5, ShapeCastStatus::Converged),
+            (1.375, ShapeCastStatus::PenetratingOrWithinTargetDist),
+        ] {
             let place = Pose::from_translation(Vector::Y * height);
-            let hit = cast(place, -Vector::Y, &ball(0.5), &wall, ShapeCastOptions::default()).unwrap();
+            let hit =
+                cast(place, -Vector::Y, &ball(0.5), &wall, ShapeCastOptions::default()).unwrap();
             assert_eq!((hit.time_of_impact, hit.status), (0.0, status));
         }
     }
@@ -302,9 +343,12 @@ mod as_parry_asks {
     fn what_is_slightly_through_knows_the_face() {
         let wall = cuboid(Vector::new(20.0, 1.0, 20.0));
         let upright = ModifiedCylinder::capsule(-5.0 * Vector::Y, 5.0 * Vector::Y, 1.0).unwrap();
-        for (link, height) in
-            [(upright, 6.0 - 0.01), (upright, 6.0 - 0.02), (ball(1.0), 0.8), (ball(1.0), 1.0 - 0.200001)]
-        {
+        for (link, height) in [
+            (upright, 6.0 - 0.01),
+            (upright, 6.0 - 0.02),
+            (ball(1.0), 0.8),
+            (ball(1.0), 1.0 - 0.200001),
+        ] {
             let place = Pose::from_translation(Vector::Y * (height + 1.0));
             let velocity = Vector::new(0.1, 1.0, 0.0);
             let hit = cast(place, velocity, &link, &wall, ShapeCastOptions::default()).unwrap();
@@ -314,18 +358,22 @@ mod as_parry_asks {
     }
 }
 
-/// Rounding makes a velocity along the plane between two lead towards it, far away. They never meet.
+/// Rounding makes a velocity along the plane between two lead towards it, far away. They never
+/// meet.
 #[test]
 fn what_moves_along_the_plane_between_two_never_meets() {
     let (mut random, mut asked) = (Random::new(173), 0);
     for _ in 0..500 {
         let radius = random.between(0.1, 1.0);
-        let out = Vector::X * random.between(0.2, 0.8).sqrt() + Vector::Y * random.between(-1.0, 1.0);
+        let out =
+            Vector::X * random.between(0.2, 0.8).sqrt() + Vector::Y * random.between(-1.0, 1.0);
         let axis = (out + Vector::Z * random.between(-1.0, 1.0)).normalize();
-        // The barrel of the wall, which stands along y, and the rim of the link are 0.01 apart along x.
+        // The barrel of the wall, which stands along y, and the rim of the link are 0.01 apart
+        // along x.
         let reach = radius * (Vector::X - axis * axis.x).length();
         let start = Vector::new(0.11 + 0.01 + reach, random.between(-0.9, 0.9), 0.0);
-        let link = ModifiedCylinder::new(start, start + axis, radius, [Cap::Flat, Cap::Round]).unwrap();
+        let link =
+            ModifiedCylinder::new(start, start + axis, radius, [Cap::Flat, Cap::Round]).unwrap();
         let frame = random.pose(2.0);
         let link = link.transformed(&frame.inverse());
         let walls = [SharedShape::cylinder(0.98, 0.11), SharedShape::cuboid(0.11, 0.98, 0.5)];
@@ -337,8 +385,10 @@ fn what_moves_along_the_plane_between_two_never_meets() {
                     ContinuumDispatcher::default().cast_shapes(pos12, velocity, g1, g2, options)
                 };
                 asked += 1;
-                for hit in [cast(&frame, way, &**wall, &link), cast(&frame.inverse(), there, &link, &**wall)]
-                {
+                for hit in [
+                    cast(&frame, way, &**wall, &link),
+                    cast(&frame.inverse(), there, &link, &**wall),
+                ] {
                     assert!(matches!(hit, Ok(None)), "{link:?} {frame:?} {hit:?}");
                 }
             }

@@ -1,4 +1,5 @@
-//! Straight casts that begin where the two touch, to rounding: what comes nearer is met at once, what parts may go.
+//! Straight casts that begin where the two touch, to rounding: what comes nearer is met at once,
+//! what parts may go.
 
 use crate::draw::Draw;
 use continuum_testing::Random;
@@ -60,7 +61,9 @@ fn a_box_that_touches_a_link_is_met_and_one_beside_it_let_go() {
     for r in (1..=20).map(|k| 0.05 * Real::from(k)) {
         for caps in [[Cap::Round; 2], [Cap::Flat; 2], [Cap::Flat, Cap::Round]] {
             let link = ModifiedCylinder::new(-Vector::X, Vector::X, r, caps).unwrap();
-            for place in [Vector::Z * (r + 0.75), Vector::new(0.3, 0.1, -r - 0.75), Vector::Y * (r + 1.25)] {
+            for place in
+                [Vector::Z * (r + 0.75), Vector::new(0.3, 0.1, -r - 0.75), Vector::Y * (r + 1.25)]
+            {
                 let into = -place.normalize();
                 for stop in [true, false] {
                     for hit in casts(&link, &wall, place, into, stop) {
@@ -87,30 +90,39 @@ fn an_edge_that_touches_a_rim_aslant_is_met_or_let_go() {
         let (radius, length) = (random.between(0.3, 2.0), random.between(0.5, 3.0));
         let (frame, place) = (random.pose(1.0), random.vector(3.0));
         let turned = |v: Vector| frame.rotation * v;
-        let link = ModifiedCylinder::cylinder(place, place + turned(Vector::Z) * length, radius).unwrap();
+        let link =
+            ModifiedCylinder::cylinder(place, place + turned(Vector::Z) * length, radius).unwrap();
         let (sin, cos) = random.between(0.0, std::f64::consts::TAU).sin_cos();
         let tangent = turned(Vector::new(-sin, cos, 0.0));
         let tilt = random.between(0.1, 1.4);
-        let normal = turned(Vector::new(cos, sin, 0.0)) * tilt.cos() + turned(Vector::Z) * tilt.sin();
+        let normal =
+            turned(Vector::new(cos, sin, 0.0)) * tilt.cos() + turned(Vector::Z) * tilt.sin();
         // Along an edge that is perpendicular to the normal, and not to the rim's tangent.
         let edge = (tangent + tangent.cross(normal) * random.between(-3.0, 3.0)).normalize();
         let on_rim = place + turned(Vector::new(cos * radius, sin * radius, length));
-        let beyond =
-            on_rim + normal * random.between(0.5, 2.0) + edge.cross(normal) * random.between(-1.0, 1.0);
-        let ends = [on_rim - edge * random.between(0.5, 2.0), on_rim + edge * random.between(0.5, 2.0)];
+        let beyond = on_rim
+            + normal * random.between(0.5, 2.0)
+            + edge.cross(normal) * random.between(-1.0, 1.0);
+        let ends =
+            [on_rim - edge * random.between(0.5, 2.0), on_rim + edge * random.between(0.5, 2.0)];
         let triangle = Triangle::new(ends[0], ends[1], beyond);
-        let distance =
-            ContinuumDispatcher::default().distance(&Pose::IDENTITY, &link, &triangle).unwrap().distance;
+        let distance = ContinuumDispatcher::default()
+            .distance(&Pose::IDENTITY, &link, &triangle)
+            .unwrap()
+            .distance;
         apart += usize::from(distance > 0.0);
         let across = random.direction();
         let velocity = if across.dot(normal) > 0.0 { -across } else { across };
         if velocity.dot(normal) > -0.05 {
             continue;
         }
-        for hit in
-            [true, false].into_iter().flat_map(|stop| casts(&link, &triangle, Vector::ZERO, velocity, stop))
+        for hit in [true, false]
+            .into_iter()
+            .flat_map(|stop| casts(&link, &triangle, Vector::ZERO, velocity, stop))
         {
-            let hit = hit.unwrap_or_else(|| panic!("no hit, {distance:e}: {link:?} {triangle:?} {velocity}"));
+            let hit = hit.unwrap_or_else(|| {
+                panic!("no hit, {distance:e}: {link:?} {triangle:?} {velocity}")
+            });
             assert!(hit.time_of_impact <= 1e-12, "{hit:?}");
             met += 1;
         }
@@ -142,7 +154,8 @@ fn the_last_moment_belongs_to_a_cast() {
             let cast = |latest| {
                 let options = ShapeCastOptions::with_max_time_of_impact(latest);
                 let place = Pose::from_translation(place);
-                let hit = ContinuumDispatcher::default().cast_shapes(&place, velocity, &link, wall, options);
+                let hit = ContinuumDispatcher::default()
+                    .cast_shapes(&place, velocity, &link, wall, options);
                 hit.unwrap().map(|hit| hit.time_of_impact)
             };
             let expected = if latest == Real::MAX { 0.0 } else { latest };
@@ -160,7 +173,9 @@ fn a_wall_that_hardly_comes_nearer_is_never_met() {
     let link = ModifiedCylinder::capsule(Vector::ZERO, Vector::ZERO, 0.5).unwrap();
     let corners = [[-9.0, -9.0], [9.0, -9.0], [0.0, 9.0]].map(|[y, z]| Vector::new(2.0, y, z));
     for slow in [1e-152, 1e-160, 1e-300, 1e-320] {
-        for hit in casts(&link, &Triangle::from(corners), Vector::ZERO, Vector::new(-slow, 1.0, 0.0), true) {
+        for hit in
+            casts(&link, &Triangle::from(corners), Vector::ZERO, Vector::new(-slow, 1.0, 0.0), true)
+        {
             assert!(hit.is_none(), "{slow}");
         }
     }
@@ -213,7 +228,8 @@ fn a_ball_whose_centre_is_on_a_face_overlaps_by_its_radius() {
     assert!(inside.z.abs() < 1e-15 && inside.truncate().min_element() > radius, "{seen}");
     let shapes: [&dyn Shape; 2] = [&link, &cuboid];
     for ([g1, g2], pose) in [(shapes, pose), ([shapes[1], shapes[0]], pose.inverse())] {
-        let contact = ContinuumDispatcher::default().contact(&pose, g1, g2, Real::MAX).unwrap().unwrap();
+        let contact =
+            ContinuumDispatcher::default().contact(&pose, g1, g2, Real::MAX).unwrap().unwrap();
         assert!((contact.dist + radius).abs() < 1e-12, "{contact:?}");
     }
 }

@@ -1,4 +1,5 @@
-//! Imports run one way: a room imports only what ARCHITECTURE.md's table of rooms says that it stands on.
+//! Imports run one way: a room imports only what ARCHITECTURE.md's table of rooms says that it
+//! stands on.
 
 use super::sources::{Source, sources, words};
 use std::collections::BTreeMap;
@@ -76,12 +77,15 @@ fn first_names(rest: &str) -> Vec<String> {
     names
 }
 
-/// What of a file's imports its room does not stand on. The files beside the rooms are the crate's face, and may show
-/// anything.
+/// What of a file's imports its room does not stand on. The files beside the rooms are the crate's
+/// face, and may show anything.
 fn upward(source: &Source, rooms: &BTreeMap<String, Vec<String>>) -> Vec<String> {
-    let Some((room, _)) = source.path.trim_start_matches("src/").split_once('/') else { return Vec::new() };
-    let below =
-        rooms.get(room).unwrap_or_else(|| panic!("{}: ARCHITECTURE.md has no such room", source.path));
+    let Some((room, _)) = source.path.trim_start_matches("src/").split_once('/') else {
+        return Vec::new();
+    };
+    let below = rooms
+        .get(room)
+        .unwrap_or_else(|| panic!("{}: ARCHITECTURE.md has no such room", source.path));
     imports(source).into_iter().filter(|name| !below.contains(name)).collect()
 }
 
@@ -93,7 +97,11 @@ fn no_room_imports_what_is_above_it() {
     for source in sources() {
         count += imports(&source).len();
         let upward = upward(&source, &rooms);
-        assert!(upward.is_empty(), "{} imports {upward:?}, on which its room does not stand", source.path);
+        assert!(
+            upward.is_empty(),
+            "{} imports {upward:?}, on which its room does not stand",
+            source.path
+        );
     }
     assert!(count > 500, "{count} imports");
 }

@@ -1,12 +1,22 @@
-//! Every crate that the library builds on may be used under MIT or Apache-2.0 terms. Asks cargo, without a network.
+//! Every crate that the library builds on may be used under MIT or Apache-2.0 terms. Asks cargo,
+//! without a network.
 
 use serde_json::Value;
 use std::collections::HashSet;
 use std::process::Command;
 
 /// Licences that ask for no more than MIT or Apache-2.0 do.
-const GOOD: [&str; 9] =
-    ["MIT", "Apache-2.0", "BSD-2-Clause", "BSD-3-Clause", "Zlib", "ISC", "0BSD", "CC0-1.0", "Unicode-3.0"];
+const GOOD: [&str; 9] = [
+    "MIT",
+    "Apache-2.0",
+    "BSD-2-Clause",
+    "BSD-3-Clause",
+    "Zlib",
+    "ISC",
+    "0BSD",
+    "CC0-1.0",
+    "Unicode-3.0",
+];
 
 /// Whether some choice that the expression offers is good: every part of an AND, any part of an OR.
 fn is_good(expression: &str) -> bool {
@@ -30,7 +40,9 @@ fn expressions_are_understood() {
     ] {
         assert!(is_good(good), "{good}");
     }
-    for bad in ["GPL-3.0", "MIT AND GPL-3.0", "LGPL-2.1 OR MPL-2.0", "(MIT OR Apache-2.0) AND GPL-2.0", ""] {
+    for bad in
+        ["GPL-3.0", "MIT AND GPL-3.0", "LGPL-2.1 OR MPL-2.0", "(MIT OR Apache-2.0) AND GPL-2.0", ""]
+    {
         assert!(!is_good(bad), "{bad}");
     }
 }
@@ -62,13 +74,15 @@ fn dependencies_may_be_used_as_this_crate_is() {
         .collect();
     assert!(published.len() >= 2 && published.contains(&env!("CARGO_PKG_NAME")), "{published:?}");
 
-    // Only packages that this test was built from: cargo has downloaded nothing else on a fresh machine.
-    // `cargo tree` lists what such a package needs on this system; cargo's metadata would ask for all systems.
+    // Only packages that this test was built from: cargo has downloaded nothing else on a fresh
+    // machine. `cargo tree` lists what such a package needs on this system; cargo's metadata
+    // would ask for all systems.
     let format = "{p} | {l}";
     let mut seen = HashSet::new();
     let gpu_is_here = cfg!(feature = "gpu");
     for package in published.into_iter().filter(|package| gpu_is_here || *package != "gpu-batch") {
-        let mut arguments = vec!["tree", "--offline", "--edges", "normal,build", "--package", package];
+        let mut arguments =
+            vec!["tree", "--offline", "--edges", "normal,build", "--package", package];
         arguments.extend(["--prefix", "none", "--no-dedupe", "--format", format]);
         if package == env!("CARGO_PKG_NAME") {
             let features = FEATURES.into_iter().filter(|(_, is_on)| *is_on);

@@ -27,7 +27,8 @@ fn targets(text: &str) -> Vec<String> {
     inline.chain(definitions(text).into_values()).collect()
 }
 
-/// What the names in brackets lead to, as the lines say that begin with one. Markdown takes no notice of capitals.
+/// What the names in brackets lead to, as the lines say that begin with one. Markdown takes no
+/// notice of capitals.
 fn definitions(text: &str) -> BTreeMap<String, String> {
     let rows = text.lines().filter_map(|line| line.strip_prefix('[')?.split_once("]: "));
     rows.map(|(label, target)| (label.to_lowercase(), target.to_owned())).collect()
@@ -54,8 +55,8 @@ fn links_lead_somewhere() {
     assert!(all.len() > 10 && count > 30, "{count} links in {} pages", all.len());
 }
 
-/// A chapter's names in brackets lead to files where it is read as a page, and to the reference where it is a part of that: there
-/// the rows of `src/book_links.md` come first, and count.
+/// A chapter's names in brackets lead to files where it is read as a page, and to the reference
+/// where it is a part of that: there the rows of `src/book_links.md` come first, and count.
 #[test]
 fn chapters_link_to_the_reference_too() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));

@@ -1,4 +1,5 @@
-//! What holds of the package as a whole: its licences, pages, names and layers, and that no thread waits in vain.
+//! What holds of the package as a whole: its licences, pages, names and layers, and that no thread
+//! waits in vain.
 
 mod layers;
 mod licences;

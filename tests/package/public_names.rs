@@ -1,5 +1,6 @@
-//! Every name that the library shows leads somewhere: it has an example or a page. The names are those of
-//! docs/internals/public_api.txt, which `.ci/public-api` compares with what the compiler says.
+//! Every name that the library shows leads somewhere: it has an example or a page. The names are
+//! those of docs/internals/public_api.txt, which `.ci/public-api` compares with what the compiler
+//! says.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -26,7 +27,8 @@ fn texts(folder: &str, endings: &[&str], found: &mut Vec<(String, String)>) {
 struct Item {
     path: String,
     is_function: bool,
-    /// Whether it is a function of a type that takes no `self`, and so is called by the type's name.
+    /// Whether it is a function of a type that takes no `self`, and so is called by the type's
+    /// name.
     is_constructor: bool,
 }
 
@@ -77,8 +79,9 @@ fn items() -> Vec<Item> {
         let Some((head, rest)) = line.split_once("parry_continuum") else { continue };
         // Without what a type is of: `Vec3<T>::dot`.
         let path: String = rest.split(['<', '>']).step_by(2).take(2).collect();
-        let path =
-            &path[..path.find(|c: char| !c.is_alphanumeric() && c != '_' && c != ':').unwrap_or(path.len())];
+        let path = &path[..path
+            .find(|c: char| !c.is_alphanumeric() && c != '_' && c != ':')
+            .unwrap_or(path.len())];
         let path = format!("parry_continuum{}", path.trim_end_matches(':'));
         let is_function = head.contains("fn ");
         let owner = path.rsplit("::").nth(1).unwrap_or_default();
@@ -86,7 +89,11 @@ fn items() -> Vec<Item> {
         let takes_self = rest.split_once('(').is_some_and(|(_, arguments)| {
             ["self", "&self", "&mut self", "mut self"].iter().any(|own| arguments.starts_with(own))
         });
-        items.push(Item { path, is_function, is_constructor: is_function && of_type && !takes_self });
+        items.push(Item {
+            path,
+            is_function,
+            is_constructor: is_function && of_type && !takes_self,
+        });
     }
     items
 }
@@ -155,8 +162,10 @@ fn every_public_name_has_an_example_or_a_page() {
 fn every_error_is_in_the_book() {
     let page = read("docs/book/errors.md");
     let items = items();
-    let variants: BTreeSet<_> = items.iter().filter_map(|item| variant_of_error(&item.path)).collect();
+    let variants: BTreeSet<_> =
+        items.iter().filter_map(|item| variant_of_error(&item.path)).collect();
     assert!(variants.len() > 40, "{}", variants.len());
-    let missing: Vec<_> = variants.iter().filter(|name| !page.contains(&format!("| `{name}` |"))).collect();
+    let missing: Vec<_> =
+        variants.iter().filter(|name| !page.contains(&format!("| `{name}` |"))).collect();
     assert!(missing.is_empty(), "docs/book/errors.md lacks {missing:?}");
 }

@@ -1,4 +1,5 @@
-//! The reading lists of ARCHITECTURE.md: each file calls the next, or, indented, the one that it stands under.
+//! The reading lists of ARCHITECTURE.md: each file calls the next, or, indented, the one that it
+//! stands under.
 
 use super::sources::{Source, sources, words};
 use std::collections::BTreeMap;
@@ -24,7 +25,8 @@ fn lists(page: &str) -> BTreeMap<&str, Vec<Step<'_>>> {
             heading = text;
         }
         let is_under = line.starts_with("   - `");
-        let is_step = is_under || (line.starts_with(|c: char| c.is_ascii_digit()) && line.contains(". `"));
+        let is_step =
+            is_under || (line.starts_with(|c: char| c.is_ascii_digit()) && line.contains(". `"));
         if is_step {
             let mut code = line.split('`').skip(1).step_by(2);
             let (file, item) = (code.next().unwrap_or_default(), code.next().unwrap_or_default());
@@ -38,7 +40,8 @@ fn lists(page: &str) -> BTreeMap<&str, Vec<Step<'_>>> {
 fn defines(code: &str, item: &str) -> bool {
     let mut words = words(code).peekable();
     while let Some(word) = words.next() {
-        let is_definition = ["fn", "struct", "enum", "trait", "type", "const", "macro_rules"].contains(&word);
+        let is_definition =
+            ["fn", "struct", "enum", "trait", "type", "const", "macro_rules"].contains(&word);
         if is_definition && words.peek() == Some(&item) {
             return true;
         }
@@ -60,9 +63,13 @@ fn faults(list: &[Step], sources: &[Source]) -> Vec<String> {
             faults.push(format!("{} has no `{}`", step.file, step.item));
         }
         if let Some(caller) = caller {
-            let calls = code(caller.file).is_some_and(|code| words(code).any(|word| word == step.item));
+            let calls =
+                code(caller.file).is_some_and(|code| words(code).any(|word| word == step.item));
             if !calls {
-                faults.push(format!("{} does not name `{}` of {}", caller.file, step.item, step.file));
+                faults.push(format!(
+                    "{} does not name `{}` of {}",
+                    caller.file, step.item, step.file
+                ));
             }
         }
         if !step.is_under {
@@ -96,8 +103,7 @@ fn faults_of_a_reading_list_are_found() {
         source("src/d.rs", "fn help() {}"),
     ];
     let faults = |page: &str| faults(&lists(page)["one"], &sources);
-    let right =
-        "### one\n1. `a.rs`, `ask`: it\n   - `d.rs`, `help`: it\n2. `b.rs`, `search`\n3. `c.rs`, `Measure`\n";
+    let right = "### one\n1. `a.rs`, `ask`: it\n   - `d.rs`, `help`: it\n2. `b.rs`, `search`\n3. `c.rs`, `Measure`\n";
     assert_eq!(faults(right), [""; 0]);
     assert_eq!(faults(&right.replace("d.rs", "c.rs")), ["c.rs has no `help`"]);
     assert_eq!(

@@ -1,10 +1,20 @@
-//! The rule of ARCHITECTURE.md that keeps threads from waiting for each other for ever, as far as a text shows it.
+//! The rule of ARCHITECTURE.md that keeps threads from waiting for each other for ever, as far as a
+//! text shows it.
 
 use super::sources::sources;
 
 /// What makes threads wait, and the files that may: each says why nobody waits there for a pool.
-const WAITING: [&str; 9] =
-    ["OnceLock", "LazyLock", "Mutex", "RwLock", "Condvar", "Barrier", "mpsc", "Once::", "thread::park"];
+const WAITING: [&str; 9] = [
+    "OnceLock",
+    "LazyLock",
+    "Mutex",
+    "RwLock",
+    "Condvar",
+    "Barrier",
+    "mpsc",
+    "Once::",
+    "thread::park",
+];
 const MAY_WAIT: [&str; 2] = ["src/threads/lazy.rs", "src/robot/chain.rs"];
 
 /// The only file that gives work to a pool.
@@ -20,7 +30,10 @@ fn nobody_who_holds_a_lock_can_wait_for_a_pool() {
             waits.is_none() || MAY_WAIT.contains(&name.as_str()),
             "{name}: {waits:?}; what is built once is a `Lazy`, whose builder has no pool"
         );
-        assert!(!text.contains("rayon") || name == POOL, "{name}: {POOL} alone gives work to a pool");
+        assert!(
+            !text.contains("rayon") || name == POOL,
+            "{name}: {POOL} alone gives work to a pool"
+        );
     }
     // They still do what they are listed for.
     for name in MAY_WAIT {

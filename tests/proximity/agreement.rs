@@ -20,7 +20,10 @@ pub fn engines(mesh: &TriMesh) -> Vec<(&'static str, Box<dyn Proximity>)> {
     #[cfg(feature = "gpu")]
     for (name, precision) in continuum_testing::gpu::PRECISIONS {
         if let Some(gpu) = continuum_testing::gpu::open(precision) {
-            engines.push((name, Box::new(parry_continuum::gpu::GpuExhaustive::on(gpu, mesh).unwrap())));
+            engines.push((
+                name,
+                Box::new(parry_continuum::gpu::GpuExhaustive::on(gpu, mesh).unwrap()),
+            ));
         }
     }
     engines
@@ -59,7 +62,9 @@ pub fn check_agreement(mesh: &TriMesh, robot: &Chain, pose: &Pose, magnitude: f6
         let least = answers.iter().map(|answer| answer.distance).fold(f64::INFINITY, f64::min);
         let minimum = engine.minimum(robot, pose).unwrap();
         assert_eq!(minimum.distance, least, "{name}");
-        for margin in [0.0, least.next_down().max(0.0), least, least.next_up(), 2.0 * least, f64::INFINITY] {
+        for margin in
+            [0.0, least.next_down().max(0.0), least, least.next_up(), 2.0 * least, f64::INFINITY]
+        {
             assert_eq!(
                 engine.clears(robot, pose, margin).unwrap(),
                 least > margin,
@@ -98,8 +103,8 @@ fn nasty_meshes(seed: u64, rounds: usize) {
     assert!(apart > rounds && touching > rounds / 3, "{apart} apart, {touching} touching");
 }
 
-/// A wall all of whose triangles point at the robot from the same distance but for a hundred-millionth: in single
-/// precision they are all as near.
+/// A wall all of whose triangles point at the robot from the same distance but for a
+/// hundred-millionth: in single precision they are all as near.
 #[test]
 fn near_ties_are_decided_in_double_precision() {
     let mut random = Random::new(9);
@@ -110,13 +115,20 @@ fn near_ties_are_decided_in_double_precision() {
             let (angle, height) = (random.between(-3.1, 3.1), random.between(1.0, 39.0));
             let outward = Vector::new(f64::cos(angle), f64::sin(angle), 0.0);
             let aside = outward.cross(Vector::Z);
-            let tip = offset + outward * 10.0 * (1.0 + 1e-8 * random.between(0.0, 1.0)) + Vector::Z * height;
-            triangles.push([tip, tip + outward + aside, tip + outward - aside].map(|v| v.to_array()));
+            let tip = offset
+                + outward * 10.0 * (1.0 + 1e-8 * random.between(0.0, 1.0))
+                + Vector::Z * height;
+            triangles
+                .push([tip, tip + outward + aside, tip + outward - aside].map(|v| v.to_array()));
             distances.push((tip - offset).truncate().length() - 1.0);
         }
         let least = distances.iter().copied().fold(f64::INFINITY, f64::min);
         let single = least as f32;
-        assert!(distances.iter().all(|&distance| (distance as f32 - single).abs() <= single * f32::EPSILON));
+        assert!(
+            distances
+                .iter()
+                .all(|&distance| (distance as f32 - single).abs() <= single * f32::EPSILON)
+        );
         assert!(distances.iter().filter(|&&distance| distance - least > 1e-8).count() > 2000);
         let mesh = mesh_of(&triangles);
         let found = check_agreement(&mesh, &robot, &Pose::IDENTITY, offset.length());
@@ -142,24 +154,41 @@ fn moved_vertices_are_seen() {
     let mut random = Random::new(11);
     let (mesh, other) =
         (nasty_mesh(&mut random, 1.0, Vector::ZERO), nasty_mesh(&mut random, 1.0, Vector::ZERO));
-    let moved: Vec<_> = mesh.vertices().iter().map(|&v| v * 1.5 + Vector::new(0.1, 0.2, v.x)).collect();
+    let moved: Vec<_> =
+        mesh.vertices().iter().map(|&v| v * 1.5 + Vector::new(0.1, 0.2, v.x)).collect();
     let robot = random_robot(&mut random, 1.0, Vector::ZERO, 0);
     let fresh = TriMesh::new(moved.clone(), mesh.indices().to_vec()).unwrap();
-    let expected = Exhaustive::<f64>::new(&fresh).unwrap().minimum(&robot, &Pose::IDENTITY).unwrap();
+    let expected =
+        Exhaustive::<f64>::new(&fresh).unwrap().minimum(&robot, &Pose::IDENTITY).unwrap();
     let bad = vec![Vector::NAN; moved.len()];
     for (name, mut engine) in engines(&mesh) {
         let before = engine.minimum(&robot, &Pose::IDENTITY).unwrap();
         assert_ne!(before.distance, expected.distance);
-        assert!(matches!(engine.set_vertices(&moved[1..]), Err(MeshError::VertexCount { .. })), "{name}");
-        assert!(matches!(engine.set_vertices(&bad), Err(MeshError::NotFinite { vertex: 0, .. })), "{name}");
-        assert_eq!(engine.minimum(&robot, &Pose::IDENTITY).unwrap().distance, before.distance, "{name}");
+        assert!(
+            matches!(engine.set_vertices(&moved[1..]), Err(MeshError::VertexCount { .. })),
+            "{name}"
+        );
+        assert!(
+            matches!(engine.set_vertices(&bad), Err(MeshError::NotFinite { vertex: 0, .. })),
+            "{name}"
+        );
+        assert_eq!(
+            engine.minimum(&robot, &Pose::IDENTITY).unwrap().distance,
+            before.distance,
+            "{name}"
+        );
         engine.set_vertices(&moved).unwrap();
-        assert_eq!(engine.minimum(&robot, &Pose::IDENTITY).unwrap().distance, expected.distance, "{name}");
+        assert_eq!(
+            engine.minimum(&robot, &Pose::IDENTITY).unwrap().distance,
+            expected.distance,
+            "{name}"
+        );
     }
     assert_ne!(other.vertices(), mesh.vertices());
 }
 
-/// More vertices than one thread takes at a time: each is checked, moves and counts for the mesh's frame.
+/// More vertices than one thread takes at a time: each is checked, moves and counts for the mesh's
+/// frame.
 #[test]
 fn many_moved_vertices_are_seen() {
     let (vertices, indices) = Ball::new(10.0).to_trimesh(260, 130);
@@ -182,7 +211,11 @@ fn many_moved_vertices_are_seen() {
         engine.set_vertices(&moved).unwrap();
         let nearest = engine.minimum(&robot, &Pose::IDENTITY).unwrap();
         let expected = point_segment(moved[place]) - 0.5;
-        assert!((nearest.distance - expected).abs() < 1e-12, "{name}: {} for {expected}", nearest.distance);
+        assert!(
+            (nearest.distance - expected).abs() < 1e-12,
+            "{name}: {} for {expected}",
+            nearest.distance
+        );
         let corners = mesh.indices()[nearest.triangle as usize];
         assert!(corners.contains(&(place as u32)), "{name}: {corners:?}");
     }
@@ -197,8 +230,9 @@ fn point_segment(point: Vector) -> Real {
 fn a_batch_is_its_robots_one_by_one() {
     let mut random = Random::new(13);
     let mesh = nasty_mesh(&mut random, 1.0, Vector::ZERO);
-    let robots: Vec<_> =
-        (0..5).map(|i| (random_robot(&mut random, 1.0, Vector::ZERO, i % 3), random.pose(0.3))).collect();
+    let robots: Vec<_> = (0..5)
+        .map(|i| (random_robot(&mut random, 1.0, Vector::ZERO, i % 3), random.pose(0.3)))
+        .collect();
     let robots: Vec<_> = robots.iter().map(|(robot, pose)| (robot, *pose)).collect();
     for (name, mut engine) in engines(&mesh) {
         let (mut per_link, mut minimum, mut clears) =
@@ -233,11 +267,16 @@ fn each_robot_of_a_batch_has_a_result_of_its_own() {
     let mut random = Random::new(14);
     let mesh = nasty_mesh(&mut random, 1.0, Vector::ZERO);
     let robot = random_robot(&mut random, 1.0, Vector::ZERO, 0);
-    let bad = [Pose::from_translation(Vector::X * 1e200), Pose::from_translation(Vector::splat(f64::NAN))];
+    let bad = [
+        Pose::from_translation(Vector::X * 1e200),
+        Pose::from_translation(Vector::splat(f64::NAN)),
+    ];
     let mut robots = vec![(&robot, Pose::IDENTITY); 40];
     (robots[13].1, robots[29].1) = (bad[0], bad[1]);
-    let refusals =
-        [(13, ProximityError::OutOfRange { link: 0, limit: 1e150 }), (29, ProximityError::PoseNotFinite)];
+    let refusals = [
+        (13, ProximityError::OutOfRange { link: 0, limit: 1e150 }),
+        (29, ProximityError::PoseNotFinite),
+    ];
     for (name, mut engine) in engines(&mesh) {
         let (mut per_link, mut minimum, mut clears) = (Vec::new(), Vec::new(), Vec::new());
         engine.per_link_batch(&robots, &mut per_link).unwrap();
@@ -245,13 +284,22 @@ fn each_robot_of_a_batch_has_a_result_of_its_own() {
         engine.clears_batch(&robots, 0.0, &mut clears).unwrap();
         assert_eq!([per_link.len(), minimum.len(), clears.len()], [40; 3], "{name}");
         for place in 0..40 {
-            let expected = refusals.iter().find(|(refused, _)| *refused == place).map(|(_, error)| *error);
-            let errors = [per_link[place].as_ref().err().copied(), minimum[place].err(), clears[place].err()];
+            let expected =
+                refusals.iter().find(|(refused, _)| *refused == place).map(|(_, error)| *error);
+            let errors = [
+                per_link[place].as_ref().err().copied(),
+                minimum[place].err(),
+                clears[place].err(),
+            ];
             assert_eq!(errors, [expected; 3], "{name}, {place}");
             if expected.is_none() {
                 assert_eq!(per_link[place], per_link[0], "{name}, {place}");
                 assert_eq!(minimum[place], minimum[0], "{name}, {place}");
-                assert_eq!(clears[place], minimum[0].map(|least| least.distance > 0.0), "{name}, {place}");
+                assert_eq!(
+                    clears[place],
+                    minimum[0].map(|least| least.distance > 0.0),
+                    "{name}, {place}"
+                );
             }
         }
         let margin = engine.clears_batch(&robots[..9], -1.0, &mut clears);
@@ -268,9 +316,14 @@ fn each_robot_of_a_batch_has_a_result_of_its_own() {
 fn clones_share_the_mesh_until_one_moves_it() {
     let mut random = Random::new(15);
     let mesh = nasty_mesh(&mut random, 1.0, Vector::ZERO);
-    let moved: Vec<_> = mesh.vertices().iter().map(|&v| v * 1.5 + Vector::new(0.1, 0.2, v.x)).collect();
+    let moved: Vec<_> =
+        mesh.vertices().iter().map(|&v| v * 1.5 + Vector::new(0.1, 0.2, v.x)).collect();
     let robot = random_robot(&mut random, 1.0, Vector::ZERO, 0);
-    fn check(mut engine: impl Proximity + Clone + std::fmt::Debug + Send, robot: &Chain, moved: &[Vector]) {
+    fn check(
+        mut engine: impl Proximity + Clone + std::fmt::Debug + Send,
+        robot: &Chain,
+        moved: &[Vector],
+    ) {
         let mut other = engine.clone();
         let before = engine.minimum(robot, &Pose::IDENTITY).unwrap().distance;
         engine.set_vertices(moved).unwrap();
@@ -300,7 +353,8 @@ fn scaling_by_a_power_of_two_scales_the_answers_bit_for_bit() {
                 let scaled_mesh = TriMesh::new(vertices, mesh.indices().to_vec()).unwrap();
                 let mut points = vec![robot.links()[0].start() * factor];
                 points.extend(robot.links().iter().map(|link| link.end() * factor));
-                let radii: Vec<_> = robot.links().iter().map(|link| link.radius() * factor).collect();
+                let radii: Vec<_> =
+                    robot.links().iter().map(|link| link.radius() * factor).collect();
                 let scaled = Chain::from_centreline(&points, &radii).unwrap();
                 let mut answers = Vec::new();
                 let (name, mut engine) = engines(&scaled_mesh).remove(k);
@@ -308,7 +362,9 @@ fn scaling_by_a_power_of_two_scales_the_answers_bit_for_bit() {
                 for (answer, plain) in answers.iter().zip(&plain) {
                     assert_eq!(answer.distance, plain.distance * factor, "{name} 2^{power}");
                 }
-                let least = plain.iter().map(|answer| answer.distance).fold(f64::INFINITY, f64::min) * factor;
+                let least =
+                    plain.iter().map(|answer| answer.distance).fold(f64::INFINITY, f64::min)
+                        * factor;
                 assert!(least > 0.0, "{least}");
                 let minimum = engine.minimum(&scaled, &Pose::IDENTITY).unwrap().distance;
                 assert_eq!(minimum, least, "{name} 2^{power}");
@@ -330,9 +386,16 @@ fn bad_input_is_an_error() {
     let far = Pose::from_translation(Vector::X * 1e200);
     for (name, mut engine) in engines(&mesh) {
         let mut out = vec![engine.minimum(&robot, &Pose::IDENTITY).unwrap()];
-        assert_eq!(engine.per_link(&robot, &nan, &mut out), Err(ProximityError::PoseNotFinite), "{name}");
+        assert_eq!(
+            engine.per_link(&robot, &nan, &mut out),
+            Err(ProximityError::PoseNotFinite),
+            "{name}"
+        );
         assert!(out.is_empty());
-        assert!(matches!(engine.minimum(&robot, &far), Err(ProximityError::OutOfRange { link: 0, .. })));
+        assert!(matches!(
+            engine.minimum(&robot, &far),
+            Err(ProximityError::OutOfRange { link: 0, .. })
+        ));
         for margin in [-1e-300, f64::NAN, f64::NEG_INFINITY] {
             let error = engine.clears(&robot, &Pose::IDENTITY, margin).unwrap_err();
             assert!(error.to_string().contains(&margin.to_string()), "{name}: {error}");

@@ -6,8 +6,8 @@ use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::shape::{Ball, TriMesh};
 use parry_continuum::proximity::{BvhSearch, Exhaustive, Proximity, RobotPair, Scene};
 use parry_continuum::{
-    BendingMotion, BendingSection, Chain, LinearMotion, Motion, RigidMotion, RobotError, Speed, Tube,
-    simplify,
+    BendingMotion, BendingSection, Chain, LinearMotion, Motion, RigidMotion, RobotError, Speed,
+    Tube, simplify,
 };
 use std::cell::Cell;
 
@@ -71,7 +71,8 @@ fn a_control_loop_allocates_nothing() {
     assert!(steady_state(|_| drop(simplify(&points, &line.radii, 0.1))) > 100);
 }
 
-/// A chain that is filled again is the chain that is made anew, and keeps what it was if the new line is bad.
+/// A chain that is filled again is the chain that is made anew, and keeps what it was if the new
+/// line is bad.
 #[test]
 fn two_robots_and_a_scene_allocate_nothing() {
     let (vertices, indices) = ventricle::mesh(6_000);
@@ -108,8 +109,14 @@ fn two_robots_and_a_scene_allocate_nothing() {
 #[test]
 fn a_chain_is_filled_again() {
     let lines = [
-        (vec![[0.0, 0.0, 0.0], [0.0, 0.0, 3.0], [1.0, 0.0, 5.0], [1.0, 1.0, 9.0]], vec![1.25, 0.5, 0.5]),
-        (vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [2.0, 0.5, 0.0]], vec![0.2, 0.9, 0.2]),
+        (
+            vec![[0.0, 0.0, 0.0], [0.0, 0.0, 3.0], [1.0, 0.0, 5.0], [1.0, 1.0, 9.0]],
+            vec![1.25, 0.5, 0.5],
+        ),
+        (
+            vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [2.0, 0.5, 0.0]],
+            vec![0.2, 0.9, 0.2],
+        ),
         (vec![[5.0, 0.0, 0.0], [5.0, 2.0, 0.0]], vec![0.1]),
     ];
     let line = |number: usize| -> (Vec<Vector>, &[f64]) {
@@ -138,7 +145,8 @@ fn a_control_loop_about_a_tube_allocates_nothing() {
     let (base, pose) = (ventricle::entry(), Pose::IDENTITY);
     let points: Vec<_> = line.points.iter().map(|&point| base * point).collect();
     let mut tube = Tube::from_samples(&points, &line.radii, None).unwrap();
-    let (mut search, mut moved, mut seen) = (BvhSearch::new(&mesh).unwrap(), Vec::new(), Vec::new());
+    let (mut search, mut moved, mut seen) =
+        (BvhSearch::new(&mesh).unwrap(), Vec::new(), Vec::new());
     let allocated = steady_state(|tick| {
         sway(&points, tick, &mut moved);
         tube.set_samples(&moved, &line.radii, None).unwrap();
@@ -153,10 +161,12 @@ fn a_control_loop_about_a_tube_allocates_nothing() {
     assert!(seen.len() > 10, "the robot moves");
 }
 
-/// Samples in pairs, far from one another: in a straight tube nothing is known between two pairs, in one that bends it is.
+/// Samples in pairs, far from one another: in a straight tube nothing is known between two pairs,
+/// in one that bends it is.
 #[test]
 fn a_tube_that_begins_to_bend_allocates_nothing() {
-    let places: Vec<_> = (0..40).flat_map(|k| [0.0, 0.1].map(|off| 3.0 * f64::from(k) + off)).collect();
+    let places: Vec<_> =
+        (0..40).flat_map(|k| [0.0, 0.1].map(|off| 3.0 * f64::from(k) + off)).collect();
     let radii = vec![0.5; places.len() - 1];
     let (mut tube, mut points) =
         (Tube::from(&Chain::capsules(&[Vector::ZERO, Vector::Z], &[0.5]).unwrap()), Vec::new());
@@ -165,7 +175,11 @@ fn a_tube_that_begins_to_bend_allocates_nothing() {
         points.clear();
         points.extend(places.iter().map(|&s| {
             let (sin, cos) = (curvature * s).sin_cos();
-            if curvature > 0.0 { Vector::new(1.0 - cos, 0.0, sin) / curvature } else { Vector::Z * s }
+            if curvature > 0.0 {
+                Vector::new(1.0 - cos, 0.0, sin) / curvature
+            } else {
+                Vector::Z * s
+            }
         }));
         tube.set_samples(&points, &radii, None).unwrap();
     };
@@ -212,7 +226,9 @@ fn motions_are_judged_in_memory_that_is_used_again() {
     let shifts: Vec<_> = (0..20).map(|k| Vector::X * (0.1 * f64::from(k))).collect();
 
     let moved = |shift: &Vector| points.iter().map(|point| point + shift).collect::<Vec<_>>();
-    let edges = shifts.iter().map(|shift| LinearMotion::chain(&points, &moved(shift), &line.radii).unwrap());
+    let edges = shifts
+        .iter()
+        .map(|shift| LinearMotion::chain(&points, &moved(shift), &line.radii).unwrap());
     let [allocated, shapes] = planner(&mut search, edges.collect());
     assert!(allocated == 0 && shapes > 100, "{allocated} {shapes}");
 
@@ -224,10 +240,13 @@ fn motions_are_judged_in_memory_that_is_used_again() {
     let [allocated, shapes] = planner(&mut search, shifts.iter().map(edge).collect());
     assert!(allocated == 0 && shapes > 100, "{allocated} {shapes}");
 
-    let section = |length: f64, bend: f64| BendingSection { length, radius: 0.8, bend: [bend, 0.01] };
+    let section =
+        |length: f64, bend: f64| BendingSection { length, radius: 0.8, bend: [bend, 0.01] };
     let edge = |shift: &Vector| {
-        let sections =
-            [[section(8.0, 0.01), section(6.0, 0.02)], [section(9.0, 0.02), section(7.0, 0.02 * shift.x)]];
+        let sections = [
+            [section(8.0, 0.01), section(6.0, 0.02)],
+            [section(9.0, 0.02), section(7.0, 0.02 * shift.x)],
+        ];
         BendingMotion::new(&sections[0], &sections[1], base).unwrap()
     };
     let [allocated, shapes] = planner(&mut search, shifts.iter().map(edge).collect());
@@ -240,11 +259,12 @@ fn long_robot(links: u32, turn: f64) -> Chain {
         let (sin, cos) = (turn + 0.3 * f64::from(k)).sin_cos();
         Vector::new(0.3 * cos, 0.3 * sin, f64::from(k) / f64::from(links) - 0.5)
     };
-    Chain::capsules(&(0..=links).map(point).collect::<Vec<_>>(), &vec![0.01; links as usize]).unwrap()
+    Chain::capsules(&(0..=links).map(point).collect::<Vec<_>>(), &vec![0.01; links as usize])
+        .unwrap()
 }
 
-/// What an exhaustive engine keeps grows neither with the robots of a batch for each thread, nor with all pairs of links
-/// and triangles that are near.
+/// What an exhaustive engine keeps grows neither with the robots of a batch for each thread, nor
+/// with all pairs of links and triangles that are near.
 #[test]
 fn an_exhaustive_engine_keeps_little_at_once() {
     let ball = |rows: u32, columns: u32| {
@@ -308,8 +328,8 @@ fn an_exhaustive_engine_keeps_little_at_once() {
     assert!(contacts.len() >= 120 && contacts == expected);
 }
 
-/// All places of two robots take as much memory as the robots and the places, and some megabytes, however many pairs of links
-/// are within the margin.
+/// All places of two robots take as much memory as the robots and the places, and some megabytes,
+/// however many pairs of links are within the margin.
 #[test]
 fn places_of_two_robots_take_little_memory() {
     let wave = |turn: f64| {

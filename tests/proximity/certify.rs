@@ -1,4 +1,5 @@
-//! The library's certificates: bounds that hold on the reference cases, that are tight, and that catch a wrong answer.
+//! The library's certificates: bounds that hold on the reference cases, that are tight, and that
+//! catch a wrong answer.
 
 use continuum_testing::narrow_phase::triangle_modified_cylinder;
 use continuum_testing::precision::Precision;
@@ -16,7 +17,8 @@ fn link_of(start: Vector, end: Vector, radius: Real, flat: [bool; 2]) -> Modifie
     ModifiedCylinder::new(start, end, radius, flat.map(cap)).unwrap()
 }
 
-/// The bounds of reference cases: how far apart they are at most, and how many cases of each kind there were.
+/// The bounds of reference cases: how far apart they are at most, and how many cases of each kind
+/// there were.
 #[derive(Debug, Default)]
 pub struct Tally {
     pub apart: usize,
@@ -27,10 +29,14 @@ pub struct Tally {
 }
 
 impl Tally {
-    /// The reference, to 30 digits, lies between the bounds, and they lie within 16 units of each other.
+    /// The reference, to 30 digits, lies between the bounds, and they lie within 16 units of each
+    /// other.
     pub fn hold(&mut self, case: &str, expected: f64, scale: f64, bounds: Certificate) {
         let Certificate { lower, upper, .. } = bounds;
-        assert!(lower <= expected && expected <= upper, "{case}: {expected} not in [{lower}, {upper}]");
+        assert!(
+            lower <= expected && expected <= upper,
+            "{case}: {expected} not in [{lower}, {upper}]"
+        );
         let gap = (upper - lower) / (UNIT * scale);
         assert!(gap <= 16.0, "{case}: {gap} units in [{lower}, {upper}]");
         self.widest = self.widest.max(gap);
@@ -46,7 +52,8 @@ impl Tally {
     }
 }
 
-/// The reference, to 30 digits, lies between the bounds, and they lie within 16 units of each other.
+/// The reference, to 30 digits, lies between the bounds, and they lie within 16 units of each
+/// other.
 #[test]
 fn the_reference_cases_lie_within_tight_bounds() {
     let mut tally = Tally::default();
@@ -55,7 +62,8 @@ fn the_reference_cases_lie_within_tight_bounds() {
             continue;
         }
         let link = link_of(case.p0.into(), case.p1.into(), case.r, case.flat());
-        let bounds = Certificate::between(&link, &Pose::IDENTITY, case.tri.map(Vector::from)).unwrap();
+        let bounds =
+            Certificate::between(&link, &Pose::IDENTITY, case.tri.map(Vector::from)).unwrap();
         tally.hold(&format!("{} {}", case.id, case.cat), case.distance(), case.scale, bounds);
         tally.count(case.distance() / case.scale);
     }
@@ -63,7 +71,8 @@ fn the_reference_cases_lie_within_tight_bounds() {
     assert!(tally.apart > 300 && tally.nearly_touching > 20 && tally.touching > 50);
 }
 
-/// Both ends of a link much shorter than its radius are as near as rounding can tell; the caps still differ.
+/// Both ends of a link much shorter than its radius are as near as rounding can tell; the caps
+/// still differ.
 #[test]
 fn links_much_shorter_than_their_radius() {
     let mut random = Random::new(41);
@@ -92,7 +101,11 @@ fn random_pair(random: &mut Random, family: Family) -> ([Vector; 3], ModifiedCyl
     let Problem { triangle, start, end, radius, .. } = random.problem(family, -17.0);
     let flat = [random.below(2) == 0, random.below(2) == 0];
     let points = [triangle[0], triangle[1], triangle[2], start, end];
-    (triangle, link_of(start, end, radius, flat), continuum_testing::precision::extent(&points, radius))
+    (
+        triangle,
+        link_of(start, end, radius, flat),
+        continuum_testing::precision::extent(&points, radius),
+    )
 }
 
 #[test]
@@ -108,7 +121,10 @@ fn nasty_pairs_have_tight_bounds_around_the_kernels_answer() {
             assert!(0.0 <= lower && lower <= upper);
             assert!(upper - lower <= 16.0 * unit, "{family:?}: {} units", (upper - lower) / unit);
             let found = kernel_distance(triangle, &link);
-            assert!(lower - 16.0 * unit <= found && found <= upper + 16.0 * unit, "{family:?}: {found}");
+            assert!(
+                lower - 16.0 * unit <= found && found <= upper + 16.0 * unit,
+                "{family:?}: {found}"
+            );
             if extent > 0.0 {
                 widest = widest.max((upper - lower) / unit);
                 count += 1;
@@ -155,7 +171,8 @@ fn wrong_answers_are_found_out() {
         let mut answers = Vec::new();
         BvhSearch::new(&mesh).unwrap().per_link(&robot, &pose, &mut answers).unwrap();
         for mut answer in answers {
-            let Certificate { lower, upper, .. } = answer.certify_among_all(&robot, &pose, &mesh).unwrap();
+            let Certificate { lower, upper, .. } =
+                answer.certify_among_all(&robot, &pose, &mesh).unwrap();
             let slack = 16.0 * UNIT * 8.0;
             assert!(lower - slack <= answer.distance && answer.distance <= upper + slack);
             assert!(upper - lower <= slack);
@@ -196,7 +213,8 @@ fn bounds_scale_with_the_problem() {
             )
             .unwrap();
             let bounds =
-                Certificate::between(&scaled, &Pose::IDENTITY, triangle.map(|v| v * factor)).unwrap();
+                Certificate::between(&scaled, &Pose::IDENTITY, triangle.map(|v| v * factor))
+                    .unwrap();
             assert_eq!(bounds.upper, plain.upper * factor);
             assert_eq!(bounds.lower, plain.lower * factor);
         }
@@ -211,7 +229,8 @@ fn what_does_not_exist_or_is_not_finite_is_an_error() {
     let answer = BvhSearch::new(&mesh).unwrap().minimum(&robot, &Pose::IDENTITY).unwrap();
     let nan = Pose::from_translation(Vector::new(0.0, f64::NAN, 0.0));
     let far = Pose::from_translation(Vector::X * 1e200);
-    let certify = |answer: &LinkProximity, pose: &Pose| answer.certify(&robot, pose, &mesh).unwrap_err();
+    let certify =
+        |answer: &LinkProximity, pose: &Pose| answer.certify(&robot, pose, &mesh).unwrap_err();
     assert_eq!(certify(&answer, &nan), ProximityError::PoseNotFinite);
     assert!(matches!(certify(&answer, &far), ProximityError::OutOfRange { .. }));
     let mut other = answer;
@@ -221,7 +240,10 @@ fn what_does_not_exist_or_is_not_finite_is_an_error() {
     other.triangle = 4;
     let missing = ProximityError::NoSuchTriangle { triangle: 4, triangles: 4 };
     assert_eq!(certify(&other, &Pose::IDENTITY), missing);
-    let bad =
-        Certificate::between(&robot.links()[0], &Pose::IDENTITY, [Vector::ZERO, Vector::NAN, Vector::X]);
+    let bad = Certificate::between(
+        &robot.links()[0],
+        &Pose::IDENTITY,
+        [Vector::ZERO, Vector::NAN, Vector::X],
+    );
     assert!(matches!(bad, Err(ProximityError::Mesh(MeshError::NotFinite { vertex: 1, .. }))));
 }

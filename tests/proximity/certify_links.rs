@@ -1,5 +1,5 @@
-//! Certificates of pairs of links: bounds that hold on the reference cases, that are tight on random and on degenerate pairs, and
-//! that refuse an answer about others.
+//! Certificates of pairs of links: bounds that hold on the reference cases, that are tight on
+//! random and on degenerate pairs, and that refuse an answer about others.
 
 use super::certify::Tally;
 use super::robots::{beside, robot};
@@ -20,12 +20,14 @@ fn certified([first, second]: &[ModifiedCylinder; 2]) -> Certificate {
     Certificate::between_links(first, &Pose::IDENTITY, second, &Pose::IDENTITY).unwrap()
 }
 
-/// The reference, to 30 digits, lies between the bounds, and they lie within 16 units of each other.
+/// The reference, to 30 digits, lies between the bounds, and they lie within 16 units of each
+/// other.
 #[test]
 fn the_reference_cases_lie_within_tight_bounds() {
     let mut tally = Tally::default();
     for case in link_cases() {
-        let links = [0, 1].map(|k| link(case.links[k].map(Vector::from), case.radii[k], case.flat[k]));
+        let links =
+            [0, 1].map(|k| link(case.links[k].map(Vector::from), case.radii[k], case.flat[k]));
         for links in [links, [links[1], links[0]]] {
             let name = format!("{} {}", case.id, case.cat);
             tally.hold(&name, case.distance(), case.scale, certified(&links));
@@ -74,7 +76,9 @@ fn drawn(random: &mut Random, kind: Kind) -> [ModifiedCylinder; 2] {
         let point = random.point() * 2.0;
         if lattice { (point * 2.0).round() / 2.0 } else { point }
     };
-    let radius = |random: &mut Random| [0.0, 0.5, 1.0, random.magnitude(-2.0, 0.3)][random.below(4) as usize];
+    let radius = |random: &mut Random| {
+        [0.0, 0.5, 1.0, random.magnitude(-2.0, 0.3)][random.below(4) as usize]
+    };
     let mut axes = [[point(random), point(random)], [point(random), point(random)]];
     let mut radii = [radius(random), radius(random)];
     let bits = random.below(16);
@@ -89,9 +93,12 @@ fn drawn(random: &mut Random, kind: Kind) -> [ModifiedCylinder; 2] {
             axes[1][1] = axes[1][0] + along * share + tilt;
         }
         Kind::Coaxial => {
-            axes[1] = [share, share + random.between(-1.5, 1.5)].map(|place| axes[0][0] + along * place);
+            axes[1] =
+                [share, share + random.between(-1.5, 1.5)].map(|place| axes[0][0] + along * place);
         }
-        Kind::Coplanar => (axes[1][0].z, axes[1][1].z, axes[0][0].z, axes[0][1].z) = (0.0, 0.0, 0.0, 0.0),
+        Kind::Coplanar => {
+            (axes[1][0].z, axes[1][1].z, axes[0][0].z, axes[0][1].z) = (0.0, 0.0, 0.0, 0.0)
+        }
         // At exactly the sum of the radii, beside or end to end, up to rounding and a tiny bit.
         Kind::Tangent => {
             radii = radii.map(|radius| radius + 0.25);
@@ -193,11 +200,17 @@ fn many(count: u32, seed: u64) -> f64 {
         }
         near += u32::from(lower > 0.0 && upper < 1e-6);
     }
-    println!("{count} pairs, widest {:.2} units, of {:?}; {near} nearly touching", widest.0, widest.1);
+    println!(
+        "{count} pairs, widest {:.2} units, of {:?}; {near} nearly touching",
+        widest.0, widest.1
+    );
     let few = count / KINDS.len() as u32 / 50;
     assert!(apart.iter().all(|&seen| seen > few), "{apart:?}");
     assert!(
-        meeting.iter().enumerate().all(|(number, &seen)| seen > few || KINDS[number] == Kind::Wires),
+        meeting
+            .iter()
+            .enumerate()
+            .all(|(number, &seen)| seen > few || KINDS[number] == Kind::Wires),
         "{meeting:?}"
     );
     assert!(near > count / 200, "{near}");
@@ -226,8 +239,13 @@ fn bounds_scale_with_the_pair() {
         for power in [-300, -40, 40, 300] {
             let factor = 2.0_f64.powi(power);
             let scaled = links.map(|it| {
-                ModifiedCylinder::new(it.start() * factor, it.end() * factor, it.radius() * factor, it.caps())
-                    .unwrap()
+                ModifiedCylinder::new(
+                    it.start() * factor,
+                    it.end() * factor,
+                    it.radius() * factor,
+                    it.caps(),
+                )
+                .unwrap()
             });
             let bounds = certified(&scaled);
             assert_eq!(
@@ -251,9 +269,13 @@ fn answers_fit_their_robots_and_no_others() {
         let mut each = Vec::new();
         pair.per_link(&a, &pose_a, &b, &pose_b, &mut each).unwrap();
         for answer in &each {
-            let Certificate { lower, upper, .. } = answer.certify(&a, &pose_a, &b, &pose_b).unwrap();
+            let Certificate { lower, upper, .. } =
+                answer.certify(&a, &pose_a, &b, &pose_b).unwrap();
             let slack = 16.0 * UNIT * 32.0;
-            assert!(lower - slack <= answer.distance && answer.distance <= upper + slack, "{answer:?}");
+            assert!(
+                lower - slack <= answer.distance && answer.distance <= upper + slack,
+                "{answer:?}"
+            );
             assert!(upper - lower <= slack);
             found += 1;
             // A robot that has moved, or another one.

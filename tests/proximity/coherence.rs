@@ -1,5 +1,5 @@
-//! `clears` and `minimum` asked again and again in a loop answer as an engine that knows nothing of the queries before,
-//! whatever comes.
+//! `clears` and `minimum` asked again and again in a loop answer as an engine that knows nothing of
+//! the queries before, whatever comes.
 
 use continuum_testing::Random;
 use parry_continuum::Chain;
@@ -21,8 +21,9 @@ struct Scene {
 impl Scene {
     /// A robot of so many links, five sizes long.
     fn new(size: f64, links: u32) -> Self {
-        let points =
-            (0..=links).map(|k| Vector::Z * (5.0 / f64::from(links) * f64::from(k) * size)).collect();
+        let points = (0..=links)
+            .map(|k| Vector::Z * (5.0 / f64::from(links) * f64::from(k) * size))
+            .collect();
         let radii = vec![0.4 * size; links as usize];
         Self { points, radii, caps: 0, pose: Pose::IDENTITY, margin: 0.5 * size, size, links }
     }
@@ -59,7 +60,11 @@ impl Scene {
                 .radii
                 .iter_mut()
                 .for_each(|radius| *radius *= 1.0 + small / size * random.between(-1.0, 1.0)),
-            _ => self.points.iter_mut().skip(1).for_each(|point| *point += random.direction() * small),
+            _ => self
+                .points
+                .iter_mut()
+                .skip(1)
+                .for_each(|point| *point += random.direction() * small),
         }
     }
 }
@@ -67,7 +72,8 @@ impl Scene {
 #[test]
 fn what_was_asked_before_changes_no_answer() {
     let (mut clear, mut touching, mut by_heart, mut near) = (0, 0, 0, 0);
-    for (round, size) in [1.0, 1e-3, 2.0_f64.powi(200), 2.0_f64.powi(-560)].into_iter().enumerate() {
+    for (round, size) in [1.0, 1e-3, 2.0_f64.powi(200), 2.0_f64.powi(-560)].into_iter().enumerate()
+    {
         let mut random = Random::new(round as u64);
         let (vertices, triangles) = Ball::new(6.0).to_trimesh(24, 12);
         let at_rest: Vec<_> = vertices.iter().map(|vertex| *vertex * size).collect();
@@ -87,7 +93,11 @@ fn what_was_asked_before_changes_no_answer() {
             let distance = cold.minimum(&robot, &scene.pose).unwrap().distance;
             // Often just below or above what is true.
             let margin = match random.below(4) {
-                0 => distance * (1.0 + [-1e-15, 1e-15, -1e-9, 1e-9, -1e-3, 1e-3][random.below(6) as usize]),
+                0 => {
+                    distance
+                        * (1.0
+                            + [-1e-15, 1e-15, -1e-9, 1e-9, -1e-3, 1e-3][random.below(6) as usize])
+                }
                 _ => scene.margin,
             };
             let before = kept.work().nodes;
@@ -117,7 +127,8 @@ fn a_turning_cap_is_not_taken_for_a_still_one() {
 }
 
 fn turn_a_cap(size: f64) {
-    let corners = [[-9.0, -9.0], [9.0, -9.0], [0.0, 9.0]].map(|[x, y]| Vector::new(x, y, 0.0) * size);
+    let corners =
+        [[-9.0, -9.0], [9.0, -9.0], [0.0, 9.0]].map(|[x, y]| Vector::new(x, y, 0.0) * size);
     let wall = TriMesh::new(corners.to_vec(), vec![[0, 1, 2]]).unwrap();
     let plate = [Vector::Z * (-0.01 * size), Vector::Z * (0.01 * size)];
     let plate = Chain::cylinders(&plate, &[3.0 * size]).unwrap();
@@ -128,7 +139,11 @@ fn turn_a_cap(size: f64) {
         cold.forget();
         let expected = cold.clears(&plate, &pose, 0.0).unwrap();
         let before = kept.work().nodes;
-        assert_eq!(kept.clears(&plate, &pose, 0.0).unwrap(), expected, "size {size:e}, step {step}");
+        assert_eq!(
+            kept.clears(&plate, &pose, 0.0).unwrap(),
+            expected,
+            "size {size:e}, step {step}"
+        );
         by_heart += u32::from(kept.work().nodes == before);
         touches += u32::from(!expected);
     }
@@ -200,11 +215,16 @@ fn minima_in_a_row(size: f64, links: u32, steps: u32, seed: u64, met: &mut Met) 
             assert_eq!(bits(&found), bits(&expected), "size {size:e}, step {step}");
             met.quick += u32::from(4 * (kept.work().nodes - before) < cold_nodes);
         } else {
-            let share = [0.0, 0.5, 1.0 - 1e-9, 1.0 - 1e-15, 1.0, 1.0 + 1e-15, 2.0][random.below(7) as usize];
+            let share = [0.0, 0.5, 1.0 - 1e-9, 1.0 - 1e-15, 1.0, 1.0 + 1e-15, 2.0]
+                [random.below(7) as usize];
             let bound = expected.distance * share;
             let found = kept.minimum_within(&robot, &pose, bound).unwrap();
             let wanted = (expected.distance <= bound).then_some(expected);
-            assert_eq!(found.as_ref().map(bits), wanted.as_ref().map(bits), "size {size:e}, step {step}");
+            assert_eq!(
+                found.as_ref().map(bits),
+                wanted.as_ref().map(bits),
+                "size {size:e}, step {step}"
+            );
             met.by_heart += u32::from(found.is_none() && kept.work().nodes == before);
             met.near += u32::from((share - 1.0).abs() < 1e-8);
         }
@@ -233,19 +253,23 @@ fn a_hundred_thousand_minima_in_a_row_are_those_of_a_cold_engine() {
     many_minima_in_a_row(100_000);
 }
 
-/// Whoever stays where he is, touching, and asks again is told again: of links that stick out of the mesh, whose distances
-/// are known less well.
+/// Whoever stays where he is, touching, and asks again is told again: of links that stick out of
+/// the mesh, whose distances are known less well.
 #[test]
 fn a_touch_is_not_forgotten() {
-    let corners = [[-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0], [1.0, 1.0]].map(|[x, y]| Vector::new(x, y, 0.0));
+    let corners =
+        [[-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0], [1.0, 1.0]].map(|[x, y]| Vector::new(x, y, 0.0));
     let mesh = TriMesh::new(corners.to_vec(), vec![[0, 1, 2], [1, 3, 2]]).unwrap();
     for size in [1.0, 1e-3, 37.0] {
         let (mut touched, mesh) = (0, mesh.clone().scaled(Vector::splat(size)));
         for far in (0..60).map(|k| 2.0 + 0.025 * f64::from(k)) {
             for radius in [0.15, 0.2, 0.25, 0.3] {
                 let robot = |z: f64| {
-                    let points =
-                        [Vector::new(-0.5, 0.0, radius + 0.02), Vector::Z * far, Vector::new(0.5, 0.0, z)];
+                    let points = [
+                        Vector::new(-0.5, 0.0, radius + 0.02),
+                        Vector::Z * far,
+                        Vector::new(0.5, 0.0, z),
+                    ];
                     Chain::capsules(&points.map(|point| point * size), &[radius * size; 2]).unwrap()
                 };
                 let (before, now) = (robot(radius + 0.06), robot(radius - 0.03));

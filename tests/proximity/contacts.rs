@@ -1,5 +1,5 @@
-//! Contacts: every local minimum within the margin and none twice, against brute force over all pairs of triangles; the
-//! minimum within a bound.
+//! Contacts: every local minimum within the margin and none twice, against brute force over all
+//! pairs of triangles; the minimum within a bound.
 
 use super::scenes::mesh_of;
 use continuum_testing::Random;
@@ -14,8 +14,9 @@ use parry_continuum::{Cap, ModifiedCylinder};
 /// What rounding may do to a distance: the room that the definition of a local minimum has.
 const TIE: f64 = 64.0 * f64::EPSILON / 2.0;
 
-/// A small mesh: a wall with bumps, a lumen, or triangles between any of a few points. On a lattice, where ties and
-/// parallels are common, or not; with slivers, or not; with shared corners, or each triangle with its own.
+/// A small mesh: a wall with bumps, a lumen, or triangles between any of a few points. On a
+/// lattice, where ties and parallels are common, or not; with slivers, or not; with shared corners,
+/// or each triangle with its own.
 pub fn small_mesh(random: &mut Random) -> TriMesh {
     let is_lattice = random.below(3) == 0;
     let place = |point: Vector| if is_lattice { (point * 4.0).round() / 4.0 } else { point };
@@ -31,7 +32,9 @@ pub fn small_mesh(random: &mut Random) -> TriMesh {
                 let turn = std::f64::consts::TAU * v / f64::from(columns);
                 vertices.push(match kind {
                     0 => place(Vector::new(u, v - 1.5, 1.0 + bump)),
-                    _ => place(Vector::new(u, (1.5 + bump) * turn.cos(), (1.5 + bump) * turn.sin())),
+                    _ => {
+                        place(Vector::new(u, (1.5 + bump) * turn.cos(), (1.5 + bump) * turn.sin()))
+                    }
                 });
             }
         }
@@ -46,7 +49,11 @@ pub fn small_mesh(random: &mut Random) -> TriMesh {
         vertices.extend((0..9).map(|_| place(random.point() * 2.0)));
         for _ in 0..20 {
             let from = random.below(9);
-            indices.push([from, (from + 1 + random.below(4)) % 9, (from + 5 + random.below(3)) % 9]);
+            indices.push([
+                from,
+                (from + 1 + random.below(4)) % 9,
+                (from + 5 + random.below(3)) % 9,
+            ]);
         }
     }
     if random.below(3) == 0 {
@@ -54,12 +61,18 @@ pub fn small_mesh(random: &mut Random) -> TriMesh {
         let (one, other) = (random.below(9) as usize, random.below(9) as usize);
         vertices[one] = vertices[other] + random.point() * 1e-7;
     }
-    let triangles: Vec<_> = indices.iter().map(|c| c.map(|i: u32| vertices[i as usize].to_array())).collect();
-    if random.below(2) == 0 { mesh_of(&triangles) } else { TriMesh::new(vertices, indices).unwrap() }
+    let triangles: Vec<_> =
+        indices.iter().map(|c| c.map(|i: u32| vertices[i as usize].to_array())).collect();
+    if random.below(2) == 0 {
+        mesh_of(&triangles)
+    } else {
+        TriMesh::new(vertices, indices).unwrap()
+    }
 }
 
 pub fn small_robot(random: &mut Random) -> Chain {
-    let place = |point: Vector, is_lattice| if is_lattice { (point * 4.0).round() / 4.0 } else { point };
+    let place =
+        |point: Vector, is_lattice| if is_lattice { (point * 4.0).round() / 4.0 } else { point };
     loop {
         let is_lattice = random.below(2) == 0;
         let mut points = vec![place(random.point(), is_lattice)];
@@ -79,8 +92,8 @@ pub fn small_robot(random: &mut Random) -> Chain {
     }
 }
 
-/// The distances between a link and triangles, and how far from the link one must go to come from one to another on the
-/// mesh: over all ways, by Floyd and Warshall.
+/// The distances between a link and triangles, and how far from the link one must go to come from
+/// one to another on the mesh: over all ways, by Floyd and Warshall.
 pub struct Passes {
     pub distances: Vec<f64>,
     pub heights: Vec<Vec<f64>>,
@@ -91,7 +104,8 @@ impl Passes {
         let to = |corners: [Vector; 3]| {
             let flat = link.caps().map(|cap| cap == Cap::Flat);
             let [start, end] = [link.start(), link.end()].map(Vec3::from);
-            triangle_modified_cylinder(corners.map(Vec3::from), start, end, link.radius(), flat).distance
+            triangle_modified_cylinder(corners.map(Vec3::from), start, end, link.radius(), flat)
+                .distance
         };
         let count = triangles.len();
         let distances: Vec<_> = triangles.iter().map(|&corners| to(corners)).collect();
@@ -99,8 +113,10 @@ impl Passes {
         for one in 0..count {
             heights[one][one] = distances[one];
             for other in 0..one {
-                let shared: Vec<_> =
-                    triangles[one].iter().filter(|corner| triangles[other].contains(corner)).collect();
+                let shared: Vec<_> = triangles[one]
+                    .iter()
+                    .filter(|corner| triangles[other].contains(corner))
+                    .collect();
                 let mut least = f64::INFINITY;
                 for &&from in &shared {
                     for &&along in &shared {
@@ -148,15 +164,24 @@ fn judge(seed: u64, census: &mut Census) {
     let margin = [0.0, 0.3, 1.0, 4.0][random.below(4) as usize];
     let mut search = BvhSearch::new(&mesh).unwrap();
     let found = contacts(&mut search, &robot, margin);
-    assert_eq!(found, contacts(&mut Exhaustive::<f32>::new(&mesh).unwrap(), &robot, margin), "{seed}");
-    assert_eq!(found, contacts(&mut Exhaustive::<f64>::new(&mesh).unwrap(), &robot, margin), "{seed}");
+    assert_eq!(
+        found,
+        contacts(&mut Exhaustive::<f32>::new(&mesh).unwrap(), &robot, margin),
+        "{seed}"
+    );
+    assert_eq!(
+        found,
+        contacts(&mut Exhaustive::<f64>::new(&mesh).unwrap(), &robot, margin),
+        "{seed}"
+    );
     // A smaller margin has the nearer of them.
     let mut nearer = found.clone();
     nearer.retain(|contact| contact.distance <= 0.4 * margin);
     assert_eq!(nearer, contacts(&mut search, &robot, 0.4 * margin), "{seed}");
 
     for (number, link) in robot.links().iter().enumerate() {
-        let of_link: Vec<_> = found.iter().filter(|contact| contact.link as usize == number).collect();
+        let of_link: Vec<_> =
+            found.iter().filter(|contact| contact.link as usize == number).collect();
         assert!(of_link.is_sorted_by_key(|contact| contact.distance));
         let passes = Passes::new(link, &triangles);
         // No coordinate is beyond 5, so no extent beyond 10.
@@ -169,12 +194,17 @@ fn judge(seed: u64, census: &mut Census) {
                     contact.distance <= distance + tie
                         && height(triangle as u32, contact.triangle) <= distance + 2.0 * tie
                 });
-                assert!(reached.count() > 0, "{seed}: triangle {triangle} at {distance} leads nowhere");
+                assert!(
+                    reached.count() > 0,
+                    "{seed}: triangle {triangle} at {distance} leads nowhere"
+                );
             }
             let at_a_contact = of_link
                 .iter()
                 .filter(|contact| contact.triangle != triangle as u32)
-                .any(|contact| height(triangle as u32, contact.triangle) <= contact.distance + tie / 8.0);
+                .any(|contact| {
+                    height(triangle as u32, contact.triangle) <= contact.distance + tie / 8.0
+                });
             census.merged += usize::from(at_a_contact);
         }
         for (place, one) in of_link.iter().enumerate() {
@@ -183,7 +213,10 @@ fn judge(seed: u64, census: &mut Census) {
             for other in &of_link[..place] {
                 let farther = one.distance.max(other.distance);
                 let pass = height(one.triangle, other.triangle);
-                assert!(pass > farther + tie / 64.0, "{seed}: {one:?} and {other:?} are one, over {pass}");
+                assert!(
+                    pass > farther + tie / 64.0,
+                    "{seed}: {one:?} and {other:?} are one, over {pass}"
+                );
                 census.ties += usize::from((one.distance - other.distance).abs() <= tie);
             }
             census.contacts += 1;
@@ -225,7 +258,8 @@ fn sample_around(
             }
             let near = contact.on_mesh.lerp(inside, 1e-3);
             let [start, end] = [link.start(), link.end()].map(Vec3::from);
-            let away = point_modified_cylinder(near.into(), start, end, link.radius(), flat).distance;
+            let away =
+                point_modified_cylinder(near.into(), start, end, link.radius(), flat).distance;
             assert!(away >= contact.distance - 1e-13, "{contact:?}: {away} at {near}");
             sampled += 1;
         }
@@ -272,8 +306,8 @@ fn a_flat_wall_is_one_contact() {
                 assert!((contact.depth.unwrap() + 0.5).abs() < 1e-15, "{contact:?}");
                 assert_eq!(contact.normal, None, "the axis lies in the wall");
             } else {
-                // The lowest triangle on the axis reaches from x = -4 to -3, past the flat start: out along the axis is
-                // shorter than across.
+                // The lowest triangle on the axis reaches from x = -4 to -3, past the flat start:
+                // out along the axis is shorter than across.
                 let corners = mesh.triangle(contact.triangle).vertices().map(|v| v.x);
                 assert_eq!(corners.into_iter().fold(f64::MIN, f64::max), -3.0);
                 assert!((contact.depth.unwrap() + 0.3).abs() < 1e-15, "{contact:?}");
@@ -298,7 +332,9 @@ fn the_minimum_within_a_bound() {
             Box::new(Exhaustive::<f32>::new(&mesh).unwrap()),
         ];
         for engine in &mut engines {
-            for bound in [0.0, 0.5 * least.distance, least.distance, 2.0 * least.distance, f64::INFINITY] {
+            for bound in
+                [0.0, 0.5 * least.distance, least.distance, 2.0 * least.distance, f64::INFINITY]
+            {
                 let found = engine.minimum_within(&robot, &pose, bound).unwrap();
                 assert_eq!(found, (least.distance <= bound).then_some(least), "{seed} {bound}");
                 within += usize::from(found.is_some());

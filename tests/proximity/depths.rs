@@ -1,5 +1,6 @@
-//! The depth of a link in a triangle: it separates, along the normal; no sampled direction takes less; the dispatcher's
-//! `contact` says the same; and it changes with a motion as `rate` tells, unless there is a kink.
+//! The depth of a link in a triangle: it separates, along the normal; no sampled direction takes
+//! less; the dispatcher's `contact` says the same; and it changes with a motion as `rate` tells,
+//! unless there is a kink.
 
 use super::scenes::mesh_of;
 use continuum_testing::Random;
@@ -48,7 +49,8 @@ impl Placed {
             triangle = triangle.map(|corner| Vector::new(corner.x, corner.y, 0.0));
         }
         let length = [1.0, 0.3, 3.0, 0.01][random.below(4) as usize];
-        let radius = [0.0, 0.25, 0.5, 1.0, 0.01, random.between(0.01, 1.0)][random.below(6) as usize];
+        let radius =
+            [0.0, 0.25, 0.5, 1.0, 0.01, random.between(0.01, 1.0)][random.below(6) as usize];
         let caps = [[FLAT; 2], [ROUND; 2], [FLAT, ROUND], [ROUND, FLAT]][random.below(4) as usize];
         // A little above or below what is asked for, or exactly there.
         let exponent = -random.between(2.0, 14.0);
@@ -60,17 +62,28 @@ impl Placed {
         let normal = (b - a).cross(c - a).normalize();
         let along_edge = (b - a).normalize();
         let across_edge = normal.cross(along_edge);
-        let in_plane = along_edge * random.between(-1.0, 1.0) + across_edge * random.between(-1.0, 1.0);
+        let in_plane =
+            along_edge * random.between(-1.0, 1.0) + across_edge * random.between(-1.0, 1.0);
         let in_plane = in_plane.normalize();
         let sideways = [0.0, radius, -radius][random.below(3) as usize] + little;
         let share = [0.0, 0.5, 1.0, random.unit()][random.below(4) as usize];
         let (point, way) = match kind {
             1 => (inside, in_plane),
             2 => (inside + normal * (radius + little), in_plane),
-            3 => (a + across_edge * sideways + normal * [0.0, radius][random.below(2) as usize], along_edge),
+            3 => (
+                a + across_edge * sideways + normal * [0.0, radius][random.below(2) as usize],
+                along_edge,
+            ),
             4 => {
                 let tip = if caps[0] == FLAT { 0.0 } else { radius };
-                return Self::at(inside + normal * (tip + little), normal, length, radius, caps, triangle);
+                return Self::at(
+                    inside + normal * (tip + little),
+                    normal,
+                    length,
+                    radius,
+                    caps,
+                    triangle,
+                );
             }
             5 => (a + along_edge * little, along_edge),
             6 => (a, random.direction()),
@@ -78,7 +91,9 @@ impl Placed {
                 let little = if little.abs() < 1e-6 { 0.0 } else { little };
                 // At the start, on the rim or inside of it.
                 let way = random.direction();
-                let side = way.any_orthonormal_vector() * radius * [0.0, 0.5, 1.0][random.below(3) as usize];
+                let side = way.any_orthonormal_vector()
+                    * radius
+                    * [0.0, 0.5, 1.0][random.below(3) as usize];
                 let start = a + side + way * little;
                 return Self::at(start, way, length, radius, caps, triangle);
             }
@@ -91,7 +106,10 @@ impl Placed {
                 let way = Vector::AXES[random.below(3) as usize];
                 return Self::at(place(inside), way, length, radius, caps, triangle.map(place));
             }
-            _ => (inside + random.direction() * random.between(0.0, 1.2 * radius), random.direction()),
+            _ => (
+                inside + random.direction() * random.between(0.0, 1.2 * radius),
+                random.direction(),
+            ),
         };
         Self::at(point - way * length * share, way, length, radius, caps, triangle)
     }
@@ -114,15 +132,23 @@ impl Placed {
         let made = match caps {
             [Cap::Round, Cap::Round] => Chain::capsules(&ends, &[radius]),
             [Cap::Flat, Cap::Flat] => Chain::cylinders(&ends, &[radius]),
-            [Cap::Flat, Cap::Round] => Chain::from_centreline(&[start, end, end + along * 2.0], &[radius; 2]),
+            [Cap::Flat, Cap::Round] => {
+                Chain::from_centreline(&[start, end, end + along * 2.0], &[radius; 2])
+            }
             _ => {
                 let aside = along.any_orthonormal_vector() * 2.0 * along.length();
-                Chain::from_centreline(&[start - along * 0.1 - aside, start, end], &[1.5 * radius, radius])
+                Chain::from_centreline(
+                    &[start - along * 0.1 - aside, start, end],
+                    &[1.5 * radius, radius],
+                )
             }
         };
         let robot = made.ok()?;
         let is_it = |link: &ModifiedCylinder| {
-            link.caps() == caps && link.start() == start && link.end() == end && link.radius() == radius
+            link.caps() == caps
+                && link.start() == start
+                && link.end() == end
+                && link.radius() == radius
         };
         let number = robot.links().iter().position(is_it)?;
         Some((robot, number as u32))
@@ -143,7 +169,10 @@ impl Placed {
 
     fn extent(&self) -> f64 {
         let points = [self.end, self.triangle[0], self.triangle[1], self.triangle[2]];
-        points.iter().map(|&point| (point - self.start).abs().max_element()).fold(self.radius, f64::max)
+        points
+            .iter()
+            .map(|&point| (point - self.start).abs().max_element())
+            .fold(self.radius, f64::max)
     }
 
     /// How far the triangle begins beyond the end of the link along a unit vector.
@@ -219,12 +248,14 @@ fn judge(seed: u64, census: &mut Census) {
     let depth = contact.depth.unwrap_or_else(|| panic!("no depth, {}", at()));
     assert!(depth <= 0.0, "{}", at());
 
-    // No direction needs less: drawn anywhere, next to the way out, and along what is special of the two.
+    // No direction needs less: drawn anywhere, next to the way out, and along what is special of
+    // the two.
     let special = placed.special();
     let around = contact.normal.unwrap_or(Vector::Z);
     let drawn = (0..400).map(|_| random.direction());
     let mut near = Random::new(seed);
-    let near = (0..100).map(|_| -around + near.direction() * 0.3_f64.powi(1 + near.below(12) as i32));
+    let near =
+        (0..100).map(|_| -around + near.direction() * 0.3_f64.powi(1 + near.below(12) as i32));
     for direction in special.iter().flat_map(|&n| [n, -n]).chain(drawn).chain(near) {
         let Some(direction) = direction.try_normalize() else { continue };
         let gap = placed.gap(direction);
@@ -233,14 +264,17 @@ fn judge(seed: u64, census: &mut Census) {
     // It separates, along the normal.
     match contact.normal {
         Some(normal) => {
-            // A plane through the normal as it is rounded is off by that rounding, where the triangle is large: any plane
-            // that keeps the two apart will do.
+            // A plane through the normal as it is rounded is off by that rounding, where the
+            // triangle is large: any plane that keeps the two apart will do.
             let out = placed.moved([normal; 2], -depth);
             let ways = out.special().into_iter().flat_map(|n| [n, -n]).chain([-normal]);
             let apart = ways.filter_map(Vector::try_normalize).map(|n| out.gap(n));
             let apart = apart.fold(f64::NEG_INFINITY, f64::max);
             assert!(
-                apart >= -2.0 * rounding * (placed.radius / (placed.end - placed.start).length()).max(1.0),
+                apart
+                    >= -2.0
+                        * rounding
+                        * (placed.radius / (placed.end - placed.start).length()).max(1.0),
                 "still {apart}, {}",
                 at()
             );
@@ -251,7 +285,8 @@ fn judge(seed: u64, census: &mut Census) {
     let link = robot.links()[contact.link as usize];
     let [a, b, c] = placed.triangle;
     let triangle = Triangle::new(a, b, c);
-    let host = ContinuumDispatcher::default().contact(&Pose::IDENTITY, &link, &triangle, 1.0).unwrap();
+    let host =
+        ContinuumDispatcher::default().contact(&Pose::IDENTITY, &link, &triangle, 1.0).unwrap();
     let host = host.unwrap_or_else(|| panic!("no contact, {}", at()));
     assert!((host.dist.min(0.0) - depth).abs() <= rounding, "{host:?}, {}", at());
     census.same_bits += usize::from(host.dist.min(0.0) == depth);
@@ -262,21 +297,22 @@ fn judge(seed: u64, census: &mut Census) {
     assert_eq!(derivative.is_some(), contact.normal.is_some(), "{}", at());
     // Closer to a corner, the depth is smooth over less than a step.
     let axis_distance =
-        segment_triangle([placed.start.into(), placed.end.into()], placed.triangle.map(Vec3::from)).distance;
+        segment_triangle([placed.start.into(), placed.end.into()], placed.triangle.map(Vec3::from))
+            .distance;
     let near_corner = (16.0 * U..1e-6).contains(&(axis_distance / placed.extent()));
     // And where another way out is hardly longer.
-    let near_tie = special
-        .iter()
-        .flat_map(|&n| [n, -n])
-        .filter_map(Vector::try_normalize)
-        .any(|n| (n + around).length() > 1e-6 && (rounding..1e-6).contains(&(depth - placed.gap(n))));
+    let near_tie =
+        special.iter().flat_map(|&n| [n, -n]).filter_map(Vector::try_normalize).any(|n| {
+            (n + around).length() > 1e-6 && (rounding..1e-6).contains(&(depth - placed.gap(n)))
+        });
     if let Some(derivative) = derivative.filter(|_| !near_corner && !near_tie) {
         assert_eq!(derivative.kink, contact.kink, "{}", at());
         changes(&placed, &contact, &derivative, random, census, &at);
     }
 }
 
-/// The depth changes with motions as the derivative says, and on both sides alike, unless there is a kink.
+/// The depth changes with motions as the derivative says, and on both sides alike, unless there is
+/// a kink.
 fn changes(
     placed: &Placed,
     contact: &Contact,
@@ -298,7 +334,8 @@ fn changes(
         let rate = derivative.rate(ends[0], ends[1]);
         let turn = along.cross(ends[1] - ends[0]) / along.length_squared();
         let by_turn = contact.rate(ends[0].lerp(ends[1], contact.fraction), turn).unwrap();
-        let fast = 1.0 + (ends[1] - ends[0]).length() * (placed.radius + placed.extent()) / along.length();
+        let fast =
+            1.0 + (ends[1] - ends[0]).length() * (placed.radius + placed.extent()) / along.length();
         assert!((by_turn - rate).abs() < 1e-12 * fast, "{by_turn}, {rate}, {}", at());
         let (mut least, mut jump) = (f64::INFINITY, f64::INFINITY);
         for step in [1e-6, 1e-8, 1e-10] {
@@ -310,7 +347,11 @@ fn changes(
         }
         largest_jump = largest_jump.max(jump);
         if !contact.kink {
-            assert!(jump < 1e-2 && least < 1e-3, "jump {jump}, error {least}, rate {rate}, {}", at());
+            assert!(
+                jump < 1e-2 && least < 1e-3,
+                "jump {jump}, error {least}, rate {rate}, {}",
+                at()
+            );
             census.worst_rate = census.worst_rate.max(least);
         }
     }
@@ -320,7 +361,8 @@ fn changes(
     } else {
         census.smooth += 1;
     }
-    census.at_flat_caps += usize::from(contact.lever.cross(contact.normal.unwrap()).length() > 1e-6);
+    census.at_flat_caps +=
+        usize::from(contact.lever.cross(contact.normal.unwrap()).length() > 1e-6);
 }
 
 #[test]
@@ -328,7 +370,15 @@ fn the_depth_is_the_least_translation_and_changes_as_its_rate_says() {
     let mut census = Census::default();
     (0..10_000).for_each(|seed| judge(seed, &mut census));
     let Census {
-        overlaps, without_side, same_bits, at_flat_caps, wires, smooth, kinks, silent_kinks, ..
+        overlaps,
+        without_side,
+        same_bits,
+        at_flat_caps,
+        wires,
+        smooth,
+        kinks,
+        silent_kinks,
+        ..
     } = census;
     assert!(overlaps.iter().all(|&count| count > 400), "{census:?}");
     assert!(without_side > 1000 && at_flat_caps > 800 && wires > 800, "{census:?}");
@@ -337,7 +387,12 @@ fn the_depth_is_the_least_translation_and_changes_as_its_rate_says() {
     assert!(silent_kinks < kinks / 8, "{census:?}");
 }
 
-fn contact_of(points: [Vector; 2], radius: f64, caps: [Cap; 2], triangle: [Vector; 3]) -> (Placed, Contact) {
+fn contact_of(
+    points: [Vector; 2],
+    radius: f64,
+    caps: [Cap; 2],
+    triangle: [Vector; 3],
+) -> (Placed, Contact) {
     let placed = Placed { start: points[0], end: points[1], radius, caps, triangle };
     let contact = placed.contact().unwrap().0;
     (placed, contact)
@@ -370,8 +425,9 @@ fn an_axis_in_the_wall_has_no_side() {
         let (origin, across) = (random.point(), random.direction());
         let first = across.any_orthonormal_vector();
         let second = across.cross(first);
-        let mut in_plane =
-            |size: f64| origin + first * random.between(-size, size) + second * random.between(-size, size);
+        let mut in_plane = |size: f64| {
+            origin + first * random.between(-size, size) + second * random.between(-size, size)
+        };
         let triangle = [in_plane(4.0), in_plane(4.0), in_plane(4.0)];
         let ends = [in_plane(1.0), in_plane(1.0)];
         let [a, b, c] = triangle;

@@ -1,5 +1,5 @@
-//! Derivatives of the distance: against differences at 32 digits on the reference cases, and against differences of a
-//! robot's own distance along its joints.
+//! Derivatives of the distance: against differences at 32 digits on the reference cases, and
+//! against differences of a robot's own distance along its joints.
 
 use super::scenes::mesh_of;
 use continuum_testing::narrow_phase::{segment_triangle, triangle_modified_cylinder};
@@ -8,7 +8,8 @@ use parry_continuum::distance::{DoubleDouble, Scalar, Vec3};
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::shape::{Ball, TriMesh};
 use parry_continuum::proximity::{
-    BvhSearch, Contact, ContactFeature, Derivative, Exhaustive, LinkFeature, LinkProximity, Proximity,
+    BvhSearch, Contact, ContactFeature, Derivative, Exhaustive, LinkFeature, LinkProximity,
+    Proximity,
 };
 use parry_continuum::{Cap, Chain};
 
@@ -56,8 +57,8 @@ impl Numbers {
     }
 }
 
-/// The answer about a case's link, which is the first of a chain whose caps are the case's; none if there is no such
-/// chain.
+/// The answer about a case's link, which is the first of a chain whose caps are the case's; none if
+/// there is no such chain.
 fn answer(case: &Case) -> Option<(LinkProximity, Chain, TriMesh)> {
     let (start, end) = (Vector::from(case.p0), Vector::from(case.p1));
     let wanted = case.flat().map(|flat| if flat { Cap::Flat } else { Cap::Round });
@@ -91,10 +92,11 @@ fn components(derivative: &Derivative) -> Vec<f64> {
     points.iter().flat_map(|point| point.to_array()).chain([derivative.radius]).collect()
 }
 
-/// Every coordinate of the reference cases, against central differences with 32 digits. A step of 1e-9 of the gap (or of
-/// a short link) is
-/// exact where the distance is smooth, one of 3e-16 where a closest point passes to another feature, and the second
-/// derivative jumps; of those that a step twice as long confirms, the derivative has to be what one says. Where the two sides differ there is a kink.
+/// Every coordinate of the reference cases, against central differences with 32 digits. A step of
+/// 1e-9 of the gap (or of a short link) is
+/// exact where the distance is smooth, one of 3e-16 where a closest point passes to another
+/// feature, and the second derivative jumps; of those that a step twice as long confirms, the
+/// derivative has to be what one says. Where the two sides differ there is a kink.
 #[test]
 fn every_case_within_64_units() {
     let (mut compared, mut kinks, mut flat_caps, mut inside, mut unresolved) = (0, 0, 0, 0, 0);
@@ -110,7 +112,8 @@ fn every_case_within_64_units() {
         let numbers = Numbers::new(case, robot.links()[0].caps().map(|cap| cap == Cap::Flat));
         let is_depth = !is_at_flat_cap(&contact, &robot);
         let value = numbers.value(is_depth);
-        let is_capsule = is_depth && (value.rounded() - contact.depth.unwrap()).abs() < 1e-9 * case.scale;
+        let is_capsule =
+            is_depth && (value.rounded() - contact.depth.unwrap()).abs() < 1e-9 * case.scale;
         if found.distance <= 0.0 && !is_capsule {
             continue; // a way out at a flat cap or across the axis: the room of depths
         }
@@ -129,7 +132,8 @@ fn every_case_within_64_units() {
             for share in [1e-9, 3e-16] {
                 // Powers of two: the steps themselves are not rounded.
                 let step = 1.0 / (share * reach).power_of_two_to_unity();
-                let side = |by: f64| (numbers.moved(number, by).value(is_depth) - value).rounded() / by;
+                let side =
+                    |by: f64| (numbers.moved(number, by).value(is_depth) - value).rounded() / by;
                 let central = |step: f64| {
                     // No radius is below 0.
                     let ahead = side(step);
@@ -145,7 +149,11 @@ fn every_case_within_64_units() {
                 }
             }
             if is_kink {
-                assert!(derivative.kink, "{} {} {}: {contact:?} has a kink", case.id, case.cat, number);
+                assert!(
+                    derivative.kink,
+                    "{} {} {}: {contact:?} has a kink",
+                    case.id, case.cat, number
+                );
                 kinks += 1;
             }
             if derivative.kink {
@@ -165,7 +173,13 @@ fn every_case_within_64_units() {
     println!(
         "{compared} compared, worst {worst:.1} u; {kinks} kinks, {flat_caps} at flat caps, {inside} inside"
     );
-    assert!(compared > 8000 && kinks > 100 && flat_caps > 1500 && inside > 300 && unresolved < compared / 10);
+    assert!(
+        compared > 8000
+            && kinks > 100
+            && flat_caps > 1500
+            && inside > 300
+            && unresolved < compared / 10
+    );
 }
 
 /// Two arcs of constant curvature and a turn of the base: six joints.
@@ -221,7 +235,11 @@ fn compare(seed: u64, mesh: &TriMesh, search: &mut BvhSearch, seen: &mut Seen) {
         let Some(derivative) = search.derivative(&robot, &pose, &answer).unwrap() else { continue };
         let radius = robot.links()[answer.link as usize].radius();
         let at_flat_cap = is_at_flat_cap(&contact, &robot);
-        let room = if at_flat_cap { answer.distance - 1e-3 } else { contact.depth.unwrap() + radius - 0.15 };
+        let room = if at_flat_cap {
+            answer.distance - 1e-3
+        } else {
+            contact.depth.unwrap() + radius - 0.15
+        };
         if room < 0.0 {
             continue; // a step away the cap touches, or the normal has turned
         }
@@ -246,12 +264,16 @@ fn compare(seed: u64, mesh: &TriMesh, search: &mut BvhSearch, seen: &mut Seen) {
             let velocity = start.lerp(end, contact.fraction);
             let turn = along.cross(end - start) / along.length_squared();
             let by_velocities = contact.rate(velocity, turn).unwrap();
-            assert!((by_ends - by_velocities).abs() < 1e-9, "{seed} {contact:?}: {by_ends} {by_velocities}");
+            assert!(
+                (by_ends - by_velocities).abs() < 1e-9,
+                "{seed} {contact:?}: {by_ends} {by_velocities}"
+            );
 
-            let around =
-                [-2.0, -1.0, 0.0, 1.0, 2.0].map(|by| only.value(&chain(&at(by * step)), &pose, &contact));
+            let around = [-2.0, -1.0, 0.0, 1.0, 2.0]
+                .map(|by| only.value(&chain(&at(by * step)), &pose, &contact));
             let values = around.map(|(value, _)| value);
-            let one_sided = [values[3] - values[2], values[2] - values[1]].map(|change| change / step);
+            let one_sided =
+                [values[3] - values[2], values[2] - values[1]].map(|change| change / step);
             let is_kink = (one_sided[0] - one_sided[1]).abs() > 0.03 * (1.0 + one_sided[0].abs());
             assert!(contact.kink || !is_kink, "{seed}: {contact:?} has a kink, {one_sided:?}");
             if contact.kink {
@@ -262,9 +284,13 @@ fn compare(seed: u64, mesh: &TriMesh, search: &mut BvhSearch, seen: &mut Seen) {
                 seen.passing += 1; // the second derivative jumps between the steps
                 continue;
             }
-            let difference = (8.0 * (values[3] - values[1]) - (values[4] - values[0])) / (12.0 * step);
+            let difference =
+                (8.0 * (values[3] - values[1]) - (values[4] - values[0])) / (12.0 * step);
             let error = (difference - by_ends).abs();
-            assert!(error < 1e-7, "{seed} joint {joint}: {error:e}, {one_sided:?} {by_ends} {contact:?}");
+            assert!(
+                error < 1e-7,
+                "{seed} joint {joint}: {error:e}, {one_sided:?} {by_ends} {contact:?}"
+            );
             seen.worst = seen.worst.max(error);
             seen.compared += 1;
             seen.inside += usize::from(answer.distance == 0.0);
@@ -275,12 +301,14 @@ fn compare(seed: u64, mesh: &TriMesh, search: &mut BvhSearch, seen: &mut Seen) {
     }
 }
 
-/// A mesh of the one triangle that an answer names: that another is nearer a step away is a tie of two contacts.
+/// A mesh of the one triangle that an answer names: that another is nearer a step away is a tie of
+/// two contacts.
 struct Only(TriMesh);
 
 impl Only {
     fn new(mesh: &TriMesh, triangle: u32) -> Self {
-        let corners = mesh.indices()[triangle as usize].map(|i| mesh.vertices()[i as usize].to_array());
+        let corners =
+            mesh.indices()[triangle as usize].map(|i| mesh.vertices()[i as usize].to_array());
         Self(mesh_of(&[corners]))
     }
 
@@ -299,7 +327,8 @@ impl Only {
 fn every_joint_against_differences() {
     let mut seen = Seen::default();
     let (ball, indices) = Ball::new(5.0).to_trimesh(24, 16);
-    let bumpy = ball.iter().map(|v| v * (1.0 + 0.08 * (2.0 * v.x).sin() * (1.7 * v.y).cos())).collect();
+    let bumpy =
+        ball.iter().map(|v| v * (1.0 + 0.08 * (2.0 * v.x).sin() * (1.7 * v.y).cos())).collect();
     let mesh = TriMesh::new(bumpy, indices).unwrap();
     let mut search = BvhSearch::new(&mesh).unwrap();
     (0..350).for_each(|seed| compare(seed, &mesh, &mut search, &mut seen));

@@ -1,5 +1,6 @@
-//! Tubes against their discs, one by one: what a curve is where sections are about as short as they are thick, near faces
-//! and joints. A fine chain is no truth there, because the rims of its tilted links stand out.
+//! Tubes against their discs, one by one: what a curve is where sections are about as short as they
+//! are thick, near faces and joints. A fine chain is no truth there, because the rims of its tilted
+//! links stand out.
 
 use crate::tube::all_ways;
 use continuum_testing::narrow_phase::triangle_disc;
@@ -10,13 +11,16 @@ use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{BvhSearch, Decision};
 use std::sync::Arc;
 
-/// What the discs that are tried leave open, at the size of these scenes; and how near they come to what is touched.
+/// What the discs that are tried leave open, at the size of these scenes; and how near they come to
+/// what is touched.
 const OFF: Real = 1e-4;
 const TOUCHING: Real = 1e-3;
 
-/// Sections from a tenth of their radius to three times as long, most of them as thick as the one before.
+/// Sections from a tenth of their radius to three times as long, most of them as thick as the one
+/// before.
 fn short_sections(random: &mut Random) -> Arcs {
-    let mut arcs = Arcs::from_frame(Pose::new(random.point(), random.direction() * random.between(0.0, 3.0)));
+    let mut arcs =
+        Arcs::from_frame(Pose::new(random.point(), random.direction() * random.between(0.0, 3.0)));
     let mut radius = random.between(0.2, 0.6);
     for _ in 0..=random.below(3) {
         if random.below(2) == 0 {
@@ -24,8 +28,12 @@ fn short_sections(random: &mut Random) -> Arcs {
         }
         let mut part = |_| {
             let angle = random.between(0.0, 7.0);
-            let length = radius * [0.1, 1.0, 1.2, 3.0][random.below(4) as usize] * random.between(0.8, 1.2);
-            (length, Vector::new(angle.cos(), angle.sin(), 0.0) * (random.between(0.0, 0.95) / radius))
+            let length =
+                radius * [0.1, 1.0, 1.2, 3.0][random.below(4) as usize] * random.between(0.8, 1.2);
+            (
+                length,
+                Vector::new(angle.cos(), angle.sin(), 0.0) * (random.between(0.0, 0.95) / radius),
+            )
         };
         let parts = [0, 1].map(&mut part);
         arcs.push(radius, &parts[..1 + random.below(2) as usize]);
@@ -57,7 +65,8 @@ fn distance(arcs: &Arcs, mesh: &TriMesh) -> Real {
             triangle_disc(corners, centre.into(), tangent.into(), part.radius).distance
         };
         let nearest = |around: Real, width: Real, count: i32| {
-            let places = (-count..=count).map(|k| around + width * Real::from(k) / Real::from(count));
+            let places =
+                (-count..=count).map(|k| around + width * Real::from(k) / Real::from(count));
             let all = places.map(|s| s.max(start).min(end)).map(|s| (at(s), s));
             all.min_by(|a, b| a.0.total_cmp(&b.0)).unwrap()
         };
@@ -86,19 +95,35 @@ fn short_sections_are_their_discs() {
         for (way, tube) in all_ways(&arcs).iter().enumerate() {
             for tolerance in [1.0, 0.1, 0.01, 0.003] {
                 let found = search.clearance(tube, &Pose::IDENTITY, tolerance).unwrap();
-                // Samples leave the direction of a face open where the curvature changes next to it.
+                // Samples leave the direction of a face open where the curvature changes next to
+                // it.
                 assert!(found.resolved || way > 0, "way {way}, {}", context());
                 too_fine += usize::from(!found.resolved);
                 assert!(found.lower <= truth + OFF, "way {way}: {found:?} for {}", context());
                 let is_touched = found.upper <= 0.0 && truth <= TOUCHING;
-                assert!(is_touched || truth <= found.upper + OFF, "way {way}: {found:?} for {}", context());
-                let decision =
-                    search.tube_clears(tube, &Pose::IDENTITY, truth + OFF + 0.2 * tolerance, 0.5 * tolerance);
-                assert!(decision != Ok(Decision::Clear), "way {way}: clear of more than {}", context());
+                assert!(
+                    is_touched || truth <= found.upper + OFF,
+                    "way {way}: {found:?} for {}",
+                    context()
+                );
+                let decision = search.tube_clears(
+                    tube,
+                    &Pose::IDENTITY,
+                    truth + OFF + 0.2 * tolerance,
+                    0.5 * tolerance,
+                );
+                assert!(
+                    decision != Ok(Decision::Clear),
+                    "way {way}: clear of more than {}",
+                    context()
+                );
                 answers += 1;
             }
         }
         if truth > TOUCHING { free += 1 } else { touching += 1 }
     }
-    assert!(free > 400 && touching > 400 && too_fine < answers / 4, "{free} {touching} {answers} {too_fine}");
+    assert!(
+        free > 400 && touching > 400 && too_fine < answers / 4,
+        "{free} {touching} {answers} {too_fine}"
+    );
 }

@@ -1,4 +1,5 @@
-//! What lies far out, be it a vertex, a triangle or the robot, changes neither answers nor their price.
+//! What lies far out, be it a vertex, a triangle or the robot, changes neither answers nor their
+//! price.
 
 use crate::agreement::{UNIT, engines};
 use continuum_testing::Random;
@@ -10,7 +11,8 @@ use parry_continuum::{Chain, ContinuumDispatcher};
 
 /// The cylinder ends 2 above the triangle's plane and reaches 5 through it.
 fn pierced(far: f64, is_used: bool) -> (TriMesh, Chain) {
-    let (a, b, c) = (Vector::new(-9.0, -9.0, 3.0), Vector::new(9.0, -9.0, 3.0), Vector::new(0.0, 9.0, 3.0));
+    let (a, b, c) =
+        (Vector::new(-9.0, -9.0, 3.0), Vector::new(9.0, -9.0, 3.0), Vector::new(0.0, 9.0, 3.0));
     let mut triangles = vec![[0, 1, 2]];
     if is_used {
         triangles.push([3, 3, 3]);
@@ -21,7 +23,8 @@ fn pierced(far: f64, is_used: bool) -> (TriMesh, Chain) {
 
 #[test]
 fn a_far_vertex_does_not_hide_a_near_triangle() {
-    for (exponent, is_used) in (0..=149).step_by(7).flat_map(|exponent| [(exponent, false), (exponent, true)])
+    for (exponent, is_used) in
+        (0..=149).step_by(7).flat_map(|exponent| [(exponent, false), (exponent, true)])
     {
         let (mesh, robot) = pierced(10.0_f64.powi(exponent), is_used);
         for (name, mut engine) in engines(&mesh) {
@@ -104,14 +107,16 @@ fn what_is_far_away_does_not_make_queries_slow() {
     for (what, mesh, pose) in scenes {
         for ((name, plain), (_, far)) in plain.iter().zip(work(&mesh, &robot, &pose)) {
             // Of the robot far away all triangles are as near within the rounding of its place.
-            let measured = if what == "the robot" { 40 * plain.measured } else { 3 * plain.measured };
+            let measured =
+                if what == "the robot" { 40 * plain.measured } else { 3 * plain.measured };
             assert!(far.nodes <= 4 * plain.nodes, "{name}, {what}: {far:?} and {plain:?}");
             assert!(far.measured <= measured, "{name}, {what}: {far:?} and {plain:?}");
         }
     }
 }
 
-/// So far out that the ends of links are rounded to a grid, each on its own: links may leave the line between base and tip.
+/// So far out that the ends of links are rounded to a grid, each on its own: links may leave the
+/// line between base and tip.
 #[test]
 fn robots_far_out_clear_exactly_what_their_distance_exceeds() {
     let (mut off, mut clear) = (0, 0);
@@ -125,7 +130,8 @@ fn robots_far_out_clear_exactly_what_their_distance_exceeds() {
         let robot = Chain::capsules(&points, &vec![0.1; points.len() - 1]).unwrap();
         let place = Vector::X * far;
         let corners = [[-0.75, -0.5], [0.75, -0.5], [0.0, 2.0]];
-        let corners = corners.map(|[y, z]| place + Vector::new(0.25 + random.between(0.0, 0.1), y, z));
+        let corners =
+            corners.map(|[y, z]| place + Vector::new(0.25 + random.between(0.0, 0.1), y, z));
         let mesh = TriMesh::new(corners.to_vec(), vec![[0, 1, 2]]).unwrap();
         let pose = Pose::from_translation(place);
         let mut search = BvhSearch::new(&mesh).unwrap();

@@ -1,4 +1,5 @@
-//! What the fuzzer runs for hours, for a moment: random bytes, and all that once broke something (fuzz/corpus).
+//! What the fuzzer runs for hours, for a moment: random bytes, and all that once broke something
+//! (fuzz/corpus).
 
 use continuum_testing::{Random, fuzz};
 use std::fs;
@@ -12,12 +13,14 @@ fn try_bytes(name: &str, body: fn(&[u8]), count: usize) {
     }
     for bytes in corpus(name) {
         body(&bytes);
-        // What is all but right gets further than noise does: another of its bytes here and there, or a digit.
+        // What is all but right gets further than noise does: another of its bytes here and there,
+        // or a digit.
         for _ in 0..count {
             let mut near = bytes.clone();
             for _ in 0..=random.below(2) {
                 let [to, from] = [0; 2].map(|_| random.below(bytes.len() as u32) as usize);
-                near[to] = if random.below(2) == 0 { bytes[from] } else { b'0' + random.below(10) as u8 };
+                near[to] =
+                    if random.below(2) == 0 { bytes[from] } else { b'0' + random.below(10) as u8 };
             }
             body(&near);
         }

@@ -1,5 +1,6 @@
-//! Meshes of ten million triangles and chains of ten thousand links, answered and proven. Slow and large, so run it by
-//! name: `cargo test --release --test proximity -- large --ignored --nocapture --test-threads 1` (some 8 GB).
+//! Meshes of ten million triangles and chains of ten thousand links, answered and proven. Slow and
+//! large, so run it by name: `cargo test --release --test proximity -- large --ignored --nocapture
+//! --test-threads 1` (some 8 GB).
 
 use parry_continuum::Chain;
 use parry_continuum::parry::math::{Pose, Vector};
@@ -51,7 +52,8 @@ fn timed<T>(what: &str, run: impl FnOnce() -> T) -> T {
     result
 }
 
-/// Each answer lies within a proof of its own pair, up to the rounding of numbers as large as the scene.
+/// Each answer lies within a proof of its own pair, up to the rounding of numbers as large as the
+/// scene.
 fn assert_proven(answers: &[LinkProximity], robot: &Chain, pose: &Pose, mesh: &TriMesh) {
     assert_eq!(answers.len(), robot.links().len());
     for answer in answers {
@@ -78,9 +80,11 @@ fn ten_million_triangles() {
     let pose = Pose::new(Vector::new(0.3, -0.2, 0.5), Vector::new(0.01, 0.02, -0.03));
     let (robot, mut found) = (helix(30), Vec::new());
     let mut search = timed("search, built", || BvhSearch::new(&mesh).expect("a mesh"));
-    timed("search, 30 links, cold", || search.per_link(&robot, &pose, &mut found)).expect("a valid query");
+    timed("search, 30 links, cold", || search.per_link(&robot, &pose, &mut found))
+        .expect("a valid query");
     let expected = found.clone();
-    timed("search, 30 links, warm", || search.per_link(&robot, &pose, &mut found)).expect("a valid query");
+    timed("search, 30 links, warm", || search.per_link(&robot, &pose, &mut found))
+        .expect("a valid query");
     assert_eq!(found, expected);
     assert_proven(&expected, &robot, &pose, &mesh);
     timed("proof that no triangle is nearer, 3 links", || {
@@ -89,8 +93,10 @@ fn ten_million_triangles() {
         }
     });
     drop(search);
-    let mut every = timed("exhaustive f32, built", || Exhaustive::<f32>::new(&mesh).expect("a mesh"));
-    timed("exhaustive f32, 30 links", || every.per_link(&robot, &pose, &mut found)).expect("a valid query");
+    let mut every =
+        timed("exhaustive f32, built", || Exhaustive::<f32>::new(&mesh).expect("a mesh"));
+    timed("exhaustive f32, 30 links", || every.per_link(&robot, &pose, &mut found))
+        .expect("a valid query");
     for (found, expected) in found.iter().zip(&expected) {
         assert_eq!(found.distance, expected.distance);
     }
@@ -124,7 +130,8 @@ fn ten_thousand_links() {
         nearest = if expected.distance < nearest.distance { expected } else { nearest };
     }
     search.forget();
-    let least = timed("search, the least", || search.minimum(&robot, &pose)).expect("a valid query");
+    let least =
+        timed("search, the least", || search.minimum(&robot, &pose)).expect("a valid query");
     assert_eq!(least.distance, nearest.distance);
     assert_least(nearest, &robot, &pose, &mesh);
 }

@@ -1,4 +1,5 @@
-//! Robots of one link, side by side with level ends: they overlap deeply, whatever rounding says of their faces.
+//! Robots of one link, side by side with level ends: they overlap deeply, whatever rounding says of
+//! their faces.
 
 use continuum_testing::{LevelLinks, Random, found_level_links};
 use parry_continuum::parry::math::Pose;
@@ -60,7 +61,8 @@ fn tubes_and_motions_at_rest_touch() {
             let found = tubes.clearance(&a, &here, &b, &here, resolution).unwrap();
             assert_eq!(found.lower, 0.0, "{resolution}: {pair:?}");
             assert!(found.upper <= resolution, "{resolution}: {pair:?}");
-            let [one, two] = [&a, &b].map(|tube| RigidMotion::new(tube.clone(), [here; 2]).unwrap());
+            let [one, two] =
+                [&a, &b].map(|tube| RigidMotion::new(tube.clone(), [here; 2]).unwrap());
             let answer = tubes.clears_motion(&one, &two, 0.0, resolution).unwrap();
             assert_eq!(answer.decision, Decision::Contact, "{resolution}: {pair:?}");
         }

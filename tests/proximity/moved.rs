@@ -1,5 +1,5 @@
-//! Answers belong to the mesh that an engine has now: what describes an answer is asked of the engine, and an answer that
-//! does not fit is an error.
+//! Answers belong to the mesh that an engine has now: what describes an answer is asked of the
+//! engine, and an answer that does not fit is an error.
 
 use crate::agreement::{UNIT, engines};
 use crate::scenes::{mesh_of, nasty_mesh};
@@ -17,7 +17,8 @@ fn wall(random: &mut Random) -> TriMesh {
 }
 
 fn robot(random: &mut Random) -> Chain {
-    let points = [Vector::ZERO, random.point() * 2.0, random.point() * 4.0, random.direction() * 4.6];
+    let points =
+        [Vector::ZERO, random.point() * 2.0, random.point() * 4.0, random.direction() * 4.6];
     match random.below(3) {
         0 => Chain::from_centreline(&points, &[0.5, 0.5, 0.25]).unwrap(),
         1 => Chain::capsules(&points, &[0.25; 3]).unwrap(),
@@ -34,7 +35,8 @@ fn is_unfit<T>(result: &Result<T, ProximityError>) -> bool {
     matches!(result, Err(ProximityError::AnswerDoesNotFit { .. }))
 }
 
-/// Whether an answer is one of a mesh: its distance is the proven one of its pair. Meshes here are 10 large at most.
+/// Whether an answer is one of a mesh: its distance is the proven one of its pair. Meshes here are
+/// 10 large at most.
 fn is_of(answer: &LinkProximity, robot: &Chain, pose: &Pose, mesh: &TriMesh) -> bool {
     let corners = *mesh.triangle(answer.triangle).vertices();
     let proof = Certificate::between(&robot.links()[answer.link as usize], pose, corners).unwrap();
@@ -42,7 +44,8 @@ fn is_of(answer: &LinkProximity, robot: &Chain, pose: &Pose, mesh: &TriMesh) -> 
     proof.lower - slack <= answer.distance && answer.distance <= proof.upper + slack
 }
 
-/// A contact is what a fresh engine says of the moved mesh, or an error: never a mixture of two meshes.
+/// A contact is what a fresh engine says of the moved mesh, or an error: never a mixture of two
+/// meshes.
 #[test]
 fn after_the_mesh_moved_an_answer_is_right_or_an_error() {
     let (mut stale, mut still_right, mut fresh, mut touching) = (0, 0, 0, 0);
@@ -59,21 +62,32 @@ fn after_the_mesh_moved_an_answer_is_right_or_an_error() {
             let (mut before, mut after, mut contacts) = (Vec::new(), Vec::new(), Vec::new());
             engine.per_link(&robot, &pose, &mut before).unwrap();
             engine.set_vertices(&moved).unwrap();
-            assert_eq!((engine.vertices(), engine.triangles()), (&moved[..], mesh.indices()), "{name}");
+            assert_eq!(
+                (engine.vertices(), engine.triangles()),
+                (&moved[..], mesh.indices()),
+                "{name}"
+            );
             for answer in &before {
                 let contact = engine.contact(&robot, &pose, answer);
                 let derivative = engine.derivative(&robot, &pose, answer);
                 let proof = answer.certify(&robot, &pose, &now(&*engine));
-                let together = engine.contacts(&robot, &pose, std::slice::from_ref(answer), &mut contacts);
+                let together =
+                    engine.contacts(&robot, &pose, std::slice::from_ref(answer), &mut contacts);
                 assert_eq!(contact.is_err(), derivative.is_err(), "{name}, {seed}");
                 assert_eq!(contact.is_err(), proof.is_err(), "{name}, {seed}");
                 assert_eq!(contact.is_err(), together.is_err(), "{name}, {seed}");
                 if is_unfit(&contact) {
-                    assert!(is_unfit(&derivative) && is_unfit(&proof) && contacts.is_empty(), "{name}");
+                    assert!(
+                        is_unfit(&derivative) && is_unfit(&proof) && contacts.is_empty(),
+                        "{name}"
+                    );
                     stale += 1;
                 } else {
                     contact.unwrap();
-                    assert!(is_of(answer, &robot, &pose, &moved_mesh), "{name}, {seed}: {answer:?}");
+                    assert!(
+                        is_of(answer, &robot, &pose, &moved_mesh),
+                        "{name}, {seed}: {answer:?}"
+                    );
                     still_right += 1;
                 }
             }
@@ -84,12 +98,19 @@ fn after_the_mesh_moved_an_answer_is_right_or_an_error() {
                 assert_eq!(Ok(*contact), engine.contact(&robot, &pose, answer), "{name}, {seed}");
                 assert_eq!(Ok(*contact), of_moved.contact(&robot, &pose, answer), "{name}, {seed}");
                 let derivative = engine.derivative(&robot, &pose, answer);
-                assert_eq!(derivative, of_moved.derivative(&robot, &pose, answer), "{name}, {seed}");
+                assert_eq!(
+                    derivative,
+                    of_moved.derivative(&robot, &pose, answer),
+                    "{name}, {seed}"
+                );
                 // The mesh from before the move gives no proof about what it is not.
                 assert!(answer.certify(&robot, &pose, &moved_mesh).is_ok(), "{name}, {seed}");
                 let old = answer.certify(&robot, &pose, &mesh);
                 assert!(is_unfit(&old) || is_of(answer, &robot, &pose, &mesh), "{name}, {seed}");
-                assert_eq!(is_unfit(&old), is_unfit(&answer.certify_among_all(&robot, &pose, &mesh)));
+                assert_eq!(
+                    is_unfit(&old),
+                    is_unfit(&answer.certify_among_all(&robot, &pose, &mesh))
+                );
                 fresh += 1;
                 touching += u32::from(answer.distance == 0.0);
             }
@@ -131,7 +152,8 @@ fn rounded(answer: LinkProximity, random: &mut Random) -> LinkProximity {
         1 => x.next_down(),
         _ => x,
     };
-    let (mut distance, mut on_robot, mut on_mesh) = (answer.distance, answer.on_robot, answer.on_mesh);
+    let (mut distance, mut on_robot, mut on_mesh) =
+        (answer.distance, answer.on_robot, answer.on_mesh);
     distance = off(distance).max(0.0);
     for point in [&mut on_robot, &mut on_mesh] {
         *point = Vector::new(off(point.x), off(point.y), off(point.z));
@@ -141,8 +163,8 @@ fn rounded(answer: LinkProximity, random: &mut Random) -> LinkProximity {
     rounded
 }
 
-/// What any engine answers fits, wherever the problem is and however large: touching, far out, scaled, on meshes of slivers
-/// and points, as text and back.
+/// What any engine answers fits, wherever the problem is and however large: touching, far out,
+/// scaled, on meshes of slivers and points, as text and back.
 #[test]
 fn every_answer_fits() {
     let (mut touching, mut far, mut small, mut large) = (0, 0, 0, 0);
@@ -157,7 +179,10 @@ fn every_answer_fits() {
         let centreline: Vec<_> = {
             let robot = robot(random);
             let ends = robot.links().iter().map(|link| link.end());
-            std::iter::once(robot.links()[0].start()).chain(ends).map(|point| point * unit).collect()
+            std::iter::once(robot.links()[0].start())
+                .chain(ends)
+                .map(|point| point * unit)
+                .collect()
         };
         let radii = vec![0.3 * unit; centreline.len() - 1];
         let robot = Chain::from_centreline(&centreline, &radii).unwrap();
@@ -182,7 +207,10 @@ fn every_answer_fits() {
                 {
                     let text = serde_json::to_string(&answer).unwrap();
                     let read: LinkProximity = serde_json::from_str(&text).unwrap();
-                    assert!(engine.derivative(&robot, &pose, &read).is_ok(), "{name}, {seed}: {text}");
+                    assert!(
+                        engine.derivative(&robot, &pose, &read).is_ok(),
+                        "{name}, {seed}: {text}"
+                    );
                 }
                 touching += u32::from(answer.distance == 0.0);
                 far += u32::from(out > 1e6);
@@ -194,7 +222,8 @@ fn every_answer_fits() {
     assert!(seen.iter().all(|&count| count > 200), "{seen:?}");
 }
 
-/// Each field of an answer, changed by much more than rounding explains, is found out; so is what is no number.
+/// Each field of an answer, changed by much more than rounding explains, is found out; so is what
+/// is no number.
 #[test]
 fn what_does_not_fit_is_an_error() {
     let (mut changed, mut alone) = (0, 0);
@@ -237,8 +266,9 @@ fn what_does_not_fit_is_an_error() {
                 assert_eq!(field(refused(&other)), "on_robot", "{seed}, {size}");
                 changed += 1;
             }
-            // Another place of the triangle or the link is in its shape, but not the nearest. (Where the two touch at a
-            // corner, that corner is the place itself, but for rounding.)
+            // Another place of the triangle or the link is in its shape, but not the nearest.
+            // (Where the two touch at a corner, that corner is the place itself, but
+            // for rounding.)
             let corners = *mesh.triangle(answer.triangle).vertices();
             for corner in corners {
                 let mut other = answer;
@@ -271,8 +301,8 @@ fn what_does_not_fit_is_an_error() {
     assert!(changed > 1000 && alone > 500, "{changed} {alone}");
 }
 
-/// A wall that slides in its own plane is as near as before, at the same place. One that turns about that place is nearer
-/// elsewhere, although the place is on it still.
+/// A wall that slides in its own plane is as near as before, at the same place. One that turns
+/// about that place is nearer elsewhere, although the place is on it still.
 #[test]
 fn a_wall_may_move_where_the_answer_stays() {
     let square = [[-4.0, -4.0, 0.0], [4.0, -4.0, 0.0], [0.0, 4.0, 0.0]];
@@ -281,20 +311,28 @@ fn a_wall_may_move_where_the_answer_stays() {
     let pose = Pose::translation(0.5, -0.5, 0.0);
     for (name, mut engine) in engines(&mesh) {
         let answer = engine.minimum(&robot, &pose).unwrap();
-        assert_eq!((answer.distance, answer.on_mesh), (0.75, Vector::new(0.5, -0.5, 0.0)), "{name}");
+        assert_eq!(
+            (answer.distance, answer.on_mesh),
+            (0.75, Vector::new(0.5, -0.5, 0.0)),
+            "{name}"
+        );
         let slid: Vec<_> = mesh.vertices().iter().map(|v| v + Vector::new(1.0, 0.5, 0.0)).collect();
         engine.set_vertices(&slid).unwrap();
         let contact = engine.contact(&robot, &pose, &answer).unwrap();
         assert_eq!((contact.distance, contact.normal), (0.75, Some(Vector::Z)), "{name}");
-        let away: Vec<_> = mesh.vertices().iter().map(|v| v + Vector::new(40.0, 0.0, 0.0)).collect();
+        let away: Vec<_> =
+            mesh.vertices().iter().map(|v| v + Vector::new(40.0, 0.0, 0.0)).collect();
         engine.set_vertices(&away).unwrap();
         let found = engine.contact(&robot, &pose, &answer);
         assert!(
             matches!(found, Err(ProximityError::AnswerDoesNotFit { field: "on_mesh", off, .. }) if off > 30.0)
         );
         let about = Pose::rotation(Vector::X * 0.3);
-        let turned: Vec<_> =
-            mesh.vertices().iter().map(|&v| answer.on_mesh + about * (v - answer.on_mesh)).collect();
+        let turned: Vec<_> = mesh
+            .vertices()
+            .iter()
+            .map(|&v| answer.on_mesh + about * (v - answer.on_mesh))
+            .collect();
         engine.set_vertices(&turned).unwrap();
         let found = engine.contact(&robot, &pose, &answer);
         assert!(
@@ -313,7 +351,10 @@ fn engines_from_triangles() {
     let mut search = BvhSearch::from_triangles(vertices, triangles).unwrap();
     let mut exhaustive = Exhaustive::<f32>::from_triangles(vertices, triangles).unwrap();
     let expected = BvhSearch::new(&mesh).unwrap().minimum(&robot, &pose);
-    assert_eq!((search.minimum(&robot, &pose), exhaustive.minimum(&robot, &pose)), (expected, expected));
+    assert_eq!(
+        (search.minimum(&robot, &pose), exhaustive.minimum(&robot, &pose)),
+        (expected, expected)
+    );
 
     let mut far = triangles.to_vec();
     far[3][1] = vertices.len() as u32;
@@ -335,14 +376,20 @@ fn engines_from_triangles() {
         )
     );
     far[0][0] = u32::MAX;
-    assert!(matches!(refused(vertices, &far), MeshError::NoSuchVertex { triangle: 0, vertex: u32::MAX, .. }));
+    assert!(matches!(
+        refused(vertices, &far),
+        MeshError::NoSuchVertex { triangle: 0, vertex: u32::MAX, .. }
+    ));
     assert!(matches!(refused(&broken, triangles), MeshError::NotFinite { vertex: 7, .. }));
     assert_eq!(refused(vertices, &[]), MeshError::Empty);
-    assert!(matches!(refused(&[], triangles), MeshError::NoSuchVertex { triangle: 0, vertices: 0, .. }));
+    assert!(matches!(
+        refused(&[], triangles),
+        MeshError::NoSuchVertex { triangle: 0, vertices: 0, .. }
+    ));
 }
 
-/// Several meshes asked in turn, each for what is nearer than the last, where margins are violated: a bound below zero asks
-/// for nothing.
+/// Several meshes asked in turn, each for what is nearer than the last, where margins are violated:
+/// a bound below zero asks for nothing.
 #[test]
 fn the_tightest_of_several_meshes_where_a_margin_is_violated() {
     let (mut violated, mut beyond) = (0, 0);
@@ -353,7 +400,10 @@ fn the_tightest_of_several_meshes_where_a_margin_is_violated() {
             .map(|_| {
                 let away = random.point() * 2.0;
                 let moved = wall(random).vertices().iter().map(|&v| v + away).collect();
-                (TriMesh::new(moved, wall(random).indices().to_vec()).unwrap(), random.between(0.0, 3.0))
+                (
+                    TriMesh::new(moved, wall(random).indices().to_vec()).unwrap(),
+                    random.between(0.0, 3.0),
+                )
             })
             .collect();
         let names: Vec<_> = engines(&meshes[0].0).into_iter().map(|(name, _)| name).collect();
@@ -362,7 +412,8 @@ fn the_tightest_of_several_meshes_where_a_margin_is_violated() {
             for (number, (mesh, margin)) in meshes.iter().enumerate() {
                 let (_, mut engine) = engines(mesh).swap_remove(which);
                 let bound = room + margin;
-                if let Some(found) = engine.minimum_within(&robot, &Pose::IDENTITY, bound).unwrap() {
+                if let Some(found) = engine.minimum_within(&robot, &Pose::IDENTITY, bound).unwrap()
+                {
                     assert!(bound >= 0.0);
                     (room, tightest) = (found.distance - margin, Some(number));
                 }

@@ -111,8 +111,14 @@ impl Body {
     fn closest(&self, other: &Self) -> (f64, [Vector; 2]) {
         let v = |point: Vector| Vec3::from(point.to_array());
         let [one, two] = [self, other].map(|body| body.ends.map(v));
-        let closest =
-            modified_cylinder_modified_cylinder(one, self.radius, self.flat, two, other.radius, other.flat);
+        let closest = modified_cylinder_modified_cylinder(
+            one,
+            self.radius,
+            self.flat,
+            two,
+            other.radius,
+            other.flat,
+        );
         let at = |point: Vec3<f64>| Vector::new(point.x, point.y, point.z);
         (closest.distance, [at(closest.point1), at(closest.point2)])
     }
@@ -169,7 +175,8 @@ impl Robot {
 
     /// Whether an end is a flat face of the robot.
     fn is_face(&self, link: usize, end: usize) -> bool {
-        self.bodies[link].flat[end] && matches!(self.beyond(link, end), Beyond::Nothing | Beyond::Thinner)
+        self.bodies[link].flat[end]
+            && matches!(self.beyond(link, end), Beyond::Nothing | Beyond::Thinner)
     }
 
     /// Whether the robot leads nowhere nearer from a place on an axis, from where `way` leads to
@@ -215,8 +222,9 @@ impl Robot {
         let at = |point: Vec3<f64>| Vector::new(point.x, point.y, point.z);
         let (x, y) = (at(axes.point1), at(axes.point2));
         let way = y - x;
-        let is_face =
-            |link: usize, place| self.bodies[link].end_at(place).is_some_and(|end| self.is_face(link, end));
+        let is_face = |link: usize, place| {
+            self.bodies[link].end_at(place).is_some_and(|end| self.is_face(link, end))
+        };
         if is_face(i, x) || is_face(j, y) {
             return Holds::NO;
         }
@@ -257,7 +265,8 @@ impl Robot {
         // Any point of the face that is as near.
         let mut bare = self.is_bare(i, end, point);
         let to_axis = |point: Vector| {
-            let share = ((point - other.ends[0]).dot(along) / along.length_squared()).clamp(0.0, 1.0);
+            let share =
+                ((point - other.ends[0]).dot(along) / along.length_squared()).clamp(0.0, 1.0);
             (other.ends[0] + along * share - point).length()
         };
         let side = normal.any_orthonormal_vector();
@@ -278,7 +287,8 @@ impl Robot {
         {
             let sees = Holds::not_negative(-way.dot(other.outward(other_end)) / least);
             let point = place - way * (other.radius / least);
-            let bare = if other.flat[other_end] { Holds::YES } else { self.is_bare(j, other_end, point) };
+            let bare =
+                if other.flat[other_end] { Holds::YES } else { self.is_bare(j, other_end, point) };
             is_seen_too = sees.and(bare);
             // What is nearest on the other face is told for round ends alone.
             is_seen_too.sure &= !other.flat[other_end];
@@ -330,7 +340,8 @@ impl Robot {
         let nothing = (f64::INFINITY, [0; 2]);
         let mut corner = vec![vec![nothing; count + 1]; count + 1];
         let mut least = f64::INFINITY;
-        let nearer = |one: (f64, [usize; 2]), two: (f64, [usize; 2])| if two.0 < one.0 { two } else { one };
+        let nearer =
+            |one: (f64, [usize; 2]), two: (f64, [usize; 2])| if two.0 < one.0 { two } else { one };
         for a in 0..count {
             for b in (a + 1..count).rev() {
                 let of_last = (b..count).map(|k| (apart[a][k], [a, k]));
@@ -342,7 +353,9 @@ impl Robot {
                     let (_, points) = pieces[one].closest(&pieces[two]);
                     let links = one / PIECES + 1..two / PIECES;
                     let is_held = |point: &Vector| {
-                        self.bodies[links.clone()].iter().any(|body| body.signed(*point) < 1e-6 * body.radius)
+                        self.bodies[links.clone()]
+                            .iter()
+                            .any(|body| body.signed(*point) < 1e-6 * body.radius)
                     };
                     least = if points.iter().any(is_held) { least } else { within.0 };
                 }
@@ -451,7 +464,11 @@ fn radii(random: &mut Random, radii: Radii, count: u32) -> Vec<f64> {
 }
 
 fn chain(points: &[Vector], radii: &[f64], is_flat: bool) -> Chain {
-    let chain = if is_flat { Chain::from_centreline(points, radii) } else { Chain::capsules(points, radii) };
+    let chain = if is_flat {
+        Chain::from_centreline(points, radii)
+    } else {
+        Chain::capsules(points, radii)
+    };
     chain.unwrap()
 }
 
@@ -483,7 +500,8 @@ fn judge(
         let is_flat = is_flat.unwrap_or(random.below(2) == 0);
         let count = 4 + random.below(15);
         let unit = [1.0, 1e-3, 1e-6][random.below(3) as usize];
-        let points: Vec<_> = centreline(random, shape, count).iter().map(|point| point * unit).collect();
+        let points: Vec<_> =
+            centreline(random, shape, count).iter().map(|point| point * unit).collect();
         let radii: Vec<_> = radii(random, kind, count).iter().map(|radius| radius * unit).collect();
         let chain = chain(&points, &radii, is_flat);
         let Ok(found) = pair.self_minimum(&chain) else { continue };

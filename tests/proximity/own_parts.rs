@@ -47,14 +47,17 @@ fn a_hairpin_is_as_wide_as_its_waist() {
     }
 }
 
-/// An arc of curvature 0.5 and radius 0.9: at a turn of 52 degrees its surfaces are nearer than at the waist of any hairpin.
+/// An arc of curvature 0.5 and radius 0.9: at a turn of 52 degrees its surfaces are nearer than at
+/// the waist of any hairpin.
 #[test]
 fn a_bend_does_not_meet_its_own_neighbourhood() {
-    let arc =
-        |turn: f64| move |s: f64| Vector::new(2.0 * (1.0 - (turn * s).cos()), 0.0, 2.0 * (turn * s).sin());
+    let arc = |turn: f64| {
+        move |s: f64| Vector::new(2.0 * (1.0 - (turn * s).cos()), 0.0, 2.0 * (turn * s).sin())
+    };
     let robot = along(arc(0.48 * PI), 40, 0.9);
     assert_eq!(self_minimum(&robot).unwrap(), None);
-    // Beyond a quarter of a turn base and tip are faces that something may stand on, but nothing does.
+    // Beyond a quarter of a turn base and tip are faces that something may stand on, but nothing
+    // does.
     for turn in [0.55 * PI, 0.8 * PI, 0.99 * PI] {
         let robot = along(arc(turn), 60, 0.9);
         assert_eq!(self_minimum(&robot).unwrap(), None, "{turn}");
@@ -62,7 +65,8 @@ fn a_bend_does_not_meet_its_own_neighbourhood() {
     }
 }
 
-/// The distance of neighbouring turns of a helix: at the angle near 2 pi where R^2 sin(phi) + (p / 2 pi)^2 phi = 0.
+/// The distance of neighbouring turns of a helix: at the angle near 2 pi where R^2 sin(phi) + (p /
+/// 2 pi)^2 phi = 0.
 #[test]
 fn a_helix_meets_itself_at_one_pitch() {
     let (radius, thickness) = (3.0, 0.4);
@@ -76,12 +80,17 @@ fn a_helix_meets_itself_at_one_pitch() {
         }
         let chord = (2.0 * radius * radius * (1.0 - low.cos()) + (rise * low).powi(2)).sqrt();
         let turn = |s: f64| 6.0 * PI * s;
-        let helix = |s: f64| Vector::new(radius * turn(s).cos(), radius * turn(s).sin(), rise * turn(s));
+        let helix =
+            |s: f64| Vector::new(radius * turn(s).cos(), radius * turn(s).sin(), rise * turn(s));
         let robot = along(helix, 600, thickness);
         let found = self_minimum(&robot).unwrap().unwrap();
         // A chord of 1.8 degrees leaves the circle by 4e-4, on either turn alike but for its tilt.
         let expected = (chord - 2.0 * thickness).max(0.0);
-        assert!((found.distance - expected).abs() < 1e-3, "{pitch}: {} for {expected}", found.distance);
+        assert!(
+            (found.distance - expected).abs() < 1e-3,
+            "{pitch}: {} for {expected}",
+            found.distance
+        );
         assert_eq!(self_clears(&robot, 0.0).unwrap(), pitch > 0.8);
     }
 }
@@ -140,8 +149,9 @@ fn two_steps_face_one_another() {
     assert_eq!(self_minimum(&robot).unwrap().unwrap().distance, 2.0);
 }
 
-/// A thick tube, and a thin one that comes back between a quarter and half a turn later and runs into its end: points of both in one
-/// place, which rounding leaves some units in the last place apart, in any direction.
+/// A thick tube, and a thin one that comes back between a quarter and half a turn later and runs
+/// into its end: points of both in one place, which rounding leaves some units in the last place
+/// apart, in any direction.
 #[test]
 fn a_tip_that_runs_into_a_face_is_never_lost() {
     let points = [
@@ -168,7 +178,8 @@ fn a_tip_that_runs_into_a_face_is_never_lost() {
     assert!(apart > 100, "rounding parted only {apart}");
 }
 
-/// Two axes that are nearest at places within both are a local minimum, whatever the joints between them.
+/// Two axes that are nearest at places within both are a local minimum, whatever the joints between
+/// them.
 #[test]
 fn no_local_minimum_is_left_out() {
     let mut random = Random::new(1);
@@ -184,13 +195,17 @@ fn no_local_minimum_is_left_out() {
             way = (way + random.direction() * sharp).normalize_or(Vector::Z);
         }
         let radius = 1e-3;
-        let Ok(robot) = Chain::from_centreline(&points, &vec![radius; count as usize]) else { continue };
+        let Ok(robot) = Chain::from_centreline(&points, &vec![radius; count as usize]) else {
+            continue;
+        };
         let Ok(found) = pair.self_minimum(&robot) else { continue };
         for i in 0..count as usize {
             for j in i + 2..count as usize {
                 let v = |point: Vector| Vec3::from(point.to_array());
-                let axes =
-                    segment_segment([v(points[i]), v(points[i + 1])], [v(points[j]), v(points[j + 1])]);
+                let axes = segment_segment(
+                    [v(points[i]), v(points[i + 1])],
+                    [v(points[j]), v(points[j + 1])],
+                );
                 let inside = |k: usize, point: Vec3<f64>| {
                     let point = Vector::from(<[f64; 3]>::from(point));
                     let share = (point - points[k]).dot(points[k + 1] - points[k]);
@@ -210,7 +225,9 @@ fn no_local_minimum_is_left_out() {
         // What is remembered changes no answer.
         assert_eq!(self_minimum(&robot).unwrap(), found);
         if let Some(found) = found {
-            assert!(self_clears(&robot, found.distance.next_down()).unwrap() || found.distance == 0.0);
+            assert!(
+                self_clears(&robot, found.distance.next_down()).unwrap() || found.distance == 0.0
+            );
             assert!(!self_clears(&robot, found.distance).unwrap());
         }
     }
@@ -229,21 +246,26 @@ fn a_joint_that_is_too_sharp_is_named() {
 /// A capsule's round end where the robot gets thinner is in the way like a face.
 #[test]
 fn a_thin_tube_that_bends_back_meets_the_round_end_of_its_step() {
-    let points =
-        [[0.0, 0.0, -10.0], [0.0, 0.0, 0.0], [0.0, 0.0, 3.0], [3.0, 0.0, -2.196_152]].map(Vector::from);
+    let points = [[0.0, 0.0, -10.0], [0.0, 0.0, 0.0], [0.0, 0.0, 3.0], [3.0, 0.0, -2.196_152]]
+        .map(Vector::from);
     let robot = Chain::capsules(&points, &[2.0, 0.1, 0.1]).unwrap();
     let met = self_minimum(&robot).unwrap().unwrap();
     assert!(met.distance == 0.0 && met.links == [0, 2], "{met:?}");
     assert!(!self_clears(&robot, 0.0).unwrap());
-    // Thinner by so much that it stays away, as far as the point of the axis that is nearest to the step is.
+    // Thinner by so much that it stays away, as far as the point of the axis that is nearest to the
+    // step is.
     let robot = Chain::capsules(&points, &[0.5, 0.1, 0.1]).unwrap();
     let apart = self_minimum(&robot).unwrap().unwrap();
     let [tip, joint] = [points[3], points[2]];
     let way = (tip - joint).normalize();
     let nearest = (joint + way * (points[1] - joint).dot(way) - points[1]).length();
-    assert!((apart.distance - (nearest - 0.6)).abs() < 1e-12 && apart.links == [0, 2], "{apart:?} {nearest}");
     assert!(
-        self_clears(&robot, 0.99 * apart.distance).unwrap() && !self_clears(&robot, apart.distance).unwrap()
+        (apart.distance - (nearest - 0.6)).abs() < 1e-12 && apart.links == [0, 2],
+        "{apart:?} {nearest}"
+    );
+    assert!(
+        self_clears(&robot, 0.99 * apart.distance).unwrap()
+            && !self_clears(&robot, apart.distance).unwrap()
     );
 }
 
@@ -282,7 +304,8 @@ fn radii_that_are_equal_up_to_rounding_are_no_steps() {
     let mut random = Random::new(8);
     for round in 0..200 {
         let count = 3 + random.below(20) as usize;
-        let (turn, noise) = (random.between(0.0, 1.5) / count as f64, [2e-16, 1e-12, 1e-10][round % 3]);
+        let (turn, noise) =
+            (random.between(0.0, 1.5) / count as f64, [2e-16, 1e-12, 1e-10][round % 3]);
         let unit = [1.0, 1e-3, 1e-6][random.below(3) as usize];
         let radius = random.between(0.1, 5.0).min(0.4 / turn) * unit;
         let mut points = arc(turn, count);
@@ -304,7 +327,10 @@ fn radii_that_are_equal_up_to_rounding_are_no_steps() {
         }
         if round % 10 == 0 {
             let motion = LinearMotion::chain(&points, &points, links).unwrap();
-            assert!(pair.motion_self_clears(&motion, 0.0, 1e-3 * unit).unwrap().is_clear(), "{round}");
+            assert!(
+                pair.motion_self_clears(&motion, 0.0, 1e-3 * unit).unwrap().is_clear(),
+                "{round}"
+            );
         }
     }
 }
@@ -330,8 +356,11 @@ fn a_tapered_robot_does_not_meet_its_own_neighbourhood() {
         }
         let points = arc(turn, count);
         let is_flat = round % 4 < 2;
-        let chain =
-            if is_flat { Chain::from_centreline(&points, &radii) } else { Chain::capsules(&points, &radii) };
+        let chain = if is_flat {
+            Chain::from_centreline(&points, &radii)
+        } else {
+            Chain::capsules(&points, &radii)
+        };
         let chain = chain.unwrap();
         assert!(pair.self_clears(&chain, 0.0).unwrap(), "{round}: {:?}", pair.self_minimum(&chain));
         let decision = pair.tube_self_clears(&Tube::from(&chain), 0.0, 1e-3).unwrap();
@@ -342,7 +371,10 @@ fn a_tapered_robot_does_not_meet_its_own_neighbourhood() {
             } else {
                 LinearMotion::capsules(&points, &points, &radii)
             };
-            assert!(pair.motion_self_clears(&motion.unwrap(), 0.0, 1e-3).unwrap().is_clear(), "{round}");
+            assert!(
+                pair.motion_self_clears(&motion.unwrap(), 0.0, 1e-3).unwrap().is_clear(),
+                "{round}"
+            );
         }
         overlapping += usize::from(radius > 1.0);
         bent += usize::from(turn * count as f64 > 0.5 * PI);
@@ -381,8 +413,11 @@ fn a_thin_part_that_bends_back_to_a_thick_end_meets_it() {
         let pose = random.pose(3.0);
         let points = points.map(|point| pose * point);
         let radii = [wide, thin, thin, thin];
-        let chain =
-            if is_flat { Chain::from_centreline(&points, &radii) } else { Chain::capsules(&points, &radii) };
+        let chain = if is_flat {
+            Chain::from_centreline(&points, &radii)
+        } else {
+            Chain::capsules(&points, &radii)
+        };
         let Ok(found) = pair.self_minimum(&chain.unwrap()) else { continue };
         let found = found.unwrap_or_else(|| panic!("{round}: the tip meets the end"));
         assert!(found.distance <= gap + 2e-9, "{round}: {found:?} {gap}");

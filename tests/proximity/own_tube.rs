@@ -4,7 +4,9 @@ use super::robots::robot;
 use super::tube::{all_ways, fine, from_function};
 use continuum_testing::{Arcs, Random};
 use parry_continuum::parry::math::{Pose, Vector};
-use parry_continuum::proximity::{Decision, ProximityError, RobotPair, self_minimum, tube_self_clears};
+use parry_continuum::proximity::{
+    Decision, ProximityError, RobotPair, self_minimum, tube_self_clears,
+};
 use parry_continuum::{Chain, Tube, TubeSection};
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -53,21 +55,25 @@ impl Coil {
     }
 
     fn samples(self, angle: f64, thickness: f64, count: u32) -> Tube {
-        let points: Vec<_> = (0..=count).map(|k| self.at(angle * f64::from(k) / f64::from(count))).collect();
-        let ends =
-            [0.0, angle].map(|a| Vector::new(-self.radius * a.sin(), self.radius * a.cos(), self.rise));
+        let points: Vec<_> =
+            (0..=count).map(|k| self.at(angle * f64::from(k) / f64::from(count))).collect();
+        let ends = [0.0, angle]
+            .map(|a| Vector::new(-self.radius * a.sin(), self.radius * a.cos(), self.rise));
         Tube::with_constant_radius(&points, thickness, Some(ends)).unwrap()
     }
 
     fn frames(self, angle: f64, thickness: f64, count: u32) -> Tube {
         let angles = (0..=count).map(|k| angle * f64::from(k) / f64::from(count));
         let (points, ways): (Vec<_>, Vec<_>) = angles
-            .map(|a| (self.at(a), Vector::new(-self.radius * a.sin(), self.radius * a.cos(), self.rise)))
+            .map(|a| {
+                (self.at(a), Vector::new(-self.radius * a.sin(), self.radius * a.cos(), self.rise))
+            })
             .unzip();
         Tube::from_frames(&points, &ways, &vec![thickness; count as usize]).unwrap()
     }
 
-    /// How far the axes of neighbouring turns are apart: at the angle near 2 pi where R^2 sin(phi) + rise^2 phi = 0.
+    /// How far the axes of neighbouring turns are apart: at the angle near 2 pi where R^2 sin(phi)
+    /// + rise^2 phi = 0.
     fn chord(self) -> f64 {
         let slope = |phi: f64| self.radius * self.radius * phi.sin() + self.rise * self.rise * phi;
         let (mut low, mut high) = (1.5 * PI, 2.5 * PI);
@@ -87,18 +93,21 @@ fn neighbouring_turns_of_a_coil_are_as_far_apart_as_an_equation_says() {
         let (angle, thickness) = (6.0 * PI, 0.4);
         let apart = coil.chord() - 2.0 * thickness;
         let tube = coil.tube(angle, thickness);
-        let mut decide = |margin: f64, resolution| pair.tube_self_clears(&tube, margin, resolution).unwrap();
+        let mut decide =
+            |margin: f64, resolution| pair.tube_self_clears(&tube, margin, resolution).unwrap();
         if apart < 0.0 {
             assert_eq!(decide(0.0, 1e-9), Decision::Contact);
         } else {
-            // The whole coil is equally near itself, so that more digits would take more pieces than a query divides it into.
+            // The whole coil is equally near itself, so that more digits would take more pieces
+            // than a query divides it into.
             assert_eq!(decide(apart - 1e-4, 2e-5), Decision::Clear, "{pitch}");
             assert_eq!(decide(apart + 1e-9, 1e-10), Decision::Contact, "{pitch}");
             // A touch at the margin itself is nobody's to tell.
             assert_ne!(decide(apart, 1e-5), Decision::Contact, "{pitch}");
             assert_eq!(decide(0.0, 1e-5), Decision::Clear);
         }
-        // Samples leave open k l^2 / 8 of each part on either side of what they show, together 1.5e-3; frames less.
+        // Samples leave open k l^2 / 8 of each part on either side of what they show, together
+        // 1.5e-3; frames less.
         for tube in [coil.samples(angle, thickness, 600), coil.frames(angle, thickness, 180)] {
             for off in [-0.1, -4e-3, 4e-3, 0.1] {
                 let right = if off < 0.0 { Decision::Clear } else { Decision::Contact };
@@ -108,7 +117,8 @@ fn neighbouring_turns_of_a_coil_are_as_far_apart_as_an_equation_says() {
                 }
             }
         }
-        // What is stated of both parts counts on either side, and at the rim of a face a little more.
+        // What is stated of both parts counts on either side, and at the rim of a face a little
+        // more.
         let tube = tube.with_error(0.05).unwrap();
         for (off, right) in [
             (-0.13, Decision::Clear),
@@ -117,13 +127,18 @@ fn neighbouring_turns_of_a_coil_are_as_far_apart_as_an_equation_says() {
             (0.13, Decision::Contact),
         ] {
             if apart + off >= 0.0 {
-                assert_eq!(pair.tube_self_clears(&tube, apart + off, 0.02).unwrap(), right, "{pitch}, {off}");
+                assert_eq!(
+                    pair.tube_self_clears(&tube, apart + off, 0.02).unwrap(),
+                    right,
+                    "{pitch}, {off}"
+                );
             }
         }
     }
 }
 
-/// A robot that bends much: up to five stretches, each an arc or two, that turn by up to a whole turn.
+/// A robot that bends much: up to five stretches, each an arc or two, that turn by up to a whole
+/// turn.
 pub(super) fn winding(random: &mut Random) -> Arcs {
     let mut all = Arcs::from_frame(random.pose(1.0));
     let mut angle = random.between(0.0, 7.0);
@@ -214,14 +229,19 @@ fn legs_of_a_hairpin_meet_if_it_turns_by_more_than_half_a_turn() {
         let apart = width - 2.0 * radius * (0.5 * beyond).cos();
         for margin in [0.0, 1.0, 5.0, 10.0, 16.0, 16.9] {
             let decision = pair.tube_self_clears(&tube, margin, 1e-6).unwrap();
-            let right = if beyond < 0.0 || margin < apart { Decision::Clear } else { Decision::Contact };
+            let right =
+                if beyond < 0.0 || margin < apart { Decision::Clear } else { Decision::Contact };
             assert_eq!(decision, right, "{beyond}: {margin} of {apart}");
         }
         if beyond > 0.02 {
             assert!(beyond < 0.1 || apart < 16.0);
             for (off, right) in [(-1e-8, Decision::Clear), (1e-8, Decision::Contact)] {
                 if apart + off > 0.0 {
-                    assert_eq!(pair.tube_self_clears(&tube, apart + off, 1e-9).unwrap(), right, "{beyond}");
+                    assert_eq!(
+                        pair.tube_self_clears(&tube, apart + off, 1e-9).unwrap(),
+                        right,
+                        "{beyond}"
+                    );
                 }
             }
         }
@@ -249,7 +269,9 @@ fn bent_back(turn: f64, reach: f64) -> Arcs {
 fn a_thin_tube_that_bends_back_stands_on_the_face_of_its_step() {
     let mut pair = RobotPair::new();
     let mut above = 0;
-    for (turn, reach) in [(PI, 0.75), (0.6 * PI, 2.5), (0.7 * PI, 2.5), (0.8 * PI, 1.4), (0.9 * PI, 0.9)] {
+    for (turn, reach) in
+        [(PI, 0.75), (0.6 * PI, 2.5), (0.7 * PI, 2.5), (0.8 * PI, 1.4), (0.9 * PI, 0.9)]
+    {
         let arcs = Arc::new(bent_back(turn, reach));
         let chain = self_minimum(&fine(&arcs, Chain::cylinders)).unwrap().unwrap().distance;
         for (way, tube) in all_ways(&arcs).iter().enumerate() {
@@ -271,7 +293,8 @@ fn a_thin_tube_that_bends_back_stands_on_the_face_of_its_step() {
         }
         // The lowest point of the tip: beside the tube's first leg, and ahead of the face.
         let (sin, cos) = turn.sin_cos();
-        let [beside, ahead] = [1.0 - cos + reach * sin + 0.2 * cos, 1.0 + sin + reach * cos - 0.2 * sin];
+        let [beside, ahead] =
+            [1.0 - cos + reach * sin + 0.2 * cos, 1.0 + sin + reach * cos - 0.2 * sin];
         if beside <= 3.0 {
             let tube = from_function(&arcs);
             for (off, right) in [(-1e-8, Decision::Clear), (1e-8, Decision::Contact)] {
@@ -310,11 +333,20 @@ fn a_tip_stands_against_its_own_side() {
         let chain = self_minimum(&fine(&arcs, Chain::cylinders)).unwrap().unwrap().distance;
         assert!((chain - apart).abs() < 1e-4, "{chain} {apart}");
         let tube = from_function(&arcs);
-        assert_eq!(pair.tube_self_clears(&tube, apart - 1e-8, 1e-9).unwrap(), Decision::Clear, "{apart}");
-        assert_eq!(pair.tube_self_clears(&tube, apart + 1e-8, 1e-9).unwrap(), Decision::Contact, "{apart}");
+        assert_eq!(
+            pair.tube_self_clears(&tube, apart - 1e-8, 1e-9).unwrap(),
+            Decision::Clear,
+            "{apart}"
+        );
+        assert_eq!(
+            pair.tube_self_clears(&tube, apart + 1e-8, 1e-9).unwrap(),
+            Decision::Contact,
+            "{apart}"
+        );
     }
     // Into it.
-    let tube = from_function(&Arc::new(hairpin(1.5 * PI, bend, [20.0, bend - 0.9 * radius], radius)));
+    let tube =
+        from_function(&Arc::new(hairpin(1.5 * PI, bend, [20.0, bend - 0.9 * radius], radius)));
     assert_eq!(pair.tube_self_clears(&tube, 0.0, 1e-9).unwrap(), Decision::Contact);
 }
 
@@ -322,7 +354,11 @@ fn a_tip_stands_against_its_own_side() {
 #[test]
 fn a_knot_is_as_thick_as_it_can_be() {
     let point = |t: f64| {
-        Vector::new(t.sin() + 2.0 * (2.0 * t).sin(), t.cos() - 2.0 * (2.0 * t).cos(), -(3.0 * t).sin()) * 5.0
+        Vector::new(
+            t.sin() + 2.0 * (2.0 * t).sin(),
+            t.cos() - 2.0 * (2.0 * t).cos(),
+            -(3.0 * t).sin(),
+        ) * 5.0
     };
     let count = 4000_u32;
     let at = |k: u32| point(0.3 + 5.9 * f64::from(k) / f64::from(count));
@@ -344,12 +380,22 @@ fn a_knot_is_as_thick_as_it_can_be() {
     let tube = Tube::with_constant_radius(&points, radius, None).unwrap();
     let mut pair = RobotPair::new();
     assert!(least > 1.0, "{least}");
-    // Samples are 0.03 apart: next to the nearest two places are some that are 1.5e-4 farther apart.
-    assert_eq!(pair.tube_self_clears(&tube, least - 5e-4, 2.5e-4).unwrap(), Decision::Clear, "{least}");
-    assert_eq!(pair.tube_self_clears(&tube, least + 5e-4, 2.5e-4).unwrap(), Decision::Contact, "{least}");
+    // Samples are 0.03 apart: next to the nearest two places are some that are 1.5e-4 farther
+    // apart.
+    assert_eq!(
+        pair.tube_self_clears(&tube, least - 5e-4, 2.5e-4).unwrap(),
+        Decision::Clear,
+        "{least}"
+    );
+    assert_eq!(
+        pair.tube_self_clears(&tube, least + 5e-4, 2.5e-4).unwrap(),
+        Decision::Contact,
+        "{least}"
+    );
 }
 
-/// How often a coil's curve is asked for a place, for margins a little off the truth: as the root of 1 / resolution.
+/// How often a coil's curve is asked for a place, for margins a little off the truth: as the root
+/// of 1 / resolution.
 #[test]
 fn the_work_grows_like_the_root_of_the_resolution() {
     let coil = Coil { radius: 3.0, rise: 0.3 };
@@ -415,7 +461,9 @@ fn a_scaled_problem_has_the_scaled_answer() {
             let points: Vec<_> = points.iter().map(|point| point * scale).collect();
             let radii: Vec<_> = radii.iter().map(|radius| radius * scale).collect();
             let tube = Tube::from_samples(&points, &radii, None).ok()?;
-            Some(tube_self_clears(&tube, margin * scale, 0.03 * scale).map_err(|error| error.kind()))
+            Some(
+                tube_self_clears(&tube, margin * scale, 0.03 * scale).map_err(|error| error.kind()),
+            )
         };
         let unit = at(1.0);
         for power in [-200, -1, 40, 200] {

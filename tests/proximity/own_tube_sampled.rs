@@ -1,6 +1,7 @@
-//! A tube beside itself, against all pairs of its discs and faces, sampled and then sought between the samples. What is asked about is
-//! told by the arcs' own curvature, and what is in front of a face by points of the discs. Beside a
-//! face only local minima have to be found; what else is in front of it may be.
+//! A tube beside itself, against all pairs of its discs and faces, sampled and then sought between
+//! the samples. What is asked about is told by the arcs' own curvature, and what is in front of a
+//! face by points of the discs. Beside a face only local minima have to be found; what else is in
+//! front of it may be.
 
 use super::own_tube::winding;
 use super::tube::all_ways;
@@ -52,13 +53,15 @@ impl Disc {
         ahead.hypot((across - self.radius).max(0.0)) - other.radius
     }
 
-    /// How far another disc is from this one, a face, as far as it is in front of it: where the normal points.
+    /// How far another disc is from this one, a face, as far as it is in front of it: where the
+    /// normal points.
     fn front_apart(&self, other: &Self) -> f64 {
         let (distance, way) = self.closest(other);
         if distance > 0.0 && way.dot(self.normal) >= 0.0 {
             return distance;
         }
-        // What is nearest is behind. So the nearest place in front is in the face's plane, on a chord of the disc.
+        // What is nearest is behind. So the nearest place in front is in the face's plane, on a
+        // chord of the disc.
         let height = (other.centre - self.centre).dot(self.normal);
         let up = self.normal - other.normal * self.normal.dot(other.normal);
         let steepness = up.length();
@@ -100,7 +103,8 @@ impl<'a> Sampled<'a> {
                 let turned = arcs.turned(s);
                 discs.push((s, number, Disc { centre, normal, radius: part.radius, turned }));
             }
-            let radius_of = |other: usize| arcs.stretches.get(other).map_or(0.0, |other| other.radius);
+            let radius_of =
+                |other: usize| arcs.stretches.get(other).map_or(0.0, |other| other.radius);
             let [(_, _, first), (_, _, last)] =
                 [discs[discs.len() - 1 - grid as usize], discs[discs.len() - 1]];
             if radius_of(number.wrapping_sub(1)) < part.radius {
@@ -149,7 +153,10 @@ impl<'a> Sampled<'a> {
     fn nearest(&self) -> Truth {
         let step = |k: usize| {
             let next = self.discs.get(k + 1).filter(|next| next.1 == self.discs[k].1);
-            next.map_or_else(|| self.discs[k].0 - self.discs[k - 1].0, |next| next.0 - self.discs[k].0)
+            next.map_or_else(
+                || self.discs[k].0 - self.discs[k - 1].0,
+                |next| next.0 - self.discs[k].0,
+            )
         };
         let mut starts = Vec::new();
         for (i, (_, m, one)) in self.discs.iter().enumerate() {
@@ -164,7 +171,11 @@ impl<'a> Sampled<'a> {
         for [i, j] in best(starts) {
             let apart = |[s, t]: [f64; 2]| {
                 let (one, two) = (self.disc(i, s), self.disc(j, t));
-                if two.turned - one.turned < PI - ROUNDING { f64::INFINITY } else { one.apart(&two) }
+                if two.turned - one.turned < PI - ROUNDING {
+                    f64::INFINITY
+                } else {
+                    one.apart(&two)
+                }
             };
             let (found, _) = descend([self.discs[i].0, self.discs[j].0], [step(i), step(j)], apart);
             least = least.min(found);
@@ -220,7 +231,8 @@ fn best<T>(mut all: Vec<(f64, [usize; 2], T)>) -> impl Iterator<Item = T> {
     })
 }
 
-/// The least of a function near a place: steps to all sides and between them, halved where none leads down.
+/// The least of a function near a place: steps to all sides and between them, halved where none
+/// leads down.
 fn descend<const N: usize>(
     mut place: [f64; N],
     mut steps: [f64; N],
@@ -266,7 +278,9 @@ fn ask(pair: &mut RobotPair, arcs: Arcs, margins: &[f64], seen: &mut Seen, name:
     let arcs = Arc::new(arcs);
     let truth = Sampled::new(&arcs, 80).nearest();
     // As wide as the tightest bend, at a step and elsewhere.
-    let most = |of: fn(&continuum_testing::Stretch) -> f64| arcs.stretches.iter().map(of).fold(0.0, f64::max);
+    let most = |of: fn(&continuum_testing::Stretch) -> f64| {
+        arcs.stretches.iter().map(of).fold(0.0, f64::max)
+    };
     let (curvature, radius) = (most(|part| part.curvature), most(|part| part.radius));
     let width = (1.0 / curvature - radius).min(2.0 / curvature - 2.0 * radius);
     let mut margins = margins.to_vec();
@@ -320,16 +334,16 @@ fn winding_tubes_are_as_near_to_themselves_as_their_discs() {
     assert!(seen.touching > 5 && seen.free > 10, "{seen:?}");
 }
 
-/// Arcs of quarters of a turn in planes at right angles, straight stretches between, and few radii: parts are parallel, coplanar, in one
-/// line, end on end, and touch as often as not.
+/// Arcs of quarters of a turn in planes at right angles, straight stretches between, and few radii:
+/// parts are parallel, coplanar, in one line, end on end, and touch as often as not.
 fn aligned(random: &mut Random) -> Arcs {
     let mut all = Arcs::from_frame(Pose::IDENTITY);
     for _ in 0..1 + random.below(4) {
         let radius = [0.125, 0.25, 0.5, 1.0][random.below(4) as usize];
         let arcs: Vec<_> = (0..1 + random.below(2))
             .map(|_| {
-                let bend: f64 =
-                    [radius * 1.0625, radius * 1.5, radius * 2.0, 1.0, 2.0][random.below(5) as usize];
+                let bend: f64 = [radius * 1.0625, radius * 1.5, radius * 2.0, 1.0, 2.0]
+                    [random.below(5) as usize];
                 let curvature = 1.0 / bend.max(radius * 1.0625);
                 let way = [Vector::X, -Vector::X, Vector::X, Vector::Y][random.below(4) as usize];
                 let turn = FRAC_PI_2 * f64::from(1 + random.below(4));
@@ -351,7 +365,13 @@ fn aligned_tubes_are_as_near_to_themselves_as_their_discs() {
     let mut random = Random::new(2);
     let (mut pair, mut seen) = (RobotPair::new(), Seen::default());
     for round in 0..120 {
-        ask(&mut pair, aligned(&mut random), &[0.0, 0.25, 0.5, 1.0], &mut seen, &format!("{round}"));
+        ask(
+            &mut pair,
+            aligned(&mut random),
+            &[0.0, 0.25, 0.5, 1.0],
+            &mut seen,
+            &format!("{round}"),
+        );
     }
     assert!(seen.touching > 5 && seen.free > 10 && seen.none > 10, "{seen:?}");
 }

@@ -1,4 +1,5 @@
-//! How often a mesh winds around a point, exactly: the triangles that a ray crosses, in whole numbers.
+//! How often a mesh winds around a point, exactly: the triangles that a ray crosses, in whole
+//! numbers.
 
 use parry_continuum::parry::math::Vector;
 use parry_continuum::parry::shape::TriMesh;
@@ -21,12 +22,15 @@ pub struct Parity(Vec<[Vector; 3]>);
 impl Parity {
     pub fn new(mesh: &TriMesh) -> Self {
         assert!(
-            mesh.vertices().iter().all(|&vertex| vertex == on_grid(vertex) && vertex.max_element() <= 2.0)
+            mesh.vertices()
+                .iter()
+                .all(|&vertex| vertex == on_grid(vertex) && vertex.max_element() <= 2.0)
         );
         Self(mesh.triangles().map(|triangle| [triangle.a, triangle.b, triangle.c]).collect())
     }
 
-    /// The winding number around a point of the grid; none on the mesh, or if rays along all axes meet edges.
+    /// The winding number around a point of the grid; none on the mesh, or if rays along all axes
+    /// meet edges.
     pub fn winding(&self, point: Vector) -> Option<i32> {
         (0..3).find_map(|axis| self.crossed(point, axis))
     }
@@ -49,7 +53,8 @@ impl Parity {
             });
             let turn = |p: [i128; 3], q: [i128; 3]| p[1] * q[2] - p[2] * q[1];
             let turns = [turn(b, c), turn(c, a), turn(a, b)];
-            let (some_left, some_right) = (turns.iter().any(|&t| t > 0), turns.iter().any(|&t| t < 0));
+            let (some_left, some_right) =
+                (turns.iter().any(|&t| t > 0), turns.iter().any(|&t| t < 0));
             if some_left && some_right {
                 continue;
             }

@@ -15,8 +15,9 @@ fn disc(centre: Vector, first: Vector, second: Vector) -> impl Iterator<Item = [
     (0..16).map(move |k| [centre, corner(k), corner(k + 1)])
 }
 
-/// Two discs on either side of a wire. One is level. The other is a little farther away, but tilted, so that its rim
-/// comes nearer: by an angle whose cosine rounds to one in single precision.
+/// Two discs on either side of a wire. One is level. The other is a little farther away, but
+/// tilted, so that its rim comes nearer: by an angle whose cosine rounds to one in single
+/// precision.
 #[test]
 fn a_slight_tilt_brings_a_rim_nearer() {
     let mut random = Random::new(23);
@@ -39,7 +40,10 @@ fn a_slight_tilt_brings_a_rim_nearer() {
         let robot = Chain::capsules(&[-along, along], &[0.0]).unwrap();
         for (name, mut engine) in engines(&mesh) {
             let found = engine.minimum(&robot, &Pose::IDENTITY).unwrap().distance;
-            assert!((found - nearest).abs() < 1e-14, "{name}: {found} for {nearest}, tilted by {tilt:e}");
+            assert!(
+                (found - nearest).abs() < 1e-14,
+                "{name}: {found} for {nearest}, tilted by {tilt:e}"
+            );
         }
         slight += usize::from(tilt.cos() as f32 == 1.0);
     }

@@ -4,7 +4,9 @@ use continuum_testing::{Arcs, Random};
 use parry_continuum::parry::math::{Pose, Rotation, Vector};
 use parry_continuum::parry::query::PointQuery;
 use parry_continuum::parry::shape::TriMesh;
-use parry_continuum::proximity::{BvhSearch, Clearance, Decision, ProximityError, RobotPair, TubePiece};
+use parry_continuum::proximity::{
+    BvhSearch, Clearance, Decision, ProximityError, RobotPair, TubePiece,
+};
 use parry_continuum::{Cap, Tube, TubeSection};
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -12,20 +14,26 @@ use std::sync::Arc;
 /// A square wall across z at `height`.
 fn wall(height: f64) -> TriMesh {
     let corner = |x: f64, y: f64| Vector::new(x, y, height);
-    let corners = [corner(-90.0, -90.0), corner(90.0, -90.0), corner(90.0, 90.0), corner(-90.0, 90.0)];
+    let corners =
+        [corner(-90.0, -90.0), corner(90.0, -90.0), corner(90.0, 90.0), corner(-90.0, 90.0)];
     TriMesh::new(corners.to_vec(), vec![[0, 1, 2], [0, 2, 3]]).unwrap()
 }
 
 fn from_function(arcs: &Arc<Arcs>) -> Tube {
     let sections = arcs.stretches.iter();
     let sections: Vec<_> = sections
-        .map(|part| TubeSection { length: part.length, radius: part.radius, curvature: part.curvature })
+        .map(|part| TubeSection {
+            length: part.length,
+            radius: part.radius,
+            curvature: part.curvature,
+        })
         .collect();
     let curve = Arc::clone(arcs);
     Tube::from_function(&sections, move |s| curve.at(s)).unwrap()
 }
 
-/// The tube through samples of each stretch; and of each sample how far along the tube it is, and how far along the curve.
+/// The tube through samples of each stretch; and of each sample how far along the tube it is, and
+/// how far along the curve.
 fn from_samples(arcs: &Arcs) -> (Tube, Vec<[f64; 2]>) {
     let (mut points, mut radii, mut places) = (vec![arcs.at(0.0).0], Vec::new(), vec![[0.0; 2]]);
     let (mut along, mut from) = (0.0, 0.0);
@@ -139,7 +147,8 @@ fn pieces_are_long_where_the_wall_is_far() {
     let top = arcs.at(crown).0;
     let rise = top - arcs.at(0.0).0.midpoint(arcs.at(arcs.length()).0);
     assert!(rise.length() > 10.0);
-    let level = Pose::from_parts(Vector::ZERO, Rotation::from_rotation_arc(rise.normalize(), Vector::Z));
+    let level =
+        Pose::from_parts(Vector::ZERO, Rotation::from_rotation_arc(rise.normalize(), Vector::Z));
     let pose = Pose::from_translation(-(level * top)) * level;
     let mesh = wall(radius + gap);
 
@@ -155,8 +164,9 @@ fn pieces_are_long_where_the_wall_is_far() {
         for quarter in [0.25, 0.75] {
             let far = at(quarter * tube.length());
             let away = rims(&arcs, &pose, far.arc_lengths, radius).into_iter();
-            let away =
-                away.map(|point| mesh.distance_to_local_point(point, true)).fold(f64::INFINITY, f64::min);
+            let away = away
+                .map(|point| mesh.distance_to_local_point(point, true))
+                .fold(f64::INFINITY, f64::min);
             assert!(away > 2.0 * gap);
             assert!(
                 length(far) > 0.03 / tolerance.sqrt() * length(nearest),
@@ -175,7 +185,8 @@ fn short_arc(length: f64, curvature: f64) -> Tube {
     from_function(&Arc::new(arcs))
 }
 
-/// A wall that is parallel to a face meets all of it at once, and the discs behind it a little later.
+/// A wall that is parallel to a face meets all of it at once, and the discs behind it a little
+/// later.
 #[test]
 fn pieces_grow_like_the_root_of_the_tolerance_beside_a_face() {
     let mut random = Random::new(8);
@@ -209,7 +220,8 @@ fn pieces_grow_like_the_root_of_the_tolerance_beside_a_face() {
 #[test]
 fn a_triangle_far_away_does_not_blur_a_near_one() {
     let tube = short_arc(4.0, 0.2);
-    let near = [Vector::new(3.0, -1.0, 2.0), Vector::new(3.0, 1.0, 2.0), Vector::new(3.0, 0.0, 3.0)];
+    let near =
+        [Vector::new(3.0, -1.0, 2.0), Vector::new(3.0, 1.0, 2.0), Vector::new(3.0, 0.0, 3.0)];
     let width = |far: f64| {
         let all = near.into_iter().chain(near.map(|corner| corner + Vector::Y * far)).collect();
         let mesh = TriMesh::new(all, vec![[0, 1, 2], [3, 4, 5]]).unwrap();
@@ -234,9 +246,10 @@ fn a_tube_of_another_size_is_not_divided_in_vain() {
     }
 }
 
-/// An arc in the plane z = 0, so that all of it is 4 away from a wall, and from the same arc 6 higher. Where the margin is less than
-/// that by 3e-10, bodies that stick out by no more would have to be 200,000: sagittas are 15 / n^2 for n of them. Only what the
-/// most pieces of a clearance show is said.
+/// An arc in the plane z = 0, so that all of it is 4 away from a wall, and from the same arc 6
+/// higher. Where the margin is less than that by 3e-10, bodies that stick out by no more would have
+/// to be 200,000: sagittas are 15 / n^2 for n of them. Only what the most pieces of a clearance
+/// show is said.
 #[test]
 fn a_margin_at_the_clearance_stays_undecided_in_time() {
     let section = TubeSection { length: 60.0, radius: 1.0, curvature: 1.0 / 30.0 };

@@ -1,4 +1,5 @@
-//! The planner's question: random shapes in a ventricle, most of them colliding, at margins around their distance.
+//! The planner's question: random shapes in a ventricle, most of them colliding, at margins around
+//! their distance.
 
 use continuum_demo::steer::Random;
 use continuum_demo::{ctr, ventricle};
@@ -8,7 +9,8 @@ use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{BvhSearch, Exhaustive, Proximity};
 
-/// Random shapes of the three tubes with about 30 links, by Algorithm 1, as capsules and as cylinders.
+/// Random shapes of the three tubes with about 30 links, by Algorithm 1, as capsules and as
+/// cylinders.
 pub fn shapes(count: usize) -> Vec<Chain> {
     let (robot, mut random) = (ctr::three_tubes(), Random(5));
     (0..count)
@@ -25,7 +27,8 @@ pub fn scene() -> (TriMesh, Pose) {
     (TriMesh::new(vertices, indices).unwrap(), ventricle::entry())
 }
 
-/// Cold, after other shapes, and in a batch: what `clears` says is what the distance says, to the last bit.
+/// Cold, after other shapes, and in a batch: what `clears` says is what the distance says, to the
+/// last bit.
 #[test]
 fn a_shape_clears_exactly_what_its_distance_exceeds() {
     let (mesh, pose) = scene();
@@ -82,8 +85,9 @@ fn a_batch_of_shapes_is_its_shapes_one_by_one() {
     }
 }
 
-/// A small triangle whose centre is over a flat cap, from well inside the link to far ahead of it: however little the gap,
-/// the link keeps it, and where another triangle overlaps the link, no gap hides that.
+/// A small triangle whose centre is over a flat cap, from well inside the link to far ahead of it:
+/// however little the gap, the link keeps it, and where another triangle overlaps the link, no gap
+/// hides that.
 #[test]
 fn a_triangle_just_before_a_flat_cap_neither_touches_nor_hides_what_does() {
     let mut random = Seeded::new(11);
@@ -92,7 +96,8 @@ fn a_triangle_just_before_a_flat_cap_neither_touches_nor_hides_what_does() {
         let (start, direction) = (random.point() * 3.0, random.direction());
         let (side, length) = (direction.any_orthonormal_vector(), random.between(0.05, 2.0));
         let (end, radius) = (start + direction * length, random.between(0.02, 0.5));
-        let gap = 10.0_f64.powf(random.between(-12.0, -1.0)) * if round % 4 == 0 { -1.0 } else { 1.0 };
+        let gap =
+            10.0_f64.powf(random.between(-12.0, -1.0)) * if round % 4 == 0 { -1.0 } else { 1.0 };
         let other = direction.cross(side);
         let corners = [0.0, 2.0, 4.0].map(|turn: f64| (turn.cos(), turn.sin()));
         // In a plane across the axis, so that the gap is that to the cap.
@@ -100,18 +105,25 @@ fn a_triangle_just_before_a_flat_cap_neither_touches_nor_hides_what_does() {
             let centre = end + direction * ahead + side * (0.3 * radius);
             corners.map(|(x, y)| centre + (side * x + other * y) * (0.2 * radius))
         };
-        let far = [Vector::splat(20.0), Vector::new(20.0, 20.0, 19.0), Vector::new(20.0, 19.0, 20.0)];
+        let far =
+            [Vector::splat(20.0), Vector::new(20.0, 20.0, 19.0), Vector::new(20.0, 19.0, 20.0)];
         let robot = Chain::cylinders(&[start, end], &[radius]).unwrap();
         for inside in [None, Some(-0.4 * length)] {
             let second = inside.map_or(far, across);
-            let mesh =
-                TriMesh::new([across(gap), second, far].concat(), vec![[0, 1, 2], [3, 4, 5], [6, 7, 8]]);
+            let mesh = TriMesh::new(
+                [across(gap), second, far].concat(),
+                vec![[0, 1, 2], [3, 4, 5], [6, 7, 8]],
+            );
             let mesh = mesh.unwrap();
             let mut reference = Exhaustive::<f64>::new(&mesh).unwrap();
             let keeps = reference.minimum(&robot, &Pose::IDENTITY).unwrap();
             let mut search = BvhSearch::new(&mesh).unwrap();
             let found = search.minimum(&robot, &Pose::IDENTITY).unwrap();
-            assert_eq!((found.distance, found.triangle), (keeps.distance, keeps.triangle), "{round}: {gap}");
+            assert_eq!(
+                (found.distance, found.triangle),
+                (keeps.distance, keeps.triangle),
+                "{round}: {gap}"
+            );
             let clears = search.clears(&robot, &Pose::IDENTITY, 0.0).unwrap();
             assert_eq!(clears, keeps.distance > 0.0, "{round}: a gap of {gap}, {keeps:?}");
             gaps += u32::from(keeps.distance > 0.0 && gap < 1e-6);
@@ -119,16 +131,20 @@ fn a_triangle_just_before_a_flat_cap_neither_touches_nor_hides_what_does() {
             hidden += u32::from(inside.is_some() && 0.0 < gap && gap < 1e-6);
         }
     }
-    assert!(gaps > 500 && touching > 500 && hidden > 500, "{gaps} small gaps, {touching} touching, {hidden}");
+    assert!(
+        gaps > 500 && touching > 500 && hidden > 500,
+        "{gaps} small gaps, {touching} touching, {hidden}"
+    );
 }
 
-/// A triangle that begins in the plane of a flat cap, but for rounding, and whose third corner lies in the link: nothing
-/// that is as small as rounding makes a gap of that.
+/// A triangle that begins in the plane of a flat cap, but for rounding, and whose third corner lies
+/// in the link: nothing that is as small as rounding makes a gap of that.
 #[test]
 fn a_triangle_from_the_plane_of_a_flat_cap_into_the_link_touches_it() {
     let mut random = Seeded::new(12);
     for round in 0..40_000 {
-        // A link of radius 1 from z = 0 to z = 4, with two corners or one a little off the plane z = 0.
+        // A link of radius 1 from z = 0 to z = 4, with two corners or one a little off the plane z
+        // = 0.
         let off = [0.0, 1e-17, -1e-16, 3e-16][round % 4];
         let aside = random.between(0.05, 0.6);
         let inside = |random: &mut Seeded| {
@@ -155,8 +171,8 @@ fn a_triangle_from_the_plane_of_a_flat_cap_into_the_link_touches_it() {
     }
 }
 
-/// A wire through a corner or an edge of a wall without a hole, as near as rounding can tell, meets it. Each triangle by
-/// itself might say that it passes beside.
+/// A wire through a corner or an edge of a wall without a hole, as near as rounding can tell, meets
+/// it. Each triangle by itself might say that it passes beside.
 #[test]
 fn a_wire_does_not_slip_through_between_triangles() {
     let mut random = Seeded::new(13);
@@ -171,7 +187,8 @@ fn a_wire_does_not_slip_through_between_triangles() {
         let half = Vector::new(random.between(-0.3, 0.3), random.between(-0.3, 0.3), 1.0);
         let pose = random.pose(5.0);
         let fan = (0..6).map(|k| [0, 1 + k, 1 + (k + 1) % 6]).collect();
-        let mesh = TriMesh::new(corners.iter().map(|corner| pose * *corner).collect(), fan).unwrap();
+        let mesh =
+            TriMesh::new(corners.iter().map(|corner| pose * *corner).collect(), fan).unwrap();
         let wire = Chain::capsules(&[pose * (at - half), pose * (at + half)], &[0.0]).unwrap();
         let mut reference = Exhaustive::<f64>::new(&mesh).unwrap();
         let found = reference.minimum(&wire, &Pose::IDENTITY).unwrap();

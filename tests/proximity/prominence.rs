@@ -1,5 +1,6 @@
-//! Prominent contacts: which stay, by the ways between all triangles and by those on a finely divided mesh; every wall
-//! stays on both sides of a fillet, a groove and a lumen; a label map's are few.
+//! Prominent contacts: which stay, by the ways between all triangles and by those on a finely
+//! divided mesh; every wall stays on both sides of a fillet, a groove and a lumen; a label map's
+//! are few.
 
 use super::contacts::{Passes, small_mesh, small_robot};
 use continuum_testing::Random;
@@ -12,7 +13,12 @@ use parry_continuum::{Cap, Chain, ModifiedCylinder};
 use std::collections::HashMap;
 use std::time::{Duration, Instant};
 
-fn within(engine: &mut impl Proximity, robot: &Chain, margin: f64, prominence: f64) -> Vec<Contact> {
+fn within(
+    engine: &mut impl Proximity,
+    robot: &Chain,
+    margin: f64,
+    prominence: f64,
+) -> Vec<Contact> {
     let mut out = Vec::new();
     engine.within(robot, &Pose::IDENTITY, margin, prominence, &mut out).unwrap();
     out
@@ -41,8 +47,9 @@ struct Census {
 }
 
 impl OfLink<'_> {
-    /// Each contact that is kept has no nearer one that is kept, with such a normal, behind a low pass; each that is left
-    /// out has one. `pass` bounds the height of the pass between two contacts from below and above.
+    /// Each contact that is kept has no nearer one that is kept, with such a normal, behind a low
+    /// pass; each that is left out has one. `pass` bounds the height of the pass between two
+    /// contacts from below and above.
     fn judge(
         &self,
         tie: f64,
@@ -102,15 +109,23 @@ fn prominent_contacts_are_those_of_the_definition() {
         assert_eq!(kept, within(&mut double, &robot, margin, prominence), "{seed}");
         for (number, link) in robot.links().iter().enumerate() {
             let of_link = |contacts: &'_ [Contact]| {
-                contacts.iter().filter(|contact| contact.link as usize == number).copied().collect::<Vec<_>>()
+                contacts
+                    .iter()
+                    .filter(|contact| contact.link as usize == number)
+                    .copied()
+                    .collect::<Vec<_>>()
             };
             let (all, kept) = (of_link(&all), of_link(&kept));
             let passes = Passes::new(link, &triangles);
             let pass = |one: &Contact, other: &Contact| {
                 [passes.heights[one.triangle as usize][other.triangle as usize]; 2]
             };
-            let of_link =
-                OfLink { all: all.iter().collect(), kept: kept.iter().collect(), margin, prominence };
+            let of_link = OfLink {
+                all: all.iter().collect(),
+                kept: kept.iter().collect(),
+                margin,
+                prominence,
+            };
             of_link.judge(1e-13, pass, &mut census, &format!("{seed}"));
         }
     }
@@ -119,8 +134,9 @@ fn prominent_contacts_are_those_of_the_definition() {
     assert!(by_height > 50 && by_normal > 50 && by_margin > 2, "{census:?}");
 }
 
-/// A mesh whose triangles are divided into `parts` x `parts` each. Ways along the edges of the small triangles are true ways,
-/// and one is as low as the lowest way but for the length of an edge.
+/// A mesh whose triangles are divided into `parts` x `parts` each. Ways along the edges of the
+/// small triangles are true ways, and one is as low as the lowest way but for the length of an
+/// edge.
 struct FineMesh {
     /// How far each corner of a small triangle is from the link, and where it is.
     heights: Vec<f64>,
@@ -152,18 +168,20 @@ impl FineMesh {
                     let shares = [parts - i, i - j, j].map(|share| share as f64 / parts as f64);
                     let mut terms: Vec<_> =
                         triangle.iter().zip(shares).filter(|(_, share)| *share > 0.0).collect();
-                    // The same sum in all triangles that share the corner or the edge. Where triangles cross they are not
-                    // joined.
+                    // The same sum in all triangles that share the corner or the edge. Where
+                    // triangles cross they are not joined.
                     terms.sort_by_key(|(corner, _)| bits(**corner));
-                    let point =
-                        terms.iter().fold(Vector::ZERO, |sum, (corner, share)| sum + **corner * *share);
+                    let point = terms
+                        .iter()
+                        .fold(Vector::ZERO, |sum, (corner, share)| sum + **corner * *share);
                     let mut of: Vec<_> = terms.iter().map(|(corner, _)| bits(**corner)).collect();
                     of.dedup();
                     // Not even those with the same corners are joined inside.
                     let inside = (of.len() == 3).then_some(number);
                     *known.entry((of, inside, bits(point))).or_insert_with(|| {
                         let [start, end] = [link.start(), link.end()].map(Into::into);
-                        let away = point_modified_cylinder(point.into(), start, end, link.radius(), flat);
+                        let away =
+                            point_modified_cylinder(point.into(), start, end, link.radius(), flat);
                         fine.heights.push(away.distance);
                         fine.points.push(point);
                         fine.points.len() - 1
@@ -204,8 +222,10 @@ impl FineMesh {
             }
             at
         };
-        let mut high =
-            ends.map(|end| self.heights[end]).into_iter().fold(one.distance.max(other.distance), f64::max);
+        let mut high = ends
+            .map(|end| self.heights[end])
+            .into_iter()
+            .fold(one.distance.max(other.distance), f64::max);
         for &[from, to] in &self.edges {
             if first_of(&mut piece, ends[0]) == first_of(&mut piece, ends[1]) {
                 return [high - self.step, high];
@@ -233,19 +253,29 @@ fn prominent_contacts_are_those_of_a_finely_divided_mesh() {
         let margin = [1.0, 4.0][random.below(2) as usize];
         let prominence = [0.05, 0.3, 1.0, f64::INFINITY][random.below(4) as usize];
         let mut search = BvhSearch::new(&mesh).unwrap();
-        let (all, kept) =
-            (within(&mut search, &robot, margin, 0.0), within(&mut search, &robot, margin, prominence));
+        let (all, kept) = (
+            within(&mut search, &robot, margin, 0.0),
+            within(&mut search, &robot, margin, prominence),
+        );
         for (number, link) in robot.links().iter().enumerate() {
             let of_link = |contacts: &'_ [Contact]| {
-                contacts.iter().filter(|contact| contact.link as usize == number).copied().collect::<Vec<_>>()
+                contacts
+                    .iter()
+                    .filter(|contact| contact.link as usize == number)
+                    .copied()
+                    .collect::<Vec<_>>()
             };
             let (all, kept) = (of_link(&all), of_link(&kept));
             if all.len() < 2 {
                 continue;
             }
             let fine = FineMesh::new(link, &triangles, 16);
-            let of_link =
-                OfLink { all: all.iter().collect(), kept: kept.iter().collect(), margin, prominence };
+            let of_link = OfLink {
+                all: all.iter().collect(),
+                kept: kept.iter().collect(),
+                margin,
+                prominence,
+            };
             let pass = |one: &Contact, other: &Contact| fine.pass(one, other);
             of_link.judge(1e-12, pass, &mut census, &format!("{seed}"));
         }
@@ -254,7 +284,8 @@ fn prominent_contacts_are_those_of_a_finely_divided_mesh() {
     assert!(left_out > 30 && kept > 150 && by_height > 10 && by_normal > 10, "{census:?}");
 }
 
-/// A wall over a profile of points (y, z) that is drawn along x, in steps of 0.2, with bumps of up to `rough`.
+/// A wall over a profile of points (y, z) that is drawn along x, in steps of 0.2, with bumps of up
+/// to `rough`.
 fn drawn(profile: &[[f64; 2]], rough: f64) -> TriMesh {
     let random = &mut Random::new(11);
     let (rows, columns) = (60, profile.len() as u32);
@@ -262,12 +293,14 @@ fn drawn(profile: &[[f64; 2]], rough: f64) -> TriMesh {
     for row in 0..rows {
         for point in profile {
             let along = (f64::from(row) - 0.5 * f64::from(rows - 1)) * 0.2;
-            let bump = Vector::new(0.0, random.between(-rough, rough), random.between(-rough, rough));
+            let bump =
+                Vector::new(0.0, random.between(-rough, rough), random.between(-rough, rough));
             vertices.push(Vector::new(along, point[0], point[1]) + bump);
         }
     }
     let squares = (0..(rows - 1) * columns).filter(|i| (i + 1) % columns != 0);
-    let indices = squares.flat_map(|i| [[i, i + 1, i + columns + 1], [i, i + columns + 1, i + columns]]);
+    let indices =
+        squares.flat_map(|i| [[i, i + 1, i + columns + 1], [i, i + columns + 1, i + columns]]);
     TriMesh::new(vertices, indices.collect()).unwrap()
 }
 
@@ -282,12 +315,14 @@ fn keeps_both_sides(mesh: &TriMesh, radius: f64, margin: f64, rough: f64, most: 
             let kept = within(&mut search, &robot, margin, prominence);
             assert!(kept.len() <= most, "{} of {} at {prominence}", kept.len(), all.len());
             for contact in &all {
-                let cosines = kept.iter().map(|kept| kept.normal.unwrap().dot(contact.normal.unwrap()));
+                let cosines =
+                    kept.iter().map(|kept| kept.normal.unwrap().dot(contact.normal.unwrap()));
                 let nearest = cosines.fold(-1.0, f64::max);
                 assert!(nearest >= 0.5 - 1e-9, "{contact:?} at {prominence}: {kept:?}");
             }
             let sides = kept.iter().map(|contact| contact.normal.unwrap().y);
-            let (low, high) = sides.fold((1.0_f64, -1.0_f64), |(low, high), y| (low.min(y), high.max(y)));
+            let (low, high) =
+                sides.fold((1.0_f64, -1.0_f64), |(low, high), y| (low.min(y), high.max(y)));
             assert!(low < -0.5 && high > 0.5, "one side is lost at {prominence}: {kept:?}");
         }
         assert!(all.len() > 4 * most, "{}: not rough", all.len());
@@ -297,7 +332,8 @@ fn keeps_both_sides(mesh: &TriMesh, radius: f64, margin: f64, rough: f64, most: 
 /// Two walls that meet at a right angle below the link.
 #[test]
 fn both_sides_of_a_groove_stay() {
-    let profile: Vec<_> = (-15..=15).map(|k| f64::from(k) * 0.2).map(|y: f64| [y, y.abs() - 1.0]).collect();
+    let profile: Vec<_> =
+        (-15..=15).map(|k| f64::from(k) * 0.2).map(|y: f64| [y, y.abs() - 1.0]).collect();
     keeps_both_sides(&drawn(&profile, 0.03), 0.4, 1.0, 0.03, 3);
 }
 
@@ -352,7 +388,8 @@ fn label_map() -> TriMesh {
     TriMesh::new(vertices, triangles).unwrap()
 }
 
-/// With one voxel's size a label map gives a handful of contacts a link, and each wall has one of them.
+/// With one voxel's size a label map gives a handful of contacts a link, and each wall has one of
+/// them.
 #[test]
 fn a_label_map_gives_a_handful_a_link() {
     let mesh = label_map();
@@ -412,7 +449,8 @@ fn a_prominence_is_a_number_of_at_least_0() {
     }
 }
 
-/// A funnel of very many triangles around one corner, with a link across it that is near to two sides of its rim.
+/// A funnel of very many triangles around one corner, with a link across it that is near to two
+/// sides of its rim.
 fn funnel(count: u32) -> TriMesh {
     let around = |k: u32| {
         let (sin, cos) = (std::f64::consts::TAU * f64::from(k) / f64::from(count)).sin_cos();
@@ -425,7 +463,8 @@ fn funnel(count: u32) -> TriMesh {
 /// With 16 times the triangles it takes less than 4 times as long as to ask 16 times.
 #[test]
 fn a_pass_of_very_many_triangles_is_asked_in_time() {
-    let robot = Chain::capsules(&[Vector::new(-2.0, 0.0, 0.5), Vector::new(2.0, 0.0, 0.5)], &[0.1]).unwrap();
+    let robot = Chain::capsules(&[Vector::new(-2.0, 0.0, 0.5), Vector::new(2.0, 0.0, 0.5)], &[0.1])
+        .unwrap();
     let meshes = [(16, funnel(1_000)), (1, funnel(16_000))];
     let mut engines = meshes.map(|(times, mesh)| (times, BvhSearch::new(&mesh).unwrap()));
     let mut best = [Duration::MAX; 2];
@@ -436,10 +475,15 @@ fn a_pass_of_very_many_triangles_is_asked_in_time() {
         for ((times, search), best) in engines.iter_mut().zip(&mut best) {
             let begin = Instant::now();
             for _ in 0..*times {
-                // The minima are 0.3 from the axis. The pass is beside the corner, at a side of the funnel: at the
-                // distance r it is sqrt(r^2 + (1.5 - r / 2)^2) from the axis, at least the root of 1.8.
+                // The minima are 0.3 from the axis. The pass is beside the corner, at a side of the
+                // funnel: at the distance r it is sqrt(r^2 + (1.5 - r / 2)^2) from
+                // the axis, at least the root of 1.8.
                 for (prominence, expected) in [(1.04, 2), (1.043, 1)] {
-                    assert_eq!(within(search, &robot, 3.0, prominence).len(), expected, "{prominence}");
+                    assert_eq!(
+                        within(search, &robot, 3.0, prominence).len(),
+                        expected,
+                        "{prominence}"
+                    );
                 }
             }
             *best = (*best).min(begin.elapsed());
@@ -448,8 +492,8 @@ fn a_pass_of_very_many_triangles_is_asked_in_time() {
     assert!(best[1] < 4 * best[0], "{best:?}");
 }
 
-/// Pages that hang from one edge like those of a book, half of them from below. Those above reach up to 1 from it, at angles of up
-/// to 60 degrees with the vertical.
+/// Pages that hang from one edge like those of a book, half of them from below. Those above reach
+/// up to 1 from it, at angles of up to 60 degrees with the vertical.
 fn book(count: u32) -> TriMesh {
     let page = |k: u32| {
         let (sin, cos) = page_angle(k / 2, count / 2).sin_cos();
@@ -467,11 +511,14 @@ fn page_angle(page: u32, pages: u32) -> f64 {
         - std::f64::consts::FRAC_PI_3
 }
 
-/// Each page above is nearest at its tip, and the way from one to another leads over the edge, which is nearest in its
-/// middle: its ends are beyond the margin. With 16 times the pages it takes less than 4 times as long as to ask 16 times.
+/// Each page above is nearest at its tip, and the way from one to another leads over the edge,
+/// which is nearest in its middle: its ends are beyond the margin. With 16 times the pages it takes
+/// less than 4 times as long as to ask 16 times.
 #[test]
 fn very_many_pages_at_an_edge_are_as_prominent_as_they_are_high() {
-    let robot = Chain::capsules(&[Vector::new(-0.2, 0.0, 2.5), Vector::new(0.2, 0.0, 2.5)], &[0.05]).unwrap();
+    let robot =
+        Chain::capsules(&[Vector::new(-0.2, 0.0, 2.5), Vector::new(0.2, 0.0, 2.5)], &[0.05])
+            .unwrap();
     // How much higher the edge is than the tip of each page: 0.32 to 1.
     let rises = |pages: u32| {
         let rise = move |page: u32| {
@@ -486,7 +533,8 @@ fn very_many_pages_at_an_edge_are_as_prominent_as_they_are_high() {
         // The nearest of all stays, however low it is.
         rises.iter().filter(is_kept).count().max(1)
     };
-    let meshes = [(16, 1_000), (1, 16_000)].map(|(times, count)| (times, book(count), rises(count / 2)));
+    let meshes =
+        [(16, 1_000), (1, 16_000)].map(|(times, count)| (times, book(count), rises(count / 2)));
     let mut engines = meshes.map(|(times, mesh, rises)| {
         let engines = (BvhSearch::new(&mesh).unwrap(), Exhaustive::<f32>::new(&mesh).unwrap());
         (times, engines, rises)
@@ -499,7 +547,9 @@ fn very_many_pages_at_an_edge_are_as_prominent_as_they_are_high() {
         for ((times, (search, exhaustive), rises), best) in engines.iter_mut().zip(&mut best) {
             let begin = Instant::now();
             for time in 0..*times {
-                for (margin, prominence) in [(3.0, 0.1), (3.0, 0.55), (3.0, 0.9), (3.0, 2.0), (2.44, 2.0)] {
+                for (margin, prominence) in
+                    [(3.0, 0.1), (3.0, 0.55), (3.0, 0.9), (3.0, 2.0), (2.44, 2.0)]
+                {
                     let expected = expected(rises, margin, prominence);
                     let found = within(search, &robot, margin, prominence);
                     assert_eq!(found.len(), expected, "{margin} {prominence}");

@@ -1,5 +1,5 @@
-//! Proofs that travel: `docs/book/check_proof.py` says yes to those of clear chains, tubes and motions, and no to those that were
-//! tampered with.
+//! Proofs that travel: `docs/book/check_proof.py` says yes to those of clear chains, tubes and
+//! motions, and no to those that were tampered with.
 
 use super::contacts::{small_mesh, small_robot};
 use continuum_demo::joint_motion::JointMotion;
@@ -16,7 +16,8 @@ use std::path::PathBuf;
 use std::process::Command;
 use std::time::{Duration, Instant};
 
-/// Says yes or no to each proof that is named on the command line behind its mesh, and how much time of a processor it took.
+/// Says yes or no to each proof that is named on the command line behind its mesh, and how much
+/// time of a processor it took.
 const ALL: &str = "
 import contextlib, io, sys, time
 sys.dont_write_bytecode = True
@@ -96,7 +97,8 @@ impl Checks {
 
 fn obj(search: &BvhSearch) -> String {
     let vertices = search.vertices().iter().map(|v| format!("v {:?} {:?} {:?}\n", v.x, v.y, v.z));
-    let faces = search.triangles().iter().map(|[a, b, c]| format!("f {} {} {}\n", a + 1, b + 1, c + 1));
+    let faces =
+        search.triangles().iter().map(|[a, b, c]| format!("f {} {} {}\n", a + 1, b + 1, c + 1));
     vertices.chain(faces).collect()
 }
 
@@ -109,7 +111,11 @@ fn ball(radius: f64, parts: u32) -> BvhSearch {
 fn bend(count: u32, length: f64, curvature: f64) -> Vec<Vector> {
     let point = |k: u32| {
         let s = length * f64::from(k) / f64::from(count);
-        Vector::new((1.0 - (curvature * s).cos()) / curvature, 0.0, (curvature * s).sin() / curvature)
+        Vector::new(
+            (1.0 - (curvature * s).cos()) / curvature,
+            0.0,
+            (curvature * s).sin() / curvature,
+        )
     };
     (0..=count).map(point).collect()
 }
@@ -141,7 +147,11 @@ fn chains_that_keep_a_margin_are_proven() {
     let Some(said) = checks.run() else { return };
     assert!(said.iter().all(|said| said.is_yes), "{said:?}");
     let most = planes.iter().max();
-    assert!(said.len() > 60 && flat > 20 && refused > 400, "{} {flat} {refused} {most:?}", said.len());
+    assert!(
+        said.len() > 60 && flat > 20 && refused > 400,
+        "{} {flat} {refused} {most:?}",
+        said.len()
+    );
 }
 
 /// A text with the words between two numbers of a line changed.
@@ -185,7 +195,8 @@ impl Lines {
     fn text(&self) -> String {
         let Self { head, points, pieces, steps } = self;
         let (count, done) = (pieces.len(), steps.len());
-        let parts = [head.join("\n"), format!("shape {count}"), points.join("\n"), pieces.join("\n")];
+        let parts =
+            [head.join("\n"), format!("shape {count}"), points.join("\n"), pieces.join("\n")];
         format!("{}\nsteps {done}\n{}\nend\n", parts.join("\n"), steps.join(" "))
     }
 }
@@ -209,12 +220,14 @@ fn what_was_tampered_with_is_refused() {
         checks.add(mesh, &text);
         what.push(name.to_owned());
     };
-    let planes: Vec<_> = (0..good().steps.len()).filter(|&k| good().steps[k].contains(',')).collect();
+    let planes: Vec<_> =
+        (0..good().steps.len()).filter(|&k| good().steps[k].contains(',')).collect();
     for round in 0..25 {
         // A plane with the robot on its wrong side, or none.
         let mut lines = good();
         let at = planes[random.below(planes.len() as u32) as usize];
-        let opposite = |number: &str| number.strip_prefix('-').map_or(format!("-{number}"), str::to_owned);
+        let opposite =
+            |number: &str| number.strip_prefix('-').map_or(format!("-{number}"), str::to_owned);
         lines.steps[at] = lines.steps[at].split(',').map(opposite).collect::<Vec<_>>().join(",");
         tamper("a plane points to the robot", &mesh, lines.text());
         // A step less, or one more.
@@ -341,8 +354,9 @@ fn triangle_and_its_name(corners: [Vector; 3]) -> (BvhSearch, String, String) {
     (search, mesh, name)
 }
 
-/// Links, and tubes of them, that are shorter than their radius and have one flat and one round end: a proof is found up to the
-/// distance from the half ball beyond the round end's disc, believed, and found no farther.
+/// Links, and tubes of them, that are shorter than their radius and have one flat and one round
+/// end: a proof is found up to the distance from the half ball beyond the round end's disc,
+/// believed, and found no farther.
 #[test]
 fn short_pieces_with_one_flat_end_hold_the_half_ball() {
     let (mut checks, mut shorter) = (Checks::new("half-balls"), 0);
@@ -357,7 +371,8 @@ fn short_pieces_with_one_flat_end_hold_the_half_ball() {
         assert_eq!(robot.links()[0].caps(), [Cap::Flat, Cap::Round]);
         let below = -Vector::Z * radius * random.between(0.02, 1.0 - short / radius);
         let corner = |random: &mut Random| pose * (below + 0.05 * radius * random.point());
-        let (mut search, mesh, _) = triangle_and_its_name([corner(random), corner(random), corner(random)]);
+        let (mut search, mesh, _) =
+            triangle_and_its_name([corner(random), corner(random), corner(random)]);
         let distance = search.minimum(&robot, &pose).unwrap().distance;
         if distance <= 0.0 {
             continue;
@@ -380,8 +395,8 @@ fn short_pieces_with_one_flat_end_hold_the_half_ball() {
     assert!(shorter > 40 && said.len() == 4 * shorter, "{shorter}");
 }
 
-/// Pieces by the page's own words, as bent, as long and as far off as it allows, beside a triangle: what is believed is true of
-/// every disc and of the half balls beyond round ends.
+/// Pieces by the page's own words, as bent, as long and as far off as it allows, beside a triangle:
+/// what is believed is true of every disc and of the half balls beyond round ends.
 #[test]
 fn what_is_believed_of_a_piece_is_true_of_its_discs_and_half_balls() {
     let (mut checks, mut nearest, mut flats) = (Checks::new("pieces"), Vec::new(), 0);
@@ -392,7 +407,8 @@ fn what_is_believed_of_a_piece_is_true_of_its_discs_and_half_balls() {
         let curvature = random.between(0.0, 1.0) / length * f64::from(random.below(2));
         let radius = random.between(0.1, 0.95) * (1.0 / curvature.max(0.1)).min(3.0);
         let off = [0.0, 0.02 * length][random.below(2) as usize];
-        let caps = [["ff", "fr", "rf"][random.below(3) as usize], "rr"][random.below(4) as usize / 3];
+        let caps =
+            [["ff", "fr", "rf"][random.below(3) as usize], "rr"][random.below(4) as usize / 3];
         // An arc whose ends are off by as much as is stated.
         let at = |s: f64| {
             let (sin, cos) = (curvature * s).sin_cos();
@@ -403,20 +419,27 @@ fn what_is_believed_of_a_piece_is_true_of_its_discs_and_half_balls() {
             };
             (pose * centre, pose.rotation * Vector::new(sin, 0.0, cos))
         };
-        let stated = [at(0.0).0, at(length).0].map(|point| point + 0.999 * off * random.direction());
+        let stated =
+            [at(0.0).0, at(length).0].map(|point| point + 0.999 * off * random.direction());
         // A triangle near the piece's surface, ahead of an end as often as beside.
-        let (centre, along) = at([0.0, length, random.between(0.0, length)][random.below(3) as usize]);
-        let way =
-            (along.cross(random.direction()) * random.unit() + along * random.between(-1.0, 1.0)).normalize();
+        let (centre, along) =
+            at([0.0, length, random.between(0.0, length)][random.below(3) as usize]);
+        let way = (along.cross(random.direction()) * random.unit()
+            + along * random.between(-1.0, 1.0))
+        .normalize();
         let corner = centre + way * radius * random.between(0.3, 2.5);
-        let corners =
-            [corner, corner + 0.01 * radius * random.point(), corner + 0.01 * radius * random.point()];
+        let corners = [
+            corner,
+            corner + 0.01 * radius * random.point(),
+            corner + 0.01 * radius * random.point(),
+        ];
         let (_, mesh, name) = triangle_and_its_name(corners);
         // How far the piece is, by its discs' rims and centres and its ends' directions.
         let mut least = f64::INFINITY;
         let mut visit = |point: Vector| {
             // Toward a corner is near enough: the triangle is small.
-            least = corners.iter().fold(least, |least, corner| least.min((*corner - point).length()));
+            least =
+                corners.iter().fold(least, |least, corner| least.min((*corner - point).length()));
         };
         for k in 0..=100 {
             let (centre, along) = at(length * f64::from(k) / 100.0);
@@ -433,10 +456,12 @@ fn what_is_believed_of_a_piece_is_true_of_its_discs_and_half_balls() {
                 visit(centre + way * (radius / way.length()).min(1.0));
             }
         }
-        let stated_piece = format!("{radius:?} {caps} {curvature:?} {:?} {off:?}", length * (1.0 + 1e-12));
+        let stated_piece =
+            format!("{radius:?} {caps} {curvature:?} {:?} {off:?}", length * (1.0 + 1e-12));
         for share in [0.2, 0.6, 0.9, 1.0, 1.1] {
             let margin = share * least;
-            let way = (corner - centre.lerp(0.5 * (stated[0] + stated[1]), random.unit())).normalize()
+            let way = (corner - centre.lerp(0.5 * (stated[0] + stated[1]), random.unit()))
+                .normalize()
                 * 2f64.powi(30);
             for way in [way, along * 2f64.powi(30), -along * 2f64.powi(30)] {
                 let [a, b, c] = way.to_array().map(|number| number.round() as i64);
@@ -456,21 +481,29 @@ fn what_is_believed_of_a_piece_is_true_of_its_discs_and_half_balls() {
     let Some(said) = checks.run() else { return };
     let mut believed = 0;
     for ((margin, least, seed), said) in nearest.iter().zip(&said) {
-        assert!(!said.is_yes || margin < &(least * (1.0 + 1e-9)), "{seed}: {margin} of {least}, {said:?}");
+        assert!(
+            !said.is_yes || margin < &(least * (1.0 + 1e-9)),
+            "{seed}: {margin} of {least}, {said:?}"
+        );
         believed += usize::from(said.is_yes);
     }
     assert!(believed > 75 && flats > 50, "{believed} {flats}");
 }
 
-/// Files that are no proofs, or no meshes of triangles: one line says no, and what it quotes is escaped.
+/// Files that are no proofs, or no meshes of triangles: one line says no, and what it quotes is
+/// escaped.
 #[test]
 fn malformed_files_are_refused() {
     let (mut search, mesh, _) = triangle_and_its_name([Vector::ZERO, Vector::X, Vector::Y]);
-    let points = [Vector::new(0.2, 0.2, 2.0), Vector::new(0.2, 0.2, 3.0), Vector::new(0.2, 0.5, 4.0)];
+    let points =
+        [Vector::new(0.2, 0.2, 2.0), Vector::new(0.2, 0.2, 3.0), Vector::new(0.2, 0.5, 4.0)];
     let robot = Chain::from_centreline(&points, &[0.5; 2]).unwrap();
     let chain = search.prove(&robot, &Pose::IDENTITY, 0.5).unwrap().unwrap().to_string();
-    let tube =
-        search.prove_tube(&Tube::from(&robot), &Pose::IDENTITY, 0.5, 0.01).unwrap().unwrap().to_string();
+    let tube = search
+        .prove_tube(&Tube::from(&robot), &Pose::IDENTITY, 0.5, 0.01)
+        .unwrap()
+        .unwrap()
+        .to_string();
     // Over the triangle from one side to the other.
     let [from, to] = [-6.0, 6.0].map(|x| Pose::from_translation(Vector::X * x));
     let pushed = RigidMotion::new(Tube::from(&robot), [from, to]).unwrap();
@@ -481,13 +514,16 @@ fn malformed_files_are_refused() {
     let (mut right, mut wrong) = (Vec::new(), Vec::new());
 
     // What is right in another dress.
-    let corners =
-        ["f 1/1 2/2 3/3\n", "f 1//4 2//4 3//4\n", "f 1/2/3 2/2/3 3/2/3\n", "f\t1  2 3 # the floor\n"];
+    let corners = [
+        "f 1/1 2/2 3/3\n",
+        "f 1//4 2//4 3//4\n",
+        "f 1/2/3 2/2/3 3/2/3\n",
+        "f\t1  2 3 # the floor\n",
+    ];
     for f in corners {
         right.push((mesh.replace("f 1 2 3\n", f), chain.clone()));
     }
-    let exported =
-        "# Fl\u{e4}che\nmtllib a.mtl\no floor\n\nvn 0 0 1\nvt 0 1\ng x y\nusemtl \u{1b}[32m\ns off\n";
+    let exported = "# Fl\u{e4}che\nmtllib a.mtl\no floor\n\nvn 0 0 1\nvt 0 1\ng x y\nusemtl \u{1b}[32m\ns off\n";
     right.push((format!("{exported}{mesh}"), chain.clone()));
     right.push((mesh.replace('\n', "\r\n"), chain.replace('\n', "\r\n")));
     right.push((mesh.replace("v 0.0 0.0 0.0", "v -0.0 0 0e0 0.5 0.5 0.5"), chain.clone()));
@@ -627,13 +663,15 @@ fn malformed_files_are_refused() {
     }
 }
 
-/// Proofs and meshes with some bytes changed: whatever is believed then is true of the robot that is printed.
+/// Proofs and meshes with some bytes changed: whatever is believed then is true of the robot that
+/// is printed.
 #[test]
 fn what_is_believed_of_a_changed_text_is_true() {
     let mut search = ball(10.0, 4);
     let robot = Chain::from_centreline(&bend(4, 8.0, 0.1), &[0.9; 4]).unwrap();
     let distance = search.minimum(&robot, &Pose::IDENTITY).unwrap().distance;
-    let proof = search.prove(&robot, &Pose::IDENTITY, 0.25 * distance).unwrap().unwrap().to_string();
+    let proof =
+        search.prove(&robot, &Pose::IDENTITY, 0.25 * distance).unwrap().unwrap().to_string();
     let mesh = obj(&search);
     let random = &mut Random::new(8);
     let (mut checks, mut texts) = (Checks::new("changed"), Vec::new());
@@ -670,11 +708,17 @@ fn what_is_believed_of_a_changed_text_is_true() {
                 .collect();
             let caps = line.split("caps ").nth(1).unwrap().as_bytes();
             let flat = [caps[0] == b'f', caps[1] == b'f'];
-            let [start, end] = [0, 3].map(|k| Vec3::new(numbers[k], numbers[k + 1], numbers[k + 2]));
+            let [start, end] =
+                [0, 3].map(|k| Vec3::new(numbers[k], numbers[k + 1], numbers[k + 2]));
             for [a, b, c] in search.triangles() {
                 let corners = [a, b, c].map(|&corner| search.vertices()[corner as usize].into());
-                let distance = triangle_modified_cylinder(corners, start, end, numbers[6], flat).distance;
-                assert!(distance > margin * (1.0 - 1e-9), "{distance}: {}", String::from_utf8_lossy(text));
+                let distance =
+                    triangle_modified_cylinder(corners, start, end, numbers[6], flat).distance;
+                assert!(
+                    distance > margin * (1.0 - 1e-9),
+                    "{distance}: {}",
+                    String::from_utf8_lossy(text)
+                );
             }
         }
     }
@@ -703,10 +747,15 @@ fn tubes_and_motions_that_keep_a_margin_are_proven() {
     for (name, tube) in &tubes {
         let found = search.clearance(tube, &Pose::IDENTITY, 1e-3).unwrap();
         for share in [0.0, 0.5, 0.95] {
-            let proof = search.prove_tube(tube, &Pose::IDENTITY, share * found.lower, 1e-3).unwrap();
+            let proof =
+                search.prove_tube(tube, &Pose::IDENTITY, share * found.lower, 1e-3).unwrap();
             prove(&search, proof, name);
         }
-        assert_eq!(search.prove_tube(tube, &Pose::IDENTITY, found.upper, 1e-3).unwrap(), None, "{name}");
+        assert_eq!(
+            search.prove_tube(tube, &Pose::IDENTITY, found.upper, 1e-3).unwrap(),
+            None,
+            "{name}"
+        );
     }
     let (from, to) = (bend(8, 7.0, 0.01), bend(8, 7.0, 0.12));
     let bending = LinearMotion::chain(&from, &to, &[0.5; 8]).unwrap();
@@ -733,7 +782,10 @@ fn tubes_and_motions_that_keep_a_margin_are_proven() {
     let times: Vec<_> = good.lines().filter(|line| line.starts_with("shape ")).collect();
     let faster = with_line(&good, "0.5 ", |line| {
         let words: Vec<_> = line.split(' ').collect();
-        format!("{} {} {} {} {} 1000.0 {}", words[0], words[1], words[2], words[3], words[4], words[6])
+        format!(
+            "{} {} {} {} {} 1000.0 {}",
+            words[0], words[1], words[2], words[3], words[4], words[6]
+        )
     });
     let late = good.replacen(times[0], &times[0].replacen(" 0.0 ", " 0.0078125 ", 1), 1);
     let last = times[times.len() - 1];
@@ -771,14 +823,16 @@ fn motions_that_roll_and_grow_are_proven() {
     let mut checks = Checks::new("rolls");
     let wall = [[-9.0, 1.5, -9.0], [9.0, 1.5, -9.0], [0.0, 1.5, 9.0]].map(Vector::from_array);
     let mut search = BvhSearch::from_triangles(&wall, &[[0, 1, 2]]).unwrap();
-    let needle = Tube::from(&Chain::from_centreline(&[Vector::ZERO, Vector::X * 5.0], &[0.5]).unwrap());
+    let needle =
+        Tube::from(&Chain::from_centreline(&[Vector::ZERO, Vector::X * 5.0], &[0.5]).unwrap());
     let mut proven = 0;
     for turn in [3.0, 0.3, 0.01] {
         let rolled = [Pose::IDENTITY, Pose::rotation(Vector::X * turn)];
         let motion = RigidMotion::new(needle.clone(), rolled).unwrap();
         for margin in [0.99, 0.9, 0.5, 0.3, 0.0] {
             let proof = search.prove_motion(&motion, margin, 1e-3).unwrap();
-            let proof = proof.unwrap_or_else(|| panic!("turned by {turn}, margin {margin}: no proof"));
+            let proof =
+                proof.unwrap_or_else(|| panic!("turned by {turn}, margin {margin}: no proof"));
             checks.add(&obj(&search), &proof.to_string());
             proven += 1;
         }
@@ -787,7 +841,8 @@ fn motions_that_roll_and_grow_are_proven() {
     // The flat tip of a needle that grows comes to 0.5 before the wall.
     let grown = [Vector::ZERO, Vector::Y];
     for begin in [0.0, 1e-9, 1e-3] {
-        let motion = LinearMotion::chain(&[Vector::ZERO, Vector::Y * begin], &grown, &[0.9]).unwrap();
+        let motion =
+            LinearMotion::chain(&[Vector::ZERO, Vector::Y * begin], &grown, &[0.9]).unwrap();
         for margin in [0.0, 0.3, 0.45] {
             let proof = search.prove_motion(&motion, margin, 1e-3).unwrap();
             let proof = proof.unwrap_or_else(|| panic!("from {begin}, margin {margin}: no proof"));
@@ -840,7 +895,8 @@ fn in_the_ventricle(triangles: usize) -> Option<[(usize, Duration); 2]> {
     Some([of(&shape, &said[0], shape_proven), of(&edge, &said[1], edge_proven)])
 }
 
-/// The largest proof of edges of a planner whose tip goes so far, and the longest time that checking one takes.
+/// The largest proof of edges of a planner whose tip goes so far, and the longest time that
+/// checking one takes.
 fn edges_in_the_ventricle(triangles: usize, distances: &[f64]) -> Option<(usize, Duration)> {
     let (vertices, triangles) = ventricle::mesh(triangles);
     let mut search = BvhSearch::from_triangles(&vertices, &triangles).unwrap();
@@ -850,7 +906,8 @@ fn edges_in_the_ventricle(triangles: usize, distances: &[f64]) -> Option<(usize,
     for &distance in distances {
         // The first edge that leaves the wall some room.
         let (motion, least) = std::iter::repeat_with(|| {
-            let motion = JointMotion::random(&robot, ventricle::entry(), distance, || random.unit());
+            let motion =
+                JointMotion::random(&robot, ventricle::entry(), distance, || random.unit());
             let least = search.clearance_of_motion(&motion, 0.01).unwrap().lower;
             (motion, least)
         })
@@ -859,7 +916,14 @@ fn edges_in_the_ventricle(triangles: usize, distances: &[f64]) -> Option<(usize,
         .unwrap();
         let begin = Instant::now();
         let proof = search.prove_motion(&motion, 0.5 * least, 1e-2).unwrap().unwrap();
-        all.push((distance, least, proof.shapes(), proof.planes(), proof.to_string().len(), begin.elapsed()));
+        all.push((
+            distance,
+            least,
+            proof.shapes(),
+            proof.planes(),
+            proof.to_string().len(),
+            begin.elapsed(),
+        ));
         checks.add(&wall, &proof.to_string());
     }
     let said = checks.run()?;
@@ -877,7 +941,8 @@ fn edges_in_the_ventricle(triangles: usize, distances: &[f64]) -> Option<(usize,
 
 #[test]
 fn edges_of_a_planner_are_proven_in_little_space() {
-    let Some((bytes, _)) = edges_in_the_ventricle(ventricle::DEFAULT_TRIANGLES, &[1.0, 5.0, 20.0]) else {
+    let Some((bytes, _)) = edges_in_the_ventricle(ventricle::DEFAULT_TRIANGLES, &[1.0, 5.0, 20.0])
+    else {
         return;
     };
     assert!(bytes < 1_000_000, "{bytes}");
@@ -892,7 +957,9 @@ fn edges_in_a_fine_ventricle_are_checked_in_time() {
 
 #[test]
 fn a_robot_in_the_ventricle_is_proven_in_little_space() {
-    let Some([(shape, _), (motion, _)]) = in_the_ventricle(ventricle::DEFAULT_TRIANGLES) else { return };
+    let Some([(shape, _), (motion, _)]) = in_the_ventricle(ventricle::DEFAULT_TRIANGLES) else {
+        return;
+    };
     assert!(shape < 50_000 && motion < 1_000_000, "{shape} {motion}");
 }
 

@@ -1,5 +1,5 @@
-//! Very many triangles around one corner or edge, as exported meshes have them: the work grows with their number, and
-//! not with its square.
+//! Very many triangles around one corner or edge, as exported meshes have them: the work grows with
+//! their number, and not with its square.
 
 use parry_continuum::Chain;
 use parry_continuum::parry::math::{Pose, Real, Vector};
@@ -12,14 +12,15 @@ const FEW: u32 = 1_000;
 const MANY: u32 = 16_000;
 const RADIUS: Real = 0.1;
 
-/// How often a mesh of few triangles is asked, so that it takes about as long as to ask that of many once: what else the
-/// machine does then slows down both alike.
+/// How often a mesh of few triangles is asked, so that it takes about as long as to ask that of
+/// many once: what else the machine does then slows down both alike.
 const TIMES: u32 = MANY / FEW;
 
 /// How long an engine takes: see [`time`].
 type Timed = fn(u32, &TriMesh, [Vector; 2], (Real, Vector)) -> Duration;
 
-/// Builds an engine and asks it for the contacts of a capsule, of which there is one, so many times.
+/// Builds an engine and asks it for the contacts of a capsule, of which there is one, so many
+/// times.
 fn time<E: Proximity>(
     times: u32,
     mesh: &TriMesh,
@@ -42,12 +43,14 @@ fn time<E: Proximity>(
     time
 }
 
-/// With 16 times the triangles it takes less than 4 times as long as to ask 16 times: about as long, if no triangle asks
-/// all others, and 16 times as long, if each does.
+/// With 16 times the triangles it takes less than 4 times as long as to ask 16 times: about as
+/// long, if no triangle asks all others, and 16 times as long, if each does.
 fn grows_slowly(mesh: impl Fn(u32) -> TriMesh, axis: [Vector; 2], expected: (Real, Vector)) {
     let meshes = [(TIMES, mesh(FEW)), (1, mesh(MANY))];
     let engines: [Timed; 2] = [
-        |times, mesh, axis, expected| time(times, mesh, axis, expected, |mesh| BvhSearch::new(mesh).unwrap()),
+        |times, mesh, axis, expected| {
+            time(times, mesh, axis, expected, |mesh| BvhSearch::new(mesh).unwrap())
+        },
         |times, mesh, axis, expected| {
             time(times, mesh, axis, expected, |mesh| Exhaustive::<f32>::new(mesh).unwrap())
         },
@@ -63,7 +66,10 @@ fn grows_slowly(mesh: impl Fn(u32) -> TriMesh, axis: [Vector; 2], expected: (Rea
                 *best = (*best).min(time(*times, mesh, axis, expected));
             }
         }
-        assert!(many < 4 * few, "{TIMES} times {FEW} triangles: {few:?}, {MANY} triangles: {many:?}");
+        assert!(
+            many < 4 * few,
+            "{TIMES} times {FEW} triangles: {few:?}, {MANY} triangles: {many:?}"
+        );
     }
 }
 
@@ -104,8 +110,9 @@ fn very_many_triangles_at_an_edge_are_asked_in_time() {
 /// Exporters put invalid vertices there.
 #[test]
 fn very_many_triangles_without_extent_at_the_origin_are_asked_in_time() {
-    let points =
-        |count: u32| mesh(vec![Vector::ZERO; count as usize + 2], (0..count).map(|k| [k, k + 1, k + 2]));
+    let points = |count: u32| {
+        mesh(vec![Vector::ZERO; count as usize + 2], (0..count).map(|k| [k, k + 1, k + 2]))
+    };
     let away = [Vector::new(0.0, 0.3, 0.4), Vector::new(0.0, 0.6, 0.8)];
     grows_slowly(points, away, (0.4, Vector::ZERO));
 }

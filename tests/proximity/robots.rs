@@ -44,7 +44,8 @@ pub(super) fn robot(random: &mut Random, most: u32) -> Chain {
 
 /// A pose that brings a link of the second robot to one of the first, but for up to `off`.
 pub(super) fn beside(random: &mut Random, a: &Chain, pose_a: &Pose, b: &Chain, off: f64) -> Pose {
-    let mut some = |robot: &Chain| robot.links()[random.below(robot.links().len() as u32) as usize].start();
+    let mut some =
+        |robot: &Chain| robot.links()[random.below(robot.links().len() as u32) as usize].start();
     let (to, from) = (pose_a * some(a), some(b));
     let turn = random.pose(0.0);
     Pose::from_translation(to + random.point() * off) * turn * Pose::from_translation(-from)
@@ -55,7 +56,8 @@ fn links(robot: &Chain, pose: &Pose) -> Vec<ModifiedCylinder> {
 }
 
 fn apart(first: &ModifiedCylinder, second: &ModifiedCylinder) -> f64 {
-    let axis = |link: &ModifiedCylinder| [link.start(), link.end()].map(|p| Vec3::from(p.to_array()));
+    let axis =
+        |link: &ModifiedCylinder| [link.start(), link.end()].map(|p| Vec3::from(p.to_array()));
     let flat = |link: &ModifiedCylinder| link.caps().map(|cap| cap == Cap::Flat);
     let (one, two) = (first, second);
     modified_cylinder_modified_cylinder(
@@ -75,8 +77,9 @@ fn table(first: &[ModifiedCylinder], second: &[ModifiedCylinder]) -> Vec<Vec<f64
 }
 
 fn slack(first: &[ModifiedCylinder], second: &[ModifiedCylinder]) -> f64 {
-    let reach =
-        |link: &ModifiedCylinder| link.start().abs().max(link.end().abs()).max_element().max(link.radius());
+    let reach = |link: &ModifiedCylinder| {
+        link.start().abs().max(link.end().abs()).max_element().max(link.radius())
+    };
     32.0 * UNIT * first.iter().chain(second).map(reach).fold(1.0, f64::max)
 }
 
@@ -95,12 +98,20 @@ fn the_nearest_of_all_pairs_is_found() {
         let (table, slack) = (table(&first, &second), slack(&first, &second));
         let least = table.iter().flatten().copied().fold(f64::INFINITY, f64::min);
         let found = pair.minimum(&a, &poses[0], &b, &poses[1]).unwrap();
-        assert!((found.distance - least).abs() <= slack, "{} of {least} in round {round}", found.distance);
+        assert!(
+            (found.distance - least).abs() <= slack,
+            "{} of {least} in round {round}",
+            found.distance
+        );
         let [i, j] = found.links.map(|link| link as usize);
         assert!((table[i][j] - found.distance).abs() <= slack);
         assert!(((found.on_first - found.on_second).length() - found.distance).abs() <= slack);
-        let [before, after] = [a.links()[..i].iter().map(|l| l.length()).sum::<f64>(), a.links()[i].length()];
-        assert!(before - slack <= found.arc_lengths[0] && found.arc_lengths[0] <= before + after + slack);
+        let [before, after] =
+            [a.links()[..i].iter().map(|l| l.length()).sum::<f64>(), a.links()[i].length()];
+        assert!(
+            before - slack <= found.arc_lengths[0]
+                && found.arc_lengths[0] <= before + after + slack
+        );
 
         // What is remembered changes no answer.
         assert_eq!(between(&a, &poses[0], &b, &poses[1]).unwrap(), found);
@@ -109,8 +120,10 @@ fn the_nearest_of_all_pairs_is_found() {
         let mut each = Vec::new();
         pair.per_link(&a, &poses[0], &b, &poses[1], &mut each).unwrap();
         assert_eq!(each.len(), first.len());
-        let lowest =
-            each.iter().copied().reduce(|best, next| if next.distance < best.distance { next } else { best });
+        let lowest = each
+            .iter()
+            .copied()
+            .reduce(|best, next| if next.distance < best.distance { next } else { best });
         assert_eq!(lowest.unwrap(), found);
         for (link, nearest) in each.iter().enumerate() {
             let row = table[link].iter().copied().fold(f64::INFINITY, f64::min);
@@ -131,7 +144,8 @@ fn the_nearest_of_all_pairs_is_found() {
     assert!(touching > 300 && apart > 300 && many > 10, "{touching} {apart} {many}");
 }
 
-/// The definition, over the whole table: groups of equal neighbours none of which has a nearer neighbour.
+/// The definition, over the whole table: groups of equal neighbours none of which has a nearer
+/// neighbour.
 fn places(table: &[Vec<RobotProximity>], margin: f64) -> Vec<[u32; 2]> {
     let (rows, columns) = (table.len(), table[0].len());
     let neighbours = |[i, j]: [usize; 2]| {
@@ -187,16 +201,22 @@ fn every_place_where_two_robots_are_near_is_found_once() {
         let ones: Option<Vec<_>> = (0..a.links().len()).map(|link| alone(&a, link)).collect();
         let twos: Option<Vec<_>> = (0..b.links().len()).map(|link| alone(&b, link)).collect();
         let (Some(ones), Some(twos)) = (ones, twos) else { continue };
-        let row = |one| twos.iter().map(|two| between(one, &poses[0], two, &poses[1]).unwrap()).collect();
+        let row =
+            |one| twos.iter().map(|two| between(one, &poses[0], two, &poses[1]).unwrap()).collect();
         let table: Vec<Vec<_>> = ones.iter().map(row).collect();
         for margin in [0.0, 0.3, 3.0, f64::INFINITY] {
             let mut found = Vec::new();
             pair.within(&a, &poses[0], &b, &poses[1], margin, &mut found).unwrap();
             let expected = places(&table, margin);
-            assert_eq!(found.iter().map(|place| place.links).collect::<Vec<_>>(), expected, "{margin}");
+            assert_eq!(
+                found.iter().map(|place| place.links).collect::<Vec<_>>(),
+                expected,
+                "{margin}"
+            );
             several += usize::from(expected.len() > 2);
         }
-        merged += usize::from(table.iter().flatten().filter(|cell| cell.distance == 0.0).count() > 3);
+        merged +=
+            usize::from(table.iter().flatten().filter(|cell| cell.distance == 0.0).count() > 3);
     }
     assert!(several > 50 && merged > 30, "{several} {merged}");
 }
@@ -212,8 +232,10 @@ fn a_scaled_scene_has_the_scaled_answer_bit_for_bit() {
             let factor = 2.0_f64.powi(power);
             let scaled = |robot: &Chain| {
                 let ends = robot.links().iter().map(|link| link.end() * factor);
-                let points: Vec<_> = std::iter::once(robot.links()[0].start() * factor).chain(ends).collect();
-                let radii: Vec<_> = robot.links().iter().map(|link| link.radius() * factor).collect();
+                let points: Vec<_> =
+                    std::iter::once(robot.links()[0].start() * factor).chain(ends).collect();
+                let radii: Vec<_> =
+                    robot.links().iter().map(|link| link.radius() * factor).collect();
                 Chain::capsules(&points, &radii).unwrap()
             };
             let round = |robot: &Chain| {
@@ -245,7 +267,8 @@ fn what_is_at_fault_is_named() {
     assert_eq!(error.kind(), "out_of_range");
     assert!(error.to_string().contains("`pose_a`"), "{error}");
     for margin in [-1.0, f64::NAN] {
-        let error = clears_between(&robot, &Pose::IDENTITY, &robot, &Pose::IDENTITY, margin).unwrap_err();
+        let error =
+            clears_between(&robot, &Pose::IDENTITY, &robot, &Pose::IDENTITY, margin).unwrap_err();
         assert!(matches!(error, ProximityError::Negative { parameter: "margin", .. }), "{error}");
         assert!(self_clears(&robot, margin).is_err());
     }

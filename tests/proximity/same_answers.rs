@@ -1,5 +1,5 @@
-//! Answers about tubes and motions are the same to the last bit, whatever was asked before and on any number of threads.
-//! Finer tolerances never give looser bounds.
+//! Answers about tubes and motions are the same to the last bit, whatever was asked before and on
+//! any number of threads. Finer tolerances never give looser bounds.
 
 use super::tube::from_function;
 use continuum_demo::ventricle;
@@ -22,15 +22,21 @@ fn walls(unit: f64) -> [TriMesh; 2] {
     let scaled = vertices.iter().map(|vertex| vertex * unit).collect();
     let corners = [[-30.0, -30.0], [30.0, -30.0], [30.0, 30.0], [-30.0, 30.0]];
     let square = corners.map(|[x, z]| Vector::new(x, 0.0, z) * unit).to_vec();
-    [TriMesh::new(scaled, indices).unwrap(), TriMesh::new(square, vec![[0, 1, 2], [0, 2, 3]]).unwrap()]
+    [
+        TriMesh::new(scaled, indices).unwrap(),
+        TriMesh::new(square, vec![[0, 1, 2], [0, 2, 3]]).unwrap(),
+    ]
 }
 
 /// Sections that bend, or are straight along z.
 fn arcs(random: &mut Random, unit: f64, is_straight: bool) -> Arc<Arcs> {
     let mut arcs = Arcs::from_frame(Pose::IDENTITY);
     for radius in [1.0, 0.7] {
-        let bend =
-            if is_straight { Vector::ZERO } else { random.direction() * random.between(0.0, 0.1 / unit) };
+        let bend = if is_straight {
+            Vector::ZERO
+        } else {
+            random.direction() * random.between(0.0, 0.1 / unit)
+        };
         let bend = bend - Vector::Z * bend.z;
         arcs.push(radius * unit, &[(random.between(1.0, 12.0) * unit, bend)]);
     }
@@ -58,7 +64,8 @@ fn place(random: &mut Random, mesh: &TriMesh, unit: f64, is_plane: bool) -> Pose
     }
     // Beside it, touching, in it by rounding, above it.
     let height = [1.0, 1.0 + 1e-12, 1.0 - 1e-12, 1.5, 0.3][random.below(5) as usize] * unit;
-    let turn = if random.below(2) == 0 { Vector::ZERO } else { Vector::X * -std::f64::consts::FRAC_PI_2 };
+    let turn =
+        if random.below(2) == 0 { Vector::ZERO } else { Vector::X * -std::f64::consts::FRAC_PI_2 };
     Pose::new(Vector::new(random.unit() * unit, height, random.unit() * unit), turn)
 }
 
@@ -76,7 +83,8 @@ impl Seen {
     }
 }
 
-/// An engine that has answered small steps, other tubes and other tolerances, against one that begins.
+/// An engine that has answered small steps, other tubes and other tolerances, against one that
+/// begins.
 #[test]
 fn earlier_queries_never_change_an_answer() {
     let (mut random, mut seen) = (Random::new(1), Seen::default());
@@ -125,12 +133,18 @@ fn earlier_queries_never_change_an_answer_about_two_tubes() {
         let turn = if round % 2 == 0 { Vector::ZERO } else { random.direction() };
         let step = random.direction() * ([0.02, 1e-9][round % 2] * unit);
         for k in 0..5 {
-            let pose = Pose::new(Vector::new(aside, 0.0, random.unit() * unit) + step * f64::from(k), turn);
+            let pose = Pose::new(
+                Vector::new(aside, 0.0, random.unit() * unit) + step * f64::from(k),
+                turn,
+            );
             for (a, b) in both[0].iter().zip(&both[1]) {
                 let tolerance = [0.5, 0.03, 1e-3][random.below(3) as usize] * unit;
                 let here = Pose::IDENTITY;
                 let found = warm.clearance(a, &here, b, &pose, tolerance).unwrap();
-                assert_eq!(found, RobotPair::new().clearance(a, &here, b, &pose, tolerance).unwrap());
+                assert_eq!(
+                    found,
+                    RobotPair::new().clearance(a, &here, b, &pose, tolerance).unwrap()
+                );
                 if found.lower > 0.0 {
                     free += 1
                 } else {
@@ -138,7 +152,10 @@ fn earlier_queries_never_change_an_answer_about_two_tubes() {
                 }
                 let margin = [0.0, found.lower, found.upper * 1.1][random.below(3) as usize];
                 let decided = warm.tubes_clear(a, &here, b, &pose, margin, tolerance);
-                assert_eq!(decided, RobotPair::new().tubes_clear(a, &here, b, &pose, margin, tolerance));
+                assert_eq!(
+                    decided,
+                    RobotPair::new().tubes_clear(a, &here, b, &pose, margin, tolerance)
+                );
             }
         }
     }
@@ -155,7 +172,8 @@ fn batches_answer_the_same_on_any_number_of_threads() {
             tubes(&mut random, &arcs, 1.0)
         })
         .collect();
-    let robots: Vec<_> = tubes.iter().map(|tube| (tube, place(&mut random, &mesh, 1.0, false))).collect();
+    let robots: Vec<_> =
+        tubes.iter().map(|tube| (tube, place(&mut random, &mesh, 1.0, false))).collect();
     let alone: Vec<_> = robots
         .iter()
         .map(|(tube, pose)| BvhSearch::new(&mesh).unwrap().clearance(tube, pose, 0.01).unwrap())
@@ -168,7 +186,9 @@ fn batches_answer_the_same_on_any_number_of_threads() {
             assert_eq!(answered(&out), alone, "{threads} threads");
         }
     }
-    assert!(alone.iter().any(|found| found.lower > 0.0) && alone.iter().any(|found| found.upper <= 0.0));
+    assert!(
+        alone.iter().any(|found| found.lower > 0.0) && alone.iter().any(|found| found.upper <= 0.0)
+    );
 }
 
 /// The bounds of each tolerance lie within those of the one before.
@@ -191,7 +211,8 @@ fn finer_tolerances_never_give_looser_bounds() {
                         coarser.lower <= finer.lower && finer.upper <= coarser.upper,
                         "{tolerance}: {coarser:?} {finer:?}"
                     );
-                    narrower += usize::from(finer.upper - finer.lower < coarser.upper - coarser.lower);
+                    narrower +=
+                        usize::from(finer.upper - finer.lower < coarser.upper - coarser.lower);
                     coarser = finer;
                 }
             }
@@ -222,7 +243,10 @@ fn a_double_helix_is_bounded_the_closer_the_finer_the_tolerance() {
     for tolerance in [0.1, 0.01, 1e-3, 1e-4, 1e-5, 1e-6] {
         let found = pair.clearance(&a, &Pose::IDENTITY, &b, &Pose::IDENTITY, tolerance).unwrap();
         let [lower, upper] = coarser.unwrap_or([0.0, f64::INFINITY]);
-        assert!(lower <= found.lower && found.upper <= upper, "{tolerance}: {found:?} in {coarser:?}");
+        assert!(
+            lower <= found.lower && found.upper <= upper,
+            "{tolerance}: {found:?} in {coarser:?}"
+        );
         assert!(found.upper - found.lower <= tolerance.max(0.01), "{tolerance}: {found:?}");
         coarser = Some([found.lower, found.upper]);
     }
@@ -272,7 +296,8 @@ fn earlier_queries_never_change_an_answer_about_a_motion() {
             let decided = warm.clears_motion(&rigid, margin, 0.01);
             assert_eq!(decided, cold.clone().clears_motion(&rigid, margin, 0.01));
             clear += usize::from(decided.as_ref().is_ok_and(|answer| answer.is_clear()));
-            contact += usize::from(decided.is_ok_and(|answer| answer.decision == Decision::Contact));
+            contact +=
+                usize::from(decided.is_ok_and(|answer| answer.decision == Decision::Contact));
         }
         // Another question between.
         warm.clearance(&from_function(&arcs), &start, 0.1).unwrap();

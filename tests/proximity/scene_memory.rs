@@ -1,5 +1,5 @@
-//! What a scene remembers changes no answer: at every step of robots that move in any way it says what a scene says that was
-//! never asked before.
+//! What a scene remembers changes no answer: at every step of robots that move in any way it says
+//! what a scene says that was never asked before.
 
 use continuum_testing::Random;
 use parry_continuum::Chain;
@@ -53,7 +53,16 @@ impl Walker {
         let pose = if is_aligned { Pose::IDENTITY } else { random.pose(1.0) };
         let (shift, turn) = (random.direction(), random.direction());
         let step = 10.0_f64.powf(random.between(-4.0, -0.3));
-        Self { points, radii, model: random.below(3), pose, way: random.below(5), shift, turn, step }
+        Self {
+            points,
+            radii,
+            model: random.below(3),
+            pose,
+            way: random.below(5),
+            shift,
+            turn,
+            step,
+        }
     }
 
     fn walk(&mut self, random: &mut Random) {
@@ -64,7 +73,8 @@ impl Walker {
         if is(&self.way, 1) {
             // About the middle of the robot, so that what is near turns most.
             let middle = self.pose * self.points[self.points.len() / 2];
-            let about = Pose::from_translation(middle) * Pose::new(Vector::ZERO, self.turn * self.step);
+            let about =
+                Pose::from_translation(middle) * Pose::new(Vector::ZERO, self.turn * self.step);
             self.pose = about * Pose::from_translation(-middle) * self.pose;
         }
         if is(&self.way, 2) {
@@ -186,7 +196,8 @@ fn walks(rounds: std::ops::Range<u64>, place: &Place, visited: &mut Visited) {
                     visited.moved += 1;
                 }
                 1 => {
-                    let by = random.direction() * (place.unit * [0.01, 1.0][random.below(2) as usize]);
+                    let by =
+                        random.direction() * (place.unit * [0.01, 1.0][random.below(2) as usize]);
                     meshes[number].iter_mut().for_each(|vertex| *vertex += by);
                     for scene in [&mut scene, &mut never_asked] {
                         scene.set_vertices(number, &meshes[number]).unwrap();

@@ -1,4 +1,5 @@
-//! Inside or outside: never wrong on closed meshes, undecided near holes, the same for all ways to give a mesh.
+//! Inside or outside: never wrong on closed meshes, undecided near holes, the same for all ways to
+//! give a mesh.
 
 use crate::parity::{Parity, on_grid};
 use continuum_demo::field::{Body, Tube, round};
@@ -38,7 +39,8 @@ fn together(mut one: Mesh, other: Mesh) -> Mesh {
 fn torus() -> Mesh {
     let (around, across) = (48, 24);
     let vertex = |i: u32, j: u32| {
-        let (long, short) = (f64::from(i) * TAU / f64::from(around), f64::from(j) * TAU / f64::from(across));
+        let (long, short) =
+            (f64::from(i) * TAU / f64::from(around), f64::from(j) * TAU / f64::from(across));
         let from_axis = 0.7 + 0.25 * short.cos();
         Vector::new(from_axis * long.cos(), from_axis * long.sin(), 0.25 * short.sin())
     };
@@ -159,7 +161,8 @@ fn a_million_points_are_never_mistaken() {
 /// The winding number by all triangles, in plain double precision.
 fn winding(mesh: &TriMesh, point: Vector) -> f64 {
     let angle = |triangle: &[u32; 3]| {
-        let [a, b, c] = triangle.map(|corner| (mesh.vertices()[corner as usize] - point).normalize());
+        let [a, b, c] =
+            triangle.map(|corner| (mesh.vertices()[corner as usize] - point).normalize());
         2.0 * a.dot(b.cross(c)).atan2(1.0 + a.dot(b) + b.dot(c) + c.dot(a))
     };
     mesh.indices().iter().map(angle).sum::<f64>() / (4.0 * PI)
@@ -189,7 +192,8 @@ fn an_opening_leaves_doubt_where_it_fills_the_view() {
         indices.extend((0..24).map(|k| [first + (k + step) % 24, first + k, middle]));
     }
     let closed = TriMesh::new(vertices, indices).unwrap();
-    let (open_search, closed_search) = (BvhSearch::new(&open).unwrap(), BvhSearch::new(&closed).unwrap());
+    let (open_search, closed_search) =
+        (BvhSearch::new(&open).unwrap(), BvhSearch::new(&closed).unwrap());
     let mut random = Random::new(53);
     let bounds = open.local_aabb();
     let mut seen = [0; 3];
@@ -224,7 +228,8 @@ fn flaws_of_a_wall_mislead_nowhere() {
     let mut seen = [0; 3];
     for _ in 0..2000 {
         let triangle = mesh.triangle(random.below(mesh.indices().len() as u32));
-        let point = triangle.center() + random.direction() * 10.0_f64.powf(random.between(-2.0, 1.0));
+        let point =
+            triangle.center() + random.direction() * 10.0_f64.powf(random.between(-2.0, 1.0));
         let (found, clean) = (search.side(point), truth.side(point));
         assert!(found == clean || found == Side::Undecided, "{point}: {found:?}, clean {clean:?}");
         if let Some(expected) = by_winding(winding(&mesh, point)) {
@@ -235,7 +240,8 @@ fn flaws_of_a_wall_mislead_nowhere() {
     assert!(seen[0] > 400 && seen[1] > 400 && seen[2] > 20, "{seen:?}");
 }
 
-/// The unit does not matter, nor how far from the origin a mesh is, nor that a triangle lies far out.
+/// The unit does not matter, nor how far from the origin a mesh is, nor that a triangle lies far
+/// out.
 #[test]
 fn any_unit_serves() {
     let mut random = Random::new(61);

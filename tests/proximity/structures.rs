@@ -49,7 +49,8 @@ fn the_tightest_is_that_of_all_structures_in_turn() {
         let mut structures: Vec<_> = (0..8)
             .map(|_| {
                 let search = ball(random.point() * 10.0, random.between(0.5, 2.0));
-                let margin = [None, Some(0.0), Some(random.between(0.0, 2.0))][random.below(3) as usize];
+                let margin =
+                    [None, Some(0.0), Some(random.between(0.0, 2.0))][random.below(3) as usize];
                 (search, margin, Pose::IDENTITY)
             })
             .collect();
@@ -70,14 +71,19 @@ fn the_tightest_is_that_of_all_structures_in_turn() {
             let expected = one_by_one(&mut structures, &robots);
             let found = scene.tightest(&robots).unwrap();
             match (found, expected) {
-                (Some(Tightest { slack, between: Between::Structure(near), .. }), Some((least, pair))) => {
+                (
+                    Some(Tightest { slack, between: Between::Structure(near), .. }),
+                    Some((least, pair)),
+                ) => {
                     assert_eq!(slack, least, "round {round}");
                     assert_eq!([near.structure as usize, near.robot as usize], pair);
                     assert_eq!(near.slack, Some(slack));
                     let way = near.nearest.on_robot - near.nearest.on_mesh;
                     assert!((way.length() - near.nearest.distance).abs() < 1e-12);
                 }
-                (found, expected) => assert_eq!((found.is_none(), expected.is_none()), (true, true)),
+                (found, expected) => {
+                    assert_eq!((found.is_none(), expected.is_none()), (true, true))
+                }
             }
             let clears = scene.clears(&robots).unwrap();
             assert_eq!(clears, expected.is_none_or(|(slack, _)| slack > 0.0));
@@ -124,13 +130,15 @@ fn of_equal_slacks_the_lowest_structure_counts() {
     for x in [9.0, 4.0, -4.0, 4.0] {
         scene.add("organ", at(x), Some(1.0)).unwrap();
     }
-    let structure = |scene: &mut Scene| match scene.tightest(&robots).unwrap().map(|found| found.between) {
-        Some(Between::Structure(near)) => near.structure,
-        other => panic!("{other:?}"),
-    };
+    let structure =
+        |scene: &mut Scene| match scene.tightest(&robots).unwrap().map(|found| found.between) {
+            Some(Between::Structure(near)) => near.structure,
+            other => panic!("{other:?}"),
+        };
     assert_eq!(structure(&mut scene), 1);
     scene.set_margin(1, None).unwrap();
-    // Structure 2 is the mirror image of 3, and may differ by rounding; the same mesh twice does not.
+    // Structure 2 is the mirror image of 3, and may differ by rounding; the same mesh twice does
+    // not.
     scene.set_margin(2, None).unwrap();
     assert_eq!(structure(&mut scene), 3);
     scene.set_margin(1, Some(1.0)).unwrap();
@@ -162,8 +170,11 @@ fn robots_are_held_against_one_another_where_they_have_a_margin() {
 fn a_tube_inside_another_does_not_collide_with_it() {
     let outer = Chain::from_centreline(&[Vector::ZERO, Vector::Z * 5.0], &[1.0]).unwrap();
     let inner = Chain::from_centreline(&[Vector::ZERO, Vector::Z * 9.0], &[0.5]).unwrap();
-    let robots =
-        [(&outer, Pose::IDENTITY), (&inner, Pose::IDENTITY), (&outer, Pose::translation(4.0, 0.0, 0.0))];
+    let robots = [
+        (&outer, Pose::IDENTITY),
+        (&inner, Pose::IDENTITY),
+        (&outer, Pose::translation(4.0, 0.0, 0.0)),
+    ];
     let mut scene = Scene::new();
     scene.set_robot_margin(Some(0.25)).unwrap();
     assert!(!scene.clears(&robots).unwrap());
@@ -204,7 +215,10 @@ fn who_is_at_fault_is_named() {
     let robot = Chain::from_centreline(&[Vector::ZERO, Vector::Z], &[0.5]).unwrap();
     let mut scene = Scene::new();
     let error = scene.add("liver", ball(Vector::ZERO, 1.0), Some(-1.0)).unwrap_err();
-    assert!(error.to_string().contains("`liver`") && error.to_string().contains("`margin`"), "{error}");
+    assert!(
+        error.to_string().contains("`liver`") && error.to_string().contains("`margin`"),
+        "{error}"
+    );
     assert_eq!(error.kind(), "negative");
     assert!(scene.is_empty());
     let liver = scene.add("liver", ball(Vector::ZERO, 1.0), Some(1.0)).unwrap();
@@ -232,24 +246,32 @@ fn an_infinite_margin_is_kept_by_nobody() {
     scene.add("far", ball(Vector::X * 90.0, 1.0), Some(0.5)).unwrap();
     let tightest = scene.tightest(&robots).unwrap().unwrap();
     assert_eq!(tightest.slack, f64::NEG_INFINITY);
-    assert!(matches!(tightest.between, Between::Structure(near) if near.structure == 1), "{tightest:?}");
+    assert!(
+        matches!(tightest.between, Between::Structure(near) if near.structure == 1),
+        "{tightest:?}"
+    );
     assert!(!scene.clears(&robots).unwrap());
     let mut scene = Scene::new();
     scene.add("near", ball(Vector::X * 30.0, 1.0), Some(0.5)).unwrap();
     scene.set_robot_margin(Some(f64::INFINITY)).unwrap();
     let tightest = scene.tightest(&robots).unwrap().unwrap();
-    assert!(tightest.slack == f64::NEG_INFINITY && matches!(tightest.between, Between::Robots { .. }));
+    assert!(
+        tightest.slack == f64::NEG_INFINITY && matches!(tightest.between, Between::Robots { .. })
+    );
     assert!(!scene.clears(&robots).unwrap());
 }
 
-/// A batch says of every set what the scene says of it alone, and one that is refused costs the others nothing.
+/// A batch says of every set what the scene says of it alone, and one that is refused costs the
+/// others nothing.
 #[test]
 fn many_sets_have_the_answers_of_each() {
     let mut random = Random::new(9);
     let mut scene = Scene::new();
     for number in 0..6 {
         let search = ball(random.point() * 10.0, random.between(0.5, 2.0));
-        scene.add(format!("organ {number}"), search, [None, Some(0.2), Some(1.0)][number % 3]).unwrap();
+        scene
+            .add(format!("organ {number}"), search, [None, Some(0.2), Some(1.0)][number % 3])
+            .unwrap();
     }
     scene.set_pose(1, &random.pose(1.0)).unwrap();
     scene.set_robot_margin(Some(0.1)).unwrap();
@@ -272,7 +294,10 @@ fn many_sets_have_the_answers_of_each() {
         // What has moved since has moved for the next batch.
         scene.set_pose(2, &random.pose(3.0)).unwrap();
     }
-    assert_eq!(clears[20], Err(SceneError::Robot { robot: 1, error: ProximityError::PoseNotFinite }));
+    assert_eq!(
+        clears[20],
+        Err(SceneError::Robot { robot: 1, error: ProximityError::PoseNotFinite })
+    );
     let count = |clear: bool| clears.iter().filter(|answer| **answer == Ok(clear)).count();
     assert!(count(true) > 5 && count(false) > 2, "{} {}", count(true), count(false));
 }
@@ -287,7 +312,8 @@ fn what_is_tiny_is_not_left_out() {
         let wall = BvhSearch::from_triangles(&corners, &[[0, 1, 2]]).unwrap();
         scene.add("wall", wall, Some(away * 1.01)).unwrap();
         let at = Vector::X * away;
-        let wire = Chain::capsules(&[at - Vector::Y * size, at + Vector::Y * size], &[0.0]).unwrap();
+        let wire =
+            Chain::capsules(&[at - Vector::Y * size, at + Vector::Y * size], &[0.0]).unwrap();
         assert_eq!(scene.clears(&[(&wire, Pose::IDENTITY)]), Ok(false), "{away:e}");
         let found = scene.tightest(&[(&wire, Pose::IDENTITY)]).unwrap().unwrap();
         assert!(found.slack < 0.0 && found.slack > -0.02 * away, "{away:e} {found:?}");
@@ -302,7 +328,9 @@ fn a_margin_counts_from_when_it_is_set() {
     let robot = Chain::from_centreline(&[Vector::ZERO, Vector::Z], &[0.5]).unwrap();
     // Beside the box around both, and 27 from either.
     let robots = [(&robot, Pose::translation(20.0, 20.0, 0.0))];
-    for (margin, clears) in [(Some(0.1), true), (Some(30.0), false), (Some(0.1), true), (None, true)] {
+    for (margin, clears) in
+        [(Some(0.1), true), (Some(30.0), false), (Some(0.1), true), (None, true)]
+    {
         for structure in [0, 1] {
             scene.set_margin(structure, margin).unwrap();
             assert_eq!(scene.clears(&robots), Ok(clears));

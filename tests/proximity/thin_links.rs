@@ -1,5 +1,5 @@
-//! Links far longer than thick beside triangles stretched along them: a bound of the search that is tilted by rounding
-//! would rule out the nearest.
+//! Links far longer than thick beside triangles stretched along them: a bound of the search that is
+//! tilted by rounding would rule out the nearest.
 
 use continuum_testing::Random;
 use continuum_testing::narrow_phase::triangle_modified_cylinder;
@@ -53,7 +53,8 @@ impl Scene {
     fn least(&self, flat: bool) -> Real {
         let (start, end) = (f64::vec3(self.start), f64::vec3(self.end));
         let distance = |triangle: &[Vector; 3]| {
-            triangle_modified_cylinder(triangle.map(f64::vec3), start, end, self.radius, [flat; 2]).distance
+            triangle_modified_cylinder(triangle.map(f64::vec3), start, end, self.radius, [flat; 2])
+                .distance
         };
         self.triangles.iter().map(distance).fold(Real::INFINITY, Real::min)
     }
@@ -65,7 +66,8 @@ impl Scene {
     }
 
     fn mesh(&self) -> TriMesh {
-        let indices = (0..self.triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        let indices =
+            (0..self.triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
         TriMesh::new(self.triangles.as_flattened().to_vec(), indices).unwrap()
     }
 }
@@ -81,8 +83,11 @@ fn no_bound_rules_out_the_nearest_triangle() {
         let unit = scene.extent() * Real::EPSILON / 2.0;
         for flat in [false, true] {
             let (points, radii) = ([scene.start, scene.end], [scene.radius]);
-            let robot =
-                if flat { Chain::cylinders(&points, &radii) } else { Chain::capsules(&points, &radii) };
+            let robot = if flat {
+                Chain::cylinders(&points, &radii)
+            } else {
+                Chain::capsules(&points, &radii)
+            };
             let robot = robot.unwrap();
             let expected = scene.least(flat);
             if expected > 0.0 {
@@ -95,8 +100,9 @@ fn no_bound_rules_out_the_nearest_triangle() {
                 ("exhaustive, f32", Box::new(Exhaustive::<f32>::new(&mesh).unwrap())),
                 ("exhaustive, f64", Box::new(Exhaustive::<f64>::new(&mesh).unwrap())),
             ];
-            let dispatched =
-                ContinuumDispatcher::default().distance(&Pose::IDENTITY, &robot.links()[0], &mesh).unwrap();
+            let dispatched = ContinuumDispatcher::default()
+                .distance(&Pose::IDENTITY, &robot.links()[0], &mesh)
+                .unwrap();
             let off = worst.entry(("dispatcher", flat)).or_default();
             *off = off.max((dispatched.distance - expected).abs() / unit);
             for (name, mut engine) in engines {

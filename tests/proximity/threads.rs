@@ -1,8 +1,10 @@
-//! Nothing hangs: fresh engines that many threads ask at once, far and near, in batches and from a caller's own tasks.
+//! Nothing hangs: fresh engines that many threads ask at once, far and near, in batches and from a
+//! caller's own tasks.
 //!
-//! Each question is asked of an engine that has built nothing yet, so that threads meet in what it builds. Luck decides
-//! how they meet; that no build uses the pool is shown without luck by `src/threads/lazy.rs` and `tests/package/threads.rs`.
-//! `PARRY_CONTINUUM_ROUNDS` names more rounds, such as a thousand.
+//! Each question is asked of an engine that has built nothing yet, so that threads meet in what it
+//! builds. Luck decides how they meet; that no build uses the pool is shown without luck by
+//! `src/threads/lazy.rs` and `tests/package/threads.rs`. `PARRY_CONTINUUM_ROUNDS` names more
+//! rounds, such as a thousand.
 
 use continuum_testing::{Random, answered};
 use parry_continuum::parry::math::{Pose, Vector};
@@ -35,7 +37,10 @@ fn in_time(rounds: usize, work: impl Fn(usize) + Clone + Send + Sync + 'static) 
             done.send(()).unwrap();
         });
         let limit = Duration::from_secs(60 + rounds as u64);
-        assert!(is_done.recv_timeout(limit).is_ok(), "{rounds} rounds in a pool of {threads} threads");
+        assert!(
+            is_done.recv_timeout(limit).is_ok(),
+            "{rounds} rounds in a pool of {threads} threads"
+        );
     }
 }
 
@@ -160,7 +165,8 @@ fn questions_from_a_callers_tasks_end() {
     let (mesh, near) = (ball(SMALL), robots(64));
     let far = far(&near);
     in_time(40, move |round| {
-        let (search, scan) = (BvhSearch::new(&mesh).unwrap(), Exhaustive::<f32>::new(&mesh).unwrap());
+        let (search, scan) =
+            (BvhSearch::new(&mesh).unwrap(), Exhaustive::<f32>::new(&mesh).unwrap());
         let robots = if round % 2 == 0 { &near } else { &far };
         robots.par_iter().enumerate().for_each(|(number, (robot, pose))| {
             ask_all(number, &search, &scan, robot, pose, &mesh);
@@ -185,7 +191,8 @@ fn questions_from_threads_and_tasks_together_end() {
     let (mesh, near) = (ball(SMALL), robots(24));
     let far = far(&near);
     in_time(24, move |round| {
-        let (search, scan) = (BvhSearch::new(&mesh).unwrap(), Exhaustive::<f32>::new(&mesh).unwrap());
+        let (search, scan) =
+            (BvhSearch::new(&mesh).unwrap(), Exhaustive::<f32>::new(&mesh).unwrap());
         let robots = if round % 2 == 0 { &near } else { &far };
         let ask = |number: usize| {
             let (robot, pose) = &robots[number];

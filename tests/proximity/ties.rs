@@ -1,5 +1,5 @@
-//! Of triangles at the same distance, 0 or not, every engine names the lowest, and of links that share it the lowest, on
-//! any number of threads.
+//! Of triangles at the same distance, 0 or not, every engine names the lowest, and of links that
+//! share it the lowest, on any number of threads.
 
 use crate::planner;
 use continuum_testing::answered;
@@ -9,7 +9,8 @@ use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::*;
 use std::f64::consts::TAU;
 
-/// A straight tube around the z axis with a robot on it: thousands of triangles are as near as one another.
+/// A straight tube around the z axis with a robot on it: thousands of triangles are as near as one
+/// another.
 fn straight_tube(around: u32, along: u32, flat: bool) -> (TriMesh, Chain) {
     let vertex = |k: u32| {
         let (sin, cos) = (f64::from(k % around) / f64::from(around) * TAU).sin_cos();
@@ -20,13 +21,15 @@ fn straight_tube(around: u32, along: u32, flat: bool) -> (TriMesh, Chain) {
         let [a, b] = [k, row + next];
         [[a, a + around, b + around], [a, b + around, b]]
     });
-    let mesh = TriMesh::new((0..around * (along + 1)).map(vertex).collect(), triangles.collect()).unwrap();
+    let mesh =
+        TriMesh::new((0..around * (along + 1)).map(vertex).collect(), triangles.collect()).unwrap();
     let points: Vec<_> = (0..=30).map(|k| Vector::Z * (f64::from(k) * 2.0 - 30.0)).collect();
     let build = if flat { Chain::cylinders } else { Chain::from_centreline };
     (mesh, build(&points, &[0.5; 30]).unwrap())
 }
 
-/// Whether no triangle before the named one is as near to the link: the distances in a mesh of those alone.
+/// Whether no triangle before the named one is as near to the link: the distances in a mesh of
+/// those alone.
 fn is_lowest(mesh: &TriMesh, robot: &Chain, pose: &Pose, answers: &[LinkProximity]) {
     for answer in answers.iter().filter(|answer| answer.triangle > 0) {
         let before = mesh.indices()[..answer.triangle as usize].to_vec();
@@ -38,8 +41,8 @@ fn is_lowest(mesh: &TriMesh, robot: &Chain, pose: &Pose, answers: &[LinkProximit
     }
 }
 
-/// All engines on several numbers of threads, cold and warm, alone and in a batch: the same answers to the last bit.
-/// How many of the links touch.
+/// All engines on several numbers of threads, cold and warm, alone and in a batch: the same answers
+/// to the last bit. How many of the links touch.
 fn check(mesh: &TriMesh, robot: &Chain, pose: &Pose) -> usize {
     let mut expected = Vec::new();
     let mut reference = Exhaustive::<f64>::new(mesh).unwrap();
@@ -61,11 +64,18 @@ fn check(mesh: &TriMesh, robot: &Chain, pose: &Pose) -> usize {
                 for _ in 0..3 {
                     engine.per_link(robot, pose, &mut out).unwrap();
                     assert_eq!(out, expected, "{name}, {threads} threads");
-                    assert_eq!(engine.minimum(robot, pose).unwrap(), least, "{name}, {threads} threads");
+                    assert_eq!(
+                        engine.minimum(robot, pose).unwrap(),
+                        least,
+                        "{name}, {threads} threads"
+                    );
                 }
                 let robots = vec![(robot, *pose); 5];
                 engine.per_link_batch(&robots, &mut batch).unwrap();
-                assert!(answered(&batch).iter().all(|out| *out == expected), "{name}, {threads} threads");
+                assert!(
+                    answered(&batch).iter().all(|out| *out == expected),
+                    "{name}, {threads} threads"
+                );
                 engine.minimum_batch(&robots, &mut minima).unwrap();
                 assert_eq!(answered(&minima), [least; 5], "{name}, {threads} threads");
             });

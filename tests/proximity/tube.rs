@@ -8,7 +8,9 @@ use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{
     BvhSearch, Certificate, Clearance, Decision, Exhaustive, Proximity, ProximityError, Witness,
 };
-use parry_continuum::{BendingMotion, BendingSection, Chain, RigidMotion, RobotError, Tube, TubeSection};
+use parry_continuum::{
+    BendingMotion, BendingSection, Chain, RigidMotion, RobotError, Tube, TubeSection,
+};
 use std::sync::Arc;
 
 fn anatomy() -> TriMesh {
@@ -16,16 +18,19 @@ fn anatomy() -> TriMesh {
     TriMesh::new(vertices, indices).unwrap()
 }
 
-/// A concentric tube robot, whose sections out share one curvature each where the tubes inside do not end.
+/// A concentric tube robot, whose sections out share one curvature each where the tubes inside do
+/// not end.
 fn concentric(robot: &Robot, random: &mut Random) -> Arcs {
     let reach = [0.15, 0.3, 0.6][random.below(3) as usize];
     let mut arcs = Arcs::from_frame(Pose::IDENTITY);
     for section in &robot.sections {
         let length = section.length * reach * random.between(0.02, 1.0);
-        let bend = |share: f64, angle: f64| Vector::new(angle.cos(), angle.sin(), 0.0) * (0.0522 * share);
+        let bend =
+            |share: f64, angle: f64| Vector::new(angle.cos(), angle.sin(), 0.0) * (0.0522 * share);
         let parts = 1 + random.below(2);
         let part = length / f64::from(parts);
-        let all: Vec<_> = (0..parts).map(|_| (part, bend(random.unit(), random.between(0.0, 6.3)))).collect();
+        let all: Vec<_> =
+            (0..parts).map(|_| (part, bend(random.unit(), random.between(0.0, 6.3)))).collect();
         arcs.push(section.radius, &all);
     }
     arcs
@@ -34,19 +39,23 @@ fn concentric(robot: &Robot, random: &mut Random) -> Arcs {
 /// The model of a chain: Algorithm 1, or cylinders.
 pub(super) type Model = fn(&[Vector], &[f64]) -> Result<Chain, RobotError>;
 
-/// Within 1e-5 of the tube, at the size of these scenes. Towards flat ends its links become shorter by halves: the rim of
-/// a tilted one would stick out.
+/// Within 1e-5 of the tube, at the size of these scenes. Towards flat ends its links become shorter
+/// by halves: the rim of a tilted one would stick out.
 pub(super) fn fine(arcs: &Arcs, model: Model) -> Chain {
     let sharpest = arcs.stretches.iter().fold(1e-3, |most: f64, part| most.max(part.curvature));
     let spacing = (40e-6 / sharpest).sqrt();
-    let at_ends: Vec<_> = (1..20).map(|k| spacing * 0.5_f64.powi(k)).filter(|off| *off > 1e-6).collect();
+    let at_ends: Vec<_> =
+        (1..20).map(|k| spacing * 0.5_f64.powi(k)).filter(|off| *off > 1e-6).collect();
     let (points, radii) = arcs.samples(spacing, &at_ends);
     model(&points, &radii).unwrap()
 }
 
 fn sections(arcs: &Arcs) -> Vec<TubeSection> {
-    let section =
-        |&Stretch { length, radius, curvature }: &Stretch| TubeSection { length, radius, curvature };
+    let section = |&Stretch { length, radius, curvature }: &Stretch| TubeSection {
+        length,
+        radius,
+        curvature,
+    };
     arcs.stretches.iter().map(section).collect()
 }
 
@@ -57,9 +66,9 @@ pub(super) fn from_function(arcs: &Arc<Arcs>) -> Tube {
     tube
 }
 
-/// The tube as a function, and from samples with and without the tangents at its ends, and as they come from where sections
-/// have end points and radii of their own: at least four in each arc, and no farther apart than a third of the smallest
-/// radius of curvature.
+/// The tube as a function, and from samples with and without the tangents at its ends, and as they
+/// come from where sections have end points and radii of their own: at least four in each arc, and
+/// no farther apart than a third of the smallest radius of curvature.
 pub(super) fn all_ways(arcs: &Arc<Arcs>) -> [Tube; 4] {
     let sharpest = arcs.stretches.iter().fold(1e-3, |most: f64, part| most.max(part.curvature));
     let (points, radii) = arcs.samples((arcs.shortest() / 4.0).min(0.2).min(0.3 / sharpest), &[]);
@@ -71,14 +80,16 @@ pub(super) fn all_ways(arcs: &Arc<Arcs>) -> [Tube; 4] {
     ]
 }
 
-/// Some points twice, as far apart as rounding puts what is computed in two ways, and radii that differ in their last digits.
+/// Some points twice, as far apart as rounding puts what is computed in two ways, and radii that
+/// differ in their last digits.
 fn as_computed(points: &[Vector], radii: &[f64]) -> Tube {
     let reach = points.iter().fold(0.0, |most: f64, point| most.max(point.abs().max_element()));
     let mut random = Random::new(points.len() as u64);
     let (mut all, mut all_radii) = (vec![], vec![]);
     for (k, &point) in points.iter().enumerate() {
         all.push(point);
-        let rounded = |random: &mut Random, k: usize| radii[k] * (1.0 + 1e-13 * random.between(-1.0, 1.0));
+        let rounded =
+            |random: &mut Random, k: usize| radii[k] * (1.0 + 1e-13 * random.between(-1.0, 1.0));
         if random.below(5) == 0 || k + 1 == points.len() {
             all.push(point + random.point() * (4.0 * f64::EPSILON * reach));
             all_radii.push(random.unit());
@@ -110,7 +121,10 @@ fn judge(search: &mut BvhSearch, arcs: &Arc<Arcs>, model: Model, base: &Pose, se
             seen.too_fine += usize::from(!found.resolved);
             let Clearance { lower, upper, witness, .. } = found;
             let Witness { on_robot, on_mesh, arc_length, .. } = witness;
-            assert!(lower <= truth + 1e-5 && truth <= upper + 1e-5, "way {way}: {truth} in {found:?}");
+            assert!(
+                lower <= truth + 1e-5 && truth <= upper + 1e-5,
+                "way {way}: {truth} in {found:?}"
+            );
             assert_eq!(found.resolved, upper - lower <= tolerance);
             assert!((on_robot - on_mesh).length() <= upper + 1e-9, "{found:?}");
             assert!(upper > 0.0 || on_robot == on_mesh);
@@ -129,7 +143,11 @@ fn judge(search: &mut BvhSearch, arcs: &Arc<Arcs>, model: Model, base: &Pose, se
                 }
                 Ok(decision) => {
                     let right = if off < 0.0 { Decision::Clear } else { Decision::Contact };
-                    assert_eq!(decision, right, "way {way}: {margin} of {truth}, {:?}", arcs.stretches);
+                    assert_eq!(
+                        decision, right,
+                        "way {way}: {margin} of {truth}, {:?}",
+                        arcs.stretches
+                    );
                 }
                 Err(ProximityError::ToleranceTooFine { .. }) if way > 0 => seen.too_fine += 1,
                 Err(error) => panic!("{error}: way {way}"),
@@ -152,25 +170,34 @@ fn judge_concentric_tube_robots(rounds: usize) {
             &mut seen,
         );
     }
-    assert!(seen.free > rounds / 6 && seen.touching > rounds / 6 && seen.decisions > 10 * rounds, "{seen:?}");
+    assert!(
+        seen.free > rounds / 6 && seen.touching > rounds / 6 && seen.decisions > 10 * rounds,
+        "{seen:?}"
+    );
     assert!(seen.too_fine < rounds / 4 && seen.undecided < seen.decisions / 4, "{seen:?}");
 }
 
-/// Hairpins whose radius of curvature is little more than their own, loops, sections shorter than they are thick.
+/// Hairpins whose radius of curvature is little more than their own, loops, sections shorter than
+/// they are thick.
 fn judge_curves_of_any_kind(rounds: usize) {
     let mesh = anatomy();
     let mut search = BvhSearch::new(&mesh).unwrap();
     let (mut random, mut seen, mut sharp, mut short) = (Random::new(2), Seen::default(), 0, 0);
     for _ in 0..rounds {
         let from = mesh.vertices()[random.below(mesh.vertices().len() as u32) as usize];
-        let frame = Pose::new(from + random.point() * 3.0, random.direction() * random.between(0.0, 3.0));
+        let frame =
+            Pose::new(from + random.point() * 3.0, random.direction() * random.between(0.0, 3.0));
         let arcs = Arc::new(Arcs::random(&mut random, frame, 0.6));
         sharp += usize::from(arcs.stretches.iter().any(|part| part.curvature * part.radius > 0.5));
         short += usize::from(arcs.stretches.iter().any(|part| part.length < part.radius));
-        // Round joints of a finely divided chain stick out of a flat end by up to curvature^2 radius^3 / 8.
+        // Round joints of a finely divided chain stick out of a flat end by up to curvature^2
+        // radius^3 / 8.
         judge(&mut search, &arcs, Chain::cylinders, &Pose::IDENTITY, &mut seen);
     }
-    assert!(seen.free > rounds / 8 && seen.touching > rounds / 8 && seen.decisions > 10 * rounds, "{seen:?}");
+    assert!(
+        seen.free > rounds / 8 && seen.touching > rounds / 8 && seen.decisions > 10 * rounds,
+        "{seen:?}"
+    );
     assert!(
         sharp > rounds / 8 && short > rounds / 8 && seen.undecided < seen.decisions / 4,
         "{sharp} {short} {seen:?}"
@@ -187,7 +214,8 @@ fn curves_of_any_kind_are_never_misjudged() {
     judge_curves_of_any_kind(900);
 }
 
-/// A chain is a tube whose pieces are straight: the bounds are those of rounding, whatever the tolerance.
+/// A chain is a tube whose pieces are straight: the bounds are those of rounding, whatever the
+/// tolerance.
 #[test]
 fn chains_are_tubes_of_straight_pieces() {
     let (mut search, base, robot) =
@@ -206,9 +234,14 @@ fn chains_are_tubes_of_straight_pieces() {
         let found = search.clearance(&tube, &base, 0.0).unwrap();
         assert!(found.lower <= truth && truth <= found.upper, "{truth} in {found:?}");
         assert!(found.upper - found.lower <= 1e-10, "{found:?}");
-        for margin in [0.0, truth - 1e-9, truth + 1e-9].into_iter().filter(|margin| *margin >= 0.0) {
+        for margin in [0.0, truth - 1e-9, truth + 1e-9].into_iter().filter(|margin| *margin >= 0.0)
+        {
             let right = if truth > margin { Decision::Clear } else { Decision::Contact };
-            assert_eq!(search.tube_clears(&tube, &base, margin, 1e-10).unwrap(), right, "{truth} {margin}");
+            assert_eq!(
+                search.tube_clears(&tube, &base, margin, 1e-10).unwrap(),
+                right,
+                "{truth} {margin}"
+            );
         }
         free += usize::from(truth > 0.0);
     }
@@ -227,8 +260,11 @@ fn links_as_short_as_rounding_keep_their_faces() {
         let Ok(chain) = Chain::cylinders(&[start, end], &[radius]) else { continue };
         // A point, which the rim of a disc is mostly nearest to, or a triangle.
         let point = random.point() * 3.0;
-        let corners =
-            if round % 2 == 0 { [point; 3] } else { [point, random.point() * 3.0, random.point() * 3.0] };
+        let corners = if round % 2 == 0 {
+            [point; 3]
+        } else {
+            [point, random.point() * 3.0, random.point() * 3.0]
+        };
         let mesh = TriMesh::new(corners.to_vec(), vec![[0, 1, 2]]).unwrap();
         let mut search = BvhSearch::new(&mesh).unwrap();
         let truth = Certificate::between(&chain.links()[0], &Pose::IDENTITY, corners).unwrap();
@@ -246,7 +282,8 @@ fn batches_answer_as_single_queries_do() {
     let (mut search, base, robot) =
         (BvhSearch::new(&anatomy()).unwrap(), ventricle::entry(), ctr::three_tubes());
     let mut random = Random::new(4);
-    let tubes: Vec<_> = (0..40).map(|_| from_function(&Arc::new(concentric(&robot, &mut random)))).collect();
+    let tubes: Vec<_> =
+        (0..40).map(|_| from_function(&Arc::new(concentric(&robot, &mut random)))).collect();
     let robots: Vec<_> = tubes.iter().map(|tube| (tube, base)).collect();
     let (mut clearances, mut decisions) = (Vec::new(), Vec::new());
     search.clearance_batch(&robots, 0.01, &mut clearances).unwrap();
@@ -270,7 +307,8 @@ fn batches_answer_as_single_queries_do() {
 #[test]
 fn each_tube_of_a_batch_has_a_result_of_its_own() {
     let mut search = BvhSearch::new(&anatomy()).unwrap();
-    let good = Tube::from_samples(&[Vector::ZERO, Vector::Z, Vector::Z * 2.0], &[0.1; 2], None).unwrap();
+    let good =
+        Tube::from_samples(&[Vector::ZERO, Vector::Z, Vector::Z * 2.0], &[0.1; 2], None).unwrap();
     let base = ventricle::entry();
     let far = Pose::from_translation(Vector::X * 1e151);
     let (mut clearances, mut decisions) = (Vec::new(), Vec::new());
@@ -285,17 +323,24 @@ fn each_tube_of_a_batch_has_a_result_of_its_own() {
             let (found, decided) = (&clearances[place], &decisions[place]);
             if place == 20 + round {
                 assert!(matches!(found, Err(ProximityError::TubeOutOfRange { .. })), "{found:?}");
-                assert!(matches!(decided, Err(ProximityError::TubeOutOfRange { .. })), "{decided:?}");
+                assert!(
+                    matches!(decided, Err(ProximityError::TubeOutOfRange { .. })),
+                    "{decided:?}"
+                );
             } else {
                 let (found, alone) = (found.as_ref().unwrap(), alone.as_ref().unwrap());
-                assert!(found.lower <= alone.upper && alone.lower <= found.upper, "{found:?} {alone:?}");
+                assert!(
+                    found.lower <= alone.upper && alone.lower <= found.upper,
+                    "{found:?} {alone:?}"
+                );
                 assert_eq!(*decided, decision);
             }
         }
     }
 }
 
-/// The directions that a function gives may have any length: the answer is the same to the last bit.
+/// The directions that a function gives may have any length: the answer is the same to the last
+/// bit.
 #[test]
 fn directions_of_any_length_will_do() {
     let (mut search, base, robot) =
@@ -320,7 +365,8 @@ fn directions_of_any_length_will_do() {
     }
 }
 
-/// A stated error of the centreline widens the bounds by so much at least. That is no part of the tolerance.
+/// A stated error of the centreline widens the bounds by so much at least. That is no part of the
+/// tolerance.
 #[test]
 fn stated_errors_count() {
     let (mut search, base, robot) =
@@ -332,7 +378,10 @@ fn stated_errors_count() {
         let rough = from_function(&arcs).with_error(0.05).unwrap();
         let found = search.clearance(&rough, &base, 0.3).unwrap();
         assert!(found.lower <= (exact.lower - 0.05).max(0.0) + 1e-4);
-        assert!(exact.upper <= 0.0 || found.upper >= exact.lower + 0.05 - 1e-4, "{exact:?} {found:?}");
+        assert!(
+            exact.upper <= 0.0 || found.upper >= exact.lower + 0.05 - 1e-4,
+            "{exact:?} {found:?}"
+        );
         if exact.lower > 0.1 {
             free += 1;
             let fine = search.clearance(&rough, &base, 0.05).unwrap();
@@ -407,25 +456,32 @@ fn a_robot_that_is_off_by_the_stated_error_is_within_the_bounds() {
         };
         let tube = Tube::from_function(&[TubeSection { length, radius, curvature }], arc).unwrap();
         // The robot itself, turned about a place of the curve and moved.
-        let (centre, turn) = (arc(random.unit() * length).0, random.direction() * random.between(0.0, 0.05));
+        let (centre, turn) =
+            (arc(random.unit() * length).0, random.direction() * random.between(0.0, 0.05));
         let turned = Pose::from_parts(Vector::ZERO, Pose::new(Vector::ZERO, turn).rotation);
         let shift = random.direction() * random.between(0.0, 0.2);
         let own = Pose::from_translation(centre + shift) * turned * Pose::from_translation(-centre);
-        let off = (0..=64).map(|k| arc(length * f64::from(k) / 64.0).0).map(|p| (own * p - p).length());
+        let off =
+            (0..=64).map(|k| arc(length * f64::from(k) / 64.0).0).map(|p| (own * p - p).length());
         let error = 1.001 * off.fold(0.0, f64::max) + radius * turn.length();
         // A wall near the tip, across or aslant.
         let (tip, normal) = arc(length);
         let normal = (normal + random.direction() * random.between(0.0, 0.7)).normalize();
         let aside = normal.cross(random.direction()).normalize();
         let middle = tip + normal * random.between(0.0, 12.0) * error;
-        let corners = [aside * 9.0, normal.cross(aside) * 9.0, -(aside + normal.cross(aside)) * 9.0];
-        let wall = TriMesh::new(corners.map(|corner| middle + corner).to_vec(), vec![[0, 1, 2]]).unwrap();
+        let corners =
+            [aside * 9.0, normal.cross(aside) * 9.0, -(aside + normal.cross(aside)) * 9.0];
+        let wall =
+            TriMesh::new(corners.map(|corner| middle + corner).to_vec(), vec![[0, 1, 2]]).unwrap();
         let mut search = BvhSearch::new(&wall).unwrap();
         let truth = search.clearance(&tube, &own, 1e-3).unwrap();
         let doubtful = tube.with_error(error).unwrap();
         let found = search.clearance(&doubtful, &Pose::IDENTITY, 6.0 * error + 1e-3).unwrap();
         apart += usize::from(found.lower > 0.0);
-        assert!(found.lower <= truth.upper && truth.lower <= found.upper, "{found:?} {truth:?} {error}");
+        assert!(
+            found.lower <= truth.upper && truth.lower <= found.upper,
+            "{found:?} {truth:?} {error}"
+        );
         let cleared = search.tube_clears(&doubtful, &Pose::IDENTITY, truth.upper, 1e-3);
         assert!(!matches!(cleared, Ok(Decision::Clear)), "{truth:?} {error}");
         near += usize::from(0.0 < truth.lower && truth.lower < 2.0 * error);
@@ -437,8 +493,10 @@ fn a_robot_that_is_off_by_the_stated_error_is_within_the_bounds() {
 #[test]
 fn a_pose_of_single_precision_keeps_lengths() {
     let tube = Tube::from(&Chain::cylinders(&[Vector::ZERO, 5.0 * Vector::Z], &[1.0]).unwrap());
-    let corners = [[-99.0, -99.0], [99.0, -99.0], [0.0, 99.0]].map(|[x, y]| Vector::new(x, y, 15.0));
-    let mut search = BvhSearch::new(&TriMesh::new(corners.to_vec(), vec![[0, 1, 2]]).unwrap()).unwrap();
+    let corners =
+        [[-99.0, -99.0], [99.0, -99.0], [0.0, 99.0]].map(|[x, y]| Vector::new(x, y, 15.0));
+    let mut search =
+        BvhSearch::new(&TriMesh::new(corners.to_vec(), vec![[0, 1, 2]]).unwrap()).unwrap();
     for w in [1.0, 0.99999994, 1.0000001] {
         let pose = Pose::from_parts(Vector::ZERO, Rotation::from_xyzw(0.0, 0.0, 0.0, w));
         let found = search.clearance(&tube, &pose, 1e-9).unwrap();
@@ -446,16 +504,18 @@ fn a_pose_of_single_precision_keeps_lengths() {
     }
 }
 
-/// One rule for all: rounding of single precision is made good, and any other length of a quaternion is refused, however
-/// large or small; chains, tubes, certificates and motions agree.
+/// One rule for all: rounding of single precision is made good, and any other length of a
+/// quaternion is refused, however large or small; chains, tubes, certificates and motions agree.
 #[test]
 fn rotations_that_scale_are_refused_by_all() {
     let chain =
-        Chain::cylinders(&[Vector::new(1e3, -700.0, 0.0), Vector::new(1e3, -700.0, 5.0)], &[1.0]).unwrap();
+        Chain::cylinders(&[Vector::new(1e3, -700.0, 0.0), Vector::new(1e3, -700.0, 5.0)], &[1.0])
+            .unwrap();
     let tube = Tube::from(&chain);
     let corners = [[-9e3, -9e3], [9e3, -9e3], [0.0, 9e3]].map(|[x, y]| Vector::new(x, y, 2500.0));
     let mesh = TriMesh::new(corners.to_vec(), vec![[0, 1, 2]]).unwrap();
-    let (mut search, mut all) = (BvhSearch::new(&mesh).unwrap(), Exhaustive::<f64>::new(&mesh).unwrap());
+    let (mut search, mut all) =
+        (BvhSearch::new(&mesh).unwrap(), Exhaustive::<f64>::new(&mesh).unwrap());
     let mut random = Random::new(8);
     let posed = |q: Rotation| Pose::from_parts(Vector::new(1.0, 2.0, 3.0), q);
     let still = |pose: Pose| {
@@ -487,7 +547,10 @@ fn rotations_that_scale_are_refused_by_all() {
                 && found.distance <= certificate.upper * (1.0 + 1e-12)
         );
         let bounds = search.clearance(&tube, &pose, 1e-9).unwrap();
-        assert!(bounds.lower <= found.distance && found.distance <= bounds.upper, "{bounds:?} {found:?}");
+        assert!(
+            bounds.lower <= found.distance && found.distance <= bounds.upper,
+            "{bounds:?} {found:?}"
+        );
         assert!(still(pose).iter().all(Result::is_ok));
         for length in [0.0, 1e-162, 1e-155, 0.5, 1.0 - 1e-5, 1.0 + 1e-5, 3.0, 1e155, 1e300] {
             let pose = posed(unit * length);
@@ -496,7 +559,10 @@ fn rotations_that_scale_are_refused_by_all() {
             assert!(is_refused(search.clears_inside(&chain, &pose, 1.0).unwrap_err()), "{length}");
             assert!(is_refused(all.minimum(&chain, &pose).unwrap_err()), "{length}");
             assert!(is_refused(search.clearance(&tube, &pose, 1.0).unwrap_err()), "{length}");
-            assert!(is_refused(search.tube_clears(&tube, &pose, 1.0, 1.0).unwrap_err()), "{length}");
+            assert!(
+                is_refused(search.tube_clears(&tube, &pose, 1.0, 1.0).unwrap_err()),
+                "{length}"
+            );
             assert!(is_refused(found.certify(&chain, &pose, &mesh).unwrap_err()), "{length}");
             assert!(
                 still(pose).iter().all(|made| matches!(made, Err(RobotError::PoseNotRigid { .. }))),

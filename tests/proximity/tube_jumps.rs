@@ -19,8 +19,8 @@ fn finest(search: &mut BvhSearch, tube: &Tube, tolerance: f64) -> Clearance {
     search.clearance(tube, &Pose::IDENTITY, tolerance).unwrap()
 }
 
-/// A tube that is bent up to 0.3 and straight from there on, sampled at every 1, behind a face at z = 0. A speck is 0.02
-/// ahead of its rim.
+/// A tube that is bent up to 0.3 and straight from there on, sampled at every 1, behind a face at z
+/// = 0. A speck is 0.02 ahead of its rim.
 #[test]
 fn a_joint_next_to_a_face_leaves_its_direction_open() {
     let mut arcs = Arcs::from_frame(Pose::IDENTITY);
@@ -31,7 +31,8 @@ fn a_joint_next_to_a_face_leaves_its_direction_open() {
     assert_eq!(points.len(), 21);
     let rim = Vector::new(-1.0, 0.0, -0.02);
     let corners = [rim, rim - Vector::X * 1e-6, rim - Vector::Z * 1e-6];
-    let mut search = BvhSearch::new(&TriMesh::new(corners.to_vec(), vec![[0, 1, 2]]).unwrap()).unwrap();
+    let mut search =
+        BvhSearch::new(&TriMesh::new(corners.to_vec(), vec![[0, 1, 2]]).unwrap()).unwrap();
     for tangents in [None, Some(arcs.end_tangents())] {
         let tube = Tube::from_samples(&points, &radii, tangents).unwrap();
         let found = finest(&mut search, &tube, 1e-6);
@@ -43,13 +44,16 @@ fn a_joint_next_to_a_face_leaves_its_direction_open() {
     }
 }
 
-/// Arcs in one plane or in many, of any length from a tenth of the spacing on, and what a section of each bends at most.
+/// Arcs in one plane or in many, of any length from a tenth of the spacing on, and what a section
+/// of each bends at most.
 fn jumping(random: &mut Random, spacing: f64) -> Arcs {
-    let mut arcs = Arcs::from_frame(if random.below(2) == 0 { Pose::IDENTITY } else { random.pose(3.0) });
+    let mut arcs =
+        Arcs::from_frame(if random.below(2) == 0 { Pose::IDENTITY } else { random.pose(3.0) });
     let plane = random.between(0.0, 7.0);
     let (is_plane, helical) = (random.below(2) == 0, random.below(4) == 0);
     for _ in 0..=random.below(2) {
-        let curvature = [0.02, 0.1, 0.3][random.below(3) as usize] / spacing * random.between(0.5, 1.0);
+        let curvature =
+            [0.02, 0.1, 0.3][random.below(3) as usize] / spacing * random.between(0.5, 1.0);
         let radius = random.between(0.05, 0.95) / curvature;
         let mut angle = plane;
         let mut arc = |length: f64, share: f64, random: &mut Random| {
@@ -63,7 +67,8 @@ fn jumping(random: &mut Random, spacing: f64) -> Arcs {
         // Long enough for two segments, wherever they begin: its curvature shows.
         let mut all = vec![arc(spacing * random.between(3.0, 6.0), 1.0, random)];
         for _ in 0..=random.below(4) {
-            let length = spacing * [0.1, 1.0, 1.0, 5.0][random.below(4) as usize] * random.between(0.0, 1.0);
+            let length =
+                spacing * [0.1, 1.0, 1.0, 5.0][random.below(4) as usize] * random.between(0.0, 1.0);
             let share = [0.0, 1.0, -1.0, random.between(-1.0, 1.0)][random.below(4) as usize];
             let at = random.below(all.len() as u32 + 1) as usize;
             all.insert(at, arc(length.max(1e-3 * spacing), share, random));
@@ -115,23 +120,31 @@ fn judge(random: &mut Random, rounds: usize) -> Seen {
         let sections: Vec<_> = arcs
             .stretches
             .iter()
-            .map(|part| TubeSection { length: part.length, radius: part.radius, curvature: part.curvature })
+            .map(|part| TubeSection {
+                length: part.length,
+                radius: part.radius,
+                curvature: part.curvature,
+            })
             .collect();
         let curve = Arc::clone(&arcs);
         let Ok(exact) = Tube::from_function(&sections, move |s| curve.at(s)) else { continue };
-        let ways = [None, Some(arcs.end_tangents())].map(|ends| Tube::from_samples(&points, &radii, ends));
+        let ways =
+            [None, Some(arcs.end_tangents())].map(|ends| Tube::from_samples(&points, &radii, ends));
         // Next to the base, the tip or the step, or anywhere.
         let joint = arcs.stretches[0].length;
-        let s = [0.0, arcs.length(), joint, arcs.length() * random.unit()][random.below(4) as usize];
+        let s =
+            [0.0, arcs.length(), joint, arcs.length() * random.unit()][random.below(4) as usize];
         let (centre, tangent) = arcs.at(s);
         let widest = arcs.stretches.iter().fold(0.0, |most: f64, part| part.radius.max(most));
-        let radius = if s == joint { widest } else { arcs.stretches[usize::from(s > joint)].radius };
+        let radius =
+            if s == joint { widest } else { arcs.stretches[usize::from(s > joint)].radius };
         let across = tangent.cross(random.direction()).normalize();
         let out = [-1.0, 1.0, 0.0][random.below(3) as usize];
         let gap = radius * [1e-3, 1e-2, 0.1][random.below(3) as usize] * random.between(0.1, 1.0);
         // On a rim, in the face, beside it.
         let at = centre
-            + across * (radius * [1.0, 1.0, 0.9, 1.0 + random.unit() * 0.1][random.below(4) as usize])
+            + across
+                * (radius * [1.0, 1.0, 0.9, 1.0 + random.unit() * 0.1][random.below(4) as usize])
             + tangent * (out * gap)
             + if out == 0.0 { across * gap } else { Vector::ZERO };
         let mut search = speck(at, 1e-3 * gap, random);
@@ -159,11 +172,14 @@ fn judge(random: &mut Random, rounds: usize) -> Seen {
             let below = truth.lower * (1.0 - 1e-9);
             search.forget();
             let touches = search.tube_clears(&tube, &Pose::IDENTITY, below, 1e-3 * gap);
-            let is_misjudged = is_misjudged || truth.lower > 0.0 && touches == Ok(Decision::Contact);
+            let is_misjudged =
+                is_misjudged || truth.lower > 0.0 && touches == Ok(Decision::Contact);
             if is_wrong || is_misjudged {
                 seen.wrong += 1;
                 if seen.wrong < 5 {
-                    println!("{found:?} {decision:?} {touches:?} {truth:?} {gap} {out} at {s} of {arcs:?}");
+                    println!(
+                        "{found:?} {decision:?} {touches:?} {truth:?} {gap} {out} at {s} of {arcs:?}"
+                    );
                 }
             }
         }

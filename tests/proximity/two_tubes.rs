@@ -13,7 +13,8 @@ use std::sync::Arc;
 
 /// How far apart the discs of two places are.
 fn discs_apart(places: [(Vector, Vector); 2], radii: [f64; 2]) -> f64 {
-    let [(c1, n1), (c2, n2)] = places.map(|(c, n)| (Vec3::from(c.to_array()), Vec3::from(n.to_array())));
+    let [(c1, n1), (c2, n2)] =
+        places.map(|(c, n)| (Vec3::from(c.to_array()), Vec3::from(n.to_array())));
     disc_disc(c1, n1, radii[0], c2, n2, radii[1]).distance
 }
 
@@ -29,7 +30,8 @@ fn sampled(arcs: [&Arcs; 2], pose: &Pose) -> f64 {
         }
         all
     });
-    let placed = |&((c, n), radius): &((Vector, Vector), f64)| ((pose * c, pose.rotation * n), radius);
+    let placed =
+        |&((c, n), radius): &((Vector, Vector), f64)| ((pose * c, pose.rotation * n), radius);
     let second: Vec<_> = discs[1].iter().map(placed).collect();
     let mut least = f64::INFINITY;
     for &(first, radius) in &discs[0] {
@@ -43,13 +45,15 @@ fn sampled(arcs: [&Arcs; 2], pose: &Pose) -> f64 {
     least
 }
 
-/// A pose that brings a place of the second tube near one of the first: any way, alongside, or end to end.
+/// A pose that brings a place of the second tube near one of the first: any way, alongside, or end
+/// to end.
 fn placed(random: &mut Random, arcs: [&Arcs; 2], kind: u32) -> Pose {
     let [(c, n), (d, m)] = match kind {
         3 => [(arcs[0].at(arcs[0].length())), arcs[1].at(0.0)],
         _ => arcs.map(|arcs| arcs.at(arcs.length() * random.unit())),
     };
-    let radii = arcs.map(|arcs| arcs.stretches.iter().fold(0.0, |most: f64, part| most.max(part.radius)));
+    let radii =
+        arcs.map(|arcs| arcs.stretches.iter().fold(0.0, |most: f64, part| most.max(part.radius)));
     let off = (radii[0] + radii[1]) * [0.0, 0.5, 1.1, 3.0][random.below(4) as usize];
     let turn = match kind {
         0 | 1 => random.pose(0.0).rotation,
@@ -69,7 +73,8 @@ fn contains(found: &RobotClearance, truth: f64) -> bool {
 #[test]
 fn tubes_are_as_near_as_their_discs() {
     let mut random = Random::new(1);
-    let (mut pair, mut touching, mut free, mut coarse, mut undecided) = (RobotPair::new(), 0, 0, 0, 0);
+    let (mut pair, mut touching, mut free, mut coarse, mut undecided) =
+        (RobotPair::new(), 0, 0, 0, 0);
     for round in 0..100 {
         let arcs = [0, 1].map(|_| {
             let frame = random.pose(1.0);
@@ -121,7 +126,8 @@ fn tubes_are_as_near_as_their_discs() {
     );
 }
 
-/// A chain is a tube whose pieces are straight: the bounds are those of rounding, whatever its caps.
+/// A chain is a tube whose pieces are straight: the bounds are those of rounding, whatever its
+/// caps.
 #[test]
 fn chains_are_tubes_of_straight_pieces() {
     let mut random = Random::new(2);
@@ -131,7 +137,8 @@ fn chains_are_tubes_of_straight_pieces() {
         let pose_a = random.pose(1.0);
         let pose_b = beside(&mut random, &a, &pose_a, &b, [0.0, 1.0, 6.0][round % 3]);
         let truth = between(&a, &pose_a, &b, &pose_b).unwrap().distance;
-        let found = pair.clearance(&Tube::from(&a), &pose_a, &Tube::from(&b), &pose_b, 0.0).unwrap();
+        let found =
+            pair.clearance(&Tube::from(&a), &pose_a, &Tube::from(&b), &pose_b, 0.0).unwrap();
         assert!(found.lower <= truth && truth <= found.upper, "{round}: {truth} in {found:?}");
         assert!(found.upper - found.lower <= 1e-9, "{round}: {truth} in {found:?}");
         if truth > 0.0 { apart += 1 } else { touching += 1 }
@@ -142,7 +149,8 @@ fn chains_are_tubes_of_straight_pieces() {
 /// An arc of 90 degrees with the radius of curvature 20, sampled.
 fn quarter(scale: f64) -> Tube {
     let angles = (0..=90).map(|k| PI * f64::from(k) / 180.0);
-    let points: Vec<_> = angles.map(|a| Vector::new(1.0 - a.cos(), 0.0, a.sin()) * (20.0 * scale)).collect();
+    let points: Vec<_> =
+        angles.map(|a| Vector::new(1.0 - a.cos(), 0.0, a.sin()) * (20.0 * scale)).collect();
     Tube::from_samples(&points, &[scale; 90], Some([Vector::Z, Vector::X])).unwrap()
 }
 
@@ -190,7 +198,8 @@ fn stated_errors_count() {
     let tube = |error: f64| quarter(1.0).with_error(error).unwrap();
     // Bent away from one another, 8 apart at their bases.
     let pose = Pose::new(Vector::X * -10.0, Vector::Z * PI);
-    let found = RobotPair::new().clearance(&tube(0.25), &Pose::IDENTITY, &tube(0.5), &pose, 0.01).unwrap();
+    let found =
+        RobotPair::new().clearance(&tube(0.25), &Pose::IDENTITY, &tube(0.5), &pose, 0.01).unwrap();
     assert!(found.resolved && (found.uncertainty - 1.5).abs() < 1e-12, "{found:?}");
     assert!(
         found.lower <= 7.25 && found.lower > 7.2 && 8.75 <= found.upper && found.upper < 8.8,
@@ -202,7 +211,8 @@ fn stated_errors_count() {
 fn what_is_wrong_is_named() {
     let tube = Tube::from_samples(&[Vector::ZERO, Vector::Z], &[0.3], None).unwrap();
     let (here, mut pair) = (Pose::IDENTITY, RobotPair::new());
-    let mut ask = |a: &Pose, b: &Pose, tolerance: f64| pair.clearance(&tube, a, &tube, b, tolerance);
+    let mut ask =
+        |a: &Pose, b: &Pose, tolerance: f64| pair.clearance(&tube, a, &tube, b, tolerance);
     assert_eq!(
         ask(&here, &here, -1.0),
         Err(ProximityError::Negative { parameter: "tolerance", value: -1.0 })

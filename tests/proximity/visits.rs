@@ -1,4 +1,5 @@
-//! How much of a mesh a query looks at: figures that do not depend on the machine, and that no change may exceed unnoticed.
+//! How much of a mesh a query looks at: figures that do not depend on the machine, and that no
+//! change may exceed unnoticed.
 
 use continuum_demo::steer::Random;
 use continuum_demo::{cavity, ctr, lumen, ventricle};
@@ -18,7 +19,8 @@ fn visits(level: u32, clearance: f64) -> [f64; 3] {
     }
     let Work { nodes, visited, measured, .. } = search.work();
     // A leaf has 16 triangles.
-    [nodes, visited / 16, measured].map(|count| count as f64 / (frames.len() * robot.links().len()) as f64)
+    [nodes, visited / 16, measured]
+        .map(|count| count as f64 / (frames.len() * robot.links().len()) as f64)
 }
 
 /// The limits are what was counted, and a tenth for the rounding of other instruction sets.
@@ -37,8 +39,8 @@ fn a_link_visits_few_nodes_and_leaves() {
     }
 }
 
-/// Nodes and leaves for each shape of a planner that has asked for a while, of those that touch the wall and of those that
-/// do not.
+/// Nodes and leaves for each shape of a planner that has asked for a while, of those that touch the
+/// wall and of those that do not.
 fn visits_of_shapes(search: &mut BvhSearch, entry: Pose) -> [[f64; 2]; 2] {
     let (tubes, mut random) = (ctr::three_tubes(), Random(7));
     let mut visits = [[0; 2]; 2];
@@ -60,7 +62,8 @@ fn visits_of_shapes(search: &mut BvhSearch, entry: Pose) -> [[f64; 2]; 2] {
     [0, 1].map(|kind| visits[kind].map(|count| count as f64 / f64::from(shapes[kind])))
 }
 
-/// Where the robot seems to pass through the wall is looked at first; also where the mesh has been moved far away since.
+/// Where the robot seems to pass through the wall is looked at first; also where the mesh has been
+/// moved far away since.
 #[test]
 fn a_planners_shape_visits_few_nodes_and_leaves() {
     let (vertices, triangles) = ventricle::mesh(ventricle::DEFAULT_TRIANGLES);
@@ -69,9 +72,11 @@ fn a_planners_shape_visits_few_nodes_and_leaves() {
         let away = Vector::new(away, 0.0, away);
         let moved: Vec<_> = vertices.iter().map(|&vertex| vertex + away).collect();
         search.set_vertices(&moved).unwrap();
-        let visits = visits_of_shapes(&mut search, Pose::from_translation(away) * ventricle::entry());
+        let visits =
+            visits_of_shapes(&mut search, Pose::from_translation(away) * ventricle::entry());
         for (visited, counted) in visits.into_iter().zip([[4.33, 4.83], [5.86, 12.25]]) {
-            let is_few = visited.into_iter().zip(counted).all(|(visited, counted)| visited <= 1.1 * counted);
+            let is_few =
+                visited.into_iter().zip(counted).all(|(visited, counted)| visited <= 1.1 * counted);
             assert!(is_few, "{visits:?}");
         }
     }
@@ -83,7 +88,8 @@ fn a_planners_shape_beside_large_triangles_visits_few_leaves() {
     let mut search = BvhSearch::new(&lumen::mesh(12)).unwrap();
     let visits = visits_of_shapes(&mut search, lumen::entry());
     for (visited, counted) in visits.into_iter().zip([[2.37, 5.07], [2.01, 6.22]]) {
-        let is_few = visited.into_iter().zip(counted).all(|(visited, counted)| visited <= 1.1 * counted);
+        let is_few =
+            visited.into_iter().zip(counted).all(|(visited, counted)| visited <= 1.1 * counted);
         assert!(is_few, "{visits:?}");
     }
 }

@@ -1,5 +1,6 @@
-//! Aligned scenes: rods across and along the free edge of a plate and on boxes made of triangles, and tubes on one axis
-//! that are pushed together. Nothing passes and nothing trembles, as with parry's capsule and cylinder.
+//! Aligned scenes: rods across and along the free edge of a plate and on boxes made of triangles,
+//! and tubes on one axis that are pushed together. Nothing passes and nothing trembles, as with
+//! parry's capsule and cylinder.
 
 use crate::drop::world;
 use parry_continuum::parry::math::{Pose, Real, Rot3, Vector};
@@ -11,13 +12,15 @@ const RADIUS: Real = 0.25;
 const CAPS: [[Cap; 2]; 4] =
     [[Cap::Flat; 2], [Cap::Round; 2], [Cap::Flat, Cap::Round], [Cap::Round, Cap::Flat]];
 
-/// Rods 2 long around the origin, along a unit vector: links with all caps, a chain of two, parry's capsule and cylinder.
+/// Rods 2 long around the origin, along a unit vector: links with all caps, a chain of two, parry's
+/// capsule and cylinder.
 fn rods(along: Vector) -> Vec<(String, SharedShape)> {
     let link = |caps: [Cap; 2]| ModifiedCylinder::new(-along, along, RADIUS, caps).unwrap();
     let mut rods: Vec<_> =
         CAPS.map(|caps| (format!("{caps:?}"), SharedShape::new(link(caps)))).into_iter().collect();
     let chain =
-        Chain::from_centreline(&[-along, Vector::ZERO, along + 0.02 * Vector::Y], &[RADIUS; 2]).unwrap();
+        Chain::from_centreline(&[-along, Vector::ZERO, along + 0.02 * Vector::Y], &[RADIUS; 2])
+            .unwrap();
     rods.push(("chain".into(), SharedShape::new(chain)));
     rods.push(("parry's capsule".into(), SharedShape::capsule(-along, along, RADIUS)));
     // Which stands along y.
@@ -27,14 +30,16 @@ fn rods(along: Vector) -> Vec<(String, SharedShape)> {
     rods
 }
 
-/// Drops a rod, which does not turn, at 4 lengths a second. Returns its lowest height, the last, and by how much the last
-/// sixty differ.
+/// Drops a rod, which does not turn, at 4 lengths a second. Returns its lowest height, the last,
+/// and by how much the last sixty differ.
 fn dropped(rod: &SharedShape, ground: SharedShape, from: Vector, ccd: bool) -> [Real; 3] {
     let mut world = world(1.0);
     world.integration_parameters.dt = 1.0 / 60.0;
     world.insert(RigidBodyBuilder::fixed(), ColliderBuilder::new(ground));
-    let body = RigidBodyBuilder::dynamic().translation(from).linvel(Vector::Y * -4.0).lock_rotations();
-    let (body, _) = world.insert(body.ccd_enabled(ccd).can_sleep(false), ColliderBuilder::new(rod.clone()));
+    let body =
+        RigidBodyBuilder::dynamic().translation(from).linvel(Vector::Y * -4.0).lock_rotations();
+    let (body, _) =
+        world.insert(body.ccd_enabled(ccd).can_sleep(false), ColliderBuilder::new(rod.clone()));
     let heights: Vec<Real> = (0..180)
         .map(|_| {
             world.step();
@@ -49,21 +54,31 @@ fn dropped(rod: &SharedShape, ground: SharedShape, from: Vector, ccd: bool) -> [
 /// What a rod of this radius does that is stopped at a height of 0.
 #[track_caller]
 fn assert_stopped([lowest, last, tremble]: [Real; 3], context: &str) {
-    assert!(lowest > RADIUS - 0.15 && (last - RADIUS).abs() < 0.02, "{context} passes: {lowest} {last}");
+    assert!(
+        lowest > RADIUS - 0.15 && (last - RADIUS).abs() < 0.02,
+        "{context} passes: {lowest} {last}"
+    );
     assert!(tremble < 1e-3, "{context} trembles by {tremble}");
 }
 
 #[test]
 fn a_rod_is_stopped_by_the_free_edge_of_a_plate() {
-    let corners = [[-2.0, 0.0], [2.0, 0.0], [2.0, -3.0], [-2.0, -3.0]].map(|[x, y]| Vector::new(x, y, 0.0));
-    let orders =
-        [[[0, 1, 2], [0, 2, 3]], [[1, 0, 2], [2, 0, 3]], [[2, 0, 1], [3, 0, 2]], [[0, 2, 1], [3, 2, 0]]];
+    let corners =
+        [[-2.0, 0.0], [2.0, 0.0], [2.0, -3.0], [-2.0, -3.0]].map(|[x, y]| Vector::new(x, y, 0.0));
+    let orders = [
+        [[0, 1, 2], [0, 2, 3]],
+        [[1, 0, 2], [2, 0, 3]],
+        [[2, 0, 1], [3, 0, 2]],
+        [[0, 2, 1], [3, 2, 0]],
+    ];
     for along in [Vector::Z, Vector::X] {
         for (name, rod) in rods(along) {
             for order in orders {
-                let plate = SharedShape::new(TriMesh::new(corners.to_vec(), order.to_vec()).unwrap());
+                let plate =
+                    SharedShape::new(TriMesh::new(corners.to_vec(), order.to_vec()).unwrap());
                 for ccd in [false, true] {
-                    let end = dropped(&rod, plate.clone(), Vector::new(0.13, RADIUS + 0.61, 0.0), ccd);
+                    let end =
+                        dropped(&rod, plate.clone(), Vector::new(0.13, RADIUS + 0.61, 0.0), ccd);
                     assert_stopped(end, &format!("{name} along {along}, {order:?}, CCD {ccd}"));
                 }
             }
@@ -79,9 +94,12 @@ fn a_rod_along_the_edges_of_a_box_of_triangles_is_stopped() {
     for along in [Vector::X, Vector::Z] {
         for (name, rod) in rods(along) {
             // Over the middle, over an edge along it, over an edge across it.
-            for place in [Vector::ZERO, Vector::Z * 0.75, Vector::X * 1.5, Vector::new(1.5, 0.0, 0.75)] {
+            for place in
+                [Vector::ZERO, Vector::Z * 0.75, Vector::X * 1.5, Vector::new(1.5, 0.0, 0.75)]
+            {
                 for ccd in [false, true] {
-                    let end = dropped(&rod, ground.clone(), place + Vector::Y * (RADIUS + 0.61), ccd);
+                    let end =
+                        dropped(&rod, ground.clone(), place + Vector::Y * (RADIUS + 0.61), ccd);
                     assert_stopped(end, &format!("{name} along {along} at {place}, CCD {ccd}"));
                 }
             }
@@ -125,7 +143,11 @@ fn tubes_on_one_axis_do_not_pass_through_each_other() {
                 }
                 let context = format!("{first:?} {second:?} at {speed}, CCD {ccd}");
                 let deepest = gaps.iter().copied().fold(Real::INFINITY, Real::min);
-                assert!(deepest > -0.2 && gaps[239].abs() < 0.03, "{context} pass: {deepest} {}", gaps[239]);
+                assert!(
+                    deepest > -0.2 && gaps[239].abs() < 0.03,
+                    "{context} pass: {deepest} {}",
+                    gaps[239]
+                );
                 let last = &gaps[180..];
                 let tremble = last.iter().copied().fold(Real::NEG_INFINITY, Real::max)
                     - last.iter().copied().fold(Real::INFINITY, Real::min);

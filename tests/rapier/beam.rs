@@ -1,4 +1,5 @@
-//! The elastic robot of the example `rapier_ventricle` bends as beam theory says, pulled or pressed against a wall.
+//! The elastic robot of the example `rapier_ventricle` bends as beam theory says, pulled or pressed
+//! against a wall.
 
 use continuum_demo::rod::{self, RestShape, Rod};
 use parry_continuum::parry::math::{Pose, Real, Vector};
@@ -14,8 +15,9 @@ fn straight(length: Real) -> RestShape {
     RestShape { points, radii: vec![1.0; LINKS], stiffness: vec![EI; LINKS] }
 }
 
-/// The moments of a clamped beam under a force at its end fall linearly along it. Joints stand for the stretches
-/// around them, so they add up by the trapezoidal rule: F L^3 / 3 EI times 1 + 1 / 2 n^2.
+/// The moments of a clamped beam under a force at its end fall linearly along it. Joints stand for
+/// the stretches around them, so they add up by the trapezoidal rule: F L^3 / 3 EI times 1 + 1 / 2
+/// n^2.
 #[test]
 fn a_pulled_tip_moves_as_far_as_that_of_a_beam() {
     let mut world = rod::world(2.0).unwrap();
@@ -41,7 +43,8 @@ fn a_pulled_tip_moves_as_far_as_that_of_a_beam() {
 /// The contact forces on a robot that is moved sideways by its base against the edge of a wall.
 fn pressed(edge: Real, aside: Real) -> Vec<Real> {
     let mut world = rod::world(2.0).unwrap();
-    let wall = [(-9.0, edge), (9.0, edge), (9.0, 60.0), (-9.0, 60.0)].map(|(y, z)| Vector::new(1.0, y, z));
+    let wall =
+        [(-9.0, edge), (9.0, edge), (9.0, 60.0), (-9.0, 60.0)].map(|(y, z)| Vector::new(1.0, y, z));
     let wall = ColliderBuilder::trimesh(wall.to_vec(), vec![[0, 1, 2], [0, 2, 3]]).unwrap();
     world.insert(RigidBodyBuilder::fixed(), wall.friction(0.0));
     let mut robot = Rod::new(&mut world, Pose::IDENTITY);

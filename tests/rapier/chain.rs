@@ -1,5 +1,5 @@
-//! A chain as one collider: moved through the ventricle it raises its events at the steps that the exact
-//! clearance says, and it makes no contacts with itself.
+//! A chain as one collider: moved through the ventricle it raises its events at the steps that the
+//! exact clearance says, and it makes no contacts with itself.
 
 use continuum_demo::{ctr, ventricle};
 use parry_continuum::parry::math::{Pose, Real, Vector};
@@ -38,17 +38,19 @@ impl EventHandler for Events {
     fn handle_soft_body_tear_event(&self, _: &SoftBodySet, _: &SoftBodyTearEvent) {}
 }
 
-/// The robot of the examples where it is meant to be, and how it sways from there: sideways into the wall and
-/// back, twice.
+/// The robot of the examples where it is meant to be, and how it sways from there: sideways into
+/// the wall and back, twice.
 fn sway(step: usize) -> Pose {
     let share = step as Real / 60.0 * std::f64::consts::TAU;
-    Pose::from_translation(Vector::new(0.9, 0.5, -0.3) * 1.6 * (0.5 - 0.5 * share.cos())) * ventricle::entry()
+    Pose::from_translation(Vector::new(0.9, 0.5, -0.3) * 1.6 * (0.5 - 0.5 * share.cos()))
+        * ventricle::entry()
 }
 
 #[test]
 fn contact_starts_and_stops_at_the_right_steps() {
     let (vertices, triangles) = ventricle::mesh(ventricle::DEFAULT_TRIANGLES);
-    let mut search = BvhSearch::new(&TriMesh::new(vertices.clone(), triangles.clone()).unwrap()).unwrap();
+    let mut search =
+        BvhSearch::new(&TriMesh::new(vertices.clone(), triangles.clone()).unwrap()).unwrap();
     let line = ctr::three_tubes().centreline(&ventricle::goal(), 30);
     let robot = Chain::from_centreline(&line.points, &line.radii).unwrap();
 
@@ -63,7 +65,8 @@ fn contact_starts_and_stops_at_the_right_steps() {
     let collider = ColliderBuilder::new(SharedShape::new(robot.clone()))
         .active_collision_types(ActiveCollisionTypes::KINEMATIC_FIXED)
         .active_events(ActiveEvents::COLLISION_EVENTS);
-    let (body, collider) = world.insert(RigidBodyBuilder::kinematic_position_based().pose(sway(0)), collider);
+    let (body, collider) =
+        world.insert(RigidBodyBuilder::kinematic_position_based().pose(sway(0)), collider);
 
     let (mut touching, mut starts, mut stops) = (false, 0, 0);
     let reach = world.integration_parameters.prediction_distance();
@@ -75,7 +78,8 @@ fn contact_starts_and_stops_at_the_right_steps() {
         world.step_with_events(&(), &events);
         let events = events.0.into_inner().unwrap();
         let expected = clearance < reach;
-        // rapier also counts a contact that the velocity would bring within reach by the step's end.
+        // rapier also counts a contact that the velocity would bring within reach by the step's
+        // end.
         let soon = search.minimum(&robot, &sway(step + 1)).unwrap().distance < reach;
         if expected == soon {
             let context = format!("step {step}: clearance {clearance}, events {events:?}");
@@ -93,15 +97,22 @@ fn contact_starts_and_stops_at_the_right_steps() {
     assert_eq!((starts, stops), (2, 2));
 }
 
-/// Dropped on a floor, a tangle of links lies still on it: its links overlap at every joint, which is nobody's
-/// contact.
+/// Dropped on a floor, a tangle of links lies still on it: its links overlap at every joint, which
+/// is nobody's contact.
 #[test]
 fn a_chain_has_no_contacts_with_itself() {
-    let points = [Vector::ZERO, Vector::X, Vector::new(1.5, 0.0, 0.8), Vector::new(0.9, 0.0, 1.5), Vector::Z];
+    let points = [
+        Vector::ZERO,
+        Vector::X,
+        Vector::new(1.5, 0.0, 0.8),
+        Vector::new(0.9, 0.0, 1.5),
+        Vector::Z,
+    ];
     let robot = Chain::from_centreline(&points, &[0.3; 4]).unwrap();
     let pose = Pose::from_translation(Vector::new(0.0, 0.4, 0.0));
     let ground = crate::drop::mesh(1.0, |_, _| 0.0);
-    let mut drop = crate::drop::Drop::new(crate::drop::world(1.0), ground, SharedShape::new(robot), pose);
+    let mut drop =
+        crate::drop::Drop::new(crate::drop::world(1.0), ground, SharedShape::new(robot), pose);
     for _ in 0..200 {
         drop.world.step();
         assert!(drop.world.contact_pairs_with(drop.collider).count() <= 1);
@@ -110,7 +121,8 @@ fn a_chain_has_no_contacts_with_itself() {
     assert!((drop.pose().translation - Vector::new(0.0, 0.3, 0.0)).length() < 0.01);
 }
 
-/// One body per link, held by joints without contacts: a straight robot in free space stays as it is.
+/// One body per link, held by joints without contacts: a straight robot in free space stays as it
+/// is.
 #[test]
 fn neighbouring_links_do_not_push_each_other() {
     let mut world = crate::drop::world(1.0);
@@ -121,16 +133,20 @@ fn neighbouring_links_do_not_push_each_other() {
         .links()
         .iter()
         .map(|link| {
-            world.insert(RigidBodyBuilder::dynamic(), ColliderBuilder::new(SharedShape::new(*link))).0
+            world
+                .insert(RigidBodyBuilder::dynamic(), ColliderBuilder::new(SharedShape::new(*link)))
+                .0
         })
         .collect();
     for (pair, link) in bodies.windows(2).zip(robot.links()) {
-        let joint = SphericalJointBuilder::new().local_anchor1(link.end()).local_anchor2(link.end());
+        let joint =
+            SphericalJointBuilder::new().local_anchor1(link.end()).local_anchor2(link.end());
         world.insert_impulse_joint(pair[0], pair[1], joint.contacts_enabled(false));
     }
     for _ in 0..60 {
         world.step();
-        let active = world.narrow_phase.contact_pairs().filter(|pair| pair.has_any_active_contact());
+        let active =
+            world.narrow_phase.contact_pairs().filter(|pair| pair.has_any_active_contact());
         assert_eq!(active.count(), 0);
     }
     assert!(bodies.iter().all(|&body| world.bodies[body].translation().length() < 1e-9));
@@ -142,8 +158,12 @@ fn identities(drop: &crate::drop::Drop) -> BTreeSet<[u32; 4]> {
     for pair in drop.world.contact_pairs_with(drop.collider) {
         for manifold in pair.rigid().iter().flat_map(|contacts| &contacts.manifolds) {
             let parts = [manifold.subshape1, manifold.subshape2];
-            found
-                .extend(manifold.points.iter().map(|point| [parts[0], parts[1], point.fid1.0, point.fid2.0]));
+            found.extend(
+                manifold
+                    .points
+                    .iter()
+                    .map(|point| [parts[0], parts[1], point.fid1.0, point.fid2.0]),
+            );
         }
     }
     found
@@ -158,16 +178,22 @@ fn a_chain_in_a_corner_comes_to_rest() {
     let wall = vertices.map(|(x, y)| Vector::new(x, y, 0.0));
     let faces = vec![[0, 2, 1], [0, 3, 2], [4, 5, 6], [4, 6, 7]];
     let flags = TriMeshFlags::FIX_INTERNAL_EDGES_TWO_SIDED;
-    let zigzag =
-        |bend: Real| (0..6).map(|k| Vector::new(k as Real, 0.0, bend * (k % 2) as Real)).collect::<Vec<_>>();
-    for (name, points) in [("straight", zigzag(0.0)), ("zigzag", zigzag(0.3)), ("steep", zigzag(-0.8))] {
-        for robot in [Chain::from_centreline(&points, &[0.3; 5]), Chain::capsules(&points, &[0.3; 5])] {
+    let zigzag = |bend: Real| {
+        (0..6).map(|k| Vector::new(k as Real, 0.0, bend * (k % 2) as Real)).collect::<Vec<_>>()
+    };
+    for (name, points) in
+        [("straight", zigzag(0.0)), ("zigzag", zigzag(0.3)), ("steep", zigzag(-0.8))]
+    {
+        for robot in
+            [Chain::from_centreline(&points, &[0.3; 5]), Chain::capsules(&points, &[0.3; 5])]
+        {
             let mesh = TriMesh::with_flags([floor, wall].concat(), faces.clone(), flags).unwrap();
             let mut world = crate::drop::world(1.0);
             world.gravity = Vector::new(0.0, -7.0, -7.0);
             let pose = Pose::from_translation(Vector::new(-2.5, 0.301, 1.2));
             let ground = ColliderBuilder::new(SharedShape::new(mesh));
-            let mut drop = crate::drop::Drop::new(world, ground, SharedShape::new(robot.unwrap()), pose);
+            let mut drop =
+                crate::drop::Drop::new(world, ground, SharedShape::new(robot.unwrap()), pose);
             for _ in 0..200 {
                 drop.world.step();
                 drop.world.bodies[drop.body].wake_up(true);
@@ -195,29 +221,37 @@ fn rods_do_not_fall_through_a_slot() {
     let plate = |from: Real, to: Real| [(from, -4.0), (to, -4.0), (to, 4.0), (from, 4.0)];
     let vertices = [plate(-4.0, -0.2), plate(0.2, 4.0)].concat();
     let vertices: Vec<_> = vertices.into_iter().map(|(x, z)| Vector::new(x, 0.0, z)).collect();
-    for flags in
-        [TriMeshFlags::empty(), TriMeshFlags::FIX_INTERNAL_EDGES, TriMeshFlags::FIX_INTERNAL_EDGES_TWO_SIDED]
-    {
+    for flags in [
+        TriMeshFlags::empty(),
+        TriMeshFlags::FIX_INTERNAL_EDGES,
+        TriMeshFlags::FIX_INTERNAL_EDGES_TWO_SIDED,
+    ] {
         for round in [true, false] {
             for size in [1.0, 1e-3] {
                 let points = [-1.5, -0.5, 0.6, 1.5].map(|z| Vector::Z * z * size);
                 let radii = [0.5 * size; 3];
-                let robot =
-                    if round { Chain::capsules(&points, &radii) } else { Chain::cylinders(&points, &radii) };
+                let robot = if round {
+                    Chain::capsules(&points, &radii)
+                } else {
+                    Chain::cylinders(&points, &radii)
+                };
                 let vertices = vertices.iter().map(|&vertex| vertex * size).collect();
                 let faces = vec![[0, 2, 1], [0, 3, 2], [4, 6, 5], [4, 7, 6]];
                 let mesh = TriMesh::with_flags(vertices, faces, flags).unwrap();
                 let pose = Pose::from_translation(Vector::new(0.02, 0.48, 0.1) * size);
                 let ground = ColliderBuilder::new(SharedShape::new(mesh));
                 let world = crate::drop::world(size);
-                let mut drop = crate::drop::Drop::new(world, ground, SharedShape::new(robot.unwrap()), pose);
+                let mut drop =
+                    crate::drop::Drop::new(world, ground, SharedShape::new(robot.unwrap()), pose);
                 for _ in 0..500 {
                     drop.world.step();
                 }
                 let height = drop.pose().translation.y / size;
                 let expected = (0.25_f64 - 0.04).sqrt();
-                let context =
-                    format!("{flags:?} {round} {size}: {height} for {expected}, {}", drop.is_asleep());
+                let context = format!(
+                    "{flags:?} {round} {size}: {height} for {expected}, {}",
+                    drop.is_asleep()
+                );
                 assert!((height - expected).abs() < 0.01 && drop.is_asleep(), "{context}");
             }
         }

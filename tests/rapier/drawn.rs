@@ -1,10 +1,12 @@
-//! What rapier's debug renderer shows of links and chains, and how to show the rest through the same backend.
+//! What rapier's debug renderer shows of links and chains, and how to show the rest through the
+//! same backend.
 
 use crate::drop::{mesh, world};
 use parry_continuum::parry::math::{Real, Vector};
 use parry_continuum::{Cap, Chain, ModifiedCylinder};
 use rapier3d_f64::pipeline::{
-    DebugColor, DebugRenderBackend, DebugRenderMode, DebugRenderObject, DebugRenderPipeline, DebugRenderStyle,
+    DebugColor, DebugRenderBackend, DebugRenderMode, DebugRenderObject, DebugRenderPipeline,
+    DebugRenderStyle,
 };
 use rapier3d_f64::prelude::*;
 use std::collections::HashMap;
@@ -22,9 +24,8 @@ impl Lines {
 impl DebugRenderBackend for Lines {
     fn draw_line(&mut self, object: DebugRenderObject, a: Vector, b: Vector, _: DebugColor) {
         let collider = match object {
-            DebugRenderObject::Collider(handle, _) | DebugRenderObject::ColliderAabb(handle, ..) => {
-                Some(handle)
-            }
+            DebugRenderObject::Collider(handle, _)
+            | DebugRenderObject::ColliderAabb(handle, ..) => Some(handle),
             _ => None,
         };
         self.0.entry(collider).or_default().push([a, b]);
@@ -48,7 +49,8 @@ fn drawn(world: &PhysicsWorld, mode: DebugRenderMode) -> Lines {
 /// The links of whatever robot a shape is.
 fn links_of(shape: &dyn Shape) -> Vec<ModifiedCylinder> {
     let link = shape.as_shape::<ModifiedCylinder>().map(|link| vec![*link]);
-    link.or_else(|| shape.as_shape::<Chain>().map(|chain| chain.links().to_vec())).unwrap_or_default()
+    link.or_else(|| shape.as_shape::<Chain>().map(|chain| chain.links().to_vec()))
+        .unwrap_or_default()
 }
 
 /// The way round: the edges of each link's mesh, handed to the backend as the collider's own.
@@ -56,7 +58,8 @@ fn draw_robots(world: &PhysicsWorld, backend: &mut impl DebugRenderBackend) {
     for (handle, collider) in world.colliders.iter() {
         for link in links_of(collider.shape()) {
             let (vertices, triangles) = link.to_trimesh(16);
-            let edges: Vec<_> = triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).collect();
+            let edges: Vec<_> =
+                triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).collect();
             backend.draw_polyline(
                 DebugRenderObject::Collider(handle, collider),
                 &vertices,
@@ -76,8 +79,10 @@ fn boxes_and_contacts_are_drawn_and_shapes_are_not() {
     let link = ModifiedCylinder::new(-Vector::X, Vector::X, 0.5, [Cap::Flat, Cap::Round]).unwrap();
     let body = RigidBodyBuilder::dynamic().translation(Vector::Y * 0.51);
     let (_, robot) = world.insert(body, ColliderBuilder::new(SharedShape::new(link)));
-    let chain =
-        Chain::from_centreline(&[Vector::ZERO, Vector::Z, 2.0 * Vector::Z + 0.1 * Vector::X], &[0.2; 2]);
+    let chain = Chain::from_centreline(
+        &[Vector::ZERO, Vector::Z, 2.0 * Vector::Z + 0.1 * Vector::X],
+        &[0.2; 2],
+    );
     let body = RigidBodyBuilder::dynamic().translation(Vector::new(3.0, 0.21, 0.0));
     let (_, chain) = world.insert(body, ColliderBuilder::new(SharedShape::new(chain.unwrap())));
     for _ in 0..60 {
@@ -92,7 +97,8 @@ fn boxes_and_contacts_are_drawn_and_shapes_are_not() {
     for handle in [robot, chain] {
         let bounds = world.colliders[handle].compute_aabb();
         let corners = boxes.of(handle).iter().flatten();
-        let far = corners.clone().fold(Vector::splat(Real::NEG_INFINITY), |far, &corner| far.max(corner));
+        let far =
+            corners.clone().fold(Vector::splat(Real::NEG_INFINITY), |far, &corner| far.max(corner));
         let is_far = (far - bounds.maxs).length() < 1e-12;
         assert!(boxes.of(handle).len() == 12 && is_far, "{bounds:?} {far}");
     }

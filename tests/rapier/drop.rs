@@ -1,4 +1,5 @@
-//! Worlds for the tests in rapier: grounds, a link that is dropped on one, and what is observed of it.
+//! Worlds for the tests in rapier: grounds, a link that is dropped on one, and what is observed of
+//! it.
 #![allow(dead_code)]
 
 use parry_continuum::parry::math::{Pose, Real, Rot3, Vector};
@@ -8,7 +9,8 @@ use parry_continuum::parry::utils::Array2;
 use parry_continuum::{Cap, ContinuumDispatcher, ModifiedCylinder, rapier};
 use rapier3d_f64::prelude::*;
 
-/// The links that are dropped, with every combination of caps: 2 long, of radius 0.5, around the origin along y.
+/// The links that are dropped, with every combination of caps: 2 long, of radius 0.5, around the
+/// origin along y.
 pub fn links() -> [ModifiedCylinder; 4] {
     [[Cap::Flat; 2], [Cap::Round; 2], [Cap::Flat, Cap::Round], [Cap::Round, Cap::Flat]]
         .map(|caps| ModifiedCylinder::new(-Vector::Y, Vector::Y, 0.5, caps).unwrap())
@@ -23,7 +25,8 @@ pub fn attitudes() -> [(&'static str, Rot3); 3] {
     ]
 }
 
-/// Gravity downwards, in lengths of the scene per second squared, and the parameters for links of this size.
+/// Gravity downwards, in lengths of the scene per second squared, and the parameters for links of
+/// this size.
 pub fn world(size: Real) -> PhysicsWorld {
     let mut world = PhysicsWorld { gravity: Vector::Y * -9.81 * size, ..Default::default() };
     rapier::install(&mut world.narrow_phase, &mut world.integration_parameters, size).unwrap();
@@ -82,7 +85,12 @@ pub struct Drop {
 }
 
 impl Drop {
-    pub fn new(mut world: PhysicsWorld, ground: ColliderBuilder, shape: SharedShape, pose: Pose) -> Self {
+    pub fn new(
+        mut world: PhysicsWorld,
+        ground: ColliderBuilder,
+        shape: SharedShape,
+        pose: Pose,
+    ) -> Self {
         let (_, ground) = world.insert(RigidBodyBuilder::fixed(), ground);
         let (body, collider) =
             world.insert(RigidBodyBuilder::dynamic().pose(pose), ColliderBuilder::new(shape));
@@ -103,12 +111,14 @@ impl Drop {
         self.world.bodies[self.body].is_sleeping()
     }
 
-    /// Minus the depth of the overlap with the ground, or the distance from it, by the crate's own query; at most
-    /// `reach`.
+    /// Minus the depth of the overlap with the ground, or the distance from it, by the crate's own
+    /// query; at most `reach`.
     pub fn gap(&self, reach: Real) -> Real {
-        let (shape, ground) = (&self.world.colliders[self.collider], &self.world.colliders[self.ground]);
+        let (shape, ground) =
+            (&self.world.colliders[self.collider], &self.world.colliders[self.ground]);
         let pos12 = ground.position().inv_mul(shape.position());
-        let found = ContinuumDispatcher::default().contact(&pos12, ground.shape(), shape.shape(), reach);
+        let found =
+            ContinuumDispatcher::default().contact(&pos12, ground.shape(), shape.shape(), reach);
         found.unwrap().map_or(reach, |contact| contact.dist)
     }
 
@@ -123,7 +133,9 @@ impl Drop {
             for manifold in manifolds {
                 for contact in &manifold.data.solver_contacts {
                     let point = &manifold.points[contact.contact_id[0] as usize & 0x7f];
-                    let place = manifold.subshape_pos1().map_or(point.local_p1, |pose| pose * point.local_p1);
+                    let place = manifold
+                        .subshape_pos1()
+                        .map_or(point.local_p1, |pose| pose * point.local_p1);
                     points.push(first * place);
                 }
             }
@@ -134,6 +146,11 @@ impl Drop {
 
 /// The link with every length multiplied by `factor`.
 pub fn scaled(link: &ModifiedCylinder, factor: Real) -> ModifiedCylinder {
-    ModifiedCylinder::new(link.start() * factor, link.end() * factor, link.radius() * factor, link.caps())
-        .unwrap()
+    ModifiedCylinder::new(
+        link.start() * factor,
+        link.end() * factor,
+        link.radius() * factor,
+        link.caps(),
+    )
+    .unwrap()
 }

@@ -1,8 +1,9 @@
 //! Fast links do not pass through a wall without thickness, whatever their attitude.
 //!
-//! Thrown at it with continuous collision detection, they touch it with one end, and the blow swings the other end
-//! through the wall within the next step. rapier takes a hit at the very start of a step for none: only a cast that
-//! answers for what touches already (see `src/host/link_cast.rs`) holds them there.
+//! Thrown at it with continuous collision detection, they touch it with one end, and the blow
+//! swings the other end through the wall within the next step. rapier takes a hit at the very start
+//! of a step for none: only a cast that answers for what touches already (see
+//! `src/host/link_cast.rs`) holds them there.
 
 use crate::drop::{Drop, attitudes, links, mesh, world};
 use continuum_testing::Random;
@@ -10,7 +11,8 @@ use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::{Cap, Chain, ModifiedCylinder};
 use rapier3d_f64::prelude::*;
 
-/// Thrown at a floor without thickness, a hundred times its radius in a step. Returns whether it got through.
+/// Thrown at a floor without thickness, a hundred times its radius in a step. Returns whether it
+/// got through.
 fn thrown(link: usize, attitude: usize, substeps: usize) -> bool {
     let mut world = world(1.0);
     world.integration_parameters.max_ccd_substeps = substeps;
@@ -59,8 +61,12 @@ fn through(kind: &str, radius: Real, speed: Real, throws: usize) -> usize {
         let turn = random.direction() * random.between(0.0, 3.1);
         let place = Vector::new(random.between(-1.0, 1.0), 3.0, random.between(-1.0, 1.0));
         let spin = random.direction() * random.between(0.0, 5.0);
-        let mut drop =
-            Drop::new(world(1.0), mesh(1.0, |_, _| 0.0), thin(kind, radius), Pose::new(place, turn));
+        let mut drop = Drop::new(
+            world(1.0),
+            mesh(1.0, |_, _| 0.0),
+            thin(kind, radius),
+            Pose::new(place, turn),
+        );
         drop.world.integration_parameters.dt = 1.0 / 60.0;
         let body = &mut drop.world.bodies[drop.body];
         body.enable_ccd(true);
@@ -106,7 +112,9 @@ fn thin_links_do_not_get_through_in_a_thousand_attitudes() {
     for (radius, speed) in THIN {
         let [capsule, cylinder] =
             ["parry's capsule", "parry's cylinder"].map(|kind| through(kind, radius, speed, 1000));
-        println!("radius {radius} at {speed}: {capsule} of parry's capsules, {cylinder} of its cylinders");
+        println!(
+            "radius {radius} at {speed}: {capsule} of parry's capsules, {cylinder} of its cylinders"
+        );
     }
     none_gets_through(1000);
 }

@@ -1,5 +1,6 @@
-//! Piles and presses, beside the same scenes of parry's capsules: nothing gets lost, nothing blows up, and what comes to
-//! rest falls asleep. The tests run for seconds; the ignored one for as many steps as `STEPS` says.
+//! Piles and presses, beside the same scenes of parry's capsules: nothing gets lost, nothing blows
+//! up, and what comes to rest falls asleep. The tests run for seconds; the ignored one for as many
+//! steps as `STEPS` says.
 
 use crate::drop::{Drop, mesh, world};
 use continuum_testing::Random;
@@ -18,8 +19,11 @@ const RADIUS: Real = 0.25;
 type Make = fn(usize) -> SharedShape;
 
 fn link(index: usize) -> SharedShape {
-    let caps = [[Cap::Flat; 2], [Cap::Round; 2], [Cap::Flat, Cap::Round], [Cap::Round, Cap::Flat]][index % 4];
-    SharedShape::new(ModifiedCylinder::new(-0.5 * Vector::Y, 0.5 * Vector::Y, RADIUS, caps).unwrap())
+    let caps = [[Cap::Flat; 2], [Cap::Round; 2], [Cap::Flat, Cap::Round], [Cap::Round, Cap::Flat]]
+        [index % 4];
+    SharedShape::new(
+        ModifiedCylinder::new(-0.5 * Vector::Y, 0.5 * Vector::Y, RADIUS, caps).unwrap(),
+    )
 }
 
 fn round_link(_: usize) -> SharedShape {
@@ -35,8 +39,9 @@ fn cylinder(_: usize) -> SharedShape {
 }
 
 fn centreline() -> Vec<Vector> {
-    let bend =
-        |k: usize| Vector::new(0.5 * k as Real - 1.0, 0.05 * (k * k) as Real, 0.03 * (k * k * k) as Real);
+    let bend = |k: usize| {
+        Vector::new(0.5 * k as Real - 1.0, 0.05 * (k * k) as Real, 0.03 * (k * k * k) as Real)
+    };
     (0..5).map(bend).collect()
 }
 
@@ -50,7 +55,8 @@ fn round_chain(_: usize) -> SharedShape {
 }
 
 fn capsules(_: usize) -> SharedShape {
-    let capsule = |ends: &[Vector]| (Pose::IDENTITY, SharedShape::capsule(ends[0], ends[1], RADIUS));
+    let capsule =
+        |ends: &[Vector]| (Pose::IDENTITY, SharedShape::capsule(ends[0], ends[1], RADIUS));
     SharedShape::new(Compound::new(centreline().windows(2).map(capsule).collect()))
 }
 
@@ -76,19 +82,31 @@ impl Pile {
         let mut world = world(2.0 * RADIUS);
         world.gravity = Vector::Y * -9.81;
         world.integration_parameters.dt = 1.0 / 60.0;
-        let (_, floor) = world.insert(RigidBodyBuilder::fixed(), mesh(1.0, |x, z| 0.05 * (x * z).sin()));
+        let (_, floor) =
+            world.insert(RigidBodyBuilder::fixed(), mesh(1.0, |x, z| 0.05 * (x * z).sin()));
         for (x, z) in [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)] {
-            let half = Vector::new(if x == 0.0 { 4.0 } else { 0.5 }, 20.0, if z == 0.0 { 4.0 } else { 0.5 });
+            let half = Vector::new(
+                if x == 0.0 { 4.0 } else { 0.5 },
+                20.0,
+                if z == 0.0 { 4.0 } else { 0.5 },
+            );
             let wall = ColliderBuilder::cuboid(half.x, half.y, half.z);
-            world.insert(RigidBodyBuilder::fixed().translation(Vector::new(4.0 * x, 0.0, 4.0 * z)), wall);
+            world.insert(
+                RigidBodyBuilder::fixed().translation(Vector::new(4.0 * x, 0.0, 4.0 * z)),
+                wall,
+            );
         }
         let mut random = Random::new(151);
         let bodies = (0..count).map(|index| {
             let layer = (index / 4) as Real;
-            let (x, z) = (Real::from(index as u32 % 2) - 0.5, Real::from(index as u32 / 2 % 2) - 0.5);
-            let place = 3.0 * Vector::new(x, 0.0, z) + Vector::Y * (1.0 + 1.2 * layer) + random.point() * 0.2;
-            let body =
-                RigidBodyBuilder::dynamic().pose(Pose::new(place, random.direction())).ccd_enabled(true);
+            let (x, z) =
+                (Real::from(index as u32 % 2) - 0.5, Real::from(index as u32 / 2 % 2) - 0.5);
+            let place = 3.0 * Vector::new(x, 0.0, z)
+                + Vector::Y * (1.0 + 1.2 * layer)
+                + random.point() * 0.2;
+            let body = RigidBodyBuilder::dynamic()
+                .pose(Pose::new(place, random.direction()))
+                .ccd_enabled(true);
             world.insert(body, ColliderBuilder::new(shape(index))).0
         });
         let bodies = bodies.collect();
@@ -119,7 +137,8 @@ impl Pile {
             assert!(body.position().is_finite() && body.linvel().is_finite(), "{body:?}");
             let shape = self.world.colliders[body.colliders()[0]].shape();
             let pos12 = floor.position().inv_mul(body.position());
-            let contact = ContinuumDispatcher::default().contact(&pos12, floor.shape(), shape, 0.0).unwrap();
+            let contact =
+                ContinuumDispatcher::default().contact(&pos12, floor.shape(), shape, 0.0).unwrap();
             contact.map_or(0.0, |contact| -contact.dist / RADIUS)
         };
         self.bodies.iter().map(depth).fold(0.0, Real::max)
@@ -138,7 +157,8 @@ impl Pile {
         for (index, first) in bodies.iter().enumerate() {
             for other in bodies[..index].iter().flatten() {
                 for one in first {
-                    let at = closest_points_segment_segment_with_locations(&Pose::IDENTITY, one, other);
+                    let at =
+                        closest_points_segment_segment_with_locations(&Pose::IDENTITY, one, other);
                     least = least.min((one.point_at(&at.0) - other.point_at(&at.1)).length());
                 }
             }
@@ -146,8 +166,8 @@ impl Pile {
         2.0 - least / RADIUS
     }
 
-    /// What a step costs where nothing may fall asleep, in milliseconds: the median, which other work on the machine
-    /// disturbs least.
+    /// What a step costs where nothing may fall asleep, in milliseconds: the median, which other
+    /// work on the machine disturbs least.
     fn cost_awake(mut self, steps: usize) -> f64 {
         for &handle in &self.bodies {
             *self.world.bodies[handle].activation_mut() = RigidBodyActivation::cannot_sleep();
@@ -206,8 +226,8 @@ fn a_hundred_chains_are_as_thick_in_a_heap_as_parrys() {
     assert!(ours.0 < 1.25 * parrys.0 && parrys.0 < 1.5, "{ours:?} {parrys:?}");
 }
 
-/// Pressed into a wall for ten seconds with a hundred times its weight: how deep it gets, in radii, and how deep it is
-/// in the end.
+/// Pressed into a wall for ten seconds with a hundred times its weight: how deep it gets, in radii,
+/// and how deep it is in the end.
 fn pressed(shape: SharedShape) -> [Real; 2] {
     let pose = Pose::from_translation(Vector::new(0.1, 0.76, 0.2));
     let mut drop = Drop::new(world(2.0 * RADIUS), mesh(1.0, |_, _| 0.0), shape, pose);
@@ -232,17 +252,23 @@ fn a_robot_pressed_into_a_wall_stays_on_its_side() {
     let parrys = [capsule(0), cylinder(0)].map(pressed);
     let single = [0, 1].map(|k| parrys[0][k].max(parrys[1][k]));
     let compound = pressed(capsules(0));
-    for (shape, theirs) in [(link(0), single), (link(1), single), (link(2), single), (chain(0), compound)] {
+    for (shape, theirs) in
+        [(link(0), single), (link(1), single), (link(2), single), (chain(0), compound)]
+    {
         let ours = pressed(shape);
         println!("{ours:?} deep; parry's {theirs:?}");
-        assert!((0..2).all(|k| ours[k] < (1.1 * theirs[k]).max(0.01)), "{ours:?}, parry's {theirs:?}");
+        assert!(
+            (0..2).all(|k| ours[k] < (1.1 * theirs[k]).max(0.01)),
+            "{ours:?}, parry's {theirs:?}"
+        );
     }
 }
 
 #[test]
 #[ignore = "as long as STEPS says"]
 fn piles_for_long() {
-    let steps = std::env::var("STEPS").map_or(100_000, |steps| steps.parse().expect("a number of steps"));
+    let steps =
+        std::env::var("STEPS").map_or(100_000, |steps| steps.parse().expect("a number of steps"));
     let which = std::env::var("SCENE").unwrap_or_default();
     let scenes: [(&str, usize, Make); 6] = [
         ("links of all caps", 60, link),

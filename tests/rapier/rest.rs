@@ -1,5 +1,5 @@
-//! Links that are dropped come to rest: at the right height, asleep, without rolling off, sinking, trembling or
-//! gaining energy, and at least as well as parry's own shapes.
+//! Links that are dropped come to rest: at the right height, asleep, without rolling off, sinking,
+//! trembling or gaining energy, and at least as well as parry's own shapes.
 
 use crate::drop::{Drop, attitudes, box_ground, bump, field, links, mesh, world};
 use parry_continuum::parry::math::{Pose, Real, Rot3, Vector};
@@ -8,8 +8,11 @@ use rapier3d_f64::prelude::*;
 
 type Ground = (&'static str, fn(Real) -> ColliderBuilder);
 
-const FLAT: [Ground; 3] =
-    [("mesh", |size| mesh(size, |_, _| 0.0)), ("box", box_ground), ("field", |size| field(size, |_, _| 0.0))];
+const FLAT: [Ground; 3] = [
+    ("mesh", |size| mesh(size, |_, _| 0.0)),
+    ("box", box_ground),
+    ("field", |size| field(size, |_, _| 0.0)),
+];
 const BUMPY: [Ground; 2] =
     [("bumpy mesh", |size| mesh(size, bump)), ("bumpy field", |size| field(size, bump))];
 
@@ -49,7 +52,12 @@ impl Fall {
     /// Neither sank that deep nor gained energy.
     #[track_caller]
     fn assert_calm(&self, deepest: Real, context: &str) {
-        assert!(self.deepest > deepest && self.gain < 1e-3, "{context}: {} {}", self.deepest, self.gain);
+        assert!(
+            self.deepest > deepest && self.gain < 1e-3,
+            "{context}: {} {}",
+            self.deepest,
+            self.gain
+        );
     }
 }
 
@@ -68,7 +76,11 @@ fn on_flat_ground_at_the_right_height() {
                     ("upright", Cap::Round) => 1.5,
                     _ => 0.5,
                 };
-                assert!((pose.translation.y - height).abs() < EXACT, "{context} at {}", pose.translation.y);
+                assert!(
+                    (pose.translation.y - height).abs() < EXACT,
+                    "{context} at {}",
+                    pose.translation.y
+                );
                 let lean = (pose.rotation * Vector::Y).y;
                 let expected = if attitude == "upright" { 1.0 } else { 0.0 };
                 assert!((lean - expected).abs() < 1e-4, "{context} leans {lean}");
@@ -82,8 +94,8 @@ fn on_flat_ground_at_the_right_height() {
     }
 }
 
-/// rapier has no rolling friction: in a hollow, a round thing rocks for ever, parry's own as well. So these bodies
-/// are damped.
+/// rapier has no rolling friction: in a hollow, a round thing rocks for ever, parry's own as well.
+/// So these bodies are damped.
 #[test]
 fn on_bumps_and_in_hollows_touching() {
     for ground in BUMPY {
@@ -102,8 +114,10 @@ fn on_bumps_and_in_hollows_touching() {
 
 #[test]
 fn a_capsule_falls_like_parrys_capsule_and_a_cylinder_like_parrys_cylinder_or_better() {
-    let pairs =
-        [(links()[1], SharedShape::capsule_y(1.0, 0.5)), (links()[0], SharedShape::cylinder(1.0, 0.5))];
+    let pairs = [
+        (links()[1], SharedShape::capsule_y(1.0, 0.5)),
+        (links()[0], SharedShape::cylinder(1.0, 0.5)),
+    ];
     for ground in FLAT {
         for (link, peer) in &pairs {
             for (attitude, turn) in attitudes() {
@@ -138,15 +152,18 @@ fn a_rod_that_falls_flat_stays_where_it_falls() {
     const STARTS: usize = 24;
     let flat = attitudes()[1].1;
     let fall = |shape: &SharedShape, ground: Ground, start: usize| {
-        let shift = 0.03 * Vector::new((1.7 * start as Real).sin(), 0.0, (2.3 * start as Real).cos());
+        let shift =
+            0.03 * Vector::new((1.7 * start as Real).sin(), 0.0, (2.3 * start as Real).cos());
         let from = Vector::new(0.1, 2.0, -0.2) + shift;
-        let mut drop = Drop::new(world(1.0), ground.1(1.0), shape.clone(), Pose::from_parts(from, flat));
+        let mut drop =
+            Drop::new(world(1.0), ground.1(1.0), shape.clone(), Pose::from_parts(from, flat));
         let steps = settle_unseen(&mut drop, 400).unwrap_or(400);
         (steps, (drop.pose().translation - from.with_y(0.5)).length())
     };
     let peers = [SharedShape::capsule_y(1.0, 0.5), SharedShape::cylinder(1.0, 0.5)];
     for ground in [FLAT[0], FLAT[2]] {
-        let latest = |shape: &SharedShape| (0..STARTS).map(|start| fall(shape, ground, start).0).max();
+        let latest =
+            |shape: &SharedShape| (0..STARTS).map(|start| fall(shape, ground, start).0).max();
         let latest_of_peers = peers.iter().filter_map(latest).max().unwrap_or(0);
         for link in links() {
             for start in 0..STARTS {
@@ -167,7 +184,8 @@ fn settle_unseen(drop: &mut Drop, most: usize) -> Option<usize> {
     })
 }
 
-/// A link that stands on a flat cap and is not allowed to sleep stays where it is, on the same patch.
+/// A link that stands on a flat cap and is not allowed to sleep stays where it is, on the same
+/// patch.
 #[test]
 fn standing_on_a_flat_cap_does_not_tremble() {
     for ground in FLAT {
@@ -189,7 +207,11 @@ fn standing_on_a_flat_cap_does_not_tremble() {
                 let moved = (patch(&drop) - middle).length();
                 assert!(moved < 0.05 * 0.5, "{caps:?} on a {}: {moved}", ground.0);
             }
-            assert!((drop.pose().translation - place).length() < 1e-3, "{caps:?} on a {}", ground.0);
+            assert!(
+                (drop.pose().translation - place).length() < 1e-3,
+                "{caps:?} on a {}",
+                ground.0
+            );
             let speed = drop.world.bodies[drop.body].linvel().length();
             assert!(speed < 1e-3, "{caps:?} on a {}: {speed}", ground.0);
         }

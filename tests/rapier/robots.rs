@@ -1,5 +1,5 @@
-//! Robots on robots: rods that cross, rings of a coil on one another, a hundred chains. What comes to rest lies where the shapes
-//! say, as with parry's own.
+//! Robots on robots: rods that cross, rings of a coil on one another, a hundred chains. What comes
+//! to rest lies where the shapes say, as with parry's own.
 
 use crate::drop::{grid, world};
 use parry_continuum::parry::math::{Pose, Real, Vector};
@@ -11,7 +11,8 @@ use std::f64::consts::TAU;
 const CAPS: [[Cap; 2]; 4] =
     [[Cap::Flat; 2], [Cap::Round; 2], [Cap::Flat, Cap::Round], [Cap::Round, Cap::Flat]];
 
-/// A rod falls across another, which is held and thicker, so that it balances there. Returns its places, in units of `size`.
+/// A rod falls across another, which is held and thicker, so that it balances there. Returns its
+/// places, in units of `size`.
 fn crossed(size: Real, [below, above]: [SharedShape; 2], turn: Real) -> Vec<Pose> {
     let mut world = world(size);
     world.insert(RigidBodyBuilder::fixed(), ColliderBuilder::new(below));
@@ -69,15 +70,19 @@ fn ring_of_links(turn: Real) -> SharedShape {
 }
 
 fn ring_of_capsules(turn: Real) -> SharedShape {
-    let capsule = |ends: &[Vector]| (Pose::IDENTITY, SharedShape::capsule(ends[0], ends[1], RADIUS));
+    let capsule =
+        |ends: &[Vector]| (Pose::IDENTITY, SharedShape::capsule(ends[0], ends[1], RADIUS));
     SharedShape::new(Compound::new(ring(turn).windows(2).map(capsule).collect()))
 }
 
-/// Rings of a coil, one on the other, on a floor: how far the height of each is from that of its place, in radii, and how
-/// many are awake after so many steps.
+/// Rings of a coil, one on the other, on a floor: how far the height of each is from that of its
+/// place, in radii, and how many are awake after so many steps.
 fn coil(ring: fn(Real) -> SharedShape) -> (Real, usize) {
     let mut world = world(2.0 * RADIUS);
-    world.insert(RigidBodyBuilder::fixed(), ColliderBuilder::new(SharedShape::new(grid(1.0, |_, _| 0.0))));
+    world.insert(
+        RigidBodyBuilder::fixed(),
+        ColliderBuilder::new(SharedShape::new(grid(1.0, |_, _| 0.0))),
+    );
     let bodies: Vec<_> = (0..4)
         .map(|k| {
             let height = RADIUS * (1.0 + 2.3 * Real::from(k));

@@ -25,7 +25,8 @@ fn the_world_is_made_for_links_of_a_size() {
 fn a_size_that_is_none_changes_nothing() {
     let (mut world, before) = (PhysicsWorld::default(), IntegrationParameters::default());
     for size in [0.0, -1.0, Real::NAN, Real::INFINITY] {
-        let refused = rapier::install(&mut world.narrow_phase, &mut world.integration_parameters, size);
+        let refused =
+            rapier::install(&mut world.narrow_phase, &mut world.integration_parameters, size);
         assert!(refused.unwrap_err().to_string().contains("above 0"), "{size}");
         assert_eq!(world.integration_parameters, before);
     }

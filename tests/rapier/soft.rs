@@ -13,10 +13,15 @@ fn waves(height: Real) -> SharedShape {
 }
 
 fn robots() -> Vec<(String, SharedShape)> {
-    let mut robots: Vec<_> =
-        links().map(|link| (format!("{:?}", link.caps()), SharedShape::new(link))).into_iter().collect();
+    let mut robots: Vec<_> = links()
+        .map(|link| (format!("{:?}", link.caps()), SharedShape::new(link)))
+        .into_iter()
+        .collect();
     let points = [-Vector::Y, 0.2 * Vector::Y, Vector::new(0.2, 1.3, 0.0)];
-    robots.push(("chain".into(), SharedShape::new(Chain::from_centreline(&points, &[0.5; 2]).unwrap())));
+    robots.push((
+        "chain".into(),
+        SharedShape::new(Chain::from_centreline(&points, &[0.5; 2]).unwrap()),
+    ));
     robots
 }
 
@@ -28,8 +33,9 @@ fn parrys() -> [(String, SharedShape); 2] {
     ]
 }
 
-/// On a mesh that is another one at each step, for ten seconds, and then stays as it is: how deep the body gets, for
-/// how many steps it is loose, and by what height its energy grows once the mesh is still.
+/// On a mesh that is another one at each step, for ten seconds, and then stays as it is: how deep
+/// the body gets, for how many steps it is loose, and by what height its energy grows once the mesh
+/// is still.
 fn on_moving_mesh(robot: SharedShape) -> (Real, usize, Real) {
     let ground = ColliderBuilder::new(waves(0.0));
     let pose = Pose::from_parts(Vector::new(0.2, 0.51, -0.1), attitudes()[1].1);
@@ -75,7 +81,9 @@ fn a_robot_rests_on_a_soft_body() {
     let [cylinder, capsule] = parrys().map(|(_, shape)| on_soft_body(shape).0);
     for (name, robot) in robots() {
         let (lowest, touching, speed) = on_soft_body(robot);
-        println!("{name}: {lowest} low, {touching} touching, {speed} fast; parry's {cylinder}, {capsule}");
+        println!(
+            "{name}: {lowest} low, {touching} touching, {speed} fast; parry's {cylinder}, {capsule}"
+        );
         assert_eq!(touching, 600, "{name}");
         assert!(lowest > 0.98 * capsule.min(cylinder), "{name}: {lowest} against {capsule}");
         assert!(name == "chain" || speed < 1e-3, "{name}: {speed}");
@@ -83,8 +91,8 @@ fn a_robot_rests_on_a_soft_body() {
     }
 }
 
-/// On a slab of tetrahedra held at its bottom: how low the body gets, at how many of the last 600 steps it touches, and
-/// its speed at the end.
+/// On a slab of tetrahedra held at its bottom: how low the body gets, at how many of the last 600
+/// steps it touches, and its speed at the end.
 fn on_soft_body(robot: SharedShape) -> (Real, usize, Real) {
     let mut world = world(1.0);
     let slab = SoftBodyBuilder::cuboid(-0.5 * Vector::Y, Vector::new(2.0, 0.5, 2.0), 9, 3, 9);
@@ -102,6 +110,8 @@ fn on_soft_body(robot: SharedShape) -> (Real, usize, Real) {
         let touches = world.contact_pairs_with(collider).any(|pair| pair.has_any_active_contact());
         touching += usize::from(step >= 300 && touches);
     }
-    assert!(world.soft_bodies[slab].particles().iter().all(|particle| particle.position().is_finite()));
+    assert!(
+        world.soft_bodies[slab].particles().iter().all(|particle| particle.position().is_finite())
+    );
     (lowest, touching, world.bodies[body].linvel().length())
 }

@@ -13,13 +13,15 @@ fn fall(size: Real, shape: SharedShape, pose: Pose, height: fn(Real, Real) -> Re
     world.gravity = Vector::Y * -9810.0 * size;
     let parameters = &mut world.integration_parameters;
     parameters.dt = 2e-4;
-    // rapier's own ratio to the time step. Its 60 Hz would let the weight of a millimetre sink in by a tenth.
+    // rapier's own ratio to the time step. Its 60 Hz would let the weight of a millimetre sink in
+    // by a tenth.
     parameters.contact_softness.natural_frequency = 0.5 / parameters.dt;
     parameters.static_contact_softness.natural_frequency = 1.0 / parameters.dt;
     let pose = Pose::from_parts(pose.translation * size, pose.rotation);
     let mut drop = Drop::new(world, mesh(size, height), shape, pose);
     // Steel. The unit of mass is the same in all scenes.
-    let steel = drop.world.colliders[drop.collider].shape().mass_properties(7.8e-6 / (size * size * size));
+    let steel =
+        drop.world.colliders[drop.collider].shape().mass_properties(7.8e-6 / (size * size * size));
     drop.world.colliders[drop.collider].set_mass_properties(steel);
     let step = |_| {
         drop.world.step();
@@ -52,8 +54,8 @@ fn one_scene_at_three_scales() {
     }
 }
 
-/// By a true thousand, rounding decides which of many equally deep points hold the link. It rests at the same
-/// height.
+/// By a true thousand, rounding decides which of many equally deep points hold the link. It rests
+/// at the same height.
 #[test]
 fn metres_millimetres_and_micrometres() {
     for link in links() {
@@ -73,7 +75,8 @@ fn metres_millimetres_and_micrometres() {
 fn a_chain_at_three_scales() {
     let points = [Vector::ZERO, Vector::X, Vector::new(1.9, 0.0, 0.4), Vector::new(2.6, 0.2, 1.1)];
     let at = |size: Real| {
-        let robot = Chain::from_centreline(&points.map(|p| p * size), &[0.4, 0.4, 0.3].map(|r| r * size));
+        let robot =
+            Chain::from_centreline(&points.map(|p| p * size), &[0.4, 0.4, 0.3].map(|r| r * size));
         let pose = Pose::new(Vector::new(-1.0, 1.0, 0.0), Vector::new(0.1, 0.2, 0.1));
         fall(size, SharedShape::new(robot.unwrap()), pose, bump)
     };

@@ -1,15 +1,19 @@
 //! The box of a link holds it and touches it on all six sides.
 //!
-//! The judge is the support function of the link's parts, each written down from its definition and searched by
-//! sampling: discs by angle, half balls by the directions that they contain.
+//! The judge is the support function of the link's parts, each written down from its definition and
+//! searched by sampling: discs by angle, half balls by the directions that they contain.
 
 use continuum_testing::Random;
 use parry_continuum::parry::bounding_volume::Aabb;
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::{Cap, Chain, ModifiedCylinder};
 
-const CAPS: [[Cap; 2]; 4] =
-    [[Cap::Flat, Cap::Flat], [Cap::Flat, Cap::Round], [Cap::Round, Cap::Flat], [Cap::Round, Cap::Round]];
+const CAPS: [[Cap; 2]; 4] = [
+    [Cap::Flat, Cap::Flat],
+    [Cap::Flat, Cap::Round],
+    [Cap::Round, Cap::Flat],
+    [Cap::Round, Cap::Round],
+];
 
 /// A direction that may be along a coordinate axis, in a coordinate plane, or neither.
 fn direction(random: &mut Random) -> Vector {
@@ -28,7 +32,8 @@ fn surface(link: &ModifiedCylinder, around: u32) -> Vec<Vector> {
     let side = axis.any_orthonormal_vector();
     let up = axis.cross(side);
     let mut points = vec![];
-    for (centre, outward, cap) in [(link.start(), -axis, link.caps()[0]), (link.end(), axis, link.caps()[1])]
+    for (centre, outward, cap) in
+        [(link.start(), -axis, link.caps()[0]), (link.end(), axis, link.caps()[1])]
     {
         for i in 0..around {
             let (sin, cos) = (std::f64::consts::TAU * Real::from(i) / Real::from(around)).sin_cos();
@@ -36,7 +41,8 @@ fn surface(link: &ModifiedCylinder, around: u32) -> Vec<Vector> {
             points.push(centre + radial * link.radius());
             if cap == Cap::Round {
                 for j in 1..=around / 4 {
-                    let (sin, cos) = (std::f64::consts::TAU * Real::from(j) / Real::from(around)).sin_cos();
+                    let (sin, cos) =
+                        (std::f64::consts::TAU * Real::from(j) / Real::from(around)).sin_cos();
                     points.push(centre + (radial * cos + outward * sin) * link.radius());
                 }
             }
@@ -64,7 +70,8 @@ fn random_link(random: &mut Random, caps: [Cap; 2]) -> ModifiedCylinder {
     let start = random.point();
     // From a coin to a needle; axes along the coordinates included.
     let length = Real::powf(10.0, random.between(-3.0, 1.0));
-    ModifiedCylinder::new(start, start + direction(random) * length, random.between(0.1, 2.0), caps).unwrap()
+    ModifiedCylinder::new(start, start + direction(random) * length, random.between(0.1, 2.0), caps)
+        .unwrap()
 }
 
 #[test]
@@ -97,7 +104,8 @@ fn along_the_coordinates() {
     }
 }
 
-/// Axes with whole components and whole length, and that length as radius: a disc reaches sqrt(y^2 + z^2) along x.
+/// Axes with whole components and whole length, and that length as radius: a disc reaches sqrt(y^2
+/// + z^2) along x.
 #[test]
 fn right_to_the_last_bits() {
     for (x, y, z, length) in
@@ -105,9 +113,12 @@ fn right_to_the_last_bits() {
     {
         let end = Vector::new(x, y, z);
         let disc = Vector::new(y * y + z * z, z * z + x * x, x * x + y * y).map(Real::sqrt);
-        let link = ModifiedCylinder::new(Vector::ZERO, end, length, [Cap::Flat, Cap::Round]).unwrap();
-        let low = (-disc).min(end - Vector::select(end.cmple(Vector::ZERO), Vector::splat(length), disc));
-        let high = disc.max(end + Vector::select(end.cmpge(Vector::ZERO), Vector::splat(length), disc));
+        let link =
+            ModifiedCylinder::new(Vector::ZERO, end, length, [Cap::Flat, Cap::Round]).unwrap();
+        let low =
+            (-disc).min(end - Vector::select(end.cmple(Vector::ZERO), Vector::splat(length), disc));
+        let high =
+            disc.max(end + Vector::select(end.cmpge(Vector::ZERO), Vector::splat(length), disc));
         let aabb = link.local_aabb();
         let difference = (aabb.mins - low).abs().max((aabb.maxs - high).abs()).max_element();
         assert!(difference <= 4.0 * Real::EPSILON * length, "{difference}");
@@ -117,7 +128,8 @@ fn right_to_the_last_bits() {
 /// A half ball shorter than its own radius does not reach back past the other end's disc.
 #[test]
 fn a_coin_with_one_round_side() {
-    let link = ModifiedCylinder::new(Vector::ZERO, Vector::X * 0.25, 1.0, [Cap::Flat, Cap::Round]).unwrap();
+    let link = ModifiedCylinder::new(Vector::ZERO, Vector::X * 0.25, 1.0, [Cap::Flat, Cap::Round])
+        .unwrap();
     let aabb = link.local_aabb();
     assert_eq!((aabb.mins.x, aabb.maxs.x), (0.0, 1.25));
 }
@@ -128,9 +140,11 @@ fn capsules_as_parry_has_them() {
     for _ in 0..100 {
         let link = random_link(&mut random, [Cap::Round; 2]);
         let peer =
-            parry_continuum::parry::shape::Capsule::new(link.start(), link.end(), link.radius()).local_aabb();
-        let difference =
-            (peer.mins - link.local_aabb().mins).abs().max((peer.maxs - link.local_aabb().maxs).abs());
+            parry_continuum::parry::shape::Capsule::new(link.start(), link.end(), link.radius())
+                .local_aabb();
+        let difference = (peer.mins - link.local_aabb().mins)
+            .abs()
+            .max((peer.maxs - link.local_aabb().maxs).abs());
         assert!(difference.max_element() <= 1e-14);
     }
 }
@@ -153,7 +167,11 @@ fn moved_by_a_pose() {
         let pose = Pose::new(random.point() * 5.0, random.point() * 3.0);
         let moved: Vec<_> = surface(&link, 400).iter().map(|&p| pose * p).collect();
         assert_holds(&link.aabb(&pose), &moved, 1e-13);
-        assert_touches(&link.aabb(&pose), &moved, 2.0 * 2.0 * (std::f64::consts::PI / 400.0).powi(2));
+        assert_touches(
+            &link.aabb(&pose),
+            &moved,
+            2.0 * 2.0 * (std::f64::consts::PI / 400.0).powi(2),
+        );
     }
 }
 
@@ -194,8 +212,14 @@ fn length_and_axis() {
     for scale in [1.0, 1e-300, 5e-320, 1e149] {
         let end = Vector::new(3.0, 0.0, 4.0) * scale;
         let link = ModifiedCylinder::capsule(Vector::ZERO, end, 0.0).unwrap();
-        assert!((link.length() / scale - 5.0).abs() < 1e-3_f64.min(1e-13 + 1e-320 / scale), "{scale}");
-        assert!((link.axis() - Vector::new(0.6, 0.0, 0.8)).length() < 1e-3_f64.min(1e-15 + 1e-320 / scale));
+        assert!(
+            (link.length() / scale - 5.0).abs() < 1e-3_f64.min(1e-13 + 1e-320 / scale),
+            "{scale}"
+        );
+        assert!(
+            (link.axis() - Vector::new(0.6, 0.0, 0.8)).length()
+                < 1e-3_f64.min(1e-15 + 1e-320 / scale)
+        );
         assert!((link.axis().length() - 1.0).abs() < 1e-15);
     }
     let ball = ModifiedCylinder::capsule(Vector::ONE, Vector::ONE, 1.0).unwrap();

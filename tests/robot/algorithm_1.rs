@@ -1,7 +1,9 @@
-//! Algorithm 1: which ends of a chain's links are round, and what becomes of repeated points and bad input.
+//! Algorithm 1: which ends of a chain's links are round, and what becomes of repeated points and
+//! bad input.
 //!
-//! Expected caps come from an implementation of the paper's text that is not ours (tests/data/algorithm1.jsonl:
-//! the paper's figures and random robots), and for the named tests from working through the figures by hand.
+//! Expected caps come from an implementation of the paper's text that is not ours
+//! (tests/data/algorithm1.jsonl: the paper's figures and random robots), and for the named tests
+//! from working through the figures by hand.
 
 use parry_continuum::parry::math::{Real, Vector};
 use parry_continuum::{Cap, Chain, ModifiedCylinder, RobotError};
@@ -35,7 +37,10 @@ impl Case {
 }
 
 fn cases() -> Vec<Case> {
-    include_str!("../data/algorithm1.jsonl").lines().map(|line| serde_json::from_str(line).unwrap()).collect()
+    include_str!("../data/algorithm1.jsonl")
+        .lines()
+        .map(|line| serde_json::from_str(line).unwrap())
+        .collect()
 }
 
 fn scaled(radii: &[Real], scale: Real) -> Vec<Real> {
@@ -45,7 +50,11 @@ fn scaled(radii: &[Real], scale: Real) -> Vec<Real> {
 /// A chain's round starts and round ends as letters, e.g. "FTTT TTTF".
 fn flags(chain: &Chain) -> String {
     let letters = |end: usize| -> String {
-        chain.links().iter().map(|link| if link.caps()[end] == Cap::Round { 'T' } else { 'F' }).collect()
+        chain
+            .links()
+            .iter()
+            .map(|link| if link.caps()[end] == Cap::Round { 'T' } else { 'F' })
+            .collect()
     };
     format!("{} {}", letters(0), letters(1))
 }
@@ -58,7 +67,10 @@ fn straight(spacing: Real, segments: usize) -> Vec<Vector> {
 /// A robot bent at a constant radius, with points `spacing` apart along the arc.
 fn bent(spacing: Real, bend_radius: Real, segments: usize) -> Vec<Vector> {
     let arc = |i| (spacing * i as Real / bend_radius).sin_cos();
-    (0..=segments).map(arc).map(|(sin, cos)| Vector::new(sin, 1.0 - cos, 0.0) * bend_radius).collect()
+    (0..=segments)
+        .map(arc)
+        .map(|(sin, cos)| Vector::new(sin, 1.0 - cos, 0.0) * bend_radius)
+        .collect()
 }
 
 fn centreline(points: &[Vector], radii: &[Real]) -> String {
@@ -92,14 +104,22 @@ fn segments_with_length(chain: &Chain, points: &[Vector]) -> Vec<usize> {
 }
 
 /// Each link is its segment with these caps. `sb` and `sf` are per input segment.
-fn assert_links(name: &str, chain: &Chain, points: &[Vector], radii: &[Real], sb: &[bool], sf: &[bool]) {
+fn assert_links(
+    name: &str,
+    chain: &Chain,
+    points: &[Vector],
+    radii: &[Real],
+    sb: &[bool],
+    sf: &[bool],
+) {
     let segments = segments_with_length(chain, points);
     let with_length = points.windows(2).filter(|ends| ends[0] != ends[1]).count();
     assert_eq!(segments.len(), with_length, "{name}");
     for (link, k) in chain.links().iter().zip(segments) {
         let cap = |round: bool| if round { Cap::Round } else { Cap::Flat };
         let expected =
-            ModifiedCylinder::new(points[k], points[k + 1], radii[k], [cap(sb[k]), cap(sf[k])]).unwrap();
+            ModifiedCylinder::new(points[k], points[k + 1], radii[k], [cap(sb[k]), cap(sf[k])])
+                .unwrap();
         assert_eq!(*link, expected, "{name}, segment {k}");
     }
 }
@@ -121,7 +141,9 @@ fn every_reference_case_by_segment_radii() {
 fn every_reference_case_by_vertex_radii() {
     let (mut count, mut named) = (0, 0);
     for case in cases() {
-        let (Some(radii), Some(lb), Some(lf)) = (&case.vertex_radius, &case.lb, &case.lf) else { continue };
+        let (Some(radii), Some(lb), Some(lf)) = (&case.vertex_radius, &case.lb, &case.lf) else {
+            continue;
+        };
         let points = case.points(1.0);
         let chain = Chain::from_vertex_radii(&points, radii).unwrap();
         let smaller: Vec<_> = radii.windows(2).map(|r| r[0].min(r[1])).collect();
@@ -182,7 +204,8 @@ fn figures_7g_and_8_three_tubes() {
     let expected = "FFTTTTTTT TFFTFFTTF";
     assert_eq!(centreline(&points, &repeat([(1.5, 3), (1.0, 3), (0.5, 3)])), expected);
     assert_eq!(vertices(&points, &repeat([(1.5, 4), (1.0, 3), (0.5, 3)])), expected);
-    // Spacing above every radius: flat at the base, at both steps and at the tip, as the paper counts.
+    // Spacing above every radius: flat at the base, at both steps and at the tip, as the paper
+    // counts.
     let expected = "FTTTTTTTT TTFTTFTTF";
     assert_eq!(centreline(&bent(2.0, 12.0, 9), &repeat([(1.5, 3), (1.0, 3), (0.5, 3)])), expected);
 }
@@ -214,8 +237,8 @@ fn wires_and_single_segments() {
     assert_eq!(vertices(&straight(1.0, 1), &[0.3, 0.5]), "F F");
 }
 
-/// Joints exactly one radius from the limit are round, and a little nearer they are not. The squares of the lengths 3 m,
-/// 4 m, 5 m are exact.
+/// Joints exactly one radius from the limit are round, and a little nearer they are not. The
+/// squares of the lengths 3 m, 4 m, 5 m are exact.
 #[test]
 fn ties_of_exact_squares_are_round() {
     assert_eq!(centreline(&straight(1.0, 2), &[1.0; 2]), "FT TF");
@@ -256,7 +279,8 @@ fn repeating_points_changes_no_link() {
         // Each point twice; what lies between them has the radius of the segment before, or after.
         let doubled: Vec<_> = points.iter().flat_map(|&point| [point, point]).collect();
         let last = radii.len() - 1;
-        let before = (0..doubled.len() - 1).map(|i| radii[if i == 0 { 0 } else { (i - 1) / 2 }]).collect();
+        let before =
+            (0..doubled.len() - 1).map(|i| radii[if i == 0 { 0 } else { (i - 1) / 2 }]).collect();
         let after = (0..doubled.len() - 1).map(|i| radii[(i / 2).min(last)]).collect();
         for doubled_radii in [before, after] as [Vec<Real>; 2] {
             let chain = Chain::from_centreline(&doubled, &doubled_radii).unwrap();
@@ -289,7 +313,8 @@ fn segments_of_says_where_a_link_comes_from() {
     }
 }
 
-/// Every constructor of a chain on the same points, from per-segment radii that it widens to its own needs.
+/// Every constructor of a chain on the same points, from per-segment radii that it widens to its
+/// own needs.
 fn all_errors(points: &[Vector], radii: &[Real]) -> Vec<RobotError> {
     let per_vertex: Vec<_> = radii.iter().copied().chain(radii.last().copied()).collect();
     vec![
@@ -322,7 +347,10 @@ fn bad_input_is_named() {
     ] {
         for error in all_errors(&points, &radii) {
             let message = error.to_string();
-            assert!(words.iter().all(|word| message.contains(word)), "{message} lacks one of {words:?}");
+            assert!(
+                words.iter().all(|word| message.contains(word)),
+                "{message} lacks one of {words:?}"
+            );
         }
     }
     for (points, expected, radii, error) in [
@@ -346,7 +374,8 @@ fn chains_with_equal_links_are_equal() {
     assert_ne!(chain, Chain::capsules(&points, &[0.1; 3]).unwrap());
 }
 
-/// The radii of a rod simulator differ in their last digits. They are no steps, and each link keeps its own.
+/// The radii of a rod simulator differ in their last digits. They are no steps, and each link keeps
+/// its own.
 #[test]
 fn radii_that_differ_by_rounding_are_no_steps() {
     let points: Vec<_> = (0..40)

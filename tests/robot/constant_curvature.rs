@@ -1,4 +1,5 @@
-//! Sections of constant curvature: the frame's differential equation, the formulas of the literature, and the tube.
+//! Sections of constant curvature: the frame's differential equation, the formulas of the
+//! literature, and the tube.
 
 use continuum_testing::Random;
 use parry_continuum::parry::math::{Pose, Rotation, Vector};
@@ -56,13 +57,18 @@ fn a_quarter_turn_ends_where_it_should() {
     let radius = 20.0;
     let length = radius * std::f64::consts::FRAC_PI_2;
     let towards_y = BendingSection { length, radius: 1.0, bend: [0.0, 1.0 / radius] };
-    let robot =
-        ConstantCurvature::new(&[towards_y, BendingSection { bend: [0.0; 2], length: 5.0, ..towards_y }])
-            .unwrap();
+    let robot = ConstantCurvature::new(&[
+        towards_y,
+        BendingSection { bend: [0.0; 2], length: 5.0, ..towards_y },
+    ])
+    .unwrap();
     let quarter = robot.frame(length);
     assert!(quarter.translation.distance(Vector::new(0.0, radius, radius)) < 1e-13);
     assert!((quarter.rotation * Vector::Z).distance(Vector::Y) < 1e-15);
-    assert!(robot.frame(length + 5.0).translation.distance(Vector::new(0.0, radius + 5.0, radius)) < 1e-13);
+    assert!(
+        robot.frame(length + 5.0).translation.distance(Vector::new(0.0, radius + 5.0, radius))
+            < 1e-13
+    );
 }
 
 #[test]
@@ -76,7 +82,9 @@ fn points_and_tube_are_on_the_curve() {
         assert_eq!((points.len(), radii.len()), (7 * sections.len() + 1, 7 * sections.len()));
         let mut arc_length = 0.0;
         for (number, point) in points.iter().enumerate() {
-            assert!(point.distance(robot.frame(arc_length).translation) < 1e-12 * (1.0 + arc_length));
+            assert!(
+                point.distance(robot.frame(arc_length).translation) < 1e-12 * (1.0 + arc_length)
+            );
             arc_length += sections[(number / 7).min(sections.len() - 1)].length / 7.0;
         }
         for (number, radius) in radii.iter().enumerate() {
@@ -97,11 +105,25 @@ fn points_and_tube_are_on_the_curve() {
 fn what_is_no_section_is_named() {
     let good = BendingSection { length: 1.0, radius: 0.1, bend: [0.1, 0.0] };
     let error = |bad: BendingSection| ConstantCurvature::new(&[good, bad]).unwrap_err();
-    assert!(matches!(ConstantCurvature::new(&[]), Err(RobotError::NoSections { parameter: "sections" })));
-    assert!(matches!(error(BendingSection { length: 0.0, ..good }), RobotError::BadLength { index: 1, .. }));
-    assert!(matches!(error(BendingSection { radius: -1.0, ..good }), RobotError::BadRadius { index: 1, .. }));
+    assert!(matches!(
+        ConstantCurvature::new(&[]),
+        Err(RobotError::NoSections { parameter: "sections" })
+    ));
+    assert!(matches!(
+        error(BendingSection { length: 0.0, ..good }),
+        RobotError::BadLength { index: 1, .. }
+    ));
+    assert!(matches!(
+        error(BendingSection { radius: -1.0, ..good }),
+        RobotError::BadRadius { index: 1, .. }
+    ));
     let bent = |bend| error(BendingSection { bend, ..good });
     assert!(matches!(bent([f64::NAN, 0.0]), RobotError::BadCurvature { index: 1, .. }));
     assert!(matches!(bent([0.0, f64::INFINITY]), RobotError::BadCurvature { index: 1, .. }));
-    assert!(ConstantCurvature::new(&[BendingSection { bend: [20.0, 0.0], ..good }]).unwrap().tube().is_err());
+    assert!(
+        ConstantCurvature::new(&[BendingSection { bend: [20.0, 0.0], ..good }])
+            .unwrap()
+            .tube()
+            .is_err()
+    );
 }

@@ -13,8 +13,14 @@ fn a_pose_moves_points_as_an_isometry_does() {
         let pose = Pose::from(isometry);
         let moved = isometry * Point3::from(point);
         assert!(Vector::from(moved).distance(pose * point) < 1e-13, "{isometry} {point}");
-        assert!((Isometry3::from(pose) * Point3::from(point) - moved).norm() < 1e-13, "{isometry} {point}");
+        assert!(
+            (Isometry3::from(pose) * Point3::from(point) - moved).norm() < 1e-13,
+            "{isometry} {point}"
+        );
         // nalgebra turns by scaled axes as parry does, and both count translations after rotations.
-        assert!((pose * point).distance(Pose::new(shift, turn) * point) < 1e-13, "{isometry} {point}");
+        assert!(
+            (pose * point).distance(Pose::new(shift, turn) * point) < 1e-13,
+            "{isometry} {point}"
+        );
     }
 }

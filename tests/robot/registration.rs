@@ -10,12 +10,19 @@ fn matrix(axis: Vector, angle: Real, shift: Vector) -> Matrix {
     let (axis, (sin, cos)) = (axis.normalize(), angle.sin_cos());
     let column = |e: Vector| e * cos + axis.cross(e) * sin + axis * (axis.dot(e) * (1.0 - cos));
     let [x, y, z] = [Vector::X, Vector::Y, Vector::Z].map(column);
-    [[x.x, y.x, z.x, shift.x], [x.y, y.y, z.y, shift.y], [x.z, y.z, z.z, shift.z], [0.0, 0.0, 0.0, 1.0]]
+    [
+        [x.x, y.x, z.x, shift.x],
+        [x.y, y.y, z.y, shift.y],
+        [x.z, y.z, z.z, shift.z],
+        [0.0, 0.0, 0.0, 1.0],
+    ]
 }
 
 /// The matrix times a point.
 fn apply(m: &Matrix, p: Vector) -> Vector {
-    Vector::from([0, 1, 2].map(|row| m[row][0] * p.x + m[row][1] * p.y + m[row][2] * p.z + m[row][3]))
+    Vector::from(
+        [0, 1, 2].map(|row| m[row][0] * p.x + m[row][1] * p.y + m[row][2] * p.z + m[row][3]),
+    )
 }
 
 #[test]
@@ -71,7 +78,10 @@ fn what_is_no_pose_is_named() {
         pose_from_matrix(bad).unwrap_err()
     };
     assert!(matches!(change(1, 2, Real::NAN), MatrixError::NotFinite { row: 2, column: 3, .. }));
-    assert!(matches!(change(0, 3, Real::INFINITY), MatrixError::NotFinite { row: 1, column: 4, .. }));
+    assert!(matches!(
+        change(0, 3, Real::INFINITY),
+        MatrixError::NotFinite { row: 1, column: 4, .. }
+    ));
     assert!(matches!(change(3, 0, 1.0), MatrixError::LastRow { .. }));
     assert!(matches!(change(0, 0, good[0][0] + 1e-4), MatrixError::NoRotation { .. }));
     assert!(matches!(change(0, 0, 1e200), MatrixError::NoRotation { .. }));

@@ -1,7 +1,7 @@
 //! `simplify` returns the fewest links that stay within the tolerance.
 //!
-//! The judge of what stays within it is a dense sampling of both curves, in both directions; the judge of what is
-//! fewest tries every subset of the vertices.
+//! The judge of what stays within it is a dense sampling of both curves, in both directions; the
+//! judge of what is fewest tries every subset of the vertices.
 
 use continuum_testing::Random;
 use parry_continuum::parry::math::{Real, Vector};
@@ -28,19 +28,27 @@ fn distance_to(polyline: &[Vector], p: Vector) -> Real {
 
 /// The Hausdorff distance, too small by at most half a sampling step.
 fn hausdorff(a: &[Vector], b: &[Vector]) -> Real {
-    let one_way =
-        |a: &[Vector], b: &[Vector]| sample(a).iter().map(|&p| distance_to(b, p)).fold(0.0, Real::max);
+    let one_way = |a: &[Vector], b: &[Vector]| {
+        sample(a).iter().map(|&p| distance_to(b, p)).fold(0.0, Real::max)
+    };
     one_way(a, b).max(one_way(b, a))
 }
 
-/// The fewest links over every subset, or None if a chord is too near the tolerance for sampling to tell.
-fn brute_force(points: &[Vector], radii: &[Real], tolerance: Real, seen: &mut Seen) -> Option<usize> {
+/// The fewest links over every subset, or None if a chord is too near the tolerance for sampling to
+/// tell.
+fn brute_force(
+    points: &[Vector],
+    radii: &[Real],
+    tolerance: Real,
+    seen: &mut Seen,
+) -> Option<usize> {
     let n = points.len();
     let mut admissible = vec![vec![true; n]; n];
     for from in 0..n {
         for to in from + 2..n {
             let (stretch, chord) = (&points[from..=to], [points[from], points[to]]);
-            let longest = points.windows(2).chain([&chord[..]]).map(|ends| (ends[1] - ends[0]).length());
+            let longest =
+                points.windows(2).chain([&chord[..]]).map(|ends| (ends[1] - ends[0]).length());
             let margin = longest.fold(0.0, Real::max) / (2 * SAMPLES) as Real;
             let distance = hausdorff(stretch, &chord);
             if (distance..=distance + margin).contains(&tolerance) {
@@ -142,19 +150,29 @@ fn as_few_links_as_brute_force_finds() {
     assert!(seen.greedy_fails > 5, "{}", seen.greedy_fails);
 }
 
-/// The kept points are input points in order with both ends and every change of radius, and each link and the
-/// stretch it replaces are within the tolerance by sampling.
-fn assert_follows(points: &[Vector], radii: &[Real], kept: &[Vector], kept_radii: &[Real], tolerance: Real) {
+/// The kept points are input points in order with both ends and every change of radius, and each
+/// link and the stretch it replaces are within the tolerance by sampling.
+fn assert_follows(
+    points: &[Vector],
+    radii: &[Real],
+    kept: &[Vector],
+    kept_radii: &[Real],
+    tolerance: Real,
+) {
     assert_eq!(kept.len(), kept_radii.len() + 1);
     let mut indices = vec![0];
     for &point in &kept[1..] {
         let from = indices[indices.len() - 1];
-        indices.push((from + 1..points.len()).find(|&k| points[k] == point).expect("an input point"));
+        indices
+            .push((from + 1..points.len()).find(|&k| points[k] == point).expect("an input point"));
     }
     assert_eq!(points[0], kept[0]);
     assert_eq!(indices.last(), Some(&(points.len() - 1)));
     for (ends, &radius) in indices.windows(2).zip(kept_radii) {
-        assert!(radii[ends[0]..ends[1]].iter().all(|&r| r == radius), "the radius changes within a link");
+        assert!(
+            radii[ends[0]..ends[1]].iter().all(|&r| r == radius),
+            "the radius changes within a link"
+        );
         let chord = [points[ends[0]], points[ends[1]]];
         let distance = hausdorff(&points[ends[0]..=ends[1]], &chord);
         let extent = chord[0].distance(chord[1]) + tolerance;
@@ -190,7 +208,9 @@ fn shortest_path(points: &[Vector], is_near: impl Fn(Vector, [Vector; 2]) -> boo
             let chord = [points[from], points[to]];
             chord[0] != chord[1] && points[from..to].iter().all(|&p| is_near(p, chord))
         };
-        fewest.push((0..to).filter(admissible).map(|from| fewest[from] + 1).min().unwrap_or(usize::MAX / 2));
+        fewest.push(
+            (0..to).filter(admissible).map(|from| fewest[from] + 1).min().unwrap_or(usize::MAX / 2),
+        );
     }
     fewest[points.len() - 1]
 }
@@ -218,7 +238,8 @@ fn as_few_links_as_the_plain_search() {
         }
         let (fewest, tolerance) = if problem % 3 > 0 {
             let tolerance = Real::powf(10.0, random.between(-4.0, 0.5));
-            let within = |limit: Real| shortest_path(&points, |p, ends| distance_to(&ends, p) <= limit);
+            let within =
+                |limit: Real| shortest_path(&points, |p, ends| distance_to(&ends, p) <= limit);
             let fewest = within(tolerance * (1.0 - 1e-9));
             if fewest != within(tolerance * (1.0 + 1e-9)) {
                 continue;
@@ -229,7 +250,9 @@ fn as_few_links_as_the_plain_search() {
             let size = [3.0, 10.0, 40.0][random.below(3) as usize];
             points.iter_mut().for_each(|p| *p = (*p * size).round());
             let is_on = |p: Vector, [a, b]: [Vector; 2]| {
-                (p - a).cross(b - a) == Vector::ZERO && (p - a).dot(b - a) >= 0.0 && (p - b).dot(a - b) >= 0.0
+                (p - a).cross(b - a) == Vector::ZERO
+                    && (p - a).dot(b - a) >= 0.0
+                    && (p - b).dot(a - b) >= 0.0
             };
             if points.iter().all(|&p| p == points[0]) {
                 continue;
@@ -249,12 +272,15 @@ fn as_few_links_as_the_plain_search() {
     assert!(long > 100, "{long}");
 }
 
-/// n evenly spaced points of a circle of radius 1: a chord over m steps is off by 1 - cos(m angle / 2).
+/// n evenly spaced points of a circle of radius 1: a chord over m steps is off by 1 - cos(m angle /
+/// 2).
 #[test]
 fn an_arc_as_geometry_says() {
     let angle = 0.01;
-    let points: Vec<_> =
-        (0..=240).map(|i| (angle * f64::from(i)).sin_cos()).map(|(y, x)| Vector::new(x, y, 0.0)).collect();
+    let points: Vec<_> = (0..=240)
+        .map(|i| (angle * f64::from(i)).sin_cos())
+        .map(|(y, x)| Vector::new(x, y, 0.0))
+        .collect();
     for steps in [2_u32, 7, 24, 60] {
         let sagitta = |steps: u32| 1.0 - (angle * f64::from(steps) / 2.0).cos();
         // The deepest vertex is off the middle by half a step if the number of steps is odd.
@@ -306,17 +332,20 @@ fn hooks_and_runs_back_on_a_line() {
     assert_eq!(kept.len(), 3);
 }
 
-/// The vertex (m, 2m) is exactly m from the line through (0, 0) and (4m, 3m), and all squares are exact.
+/// The vertex (m, 2m) is exactly m from the line through (0, 0) and (4m, 3m), and all squares are
+/// exact.
 #[test]
 fn ties_of_exact_squares_may_go() {
     for i in 0..100_u32 {
         let m = Real::from(2 * i + 1) * 1_234.0;
         for exponent in [-300, 0, 250] {
             let m = m * Real::powi(2.0, exponent);
-            let points = [(0.0, 0.0), (1.0, 2.0), (4.0, 3.0)].map(|(x, y)| Vector::new(x, y, 0.0) * m);
+            let points =
+                [(0.0, 0.0), (1.0, 2.0), (4.0, 3.0)].map(|(x, y)| Vector::new(x, y, 0.0) * m);
             assert_eq!(links(&points, m), 1);
             assert_eq!(links(&points, m * (1.0 - 1e-14)), 2);
-            let points = [(0.0, 0.0), (-3.0, 4.0), (1.0, 0.0)].map(|(x, y)| Vector::new(x, y, 0.0) * m);
+            let points =
+                [(0.0, 0.0), (-3.0, 4.0), (1.0, 0.0)].map(|(x, y)| Vector::new(x, y, 0.0) * m);
             assert_eq!(links(&points, 5.0 * m), 1);
             assert_eq!(links(&points, 5.0 * m * (1.0 - 1e-15)), 2);
         }
@@ -342,7 +371,8 @@ fn the_unit_does_not_matter() {
 
 #[test]
 fn a_tiny_robot_far_out() {
-    let points = [0.0, 1.0, 2.0].map(|x: Real| Vector::new(x * 1e-300, x * (2.0 - x) * 1e-300, 1e149));
+    let points =
+        [0.0, 1.0, 2.0].map(|x: Real| Vector::new(x * 1e-300, x * (2.0 - x) * 1e-300, 1e149));
     assert_eq!(links(&points, 1e-300), 1);
     assert_eq!(links(&points, 0.99e-300), 2);
 }
@@ -354,11 +384,16 @@ fn repeated_points() {
     let (kept, radii) = simplify(&points, &[0.1; 6], 0.0).unwrap();
     assert_eq!((kept, radii), (vec![Vector::ZERO, Vector::X * 2.0], vec![0.1]));
     // A change of radius between or on them keeps the point, once.
-    for radii in
-        [[0.1, 0.1, 0.1, 0.2, 0.2, 0.2], [0.1, 0.1, 0.2, 0.2, 0.2, 0.2], [0.3, 0.1, 0.3, 0.3, 0.2, 0.4]]
-    {
+    for radii in [
+        [0.1, 0.1, 0.1, 0.2, 0.2, 0.2],
+        [0.1, 0.1, 0.2, 0.2, 0.2, 0.2],
+        [0.3, 0.1, 0.3, 0.3, 0.2, 0.4],
+    ] {
         let (kept, kept_radii) = simplify(&points, &radii, 10.0).unwrap();
-        assert_eq!((kept, kept_radii), (vec![Vector::ZERO, Vector::X, Vector::X * 2.0], vec![0.1, 0.2]));
+        assert_eq!(
+            (kept, kept_radii),
+            (vec![Vector::ZERO, Vector::X, Vector::X * 2.0], vec![0.1, 0.2])
+        );
     }
     // A radius of its own on a segment without length is a change of radius too.
     let (kept, kept_radii) = simplify(&points, &[0.1, 0.1, 0.1, 0.5, 0.1, 0.1], 10.0).unwrap();
@@ -376,7 +411,8 @@ fn bad_input_is_named() {
         simplify(&points[..1], &[], 0.1),
         Err(RobotError::TooFewPoints { parameter: "points", count: 1 })
     );
-    let differ = RobotError::LengthsDiffer { parameter: "segment_radii", points: 3, expected: 2, radii: 1 };
+    let differ =
+        RobotError::LengthsDiffer { parameter: "segment_radii", points: 3, expected: 2, radii: 1 };
     assert_eq!(simplify(&points, &[0.1], 0.1), Err(differ));
     assert_eq!(simplify(&[Vector::X; 3], &[0.1; 2], 0.1), Err(RobotError::AllPointsEqual));
     let nan = simplify(&[Vector::ZERO, Vector::NAN], &[0.1], 0.1).unwrap_err();

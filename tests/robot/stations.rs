@@ -1,12 +1,14 @@
 //! `stations` follows a centreline and its faces within the tolerance, evenly and with few links.
 //!
-//! The judge of the distance is dense sampling of both curves, in both directions; of the number of links, `simplify`.
+//! The judge of the distance is dense sampling of both curves, in both directions; of the number of
+//! links, `simplify`.
 
 use continuum_testing::Random;
 use parry_continuum::parry::math::{Real, Vector};
 use parry_continuum::{RobotError, simplify, stations};
 
-/// Curves that bend more and less, with noise, hooks, loops and repeated points, and one to three radii.
+/// Curves that bend more and less, with noise, hooks, loops and repeated points, and one to three
+/// radii.
 fn robot(random: &mut Random) -> (Vec<Vector>, Vec<Real>) {
     let count = 2 + (random.unit() * 100.0) as usize;
     let noise = [0.0, 1e-4, 0.01, 0.3][(random.unit() * 4.0) as usize];
@@ -55,13 +57,15 @@ fn distance(a: Vector, b: Vector, p: Vector) -> Real {
 fn places(points: &[Vector], kept: &[Vector]) -> Vec<usize> {
     let mut rest = 0;
     let place = |kept: &Vector| {
-        rest += points[rest..].iter().position(|point| point == kept).expect("a point of the input");
+        rest +=
+            points[rest..].iter().position(|point| point == kept).expect("a point of the input");
         rest
     };
     kept.iter().map(place).collect()
 }
 
-/// By how much the rim of each face of the input moves: at both ends and on the wider side of each step.
+/// By how much the rim of each face of the input moves: at both ends and on the wider side of each
+/// step.
 fn rims(points: &[Vector], radii: &[Real], kept: &[Vector], kept_radii: &[Real]) -> Vec<Real> {
     let places = places(points, kept);
     let direction = |points: &[Vector], k: usize| (points[k + 1] - points[k]).normalize();
@@ -73,7 +77,9 @@ fn rims(points: &[Vector], radii: &[Real], kept: &[Vector], kept_radii: &[Real])
             rims.push(radius * (direction(kept, k) - direction(points, places[k])).length());
         }
         if k == last || kept_radii[k + 1] < radius {
-            rims.push(radius * (direction(kept, k) - direction(points, places[k + 1] - 1)).length());
+            rims.push(
+                radius * (direction(kept, k) - direction(points, places[k + 1] - 1)).length(),
+            );
         }
     }
     assert!(radii.len() >= kept_radii.len());
@@ -86,7 +92,8 @@ fn centreline_and_faces_are_followed_within_the_tolerance() {
     let (mut spared, mut bound_by_faces, mut coarse) = (0, 0, 0);
     for _ in 0..3000 {
         let (points, radii) = robot(&mut random);
-        let (points, radii) = if random.unit() < 0.5 { distinct(&points, &radii) } else { (points, radii) };
+        let (points, radii) =
+            if random.unit() < 0.5 { distinct(&points, &radii) } else { (points, radii) };
         let tolerance = Real::powf(10.0, random.between(-4.0, 0.0));
         let (kept, kept_radii) = match stations(&points, &radii, tolerance) {
             Ok(kept) => kept,
@@ -97,7 +104,8 @@ fn centreline_and_faces_are_followed_within_the_tolerance() {
         };
         let (points, radii) = distinct(&points, &radii);
         assert_eq!((kept[0], kept[kept.len() - 1]), (points[0], points[points.len() - 1]));
-        for ((ends, link), &radius) in places(&points, &kept).windows(2).zip(kept.windows(2)).zip(&kept_radii)
+        for ((ends, link), &radius) in
+            places(&points, &kept).windows(2).zip(kept.windows(2)).zip(&kept_radii)
         {
             assert!(
                 radii[ends[0]..ends[1]].iter().all(|&one| one == radius),
@@ -106,7 +114,11 @@ fn centreline_and_faces_are_followed_within_the_tolerance() {
             let stretch = &points[ends[0]..=ends[1]];
             for samples in stretch.windows(2) {
                 for k in 0..=4 {
-                    let off = distance(link[0], link[1], samples[0].lerp(samples[1], Real::from(k) / 4.0));
+                    let off = distance(
+                        link[0],
+                        link[1],
+                        samples[0].lerp(samples[1], Real::from(k) / 4.0),
+                    );
                     assert!(off <= tolerance + 1e-12, "{off} {tolerance}");
                 }
             }
@@ -131,7 +143,8 @@ fn centreline_and_faces_are_followed_within_the_tolerance() {
     assert!(coarse > 300, "{coarse}");
 }
 
-/// A wire whose bends change along the way: nearly as few links as are possible, and every one bends as much.
+/// A wire whose bends change along the way: nearly as few links as are possible, and every one
+/// bends as much.
 #[test]
 fn few_and_evenly_spread() {
     let mut random = Random::new(2);
@@ -145,7 +158,11 @@ fn few_and_evenly_spread() {
         for tolerance in [1e-3, 1e-4] {
             let (kept, radii) = stations(&points, &vec![0.0; count], tolerance).unwrap();
             let fewest = simplify(&points, &vec![0.0; count], tolerance).unwrap().1.len();
-            assert!(radii.len() as Real <= 1.15 * fewest as Real, "{count} {}, {fewest}", radii.len());
+            assert!(
+                radii.len() as Real <= 1.15 * fewest as Real,
+                "{count} {}, {fewest}",
+                radii.len()
+            );
             let deviations = places(&points, &kept)
                 .windows(2)
                 .map(|ends| {
@@ -154,7 +171,8 @@ fn few_and_evenly_spread() {
                 })
                 .collect::<Vec<_>>();
             let even = deviations.iter().filter(|&&deviation| deviation > 0.5 * tolerance).count();
-            // Samples as coarse as the chords leave no choice, and where a curve turns over it is straight.
+            // Samples as coarse as the chords leave no choice, and where a curve turns over it is
+            // straight.
             if count / radii.len() > 20 {
                 assert!(even * 10 > deviations.len() * 8, "{count} {tolerance} {deviations:?}");
             }
@@ -162,7 +180,8 @@ fn few_and_evenly_spread() {
     }
 }
 
-/// An arc for which three chords are too few gets four equal ones, not three long ones and a short one.
+/// An arc for which three chords are too few gets four equal ones, not three long ones and a short
+/// one.
 #[test]
 fn an_arc_in_equal_parts() {
     let arc = |k: u32| (f64::from(k) * 0.01).sin_cos();
@@ -176,7 +195,9 @@ fn an_arc_in_equal_parts() {
     // Faces add at most two chords each: the second where the next one's rim would stick out.
     let (kept, _) = stations(&points, &[0.8; 240], tolerance).unwrap();
     assert!(
-        rims(&points, &[0.8; 240], &kept, &vec![0.8; kept.len() - 1]).iter().all(|&rim| rim <= tolerance)
+        rims(&points, &[0.8; 240], &kept, &vec![0.8; kept.len() - 1])
+            .iter()
+            .all(|&rim| rim <= tolerance)
     );
     assert!(kept.len() <= 9, "{}", kept.len());
 }
@@ -184,7 +205,10 @@ fn an_arc_in_equal_parts() {
 #[test]
 fn tolerance_0_repeats_and_loops() {
     let line: Vec<_> = [0.0, 1.0, 2.0, 2.0, 3.0].map(|x| Vector::X * x).to_vec();
-    assert_eq!(stations(&line, &[0.1; 4], 0.0).unwrap(), (vec![Vector::ZERO, Vector::X * 3.0], vec![0.1]));
+    assert_eq!(
+        stations(&line, &[0.1; 4], 0.0).unwrap(),
+        (vec![Vector::ZERO, Vector::X * 3.0], vec![0.1])
+    );
     let closed = [Vector::ZERO, Vector::X, Vector::Y, Vector::ZERO];
     assert!(stations(&closed, &[0.1; 3], 1e9).unwrap().1.len() >= 2);
     let stepped = stations(&line, &[0.1, 0.1, 0.5, 0.1], 1.0).unwrap();
@@ -204,7 +228,10 @@ fn the_unit_does_not_matter() {
             let scaled_radii: Vec<_> = radii.iter().map(|radius| radius * scale).collect();
             let (again, again_radii) = stations(&scaled, &scaled_radii, tolerance * scale).unwrap();
             assert_eq!(again, kept.iter().map(|&point| point * scale).collect::<Vec<_>>());
-            assert_eq!(again_radii, kept_radii.iter().map(|radius| radius * scale).collect::<Vec<_>>());
+            assert_eq!(
+                again_radii,
+                kept_radii.iter().map(|radius| radius * scale).collect::<Vec<_>>()
+            );
         }
     }
 }
@@ -222,7 +249,8 @@ fn bad_input_is_named() {
         stations(&points[..1], &[], 0.1),
         Err(RobotError::TooFewPoints { parameter: "points", count: 1 })
     );
-    let differ = RobotError::LengthsDiffer { parameter: "segment_radii", points: 3, expected: 2, radii: 1 };
+    let differ =
+        RobotError::LengthsDiffer { parameter: "segment_radii", points: 3, expected: 2, radii: 1 };
     assert_eq!(stations(&points, &[0.1], 0.1), Err(differ));
     assert_eq!(stations(&[Vector::X; 3], &[0.1; 2], 0.1), Err(RobotError::AllPointsEqual));
     let nan = stations(&[Vector::ZERO, Vector::NAN], &[0.1], 0.1).unwrap_err();

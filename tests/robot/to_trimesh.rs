@@ -6,8 +6,12 @@ use parry_continuum::{Cap, ModifiedCylinder};
 use std::collections::HashMap;
 use std::f64::consts::PI;
 
-const CAPS: [[Cap; 2]; 4] =
-    [[Cap::Flat, Cap::Flat], [Cap::Flat, Cap::Round], [Cap::Round, Cap::Flat], [Cap::Round, Cap::Round]];
+const CAPS: [[Cap; 2]; 4] = [
+    [Cap::Flat, Cap::Flat],
+    [Cap::Flat, Cap::Round],
+    [Cap::Round, Cap::Flat],
+    [Cap::Round, Cap::Round],
+];
 
 /// Oblique links of all caps, long and short, and a ball.
 fn links() -> Vec<ModifiedCylinder> {
@@ -16,7 +20,9 @@ fn links() -> Vec<ModifiedCylinder> {
     for caps in CAPS {
         for length in [3.0, 0.2] {
             for direction in [Vector::new(0.6, 0.0, -0.8), Vector::Z, -Vector::Z] {
-                links.push(ModifiedCylinder::new(start, start + direction * length, 0.7, caps).unwrap());
+                links.push(
+                    ModifiedCylinder::new(start, start + direction * length, 0.7, caps).unwrap(),
+                );
             }
         }
     }
@@ -45,7 +51,10 @@ fn no_triangle_is_degenerate() {
         let (vertices, triangles) = link.to_trimesh(12);
         for t in triangles {
             let [a, b, c] = t.map(|i| vertices[i as usize]);
-            assert!((b - a).cross(c - a).length() > 1e-3 * link.radius().powi(2), "{t:?} of {link:?}");
+            assert!(
+                (b - a).cross(c - a).length() > 1e-3 * link.radius().powi(2),
+                "{t:?} of {link:?}"
+            );
         }
     }
 }
@@ -63,7 +72,11 @@ fn every_edge_is_shared_by_two_triangles_that_agree_on_the_outside() {
                 }
             }
             for (&(a, b), &count) in &edges {
-                assert_eq!((count, edges.get(&(b, a))), (1, Some(&1)), "edge {a} {b} of {link:?}, {nsubdiv}");
+                assert_eq!(
+                    (count, edges.get(&(b, a))),
+                    (1, Some(&1)),
+                    "edge {a} {b} of {link:?}, {nsubdiv}"
+                );
             }
             // Closed and in one piece without handles.
             let euler = vertices.len() as i64 - edges.len() as i64 / 2 + triangles.len() as i64;

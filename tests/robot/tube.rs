@@ -12,36 +12,56 @@ fn line(count: usize) -> Vec<Vector> {
 #[test]
 fn bad_samples_are_named() {
     let points = line(5);
-    let refuse =
-        |points: &[Vector], radii: &[f64], tangents| Tube::from_samples(points, radii, tangents).unwrap_err();
-    assert_eq!(refuse(&points[..1], &[], None), RobotError::TooFewPoints { parameter: "points", count: 1 });
+    let refuse = |points: &[Vector], radii: &[f64], tangents| {
+        Tube::from_samples(points, radii, tangents).unwrap_err()
+    };
+    assert_eq!(
+        refuse(&points[..1], &[], None),
+        RobotError::TooFewPoints { parameter: "points", count: 1 }
+    );
     assert_eq!(
         refuse(&points, &[0.1; 3], None),
         RobotError::LengthsDiffer { parameter: "segment_radii", points: 5, expected: 4, radii: 3 }
     );
-    assert!(matches!(refuse(&points, &[0.1, 0.1, -0.1, 0.1], None), RobotError::BadRadius { index: 2, .. }));
+    assert!(matches!(
+        refuse(&points, &[0.1, 0.1, -0.1, 0.1], None),
+        RobotError::BadRadius { index: 2, .. }
+    ));
     assert_eq!(refuse(&[Vector::X; 3], &[0.1; 2], None), RobotError::AllPointsEqual);
     for value in [f64::NAN, f64::INFINITY] {
         let mut bad = points.clone();
         bad[3].y = value;
-        assert!(matches!(refuse(&bad, &[0.1; 4], None), RobotError::PointNotFinite { index: 3, .. }));
+        assert!(matches!(
+            refuse(&bad, &[0.1; 4], None),
+            RobotError::PointNotFinite { index: 3, .. }
+        ));
     }
     let mut far = points.clone();
     far[2].x = 1e151;
     assert!(matches!(refuse(&far, &[0.1; 4], None), RobotError::PointOutOfRange { index: 2, .. }));
-    for (tangents, index) in [([Vector::ZERO, Vector::Z], 0), ([Vector::Z, Vector::splat(f64::NAN)], 1)] {
-        let expected = RobotError::BadTangent { parameter: "end_tangents", index, value: tangents[index] };
+    for (tangents, index) in
+        [([Vector::ZERO, Vector::Z], 0), ([Vector::Z, Vector::splat(f64::NAN)], 1)]
+    {
+        let expected =
+            RobotError::BadTangent { parameter: "end_tangents", index, value: tangents[index] };
         // Compared as text: NaN is not itself.
         assert_eq!(refuse(&points, &[0.1; 4], Some(tangents)).to_string(), expected.to_string());
     }
     // A corner, and a bend that is tighter than the tube is wide.
     let corner = [Vector::ZERO, Vector::Z, Vector::new(1.0, 0.0, 1.0), Vector::new(1.0, 0.0, 0.0)];
     assert!(matches!(refuse(&corner, &[0.1; 3], None), RobotError::TurnsTooSharply { .. }));
-    // A shaft of two points before a bend: it is the shaft that needs more, however many the bend has.
+    // A shaft of two points before a bend: it is the shaft that needs more, however many the bend
+    // has.
     let mut shaft = vec![Vector::Z * -20.0, Vector::Z * -20.0];
-    shaft
-        .extend((0..40).map(|k| f64::from(k) * 0.02).map(|a| Vector::new(1.0 - a.cos(), 0.0, a.sin()) * 5.0));
-    assert!(matches!(refuse(&shaft, &[0.1; 41], None), RobotError::TurnsTooSharply { after: 1, .. }));
+    shaft.extend(
+        (0..40)
+            .map(|k| f64::from(k) * 0.02)
+            .map(|a| Vector::new(1.0 - a.cos(), 0.0, a.sin()) * 5.0),
+    );
+    assert!(matches!(
+        refuse(&shaft, &[0.1; 41], None),
+        RobotError::TurnsTooSharply { after: 1, .. }
+    ));
     let arc: Vec<_> =
         (0..40).map(|k| f64::from(k) * 0.1).map(|a| Vector::new(a.cos(), a.sin(), 0.0)).collect();
     assert!(matches!(refuse(&arc, &[1.01; 39], None), RobotError::BendsWithinRadius { .. }));
@@ -59,8 +79,9 @@ fn bad_samples_are_named() {
 #[test]
 fn bad_functions_are_named() {
     let good = TubeSection { length: 2.0, radius: 0.5, curvature: 0.1 };
-    let refuse =
-        |sections: &[TubeSection]| Tube::from_function(sections, |s| (Vector::Z * s, Vector::Z)).unwrap_err();
+    let refuse = |sections: &[TubeSection]| {
+        Tube::from_function(sections, |s| (Vector::Z * s, Vector::Z)).unwrap_err()
+    };
     assert_eq!(refuse(&[]), RobotError::NoSections { parameter: "sections" });
     for (section, expected) in [
         (
@@ -94,7 +115,8 @@ fn bad_functions_are_named() {
 #[test]
 fn bad_frames_are_named() {
     let along = [Vector::Z; 3];
-    let refuse = |tangents: &[Vector]| Tube::from_frames(&line(3), tangents, &[0.1; 2]).unwrap_err();
+    let refuse =
+        |tangents: &[Vector]| Tube::from_frames(&line(3), tangents, &[0.1; 2]).unwrap_err();
     assert_eq!(refuse(&along[..2]), RobotError::TangentsDiffer { points: 3, tangents: 2 });
     for bad in [Vector::ZERO, Vector::X * f64::NAN, Vector::X * f64::INFINITY] {
         let RobotError::BadTangent { parameter: "tangents", index: 1, .. } =
@@ -106,7 +128,9 @@ fn bad_frames_are_named() {
     // Backwards, across, and a turn that is too much.
     for (bad, least) in [(-Vector::Z, 3.0), (Vector::X, 1.5), (Vector::new(0.9, 0.0, 0.5), 0.9)] {
         let found = refuse(&[Vector::Z, bad, Vector::Z]);
-        let RobotError::TurnsTooSharply { index: 1, after: 0, turn } = found else { panic!("{found}") };
+        let RobotError::TurnsTooSharply { index: 1, after: 0, turn } = found else {
+            panic!("{found}")
+        };
         assert!(turn >= least, "{found}");
     }
     assert_eq!(
@@ -144,7 +168,8 @@ fn bad_measurements_are_named() {
 #[test]
 fn one_radius_serves_all_segments() {
     let (points, tangents) = (line(4), Some([Vector::Z; 2]));
-    let [all, one] = [Chain::from_centreline(&points, &[0.3; 3]), Chain::with_constant_radius(&points, 0.3)];
+    let [all, one] =
+        [Chain::from_centreline(&points, &[0.3; 3]), Chain::with_constant_radius(&points, 0.3)];
     assert_eq!(all.unwrap(), one.unwrap());
     let one = Tube::with_constant_radius(&points, 0.3, tangents).unwrap();
     assert_eq!(
@@ -152,7 +177,8 @@ fn one_radius_serves_all_segments() {
         format!("{:?}", Tube::from_samples(&points, &[0.3; 3], tangents).unwrap())
     );
     for radius in [-1.0, f64::INFINITY] {
-        let expected = RobotError::BadRadius { parameter: "radius", index: 0, value: radius, limit: 1e150 };
+        let expected =
+            RobotError::BadRadius { parameter: "radius", index: 0, value: radius, limit: 1e150 };
         assert_eq!(Chain::with_constant_radius(&points, radius).unwrap_err(), expected);
         assert_eq!(Tube::with_constant_radius(&points, radius, None).unwrap_err(), expected);
     }
@@ -162,8 +188,9 @@ fn one_radius_serves_all_segments() {
 #[test]
 fn broken_promises_of_functions_are_found() {
     let section = TubeSection { length: 2.0, radius: 0.5, curvature: 0.1 };
-    let verify =
-        |curve: fn(f64) -> (Vector, Vector)| Tube::from_function(&[section], curve).unwrap().verify(50);
+    let verify = |curve: fn(f64) -> (Vector, Vector)| {
+        Tube::from_function(&[section], curve).unwrap().verify(50)
+    };
     let arc = |s: f64, k: f64| {
         let (sin, cos) = (k * s).sin_cos();
         (Vector::new(1.0 - cos, 0.0, sin) / k, Vector::new(sin, 0.0, cos))
@@ -171,7 +198,10 @@ fn broken_promises_of_functions_are_found() {
     assert_eq!(verify(|s| (Vector::Z * s, Vector::Z * 3.0)), Ok(()));
     let bends = Tube::from_function(&[section], move |s| arc(s, 0.101)).unwrap().verify(50);
     assert!(matches!(bends, Err(RobotError::BendsMoreThanStated { .. })), "{bends:?}");
-    assert_eq!(Tube::from_function(&[section], move |s| arc(s, 0.0999)).unwrap().verify(50), Ok(()));
+    assert_eq!(
+        Tube::from_function(&[section], move |s| arc(s, 0.0999)).unwrap().verify(50),
+        Ok(())
+    );
     let fast = verify(|s| (Vector::Z * (1.01 * s), Vector::Z));
     assert!(matches!(fast, Err(RobotError::NotByArcLength { .. })), "{fast:?}");
     let off = verify(|s| (Vector::Z * s, Vector::new(0.01, 0.0, 1.0)));

@@ -1,4 +1,5 @@
-//! Which anatomy a program asks, and where the robot stands in it: the options of the example programs.
+//! Which anatomy a program asks, and where the robot stands in it: the options of the example
+//! programs.
 
 use crate::command::whole;
 use crate::{steer, ventricle};
@@ -10,7 +11,8 @@ use std::path::PathBuf;
 
 #[derive(Args)]
 pub struct Anatomy {
-    /// Real anatomy: an STL, OBJ or PLY file in millimetres, or a NIfTI or NRRD label map [default: a generated ventricle]
+    /// Real anatomy: an STL, OBJ or PLY file in millimetres, or a NIfTI or NRRD label map
+    /// [default: a generated ventricle]
     #[arg(long, value_name = "FILE")]
     pub mesh: Option<PathBuf>,
 
@@ -34,17 +36,20 @@ pub struct Anatomy {
           value_parser = whole(ventricle::DEFAULT_TRIANGLES as u32..=20_000_000))]
     triangles: u32,
 
-    /// Where the robot's base is, in the mesh's frame [default: the burr hole, or the deepest point inside a file's mesh]
+    /// Where the robot's base is, in the mesh's frame [default: the burr hole, or the deepest
+    /// point inside a file's mesh]
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     base: Option<Vector>,
 
-    /// Where the robot points at its base [default: into the burr hole, or along the longest free line]
+    /// Where the robot points at its base [default: into the burr hole, or along the longest free
+    /// line]
     #[arg(long, value_name = "X,Y,Z", value_parser = direction, allow_hyphen_values = true)]
     axis: Option<Vector>,
 }
 
 fn vector(text: &str) -> Result<Vector, String> {
-    let numbers: Result<Vec<Real>, _> = text.split(',').map(|number| number.trim().parse()).collect();
+    let numbers: Result<Vec<Real>, _> =
+        text.split(',').map(|number| number.trim().parse()).collect();
     match numbers.as_deref() {
         Ok(&[x, y, z]) if Vector::new(x, y, z).is_finite() => Ok(Vector::new(x, y, z)),
         _ => Err("write three numbers, for example 68.6,105.2,104.6".into()),
@@ -56,16 +61,20 @@ fn factor(text: &str) -> Result<Real, String> {
 }
 
 fn direction(text: &str) -> Result<Vector, String> {
-    vector(text)?.try_normalize().ok_or("a direction needs a length; write for example 0,0,-1".into())
+    vector(text)?
+        .try_normalize()
+        .ok_or("a direction needs a length; write for example 0,0,-1".into())
 }
 
 impl Anatomy {
-    /// The wall. How many faces of its file were left out, because they have no area, goes to the standard error.
+    /// The wall. How many faces of its file were left out, because they have no area, goes to the
+    /// standard error.
     pub fn load(&self) -> Result<TriMesh, String> {
         let (points, triangles) = match &self.mesh {
             Some(path) => {
                 let options = Options::scaled(self.scale).with_label(self.label);
-                let mesh = mesh_files::load_with(path, &options).map_err(|error| error.to_string())?;
+                let mesh =
+                    mesh_files::load_with(path, &options).map_err(|error| error.to_string())?;
                 if mesh.skipped_faces > 0 {
                     eprintln!(
                         "note: left out of {}: {} faces without area",
@@ -83,7 +92,9 @@ impl Anatomy {
     /// What the wall is, as a title names it.
     pub fn name(&self) -> String {
         let file = self.mesh.as_ref().and_then(|path| path.file_name());
-        file.map_or("a generated brain ventricle".into(), |name| name.to_string_lossy().into_owned())
+        file.map_or("a generated brain ventricle".into(), |name| {
+            name.to_string_lossy().into_owned()
+        })
     }
 
     /// Whether the robot starts where the generated ventricle has its entry.

@@ -57,7 +57,8 @@ impl Canvas {
         *pixel = mix(*pixel, colour, opacity);
     }
 
-    /// Paints every pixel within reach of a shape: `distance` is its signed distance, in pixels, within the box.
+    /// Paints every pixel within reach of a shape: `distance` is its signed distance, in pixels,
+    /// within the box.
     fn fill(
         &mut self,
         [x0, y0, x1, y1]: [f32; 4],
@@ -90,13 +91,16 @@ impl Canvas {
         }
         self.fill(bounds, colour, opacity, |x, y| {
             let pieces = lines.iter().flat_map(|line| line.windows(2));
-            pieces.map(|piece| to_segment([x, y], piece[0], piece[1])).fold(f32::MAX, f32::min) - 0.5 * width
+            pieces.map(|piece| to_segment([x, y], piece[0], piece[1])).fold(f32::MAX, f32::min)
+                - 0.5 * width
         });
     }
 
     /// Fills a rectangle with rounded corners.
     pub fn panel(&mut self, [x0, y0, x1, y1]: [f32; 4], corner: f32, colour: Colour, opacity: f32) {
-        self.fill([x0, y0, x1, y1], colour, opacity, |x, y| rounded([x, y], [x0, y0, x1, y1], corner));
+        self.fill([x0, y0, x1, y1], colour, opacity, |x, y| {
+            rounded([x, y], [x0, y0, x1, y1], corner)
+        });
     }
 
     /// Draws the outline of a rectangle with rounded corners.
@@ -108,7 +112,14 @@ impl Canvas {
     }
 
     /// Writes a line of text with its base line at `y` and capitals of the given height.
-    pub fn text(&mut self, text: &str, [x, y]: [f32; 2], align: Align, height: f32, colour: Colour) {
+    pub fn text(
+        &mut self,
+        text: &str,
+        [x, y]: [f32; 2],
+        align: Align,
+        height: f32,
+        colour: Colour,
+    ) {
         let (lines, width) = strokes(text, height);
         let left = match align {
             Align::Left => x,
@@ -126,7 +137,8 @@ impl Canvas {
         let bounds = [0.0, 0.0, picture.width as f32, picture.height as f32];
         for y in 0..picture.height.min(self.height.saturating_sub(top)) {
             for x in 0..picture.width.min(self.width.saturating_sub(left)) {
-                let cover = (0.5 - rounded([x as f32 + 0.5, y as f32 + 0.5], bounds, corner)).clamp(0.0, 1.0);
+                let cover = (0.5 - rounded([x as f32 + 0.5, y as f32 + 0.5], bounds, corner))
+                    .clamp(0.0, 1.0);
                 self.blend(left + x, top + y, picture.pixels[y * picture.width + x], cover);
             }
         }
@@ -161,6 +173,10 @@ fn rounded([x, y]: [f32; 2], [x0, y0, x1, y1]: [f32; 4], corner: f32) -> f32 {
 fn to_segment(p: [f32; 2], a: [f32; 2], b: [f32; 2]) -> f32 {
     let (along, to) = ([b[0] - a[0], b[1] - a[1]], [p[0] - a[0], p[1] - a[1]]);
     let square = along[0] * along[0] + along[1] * along[1];
-    let t = if square > 0.0 { ((to[0] * along[0] + to[1] * along[1]) / square).clamp(0.0, 1.0) } else { 0.0 };
+    let t = if square > 0.0 {
+        ((to[0] * along[0] + to[1] * along[1]) / square).clamp(0.0, 1.0)
+    } else {
+        0.0
+    };
     (to[0] - t * along[0]).hypot(to[1] - t * along[1])
 }

@@ -5,7 +5,8 @@ use parry_continuum::Chain;
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::shape::TriMesh;
 
-/// An icosphere of about 100 mm whose wall bulges in and out; 20 * 4^level triangles, in the order of subdivision.
+/// An icosphere of about 100 mm whose wall bulges in and out; 20 * 4^level triangles, in the order
+/// of subdivision.
 pub fn mesh(level: u32) -> TriMesh {
     let mut mesh = icosahedron();
     for _ in 0..level {
@@ -24,7 +25,8 @@ fn radius(direction: Vector) -> f64 {
         + 0.5 * (19.0 * z + 0.3).sin() * (17.0 * x).sin()
 }
 
-/// Thirty segments of three tubes (radii 1.2, 0.9 and 0.5 mm) that follow the wall at about `clearance` mm.
+/// Thirty segments of three tubes (radii 1.2, 0.9 and 0.5 mm) that follow the wall at about
+/// `clearance` mm.
 pub fn robot(clearance: f64) -> (Vec<Vector>, Vec<f64>) {
     let radii: Vec<_> = (0..30).map(|segment| [1.2, 0.9, 0.5][segment / 10]).collect();
     let step = 2.0 / (46.0 - clearance);
@@ -69,9 +71,11 @@ fn icosahedron() -> (Vec<Vector>, Vec<[u32; 3]>) {
         for j in i + 1..12 {
             for k in j + 1..12 {
                 if near(i, j) && near(j, k) && near(k, i) {
-                    let outward =
-                        (vertices[j] - vertices[i]).cross(vertices[k] - vertices[i]).dot(vertices[i]);
-                    indices.push(if outward > 0.0 { [i, j, k] } else { [i, k, j] }.map(|v| v as u32));
+                    let outward = (vertices[j] - vertices[i])
+                        .cross(vertices[k] - vertices[i])
+                        .dot(vertices[i]);
+                    indices
+                        .push(if outward > 0.0 { [i, j, k] } else { [i, k, j] }.map(|v| v as u32));
                 }
             }
         }

@@ -1,5 +1,6 @@
-//! Distance as colour: dark where the robot all but touches, bright where there is room. The map is matplotlib's viridis
-//! (S. van der Walt and N. Smith, CC0), whose lightness grows evenly, also for readers who are colour-blind.
+//! Distance as colour: dark where the robot all but touches, bright where there is room. The map is
+//! matplotlib's viridis (S. van der Walt and N. Smith, CC0), whose lightness grows evenly, also for
+//! readers who are colour-blind.
 
 use crate::canvas::{Align, Canvas, Colour, hex, mix};
 
@@ -62,8 +63,11 @@ impl ColourMap {
             let foot = at[1] + height;
             canvas.stroke(&[vec![[x, foot], [x, foot + 0.35 * height]]], 0.08 * height, ink, 1.0);
             let digits = (-self.tick.log10()).ceil().max(0.0) as usize;
-            let digits =
-                if (self.tick * 10f64.powi(digits as i32)).fract() > 1e-6 { digits + 1 } else { digits };
+            let digits = if (self.tick * 10f64.powi(digits as i32)).fract() > 1e-6 {
+                digits + 1
+            } else {
+                digits
+            };
             let number = format!("{:.digits$}", tick as f64 * self.tick);
             canvas.text(&number, [x, foot + 0.65 * height + letter], Align::Centre, letter, ink);
         }

@@ -1,4 +1,5 @@
-//! What the example programs share as commands: errors of one line, numbers, how far the work is, and where pictures go.
+//! What the example programs share as commands: errors of one line, numbers, how far the work is,
+//! and where pictures go.
 
 use clap::Parser;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -8,8 +9,8 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
-/// Runs a program on its options. Help goes to standard output; an error is one line on standard error and a
-/// non-zero exit.
+/// Runs a program on its options. Help goes to standard output; an error is one line on standard
+/// error and a non-zero exit.
 pub fn run<Options: Parser>(program: impl Fn(&Options) -> Result<(), String>) -> ExitCode {
     let options = match Options::try_parse() {
         Ok(options) => options,
@@ -31,8 +32,8 @@ pub fn run<Options: Parser>(program: impl Fn(&Options) -> Result<(), String>) ->
     }
 }
 
-/// An error of clap: its first paragraph names the option and what is wrong with it, and a tip may name the option that
-/// was meant.
+/// An error of clap: its first paragraph names the option and what is wrong with it, and a tip may
+/// name the option that was meant.
 fn in_one_line(text: &str) -> String {
     let mut lines = text.lines().map(str::trim);
     let paragraph: Vec<_> = lines.by_ref().take_while(|line| !line.is_empty()).collect();
@@ -41,7 +42,9 @@ fn in_one_line(text: &str) -> String {
 }
 
 /// Reads a whole number in a range.
-pub fn whole(range: RangeInclusive<u32>) -> impl Fn(&str) -> Result<u32, String> + Clone + Send + Sync {
+pub fn whole(
+    range: RangeInclusive<u32>,
+) -> impl Fn(&str) -> Result<u32, String> + Clone + Send + Sync {
     move |text| {
         let number = text.parse().ok().filter(|number| range.contains(number));
         number.ok_or_else(|| match (range.start(), *range.end()) {
@@ -59,7 +62,8 @@ pub fn length(text: &str) -> Result<f64, String> {
     }
 }
 
-/// A bar that shows how many of `count` things are done, with room for a message before it. It shows on a terminal alone.
+/// A bar that shows how many of `count` things are done, with room for a message before it. It
+/// shows on a terminal alone.
 ///
 /// # Errors
 /// The name of the things cannot be a part of the bar.
@@ -93,8 +97,8 @@ pub fn line(program: &str) -> String {
     line
 }
 
-/// The file that `--out` means: itself if it ends in .png, otherwise `name` in that directory, which is made. Call it
-/// before the work: it tries whether the file can be written.
+/// The file that `--out` means: itself if it ends in .png, otherwise `name` in that directory,
+/// which is made. Call it before the work: it tries whether the file can be written.
 ///
 /// # Errors
 /// The path ends in another extension and is no directory, or nothing can be written there.
@@ -134,8 +138,9 @@ pub fn directory(out: &Path) -> Result<&Path, String> {
 }
 
 fn make(directory: &Path) -> Result<(), String> {
-    fs::create_dir_all(directory)
-        .map_err(|error| format!("cannot make {} ({error}); choose another --out", directory.display()))
+    fs::create_dir_all(directory).map_err(|error| {
+        format!("cannot make {} ({error}); choose another --out", directory.display())
+    })
 }
 
 /// What to say when a file of `--out` cannot be written.

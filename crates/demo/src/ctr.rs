@@ -1,14 +1,16 @@
 //! Forward kinematics of a concentric tube robot, torsionally rigid.
 //!
-//! The robot is a telescope of sections, the outermost first; each is one or more precurved tubes that move
-//! together. Section i reaches phi_i beyond section i - 1, so that it ends at the arc length e_i = phi_1 + .. + phi_i;
-//! its tubes are stiff on all of [0, e_i] and curved on its last L_i. Where several tubes lie inside each other they
-//! take the mean of their curvature vectors, weighted by bending stiffness (Dupont et al., T-RO 2010; Rucker, Jones
-//! and Webster, T-RO 2010). Without torsion that mean is constant between the arc lengths where a tube ends or
+//! The robot is a telescope of sections, the outermost first; each is one or more precurved tubes
+//! that move together. Section i reaches phi_i beyond section i - 1, so that it ends at the arc
+//! length e_i = phi_1 + .. + phi_i; its tubes are stiff on all of [0, e_i] and curved on its last
+//! L_i. Where several tubes lie inside each other they take the mean of their curvature vectors,
+//! weighted by bending stiffness (Dupont et al., T-RO 2010; Rucker, Jones and Webster, T-RO 2010).
+//! Without torsion that mean is constant between the arc lengths where a tube ends or
 //! becomes straight, and the centreline is a chain of circular arcs.
 //!
-//! Base frame: the centreline leaves the origin along +z. A tube at angle 0 bends towards +x; angles are about +z, in
-//! the frame that is carried along the curve without twist. Lengths in one unit throughout (here mm), angles in rad.
+//! Base frame: the centreline leaves the origin along +z. A tube at angle 0 bends towards +x;
+//! angles are about +z, in the frame that is carried along the curve without twist. Lengths in one
+//! unit throughout (here mm), angles in rad.
 
 use parry_continuum::parry::math::{Pose, Real, Rot3, Vector};
 use parry_continuum::{RobotError, TubeSection};
@@ -54,7 +56,8 @@ pub struct Centreline {
     pub radii: Vec<Real>,
 }
 
-/// The three tubes of the examples: a stiff one, a soft one, and a straight wire-thin one (millimetres).
+/// The three tubes of the examples: a stiff one, a soft one, and a straight wire-thin one
+/// (millimetres).
 pub fn three_tubes() -> Robot {
     let section = |length, radius, stiffness, curvature| Section {
         length,
@@ -89,11 +92,13 @@ impl Robot {
             .collect()
     }
 
-    /// Position and frame at each of the given arc lengths (ascending, from 0 to the length that is out).
+    /// Position and frame at each of the given arc lengths (ascending, from 0 to the length that is
+    /// out).
     pub fn frames(&self, joints: &Joints, arc_lengths: &[Real]) -> Vec<Pose> {
         let ends = self.ends(joints);
         let starts = ends.iter().zip(&self.sections).map(|(end, section)| end - section.length);
-        let mut breaks: Vec<Real> = starts.chain(ends.iter().copied()).filter(|&s| s > 0.0).collect();
+        let mut breaks: Vec<Real> =
+            starts.chain(ends.iter().copied()).filter(|&s| s > 0.0).collect();
         breaks.sort_by(Real::total_cmp);
         let mut breaks = breaks.into_iter();
 
@@ -116,7 +121,8 @@ impl Robot {
     pub fn curve(&self, joints: &Joints) -> Curve {
         let ends = self.ends(joints);
         let starts = ends.iter().zip(&self.sections).map(|(end, section)| end - section.length);
-        let mut breaks: Vec<Real> = starts.chain(ends.iter().copied()).filter(|&s| s > 0.0).collect();
+        let mut breaks: Vec<Real> =
+            starts.chain(ends.iter().copied()).filter(|&s| s > 0.0).collect();
         breaks.sort_by(Real::total_cmp);
         let mut from = 0.0;
         Curve::joined(breaks.into_iter().map(|to| {
@@ -155,16 +161,18 @@ impl Robot {
                     stiffness += tube.stiffness;
                 }
                 if s < end && s > end - section.length {
-                    sum += Vector::new(-angle.sin(), angle.cos(), 0.0) * (tube.stiffness * tube.curvature);
+                    sum += Vector::new(-angle.sin(), angle.cos(), 0.0)
+                        * (tube.stiffness * tube.curvature);
                 }
             }
         }
         if stiffness > 0.0 { sum / stiffness } else { Vector::ZERO }
     }
 
-    /// The joints on the way to a goal, at a share of its length from 0 to 1: the outermost section comes out first,
-    /// then the next. The tubes that are still inside have their final angles, so the robot that is out has its
-    /// final shape, and the rest of it follows where the tip went.
+    /// The joints on the way to a goal, at a share of its length from 0 to 1: the outermost section
+    /// comes out first, then the next. The tubes that are still inside have their final angles,
+    /// so the robot that is out has its final shape, and the rest of it follows where the tip
+    /// went.
     pub fn on_the_way(&self, goal: &Joints, share: Real) -> Joints {
         let mut out = share * self.length(goal);
         let mut part = |extension: &Real| {
@@ -172,11 +180,15 @@ impl Robot {
             out -= part;
             part
         };
-        Joints { extensions: goal.extensions.iter().map(&mut part).collect(), angles: goal.angles.clone() }
+        Joints {
+            extensions: goal.extensions.iter().map(&mut part).collect(),
+            angles: goal.angles.clone(),
+        }
     }
 
-    /// The centreline as about `links` segments, shared out among the sections by their lengths: at least one for
-    /// each section that is out, so that the radius changes exactly where a section ends.
+    /// The centreline as about `links` segments, shared out among the sections by their lengths: at
+    /// least one for each section that is out, so that the radius changes exactly where a
+    /// section ends.
     pub fn centreline(&self, joints: &Joints, links: usize) -> Centreline {
         let whole = self.length(joints);
         let (mut arc_lengths, mut radii, mut from) = (vec![0.0], Vec::new(), 0.0);
@@ -185,12 +197,14 @@ impl Robot {
                 let done = from / whole * links as Real;
                 let share = (done + extension / whole * links as Real).round() - done.round();
                 let count = (share as usize).max(1);
-                arc_lengths.extend((1..=count).map(|k| from + extension * k as Real / count as Real));
+                arc_lengths
+                    .extend((1..=count).map(|k| from + extension * k as Real / count as Real));
                 radii.extend(std::iter::repeat_n(section.radius, count));
                 from += extension;
             }
         }
-        let points = self.frames(joints, &arc_lengths).into_iter().map(|frame| frame.translation).collect();
+        let points =
+            self.frames(joints, &arc_lengths).into_iter().map(|frame| frame.translation).collect();
         Centreline { points, radii }
     }
 }
@@ -214,8 +228,8 @@ struct CurveArc {
 }
 
 impl Curve {
-    /// Arcs that leave the origin along z one after the other, each of a length and a curvature vector in the frame that
-    /// is carried along the curve without twist.
+    /// Arcs that leave the origin along z one after the other, each of a length and a curvature
+    /// vector in the frame that is carried along the curve without twist.
     pub(crate) fn joined(parts: impl Iterator<Item = (Real, Vector)>) -> Self {
         let (mut from, mut frame) = (0.0, Pose::IDENTITY);
         let arcs = parts.map(|(length, bend)| {
@@ -238,14 +252,18 @@ impl Curve {
 
     /// The point and the unit direction at an arc length.
     pub fn at(&self, arc_length: Real) -> (Vector, Vector) {
-        let arc =
-            self.arcs.iter().find(|arc| arc_length <= arc.to).unwrap_or(&self.arcs[self.arcs.len() - 1]);
+        let arc = self
+            .arcs
+            .iter()
+            .find(|arc| arc_length <= arc.to)
+            .unwrap_or(&self.arcs[self.arcs.len() - 1]);
         let length = arc_length - arc.from;
         let half = 0.5 * arc.bend * length;
         let (sin, cos) = half.sin_cos();
         let share = if half == 0.0 { 1.0 } else { sin / half };
-        let place =
-            arc.place + arc.along * (length * share * cos) + arc.inward * (0.5 * (length * share).powi(2));
+        let place = arc.place
+            + arc.along * (length * share * cos)
+            + arc.inward * (0.5 * (length * share).powi(2));
         (place, arc.along * (1.0 - 2.0 * sin * sin) + arc.inward * (length * share * cos))
     }
 
@@ -256,16 +274,21 @@ impl Curve {
     }
 }
 
-/// The motion along an arc of constant curvature vector (perpendicular to z) that leaves the origin along z.
+/// The motion along an arc of constant curvature vector (perpendicular to z) that leaves the origin
+/// along z.
 fn arc(curvature: Vector, length: Real) -> Pose {
     let bend = curvature.length();
     let angle = bend * length;
-    // Towards the centre, sin and 1 - cos over the curvature; both are taken so that a straight line needs no case.
+    // Towards the centre, sin and 1 - cos over the curvature; both are taken so that a straight
+    // line needs no case.
     let inward = curvature.cross(Vector::Z);
     let half = 0.5 * angle;
     let along = length * sinc(angle);
     let across = 0.5 * length * length * sinc(half) * sinc(half);
-    Pose::from_parts(Vector::Z * along + inward * across, Rot3::from_scaled_axis(curvature * length))
+    Pose::from_parts(
+        Vector::Z * along + inward * across,
+        Rot3::from_scaled_axis(curvature * length),
+    )
 }
 
 /// sin x / x.

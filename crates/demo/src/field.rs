@@ -1,15 +1,17 @@
-//! Smooth bodies as the zero set of a distance-like field: tubes of elliptic cross-section, swept along splines and
-//! blended into each other.
+//! Smooth bodies as the zero set of a distance-like field: tubes of elliptic cross-section, swept
+//! along splines and blended into each other.
 //!
-//! A tube is a spline through [`Knot`]s. The point of its centreline nearest to p has the centre c, the directions u
-//! and v across and the half-widths a and b. With the offset q = p - c in that frame, scaled by (a, b, cap), where
-//! cap rounds the two ends, k = |scaled q| is 1 on the surface, and k (k - 1) / |grad| is, to first order, the
-//! distance to it: negative inside. Tubes are joined by a smooth minimum, which rounds the crease between two of
-//! them over a length `blend` and leaves everything further away as it is.
+//! A tube is a spline through [`Knot`]s. The point of its centreline nearest to p has the centre c,
+//! the directions u and v across and the half-widths a and b. With the offset q = p - c in that
+//! frame, scaled by (a, b, cap), where cap rounds the two ends, k = |scaled q| is 1 on the surface,
+//! and k (k - 1) / |grad| is, to first order, the distance to it: negative inside. Tubes are joined
+//! by a smooth minimum, which rounds the crease between two of them over a length `blend` and
+//! leaves everything further away as it is.
 
 use parry_continuum::parry::math::{Real, Vector};
 
-/// One cross-section of a tube: its centre, the direction of its first half-width, and the two half-widths.
+/// One cross-section of a tube: its centre, the direction of its first half-width, and the two
+/// half-widths.
 pub struct Knot {
     pub centre: Vector,
     pub across: Vector,
@@ -46,13 +48,16 @@ impl Tube {
         let parameters = (0..=count).map(|k| k as Real / SAMPLES as Real);
         tube.samples = parameters.map(|s| (s, tube.mix(s, spline, |knot| knot.centre))).collect();
         tube.middle = tube.samples.iter().map(|(_, p)| *p).sum::<Vector>() / (count + 1) as Real;
-        let wide = tube.knots.iter().map(|knot| knot.half[0].max(knot.half[1])).fold(0.0, Real::max);
-        let far = tube.samples.iter().map(|(_, p)| (*p - tube.middle).length()).fold(0.0, Real::max);
+        let wide =
+            tube.knots.iter().map(|knot| knot.half[0].max(knot.half[1])).fold(0.0, Real::max);
+        let far =
+            tube.samples.iter().map(|(_, p)| (*p - tube.middle).length()).fold(0.0, Real::max);
         tube.reach = far + 1.1 * wide;
         tube
     }
 
-    /// A quantity of the four knots around parameter s (0 at the first, 1 at the second knot), weighted.
+    /// A quantity of the four knots around parameter s (0 at the first, 1 at the second knot),
+    /// weighted.
     fn mix(&self, s: Real, weights: fn(Real) -> [Real; 4], of: fn(&Knot) -> Vector) -> Vector {
         let last = self.knots.len() - 1;
         let span = (s as usize).min(last - 1);
@@ -66,7 +71,8 @@ impl Tube {
         if span <= 0.0 || (p - self.middle).length_squared() >= span * span {
             return Real::INFINITY;
         }
-        // The nearest sample, then a few steps to where the offset is perpendicular to the centreline.
+        // The nearest sample, then a few steps to where the offset is perpendicular to the
+        // centreline.
         let (mut s, mut nearest) = (0.0, Real::INFINITY);
         for (parameter, place) in &self.samples {
             let square = (p - place).length_squared();
@@ -76,7 +82,8 @@ impl Tube {
         }
         let end = (self.knots.len() - 1) as Real;
         for _ in 0..3 {
-            let [off, along, turn] = [spline, slope, bend].map(|weights| self.mix(s, weights, |k| k.centre));
+            let [off, along, turn] =
+                [spline, slope, bend].map(|weights| self.mix(s, weights, |k| k.centre));
             let off = p - off;
             // Newton's method, held back where the tube bends around p.
             let square = along.length_squared();
@@ -98,10 +105,12 @@ impl Tube {
     }
 }
 
-/// Weights of a Catmull-Rom spline at t in [0, 1] between its second and third knot, and their two derivatives.
+/// Weights of a Catmull-Rom spline at t in [0, 1] between its second and third knot, and their two
+/// derivatives.
 fn spline(t: Real) -> [Real; 4] {
     let (t2, t3) = (t * t, t * t * t);
-    [-t3 + 2.0 * t2 - t, 3.0 * t3 - 5.0 * t2 + 2.0, -3.0 * t3 + 4.0 * t2 + t, t3 - t2].map(|w| 0.5 * w)
+    [-t3 + 2.0 * t2 - t, 3.0 * t3 - 5.0 * t2 + 2.0, -3.0 * t3 + 4.0 * t2 + t, t3 - t2]
+        .map(|w| 0.5 * w)
 }
 
 fn slope(t: Real) -> [Real; 4] {
@@ -130,7 +139,8 @@ impl Body {
     }
 }
 
-/// The smaller of a and b, rounded where they differ by less than `blend` (a cubic, so that curvature is continuous).
+/// The smaller of a and b, rounded where they differ by less than `blend` (a cubic, so that
+/// curvature is continuous).
 fn smooth_min(a: Real, b: Real, blend: Real) -> Real {
     let h = (blend - (a - b).abs()).max(0.0) / blend;
     a.min(b) - h * h * h * blend / 6.0

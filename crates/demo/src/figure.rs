@@ -1,8 +1,8 @@
 //! The picture of a proximity query: the whole scene on the left, the robot close up on the right.
 //!
-//! Each link has the colour of its distance to the wall. A thin line joins its two closest points, and the triangle
-//! where it ends is painted in the link's colour. A ring marks the closest link. The pieces into which a query divided the
-//! curve, if there was one, are outlined close up.
+//! Each link has the colour of its distance to the wall. A thin line joins its two closest points,
+//! and the triangle where it ends is painted in the link's colour. A ring marks the closest link.
+//! The pieces into which a query divided the curve, if there was one, are outlined close up.
 
 use crate::canvas::{Align, Canvas, Colour, hex, mix};
 use crate::colour_map::ColourMap;
@@ -38,8 +38,9 @@ pub struct Caption {
     pub notes: Vec<String>,
 }
 
-/// Draws the scene. `pose` is the robot's in the mesh's frame, `answers` those of one engine, one per link; `pieces` are
-/// those of a query about the curve, or none. The mesh's z is taken to be up and its y to the front, as in scans.
+/// Draws the scene. `pose` is the robot's in the mesh's frame, `answers` those of one engine, one
+/// per link; `pieces` are those of a query about the curve, or none. The mesh's z is taken to be up
+/// and its y to the front, as in scans.
 pub fn draw(
     mesh: &TriMesh,
     robot: &Chain,
@@ -65,13 +66,20 @@ pub fn draw(
     let side = if first.x < mesh.local_aabb().center().x { 1.0 } else { -1.0 };
     let towards = Vector::new(side, -0.55, -0.32).normalize();
     let size = [LEFT, SIZE[1] - TOP];
-    let whole = Camera::framing(mesh.vertices(), towards, Vector::Z, size[0] as Real / size[1] as Real, 0.04);
+    let whole = Camera::framing(
+        mesh.vertices(),
+        towards,
+        Vector::Z,
+        size[0] as Real / size[1] as Real,
+        0.04,
+    );
     picture.sky = [sky(TOP), sky(SIZE[1])];
     // The robot shows through the folds in front of it.
     picture.skin.veil = 0.25;
     canvas.paste(&picture.render(&whole, size[0], size[1]), [0, TOP], 0.0);
 
-    // Close up: the robot and the ends of its lines, from where it is broadest, cut open in front of them.
+    // Close up: the robot and the ends of its lines, from where it is broadest, cut open in front
+    // of them.
     let broadside = (middle - first).cross(last - first).normalize_or_zero();
     let broadside = if broadside.dot(towards) < 0.0 { -broadside } else { broadside };
     let ends = answers.iter().map(|answer| answer.on_mesh);
@@ -89,7 +97,8 @@ pub fn draw(
     );
     let depth = |p: Vector| (p - near.eye).dot(near.forward);
     let robot_depths = inner.into_iter().map(|p| depth(p) - 1.05 * thick);
-    near.cut = robot_depths.chain(ends.map(|p| depth(p) - 0.2 * thick)).fold(Real::INFINITY, Real::min);
+    near.cut =
+        robot_depths.chain(ends.map(|p| depth(p) - 0.2 * thick)).fold(Real::INFINITY, Real::min);
     let centre = seen.iter().sum::<Vector>() / seen.len() as Real;
     let closest = answers.iter().min_by(|a, b| a.distance.total_cmp(&b.distance));
     let closest = closest.map(|answer| answer.on_robot.midpoint(answer.on_mesh));
@@ -101,10 +110,16 @@ pub fn draw(
     let mut foot = top as f32;
     if magnified >= MAGNIFIES {
         picture.sky = [sky(top), sky(top + height)];
-        picture.skin = Skin { near: 0.0, rim: 0.45, glint: 0.06, far: 0.88, edges: [0.04, 0.3], veil: 1.0 };
+        picture.skin =
+            Skin { near: 0.0, rim: 0.45, glint: 0.06, far: 0.88, edges: [0.04, 0.3], veil: 1.0 };
         let mut inset = picture.render(&near, width, height);
         for (piece, colour) in pieces.iter().zip(OUTLINES.into_iter().cycle()) {
-            inset.stroke(&[outline(&piece.body, &Pose::IDENTITY, &near, [width, height])], 2.5, colour, 0.9);
+            inset.stroke(
+                &[outline(&piece.body, &Pose::IDENTITY, &near, [width, height])],
+                2.5,
+                colour,
+                0.9,
+            );
         }
         for place in closest.iter().map(|&p| near.place(p, [width, height])) {
             ring(&mut inset, place, 26.0);
@@ -154,7 +169,13 @@ fn legend(canvas: &mut Canvas, at: [f32; 2], tint: Colour) {
         vec![[x + 25.0 - half, y - 20.0 + row], [x + 25.0 + half, y - 20.0 + row]]
     });
     canvas.stroke(&rows.collect::<Vec<_>>(), 1.4, tint, 1.0);
-    canvas.text("nearest triangle of a link, in the link's colour", [x + 66.0, y], Align::Left, 18.0, INK);
+    canvas.text(
+        "nearest triangle of a link, in the link's colour",
+        [x + 66.0, y],
+        Align::Left,
+        18.0,
+        INK,
+    );
     let y = y + ROW as f32;
     ring(canvas, [x + 25.0, y - 8.0], 11.0);
     canvas.text("the closest link", [x + 66.0, y], Align::Left, 18.0, INK);
@@ -202,8 +223,9 @@ fn solids(
 
 /// Shows which part of the left picture the close-up shows.
 fn lens(canvas: &mut Canvas, places: &[[f32; 2]], inset: [f32; 4]) {
-    let side =
-        |axis: usize, pick: fn(f32, f32) -> f32| places.iter().map(|p| p[axis]).reduce(pick).unwrap_or(0.0);
+    let side = |axis: usize, pick: fn(f32, f32) -> f32| {
+        places.iter().map(|p| p[axis]).reduce(pick).unwrap_or(0.0)
+    };
     let margin = 14.0;
     let frame = [
         side(0, f32::min) - margin,
@@ -227,8 +249,11 @@ fn scale(camera: &Camera, depth: Vector, size: [usize; 2]) -> f32 {
 pub fn ruler(canvas: &mut Canvas, camera: &Camera, depth: Vector, size: [usize; 2], at: [f32; 2]) {
     let unit = f64::from(scale(camera, depth, size));
     let decade = 10f64.powf((150.0 / unit).log10().floor());
-    let length =
-        [5.0, 2.0, 1.0].into_iter().map(|n| n * decade).find(|n| n * unit <= 170.0).unwrap_or(decade);
+    let length = [5.0, 2.0, 1.0]
+        .into_iter()
+        .map(|n| n * decade)
+        .find(|n| n * unit <= 170.0)
+        .unwrap_or(decade);
     let right = at[0] + (length * unit) as f32;
     let ends = [at[0], right].map(|x| vec![[x, at[1] - 7.0], [x, at[1] + 7.0]]);
     canvas.stroke(&[vec![at, [right, at[1]]], ends[0].clone(), ends[1].clone()], 2.5, INK, 1.0);

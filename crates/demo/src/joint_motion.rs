@@ -1,20 +1,22 @@
-//! A concentric tube robot while its joints move evenly from one place to another: its shapes, and how fast it is.
+//! A concentric tube robot while its joints move evenly from one place to another: its shapes, and
+//! how fast it is.
 //!
-//! Where all tubes of a section are curved, its curvature vector is the sum over these tubes of w u(a): w is the tube's
-//! share of their stiffness times its curvature, and u(a) a unit vector that turns with the tube's angle a. So the vector
-//! changes at most at the rate b = sum of w |a'|, and never is farther than b / 2 from what it is at half time. That
-//! bounds curvatures and steps for [`bending_speed`]. Its second derivative is at most the sum of w |a'|^2, for [`bending_course`].
+//! Where all tubes of a section are curved, its curvature vector is the sum over these tubes of w
+//! u(a): w is the tube's share of their stiffness times its curvature, and u(a) a unit vector that
+//! turns with the tube's angle a. So the vector changes at most at the rate b = sum of w |a'|, and
+//! never is farther than b / 2 from what it is at half time. That bounds curvatures and steps for
+//! [`bending_speed`]. Its second derivative is at most the sum of w |a'|^2, for [`bending_course`].
 
 use crate::ctr::{Curve, Joints, Robot};
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::{
-    BendingRates, BendingSection, Course, Motion, RobotError, Speed, Tube, TubeSection, bending_course,
-    bending_speed,
+    BendingRates, BendingSection, Course, Motion, RobotError, Speed, Tube, TubeSection,
+    bending_course, bending_speed,
 };
 use std::f64::consts::TAU;
 
-/// A tube that turns by less than this over its whole length, in rad, counts as straight. What that moves the tip by is a
-/// millionth of the robot's length at most.
+/// A tube that turns by less than this over its whole length, in rad, counts as straight. What that
+/// moves the tip by is a millionth of the robot's length at most.
 const STRAIGHT: Real = 1e-6;
 
 /// The motion of a robot whose extensions and angles change evenly, its base standing still.
@@ -34,8 +36,9 @@ pub struct JointMotion {
 impl JointMotion {
     /// The motion from one place to another; `base` is the robot's pose in the mesh's frame.
     ///
-    /// None if a section is not out at one of the two, or a curved tube is straight somewhere in the robot: the lengths of
-    /// the sections up to its own must not add up to more than its own can be.
+    /// None if a section is not out at one of the two, or a curved tube is straight somewhere in
+    /// the robot: the lengths of the sections up to its own must not add up to more than its
+    /// own can be.
     pub fn new(robot: &Robot, [from, to]: [&Joints; 2], base: Pose) -> Option<Self> {
         let count = robot.sections.len();
         let (mut end, mut tubes) = ([0.0; 2], Vec::new());
@@ -55,8 +58,11 @@ impl JointMotion {
             }
         }
         let part = |k: usize| {
-            let stiffness: Real =
-                tubes.iter().filter(|(section, ..)| *section >= k).map(|(_, stiffness, _)| stiffness).sum();
+            let stiffness: Real = tubes
+                .iter()
+                .filter(|(section, ..)| *section >= k)
+                .map(|(_, stiffness, _)| stiffness)
+                .sum();
             let part = |&(section, own, curvature): &(usize, Real, Real)| {
                 if section >= k { own / stiffness * curvature } else { 0.0 }
             };
@@ -72,16 +78,24 @@ impl JointMotion {
             bends: Vec::new(),
         };
         motion.rates = motion.rates();
-        let squares = from.angles.iter().zip(&to.angles).map(|(from, to)| (to - from) * (to - from));
-        let bend =
-            |parts: &Vec<Real>| parts.iter().zip(squares.clone()).map(|(part, turned)| part * turned).sum();
+        let squares =
+            from.angles.iter().zip(&to.angles).map(|(from, to)| (to - from) * (to - from));
+        let bend = |parts: &Vec<Real>| {
+            parts.iter().zip(squares.clone()).map(|(part, turned)| part * turned).sum()
+        };
         motion.bends = motion.parts.iter().map(bend).collect();
         Some(motion)
     }
 
-    /// A random motion whose tip ends `distance` away from where it begins, as edges of planners are. `share` gives
-    /// random numbers from 0 to 1; the robot has three sections of a tube each.
-    pub fn random(robot: &Robot, base: Pose, distance: Real, mut share: impl FnMut() -> Real) -> Self {
+    /// A random motion whose tip ends `distance` away from where it begins, as edges of planners
+    /// are. `share` gives random numbers from 0 to 1; the robot has three sections of a tube
+    /// each.
+    pub fn random(
+        robot: &Robot,
+        base: Pose,
+        distance: Real,
+        mut share: impl FnMut() -> Real,
+    ) -> Self {
         let mut between = |low: Real, high: Real| low + (high - low) * share();
         let tip = |joints: &Joints| robot.frames(joints, &[robot.length(joints)])[0].translation;
         // So that the first two sections are no longer than the second can be.
@@ -94,7 +108,8 @@ impl JointMotion {
                 extensions: (0..3).map(extension).collect(),
                 angles: (0..3).map(|_| between(0.0, TAU)).collect(),
             };
-            let way: Vec<_> = [10.0, 10.0, 10.0, 3.0, 3.0, 3.0].map(|most| between(-most, most)).into();
+            let way: Vec<_> =
+                [10.0, 10.0, 10.0, 3.0, 3.0, 3.0].map(|most| between(-most, most)).into();
             let go = |share: Real| Joints {
                 extensions: (0..3)
                     .map(|k| (from.extensions[k] + share * way[k]).clamp(0.02, longest(k)))
@@ -119,8 +134,10 @@ impl JointMotion {
 
     fn rates(&self) -> Vec<BendingRates> {
         let (from, to) = (&self.from, &self.to);
-        let turned: Vec<_> = from.angles.iter().zip(&to.angles).map(|(from, to)| (to - from).abs()).collect();
-        let bending = |parts: &Vec<Real>| parts.iter().zip(&turned).map(|(part, turned)| part * turned).sum();
+        let turned: Vec<_> =
+            from.angles.iter().zip(&to.angles).map(|(from, to)| (to - from).abs()).collect();
+        let bending =
+            |parts: &Vec<Real>| parts.iter().zip(&turned).map(|(part, turned)| part * turned).sum();
         let bending: Vec<Real> = self.parts.iter().map(bending).collect();
         let middle: Vec<_> = self.bends(&self.joints(0.5)).collect();
         let rates = (0..self.parts.len()).map(|k| BendingRates {
@@ -128,9 +145,9 @@ impl JointMotion {
             growth: to.extensions[k] - from.extensions[k],
             curvature: middle[k].length() + 0.5 * bending[k],
             bending: bending[k],
-            step: middle
-                .get(k + 1)
-                .map_or(0.0, |next| (next - middle[k]).length() + 0.5 * (bending[k] + bending[k + 1])),
+            step: middle.get(k + 1).map_or(0.0, |next| {
+                (next - middle[k]).length() + 0.5 * (bending[k] + bending[k + 1])
+            }),
         });
         rates.collect()
     }
@@ -157,7 +174,11 @@ impl JointMotion {
             .bends(&joints)
             .zip(lengths.clone())
             .zip(&self.radii)
-            .map(|((bend, length), &radius)| TubeSection { length, radius, curvature: bend.length() })
+            .map(|((bend, length), &radius)| TubeSection {
+                length,
+                radius,
+                curvature: bend.length(),
+            })
             .collect();
         let curve = Curve::joined(lengths.zip(self.bends(&joints)));
         Tube::from_function(&sections, move |s| curve.at(s))
@@ -178,8 +199,8 @@ impl JointMotion {
         self.base * curve.at(joints.extensions.iter().sum()).0
     }
 
-    /// Times between which the tip moves by at most `step`, without 0: the middle first, then the middles of the halves,
-    /// so that contacts show early.
+    /// Times between which the tip moves by at most `step`, without 0: the middle first, then the
+    /// middles of the halves, so that contacts show early.
     pub fn steps(&self, step: Real) -> impl Iterator<Item = Real> + use<> {
         let tips: Vec<_> = (0..=8).map(|k| self.tip(Real::from(k) / 8.0)).collect();
         let moved: Real = tips.windows(2).map(|tips| (tips[1] - tips[0]).length()).sum();
@@ -193,9 +214,9 @@ impl JointMotion {
     fn bends(&self, joints: &Joints) -> impl Iterator<Item = Vector> {
         let towards = |angle: &Real| Vector::new(-angle.sin(), angle.cos(), 0.0);
         let towards: Vec<_> = joints.angles.iter().map(towards).collect();
-        self.parts
-            .iter()
-            .map(move |parts| parts.iter().zip(&towards).map(|(part, towards)| *towards * *part).sum())
+        self.parts.iter().map(move |parts| {
+            parts.iter().zip(&towards).map(|(part, towards)| *towards * *part).sum()
+        })
     }
 }
 

@@ -1,7 +1,8 @@
 //! Lettering for the pictures: a stroke alphabet, so that it stays crisp at any size.
 //!
-//! A glyph is a list of strokes in units of a seventh of the height of a capital, from the base line up: "L" joins
-//! the points that follow (x y), "A" is an arc of an ellipse (centre, half axes, from and to in degrees).
+//! A glyph is a list of strokes in units of a seventh of the height of a capital, from the base
+//! line up: "L" joins the points that follow (x y), "A" is an arc of an ellipse (centre, half axes,
+//! from and to in degrees).
 
 const GLYPHS: &str = "
 0 A 2 3.5 2 3.5 0 360
@@ -88,8 +89,8 @@ z L 0 5 3.2 5 0 0 3.2 0
 /// A polyline.
 pub type Stroke = Vec<[f32; 2]>;
 
-/// The strokes of a line of text whose capitals have the given height, and its width: x to the right from 0, y down
-/// from the base line. A character that the alphabet lacks leaves a gap.
+/// The strokes of a line of text whose capitals have the given height, and its width: x to the
+/// right from 0, y down from the base line. A character that the alphabet lacks leaves a gap.
 pub fn strokes(text: &str, height: f32) -> (Vec<Stroke>, f32) {
     let unit = height / 7.0;
     let (mut all, mut x): (Vec<Stroke>, f32) = (Vec::new(), 0.0);
@@ -97,9 +98,9 @@ pub fn strokes(text: &str, height: f32) -> (Vec<Stroke>, f32) {
         let glyph = glyph(letter);
         let width = glyph.iter().flatten().map(|p| p[0]).reduce(f32::max).unwrap_or(1.3);
         all.extend(
-            glyph
-                .into_iter()
-                .map(|stroke| stroke.into_iter().map(|p| [(x + p[0]) * unit, -p[1] * unit]).collect()),
+            glyph.into_iter().map(|stroke| {
+                stroke.into_iter().map(|p| [(x + p[0]) * unit, -p[1] * unit]).collect()
+            }),
         );
         x += width + 1.5;
     }
@@ -108,7 +109,9 @@ pub fn strokes(text: &str, height: f32) -> (Vec<Stroke>, f32) {
 
 /// The strokes of one character, in the alphabet's units.
 fn glyph(letter: char) -> Vec<Stroke> {
-    let Some(line) = GLYPHS.lines().find(|line| line.starts_with(letter)) else { return Vec::new() };
+    let Some(line) = GLYPHS.lines().find(|line| line.starts_with(letter)) else {
+        return Vec::new();
+    };
     let mut strokes = Vec::new();
     let mut tokens = line[letter.len_utf8()..].split_whitespace().peekable();
     while let Some(kind) = tokens.next() {

@@ -1,5 +1,5 @@
-//! The demo that examples, benches and tests share: a brain ventricle, a concentric tube robot in it, and a picture of
-//! both. Lengths are in millimetres.
+//! The demo that examples, benches and tests share: a brain ventricle, a concentric tube robot in
+//! it, and a picture of both. Lengths are in millimetres.
 //!
 //! | what | modules |
 //! |---|---|

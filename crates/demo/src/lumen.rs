@@ -8,8 +8,8 @@ use std::f64::consts::TAU;
 const LENGTH: f64 = 160.0;
 const BEND: f64 = 80.0;
 
-/// A vessel of 6 to 8 mm radius whose wall has `around` triangles of each kind around it and five for each two of them
-/// along it: 5 `around`^2 triangles.
+/// A vessel of 6 to 8 mm radius whose wall has `around` triangles of each kind around it and five
+/// for each two of them along it: 5 `around`^2 triangles.
 pub fn mesh(around: u32) -> TriMesh {
     let along = around * 5 / 2;
     let vertex = |row: u32, column: u32| {

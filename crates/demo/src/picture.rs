@@ -1,9 +1,11 @@
-//! A ray-caster: the wall as a translucent skin, solids inside it, seen through parry's `RayCast` trait.
+//! A ray-caster: the wall as a translucent skin, solids inside it, seen through parry's `RayCast`
+//! trait.
 //!
-//! A ray that enters the lumen meets the skin from outside, where it is clear as glass except at grazing angles;
-//! one that leaves it meets the far side, which is drawn as tissue. So the inside shows without a cut. Solids are
-//! whatever implements `Shape`; each ray finds them by `cast_ray_and_get_normal`, and they darken the tissue near
-//! them by `distance_to_point`, so that their height above it can be judged.
+//! A ray that enters the lumen meets the skin from outside, where it is clear as glass except at
+//! grazing angles; one that leaves it meets the far side, which is drawn as tissue. So the inside
+//! shows without a cut. Solids are whatever implements `Shape`; each ray finds them by
+//! `cast_ray_and_get_normal`, and they darken the tissue near them by `distance_to_point`, so that
+//! their height above it can be judged.
 
 use crate::canvas::{Canvas, Colour, hex, mix};
 use parry_continuum::parry::bounding_volume::{Aabb, BoundingVolume};
@@ -27,16 +29,25 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// A camera looking along `forward` from as near as shows every point, with `margin` (a share of the frame) around.
-    pub fn framing(points: &[Vector], forward: Vector, up: Vector, aspect: Real, margin: Real) -> Self {
+    /// A camera looking along `forward` from as near as shows every point, with `margin` (a share
+    /// of the frame) around.
+    pub fn framing(
+        points: &[Vector],
+        forward: Vector,
+        up: Vector,
+        aspect: Real,
+        margin: Real,
+    ) -> Self {
         let forward = forward.normalize();
-        let right = forward.cross(up).try_normalize().unwrap_or_else(|| forward.any_orthonormal_vector());
+        let right =
+            forward.cross(up).try_normalize().unwrap_or_else(|| forward.any_orthonormal_vector());
         let up = right.cross(forward);
         let spread = 0.21;
         let tall = spread * (1.0 - 2.0 * margin);
         let (mut centre, mut back) = (Vector::ZERO, 0.0);
         for _ in 0..6 {
-            // The frame's four sides in perspective: move the centre so that the points lie evenly between them.
+            // The frame's four sides in perspective: move the centre so that the points lie evenly
+            // between them.
             let (mut low, mut high) = ([Real::MAX; 2], [Real::MIN; 2]);
             back = Real::MIN;
             for &p in points {
@@ -50,7 +61,8 @@ impl Camera {
         }
         for &p in points {
             let q = p - centre;
-            back = back.max((q.dot(right).abs() / aspect).max(q.dot(up).abs()) / tall - q.dot(forward));
+            back = back
+                .max((q.dot(right).abs() / aspect).max(q.dot(up).abs()) / tall - q.dot(forward));
         }
         Self { eye: centre - forward * back, forward, up, right, spread, cut: 0.0 }
     }
@@ -128,7 +140,8 @@ impl<'a> Picture<'a> {
         for solid in &solids {
             aabb.merge(&solid.aabb);
         }
-        let reach = 3.0 * solids.iter().map(|s| s.aabb.half_extents().min_element()).fold(0.0, Real::max);
+        let reach =
+            3.0 * solids.iter().map(|s| s.aabb.half_extents().min_element()).fold(0.0, Real::max);
         let normals = wall.map(vertex_normals).unwrap_or_default();
         Self {
             wall,
@@ -137,7 +150,14 @@ impl<'a> Picture<'a> {
             solids,
             aabb,
             reach,
-            skin: Skin { near: 0.05, rim: 0.8, glint: 0.5, far: 0.72, edges: [0.16, 0.2], veil: 1.0 },
+            skin: Skin {
+                near: 0.05,
+                rim: 0.8,
+                glint: 0.5,
+                far: 0.72,
+                edges: [0.16, 0.2],
+                veil: 1.0,
+            },
             sky: SKY,
         }
     }
@@ -192,7 +212,8 @@ impl<'a> Picture<'a> {
             let mut start = 0.0;
             while clear > 0.02 {
                 let rest = Ray::new(ray.point_at(start), ray.dir);
-                let Some(hit) = wall.cast_local_ray_and_get_normal(&rest, limit - start, false) else {
+                let Some(hit) = wall.cast_local_ray_and_get_normal(&rest, limit - start, false)
+                else {
                     break;
                 };
                 let t = start + hit.time_of_impact;
@@ -205,8 +226,8 @@ impl<'a> Picture<'a> {
                 start = t + step;
             }
         }
-        let behind =
-            solid.map_or(backdrop, |(solid, _, normal)| gloss(solid.colour, normal, ray.dir, camera));
+        let behind = solid
+            .map_or(backdrop, |(solid, _, normal)| gloss(solid.colour, normal, ray.dir, camera));
         std::array::from_fn(|i| seen[i] + clear * behind[i])
     }
 
@@ -250,15 +271,22 @@ impl<'a> Picture<'a> {
         let facing = normal.dot(ray.dir).abs() as f32;
         let grazing = (1.0 - facing).powi(3);
 
-        let heights = [(c - b).length(), (a - c).length(), (b - a).length()].map(|side| flat.length() / side);
-        let to_edge = (0..3).map(|i| share[i].max(0.0) * heights[i]).fold(Real::MAX, Real::min) / pixel;
-        let fades = ((heights.into_iter().fold(Real::MAX, Real::min) / pixel - 6.0) / 20.0).clamp(0.0, 1.0);
-        let line = self.skin.edges[usize::from(!entering)] * ((1.1 - to_edge).clamp(0.0, 1.0) * fades) as f32;
+        let heights =
+            [(c - b).length(), (a - c).length(), (b - a).length()].map(|side| flat.length() / side);
+        let to_edge =
+            (0..3).map(|i| share[i].max(0.0) * heights[i]).fold(Real::MAX, Real::min) / pixel;
+        let fades =
+            ((heights.into_iter().fold(Real::MAX, Real::min) / pixel - 6.0) / 20.0).clamp(0.0, 1.0);
+        let line = self.skin.edges[usize::from(!entering)]
+            * ((1.1 - to_edge).clamp(0.0, 1.0) * fades) as f32;
 
         let (mut colour, mut opacity) = if entering {
             let colour = mix(GLASS, GLASS_EDGE, grazing);
             let glint = self.skin.glint * shine(normal, ray.dir, camera, 60.0);
-            (mix(colour, [1.0; 3], glint.min(1.0)), self.skin.near + self.skin.rim * grazing + glint)
+            (
+                mix(colour, [1.0; 3], glint.min(1.0)),
+                self.skin.near + self.skin.rim * grazing + glint,
+            )
         } else {
             let light = light(-normal, camera) * (1.0 - 0.62 * self.shade(p));
             (mix(TISSUE_DEEP, TISSUE, light), self.skin.far + (1.0 - self.skin.far) * grazing)
@@ -275,14 +303,18 @@ impl<'a> Picture<'a> {
         if self.aabb.distance_to_local_point(p, true) > self.reach {
             return 0.0;
         }
-        let near =
-            self.solids.iter().filter(|s| s.shades && s.aabb.distance_to_local_point(p, true) < self.reach);
-        let distance = near.map(|s| s.shape.distance_to_point(&s.pose, p, true)).fold(self.reach, Real::min);
+        let near = self
+            .solids
+            .iter()
+            .filter(|s| s.shades && s.aabb.distance_to_local_point(p, true) < self.reach);
+        let distance =
+            near.map(|s| s.shape.distance_to_point(&s.pose, p, true)).fold(self.reach, Real::min);
         (1.0 - distance / self.reach).powi(2) as f32
     }
 }
 
-/// The light on a surface: a lamp above the camera's left shoulder, a softer one from the right, and the sky.
+/// The light on a surface: a lamp above the camera's left shoulder, a softer one from the right,
+/// and the sky.
 fn light(normal: Vector, camera: &Camera) -> f32 {
     let lamp = (camera.up * 0.75 - camera.right * 0.55 - camera.forward * 0.7).normalize();
     let other = (camera.right * 0.9 - camera.forward * 0.4).normalize();

@@ -1,11 +1,13 @@
-//! Well-shaped triangles: a closed surface coarsened to a number of triangles, and evened out on the field it came from.
+//! Well-shaped triangles: a closed surface coarsened to a number of triangles, and evened out on
+//! the field it came from.
 //!
-//! Coarsening collapses the shortest edge again and again, as long as the surface stays what it was: the edge's
-//! ends must share exactly their two opposite vertices (the link condition, which keeps the topology), and no
-//! triangle may turn over or become a sliver. Between the rounds, edges flip towards six neighbours per vertex and
-//! then towards the larger angles, and vertices slide along the surface to the centroid of their neighbourhood
-//! (after Botsch and Kobbelt, A remeshing approach to multiresolution modeling, 2004). Lengths are measured in units
-//! that shrink where the surface bends, so that thin horns and passages keep their shape.
+//! Coarsening collapses the shortest edge again and again, as long as the surface stays what it
+//! was: the edge's ends must share exactly their two opposite vertices (the link condition, which
+//! keeps the topology), and no triangle may turn over or become a sliver. Between the rounds, edges
+//! flip towards six neighbours per vertex and then towards the larger angles, and vertices slide
+//! along the surface to the centroid of their neighbourhood (after Botsch and Kobbelt, A remeshing
+//! approach to multiresolution modeling, 2004). Lengths are measured in units that shrink where the
+//! surface bends, so that thin horns and passages keep their shape.
 
 use crate::surface::{Field, Mesh, project, slope};
 use parry_continuum::parry::math::{Real, Vector};
@@ -13,7 +15,8 @@ use rayon::prelude::*;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// Where the radius of curvature is this, triangles are finer than on a plane by the square root of two.
+/// Where the radius of curvature is this, triangles are finer than on a plane by the square root of
+/// two.
 const DETAIL: Real = 4.0;
 
 /// Distance over which curvature is measured.
@@ -32,7 +35,8 @@ struct Surface<'a> {
     alive: usize,
 }
 
-/// The surface with about `target` triangles (never fewer), evened out. `step` is small against every detail.
+/// The surface with about `target` triangles (never fewer), evened out. `step` is small against
+/// every detail.
 pub fn remesh(field: Field, (points, triangles): Mesh, target: usize, step: Real) -> Mesh {
     let mut around = vec![Vec::new(); points.len()];
     for (index, triangle) in triangles.iter().enumerate() {
@@ -69,10 +73,14 @@ impl Surface<'_> {
         (self.point(b) - self.point(a)).cross(self.point(c) - self.point(a))
     }
 
-    /// The corner of triangle `index` opposite its edge from a to b, if the triangle runs from a to b.
+    /// The corner of triangle `index` opposite its edge from a to b, if the triangle runs from a to
+    /// b.
     fn opposite(&self, index: u32, a: u32, b: u32) -> Option<u32> {
         let [i, j, k] = self.triangles[index as usize];
-        [(i, j, k), (j, k, i), (k, i, j)].into_iter().find(|&(p, q, _)| (p, q) == (a, b)).map(|(.., r)| r)
+        [(i, j, k), (j, k, i), (k, i, j)]
+            .into_iter()
+            .find(|&(p, q, _)| (p, q) == (a, b))
+            .map(|(.., r)| r)
     }
 
     /// The two triangles at the edge, that from a to b first, each with its third corner.
@@ -109,7 +117,8 @@ impl Surface<'_> {
         (self.point(a) - self.point(b)).length_squared() * fineness * fineness
     }
 
-    /// Takes the fineness from the larger principal curvature: the normals' change over two directions across.
+    /// Takes the fineness from the larger principal curvature: the normals' change over two
+    /// directions across.
     fn measure(&mut self) {
         let normal = |p| slope(self.field, p, (self.field)(p), self.step).normalize_or_zero();
         let finer = |(&p, around): (&Vector, &Vec<u32>)| {
@@ -119,8 +128,11 @@ impl Surface<'_> {
             let n = normal(p);
             let u = n.any_orthonormal_vector();
             let bend = [u, n.cross(u)].map(|along| (normal(p + along * REACH) - n) / REACH);
-            let [xx, xy, yy] =
-                [bend[0].dot(u), 0.5 * (bend[0].dot(n.cross(u)) + bend[1].dot(u)), bend[1].dot(n.cross(u))];
+            let [xx, xy, yy] = [
+                bend[0].dot(u),
+                0.5 * (bend[0].dot(n.cross(u)) + bend[1].dot(u)),
+                bend[1].dot(n.cross(u)),
+            ];
             let curvature = (0.5 * (xx + yy)).abs() + (0.5 * (xx - yy)).hypot(xy);
             (DETAIL * curvature).hypot(1.0)
         };
@@ -129,15 +141,19 @@ impl Surface<'_> {
 
     fn coarsen(&mut self, target: usize) {
         let key = |surface: &Self, edge: [u32; 2]| Reverse((surface.length(edge).to_bits(), edge));
-        let mut queue: BinaryHeap<_> = self.edges().into_iter().map(|edge| key(self, edge)).collect();
+        let mut queue: BinaryHeap<_> =
+            self.edges().into_iter().map(|edge| key(self, edge)).collect();
         while self.alive >= target + 2
             && let Some(Reverse((bits, edge))) = queue.pop()
         {
-            let is_current = self.length(edge).to_bits() == bits && self.wings(edge[0], edge[1]).is_some();
+            let is_current =
+                self.length(edge).to_bits() == bits && self.wings(edge[0], edge[1]).is_some();
             if is_current && self.collapse(edge) {
                 let kept = edge[0];
-                queue
-                    .extend(self.neighbours(kept).map(|other| key(self, [kept.min(other), kept.max(other)])));
+                queue.extend(
+                    self.neighbours(kept)
+                        .map(|other| key(self, [kept.min(other), kept.max(other)])),
+                );
             }
         }
     }
@@ -156,7 +172,8 @@ impl Surface<'_> {
             let triangle = self.triangles[index as usize];
             let [p, q, r] = triangle.map(moved);
             let (before, after) = (self.normal(triangle), (q - p).cross(r - p));
-            let longest = [q - p, r - q, p - r].map(|e| e.length_squared()).into_iter().fold(0.0, Real::max);
+            let longest =
+                [q - p, r - q, p - r].map(|e| e.length_squared()).into_iter().fold(0.0, Real::max);
             let turned = before.dot(after) < 0.3 * before.length() * after.length();
             !turned && after.length() > 0.25 * longest
         };
@@ -185,8 +202,8 @@ impl Surface<'_> {
         for [a, b] in self.edges() {
             let Some([(left, c), (right, d)]) = self.wings(a, b) else { continue };
             let (one, two) = ([a, d, c], [d, b, c]);
-            let outward =
-                self.normal([a, b, c]).normalize_or_zero() + self.normal([b, a, d]).normalize_or_zero();
+            let outward = self.normal([a, b, c]).normalize_or_zero()
+                + self.normal([b, a, d]).normalize_or_zero();
             let stays_flat = |t| self.normal(t).dot(outward) > 1.2 * self.normal(t).length();
             let spare = self.valence(a) > 4 && self.valence(b) > 4;
             let new = !self.neighbours(c).any(|n| n == d);
@@ -205,7 +222,8 @@ impl Surface<'_> {
     fn evens_neighbours(&self, [a, b, c, d]: [u32; 4]) -> bool {
         let off = |v: u32, change: i32| (self.valence(v) as i32 + change - 6).pow(2);
         let now = off(a, 0) + off(b, 0) + off(c, 0) + off(d, 0);
-        off(a, -1) + off(b, -1) + off(c, 1) + off(d, 1) < now && self.smallest_angle([a, b, c, d]).1 > 0.35
+        off(a, -1) + off(b, -1) + off(c, 1) + off(d, 1) < now
+            && self.smallest_angle([a, b, c, d]).1 > 0.35
     }
 
     /// Whether the flip of a-b to c-d widens the smallest angle.
@@ -218,14 +236,19 @@ impl Surface<'_> {
     fn smallest_angle(&self, [a, b, c, d]: [u32; 4]) -> (Real, Real) {
         let least = |t: [u32; 3]| {
             let [p, q, r] = t.map(|v| self.point(v));
-            [(q - p).angle_between(r - p), (r - q).angle_between(p - q), (p - r).angle_between(q - r)]
-                .into_iter()
-                .fold(Real::INFINITY, Real::min)
+            [
+                (q - p).angle_between(r - p),
+                (r - q).angle_between(p - q),
+                (p - r).angle_between(q - r),
+            ]
+            .into_iter()
+            .fold(Real::INFINITY, Real::min)
         };
         (least([a, b, c]).min(least([b, a, d])), least([a, d, c]).min(least([d, b, c])))
     }
 
-    /// Slides each vertex along the surface towards the weighted centroid of the triangles around it.
+    /// Slides each vertex along the surface towards the weighted centroid of the triangles around
+    /// it.
     fn slide(&mut self, rounds: usize) {
         for _ in 0..rounds {
             let moved = |(vertex, around): (usize, &Vec<u32>)| {
@@ -236,7 +259,8 @@ impl Surface<'_> {
                     let fineness =
                         triangle.map(|v| self.fineness[v as usize]).into_iter().sum::<Real>() / 3.0;
                     let share = self.normal(triangle).length() * fineness * fineness;
-                    sum += triangle.map(|v| self.point(v)).into_iter().sum::<Vector>() * (share / 3.0);
+                    sum +=
+                        triangle.map(|v| self.point(v)).into_iter().sum::<Vector>() * (share / 3.0);
                     weight += share;
                 }
                 if weight == 0.0 {

@@ -1,13 +1,15 @@
 //! An elastic robot in a rapier world: one body per link, joints that bend.
 //!
-//! Where there are no forces the robot has the shape that it is told, its *rest shape*: the rest angle of each joint
-//! is that of the kinematic centreline there. A joint holds its two links together and turns them back towards that
-//! angle with the moment `EI / l` per radian, `EI` being the bending stiffness of the tubes there and `l` the length
-//! of robot that the joint stands for; so the chain of links bends as a beam does. Twist is resisted as bending is.
+//! Where there are no forces the robot has the shape that it is told, its *rest shape*: the rest
+//! angle of each joint is that of the kinematic centreline there. A joint holds its two links
+//! together and turns them back towards that angle with the moment `EI / l` per radian, `EI` being
+//! the bending stiffness of the tubes there and `l` the length of robot that the joint stands for;
+//! so the chain of links bends as a beam does. Twist is resisted as bending is.
 //!
-//! Left out: that the tubes slide along and turn in each other under load, that they twist, shear and lengthen, and
-//! friction. Masses are made up: everything is so slow and so damped that the shape is an equilibrium at every
-//! step, which no mass enters. They are large enough for the solver to be stable.
+//! Left out: that the tubes slide along and turn in each other under load, that they twist, shear
+//! and lengthen, and friction. Masses are made up: everything is so slow and so damped that the
+//! shape is an equilibrium at every step, which no mass enters. They are large enough for the
+//! solver to be stable.
 
 use parry_continuum::parry::math::{Pose, Real, Rot3, Vector};
 use parry_continuum::{Chain, ModifiedCylinder, RobotError, rapier};
@@ -16,11 +18,13 @@ use rapier3d_f64::prelude::*;
 /// Mass of a link in kg and, times mm^2, its moments of inertia.
 const MASS: Real = 2e-4;
 const INERTIA: Real = 2e-4;
-/// How long a bent joint takes to straighten, in s, and how fast the surroundings take away motion, per s.
+/// How long a bent joint takes to straighten, in s, and how fast the surroundings take away motion,
+/// per s.
 const RELAXATION: Real = 2e-2;
 const DAMPING: Real = 5.0;
 
-/// The shape that the robot has without forces, in the frame of its base: the base at the origin, along z.
+/// The shape that the robot has without forces, in the frame of its base: the base at the origin,
+/// along z.
 pub struct RestShape {
     /// Joints and tip.
     pub points: Vec<Vector>,
@@ -60,11 +64,16 @@ impl Rod {
         world.bodies[self.base].set_position(base, true);
     }
 
-    /// Gives the robot another rest shape, with as many links as before or more. New links appear at the tip, unbent.
+    /// Gives the robot another rest shape, with as many links as before or more. New links appear
+    /// at the tip, unbent.
     ///
     /// # Errors
     /// The shape is no chain.
-    pub fn set_rest_shape(&mut self, world: &mut PhysicsWorld, rest: &RestShape) -> Result<(), RobotError> {
+    pub fn set_rest_shape(
+        &mut self,
+        world: &mut PhysicsWorld,
+        rest: &RestShape,
+    ) -> Result<(), RobotError> {
         let chain = Chain::from_centreline(&rest.points, &rest.radii)?;
         let (mut heading, mut direction) = (Rot3::IDENTITY, Vector::Z);
         for (k, link) in chain.links().iter().enumerate() {
@@ -75,8 +84,12 @@ impl Rod {
             (heading, direction) = (next, link.axis());
 
             let start = if k == 0 { 0.0 } else { self.links[k - 1].length };
-            let local =
-                ModifiedCylinder::new(Vector::ZERO, Vector::Z * link.length(), link.radius(), link.caps())?;
+            let local = ModifiedCylinder::new(
+                Vector::ZERO,
+                Vector::Z * link.length(),
+                link.radius(),
+                link.caps(),
+            )?;
             if let Some(old) = self.links.get_mut(k) {
                 old.length = link.length();
                 let collider = &mut world.colliders[old.collider];
@@ -118,7 +131,8 @@ impl Rod {
             .friction_combine_rule(CoefficientCombineRule::Min)
             .collision_groups(InteractionGroups::new(ROBOT, !ROBOT, InteractionTestMode::And));
         let (body, collider) = world.insert(body, collider);
-        let joint = SphericalJointBuilder::new().local_anchor1(place.translation).contacts_enabled(false);
+        let joint =
+            SphericalJointBuilder::new().local_anchor1(place.translation).contacts_enabled(false);
         if let Some(joint) = world.insert_multibody_joint(before, body, joint) {
             self.links.push(Link { body, collider, joint, length: shape.length() });
         }
@@ -147,7 +161,8 @@ impl Rod {
     }
 }
 
-/// Prepares a world of millimetres, kilogrammes and seconds, so that forces are in mN, without gravity.
+/// Prepares a world of millimetres, kilogrammes and seconds, so that forces are in mN, without
+/// gravity.
 ///
 /// # Errors
 /// The size is no size.

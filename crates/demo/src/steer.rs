@@ -1,10 +1,11 @@
 //! Where to start and where to go in a mesh that nobody has planned a path for.
 //!
-//! The start: the point deepest inside, looking along the longest free line. The goal: the joints that bring the
-//! robot furthest with room around it, found by sampling thousands of shapes and improving the best; each costs one
-//! `minimum` query. A robot that touches nothing and whose base is inside is inside all along. The way to the goal
-//! needs no plan of its own: the sections come out one after the other, so that all of them stay on the goal's shape
-//! (`Robot::on_the_way`; to keep that exact, a goal's first two sections are together no longer than the second).
+//! The start: the point deepest inside, looking along the longest free line. The goal: the joints
+//! that bring the robot furthest with room around it, found by sampling thousands of shapes and
+//! improving the best; each costs one `minimum` query. A robot that touches nothing and whose base
+//! is inside is inside all along. The way to the goal needs no plan of its own: the sections come
+//! out one after the other, so that all of them stay on the goal's shape (`Robot::on_the_way`; to
+//! keep that exact, a goal's first two sections are together no longer than the second).
 
 use crate::ctr::{Joints, Robot};
 use parry_continuum::parry::math::{Pose, Real, Vector};
@@ -33,7 +34,8 @@ impl Random {
     }
 }
 
-/// The point furthest from the surface among those inside it, or none if the surface encloses nothing.
+/// The point furthest from the surface among those inside it, or none if the surface encloses
+/// nothing.
 pub fn deepest_point(mesh: &TriMesh) -> Option<Vector> {
     const GRID: usize = 40;
     let aabb = mesh.local_aabb();
@@ -49,12 +51,14 @@ pub fn deepest_point(mesh: &TriMesh) -> Option<Vector> {
         for j in 0..GRID {
             // Along a line upwards, inside and outside alternate where it crosses the surface.
             let foot = aabb.mins + step * Vector::new(i as Real + 0.5, j as Real + 0.5, -1.0);
-            let crossings = crossings(mesh, Ray::new(foot, Vector::Z), aabb.extents().z + 2.0 * step.z);
+            let crossings =
+                crossings(mesh, Ray::new(foot, Vector::Z), aabb.extents().z + 2.0 * step.z);
             for inside in crossings.as_chunks::<2>().0 {
                 let count = ((inside[1] - inside[0]) / step.z).ceil();
                 (0..count as usize).for_each(|k| {
                     consider(
-                        foot + Vector::Z * (inside[0] + (inside[1] - inside[0]) * (k as Real + 0.5) / count),
+                        foot + Vector::Z
+                            * (inside[0] + (inside[1] - inside[0]) * (k as Real + 0.5) / count),
                     );
                 });
             }
@@ -63,10 +67,13 @@ pub fn deepest_point(mesh: &TriMesh) -> Option<Vector> {
     best.map(|(_, p)| p)
 }
 
-/// Where a ray crosses the surface, or nothing if their number shows that the surface is open there.
+/// Where a ray crosses the surface, or nothing if their number shows that the surface is open
+/// there.
 fn crossings(mesh: &TriMesh, ray: Ray, limit: Real) -> Vec<Real> {
     let (mut all, mut from) = (Vec::new(), 0.0);
-    while let Some(t) = mesh.cast_local_ray(&Ray::new(ray.point_at(from), ray.dir), limit - from, false) {
+    while let Some(t) =
+        mesh.cast_local_ray(&Ray::new(ray.point_at(from), ray.dir), limit - from, false)
+    {
         all.push(from + t);
         from += t + 1e-9 * limit;
     }
@@ -111,8 +118,9 @@ pub enum NoGoal {
     Query(ProximityError),
 }
 
-/// The joints that bring the robot far into the lumen with room around it: the longest shape, where one that comes
-/// nearer to the wall than half the robot's largest radius counts for less in proportion.
+/// The joints that bring the robot far into the lumen with room around it: the longest shape, where
+/// one that comes nearer to the wall than half the robot's largest radius counts for less in
+/// proportion.
 pub fn find_goal(robot: &Robot, mesh: &mut BvhSearch, base: &Pose) -> Result<Joints, NoGoal> {
     let mut random = Random(1);
     let wide = robot.sections.iter().map(|section| section.radius).fold(0.0, Real::max);
@@ -149,14 +157,18 @@ impl Robot {
         let reach = random.share();
         let extensions = self.sections.iter().map(|s| s.length * reach * random.share()).collect();
         let tubes = self.sections.iter().map(|section| section.tubes.len()).sum();
-        self.limited(Joints { extensions, angles: (0..tubes).map(|_| TAU * random.share()).collect() })
+        self.limited(Joints {
+            extensions,
+            angles: (0..tubes).map(|_| TAU * random.share()).collect(),
+        })
     }
 
     /// Joints a random step away.
     fn nearby(&self, joints: &Joints, spread: Real, random: &mut Random) -> Joints {
         let lengths = self.sections.iter().map(|section| section.length);
         let extensions = joints.extensions.iter().zip(lengths);
-        let extensions = extensions.map(|(e, length)| e + 0.1 * spread * length * random.normal()).collect();
+        let extensions =
+            extensions.map(|(e, length)| e + 0.1 * spread * length * random.normal()).collect();
         let angles = joints.angles.iter().map(|angle| angle + spread * random.normal()).collect();
         self.limited(Joints { extensions, angles })
     }

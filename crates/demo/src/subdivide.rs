@@ -24,7 +24,8 @@ pub fn in_four((mut vertices, indices): Mesh) -> Mesh {
 pub fn shuffled((vertices, mut indices): Mesh, seed: u64) -> Mesh {
     let mut state = seed;
     for last in (1..indices.len()).rev() {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        state =
+            state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         indices.swap(last, ((state >> 33) as usize) % (last + 1));
     }
     (vertices, indices)

@@ -1,9 +1,9 @@
 //! From a field to triangles: marching tetrahedra, and subdivision.
 //!
-//! Each cube of a grid is cut into six tetrahedra that share one diagonal (Kuhn's cut, the same in every cube, so
-//! that neighbours match). On a tetrahedron the field is taken as linear; its zero set is a triangle or a
-//! quadrilateral. No configuration is ambiguous, therefore the surface is always closed and manifold. Its triangles
-//! are ugly; `remesh` makes them beautiful.
+//! Each cube of a grid is cut into six tetrahedra that share one diagonal (Kuhn's cut, the same in
+//! every cube, so that neighbours match). On a tetrahedron the field is taken as linear; its zero
+//! set is a triangle or a quadrilateral. No configuration is ambiguous, therefore the surface is
+//! always closed and manifold. Its triangles are ugly; `remesh` makes them beautiful.
 
 use parry_continuum::parry::math::{Real, Vector};
 use rayon::prelude::*;
@@ -15,11 +15,13 @@ pub type Mesh = (Vec<Vector>, Vec<[u32; 3]>);
 /// A field, negative inside.
 pub type Field<'a> = &'a (dyn Fn(Vector) -> Real + Sync);
 
-/// The tetrahedra of a cube, by corner (bit 0: x, bit 1: y, bit 2: z). The second half has the opposite orientation.
+/// The tetrahedra of a cube, by corner (bit 0: x, bit 1: y, bit 2: z). The second half has the
+/// opposite orientation.
 const TETRAHEDRA: [[usize; 4]; 6] =
     [[0, 1, 3, 7], [0, 2, 6, 7], [0, 4, 5, 7], [0, 1, 5, 7], [0, 2, 3, 7], [0, 4, 6, 7]];
 
-/// Even permutations of a tetrahedron's corners that put corner i first, and those that put a given pair first.
+/// Even permutations of a tetrahedron's corners that put corner i first, and those that put a given
+/// pair first.
 const ONE_FIRST: [[usize; 4]; 4] = [[0, 1, 2, 3], [1, 0, 3, 2], [2, 3, 0, 1], [3, 2, 1, 0]];
 const PAIR_FIRST: [[usize; 4]; 6] =
     [[0, 1, 2, 3], [0, 2, 3, 1], [0, 3, 1, 2], [1, 2, 0, 3], [1, 3, 2, 0], [2, 3, 0, 1]];
@@ -72,7 +74,8 @@ pub fn extract(field: Field, low: Vector, high: Vector, spacing: Real) -> Mesh {
     (points, triangles)
 }
 
-/// The triangles that separate a tetrahedron's inner from its outer corners, each vertex as the edge it lies on.
+/// The triangles that separate a tetrahedron's inner from its outer corners, each vertex as the
+/// edge it lies on.
 fn faces(inside: [bool; 4]) -> Vec<[[usize; 2]; 3]> {
     let lone = |i: usize| {
         let [a, b, c, d] = ONE_FIRST[i];

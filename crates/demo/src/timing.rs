@@ -6,8 +6,8 @@ use parry_continuum::parry::query::{self, Unsupported};
 use parry_continuum::parry::shape::{Cylinder, TriMesh};
 use std::time::{Duration, Instant};
 
-/// The links as parry's own cylinders (which lie along y around the origin), each with its place in the robot.
-/// A link of length 0 is left out.
+/// The links as parry's own cylinders (which lie along y around the origin), each with its place in
+/// the robot. A link of length 0 is left out.
 pub fn cylinders(robot: &Chain) -> Vec<(Pose, Cylinder)> {
     let cylinder = |link: &parry_continuum::ModifiedCylinder| {
         let turn = Rot3::from_rotation_arc(Vector::Y, link.axis());
@@ -25,7 +25,8 @@ pub fn parry(mesh: &TriMesh, links: &[(Pose, Cylinder)], pose: &Pose) -> Result<
     links.iter().map(distance).sum()
 }
 
-/// The median time of each of the jobs, called in turns until `enough` has passed (at least 3 rounds each).
+/// The median time of each of the jobs, called in turns until `enough` has passed (at least 3
+/// rounds each).
 pub fn medians<E>(
     jobs: &mut [&mut dyn FnMut() -> Result<(), E>],
     enough: Duration,

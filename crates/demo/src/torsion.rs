@@ -1,21 +1,23 @@
 //! Forward kinematics of a concentric tube robot whose tubes twist.
 //!
-//! A tube's bending stiffness over its torsional stiffness is 1 + nu (E I over G J for a round section, nu being
-//! Poisson's ratio), so that its angle psi_i obeys
+//! A tube's bending stiffness over its torsional stiffness is 1 + nu (E I over G J for a round
+//! section, nu being Poisson's ratio), so that its angle psi_i obeys
 //!
 //! ```text
 //! psi_i'' = (1 + nu) kappa_i sum_j k_j kappa_j sin(psi_i - psi_j) / sum_j k_j,
 //! ```
 //!
-//! j running over the tubes that are present, with stiffness k and curvature kappa (0 where a tube is straight); no
-//! tube is twisted at its own end (Dupont et al., T-RO 2010; Rucker, Jones and Webster, T-RO 2010). With the angles
-//! given at the tubes' ends that is an initial value problem from the tip to the base, and its solution is unique. It
-//! is integrated by Runge and Kutta's method of order four, together with the frame.
+//! j running over the tubes that are present, with stiffness k and curvature kappa (0 where a tube
+//! is straight); no tube is twisted at its own end (Dupont et al., T-RO 2010; Rucker, Jones and
+//! Webster, T-RO 2010). With the angles given at the tubes' ends that is an initial value problem
+//! from the tip to the base, and its solution is unique. It is integrated by Runge and Kutta's
+//! method of order four, together with the frame.
 
 use crate::ctr::{Joints, Robot};
 use parry_continuum::parry::math::{Matrix, Pose, Real, Rot3, Vector};
 
-/// The longest step of the integration, in the robot's unit: bends of radius 20 mm its error is about 1e-9.
+/// The longest step of the integration, in the robot's unit: bends of radius 20 mm its error is
+/// about 1e-9.
 const STEP: Real = 0.25;
 
 /// Poisson's ratio of the tubes.
@@ -31,7 +33,8 @@ pub struct Twisted {
     pub base_angles: Vec<Real>,
 }
 
-/// What changes along the robot: every tube's angle and twist, the position and the frame's columns.
+/// What changes along the robot: every tube's angle and twist, the position and the frame's
+/// columns.
 #[derive(Clone)]
 struct State {
     angles: Vec<Real>,
@@ -81,11 +84,14 @@ fn derivative(tubes: &[Reach], s: Real, state: &State) -> State {
         if s > tube.end {
             return 0.0;
         }
-        let pull: Real = each().map(|(other, at, bend)| other.stiffness * bend * (angle - at).sin()).sum();
+        let pull: Real =
+            each().map(|(other, at, bend)| other.stiffness * bend * (angle - at).sin()).sum();
         (1.0 + POISSON) * curvature * pull / stiffness
     };
     let bend: Vector = each()
-        .map(|(tube, angle, bend)| Vector::new(-angle.sin(), angle.cos(), 0.0) * (tube.stiffness * bend))
+        .map(|(tube, angle, bend)| {
+            Vector::new(-angle.sin(), angle.cos(), 0.0) * (tube.stiffness * bend)
+        })
         .sum();
     let [x, y, z] = state.columns;
     let turn = (x * bend.x + y * bend.y) / stiffness;
@@ -104,12 +110,16 @@ fn advance(tubes: &[Reach], s: Real, state: &State, step: Real) -> State {
     let third = derivative(tubes, s, &state.along(&second, 0.5 * step));
     let fourth = derivative(tubes, s, &state.along(&third, step));
     let sixth = step / 6.0;
-    state.along(&first, sixth).along(&second, 2.0 * sixth).along(&third, 2.0 * sixth).along(&fourth, sixth)
+    state
+        .along(&first, sixth)
+        .along(&second, 2.0 * sixth)
+        .along(&third, 2.0 * sixth)
+        .along(&fourth, sixth)
 }
 
 impl Robot {
-    /// The robot at joints whose angles are those of the tubes' own ends, at each of the given arc lengths (ascending,
-    /// from 0 to the length that is out, both included).
+    /// The robot at joints whose angles are those of the tubes' own ends, at each of the given arc
+    /// lengths (ascending, from 0 to the length that is out, both included).
     pub fn twisted(&self, joints: &Joints, arc_lengths: &[Real]) -> Twisted {
         let (mut tubes, mut breaks, mut end) = (Vec::new(), Vec::new(), 0.0);
         for (section, extension) in self.sections.iter().zip(&joints.extensions) {

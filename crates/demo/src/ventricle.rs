@@ -1,9 +1,10 @@
-//! A brain ventricle like a human one, grown from swept tubes: the two lateral ventricles with their frontal,
-//! occipital and temporal horns, the foramina of Monro, the third ventricle with its recesses, the aqueduct and the
-//! fourth ventricle with its lateral recesses.
+//! A brain ventricle like a human one, grown from swept tubes: the two lateral ventricles with
+//! their frontal, occipital and temporal horns, the foramina of Monro, the third ventricle with its
+//! recesses, the aqueduct and the fourth ventricle with its lateral recesses.
 //!
-//! Millimetres; x to the right, y to the front, z up; the origin is in the middle of the third ventricle. Sizes
-//! follow an adult's, with passages somewhat wider than average, so that a robot of 2.5 mm fits through a foramen.
+//! Millimetres; x to the right, y to the front, z up; the origin is in the middle of the third
+//! ventricle. Sizes follow an adult's, with passages somewhat wider than average, so that a robot
+//! of 2.5 mm fits through a foramen.
 
 use crate::ctr::Joints;
 use crate::field::{Body, Tube, knot, round};
@@ -27,8 +28,8 @@ const STEP: Real = 1e-4;
 /// Coarser surfaces are remeshed to size; finer ones subdivide such a surface.
 const REMESHED: usize = 24_000;
 
-/// The ventricle's wall with about `target_triangles` triangles ([`DEFAULT_TRIANGLES`] to some millions), closed and
-/// oriented outwards. Fewer would not do for its thin passages.
+/// The ventricle's wall with about `target_triangles` triangles ([`DEFAULT_TRIANGLES`] to some
+/// millions), closed and oriented outwards. Fewer would not do for its thin passages.
 pub fn mesh(target_triangles: usize) -> Mesh {
     let body = Ventricle::grow();
     let field = |p: Vector| body.value(p);
@@ -44,14 +45,16 @@ pub fn mesh(target_triangles: usize) -> Mesh {
     mesh
 }
 
-/// The robot's pose at its entry: a burr hole over the right frontal horn, the base 3 mm inside the roof.
+/// The robot's pose at its entry: a burr hole over the right frontal horn, the base 3 mm inside the
+/// roof.
 pub fn entry() -> Pose {
     let into = Vector::new(-0.46, -0.085, -0.884).normalize();
     Pose::from_parts(Vector::new(10.8, 13.72, 17.0), Rot3::from_rotation_arc(Vector::Z, into))
 }
 
-/// Where [`super::ctr::three_tubes`] goes from [`entry`]: down through the right foramen of Monro into the third
-/// ventricle, and back along it to the mouth of the aqueduct. A random search found it; it keeps 1 mm from the wall.
+/// Where [`super::ctr::three_tubes`] goes from [`entry`]: down through the right foramen of Monro
+/// into the third ventricle, and back along it to the mouth of the aqueduct. A random search found
+/// it; it keeps 1 mm from the wall.
 pub fn goal() -> Joints {
     Joints { extensions: vec![13.2, 18.1, 10.4], angles: vec![-0.54, -1.76, 0.0] }
 }
@@ -59,7 +62,8 @@ pub fn goal() -> Joints {
 /// Two frames of a pulsating wall: its vertices as they are, and moved outwards by a hundredth.
 pub fn beat(vertices: &[Vector]) -> [Vec<Vector>; 2] {
     let centre = vertices.iter().sum::<Vector>() / vertices.len() as Real;
-    [1.0, 1.01].map(|size| vertices.iter().map(|&vertex| centre + (vertex - centre) * size).collect())
+    [1.0, 1.01]
+        .map(|size| vertices.iter().map(|&vertex| centre + (vertex - centre) * size).collect())
 }
 
 /// The ventricle as a field.
@@ -88,7 +92,8 @@ impl Ventricle {
     }
 }
 
-/// The right lateral ventricle and its foramen. The first half-width of each section points sideways.
+/// The right lateral ventricle and its foramen. The first half-width of each section points
+/// sideways.
 fn lateral() -> Vec<Tube> {
     let c_shape = Tube::new(vec![
         knot([14.5, 36.0, 2.0], [1.0, 0.0, 0.3], [2.2, 3.5]),

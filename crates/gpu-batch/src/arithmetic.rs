@@ -1,4 +1,5 @@
-//! Whether a GPU's double precision deserves the name: Vulkan asks of it no more than of single precision.
+//! Whether a GPU's double precision deserves the name: Vulkan asks of it no more than of single
+//! precision.
 
 use crate::{Adapter, Batch, Device, DeviceError, Kernel, Precision};
 
@@ -24,12 +25,17 @@ const TOLERANCE: f64 = 4.0;
 pub(crate) fn check(device: &Device) -> Result<(), DeviceError> {
     let kernel = Kernel::new("self_test", include_str!("shaders/self_test.wgsl"), 2, 2);
     let mut got = Vec::new();
-    Batch::new(device, &kernel)?.run(OPERANDS.into_iter().flatten(), |results| got.extend(results))?;
+    Batch::new(device, &kernel)?
+        .run(OPERANDS.into_iter().flatten(), |results| got.extend(results))?;
     compare(&got, device.precision(), device.adapter())
 }
 
 /// Compares quotients and roots with the CPU's.
-pub(crate) fn compare(got: &[f64], precision: Precision, adapter: &Adapter) -> Result<(), DeviceError> {
+pub(crate) fn compare(
+    got: &[f64],
+    precision: Precision,
+    adapter: &Adapter,
+) -> Result<(), DeviceError> {
     let unit = match precision {
         Precision::F32 => f32::EPSILON.into(),
         Precision::F64 => f64::EPSILON,

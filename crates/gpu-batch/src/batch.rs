@@ -69,7 +69,12 @@ impl Batch {
         let layout = device.layout(&[Binding::Uniform, Binding::Read, Binding::Write]);
         Ok(Self {
             watch: device.watch(),
-            kernel: device.compile(kernel.name, &kernel.shader(device.precision()), &layout, &[])?,
+            kernel: device.compile(
+                kernel.name,
+                &kernel.shader(device.precision()),
+                &layout,
+                &[],
+            )?,
             layout,
             problem: kernel.problem().into(),
             answer: kernel.answer().into(),
@@ -80,7 +85,8 @@ impl Batch {
         })
     }
 
-    /// Answers as many problems as `numbers` make, in their order; `take` gets the numbers of each answer.
+    /// Answers as many problems as `numbers` make, in their order; `take` gets the numbers of each
+    /// answer.
     ///
     /// # Errors
     /// The GPU has failed. Answers that `take` has got by then are right.
@@ -95,7 +101,8 @@ impl Batch {
         numbers.into_iter().for_each(|number| device.precision().write(number, &mut bytes));
         let record = self.problem * device.precision().size();
         bytes.truncate(bytes.len() - bytes.len() % record as usize);
-        let largest = device.largest_binding() / (self.problem.max(self.answer) * device.precision().size());
+        let largest =
+            device.largest_binding() / (self.problem.max(self.answer) * device.precision().size());
         let most = largest.clamp(1, MOST_PROBLEMS) * record;
         for bytes in bytes.chunks(most as usize) {
             self.submit(bytes, bytes.len() as u64 / record, &mut take)?;
@@ -103,7 +110,8 @@ impl Batch {
         Ok(())
     }
 
-    /// How long the GPU computed for the last problems, without transfers; `None` if it keeps no time.
+    /// How long the GPU computed for the last problems, without transfers; `None` if it keeps no
+    /// time.
     pub fn device_time(&self) -> Option<Duration> {
         self.device_time
     }
@@ -128,8 +136,8 @@ impl Batch {
         device.queue().write_buffer(&room.problem_buffer, 0, bytes);
         let mut encoder = device.raw().create_command_encoder(&Default::default());
         let timestamp_writes = room.clock.as_ref().map(Clock::writes);
-        let mut pass =
-            encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: None, timestamp_writes });
+        let mut pass = encoder
+            .begin_compute_pass(&wgpu::ComputePassDescriptor { label: None, timestamp_writes });
         pass.set_pipeline(&self.kernel);
         pass.set_bind_group(0, &room.group, &[0]);
         let workgroups = problems.div_ceil(BATCH_THREADS.into()) as u32;
@@ -142,11 +150,18 @@ impl Batch {
             clock.copy(&mut encoder, &room.readback);
         }
         let (time, answer) = (&mut self.device_time, self.answer as usize);
-        device.run_and_read(&mut self.watch, encoder.finish(), &room.readback, READINGS + size, |bytes| {
-            let (readings, bytes) = bytes.split_at(READINGS as usize);
-            *time = time.zip(Clock::time_between(&device, readings)).map(|(sum, more)| sum + more);
-            read(device.precision(), bytes, answer, submission, take)
-        })?;
+        device.run_and_read(
+            &mut self.watch,
+            encoder.finish(),
+            &room.readback,
+            READINGS + size,
+            |bytes| {
+                let (readings, bytes) = bytes.split_at(READINGS as usize);
+                *time =
+                    time.zip(Clock::time_between(&device, readings)).map(|(sum, more)| sum + more);
+                read(device.precision(), bytes, answer, submission, take)
+            },
+        )?;
         self.room = Some(room);
         Ok(())
     }
@@ -154,16 +169,27 @@ impl Batch {
     fn make_room(&self, problems: u64) -> Room {
         let device = &self.device;
         let size = device.precision().size();
-        let head =
-            device.buffer(Head::size(device.precision()), BufferUsages::UNIFORM | BufferUsages::COPY_DST);
-        let problem_buffer =
-            device.buffer(problems * self.problem * size, BufferUsages::STORAGE | BufferUsages::COPY_DST);
+        let head = device
+            .buffer(Head::size(device.precision()), BufferUsages::UNIFORM | BufferUsages::COPY_DST);
+        let problem_buffer = device
+            .buffer(problems * self.problem * size, BufferUsages::STORAGE | BufferUsages::COPY_DST);
         let answers = problems * self.answer * size;
         let answer_buffer = device.buffer(answers, BufferUsages::STORAGE | BufferUsages::COPY_SRC);
-        let readback = device.buffer(READINGS + answers, BufferUsages::MAP_READ | BufferUsages::COPY_DST);
-        let group = device
-            .group(&self.layout, &[&head, &problem_buffer, &answer_buffer].map(Buffer::as_entire_binding));
-        Room { problems, head, problem_buffer, answer_buffer, readback, clock: Clock::new(device), group }
+        let readback =
+            device.buffer(READINGS + answers, BufferUsages::MAP_READ | BufferUsages::COPY_DST);
+        let group = device.group(
+            &self.layout,
+            &[&head, &problem_buffer, &answer_buffer].map(Buffer::as_entire_binding),
+        );
+        Room {
+            problems,
+            head,
+            problem_buffer,
+            answer_buffer,
+            readback,
+            clock: Clock::new(device),
+            group,
+        }
     }
 }
 

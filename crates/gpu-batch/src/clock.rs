@@ -18,7 +18,8 @@ impl Clock {
     /// None where the device keeps no time.
     pub fn new(device: &Device) -> Option<Self> {
         device.tick()?;
-        let descriptor = wgpu::QuerySetDescriptor { label: None, ty: wgpu::QueryType::Timestamp, count: 2 };
+        let descriptor =
+            wgpu::QuerySetDescriptor { label: None, ty: wgpu::QueryType::Timestamp, count: 2 };
         Some(Self {
             set: device.raw().create_query_set(&descriptor),
             readings: device.buffer(READINGS, BufferUsages::QUERY_RESOLVE | BufferUsages::COPY_SRC),

@@ -31,14 +31,16 @@ impl std::fmt::Debug for Device {
 }
 
 impl Device {
-    /// The fastest GPU of this machine, to compute in this precision. The environment variables of `wgpu`, such as
-    /// `WGPU_BACKEND`, narrow the choice.
+    /// The fastest GPU of this machine, to compute in this precision. The environment variables of
+    /// `wgpu`, such as `WGPU_BACKEND`, narrow the choice.
     ///
     /// # Errors
     /// There is no GPU, its driver refuses it, or it lacks double precision and that was asked for.
     pub fn open(precision: Precision) -> Result<Self, DeviceError> {
-        let device =
-            Self::open_of(wgpu::InstanceDescriptor::new_without_display_handle().with_env(), precision)?;
+        let device = Self::open_of(
+            wgpu::InstanceDescriptor::new_without_display_handle().with_env(),
+            precision,
+        )?;
         arithmetic::check(&device)?;
         Ok(device)
     }
@@ -78,15 +80,24 @@ impl Device {
             required_limits: adapter.limits(),
             ..Default::default()
         };
-        let (device, queue) = pollster::block_on(adapter.request_device(&descriptor)).map_err(|error| {
-            DeviceError::NotOpened { adapter: named.to_string(), reason: error.to_string() }
-        })?;
+        let (device, queue) =
+            pollster::block_on(adapter.request_device(&descriptor)).map_err(|error| {
+                DeviceError::NotOpened { adapter: named.to_string(), reason: error.to_string() }
+            })?;
         let failures = Failures::default();
         failures.listen_to(&device);
         let keeps_time = features.contains(wgpu::Features::TIMESTAMP_QUERY);
         let tick = keeps_time.then(|| queue.get_timestamp_period());
         let limits = device.limits();
-        Ok(Self(Arc::new(Opened { adapter: named, precision, device, queue, limits, tick, failures })))
+        Ok(Self(Arc::new(Opened {
+            adapter: named,
+            precision,
+            device,
+            queue,
+            limits,
+            tick,
+            failures,
+        })))
     }
 
     /// Which GPU it is.
@@ -173,9 +184,12 @@ impl Device {
 
     /// A layout of one bind group.
     pub fn layout(&self, bindings: &[Binding]) -> wgpu::BindGroupLayout {
-        let entries: Vec<_> = (0..).zip(bindings).map(|(number, binding)| binding.entry(number)).collect();
-        self.raw()
-            .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries })
+        let entries: Vec<_> =
+            (0..).zip(bindings).map(|(number, binding)| binding.entry(number)).collect();
+        self.raw().create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: None,
+            entries: &entries,
+        })
     }
 
     /// A bind group: what stands at each place of a layout.
@@ -188,7 +202,11 @@ impl Device {
             .zip(bindings)
             .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource: resource.clone() })
             .collect();
-        self.raw().create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries })
+        self.raw().create_bind_group(&wgpu::BindGroupDescriptor {
+            label: None,
+            layout,
+            entries: &entries,
+        })
     }
 
     /// A buffer of at least so many bytes; never empty, because an empty one cannot be bound.
@@ -209,14 +227,16 @@ impl Device {
 
     /// Bytes from one uniform of a kind to the next in a buffer.
     pub fn uniform_stride<R: Record>(&self) -> u64 {
-        R::size(self.precision()).next_multiple_of(self.limits().min_uniform_buffer_offset_alignment.into())
+        R::size(self.precision())
+            .next_multiple_of(self.limits().min_uniform_buffer_offset_alignment.into())
     }
 
-    /// Submits commands and has `read` take `size` bytes of `from`, a buffer for reading, once they are done.
+    /// Submits commands and has `read` take `size` bytes of `from`, a buffer for reading, once they
+    /// are done.
     ///
     /// # Errors
-    /// The device has failed since `watch` was asked last: `read` was not called. Or `read` says that there is nothing
-    /// to read.
+    /// The device has failed since `watch` was asked last: `read` was not called. Or `read` says
+    /// that there is nothing to read.
     pub fn run_and_read(
         &self,
         watch: &mut Watch,
@@ -244,7 +264,8 @@ impl Device {
     }
 
     fn wait(&self, submission: wgpu::SubmissionIndex) {
-        // `wgpu` panics when it finds a device lost while it waits; here that is an error like any other.
+        // `wgpu` panics when it finds a device lost while it waits; here that is an error like any
+        // other.
         let wait = wgpu::PollType::Wait { submission_index: Some(submission), timeout: None };
         if !matches!(catch_unwind(AssertUnwindSafe(|| self.raw().poll(wait))), Ok(Ok(_))) {
             self.0.failures.report(DeviceFailure::Lost);

@@ -62,7 +62,8 @@ pub enum DeviceError {
 }
 
 impl DeviceError {
-    /// What went wrong in one word: the variant in snake case, or that of the failure that it passes on.
+    /// What went wrong in one word: the variant in snake case, or that of the failure that it
+    /// passes on.
     pub fn kind(&self) -> &'static str {
         match self {
             Self::Failed(failure) => failure.kind(),

@@ -1,13 +1,16 @@
 use strum::IntoStaticStr;
 use thiserror::Error;
 
-/// How a GPU failed. All who use it hear of it, by what they do next; what they do after that may succeed.
+/// How a GPU failed. All who use it hear of it, by what they do next; what they do after that may
+/// succeed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error, IntoStaticStr)]
 #[strum(serialize_all = "snake_case")]
 #[non_exhaustive]
 pub enum DeviceFailure {
     /// It was reset or removed. It answers nothing more.
-    #[error("the GPU was lost (reset, removed, or out of time); open it anew, or compute on the CPU")]
+    #[error(
+        "the GPU was lost (reset, removed, or out of time); open it anew, or compute on the CPU"
+    )]
     Lost,
     /// Its memory does not hold what is asked for. Less may succeed.
     #[error("the GPU is out of memory; ask for less at once, or compute on the CPU")]

@@ -1,11 +1,12 @@
-//! What went wrong on a device. Drivers report at any time, from any thread, and do not say whose command it was: so
-//! everybody who uses the device hears of every failure.
+//! What went wrong on a device. Drivers report at any time, from any thread, and do not say whose
+//! command it was: so everybody who uses the device hears of every failure.
 
 use crate::DeviceFailure;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// From the gravest on: what follows from a graver failure says less than that.
-const KINDS: [DeviceFailure; 3] = [DeviceFailure::Lost, DeviceFailure::OutOfMemory, DeviceFailure::Refused];
+const KINDS: [DeviceFailure; 3] =
+    [DeviceFailure::Lost, DeviceFailure::OutOfMemory, DeviceFailure::Refused];
 
 /// The failures of a device, shared by its callbacks and its users.
 #[derive(Clone, Debug, Default)]
@@ -39,7 +40,8 @@ impl Failures {
         log.last[kind] = log.reported;
     }
 
-    /// For a new user, who has to do with nothing that failed before. (But a lost device stays lost.)
+    /// For a new user, who has to do with nothing that failed before. (But a lost device stays
+    /// lost.)
     pub(crate) fn watch(&self) -> Watch {
         Watch { failures: self.clone(), heard: self.lock().reported }
     }

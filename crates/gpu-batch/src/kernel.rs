@@ -12,10 +12,11 @@ pub struct Kernel<'a> {
 }
 
 impl<'a> Kernel<'a> {
-    /// A text that has `fn solve(problem: u32, answer: u32)`. That reads the numbers of its problem from
-    /// `problems[problem]` on, so many as `problem` says here (at least 1), and writes those of its answer from
-    /// `answers[answer]` on, so many as `answer` says. All are of the type `real`, which is `f32` or `f64`. What else the
-    /// text may build on stands in [`wgsl`]. `name` is for messages.
+    /// A text that has `fn solve(problem: u32, answer: u32)`. That reads the numbers of its problem
+    /// from `problems[problem]` on, so many as `problem` says here (at least 1), and writes
+    /// those of its answer from `answers[answer]` on, so many as `answer` says. All are of the
+    /// type `real`, which is `f32` or `f64`. What else the text may build on stands in
+    /// [`wgsl`]. `name` is for messages.
     pub const fn new(name: &'a str, text: &'a str, problem: u16, answer: u16) -> Self {
         Self { name, text, problem, answer }
     }
@@ -28,10 +29,17 @@ impl<'a> Kernel<'a> {
             ("ANSWER", self.answer()),
             ("ANSWER_HEAD", ANSWER_HEAD),
         ];
-        let sizes: String =
-            sizes.iter().map(|(name, size)| wgsl::constant(name, format_args!("{size}u"))).collect();
-        let text =
-            [&wgsl::prelude(precision), &sizes, &Head::wgsl(), self.text, include_str!("shaders/batch.wgsl")];
+        let sizes: String = sizes
+            .iter()
+            .map(|(name, size)| wgsl::constant(name, format_args!("{size}u")))
+            .collect();
+        let text = [
+            &wgsl::prelude(precision),
+            &sizes,
+            &Head::wgsl(),
+            self.text,
+            include_str!("shaders/batch.wgsl"),
+        ];
         Shader::new("batch", text.concat())
     }
 

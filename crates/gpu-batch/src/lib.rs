@@ -1,8 +1,8 @@
-//! A function in WGSL over many small records of numbers, a GPU thread each, through `wgpu`: Vulkan, Metal or
-//! Direct3D 12.
+//! A function in WGSL over many small records of numbers, a GPU thread each, through `wgpu`:
+//! Vulkan, Metal or Direct3D 12.
 //!
-//! A [`Device`] is a GPU, opened in one [`Precision`]. A [`Kernel`] is the text of a function and how many numbers it takes
-//! and gives. A [`Batch`] runs it over as many problems as there are:
+//! A [`Device`] is a GPU, opened in one [`Precision`]. A [`Kernel`] is the text of a function and
+//! how many numbers it takes and gives. A [`Batch`] runs it over as many problems as there are:
 //!
 //! ```no_run
 //! use gpu_batch::{Batch, Device, Kernel, Precision};
@@ -22,10 +22,11 @@
 //! What a kernel may build on stands in [`wgsl`].
 //!
 //! # Kernels of more than one step
-//! Whoever has several kernels, buffers that stay, or more than numbers to send takes the parts: a [`Device`] compiles a
-//! [`Shader`], makes buffers and groups of them, and reads back what a submission wrote, or says why there is nothing to
-//! read. A [`Watch`] reports what fails on the device, a [`Clock`] measures how long a pass took, and [`record!`] declares
-//! what Rust writes and WGSL reads.
+//! Whoever has several kernels, buffers that stay, or more than numbers to send takes the parts: a
+//! [`Device`] compiles a [`Shader`], makes buffers and groups of them, and reads back what a
+//! submission wrote, or says why there is nothing to read. A [`Watch`] reports what fails on the
+//! device, a [`Clock`] measures how long a pass took, and [`record!`] declares what Rust writes and
+//! WGSL reads.
 #![forbid(unsafe_code)]
 #![warn(missing_debug_implementations, missing_docs)]
 

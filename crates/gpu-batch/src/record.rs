@@ -1,4 +1,5 @@
-//! Records that the host writes and shaders read: one list of their fields makes both, laid out as WGSL says.
+//! Records that the host writes and shaders read: one list of their fields makes both, laid out as
+//! WGSL says.
 
 use crate::Precision;
 
@@ -75,8 +76,8 @@ pub trait Record: Default {
     }
 }
 
-/// Declares a [`Record`] of fields that are `u32`, `f64` (a `real` of the device's precision) or `[f64; 3]` (a
-/// `vec3<real>`).
+/// Declares a [`Record`] of fields that are `u32`, `f64` (a `real` of the device's precision) or
+/// `[f64; 3]` (a `vec3<real>`).
 ///
 /// ```
 /// use gpu_batch::{Precision, Record, record};

@@ -9,7 +9,8 @@ pub struct Shader {
 }
 
 impl Shader {
-    /// A text with this entry point. Numbers of either precision need [`wgsl::prelude`](crate::wgsl::prelude) in it.
+    /// A text with this entry point. Numbers of either precision need
+    /// [`wgsl::prelude`](crate::wgsl::prelude) in it.
     pub fn new(entry_point: &'static str, text: impl Into<String>) -> Self {
         Self { entry_point, text: text.into() }
     }

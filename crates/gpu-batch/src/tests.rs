@@ -2,7 +2,9 @@
 //! PARRY_CONTINUUM_REQUIRE_GPU is set.
 
 use crate::arithmetic::{self, OPERANDS};
-use crate::{Adapter, Batch, Binding, Device, DeviceError, DeviceFailure, Kernel, Precision, Shader, wgsl};
+use crate::{
+    Adapter, Batch, Binding, Device, DeviceError, DeviceFailure, Kernel, Precision, Shader, wgsl,
+};
 use std::sync::OnceLock;
 
 /// The GPU of this machine in a precision, if there is one.
@@ -21,8 +23,12 @@ fn device(precision: Precision) -> Option<&'static Device> {
 }
 
 /// A kernel that answers a number with itself.
-const ECHO: Kernel =
-    Kernel::new("echo", "fn solve(problem: u32, answer: u32) { answers[answer] = problems[problem]; }", 1, 1);
+const ECHO: Kernel = Kernel::new(
+    "echo",
+    "fn solve(problem: u32, answer: u32) { answers[answer] = problems[problem]; }",
+    1,
+    1,
+);
 
 /// A kernel that writes nothing.
 fn idle() -> Shader {
@@ -37,7 +43,9 @@ fn whole_problems_are_answered_in_any_number() {
         let mut batch = Batch::new(device, &Kernel::new("sum", text, 2, 1)).unwrap();
         for count in [0, 1, 2, 5, 1000, 100_001] {
             let mut answers = Vec::new();
-            batch.run((0..count).map(f64::from), |answer| answers.extend_from_slice(answer)).unwrap();
+            batch
+                .run((0..count).map(f64::from), |answer| answers.extend_from_slice(answer))
+                .unwrap();
             let expected: Vec<_> = (0..count / 2).map(|k| f64::from(4 * k + 1)).collect();
             assert_eq!(answers, expected);
         }
@@ -67,7 +75,10 @@ fn what_kernels_build_on_is_as_it_is_said_to_be() {
             let quotient = if x > 0.0 { 1.0 / x } else { 0.0 };
             assert!((answer[0] - quotient).abs() <= 1e-6 * quotient, "1 / {x}: {answer:?}");
             if x != 0.0 {
-                assert!((answer[1] / x.abs().cbrt() - 1.0).abs() < 0.05, "the cube root of {x}: {answer:?}");
+                assert!(
+                    (answer[1] / x.abs().cbrt() - 1.0).abs() < 0.05,
+                    "the cube root of {x}: {answer:?}"
+                );
                 let squared = answer[2] * answer[2];
                 assert!((1e-300..1e300).contains(&squared), "{x} near one: {answer:?}");
             }
@@ -75,7 +86,8 @@ fn what_kernels_build_on_is_as_it_is_said_to_be() {
                 assert!(answer[3] <= x && x <= answer[4], "{x} between: {answer:?}");
                 assert!(answer[4] - answer[3] <= 1e-6 * x, "{x} between: {answer:?}");
             }
-            let unit = if precision == Precision::F32 { f64::from(f32::EPSILON) } else { f64::EPSILON };
+            let unit =
+                if precision == Precision::F32 { f64::from(f32::EPSILON) } else { f64::EPSILON };
             assert_eq!(answer[5], unit / 2.0);
         }
     }
@@ -106,7 +118,10 @@ fn a_refused_command_is_an_error_of_every_batch_once() {
     device.buffer(u64::MAX / 4, wgpu::BufferUsages::STORAGE);
     for batch in &mut batches {
         let failure = batch.run([1.0], |_| {}).unwrap_err();
-        assert!(matches!(failure, DeviceFailure::Refused | DeviceFailure::OutOfMemory), "{failure}");
+        assert!(
+            matches!(failure, DeviceFailure::Refused | DeviceFailure::OutOfMemory),
+            "{failure}"
+        );
         assert_eq!(batch.run([1.0], |_| {}), Ok(()));
     }
 }

@@ -1,6 +1,7 @@
 //! What kernels may build on.
 //!
-//! `real` is `f32` or `f64`, and one text serves both. Beyond the arithmetic of WGSL, [`prelude`] has
+//! `real` is `f32` or `f64`, and one text serves both. Beyond the arithmetic of WGSL, [`prelude`]
+//! has
 //!
 //! | | |
 //! |---|---|
@@ -11,15 +12,15 @@
 //! | `power_of_two_to_unity(x)` | a power of two that brings x near 1, or at least its square into range |
 //! | `from_below(x)`, `from_above(x)` | an `f32` that is not above, or not below, a number from 0 up that `f32` has room for |
 //!
-//! In double precision keep to `+`, `-`, `*`, `/`, `sqrt`, `abs`, `min`, `max`, `clamp`, `dot` and `cross`: drivers compute
-//! the rest in single precision, if at all. A device may compute as if no NaN and no infinity arose: give both arms of a
-//! `select` finite numbers.
+//! In double precision keep to `+`, `-`, `*`, `/`, `sqrt`, `abs`, `min`, `max`, `clamp`, `dot` and
+//! `cross`: drivers compute the rest in single precision, if at all. A device may compute as if no
+//! NaN and no infinity arose: give both arms of a `select` finite numbers.
 
 use crate::Precision;
 use std::fmt::Display;
 
-/// Added to a third of a number's bits, gives the bits of its cube root within 5 %: two thirds of the exponent's bias,
-/// less what centres the error.
+/// Added to a third of a number's bits, gives the bits of its cube root within 5 %: two thirds of
+/// the exponent's bias, less what centres the error.
 const CBRT_BITS: u32 = 0x2a51_0554;
 
 /// What `real` is, and what all kernels have in common.
@@ -31,7 +32,9 @@ pub fn prelude(precision: Precision) -> String {
             f32::MIN_POSITIVE.into(),
             include_str!("shaders/scalar_f32.wgsl"),
         ),
-        Precision::F64 => ("f64", f64::EPSILON, f64::MIN_POSITIVE, include_str!("shaders/scalar_f64.wgsl")),
+        Precision::F64 => {
+            ("f64", f64::EPSILON, f64::MIN_POSITIVE, include_str!("shaders/scalar_f64.wgsl"))
+        }
     };
     format!("alias real = {real};\n")
         + &constant("UNIT_ROUNDOFF", format_args!("real({:e})", unit / 2.0))

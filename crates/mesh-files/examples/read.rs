@@ -1,5 +1,6 @@
-//! Prints what is read from each file, a line of JSON each: `cargo run --example read -- wall.stl lines.vtp:0`. A colon and
-//! a number after the name choose a label or a line; `--line` before a file reads it as a centreline.
+//! Prints what is read from each file, a line of JSON each: `cargo run --example read -- wall.stl
+//! lines.vtp:0`. A colon and a number after the name choose a label or a line; `--line` before a
+//! file reads it as a centreline.
 
 use mesh_files::{Frame, Options, load_centreline, load_with};
 use serde_json::{Value, json};
@@ -19,7 +20,9 @@ fn main() {
         let answer: Value = if std::mem::take(&mut is_line) {
             let options = Options::default().with_line(number.map(|number: u32| number as usize));
             match load_centreline(name, &options) {
-                Ok(line) => json!({ "points": line.points, "radii": line.radii, "frame": frame(line.frame) }),
+                Ok(line) => {
+                    json!({ "points": line.points, "radii": line.radii, "frame": frame(line.frame) })
+                }
                 Err(error) => json!({ "error": error.to_string() }),
             }
         } else {

@@ -149,7 +149,8 @@ pub enum MeshFileError {
         file: PathBuf,
         /// The label that was asked for.
         label: u32,
-        /// The labels that voxels have, 0 among them, in ascending order; of more than 1000 the lowest 1000.
+        /// The labels that voxels have, 0 among them, in ascending order; of more than 1000 the
+        /// lowest 1000.
         present: Vec<u32>,
     },
     /// A label was asked for, but a file of triangles has none.
@@ -198,7 +199,9 @@ pub enum MeshFileError {
         advice: &'static str,
     },
     /// The scale is not a positive number.
-    #[error("the scale is {scale}; give a positive number, for example 1000 for metres to millimetres")]
+    #[error(
+        "the scale is {scale}; give a positive number, for example 1000 for metres to millimetres"
+    )]
     #[non_exhaustive]
     Scale {
         /// The scale that was asked for.

@@ -1,13 +1,15 @@
-//! Triangle meshes from STL, OBJ, PLY and VTK files and from segmentations in NIfTI, NRRD and MetaImage files; centrelines
-//! from VTK's files, 3D Slicer's markups and text files.
+//! Triangle meshes from STL, OBJ, PLY and VTK files and from segmentations in NIfTI, NRRD and
+//! MetaImage files; centrelines from VTK's files, 3D Slicer's markups and text files.
 //!
-//! [`load`] reads a mesh, by the file's extension. What comes back is whole: there is at least one triangle, every vertex is
-//! finite, and every triangle names three different vertices that are there. What is wrong with a file is said in one
-//! line. Faces without area are left out, and [`Mesh::skipped_faces`] counts them. How much memory reading may take is
-//! limited by [`Options::memory_limit`]. [`load_centreline`] reads points along a line in the same way.
+//! [`load`] reads a mesh, by the file's extension. What comes back is whole: there is at least one
+//! triangle, every vertex is finite, and every triangle names three different vertices that are
+//! there. What is wrong with a file is said in one line. Faces without area are left out, and
+//! [`Mesh::skipped_faces`] counts them. How much memory reading may take is limited by
+//! [`Options::memory_limit`]. [`load_centreline`] reads points along a line in the same way.
 //!
-//! The formats are read here: what the field's programs write differs from what the crates for them accept. XML, JSON,
-//! base64, archives, surface nets and the cutting of polygons are left to the crates that know them.
+//! The formats are read here: what the field's programs write differs from what the crates for them
+//! accept. XML, JSON, base64, archives, surface nets and the cutting of polygons are left to the
+//! crates that know them.
 #![warn(missing_debug_implementations, missing_docs)]
 
 #[cfg(feature = "centrelines")]
@@ -34,30 +36,40 @@ use std::path::Path;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Options {
-    /// Multiplies every coordinate, for example 1000 for metres to millimetres. A label map has a unit and comes in
-    /// millimetres before it is multiplied.
+    /// Multiplies every coordinate, for example 1000 for metres to millimetres. A label map has a
+    /// unit and comes in millimetres before it is multiplied.
     pub scale: f64,
-    /// The label whose surface is taken from a label map; without one all voxels that are not 0 are inside. For a file
-    /// of triangles it is an error.
+    /// The label whose surface is taken from a label map; without one all voxels that are not 0
+    /// are inside. For a file of triangles it is an error.
     pub label: Option<u32>,
-    /// Whether a label map is read that says how far apart its voxels are, but not where. Its first voxel is then the
-    /// origin, its axes are those of the voxels, and its frame is unknown unless the file states it.
+    /// Whether a label map is read that says how far apart its voxels are, but not where. Its
+    /// first voxel is then the origin, its axes are those of the voxels, and its frame is
+    /// unknown unless the file states it.
     pub allow_no_position: bool,
     /// Which line of a centreline's file is read, counted from 0. A file with one line needs none.
     pub line: Option<usize>,
-    /// The most memory, in bytes, that reading may take beside the file's own bytes: 2 GiB unless something else is said.
+    /// The most memory, in bytes, that reading may take beside the file's own bytes: 2 GiB unless
+    /// something else is said.
     ///
-    /// What would take more is refused before the memory is taken, with [`MeshFileError::TooLarge`]. A label map takes 5
-    /// bytes for each voxel of the smallest box around the label, and at most 134 for each face between a voxel of the
-    /// label and another one; its voxels are never kept as a whole, however small their archive is. A file of triangles
-    /// takes memory in proportion to its size, whatever its header counts; one that is itself larger than the limit is
-    /// refused by [`load_with`] before it is read.
+    /// What would take more is refused before the memory is taken, with
+    /// [`MeshFileError::TooLarge`]. A label map takes 5 bytes for each voxel of the smallest
+    /// box around the label, and at most 134 for each face between a voxel of the
+    /// label and another one; its voxels are never kept as a whole, however small their archive
+    /// is. A file of triangles takes memory in proportion to its size, whatever its header
+    /// counts; one that is itself larger than the limit is refused by [`load_with`] before it
+    /// is read.
     pub memory_limit: u64,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { scale: 1.0, label: None, allow_no_position: false, line: None, memory_limit: 2 << 30 }
+        Self {
+            scale: 1.0,
+            label: None,
+            allow_no_position: false,
+            line: None,
+            memory_limit: 2 << 30,
+        }
     }
 }
 
@@ -67,8 +79,8 @@ impl Options {
         Self { scale, ..Self::default() }
     }
 
-    /// The same, but of a label map the surface of this label, or of all that are not 0. A file of triangles has no
-    /// labels: asked for one, it is an error.
+    /// The same, but of a label map the surface of this label, or of all that are not 0. A file of
+    /// triangles has no labels: asked for one, it is an error.
     pub fn with_label(self, label: Option<u32>) -> Self {
         Self { label, ..self }
     }
@@ -108,7 +120,13 @@ impl Options {
                 } else {
                     "repair that vertex"
                 };
-                return Err(MeshFileError::NotFinite { file: file.to_owned(), index, place, scale, advice });
+                return Err(MeshFileError::NotFinite {
+                    file: file.to_owned(),
+                    index,
+                    place,
+                    scale,
+                    advice,
+                });
             }
         }
         Ok(())
@@ -198,9 +216,10 @@ pub fn load(path: impl AsRef<Path>) -> Result<Mesh, MeshFileError> {
 /// The mesh in the file, read as the options say.
 ///
 /// # Errors
-/// The file cannot be read, is of unknown format or broken, or holds no triangle; a vertex is not finite; a triangle
-/// names a vertex that is not there; a label map has no voxel of the label, or holds an image instead; a label is asked
-/// of a file of triangles; it takes more memory than the options allow; or the scale is not a positive number.
+/// The file cannot be read, is of unknown format or broken, or holds no triangle; a vertex is not
+/// finite; a triangle names a vertex that is not there; a label map has no voxel of the label, or
+/// holds an image instead; a label is asked of a file of triangles; it takes more memory than the
+/// options allow; or the scale is not a positive number.
 pub fn load_with(path: impl AsRef<Path>, options: &Options) -> Result<Mesh, MeshFileError> {
     let path = path.as_ref();
     #[cfg(feature = "label-maps")]
@@ -222,19 +241,23 @@ fn two_files(path: &Path, options: &Options) -> Option<Result<(Format, Vec<u8>),
     let extension = path.extension()?.to_str()?;
     let file = |own: &str| {
         let is_upper = extension.chars().all(char::is_uppercase);
-        read_file(&path.with_extension(if is_upper { own.to_uppercase() } else { own.into() }), options)
+        read_file(
+            &path.with_extension(if is_upper { own.to_uppercase() } else { own.into() }),
+            options,
+        )
     };
     if label_map::nifti::is_pair(extension) {
         let both = file("hdr").and_then(|header| Ok((header, file("img")?)));
         return Some(both.and_then(|(header, voxels)| {
             let whole = label_map::nifti::in_one(&header, &voxels);
-            let broken = |reason| MeshFileError::Broken { file: path.to_owned(), format: "NIfTI", reason };
+            let broken =
+                |reason| MeshFileError::Broken { file: path.to_owned(), format: "NIfTI", reason };
             Ok((Format::Nifti, whole.map_err(broken)?))
         }));
     }
     if extension.eq_ignore_ascii_case("nhdr") {
-        let whole =
-            read_file(path, options).and_then(|bytes| with_voxels(path, Format::Nrrd, bytes, options));
+        let whole = read_file(path, options)
+            .and_then(|bytes| with_voxels(path, Format::Nrrd, bytes, options));
         return Some(whole.map(|bytes| (Format::Nrrd, bytes)));
     }
     None
@@ -281,12 +304,21 @@ fn read_file(path: &Path, options: &Options) -> Result<Vec<u8>, MeshFileError> {
 ///
 /// # Errors
 /// As [`load_with`].
-pub fn from_bytes(path: impl AsRef<Path>, bytes: &[u8], options: &Options) -> Result<Mesh, MeshFileError> {
+pub fn from_bytes(
+    path: impl AsRef<Path>,
+    bytes: &[u8],
+    options: &Options,
+) -> Result<Mesh, MeshFileError> {
     let path = path.as_ref();
     parse(path, Format::of(path)?, bytes, options)
 }
 
-fn parse(path: &Path, format: Format, bytes: &[u8], options: &Options) -> Result<Mesh, MeshFileError> {
+fn parse(
+    path: &Path,
+    format: Format,
+    bytes: &[u8],
+    options: &Options,
+) -> Result<Mesh, MeshFileError> {
     options.check_scale()?;
     let file = path.to_owned();
     let broken = |reason: String| {
@@ -298,21 +330,25 @@ fn parse(path: &Path, format: Format, bytes: &[u8], options: &Options) -> Result
     };
     #[cfg(feature = "label-maps")]
     let surface = |read: Result<label_map::Volume, Fault>| {
-        read.and_then(|volume| volume.surface(options.label, options.memory_limit)).map_err(|fault| {
-            let file = path.to_owned();
-            match (fault, options.label) {
-                (Fault::Broken(reason), _) => broken(reason),
-                (Fault::NoPosition(missing), _) => MeshFileError::NoPosition { file, missing },
-                (Fault::TooLarge(bytes), _) => {
-                    MeshFileError::TooLarge { file, bytes, limit: options.memory_limit }
+        read.and_then(|volume| volume.surface(options.label, options.memory_limit)).map_err(
+            |fault| {
+                let file = path.to_owned();
+                match (fault, options.label) {
+                    (Fault::Broken(reason), _) => broken(reason),
+                    (Fault::NoPosition(missing), _) => MeshFileError::NoPosition { file, missing },
+                    (Fault::TooLarge(bytes), _) => {
+                        MeshFileError::TooLarge { file, bytes, limit: options.memory_limit }
+                    }
+                    (Fault::NotALabel(number), _) => MeshFileError::NotLabels { file, number },
+                    (Fault::NoneOf(present), Some(label)) => MeshFileError::NoSuchLabel {
+                        file,
+                        label,
+                        present: present.into_iter().collect(),
+                    },
+                    (Fault::NoneOf(_), None) => MeshFileError::NothingSegmented { file },
                 }
-                (Fault::NotALabel(number), _) => MeshFileError::NotLabels { file, number },
-                (Fault::NoneOf(present), Some(label)) => {
-                    MeshFileError::NoSuchLabel { file, label, present: present.into_iter().collect() }
-                }
-                (Fault::NoneOf(_), None) => MeshFileError::NothingSegmented { file },
-            }
-        })
+            },
+        )
     };
     let mut mesh = match format {
         Format::Stl => stl::read(bytes).map_err(broken),
@@ -322,7 +358,8 @@ fn parse(path: &Path, format: Format, bytes: &[u8], options: &Options) -> Result
         Format::Vtk => centreline::surface(centreline::vtk_legacy::read(bytes)).map_err(broken),
         #[cfg(feature = "centrelines")]
         Format::VtkXml => {
-            centreline::surface(centreline::vtk_xml::read(bytes, options.memory_limit)).map_err(broken)
+            centreline::surface(centreline::vtk_xml::read(bytes, options.memory_limit))
+                .map_err(broken)
         }
         #[cfg(feature = "label-maps")]
         Format::MetaImage => surface(label_map::meta_image::read(bytes)),
@@ -338,8 +375,10 @@ fn parse(path: &Path, format: Format, bytes: &[u8], options: &Options) -> Result
         return Err(MeshFileError::Empty { file, skipped_faces: mesh.skipped_faces });
     }
     let count = mesh.vertices.len();
-    if let Some(corner) = mesh.triangles.iter().flatten().find(|&&corner| corner as usize >= count) {
-        let reason = format!("a triangle names vertex {corner}, but there are {count}, counted from 0");
+    if let Some(corner) = mesh.triangles.iter().flatten().find(|&&corner| corner as usize >= count)
+    {
+        let reason =
+            format!("a triangle names vertex {corner}, but there are {count}, counted from 0");
         return Err(MeshFileError::Broken { file, format: format.name(), reason });
     }
     options.scale_all(path, &mut mesh.vertices)?;

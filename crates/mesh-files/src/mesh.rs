@@ -18,28 +18,32 @@ pub enum Frame {
 pub struct Mesh {
     /// The vertices.
     pub vertices: Vec<[f64; 3]>,
-    /// The triangles, each by its three vertices, in the file's order and turn. Those of a label map are
-    /// counter-clockwise seen from outside.
+    /// The triangles, each by its three vertices, in the file's order and turn. Those of a label
+    /// map are counter-clockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
     /// The frame of the coordinates, where the file states it.
     pub frame: Option<Frame>,
-    /// Whether the file states its unit of length. Label maps do, and come in millimetres; where one does not, its numbers
-    /// are taken for millimetres. Files of triangles do not.
+    /// Whether the file states its unit of length. Label maps do, and come in millimetres; where
+    /// one does not, its numbers are taken for millimetres. Files of triangles do not.
     pub states_unit: bool,
-    /// How many faces of the file are not among the triangles, because they name fewer than three different vertices and
-    /// so have no area. Each counts once, whatever its number of corners; the others keep their order. A polygon that names
-    /// a vertex twice and has area all the same is cut as any other, and is not counted. In an STL file the corners at
-    /// exactly the same place are one vertex. Faces whose vertices differ stay, be they ever so thin.
+    /// How many faces of the file are not among the triangles, because they name fewer than three
+    /// different vertices and so have no area. Each counts once, whatever its number of
+    /// corners; the others keep their order. A polygon that names a vertex twice and has area
+    /// all the same is cut as any other, and is not counted. In an STL file the corners at
+    /// exactly the same place are one vertex. Faces whose vertices differ stay, be they ever so
+    /// thin.
     pub skipped_faces: usize,
 }
 
 impl Mesh {
-    /// Vertices and triangles, the vertices as any type that three numbers make, such as glam's or parry's vectors.
+    /// Vertices and triangles, the vertices as any type that three numbers make, such as glam's or
+    /// parry's vectors.
     pub fn into_parts<Vertex: From<[f64; 3]>>(self) -> (Vec<Vertex>, Vec<[u32; 3]>) {
         (self.vertices.into_iter().map(Vertex::from).collect(), self.triangles)
     }
 
-    /// Adds a convex face, cut into a fan about its first corner, without the triangles that name a vertex twice.
+    /// Adds a convex face, cut into a fan about its first corner, without the triangles that name a
+    /// vertex twice.
     pub(crate) fn add_face(&mut self, corners: &[u32]) {
         let before = self.triangles.len();
         if let Some((&first, others)) = corners.split_first() {

@@ -59,16 +59,22 @@ pub fn read(bytes: &[u8]) -> Result<Mesh, String> {
     reader.read_statement(&open, last_line)?;
     let (count, last) = (reader.vertices.len(), reader.last);
     if last.1 > 0 && last.0 as usize >= count {
-        return Err(format!("line {} names vertex {}, but there are {count}", last.1, u64::from(last.0) + 1));
+        return Err(format!(
+            "line {} names vertex {}, but there are {count}",
+            last.1,
+            u64::from(last.0) + 1
+        ));
     }
     let mut mesh = Mesh { vertices: reader.vertices, frame: noted_frame(bytes), ..Mesh::default() };
     reader.faces.cut(&mut mesh)?;
     Ok(mesh)
 }
 
-/// The vertex that a corner such as `7/2/3` names, counted from 0. The numbers of textures and normals are not needed.
+/// The vertex that a corner such as `7/2/3` names, counted from 0. The numbers of textures and
+/// normals are not needed.
 fn corner(word: &str, count: usize, line: usize) -> Result<u32, String> {
-    let wrong = || format!("line {line} has '{}' where the number of a vertex should be", shown(word));
+    let wrong =
+        || format!("line {line} has '{}' where the number of a vertex should be", shown(word));
     let number: i64 = word.split('/').next().unwrap_or_default().parse().map_err(|_| wrong())?;
     // Negative numbers count back from the last vertex so far.
     let index = if number < 0 { (count as i64).checked_add(number) } else { number.checked_sub(1) };

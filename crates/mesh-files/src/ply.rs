@@ -105,7 +105,10 @@ fn next_word<'a>(rest: &mut &'a [u8]) -> Option<&'a [u8]> {
 }
 
 /// The next bytes, the least one first.
-fn take<'a, const SIZE: usize>(rest: &mut &'a [u8], is_big_endian: bool) -> Result<[u8; SIZE], Fault<'a>> {
+fn take<'a, const SIZE: usize>(
+    rest: &mut &'a [u8],
+    is_big_endian: bool,
+) -> Result<[u8; SIZE], Fault<'a>> {
     let (&own, others) = rest.split_first_chunk::<SIZE>().ok_or(Fault::End)?;
     *rest = others;
     let mut own = own;
@@ -120,7 +123,8 @@ pub fn read(bytes: &[u8]) -> Result<Mesh, String> {
     let mut mesh = Mesh { frame: noted_frame(bytes), ..Mesh::default() };
     let mut faces = Faces::default();
     for element in &elements {
-        let has = |axis: &&str| element.properties.iter().any(|p| p.name == *axis && p.count.is_none());
+        let has =
+            |axis: &&str| element.properties.iter().any(|p| p.name == *axis && p.count.is_none());
         if element.name == "vertex"
             && let Some(axis) = ["x", "y", "z"].iter().find(|axis| !has(axis))
         {
@@ -230,7 +234,8 @@ fn header(bytes: &[u8]) -> Result<(Vec<Element>, Body<'_>), String> {
         let is_pair = end != b"\r" && rest[length..].starts_with(b"\r\n");
         rest = &rest[length + if is_pair { 2 } else { 1 }..];
         let words: Vec<_> = line.split_whitespace().collect();
-        let wrong = || format!("its header has '{}', which is no line of a header", shown(line.trim()));
+        let wrong =
+            || format!("its header has '{}', which is no line of a header", shown(line.trim()));
         let kind = |name: &str| Kind::of(name).ok_or_else(wrong);
         match words[..] {
             [] | ["comment" | "obj_info", ..] => {}
@@ -240,7 +245,8 @@ fn header(bytes: &[u8]) -> Result<(Vec<Element>, Body<'_>), String> {
                 elements.push(Element { name: name.into(), count, properties: Vec::new() });
             }
             ["property", "list", count, number, name] => {
-                let property = Property { name: name.into(), kind: kind(number)?, count: Some(kind(count)?) };
+                let property =
+                    Property { name: name.into(), kind: kind(number)?, count: Some(kind(count)?) };
                 elements.last_mut().ok_or_else(wrong)?.properties.push(property);
             }
             ["property", number, name] => {

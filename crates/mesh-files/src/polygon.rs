@@ -83,7 +83,9 @@ impl Cutter {
         }
         let count = self.corners.len();
         if count > MOST_CORNERS {
-            return Err(format!("a face of {count} corners is not convex; triangulate it before the export"));
+            return Err(format!(
+                "a face of {count} corners is not convex; triangulate it before the export"
+            ));
         }
         self.earcut.earcut_slice::<u32>(&self.outline, &[], &mut self.ears);
         let before = mesh.triangles.len();
@@ -101,10 +103,14 @@ impl Cutter {
     /// Coordinates count from the first corner and are scaled by a power of two to at most 1.
     fn project(&mut self, vertices: &[[f64; 3]]) -> bool {
         let corner = |&index: &u32| vertices.get(index as usize).copied();
-        let Some(places) = self.corners.iter().map(corner).collect::<Option<Vec<_>>>() else { return false };
+        let Some(places) = self.corners.iter().map(corner).collect::<Option<Vec<_>>>() else {
+            return false;
+        };
         let away = |place: [f64; 3]| [0, 1, 2].map(|axis| place[axis] - places[0][axis]);
-        let largest =
-            places.iter().flat_map(|&place| away(place)).fold(0.0, |most: f64, x| most.max(x.abs()));
+        let largest = places
+            .iter()
+            .flat_map(|&place| away(place))
+            .fold(0.0, |most: f64, x| most.max(x.abs()));
         if !(f64::MIN_POSITIVE..f64::MAX).contains(&largest) {
             return false;
         }
@@ -117,7 +123,10 @@ impl Cutter {
             pairs.map(|(p, q)| p[u] * q[v] - p[v] * q[u]).sum::<f64>()
         });
         let axis =
-            (0..3).fold(0, |best, axis| if normal[axis].abs() > normal[best].abs() { axis } else { best });
+            (0..3).fold(
+                0,
+                |best, axis| if normal[axis].abs() > normal[best].abs() { axis } else { best },
+            );
         let [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
         let [u, v] = if normal[axis] < 0.0 { [v, u] } else { [u, v] };
         self.outline.clear();

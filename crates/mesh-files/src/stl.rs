@@ -11,7 +11,8 @@ const TRIANGLE: usize = 50;
 pub fn read(bytes: &[u8]) -> Result<Mesh, String> {
     let count = bytes.get(80..HEAD).map(|n| u32::from_le_bytes([n[0], n[1], n[2], n[3]]) as usize);
     let body = bytes.get(HEAD..).unwrap_or_default();
-    // Some binary files begin with "solid" all the same: the length decides, then the bytes that text has not.
+    // Some binary files begin with "solid" all the same: the length decides, then the bytes that
+    // text has not.
     let start = without_mark(bytes).trim_ascii_start();
     let is_solid = start.get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid"));
     let mut mesh = match (count, count.and_then(|count| triangles(count, body))) {
@@ -37,9 +38,10 @@ pub fn read(bytes: &[u8]) -> Result<Mesh, String> {
     Ok(mesh)
 }
 
-/// The triangles of a binary file whose length leaves no doubt: as many as its header counts, and less than one behind
-/// them; or as many as there are, where a writer never came back to count (0, or all bits set). In some files bytes
-/// follow each triangle, as many as its last two bytes say; in others these two are a colour.
+/// The triangles of a binary file whose length leaves no doubt: as many as its header counts, and
+/// less than one behind them; or as many as there are, where a writer never came back to count (0,
+/// or all bits set). In some files bytes follow each triangle, as many as its last two bytes say;
+/// in others these two are a colour.
 fn triangles(count: usize, body: &[u8]) -> Option<Vec<&[u8; TRIANGLE]>> {
     let (all, tail) = body.as_chunks::<TRIANGLE>();
     let is_uncounted = count == 0 || count == u32::MAX as usize;
@@ -64,8 +66,12 @@ fn binary(triangles: &[&[u8; TRIANGLE]]) -> Mesh {
     let (mut mesh, mut merger) = (Mesh::default(), Merger::default());
     for triangle in triangles {
         // The normal comes first; it follows from the corners.
-        let at = |i: usize| f32::from_le_bytes([0, 1, 2, 3].map(|byte| triangle[12 + 4 * i + byte])).into();
-        mesh.add_face(&[0, 3, 6].map(|corner| merger.number([at(corner), at(corner + 1), at(corner + 2)])));
+        let at = |i: usize| {
+            f32::from_le_bytes([0, 1, 2, 3].map(|byte| triangle[12 + 4 * i + byte])).into()
+        };
+        mesh.add_face(
+            &[0, 3, 6].map(|corner| merger.number([at(corner), at(corner + 1), at(corner + 2)])),
+        );
     }
     Mesh { vertices: merger.vertices, ..mesh }
 }

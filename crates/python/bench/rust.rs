@@ -1,8 +1,9 @@
 //! What the Rust library takes for the shapes of `bench/peers.py`, to see what Python adds.
 //!
-//! Reads 64-bit floats, little-endian: the counts of vertices, triangles, robots and points each, the vertices, the triangles,
-//! and the robots' points; all radii are the last number. Writes one line for each question: its name, and the nanoseconds
-//! of processor time that it took for one robot after the other, and for all of them as a batch. Linux and macOS alone.
+//! Reads 64-bit floats, little-endian: the counts of vertices, triangles, robots and points each,
+//! the vertices, the triangles, and the robots' points; all radii are the last number. Writes one
+//! line for each question: its name, and the nanoseconds of processor time that it took for one
+//! robot after the other, and for all of them as a batch. Linux and macOS alone.
 
 use parry_continuum::Chain;
 use parry_continuum::parry::math::{Pose, Vector};
@@ -22,7 +23,10 @@ fn processor_time() -> f64 {
 }
 
 /// The nanoseconds that the work takes for one robot.
-fn time(robots: usize, mut work: impl FnMut() -> Result<(), Box<dyn Error>>) -> Result<f64, Box<dyn Error>> {
+fn time(
+    robots: usize,
+    mut work: impl FnMut() -> Result<(), Box<dyn Error>>,
+) -> Result<f64, Box<dyn Error>> {
     let mut least = f64::INFINITY;
     for _ in 0..ROUNDS {
         let begin = processor_time();
@@ -35,11 +39,15 @@ fn time(robots: usize, mut work: impl FnMut() -> Result<(), Box<dyn Error>>) -> 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut bytes = Vec::new();
     stdin().read_to_end(&mut bytes)?;
-    let numbers: Vec<_> = bytes.as_chunks::<8>().0.iter().map(|bytes| f64::from_le_bytes(*bytes)).collect();
+    let numbers: Vec<_> =
+        bytes.as_chunks::<8>().0.iter().map(|bytes| f64::from_le_bytes(*bytes)).collect();
     let (counts, rest) = numbers.split_at_checked(4).ok_or("there are no counts")?;
-    let [vertices, triangles, robots, points]: [usize; 4] = std::array::from_fn(|k| counts[k] as usize);
-    let (coordinates, rest) = rest.split_at_checked(3 * vertices).ok_or("there are too few vertices")?;
-    let (corners, rest) = rest.split_at_checked(3 * triangles).ok_or("there are too few triangles")?;
+    let [vertices, triangles, robots, points]: [usize; 4] =
+        std::array::from_fn(|k| counts[k] as usize);
+    let (coordinates, rest) =
+        rest.split_at_checked(3 * vertices).ok_or("there are too few vertices")?;
+    let (corners, rest) =
+        rest.split_at_checked(3 * triangles).ok_or("there are too few triangles")?;
     let (centrelines, radius) =
         rest.split_at_checked(3 * robots * points).ok_or("there are too few points")?;
     let to_vectors = |numbers: &[f64]| -> Vec<_> {

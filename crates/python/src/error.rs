@@ -55,7 +55,9 @@ impl Refused {
     /// The point, radius, vertex, face or the like that is at fault, counted from 0.
     fn index(&self) -> Option<usize> {
         match self {
-            Self::Robot(error) | Self::Query(ProximityError::Motion(error)) => index_in_robot(error),
+            Self::Robot(error) | Self::Query(ProximityError::Motion(error)) => {
+                index_in_robot(error)
+            }
             Self::Mesh(error) | Self::Query(ProximityError::Mesh(error)) => index_in_mesh(error),
             Self::Query(ProximityError::OutOfRange { link, .. }) => Some(*link),
             Self::Query(ProximityError::TooFast { section, .. }) => Some(*section),
@@ -130,7 +132,9 @@ impl From<RobotError> for Refused {
     fn from(mut error: RobotError) -> Self {
         match &mut error {
             // Sections have their radii beside them in Python.
-            RobotError::BadRadius { parameter: parameter @ ("from" | "to"), .. } => *parameter = "radii",
+            RobotError::BadRadius { parameter: parameter @ ("from" | "to"), .. } => {
+                *parameter = "radii"
+            }
             RobotError::LengthsDiffer { parameter, .. }
             | RobotError::BadRadius { parameter, .. }
             | RobotError::HidesLength { parameter, .. }

@@ -1,7 +1,9 @@
-//! parry-continuum for numpy: the module `parry_continuum._native`. Users see it through the Python package beside it.
+//! parry-continuum for numpy: the module `parry_continuum._native`. Users see it through the Python
+//! package beside it.
 //!
-//! `input` makes plain numbers of what Python hands over, `motions` has a class for each kind of motion, `threads` asks about them
-//! without the GIL, `queries` has a file for each question, and `output` makes arrays of the answers.
+//! `input` makes plain numbers of what Python hands over, `motions` has a class for each kind of
+//! motion, `threads` asks about them without the GIL, `queries` has a file for each question, and
+//! `output` makes arrays of the answers.
 
 mod error;
 mod input;
@@ -21,10 +23,13 @@ mod _native {
     #[pymodule_export]
     use super::mesh::{Mesh, load};
     #[pymodule_export]
-    use super::motions::{BendingMotion, LinearMotion, Motion, MotionPath, MovingBase, RigidMotion};
+    use super::motions::{
+        BendingMotion, LinearMotion, Motion, MotionPath, MovingBase, RigidMotion,
+    };
     #[pymodule_export]
     use super::queries::two_robots::{
-        RobotPair, between, clears_between, motion_self_clears, self_clears, self_minimum, tube_self_clears,
+        RobotPair, between, clears_between, motion_self_clears, self_clears, self_minimum,
+        tube_self_clears,
     };
     #[pymodule_export]
     use super::robots::{simplify, stations};

@@ -14,11 +14,12 @@ use std::sync::Arc;
 
 /// A triangle mesh that is asked how near robots are to it.
 ///
-/// ``Mesh(vertices, faces)`` copies both. ``Mesh(other)`` takes what has ``.vertices`` and ``.faces``, such as a mesh of
-/// trimesh. Lengths are in one unit of your choice, the same for mesh and robots.
+/// ``Mesh(vertices, faces)`` copies both. ``Mesh(other)`` takes what has ``.vertices`` and
+/// ``.faces``, such as a mesh of trimesh. Lengths are in one unit of your choice, the same for mesh
+/// and robots.
 ///
-/// Any number of threads may ask one mesh at the same time: queries run without the GIL. `move` moves the vertices for all
-/// queries that begin later. A mesh can be copied and pickled.
+/// Any number of threads may ask one mesh at the same time: queries run without the GIL. `move`
+/// moves the vertices for all queries that begin later. A mesh can be copied and pickled.
 ///
 /// Parameters
 /// ----------
@@ -29,8 +30,8 @@ use std::sync::Arc;
 /// Raises
 /// ------
 /// ContinuumError
-///     A vertex is not finite or out of range, a face names a vertex that is not there (its ``index`` is the face), there is
-///     no face, or an array has another shape.
+///     A vertex is not finite or out of range, a face names a vertex that is not there (its
+/// ``index`` is the face), there is     no face, or an array has another shape.
 ///
 /// Examples
 /// --------
@@ -68,7 +69,8 @@ pub(crate) fn rows<'py>(given: &Bound<'py, PyAny>, name: &str) -> PyResult<Numbe
                 [3, _] => "give its transpose, `.T`",
                 _ => "give a row of three coordinates for each vertex",
             };
-            let text = format!("`{name}` has the shape {}, not (V, 3); {advice}", shape_text(shape));
+            let text =
+                format!("`{name}` has the shape {}, not (V, 3); {advice}", shape_text(shape));
             Err(Refused::other("bad_shape", text).raise(given.py(), None))
         }
     }
@@ -85,7 +87,8 @@ impl Mesh {
             None => match (vertices.getattr("vertices"), vertices.getattr("faces")) {
                 (Ok(vertices), Ok(faces)) => (vertices, faces),
                 _ => {
-                    let text = "`faces` is missing; give vertices and faces, or an object that has both";
+                    let text =
+                        "`faces` is missing; give vertices and faces, or an object that has both";
                     return Err(Refused::other("bad_type", text).raise(py, None));
                 }
             },
@@ -107,14 +110,16 @@ impl Mesh {
     #[getter]
     fn faces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<i64>>> {
         let search = self.engine(py).search(py)?;
-        let numbers: Vec<_> = search.triangles().as_flattened().iter().map(|&vertex| vertex.into()).collect();
+        let numbers: Vec<_> =
+            search.triangles().as_flattened().iter().map(|&vertex| vertex.into()).collect();
         array(py, vec![search.triangles().len(), 3], numbers)
     }
 
     /// Moves the vertices, in the order that they have.
     ///
-    /// Queries that begin after this returns see the new vertices. Those that run meanwhile, in other threads, see the old
-    /// ones, a whole batch alike. It costs a fraction of building a mesh.
+    /// Queries that begin after this returns see the new vertices. Those that run meanwhile, in
+    /// other threads, see the old ones, a whole batch alike. It costs a fraction of building a
+    /// mesh.
     ///
     /// Parameters
     /// ----------
@@ -124,7 +129,8 @@ impl Mesh {
     /// Raises
     /// ------
     /// ContinuumError
-    ///     There are more or fewer than before, or one is not finite or out of range. The mesh then stays where it was.
+    ///     There are more or fewer than before, or one is not finite or out of range. The mesh then
+    /// stays where it was.
     ///
     /// Examples
     /// --------
@@ -144,7 +150,8 @@ impl Mesh {
 
     /// Builds now what a first question would build, so that none has to wait.
     ///
-    /// Call it after `move` too, where the first question after it must not take longer than others.
+    /// Call it after `move` too, where the first question after it must not take longer than
+    /// others.
     fn prepare(&self, py: Python<'_>) -> PyResult<()> {
         alone(py, &self.engine(py), |session| session.search.prepare())
     }
@@ -164,27 +171,39 @@ impl Mesh {
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
         let search = self.engine(py).search(py)?;
-        Ok(format!("Mesh({} vertices, {} faces)", search.vertices().len(), search.triangles().len()))
+        Ok(format!(
+            "Mesh({} vertices, {} faces)",
+            search.vertices().len(),
+            search.triangles().len()
+        ))
     }
 }
 
-/// The mesh in a file: STL, OBJ or PLY, or the surface of a label map in NIfTI or NRRD, by the file's extension.
+/// The mesh in a file: STL, OBJ or PLY, or the surface of a label map in NIfTI or NRRD, by the
+/// file's extension.
 ///
 /// Parameters
 /// ----------
 /// path : str or os.PathLike
 /// scale : float
-///     Multiplies every coordinate, for example 1000 for metres to millimetres. A label map comes in millimetres.
-/// label : int, optional
-///     The label whose surface is taken from a label map; without one all voxels that are not 0 are inside.
+///     Multiplies every coordinate, for example 1000 for metres to millimetres. A label map comes
+/// in millimetres. label : int, optional
+///     The label whose surface is taken from a label map; without one all voxels that are not 0 are
+/// inside.
 ///
 /// Raises
 /// ------
 /// ContinuumError
-///     The file cannot be read or holds no mesh; ``kind`` is ``"file"``, and the text says what to change.
+///     The file cannot be read or holds no mesh; ``kind`` is ``"file"``, and the text says what to
+/// change.
 #[pyfunction]
 #[pyo3(signature = (path, *, scale = 1.0, label = None))]
-pub(crate) fn load(py: Python<'_>, path: PathBuf, scale: f64, label: Option<u32>) -> PyResult<Mesh> {
+pub(crate) fn load(
+    py: Python<'_>,
+    path: PathBuf,
+    scale: f64,
+    label: Option<u32>,
+) -> PyResult<Mesh> {
     let options = Options::scaled(scale).with_label(label);
     let file = compute(py, || mesh_files::load_with(&path, &options))?;
     let file = file.map_err(|error| Refused::other("file", error.to_string()).raise(py, None))?;

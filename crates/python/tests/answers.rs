@@ -1,14 +1,18 @@
-//! The Rust library's answers to a problem of the Python tests, as numbers: what Python gets must be the same, bit for bit.
+//! The Rust library's answers to a problem of the Python tests, as numbers: what Python gets must
+//! be the same, bit for bit.
 //!
-//! Reads and writes 64-bit floats, little-endian. In: the counts of vertices, triangles, robots and points each; the vertices,
-//! the triangles, and for each robot its points, where they move to, its radii and its pose as 16 numbers.
+//! Reads and writes 64-bit floats, little-endian. In: the counts of vertices, triangles, robots and
+//! points each; the vertices, the triangles, and for each robot its points, where they move to, its
+//! radii and its pose as 16 numbers.
 
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::proximity::{
-    BvhSearch, Certificate, Decision, MotionAnswer, Proximity, RobotPair, RobotProximity, Side, Witness,
+    BvhSearch, Certificate, Decision, MotionAnswer, Proximity, RobotPair, RobotProximity, Side,
+    Witness,
 };
 use parry_continuum::{
-    BendingMotion, BendingSection, Chain, LinearMotion, MovingBase, RigidMotion, Tube, pose_from_matrix,
+    BendingMotion, BendingSection, Chain, LinearMotion, MovingBase, RigidMotion, Tube,
+    pose_from_matrix,
 };
 use std::error::Error;
 use std::io::{Read, Write, stdin, stdout};
@@ -63,7 +67,8 @@ fn add_between(out: &mut Vec<f64>, found: &[RobotProximity]) {
 fn main() -> Result<(), Box<dyn Error>> {
     let mut bytes = Vec::new();
     stdin().read_to_end(&mut bytes)?;
-    let numbers: Vec<_> = bytes.as_chunks::<8>().0.iter().map(|bytes| f64::from_le_bytes(*bytes)).collect();
+    let numbers: Vec<_> =
+        bytes.as_chunks::<8>().0.iter().map(|bytes| f64::from_le_bytes(*bytes)).collect();
     let mut input = Numbers(numbers.into_iter());
     let [vertices, triangles, robots, points] =
         [input.count()?, input.count()?, input.count()?, input.count()?];
@@ -76,12 +81,14 @@ fn main() -> Result<(), Box<dyn Error>> {
         .map(|face| face.map(|corner| corner as u32))
         .collect();
     let mut search = BvhSearch::from_triangles(&vertices, &triangles)?;
-    let (mut out, mut links, mut contacts, mut between) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    let (mut out, mut links, mut contacts, mut between) =
+        (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for _ in 0..robots {
         let (points, end) = (input.points(points)?, input.points(points)?);
         let radii = input.many(points.len() - 1)?;
         let matrix = input.many(16)?;
-        let pose = pose_from_matrix(std::array::from_fn(|i| std::array::from_fn(|j| matrix[4 * i + j])))?;
+        let pose =
+            pose_from_matrix(std::array::from_fn(|i| std::array::from_fn(|j| matrix[4 * i + j])))?;
         for chain in [
             Chain::from_centreline(&points, &radii)?,
             Chain::capsules(&points, &radii)?,
@@ -116,15 +123,19 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
         let tube = Tube::from_samples(&points, &radii, None)?;
         // Where a tube touches, which common point is named depends on what was asked before.
-        let found = BvhSearch::from_triangles(&vertices, &triangles)?.clearance(&tube, &pose, TOLERANCE)?;
+        let found =
+            BvhSearch::from_triangles(&vertices, &triangles)?.clearance(&tube, &pose, TOLERANCE)?;
         out.extend([found.lower, found.upper, f64::from(found.resolved), found.uncertainty]);
         add_witness(&mut out, &found.witness);
         // Of motions only what does not depend on what was asked before.
-        let rigid =
-            RigidMotion::new(Tube::from(&Chain::from_centreline(&points, &radii)?), [pose, Pose::IDENTITY])?;
+        let rigid = RigidMotion::new(
+            Tube::from(&Chain::from_centreline(&points, &radii)?),
+            [pose, Pose::IDENTITY],
+        )?;
         let sections = |points: &[Vector]| -> Vec<_> {
             let bend = |point: &Vector| [0.01 * point.x, 0.01 * point.y];
-            let section = |point| BendingSection { length: 1.0, radius: radii[0], bend: bend(point) };
+            let section =
+                |point| BendingSection { length: 1.0, radius: radii[0], bend: bend(point) };
             points[..2].iter().map(section).collect()
         };
         let bending = BendingMotion::new(&sections(&points), &sections(&end), pose)?;
@@ -133,20 +144,23 @@ fn main() -> Result<(), Box<dyn Error>> {
         add_answer(&mut out, &fresh()?.clears_motion(&rigid, 0.0, TOLERANCE)?);
         add_answer(&mut out, &fresh()?.clears_motion(&bending, 0.0, TOLERANCE)?);
         add_answer(&mut out, &fresh()?.clears_motion(&based, 0.0, TOLERANCE)?);
-        let shifted: Vec<_> = points.iter().map(|point| *point + Vector::new(0.5, -0.25, 1.0)).collect();
+        let shifted: Vec<_> =
+            points.iter().map(|point| *point + Vector::new(0.5, -0.25, 1.0)).collect();
         let shapes = [Chain::capsules(&points, &radii)?, Chain::capsules(&shifted, &radii)?];
         add_answer(&mut out, &fresh()?.clears_path(&shapes, 0.1, MARGIN, TOLERANCE)?);
         let moved: Vec<_> = vertices.iter().map(|vertex| *vertex * 0.9).collect();
         add_answer(&mut out, &fresh()?.clears_motion_while(&moved, &rigid, 0.0, TOLERANCE)?);
-        let [a, b] = [Chain::from_centreline(&points, &radii)?, Chain::from_centreline(&end, &radii)?];
+        let [a, b] =
+            [Chain::from_centreline(&points, &radii)?, Chain::from_centreline(&end, &radii)?];
         RobotPair::new().per_link(&a, &pose, &b, &Pose::IDENTITY, &mut between)?;
         add_between(&mut out, &between);
         RobotPair::new().within(&a, &pose, &b, &Pose::IDENTITY, 4.0, &mut between)?;
         out.push(between.len() as f64);
         add_between(&mut out, &between);
-        for motion in
-            [LinearMotion::chain(&points, &end, &radii)?, LinearMotion::capsules(&points, &end, &radii)?]
-        {
+        for motion in [
+            LinearMotion::chain(&points, &end, &radii)?,
+            LinearMotion::capsules(&points, &end, &radii)?,
+        ] {
             add_answer(&mut out, &search.clears_motion(&motion, 0.0, TOLERANCE)?);
         }
     }

@@ -1,16 +1,17 @@
-//! Bairstow's method: one quadratic factor after another, by Newton's method in its two coefficients.
+//! Bairstow's method: one quadratic factor after another, by Newton's method in its two
+//! coefficients.
 //!
-//! Divide P by z^2 + u z + v, and the quotient again: P mod = b (z + u) + a, Q mod = d (z + u) + c. A change
-//! (du, dv) changes the first remainder by -(du z + dv) Q modulo the divisor, and with z (d (z + u) + c) =
-//! c (z + u) - (c u + d v) the Newton equations are
+//! Divide P by z^2 + u z + v, and the quotient again: P mod = b (z + u) + a, Q mod = d (z + u) + c.
+//! A change (du, dv) changes the first remainder by -(du z + dv) Q modulo the divisor, and with z
+//! (d (z + u) + c) = c (z + u) - (c u + d v) the Newton equations are
 //!
 //! ```text
 //! c du + d dv = b,   -(c u + d v) du + c dv = a,   determinant c^2 + u c d + v d^2.
 //! ```
 //!
-//! The paper uses a custom implementation, "sensitive to initial guesses". Here the guesses lie on the circle that
-//! bounds the roots from below, turned by 94 degrees after a failure, so that small factors come first and
-//! leave the rest undisturbed.
+//! The paper uses a custom implementation, "sensitive to initial guesses". Here the guesses lie on
+//! the circle that bounds the roots from below, turned by 94 degrees after a failure, so that small
+//! factors come first and leave the rest undisturbed.
 
 use super::division::{by_quadratic, deflated, smallest_root_bound};
 use super::method::{Method, Tilt};
@@ -31,7 +32,11 @@ pub(crate) const ROUNDINGS: f64 = 8.0;
 impl Method for Bairstow {
     const TILT: Tilt = Tilt::Balanced;
 
-    fn approximate<T: Real, const M: usize>(monic: &[T; M], degree: usize, roots: &mut Roots<T, M>) {
+    fn approximate<T: Real, const M: usize>(
+        monic: &[T; M],
+        degree: usize,
+        roots: &mut Roots<T, M>,
+    ) {
         let mut rest = *monic;
         let mut degree = degree;
         while degree > 2 {
@@ -75,7 +80,12 @@ pub(super) fn turned<T: Real>((x, y): (T, T)) -> (T, T) {
 }
 
 /// Newton's method from the factor z^2 + `u` z + `v`.
-pub(super) fn refine<T: Real, const M: usize>(p: &[T; M], degree: usize, u: T, v: T) -> Option<(T, T)> {
+pub(super) fn refine<T: Real, const M: usize>(
+    p: &[T; M],
+    degree: usize,
+    u: T,
+    v: T,
+) -> Option<(T, T)> {
     let (mut u, mut v) = (u, v);
     for _ in 0..STEPS {
         let first = by_quadratic(p, degree, u, v);

@@ -1,10 +1,10 @@
 //! The promise that no root is silent garbage.
 //!
-//! A number z is a root to rounding if |p(z)| <= c n u sum |a_k| |z|^k: then it is the exact root of a polynomial
-//! whose coefficients differ from the given ones by c n u relative, and nothing better can be said in working
-//! precision. Every approximation is tested so on the whole polynomial. One that fails is polished by Newton's
-//! method, within a quarter of the distance to its nearest neighbour so that no two can become one, and is not
-//! returned if it fails again.
+//! A number z is a root to rounding if |p(z)| <= c n u sum |a_k| |z|^k: then it is the exact root
+//! of a polynomial whose coefficients differ from the given ones by c n u relative, and nothing
+//! better can be said in working precision. Every approximation is tested so on the whole
+//! polynomial. One that fails is polished by Newton's method, within a quarter of the distance to
+//! its nearest neighbour so that no two can become one, and is not returned if it fails again.
 //!
 //! The powers of a large or small z leave the range, so the test is done in a variable near 1.
 
@@ -76,9 +76,21 @@ impl<T: Real, const M: usize> Checker<T, M> {
                 let one = T::ONE;
                 let z = root.unscaled();
                 if z.re.abs() <= one && z.im.abs() <= one {
-                    return View { coefficients: *up, degree: *degree, y: z, reversed: false, shift: 0 };
+                    return View {
+                        coefficients: *up,
+                        degree: *degree,
+                        y: z,
+                        reversed: false,
+                        shift: 0,
+                    };
                 }
-                View { coefficients: *down, degree: *degree, y: inverse(z), reversed: true, shift: 0 }
+                View {
+                    coefficients: *down,
+                    degree: *degree,
+                    y: inverse(z),
+                    reversed: true,
+                    shift: 0,
+                }
             }
             Self::Wide { coefficients, degree } => {
                 let size = root.value.re.abs().max(root.value.im.abs());
@@ -99,7 +111,8 @@ impl<T: Real, const M: usize> Checker<T, M> {
         }
     }
 
-    /// The root if it is one to rounding, polished if need be. `others` are the other approximations.
+    /// The root if it is one to rounding, polished if need be. `others` are the other
+    /// approximations.
     pub(super) fn settle(
         &self,
         root: Scaled<T>,
@@ -125,7 +138,8 @@ impl<T: Real, const M: usize> Checker<T, M> {
             if !is_near {
                 return None;
             }
-            view.y = if root.value.im == T::ZERO { Complex { re: next.re, im: T::ZERO } } else { next };
+            view.y =
+                if root.value.im == T::ZERO { Complex { re: next.re, im: T::ZERO } } else { next };
             if view.is_root() {
                 return Some(view.root());
             }
@@ -141,12 +155,16 @@ impl<T: Real, const M: usize> View<T, M> {
         let size = if im == T::ZERO { re.abs() } else { modulus(self.y) };
         let (mut value_re, mut value_im, mut sum) = (T::ZERO, T::ZERO, T::ZERO);
         for &a in self.coefficients[..=self.degree].iter().rev() {
-            (value_re, value_im) = (value_re * re - value_im * im + a, value_re * im + value_im * re);
+            (value_re, value_im) =
+                (value_re * re - value_im * im + a, value_re * im + value_im * re);
             sum = sum * size + a.abs();
         }
         let tolerance = T::of(TOLERANCE * T::UNIT_ROUNDOFF * self.degree as f64) * sum;
-        let value =
-            if im == T::ZERO { value_re.abs() } else { modulus(Complex { re: value_re, im: value_im }) };
+        let value = if im == T::ZERO {
+            value_re.abs()
+        } else {
+            modulus(Complex { re: value_re, im: value_im })
+        };
         value <= tolerance
     }
 
@@ -168,7 +186,10 @@ impl<T: Real, const M: usize> View<T, M> {
             return inverse(other.unscaled());
         }
         let shift = other.shift - self.shift;
-        Complex { re: other.value.re.times_power_of_two(shift), im: other.value.im.times_power_of_two(shift) }
+        Complex {
+            re: other.value.re.times_power_of_two(shift),
+            im: other.value.im.times_power_of_two(shift),
+        }
     }
 
     fn root(&self) -> Scaled<T> {

@@ -1,16 +1,18 @@
 //! Closed form for degree 1 to 4.
 //!
 //! **Cubic** x^3 + a x^2 + b x + c. With x = t - a / 3 it is t^3 - 3 Q t + 2 R, Q = (a^2 - 3b) / 9,
-//! R = (2a^3 - 9ab + 27c) / 54. For R^2 < Q^3 there are three real roots -2 sqrt Q cos((theta + 2 pi k) / 3) - a / 3
-//! with cos theta = R / Q^1.5 (Viete), else one, A + Q / A - a / 3 with A = -sgn R cbrt(|R| + sqrt(R^2 - Q^3))
-//! (Cardano). Only one real root is taken, the one whose terms do not cancel, and polished by a Newton step; it
-//! is divided out from the end that its size calls for, and the quadratic gives the others.
+//! R = (2a^3 - 9ab + 27c) / 54. For R^2 < Q^3 there are three real roots -2 sqrt Q cos((theta + 2
+//! pi k) / 3) - a / 3 with cos theta = R / Q^1.5 (Viete), else one, A + Q / A - a / 3 with A = -sgn
+//! R cbrt(|R| + sqrt(R^2 - Q^3)) (Cardano). Only one real root is taken, the one whose terms do not
+//! cancel, and polished by a Newton step; it is divided out from the end that its size calls for,
+//! and the quadratic gives the others.
 //!
-//! **Quartic** x^4 + a x^3 + b x^2 + c x + d = (x^2 + a x / 2 + g)^2 - (r x + w)^2 (Ferrari), where comparing
-//! coefficients gives r^2 = a^2 / 4 - b + 2g, w^2 = g^2 - d, 2 r w = a g - c, so y = 2g satisfies the resolvent
-//! y^3 - b y^2 + (a c - 4d) y + 4bd - a^2 d - c^2 = 0. Its largest real root makes r^2 and w^2 nonnegative, and
-//! the quartic two real quadratics. The one of r and w that cancels less is rooted, the other divided, and
-//! Newton's method on the two quadratics (a step is that of Bairstow's method) removes what rounding has done.
+//! **Quartic** x^4 + a x^3 + b x^2 + c x + d = (x^2 + a x / 2 + g)^2 - (r x + w)^2 (Ferrari), where
+//! comparing coefficients gives r^2 = a^2 / 4 - b + 2g, w^2 = g^2 - d, 2 r w = a g - c, so y = 2g
+//! satisfies the resolvent y^3 - b y^2 + (a c - 4d) y + 4bd - a^2 d - c^2 = 0. Its largest real
+//! root makes r^2 and w^2 nonnegative, and the quartic two real quadratics. The one of r and w that
+//! cancels less is rooted, the other divided, and Newton's method on the two quadratics (a step is
+//! that of Bairstow's method) removes what rounding has done.
 
 use super::method::{Method, Tilt};
 use super::quadratic::{linear, quadratic};
@@ -25,7 +27,11 @@ impl Method for ClosedForm {
     const MAX_DEGREE: usize = 4;
 
     #[inline]
-    fn approximate<T: Real, const M: usize>(monic: &[T; M], degree: usize, roots: &mut Roots<T, M>) {
+    fn approximate<T: Real, const M: usize>(
+        monic: &[T; M],
+        degree: usize,
+        roots: &mut Roots<T, M>,
+    ) {
         match degree {
             1 => linear(monic[0], roots),
             2 => quadratic(monic[1], monic[0], roots),
@@ -41,7 +47,8 @@ fn cubic<T: Real, const M: usize>(a: T, b: T, c: T, roots: &mut Roots<T, M>) {
     let third = a * T::of(1.0 / 3.0);
     let q = (a * a - b * T::of(3.0)) * T::of(1.0 / 9.0);
     let r = ((a * a * a * T::of(2.0) - a * b * T::of(9.0)) + c * T::of(27.0)) * T::of(1.0 / 54.0);
-    // The root farthest from the centre -a / 3 of the three, or Cardano's: it lies on the side of -r.
+    // The root farthest from the centre -a / 3 of the three, or Cardano's: it lies on the side of
+    // -r.
     let away = -largest(q, r);
     let mut x = away - third;
     for _ in 0..2 {
@@ -51,7 +58,8 @@ fn cubic<T: Real, const M: usize>(a: T, b: T, c: T, roots: &mut Roots<T, M>) {
     if x == T::ZERO {
         return quadratic(a, b, roots);
     }
-    // x^2 + u x + v: from the top where x is the smallest root, from the bottom where it is the largest.
+    // x^2 + u x + v: from the top where x is the smallest root, from the bottom where it is the
+    // largest.
     if (x * x * x).abs() > c.abs() {
         let v = -(c / x);
         quadratic((v - b) / x, v, roots);
@@ -76,8 +84,8 @@ fn largest<T: Real>(q: T, r: T) -> T {
     if r < T::ZERO { -size } else { size }
 }
 
-/// The largest real root of y^3 - b y^2 + p y + s; and where rounding may have hidden two roots larger than the
-/// one that is left, their middle.
+/// The largest real root of y^3 - b y^2 + p y + s; and where rounding may have hidden two roots
+/// larger than the one that is left, their middle.
 fn largest_of_resolvent<T: Real>(b: T, p: T, s: T) -> [T; 2] {
     // t^3 - 3 q t - 2 r for y = t + b / 3.
     let third = b * T::of(1.0 / 3.0);
@@ -154,13 +162,14 @@ pub(crate) const FACTOR_STEPS: usize = 20;
 pub(crate) const FACTOR_ROUNDINGS: f64 = 2.0;
 
 impl<T: Real> Factors<T> {
-    /// What the product lacks of the quartic's coefficients, highest power first, and the most it lacks relative
-    /// to what it is the difference of.
+    /// What the product lacks of the quartic's coefficients, highest power first, and the most it
+    /// lacks relative to what it is the difference of.
     fn lack(&self, a: T, b: T, c: T, d: T) -> ([T; 4], T) {
         let ([u0, u1], [v0, v1]) = (self.u, self.v);
         let (uu, uv, vu, vv) = (u0 * u1, u0 * v1, u1 * v0, v0 * v1);
         let lack = [a - (u0 + u1), (b - (v0 + v1)) - uu, (c - uv) - vu, d - vv];
-        let terms = [u0.abs() + u1.abs(), v0.abs() + v1.abs() + uu.abs(), uv.abs() + vu.abs(), vv.abs()];
+        let terms =
+            [u0.abs() + u1.abs(), v0.abs() + v1.abs() + uu.abs(), uv.abs() + vu.abs(), vv.abs()];
         let mut worst = T::ZERO;
         for (lack, terms) in lack.iter().zip(terms) {
             let share = if terms > T::ZERO { lack.abs() / terms } else { T::ZERO };

@@ -1,10 +1,11 @@
 //! The eigenvalues of the companion matrix.
 //!
-//! z^n + p_(n-1) z^(n-1) + ... + p_0 is the characteristic polynomial of the matrix with ones below the diagonal
-//! and -p_k in the last column, which is in Hessenberg form from the start. Its eigenvalues come out of the QR
-//! algorithm: balancing by powers of two, then Francis' implicit double shifts (two conjugate shifts at a time,
-//! in real arithmetic), the matrix falling apart into blocks of one or two rows (Golub and Van Loan, Matrix
-//! Computations, sections 7.4 and 7.5). One sweep costs n^2 operations, and there are about two per root.
+//! z^n + p_(n-1) z^(n-1) + ... + p_0 is the characteristic polynomial of the matrix with ones below
+//! the diagonal and -p_k in the last column, which is in Hessenberg form from the start. Its
+//! eigenvalues come out of the QR algorithm: balancing by powers of two, then Francis' implicit
+//! double shifts (two conjugate shifts at a time, in real arithmetic), the matrix falling apart
+//! into blocks of one or two rows (Golub and Van Loan, Matrix Computations, sections 7.4 and 7.5).
+//! One sweep costs n^2 operations, and there are about two per root.
 
 use super::method::{Method, Tilt};
 use super::{Real, Roots};
@@ -19,7 +20,11 @@ pub(crate) const SWEEPS: usize = 80;
 impl Method for Companion {
     const TILT: Tilt = Tilt::Balanced;
 
-    fn approximate<T: Real, const M: usize>(monic: &[T; M], degree: usize, roots: &mut Roots<T, M>) {
+    fn approximate<T: Real, const M: usize>(
+        monic: &[T; M],
+        degree: usize,
+        roots: &mut Roots<T, M>,
+    ) {
         let mut h = [[T::ZERO; M]; M];
         for k in 0..degree {
             h[k][degree - 1] = -monic[k];
@@ -32,8 +37,8 @@ impl Method for Companion {
     }
 }
 
-/// Scales rows and columns by powers of two until they are about equally long: a similarity that leaves the
-/// eigenvalues alone and lessens what rounding does to them.
+/// Scales rows and columns by powers of two until they are about equally long: a similarity that
+/// leaves the eigenvalues alone and lessens what rounding does to them.
 #[allow(clippy::needless_range_loop)] // rows and columns of a matrix
 fn balance<T: Real, const M: usize>(h: &mut [[T; M]; M], n: usize) {
     for _ in 0..8 {
@@ -114,7 +119,12 @@ fn block<T: Real, const M: usize>([[a, b], [c, d]]: [[T; 2]; 2], roots: &mut Roo
 }
 
 /// One double-shift QR sweep over the rows `start`..=`last`, at least three.
-fn sweep<T: Real, const M: usize>(h: &mut [[T; M]; M], start: usize, last: usize, exceptional: bool) {
+fn sweep<T: Real, const M: usize>(
+    h: &mut [[T; M]; M],
+    start: usize,
+    last: usize,
+    exceptional: bool,
+) {
     // The shifts are the eigenvalues of the last block: their sum and product.
     let (mut sum, mut product) = (
         h[last - 1][last - 1] + h[last][last],
@@ -139,7 +149,8 @@ fn sweep<T: Real, const M: usize>(h: &mut [[T; M]; M], start: usize, last: usize
         }
         let size = x.abs().max(y.abs()).max(z.abs());
         if size > T::ZERO {
-            // The reflection 1 - v w^T that turns (x, y, z) into (-norm, 0, 0), with v = (1, v1, v2).
+            // The reflection 1 - v w^T that turns (x, y, z) into (-norm, 0, 0), with v = (1, v1,
+            // v2).
             let (sx, sy, sz) = (x / size, y / size, z / size);
             let length = (sx * sx + sy * sy + sz * sz).sqrt();
             let norm = if sx < T::ZERO { -length } else { length };
@@ -157,7 +168,8 @@ fn sweep<T: Real, const M: usize>(h: &mut [[T; M]; M], start: usize, last: usize
             if let [row0, row1, row2, ..] = &mut h[k..]
                 && three
             {
-                let columns = row0[k..=last].iter_mut().zip(&mut row1[k..=last]).zip(&mut row2[k..=last]);
+                let columns =
+                    row0[k..=last].iter_mut().zip(&mut row1[k..=last]).zip(&mut row2[k..=last]);
                 for ((x, y), z) in columns {
                     let along = *x + v1 * *y + v2 * *z;
                     *x = *x - w0 * along;

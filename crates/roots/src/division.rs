@@ -1,7 +1,7 @@
 //! Synthetic division, by which linear and quadratic factors are tested and taken out.
 //!
-//! Polynomials are monic or not, lowest power first. Dividing P by z^2 + u z + v gives P = Q (z^2 + u z + v) +
-//! b (z + u) + a; the remainder in that form is what the recurrence yields by itself.
+//! Polynomials are monic or not, lowest power first. Dividing P by z^2 + u z + v gives P = Q (z^2 +
+//! u z + v) + b (z + u) + a; the remainder in that form is what the recurrence yields by itself.
 
 use super::quadratic::{Pair, quadratic, split};
 use super::{Real, Roots};
@@ -18,7 +18,12 @@ pub(super) struct Division<T, const M: usize> {
 
 /// Divides the polynomial of this degree, at least 1, by z^2 + `u` z + `v`.
 #[inline]
-pub(super) fn by_quadratic<T: Real, const M: usize>(p: &[T; M], degree: usize, u: T, v: T) -> Division<T, M> {
+pub(super) fn by_quadratic<T: Real, const M: usize>(
+    p: &[T; M],
+    degree: usize,
+    u: T,
+    v: T,
+) -> Division<T, M> {
     let mut quotient = [T::ZERO; M];
     let (mut q1, mut q2) = (T::ZERO, T::ZERO);
     for k in (2..=degree).rev() {
@@ -42,8 +47,8 @@ pub(super) fn by_linear<T: Real, const M: usize>(p: &[T; M], degree: usize, s: T
     (quotient, value)
 }
 
-/// The sum of |q_k| `size`^k. Dividing by a factor with roots of that size and of degree m leaves a remainder of
-/// rounding that is about `size`^m units of roundoff times this.
+/// The sum of |q_k| `size`^k. Dividing by a factor with roots of that size and of degree m leaves a
+/// remainder of rounding that is about `size`^m units of roundoff times this.
 #[inline]
 pub(super) fn magnitude<T: Real, const M: usize>(quotient: &[T; M], degree: usize, size: T) -> T {
     let mut sum = T::ZERO;
@@ -83,12 +88,13 @@ impl<T: Real, const M: usize> Division<T, M> {
 
 /// Takes z^2 + `u` z + `v` out of p, adds its roots and returns the quotient.
 ///
-/// The recurrence from the highest power down keeps its digits for a factor with small roots, that from the
-/// lowest up for one with large roots. In between the two are joined where the polynomial's terms are largest at
-/// the factor's roots, so that either sees only what is smaller (Peters and Wilkinson).
+/// The recurrence from the highest power down keeps its digits for a factor with small roots, that
+/// from the lowest up for one with large roots. In between the two are joined where the
+/// polynomial's terms are largest at the factor's roots, so that either sees only what is smaller
+/// (Peters and Wilkinson).
 ///
-/// Of two real roots of different size a quadratic knows the smaller one only to rounding of the larger. So they
-/// are polished and taken out one by one.
+/// Of two real roots of different size a quadratic knows the smaller one only to rounding of the
+/// larger. So they are polished and taken out one by one.
 pub(super) fn deflated<T: Real, const M: usize>(
     p: &[T; M],
     degree: usize,
@@ -156,15 +162,16 @@ fn largest_term<T: Real, const M: usize>(p: &[T; M], degree: usize, size: T) -> 
     place
 }
 
-/// The positive root of x^n + |p_(n-1)| x^(n-1) + ... + |p_1| x - |p_0|, to a few per cent: no root of p is
-/// nearer to 0 (Cauchy). `p` is monic and p_0 is not 0.
+/// The positive root of x^n + |p_(n-1)| x^(n-1) + ... + |p_1| x - |p_0|, to a few per cent: no root
+/// of p is nearer to 0 (Cauchy). `p` is monic and p_0 is not 0.
 pub(super) fn smallest_root_bound<T: Real, const M: usize>(p: &[T; M], degree: usize) -> T {
     let constant = p[0].abs();
     let mut exponent = i32::MAX;
     for (k, &a) in p[1..=degree].iter().enumerate() {
         if a != T::ZERO {
             // Where this term alone reaches the constant.
-            exponent = exponent.min((constant.exponent() + 1 - a.exponent()).div_euclid(k as i32 + 1) + 1);
+            exponent =
+                exponent.min((constant.exponent() + 1 - a.exponent()).div_euclid(k as i32 + 1) + 1);
         }
     }
     // From above on a convex increasing function, Newton's method only comes down.

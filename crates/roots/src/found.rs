@@ -14,8 +14,8 @@ pub struct Complex<T> {
 
 /// The roots of a polynomial with `M` coefficients, a root of multiplicity k k times.
 ///
-/// A real root's imaginary part is exactly 0. Complex roots come as conjugate pairs, side by side, the one with
-/// the positive imaginary part first. There is no other order.
+/// A real root's imaginary part is exactly 0. Complex roots come as conjugate pairs, side by side,
+/// the one with the positive imaginary part first. There is no other order.
 #[derive(Clone, Copy, PartialEq)]
 pub struct Roots<T, const M: usize> {
     values: [Complex<T>; M],
@@ -103,7 +103,9 @@ pub enum RootsError<T: Real, const M: usize> {
         degree: usize,
     },
     /// A root exceeds the largest number of this precision.
-    #[error("a root is beyond the range of this precision: multiply the coefficient of x^k by c^k, c > 1")]
+    #[error(
+        "a root is beyond the range of this precision: multiply the coefficient of x^k by c^k, c > 1"
+    )]
     OutOfRange,
     /// Not every root was found to rounding.
     #[error("only {} roots converged: try another finder", found.len())]

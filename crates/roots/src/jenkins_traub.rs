@@ -1,25 +1,26 @@
-//! Jenkins and Traub's three-stage algorithm for real polynomials, from their description (SIAM Journal on
-//! Numerical Analysis 7, 1970, 545-566).
+//! Jenkins and Traub's three-stage algorithm for real polynomials, from their description (SIAM
+//! Journal on Numerical Analysis 7, 1970, 545-566).
 //!
-//! A sequence of polynomials K of degree n - 1 turns towards P / (z - smallest root), or towards the part of P
-//! without its two smallest roots. One step, with a quadratic divisor s of two conjugate or real shifts, is
+//! A sequence of polynomials K of degree n - 1 turns towards P / (z - smallest root), or towards
+//! the part of P without its two smallest roots. One step, with a quadratic divisor s of two
+//! conjugate or real shifts, is
 //!
 //! ```text
 //! K := (K - (A z + B) P) / s,   A and B such that s divides.
 //! ```
 //!
 //! With P = Qp s + b (z + u) + a and K = Qk s + d (z + u) + c that means A = (a d - b c) / D,
-//! B = (a c + (a u + b v) d) / D, D = a^2 + u a b + v b^2, and the new K is Qk - (A z + B) Qp - A b, which is
-//! kept monic. From any K a better divisor follows: let K0 = K and z K(i+1) = K(i) - K(i)(0) / P(0) P; the
-//! divisor whose roots K0, K1 and K2 agree on is [K1,K2] z^2 - [K0,K2] z + [K0,K1], where [.,.] is the
-//! determinant of two remainders modulo s.
+//! B = (a c + (a u + b v) d) / D, D = a^2 + u a b + v b^2, and the new K is Qk - (A z + B) Qp - A
+//! b, which is kept monic. From any K a better divisor follows: let K0 = K and z K(i+1) = K(i) -
+//! K(i)(0) / P(0) P; the divisor whose roots K0, K1 and K2 agree on is [K1,K2] z^2 - [K0,K2] z +
+//! [K0,K1], where [.,.] is the determinant of two remainders modulo s.
 //!
 //! 1. **No shift**: five steps with s = z, from K = P', favour the small roots.
-//! 2. **Fixed shift**: s has its roots on the circle that bounds the roots of P from below, at 49 degrees and, after
-//!    each failure, 94 degrees on. When the estimates of a real root (-P(0) / K(0)) or of a quadratic factor have
-//!    settled twice to within half, stage 3 is tried with them.
-//! 3. **Variable shift**: the estimate becomes the shift of the next step, which converges faster than Newton's method,
-//!    until P at the estimate is no more than rounding.
+//! 2. **Fixed shift**: s has its roots on the circle that bounds the roots of P from below, at 49
+//!    degrees and, after each failure, 94 degrees on. When the estimates of a real root (-P(0) /
+//!    K(0)) or of a quadratic factor have settled twice to within half, stage 3 is tried with them.
+//! 3. **Variable shift**: the estimate becomes the shift of the next step, which converges faster
+//!    than Newton's method, until P at the estimate is no more than rounding.
 //!
 //! The factor is divided out. Since small roots come first, that is stable.
 
@@ -44,7 +45,11 @@ pub(crate) const QUADRATIC_STEPS: usize = 20;
 impl Method for JenkinsTraub {
     const TILT: Tilt = Tilt::Balanced;
 
-    fn approximate<T: Real, const M: usize>(monic: &[T; M], degree: usize, roots: &mut Roots<T, M>) {
+    fn approximate<T: Real, const M: usize>(
+        monic: &[T; M],
+        degree: usize,
+        roots: &mut Roots<T, M>,
+    ) {
         let mut p = *monic;
         let mut degree = degree;
         while degree > 2 {
@@ -85,7 +90,9 @@ impl<T: Real, const M: usize> Stages<'_, T, M> {
         let mut direction = first_direction::<T>();
         for attempt in 1..=DIRECTIONS {
             let x = direction.0 * bound;
-            if let Some(factor) = self.with_fixed_shift(start, -(x + x), bound * bound, 20 * attempt) {
+            if let Some(factor) =
+                self.with_fixed_shift(start, -(x + x), bound * bound, 20 * attempt)
+            {
                 return Some(factor);
             }
             direction = turned(direction);
@@ -137,8 +144,9 @@ impl<T: Real, const M: usize> Stages<'_, T, M> {
                 match self.linear_stage(k, root) {
                     Ok(factor) => return Some(factor),
                     Err(near) => {
-                        // Two roots close together stop the linear iteration near them. Where they are so close
-                        // that the estimates lose their digits, Newton's method finds the factor.
+                        // Two roots close together stop the linear iteration near them. Where they
+                        // are so close that the estimates lose their
+                        // digits, Newton's method finds the factor.
                         let (u, v) = (-(near + near), near * near);
                         if let Some(factor) = self.quadratic_stage(k, u, v) {
                             return Some(factor);
@@ -185,7 +193,8 @@ impl<T: Real, const M: usize> Stages<'_, T, M> {
         let (mut k, mut s) = (k, root);
         for _ in 0..LINEAR_STEPS {
             let (of_p, p_at) = by_linear(self.p, n, s);
-            let limit = magnitude(&of_p, n - 1, s.abs()) * s.abs() * T::of(ROUNDINGS * T::UNIT_ROUNDOFF);
+            let limit =
+                magnitude(&of_p, n - 1, s.abs()) * s.abs() * T::of(ROUNDINGS * T::UNIT_ROUNDOFF);
             if p_at.abs() <= limit && limit.is_finite() {
                 return Ok(Factor::Linear { root: s, quotient: of_p });
             }

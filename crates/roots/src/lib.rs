@@ -7,25 +7,27 @@
 //! | [`Companion`] | the steadiest, and the slowest | eigenvalues by QR, n^2 a sweep |
 //! | [`JenkinsTraub`] | the all-rounder for high degrees | three stages per root |
 //!
-//! **Which to choose.** Up to degree 4 the closed form: at degree 4 in `f64` it took 0.22 us a polynomial, Bairstow 2.3,
-//! Jenkins-Traub 2.8 and the companion matrix 4.4 times as long. Above, Bairstow and Jenkins-Traub are about
-//! equal (degree 10: 3.5 us) and the companion matrix takes 1.3 to 1.8 times as long. Of the roots of a million random
-//! polynomials of degree 15, Jenkins-Traub and the companion matrix found all in `f64`, Bairstow all but 13 in a
+//! **Which to choose.** Up to degree 4 the closed form: at degree 4 in `f64` it took 0.22 us a
+//! polynomial, Bairstow 2.3, Jenkins-Traub 2.8 and the companion matrix 4.4 times as long. Above,
+//! Bairstow and Jenkins-Traub are about equal (degree 10: 3.5 us) and the companion matrix takes
+//! 1.3 to 1.8 times as long. Of the roots of a million random polynomials of degree 15,
+//! Jenkins-Traub and the companion matrix found all in `f64`, Bairstow all but 13 in a
 //! million. (Table V of the repository's
 //! `docs/internals/studies.md`.)
 //!
-//! Coefficients come lowest power first: `coefficients[k]` belongs to x^k. Nothing is allocated. All methods are
-//! tested up to degree 15 and share what surrounds the method itself:
+//! Coefficients come lowest power first: `coefficients[k]` belongs to x^k. Nothing is allocated.
+//! All methods are tested up to degree 15 and share what surrounds the method itself:
 //!
-//! - **Leading zeros** lower the degree. A constant other than 0 has no roots; of 0 every number is a root, which
-//!   is an error.
+//! - **Leading zeros** lower the degree. A constant other than 0 has no roots; of 0 every number is
+//!   a root, which is an error.
 //! - **Zero roots**, trailing coefficients of exactly 0, are taken out first and are exactly 0.
-//! - **Scale**: the polynomial is scaled by powers of two, exactly, so that coefficients of any size will do.
-//! - **Multiplicity**: a root of multiplicity k comes k times, in general as k near values: rounding a coefficient
-//!   moves them by about the k-th root of the rounding.
-//! - **Convergence**: each root returned solves the polynomial to rounding (its residual is no larger than that
-//!   of coefficients changed in their last digits). If one does not, the answer is [`RootsError::NotConverged`]
-//!   with the others.
+//! - **Scale**: the polynomial is scaled by powers of two, exactly, so that coefficients of any
+//!   size will do.
+//! - **Multiplicity**: a root of multiplicity k comes k times, in general as k near values:
+//!   rounding a coefficient moves them by about the k-th root of the rounding.
+//! - **Convergence**: each root returned solves the polynomial to rounding (its residual is no
+//!   larger than that of coefficients changed in their last digits). If one does not, the answer is
+//!   [`RootsError::NotConverged`] with the others.
 //!
 //! ```
 //! use polynomial_roots::{JenkinsTraub, RootFinder};
@@ -39,8 +41,8 @@
 //! # Ok::<(), polynomial_roots::RootsError<f64, 4>>(())
 //! ```
 //!
-//! The methods are those of section IV of Leibrandt and Yang, "Efficient Proximity Queries for Continuum Robots on
-//! Parallel Computing Hardware".
+//! The methods are those of section IV of Leibrandt and Yang, "Efficient Proximity Queries for
+//! Continuum Robots on Parallel Computing Hardware".
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 
@@ -77,9 +79,14 @@ pub(crate) mod method {
         const TILT: Tilt;
         const MAX_DEGREE: usize = usize::MAX;
 
-        /// Approximates the roots of a monic polynomial whose constant coefficient is not 0, at least of degree
+        /// Approximates the roots of a monic polynomial whose constant coefficient is not 0, at
+        /// least of degree
         /// 1. Fewer than `degree` roots mean that some did not converge.
-        fn approximate<T: Real, const M: usize>(monic: &[T; M], degree: usize, roots: &mut Roots<T, M>);
+        fn approximate<T: Real, const M: usize>(
+            monic: &[T; M],
+            degree: usize,
+            roots: &mut Roots<T, M>,
+        );
     }
 }
 
@@ -89,15 +96,20 @@ pub trait RootFinder: method::Method {
     ///
     /// # Errors
     /// See [`RootsError`].
-    fn roots<T: Real, const M: usize>(coefficients: [T; M]) -> Result<Roots<T, M>, RootsError<T, M>>;
+    fn roots<T: Real, const M: usize>(
+        coefficients: [T; M],
+    ) -> Result<Roots<T, M>, RootsError<T, M>>;
 
-    /// The roots as they come, without the test by which [`RootFinder::roots`] vouches for them: fewer where some did
-    /// not converge, none where it refuses the coefficients. For callers who judge every candidate themselves.
+    /// The roots as they come, without the test by which [`RootFinder::roots`] vouches for them:
+    /// fewer where some did not converge, none where it refuses the coefficients. For callers
+    /// who judge every candidate themselves.
     fn approximations<T: Real, const M: usize>(coefficients: &[T; M]) -> Roots<T, M>;
 }
 
 impl<F: method::Method> RootFinder for F {
-    fn roots<T: Real, const M: usize>(coefficients: [T; M]) -> Result<Roots<T, M>, RootsError<T, M>> {
+    fn roots<T: Real, const M: usize>(
+        coefficients: [T; M],
+    ) -> Result<Roots<T, M>, RootsError<T, M>> {
         if let Some(power) = coefficients.iter().position(|a| !a.is_finite()) {
             return Err(RootsError::NotFinite { power });
         }
@@ -186,7 +198,8 @@ impl<T: Real, const M: usize> Approximations<T, M> {
 
     /// The root that an approximation stands for, if it does.
     fn settled(&self, index: usize, checker: &Checker<T, M>) -> Option<Scaled<T>> {
-        let others = (0..self.values.len()).filter(|&other| other != index).map(|other| self.at(other));
+        let others =
+            (0..self.values.len()).filter(|&other| other != index).map(|other| self.at(other));
         checker.settle(self.at(index), others)
     }
 

@@ -1,11 +1,12 @@
 //! A polynomial in pieces whose roots are of comparable size.
 //!
-//! The upper hull of the points (k, log2 |a_k|), Newton's polygon, tells the roots' sizes: an edge from i to j
-//! stands for j - i roots of magnitude about (|a_i| / |a_j|)^(1 / (j - i)). Where two edges meet at k and their
-//! magnitudes lie far apart, the roots on either side are nearly those of a_i .. a_k and of a_k .. a_j by
-//! themselves, off by about the ratio of their sizes; the polish on the whole polynomial removes that. So the
-//! polynomial is cut there, and each piece is scaled by powers of two, in x and in value, until nothing in it
-//! overflows or vanishes. That makes every range of coefficients the same to a finder.
+//! The upper hull of the points (k, log2 |a_k|), Newton's polygon, tells the roots' sizes: an edge
+//! from i to j stands for j - i roots of magnitude about (|a_i| / |a_j|)^(1 / (j - i)). Where two
+//! edges meet at k and their magnitudes lie far apart, the roots on either side are nearly those of
+//! a_i .. a_k and of a_k .. a_j by themselves, off by about the ratio of their sizes; the polish on
+//! the whole polynomial removes that. So the polynomial is cut there, and each piece is scaled by
+//! powers of two, in x and in value, until nothing in it overflows or vanishes. That makes every
+//! range of coefficients the same to a finder.
 
 use super::Real;
 
@@ -14,7 +15,8 @@ use super::Real;
 pub enum Tilt {
     /// Its largest root is about 1, so no coefficient is large.
     LargestRoot,
-    /// Its first and last coefficients are about 1, so that many roots of spread sizes do not vanish.
+    /// Its first and last coefficients are about 1, so that many roots of spread sizes do not
+    /// vanish.
     Balanced,
 }
 
@@ -35,7 +37,8 @@ impl<const M: usize> Exponents<M> {
         Self(coefficients.map(|a| if a == T::ZERO { None } else { Some(a.exponent()) }))
     }
 
-    /// Whether the coefficients are so close in size that neither cutting nor scaling is called for.
+    /// Whether the coefficients are so close in size that neither cutting nor scaling is called
+    /// for.
     pub(super) fn are_close<T: Real>(&self) -> bool {
         let (mut low, mut high) = (i32::MAX, i32::MIN);
         for &e in self.0.iter().flatten() {
@@ -85,7 +88,8 @@ impl<const M: usize> Exponents<M> {
         }
     }
 
-    /// The vertex inside `from`..`to` where the sizes of the roots differ most, and by how many powers of two.
+    /// The vertex inside `from`..`to` where the sizes of the roots differ most, and by how many
+    /// powers of two.
     fn widest_gap(&self, from: usize, to: usize) -> Option<(i32, usize)> {
         let mut widest: Option<(i32, usize)> = None;
         let mut start = from;
@@ -102,8 +106,8 @@ impl<const M: usize> Exponents<M> {
         widest
     }
 
-    /// The largest exponent among the scaled coefficients of the monic piece, or for [`Tilt::LargestRoot`] the
-    /// smallest, negated.
+    /// The largest exponent among the scaled coefficients of the monic piece, or for
+    /// [`Tilt::LargestRoot`] the smallest, negated.
     fn height(&self, from: usize, to: usize, tilt: Tilt) -> i32 {
         let shift = self.shift(from, to, tilt);
         let scaled = |k: usize| self.0[k].map(|e| e - self.at(to) - shift * (to - k) as i32);
@@ -144,7 +148,11 @@ impl<const M: usize> Exponents<M> {
 
 /// The polynomial `from`..=`to` as it is, made monic.
 #[inline]
-pub(super) fn whole<T: Real, const M: usize>(coefficients: &[T; M], from: usize, to: usize) -> Piece<T, M> {
+pub(super) fn whole<T: Real, const M: usize>(
+    coefficients: &[T; M],
+    from: usize,
+    to: usize,
+) -> Piece<T, M> {
     let mut monic = [T::ZERO; M];
     let leading = coefficients[to];
     for k in 0..to - from {

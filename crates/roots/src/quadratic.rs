@@ -1,8 +1,8 @@
 //! Degree 1 and 2 (paper, equations (34) to (36)).
 //!
-//! q = -(a1 + sgn(a1) sqrt(a1^2 - 4 a2 a0)) / 2 has no cancellation; the roots are q / a2 and a0 / q. sgn(0) is
-//! +1: with 0, as the paper's sgn could be read, x^2 - 1 would have the roots infinity and -0. A negative
-//! discriminant means a conjugate pair.
+//! q = -(a1 + sgn(a1) sqrt(a1^2 - 4 a2 a0)) / 2 has no cancellation; the roots are q / a2 and a0 /
+//! q. sgn(0) is +1: with 0, as the paper's sgn could be read, x^2 - 1 would have the roots infinity
+//! and -0. A negative discriminant means a conjugate pair.
 
 use super::{Real, Roots};
 

@@ -24,7 +24,8 @@ pub trait Real:
     const UNIT_ROUNDOFF: f64;
     /// How many bits a number's magnitude has: 24 or 53.
     const MANTISSA_BITS: i32;
-    /// Numbers up to 2 to this power can still be multiplied by a few others of modest size: 90 or 900.
+    /// Numbers up to 2 to this power can still be multiplied by a few others of modest size: 90 or
+    /// 900.
     const SAFE_EXPONENT: i32;
 
     /// The nearest number.
@@ -81,16 +82,21 @@ macro_rules! real {
             }
             #[inline(always)]
             fn exponent(self) -> i32 {
-                let biased = |x: $float| ((x.to_bits() >> ($mantissa_bits - 1)) & (2 * $bias + 1)) as i32;
+                let biased =
+                    |x: $float| ((x.to_bits() >> ($mantissa_bits - 1)) & (2 * $bias + 1)) as i32;
                 match biased(self) {
                     // Subnormal: 2^bias times as large it is not.
-                    0 => biased(self * $float::from_bits((2 * $bias) << ($mantissa_bits - 1))) - 2 * $bias,
+                    0 => {
+                        biased(self * $float::from_bits((2 * $bias) << ($mantissa_bits - 1)))
+                            - 2 * $bias
+                    }
                     biased => biased - $bias,
                 }
             }
             #[inline(always)]
             fn times_power_of_two(self, exponent: i32) -> Self {
-                let power = |e: i32| $float::from_bits(((e + $bias) as $bits) << ($mantissa_bits - 1));
+                let power =
+                    |e: i32| $float::from_bits(((e + $bias) as $bits) << ($mantissa_bits - 1));
                 let mut left = exponent;
                 let mut scaled = self;
                 while left < 1 - $bias {

@@ -1,6 +1,7 @@
 //! The root finders on the GPU: what they call a root is one, and they find nearly all.
 //!
-//! Without a GPU these tests pass without doing anything, unless PARRY_CONTINUUM_REQUIRE_GPU is set: then they fail.
+//! Without a GPU these tests pass without doing anything, unless PARRY_CONTINUUM_REQUIRE_GPU is
+//! set: then they fail.
 
 use continuum_testing::Random;
 use polynomial_roots::Complex;
@@ -8,7 +9,8 @@ use polynomial_roots::gpu::gpu_batch::{Device, Precision};
 use polynomial_roots::gpu::{Finder, GpuRoots};
 
 const DEGREES: [usize; 5] = [2, 3, 4, 6, 15];
-const PRECISIONS: [(&str, Precision); 2] = [("GPU f32", Precision::F32), ("GPU f64", Precision::F64)];
+const PRECISIONS: [(&str, Precision); 2] =
+    [("GPU f32", Precision::F32), ("GPU f64", Precision::F64)];
 
 /// The GPU in this precision; None if there is none and none is required.
 fn open(precision: Precision) -> Option<Device> {
@@ -32,12 +34,14 @@ fn residual(coefficients: &[f64], root: Complex<f64>, unit: f64) -> f64 {
 
 fn polynomials(degree: usize, count: usize, precision: Precision) -> Vec<f64> {
     let mut random = Random::new(degree as u64);
-    let round = |value: f64| if precision == Precision::F32 { f64::from(value as f32) } else { value };
+    let round =
+        |value: f64| if precision == Precision::F32 { f64::from(value as f32) } else { value };
     (0..count * (degree + 1)).map(|_| round(random.between(-100.0, 100.0))).collect()
 }
 
-/// Deflation and the matrix lose some digits, so that a root is the exact one of a polynomial whose coefficients differ
-/// by some hundred units: that is what is asked of most, and of all that they are no garbage.
+/// Deflation and the matrix lose some digits, so that a root is the exact one of a polynomial whose
+/// coefficients differ by some hundred units: that is what is asked of most, and of all that they
+/// are no garbage.
 #[test]
 fn what_is_found_are_roots() {
     const COUNT: usize = 400;
@@ -51,7 +55,10 @@ fn what_is_found_are_roots() {
                     continue;
                 }
                 let mut roots = Vec::new();
-                GpuRoots::new(&device, finder, degree).unwrap().solve(&coefficients, &mut roots).unwrap();
+                GpuRoots::new(&device, finder, degree)
+                    .unwrap()
+                    .solve(&coefficients, &mut roots)
+                    .unwrap();
                 assert_eq!(roots.len(), COUNT * degree);
                 let mut residuals = Vec::new();
                 for (p, roots) in coefficients.chunks(degree + 1).zip(roots.chunks(degree)) {
@@ -63,7 +70,8 @@ fn what_is_found_are_roots() {
                 residuals.sort_by(f64::total_cmp);
                 let found = residuals.len() as f64 / roots.len() as f64;
                 let exact = residuals.iter().filter(|residual| **residual <= 100.0).count() as f64;
-                let (exact, worst) = (exact / residuals.len() as f64, residuals[residuals.len() - 1]);
+                let (exact, worst) =
+                    (exact / residuals.len() as f64, residuals[residuals.len() - 1]);
                 println!(
                     "{name} {finder:?} {degree}: {found:.4} found, {exact:.4} to rounding, worst {worst:.0}"
                 );
@@ -94,9 +102,15 @@ fn known_roots_and_lower_degrees() {
             let mut roots = Vec::new();
             GpuRoots::new(&device, finder, 6).unwrap().solve(&coefficients, &mut roots).unwrap();
             let (known, rest) = roots.split_at(6);
-            for (re, im) in [(0.0, 0.0), (1.0, 0.0), (2.0, 0.0), (-3.0, 0.0), (0.0, 1.0), (0.0, -1.0)] {
+            for (re, im) in
+                [(0.0, 0.0), (1.0, 0.0), (2.0, 0.0), (-3.0, 0.0), (0.0, 1.0), (0.0, -1.0)]
+            {
                 let near = |root: &&Complex<f64>| (root.re - re).hypot(root.im - im) < tolerance;
-                assert_eq!(known.iter().filter(near).count(), 1, "{name} {finder:?}: {re} {im} in {known:?}");
+                assert_eq!(
+                    known.iter().filter(near).count(),
+                    1,
+                    "{name} {finder:?}: {re} {im} in {known:?}"
+                );
             }
             let (lower, constant) = rest.split_at(6);
             assert_eq!(
@@ -105,7 +119,10 @@ fn known_roots_and_lower_degrees() {
                 "{name} {finder:?} {lower:?}"
             );
             for root in lower.iter().filter(|root| !root.re.is_nan()) {
-                assert!((root.re.hypot(root.im) - 1.0).abs() < tolerance, "{name} {finder:?}: {root:?}");
+                assert!(
+                    (root.re.hypot(root.im) - 1.0).abs() < tolerance,
+                    "{name} {finder:?}: {root:?}"
+                );
             }
             assert!(constant.iter().all(|root| root.re.is_nan()));
         }

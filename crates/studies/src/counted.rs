@@ -7,8 +7,8 @@ use polynomial_roots::Real;
 use std::cell::Cell;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 
-/// Operations, as a processor's tables of instructions tell them apart. Comparisons, selects and operations on bits are
-/// left out.
+/// Operations, as a processor's tables of instructions tell them apart. Comparisons, selects and
+/// operations on bits are left out.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Counts {
     /// Additions, subtractions and multiplications.

@@ -1,4 +1,5 @@
-//! Every link against every triangle, one pair after another, with the discs by any route: what the paper's tables time.
+//! Every link against every triangle, one pair after another, with the discs by any route: what the
+//! paper's tables time.
 
 use crate::Number;
 use parry_continuum::distance::laboratory::{DiscSolver, triangle_modified_cylinder_by};
@@ -8,8 +9,8 @@ use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::{Cap, Chain, ModifiedCylinder};
 use std::marker::PhantomData;
 
-/// Triangles in the precision `T`, to be looked at with the route `S` to a disc. As the paper's engines do, it solves a
-/// disc only where the axis' nearest point is at a flat end.
+/// Triangles in the precision `T`, to be looked at with the route `S` to a disc. As the paper's
+/// engines do, it solves a disc only where the axis' nearest point is at a flat end.
 pub struct EveryPair<T: Scalar, S> {
     /// Where coordinates in the precision `T` count from.
     centre: Vector,
@@ -66,9 +67,13 @@ impl<T: Number, S: DiscSolver<T> + DiscSolver<f64>> EveryPair<T, S> {
     /// The triangles of `mesh`.
     pub fn new(mesh: &TriMesh) -> Self {
         let centre = mesh.local_aabb().center();
-        let exact: Vec<_> =
-            mesh.indices().iter().map(|corners| corners.map(|i| mesh.vertices()[i as usize])).collect();
-        let triangles = exact.iter().map(|triangle| triangle.map(|vertex| point(vertex, centre))).collect();
+        let exact: Vec<_> = mesh
+            .indices()
+            .iter()
+            .map(|corners| corners.map(|i| mesh.vertices()[i as usize]))
+            .collect();
+        let triangles =
+            exact.iter().map(|triangle| triangle.map(|vertex| point(vertex, centre))).collect();
         Self { centre, triangles, exact, route: PhantomData }
     }
 

@@ -1,5 +1,6 @@
-//! The laboratory beside `parry-continuum`: what its programs measure with, and what exists only to compare it with the
-//! paper (Leibrandt and Yang, "Efficient Proximity Queries for Continuum Robots on Parallel Computing Hardware").
+//! The laboratory beside `parry-continuum`: what its programs measure with, and what exists only to
+//! compare it with the paper (Leibrandt and Yang, "Efficient Proximity Queries for Continuum Robots
+//! on Parallel Computing Hardware").
 //!
 //! | what | modules |
 //! |---|---|

@@ -1,18 +1,23 @@
-//! A table that is too long for a page: the page keeps the rows that a reader wants, a file beside it has them all.
+//! A table that is too long for a page: the page keeps the rows that a reader wants, a file beside
+//! it has them all.
 
 use std::fs;
 use std::path::Path;
 
-/// Writes all of a Markdown table to a file of comma-separated values, and returns the table with those rows alone
-/// whose cells `is_shown` picks.
+/// Writes all of a Markdown table to a file of comma-separated values, and returns the table with
+/// those rows alone whose cells `is_shown` picks.
 ///
 /// # Errors
 /// The file cannot be written.
-pub fn write(table: &str, file: &Path, is_shown: impl Fn(&[&str]) -> bool) -> Result<String, String> {
+pub fn write(
+    table: &str,
+    file: &Path,
+    is_shown: impl Fn(&[&str]) -> bool,
+) -> Result<String, String> {
     let directory = file.parent().unwrap_or(Path::new("."));
-    fs::create_dir_all(directory)
-        .and_then(|()| fs::write(file, csv(table)))
-        .map_err(|error| format!("cannot write {} ({error}); choose another --out", file.display()))?;
+    fs::create_dir_all(directory).and_then(|()| fs::write(file, csv(table))).map_err(|error| {
+        format!("cannot write {} ({error}); choose another --out", file.display())
+    })?;
     Ok(shown(table, is_shown))
 }
 
@@ -22,8 +27,8 @@ pub fn shown(table: &str, is_shown: impl Fn(&[&str]) -> bool) -> String {
     table.lines().enumerate().filter(is_kept).map(|(_, line)| format!("{line}\n")).collect()
 }
 
-/// The table as comma-separated values. Heads of a group, such as `f32: worst | gross`, each get the group's name, and a
-/// unit that ends every cell of a column goes to its head.
+/// The table as comma-separated values. Heads of a group, such as `f32: worst | gross`, each get
+/// the group's name, and a unit that ends every cell of a column goes to its head.
 pub fn csv(table: &str) -> String {
     let mut lines = table.lines().map(cells);
     let Some(head) = lines.next() else { return String::new() };
@@ -34,8 +39,10 @@ pub fn csv(table: &str) -> String {
         group = name.split_once(": ").map_or(group, |(group, _)| group);
         let is_alone = group.is_empty() || name.contains(": ");
         let name = if is_alone { name.to_owned() } else { format!("{group}: {name}") };
-        let cells: Vec<_> = rows.iter().map(|row| row.get(column).copied().unwrap_or_default()).collect();
-        let is_of = |unit: &&str| cells.iter().all(|cell| cell.is_empty() || number(cell, unit).is_some());
+        let cells: Vec<_> =
+            rows.iter().map(|row| row.get(column).copied().unwrap_or_default()).collect();
+        let is_of =
+            |unit: &&str| cells.iter().all(|cell| cell.is_empty() || number(cell, unit).is_some());
         let unit = ["us", "mm"].into_iter().find(is_of);
         text[0].push(quoted(&unit.map_or(name.clone(), |unit| format!("{name} ({unit})"))));
         for (line, cell) in text[1..].iter_mut().zip(cells) {
@@ -58,7 +65,11 @@ fn cells(line: &str) -> Vec<&str> {
 
 /// A cell with a comma stands in quotation marks.
 fn quoted(cell: &str) -> String {
-    if cell.contains([',', '"']) { format!("\"{}\"", cell.replace('"', "\"\"")) } else { cell.to_owned() }
+    if cell.contains([',', '"']) {
+        format!("\"{}\"", cell.replace('"', "\"\""))
+    } else {
+        cell.to_owned()
+    }
 }
 
 #[cfg(test)]

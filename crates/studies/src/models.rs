@@ -6,8 +6,8 @@ use parry_continuum::{Chain, RobotError};
 /// Links of each model.
 pub const LINKS: usize = 30;
 
-/// The concentric tube robot at its goal in the ventricle: as capsules, with caps that fit (Algorithm 1), and as cylinders;
-/// the paper's K, Z* and Z.
+/// The concentric tube robot at its goal in the ventricle: as capsules, with caps that fit
+/// (Algorithm 1), and as cylinders; the paper's K, Z* and Z.
 ///
 /// # Errors
 /// None for this robot.

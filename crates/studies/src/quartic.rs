@@ -2,18 +2,20 @@
 //!
 //! Two forms of the same equation, d/ds of the squared distance to the *circle*, squared once:
 //!
-//! - **As printed**, s from the segment's middle: (m s^2 + 2 k s + p) (s + b)^2 = R^2 (m s + k)^2, with m = |n x B|^2,
-//!   p = |n x D0|^2, b = <B, D0>, k = b - <n, B> <n, D0>; and D0 = A - Cc, which the paper leaves undefined. Its real
-//!   roots and the ends are the candidates, the distance is (16), and (19) prefers the plane where it is met inside
-//!   the disc. A double root splits into a complex pair by rounding and is then missed, and far from the
-//!   disc the coefficients lose all digits.
-//! - **Recentred**, s from the foot of the disc's centre and in units of R: with <B, D0> = 0 and N as in
-//!   [`LineDisc`], m s^4 + 2 N s^3 + (p - m^2) s^2 - 2 m N s - N^2 = 0. The real parts of all roots are
-//!   candidates, any point of the segment being an upper bound, with the ends, the foot and the plane.
+//! - **As printed**, s from the segment's middle: (m s^2 + 2 k s + p) (s + b)^2 = R^2 (m s + k)^2,
+//!   with m = |n x B|^2, p = |n x D0|^2, b = <B, D0>, k = b - <n, B> <n, D0>; and D0 = A - Cc,
+//!   which the paper leaves undefined. Its real roots and the ends are the candidates, the distance
+//!   is (16), and (19) prefers the plane where it is met inside the disc. A double root splits into
+//!   a complex pair by rounding and is then missed, and far from the disc the coefficients lose all
+//!   digits.
+//! - **Recentred**, s from the foot of the disc's centre and in units of R: with <B, D0> = 0 and N
+//!   as in [`LineDisc`], m s^4 + 2 N s^3 + (p - m^2) s^2 - 2 m N s - N^2 = 0. The real parts of all
+//!   roots are candidates, any point of the segment being an upper bound, with the ends, the foot
+//!   and the plane.
 //!
-//! Roots are fed in as they come, without the test by which [`RootFinder::roots`] vouches for them: a bad
-//! candidate is outdone by a better one. Only where the coefficients are so wide apart that the polynomial is cut
-//! are they polished on the whole of it.
+//! Roots are fed in as they come, without the test by which [`RootFinder::roots`] vouches for them:
+//! a bad candidate is outdone by a better one. Only where the coefficients are so wide apart that
+//! the polynomial is cut are they polished on the whole of it.
 
 use crate::Number;
 use parry_continuum::distance::laboratory::{DiscSolver, LineDisc};
@@ -25,7 +27,8 @@ use std::marker::PhantomData;
 #[derive(Clone, Copy, Debug)]
 pub struct QuarticAsPrinted<F>(PhantomData<F>);
 
-/// The recentred quartic by the root finder `F`, its best candidate polished by `STEPS` Newton steps.
+/// The recentred quartic by the root finder `F`, its best candidate polished by `STEPS` Newton
+/// steps.
 #[derive(Clone, Copy, Debug)]
 pub struct RecentredQuartic<F, const STEPS: usize = 0>(PhantomData<F>);
 
@@ -87,7 +90,8 @@ impl<F: RootFinder, const STEPS: usize, T: Number> DiscSolver<T> for RecentredQu
     #[inline]
     fn segment_disc(ends: [Vec3<T>; 2], normal: Vec3<T>, radius: T) -> Closest<T> {
         let line = LineDisc::new(ends, normal);
-        // The squared distance is convex along the line, so the best point of the line serves, clamped.
+        // The squared distance is convex along the line, so the best point of the line serves,
+        // clamped.
         let mut best = (squared_distance(&line, T::ZERO, radius), T::ZERO);
         let mut consider = |s: T| {
             let squared = squared_distance(&line, s, radius);
@@ -105,7 +109,8 @@ impl<F: RootFinder, const STEPS: usize, T: Number> DiscSolver<T> for RecentredQu
         }
         consider(line.h.over(line.lambda));
         for _ in 0..STEPS {
-            // A step that leads away is not taken: the derivative's slope may be nothing but rounding.
+            // A step that leads away is not taken: the derivative's slope may be nothing but
+            // rounding.
             let s = newton(&line, best.1, radius);
             let squared = squared_distance(&line, s, radius);
             if squared < best.0 {

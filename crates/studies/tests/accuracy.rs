@@ -18,10 +18,12 @@ fn written(mark: &str) -> String {
     quote::between(&page, mark).expect("the page's marks").to_owned()
 }
 
-/// The kernels are scalar IEEE arithmetic, so the numbers agree to the last digit on any machine. An error that
-/// grew is a fault, one that shrank is news: either way the tables are to be written again, and looked at.
+/// The kernels are scalar IEEE arithmetic, so the numbers agree to the last digit on any machine.
+/// An error that grew is a fault, one that shrank is news: either way the tables are to be written
+/// again, and looked at.
 fn assert_same(written: &str, measured: &str) {
-    let differs = written.lines().zip(measured.lines()).find(|(written, measured)| written != measured);
+    let differs =
+        written.lines().zip(measured.lines()).find(|(written, measured)| written != measured);
     if let Some((written, measured)) = differs {
         panic!(
             "the docs say\n{written}\nbut measured is\n{measured}\n\
@@ -42,7 +44,8 @@ fn the_written_errors_are_the_measured_ones() {
     // Only parry's cells, the last two, may differ.
     let ours = |line: &str| line.rsplitn(3, ',').last().unwrap_or_default().to_owned();
     let written: Vec<_> = file.lines().map(ours).collect();
-    let measured: Vec<_> = reference::lines(&cases, |_| "-,-".into()).iter().map(|line| ours(line)).collect();
+    let measured: Vec<_> =
+        reference::lines(&cases, |_| "-,-".into()).iter().map(|line| ours(line)).collect();
     assert_same(&written.join("\n"), &measured.join("\n"));
     assert!(measured.len() > 150, "every kind and category has a row");
 }
@@ -60,24 +63,33 @@ fn the_written_gaps_of_certificates_are_the_measured_ones() {
     }
 }
 
-/// Of each line of the file: scalar cells as they are, the cells of an instruction set of this machine as upper bounds.
+/// Of each line of the file: scalar cells as they are, the cells of an instruction set of this
+/// machine as upper bounds.
 fn assert_lines(written: &[&str], measurement: &Measurement) {
     let measured = tables::lines(measurement, |_, _| "-,-".into());
     assert_eq!(written.len(), measured.len());
     for (written, measured) in written.iter().zip(&measured) {
-        let [written_cells, cells] = [*written, measured].map(|line| line.split(',').collect::<Vec<_>>());
+        let [written_cells, cells] =
+            [*written, measured].map(|line| line.split(',').collect::<Vec<_>>());
         assert_eq!(
             written_cells[..6],
             cells[..6],
             "docs/accuracy.csv says\n{written}\nbut measured is\n{measured}"
         );
-        for (bound, cell) in written_cells.iter().zip(&cells).skip(6).take(2 * tables::LEVELS.len()) {
+        for (bound, cell) in written_cells.iter().zip(&cells).skip(6).take(2 * tables::LEVELS.len())
+        {
             if let (Ok(bound), Ok(cell)) = (bound.parse::<f64>(), cell.parse::<f64>()) {
-                assert!(cell <= bound, "docs/accuracy.csv says\n{written}\nbut measured is\n{measured}");
+                assert!(
+                    cell <= bound,
+                    "docs/accuracy.csv says\n{written}\nbut measured is\n{measured}"
+                );
                 assert!(bound <= 16.0, "{written}");
             }
         }
-        assert!(cells[5] == "-" || cells[5].parse::<f64>().is_ok_and(|worst| worst <= 16.0), "{measured}");
+        assert!(
+            cells[5] == "-" || cells[5].parse::<f64>().is_ok_and(|worst| worst <= 16.0),
+            "{measured}"
+        );
     }
 }
 
@@ -85,8 +97,9 @@ fn assert_lines(written: &[&str], measurement: &Measurement) {
 fn worst(table: &str) -> [f64; 2] {
     let rows = table.lines().map(|line| line.split('|').map(str::trim).collect::<Vec<_>>());
     let errors = |from_end: usize| {
-        rows.clone()
-            .filter_map(move |cells| cells.get(cells.len().checked_sub(from_end)?)?.parse::<f64>().ok())
+        rows.clone().filter_map(move |cells| {
+            cells.get(cells.len().checked_sub(from_end)?)?.parse::<f64>().ok()
+        })
     };
     [5, 2].map(|column| errors(column).fold(0.0, f64::max))
 }
@@ -132,7 +145,8 @@ fn every_engine_is_exact_at_the_extremes() {
 #[test]
 fn the_readme_quotes_the_worst_errors() {
     let written = read("docs/ACCURACY.md");
-    let all = written.lines().find(|line| line.starts_with("| **all** |")).expect("the row of all cases");
+    let all =
+        written.lines().find(|line| line.starts_with("| **all** |")).expect("the row of all cases");
     let cells: Vec<_> = all.split('|').map(str::trim).collect();
     let readme = read("README.md");
     let readme = readme.split_whitespace().collect::<Vec<_>>().join(" ");
@@ -142,7 +156,8 @@ fn the_readme_quotes_the_worst_errors() {
     }
 }
 
-/// On the GPU that the table was measured on its cells are upper bounds; on any other the promise is 16.
+/// On the GPU that the table was measured on its cells are upper bounds; on any other the promise
+/// is 16.
 #[cfg(feature = "gpu")]
 #[test]
 fn the_kernels_of_the_gpu_keep_to_the_written_errors() {

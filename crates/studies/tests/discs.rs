@@ -1,4 +1,5 @@
-//! Segment against disc by the paper's quartic, on plain and nasty problems, against twice the digits.
+//! Segment against disc by the paper's quartic, on plain and nasty problems, against twice the
+//! digits.
 
 use continuum_studies::Number;
 use continuum_studies::quartic::{QuarticAsPrinted, RecentredQuartic};
@@ -11,8 +12,9 @@ use polynomial_roots::*;
 /// The share of gross errors, above 1e-4 of the extent, among the problems of some kinds.
 fn gross<S: DiscSolver<f64>>(problems: &[(Kind, DiscProblem, f64)], kinds: &[Kind]) -> f64 {
     let some = || problems.iter().filter(|(kind, ..)| kinds.contains(kind));
-    let wrong =
-        some().filter(|(_, problem, distance)| problem.error(segment_disc_by::<S, f64>, *distance) > 1e-4);
+    let wrong = some().filter(|(_, problem, distance)| {
+        problem.error(segment_disc_by::<S, f64>, *distance) > 1e-4
+    });
     wrong.count() as f64 / some().count() as f64
 }
 
@@ -44,8 +46,13 @@ fn the_printed_quartic_is_right_on_tame_problems_and_grossly_wrong_on_others() {
             gross::<QuarticAsPrinted<JenkinsTraub>>(&problems, kinds),
         ]
     };
-    let tame =
-        shares(&[Kind::Random, Kind::ParallelOver, Kind::ThroughRim, Kind::ThroughAxis, Kind::NearAxis]);
+    let tame = shares(&[
+        Kind::Random,
+        Kind::ParallelOver,
+        Kind::ThroughRim,
+        Kind::ThroughAxis,
+        Kind::NearAxis,
+    ]);
     assert_eq!(tame, [0.0; 4]);
     let all = shares(&Kind::ALL);
     assert!(all.iter().all(|&share| share > 0.01), "{all:?}");
@@ -59,7 +66,8 @@ fn the_printed_quartic_is_right_on_tame_problems_and_grossly_wrong_on_others() {
 
 #[test]
 fn a_double_root_is_lost_where_only_real_roots_count() {
-    // Parallel to the plane: rounding splits the root into a complex pair, and an end of the segment is left.
+    // Parallel to the plane: rounding splits the root into a complex pair, and an end of the
+    // segment is left.
     let problem = DiscProblem {
         ends: [Vector::new(3.0, 1.1, 1.0), Vector::new(3.0, -0.3, 1.0)],
         centre: Vector::ZERO,
@@ -70,6 +78,7 @@ fn a_double_root_is_lost_where_only_real_roots_count() {
     assert_eq!(problem.distance(), right);
     // The end (3, -0.3, 1) is sqrt(9.09) from the axis.
     let end = (1.0 + (9.09_f64.sqrt() - 2.0).powi(2)).sqrt();
-    let off = problem.error(segment_disc_by::<QuarticAsPrinted<Companion>, f64>, right) * problem.extent();
+    let off = problem.error(segment_disc_by::<QuarticAsPrinted<Companion>, f64>, right)
+        * problem.extent();
     assert!((off - (end - right)).abs() < 1e-12, "{off}");
 }

@@ -30,7 +30,10 @@ impl<T: Number> DiscSolver<T> for Quartic {
     }
 }
 
-fn answers<T: Number, S: DiscSolver<T> + DiscSolver<f64>>(mesh: &TriMesh, robot: &Chain) -> Vec<f64> {
+fn answers<T: Number, S: DiscSolver<T> + DiscSolver<f64>>(
+    mesh: &TriMesh,
+    robot: &Chain,
+) -> Vec<f64> {
     let found = EveryPair::<T, S>::new(mesh).per_link(robot, &Pose::IDENTITY);
     found.iter().map(|nearest| nearest.distance).collect()
 }

@@ -1,5 +1,5 @@
-//! The programs that measure and write pages, each rehearsed: what they write is whole, and its numbers are
-//! numbers. Times are not judged.
+//! The programs that measure and write pages, each rehearsed: what they write is whole, and its
+//! numbers are numbers. Times are not judged.
 
 use continuum_testing::programs::*;
 
@@ -71,14 +71,23 @@ fn the_trade_is_measured_drawn_and_quoted() {
     let of: Vec<_> = motions.iter().map(|row| &*row[0]).collect();
     assert_eq!(of, ["1 mm", "2 mm", "5 mm", "10 mm"]);
     // This chapter alone, with other edges: nothing else changes.
-    succeed(TRADEOFF, &[&place[..], &["--only", "motions", "--edges", "2", "--out", "trade/docs"]].concat());
+    succeed(
+        TRADEOFF,
+        &[&place[..], &["--only", "motions", "--edges", "2", "--out", "trade/docs"]].concat(),
+    );
     let again = read("trade/docs/TRADEOFF.md");
     let parts = |page: &str| -> Vec<String> { page.split(" -->\n").map(str::to_owned).collect() };
     let (before, after) = (parts(&page), parts(&again));
-    assert!(before.len() == 3 && before[0] == after[0] && before[2] == after[2] && before[1] != after[1]);
+    assert!(
+        before.len() == 3
+            && before[0] == after[0]
+            && before[2] == after[2]
+            && before[1] != after[1]
+    );
     assert!(after[1].contains(" 2 of each length"), "{again}");
     refuse(TRADEOFF, &["--only", "motions", "--out", "trade/nowhere"], "has no such chapter");
-    // Discs and rings for the search of four models and of the tube at seven tolerances, and in the legend.
+    // Discs and rings for the search of four models and of the tube at seven tolerances, and in the
+    // legend.
     let picture = read("trade/docs/tradeoff.svg");
     assert_eq!(picture.matches("<circle").count(), 2 * 5 * 7 + 2);
     // With a GPU the legend has a frame for one precision, and another mark for the other.
@@ -88,8 +97,18 @@ fn the_trade_is_measured_drawn_and_quoted() {
     assert_eq!(table(&read("trade/docs/book/trade.md"), "| error | free shape: `Tube` |").len(), 4);
 
     let wall = file("wall.obj", "v -9 -9 0\nv 9 -9 0\nv 0 9 0\nf 1 2 3\n");
-    let arguments =
-        ["--mesh", &wall, "--base", "0,0,0", "--axis", "0,0,1", "--shapes", "10", "--out", "trade/none"];
+    let arguments = [
+        "--mesh",
+        &wall,
+        "--base",
+        "0,0,0",
+        "--axis",
+        "0,0,1",
+        "--shapes",
+        "10",
+        "--out",
+        "trade/none",
+    ];
     let (success, _, error) = run(TRADEOFF, &arguments);
     // In one line, behind what it was at.
     let last = error.lines().last().unwrap_or_default();
@@ -112,7 +131,9 @@ fn speed_is_measured_drawn_and_quoted() {
         "`cargo run --release -p continuum-studies --bin speed -- --largest 1 --enough 0 --out speed/docs`"
     ));
 
-    for head in ["| wall | triangles | all links: parry |", "| wall | triangles | nodes, first time |"] {
+    for head in
+        ["| wall | triangles | all links: parry |", "| wall | triangles | nodes, first time |"]
+    {
         let rows = table(&page, head);
         let of: Vec<_> = rows.iter().map(|row| (&*row[0], &*row[1])).collect();
         assert_eq!(of, [("near", "5120"), ("far", "5120")], "{head}");
@@ -130,19 +151,30 @@ fn speed_is_measured_drawn_and_quoted() {
     let queries: Vec<_> = latency.iter().map(|row| &*row[0]).collect();
     assert_eq!(queries, ["`minimum`", "`clears`", "`per_link`", "`within`"]);
     for row in &latency {
-        // The median, what one tick in a thousand exceeds, and the largest; alone, then after other work.
+        // The median, what one tick in a thousand exceeds, and the largest; alone, then after other
+        // work.
         let micros: Vec<f64> = row[2..].iter().map(|cell| cell.parse().unwrap()).collect();
         for times in micros.chunks(4) {
             assert!(times[0] >= 20.0 && times[1..].is_sorted() && times[1] > 0.0, "{row:?}");
         }
     }
     let rare = table(&page, "| query | triangles | touching |");
-    assert_eq!(rare.iter().map(|row| &*row[0]).collect::<Vec<_>>(), ["`clears`", "`minimum`", "`within`"]);
+    assert_eq!(
+        rare.iter().map(|row| &*row[0]).collect::<Vec<_>>(),
+        ["`clears`", "`minimum`", "`within`"]
+    );
     for row in &rare {
-        // How many touch; median, one in a thousand, worst, worst over median; and the same of those that are free.
+        // How many touch; median, one in a thousand, worst, worst over median; and the same of
+        // those that are free.
         let numbers: Vec<f64> = row[2..].iter().map(|cell| cell.parse().unwrap()).collect();
-        assert!(numbers[0] > 20.0 && numbers[5] > 20.0 && numbers[0] + numbers[5] == 1000.0, "{row:?}");
-        assert!(numbers[1..4].is_sorted() && numbers[6..9].is_sorted() && numbers[1] > 0.0, "{row:?}");
+        assert!(
+            numbers[0] > 20.0 && numbers[5] > 20.0 && numbers[0] + numbers[5] == 1000.0,
+            "{row:?}"
+        );
+        assert!(
+            numbers[1..4].is_sorted() && numbers[6..9].is_sorted() && numbers[1] > 0.0,
+            "{row:?}"
+        );
     }
     assert_eq!(table(&page, "| order | precision | culling |").len(), 8);
     let shares = table(&page, "| order | precision | capsules |");
@@ -170,7 +202,10 @@ fn speed_is_measured_drawn_and_quoted() {
     assert!(table(&goals, "| job | goal | measured | met |").len() > 5);
     let quoted = read("speed/README.md");
     assert_eq!(table(&quoted, "| wall | triangles | all links: parry |").len(), 2);
-    assert!(quoted.contains(" us instead of ") && quoted.contains(" at 5120 triangles"), "{quoted}");
+    assert!(
+        quoted.contains(" us instead of ") && quoted.contains(" at 5120 triangles"),
+        "{quoted}"
+    );
     assert_eq!(table(&quoted, "| wall | triangles | touching: parry |").len(), 3);
 
     // A line and a legend for each model and engine.
@@ -215,7 +250,10 @@ fn curves_are_measured_drawn_and_quoted() {
 
 #[test]
 fn rules_of_own_parts_are_counted_and_quoted() {
-    file("own/docs/book/robots.md", "before\n<!-- own_parts -->\nstale\n<!-- /own_parts -->\nafter\n");
+    file(
+        "own/docs/book/robots.md",
+        "before\n<!-- own_parts -->\nstale\n<!-- /own_parts -->\nafter\n",
+    );
     let out = succeed(OWN_PARTS, &["--shapes", "40", "--out", "own/docs"]);
     let page = read("own/docs/book/robots.md");
     assert_eq!(page, format!("before\n<!-- own_parts -->\n{out}<!-- /own_parts -->\nafter\n"));
@@ -223,14 +261,18 @@ fn rules_of_own_parts_are_counted_and_quoted() {
     assert_eq!(rows.len(), 9, "{page}");
     // All shapes are counted, some are near themselves, and this crate's rule misses none of these.
     let number = |row: &[String], column: usize| row[column].parse::<u32>().expect("a number");
-    assert!(rows.iter().all(|row| number(row, 2) + number(row, 3) + number(row, 4) == 40), "{page}");
+    assert!(
+        rows.iter().all(|row| number(row, 2) + number(row, 3) + number(row, 4) == 40),
+        "{page}"
+    );
     assert!(rows.iter().map(|row| number(row, 2)).sum::<u32>() > 20, "{page}");
     assert!(rows.iter().all(|row| number(row, 5) == 0), "{page}");
 }
 
 #[test]
 fn the_studies_are_made_and_one_is_made_again() {
-    let small = ["--problems", "400", "--queries", "20", "--triangles", "1000", "--polynomials", "200"];
+    let small =
+        ["--problems", "400", "--queries", "20", "--triangles", "1000", "--polynomials", "200"];
     let _ = std::fs::remove_dir_all(place("studies"));
     let out = ["--out", "studies"];
     assert_eq!(succeed(STUDIES, &[&small[..], &out].concat()), "studies/studies.md\n");
@@ -239,10 +281,14 @@ fn the_studies_are_made_and_one_is_made_again() {
 
     let routes = table(&page, "| route | f32: worst |");
     assert_eq!((routes.len(), read("studies/studies_discs.csv").lines().count()), (10, 1 + 13));
-    // Answers with more than 8 units of error, in single and in double precision: none by the default.
+    // Answers with more than 8 units of error, in single and in double precision: none by the
+    // default.
     assert_eq!([&*routes[0][0], &*routes[0][2], &*routes[0][6]], ["convex, Halley", "0", "0"]);
     for printed in &routes[1..5] {
-        assert!(printed[0].starts_with("(18) as printed") && percent(&printed[3]) > 0.0, "{printed:?}");
+        assert!(
+            printed[0].starts_with("(18) as printed") && percent(&printed[3]) > 0.0,
+            "{printed:?}"
+        );
     }
     let tables: Vec<_> = page.split("\n## Table I").collect();
     for chapter in ["I: segment to segment", "II: point to triangle"] {
@@ -250,7 +296,10 @@ fn the_studies_are_made_and_one_is_made_again() {
         assert_eq!(table(chapter, "| precision | queries | clamped |").len(), 4);
     }
     let growth = table(&page, "| precision | model | pairs and discs | 1000 |");
-    assert_eq!((growth.len(), table(&page, "| precision | model | pairs and discs | s |").len()), (8, 8));
+    assert_eq!(
+        (growth.len(), table(&page, "| precision | model | pairs and discs | s |").len()),
+        (8, 8)
+    );
     let engines = read("studies/studies_engines.csv");
     assert_eq!(
         (engines.lines().count(), read("studies/studies_index.csv").lines().count()),
@@ -268,7 +317,10 @@ fn the_studies_are_made_and_one_is_made_again() {
     assert_eq!(finders.lines().count(), 1 + 24);
     for row in finders.lines().skip(1) {
         let cells: Vec<_> = row.split(',').collect();
-        assert!([4, 7].iter().all(|found| cells[*found] == "all" || percent(cells[*found]) > 90.0), "{row}");
+        assert!(
+            [4, 7].iter().all(|found| cells[*found] == "all" || percent(cells[*found]) > 90.0),
+            "{row}"
+        );
     }
 
     let again = ["--only", "polynomials", "--polynomials", "20"];
@@ -278,9 +330,14 @@ fn the_studies_are_made_and_one_is_made_again() {
     let (chapters_after, polynomials_after) = after.split_once("## Table V").unwrap();
     let eigenvalues = table(&page, "| coefficients | degree | ours us |");
     assert_eq!(eigenvalues.len(), 10);
-    assert!(eigenvalues.iter().all(|row| row[3] == "all" || percent(&row[3]) > 80.0), "{eigenvalues:?}");
+    assert!(
+        eigenvalues.iter().all(|row| row[3] == "all" || percent(&row[3]) > 80.0),
+        "{eigenvalues:?}"
+    );
     assert_eq!(chapters, chapters_after);
-    assert!(polynomials.contains("\n200 polynomials") && polynomials_after.contains("\n20 polynomials"));
+    assert!(
+        polynomials.contains("\n200 polynomials") && polynomials_after.contains("\n20 polynomials")
+    );
 
     for (arguments, expected) in [
         (["--problems", "19"], "at least 20"),

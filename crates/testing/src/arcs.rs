@@ -27,7 +27,8 @@ impl Arcs {
         Self { arcs: Vec::new(), stretches: Vec::new(), frame }
     }
 
-    /// Adds a stretch of arcs, each of a length and a curvature vector (of which the z coordinate is left out).
+    /// Adds a stretch of arcs, each of a length and a curvature vector (of which the z coordinate
+    /// is left out).
     pub fn push(&mut self, radius: Real, arcs: &[(Real, Vector)]) {
         let (mut length, mut curvature) = (0.0, 0.0);
         for &(part, bend) in arcs {
@@ -40,15 +41,17 @@ impl Arcs {
         self.stretches.push(Stretch { length, radius, curvature });
     }
 
-    /// Up to three stretches of up to two arcs: from shorter than the radius to 20 times as long, and bent up to a
-    /// radius of curvature little more than their own.
+    /// Up to three stretches of up to two arcs: from shorter than the radius to 20 times as long,
+    /// and bent up to a radius of curvature little more than their own.
     pub fn random(random: &mut Random, frame: Pose, size: Real) -> Self {
         let mut all = Self::from_frame(frame);
         for _ in 0..=random.below(3) {
             let radius = size * random.between(0.2, 2.0);
-            let curvature = random.between(0.0, 0.95) * [1.0, 0.1][random.below(2) as usize] / radius;
+            let curvature =
+                random.between(0.0, 0.95) * [1.0, 0.1][random.below(2) as usize] / radius;
             let mut arc = |_| {
-                let length = radius * [0.3, 2.0, 20.0][random.below(3) as usize] * random.between(0.3, 1.0);
+                let length =
+                    radius * [0.3, 2.0, 20.0][random.below(3) as usize] * random.between(0.3, 1.0);
                 let share = [1.0, 1.0, 0.0, random.unit()][random.below(4) as usize];
                 let angle = random.between(0.0, 7.0);
                 (length, Vector::new(angle.cos(), angle.sin(), 0.0) * (curvature * share))
@@ -90,16 +93,20 @@ impl Arcs {
 
     /// The length of its shortest arc.
     pub fn shortest(&self) -> Real {
-        self.arcs.iter().fold((0.0, Real::INFINITY), |(from, least), arc| (arc.0, least.min(arc.0 - from))).1
+        self.arcs
+            .iter()
+            .fold((0.0, Real::INFINITY), |(from, least), arc| (arc.0, least.min(arc.0 - from)))
+            .1
     }
 
-    /// Points no farther apart than `spacing`, and the radius between each two; next to the ends of every stretch, also
-    /// points `at_ends` away from it.
+    /// Points no farther apart than `spacing`, and the radius between each two; next to the ends of
+    /// every stretch, also points `at_ends` away from it.
     pub fn samples(&self, spacing: Real, at_ends: &[Real]) -> (Vec<Vector>, Vec<Real>) {
         let (mut points, mut radii, mut from) = (vec![self.at(0.0).0], Vec::new(), 0.0);
         for stretch in &self.stretches {
             let count = (stretch.length / spacing).ceil().max(1.0) as usize;
-            let mut here: Vec<_> = (1..=count).map(|k| stretch.length * k as Real / count as Real).collect();
+            let mut here: Vec<_> =
+                (1..=count).map(|k| stretch.length * k as Real / count as Real).collect();
             let near = at_ends.iter().filter(|off| **off < 0.4 * stretch.length);
             here.extend(near.flat_map(|off| [*off, stretch.length - off]));
             here.sort_by(Real::total_cmp);

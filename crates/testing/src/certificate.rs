@@ -1,6 +1,6 @@
-//! Proofs of a distance between convex shapes, in double-double arithmetic: two points that lie in the shapes bound
-//! it from above, a direction along which the shapes are apart bounds it from below. A proof needs no trust in
-//! whoever found the points and the direction.
+//! Proofs of a distance between convex shapes, in double-double arithmetic: two points that lie in
+//! the shapes bound it from above, a direction along which the shapes are apart bounds it from
+//! below. A proof needs no trust in whoever found the points and the direction.
 
 use crate::kernels::{Input, KERNELS};
 use parry_continuum::distance::*;
@@ -51,11 +51,14 @@ impl Shape {
                 heights.reduce(Scalar::max).expect("a hull has points")
             }
             Self::Plane { point, .. } => direction.dot(*point),
-            Self::Disc { centre, normal, radius } => direction.dot(*centre) + *radius * across(*normal),
+            Self::Disc { centre, normal, radius } => {
+                direction.dot(*centre) + *radius * across(*normal)
+            }
             Self::Link { ends, axis, radius, flat } => {
                 let forward = direction.dot(*axis);
                 let reach = |end: usize, outward: DoubleDouble| {
-                    // A round cap shows its half ball to directions that point out of it, else its rim.
+                    // A round cap shows its half ball to directions that point out of it, else its
+                    // rim.
                     let round = !flat[end] && zero().le(outward);
                     direction.dot(ends[end]) + if round { *radius } else { *radius * across(*axis) }
                 };
@@ -78,8 +81,11 @@ impl Shape {
             Self::Link { ends: [start, end], axis, radius, flat } => {
                 let (from_start, from_end) = (point - *start, point - *end);
                 let (below, above) = (-from_start.dot(*axis), from_end.dot(*axis));
-                let (beyond, from, flat) =
-                    if zero().lt(above) { (above, from_end, flat[1]) } else { (below, from_start, flat[0]) };
+                let (beyond, from, flat) = if zero().lt(above) {
+                    (above, from_end, flat[1])
+                } else {
+                    (below, from_start, flat[0])
+                };
                 let rho = (from_start - *axis * from_start.dot(*axis)).norm();
                 let barrel = (rho - *radius).max(zero());
                 match (zero().lt(beyond), flat) {
@@ -150,7 +156,8 @@ pub fn shapes(input: &Input<DoubleDouble>) -> [[Shape; 2]; KERNELS.len()] {
     ]
 }
 
-/// Directions worth trying to separate the shapes of an input along: those of all its pairs' closest points.
+/// Directions worth trying to separate the shapes of an input along: those of all its pairs'
+/// closest points.
 pub fn directions(input: &Input<DoubleDouble>, answers: &[Closest<DoubleDouble>]) -> Vec<Exact> {
     let Input { triangle, start, end, radius, .. } = *input;
     let discs = [start, end].map(|centre| triangle_disc(triangle, centre, end - start, radius));
@@ -158,8 +165,8 @@ pub fn directions(input: &Input<DoubleDouble>, answers: &[Closest<DoubleDouble>]
     gaps.map(Vec3::normalised).collect()
 }
 
-/// The bounds that an answer and some directions prove. (The answer's own direction is only half as precise as its
-/// distance where two cases of a kernel tie.)
+/// The bounds that an answer and some directions prove. (The answer's own direction is only half as
+/// precise as its distance where two cases of a kernel tie.)
 pub fn certify(
     [first, second]: &[Shape; 2],
     closest: &Closest<DoubleDouble>,

@@ -1,11 +1,13 @@
-//! Segments and discs to compare the routes of segment-disc on: plain ones, and every kind that is known to be hard.
+//! Segments and discs to compare the routes of segment-disc on: plain ones, and every kind that is
+//! known to be hard.
 
 use crate::Random;
 use crate::precision::Precision;
 use parry_continuum::distance::{Closest, DoubleDouble, Scalar, Vec3};
 use parry_continuum::parry::math::{Pose, Vector};
 
-/// A way from a segment to a disc: [`segment_disc`](parry_continuum::distance::segment_disc), or one to compare with it.
+/// A way from a segment to a disc: [`segment_disc`](parry_continuum::distance::segment_disc), or
+/// one to compare with it.
 pub type Route<T> = fn([Vec3<T>; 2], Vec3<T>, Vec3<T>, T) -> Closest<T>;
 
 /// A segment and a disc.
@@ -151,7 +153,9 @@ impl DiscProblem {
                 let y = random.between(radius, 3.0 * radius);
                 problem.ends = through(flat(y, height), Vector::X, random);
             }
-            Kind::ParallelTangent => problem.ends = through(flat(radius, height), Vector::X, random),
+            Kind::ParallelTangent => {
+                problem.ends = through(flat(radius, height), Vector::X, random)
+            }
             Kind::NearlyParallel => {
                 let y = random.between(0.0, 2.0 * radius);
                 problem.ends = through(flat(y, height), Vector::new(1.0, 0.0, tilt), random);
@@ -168,12 +172,14 @@ impl DiscProblem {
                 problem.ends = through(at, Vector::new(cos, tiny(random), sin), random);
             }
             Kind::ThroughRim => {
-                let at = Vector::new(radius * cos, radius * sin, 0.0) + random.point() * tiny(random);
+                let at =
+                    Vector::new(radius * cos, radius * sin, 0.0) + random.point() * tiny(random);
                 let way = random.point();
                 problem.ends = [at + way * 2.0, at - way * random.between(0.0, 1.5)];
             }
             Kind::EndOnRim => {
-                let at = Vector::new(radius * cos, radius * sin, 0.0) + random.point() * tiny(random);
+                let at =
+                    Vector::new(radius * cos, radius * sin, 0.0) + random.point() * tiny(random);
                 problem.ends[0] = at;
                 if random.below(2) == 0 {
                     problem.ends[1] = at + Vector::new(-sin, cos, tilt) * random.between(-2.0, 2.0);
@@ -196,10 +202,16 @@ impl DiscProblem {
                 problem.ends = through(at, Vector::new(tiny(random), tiny(random), 1.0), random);
             }
             Kind::AnySize => {
-                let at =
-                    Vector::new(small(random, -6.0, 6.0), small(random, -6.0, 6.0), small(random, -6.0, 6.0));
-                let way =
-                    Vector::new(small(random, -6.0, 0.0), small(random, -6.0, 0.0), small(random, -6.0, 0.0));
+                let at = Vector::new(
+                    small(random, -6.0, 6.0),
+                    small(random, -6.0, 6.0),
+                    small(random, -6.0, 6.0),
+                );
+                let way = Vector::new(
+                    small(random, -6.0, 0.0),
+                    small(random, -6.0, 0.0),
+                    small(random, -6.0, 0.0),
+                );
                 problem.ends = through(at, way * small(random, -3.0, 6.0), random);
                 problem.radius = small(random, -6.0, 6.0).abs();
             }
@@ -238,12 +250,13 @@ impl DiscProblem {
     /// The largest difference of two coordinates, or the radius.
     pub fn extent(&self) -> f64 {
         let points = [self.ends[0], self.ends[1], self.centre];
-        let [low, high] =
-            [Vector::min, Vector::max].map(|pick| points.into_iter().reduce(pick).unwrap_or_default());
+        let [low, high] = [Vector::min, Vector::max]
+            .map(|pick| points.into_iter().reduce(pick).unwrap_or_default());
         (high - low).max_element().max(self.radius)
     }
 
-    /// The distance, in numbers `T`: by bisection of the derivative of the squared distance, which is convex.
+    /// The distance, in numbers `T`: by bisection of the derivative of the squared distance, which
+    /// is convex.
     pub fn distance_in<T: Scalar<Mask = bool> + From<f64>>(&self) -> T {
         let point = |p: Vector| p.to_array().map(T::from);
         let sub = |a: [T; 3], b: [T; 3]| [a[0] - b[0], a[1] - b[1], a[2] - b[2]];

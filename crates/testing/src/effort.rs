@@ -7,7 +7,8 @@ const DEFAULT: f64 = 0.25;
 
 /// The number of rounds to run of a random test that has `full` rounds: at least one.
 ///
-/// `PARRY_CONTINUUM_EFFORT` is the share; it is 1 in `.ci/everything`. What a test asserts of its sample scales alike.
+/// `PARRY_CONTINUUM_EFFORT` is the share; it is 1 in `.ci/everything`. What a test asserts of its
+/// sample scales alike.
 ///
 /// # Panics
 /// If the variable holds no positive number.

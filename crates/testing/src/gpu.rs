@@ -1,12 +1,14 @@
 //! The GPU of this machine, opened once for all tests of a program.
 //!
-//! Without one these tests pass without doing anything, unless PARRY_CONTINUUM_REQUIRE_GPU is set: then they fail.
+//! Without one these tests pass without doing anything, unless PARRY_CONTINUUM_REQUIRE_GPU is set:
+//! then they fail.
 
 use parry_continuum::gpu::{DeviceError, Gpu, GpuError, Precision};
 use std::sync::OnceLock;
 
 /// The precisions, with names for messages.
-pub const PRECISIONS: [(&str, Precision); 2] = [("GPU f32", Precision::F32), ("GPU f64", Precision::F64)];
+pub const PRECISIONS: [(&str, Precision); 2] =
+    [("GPU f32", Precision::F32), ("GPU f64", Precision::F64)];
 
 /// The GPU in this precision; None if there is none and none is required.
 pub fn open(precision: Precision) -> Option<&'static Gpu> {

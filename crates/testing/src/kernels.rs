@@ -81,7 +81,8 @@ impl<T: Scalar> Input<T> {
 }
 
 impl<T: Precision> Input<T> {
-    /// The extent of each kernel's pair: the largest difference of two of its points in a coordinate, or its radius.
+    /// The extent of each kernel's pair: the largest difference of two of its points in a
+    /// coordinate, or its radius.
     pub fn extents(&self) -> [f64; KERNELS.len()] {
         self.parts().map(|(points, radius)| extent(&points, radius))
     }

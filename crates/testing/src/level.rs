@@ -1,6 +1,7 @@
 //! Parallel links side by side whose ends are level, and which overlap deeply.
 //!
-//! The places where their axes are nearest lie in the planes of flat caps. Rounding puts them before or behind these.
+//! The places where their axes are nearest lie in the planes of flat caps. Rounding puts them
+//! before or behind these.
 
 use crate::Random;
 use parry_continuum::parry::math::{Pose, Vector};
@@ -10,7 +11,8 @@ use parry_continuum::{Cap, ModifiedCylinder};
 #[derive(Clone, Copy, Debug)]
 pub struct LevelLinks {
     pub links: [ModifiedCylinder; 2],
-    /// The length of the least translation that separates them, if all caps are flat. Round caps make it no shorter.
+    /// The length of the least translation that separates them, if all caps are flat. Round caps
+    /// make it no shorter.
     pub depth: f64,
 }
 
@@ -93,11 +95,11 @@ pub fn found_level_links() -> impl Iterator<Item = LevelLinks> {
 }
 
 impl Random {
-    /// Level at the start, at the end or at both, at any pose and in any unit between micrometres and kilometres. Every fourth
-    /// pair has round caps too.
+    /// Level at the start, at the end or at both, at any pose and in any unit between micrometres
+    /// and kilometres. Every fourth pair has round caps too.
     ///
-    /// Parallel cylinders differ by a cylinder, whose radius is the sum of both radii. From within, the way out is across the axes
-    /// or along them: so the depth is the lesser of the two.
+    /// Parallel cylinders differ by a cylinder, whose radius is the sum of both radii. From within,
+    /// the way out is across the axes or along them: so the depth is the lesser of the two.
     pub fn level_links(&mut self) -> LevelLinks {
         let size = if self.below(2) == 0 { 1.0 } else { self.magnitude(-6.0, 3.0) };
         let radius = self.between(0.2, 1.0);
@@ -108,8 +110,8 @@ impl Random {
         let lengths = if level == 0 { [lengths[0]; 2] } else { lengths };
         let low = if level == 2 { lengths[0] - lengths[1] } else { 0.0 };
         let aside = Vector::X * (radii[0] + radii[1] - across);
-        let axes =
-            [[0.0, lengths[0]], [low, low + lengths[1]]].map(|ends: [f64; 2]| ends.map(|z| Vector::Z * z));
+        let axes = [[0.0, lengths[0]], [low, low + lengths[1]]]
+            .map(|ends: [f64; 2]| ends.map(|z| Vector::Z * z));
         let axes = [axes[0], axes[1].map(|end| end + aside)];
         let pose = match self.below(4) {
             0 => Pose::IDENTITY,

@@ -1,4 +1,5 @@
-//! What the tests and measurements of `parry-continuum` share, so that all of them ask and judge alike.
+//! What the tests and measurements of `parry-continuum` share, so that all of them ask and judge
+//! alike.
 //!
 //! | what | modules |
 //! |---|---|

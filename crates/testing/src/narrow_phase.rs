@@ -1,5 +1,5 @@
-//! The narrow phase for whoever asks it here and there: the library's functions are inlined into each that calls them,
-//! these are compiled once for every kind of number.
+//! The narrow phase for whoever asks it here and there: the library's functions are inlined into
+//! each that calls them, these are compiled once for every kind of number.
 
 use parry_continuum::distance::{self, Closest, Scalar, Vec3};
 

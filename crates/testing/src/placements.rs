@@ -1,14 +1,17 @@
-//! Degenerate placements of a robot and a wall, which random poses never reach and scenes are made of: axes along edges,
-//! faces and axes, one axis for both, a wall seen edge-on, corners and rims that touch, in every order of the vertices.
+//! Degenerate placements of a robot and a wall, which random poses never reach and scenes are made
+//! of: axes along edges, faces and axes, one axis for both, a wall seen edge-on, corners and rims
+//! that touch, in every order of the vertices.
 //!
-//! A wall offers [`Spot`]s: places on its surface with a way out and a way along. The robot is built in the wall's own
-//! frame so that it touches there, with a barrel, a cap or a rim; then a gap is left or taken, from 0 and 1e-14 up, and it
-//! is tilted by 0 or by 1e-15 to 1e-3. So what is aligned is aligned to the last digit. Half of the pairs are moved on as
-//! a whole, by any pose.
+//! A wall offers [`Spot`]s: places on its surface with a way out and a way along. The robot is
+//! built in the wall's own frame so that it touches there, with a barrel, a cap or a rim; then a
+//! gap is left or taken, from 0 and 1e-14 up, and it is tilted by 0 or by 1e-15 to 1e-3. So what is
+//! aligned is aligned to the last digit. Half of the pairs are moved on as a whole, by any pose.
 
 use crate::Random;
 use parry_continuum::parry::math::{IVector, Pose, Rot3, Vector};
-use parry_continuum::parry::shape::{HalfSpace, HeightField, SharedShape, TriMesh, TriMeshFlags, Triangle};
+use parry_continuum::parry::shape::{
+    HalfSpace, HeightField, SharedShape, TriMesh, TriMeshFlags, Triangle,
+};
 use parry_continuum::parry::utils::Array2;
 use parry_continuum::{Cap, Chain, ModifiedCylinder};
 
@@ -84,13 +87,15 @@ pub struct Placement {
     pub pose: Pose,
     pub kind: Wall,
     pub touch: Touch,
-    /// What was left between the two at the spot; below 0 they overlap there. Elsewhere they may overlap more.
+    /// What was left between the two at the spot; below 0 they overlap there. Elsewhere they may
+    /// overlap more.
     pub gap: f64,
     /// The angle by which the robot is tilted.
     pub tilt: f64,
 }
 
-/// A place on a wall's surface: unit vectors out of it and along it. They need not be the only ones.
+/// A place on a wall's surface: unit vectors out of it and along it. They need not be the only
+/// ones.
 #[derive(Clone, Copy, Debug)]
 pub struct Spot {
     pub at: Vector,
@@ -107,8 +112,9 @@ impl Random {
         let radius = self.size();
         let (touch, link) = self.touching(spot, radius, gap);
         let turn = Rot3::from_axis_angle(self.way(spot), tilt);
-        let tilted =
-            Pose::from_translation(spot.at) * Pose::from_rotation(turn) * Pose::from_translation(-spot.at);
+        let tilted = Pose::from_translation(spot.at)
+            * Pose::from_rotation(turn)
+            * Pose::from_translation(-spot.at);
         let link = if tilt == 0.0 { link } else { link.transformed(&tilted) };
         // Where the wall is in the robot's frame: a shift that leaves the axes alone, or anything.
         let pose = match self.below(4) {
@@ -180,9 +186,14 @@ impl Random {
         let cap = |random: &mut Self| if random.below(2) == 0 { Cap::Flat } else { Cap::Round };
         let mut caps = [cap(self), cap(self)];
         let near = at + out * gap;
-        let touch =
-            [Touch::Lying, Touch::Standing, Touch::Leaning, Touch::Lying, Touch::Standing, Touch::Ball]
-                [self.below(6) as usize];
+        let touch = [
+            Touch::Lying,
+            Touch::Standing,
+            Touch::Leaning,
+            Touch::Lying,
+            Touch::Standing,
+            Touch::Ball,
+        ][self.below(6) as usize];
         let (mut start, mut end) = match touch {
             Touch::Lying => {
                 let start = near + out * radius - along * (self.share() * length);
@@ -190,7 +201,8 @@ impl Random {
             }
             Touch::Standing => {
                 let aside = along * (self.share() * radius);
-                let start = near + aside + if caps[0] == Cap::Flat { Vector::ZERO } else { out * radius };
+                let start =
+                    near + aside + if caps[0] == Cap::Flat { Vector::ZERO } else { out * radius };
                 (start, start + out * length)
             }
             Touch::Leaning => {
@@ -219,7 +231,8 @@ impl Random {
         let axis = (link.end() - link.start()).normalize();
         let bend = if self.below(2) == 0 { axis } else { (axis + 0.5 * self.point()).normalize() };
         let points = [link.start(), link.end(), link.end() + bend * link.length()];
-        let radii = [link.radius(), if self.below(3) == 0 { 0.5 * link.radius() } else { link.radius() }];
+        let radii =
+            [link.radius(), if self.below(3) == 0 { 0.5 * link.radius() } else { link.radius() }];
         Chain::from_centreline(&points, &radii).ok()
     }
 
@@ -230,11 +243,15 @@ impl Random {
         match kind {
             Wall::Triangle => {
                 let corners = self.corners();
-                (SharedShape::new(Triangle::from(self.shuffled(corners))), self.on_triangle(corners))
+                (
+                    SharedShape::new(Triangle::from(self.shuffled(corners))),
+                    self.on_triangle(corners),
+                )
             }
             Wall::Plate => {
                 let [x, z] = [half.x, half.z];
-                let corners = [[-x, -z], [x, -z], [x, z], [-x, z]].map(|[x, z]| Vector::new(x, 0.0, z));
+                let corners =
+                    [[-x, -z], [x, -z], [x, z], [-x, z]].map(|[x, z]| Vector::new(x, 0.0, z));
                 let cut = self.below(2) as usize;
                 let triangles = [[0, 1, 2], [0, 2, 3]].map(|t| t.map(|k| ((k + cut) % 4) as u32));
                 let spot = self.on_triangle([corners[cut], corners[1 + cut], corners[2 + cut % 2]]);
@@ -249,7 +266,8 @@ impl Random {
             }
             Wall::HeightField => {
                 let ridge = if self.below(2) == 0 { 0.0 } else { 0.25 };
-                let heights = Array2::new(3, 3, vec![0.0, 0.0, 0.0, ridge, ridge, ridge, 0.0, 0.0, 0.0]);
+                let heights =
+                    Array2::new(3, 3, vec![0.0, 0.0, 0.0, ridge, ridge, ridge, 0.0, 0.0, 0.0]);
                 let field = HeightField::new(heights, Vector::new(2.0 * half.x, 1.0, 2.0 * half.z));
                 let triangles: Vec<_> = field.triangles().collect();
                 let triangle = triangles[self.below(triangles.len() as u32) as usize];
@@ -275,18 +293,22 @@ impl Random {
                 (SharedShape::ball(radius), Spot { at: out * radius, out, along })
             }
             Wall::Cuboid => (SharedShape::cuboid(half.x, half.y, half.z), self.on_box(half)),
-            Wall::Capsule => {
-                (SharedShape::capsule_y(long, radius), self.on_round([radius; 2], long, [Cap::Round; 2]))
-            }
-            Wall::Cylinder => {
-                (SharedShape::cylinder(long, radius), self.on_round([radius; 2], long, [Cap::Flat; 2]))
-            }
-            Wall::Cone => {
-                (SharedShape::cone(long, radius), self.on_round([radius, 0.0], long, [Cap::Flat; 2]))
-            }
+            Wall::Capsule => (
+                SharedShape::capsule_y(long, radius),
+                self.on_round([radius; 2], long, [Cap::Round; 2]),
+            ),
+            Wall::Cylinder => (
+                SharedShape::cylinder(long, radius),
+                self.on_round([radius; 2], long, [Cap::Flat; 2]),
+            ),
+            Wall::Cone => (
+                SharedShape::cone(long, radius),
+                self.on_round([radius, 0.0], long, [Cap::Flat; 2]),
+            ),
             Wall::ConvexPolyhedron => {
-                let corner =
-                    |k: u32| half * Vector::from([0, 1, 2].map(|i| if k >> i & 1 == 0 { -1.0 } else { 1.0 }));
+                let corner = |k: u32| {
+                    half * Vector::from([0, 1, 2].map(|i| if k >> i & 1 == 0 { -1.0 } else { 1.0 }))
+                };
                 let corners: Vec<_> = (0..8).map(corner).collect();
                 (SharedShape::convex_hull(&corners).expect("a box"), self.on_box(half))
             }
@@ -318,7 +340,8 @@ impl Random {
         }
     }
 
-    /// Triangles in any order, each from any corner and of either sense, with and without a mesh's normal constraints.
+    /// Triangles in any order, each from any corner and of either sense, with and without a mesh's
+    /// normal constraints.
     fn mesh(&mut self, vertices: Vec<Vector>, triangles: &[[u32; 3]]) -> SharedShape {
         let constrained = self.below(2) == 0;
         // Constraints want one sense.
@@ -326,13 +349,20 @@ impl Random {
             .iter()
             .map(|&[a, b, c]| {
                 let turned = [[a, b, c], [b, c, a], [c, a, b]][self.below(3) as usize];
-                if constrained || self.below(2) == 0 { turned } else { [turned[1], turned[0], turned[2]] }
+                if constrained || self.below(2) == 0 {
+                    turned
+                } else {
+                    [turned[1], turned[0], turned[2]]
+                }
             })
             .collect();
         let first = self.below(shuffled.len() as u32) as usize;
         shuffled.rotate_left(first);
-        let flags = if constrained { TriMeshFlags::FIX_INTERNAL_EDGES } else { TriMeshFlags::empty() };
-        SharedShape::new(TriMesh::with_flags(vertices, shuffled, flags).expect("a mesh of size one"))
+        let flags =
+            if constrained { TriMeshFlags::FIX_INTERNAL_EDGES } else { TriMeshFlags::empty() };
+        SharedShape::new(
+            TriMesh::with_flags(vertices, shuffled, flags).expect("a mesh of size one"),
+        )
     }
 
     /// The corners of a triangle, in a coordinate plane or anywhere.
@@ -341,8 +371,8 @@ impl Random {
             return [0; 3].map(|_| self.point() * 2.0);
         }
         let [a, b, c] = [self.size(), self.size(), self.size()];
-        let flat =
-            [[-a, 0.0], [b, 0.0], [0.25 * (b - a), c]].map(|[x, y]| Vector::new(2.0 * x, 2.0 * y, 0.0));
+        let flat = [[-a, 0.0], [b, 0.0], [0.25 * (b - a), c]]
+            .map(|[x, y]| Vector::new(2.0 * x, 2.0 * y, 0.0));
         let turn = self.below(3);
         flat.map(|v| match turn {
             0 => v,
@@ -400,7 +430,8 @@ impl Random {
         }
     }
 
-    /// On a surface of revolution about the y axis, from `-half` to `half`: barrel, caps, rims, a cone's tip.
+    /// On a surface of revolution about the y axis, from `-half` to `half`: barrel, caps, rims, a
+    /// cone's tip.
     fn on_round(&mut self, radii: [f64; 2], half: f64, caps: [Cap; 2]) -> Spot {
         let side = if self.below(2) == 0 { Vector::X } else { Vector::new(0.6, 0.0, 0.8) };
         let end = self.below(2) as usize;

@@ -1,5 +1,6 @@
-//! Random problems of the kinds that break distance code: a triangle and a link, from which every pair of the
-//! narrow phase takes its part (the axis as a segment, its ends as points, its caps as discs).
+//! Random problems of the kinds that break distance code: a triangle and a link, from which every
+//! pair of the narrow phase takes its part (the axis as a segment, its ends as points, its caps as
+//! discs).
 
 use crate::Random;
 use parry_continuum::parry::math::Vector;
@@ -93,8 +94,8 @@ impl Random {
         }
     }
 
-    /// A problem of the family. `finest` is the power of ten of the smallest deviations worth making, about -17 for
-    /// f64 and -8 for f32.
+    /// A problem of the family. `finest` is the power of ten of the smallest deviations worth
+    /// making, about -17 for f64 and -8 for f32.
     pub fn problem(&mut self, family: Family, finest: f64) -> Problem {
         let mut problem = Problem {
             family,
@@ -123,7 +124,8 @@ impl Random {
                 problem.triangle[1] = from + (axis + across * small) * self.between(-3.0, 3.0);
             }
             Family::FaceAlongCap => {
-                let height = axis * if self.below(2) == 0 { apart } else { self.between(-1.0, 1.0) };
+                let height =
+                    axis * if self.below(2) == 0 { apart } else { self.between(-1.0, 1.0) };
                 problem.triangle = [0; 3].map(|_| {
                     let flat = u * self.between(-2.0, 2.0) + v * self.between(-2.0, 2.0);
                     let tilted = flat + across * (small * flat.dot(across));
@@ -135,10 +137,12 @@ impl Random {
                 let along = v + axis * small + u * self.tiny(finest, -1.0);
                 problem.triangle[0] = rim + along * self.between(-2.0, 1.0);
                 problem.triangle[1] = rim + along * self.between(0.0, 2.0);
-                problem.triangle[2] = rim + u * self.between(-1.0, 3.0) + axis * self.between(-0.5, 3.0);
+                problem.triangle[2] =
+                    rim + u * self.between(-1.0, 3.0) + axis * self.between(-0.5, 3.0);
             }
             Family::Touching => {
-                // A supporting plane of the link (barrel, cap, or rim), and the triangle on or beyond it.
+                // A supporting plane of the link (barrel, cap, or rim), and the triangle on or
+                // beyond it.
                 let (touched, normal) = match self.below(3) {
                     0 => (start + (end - start) * self.unit() + u * radius, u),
                     1 => (end + u * (radius * self.unit()), axis),

@@ -53,7 +53,8 @@ pub fn example(manifest: &str, name: &str, features: &str) -> PathBuf {
 pub fn run(program: impl AsRef<Path>, arguments: &[&str]) -> (bool, String, String) {
     let place = place("");
     std::fs::create_dir_all(&place).unwrap();
-    let output = Command::new(program.as_ref()).args(arguments).current_dir(place).output().unwrap();
+    let output =
+        Command::new(program.as_ref()).args(arguments).current_dir(place).output().unwrap();
     let text = |bytes| String::from_utf8(bytes).unwrap();
     (output.status.success(), text(output.stdout), text(output.stderr))
 }
@@ -72,10 +73,14 @@ pub fn refuse(program: impl AsRef<Path>, arguments: &[&str], expected: &str) {
     let (success, out, error) = run(program, arguments);
     let name = program.display();
     assert!(!success && out.is_empty(), "{name} {arguments:?}: {out}");
-    assert!(error.contains(expected) && error.lines().count() == 1, "{name} {arguments:?}: {error}");
+    assert!(
+        error.contains(expected) && error.lines().count() == 1,
+        "{name} {arguments:?}: {error}"
+    );
 }
 
-/// The rows of the table whose head begins so, cell by cell. Every row has as many as the head, and each holds something.
+/// The rows of the table whose head begins so, cell by cell. Every row has as many as the head, and
+/// each holds something.
 pub fn table(page: &str, head: &str) -> Vec<Vec<String>> {
     let mut lines = page.lines().skip_while(|line| !line.starts_with(head));
     let cells = |line: &str| -> Vec<String> {

@@ -32,7 +32,8 @@ impl Rotation {
 }
 
 impl Random {
-    /// A rotation by an integer quaternion with components of magnitude up to `bound`, not along an axis.
+    /// A rotation by an integer quaternion with components of magnitude up to `bound`, not along an
+    /// axis.
     pub fn rotation(&mut self, bound: i32) -> Rotation {
         loop {
             let q = [0; 4].map(|_| self.below(2 * bound as u32 + 1) as i32 - bound);

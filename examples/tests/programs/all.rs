@@ -12,7 +12,10 @@ fn beside(file: &str) -> String {
 fn programs_answer_bad_input_with_one_line_and_an_error_code() {
     let empty = &file("hollow.obj", "v 0 0 0\n");
     let nan = &file("broken.obj", "v 0 0 0\nv 1 0 0\nv 0 nan 0\nf 1 2 3\n");
-    let tiny = &file("tiny.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
+    let tiny = &file(
+        "tiny.obj",
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n",
+    );
     let sheet = &file("sheet.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     for (arguments, expected) in [
         (&["--mesh", "nowhere.stl"][..], "check the path"),
@@ -79,17 +82,32 @@ fn programs_answer_bad_input_with_one_line_and_an_error_code() {
 #[test]
 fn programs_draw_their_pictures() {
     let room = room("room.obj");
-    let arguments =
-        ["--mesh", &room, "--model", "capsule", "--tolerance", "0.2", "--steps", "3", "--out", "drawn"];
+    let arguments = [
+        "--mesh",
+        &room,
+        "--model",
+        "capsule",
+        "--tolerance",
+        "0.2",
+        "--steps",
+        "3",
+        "--out",
+        "drawn",
+    ];
     let out = succeed("ventricle", &arguments);
     assert!(out.contains("12 triangles, 3 steps: search and exhaustive engine agree"), "{out}");
     assert!(out.contains("that took ") && out.contains(" pieces: the shortest is "), "{out}");
-    for line in ["parry distance(Cylinder, TriMesh)", "search, first time", "search, again", "exhaustive"] {
+    for line in
+        ["parry distance(Cylinder, TriMesh)", "search, first time", "search, again", "exhaustive"]
+    {
         assert!(out.contains(line), "{out}");
     }
     let arguments = ["--mesh", &room, "--beside", "6", "--steps", "2", "--out", "drawn/two.png"];
     let out = succeed("two_robots", &arguments);
-    assert!(out.contains("step  clear  the least room") && out.contains("robot against robot"), "{out}");
+    assert!(
+        out.contains("step  clear  the least room") && out.contains("robot against robot"),
+        "{out}"
+    );
     succeed("figure7", &["--out", "drawn/seven.png"]);
     for name in ["drawn/ventricle.png", "drawn/two.png", "drawn/seven.png"] {
         assert!(colours(name) > 1000, "{name} has {} colours", colours(name));
@@ -99,8 +117,10 @@ fn programs_draw_their_pictures() {
 /// The number before ` mm` in the line that begins so.
 fn nearest(output: &str, line: &str) -> f64 {
     let line = output.lines().find(|text| text.trim_start().starts_with(line)).expect("the line");
-    let (number, _) =
-        line.split_once("nearer than ").and_then(|(_, rest)| rest.split_once(" mm")).expect("a number");
+    let (number, _) = line
+        .split_once("nearer than ")
+        .and_then(|(_, rest)| rest.split_once(" mm"))
+        .expect("a number");
     number.parse().expect("a number")
 }
 
@@ -136,10 +156,14 @@ fn a_way_is_planned_proven_and_drawn() {
                 .lines()
                 .find_map(|line| line.strip_prefix(name))
                 .unwrap_or_else(|| panic!("{name}: {out}"));
-            let numbers: Vec<f64> = row.split_whitespace().filter_map(|cell| cell.parse().ok()).collect();
+            let numbers: Vec<f64> =
+                row.split_whitespace().filter_map(|cell| cell.parse().ok()).collect();
             // Drawn, clear, edges, accepted, shapes an edge, two shares, time, touch, failed.
             assert_eq!(numbers.len(), 10, "{row}");
-            assert!(numbers[0] > numbers[1] && numbers[1] > 0.0 && numbers[2] > numbers[3], "{row}");
+            assert!(
+                numbers[0] > numbers[1] && numbers[1] > 0.0 && numbers[2] > numbers[3],
+                "{row}"
+            );
             assert!(numbers[4] >= 1.0 && (numbers[5] + numbers[6] - 100.0).abs() < 2.0, "{row}");
             numbers
         })
@@ -150,8 +174,10 @@ fn a_way_is_planned_proven_and_drawn() {
     assert!(out.contains("it keeps 0.3 mm, which"), "{out}");
     assert!(colours("planned/way.png") > 1000);
     // Nothing comes nearer than is proven, nor sees what steps do not.
-    let line =
-        out.lines().find(|line| line.starts_with("no shape of the way")).unwrap_or_else(|| panic!("{out}"));
+    let line = out
+        .lines()
+        .find(|line| line.starts_with("no shape of the way"))
+        .unwrap_or_else(|| panic!("{out}"));
     let numbers: Vec<f64> = line.split_whitespace().filter_map(|word| word.parse().ok()).collect();
     let [proven, _, seen] = numbers[..] else { panic!("{line}") };
     assert!(0.29 <= proven && proven <= seen, "{line}");
@@ -161,19 +187,28 @@ fn a_way_is_planned_proven_and_drawn() {
 #[test]
 fn the_robot_is_pushed_recorded_and_filmed() {
     let _ = std::fs::remove_dir_all(place("pushed"));
-    let out =
-        succeed("rapier_ventricle", &["--links", "5", "--push", "0.5", "--frames", "2", "--out", "pushed"]);
+    let out = succeed(
+        "rapier_ventricle",
+        &["--links", "5", "--push", "0.5", "--frames", "2", "--out", "pushed"],
+    );
     let steps: usize = out.split(" steps: ").next().unwrap().parse().unwrap();
     let rows = |name: &str| -> Vec<Vec<f64>> {
-        let numbers = |line: &str| line.split(',').map(|cell| cell.parse().unwrap()).collect::<Vec<f64>>();
+        let numbers =
+            |line: &str| line.split(',').map(|cell| cell.parse().unwrap()).collect::<Vec<f64>>();
         let rows: Vec<_> = read(name).lines().skip(1).map(numbers).collect();
         assert!(rows.iter().flatten().all(|number| number.is_finite()), "{name}");
         rows
     };
     let whole = rows("pushed/steps.csv");
     assert!(steps > 1000 && whole.len() == steps, "{} rows: {out}", whole.len());
-    // step, time, out, pushed, links, clearance, closest link, links held, force, and two deviations.
-    assert!(whole.iter().enumerate().all(|(place, row)| row.len() == 11 && row[0] == (place + 1) as f64));
+    // step, time, out, pushed, links, clearance, closest link, links held, force, and two
+    // deviations.
+    assert!(
+        whole
+            .iter()
+            .enumerate()
+            .all(|(place, row)| row.len() == 11 && row[0] == (place + 1) as f64)
+    );
     assert!(whole.is_sorted_by_key(|row| row[2]) && whole.is_sorted_by_key(|row| row[3]));
     let last = &whole[steps - 1];
     assert!(last[2] > 20.0 && last[3] == 0.5 && last[4] == 5.0, "{last:?}");
@@ -183,9 +218,12 @@ fn the_robot_is_pushed_recorded_and_filmed() {
         let nearest = of_links.iter().map(|link| link[2]).fold(f64::INFINITY, f64::min);
         assert!(row[0] == of_links[0][0] && row[5] == nearest && nearest > 0.0, "{row:?}");
     }
-    let pictures: Vec<_> =
-        std::fs::read_dir(place("pushed")).unwrap().map(|entry| entry.unwrap().file_name()).collect();
-    let frames = pictures.iter().filter(|name| name.to_str().unwrap().starts_with("frame_")).count();
+    let pictures: Vec<_> = std::fs::read_dir(place("pushed"))
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name())
+        .collect();
+    let frames =
+        pictures.iter().filter(|name| name.to_str().unwrap().starts_with("frame_")).count();
     assert!((2..=3).contains(&frames), "{pictures:?}");
     for name in ["pushed/sheet.png", "pushed/frame_000.png"] {
         assert!(colours(name) > 1000, "{name} has {} colours", colours(name));

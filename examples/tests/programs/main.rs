@@ -1,4 +1,5 @@
-//! The example programs as a user meets them: bad input gives one line and an error code, good input a picture.
+//! The example programs as a user meets them: bad input gives one line and an error code, good
+//! input a picture.
 
 mod all;
 mod my_robot;

@@ -1,4 +1,5 @@
-//! A user's own mesh, centreline and matrix: distances known by hand, and errors that say what to change.
+//! A user's own mesh, centreline and matrix: distances known by hand, and errors that say what to
+//! change.
 
 use crate::{example, refuse, succeed};
 use continuum_testing::programs::{file, room, run};
@@ -15,7 +16,8 @@ fn minimum(arguments: &[&str]) -> f64 {
 
 #[test]
 fn a_straight_robot_in_a_box_has_the_clearance_that_one_can_see() {
-    // A box of 60 in each direction, and a needle along z: 20 from both ends, 28 and then 29 from the sides.
+    // A box of 60 in each direction, and a needle along z: 20 from both ends, 28 and then 29 from
+    // the sides.
     let room = &room("box.obj");
     let shape = &file("shape.csv", "x,y,z,radius\n30,30,20,2\n30,30,30,1\n30,30,40\n");
     let out = succeed("my_robot", &["--mesh", room, "--centreline", shape]);
@@ -31,13 +33,18 @@ fn a_straight_robot_in_a_box_has_the_clearance_that_one_can_see() {
     // Turned: (5, 30) goes to (30, 5).
     let side = &file("side.csv", "5,30,20,1\n5,30,40,1\n");
     let turned = &file("turned.txt", TURNED);
-    let out =
-        succeed("my_robot", &["--mesh", room, "--centreline", side, "--pose", turned, "--tolerance", "0.01"]);
+    let out = succeed(
+        "my_robot",
+        &["--mesh", room, "--centreline", side, "--pose", turned, "--tolerance", "0.01"],
+    );
     assert!(
         out.contains(", from [30.000000, 4.000000, ") && out.contains(" to [30.000000, 0.000000, "),
         "{out}"
     );
-    let curve = out.lines().find_map(|line| line.strip_prefix("curve: ")).unwrap_or_else(|| panic!("{out}"));
+    let curve = out
+        .lines()
+        .find_map(|line| line.strip_prefix("curve: "))
+        .unwrap_or_else(|| panic!("{out}"));
     let bounds: Vec<f64> = curve.split([' ', ',']).filter_map(|word| word.parse().ok()).collect();
     assert!(bounds[0] <= 4.0 && 4.0 <= bounds[1] && bounds[1] - bounds[0] <= 0.0100001, "{out}");
     // The files that come with the example.
@@ -55,8 +62,18 @@ fn a_straight_robot_in_a_box_has_the_clearance_that_one_can_see() {
     );
     let printed = ["--mesh", room, "--centreline", plain, "--pose", printed, "--radius", "2"];
     assert_eq!(minimum(&printed), 7.0);
-    let array = "[[1., 0., 0., -21.],\n [0., 1., 0., 0.],\n [0., 0., 1., 0.],\n [0., 0., 0., 1.]]\n";
-    let array = ["--mesh", room, "--centreline", plain, "--pose", &file("array.txt", array), "--radius", "2"];
+    let array =
+        "[[1., 0., 0., -21.],\n [0., 1., 0., 0.],\n [0., 0., 1., 0.],\n [0., 0., 0., 1.]]\n";
+    let array = [
+        "--mesh",
+        room,
+        "--centreline",
+        plain,
+        "--pose",
+        &file("array.txt", array),
+        "--radius",
+        "2",
+    ];
     assert_eq!(minimum(&array), 7.0);
 }
 
@@ -72,7 +89,8 @@ fn points_are_read_as_people_write_them() {
         "X\tY\tZ\tR [mm]\n30\t30\t20\t2\n30\t30\t40\n",
         "  30   30 20  2 \n\n   30  30 40",
         "30 , 30 ,\t20,\u{a0}2\n30,30,40\n",
-        // Decimal commas, quotes, lines that end by carriage returns alone, and columns as ParaView names them.
+        // Decimal commas, quotes, lines that end by carriage returns alone, and columns as
+        // ParaView names them.
         "30,5;30,0;20,0;1,0\n30,0;30,0;40,0\n",
         "30,0\t30,0\t20,0\t1,0\n30,0\t30,0\t40,0\n",
         "\"x\",\"y\",\"z\",\"radius\"\n\"30\",\"30\",\"20\",\"2\"\n\"30,0\",\"30\",\"40\"\n",
@@ -80,7 +98,11 @@ fn points_are_read_as_people_write_them() {
         "\"Radius\",\"Normals:0\",\"Points:0\",\"Points:1\",\"Points:2\"\n2,7,30,30,20\n2,7,30,30,40\n",
         "x [mm],y [mm],z [mm],radius [mm],distance_to_wall_mm\r\n30,30,20,2,9\r\n30,30,40,2,9\r\n",
     ] {
-        assert_eq!(minimum(&["--mesh", room, "--centreline", &file("people.csv", text)]), 20.0, "{text}");
+        assert_eq!(
+            minimum(&["--mesh", room, "--centreline", &file("people.csv", text)]),
+            20.0,
+            "{text}"
+        );
     }
 }
 
@@ -114,7 +136,10 @@ fn what_is_wrong_with_my_files_is_said_in_one_line() {
         "x,y,z,distance_to_wall_mm\n30,30,20,2\n30,30,40,2\n",
         "no radius; write it behind x,y,z, or give",
     );
-    refuse_shape("x,y,z\n30,30,20,2\n30,30,40\n", "has 4 columns, but the heading names 3; write x,y,z");
+    refuse_shape(
+        "x,y,z\n30,30,20,2\n30,30,40\n",
+        "has 4 columns, but the heading names 3; write x,y,z",
+    );
     refuse_shape("30,30,20,2\n30,30,30\n30,30,40\n", "line 2 of ");
     let radius = ["--mesh", room, "--centreline", shape, "--radius", "1"];
     refuse("my_robot", &radius, "has a column of radii; leave out --radius");
@@ -143,7 +168,11 @@ fn what_is_wrong_with_my_files_is_said_in_one_line() {
         for radius in [&["--radius", "0.5"][..], &[]] {
             let arguments = [&["--mesh", room, "--centreline", &missing][..], radius].concat();
             refuse("my_robot", &arguments, &format!("line {line} of "));
-            refuse("my_robot", &arguments, &format!("in column {column}; write x,y,z or x,y,z,radius"));
+            refuse(
+                "my_robot",
+                &arguments,
+                &format!("in column {column}; write x,y,z or x,y,z,radius"),
+            );
         }
     }
     // Columns that their heading names otherwise.
@@ -187,7 +216,11 @@ fn what_is_wrong_with_my_files_is_said_in_one_line() {
         assert!(!success && error.contains(expected), "{error}");
     }
     #[cfg(unix)]
-    refuse("my_robot", &["--mesh", "/dev/zero", "--centreline", shape], "ends in .stl, .obj or .ply");
+    refuse(
+        "my_robot",
+        &["--mesh", "/dev/zero", "--centreline", shape],
+        "ends in .stl, .obj or .ply",
+    );
 }
 
 /// What is printed as a warning beside an answer.
@@ -200,15 +233,18 @@ fn warnings(arguments: &[&str]) -> Vec<String> {
 #[test]
 fn a_robot_in_another_frame_or_unit_is_doubted_and_the_remedy_works() {
     // A box from 10 to 60: turned about z it is elsewhere.
-    let walls =
-        std::fs::read_to_string(room("frames_room.obj")).unwrap().replace("v 0", "v 10").replace(" 0", " 10");
+    let walls = std::fs::read_to_string(room("frames_room.obj"))
+        .unwrap()
+        .replace("v 0", "v 10")
+        .replace(" 0", " 10");
     let wall = &file("frames.obj", &walls);
     let shape = &file("frames.csv", "30,30,20,2\n30,30,40\n");
     let turned = &file("frames_lps.csv", "-30,-30,20,2\n-30,-30,40\n");
     let metres = &file("frames_m.csv", "0.030,0.030,0.020,0.002\n0.030,0.030,0.040\n");
     let both = &file("frames_both.csv", "-0.030,-0.030,0.020,0.002\n-0.030,-0.030,0.040\n");
-    let of =
-        |shape: &str, more: &[&str]| minimum(&[&["--mesh", wall, "--centreline", shape][..], more].concat());
+    let of = |shape: &str, more: &[&str]| {
+        minimum(&[&["--mesh", wall, "--centreline", shape][..], more].concat())
+    };
     assert!(warnings(&["--mesh", wall, "--centreline", shape]).is_empty());
     assert_eq!(of(shape, &[]), 10.0);
     for (shape, options) in [
@@ -219,7 +255,9 @@ fn a_robot_in_another_frame_or_unit_is_doubted_and_the_remedy_works() {
         let said = warnings(&["--mesh", wall, "--centreline", shape]).join("\n");
         assert!(said.contains(&format!("with {} they fit", options.join(" "))), "{said}");
         assert!((of(shape, options) - 10.0).abs() < 1e-9);
-        assert!(warnings(&[&["--mesh", wall, "--centreline", shape][..], options].concat()).is_empty());
+        assert!(
+            warnings(&[&["--mesh", wall, "--centreline", shape][..], options].concat()).is_empty()
+        );
     }
     // A hundred times as large, but over the wall: both are said.
     let large = &file("frames_large.csv", "-3000,30,20,2\n9000,30,40\n");
@@ -230,7 +268,11 @@ fn a_robot_in_another_frame_or_unit_is_doubted_and_the_remedy_works() {
         {"position": [-30, -30, 20]}, {"position": [-30, -30, 40]}]}]}"#;
     let curve = &file("frames.mrk.json", curve);
     let arguments = ["--mesh", wall, "--centreline", curve, "--radius", "2"];
-    refuse("my_robot", &arguments, "does not say whether it is LPS or RAS; say it with --mesh-frame");
+    refuse(
+        "my_robot",
+        &arguments,
+        "does not say whether it is LPS or RAS; say it with --mesh-frame",
+    );
     let arguments = [&arguments[..], &["--mesh-frame", "ras"]].concat();
     assert!(succeed("my_robot", &arguments).contains("robot: turned from LPS to RAS\n"));
     assert_eq!(minimum(&arguments), 10.0);
@@ -246,14 +288,21 @@ fn the_base_is_told_to_be_inside_or_outside_and_a_unit_that_is_not_known() {
     let wall = &room("base.obj");
     let beside = &file("beside.csv", "70,30,20,1\n70,30,40\n");
     let out = succeed("my_robot", &["--mesh", wall, "--centreline", beside]);
-    assert!(out.contains("\nbase: outside the mesh\n") && out.ends_with("minimum 9.000000\n"), "{out}");
+    assert!(
+        out.contains("\nbase: outside the mesh\n") && out.ends_with("minimum 9.000000\n"),
+        "{out}"
+    );
     let on = &file("on.csv", "60,30,20,1\n70,30,20\n");
-    assert!(succeed("my_robot", &["--mesh", wall, "--centreline", on]).contains("\nbase: on the mesh, or "));
+    assert!(
+        succeed("my_robot", &["--mesh", wall, "--centreline", on])
+            .contains("\nbase: on the mesh, or ")
+    );
     // Two voxels of an NRRD file; its unit is that of the scanner, or nothing.
     let organ = "NRRD0004\ntype: uchar\ndimension: 3\nspace: left-posterior-superior\nsizes: 2 1 1\n\
                  space directions: (20,0,0) (0,20,0) (0,0,20)\nUNITS\nspace origin: (0,0,0)\nencoding: ascii\n\n1 1\n";
-    let [known, unknown] = [("known", "space units: \"mm\" \"mm\" \"mm\""), ("unknown", "# of nothing")]
-        .map(|(name, units)| file(&format!("{name}.nrrd"), &organ.replace("UNITS", units)));
+    let [known, unknown] =
+        [("known", "space units: \"mm\" \"mm\" \"mm\""), ("unknown", "# of nothing")]
+            .map(|(name, units)| file(&format!("{name}.nrrd"), &organ.replace("UNITS", units)));
     let inside = &file("inside.csv", "0,0,0,1\n20,0,0\n");
     let out = succeed("my_robot", &["--mesh", &known, "--centreline", inside]);
     assert!(out.contains(", frame LPS, unit mm\nbase: inside"), "{out}");
@@ -266,12 +315,14 @@ fn the_base_is_told_to_be_inside_or_outside_and_a_unit_that_is_not_known() {
 #[test]
 fn many_shapes_give_a_line_each() {
     let wall = &room("many.obj");
-    let shapes =
-        "shape,x,y,z,radius\n1,30,30,20,2\n1,30,30,40\n7,30,30,10,1\n7,30,30,30\n8,30,30,20,1\n8,nan,30,30\n";
+    let shapes = "shape,x,y,z,radius\n1,30,30,20,2\n1,30,30,40\n7,30,30,10,1\n7,30,30,30\n8,30,30,20,1\n8,nan,30,30\n";
     let shapes = &file("many.csv", shapes);
     let out = succeed("my_robot", &["--mesh", wall, "--shapes", shapes]);
     let lines: Vec<_> = out.lines().collect();
-    assert!(lines.len() == 4 && lines[0].starts_with("shape,distance,arc_length,segment,triangle,"), "{out}");
+    assert!(
+        lines.len() == 4 && lines[0].starts_with("shape,distance,arc_length,segment,triangle,"),
+        "{out}"
+    );
     assert!(lines[1].starts_with("1,20,") && lines[2].starts_with("7,10,0,0,"), "{out}");
     assert!(lines[3].starts_with("8,,") && lines[3].contains("point 1"), "{out}");
     assert!(lines.iter().all(|line| line.split(',').count() >= 12), "{out}");
@@ -293,7 +344,10 @@ fn many_shapes_give_a_line_each() {
 fn json_holds_all_of_it() {
     let wall = &room("json.obj");
     let shape = &file("json.csv", "30,30,20,2\n30,30,30,1\n30,30,40\n");
-    let out = succeed("my_robot", &["--mesh", wall, "--centreline", shape, "--tolerance", "0.1", "--json"]);
+    let out = succeed(
+        "my_robot",
+        &["--mesh", wall, "--centreline", shape, "--tolerance", "0.1", "--json"],
+    );
     let report: serde_json::Value = serde_json::from_str(&out).unwrap();
     assert!(report["mesh"]["triangles"] == 12 && report["mesh"]["frame"].is_null());
     assert!(
@@ -312,7 +366,10 @@ fn the_minimum_is_printed_whatever_becomes_of_the_curve() {
     let (success, out, error) =
         run(example("my_robot"), &["--mesh", wall, "--centreline", shape, "--tolerance", "0.1"]);
     assert!(!success && out.ends_with("minimum 18.000000\n"), "{out}");
-    assert!(error.starts_with("error: no bounds for the curve: ") && error.lines().count() == 1, "{error}");
+    assert!(
+        error.starts_with("error: no bounds for the curve: ") && error.lines().count() == 1,
+        "{error}"
+    );
 }
 
 #[test]
@@ -333,7 +390,8 @@ fn a_line_of_vtk_is_a_robot() {
 fn a_report_holds_all_digits_of_its_query() {
     let out = succeed("report", &[]);
     let (_, distances) = out.trim().split_once(": ").unwrap_or_else(|| panic!("{out}"));
-    let distances: Vec<_> = distances.split(", ").filter_map(|part| part.split(' ').next()).collect();
+    let distances: Vec<_> =
+        distances.split(", ").filter_map(|part| part.split(' ').next()).collect();
     assert!(distances.len() == 2 && distances[0] == distances[1], "{out}");
     assert!((2.0..10.0).contains(&distances[0].parse().unwrap()), "{out}");
 }

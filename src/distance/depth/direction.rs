@@ -18,11 +18,12 @@ pub(crate) fn unit(v: Vector) -> Option<Vector> {
     Some(v / v.length())
 }
 
-/// Squares that have lost nothing to the range of f64, nor has any that is part of them and matters.
+/// Squares that have lost nothing to the range of f64, nor has any that is part of them and
+/// matters.
 const SQUARES: RangeInclusive<Real> = 1e-200..=1e200;
 
-/// The unit vector along the part of `v` perpendicular to the unit vector `axis`, or nothing when `v` is
-/// along the axis as far as rounding can tell.
+/// The unit vector along the part of `v` perpendicular to the unit vector `axis`, or nothing when
+/// `v` is along the axis as far as rounding can tell.
 pub(crate) fn unit_across(v: Vector, axis: Vector) -> Option<Vector> {
     let across = v - axis * v.dot(axis);
     let first = unit(across)?;
@@ -30,8 +31,8 @@ pub(crate) fn unit_across(v: Vector, axis: Vector) -> Option<Vector> {
     if 4.0 * across.length_squared() >= v.length_squared() {
         return Some(first);
     }
-    // Where the first difference was mere rounding it points anywhere, along the axis too. A second one is
-    // far shorter then, and otherwise perpendicular to the last digit.
+    // Where the first difference was mere rounding it points anywhere, along the axis too. A second
+    // one is far shorter then, and otherwise perpendicular to the last digit.
     let second = first - axis * first.dot(axis);
     let length = second.length();
     (length > 0.5).then(|| second / length)

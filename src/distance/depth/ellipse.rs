@@ -1,32 +1,33 @@
 //! The shadow of a flat cap: the way out of an ellipse through one of its halves.
 //!
-//! Seen along a direction that is not in its plane, a disc of radius 1 is an ellipse with half axes 1 and
-//! `b <= 1`, here along `x` and `y`. Wanted is the point of its upper half, `y >= 0`, that is closest to a
-//! given point `p`, and the outward normal there. With `p = (x, y)`, `x >= 0` without loss of generality,
-//! the normal at the closest point passes through `p`, so that for some number `w`
+//! Seen along a direction that is not in its plane, a disc of radius 1 is an ellipse with half axes
+//! 1 and `b <= 1`, here along `x` and `y`. Wanted is the point of its upper half, `y >= 0`, that is
+//! closest to a given point `p`, and the outward normal there. With `p = (x, y)`, `x >= 0` without
+//! loss of generality, the normal at the closest point passes through `p`, so that for some number
+//! `w`
 //!
 //! ```text
 //! (X, Y) = (z0 r / (w + r - 1), z1 / w)   with   X^2 + Y^2 = 1,   r = 1 / b^2,   z0 = x,   z1 = y / b,
 //! ```
 //!
-//! where `(X, b Y)` is the closest point and `(b X, Y)` the direction of the normal. (This is the equation of
-//! Eberly, "Distance from a point to an ellipse", with his `s + 1` as `w`.)
+//! where `(X, b Y)` is the closest point and `(b X, Y)` the direction of the normal. (This is the
+//! equation of Eberly, "Distance from a point to an ellipse", with his `s + 1` as `w`.)
 //!
-//! 1. **`p` in the upper half**, `y > 0`: `w > 0`, where the left side falls from infinity to 0 and is convex.
-//!    Neither term may exceed 1, so `w >= max(z1, 1 + r (z0 - 1))`. Newton's steps from there rise to the one
-//!    root and never pass it.
-//! 2. **`p` on the long axis**, `y = 0`: the limit of case 1. Either the lower bound on `w` is positive, or
-//!    `w = 0` and `Y` follows from `X`.
-//! 3. **`p` in the lower half**, `y < 0`: the upper half has a closest point only if `p` is near enough to it,
-//!    and then `1 - r < w <= z1 < 0`. Between its two poles the left side is convex; the largest root is the
-//!    one that is a minimum. Newton's steps from `z1` fall to it and never pass it; if there is no root, the
-//!    slope changes its sign on the way, or the pole is passed.
+//! 1. **`p` in the upper half**, `y > 0`: `w > 0`, where the left side falls from infinity to 0 and
+//!    is convex. Neither term may exceed 1, so `w >= max(z1, 1 + r (z0 - 1))`. Newton's steps from
+//!    there rise to the one root and never pass it.
+//! 2. **`p` on the long axis**, `y = 0`: the limit of case 1. Either the lower bound on `w` is
+//!    positive, or `w = 0` and `Y` follows from `X`.
+//! 3. **`p` in the lower half**, `y < 0`: the upper half has a closest point only if `p` is near
+//!    enough to it, and then `1 - r < w <= z1 < 0`. Between its two poles the left side is convex;
+//!    the largest root is the one that is a minimum. Newton's steps from `z1` fall to it and never
+//!    pass it; if there is no root, the slope changes its sign on the way, or the pole is passed.
 
 use parry3d_f64::math::{Real, Vector2};
 
-/// The direction, not of unit length, of the outward normal where the upper half of the ellipse with the half
-/// axes 1 and `b` in (0, 1] is closest to `point`. Nothing if no point of the half is closest in its
-/// surroundings.
+/// The direction, not of unit length, of the outward normal where the upper half of the ellipse
+/// with the half axes 1 and `b` in (0, 1] is closest to `point`. Nothing if no point of the half is
+/// closest in its surroundings.
 pub(super) fn way_out_above(point: Vector2, b: Real) -> Option<Vector2> {
     let r = 1.0 / (b * b);
     let (z0, z1) = (point.x.abs(), point.y / b);
@@ -39,7 +40,8 @@ pub(super) fn way_out_above(point: Vector2, b: Real) -> Option<Vector2> {
 
     // Case 2 has no step to make.
     let mut w = if z1 < 0.0 { z1 } else { z1.max(1.0 + r * (z0 - 1.0)) };
-    // Each step at least doubles the correct digits in the end; before, a term falls by more than half.
+    // Each step at least doubles the correct digits in the end; before, a term falls by more than
+    // half.
     for _ in 0..MAX_STEPS {
         if z1 == 0.0 {
             break;
@@ -84,7 +86,9 @@ mod tests {
     fn no_point_of_the_half_is_closer() {
         let mut state = 1u64;
         let mut random = move || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
             (state >> 11) as Real / (1u64 << 53) as Real
         };
         let mut found = [0; 2];
@@ -96,12 +100,14 @@ mod tests {
             let nearest = (1..4000).map(|k| on(std::f64::consts::PI * k as Real / 4000.0));
             let nearest = nearest.map(|q| (q - point).length()).fold(Real::INFINITY, Real::min);
             let in_ellipse = point.x.powi(2) + (point.y / b).powi(2) < 1.0;
-            let ends =
-                (Vector2::new(1.0, 0.0) - point).length().min((Vector2::new(-1.0, 0.0) - point).length());
+            let ends = (Vector2::new(1.0, 0.0) - point)
+                .length()
+                .min((Vector2::new(-1.0, 0.0) - point).length());
             match way_out_above(point, b) {
                 Some(n) => {
                     let n = n.normalize();
-                    let at = Vector2::new(n.x, b * b * n.y) / (n.x * n.x + b * b * n.y * n.y).sqrt();
+                    let at =
+                        Vector2::new(n.x, b * b * n.y) / (n.x * n.x + b * b * n.y * n.y).sqrt();
                     let offset = at - point;
                     assert!(offset.perp_dot(n).abs() < 1e-9, "{point} {b}: {n} at {at}");
                     if point.y >= 0.0 && in_ellipse {

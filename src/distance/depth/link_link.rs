@@ -1,9 +1,10 @@
 //! The least translation that separates two links that overlap.
 //!
-//! Along the unit vector `n` the second link has to be moved by `depth(n)`, the end of the first in the direction `n`
-//! minus the beginning of the second. As for a [link and a triangle](super::separation) the least depth is the distance
-//! from the origin to the surface of the difference of the two bodies, which is that of a point inside a smooth piece. The
-//! pieces and the normals that can be so, each row both ways round:
+//! Along the unit vector `n` the second link has to be moved by `depth(n)`, the end of the first in
+//! the direction `n` minus the beginning of the second. As for a [link and a
+//! triangle](super::separation) the least depth is the distance from the origin to the surface of
+//! the difference of the two bodies, which is that of a point inside a smooth piece. The pieces and
+//! the normals that can be so, each row both ways round:
 //!
 //! | link | link | normal |
 //! |---|---|---|
@@ -15,29 +16,34 @@
 //! | rim | barrel | perpendicular to the other axis; along that, the rim's shadow is half an ellipse and the axis a point, whose way out is that of [`ellipse`](super::ellipse); the barrel's radius lies along the same normal |
 //! | rim | rim | no closed form, see below |
 //!
-//! Where both ends are round all rows are one: the difference of the axes is a parallelogram, or a segment if they are
-//! parallel, and the body is that swollen by `r1 + r2`. With the origin at `d` from it the least way out is `r1 + r2 - d`:
-//! along the way from axis to axis, and where the axes cross, `d = 0`, along the parallelogram's normal. Where it is a segment
-//! any normal perpendicular to it will do. The rows have them all: on one axis, some direction across.
+//! Where both ends are round all rows are one: the difference of the axes is a parallelogram, or a
+//! segment if they are parallel, and the body is that swollen by `r1 + r2`. With the origin at `d`
+//! from it the least way out is `r1 + r2 - d`: along the way from axis to axis, and where the axes
+//! cross, `d = 0`, along the parallelogram's normal. Where it is a segment any normal perpendicular
+//! to it will do. The rows have them all: on one axis, some direction across.
 //!
-//! **Two rims** that face each other at `p` and `q`, with the unit axes `a` and `b`, are apart along `n` by
+//! **Two rims** that face each other at `p` and `q`, with the unit axes `a` and `b`, are apart
+//! along `n` by
 //!
 //! ```text
 //! gap(n) = (q - p) . n - r1 |n - a (a . n)| - r2 |n - b (b . n)|,
 //! ```
 //!
-//! which is smooth where `n` is along neither axis. With `u` the unit vector along `n - a (a . n)`, and `w` the one perpendicular
-//! to `a` and `u`, its gradient has the term `-r1 u` and its second derivative `-r1 w w^T / |n - a (a . n)|`, and the same
-//! of `b`. On the unit sphere the second derivative has `-gap` times the identity beside these. So Newton's steps climb from the
-//! best normal of the other rows, and from the bisectors of the faces that are turned to one another, each step shortened
-//! until the gap grows. A maximum that they miss costs depth and nothing else: whatever the normal, `depth` is that of the
-//! normal as it stands, so that the translation separates.
+//! which is smooth where `n` is along neither axis. With `u` the unit vector along `n - a (a . n)`,
+//! and `w` the one perpendicular to `a` and `u`, its gradient has the term `-r1 u` and its second
+//! derivative `-r1 w w^T / |n - a (a . n)|`, and the same of `b`. On the unit sphere the second
+//! derivative has `-gap` times the identity beside these. So Newton's steps climb from the
+//! best normal of the other rows, and from the bisectors of the faces that are turned to one
+//! another, each step shortened until the gap grows. A maximum that they miss costs depth and
+//! nothing else: whatever the normal, `depth` is that of the normal as it stands, so that the
+//! translation separates.
 
 use super::direction::{perpendicular, unit, unit_across};
 use super::separation::across_rim;
 use parry3d_f64::math::{Real, Vector};
 
-/// Newton's steps a climb, and how often one is halved: it ends earlier where the gap grows no more.
+/// Newton's steps a climb, and how often one is halved: it ends earlier where the gap grows no
+/// more.
 const STEPS: usize = 12;
 const HALVINGS: usize = 6;
 
@@ -73,7 +79,8 @@ impl SolidLink {
         self.axis.map(|axis| if end == 0 { -axis } else { axis })
     }
 
-    /// How far the end's surface is beyond its centre, in the direction `n` that leans out over it, and the point there.
+    /// How far the end's surface is beyond its centre, in the direction `n` that leans out over it,
+    /// and the point there.
     pub(crate) fn beyond(&self, end: usize, n: Vector) -> (Real, Vector) {
         match self.axis.filter(|_| self.flat[end]) {
             None => (self.radius, n * self.radius),
@@ -108,13 +115,15 @@ impl LinkLink {
             None => 1.0,
             Some(axis) => (n - axis * axis.dot(n)).length(),
         };
-        let reach =
-            [share(&self.first, end1) * self.first.radius, share(&self.second, end2) * self.second.radius];
+        let reach = [
+            share(&self.first, end1) * self.first.radius,
+            share(&self.second, end2) * self.second.radius,
+        ];
         between.dot(n) - (reach[0] + reach[1])
     }
 
-    /// The widest gap: where the links overlap, minus the least translation that separates them. The hints, which are unit
-    /// vectors, are considered too.
+    /// The widest gap: where the links overlap, minus the least translation that separates them.
+    /// The hints, which are unit vectors, are considered too.
     pub(crate) fn widest(&self, hints: impl IntoIterator<Item = Vector>) -> Gap {
         let some = self.first.axis.or(self.second.axis).map_or(Vector::X, perpendicular);
         let mut best = Gap { width: self.gap(some), normal: some };
@@ -138,8 +147,8 @@ impl LinkLink {
         if both_flat { self.climbed(best, best) } else { best }
     }
 
-    /// The widest of the gap along `n`, along `n` made perpendicular to either axis or both, and along the axes: what `n` has
-    /// lost to rounding, where barrels or flat caps decide.
+    /// The widest of the gap along `n`, along `n` made perpendicular to either axis or both, and
+    /// along the axes: what `n` has lost to rounding, where barrels or flat caps decide.
     pub(crate) fn refined(&self, n: Vector) -> Gap {
         let [a, b] = [self.first.axis, self.second.axis];
         let mut best = Gap { width: self.gap(n), normal: n };
@@ -174,18 +183,20 @@ impl LinkLink {
             both_ways(one.axis);
             for end in 0..2 {
                 let centre = other.centre(end);
-                // Where the centre is on the axis all ways out are as long; a flat end is no ball, but on parallel axes the
-                // way from one to the other is this one too.
-                let lateral = one
-                    .axis
-                    .map(|axis| unit_across(centre - one.start, axis).unwrap_or_else(|| perpendicular(axis)));
+                // Where the centre is on the axis all ways out are as long; a flat end is no ball,
+                // but on parallel axes the way from one to the other is this one
+                // too.
+                let lateral = one.axis.map(|axis| {
+                    unit_across(centre - one.start, axis).unwrap_or_else(|| perpendicular(axis))
+                });
                 both_ways(lateral);
                 for mine in 0..2 {
                     let offset = centre - one.centre(mine);
                     match one.outward(mine).filter(|_| one.flat[mine]) {
                         None if !other.flat[end] => both_ways(unit(offset)),
                         Some(axis) if !other.flat[end] => {
-                            let side = unit_across(offset, axis).unwrap_or_else(|| perpendicular(axis));
+                            let side =
+                                unit_across(offset, axis).unwrap_or_else(|| perpendicular(axis));
                             both_ways(unit(offset - side * one.radius));
                             both_ways(unit(offset + side * one.radius));
                         }
@@ -211,10 +222,11 @@ impl LinkLink {
                 *share *= 0.5;
                 Some(now)
             });
-            let next = shorter.filter_map(|share| unit(at.normal + step * share)).find_map(|normal| {
-                let width = self.gap(normal);
-                (width > at.width).then_some(Gap { width, normal })
-            });
+            let next =
+                shorter.filter_map(|share| unit(at.normal + step * share)).find_map(|normal| {
+                    let width = self.gap(normal);
+                    (width > at.width).then_some(Gap { width, normal })
+                });
             let Some(next) = next else { break };
             at = next;
         }
@@ -229,7 +241,8 @@ impl LinkLink {
         let (mut h11, mut h12, mut h22) = (0.0, 0.0, 0.0);
         for (body, end) in [(&self.first, end1), (&self.second, end2)] {
             match body.axis.filter(|_| body.flat[end]) {
-                // A ball bends as the sphere does: together they have no second derivative but that of `gap`.
+                // A ball bends as the sphere does: together they have no second derivative but that
+                // of `gap`.
                 None => {
                     gradient -= n * body.radius;
                     (h11, h22) = (h11 - body.radius, h22 - body.radius);
@@ -250,7 +263,8 @@ impl LinkLink {
         let height = gradient.dot(n);
         (h11, h22) = (h11 - height, h22 - height);
         let (g1, g2) = (gradient.dot(t1), gradient.dot(t2));
-        // The larger eigenvalue must be below 0, by enough that the step stays on this side of the sphere.
+        // The larger eigenvalue must be below 0, by enough that the step stays on this side of the
+        // sphere.
         let (mean, half) = (0.5 * (h11 + h22), (0.25 * (h11 - h22).powi(2) + h12 * h12).sqrt());
         let shift = (mean + half + g1.hypot(g2)).max(0.0);
         let (h11, h22) = (h11 - shift, h22 - shift);

@@ -1,10 +1,11 @@
-//! A link and a triangle along one direction and another: by how much a plane keeps them apart, or what it takes to move
-//! them apart.
+//! A link and a triangle along one direction and another: by how much a plane keeps them apart, or
+//! what it takes to move them apart.
 //!
-//! For a unit vector `n` let `gap(n)` be how far the triangle begins beyond the end of the link in the direction `n`.
-//! Moving the triangle by `-gap(n)` along `n` puts a plane between the two, whatever `n` is. So every `n` gives a lower
-//! bound on the distance while they are apart (the best `n` attains it), and a translation that separates them when they
-//! overlap (the best `n` gives the least).
+//! For a unit vector `n` let `gap(n)` be how far the triangle begins beyond the end of the link in
+//! the direction `n`. Moving the triangle by `-gap(n)` along `n` puts a plane between the two,
+//! whatever `n` is. So every `n` gives a lower bound on the distance while they are apart (the best
+//! `n` attains it), and a translation that separates them when they overlap (the best `n` gives the
+//! least).
 
 use super::direction::{perpendicular, unit, unit_across};
 use super::separation;
@@ -39,15 +40,17 @@ impl LinkTriangle {
         Self { link: Link { flat: link.flat.map(|flat| flat && has_axis), ..link }, triangle }
     }
 
-    /// The largest gap and its direction, among the features' normals and `more`, as they are and made
-    /// perpendicular to the edges and the axis; or the first gap that is as large as `enough`, but for rounding.
+    /// The largest gap and its direction, among the features' normals and `more`, as they are and
+    /// made perpendicular to the edges and the axis; or the first gap that is as large as
+    /// `enough`, but for rounding.
     pub(crate) fn widest_gap(&self, more: [Option<Vector>; 2], enough: Real) -> Way {
         let enough = enough - ROUNDING;
         let [a, b, c] = self.triangle;
         let edges = [b - a, c - b, a - c];
         let axis = Vector::from(self.link.axis);
         // Some direction across whatever direction there is, should nothing else be left.
-        let across = perpendicular(unit(axis).or(edges.into_iter().find_map(unit)).unwrap_or(Vector::X));
+        let across =
+            perpendicular(unit(axis).or(edges.into_iter().find_map(unit)).unwrap_or(Vector::X));
         let mut best = Way { gap: Real::NEG_INFINITY, normal: across };
         // The first of equals stays, so `more` goes first.
         for n in more.into_iter().flatten() {
@@ -67,8 +70,10 @@ impl LinkTriangle {
         let products = edges.iter().flatten().map(|edge| unit(edge.cross(axis)));
         let lines = [unit(axis), Some(across)].into_iter().chain(products).flatten();
         let straight = || edges.into_iter().chain([unit(axis)]).flatten();
-        let turned =
-            more.into_iter().flatten().flat_map(|n| straight().map(move |line| unit_across(n, line)));
+        let turned = more
+            .into_iter()
+            .flatten()
+            .flat_map(|n| straight().map(move |line| unit_across(n, line)));
         for n in turned.flatten().chain(lines.flat_map(|n| [n, -n])) {
             best = self.wider(best, n);
         }
@@ -81,12 +86,13 @@ impl LinkTriangle {
         best
     }
 
-    /// The least translation that separates the two, or the plane that keeps them apart. `outward` leads from the axis to
-    /// the triangle, if it is known.
+    /// The least translation that separates the two, or the plane that keeps them apart. `outward`
+    /// leads from the axis to the triangle, if it is known.
     ///
-    /// Around the best direction the gap changes with the square of the angle: one that rounding has turned by 1e-8 may
-    /// seem as good or better. So those of the table count first, those of features before those of curves, and another one
-    /// only where it is better by more than rounding.
+    /// Around the best direction the gap changes with the square of the angle: one that rounding
+    /// has turned by 1e-8 may seem as good or better. So those of the table count first, those
+    /// of features before those of curves, and another one only where it is better by more than
+    /// rounding.
     pub(crate) fn least_translation(&self, outward: Option<Vector>) -> Way {
         let mut best: Option<Way> = None;
         let mut consider = |normal: Vector| {
@@ -114,8 +120,8 @@ impl LinkTriangle {
         beyond[0].min(beyond[1]).min(beyond[2]) - reach
     }
 
-    /// The end of the axis that the link's point furthest along a unit vector belongs to, and how far that point is
-    /// beyond it.
+    /// The end of the axis that the link's point furthest along a unit vector belongs to, and how
+    /// far that point is beyond it.
     fn reach(&self, n: Vector) -> (Vector, Real) {
         let Link { end, axis, radius, flat } = self.link;
         let axis = Vector::from(axis);

@@ -1,6 +1,7 @@
 //! How deep two simple shapes overlap: the least translation that separates them.
 //!
-//! Numbers in and numbers out, in coordinates from the link's start and near one, in double precision.
+//! Numbers in and numbers out, in coordinates from the link's start and near one, in double
+//! precision.
 
 mod direction;
 mod ellipse;

@@ -1,8 +1,9 @@
 //! Where a link leaves a triangle by the least translation: the points of the two that part last.
 //!
-//! Let m be the unit vector of the least translation, from the link to the triangle. Moved apart by it the two touch where
-//! the part of the link that is furthest along m meets the part of the triangle that is least far along m. As numbers are
-//! near one, a point of either that is behind by less than [`TIE`] cannot be told from one that is not.
+//! Let m be the unit vector of the least translation, from the link to the triangle. Moved apart by
+//! it the two touch where the part of the link that is furthest along m meets the part of the
+//! triangle that is least far along m. As numbers are near one, a point of either that is behind by
+//! less than [`TIE`] cannot be told from one that is not.
 //!
 //! | the link's part | where | its point that parts last |
 //! |---|---|---|
@@ -14,10 +15,11 @@
 //! A cap or a barrel that is no larger than rounding is a point.
 //!
 //! # Where it is not the only way
-//! The depth is the least of many: along the normals of `separation` and the face's. Where another of them, in another
-//! direction, is as short as far as rounding can tell, how the depth changes with a motion depends on the motion. And where
-//! the opposite way is as short, the link is on neither side of the triangle: its axis lies in the plane of the wall, or
-//! the wall cuts it in equal halves.
+//! The depth is the least of many: along the normals of `separation` and the face's. Where another
+//! of them, in another direction, is as short as far as rounding can tell, how the depth changes
+//! with a motion depends on the motion. And where the opposite way is as short, the link is on
+//! neither side of the triangle: its axis lies in the plane of the wall, or the wall cuts it in
+//! equal halves.
 
 use super::{LinkTriangle, Way, separation, unit_across};
 use crate::distance::{Link, Scalar, Vec3, point_triangle, segment_triangle};
@@ -26,11 +28,12 @@ use parry3d_f64::math::{Real, Vector};
 /// What rounding cannot tell, of numbers near one.
 const TIE: Real = 64.0 * f64::UNIT_ROUNDOFF;
 
-/// Directions that are nearer to each other than this are one: what changes with either changes with the other alike, but
-/// for a millionth.
+/// Directions that are nearer to each other than this are one: what changes with either changes
+/// with the other alike, but for a millionth.
 const ONE_DIRECTION: Real = 1.0 / 1_048_576.0;
 
-/// The least translation that separates a link from a triangle, in coordinates from the link's start and near one.
+/// The least translation that separates a link from a triangle, in coordinates from the link's
+/// start and near one.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct WayOut {
     /// Minus the length of the translation. More than 0 where the two are apart.
@@ -129,12 +132,14 @@ impl LinkTriangle {
         SeparatingWay { fraction, lever, on_triangle: nearest_to(centre + lever), at_flat_cap }
     }
 
-    /// The triangle's part that is least far along a unit vector: a corner, an edge or all of it, with corners that count
-    /// more than once.
+    /// The triangle's part that is least far along a unit vector: a corner, an edge or all of it,
+    /// with corners that count more than once.
     fn foremost(&self, normal: Vector) -> [Vector; 3] {
         let heights = self.triangle.map(|vertex| vertex.dot(normal));
         let least = heights[0].min(heights[1]).min(heights[2]) + TIE;
         let first = (0..3).find(|&corner| heights[corner] <= least).unwrap_or(0);
-        std::array::from_fn(|corner| self.triangle[if heights[corner] <= least { corner } else { first }])
+        std::array::from_fn(|corner| {
+            self.triangle[if heights[corner] <= least { corner } else { first }]
+        })
     }
 }

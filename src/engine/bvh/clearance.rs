@@ -9,23 +9,27 @@ use crate::robot::Tube;
 use parry3d_f64::math::{Pose, Real};
 
 impl BvhSearch {
-    /// The clearance of a tube, between bounds that are at most `tolerance` apart where the tube allows that.
+    /// The clearance of a tube, between bounds that are at most `tolerance` apart where the tube
+    /// allows that.
     ///
-    /// `pose` is the tube's in the mesh's frame. The bounds hold for the tube as it was given, all rounding included:
-    /// `lower` <= clearance <= `upper`, and `upper` is realised by the points of the answer. With a tolerance of 0, which
-    /// suits straight pieces alone, they differ by rounding.
+    /// `pose` is the tube's in the mesh's frame. The bounds hold for the tube as it was given, all
+    /// rounding included: `lower` <= clearance <= `upper`, and `upper` is realised by the
+    /// points of the answer. With a tolerance of 0, which suits straight pieces alone, they
+    /// differ by rounding.
     ///
-    /// There are always bounds. [`resolved`](Clearance::resolved) says whether they are as close as was asked for: samples may
-    /// be too coarse for that, rounding may hide it, and a query ends after 65,536 pieces. What the tube states as its own
-    /// error is in both bounds, and no part of the tolerance: that is the answer's [`uncertainty`](Clearance::uncertainty).
+    /// There are always bounds. [`resolved`](Clearance::resolved) says whether they are as close as
+    /// was asked for: samples may be too coarse for that, rounding may hide it, and a query
+    /// ends after 65,536 pieces. What the tube states as its own error is in both bounds, and
+    /// no part of the tolerance: that is the answer's [`uncertainty`](Clearance::uncertainty).
     ///
-    /// The answer is the same to the last bit, whatever was asked before. A finer tolerance never gives looser bounds.
+    /// The answer is the same to the last bit, whatever was asked before. A finer tolerance never
+    /// gives looser bounds.
     ///
     /// The work grows with the number of pieces near the wall, about the root of 1 / tolerance.
     ///
     /// # Errors
-    /// The tolerance is negative or NaN; the curve of the tube is not finite somewhere; or the pose is not finite or moves
-    /// it out of range.
+    /// The tolerance is negative or NaN; the curve of the tube is not finite somewhere; or the pose
+    /// is not finite or moves it out of range.
     pub fn clearance(
         &mut self,
         tube: &Tube,
@@ -36,13 +40,14 @@ impl BvhSearch {
         self.context().clearance(tube, pose, tolerance)
     }
 
-    /// [`clearance`](Self::clearance), and the pieces into which the query divided the tube for it, in the order of their
-    /// arc lengths: what the tolerance cost.
+    /// [`clearance`](Self::clearance), and the pieces into which the query divided the tube for it,
+    /// in the order of their arc lengths: what the tolerance cost.
     ///
-    /// Together the pieces are the whole tube, without gap or overlap: few and long far from the wall, short near it. The
-    /// least of their `lower` is that of the answer, unless it is the answer's `upper`. Once a common point with the mesh
-    /// is found, pieces stay as they are. The `lower` of pieces that are farther away depends on earlier queries. `out`
-    /// is cleared first.
+    /// Together the pieces are the whole tube, without gap or overlap: few and long far from the
+    /// wall, short near it. The least of their `lower` is that of the answer, unless it is the
+    /// answer's `upper`. Once a common point with the mesh is found, pieces stay as they are.
+    /// The `lower` of pieces that are farther away depends on earlier queries. `out` is cleared
+    /// first.
     ///
     /// ```
     /// use parry_continuum::{Tube, parry::{math::{Pose, Vector}, shape::{Ball, TriMesh}}};
@@ -78,8 +83,8 @@ impl BvhSearch {
 
     /// Whether a tube keeps more than `margin` away from the mesh.
     ///
-    /// `Clear` and `Contact` are proven. `Undecided` is the answer only where the clearance is within `resolution` of
-    /// the margin, or where 65,536 pieces of the tube do not decide it.
+    /// `Clear` and `Contact` are proven. `Undecided` is the answer only where the clearance is
+    /// within `resolution` of the margin, or where 65,536 pieces of the tube do not decide it.
     ///
     /// ```
     /// use parry_continuum::{Tube, parry::{math::{Pose, Vector}, shape::{Ball, TriMesh}}};
@@ -95,8 +100,9 @@ impl BvhSearch {
     /// ```
     ///
     /// # Errors
-    /// The margin or the resolution is negative or NaN, samples do not allow a decision at that resolution, or as
-    /// [`clearance`](Self::clearance). A contact that is found is the answer, whatever samples allow elsewhere.
+    /// The margin or the resolution is negative or NaN, samples do not allow a decision at that
+    /// resolution, or as [`clearance`](Self::clearance). A contact that is found is the answer,
+    /// whatever samples allow elsewhere.
     pub fn tube_clears(
         &mut self,
         tube: &Tube,
@@ -108,7 +114,8 @@ impl BvhSearch {
         self.context().tube_clears(tube, pose, margin, resolution)
     }
 
-    /// [`clearance`](Self::clearance) for many tubes, on all cores. `out` gets the answer of each, or why there is none.
+    /// [`clearance`](Self::clearance) for many tubes, on all cores. `out` gets the answer of each,
+    /// or why there is none.
     ///
     /// ```
     /// use parry_continuum::{Tube, parry::{math::{Pose, Vector}, shape::Ball}};
@@ -141,7 +148,8 @@ impl BvhSearch {
         Ok(())
     }
 
-    /// [`tube_clears`](Self::tube_clears) for many tubes, on all cores. `out` gets the answer of each, or why there is none.
+    /// [`tube_clears`](Self::tube_clears) for many tubes, on all cores. `out` gets the answer of
+    /// each, or why there is none.
     ///
     /// # Errors
     /// The margin or the resolution is negative or NaN; `out` is then empty.
@@ -166,8 +174,9 @@ impl BvhSearch {
     }
 }
 
-/// The clearance of a tube of whose flat ends nothing is known but a turn, as if that had not been stated; none of any other
-/// tube. Bodies with flat ends are wider beside them than those with round ends, so that either may tell more.
+/// The clearance of a tube of whose flat ends nothing is known but a turn, as if that had not been
+/// stated; none of any other tube. Bodies with flat ends are wider beside them than those with
+/// round ends, so that either may tell more.
 fn clearance_without_turn(
     tube: &mut TubeInMesh,
     memory: &mut TubeMemory,
@@ -182,7 +191,12 @@ fn clearance_without_turn(
 }
 
 impl<'a> Context<'a> {
-    fn clearance(self, tube: &'a Tube, pose: &Pose, tolerance: Real) -> Result<Clearance, ProximityError> {
+    fn clearance(
+        self,
+        tube: &'a Tube,
+        pose: &Pose,
+        tolerance: Real,
+    ) -> Result<Clearance, ProximityError> {
         let (mut tube, memory) = self.tube_in_mesh(tube, pose)?;
         let known = clearance_without_turn(&mut tube, memory, tolerance)?;
         let answer = clearance(&mut tube, memory, tolerance)?;

@@ -9,7 +9,8 @@ use crate::threads::Lazy;
 use fearless_simd::Level;
 use parry3d_f64::math::Vector;
 
-/// The hierarchy of a mesh, and what some questions need beside it: built at the first of them, or when it is prepared.
+/// The hierarchy of a mesh, and what some questions need beside it: built at the first of them, or
+/// when it is prepared.
 #[derive(Clone)]
 pub(super) struct PreparedMesh {
     pub hierarchy: Hierarchy,
@@ -41,7 +42,8 @@ impl PreparedMesh {
         &self.across
     }
 
-    /// What the hierarchy's nodes are from far away, for the side of a point. The division of either hierarchy serves.
+    /// What the hierarchy's nodes are from far away, for the side of a point. The division of
+    /// either hierarchy serves.
     pub(super) fn far_fields(&self) -> &FarFields {
         let Hierarchy { mesh, .. } = &self.hierarchy;
         self.far_fields.get_or_build(|| FarFields::new(self.hierarchy.single(), mesh))

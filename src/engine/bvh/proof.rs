@@ -12,14 +12,15 @@ use fearless_simd::Level;
 use parry3d_f64::math::{Pose, Real};
 
 impl BvhSearch {
-    /// A proof that the robot keeps more than `margin` away from the mesh, for those who do not trust this library: a text
-    /// that a short program in plain Python checks. The [page on proofs](crate::book::proofs) has both.
+    /// A proof that the robot keeps more than `margin` away from the mesh, for those who do not
+    /// trust this library: a text that a short program in plain Python checks. The [page on
+    /// proofs](crate::book::proofs) has both.
     ///
-    /// The proof does not say on which side of the wall the robot is: [`side`](Self::side) answers that. The program prints this,
-    /// and the premises.
+    /// The proof does not say on which side of the wall the robot is: [`side`](Self::side) answers
+    /// that. The program prints this, and the premises.
     ///
-    /// `None` if the robot does not keep the margin, or by no more than rounding. The work is that of many queries: a proof
-    /// is for a plan that somebody signs, and not for a loop.
+    /// `None` if the robot does not keep the margin, or by no more than rounding. The work is that
+    /// of many queries: a proof is for a plan that somebody signs, and not for a loop.
     ///
     /// ```
     /// use parry_continuum::Chain;
@@ -55,8 +56,9 @@ impl BvhSearch {
         }))
     }
 
-    /// [`prove`](Self::prove) for a tube. What the proof takes for granted of the curve is printed by the program that checks
-    /// it: points, and how long and how bent it is between them at most.
+    /// [`prove`](Self::prove) for a tube. What the proof takes for granted of the curve is printed
+    /// by the program that checks it: points, and how long and how bent it is between them at
+    /// most.
     ///
     /// `None` if the tube does not keep the margin, or by no more than `resolution`.
     ///
@@ -80,7 +82,12 @@ impl BvhSearch {
         loop {
             let (shape, _) = tube_shape(&placed, over, false);
             if let Some(steps) = plane_search.steps(&shape.bodies(margin)) {
-                return Ok(Some(write_proof(plane_search.mesh(), margin, Kind::Tube, &[(shape, steps)])));
+                return Ok(Some(write_proof(
+                    plane_search.mesh(),
+                    margin,
+                    Kind::Tube,
+                    &[(shape, steps)],
+                )));
             }
             if over <= finest {
                 return Ok(None);
@@ -89,8 +96,9 @@ impl BvhSearch {
         }
     }
 
-    /// [`prove`](Self::prove) for a motion: the proof that the robot keeps more than `margin` away at every time from 0 to 1.
-    /// The speeds that the motion states are taken for granted, and printed.
+    /// [`prove`](Self::prove) for a motion: the proof that the robot keeps more than `margin` away
+    /// at every time from 0 to 1. The speeds that the motion states are taken for granted, and
+    /// printed.
     ///
     /// `None` if some shape does not keep the margin, or by no more than about `resolution`; or if
     /// the proof would take more than 65,536 shapes or 16 MiB. A motion that needs many shapes has

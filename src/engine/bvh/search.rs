@@ -8,7 +8,9 @@ use crate::pair::PlacedRobot;
 use crate::query::clearance::TubeMemory;
 use crate::query::contacts::{ContactQuery, ContactSearch, LocalMinima};
 use crate::query::motion::MotionMemory;
-use crate::query::nearest::{ClearsMemory, ClearsSearch, PerLinkMemory, WarmStart, minimum_within, per_link};
+use crate::query::nearest::{
+    ClearsMemory, ClearsSearch, PerLinkMemory, WarmStart, minimum_within, per_link,
+};
 use crate::robot::Chain;
 use crate::search::hierarchy::{MeshSearch, Scratch};
 use crate::threads::in_chunks;
@@ -17,22 +19,24 @@ use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::shape::TriMesh;
 use std::sync::Arc;
 
-/// Proximity queries by a bounding volume hierarchy: the work per link grows with the logarithm of the number of
-/// triangles.
+/// Proximity queries by a bounding volume hierarchy: the work per link grows with the logarithm of
+/// the number of triangles.
 ///
-/// The engine keeps the mesh and a hierarchy of its own, 16 children and 16 triangles wide, in single precision;
-/// what rounding leaves in question is measured in double precision, so the answers are those of
-/// [`Exhaustive`](crate::proximity::Exhaustive). Where single precision is too coarse, because a triangle or the robot
-/// lies very far out, a second hierarchy in double precision takes its place; it is built when first needed.
+/// The engine keeps the mesh and a hierarchy of its own, 16 children and 16 triangles wide, in
+/// single precision; what rounding leaves in question is measured in double precision, so the
+/// answers are those of [`Exhaustive`](crate::proximity::Exhaustive). Where single precision is too
+/// coarse, because a triangle or the robot lies very far out, a second hierarchy in double
+/// precision takes its place; it is built when first needed.
 ///
-/// The engine remembers its last answers, which bound the next query: any robot and pose may follow, and small motions
-/// are answered fastest. [`BvhSearch::forget`] drops them.
+/// The engine remembers its last answers, which bound the next query: any robot and pose may
+/// follow, and small motions are answered fastest. [`BvhSearch::forget`] drops them.
 ///
-/// Some questions need more of the mesh than the hierarchy: it is built when the first of them is asked, or all of it by
-/// [`prepare`](Self::prepare), so that no question has to wait for it.
+/// Some questions need more of the mesh than the hierarchy: it is built when the first of them is
+/// asked, or all of it by [`prepare`](Self::prepare), so that no question has to wait for it.
 ///
-/// A clone shares mesh and hierarchy and has a memory of its own, still empty: one for each thread costs nothing. Where
-/// [`set_vertices`](Proximity::set_vertices) moves the mesh of one, the others keep theirs.
+/// A clone shares mesh and hierarchy and has a memory of its own, still empty: one for each thread
+/// costs nothing. Where [`set_vertices`](Proximity::set_vertices) moves the mesh of one, the others
+/// keep theirs.
 ///
 /// ```
 /// use parry_continuum::{Chain, proximity::{BvhSearch, Proximity}};
@@ -92,7 +96,12 @@ impl Remembered {
 
 impl Clone for BvhSearch {
     fn clone(&self) -> Self {
-        Self { level: self.level, mesh: Arc::clone(&self.mesh), memory: Memory::default(), batch: Vec::new() }
+        Self {
+            level: self.level,
+            mesh: Arc::clone(&self.mesh),
+            memory: Memory::default(),
+            batch: Vec::new(),
+        }
     }
 }
 
@@ -113,11 +122,12 @@ impl BvhSearch {
         Ok(Self::of(Mesh::new(mesh)?))
     }
 
-    /// An engine for triangles, each given by the positions of its corners among the vertices; both are copied. It spares
-    /// the hierarchy that a [`TriMesh`] builds for itself.
+    /// An engine for triangles, each given by the positions of its corners among the vertices; both
+    /// are copied. It spares the hierarchy that a [`TriMesh`] builds for itself.
     ///
     /// # Errors
-    /// There are no triangles, a vertex is not finite or out of range, or a triangle names one that is not there.
+    /// There are no triangles, a vertex is not finite or out of range, or a triangle names one that
+    /// is not there.
     ///
     /// ```
     /// use parry_continuum::Chain;
@@ -145,8 +155,9 @@ impl BvhSearch {
         Self { level, mesh, memory: Memory::default(), batch: Vec::new() }
     }
 
-    /// Builds all that a question would build when it is first asked, so that none has to wait; clones share it. Call it
-    /// after [`set_vertices`](Proximity::set_vertices) too: what depends on where the vertices are is built anew.
+    /// Builds all that a question would build when it is first asked, so that none has to wait;
+    /// clones share it. Call it after [`set_vertices`](Proximity::set_vertices) too: what
+    /// depends on where the vertices are is built anew.
     ///
     /// | question | what it needs beside the hierarchy |
     /// |---|---|
@@ -179,7 +190,8 @@ impl BvhSearch {
         self.memory.scratch.work
     }
 
-    /// The answers about many robots, on all cores. `out` gets them in order; what it had is there to be used again.
+    /// The answers about many robots, on all cores. `out` gets them in order; what it had is there
+    /// to be used again.
     pub(super) fn batch<R: Sync, T: Send>(
         &mut self,
         robots: &[R],
@@ -197,11 +209,14 @@ impl BvhSearch {
         });
     }
 
-    /// Whether a robot keeps more than `margin`, for one that is likely to: neither is it first asked about where it seems to pass
-    /// through the wall, nor does what the last query proved count.
+    /// Whether a robot keeps more than `margin`, for one that is likely to: neither is it first
+    /// asked about where it seems to pass through the wall, nor does what the last query proved
+    /// count.
     pub(crate) fn clears_unless_crossing(&mut self, robot: PlacedRobot, margin: Real) -> bool {
         let (search, last) = self.context().search();
-        ClearsSearch { search, sides: None, robot, memory: &mut last.clears }.cleared_by(margin).is_some()
+        ClearsSearch { search, sides: None, robot, memory: &mut last.clears }
+            .cleared_by(margin)
+            .is_some()
     }
 
     pub(super) fn prepared(&self) -> &PreparedMesh {

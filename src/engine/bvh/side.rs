@@ -11,12 +11,14 @@ use parry3d_f64::math::{Pose, Real, Vector};
 impl BvhSearch {
     /// On which side of the mesh a point in the mesh's frame is.
     ///
-    /// `Inside` and `Outside` are proven: the error of the winding number is bounded, rounding included. In a closed mesh
-    /// the answer is [`Side::Undecided`] only for points that rounding cannot tell from points of a triangle, and for
-    /// those that are not finite. [`Side`] says what an open mesh means.
+    /// `Inside` and `Outside` are proven: the error of the winding number is bounded, rounding
+    /// included. In a closed mesh the answer is [`Side::Undecided`] only for points that
+    /// rounding cannot tell from points of a triangle, and for those that are not finite.
+    /// [`Side`] says what an open mesh means.
     ///
-    /// The first question builds what each part of the mesh is from far away, and so does the first one after
-    /// [`set_vertices`](Proximity::set_vertices), unless [`prepare`](Self::prepare) has done so. Clones share it.
+    /// The first question builds what each part of the mesh is from far away, and so does the first
+    /// one after [`set_vertices`](Proximity::set_vertices), unless [`prepare`](Self::prepare)
+    /// has done so. Clones share it.
     ///
     /// ```
     /// use parry_continuum::parry::{math::Vector, shape::{Ball, TriMesh}};
@@ -38,9 +40,10 @@ impl BvhSearch {
 
     /// Whether every link keeps more than `margin` from the mesh and the robot's base is inside.
     ///
-    /// Distances are unsigned, so [`clears`](Proximity::clears) alone is true of a robot that stands beside the anatomy.
-    /// A robot whose base is inside a closed mesh and which touches nothing is inside as a whole. Through a hole of an
-    /// open mesh it may leave: there ask for the [`side`](Self::side) of every point that matters.
+    /// Distances are unsigned, so [`clears`](Proximity::clears) alone is true of a robot that
+    /// stands beside the anatomy. A robot whose base is inside a closed mesh and which touches
+    /// nothing is inside as a whole. Through a hole of an open mesh it may leave: there ask for
+    /// the [`side`](Self::side) of every point that matters.
     ///
     /// ```
     /// use parry_continuum::{Chain, proximity::{BvhSearch, Side}};
@@ -65,7 +68,8 @@ impl BvhSearch {
     ) -> Result<InsideAnswer, ProximityError> {
         let clears = self.clears(robot, pose, margin)?;
         let pose = rigid_pose(pose)?;
-        let base = robot.links().first().map_or(Side::Undecided, |link| self.side(pose * link.start()));
+        let base =
+            robot.links().first().map_or(Side::Undecided, |link| self.side(pose * link.start()));
         Ok(InsideAnswer { base, clears })
     }
 }

@@ -36,7 +36,8 @@ fn provoke(gpu: &Gpu) {
     gpu.0.device.buffer(u64::MAX / 4, wgpu::BufferUsages::STORAGE);
 }
 
-/// Whose command it was a driver does not say: every engine on the device hears of it, once, and then answers as before.
+/// Whose command it was a driver does not say: every engine on the device hears of it, once, and
+/// then answers as before.
 #[test]
 fn a_refused_command_is_an_error_of_every_engine_once() {
     if gpu().is_none() {
@@ -55,7 +56,10 @@ fn a_refused_command_is_an_error_of_every_engine_once() {
         let Err(ProximityError::Device(failure)) = engine.clears(&robot, &pose, 1.0) else {
             panic!("an engine does not know of the failure")
         };
-        assert!(matches!(failure, DeviceFailure::Refused | DeviceFailure::OutOfMemory), "{failure}");
+        assert!(
+            matches!(failure, DeviceFailure::Refused | DeviceFailure::OutOfMemory),
+            "{failure}"
+        );
         assert_eq!(engine.minimum(&robot, &pose).unwrap().distance, expected.distance);
     }
     // What failed before an engine was built is none of its business.
@@ -64,8 +68,8 @@ fn a_refused_command_is_an_error_of_every_engine_once() {
     assert_eq!(engine.minimum(&robot, &pose).unwrap().distance, expected.distance);
 }
 
-/// New vertices hold from the moment that they are accepted. If they do not arrive, the next query says so, and the one
-/// after it sends them again, into memory of its own.
+/// New vertices hold from the moment that they are accepted. If they do not arrive, the next query
+/// says so, and the one after it sends them again, into memory of its own.
 #[test]
 fn an_upload_that_is_refused_is_an_error_of_the_query_and_done_again() {
     if gpu().is_none() {

@@ -1,5 +1,5 @@
-//! What no caller can bring about: small buffers, failing devices and drivers. Without a GPU these tests pass without
-//! doing anything, unless PARRY_CONTINUUM_REQUIRE_GPU is set.
+//! What no caller can bring about: small buffers, failing devices and drivers. Without a GPU these
+//! tests pass without doing anything, unless PARRY_CONTINUUM_REQUIRE_GPU is set.
 
 mod failures;
 
@@ -31,7 +31,8 @@ fn gpu() -> Option<&'static Gpu> {
     GPU.get_or_init(open).as_ref()
 }
 
-/// As many parts as that takes, few threads with several pairs each, and little that is kept or comes back at once.
+/// As many parts as that takes, few threads with several pairs each, and little that is kept or
+/// comes back at once.
 fn in_parts(part: usize) -> Tuning {
     Tuning { part, threads: 1 << 12, round: 1 << 10, answer: 100 << 10, ..Tuning::default() }
 }
@@ -59,7 +60,8 @@ fn distances(answers: &[LinkProximity]) -> Vec<Real> {
 fn a_mesh_in_many_parts_is_the_same_mesh() {
     let Some(gpu) = gpu() else { return };
     let mesh = ball();
-    let moved: Vec<_> = mesh.vertices().iter().map(|&v| v * 0.9 + Vector::new(0.1, 0.2, 0.3)).collect();
+    let moved: Vec<_> =
+        mesh.vertices().iter().map(|&v| v * 0.9 + Vector::new(0.1, 0.2, 0.3)).collect();
     let (robot, pose) = robot(3);
     let mut exhaustive = Exhaustive::<f64>::new(&mesh).unwrap();
     for most in [1, 7, 300, 1599] {
@@ -69,8 +71,10 @@ fn a_mesh_in_many_parts_is_the_same_mesh() {
         } else {
             mesh.clone()
         };
-        let mut expected = if most == 1 { Exhaustive::<f64>::new(&mesh).unwrap() } else { exhaustive };
-        let mut engine = GpuExhaustive::tuned(gpu, Mesh::new(&mesh).unwrap(), in_parts(most)).unwrap();
+        let mut expected =
+            if most == 1 { Exhaustive::<f64>::new(&mesh).unwrap() } else { exhaustive };
+        let mut engine =
+            GpuExhaustive::tuned(gpu, Mesh::new(&mesh).unwrap(), in_parts(most)).unwrap();
         let (mut one, mut other) = (Vec::new(), Vec::new());
         for vertices in [mesh.vertices(), &moved] {
             engine.set_vertices(vertices).unwrap();
@@ -98,7 +102,9 @@ fn a_batch_takes_many_rounds_and_submissions() {
     engine.per_link_batch(&robots, &mut one).unwrap();
     Exhaustive::<f64>::new(&mesh).unwrap().per_link_batch(&robots, &mut other).unwrap();
     assert_eq!(one.len(), other.len());
-    for (one, other) in continuum_testing::answered(&one).iter().zip(continuum_testing::answered(&other)) {
+    for (one, other) in
+        continuum_testing::answered(&one).iter().zip(continuum_testing::answered(&other))
+    {
         assert_eq!(distances(one), distances(&other));
     }
     assert_eq!(engine.answered_on_cpu(), 0);
@@ -112,9 +118,11 @@ fn too_many_equals_are_measured_on_the_cpu() {
     let vertices = (0..=count)
         .flat_map(|i| [-1.0, 1.0].map(|side| Vector::new(Real::from(i) * 0.1, side, 0.0)))
         .collect();
-    let indices = (0..count).flat_map(|i| [[2 * i, 2 * i + 1, 2 * i + 2], [2 * i + 1, 2 * i + 3, 2 * i + 2]]);
+    let indices =
+        (0..count).flat_map(|i| [[2 * i, 2 * i + 1, 2 * i + 2], [2 * i + 1, 2 * i + 3, 2 * i + 2]]);
     let mesh = TriMesh::new(vertices, indices.collect()).unwrap();
-    let points = [Vector::new(1.0, 0.0, 2.0), Vector::new(19.0, 0.0, 2.0), Vector::new(19.0, 0.0, 5.0)];
+    let points =
+        [Vector::new(1.0, 0.0, 2.0), Vector::new(19.0, 0.0, 2.0), Vector::new(19.0, 0.0, 5.0)];
     let robot = Chain::cylinders(&points, &[0.5, 0.5]).unwrap();
     let mut engine = GpuExhaustive::on(gpu, &mesh).unwrap();
     let mut answers = Vec::new();

@@ -2,32 +2,37 @@
 //!
 //! # Algorithm
 //! 1. Begin with pieces that turn by 1 rad at most, and measure them.
-//! 2. Take the measured piece of least rank (`pieces::best_first`). What was found from it improves the upper bound.
-//! 3. Stop if its `lower` + `doubt` is not below the upper bound by more than `aim`. Otherwise divide it, and measure its
-//!    halves. Repeat from 2.
+//! 2. Take the measured piece of least rank (`pieces::best_first`). What was found from it improves
+//!    the upper bound.
+//! 3. Stop if its `lower` + `doubt` is not below the upper bound by more than `aim`. Otherwise
+//!    divide it, and measure its halves. Repeat from 2.
 //! 4. The lower bound is the least `lower` of all pieces.
 //!
 //! # What an earlier query leaves
-//! A place that was near bounds the clearance from above, which is the `hint`. Bodies are searched for within the hint.
-//! What was not found there is searched for again, farther away, before its rank is reached. So the hint only spares
-//! searches. The upper bound of the answer comes from step 2 alone.
+//! A place that was near bounds the clearance from above, which is the `hint`. Bodies are searched
+//! for within the hint. What was not found there is searched for again, farther away, before its
+//! rank is reached. So the hint only spares searches. The upper bound of the answer comes from step
+//! 2 alone.
 //!
 //! # Claim
-//! The answer depends neither on the hint nor on where searches start. The bounds of a finer tolerance are never looser.
+//! The answer depends neither on the hint nor on where searches start. The bounds of a finer
+//! tolerance are never looser.
 //!
-//! **Proof.** Steps 2 to 4 depend on the sequence of divisions, the same whatever is hinted (`pieces::best_first`). A
-//! tolerance only decides when step 3 stops. A piece that cannot be divided keeps its `lower`, and never stops the
-//! sequence. Along the sequence no `lower` falls and the upper bound never rises.
+//! **Proof.** Steps 2 to 4 depend on the sequence of divisions, the same whatever is hinted
+//! (`pieces::best_first`). A tolerance only decides when step 3 stops. A piece that cannot be
+//! divided keeps its `lower`, and never stops the sequence. Along the sequence no `lower` falls and
+//! the upper bound never rises.
 
 use super::memory::TubeMemory;
 use crate::answer::{Clearance, ProximityError};
 use crate::pieces::{
-    Examined, MeshUpperBound, PendingPiece, PendingPieces, PieceState, Refinable, TubeInMesh, UpperBound,
+    Examined, MeshUpperBound, PendingPiece, PendingPieces, PieceState, Refinable, TubeInMesh,
+    UpperBound,
 };
 use parry3d_f64::math::Real;
 
-/// After so many divisions the bounds are what they are: a limit on the time that a query takes, far above what any
-/// tolerance needs that the samples allow. Each makes two pieces.
+/// After so many divisions the bounds are what they are: a limit on the time that a query takes,
+/// far above what any tolerance needs that the samples allow. Each makes two pieces.
 pub(super) const MOST_DIVISIONS: u32 = 1 << 15;
 
 /// The clearance, with bounds no farther apart than the tolerance where the tube allows that.
@@ -42,14 +47,16 @@ pub(crate) fn clearance(
     tolerance: Real,
 ) -> Result<Clearance, ProximityError> {
     let mut hint = Hint { upper: Real::INFINITY, triangle: memory.last.map(|last| last.triangle) };
-    // Where the mesh is much larger than the tube, rounding is the less the nearer the mesh is known to be. The bound for
-    // that must not depend on earlier queries.
+    // Where the mesh is much larger than the tube, rounding is the less the nearer the mesh is
+    // known to be. The bound for that must not depend on earlier queries.
     if tube.gains_from_sharpening() {
         let first = tube.first_bound();
         tube.tighten_slack(first.upper);
         hint.take(&tube.bound_at(first.section, first.witness.arc_length, first.witness.triangle));
     }
-    if let Some(last) = memory.last.filter(|last| (last.section as usize) < tube.tube.sections().len()) {
+    if let Some(last) =
+        memory.last.filter(|last| (last.section as usize) < tube.tube.sections().len())
+    {
         hint.take(&tube.bound_at(last.section, last.arc, last.triangle));
     }
     tube.begin_coarse(&mut memory.begun);
@@ -67,7 +74,8 @@ pub(crate) fn clearance(
     Ok(Clearance { lower, upper, resolved, uncertainty, section, witness })
 }
 
-/// What bounds the clearance from above, wherever it comes from, and a triangle that is likely to be near.
+/// What bounds the clearance from above, wherever it comes from, and a triangle that is likely to
+/// be near.
 #[derive(Clone, Copy)]
 pub(crate) struct Hint {
     pub upper: Real,
@@ -110,7 +118,8 @@ impl<'a, T: Refinable> BoundsSearch<'a, T> {
         hint: Hint,
         tolerance: Real,
     ) -> Self {
-        // So that the bounds of the answer are no farther apart than asked for after they are rounded.
+        // So that the bounds of the answer are no farther apart than asked for after they are
+        // rounded.
         let aim = (tolerance + tube.position_uncertainty() - 4.0 * tube.slack()).max(0.0);
         Self { tube, pieces, hint, tolerance, aim, best: None, left: MOST_DIVISIONS }
     }
@@ -125,8 +134,8 @@ impl<'a, T: Refinable> BoundsSearch<'a, T> {
         self.best.as_ref().map_or(Real::INFINITY, UpperBound::upper)
     }
 
-    /// Divides pieces until the bounds are as near one another as wanted. False if that needs pieces whose lower bound is
-    /// larger than `limit`.
+    /// Divides pieces until the bounds are as near one another as wanted. False if that needs
+    /// pieces whose lower bound is larger than `limit`.
     ///
     /// # Errors
     /// The curve is not finite.
@@ -168,8 +177,12 @@ impl<'a, T: Refinable> BoundsSearch<'a, T> {
         })
     }
 
-    /// Measures a piece within the hint; or, if it is known to be farther away, within the upper bound.
-    fn measure(&mut self, piece: PendingPiece<T::Piece, T::Body, T::Upper>) -> Result<(), ProximityError> {
+    /// Measures a piece within the hint; or, if it is known to be farther away, within the upper
+    /// bound.
+    fn measure(
+        &mut self,
+        piece: PendingPiece<T::Piece, T::Body, T::Upper>,
+    ) -> Result<(), ProximityError> {
         let (hint, upper) = (self.hint.upper, self.upper());
         let is_open = matches!(piece.state, PieceState::Open);
         let bound = if is_open && piece.lower <= hint { hint.min(upper) } else { upper };
@@ -199,6 +212,10 @@ impl<'a, T: Refinable> BoundsSearch<'a, T> {
         // Doubt matters only where it keeps the bounds apart.
         let doubt = if lower < upper - self.aim { doubt } else { 0.0 };
         let uncertainty = self.tube.position_uncertainty() + doubt;
-        BoundedClearance { lower, resolved: upper - lower <= self.tolerance + uncertainty, uncertainty }
+        BoundedClearance {
+            lower,
+            resolved: upper - lower <= self.tolerance + uncertainty,
+            uncertainty,
+        }
     }
 }

@@ -4,19 +4,21 @@
 //!
 //! - **Contact**: the upper bound is not above the margin.
 //! - **Clear**: nothing is left.
-//! - **Undecided**: the bounds are no farther apart than the resolution, beside what was stated. So the clearance is within
-//!   that of the margin.
+//! - **Undecided**: the bounds are no farther apart than the resolution, beside what was stated. So
+//!   the clearance is within that of the margin.
 //!
-//! A piece that cannot be divided, and whose `lower` is below the upper bound by more than the resolution, is an error. Before
-//! it is reported, all other pieces are looked at for a contact.
+//! A piece that cannot be divided, and whose `lower` is below the upper bound by more than the
+//! resolution, is an error. Before it is reported, all other pieces are looked at for a contact.
 //!
-//! The order of the divisions does not depend on the resolution. So a finer resolution never takes back a decision.
+//! The order of the divisions does not depend on the resolution. So a finer resolution never takes
+//! back a decision.
 
 use super::bounds::MOST_DIVISIONS;
 use super::memory::TubeMemory;
 use crate::answer::{Decision, ProximityError};
 use crate::pieces::{
-    Body, Examined, MOST_LEVELS, PendingPiece, PendingPieces, PieceState, Refinable, TubeInMesh, UpperBound,
+    Body, Examined, MOST_LEVELS, PendingPiece, PendingPieces, PieceState, Refinable, TubeInMesh,
+    UpperBound,
 };
 use parry3d_f64::math::Real;
 
@@ -52,7 +54,8 @@ pub(crate) struct Wanted {
     pub start: Option<u32>,
 }
 
-/// Whether all pieces keep more than the margin away; and where they do not. `best` is an upper bound that is known.
+/// Whether all pieces keep more than the margin away; and where they do not. `best` is an upper
+/// bound that is known.
 ///
 /// # Errors
 /// The curve is not finite, or its samples do not allow a decision at that resolution.
@@ -110,7 +113,9 @@ impl<T: Refinable> DecisionSearch<'_, T> {
                 self.examine(&piece)?;
                 continue;
             };
-            if is_near && found.upper() - piece.lower <= resolution + self.tube.uncertainty(&piece.piece) {
+            if is_near
+                && found.upper() - piece.lower <= resolution + self.tube.uncertainty(&piece.piece)
+            {
                 // A contact could not be told from the margin here.
                 continue;
             }
@@ -142,11 +147,15 @@ impl<T: Refinable> DecisionSearch<'_, T> {
     /// Whether a piece that cannot be divided keeps the bounds apart.
     fn is_stuck(&self) -> bool {
         let Self { tube, stuck, wanted, .. } = self;
-        *stuck < Real::INFINITY && tube.check_resolved(self.upper() - stuck, wanted.resolution).is_err()
+        *stuck < Real::INFINITY
+            && tube.check_resolved(self.upper() - stuck, wanted.resolution).is_err()
     }
 
     /// What an open piece shows; if it is farther away than the margin, it is dropped.
-    fn examine(&mut self, open: &PendingPiece<T::Piece, T::Body, T::Upper>) -> Result<(), ProximityError> {
+    fn examine(
+        &mut self,
+        open: &PendingPiece<T::Piece, T::Body, T::Upper>,
+    ) -> Result<(), ProximityError> {
         let Wanted { margin, start, .. } = self.wanted;
         let examined = self.pieces.examine(self.tube, open, margin, start, Body::excess)?;
         if let Examined::Measured(found) = examined
@@ -157,7 +166,11 @@ impl<T: Refinable> DecisionSearch<'_, T> {
         Ok(())
     }
 
-    fn settle_whole(&mut self, piece: &PendingPiece<T::Piece, T::Body, T::Upper>, found: &T::Upper) {
+    fn settle_whole(
+        &mut self,
+        piece: &PendingPiece<T::Piece, T::Body, T::Upper>,
+        found: &T::Upper,
+    ) {
         if self.tube.is_entirely_queried(&piece.piece, found) {
             self.stuck = self.stuck.min(piece.lower + self.tube.uncertainty(&piece.piece));
         } else {

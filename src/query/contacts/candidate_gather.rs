@@ -1,5 +1,5 @@
-//! Every triangle within a margin of a link: those of a leaf that neither a plane nor a slope rules out wait until they
-//! fill a block, and are then looked at closely.
+//! Every triangle within a margin of a link: those of a leaf that neither a plane nor a slope rules
+//! out wait until they fill a block, and are then looked at closely.
 
 use super::feature_cull::CERTAIN;
 use super::opposite_corners::OppositeCorners;
@@ -12,8 +12,8 @@ use crate::search::hierarchy::{LeafVisitor, Traversal, WideBvh};
 use fearless_simd::Level;
 use parry3d_f64::math::Real;
 
-/// Adds to `found` every triangle that may be at most `bound` from the link. `opposite_corners` shows which lie on a slope; it is for
-/// single precision.
+/// Adds to `found` every triangle that may be at most `bound` from the link. `opposite_corners`
+/// shows which lie on a slope; it is for single precision.
 pub(super) fn gather<E: Lane>(
     mut traversal: Traversal<E>,
     searched: &SearchLink<E>,
@@ -62,7 +62,8 @@ impl<E: Lane> LeafVisitor<E> for CandidateGather<'_, E> {
         let leaf = &tree.leaves[number as usize];
         let across = self.across.map(|across| across.of(number, tree, mesh));
         let (mut in_question, mut slopes) = (0, 0);
-        let (limit_of_all, error) = (L::splat(token, self.limit), L::splat(token, self.searched.error));
+        let (limit_of_all, error) =
+            (L::splat(token, self.limit), L::splat(token, self.searched.error));
         for lane in (0..BLOCK).step_by(L::LANES) {
             let vertices = load_vertices::<L>(token, &leaf.rows, lane);
             let near = lanes.not_behind_plane(vertices, limit_of_all);
@@ -83,7 +84,8 @@ impl<E: Lane> LeafVisitor<E> for CandidateGather<'_, E> {
             if lane > 0 && leaf.triangles[lane - 1] == leaf.triangles[lane] {
                 continue;
             }
-            for (row, from) in self.rows.chunks_exact_mut(BLOCK).zip(leaf.rows.chunks_exact(BLOCK)) {
+            for (row, from) in self.rows.chunks_exact_mut(BLOCK).zip(leaf.rows.chunks_exact(BLOCK))
+            {
                 row[self.waiting] = from[lane];
             }
             self.triangles[self.waiting] = leaf.triangles[lane];
@@ -108,7 +110,18 @@ impl<'a, E: Lane> CandidateGather<'a, E> {
         found: &'a mut TriangleCandidates,
     ) -> Self {
         let (rows, triangles, firsts) = ([E::default(); 9 * BLOCK], [0; BLOCK], [0; BLOCK]);
-        Self { level, searched, limit, across, found, rows, triangles, firsts, waiting: 0, computed: 0 }
+        Self {
+            level,
+            searched,
+            limit,
+            across,
+            found,
+            rows,
+            triangles,
+            firsts,
+            waiting: 0,
+            computed: 0,
+        }
     }
 
     /// Looks at those that are left. Returns for how many the distance from the axis was computed.
@@ -150,7 +163,11 @@ impl<'a, E: Lane> CandidateGather<'a, E> {
                     triangle: self.triangles[place],
                     lower: lower - certain,
                     upper,
-                    away: if is_apart { three_bits(feet.away, lane, self.firsts[place]) } else { 0 },
+                    away: if is_apart {
+                        three_bits(feet.away, lane, self.firsts[place])
+                    } else {
+                        0
+                    },
                     beyond: three_bits(feet.beyond, lane, self.firsts[place]),
                 });
             }
@@ -158,8 +175,8 @@ impl<'a, E: Lane> CandidateGather<'a, E> {
     }
 }
 
-/// A lane's bits for the corners or edges of a triangle, which stand there from its corner `first` on. That of its own
-/// first one is lowest.
+/// A lane's bits for the corners or edges of a triangle, which stand there from its corner `first`
+/// on. That of its own first one is lowest.
 #[inline(always)]
 fn three_bits(lanes: [u64; 3], lane: usize, first: usize) -> u8 {
     let [a, b, c] = lanes.map(|lanes| (lanes >> lane & 1) as u8);

@@ -1,73 +1,80 @@
-//! Which triangles certainly lie on a slope towards a neighbour, a pack at a time: a test that costs a fraction of the
-//! distance between link and triangle, and spares it.
+//! Which triangles certainly lie on a slope towards a neighbour, a pack at a time: a test that
+//! costs a fraction of the distance between link and triangle, and spares it.
 //!
 //! # Two conditions
-//! Let d be the distance from the link, B its axis where both caps are round and the link itself where one is flat, and
-//! W(z) the way to a point z from the nearest point of B. Then |W(z)| is d(z) and the radius, or d(z); call it D(z). It is
-//! convex, and W(z) points the way in which it grows. The projection onto a convex set is firmly nonexpansive, and so is
-//! what it leaves: with delta = W(z) - W(m) and s = z - m,
+//! Let d be the distance from the link, B its axis where both caps are round and the link itself
+//! where one is flat, and W(z) the way to a point z from the nearest point of B. Then |W(z)| is
+//! d(z) and the radius, or d(z); call it D(z). It is convex, and W(z) points the way in which it
+//! grows. The projection onto a convex set is firmly nonexpansive, and so is what it leaves: with
+//! delta = W(z) - W(m) and s = z - m,
 //!
 //! ```text
 //! <delta, s> >= |delta|^2,   so   |delta - s / 2| <= |s| / 2.                                              (1)
 //! ```
 //!
-//! Let f be the edge AB of a triangle T with the third corner C, m the point of f that is nearest to B, and z any point of
-//! f. Let F be a point of f, h = C - F. As m is the nearest, <W(m), m - z> <= 0, so that (1) gives for s = m - z
+//! Let f be the edge AB of a triangle T with the third corner C, m the point of f that is nearest
+//! to B, and z any point of f. Let F be a point of f, h = C - F. As m is the nearest, <W(m), m - z>
+//! <= 0, so that (1) gives for s = m - z
 //!
 //! ```text
 //! |delta|^2 <= <W(m), s> - <W(z), s> <= -<W(z), s> <= gap = max(-<W(z), A - z>, -<W(z), B - z>).             (2)
 //! ```
 //!
-//! 1. *T's nearest point is on f.* Any point of T is m' + g h, with m' on f and g >= 0, and <W(m), m' - m> >= 0. So none of
-//!    T is nearer than m if
+//! 1. *T's nearest point is on f.* Any point of T is m' + g h, with m' on f and g >= 0, and <W(m),
+//!    m' - m> >= 0. So none of T is nearer than m if
 //!
 //!    ```text
 //!    <W(m), h> >= <W(z), h> - sqrt(gap) |h| > 0.
 //!    ```
 //!
 //!    F is the point of f that is nearest to C, which makes h short.
-//! 2. *A neighbour is nearer.* D being convex, it lies above its tangents: on all of f it is at least D(z) - gap / D(z).
-//!    Another triangle that has f reaches to its own third corner C' and holds the way from z to it. It is nearer if D is
-//!    less at a point P on that way.
+//! 2. *A neighbour is nearer.* D being convex, it lies above its tangents: on all of f it is at
+//!    least D(z) - gap / D(z). Another triangle that has f reaches to its own third corner C' and
+//!    holds the way from z to it. It is nearer if D is less at a point P on that way.
 //!
-//! So T's nearest point is on f, and a triangle that has f too is nearer: T is left out as `local_minima` says. Of T's
-//! edges the one opposite to the corner that is farthest from the axis is tried. Any z and P will do. They are those at
-//! which D is least on the edge and on the way to C' if W leads from the middle of the axis, or from an end of it, all
-//! along as it does at the middle of the edge and at z.
+//! So T's nearest point is on f, and a triangle that has f too is nearer: T is left out as
+//! `local_minima` says. Of T's edges the one opposite to the corner that is farthest from the axis
+//! is tried. Any z and P will do. They are those at which D is least on the edge and on the way to
+//! C' if W leads from the middle of the axis, or from an end of it, all along as it does at the
+//! middle of the edge and at z.
 //!
 //! # Rounding
 //! Let e be the link's `error`, 64 u reach; it is that of single precision.
 //!
-//! - In units of u reach a corner errs by 2 and a computed point of an edge by 11, seen from the link's start by 16. A
-//!   projection moves no farther than its point. In itself it errs by 17 along the axis, for the product and the direction,
-//!   4 for the length, and 13 for the multiple of the axis: 49 with the point's own, below e. To a link with flat caps 42
-//!   more are due to the part across the axis, which is taken off. So every W is within 2 e of the true one, 36 u reach to
-//!   spare, and D within 2 e.
-//! - The gap errs by 2 e |AB| for W and by |W| e / 8 for AB: 3 e |AB| + |W| e / 8 are added to it, its own
-//!   rounding included, with the sum of the magnitudes of AB's coordinates for |AB|.
+//! - In units of u reach a corner errs by 2 and a computed point of an edge by 11, seen from the
+//!   link's start by 16. A projection moves no farther than its point. In itself it errs by 17
+//!   along the axis, for the product and the direction, 4 for the length, and 13 for the multiple
+//!   of the axis: 49 with the point's own, below e. To a link with flat caps 42 more are due to the
+//!   part across the axis, which is taken off. So every W is within 2 e of the true one, 36 u reach
+//!   to spare, and D within 2 e.
+//! - The gap errs by 2 e |AB| for W and by |W| e / 8 for AB: 3 e |AB| + |W| e / 8 are added to it,
+//!   its own rounding included, with the sum of the magnitudes of AB's coordinates for |AB|.
 //! - h errs by e / 4. So condition 1 holds if
 //!
 //!   ```text
 //!   <W(z), h> > |h| (sqrt(gap) + 2 e) + e |W(z)|:
 //!   ```
 //!
-//!   the true product differs by 2 e |h| + (|W| + 2 e) e / 4 at most, and the computed one by 11 u reach |W|; the product of
-//!   two errors is within what W has to spare, or |W| is below 6 e and no condition 2 holds. It is asked without roots:
-//!   (sqrt(gap) + 2 e)^2 is at most 5/4 gap + 20 e^2. The squares err by 8 u of themselves, so the sides by 14 u reach |h|,
-//!   which W has to spare too; and none falls below the range, as |h| is above e where the right side is not 0.
-//! - In condition 2 each length errs by 2 e, and the tangent by 3 e more for D(z) that is |W(z)| only within 2 e: it counts
-//!   only while gap < |W(z)|^2 and |W(z)| > 12 e. P errs by 25 u reach from the link's start, which leaves W(P) within
-//!   2 e too. With 12 e in all, 5 e are left by which the neighbour is nearer, far above what a measurement in double
-//!   precision errs by. T must keep as much, lest it touch.
+//!   the true product differs by 2 e |h| + (|W| + 2 e) e / 4 at most, and the computed one by 11 u
+//! reach |W|; the product of   two errors is within what W has to spare, or |W| is below 6 e and no
+//! condition 2 holds. It is asked without roots:   (sqrt(gap) + 2 e)^2 is at most 5/4 gap + 20 e^2.
+//! The squares err by 8 u of themselves, so the sides by 14 u reach |h|,   which W has to spare
+//! too; and none falls below the range, as |h| is above e where the right side is not 0.
+//! - In condition 2 each length errs by 2 e, and the tangent by 3 e more for D(z) that is |W(z)|
+//!   only within 2 e: it counts only while gap < |W(z)|^2 and |W(z)| > 12 e. P errs by 25 u reach
+//!   from the link's start, which leaves W(P) within 2 e too. With 12 e in all, 5 e are left by
+//!   which the neighbour is nearer, far above what a measurement in double precision errs by. T
+//!   must keep as much, lest it touch.
 
 use crate::distance::lanes::Pack;
 use crate::distance::{Mask, Scalar, Vec3};
 use crate::pair::LinkLanes;
 
 impl<L: Pack> LinkLanes<L> {
-    /// Which triangles certainly lie on a slope towards a nearer one, one bit per lane. `opposite_corners` are the corners beyond
-    /// the edges from the first corner to the second, from the second to the third and from the third to the first;
-    /// no numbers where there are none. `error` is the link's.
+    /// Which triangles certainly lie on a slope towards a nearer one, one bit per lane.
+    /// `opposite_corners` are the corners beyond the edges from the first corner to the second,
+    /// from the second to the third and from the third to the first; no numbers where there are
+    /// none. `error` is the link's.
     #[inline(always)]
     pub(crate) fn descends(&self, [a, b, c]: [Vec3<L>; 3], across: [Vec3<L>; 3], error: L) -> u64 {
         let (zero, one, half) = (error.zero(), error.one(), error.lit(0.5));
@@ -77,7 +84,8 @@ impl<L: Pack> LinkLanes<L> {
         let a_is_top = height_b.le(height_a) & height_c.le(height_a);
         let b_is_top = height_c.le(height_b);
         let top = choose([a_is_top, b_is_top], a, b, c);
-        let (from, to) = (choose([a_is_top, b_is_top], b, c, a), choose([a_is_top, b_is_top], c, a, b));
+        let (from, to) =
+            (choose([a_is_top, b_is_top], b, c, a), choose([a_is_top, b_is_top], c, a, b));
         let beyond = choose([a_is_top, b_is_top], across[1], across[2], across[0]);
 
         let along = to - from;
@@ -98,10 +106,13 @@ impl<L: Pack> LinkLanes<L> {
         let to_corner = beyond - nearest;
         let step = self.steps_to_lowest(way, nearest, to_corner).max(zero).min(one);
         let beyond_edge = self.way_to(nearest.along(to_corner, step)).0.norm_squared();
-        L::bits(edge.holds_nearest(way, apart, gap) & touching.lt(kept) & beyond_edge.lt(kept * kept))
+        L::bits(
+            edge.holds_nearest(way, apart, gap) & touching.lt(kept) & beyond_edge.lt(kept * kept),
+        )
     }
 
-    /// How many steps from a point the way is about shortest, no number or infinite where it is as long everywhere.
+    /// How many steps from a point the way is about shortest, no number or infinite where it is as
+    /// long everywhere.
     #[inline(always)]
     fn steps_to_lowest(&self, way: Vec3<L>, point: Vec3<L>, step: Vec3<L>) -> L {
         let zero = self.length.zero();
@@ -111,8 +122,8 @@ impl<L: Pack> LinkLanes<L> {
         -way.dot(step) / (step.norm_squared() - along_axis * along_axis)
     }
 
-    /// The way to a point from the nearest point of the axis, if both caps are round, else of the link; and the length of
-    /// the ways to points that touch.
+    /// The way to a point from the nearest point of the axis, if both caps are round, else of the
+    /// link; and the length of the ways to points that touch.
     #[inline(always)]
     fn way_to(&self, point: Vec3<L>) -> (Vec3<L>, L) {
         self.way_from_start(point - self.start)
@@ -169,8 +180,8 @@ impl<L: Pack> Edge<L> {
     }
 }
 
-/// The first where the first mask is true, the second where only the second one is, else the third. (A function, because
-/// a closure may escape inlining.)
+/// The first where the first mask is true, the second where only the second one is, else the third.
+/// (A function, because a closure may escape inlining.)
 #[inline(always)]
 fn choose<L: Pack>([first, second]: [L::Mask; 2], a: Vec3<L>, b: Vec3<L>, c: Vec3<L>) -> Vec3<L> {
     Vec3::select(first, a, Vec3::select(second, b, c))
@@ -182,7 +193,9 @@ mod tests {
     use crate::distance::lanes::Lane;
     use crate::distance::lanes::tests::levels;
     use crate::distance::{Scalar, dispatch};
-    use crate::mesh::{BLOCK, Mesh, SearchFrame, ends_of, load_vertices, place_points, place_triangle};
+    use crate::mesh::{
+        BLOCK, Mesh, SearchFrame, ends_of, load_vertices, place_points, place_triangle,
+    };
     use crate::pair::{PlacedLink, SearchLink};
     use crate::robot::{Cap, ModifiedCylinder};
     use continuum_testing::Random;
@@ -210,12 +223,15 @@ mod tests {
         slopes
     }
 
-    /// A wall of 2 x 4 squares, cut in two, over a plane that tilts: level or steep, even or rough, with slivers or not.
+    /// A wall of 2 x 4 squares, cut in two, over a plane that tilts: level or steep, even or rough,
+    /// with slivers or not.
     fn wall(random: &mut Random) -> Mesh {
         let size = [0.02, 0.3, 1.0][random.below(3) as usize];
         let tilt = 10.0_f64.powi(-(random.below(7) as i32));
-        let (rough, thin) =
-            (tilt * [0.0, 0.1, 1.0][random.below(3) as usize], [1.0, 1e-4][random.below(2) as usize]);
+        let (rough, thin) = (
+            tilt * [0.0, 0.1, 1.0][random.below(3) as usize],
+            [1.0, 1e-4][random.below(2) as usize],
+        );
         let (slope_x, slope_y) = (random.between(-tilt, tilt), random.between(-tilt, tilt));
         let corner = |k: u32| {
             let (x, y) = (f64::from(k % 5) - 2.0, (f64::from(k / 5) - 1.0) * thin);
@@ -227,7 +243,8 @@ mod tests {
         Mesh::of(corners, squares.flat_map(|k| [[k, k + 1, k + 6], [k, k + 6, k + 5]]).collect())
     }
 
-    /// An axis that crosses an edge at a small angle, over the triangle at one end and beside it at the other.
+    /// An axis that crosses an edge at a small angle, over the triangle at one end and beside it at
+    /// the other.
     fn over_an_edge(random: &mut Random, mesh: &Mesh) -> (Vector, Vector) {
         let corners = mesh.corners(random.below(BLOCK as u32));
         let first = random.below(3) as usize;
@@ -235,11 +252,18 @@ mod tests {
         let (along, inwards) = (to - from, beyond - (from + to) * 0.5);
         let up = along.cross(inwards).normalize_or_zero() * along.length();
         let [low, high] = [random.between(0.0, 0.5), random.between(0.0, 0.5)];
-        let inside = from + along * random.between(-0.3, 0.3) + inwards * random.between(0.0, 0.5) + up * low;
-        (inside, to + along * random.between(-0.3, 0.3) - inwards * random.between(0.0, 0.5) + up * high)
+        let inside = from
+            + along * random.between(-0.3, 0.3)
+            + inwards * random.between(0.0, 0.5)
+            + up * low;
+        (
+            inside,
+            to + along * random.between(-0.3, 0.3) - inwards * random.between(0.0, 0.5) + up * high,
+        )
     }
 
-    /// Not only is the nearest point on an edge: another triangle that has it is nearer, by more than measurements err.
+    /// Not only is the nearest point on an edge: another triangle that has it is nearer, by more
+    /// than measurements err.
     #[test]
     fn a_triangle_on_a_slope_has_a_nearer_neighbour() {
         let (mut found, mut others, mut flat) = (0, 0, 0);
@@ -249,10 +273,12 @@ mod tests {
             let caps = [Cap::Flat, Cap::Round];
             let caps = [caps[random.below(2) as usize], caps[random.below(2) as usize]];
             let size = [0.02, 0.3, 1.0][random.below(3) as usize];
-            let start = Vector::new(0.0, 0.0, random.between(0.0, 1.0) * size) + random.point() * size;
+            let start =
+                Vector::new(0.0, 0.0, random.between(0.0, 1.0) * size) + random.point() * size;
             // A short link near a large triangle is where the way to it turns most.
             let long = [1.0, 0.1, 0.01][random.below(3) as usize];
-            let way = [random.point(), Vector::X, Vector::Z][random.below(3) as usize] * size * long;
+            let way =
+                [random.point(), Vector::X, Vector::Z][random.below(3) as usize] * size * long;
             let radius = random.between(0.0, 0.3) * size * long;
             let (start, end) =
                 if seed % 3 == 0 { over_an_edge(&mut random, &mesh) } else { (start, start + way) };
@@ -278,7 +304,8 @@ mod tests {
                     let is_on_slope = (3..6).any(|edge| {
                         let [from, to] = ends_of(corners, edge);
                         let is_lower = |other: u32| {
-                            link.measure(0, mesh.corners(other)).distance + 4.0 * rounding < distance
+                            link.measure(0, mesh.corners(other)).distance + 4.0 * rounding
+                                < distance
                         };
                         link.measure(0, [from, to, to]).distance <= distance + rounding
                             && mesh.parts().others(triangle, edge).any(is_lower)

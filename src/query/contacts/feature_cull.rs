@@ -1,11 +1,12 @@
-//! Where on a triangle the point nearest to a link can lie, a pack of triangles at a time, in the precision of the
-//! search.
+//! Where on a triangle the point nearest to a link can lie, a pack of triangles at a time, in the
+//! precision of the search.
 //!
 //! # What is certain although the nearest points are not
-//! Let B be the link, or its axis where both caps are round, and W(x) the way to a point x from the nearest point of B. Let
-//! m be the triangle's point that is nearest to B, and v = W(m): <v, x - m> >= 0 for every point x of the triangle. Let X
-//! and Y be corners with <v, X - Y> > 0: m would come nearer if X's share in it went over to Y. So X has none: m lies on
-//! the edge opposite to X. Where that is known of two corners it is the third.
+//! Let B be the link, or its axis where both caps are round, and W(x) the way to a point x from the
+//! nearest point of B. Let m be the triangle's point that is nearest to B, and v = W(m): <v, x - m>
+//! >= 0 for every point x of the triangle. Let X and Y be corners with <v, X - Y> > 0: m would come
+//! nearer if X's share in it went over to Y. So X has none: m lies on the edge opposite to X. Where
+//! that is known of two corners it is the third.
 //!
 //! W is firmly nonexpansive (see `descent_cull`), so for any point z of the triangle
 //!
@@ -13,20 +14,22 @@
 //! |v - W(z)|^2 <= <v, m - z> - <W(z), m - z> <= -<W(z), m - z> <= gap = max over the corners Z of -<W(z), Z - z>:
 //! ```
 //!
-//! however uncertain m is along two parallels, v is known where z is about as near (the gap is that of Frank and Wolfe).
-//! Here z is the nearest point of the edge that is nearest to the axis.
+//! however uncertain m is along two parallels, v is known where z is about as near (the gap is that
+//! of Frank and Wolfe). Here z is the nearest point of the edge that is nearest to the axis.
 //!
 //! # Rounding
-//! Let e be the link's `error`, 64 u reach. z is a computed point of an edge, so that W(z) is within 2 e of the true one,
-//! with 36 u reach to spare (see `descent_cull`). The gap errs by 2 e |Z - z| for that and by |W| e / 4 for Z and z. With l the
-//! longest of the Z - z and t = sqrt(gap + 3 e l + |W| e / 4) + 2 e, and as the corners are each rounded by less than
-//! e / 16, <v, X - Y> > 0 if
+//! Let e be the link's `error`, 64 u reach. z is a computed point of an edge, so that W(z) is
+//! within 2 e of the true one, with 36 u reach to spare (see `descent_cull`). The gap errs by 2 e
+//! |Z - z| for that and by |W| e / 4 for Z and z. With l the longest of the Z - z and t = sqrt(gap
+//! + 3 e l + |W| e / 4) + 2 e, and as the corners are each rounded by less than e / 16, <v, X - Y>
+//! > 0 if
 //!
 //! ```text
 //! <W, X - Y> > t |X - Y| + (|W| + t) e / 8.
 //! ```
 //!
-//! What is computed here errs by 8 u |W| |X - Y| at most, which is within what W has to spare: |W| is below 3.5 reach.
+//! What is computed here errs by 8 u |W| |X - Y| at most, which is within what W has to spare: |W|
+//! is below 3.5 reach.
 
 use crate::distance::lanes::Pack;
 use crate::distance::{Axial, Face, Scalar, Vec3};
@@ -36,18 +39,21 @@ use crate::pair::{LinkLanes, Nearer};
 pub(crate) struct FeatureMask {
     /// Where each corner certainly has no share in the nearest point.
     pub away: [u64; 3],
-    /// Where each edge is certainly farther than the nearest point, by more than the rounding of measured distances: the
-    /// edges from the first corner to the second, from the second to the third and from the third to the first.
+    /// Where each edge is certainly farther than the nearest point, by more than the rounding of
+    /// measured distances: the edges from the first corner to the second, from the second to
+    /// the third and from the third to the first.
     pub beyond: [u64; 3],
 }
 
-/// How many times the link's `error` two computed axis distances differ if the measured distances certainly differ, by
-/// more than their own rounding: once for each of the two, and as much for what double precision does, ties included.
+/// How many times the link's `error` two computed axis distances differ if the measured distances
+/// certainly differ, by more than their own rounding: once for each of the two, and as much for
+/// what double precision does, ties included.
 pub(crate) const CERTAIN: f64 = 4.0;
 
 impl<L: Pack> LinkLanes<L> {
-    /// Which triangles, their corners in the order of [`Face::vertices`], may be nearer than the bound whose axis limit is
-    /// `limit`, and where on them the nearest points are. `error` is the link's.
+    /// Which triangles, their corners in the order of [`Face::vertices`], may be nearer than the
+    /// bound whose axis limit is `limit`, and where on them the nearest points are. `error` is
+    /// the link's.
     #[inline(always)]
     pub(crate) fn nearer_and_features(
         &self,
@@ -126,7 +132,8 @@ mod tests {
     use crate::distance::lanes::Lane;
     use crate::distance::lanes::tests::levels;
     use crate::mesh::{
-        BLOCK, Mesh, PART_WITHOUT, SearchFrame, ends_of, first_of_face, load_vertices, place_face, rotated,
+        BLOCK, Mesh, PART_WITHOUT, SearchFrame, ends_of, first_of_face, load_vertices, place_face,
+        rotated,
     };
     use crate::pair::{PlacedLink, SearchLink};
     use crate::robot::{Cap, ModifiedCylinder};
@@ -135,7 +142,11 @@ mod tests {
     use parry3d_f64::math::{Pose, Vector};
 
     /// The feet of a block of triangles.
-    fn feet_of<E: Lane>(level: Level, searched: &SearchLink<E>, rows: &[E]) -> [FeatureMask; BLOCK] {
+    fn feet_of<E: Lane>(
+        level: Level,
+        searched: &SearchLink<E>,
+        rows: &[E],
+    ) -> [FeatureMask; BLOCK] {
         let mut feet = [(); BLOCK].map(|()| FeatureMask { away: [0; 3], beyond: [0; 3] });
         dispatch!(level, simd => fill::<E::Pack<_>>(simd, searched, rows, &mut feet));
         feet
@@ -152,17 +163,20 @@ mod tests {
         L::Element: Lane,
     {
         let lanes = LinkLanes::<L>::new(token, searched);
-        let (far, error) = (L::splat(token, L::Element::round(1e9)), L::splat(token, searched.error));
+        let (far, error) =
+            (L::splat(token, L::Element::round(1e9)), L::splat(token, searched.error));
         for lane in (0..BLOCK).step_by(L::LANES) {
             let (_, pack) = lanes.nearer_and_features(load_vertices(token, rows, lane), far, error);
             for place in 0..L::LANES {
                 let lowest = |lanes: [u64; 3]| lanes.map(|lanes| lanes >> place & 1);
-                feet[lane + place] = FeatureMask { away: lowest(pack.away), beyond: lowest(pack.beyond) };
+                feet[lane + place] =
+                    FeatureMask { away: lowest(pack.away), beyond: lowest(pack.beyond) };
             }
         }
     }
 
-    /// What was certain: that the nearest point lies on an edge, on a corner, or not on an edge; the last for each edge.
+    /// What was certain: that the nearest point lies on an edge, on a corner, or not on an edge;
+    /// the last for each edge.
     #[derive(Debug, Default)]
     struct Census([usize; 5]);
 
@@ -172,12 +186,19 @@ mod tests {
         let tilt = 10.0_f64.powi(-(random.below(10) as i32));
         let size = [0.02, 0.3, 1.0][random.below(3) as usize];
         let corners: Vec<_> = (0..3 * BLOCK)
-            .map(|_| Vector::new(random.point().x * size, random.point().x * size, random.point().x * tilt))
+            .map(|_| {
+                Vector::new(
+                    random.point().x * size,
+                    random.point().x * size,
+                    random.point().x * tilt,
+                )
+            })
             .collect();
         let caps = [Cap::Flat, Cap::Round];
         let caps = [caps[random.below(2) as usize], caps[random.below(2) as usize]];
         let start = Vector::new(0.0, 0.0, random.between(0.0, 1.0)) + random.point() * size;
-        let way = if random.below(3) == 0 { random.point() } else { Vector::X + random.point() * tilt };
+        let way =
+            if random.below(3) == 0 { random.point() } else { Vector::X + random.point() * tilt };
         let radius = random.between(0.0, 0.2);
         let Ok(link) = ModifiedCylinder::new(start, start + way, radius, caps) else { return };
         let link = PlacedLink::new(&link, &Pose::IDENTITY);
@@ -189,8 +210,10 @@ mod tests {
         (0..BLOCK).for_each(|lane| place_face(&frame, &mesh, lane as u32, &mut rows, lane));
         for level in levels() {
             for (lane, feet) in feet_of(level, &searched, &rows).iter().enumerate() {
-                let corners =
-                    rotated(mesh.corners(lane as u32), first_of_face::<E>(&frame, &mesh, lane as u32));
+                let corners = rotated(
+                    mesh.corners(lane as u32),
+                    first_of_face::<E>(&frame, &mesh, lane as u32),
+                );
                 let distance = link.measure(0, corners).distance;
                 let to_part = |part: usize| {
                     let [from, to] = ends_of(corners, part);

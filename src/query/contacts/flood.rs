@@ -1,4 +1,5 @@
-//! Pieces of wall below rising distances, each grown from a minimum only as far as it must be. `prominence` says what for.
+//! Pieces of wall below rising distances, each grown from a minimum only as far as it must be.
+//! `prominence` says what for.
 
 use super::disjoint_lists::DisjointLists;
 use super::link_neighbourhood::LinkNeighbourhood;
@@ -12,7 +13,8 @@ use parry3d_f64::math::{Real, Vector};
 pub(super) struct Flood {
     /// The triangles that were reached.
     reached: Vec<Reached>,
-    /// For each triangle of the mesh where it stands among them. What stands there of other links does no harm.
+    /// For each triangle of the mesh where it stands among them. What stands there of other links
+    /// does no harm.
     of_triangle: Vec<u32>,
     /// Their corners, those at one place as one.
     corners: Vec<Corner>,
@@ -22,10 +24,12 @@ pub(super) struct Flood {
     of_vertex: Vec<u32>,
     /// For each that was reached an earlier one of the same piece, or itself.
     joined: Vec<u32>,
-    /// For the first of each piece those from which more may be reached, and its minima that are kept.
+    /// For the first of each piece those from which more may be reached, and its minima that are
+    /// kept.
     open: DisjointLists,
     kept: DisjointLists,
-    /// Those from which more is reached at the moment, and those from which no corner leads farther.
+    /// Those from which more is reached at the moment, and those from which no corner leads
+    /// farther.
     wave: Vec<u32>,
     closed: Vec<u32>,
     /// Edges to be measured: the triangle that names each, and which of its parts it is.
@@ -66,8 +70,8 @@ impl Flood {
         self.kept.put(find_root(&mut self.joined, place), minimum);
     }
 
-    /// Whether one that is kept and `stands_for` a minimum at a triangle is reached from there below a distance. That distance
-    /// may not be less than for those who asked before.
+    /// Whether one that is kept and `stands_for` a minimum at a triangle is reached from there
+    /// below a distance. That distance may not be less than for those who asked before.
     pub(super) fn reaches(
         &mut self,
         level: Level,
@@ -150,7 +154,8 @@ impl Flood {
         }
     }
 
-    /// Follows the corners of the wave that are passes below a distance. Where one is none, its triangle is closed.
+    /// Follows the corners of the wave that are passes below a distance. Where one is none, its
+    /// triangle is closed.
     fn follow_corners(&mut self, level: Level, around: LinkNeighbourhood, below: Real) {
         let vertices = around.wall.mesh.vertices();
         let unknown = self.corners[self.heights.len()..].iter();
@@ -178,8 +183,8 @@ impl Flood {
         self.wave = wave;
     }
 
-    /// Follows the edges of the closed ones, from one of them on, that are passes below a distance although their ends are
-    /// none.
+    /// Follows the edges of the closed ones, from one of them on, that are passes below a distance
+    /// although their ends are none.
     fn follow_edges(&mut self, level: Level, around: LinkNeighbourhood, below: Real, from: usize) {
         let mesh = around.wall.mesh;
         self.edges.clear();
@@ -193,7 +198,8 @@ impl Flood {
                     continue;
                 }
                 let [start, end] = ends_of(points, part);
-                if !around.may_pass_between(ends.map(|end| &self.heights[end]), end - start, below) {
+                if !around.may_pass_between(ends.map(|end| &self.heights[end]), end - start, below)
+                {
                     continue;
                 }
                 if self.reaches_other_piece(around, triangle, part) {
@@ -203,7 +209,8 @@ impl Flood {
         }
         self.closed = closed;
         let edges = std::mem::take(&mut self.edges);
-        let segments = edges.iter().map(|&(triangle, part)| in_order(ends_of(mesh.corners(triangle), part)));
+        let segments =
+            edges.iter().map(|&(triangle, part)| in_order(ends_of(mesh.corners(triangle), part)));
         let mut of_heights = edges.iter();
         measure_segments(level, around.link, segments, |height| {
             let Some(&(triangle, part)) = of_heights.next() else { return };
@@ -215,9 +222,14 @@ impl Flood {
         self.edges = edges;
     }
 
-    /// Whether behind one that was reached, the next in the ring of an edge that is near belongs to another piece. If it is
-    /// so for none of them, all in the ring are one piece.
-    fn reaches_other_piece(&mut self, around: LinkNeighbourhood, triangle: u32, part: usize) -> bool {
+    /// Whether behind one that was reached, the next in the ring of an edge that is near belongs to
+    /// another piece. If it is so for none of them, all in the ring are one piece.
+    fn reaches_other_piece(
+        &mut self,
+        around: LinkNeighbourhood,
+        triangle: u32,
+        part: usize,
+    ) -> bool {
         let own = self.reach(around, triangle);
         for other in around.wall.mesh.parts().others(triangle, part) {
             if let Some(other) = self.place(other) {

@@ -1,20 +1,22 @@
 //! What is known of the long rings of triangles around corners and edges.
 //!
-//! A triangle asks about all others around its corners and edges. Where these are many, as in a fan, or where all invalid
-//! vertices were put at the origin, each of them would ask about as many. So what can be asked about a long ring is
-//! gathered by one walk around it, near each link, and kept for all that are in it.
+//! A triangle asks about all others around its corners and edges. Where these are many, as in a
+//! fan, or where all invalid vertices were put at the origin, each of them would ask about as many.
+//! So what can be asked about a long ring is gathered by one walk around it, near each link, and
+//! kept for all that are in it.
 
 use super::triangle_candidates::{CandidateIndex, LinkCandidates};
 use crate::mesh::{PARTS, SharedParts};
 
-/// So many others are asked one by one. Around the corners of a mesh that was made with care there are fewer.
+/// So many others are asked one by one. Around the corners of a mesh that was made with care there
+/// are fewer.
 pub(crate) const FEW: usize = 24;
 
 /// What is known of the long rings near one link.
 #[derive(Clone)]
 pub(crate) struct LongRings<K> {
-    /// For each part of each triangle in question the number of its ring, counted from 1, or 0 if nothing is known of it.
-    /// Empty as long as nothing is known of any.
+    /// For each part of each triangle in question the number of its ring, counted from 1, or 0 if
+    /// nothing is known of it. Empty as long as nothing is known of any.
     of_part: Vec<u32>,
     known: Vec<K>,
 }
@@ -32,9 +34,11 @@ impl<K: Default> LongRings<K> {
         self.known.clear();
     }
 
-    /// What is known of the ring around a part of a triangle in question, the triangle itself included.
+    /// What is known of the ring around a part of a triangle in question, the triangle itself
+    /// included.
     ///
-    /// At the first question `add` gets every triangle of the ring, with its place among those in question.
+    /// At the first question `add` gets every triangle of the ring, with its place among those in
+    /// question.
     pub(crate) fn around(
         &mut self,
         shared: &SharedParts,

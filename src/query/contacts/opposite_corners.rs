@@ -1,4 +1,5 @@
-//! For each edge of each triangle the corner of a neighbour beyond it, as the leaves stand in memory.
+//! For each edge of each triangle the corner of a neighbour beyond it, as the leaves stand in
+//! memory.
 
 use crate::distance::lanes::Lane;
 use crate::mesh::{BLOCK, Mesh, first_of_face, place_points, rotated};
@@ -8,7 +9,8 @@ use crate::threads::Lazy;
 /// The corners beyond the edges of a leaf's triangles.
 #[derive(Clone)]
 pub(crate) struct LeafCorners<E> {
-    /// In rows and an order like those of the triangles' own corners; no numbers where an edge has no second triangle.
+    /// In rows and an order like those of the triangles' own corners; no numbers where an edge has
+    /// no second triangle.
     pub rows: [E; 9 * BLOCK],
     /// Which of its own corners each triangle has first there, two bits each.
     firsts: u32,

@@ -1,4 +1,5 @@
-//! The contacts of a robot by search: those of every link whose surroundings hold a part of the wall.
+//! The contacts of a robot by search: those of every link whose surroundings hold a part of the
+//! wall.
 
 use super::candidate_gather::gather;
 use super::local_minima::{ContactCollector, LocalMinima};
@@ -58,7 +59,9 @@ impl ContactSearch<'_> {
                 gather(self.search.single(), &searched, bound, Some(across), found);
             }
             // Such links are rare: they do without the corners beyond the edges.
-            Searched::Double(searched) => gather(self.search.double(), &searched, bound, None, found),
+            Searched::Double(searched) => {
+                gather(self.search.double(), &searched, bound, None, found)
+            }
             Searched::OutOfReach => found.add_unclassified(0..hierarchy.mesh.len() as u32),
         }
     }

@@ -1,4 +1,5 @@
-//! What a search knows of the triangles that may be within a margin of a link, before they are measured.
+//! What a search knows of the triangles that may be within a margin of a link, before they are
+//! measured.
 
 use crate::mesh::{BLOCK, PART_WITHOUT};
 use parry3d_f64::math::Real;
@@ -30,13 +31,14 @@ pub(crate) struct LinkCandidates<'a> {
 #[derive(Clone, Copy)]
 pub(crate) struct TriangleCandidate {
     pub triangle: u32,
-    /// Another triangle whose `upper` is below this is certainly nearer, by more than the rounding of both distances.
+    /// Another triangle whose `upper` is below this is certainly nearer, by more than the rounding
+    /// of both distances.
     pub lower: Real,
     pub upper: Real,
     /// One bit for each corner that certainly has no share in the nearest point.
     pub away: u8,
-    /// One bit for each edge, from the one between the first corners on, that is certainly farther than the nearest
-    /// point, by more than the rounding of both distances.
+    /// One bit for each edge, from the one between the first corners on, that is certainly farther
+    /// than the nearest point, by more than the rounding of both distances.
     pub beyond: u8,
 }
 
@@ -48,8 +50,8 @@ struct CulledLeaf {
     lanes: u64,
 }
 
-/// Where the triangles of one link stand. What is written there of other links does no harm: it is compared with what
-/// stands at the place.
+/// Where the triangles of one link stand. What is written there of other links does no harm: it is
+/// compared with what stands at the place.
 #[derive(Clone, Default)]
 pub(crate) struct CandidateIndex {
     /// For each triangle of the mesh where it stands among those in question.
@@ -98,10 +100,15 @@ impl LinkCandidates<'_> {
         self.in_question.get(index).filter(|known| known.triangle == triangle).map(|_| index)
     }
 
-    /// Whether a triangle certainly lies on a slope. `place_of` says where each triangle of the mesh stands in the leaves
-    /// of the search; where there are none, nothing does.
+    /// Whether a triangle certainly lies on a slope. `place_of` says where each triangle of the
+    /// mesh stands in the leaves of the search; where there are none, nothing does.
     #[inline(always)]
-    pub(crate) fn is_culled(&self, index: &CandidateIndex, place_of: &[u32], triangle: u32) -> bool {
+    pub(crate) fn is_culled(
+        &self,
+        index: &CandidateIndex,
+        place_of: &[u32],
+        triangle: u32,
+    ) -> bool {
         let Some(&place) = place_of.get(triangle as usize) else { return false };
         let (leaf, lane) = (place / BLOCK as u32, place as usize % BLOCK);
         let at = index.of_leaf.get(leaf as usize);
@@ -140,7 +147,8 @@ impl TriangleCandidate {
         PART_WITHOUT[self.away as usize].map(usize::from)
     }
 
-    /// Whether a corner or an edge is certainly farther than the nearest point. A corner is where one of its edges is.
+    /// Whether a corner or an edge is certainly farther than the nearest point. A corner is where
+    /// one of its edges is.
     pub(crate) fn is_beyond(&self, part: usize) -> bool {
         let edge = |number: usize| self.beyond >> (number % 3) & 1 == 1;
         if part < 3 { edge(part) || edge(part + 2) } else { edge(part) }

@@ -44,9 +44,12 @@ impl WallComponents<'_> {
         // Whom it meets at its corners and edges, and whether at its least point.
         let (mut met, mut count) = ([(0, CULLED, false); 2 * PARTS], 0);
         for part in (0..PARTS).filter(|&part| !known.is_beyond(part)) {
-            let add = |around: &mut IncidentTriangles, other: u32, index: Option<usize>| match index {
+            let add = |around: &mut IncidentTriangles, other: u32, index: Option<usize>| match index
+            {
                 Some(index) => around.add(self.places[index], self.near.in_question[index].lower),
-                None => around.slopes |= self.near.is_culled(self.index, self.wall.place_of(), other),
+                None => {
+                    around.slopes |= self.near.is_culled(self.index, self.wall.place_of(), other)
+                }
             };
             let (mut around, mut others) =
                 (IncidentTriangles::default(), shared.others(nearest.triangle, part));
@@ -80,9 +83,11 @@ impl WallComponents<'_> {
                     continue;
                 }
                 let [from, to] = ends_of(corners, part);
-                let farther =
-                    self.grown(mine).max(self.grown(other)) + rounding(self.link.extent_with([from, to, to]));
-                if nearest.distance <= farther && (met_there || self.link.comes_within(farther, from, to)) {
+                let farther = self.grown(mine).max(self.grown(other))
+                    + rounding(self.link.extent_with([from, to, to]));
+                if nearest.distance <= farther
+                    && (met_there || self.link.comes_within(farther, from, to))
+                {
                     // The piece appeared where the nearer one did.
                     self.piece[mine.max(other) as usize] = mine.min(other);
                 }

@@ -4,8 +4,8 @@ use crate::answer::ProximityError;
 use crate::distance::Scalar;
 use parry3d_f64::math::Real;
 
-/// Into how many intervals time may be divided: in each a point moves by the resolution. Each rounding of a time is 2^-53,
-/// far less; and more shapes than this nobody waits for.
+/// Into how many intervals time may be divided: in each a point moves by the resolution. Each
+/// rounding of a time is 2^-53, far less; and more shapes than this nobody waits for.
 const MAX_INTERVALS: Real = (1_u64 << 24) as Real;
 
 /// What moves in an interval of time, seen from its middle.
@@ -23,8 +23,8 @@ pub(crate) struct ApproachBound {
     pub hold: Real,
 }
 
-/// Whether time can be divided into intervals in which something so fast moves by the resolution. `fastest` names the fastest
-/// section of it, and its speed.
+/// Whether time can be divided into intervals in which something so fast moves by the resolution.
+/// `fastest` names the fastest section of it, and its speed.
 ///
 /// # Errors
 /// It cannot.
@@ -45,8 +45,8 @@ pub(super) fn midpoint(times: [Real; 2]) -> Real {
     0.5 * times[0] + 0.5 * times[1]
 }
 
-/// Half of an interval. The middle is rounded, and so is a motion's own time in a path: by less than 4 u, however short the
-/// interval.
+/// Half of an interval. The middle is rounded, and so is a motion's own time in a path: by less
+/// than 4 u, however short the interval.
 pub(super) fn half_length(times: [Real; 2]) -> Real {
     0.5 * (times[1] - times[0]) * (1.0 + 4.0 * Real::UNIT_ROUNDOFF) + 4.0 * Real::UNIT_ROUNDOFF
 }
@@ -59,7 +59,13 @@ pub(super) fn remaining_parts(times: [Real; 2], hold: Real) -> [Option<[Real; 2]
 
 impl ApproachBound {
     pub(super) fn new(times: [Real; 2], cap_change: Real) -> Self {
-        Self { half_length: half_length(times), cap_change, speed: 0.0, growth: 0.0, hold: Real::INFINITY }
+        Self {
+            half_length: half_length(times),
+            cap_change,
+            speed: 0.0,
+            growth: 0.0,
+            hold: Real::INFINITY,
+        }
     }
 
     /// How much nearer it may come than in the middle shape.
@@ -67,7 +73,8 @@ impl ApproachBound {
         self.half_length * self.speed
     }
 
-    /// Whether flat ends that may become round are so fast that no interval is short enough to tell whether they do.
+    /// Whether flat ends that may become round are so fast that no interval is short enough to tell
+    /// whether they do.
     pub(super) fn caps_change_too_fast(&self, resolution: Real) -> bool {
         self.cap_change > MAX_INTERVALS * resolution * self.half_length
     }
@@ -75,7 +82,8 @@ impl ApproachBound {
     /// Takes note of something that is decided for as long as it has not come nearer by `room`.
     pub(super) fn limit_hold(&mut self, room: Real) {
         // The quotient is rounded, and so are times, which are at most 1.
-        let time = room.max(0.0) / self.speed * (1.0 - 8.0 * Real::UNIT_ROUNDOFF) - 8.0 * Real::UNIT_ROUNDOFF;
+        let time = room.max(0.0) / self.speed * (1.0 - 8.0 * Real::UNIT_ROUNDOFF)
+            - 8.0 * Real::UNIT_ROUNDOFF;
         self.hold = self.hold.min(time.max(0.0));
     }
 }

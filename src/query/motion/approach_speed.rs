@@ -1,10 +1,10 @@
 //! How fast a stretch of a robot moves.
 //!
-//! **How fast.** A body with two round ends holds the balls around all points of its piece of the centreline, and so
-//! whatever the discs become when they turn: V is the speed of the centreline. One with a flat end holds discs, whose
-//! points move by the radius times the turn more. The ball at a round end of a section counts with its front half alone:
-//! the other half is in the discs behind it, or beyond a face, where it is no part of the tube. That half turns like a
-//! disc.
+//! **How fast.** A body with two round ends holds the balls around all points of its piece of the
+//! centreline, and so whatever the discs become when they turn: V is the speed of the centreline.
+//! One with a flat end holds discs, whose points move by the radius times the turn more. The ball
+//! at a round end of a section counts with its front half alone: the other half is in the discs
+//! behind it, or beyond a face, where it is no part of the tube. That half turns like a disc.
 
 use crate::distance::Scalar;
 use crate::pieces::SectionRange;

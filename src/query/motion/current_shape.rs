@@ -35,9 +35,13 @@ impl CurrentShape {
         Ok(pose)
     }
 
-    /// Tells which flat ends stay flat between two times, of which this is the middle shape. By how much those move that may not
-    /// is returned.
-    pub(super) fn mark_lasting_faces_between<M: Motion>(&mut self, motion: &M, times: [Real; 2]) -> Real {
+    /// Tells which flat ends stay flat between two times, of which this is the middle shape. By how
+    /// much those move that may not is returned.
+    pub(super) fn mark_lasting_faces_between<M: Motion>(
+        &mut self,
+        motion: &M,
+        times: [Real; 2],
+    ) -> Real {
         self.tube.mark_lasting_faces_between(&MotionDrift {
             motion,
             times,

@@ -1,9 +1,12 @@
-//! Whether a piece of the robot keeps a margin during an interval of time, judged by the shape at its middle.
+//! Whether a piece of the robot keeps a margin during an interval of time, judged by the shape at
+//! its middle.
 
 use super::approach_bound::{ApproachBound, check_subdivision};
 use super::relative_motion::RelativeMotion;
 use crate::answer::ProximityError;
-use crate::pieces::{Body, BodyQuery, BoundedPiece, Refinable, RefineAction, RefinePolicy, UpperBound};
+use crate::pieces::{
+    Body, BodyQuery, BoundedPiece, Refinable, RefineAction, RefinePolicy, UpperBound,
+};
 use parry3d_f64::math::Real;
 
 /// What may turn by no more than this beyond what a shape shows, in rad, is decided by the shape.
@@ -64,16 +67,26 @@ impl<D: Refinable, P, V: RelativeMotion<D, P>> RefinePolicy<D, P> for IntervalTe
     ) -> Result<BodyQuery, ProximityError> {
         self.approach_bound.speed = self.moving.speed(part, piece, outer, tube)?;
         self.approach_bound.growth = self.moving.extra_turn(part, tube);
-        let (reach, MarginQuery { margin, resolution }) = (self.approach_bound.max_approach(), self.wanted);
+        let (reach, MarginQuery { margin, resolution }) =
+            (self.approach_bound.max_approach(), self.wanted);
         let is_wide = outer.excess() > 2.0 * reach.max(resolution)
             && outer.excess() > 0.5 * tube.radius(piece).max(margin);
         let aim = reach.max(0.5 * resolution);
-        Ok(BodyQuery { bound: self.bound(tube.slack()), is_wide, aim, start: self.moving.seed_triangle() })
+        Ok(BodyQuery {
+            bound: self.bound(tube.slack()),
+            is_wide,
+            aim,
+            start: self.moving.seed_triangle(),
+        })
     }
 
     fn on_cleared(&mut self, _: &D::Piece, _: &D::Body, _: Real) {}
 
-    fn decide(&mut self, tube: &D, near: &BoundedPiece<D, P>) -> Result<RefineAction, ProximityError> {
+    fn decide(
+        &mut self,
+        tube: &D,
+        near: &BoundedPiece<D, P>,
+    ) -> Result<RefineAction, ProximityError> {
         self.moving.record(near);
         let upper = near.found.upper();
         if upper <= self.wanted.margin {
@@ -98,7 +111,11 @@ impl<D: Refinable, P, V: RelativeMotion<D, P>> RefinePolicy<D, P> for IntervalTe
         Ok(RefineAction::Halve(0.25 * near.outer.excess()))
     }
 
-    fn decide_indivisible(&mut self, tube: &D, near: &BoundedPiece<D, P>) -> Result<(), ProximityError> {
+    fn decide_indivisible(
+        &mut self,
+        tube: &D,
+        near: &BoundedPiece<D, P>,
+    ) -> Result<(), ProximityError> {
         let (may_open, resolution) = (tube.may_become_round(near.piece), self.wanted.resolution);
         if self.is_fine() && !may_open && tube.is_entirely_queried(near.piece, near.found) {
             let stated = tube.uncertainty(near.piece);
@@ -132,7 +149,8 @@ impl<V, F> IntervalTest<V, F> {
             && self.approach_bound.growth <= MIN_EXTRA_TURN
     }
 
-    /// Takes note of a piece that keeps the margin only for a while before and after the middle shape.
+    /// Takes note of a piece that keeps the margin only for a while before and after the middle
+    /// shape.
     fn record_unresolved<D: Refinable, P>(
         &mut self,
         tube: &D,
@@ -143,7 +161,8 @@ impl<V, F> IntervalTest<V, F> {
     {
         let (speed, MarginQuery { margin, resolution }) = (self.approach_bound.speed, self.wanted);
         check_subdivision(speed, resolution, || self.moving.fastest_section(near, speed))?;
-        self.result.is_near |= near.found.upper() <= margin + resolution + tube.uncertainty(near.piece);
+        self.result.is_near |=
+            near.found.upper() <= margin + resolution + tube.uncertainty(near.piece);
         self.approach_bound.limit_hold(D::distance(near.nearest) - margin - tube.slack());
         self.moving.record_unresolved(near, &self.approach_bound);
         Ok(())

@@ -1,15 +1,17 @@
 //! How near a motion comes, between bounds.
 //!
-//! Every shape that is looked at bounds the least clearance from above. A piece whose body is d away in the middle shape of an
-//! interval, and moves at V or slower, is at least d - tau V away in all of it, tau being half of the interval: where that is
-//! not below the least upper bound so far by more than the tolerance, nothing that matters is there. What is left is halved, in
-//! time or along the curve, as for a margin (`motion_search`); the margin is what would still matter, and falls as nearer
-//! shapes are found. The interval that may come nearest is looked at first. So a path of many motions costs little more
-//! than its nearest parts, and those that stay farther away one shape each, or a few.
+//! Every shape that is looked at bounds the least clearance from above. A piece whose body is d
+//! away in the middle shape of an interval, and moves at V or slower, is at least d - tau V away in
+//! all of it, tau being half of the interval: where that is not below the least upper bound so far
+//! by more than the tolerance, nothing that matters is there. What is left is halved, in
+//! time or along the curve, as for a margin (`motion_search`); the margin is what would still
+//! matter, and falls as nearer shapes are found. The interval that may come nearest is looked at
+//! first. So a path of many motions costs little more than its nearest parts, and those that stay
+//! farther away one shape each, or a few.
 //!
-//! **When it ends.** A piece that moves by no more than half of the tolerance in its interval is settled as soon as its body fits it
-//! as closely. Where samples or stated errors leave more open than that, no interval is worth dividing in which the piece
-//! moves less than they leave open.
+//! **When it ends.** A piece that moves by no more than half of the tolerance in its interval is
+//! settled as soon as its body fits it as closely. Where samples or stated errors leave more open
+//! than that, no interval is worth dividing in which the piece moves less than they leave open.
 
 use super::approach_bound::ApproachBound;
 use super::motion_search::{Interval, MotionSearch};
@@ -19,8 +21,8 @@ use super::progress::MAX_SHAPES;
 use super::relative_motion::RelativeMotion;
 use crate::answer::{MotionClearance, ProximityError};
 use crate::pieces::{
-    BodyQuery, BoundedPiece, BoundingBody, MeshUpperBound, Piece, PlacedTube, RefineAction, RefinePolicy,
-    TubeInMesh, refine,
+    BodyQuery, BoundedPiece, BoundingBody, MeshUpperBound, Piece, PlacedTube, RefineAction,
+    RefinePolicy, TubeInMesh, refine,
 };
 use crate::robot::Motion;
 use parry3d_f64::math::Real;
@@ -29,7 +31,8 @@ use parry3d_f64::math::Real;
 const MAX_PIECES: u32 = 1 << 16;
 
 impl<M: Motion> MotionSearch<'_, M> {
-    /// How near the motion comes, with bounds no farther apart than the tolerance where that can be.
+    /// How near the motion comes, with bounds no farther apart than the tolerance where that can
+    /// be.
     pub(crate) fn clearance(&mut self, tolerance: Real) -> Result<MotionClearance, ProximityError> {
         let nothing = UnresolvedGap { lower: Real::INFINITY, doubt: 0.0 };
         let mut known = MinimumBounds {
@@ -51,17 +54,23 @@ impl<M: Motion> MotionSearch<'_, M> {
                 self.with_middle_shape(&interval, |tube, turn, moving, approach_bound| {
                     known.seed(tube, t);
                     turn.begin(tube, known.upper().max(tolerance));
-                    let mut approach = MinimumPolicy::new(moving, approach_bound, &mut known, t, tube);
+                    let mut approach =
+                        MinimumPolicy::new(moving, approach_bound, &mut known, t, tube);
                     refine(tube, turn.pieces, &mut approach)?;
                     if approach.is_done() {
                         approach.settle(0.0);
                     }
-                    let is_left =
-                        if approach.is_done() { [true; 2] } else { approach.clear_by_displacement(tube) };
+                    let is_left = if approach.is_done() {
+                        [true; 2]
+                    } else {
+                        approach.clear_by_displacement(tube)
+                    };
                     Ok((approach.nearest, approach.approach_bound.hold, is_left))
                 })?;
             let interval = interval.with_lower_bound(nearest);
-            self.memory.intervals.extend(interval.halves(hold, is_left, &pieces).into_iter().flatten());
+            self.memory
+                .intervals
+                .extend(interval.halves(hold, is_left, &pieces).into_iter().flatten());
         }
         known.answer()
     }
@@ -161,7 +170,8 @@ impl<'a, 'b, M: Motion> MinimumPolicy<'a, 'b, M> {
         t: Real,
         tube: &TubeInMesh,
     ) -> Self {
-        // So that the bounds of the answer are no farther apart than asked for after they are rounded.
+        // So that the bounds of the answer are no farther apart than asked for after they are
+        // rounded.
         let aim = (known.tolerance + known.uncertainty - 4.0 * tube.tube.slack()).max(0.0);
         Self { moving, approach_bound, known, t, aim, nearest: Real::INFINITY, left: MAX_PIECES }
     }
@@ -193,7 +203,11 @@ impl<'a, 'b, M: Motion> MinimumPolicy<'a, 'b, M> {
     }
 
     /// Takes note of a piece that has to be looked at at other times.
-    fn record_unresolved(&mut self, near: &BoundedPiece<TubeInMesh, PendingPiece>, tube: &PlacedTube) {
+    fn record_unresolved(
+        &mut self,
+        near: &BoundedPiece<TubeInMesh, PendingPiece>,
+        tube: &PlacedTube,
+    ) {
         let wanted = self.wanted();
         self.nearest = self.nearest.min(self.at_least(near.nearest.distance, tube));
         // As long as it is still, it comes no nearer than that.

@@ -1,9 +1,11 @@
 //! Whether two robots that move at the same time keep a margin between them.
 //!
-//! An interval of time is judged by the two shapes at its middle, as for one motion (`motion_search`): a point of a piece that moves at V or
-//! slower is within tau V of where it is then, tau being half of the interval, so two pieces come nearer by no more than tau times the sum of
-//! their speeds. Pairs for which that is too much are looked at again in what is left of the interval on either side. These are few,
-//! and which pieces of one robot are near which of the other is seen at once from their bodies: so each shape begins with all pairs that may
+//! An interval of time is judged by the two shapes at its middle, as for one motion
+//! (`motion_search`): a point of a piece that moves at V or slower is within tau V of where it is
+//! then, tau being half of the interval, so two pieces come nearer by no more than tau times the
+//! sum of their speeds. Pairs for which that is too much are looked at again in what is left of the
+//! interval on either side. These are few, and which pieces of one robot are near which of the
+//! other is seen at once from their bodies: so each shape begins with all pairs that may
 //! come as near as the margin in its interval, instead of a list that the one before left.
 
 use super::approach_bound::{ApproachBound, check_subdivision, half_length, midpoint};
@@ -14,7 +16,9 @@ use super::moving_pair::MovingPair;
 use super::relative_motion::RelativeMotion;
 use crate::answer::{ProximityError, RobotMotionAnswer};
 use crate::distance::Scalar;
-use crate::pieces::{PairQueue, PairUpperBound, PiecePair, PlacedTube, Refinable, TubePair, refine};
+use crate::pieces::{
+    PairQueue, PairUpperBound, PiecePair, PlacedTube, Refinable, TubePair, refine,
+};
 use crate::robot::{Motion, check_speed};
 use parry3d_f64::math::Real;
 use std::collections::VecDeque;
@@ -41,20 +45,24 @@ pub(crate) struct MotionPair<'a, A, B> {
 
 impl<A: Motion, B: Motion> MotionPair<'_, A, B> {
     /// Whether the margin is kept at all times.
-    pub(crate) fn clear(&mut self, wanted: MarginQuery) -> Result<RobotMotionAnswer, ProximityError> {
+    pub(crate) fn clear(
+        &mut self,
+        wanted: MarginQuery,
+    ) -> Result<RobotMotionAnswer, ProximityError> {
         let mut intervals = std::mem::take(&mut self.memory.intervals);
         for current in &mut self.memory.current {
             current.forget();
         }
         intervals::begin(&mut intervals, [self.motions.0.legs(), self.motions.1.legs()]);
         let mut left = MAX_PAIRS;
-        let answer = intervals::clear(&mut intervals, |times| self.test_interval(times, wanted, &mut left));
+        let answer =
+            intervals::clear(&mut intervals, |times| self.test_interval(times, wanted, &mut left));
         self.memory.intervals = intervals;
         answer
     }
 
-    /// Whether the margin is kept in an interval, as far as its middle shapes show; and for how long before and after these all
-    /// pairs keep it, which is for ever where none failed.
+    /// Whether the margin is kept in an interval, as far as its middle shapes show; and for how
+    /// long before and after these all pairs keep it, which is for ever where none failed.
     fn test_interval(
         &mut self,
         times: [Real; 2],
@@ -69,17 +77,21 @@ impl<A: Motion, B: Motion> MotionPair<'_, A, B> {
         let mut tubes = TubePair::new([first.tube, second.tube]);
         // Below that, rounding decides.
         tubes.check_resolved(32.0 * tubes.slack(), wanted.resolution)?;
-        let reach = half_length(times) * (first.speed + second.speed) * (1.0 + 4.0 * Real::UNIT_ROUNDOFF);
+        let reach =
+            half_length(times) * (first.speed + second.speed) * (1.0 + 4.0 * Real::UNIT_ROUNDOFF);
         let MarginQuery { margin, resolution } = wanted;
-        let (scale, upper) = (margin.max(resolution).max(0.25 * reach), margin + reach + tubes.slack());
-        let is_all = tubes.begin(scale, upper, intervals::most_pairs(reach, wanted), beginning, pairs)?;
+        let (scale, upper) =
+            (margin.max(resolution).max(0.25 * reach), margin + reach + tubes.slack());
+        let is_all =
+            tubes.begin(scale, upper, intervals::most_pairs(reach, wanted), beginning, pairs)?;
         if !is_all {
             let faster = if second.speed > first.speed { &second } else { &first };
             check_subdivision(faster.speed, resolution, || (faster.fastest, faster.speed))?;
         }
         let approach_bound = ApproachBound::new(times, first.cap_change.max(second.cap_change));
         let moving = MovingPair { motions, names, times, speeds: [0.0; 2], left };
-        let mut test = IntervalTest { moving, approach_bound, wanted, result: IntervalResult::empty() };
+        let mut test =
+            IntervalTest { moving, approach_bound, wanted, result: IntervalResult::empty() };
         refine(&mut tubes, pairs, &mut test)?;
         let IntervalTest { moving, approach_bound, mut result, .. } = test;
         if moving.is_exhausted() && result.contact.is_none() {
@@ -110,7 +122,8 @@ fn shape<'p, M: Motion>(
     for (number, section) in tube.sections().iter().enumerate() {
         let stated = motion.speed(number, [0.0, 1.0], times);
         check_speed(number, stated.point)?;
-        // Where no body has a flat end, nobody needs a turn: that of a link without a length is infinite.
+        // Where no body has a flat end, nobody needs a turn: that of a link without a length is
+        // infinite.
         let has_rim = section.radius > 0.0 && tube.faces(section).iter().any(Option::is_some);
         let turn = if has_rim { stated.turn } else { 0.0 };
         check_speed(number, turn)?;

@@ -1,29 +1,34 @@
 //! The queries of a motion: whether a margin is kept all the way, or until when.
 //!
-//! An interval of time is judged by its middle shape. Points of a piece that move at V or slower are within tau V of
-//! where they are at the middle, tau being half of the interval; so if a body around the piece, as it is then, keeps more
-//! than margin + tau V away, the piece keeps the margin during the whole interval. Its points then are those of the same
-//! shares of its section: what bodies hold of them, besides the discs and the balls of the moment, is derived in
-//! `pieces::bounding_body` and in `test`. Pieces that fail are looked at again in what is left of the interval on either side: a
-//! piece d away keeps the margin for (d - margin) / V before and after the middle. Where it is the width of the body that
-//! fails, and not the motion, the piece is halved instead, in the same shape.
+//! An interval of time is judged by its middle shape. Points of a piece that move at V or slower
+//! are within tau V of where they are at the middle, tau being half of the interval; so if a body
+//! around the piece, as it is then, keeps more than margin + tau V away, the piece keeps the margin
+//! during the whole interval. Its points then are those of the same shares of its section: what
+//! bodies hold of them, besides the discs and the balls of the moment, is derived in
+//! `pieces::bounding_body` and in `test`. Pieces that fail are looked at again in what is left of
+//! the interval on either side: a piece d away keeps the margin for (d - margin) / V before and
+//! after the middle. Where it is the width of the body that fails, and not the motion, the piece is
+//! halved instead, in the same shape.
 //!
-//! **Courses.** A speed leads anywhere. If the pieces that failed are few and the motion knows their courses, each is asked about both sides of
-//! the middle by where it goes (`half_displacement`), against all triangles that are near enough, each in a direction of its own (`separating_planes`). What
-//! keeps the margin on one side is not looked at there again; where all do, that side is settled.
+//! **Courses.** A speed leads anywhere. If the pieces that failed are few and the motion knows
+//! their courses, each is asked about both sides of the middle by where it goes
+//! (`half_displacement`), against all triangles that are near enough, each in a direction of its
+//! own (`separating_planes`). What keeps the margin on one side is not looked at there again; where
+//! all do, that side is settled.
 //!
 //! What has little room seldom goes so much along the wall, so it is asked seldom, unless it was
 //! not in vain.
 //!
 //! **A limit.** A question ends after `MAX_SHAPES` shapes: `progress`.
 //!
-//! **A mesh that moves** has a place for each time too (`search::hierarchy::moving_mesh`), and V is the piece's speed and that of
-//! the fastest vertex: no point of a triangle is faster than its vertices, and the two approach each other by no more.
+//! **A mesh that moves** has a place for each time too (`search::hierarchy::moving_mesh`), and V is
+//! the piece's speed and that of the fastest vertex: no point of a triangle is faster than its
+//! vertices, and the two approach each other by no more.
 //!
-//! **Flat ends.** Those that may become round during the interval (`robot::tube::cap_persistence`) are round here: a ball holds the
-//! disc, now and later. So are those of a link that may lose its direction. The intervals become
-//! shorter until the end lasts, or the moment is found at which it becomes
-//! round; there the shape itself jumps, and if that is what comes near, nobody can decide.
+//! **Flat ends.** Those that may become round during the interval (`robot::tube::cap_persistence`)
+//! are round here: a ball holds the disc, now and later. So are those of a link that may lose its
+//! direction. The intervals become shorter until the end lasts, or the moment is found at which it
+//! becomes round; there the shape itself jumps, and if that is what comes near, nobody can decide.
 
 use super::approach_bound::{ApproachBound, midpoint, remaining_parts};
 use super::current_shape::CurrentShape;
@@ -83,13 +88,24 @@ impl Interval {
         Self { lower: self.lower.max(lower), ..self }
     }
 
-    /// What is left of it before and after its middle shape, which decides for a while what becomes of the pieces.
-    pub(super) fn halves(&self, hold: Real, is_left: [bool; 2], pieces: &Range<usize>) -> [Option<Self>; 2] {
+    /// What is left of it before and after its middle shape, which decides for a while what becomes
+    /// of the pieces.
+    pub(super) fn halves(
+        &self,
+        hold: Real,
+        is_left: [bool; 2],
+        pieces: &Range<usize>,
+    ) -> [Option<Self>; 2] {
         let [before, after] = remaining_parts(self.times, hold);
         let rest = |times: Option<[Real; 2]>, is_after: bool| {
             let is_left = is_left[usize::from(is_after)] && !pieces.is_empty();
             let pieces = Some(pieces.clone());
-            times.filter(|_| is_left).map(|times| Self { times, pieces, is_after, lower: self.lower })
+            times.filter(|_| is_left).map(|times| Self {
+                times,
+                pieces,
+                is_after,
+                lower: self.lower,
+            })
         };
         [rest(before, false), rest(after, true)]
     }
@@ -103,11 +119,14 @@ pub(super) struct PendingPieces<'a> {
 }
 
 impl PendingPieces<'_> {
-    /// Begins with the pieces of the whole robot, unless some have failed before. `scale` is what is to be decided.
+    /// Begins with the pieces of the whole robot, unless some have failed before. `scale` is what
+    /// is to be decided.
     pub(super) fn begin(&mut self, tube: &TubeInMesh, scale: Real) {
         if self.is_whole {
             tube.begin(scale, self.initial_pieces);
-            self.pieces.extend(self.initial_pieces.iter().map(|piece| PendingPiece::of(piece, &tube.tube)));
+            self.pieces.extend(
+                self.initial_pieces.iter().map(|piece| PendingPiece::of(piece, &tube.tube)),
+            );
         }
     }
 }
@@ -142,7 +161,8 @@ impl<M: Motion> MotionSearch<'_, M> {
         let (mut progress, mut too_fine) = (Progress::default(), None);
         self.begin();
         while let Some(interval) = self.memory.intervals.pop_front() {
-            let left = self.memory.intervals.iter().chain([&interval]).map(|interval| interval.times);
+            let left =
+                self.memory.intervals.iter().chain([&interval]).map(|interval| interval.times);
             if let Some(first) = progress.is_exhausted(self.shapes, left) {
                 return too_fine.map_or_else(|| Ok(MotionAnswer::undecided(first)), Err);
             }
@@ -151,10 +171,15 @@ impl<M: Motion> MotionSearch<'_, M> {
             progress.record(interval.times, &result, self.shapes);
             if let Some(found) = result.contact {
                 // Of the shapes before it nothing is proven yet but what was asked first.
-                return Ok(MotionAnswer::contact(0.0, self.shape_in_contact(interval.midpoint(), &found)));
+                return Ok(MotionAnswer::contact(
+                    0.0,
+                    self.shape_in_contact(interval.midpoint(), &found),
+                ));
             }
             too_fine = too_fine.or(result.too_fine);
-            self.memory.intervals.extend(interval.halves(hold, is_left, &unresolved).into_iter().flatten());
+            self.memory
+                .intervals
+                .extend(interval.halves(hold, is_left, &unresolved).into_iter().flatten());
         }
         if let Some(error) = too_fine {
             return Err(error);
@@ -162,11 +187,14 @@ impl<M: Motion> MotionSearch<'_, M> {
         Ok(progress.undecided().map_or_else(MotionAnswer::clear, MotionAnswer::undecided))
     }
 
-    /// Until when the margin is kept. Earlier intervals first; what comes after a contact does not matter. Where an interval
-    /// stays undecided, the answer cannot begin any later. What is left then is a shape that does not keep the margin: the
-    /// larger intervals first, and with patience. After [`MAX_SHAPES`] shapes the answer begins
-    /// where the rest does.
-    pub(crate) fn first_contact(&mut self, wanted: MarginQuery) -> Result<MotionAnswer, ProximityError> {
+    /// Until when the margin is kept. Earlier intervals first; what comes after a contact does not
+    /// matter. Where an interval stays undecided, the answer cannot begin any later. What is
+    /// left then is a shape that does not keep the margin: the larger intervals first, and with
+    /// patience. After [`MAX_SHAPES`] shapes the answer begins where the rest does.
+    pub(crate) fn first_contact(
+        &mut self,
+        wanted: MarginQuery,
+    ) -> Result<MotionAnswer, ProximityError> {
         let (mut undecided, mut contact) = (None::<[Real; 2]>, None::<(Real, MeshUpperBound)>);
         let (mut clear_until, mut most, mut too_fine) = (1.0, MAX_SHAPES, None);
         self.begin();
@@ -174,7 +202,8 @@ impl<M: Motion> MotionSearch<'_, M> {
         self.memory.intervals.make_contiguous().reverse();
         while self.shapes < most {
             let intervals = &mut self.memory.intervals;
-            let next = if undecided.is_none() { intervals.pop_back() } else { intervals.pop_front() };
+            let next =
+                if undecided.is_none() { intervals.pop_back() } else { intervals.pop_front() };
             let Some(interval) = next else { break };
             let IntervalOutcome { result, hold, is_left, unresolved } =
                 self.test_interval(&interval, wanted)?;
@@ -257,8 +286,12 @@ impl<M: Motion> MotionSearch<'_, M> {
                 // Below that, rounding decides.
                 tube.check_resolved(32.0 * tube.tube.slack(), wanted.resolution)?;
                 turn.begin(tube, wanted.margin.max(wanted.resolution));
-                let mut test =
-                    IntervalTest { moving, approach_bound, wanted, result: IntervalResult::empty() };
+                let mut test = IntervalTest {
+                    moving,
+                    approach_bound,
+                    wanted,
+                    result: IntervalResult::empty(),
+                };
                 refine(tube, turn.pieces, &mut test)?;
                 let IntervalTest { mut moving, approach_bound, result, .. } = test;
                 let is_contact = result.contact.is_some();
@@ -272,7 +305,8 @@ impl<M: Motion> MotionSearch<'_, M> {
         Ok(IntervalOutcome { result, hold, is_left, unresolved })
     }
 
-    /// Asks a question of the middle shape of an interval; and which of the failed pieces are those that failed there.
+    /// Asks a question of the middle shape of an interval; and which of the failed pieces are those
+    /// that failed there.
     pub(super) fn with_middle_shape<T>(
         &mut self,
         interval: &Interval,
@@ -297,7 +331,8 @@ impl<M: Motion> MotionSearch<'_, M> {
         } = &mut *self.memory;
         let pose = current.set_time(motion, t)?;
         self.shapes += 1;
-        let approach_bound = ApproachBound::new(times, current.mark_lasting_faces_between(motion, times));
+        let approach_bound =
+            ApproachBound::new(times, current.mark_lasting_faces_between(motion, times));
         let MeshSearch { level, hierarchy, .. } = self.search;
         let mut search = MeshSearch::new(level, hierarchy, &mut *self.search.scratch);
         let (mut reach, mut mesh_speed) = (hierarchy.reach, 0.0);
@@ -327,7 +362,8 @@ impl<M: Motion> MotionSearch<'_, M> {
             planes,
             small_rooms,
         };
-        let mut turn = PendingPieces { pieces, initial_pieces, is_whole: interval.pieces.is_none() };
+        let mut turn =
+            PendingPieces { pieces, initial_pieces, is_whole: interval.pieces.is_none() };
         let result = ask(&mut tube, &mut turn, moving, approach_bound)?;
         // What a contact left unasked.
         unresolved.append(pieces);

@@ -32,7 +32,8 @@ impl<'t, A: Motion, B: Motion> RelativeMotion<TubePair<'t>, PiecePair> for Movin
         *self.left = self.left.saturating_sub(1);
         let [first, second] = tubes.section_ranges(pair);
         let (a, b) = self.motions;
-        let fast = [ApproachSpeed::of(a, self.times, &first), ApproachSpeed::of(b, self.times, &second)];
+        let fast =
+            [ApproachSpeed::of(a, self.times, &first), ApproachSpeed::of(b, self.times, &second)];
         for ((speed, fast), name) in self.speeds.iter_mut().zip(fast).zip(self.names) {
             let named = |error: RobotError| ProximityError::Motion(error).of_robot(name);
             let ApproachSpeed { centreline, rim } = fast.map_err(named)?;
@@ -45,7 +46,11 @@ impl<'t, A: Motion, B: Motion> RelativeMotion<TubePair<'t>, PiecePair> for Movin
         *self.left == 0
     }
 
-    fn fastest_section(&self, near: &BoundedPiece<TubePair<'t>, PiecePair>, _: Real) -> (usize, Real) {
+    fn fastest_section(
+        &self,
+        near: &BoundedPiece<TubePair<'t>, PiecePair>,
+        _: Real,
+    ) -> (usize, Real) {
         near.found.faster(self.speeds)
     }
 }

@@ -1,4 +1,5 @@
-//! The pieces of a robot during an interval of time, whose shape is the one at its middle: how far they move from there.
+//! The pieces of a robot during an interval of time, whose shape is the one at its middle: how far
+//! they move from there.
 
 use super::approach_bound::{ApproachBound, half_length};
 use super::approach_speed::ApproachSpeed;
@@ -14,7 +15,8 @@ use crate::pieces::{BoundedPiece, BoundingBody, Piece, Refinable, SectionRange, 
 use crate::robot::Motion;
 use parry3d_f64::math::Real;
 
-/// Of more pieces that failed in an interval, courses are not asked: that would take longer than another shape.
+/// Of more pieces that failed in an interval, courses are not asked: that would take longer than
+/// another shape.
 const MAX_PIECES: usize = 8;
 
 /// A piece with less room than this part of its reach seldom goes so much along the wall: one that
@@ -37,7 +39,8 @@ pub(crate) struct MovingTube<'a, M> {
     pub unresolved_bodies: &'a mut Vec<UnresolvedPiece>,
     /// The triangle that was found last.
     pub last: &'a mut Option<u32>,
-    /// By how much faster a point of its body may be than the centreline, the mesh's speed included.
+    /// By how much faster a point of its body may be than the centreline, the mesh's speed
+    /// included.
     pub beside: Real,
     pub planes: &'a mut SeparatingPlanes,
     pub small_rooms: &'a mut SmallRooms,
@@ -53,7 +56,8 @@ impl<'m, M: Motion> RelativeMotion<TubeInMesh<'m>, PendingPiece> for MovingTube<
     ) -> Result<Real, ProximityError> {
         let PendingPiece { section, shares, .. } = *pending;
         let stretch = SectionRange { section, shares, outer, radius: tube.radius(piece) };
-        let ApproachSpeed { centreline, rim } = ApproachSpeed::of(self.motion, self.times, &stretch)?;
+        let ApproachSpeed { centreline, rim } =
+            ApproachSpeed::of(self.motion, self.times, &stretch)?;
         self.beside = (rim + self.mesh_speed) * (1.0 + 2.0 * Real::UNIT_ROUNDOFF);
         Ok((centreline + self.beside) * (1.0 + 4.0 * Real::UNIT_ROUNDOFF))
     }
@@ -104,11 +108,12 @@ pub(crate) struct Left {
 }
 
 impl<M: Motion> MovingTube<'_, M> {
-    /// Which of the pieces that failed keep the margin before the middle shape all the same, or after it, by where they go. The
-    /// nearest one is asked first, and none after one that does not: that side has to be looked at
-    /// anyway.
+    /// Which of the pieces that failed keep the margin before the middle shape all the same, or
+    /// after it, by where they go. The nearest one is asked first, and none after one that does
+    /// not: that side has to be looked at anyway.
     pub(crate) fn clear_by_displacement(&mut self, tube: &mut TubeInMesh, margin: Real) -> Left {
-        let nearest = self.unresolved_bodies.iter().enumerate().min_by(|a, b| a.1.away.total_cmp(&b.1.away));
+        let nearest =
+            self.unresolved_bodies.iter().enumerate().min_by(|a, b| a.1.away.total_cmp(&b.1.away));
         let mut left = Left { sides: [false; 2], is_any_settled: false };
         let Some((nearest, _)) = nearest else { return left };
         if self.unresolved_bodies.len() > MAX_PIECES {
@@ -119,8 +124,9 @@ impl<M: Motion> MovingTube<'_, M> {
         let room = |failure: &UnresolvedPiece| failure.away - margin - slack;
         let is_small = |failure: &UnresolvedPiece| room(failure) <= MIN_ROOM * failure.reach;
         let has_small = self.unresolved_bodies.iter().any(is_small);
-        let asks_small =
-            has_small && self.unresolved_bodies.iter().all(|it| room(it) > 0.0) && self.small_rooms.is_due();
+        let asks_small = has_small
+            && self.unresolved_bodies.iter().all(|it| room(it) > 0.0)
+            && self.small_rooms.is_due();
         self.unresolved_bodies.swap(0, nearest);
         self.unresolved.swap(self.first, self.first + nearest);
         for (number, failure) in self.unresolved_bodies.iter().enumerate() {
@@ -129,8 +135,11 @@ impl<M: Motion> MovingTube<'_, M> {
                 return left;
             }
             let part = &mut self.unresolved[self.first + number];
-            for (side, is_left) in left.sides.iter_mut().enumerate().filter(|(_, is_left)| !**is_left) {
-                let times = if side == 0 { [self.times[0], self.t] } else { [self.t, self.times[1]] };
+            for (side, is_left) in
+                left.sides.iter_mut().enumerate().filter(|(_, is_left)| !**is_left)
+            {
+                let times =
+                    if side == 0 { [self.times[0], self.t] } else { [self.t, self.times[1]] };
                 let course = self.motion.course(part.section as usize, part.shares, times);
                 let keeps = course
                     .and_then(|course| HalfDisplacement::of(&course, side, failure.beside))

@@ -29,7 +29,8 @@ impl<'t, M: Motion> RelativeMotion<TubeWithItself<'t>, SelfPair> for MovingTubeW
     ) -> Result<Real, ProximityError> {
         *self.left = self.left.saturating_sub(1);
         for (speed, stretch) in self.speeds.iter_mut().zip(own.section_ranges(pair)) {
-            let ApproachSpeed { centreline, rim } = ApproachSpeed::of(self.motion, self.times, &stretch)?;
+            let ApproachSpeed { centreline, rim } =
+                ApproachSpeed::of(self.motion, self.times, &stretch)?;
             *speed = centreline + rim;
         }
         Ok((self.speeds[0] + self.speeds[1]) * (1.0 + 4.0 * Real::UNIT_ROUNDOFF))
@@ -43,7 +44,11 @@ impl<'t, M: Motion> RelativeMotion<TubeWithItself<'t>, SelfPair> for MovingTubeW
         *self.left == 0
     }
 
-    fn fastest_section(&self, near: &BoundedPiece<TubeWithItself<'t>, SelfPair>, _: Real) -> (usize, Real) {
+    fn fastest_section(
+        &self,
+        near: &BoundedPiece<TubeWithItself<'t>, SelfPair>,
+        _: Real,
+    ) -> (usize, Real) {
         near.found.faster(self.speeds)
     }
 }

@@ -27,6 +27,9 @@ impl WorkItem<TubeInMesh<'_>> for PendingPiece {
     fn halves(self, tube: &TubeInMesh, halves: [Piece; 2]) -> [Self; 2] {
         let [_, between] = tube.tube.shares(&halves[0]);
         let [from, to] = self.shares;
-        [Self { shares: [from, between.min(to)], ..self }, Self { shares: [between.max(from), to], ..self }]
+        [
+            Self { shares: [from, between.min(to)], ..self },
+            Self { shares: [between.max(from), to], ..self },
+        ]
     }
 }

@@ -4,9 +4,10 @@ use super::interval_test::IntervalResult;
 use crate::answer::UndecidedReason;
 use parry3d_f64::math::Real;
 
-/// How many shapes are looked at after one that is above the margin by no more than the resolution, or that leaves an
-/// interval undecided. A contact that is deeper than that, or a proof, shows sooner as a rule; and what stays that near for
-/// long would be divided into as many intervals as the resolution has room for, a million and more.
+/// How many shapes are looked at after one that is above the margin by no more than the resolution,
+/// or that leaves an interval undecided. A contact that is deeper than that, or a proof, shows
+/// sooner as a rule; and what stays that near for long would be divided into as many intervals as
+/// the resolution has room for, a million and more.
 pub(super) const PATIENCE: u64 = 256;
 
 /// A question about a motion ends after so many shapes.
@@ -50,8 +51,11 @@ impl Progress {
             let earlier = |first: [Real; 2], times: [Real; 2]| {
                 if times[0] < first[0] { [times[0], times[1].max(near[1])] } else { first }
             };
-            let reason =
-                if self.is_exhausted { UndecidedReason::Work } else { UndecidedReason::BoundedPiece };
+            let reason = if self.is_exhausted {
+                UndecidedReason::Work
+            } else {
+                UndecidedReason::BoundedPiece
+            };
             return Some((left.fold(near, earlier), reason));
         }
         if shapes < MAX_SHAPES {

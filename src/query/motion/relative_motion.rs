@@ -19,7 +19,8 @@ pub(crate) trait RelativeMotion<D: Refinable, P> {
         divided: &D,
     ) -> Result<Real, ProximityError>;
 
-    /// By how much more a part may turn than its middle shape shows, where that decides whether it is asked about.
+    /// By how much more a part may turn than its middle shape shows, where that decides whether it
+    /// is asked about.
     fn extra_turn(&self, _: &P, _: &D) -> Real {
         0.0
     }
@@ -37,8 +38,8 @@ pub(crate) trait RelativeMotion<D: Refinable, P> {
     /// Takes note of what was found.
     fn record(&mut self, _: &BoundedPiece<D, P>) {}
 
-    /// Takes note of a part about which the middle shape decides nothing for the whole interval; if the pace, which knows for how
-    /// long all the others keep the margin, is not enough.
+    /// Takes note of a part about which the middle shape decides nothing for the whole interval; if
+    /// the pace, which knows for how long all the others keep the margin, is not enough.
     fn record_unresolved(&mut self, _: &BoundedPiece<D, P>, _: &ApproachBound) {}
 
     /// The section that is the fastest of a part which approaches so fast, and how fast it is.

@@ -1,8 +1,9 @@
 //! Whether a robot that moves keeps a margin to itself.
 //!
-//! An interval of time is judged by the shape at its middle, as for two motions (`motion_pair`). Which of its parts are asked about
-//! changes with time as well: what may be asked about at any time of the interval is kept (`pieces::section_motions`), and a contact
-//! counts if it is one of the shape. The shorter the interval, the less there is between the two.
+//! An interval of time is judged by the shape at its middle, as for two motions (`motion_pair`).
+//! Which of its parts are asked about changes with time as well: what may be asked about at any
+//! time of the interval is kept (`pieces::section_motions`), and a contact counts if it is one of
+//! the shape. The shorter the interval, the less there is between the two.
 
 use super::approach_bound::{ApproachBound, check_subdivision, half_length, midpoint};
 use super::current_shape::CurrentShape;
@@ -13,14 +14,15 @@ use super::relative_motion::RelativeMotion;
 use crate::answer::{ProximityError, RobotMotionAnswer};
 use crate::distance::Scalar;
 use crate::pieces::{
-    MAX_EXTRA_TURN, PairUpperBound, Refinable, SectionMotion, SectionMotions, SelfPair, SelfPairQueue,
-    TubeWithItself, refine,
+    MAX_EXTRA_TURN, PairUpperBound, Refinable, SectionMotion, SectionMotions, SelfPair,
+    SelfPairQueue, TubeWithItself, refine,
 };
 use crate::robot::{Motion, Section, TubeTurns, check_speed};
 use parry3d_f64::math::Real;
 use std::collections::VecDeque;
 
-/// A direction that turns faster than this, in rad, would have time divided into a million intervals at once.
+/// A direction that turns faster than this, in rad, would have time divided into a million
+/// intervals at once.
 const FASTEST_TURN: Real = (1_u64 << 18) as Real;
 
 /// So many pairs of pieces are looked at in all shapes together, 2^18: about a second. Where the
@@ -42,8 +44,8 @@ pub(crate) struct SelfMotionMemory {
 /// Whether a robot that moves keeps the margin to itself at all times.
 ///
 /// # Errors
-/// The motion has no shape at some time, or one that bends too sharply, or changes its sections; a stated speed is not finite or
-/// too large; or samples do not allow a decision at that resolution.
+/// The motion has no shape at some time, or one that bends too sharply, or changes its sections; a
+/// stated speed is not finite or too large; or samples do not allow a decision at that resolution.
 pub(crate) fn self_clears_motion<M: Motion>(
     motion: &M,
     memory: &mut SelfMotionMemory,
@@ -53,14 +55,15 @@ pub(crate) fn self_clears_motion<M: Motion>(
     memory.current.forget();
     intervals::begin(&mut intervals, [motion.legs()]);
     let mut left = MAX_PAIRS;
-    let answer =
-        intervals::clear(&mut intervals, |times| test_interval(motion, memory, times, wanted, &mut left));
+    let answer = intervals::clear(&mut intervals, |times| {
+        test_interval(motion, memory, times, wanted, &mut left)
+    });
     memory.intervals = intervals;
     answer
 }
 
-/// Whether the margin is kept in an interval, as far as its middle shape shows; and for how long before and after it all pairs
-/// keep it.
+/// Whether the margin is kept in an interval, as far as its middle shape shows; and for how long
+/// before and after it all pairs keep it.
 fn test_interval<M: Motion>(
     motion: &M,
     memory: &mut SelfMotionMemory,

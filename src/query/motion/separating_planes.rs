@@ -1,11 +1,13 @@
 //! Whether a piece keeps a margin from every triangle by itself, each in a direction of its own.
 //!
-//! The speed of a piece says how far it may move, and not where to. Where its course is known (`half_displacement`), every triangle that is near
-//! enough to matter is parted from the body of the moment by a plane, and the gap must be enough for what the piece goes towards that plane.
+//! The speed of a piece says how far it may move, and not where to. Where its course is known
+//! (`half_displacement`), every triangle that is near enough to matter is parted from the body of
+//! the moment by a plane, and the gap must be enough for what the piece goes towards that plane.
 //! The nearest wall's direction alone would not do: what moves away from it moves into another one.
 //!
-//! A plane's normal leads from the triangle's nearest point to the body's. The normals found before are tried first, the last one before the
-//! others: they part most of the triangles of the same wall.
+//! A plane's normal leads from the triangle's nearest point to the body's. The normals found before
+//! are tried first, the last one before the others: they part most of the triangles of the same
+//! wall.
 
 use super::half_displacement::{HalfDisplacement, gap};
 use super::unresolved_piece::UnresolvedPiece;
@@ -32,7 +34,8 @@ impl PlaneTest<'_> {
     /// Whether a plane with this normal parts the body from a triangle by enough.
     fn separates(&self, corners: [Vector; 3], normal: Vector) -> bool {
         // Written so that NaN is not enough.
-        gap(self.body, corners, normal) - self.margin - 2.0 * self.slack > self.side.gap_loss(normal)
+        gap(self.body, corners, normal) - self.margin - 2.0 * self.slack
+            > self.side.gap_loss(normal)
     }
 
     /// The direction from a triangle to the body; nearer than rounding there may be none.
@@ -49,7 +52,8 @@ pub(crate) struct SeparatingPlanes {
 }
 
 impl SeparatingPlanes {
-    /// Whether the body keeps the margin all the time on that side of the middle shape; false if too many triangles are near it.
+    /// Whether the body keeps the margin all the time on that side of the middle shape; false if
+    /// too many triangles are near it.
     pub(super) fn clears(
         &mut self,
         search: &mut MeshSearch,
@@ -63,12 +67,18 @@ impl SeparatingPlanes {
             return false;
         }
         let bound = asked.margin + asked.side.off + 2.0 * asked.slack;
-        if !search.gather(&asked.side.swept_body(asked.body), bound, MAX_TRIANGLES, &mut self.triangles) {
+        if !search.gather(
+            &asked.side.swept_body(asked.body),
+            bound,
+            MAX_TRIANGLES,
+            &mut self.triangles,
+        ) {
             return false;
         }
         self.triangles.iter().all(|&triangle| {
             let corners = search.corners(triangle);
-            if let Some(place) = normals.iter().position(|normal| asked.separates(corners, *normal)) {
+            if let Some(place) = normals.iter().position(|normal| asked.separates(corners, *normal))
+            {
                 normals[..=place].rotate_right(1);
                 return true;
             }

@@ -1,4 +1,5 @@
-//! Links of which each has few triangles in question: these are measured together, several links in a pack.
+//! Links of which each has few triangles in question: these are measured together, several links in
+//! a pack.
 
 use crate::answer::LinkProximity;
 use crate::mesh::Mesh;
@@ -27,8 +28,8 @@ impl CandidateBatch {
         self.owners.clear();
     }
 
-    /// What `search` finds for a link. Where it adds triangles in question instead, the first of these; they are measured
-    /// later.
+    /// What `search` finds for a link. Where it adds triangles in question instead, the first of
+    /// these; they are measured later.
     pub(crate) fn add(
         &mut self,
         number: usize,
@@ -44,10 +45,12 @@ impl CandidateBatch {
         })
     }
 
-    /// Measures all that are in question and writes the answers of their links. Returns how many were measured.
+    /// Measures all that are in question and writes the answers of their links. Returns how many
+    /// were measured.
     pub(crate) fn answer(&mut self, level: Level, mesh: &Mesh, out: &mut [LinkProximity]) -> u64 {
         let Self { links, nearest, triangles, owners } = self;
-        let pairs = owners.iter().zip(&*triangles).map(|(&owner, &triangle)| (&links[owner].1, triangle));
+        let pairs =
+            owners.iter().zip(&*triangles).map(|(&owner, &triangle)| (&links[owner].1, triangle));
         let mut place = 0;
         rank_each(level, mesh, pairs, |ranked| {
             nearest[owners[place]].take(ranked.nearest);
@@ -70,11 +73,13 @@ mod tests {
     use continuum_testing::Random;
     use parry3d_f64::math::Pose;
 
-    /// Each link's answer has the bits of its triangles measured alone, whatever shares the pack, on each instruction set.
+    /// Each link's answer has the bits of its triangles measured alone, whatever shares the pack,
+    /// on each instruction set.
     #[test]
     fn links_that_share_a_pack_are_answered_as_if_alone() {
         let bits = |answer: &LinkProximity| {
-            let points = [answer.on_robot, answer.on_mesh].map(|point| point.to_array().map(f64::to_bits));
+            let points =
+                [answer.on_robot, answer.on_mesh].map(|point| point.to_array().map(f64::to_bits));
             (answer.link, answer.triangle, answer.distance.to_bits(), points)
         };
         let (mut touching, mut ties, mut found_at_once, mut compared) = (0, 0, 0, 0);
@@ -89,7 +94,9 @@ mod tests {
                 let size = 2.0_f64.powi(random.below(21) as i32 - 18);
                 let (start, radius) = (random.point(), size * random.between(0.0, 2.0));
                 let caps = [0; 2].map(|_| [Cap::Flat, Cap::Round][random.below(2) as usize]);
-                let link = ModifiedCylinder::new(start, start + random.point() * size, radius, caps).unwrap();
+                let link =
+                    ModifiedCylinder::new(start, start + random.point() * size, radius, caps)
+                        .unwrap();
                 let few: Vec<_> = (0..1 + random.below(5)).map(|_| random.below(40)).collect();
                 links.push((PlacedLink::new(&link, &Pose::IDENTITY), few, random.below(5) == 0));
             }

@@ -1,8 +1,8 @@
 //! Whether a robot keeps a margin.
 //!
-//! What the last query proved may still hold for a robot that has moved a little. If not, a search for a little more than
-//! the margin helps the next queries too, where robots move little. A robot that is new is asked about first where it
-//! seems to pass through the wall.
+//! What the last query proved may still hold for a robot that has moved a little. If not, a search
+//! for a little more than the margin helps the next queries too, where robots move little. A robot
+//! that is new is asked about first where it seems to pass through the wall.
 
 use super::cleared_by::ClearedBy;
 use super::dual_traversal::{DualTraversal, PairStack};
@@ -49,7 +49,9 @@ impl ClearsSearch<'_> {
         if self.memory.lower_bounds.all_exceed(robot, margin) {
             return true;
         }
-        if let Some(wider) = self.memory.lower_bounds.look_ahead(robot, margin, Real::INFINITY, reach) {
+        if let Some(wider) =
+            self.memory.lower_bounds.look_ahead(robot, margin, Real::INFINITY, reach)
+        {
             if let Some(known) = self.cleared_by(margin + wider) {
                 self.memory.lower_bounds.set_all(robot, margin + wider, known, reach);
                 return true;
@@ -67,8 +69,15 @@ impl ClearsSearch<'_> {
         let Scratch { work, .. } = &mut **scratch;
         let ClearsMemory { single, double, .. } = &mut *self.memory;
         let first = self.sides.and_then(|sides| sides.likely_crossing(robot));
-        let search =
-            DualTraversal { level, tree: hierarchy.single(), robot, margin, first, pairs: single, work };
+        let search = DualTraversal {
+            level,
+            tree: hierarchy.single(),
+            robot,
+            margin,
+            first,
+            pairs: single,
+            work,
+        };
         let mut answer = search.clears_all(mesh);
         let mut is_capsule_clear = single.clears_capsule();
         if answer.is_none() {

@@ -1,9 +1,10 @@
 //! Whether a robot keeps away from the mesh: its links and the triangles are parted together.
 //!
-//! A pair is a run of links, or one link, and a part of the mesh. A pair whose capsule and bound keep apart is done with.
-//! Of any other the larger is parted, and each half meets the other. So what a run of links is far from is never looked
-//! at again for one of its links. The first link and triangle that are near enough for certain end the search: those
-//! whose distance in the precision of the search is below the margin by more than rounding can do. Those of which it
+//! A pair is a run of links, or one link, and a part of the mesh. A pair whose capsule and bound
+//! keep apart is done with. Of any other the larger is parted, and each half meets the other. So
+//! what a run of links is far from is never looked at again for one of its links. The first link
+//! and triangle that are near enough for certain end the search: those whose distance in the
+//! precision of the search is below the margin by more than rounding can do. Those of which it
 //! cannot decide are measured in double precision.
 
 use crate::answer::Work;
@@ -16,8 +17,8 @@ use crate::search::hierarchy::{Child, WIDTH, WideBvh};
 use fearless_simd::Level;
 use parry3d_f64::math::Real;
 
-/// A run is parted before it meets a node this many times smaller, or a leaf. Measured: a run that is parted late meets
-/// more of the mesh, one that is parted early meets it more often.
+/// A run is parted before it meets a node this many times smaller, or a leaf. Measured: a run that
+/// is parted late meets more of the mesh, one that is parted early meets it more often.
 const NODE_SHARE: f64 = 1.0;
 const LEAF_SHARE: f64 = 3.0;
 
@@ -99,8 +100,8 @@ pub(crate) struct DualTraversal<'a, E> {
 }
 
 impl<E: Lane> DualTraversal<'_, E> {
-    /// Whether every link keeps more than the margin away; None where the precision of the search does not resolve the
-    /// robot.
+    /// Whether every link keeps more than the margin away; None where the precision of the search
+    /// does not resolve the robot.
     pub(crate) fn clears_all(mut self, mesh: &Mesh) -> Option<bool> {
         match self.search() {
             SearchOutcome::Unresolved => None,
@@ -134,12 +135,20 @@ impl<E: Lane> DualTraversal<'_, E> {
         let whole = NodePair { run: 0, child: WHOLE_MESH, size: zero.one(), apart: zero };
         waiting.push(whole);
         if let Some(first) = self.first {
-            waiting.push(NodePair { run: place_of_leaf(first, links.len().div_ceil(2)) as u32, ..whole });
+            waiting.push(NodePair {
+                run: place_of_leaf(first, links.len().div_ceil(2)) as u32,
+                ..whole
+            });
         }
         if let Some((run, leaf)) = *last
             && let Some(LinkNode::Leaf(_)) = links.get(run as usize)
         {
-            waiting.push(NodePair { run, child: Child::Leaf(leaf).pack(), size: zero, apart: zero });
+            waiting.push(NodePair {
+                run,
+                child: Child::Leaf(leaf).pack(),
+                size: zero,
+                apart: zero,
+            });
         }
         dispatch!(self.level, simd => self.descend::<E::Pack<_>>(simd))
     }
@@ -147,7 +156,8 @@ impl<E: Lane> DualTraversal<'_, E> {
     #[inline(always)]
     fn descend<L: Pack<Element = E>>(&mut self, token: L::Token) -> SearchOutcome {
         while let Some(pair) = self.pairs.waiting.pop() {
-            if self.pairs.runs[pair.run as usize].query != self.pairs.query && self.place(pair.run).is_none()
+            if self.pairs.runs[pair.run as usize].query != self.pairs.query
+                && self.place(pair.run).is_none()
             {
                 return SearchOutcome::Unresolved;
             }
@@ -171,13 +181,14 @@ impl<E: Lane> DualTraversal<'_, E> {
         SearchOutcome::Doubtful
     }
 
-    /// Brings a node of the link tree into the frame of the search. None where the precision does not resolve it.
+    /// Brings a node of the link tree into the frame of the search. None where the precision does
+    /// not resolve it.
     #[inline(never)] // not compiled anew for each instruction set
     fn place(&mut self, place: u32) -> Option<()> {
         let (ends, radius, flat) = self.robot.outline(&self.robot.link_tree()[place as usize]);
         let frame = &self.tree.frame;
-        let searched =
-            SearchLink::between(ends, radius, flat, frame).filter(|link| link.is_resolved(frame))?;
+        let searched = SearchLink::between(ends, radius, flat, frame)
+            .filter(|link| link.is_resolved(frame))?;
         self.pairs.runs[place as usize] = PlacedNode {
             query: self.pairs.query,
             size: searched.length + searched.radius + searched.radius,
@@ -197,15 +208,18 @@ impl<E: Lane> DualTraversal<'_, E> {
         }
         self.pairs.has_parted_all |= pair.run == 0;
         let low = pair.run + 1;
-        let below = if let LinkNode::Inner { below, .. } = tree[low as usize] { below as u32 } else { 0 };
+        let below =
+            if let LinkNode::Inner { below, .. } = tree[low as usize] { below as u32 } else { 0 };
         let high = low + 1 + below;
-        // Whatever collides has most often got there with its tip; near a part of the mesh no half is the likelier one.
+        // Whatever collides has most often got there with its tip; near a part of the mesh no half
+        // is the likelier one.
         let last_and_first = if pair.child == WHOLE_MESH { [low, high] } else { [high, low] };
         self.pairs.waiting.extend(last_and_first.map(|run| NodePair { run, ..pair }));
         true
     }
 
-    /// Pairs a run with those children of a node that it may be near, the one with the nearest centre on top.
+    /// Pairs a run with those children of a node that it may be near, the one with the nearest
+    /// centre on top.
     #[inline(always)]
     fn visit_node<L: Pack<Element = E>>(&mut self, token: L::Token, node: u32, run: u32) {
         self.work.nodes += 1;
@@ -226,8 +240,12 @@ impl<E: Lane> DualTraversal<'_, E> {
         while near != 0 {
             let child = near.trailing_zeros() as usize;
             near &= near - 1;
-            let pair =
-                NodePair { run, child: node.children[child], size: node.size(child), apart: apart[child] };
+            let pair = NodePair {
+                run,
+                child: node.children[child],
+                size: node.size(child),
+                apart: apart[child],
+            };
             // Insertion keeps the few new pairs in order.
             waiting.push(pair);
             let mut place = waiting.len() - 1;
@@ -239,11 +257,17 @@ impl<E: Lane> DualTraversal<'_, E> {
         }
     }
 
-    /// Whether a triangle of a leaf is within the margin of a link for certain. A run is parted, unless it is too far
-    /// from all of them: from their planes, and if it is no longer than the leaf, from the triangles themselves. (A long one
-    /// is about as wide as the triangles are large, so that their planes tell as much.)
+    /// Whether a triangle of a leaf is within the margin of a link for certain. A run is parted,
+    /// unless it is too far from all of them: from their planes, and if it is no longer than
+    /// the leaf, from the triangles themselves. (A long one is about as wide as the triangles
+    /// are large, so that their planes tell as much.)
     #[inline(always)]
-    fn visit_leaf<L: Pack<Element = E>>(&mut self, token: L::Token, leaf: u32, pair: NodePair<E>) -> bool {
+    fn visit_leaf<L: Pack<Element = E>>(
+        &mut self,
+        token: L::Token,
+        leaf: u32,
+        pair: NodePair<E>,
+    ) -> bool {
         self.work.visited += BLOCK as u64;
         let leaf = &self.tree.leaves[leaf as usize];
         let placed = &self.pairs.runs[pair.run as usize];

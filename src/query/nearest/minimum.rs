@@ -1,8 +1,9 @@
 //! The closest link and triangle.
 //!
-//! The link that was closest last time comes first and gives a bound. The tree over the links then leaves out what is
-//! farther: runs of links whose distances are known to be larger still, and those around which a capsule is. What is
-//! searched is searched a little farther than the bound, so that the next queries know those distances.
+//! The link that was closest last time comes first and gives a bound. The tree over the links then
+//! leaves out what is farther: runs of links whose distances are known to be larger still, and
+//! those around which a capsule is. What is searched is searched a little farther than the bound,
+//! so that the next queries know those distances.
 
 use crate::answer::Work;
 use crate::mesh::BLOCK;
@@ -100,11 +101,13 @@ impl<'a> BranchAndBound<'a> {
         };
         if self.lower_bounds.count_open(first..first + 1, self.bound) > 0 {
             let wanted = Best::within(self.bound);
-            let nearest = self.search.nearest(&robot.link(first), wanted, [Some(triangle), None]).nearest();
+            let nearest =
+                self.search.nearest(&robot.link(first), wanted, [Some(triangle), None]).nearest();
             self.offer(first, nearest);
         }
         self.lower_bounds.drop_if_useless(count, self.bound);
-        // A robot that jumps would make it so wide that nothing of the mesh is left out, or no link of the robot.
+        // A robot that jumps would make it so wide that nothing of the mesh is left out, or no link
+        // of the robot.
         let (last, before) = (&robot.links()[count - 1], robot.length_before(count - 1));
         let size = before + last.length() + 2.0 * last.radius();
         self.look_ahead = self.lower_bounds.look_ahead(robot, self.bound, size.min(reach), reach);
@@ -135,7 +138,8 @@ impl<'a> BranchAndBound<'a> {
         }
     }
 
-    /// Whether no link of a run improves on the best; false where that is not clear from its capsule.
+    /// Whether no link of a run improves on the best; false where that is not clear from its
+    /// capsule.
     fn can_prune(&mut self, capsule: &BoundingCapsule, links: Range<usize>) -> bool {
         let in_question = self.lower_bounds.count_open(links.clone(), self.bound);
         // The capsule of many links says little about a few of them.
@@ -164,7 +168,13 @@ impl<'a> BranchAndBound<'a> {
                 far,
                 [self.lower_bounds.approximate_nearest(number), None],
             );
-            self.lower_bounds.set(self.robot, number..number + 1, apart, about, self.search.hierarchy.reach);
+            self.lower_bounds.set(
+                self.robot,
+                number..number + 1,
+                apart,
+                about,
+                self.search.hierarchy.reach,
+            );
             best
         } else {
             self.search.nearest(&link, wanted, [None; 2])
@@ -172,8 +182,8 @@ impl<'a> BranchAndBound<'a> {
         self.offer(number, found.nearest());
     }
 
-    /// How far a search is to look so that the next queries know more. None where that is as far as the bound: of the links
-    /// that touch only some triangles are asked.
+    /// How far a search is to look so that the next queries know more. None where that is as far as
+    /// the bound: of the links that touch only some triangles are asked.
     fn search_radius(&self) -> Option<Real> {
         self.look_ahead.filter(|_| self.bound > 0.0).map(|look_ahead| self.bound + look_ahead)
     }
@@ -195,9 +205,12 @@ impl<'a> BranchAndBound<'a> {
         self.bound = best.1.distance;
     }
 
-    /// About the triangle nearest to the capsule around the robot, and the link nearest to that triangle.
+    /// About the triangle nearest to the capsule around the robot, and the link nearest to that
+    /// triangle.
     fn seed(&mut self) -> (usize, u32) {
-        let Some(LinkNode::Inner { bound, .. }) = self.robot.link_tree().first() else { return (0, 0) };
+        let Some(LinkNode::Inner { bound, .. }) = self.robot.link_tree().first() else {
+            return (0, 0);
+        };
         let triangle = self.search.approximate_nearest(&self.robot.bound(bound)).unwrap_or(0);
         let [a, b, c] = self.search.hierarchy.mesh.corners(triangle);
         let centre = self.robot.in_robot_frame(a / 3.0 + b / 3.0 + c / 3.0);
@@ -214,7 +227,7 @@ impl<'a> BranchAndBound<'a> {
 /// The nearer of two, or of links as near the one with the lower triangle, then the lower link.
 fn closer(one: LinkHit, other: LinkHit) -> LinkHit {
     let key = |of: &LinkHit| (of.1.triangle, of.0);
-    let is_nearer =
-        one.1.distance < other.1.distance || (one.1.distance <= other.1.distance && key(&one) < key(&other));
+    let is_nearer = one.1.distance < other.1.distance
+        || (one.1.distance <= other.1.distance && key(&one) < key(&other));
     if is_nearer { one } else { other }
 }

@@ -1,10 +1,11 @@
 //! On which side of the nearest wall a point lies, roughly: a guess that no answer depends on.
 //!
-//! A robot whose base is on one side and whose tip on the other passes through the wall in between. Whoever asks whether it
-//! keeps away looks there first.
+//! A robot whose base is on one side and whose tip on the other passes through the wall in between.
+//! Whoever asks whether it keeps away looks there first.
 //!
-//! A grid of cells lies over the mesh. Cells with a triangle are close to the wall. Cells that a triangle is seen from are
-//! on that side of it, and all others on that of their nearest neighbours.
+//! A grid of cells lies over the mesh. Cells with a triangle are close to the wall. Cells that a
+//! triangle is seen from are on that side of it, and all others on that of their nearest
+//! neighbours.
 
 use crate::mesh::Mesh;
 use crate::pair::PlacedRobot;
@@ -13,10 +14,12 @@ use parry3d_f64::math::{Real, Vector};
 /// How many cells there are for each triangle at the most, and how many along a side of the mesh.
 const CELLS_FOR_A_TRIANGLE: Real = 24.0;
 const CELLS_ALONG_A_SIDE: Real = 62.0;
-/// A cell is at least so long beside a typical edge, lest large triangles be cut into too many pieces.
+/// A cell is at least so long beside a typical edge, lest large triangles be cut into too many
+/// pieces.
 const CELL_BESIDE_AN_EDGE: Real = 0.5;
-/// No edge of a piece is longer beside a cell. No point of it is then farther than half a cell from its centroid, so that a
-/// wall between the centres of two neighbouring cells is noted in one of them.
+/// No edge of a piece is longer beside a cell. No point of it is then farther than half a cell from
+/// its centroid, so that a wall between the centres of two neighbouring cells is noted in one of
+/// them.
 const PIECE_BESIDE_A_CELL: Real = 0.75;
 /// Of triangles that are far smaller than a cell no more are looked at than about so many.
 const ENOUGH_TRIANGLES: usize = 1 << 17;
@@ -37,8 +40,9 @@ const MOST: Votes = Votes::MAX;
 pub(crate) struct SideGrid {
     /// The box around the mesh.
     bounds: [Vector; 2],
-    /// The corner of the grid. Its outermost cells are beyond all others, so that every other has six neighbours, and the
-    /// next layer is free of the mesh and speaks for all that is outside.
+    /// The corner of the grid. Its outermost cells are beyond all others, so that every other has
+    /// six neighbours, and the next layer is free of the mesh and speaks for all that is
+    /// outside.
     corner: Vector,
     /// Cells for a unit of length.
     inverse: Real,
@@ -54,9 +58,11 @@ impl SideGrid {
         let side = (high - low).max_element();
         let every = mesh.len().div_ceil(ENOUGH_TRIANGLES);
         let few = || (0..mesh.len()).step_by(every).map(|triangle| mesh.corners(triangle as u32));
-        let squared = few().map(|triangle| longest(triangle.map(|corner| (corner - low) / side)).powi(2));
+        let squared =
+            few().map(|triangle| longest(triangle.map(|corner| (corner - low) / side)).powi(2));
         let typical = (squared.sum::<Real>() / few().len() as Real).sqrt();
-        let finest = ((CELLS_FOR_A_TRIANGLE * mesh.len() as Real).cbrt() - 2.0).min(CELLS_ALONG_A_SIDE);
+        let finest =
+            ((CELLS_FOR_A_TRIANGLE * mesh.len() as Real).cbrt() - 2.0).min(CELLS_ALONG_A_SIDE);
         // Of a mesh without extent nothing is a number, and everything falls into the first cell.
         let inner = finest.min(1.0 / (CELL_BESIDE_AN_EDGE * typical)).max(1.0).floor();
         let count = inner as usize + 4;
@@ -96,7 +102,8 @@ impl SideGrid {
 
     /// Whether a mesh with this box around it lies about where it lay.
     pub(crate) fn covers(&self, bounds: [Vector; 2]) -> bool {
-        let moved = |(now, then): (Vector, Vector)| ((now - then) * self.inverse).abs().max_element();
+        let moved =
+            |(now, then): (Vector, Vector)| ((now - then) * self.inverse).abs().max_element();
         bounds.into_iter().zip(self.bounds).map(moved).all(|cells| cells <= CELLS_MOVED)
     }
 
@@ -113,7 +120,8 @@ impl SideGrid {
         if base * tip >= 0 {
             return None;
         }
-        // Joints close to the wall may belong to either side: where do they begin, and where do they end?
+        // Joints close to the wall may belong to either side: where do they begin, and where do
+        // they end?
         let begin = first_joint([0, last], |joint| at_joint(joint) != base);
         let end = first_joint([begin - 1, last], |joint| at_joint(joint) == tip);
         Some((begin + end - 1) / 2)
@@ -148,7 +156,8 @@ impl SideGrid {
                 (cells[face], cells[face + last * step]) = (WALL, WALL);
             }
         }
-        let mut known: Vec<_> = (0..cells.len()).filter(|&cell| ![0, WALL].contains(&cells[cell])).collect();
+        let mut known: Vec<_> =
+            (0..cells.len()).filter(|&cell| ![0, WALL].contains(&cells[cell])).collect();
         let mut next = Vec::new();
         while !known.is_empty() {
             for &cell in &known {
@@ -168,8 +177,8 @@ impl SideGrid {
     }
 }
 
-/// The first joint behind `low` and not behind `high` of which something is true that is true of `high`, if it is true of
-/// all behind it.
+/// The first joint behind `low` and not behind `high` of which something is true that is true of
+/// `high`, if it is true of all behind it.
 fn first_joint([mut low, mut high]: [usize; 2], is_true: impl Fn(usize) -> bool) -> usize {
     while high - low > 1 {
         let middle = (low + high) / 2;
@@ -221,7 +230,8 @@ mod tests {
     /// Points all around, in and out.
     fn places() -> impl Iterator<Item = Vector> {
         let share = |k: u32, prime: u32| f64::from(k * prime % 1009) / 1009.0 * 2.0 - 1.0;
-        (0..2000).map(move |k| Vector::new(share(k, 17), share(k, 331), share(k, 593)) * (1.5 * RADIUS))
+        (0..2000)
+            .map(move |k| Vector::new(share(k, 17), share(k, 331), share(k, 593)) * (1.5 * RADIUS))
     }
 
     #[test]
@@ -254,9 +264,12 @@ mod tests {
             for mesh in walls(size) {
                 let sides = SideGrid::new(&mesh);
                 let (mut found, mut through) = (0, 0);
-                for direction in places().map(Vector::normalize).filter(|direction| direction.y.abs() < 0.7) {
-                    let points: Vec<_> =
-                        (0..=20).map(|k| direction * (0.25 * RADIUS * size * f64::from(k) / 2.5)).collect();
+                for direction in
+                    places().map(Vector::normalize).filter(|direction| direction.y.abs() < 0.7)
+                {
+                    let points: Vec<_> = (0..=20)
+                        .map(|k| direction * (0.25 * RADIUS * size * f64::from(k) / 2.5))
+                        .collect();
                     let pose = Pose::IDENTITY;
                     let robot = Chain::capsules(&points, &[0.01 * size; 20]).unwrap();
                     let outwards = PlacedRobot::new(&robot, &pose).unwrap();
@@ -265,9 +278,15 @@ mod tests {
                     let link = sides.likely_crossing(outwards);
                     found += usize::from(link.is_some_and(|link| (9..=10).contains(&link)));
                     let inside = Chain::capsules(&points[..8], &[0.01 * size; 7]).unwrap();
-                    assert_eq!(sides.likely_crossing(PlacedRobot::new(&inside, &pose).unwrap()), None);
+                    assert_eq!(
+                        sides.likely_crossing(PlacedRobot::new(&inside, &pose).unwrap()),
+                        None
+                    );
                 }
-                assert!(through > 1000 && 10 * found >= 9 * through, "{found} of {through}, {size:e}");
+                assert!(
+                    through > 1000 && 10 * found >= 9 * through,
+                    "{found} of {through}, {size:e}"
+                );
             }
         }
     }
@@ -275,12 +294,16 @@ mod tests {
     #[test]
     fn no_mesh_is_too_small_or_too_flat() {
         let far = Vector::new(1.0e150, -1.0e150, 0.0);
-        for corners in [[Vector::ONE; 3], [Vector::ZERO, Vector::X, Vector::X], [far, -far, Vector::ZERO]] {
+        for corners in
+            [[Vector::ONE; 3], [Vector::ZERO, Vector::X, Vector::X], [far, -far, Vector::ZERO]]
+        {
             let sides = SideGrid::new(&Mesh::of(corners.to_vec(), vec![[0, 1, 2]]));
             let robot = Chain::capsules(&[Vector::ZERO, Vector::Y, far], &[0.1; 2]).unwrap();
             let pose = Pose::IDENTITY;
             assert!(
-                sides.likely_crossing(PlacedRobot::new(&robot, &pose).unwrap()).is_none_or(|link| link < 2)
+                sides
+                    .likely_crossing(PlacedRobot::new(&robot, &pose).unwrap())
+                    .is_none_or(|link| link < 2)
             );
         }
     }

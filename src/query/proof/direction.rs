@@ -1,5 +1,5 @@
-//! Directions along which a plane may part a group of triangles from a run of bodies. They need not be right: a plane counts
-//! only once it is seen to part the two.
+//! Directions along which a plane may part a group of triangles from a run of bodies. They need not
+//! be right: a plane counts only once it is seen to part the two.
 
 use super::body::ProofBody;
 use super::groups::Group;
@@ -29,10 +29,12 @@ impl SupportMap for PointSet<'_> {
     }
 }
 
-/// The way from the nearest point of the bodies' axes to that of the group's hull, if the two are apart (parry's GJK).
+/// The way from the nearest point of the bodies' axes to that of the group's hull, if the two are
+/// apart (parry's GJK).
 pub(super) fn between_hulls(group: &Group, bodies: &[ProofBody]) -> Option<Vector> {
     let ends = bodies.iter().flat_map(|body| &body.ends);
-    let [low, high] = ends.clone().fold(group.bounds, |[low, high], &end| [low.min(end), high.max(end)]);
+    let [low, high] =
+        ends.clone().fold(group.bounds, |[low, high], &end| [low.min(end), high.max(end)]);
     let size = (high - low).max_element();
     let scale = if size > 0.0 { 1.0 / size } else { 1.0 };
     let centre = 0.5 * low + 0.5 * high;
@@ -56,7 +58,8 @@ pub(super) fn between_pair(
     let (corners, [start, end]) = (mesh.corners(triangle), body.ends);
     let link = PlacedLink::between(start, end, body.radius, body.flat);
     let answer: LinkProximity = link.answer(0, &link.measure(triangle, corners));
-    let place = PlacedPair { ends: body.ends, radius: body.radius, flat: body.flat, corners, before: 0.0 };
+    let place =
+        PlacedPair { ends: body.ends, radius: body.radius, flat: body.flat, corners, before: 0.0 };
     let mut contacts = Vec::new();
     add_contacts(level, &[answer], |_| place, &mut contacts);
     let from_features = contacts.first().and_then(|contact| contact.normal).map(|normal| -normal);

@@ -1,5 +1,6 @@
-//! Groups of triangles, made by a rule that whoever checks a proof follows too: all of them are the first group, and one is
-//! halved in the order of the triangles' least coordinates along the axis along which these are spread most.
+//! Groups of triangles, made by a rule that whoever checks a proof follows too: all of them are the
+//! first group, and one is halved in the order of the triangles' least coordinates along the axis
+//! along which these are spread most.
 
 use crate::mesh::Mesh;
 use parry3d_f64::math::{Real, Vector};
@@ -48,7 +49,8 @@ impl<'a> Groups<'a> {
             triangles.iter().flat_map(|&triangle| indices[triangle as usize]).collect();
         vertices.sort_unstable();
         vertices.dedup();
-        let vertices: Vec<_> = vertices.iter().map(|&vertex| self.mesh.vertices()[vertex as usize]).collect();
+        let vertices: Vec<_> =
+            vertices.iter().map(|&vertex| self.mesh.vertices()[vertex as usize]).collect();
         let nothing = [Vector::INFINITY, Vector::NEG_INFINITY];
         let bounds = vertices.iter().fold(nothing, |[low, high], &v| [low.min(v), high.max(v)]);
         self.groups.push(Group { triangles, vertices, bounds, halves: None });
@@ -69,7 +71,8 @@ impl<'a> Groups<'a> {
         };
         let spreads = [spread(0), spread(1), spread(2)];
         // The first of equals.
-        let axis = (1..3).fold(0, |axis, other| if spreads[other] > spreads[axis] { other } else { axis });
+        let axis =
+            (1..3).fold(0, |axis, other| if spreads[other] > spreads[axis] { other } else { axis });
         let key = |triangle: &u32| self.low[*triangle as usize][axis];
         triangles.sort_unstable_by(|a, b| key(a).total_cmp(&key(b)).then(a.cmp(b)));
         let second = triangles.split_off(triangles.len() / 2);

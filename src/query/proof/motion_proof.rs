@@ -1,5 +1,5 @@
-//! The proof of a motion: intervals of time, each proven by the shape at its middle, with room for what the robot may move
-//! until the interval ends.
+//! The proof of a motion: intervals of time, each proven by the shape at its middle, with room for
+//! what the robot may move until the interval ends.
 
 use super::plane_search::PlaneSearch;
 use super::text::{Kind, ProvenShape, size_of};
@@ -16,9 +16,9 @@ const MAX_SHAPES: usize = 1 << 16;
 /// A longer text is no proof, in bytes: 16 MiB.
 const MOST_BYTES: usize = 1 << 24;
 
-/// Shapes, each with the steps that part it from the mesh while its interval lasts, in the order of time; none where a shape
-/// comes as near as the margin, or so near that moving by `resolution` matters, or where they are
-/// more than a proof holds. `reach` is the mesh's largest coordinate.
+/// Shapes, each with the steps that part it from the mesh while its interval lasts, in the order of
+/// time; none where a shape comes as near as the margin, or so near that moving by `resolution`
+/// matters, or where they are more than a proof holds. `reach` is the mesh's largest coordinate.
 pub(crate) fn motion_proof(
     plane_search: &mut PlaneSearch,
     reach: Real,

@@ -1,5 +1,5 @@
-//! The search for planes: a group of triangles and a run of bodies are parted by one plane, or the larger of the two is
-//! halved and each half is tried.
+//! The search for planes: a group of triangles and a run of bodies are parted by one plane, or the
+//! larger of the two is halved and each half is tried.
 
 use super::body::ProofBody;
 use super::direction::{between_hulls, between_pair};
@@ -38,13 +38,20 @@ impl<'a> PlaneSearch<'a> {
         self.groups.mesh
     }
 
-    /// The steps that part all triangles from all bodies; none if a body is too near to a triangle, or too near to tell.
+    /// The steps that part all triangles from all bodies; none if a body is too near to a triangle,
+    /// or too near to tell.
     pub(crate) fn steps(&mut self, bodies: &[ProofBody]) -> Option<Vec<Step>> {
         let mut steps = Vec::new();
         self.part(ALL, bodies, 0..bodies.len(), &mut steps).then_some(steps)
     }
 
-    fn part(&mut self, group: usize, bodies: &[ProofBody], run: Range<usize>, steps: &mut Vec<Step>) -> bool {
+    fn part(
+        &mut self,
+        group: usize,
+        bodies: &[ProofBody],
+        run: Range<usize>,
+        steps: &mut Vec<Step>,
+    ) -> bool {
         if let Some(plane) = self.plane(group, &bodies[run.clone()]) {
             steps.push(Step::Plane(plane));
             return true;
@@ -75,7 +82,8 @@ impl<'a> PlaneSearch<'a> {
             let level = wall.level(q);
             bodies.iter().all(|body| body.is_below(q, level, most))
         };
-        let try_along = |way: Vector| BITS.iter().filter_map(|&bits| in_bits(way, bits)).find(|q| parts(*q));
+        let try_along =
+            |way: Vector| BITS.iter().filter_map(|&bits| in_bits(way, bits)).find(|q| parts(*q));
         let found = between_hulls(wall, bodies).and_then(try_along).or_else(|| {
             let (&[triangle], [body]) = (&*wall.triangles, bodies) else { return None };
             let ways = between_pair(self.level, self.groups.mesh, triangle, body);

@@ -50,8 +50,9 @@ impl Shape {
         Some(shape)
     }
 
-    /// The bodies that hold the pieces, each with what must be free around it: the margin, and what the robot may move until
-    /// the interval ends. The book's page on proofs derives them; `docs/book/check_proof.py` computes them again.
+    /// The bodies that hold the pieces, each with what must be free around it: the margin, and what
+    /// the robot may move until the interval ends. The book's page on proofs derives them;
+    /// `docs/book/check_proof.py` computes them again.
     pub(crate) fn bodies(&self, margin: Real) -> Vec<ProofBody> {
         let half = 0.5 * (self.times[1] - self.times[0]);
         let between = self.points.windows(2).zip(&self.pieces);
@@ -60,8 +61,11 @@ impl Shape {
             let radius = own + 0.125 * curvature * length * length + off;
             let mut around = margin + half * piece.speed;
             if piece.flat != [false; 2] {
-                let turned =
-                    if off > 0.0 { radius * off * (22.0 / 7.0) / (ends[1] - ends[0]).length() } else { 0.0 };
+                let turned = if off > 0.0 {
+                    radius * off * (22.0 / 7.0) / (ends[1] - ends[0]).length()
+                } else {
+                    0.0
+                };
                 around += half * piece.turn * own + 0.5 * own * curvature * length + off + turned;
             }
             ProofBody { ends: [ends[0], ends[1]], flat: piece.flat, radius, around }

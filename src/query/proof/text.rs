@@ -59,7 +59,11 @@ impl Write for Size {
 }
 
 /// A shape and its steps, of which so many are planes.
-fn write_shape(kind: Kind, (shape, steps): &ProvenShape, text: &mut impl Write) -> Result<usize, fmt::Error> {
+fn write_shape(
+    kind: Kind,
+    (shape, steps): &ProvenShape,
+    text: &mut impl Write,
+) -> Result<usize, fmt::Error> {
     let mut planes = 0;
     write!(text, "shape")?;
     if kind == Kind::Motion {

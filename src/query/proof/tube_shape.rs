@@ -6,15 +6,20 @@ use crate::pieces::{self, PlacedTube};
 use crate::robot::{CapPersistence, Section};
 use parry3d_f64::math::Real;
 
-/// A tube in pieces whose bodies reach at most about `most` beyond them, and where in the tube each of them is. Where it
-/// `is_moving`, only faces that last are flat.
-pub(crate) fn tube_shape(tube: &PlacedTube, most: Real, is_moving: bool) -> (Shape, Vec<pieces::Piece>) {
+/// A tube in pieces whose bodies reach at most about `most` beyond them, and where in the tube each
+/// of them is. Where it `is_moving`, only faces that last are flat.
+pub(crate) fn tube_shape(
+    tube: &PlacedTube,
+    most: Real,
+    is_moving: bool,
+) -> (Shape, Vec<pieces::Piece>) {
     let (mut shape, mut places) = (Shape::default(), Vec::new());
     for number in 0..tube.sections().len() as u32 {
         let section = tube.section(number);
         let [from, to] = tube.between_faces(number);
         let place = |from, to| pieces::Piece { section: number, from, to };
-        let mut waiting = [place(to, section.last), place(from, to), place(section.first, from)].to_vec();
+        let mut waiting =
+            [place(to, section.last), place(from, to), place(section.first, from)].to_vec();
         waiting.retain(|place| place.from < place.to);
         while let Some(place) = waiting.pop() {
             let piece = piece(tube, section, &place, is_moving);
@@ -27,7 +32,10 @@ pub(crate) fn tube_shape(tube: &PlacedTube, most: Real, is_moving: bool) -> (Sha
                 let arcs = tube.arcs(&place);
                 let tick = tube.tube.tick(section, 0.5 * (arcs[0] + arcs[1]));
                 let tick = tick.max(place.from + 1).min(place.to - 1);
-                waiting.extend([pieces::Piece { from: tick, ..place }, pieces::Piece { to: tick, ..place }]);
+                waiting.extend([
+                    pieces::Piece { from: tick, ..place },
+                    pieces::Piece { to: tick, ..place },
+                ]);
                 continue;
             }
             if shape.points.is_empty() {
@@ -41,7 +49,12 @@ pub(crate) fn tube_shape(tube: &PlacedTube, most: Real, is_moving: bool) -> (Sha
     (shape, places)
 }
 
-fn piece(tube: &PlacedTube, section: &Section, place: &pieces::Piece, is_moving: bool) -> PiecePremises {
+fn piece(
+    tube: &PlacedTube,
+    section: &Section,
+    place: &pieces::Piece,
+    is_moving: bool,
+) -> PiecePremises {
     let arcs = tube.arcs(place);
     let known = tube.tube.bound(section, [place.from, place.to]);
     let length = (arcs[1] - arcs[0]) * section.stretch * (1.0 + 8.0 * Real::UNIT_ROUNDOFF);
@@ -50,7 +63,8 @@ fn piece(tube: &PlacedTube, section: &Section, place: &pieces::Piece, is_moving:
     let ends = [place.from, place.to].map(|tick| tube.point(section, tick));
     let is_straight = known.curvature * length <= 1.0 && 4.0 * off < (ends[1] - ends[0]).length();
     let is_face = |end: usize| {
-        section.faces[end].is_some_and(|face| !is_moving || face.persistence == CapPersistence::Always)
+        section.faces[end]
+            .is_some_and(|face| !is_moving || face.persistence == CapPersistence::Always)
     };
     // What was stated in place alone says nothing of directions.
     let is_certain = tube.tube.error() == 0.0 && tube.tube.turn().unwrap_or(0.0) == 0.0;

@@ -1,24 +1,25 @@
-//! The balls around a robot's links, and the halves of their axes, each number in a row of its own: a pack of them is
-//! compared at once, in single precision.
+//! The balls around a robot's links, and the halves of their axes, each number in a row of its own:
+//! a pack of them is compared at once, in single precision.
 //!
-//! A ball costs a tenth of a capsule to compare, and of two robots most links are far apart. So all links of up to
-//! [`SWEPT`] of each robot are compared by their balls. With d the way between two centres, h1 and h2 the halves of the
-//! axes, and any normal n, the axes lie behind planes on either side, so that the links are at least (<d, n> - |<h1, n>| -
-//! |<h2, n>|) / |n| - r1 - r2 apart. What the balls leave is asked for that with the shortest way between the axes, as far
-//! as single precision knows it: next to nothing is left that is farther, unless long thin links nearly meet. What is left
-//! then is measured.
+//! A ball costs a tenth of a capsule to compare, and of two robots most links are far apart. So all
+//! links of up to [`SWEPT`] of each robot are compared by their balls. With d the way between two
+//! centres, h1 and h2 the halves of the axes, and any normal n, the axes lie behind planes on
+//! either side, so that the links are at least (<d, n> - |<h1, n>| - |<h2, n>|) / |n| - r1 - r2 apart. What the balls leave is asked for that with the shortest way between the axes, as far
+//! as single precision knows it: next to nothing is left that is farther, unless long thin links
+//! nearly meet. What is left then is measured.
 //!
-//! **Rounding.** All coordinates are below 2, and u is 2^-24. A centre errs by 7 u and half of an axis by 4 u, as vectors,
-//! and d by 21 u; the product of n with d (shorter than 7) by 21 u more of |n|, those with h by 15 u each, the sums and
-//! squares that are compared by as much as 50 u of a length, both radii by u. Of two balls the half lengths err by 8 u
-//! each, and the rest by less than that. The limit errs by u of itself; where that is more than 8 u, the limit is farther
-//! than anything. Together that is 140 u, and [`SLACK`] is 256 u. What doubles add to it, and by how much the measured
-//! limit may err, is next to nothing. Of robots that are much farther apart than 2^16 times their size this tells no links
-//! apart: [`heights`](super::heights) does.
+//! **Rounding.** All coordinates are below 2, and u is 2^-24. A centre errs by 7 u and half of an
+//! axis by 4 u, as vectors, and d by 21 u; the product of n with d (shorter than 7) by 21 u more of
+//! |n|, those with h by 15 u each, the sums and squares that are compared by as much as 50 u of a
+//! length, both radii by u. Of two balls the half lengths err by 8 u each, and the rest by less
+//! than that. The limit errs by u of itself; where that is more than 8 u, the limit is farther than
+//! anything. Together that is 140 u, and [`SLACK`] is 256 u. What doubles add to it, and by how
+//! much the measured limit may err, is next to nothing. Of robots that are much farther apart than
+//! 2^16 times their size this tells no links apart: [`heights`](super::heights) does.
 //!
-//! A normal may vanish, or its square leave the range of numbers. So one that is shorter than 2^-30 is counted as if it
-//! were as long as that, which asks for more than is needed. The limit is never negative, so with the slack of 2^-16 no
-//! square that is compared with is below 2^-92.
+//! A normal may vanish, or its square leave the range of numbers. So one that is shorter than 2^-30
+//! is counted as if it were as long as that, which asks for more than is needed. The limit is never
+//! negative, so with the slack of 2^-16 no square that is compared with is below 2^-92.
 
 use super::pair_frame::PairFrame;
 use crate::distance::lanes::{Lane, Pack, set_bits};
@@ -44,7 +45,8 @@ const SLACK: f32 = 256.0 * f32::EPSILON / 2.0;
 /// What the square of a normal counts for at least.
 const MIN_NORMAL_SQUARED: f64 = 1.0 / (1_u64 << 60) as f64;
 
-/// The links of a robot where they are placed, and the balls around them in the frame of the search.
+/// The links of a robot where they are placed, and the balls around them in the frame of the
+/// search.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Balls {
     links: Vec<Option<PlacedEnds>>,
@@ -85,7 +87,8 @@ impl Balls {
             let (start, end) = (frame.point(start), frame.point(end));
             let (centre, half) = ((start + end) * 0.5, (end - start) * 0.5);
             let sizes = [half.length(), frame.length(radius)];
-            let numbers = [centre.x, centre.y, centre.z, half.x, half.y, half.z, sizes[0], sizes[1]];
+            let numbers =
+                [centre.x, centre.y, centre.z, half.x, half.y, half.z, sizes[0], sizes[1]];
             for (row, number) in numbers.into_iter().enumerate() {
                 self.rows[row * self.length + link] = number as f32;
             }
@@ -144,14 +147,15 @@ impl<L: Pack<Element = f32>> Ball<L> {
         )
     }
 
-    /// Whether planes part the axes of two links by more than a distance, which includes [`SLACK`]. The `way` is from this one's
-    /// centre to the other's.
+    /// Whether planes part the axes of two links by more than a distance, which includes [`SLACK`].
+    /// The `way` is from this one's centre to the other's.
     #[inline(always)]
     fn is_beyond(&self, other: &Self, way: Vec3<L>, distance: L) -> L::Mask {
         let [along, along_other] = [self.half, other.half].map(|half| half + half);
         let between_starts = other.half - self.half - way;
         let normal = segment_parameters(between_starts, along, along_other).gap;
-        let ahead = normal.dot(way).abs() - normal.dot(self.half).abs() - normal.dot(other.half).abs();
+        let ahead =
+            normal.dot(way).abs() - normal.dot(self.half).abs() - normal.dot(other.half).abs();
         let squared = normal.norm_squared().max(ahead.lit(MIN_NORMAL_SQUARED));
         ahead.zero().lt(ahead) & (distance * distance * squared).lt(ahead * ahead)
     }
@@ -161,20 +165,26 @@ impl<L: Pack<Element = f32>> Ball<L> {
 pub(super) struct Sweep<'a> {
     pub balls: [&'a Balls; 2],
     pub links: [Range<usize>; 2],
-    /// Of each of the first robot's links here, from which of the second's on it is asked for, by their numbers in the robots.
+    /// Of each of the first robot's links here, from which of the second's on it is asked for, by
+    /// their numbers in the robots.
     pub queried_from: &'a [usize],
 }
 
 impl Sweep<'_> {
-    /// Which pairs may be no farther apart than a limit in the frame: of each link of the first robot a bit for each of the
-    /// second's. Returns how many there are.
+    /// Which pairs may be no farther apart than a limit in the frame: of each link of the first
+    /// robot a bit for each of the second's. Returns how many there are.
     #[inline(never)] // compiled for each instruction set, not for each use as well
     pub fn near(&self, level: Level, limit: Real, near: &mut [u64; SWEPT]) -> u32 {
         dispatch!(level, simd => self.fill::<<f32 as Lane>::Pack<_>>(simd, limit as f32, near))
     }
 
     #[inline(always)]
-    fn fill<L: Pack<Element = f32>>(&self, token: L::Token, limit: f32, near: &mut [u64; SWEPT]) -> u32 {
+    fn fill<L: Pack<Element = f32>>(
+        &self,
+        token: L::Token,
+        limit: f32,
+        near: &mut [u64; SWEPT],
+    ) -> u32 {
         let limit = L::splat(token, limit + SLACK);
         let rows = self.balls[1].from(self.links[1].start);
         let mut count = 0;
@@ -187,7 +197,8 @@ impl Sweep<'_> {
                 let squared = way.norm_squared();
                 let apart = limit + one.radius + other.radius;
                 let reach = apart + one.half_length + other.half_length;
-                let mut bits = L::bits(!(reach * reach).lt(squared)) & self.are_there(lane, L::LANES);
+                let mut bits =
+                    L::bits(!(reach * reach).lt(squared)) & self.are_there(lane, L::LANES);
                 if bits != 0 {
                     bits &= !L::bits(one.is_beyond(&other, way, apart));
                 }
@@ -231,7 +242,8 @@ impl Sweep<'_> {
         found
     }
 
-    /// Two links, and those pairs of one of them and a neighbour of the other that are asked for: no more than a pack.
+    /// Two links, and those pairs of one of them and a neighbour of the other that are asked for:
+    /// no more than a pack.
     pub fn beside(&self, [one, other]: [usize; 2]) -> impl Iterator<Item = [usize; 2]> {
         let [first, second] = &self.links;
         let ones = one.saturating_sub(1).max(first.start)..(one + 2).min(first.end);
@@ -264,15 +276,15 @@ mod tests {
     use continuum_testing::Random;
     use parry3d_f64::math::{Pose, Vector};
 
-    /// A robot of up to so many links: with links of one size, or on a lattice, where they are parallel, aligned, crossing and
-    /// equal, or of all sizes, the smallest near the origin.
+    /// A robot of up to so many links: with links of one size, or on a lattice, where they are
+    /// parallel, aligned, crossing and equal, or of all sizes, the smallest near the origin.
     fn robot(random: &mut Random, links: u32, size: f64) -> Option<Chain> {
         let kind = random.below(3);
         let mut at = if kind == 2 { Vector::ZERO } else { random.point() * 2.0 };
         let mut points = vec![at * size];
         for _ in 0..1 + random.below(links) {
-            let step =
-                random.point() * if kind == 2 { (4.0 * at.length()).max(2.0_f64.powi(-100)) } else { 1.0 };
+            let step = random.point()
+                * if kind == 2 { (4.0 * at.length()).max(2.0_f64.powi(-100)) } else { 1.0 };
             at = if kind == 1 { ((at + step) * 2.0).round() * 0.5 } else { at + step };
             points.push(at * size);
         }
@@ -284,8 +296,8 @@ mod tests {
         }
     }
 
-    /// Nothing that is measured to be within a limit is left out, the limit itself included, and nothing that is farther by
-    /// much more than the slack is kept.
+    /// Nothing that is measured to be within a limit is left out, the limit itself included, and
+    /// nothing that is farther by much more than the slack is kept.
     #[test]
     fn what_is_near_is_never_left_out() {
         let mut random = Random::new(8);
@@ -297,13 +309,15 @@ mod tests {
             let first = if random.below(2) == 0 { Pose::IDENTITY } else { random.pose(size) };
             let second = random.pose(size * [0.0, 2.0, 50.0][round as usize % 3]);
             let poses = [first, if random.below(4) == 0 { first } else { second }];
-            let [Ok(a), Ok(b)] = [PlacedRobot::new(&a, &poses[0]), PlacedRobot::new(&b, &poses[1])] else {
+            let [Ok(a), Ok(b)] = [PlacedRobot::new(&a, &poses[0]), PlacedRobot::new(&b, &poses[1])]
+            else {
                 panic!("both poses are rigid")
             };
             let frame = PairFrame::around([&a, &b]);
             let mut balls = [Balls::default(), Balls::default()];
             let counts = [a.links().len(), b.links().len()];
-            for (balls, (robot, count)) in balls.iter_mut().zip([(&a, counts[0]), (&b, counts[1])]) {
+            for (balls, (robot, count)) in balls.iter_mut().zip([(&a, counts[0]), (&b, counts[1])])
+            {
                 balls.start(count);
                 balls.place(robot, &frame, 0..count);
             }
@@ -326,7 +340,10 @@ mod tests {
                 for level in levels() {
                     let mut near = [0; SWEPT];
                     let count = sweep.near(level, frame.length(limit), &mut near);
-                    assert_eq!(count, near[..counts[0]].iter().map(|row| row.count_ones()).sum::<u32>());
+                    assert_eq!(
+                        count,
+                        near[..counts[0]].iter().map(|row| row.count_ones()).sum::<u32>()
+                    );
                     assert!(
                         near.iter().all(|row| row >> counts[1] == 0),
                         "a bit for a link that is not there"
@@ -336,7 +353,10 @@ mod tests {
                             let is_near = near[one] >> two & 1 == 1;
                             let is_asked = two >= queried_from[one];
                             assert!(!is_near || is_asked);
-                            assert!(is_near || !is_asked || distance > limit, "{one} {two} in round {round}");
+                            assert!(
+                                is_near || !is_asked || distance > limit,
+                                "{one} {two} in round {round}"
+                            );
                             let beyond = frame.length(capsules(one, two) - limit);
                             assert!(
                                 !is_near || beyond <= 128.0 * f64::from(SLACK),
@@ -352,8 +372,9 @@ mod tests {
                         let centre = |balls: &Balls, link| {
                             balls.link(link).map(|(ends, ..)| (ends[0] + ends[1]) * 0.5)
                         };
-                        let way =
-                            centre(&balls[0], one).zip(centre(&balls[1], two)).map(|(one, two)| one - two);
+                        let way = centre(&balls[0], one)
+                            .zip(centre(&balls[1], two))
+                            .map(|(one, two)| one - two);
                         way.map_or(0.0, Vector::length)
                     };
                     let least = all.map(apart).fold(f64::INFINITY, f64::min);

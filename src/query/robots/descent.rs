@@ -1,12 +1,14 @@
 //! Two trees of links at once, the nearer pair of nodes first.
 //!
-//! A pair of nodes is left out when its capsules are farther apart than a limit; of the others the node with more links is
-//! divided, until both have so few links that the balls around them are compared at once ([`Sweep`]): a robot of some dozen
-//! links has no use for its tree. What is left is measured a pack at a time. Where much is left, or there is no limit yet,
-//! the pair whose centres are nearest is measured first, in one pack with those [beside](Sweep::beside) it: one of them is
-//! often the nearest of all, which leaves least to be measured. Where the limit is a distance that has been found, a pair
-//! that is as far may still hold lower links, so it is looked at, unless that distance is 0 and its lowest links come after
-//! those that were found. Links of nodes that are tiny in the frame are told apart by [`Heights`] in double precision.
+//! A pair of nodes is left out when its capsules are farther apart than a limit; of the others the
+//! node with more links is divided, until both have so few links that the balls around them are
+//! compared at once ([`Sweep`]): a robot of some dozen links has no use for its tree. What is left
+//! is measured a pack at a time. Where much is left, or there is no limit yet, the pair whose
+//! centres are nearest is measured first, in one pack with those [beside](Sweep::beside) it: one of
+//! them is often the nearest of all, which leaves least to be measured. Where the limit is a
+//! distance that has been found, a pair that is as far may still hold lower links, so it is looked
+//! at, unless that distance is 0 and its lowest links come after those that were found. Links of
+//! nodes that are tiny in the frame are told apart by [`Heights`] in double precision.
 
 use super::balls::{Balls, SWEPT, Sweep};
 use super::heights::Heights;
@@ -19,7 +21,8 @@ use fearless_simd::Level;
 use parry3d_f64::math::Real;
 use std::ops::Range;
 
-/// Of more pairs than these the nearest is looked for first, which takes about as long as it takes to measure so many.
+/// Of more pairs than these the nearest is looked for first, which takes about as long as it takes
+/// to measure so many.
 const MANY: u32 = 16 * BATCH as u32;
 
 /// So many pairs are measured before the limit is lowered.
@@ -70,7 +73,8 @@ impl PairLimit {
 
     /// Whether what is at least so far apart needs no look, if these are its lowest links.
     fn excludes(&self, at_least: Real, firsts: [usize; 2]) -> bool {
-        at_least > self.distance || (self.distance <= 0.0 && self.links.is_some_and(|links| firsts >= links))
+        at_least > self.distance
+            || (self.distance <= 0.0 && self.links.is_some_and(|links| firsts >= links))
     }
 
     /// Whether links that are so far apart come before what has been found.
@@ -109,8 +113,9 @@ impl Default for Descent {
 }
 
 impl Descent {
-    /// Shows `visit` all pairs of links that are within the limit, which it returns anew each time. `queried_from` tells from which
-    /// of the second robot's links on one of the first robot's is asked for; it never falls from one link to the next.
+    /// Shows `visit` all pairs of links that are within the limit, which it returns anew each time.
+    /// `queried_from` tells from which of the second robot's links on one of the first robot's
+    /// is asked for; it never falls from one link to the next.
     pub fn run(
         &mut self,
         robots: [&PlacedRobot; 2],
@@ -122,9 +127,10 @@ impl Descent {
         self.run_from(TreePlace::ROOT, robots, limit, queried_from, |found| visit(found.answer()));
     }
 
-    /// Shows `visit` all pairs of links that are at most `limit` apart, with their distances: the links of the first robot in groups
-    /// that follow one another, the pairs of a group in any order. `end_group` follows each group that may have some; a group
-    /// has at most `most` pairs, or one link.
+    /// Shows `visit` all pairs of links that are at most `limit` apart, with their distances: the
+    /// links of the first robot in groups that follow one another, the pairs of a group in any
+    /// order. `end_group` follows each group that may have some; a group has at most `most`
+    /// pairs, or one link.
     pub fn run_in_groups<V>(
         &mut self,
         robots: [&PlacedRobot; 2],
@@ -181,7 +187,13 @@ impl Descent {
         mut visit: impl FnMut(RobotProximity) -> PairLimit,
     ) {
         let leaf = TreePlace { node: place_of_leaf(link, robots[0].links().len()), first: link };
-        self.run_from(leaf, robots, PairLimit::of(Real::INFINITY), |_| 0, |found| visit(found.answer()));
+        self.run_from(
+            leaf,
+            robots,
+            PairLimit::of(Real::INFINITY),
+            |_| 0,
+            |found| visit(found.answer()),
+        );
     }
 
     /// From a place in the first robot's tree, and all of the second's.
@@ -207,8 +219,9 @@ impl Descent {
             if links.iter().all(|links| links.len() <= SWEPT) {
                 self.queried_from.clear();
                 self.queried_from.extend(links[0].clone().map(&queried_from));
-                let outlines =
-                    [0, 1].map(|robot: usize| self.frame.outline(robots[robot], entry.places[robot].node));
+                let outlines = [0, 1].map(|robot: usize| {
+                    self.frame.outline(robots[robot], entry.places[robot].node)
+                });
                 limit = self.sweep(robots, links, &outlines, limit, &mut visit);
                 continue;
             }
@@ -228,7 +241,8 @@ impl Descent {
         }
     }
 
-    /// Shows `visit` the pairs of so few links that are asked for and within the limit. Returns the last limit.
+    /// Shows `visit` the pairs of so few links that are asked for and within the limit. Returns the
+    /// last limit.
     fn sweep(
         &mut self,
         robots: [&PlacedRobot; 2],
@@ -256,9 +270,9 @@ impl Descent {
         let mut near = [0; SWEPT];
         let find_near = |limit: Real, near: &mut [u64; SWEPT]| {
             let count = sweep.near(*level, limit, near);
-            heights
-                .as_ref()
-                .map_or(count, |heights| heights.keep_near(limit, &mut near[..sweep.links[0].len()]))
+            heights.as_ref().map_or(count, |heights| {
+                heights.keep_near(limit, &mut near[..sweep.links[0].len()])
+            })
         };
         let is_bounded = limit.distance < Real::INFINITY;
         let mut looked_at = None;
@@ -282,12 +296,14 @@ impl Descent {
             near[link - first.start] &= !(1 << (other - second.start));
         }
         let pairs = near[..first.len()].iter().zip(first.clone());
-        let pairs = pairs.flat_map(|(&row, link)| set_bits(row).map(move |lane| [link, second.start + lane]));
+        let pairs = pairs
+            .flat_map(|(&row, link)| set_bits(row).map(move |lane| [link, second.start + lane]));
         measure(*level, robots, &sweep, together, pairs, limit, visit)
     }
 }
 
-/// Measures pairs, some packs at a time, and shows `visit` what is within the limit. Returns the last limit.
+/// Measures pairs, some packs at a time, and shows `visit` what is within the limit. Returns the
+/// last limit.
 fn measure(
     level: Level,
     robots: [&PlacedRobot; 2],

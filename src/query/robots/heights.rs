@@ -1,22 +1,25 @@
 //! Links of two nodes that are tiny beside the way between them, told apart in double precision.
 //!
 //! # Definitions
-//! - `n`: the unit vector along the way between the axes of the nodes' capsules, from the first robot to the second.
+//! - `n`: the unit vector along the way between the axes of the nodes' capsules, from the first
+//!   robot to the second.
 //! - `top1[i]`: an upper bound on `<n, x>` over link `i` of the first robot.
 //! - `top2[j]`: an upper bound on `<-n, x>` over link `j` of the second robot.
 //!
 //! # Why
-//! Single precision errs by up to 2^-16 of the frame ([`balls`](super::balls)). Of two robots that are 10^7 times their size
-//! apart, that is more than either is long: no two links differ, and all would be measured.
+//! Single precision errs by up to 2^-16 of the frame ([`balls`](super::balls)). Of two robots that
+//! are 10^7 times their size apart, that is more than either is long: no two links differ, and all
+//! would be measured.
 //!
 //! # Claim
-//! Two links are at least `-(top1[i] + top2[j])` apart, whatever `n` is. So a pair is left out if that exceeds the limit.
-//! The bound misses the distance of links at most `s` across the way and `D` apart by about `s^2 / D`: little for tiny nodes.
+//! Two links are at least `-(top1[i] + top2[j])` apart, whatever `n` is. So a pair is left out if
+//! that exceeds the limit. The bound misses the distance of links at most `s` across the way and
+//! `D` apart by about `s^2 / D`: little for tiny nodes.
 //!
 //! # Rounding
-//! All coordinates are at most 2. Those of an end err by 2 u each, `n` by 4 u of its length, and the sum of three products by
-//! 6 u more. Both heights together err by less than 64 u, and a distance at a flat cap may be measured too short by
-//! 64 u: the [`SLACK`] of capsules.
+//! All coordinates are at most 2. Those of an end err by 2 u each, `n` by 4 u of its length, and
+//! the sum of three products by 6 u more. Both heights together err by less than 64 u, and a
+//! distance at a flat cap may be measured too short by 64 u: the [`SLACK`] of capsules.
 
 use super::balls::{SWEPT, Sweep};
 use super::pair_frame::{NodeCapsule, PairFrame, SLACK};
@@ -64,7 +67,8 @@ impl Heights {
         -(self.highest[0] + self.highest[1]) - SLACK
     }
 
-    /// Leaves of the pairs those that may be no farther apart than a limit in the frame. Returns how many there are.
+    /// Leaves of the pairs those that may be no farther apart than a limit in the frame. Returns
+    /// how many there are.
     pub fn keep_near(&self, limit: Real, near: &mut [u64]) -> u32 {
         let [tops, others] = &self.tops;
         let mut count = 0;
@@ -107,16 +111,17 @@ mod tests {
     use fearless_simd::Level;
     use parry3d_f64::math::{Pose, Vector};
 
-    /// Of robots 10^5 to 10^9 times their size apart no pair within the limit is left out, and few others are kept. Single precision
-    /// alone keeps nearly all.
+    /// Of robots 10^5 to 10^9 times their size apart no pair within the limit is left out, and few
+    /// others are kept. Single precision alone keeps nearly all.
     #[test]
     fn links_of_far_robots_are_told_apart() {
         let mut random = Random::new(7);
         let (mut kept, mut by_balls, mut all) = (0, 0, 0);
         for round in 0..60 {
             let mut robot = || {
-                let points: Vec<_> =
-                    (0..41).map(|k| Vector::Z * f64::from(k) * 0.05 + random.point() * 0.1).collect();
+                let points: Vec<_> = (0..41)
+                    .map(|k| Vector::Z * f64::from(k) * 0.05 + random.point() * 0.1)
+                    .collect();
                 match round % 2 {
                     0 => Chain::cylinders(&points, &[0.03; 40]).unwrap(),
                     _ => Chain::capsules(&points, &[0.03; 40]).unwrap(),
@@ -125,7 +130,8 @@ mod tests {
             let (a, b) = (robot(), robot());
             let away = random.direction() * 10.0_f64.powi(5 + round % 5);
             let poses = [random.pose(1.0), Pose::from_translation(away) * random.pose(1.0)];
-            let [Ok(a), Ok(b)] = [PlacedRobot::new(&a, &poses[0]), PlacedRobot::new(&b, &poses[1])] else {
+            let [Ok(a), Ok(b)] = [PlacedRobot::new(&a, &poses[0]), PlacedRobot::new(&b, &poses[1])]
+            else {
                 panic!("both poses are rigid")
             };
             let frame = PairFrame::around([&a, &b]);
@@ -134,8 +140,11 @@ mod tests {
                 balls.start(40);
                 balls.place(robot, &frame, 0..40);
             }
-            let sweep =
-                Sweep { balls: [&balls[0], &balls[1]], links: [0..40, 0..40], queried_from: &[0; 40] };
+            let sweep = Sweep {
+                balls: [&balls[0], &balls[1]],
+                links: [0..40, 0..40],
+                queried_from: &[0; 40],
+            };
             let outlines = [&a, &b].map(|robot| frame.outline(robot, 0));
             let heights = Heights::of_tiny(&sweep, &outlines, &frame).expect("they are tiny");
             let distances: Vec<Vec<_>> = a
@@ -151,7 +160,10 @@ mod tests {
                 let count = heights.keep_near(frame.length(limit), &mut near[..40]);
                 for (row, distances) in near.iter().zip(&distances) {
                     for (lane, distance) in distances.iter().enumerate() {
-                        assert!(*distance > limit || row & (1 << lane) != 0, "{distance} of {limit}");
+                        assert!(
+                            *distance > limit || row & (1 << lane) != 0,
+                            "{distance} of {limit}"
+                        );
                     }
                 }
                 if limit == least {

@@ -29,7 +29,8 @@
 //! are at shoulders of which 3 holds: all links of one node have a shoulder at the end towards
 //! which the way leads.
 //!
-//! If all `w . t > 0`, the faces at ends of links look away, and if all `w . t < 0`, those at starts.
+//! If all `w . t > 0`, the faces at ends of links look away, and if all `w . t < 0`, those at
+//! starts.
 //!
 //! A shoulder that the way comes to counts neither if the adjoining link holds its point
 //! (`least_covered`). The same tells of two faces that look at one another.
@@ -280,8 +281,8 @@ impl OwnFaces {
         let from_two = one.seen_from(two, -way, away, self.rounding);
         let may_count = one.may_see(&from_two) && from_one.may_be_local
             || two.may_see(&from_one) && from_two.may_be_local;
-        let at_shoulders =
-            one.all[1] && from_two.forwards == Some(false) || two.all[0] && from_one.forwards == Some(true);
+        let at_shoulders = one.all[1] && from_two.forwards == Some(false)
+            || two.all[0] && from_one.forwards == Some(true);
         in_band &= may_count || band == Band::All && !at_shoulders;
         let is_covered = from_one.forwards == Some(true) && from_one.is_covered
             || from_two.forwards == Some(false) && from_two.is_covered;
@@ -347,7 +348,8 @@ impl Node {
         };
         let direction = (one.direction + two.direction).normalize_or_zero();
         let spread = |node: &Self| (node.direction - direction).length() + node.spread;
-        let either = |of: fn(&Self) -> [bool; 2]| [0, 1].map(|end: usize| of(one)[end] || of(two)[end]);
+        let either =
+            |of: fn(&Self) -> [bool; 2]| [0, 1].map(|end: usize| of(one)[end] || of(two)[end]);
         Self {
             first: one.first,
             count: one.count + two.count,
@@ -468,11 +470,15 @@ mod tests {
         let radii: Vec<_> = (0..count)
             .map(|link| radius(link as Real / count as Real, link) * 50.0 / count as Real)
             .collect();
-        let robot =
-            if is_flat { Chain::from_centreline(&points, &radii) } else { Chain::capsules(&points, &radii) };
+        let robot = if is_flat {
+            Chain::from_centreline(&points, &radii)
+        } else {
+            Chain::capsules(&points, &radii)
+        };
         let robot = robot.expect("points that differ");
         let mut memory = SelfMemory::default();
-        let found = RobotWithItself::new(&robot, &mut memory).expect("blunt joints").minimum(&mut memory);
+        let found =
+            RobotWithItself::new(&robot, &mut memory).expect("blunt joints").minimum(&mut memory);
         (memory.faces().looked_at, found.is_some())
     }
 
@@ -489,7 +495,10 @@ mod tests {
                     let [(few, _), (many, found)] =
                         [500, 2000].map(|count| work(shape, radius, is_flat, count));
                     println!("{name}, flat {is_flat}, {corrugated}: {few} {many} {found}");
-                    assert!(many < 8 * few + 40_000, "{name}, flat {is_flat}, {corrugated}: {few} {many}");
+                    assert!(
+                        many < 8 * few + 40_000,
+                        "{name}, flat {is_flat}, {corrugated}: {few} {many}"
+                    );
                 }
             }
         }

@@ -1,7 +1,7 @@
 //! The capsules around many links, in the coordinates of a search.
 //!
-//! A search over two robots takes place in coordinates from the first robot's base, multiplied by the power of two that
-//! brings the largest of both robots near one, so that nothing overflows.
+//! A search over two robots takes place in coordinates from the first robot's base, multiplied by
+//! the power of two that brings the largest of both robots near one, so that nothing overflows.
 
 use crate::distance::{Scalar, Vec3, segment_parameters};
 use crate::pair::PlacedRobot;
@@ -9,9 +9,10 @@ use parry3d_f64::math::{Real, Vector};
 
 /// What rounding can add to the distance between two capsules, where all coordinates are below 2.
 ///
-/// Each coordinate of an end errs by u of it, by as much again where it was moved, and the difference of two by 4 u more;
-/// the foot on either axis and the length of the way between them by less than 16 u. Both radii are exact but for u. A distance
-/// at a flat cap may be measured too short by 16 u of an extent below 4: another 64 u.
+/// Each coordinate of an end errs by u of it, by as much again where it was moved, and the
+/// difference of two by 4 u more; the foot on either axis and the length of the way between them by
+/// less than 16 u. Both radii are exact but for u. A distance at a flat cap may be measured too
+/// short by 16 u of an extent below 4: another 64 u.
 pub(super) const SLACK: Real = 128.0 * f64::UNIT_ROUNDOFF;
 
 /// A capsule around links.
@@ -57,7 +58,8 @@ impl PairFrame {
         let origin = robots[0].ends()[0];
         let reach = |robot: &PlacedRobot| {
             let (ends, radius, _) = robot.outline(&robot.link_tree()[0]);
-            ends.into_iter().fold(0.0, |most: Real, end| most.max((end - origin).abs().max_element()))
+            ends.into_iter()
+                .fold(0.0, |most: Real, end| most.max((end - origin).abs().max_element()))
                 + radius
         };
         let scale = reach(robots[0]).max(reach(robots[1])).power_of_two_to_unity();
@@ -69,7 +71,8 @@ impl PairFrame {
         outside * self.scale
     }
 
-    /// The length outside of one in this frame: the scale is a power of two, so that nothing is lost.
+    /// The length outside of one in this frame: the scale is a power of two, so that nothing is
+    /// lost.
     pub fn outside(&self, length: Real) -> Real {
         length * (1.0 / self.scale)
     }

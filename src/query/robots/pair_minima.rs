@@ -1,17 +1,20 @@
-//! Which pairs of links are places where two robots are near: one for each pair of approaching stretches.
+//! Which pairs of links are places where two robots are near: one for each pair of approaching
+//! stretches.
 //!
 //! # Definitions
-//! The pairs within the margin are cells of a grid: a row for each link of the first robot, and in it a cell for each link of the
-//! second. A cell's neighbours are one link on along either robot or both. A group is a set of cells that are as near and
-//! connected by neighbours, such as those that overlap.
+//! The pairs within the margin are cells of a grid: a row for each link of the first robot, and in
+//! it a cell for each link of the second. A cell's neighbours are one link on along either robot or
+//! both. A group is a set of cells that are as near and connected by neighbours, such as those that
+//! overlap.
 //!
 //! # Rule
 //! A group is one place, at its lowest links, if no neighbour of any of its cells is nearer.
 //!
 //! # Algorithm
-//! The rows come in order, some at a time ([`end_rows`](PairMinima::end_rows)). A cell is compared with the cell before it in
-//! its row and with its three neighbours in the row before, so each pair of neighbours is compared once. Of all rows that have
-//! been only the last is kept, and the groups with a cell in it: no other group can change.
+//! The rows come in order, some at a time ([`end_rows`](PairMinima::end_rows)). A cell is compared
+//! with the cell before it in its row and with its three neighbours in the row before, so each pair
+//! of neighbours is compared once. Of all rows that have been only the last is kept, and the groups
+//! with a cell in it: no other group can change.
 
 use parry3d_f64::math::Real;
 
@@ -87,7 +90,8 @@ impl PairMinima {
         std::mem::swap(&mut self.row, &mut self.row_before);
         self.row.clear();
         // Where a row without cells is between, no cell of the row before is a neighbour.
-        let follows = self.row_before.first().is_some_and(|cell| cell.links[0] + 1 == cells[0].links[0]);
+        let follows =
+            self.row_before.first().is_some_and(|cell| cell.links[0] + 1 == cells[0].links[0]);
         if !follows {
             self.row_before.clear();
         }
@@ -100,7 +104,8 @@ impl PairMinima {
             while self.row_before.get(from).is_some_and(|cell| cell.links[1] + 1 < column) {
                 from += 1;
             }
-            let above = self.row_before[from..].iter().take_while(|cell| cell.links[1] <= column + 1);
+            let above =
+                self.row_before[from..].iter().take_while(|cell| cell.links[1] <= column + 1);
             let left = self.row.last().filter(|cell| cell.links[1] + 1 == column);
             for other in above.chain(left) {
                 compare(&mut self.groups, &cell, other);
@@ -190,10 +195,12 @@ mod tests {
         let (mut minima, mut places, mut wide) = (PairMinima::default(), 0, 0);
         for _ in 0..2000 {
             let [rows, columns] = [0; 2].map(|_| 1 + random.below(9) as usize);
-            // Few distances, so that groups are large; and cells that are not there, at times whole rows.
+            // Few distances, so that groups are large; and cells that are not there, at times whole
+            // rows.
             let (kinds, gaps) = (1 + random.below(5), random.below(4));
             let mut cell = || (random.below(4) >= gaps).then(|| random.below(kinds));
-            let grid: Vec<Vec<_>> = (0..rows).map(|_| (0..columns).map(|_| cell()).collect()).collect();
+            let grid: Vec<Vec<_>> =
+                (0..rows).map(|_| (0..columns).map(|_| cell()).collect()).collect();
             minima.start();
             let most = 1 + random.below(3);
             for (i, row) in grid.iter().enumerate() {

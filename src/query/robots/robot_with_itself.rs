@@ -1,26 +1,31 @@
 //! A robot and itself: which of its parts can come to be near one another, and how near they are.
 //!
-//! Neighbouring links touch, and those around a bend are near for no other reason. So the question is about pairs of places
-//! that are a local minimum of the distance: two places that come no nearer when either moves along the robot. Three kinds
-//! of pairs are asked for, and no margin decides which.
+//! Neighbouring links touch, and those around a bend are near for no other reason. So the question
+//! is about pairs of places that are a local minimum of the distance: two places that come no
+//! nearer when either moves along the robot. Three kinds of pairs are asked for, and no margin
+//! decides which.
 //!
-//! **Two links with a turn of at least pi between them.** Let x and y be places on the axes of two links, at which the
-//! distance of the axes is a local minimum, and v the unit vector from x to y. The part of the centreline from x to y and
-//! the way back along the chord are a closed polygon. Its exterior angles sum up to at least 2 pi (Fenchel; equality for
-//! plane convex polygons). At x the polygon turns from -v to the direction t of the centreline. Moving x on by t changes
-//! the distance at the rate -v . t, which is not below 0 at a minimum; so the angle between -v and t is at most pi / 2. The
-//! same holds at y, at a joint, where it holds of the direction on the way to y, and at the robot's ends. So the joints
-//! between x and y turn by at least 2 pi - pi / 2 - pi / 2 = pi. Where the axes meet there is one corner, of at most pi,
-//! and the same is left. The distance of two barrels is that of their axes less both radii.
+//! **Two links with a turn of at least pi between them.** Let x and y be places on the axes of two
+//! links, at which the distance of the axes is a local minimum, and v the unit vector from x to y.
+//! The part of the centreline from x to y and the way back along the chord are a closed polygon.
+//! Its exterior angles sum up to at least 2 pi (Fenchel; equality for plane convex polygons). At x
+//! the polygon turns from -v to the direction t of the centreline. Moving x on by t changes
+//! the distance at the rate -v . t, which is not below 0 at a minimum; so the angle between -v and
+//! t is at most pi / 2. The same holds at y, at a joint, where it holds of the direction on the way
+//! to y, and at the robot's ends. So the joints between x and y turn by at least 2 pi - pi / 2 - pi
+//! / 2 = pi. Where the axes meet there is one corner, of at most pi, and the same is left. The
+//! distance of two barrels is that of their axes less both radii.
 //!
-//! **A flat face and a link, with a turn of at least pi / 2.** A face is the robot's base, its tip, or the wider side of a
-//! step in radius; c is its centre, n its normal, out of the robot. The shortest way leaves it at a point c + a e along v,
-//! where e is perpendicular to n, a >= 0, and v lies between n and e: at the angle alpha from n. It ends, prolonged by the
-//! other link's radius, at a place y of an axis, which it meets at a right angle as above. Close the polygon by the chord
-//! from c to y instead. That is a e plus a multiple of v, so at an angle beta from n with alpha <= beta <= pi / 2. At y it
-//! has turned by beta - alpha, which adds so much to pi / 2. At c the centreline goes on along n, or comes from where n
-//! points away from: the polygon turns by pi - beta at most in the first case, by beta in the second. Together that is no
-//! more than 3/2 pi, which leaves pi / 2 for the joints.
+//! **A flat face and a link, with a turn of at least pi / 2.** A face is the robot's base, its tip,
+//! or the wider side of a step in radius; c is its centre, n its normal, out of the robot. The
+//! shortest way leaves it at a point c + a e along v, where e is perpendicular to n, a >= 0, and v
+//! lies between n and e: at the angle alpha from n. It ends, prolonged by the other link's radius,
+//! at a place y of an axis, which it meets at a right angle as above. Close the polygon by the
+//! chord from c to y instead. That is a e plus a multiple of v, so at an angle beta from n with
+//! alpha <= beta <= pi / 2. At y it has turned by beta - alpha, which adds so much to pi / 2. At c
+//! the centreline goes on along n, or comes from where n points away from: the polygon turns by pi
+//! - beta at most in the first case, by beta in the second. Together that is no more than 3/2 pi,
+//! which leaves pi / 2 for the joints.
 //!
 //! **A round cap at the wider side of a step**, a shoulder, is a ball around c, and asked for like
 //! a face. Of a link alone the place nearest to y may be its end for no other reason than that the
@@ -36,9 +41,9 @@
 //! `pair::JoinedLink` decides. It decides of two links with a turn of pi as well, if they are
 //! nearest at a face of one.
 //!
-//! Links that share a joint are never asked for. The rule is one for thin tubes: where a joint is so sharp that its two
-//! links overlap over more than half of the shorter one, r tan(angle / 2) > length / 2, there is no saying what is near
-//! whom, and the robot is refused.
+//! Links that share a joint are never asked for. The rule is one for thin tubes: where a joint is
+//! so sharp that its two links overlap over more than half of the shorter one, r tan(angle / 2) >
+//! length / 2, there is no saying what is near whom, and the robot is refused.
 //!
 //! **Errors.** What is measured to be within a bound is in truth within [`JoinedLink::tolerance`]
 //! of it, which is what the ball around a face is asked for first: it is smaller than the face's
@@ -48,12 +53,14 @@
 //! refuse [`MOST_REFUSED`] pairs of the former, nothing bounds the search, and [`OwnFaces`] looks
 //! at all pairs: it knows where the robot leads.
 //!
-//! **Turns without angles.** The cosine of half a turn falls from 1 to -1 as the turn grows from 0 to 2 pi, so it is
-//! compared instead of the turn. With the unit axes a and b of two links, half of their angle has the cosine |a + b| / 2
-//! and the sine |a - b| / 2; half of the turn up to a link is the product of as many complex numbers, and half of that
-//! between two links the quotient of two products. The axes are unit vectors to 4 u, so both numbers err by 8 u, and their
-//! products over n joints by less than 20 n u of length, with the roundings of the products; a cosine of a quotient errs by
-//! twice that and 3 u. [`TurnSums`] asks for cosines up to 128 n u above the one that counts.
+//! **Turns without angles.** The cosine of half a turn falls from 1 to -1 as the turn grows from 0
+//! to 2 pi, so it is compared instead of the turn. With the unit axes a and b of two links, half of
+//! their angle has the cosine |a + b| / 2 and the sine |a - b| / 2; half of the turn up to a link
+//! is the product of as many complex numbers, and half of that between two links the quotient of
+//! two products. The axes are unit vectors to 4 u, so both numbers err by 8 u, and their
+//! products over n joints by less than 20 n u of length, with the roundings of the products; a
+//! cosine of a quotient errs by twice that and 3 u. [`TurnSums`] asks for cosines up to 128 n u
+//! above the one that counts.
 
 use super::descent::{Descent, PairLimit, measure_pair};
 use super::own_faces::{Band, OwnFaces, faces};
@@ -94,7 +101,8 @@ pub(super) struct TurnSums {
     /// Half of what the joints up to each link turn by, together: its cosine and its sine.
     before: Vec<[Real; 2]>,
     slack: Real,
-    /// Of each link the first one behind a turn of at least pi that shares no joint with it; beyond the last if none is.
+    /// Of each link the first one behind a turn of at least pi that shares no joint with it;
+    /// beyond the last if none is.
     pub queried_from: Vec<usize>,
     /// The same of a turn of at least pi / 2.
     pub quarter_from: Vec<usize>,
@@ -118,13 +126,19 @@ impl TurnSums {
         for (joint, link) in links[1..].iter().enumerate() {
             let next = of_link(link);
             // Of half of the joint's angle.
-            let (cosine, sine) = (0.5 * (next.0 + last.0).length(), 0.5 * (next.0 - last.0).length());
+            let (cosine, sine) =
+                (0.5 * (next.0 + last.0).length(), 0.5 * (next.0 - last.0).length());
             let (length, radius) = (next.1.min(last.1), next.2.max(last.2));
             // Of a link that comes back along the one before, rounding leaves no cosine.
             let is_folded = cosine * cosine <= 8.0 * Real::UNIT_ROUNDOFF;
             if 2.0 * radius * sine > length * cosine || is_folded {
                 let angle = 2.0 * libm::atan2(sine, cosine);
-                return Err(ProximityError::JointTooSharp { joint: joint + 1, angle, radius, length });
+                return Err(ProximityError::JointTooSharp {
+                    joint: joint + 1,
+                    angle,
+                    radius,
+                    length,
+                });
             }
             let [real, imaginary] = turned;
             turned = [real * cosine - imaginary * sine, real * sine + imaginary * cosine];
@@ -144,8 +158,9 @@ impl TurnSums {
     /// Finds from which link on each is asked for, at a turn of which half has this cosine: no
     /// earlier than for the link before.
     ///
-    /// No turn that is looked at is as large as 2 pi. It is one to a link that is reached by less than pi, from here or from
-    /// the link before, and one joint more; or that of two joints. A joint turns by less than pi.
+    /// No turn that is looked at is as large as 2 pi. It is one to a link that is reached by less
+    /// than pi, from here or from the link before, and one joint more; or that of two joints. A
+    /// joint turns by less than pi.
     fn find_queried(&self, half_cosine: Real, queried_from: &mut Vec<usize>) {
         queried_from.clear();
         let mut from = 0;
@@ -158,8 +173,9 @@ impl TurnSums {
         }
     }
 
-    /// Whether two links, the second after the first, have a turn of at least an angle between them, as far as rounding tells:
-    /// one whose half has this cosine. They have no more than 2 pi between them.
+    /// Whether two links, the second after the first, have a turn of at least an angle between
+    /// them, as far as rounding tells: one whose half has this cosine. They have no more than 2
+    /// pi between them.
     fn reach(&self, half_cosine: Real, first: usize, second: usize) -> bool {
         let ([c1, s1], [c2, s2]) = (self.before[first], self.before[second]);
         c1 * c2 + s1 * s2 <= half_cosine + self.slack
@@ -184,8 +200,8 @@ impl<'a> RobotWithItself<'a> {
     pub fn minimum(&self, memory: &mut SelfMemory) -> Option<RobotProximity> {
         let SelfMemory { descent, turns, faces, nearest } = memory;
         let remembered = nearest.filter(|links| links[1] < self.robot.links().len());
-        let remembered =
-            remembered.filter(|&links| turns.queried_from[links[0]] <= links[1] && self.counts(links));
+        let remembered = remembered
+            .filter(|&links| turns.queried_from[links[0]] <= links[1] && self.counts(links));
         let mut best = remembered.map(|links| measure_pair([&self.robot; 2], links));
         let mut refused = 0;
         descent.run([&self.robot; 2], PairLimit::at_best(&best), queried_from(turns), |found| {
@@ -216,7 +232,11 @@ impl<'a> RobotWithItself<'a> {
         descent.run([&self.robot; 2], PairLimit::of(margin), queried_from(turns), |found| {
             is_clear = !self.counts(found.links.map(|link| link as usize));
             refused += usize::from(is_clear);
-            if is_clear && refused < MOST_REFUSED { PairLimit::of(margin) } else { PairLimit::NOTHING }
+            if is_clear && refused < MOST_REFUSED {
+                PairLimit::of(margin)
+            } else {
+                PairLimit::NOTHING
+            }
         });
         let band = if refused < MOST_REFUSED { Band::Faces } else { Band::All };
         let keep = |found: RobotProximity| (found.distance > margin).then_some(margin);
@@ -286,7 +306,9 @@ impl<'a> RobotWithItself<'a> {
                 let [face, beside] = [&joined[on_face], &joined[other]];
                 for end in [0, 1] {
                     // The ball around a face holds it, and spares most others.
-                    if !face.is_face(end) || !face.ball(end).may_be_within(now + tolerance.0, &beside.link) {
+                    if !face.is_face(end)
+                        || !face.ball(end).may_be_within(now + tolerance.0, &beside.link)
+                    {
                         continue;
                     }
                     let nearest = face.face_to_link(end, &beside.link);
@@ -307,7 +329,11 @@ fn queried_from(turns: &TurnSums) -> impl Fn(usize) -> usize {
 }
 
 /// The answer with the lower link first.
-fn in_order(links: [usize; 2], placed: [&PlacedLink; 2], nearest: &NearestOfLinks) -> RobotProximity {
+fn in_order(
+    links: [usize; 2],
+    placed: [&PlacedLink; 2],
+    nearest: &NearestOfLinks,
+) -> RobotProximity {
     if links[0] < links[1] {
         return nearest.answer(links, placed);
     }
@@ -327,7 +353,8 @@ mod tests {
         turns
     }
 
-    /// What an even polygon reaches at half a turn, rounded to either side, is asked for; and what it does not reach is not.
+    /// What an even polygon reaches at half a turn, rounded to either side, is asked for; and what
+    /// it does not reach is not.
     #[test]
     fn half_a_turn_of_a_polygon_is_asked_for() {
         for (corners, scale) in [(4, 1.0), (6, 1e-150), (20, 3.0), (360, 1e150), (2000, 0.1)] {
@@ -345,7 +372,11 @@ mod tests {
                     "{corners}"
                 );
                 let from = link + (corners as usize).div_ceil(4).max(2);
-                assert_eq!(turns.quarter_from[link], from.min(points.len() - 1).max(link + 2), "{corners}");
+                assert_eq!(
+                    turns.quarter_from[link],
+                    from.min(points.len() - 1).max(link + 2),
+                    "{corners}"
+                );
             }
         }
     }
@@ -364,8 +395,11 @@ mod tests {
                 way = if random.below(8) == 0 { -way } else { way };
                 points.push(points[points.len() - 1] + way * random.between(0.1, 1.0));
             }
-            let ways: Vec<_> = points.windows(2).map(|pair| (pair[1] - pair[0]).normalize()).collect();
-            let angle = |pair: &[Vector]| libm::atan2(pair[0].cross(pair[1]).length(), pair[0].dot(pair[1]));
+            let ways: Vec<_> =
+                points.windows(2).map(|pair| (pair[1] - pair[0]).normalize()).collect();
+            let angle = |pair: &[Vector]| {
+                libm::atan2(pair[0].cross(pair[1]).length(), pair[0].dot(pair[1]))
+            };
             let angles: Vec<_> = ways.windows(2).map(angle).collect();
             if angles.iter().any(|&angle| angle > PI - 1e-6) {
                 continue;
@@ -374,11 +408,13 @@ mod tests {
             let turns = turns(&points);
             for link in 0..ways.len() {
                 let is_far = |&other: &usize| angles[link..other].iter().sum::<f64>() >= PI;
-                let expected = (link + 2..ways.len()).find(is_far).unwrap_or(ways.len().max(link + 2));
+                let expected =
+                    (link + 2..ways.len()).find(is_far).unwrap_or(ways.len().max(link + 2));
                 assert_eq!(turns.queried_from[link], expected, "round {round}");
                 asked += usize::from(expected < ways.len());
                 let is_far = |&other: &usize| angles[link..other].iter().sum::<f64>() >= 0.5 * PI;
-                let expected = (link + 2..ways.len()).find(is_far).unwrap_or(ways.len().max(link + 2));
+                let expected =
+                    (link + 2..ways.len()).find(is_far).unwrap_or(ways.len().max(link + 2));
                 assert_eq!(turns.quarter_from[link], expected, "round {round}");
             }
         }

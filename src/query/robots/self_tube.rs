@@ -15,10 +15,12 @@ pub(crate) struct SelfTubeMemory {
     pending: PendingPieces<SelfPair, SelfPair, PairUpperBound>,
 }
 
-/// Whether the parts of a tube that can meet keep more than the margin. A stated turn makes no answer worse.
+/// Whether the parts of a tube that can meet keep more than the margin. A stated turn makes no
+/// answer worse.
 ///
 /// # Errors
-/// The tube bends too sharply, its curve is not finite, or samples do not allow a decision at that resolution.
+/// The tube bends too sharply, its curve is not finite, or samples do not allow a decision at that
+/// resolution.
 pub(crate) fn self_clears_tube(
     tube: &Tube,
     memory: &mut SelfTubeMemory,

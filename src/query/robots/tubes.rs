@@ -1,4 +1,5 @@
-//! The questions about two tubes: how near they are, between bounds, and whether they keep a margin.
+//! The questions about two tubes: how near they are, between bounds, and whether they keep a
+//! margin.
 
 use crate::answer::{Decision, ProximityError, RobotClearance};
 use crate::pieces::{
@@ -35,19 +36,21 @@ impl TubesMemory {
 /// Both tubes in one frame.
 ///
 /// # Errors
-/// A tube has no section, or its pose is not finite or not rigid or moves it out of range; the poses are called `names`.
+/// A tube has no section, or its pose is not finite or not rigid or moves it out of range; the
+/// poses are called `names`.
 pub(crate) fn place_tubes<'a>(
     tubes: [&'a Tube; 2],
     poses: [&Pose; 2],
     names: [&'static str; 2],
 ) -> Result<TubePair<'a>, ProximityError> {
-    let placed =
-        |k: usize| PlacedTube::new(tubes[k], poses[k], 0.0).map_err(|error| error.of_robot(names[k]));
+    let placed = |k: usize| {
+        PlacedTube::new(tubes[k], poses[k], 0.0).map_err(|error| error.of_robot(names[k]))
+    };
     Ok(TubePair::new([placed(0)?, placed(1)?]))
 }
 
-/// How near two tubes are, with bounds no farther apart than the tolerance where the tubes allow that. A stated turn makes no
-/// bound worse.
+/// How near two tubes are, with bounds no farther apart than the tolerance where the tubes allow
+/// that. A stated turn makes no bound worse.
 ///
 /// # Errors
 /// A curve is not finite.

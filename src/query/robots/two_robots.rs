@@ -7,7 +7,8 @@ use crate::pair::{PlacedLink, PlacedRobot};
 use crate::robot::Chain;
 use parry3d_f64::math::{Pose, Real};
 
-/// So many pairs of links are kept at once where all places within a margin are asked for: some megabytes.
+/// So many pairs of links are kept at once where all places within a margin are asked for: some
+/// megabytes.
 const MAX_PAIRS: usize = 1 << 16;
 
 /// What one query leaves for the next.
@@ -40,14 +41,16 @@ pub(crate) struct TwoRobots<'a> {
 
 impl<'a> TwoRobots<'a> {
     /// # Errors
-    /// A pose is not finite or not rigid, or moves a link out of range; the poses are called `names`.
+    /// A pose is not finite or not rigid, or moves a link out of range; the poses are called
+    /// `names`.
     pub fn new(
         robots: [&'a Chain; 2],
         poses: [&Pose; 2],
         names: [&'static str; 2],
     ) -> Result<Self, ProximityError> {
-        let placed =
-            |k: usize| PlacedRobot::new(robots[k], poses[k]).map_err(|error| error.of_robot(names[k]));
+        let placed = |k: usize| {
+            PlacedRobot::new(robots[k], poses[k]).map_err(|error| error.of_robot(names[k]))
+        };
         Ok(Self { robots: [placed(0)?, placed(1)?] })
     }
 
@@ -64,9 +67,9 @@ impl<'a> TwoRobots<'a> {
     pub fn minimum(&self, memory: &mut PairMemory) -> RobotProximity {
         let last = memory.nearest.filter(|links| self.have(*links));
         let mut best = last.map(|links| measure_pair(self.both(), links));
-        memory
-            .descent
-            .run(self.both(), PairLimit::at_best(&best), all, |found| PairLimit::at(best.insert(found)));
+        memory.descent.run(self.both(), PairLimit::at_best(&best), all, |found| {
+            PairLimit::at(best.insert(found))
+        });
         // Without a limit the first pair that is looked at is within it.
         let best = best.unwrap_or_else(|| measure_pair(self.both(), [0, 0]));
         memory.nearest = Some(best.links.map(|link| link as usize));

@@ -38,8 +38,9 @@ impl SolidAngle {
 }
 
 impl std::ops::AddAssign for SolidAngle {
-    /// The sum, whose rounding counts as an error. The errors are themselves summed with rounding, which 2^32 times
-    /// adds less than 2^-20 of them: [`side`](Self::side) allows for that, and with it for the few roundings of each error.
+    /// The sum, whose rounding counts as an error. The errors are themselves summed with rounding,
+    /// which 2^32 times adds less than 2^-20 of them: [`side`](Self::side) allows for that, and
+    /// with it for the few roundings of each error.
     fn add_assign(&mut self, other: Self) {
         self.value += other.value;
         self.error += other.error + f64::UNIT_ROUNDOFF * self.value.abs();

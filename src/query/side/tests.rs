@@ -69,10 +69,16 @@ fn points_of_a_triangle_are_not_told() {
     let [a, b, c] = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0]].map(Vector::from);
     for point in [a, b, c, a.midpoint(b), b.midpoint(c), Vector::new(1.0, 1.0, 0.0)] {
         assert_eq!(solid_angle([a, b, c], point).error, TAU, "{point}");
-        assert_eq!(solid_angle([a, a, b], point).error == TAU, point.y == 0.0 && point.x <= 4.0, "{point}");
+        assert_eq!(
+            solid_angle([a, a, b], point).error == TAU,
+            point.y == 0.0 && point.x <= 4.0,
+            "{point}"
+        );
     }
     // In the plane and on the edges' lines, but beside the triangle, it is seen under no angle.
-    for point in [[-1.0, 0.0, 0.0], [5.0, 0.0, 0.0], [3.0, 3.0, 0.0], [-1e-9, 1.0, 0.0]].map(Vector::from) {
+    for point in
+        [[-1.0, 0.0, 0.0], [5.0, 0.0, 0.0], [3.0, 3.0, 0.0], [-1e-9, 1.0, 0.0]].map(Vector::from)
+    {
         let SolidAngle { value, error } = solid_angle([a, b, c], point);
         assert!(value == 0.0 && error < 1e-4, "{value} {error} from {point}");
     }
@@ -121,8 +127,8 @@ fn many_triangles_are_within_their_bound_from_afar() {
         let radius = corners().map(|corner| corner.distance(centre)).fold(0.0, f64::max);
         let field = FarField::new(scale, triangles.iter().copied());
         for _ in 0..4 {
-            let away =
-                [1.0 + random.unit(), 10.0_f64.powf(random.between(0.1, 9.0))][random.below(2) as usize];
+            let away = [1.0 + random.unit(), 10.0_f64.powf(random.between(0.1, 9.0))]
+                [random.below(2) as usize];
             let point = centre + random.direction() * radius * away;
             let SolidAngle { value, error } = field.solid_angle(scale, point);
             let each = triangles.iter().map(|&corners| reference(corners, point));
@@ -135,7 +141,11 @@ fn many_triangles_are_within_their_bound_from_afar() {
             );
             if error.is_finite() {
                 let filled = ((value - truth).abs() - rounding) / error;
-                if away < 1e3 { worst = worst.max(filled) } else { worst_far = worst_far.max(filled) }
+                if away < 1e3 {
+                    worst = worst.max(filled)
+                } else {
+                    worst_far = worst_far.max(filled)
+                }
             }
             near += usize::from(away < 1.5 && error.is_finite());
             far += usize::from(away > 1e6);

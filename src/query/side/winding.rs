@@ -1,4 +1,5 @@
-//! The solid angle of a mesh from a point, through its hierarchy: far nodes at once, near triangles one by one.
+//! The solid angle of a mesh from a point, through its hierarchy: far nodes at once, near triangles
+//! one by one.
 
 use super::SolidAngle;
 use super::far_field::FarField;
@@ -76,7 +77,9 @@ impl<E: Lane> Winding<'_, E> {
         }
         match child {
             Child::Node(node) => {
-                self.tree.nodes[node as usize].children().for_each(|child| self.add(child, error, sum));
+                self.tree.nodes[node as usize]
+                    .children()
+                    .for_each(|child| self.add(child, error, sum));
             }
             Child::Leaf(_) => self.tree.triangles_below(child).for_each(|triangle| {
                 *sum += solid_angle(self.mesh.corners(triangle), self.point);

@@ -4,12 +4,14 @@ use parry3d_f64::math::{Real, Vector};
 
 /// Where a piece of the centreline goes from one time to another, as nearly as its motion knows.
 ///
-/// Straight and evenly, but for `off`: at the share q of the time, a point is within `off` of where it was plus q times its
-/// way, and also within `off` of where it will be less 1 - q times its way. The way of a point between the two ends of the piece
-/// is between theirs, in proportion to its share of the section's length.
+/// Straight and evenly, but for `off`: at the share q of the time, a point is within `off` of where
+/// it was plus q times its way, and also within `off` of where it will be less 1 - q times its way.
+/// The way of a point between the two ends of the piece is between theirs, in proportion to its
+/// share of the section's length.
 ///
-/// If a point's acceleration is at most a, it leaves the straight and even way between its places at two times, T apart,
-/// by at most a T^2 / 8. So where a motion knows the places, that is `off`, and what ways in between differ by from those of the ends.
+/// If a point's acceleration is at most a, it leaves the straight and even way between its places
+/// at two times, T apart, by at most a T^2 / 8. So where a motion knows the places, that is `off`,
+/// and what ways in between differ by from those of the ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Course {
     /// The ways of the two ends of the piece, in the mesh's frame.

@@ -10,9 +10,14 @@ use continuum_testing::Random;
 use parry3d_f64::math::{Pose, Real, Vector};
 use std::f64::consts::FRAC_PI_3;
 
-/// A piece of a course as it is used at the most: how far a point is from where its way leads, from both ends of the time, as a part
-/// of what is stated.
-fn used_of_course(motion: &dyn Motion, section: usize, shares: [Real; 2], times: [Real; 2]) -> Real {
+/// A piece of a course as it is used at the most: how far a point is from where its way leads, from
+/// both ends of the time, as a part of what is stated.
+fn used_of_course(
+    motion: &dyn Motion,
+    section: usize,
+    shares: [Real; 2],
+    times: [Real; 2],
+) -> Real {
     let course = motion.course(section, shares, times).unwrap();
     let mut most: Real = 0.0;
     for part in [0.0, 0.25, 0.5, 0.75, 1.0] {
@@ -21,7 +26,8 @@ fn used_of_course(motion: &dyn Motion, section: usize, shares: [Real; 2], times:
         let [first, last] = times.map(|t| at(motion, t, section, share).0);
         for q in [0.0, 0.25, 0.5, 0.75, 1.0] {
             let here = at(motion, times[0] + (times[1] - times[0]) * q, section, share).0;
-            let off = (here - first - way * q).length().max((last - here - way * (1.0 - q)).length());
+            let off =
+                (here - first - way * q).length().max((last - here - way * (1.0 - q)).length());
             most = most.max(off / course.off);
         }
     }
@@ -35,14 +41,16 @@ fn stated_courses_hold_between_any_shares_and_times() {
     for _ in 0..300 {
         let count = 1 + random.below(4) as usize;
         let radii: Vec<_> = (0..count).map(|_| random.between(0.1, 1.0)).collect();
-        let from: Vec<_> = (0..=count).map(|k| random.point() * 2.0 + Vector::Z * k as Real).collect();
+        let from: Vec<_> =
+            (0..=count).map(|k| random.point() * 2.0 + Vector::Z * k as Real).collect();
         let to: Vec<_> = from.iter().map(|&point| point + random.point() * 3.0).collect();
         let bent = [sections(&mut random, &radii), sections(&mut random, &radii)];
         let poses = [random.pose(3.0), random.pose(3.0)];
         let bending = BendingMotion::new(&bent[0], &bent[1], poses[0]).unwrap();
         let mut tube = Tube::empty();
         bending.shape(random.unit(), &mut tube).unwrap();
-        let moving = MovingBase::new(bending.clone(), [random.pose(3.0), random.pose(3.0)]).unwrap();
+        let moving =
+            MovingBase::new(bending.clone(), [random.pose(3.0), random.pose(3.0)]).unwrap();
         let path = MotionPath::new(vec![moving.clone(); 3]).unwrap();
         let motions: [&dyn Motion; 5] = [
             &LinearMotion::chain(&from, &to, &radii).unwrap(),
@@ -81,12 +89,15 @@ fn each_term_of_a_course_is_as_large_as_differences() {
         BendingMotion::new(from, to, Pose::IDENTITY).unwrap()
     };
     let turned = Pose::rotation(Vector::X * 0.5);
-    let on_base = |motion: &BendingMotion| MovingBase::new(motion.clone(), [Pose::IDENTITY, turned]).unwrap();
+    let on_base =
+        |motion: &BendingMotion| MovingBase::new(motion.clone(), [Pose::IDENTITY, turned]).unwrap();
     // At first straight, so that all of the turn is across what turns.
     let alone = bending(&[section(10.0, 0.0)], &[section(10.0, 0.05)]);
     // The end of the first section turns all of the second.
-    let carried = bending(&[section(0.5, 0.0), section(10.0, 0.0)], &[section(0.5, 1.0), section(10.0, 0.0)]);
-    let pushed = bending(&[section(0.5, 0.0), section(0.1, 0.0)], &[section(0.5, 0.5), section(10.0, 0.0)]);
+    let carried =
+        bending(&[section(0.5, 0.0), section(10.0, 0.0)], &[section(0.5, 1.0), section(10.0, 0.0)]);
+    let pushed =
+        bending(&[section(0.5, 0.0), section(0.1, 0.0)], &[section(0.5, 0.5), section(10.0, 0.0)]);
     // Bent across the axis of the turn.
     let arc = BendingSection { length: 10.0, radius: 0.1, bend: [0.0, 0.08] };
     let bent = bending(&[arc], &[arc]);
@@ -124,10 +135,12 @@ fn what_a_curvature_changes_by_unevenly_counts_in_a_course() {
     let point = |share: Real, t: Real| {
         let (sin, cos) = (RATE * t).sin_cos();
         let bend = [curvature * cos, curvature * sin];
-        let robot = ConstantCurvature::new(&[BendingSection { length, radius: 0.1, bend }]).unwrap();
+        let robot =
+            ConstantCurvature::new(&[BendingSection { length, radius: 0.1, bend }]).unwrap();
         robot.at_share(0, share)
     };
-    let rates = BendingRates { length, growth: 0.0, curvature, bending: curvature * RATE, step: 0.0 };
+    let rates =
+        BendingRates { length, growth: 0.0, curvature, bending: curvature * RATE, step: 0.0 };
     let used = |bends: &[Real]| {
         let times = [0.3, 0.32];
         let course = bending_course(&[rates], bends, 0, [1.0; 2], times, point);
@@ -161,7 +174,8 @@ fn courses_allow_for_rounding() {
         let near = BendingMotion::new(&bent[0], &bent[1], Pose::IDENTITY).unwrap();
         near.shape(0.5, &mut tube).unwrap();
         let moving = MovingBase::new(near, poses).unwrap();
-        let chains = [&from, &to, &from].map(|points| Chain::from_centreline(points, &radii).unwrap());
+        let chains =
+            [&from, &to, &from].map(|points| Chain::from_centreline(points, &radii).unwrap());
         let shapes = ShapePath::new(&chains, 0.0).unwrap();
         assert_eq!(shapes.course(0, [0.0, 1.0], [0.4, 0.6]), None, "it jumps in between");
         let linear = LinearMotion::chain(&from, &to, &radii).unwrap();
@@ -171,8 +185,12 @@ fn courses_allow_for_rounding() {
         for (kind, motion) in motions.into_iter().enumerate() {
             let t = random.between(0.34, 0.49);
             let times = [t, t + 1e-13 * random.unit()];
-            used[kind] =
-                used[kind].max(used_of_course(motion, random.below(2) as usize, [0.25, 0.75], times));
+            used[kind] = used[kind].max(used_of_course(
+                motion,
+                random.below(2) as usize,
+                [0.25, 0.75],
+                times,
+            ));
         }
     }
     assert!(used.iter().all(|used| *used <= 1.0 && *used > 0.002), "{used:?}");
@@ -186,11 +204,13 @@ struct Wandering {
 impl Motion for Wandering {
     fn shape(&self, t: Real, tube: &mut Tube) -> Result<Pose, RobotError> {
         tube.set_chain(&Chain::capsules(&[Vector::ZERO, Vector::Z], &[0.1])?);
-        // From the place to where it is 1 off, about that and the place, and to where it is 1 off and 1 away from the former.
+        // From the place to where it is 1 off, about that and the place, and to where it is 1 off
+        // and 1 away from the former.
         let third = FRAC_PI_3;
         let at = |angle: Real| Vector::new(angle.cos(), angle.sin(), 0.0);
         let t = (t / self.until).min(1.0);
-        let place = if t < 0.5 { at(-third) * (2.0 * t) } else { at(-third + (2.0 * t - 1.0) * third) };
+        let place =
+            if t < 0.5 { at(-third) * (2.0 * t) } else { at(-third + (2.0 * t - 1.0) * third) };
         Ok(Pose::from_translation(place))
     }
 

@@ -1,7 +1,8 @@
 //! Every vertex of a chain moves on a straight line at a speed of its own.
 //!
-//! The point at the share u of a link from a(t) to b(t) has the velocity (1 - u) a' + u b', whose length is a convex
-//! function of u: between two shares it is at most the larger of that at the two.
+//! The point at the share u of a link from a(t) to b(t) has the velocity (1 - u) a' + u b', whose
+//! length is a convex function of u: between two shares it is at most the larger of that at the
+//! two.
 //!
 //! # The turn of a link
 //! **Definitions.** d(t) leads from the link's start to its end, d0 and d1 at the times 0 and 1, w
@@ -34,14 +35,16 @@ use crate::robot::modified_cylinder::has_direction;
 use crate::robot::{RobotError, Tube, direction};
 use parry3d_f64::math::{Pose, Real, Vector};
 
-/// The motion of a chain each of whose vertices moves straight and evenly from one place to another.
+/// The motion of a chain each of whose vertices moves straight and evenly from one place to
+/// another.
 ///
-/// It is what a planner means by "interpolate the two centrelines". In between, links become shorter or longer. Points
-/// are in the mesh's frame.
+/// It is what a planner means by "interpolate the two centrelines". In between, links become
+/// shorter or longer. Points are in the mesh's frame.
 ///
-/// The motion's sections are its links. A segment without length at the start and at the end of the motion is no link, as in a
-/// [`Chain`](crate::Chain), and is not counted among the sections; its radius is no step. The same holds for a segment that is
-/// too short for its radius. A link that loses its length for a moment is a ball at that moment.
+/// The motion's sections are its links. A segment without length at the start and at the end of the
+/// motion is no link, as in a [`Chain`](crate::Chain), and is not counted among the sections; its
+/// radius is no step. The same holds for a segment that is too short for its radius. A link that
+/// loses its length for a moment is a ball at that moment.
 ///
 /// ```
 /// use parry_continuum::{LinearMotion, parry::math::Vector, verify_motion};
@@ -66,7 +69,8 @@ pub struct LinearMotion {
 }
 
 impl LinearMotion {
-    /// All links with two round caps, as [`Chain::capsules`](crate::Chain::capsules), one radius for each segment.
+    /// All links with two round caps, as [`Chain::capsules`](crate::Chain::capsules), one radius
+    /// for each segment.
     ///
     /// ```
     /// use parry_continuum::{LinearMotion, parry::{math::Vector, shape::Ball}, proximity::BvhSearch};
@@ -81,27 +85,38 @@ impl LinearMotion {
     /// ```
     ///
     /// # Errors
-    /// As [`Chain::capsules`](crate::Chain::capsules) for either end, or not as many points at the one as at the other.
-    pub fn capsules(from: &[Vector], to: &[Vector], segment_radii: &[Real]) -> Result<Self, RobotError> {
+    /// As [`Chain::capsules`](crate::Chain::capsules) for either end, or not as many points at the
+    /// one as at the other.
+    pub fn capsules(
+        from: &[Vector],
+        to: &[Vector],
+        segment_radii: &[Real],
+    ) -> Result<Self, RobotError> {
         Self::new(from, to, segment_radii)
     }
 
-    /// Links with the caps of [`Chain::from_centreline`](crate::Chain::from_centreline) at each time, one radius for each
-    /// segment.
+    /// Links with the caps of [`Chain::from_centreline`](crate::Chain::from_centreline) at each
+    /// time, one radius for each segment.
     ///
-    /// Caps may change on the way. Flat for good are the robot's two ends and the wider side of each step in radius. Another
-    /// link's end is flat while it is less than a radius behind such a face, and round when it is farther away. At that moment
-    /// the shape jumps; where that decides whether the margin is kept, the answer is `Undecided`.
+    /// Caps may change on the way. Flat for good are the robot's two ends and the wider side of
+    /// each step in radius. Another link's end is flat while it is less than a radius behind
+    /// such a face, and round when it is farther away. At that moment the shape jumps; where
+    /// that decides whether the margin is kept, the answer is `Undecided`.
     ///
-    /// A chain by vertex radii ([`Chain::from_vertex_radii`](crate::Chain::from_vertex_radii)) with the smaller radius of each
-    /// segment's two points has the same caps, but for a single thick point and the first joint after a thick tube that is
-    /// shorter than its radius. For these caps implement [`Motion`] and fill the tube with
+    /// A chain by vertex radii ([`Chain::from_vertex_radii`](crate::Chain::from_vertex_radii)) with
+    /// the smaller radius of each segment's two points has the same caps, but for a single
+    /// thick point and the first joint after a thick tube that is shorter than its radius. For
+    /// these caps implement [`Motion`] and fill the tube with
     /// [`Tube::set_chain`](crate::Tube::set_chain), which takes chains of either kind.
     ///
     /// # Errors
-    /// As [`Chain::from_centreline`](crate::Chain::from_centreline) for either end, or not as many points at the one as
-    /// at the other.
-    pub fn chain(from: &[Vector], to: &[Vector], segment_radii: &[Real]) -> Result<Self, RobotError> {
+    /// As [`Chain::from_centreline`](crate::Chain::from_centreline) for either end, or not as many
+    /// points at the one as at the other.
+    pub fn chain(
+        from: &[Vector],
+        to: &[Vector],
+        segment_radii: &[Real],
+    ) -> Result<Self, RobotError> {
         let mut motion = Self::new(from, to, segment_radii)?;
         motion.fading = Some(motion.fading_links());
         Ok(motion)
@@ -115,12 +130,16 @@ impl LinearMotion {
             check([name, "segment_radii"], points, radii, points.len().saturating_sub(1))?;
         }
         // By the rule of chains. What is too short at both ends is no longer in between.
-        let has_length = |k: &usize| [from, to].iter().any(|p| has_direction(p[*k], p[*k + 1], radii[*k]));
+        let has_length =
+            |k: &usize| [from, to].iter().any(|p| has_direction(p[*k], p[*k + 1], radii[*k]));
         let segments: Vec<_> = (0..radii.len()).filter(has_length).collect();
-        let Some(&first) = segments.first() else { return Err(without_length(from, radii, "segment_radii")) };
+        let Some(&first) = segments.first() else {
+            return Err(without_length(from, radii, "segment_radii"));
+        };
         let vertices = || std::iter::once(first).chain(segments.iter().map(|k| k + 1));
         let (from, to): (Vec<_>, Vec<_>) = vertices().map(|k| (from[k], to[k])).unzip();
-        let reach = from.iter().chain(&to).fold(0.0, |most: Real, p| most.max(p.abs().max_element()));
+        let reach =
+            from.iter().chain(&to).fold(0.0, |most: Real, p| most.max(p.abs().max_element()));
         Ok(Self {
             radii: segments.iter().map(|&k| radii[k]).collect(),
             segments: segments.iter().map(|&k| k as u32).collect(),
@@ -226,7 +245,8 @@ fn least_length([first, last]: [Vector; 2], times: [Real; 2]) -> Real {
     let direction = direction(at(time));
     // Both vectors are off by u, and so are weights, products, sums and the direction: less than 16
     // u in all.
-    let rounding = |t: Real| 16.0 * Real::UNIT_ROUNDOFF * (first.length() * (1.0 - t) + last.length() * t);
+    let rounding =
+        |t: Real| 16.0 * Real::UNIT_ROUNDOFF * (first.length() * (1.0 - t) + last.length() * t);
     let least = times.map(|t| direction.dot(at(t)) - rounding(t));
     least[0].min(least[1]).max(0.0)
 }

@@ -31,19 +31,22 @@ pub use verify::verify_motion;
 use super::{COORDINATE_LIMIT, NotRigid, RobotError, Tube, rigid};
 use parry3d_f64::math::{Pose, Real};
 
-/// A motion: the robot's shape and pose at each time t from 0 to 1, and an upper bound on how fast it moves.
+/// A motion: the robot's shape and pose at each time t from 0 to 1, and an upper bound on how fast
+/// it moves.
 ///
-/// [`LinearMotion`], [`RigidMotion`] and [`BendingMotion`] are ready to use; [`MovingBase`] moves the base of any of them, and
-/// [`MotionPath`] puts them one after another. For a motion of your own, implement the first two methods. What is proven of a motion relies on the bounds that it states, so let your tests check them by
-/// [`verify_motion`].
+/// [`LinearMotion`], [`RigidMotion`] and [`BendingMotion`] are ready to use; [`MovingBase`] moves
+/// the base of any of them, and [`MotionPath`] puts them one after another. For a motion of your
+/// own, implement the first two methods. What is proven of a motion relies on the bounds that it
+/// states, so let your tests check them by [`verify_motion`].
 ///
 /// Two shapes of a motion must be comparable:
 ///
-/// - They have the same number of sections, with the same radii. A section that is not extended yet has a tiny length.
-/// - A point of the centreline is the same point at all times if it is in the same section, at the same share of the
-///   section's length.
-/// - The flat ends stay flat: the robot's two ends, and the wider side of each step in radius. So the model may not change on
-///   the way, from capsules to fitted caps for example.
+/// - They have the same number of sections, with the same radii. A section that is not extended yet
+///   has a tiny length.
+/// - A point of the centreline is the same point at all times if it is in the same section, at the
+///   same share of the section's length.
+/// - The flat ends stay flat: the robot's two ends, and the wider side of each step in radius. So
+///   the model may not change on the way, from capsules to fitted caps for example.
 ///
 /// ```
 /// use parry_continuum::{Motion, RobotError, Speed, Tube, parry::math::{Pose, Real, Vector}, verify_motion};
@@ -75,49 +78,54 @@ use parry3d_f64::math::{Pose, Real};
 pub trait Motion {
     /// Makes `tube` the robot's shape at time `t`, and gives its pose in the mesh's frame.
     ///
-    /// `tube` holds an earlier shape. [`Tube::set_samples`] and [`Tube::set_chain`] reuse its memory. An error that was stated
-    /// by [`Tube::with_error`] is dropped before the call: each shape states its own.
+    /// `tube` holds an earlier shape. [`Tube::set_samples`] and [`Tube::set_chain`] reuse its
+    /// memory. An error that was stated by [`Tube::with_error`] is dropped before the call:
+    /// each shape states its own.
     ///
     /// # Errors
-    /// There is no such shape. [`RobotError::NoShape`] is for kinematics that fail. Queries pass the error on.
+    /// There is no such shape. [`RobotError::NoShape`] is for kinematics that fail. Queries pass
+    /// the error on.
     fn shape(&self, t: Real, tube: &mut Tube) -> Result<Pose, RobotError>;
 
-    /// Upper bounds on how fast the centreline moves and turns, in the mesh's frame: between two shares of a section's
-    /// length, and between two times.
+    /// Upper bounds on how fast the centreline moves and turns, in the mesh's frame: between two
+    /// shares of a section's length, and between two times.
     ///
-    /// Shares and times are from 0 to 1, the lower one first, and the two may be equal. A bound that is too large costs time.
-    /// One that is too small makes answers wrong.
+    /// Shares and times are from 0 to 1, the lower one first, and the two may be equal. A bound
+    /// that is too large costs time. One that is too small makes answers wrong.
     fn speed(&self, section: usize, shares: [Real; 2], times: [Real; 2]) -> Speed;
 
-    /// Where the centreline goes, in the mesh's frame, between two shares of a section's length and between two times: if more
-    /// is known of it than its speed.
+    /// Where the centreline goes, in the mesh's frame, between two shares of a section's length and
+    /// between two times: if more is known of it than its speed.
     ///
-    /// None by default. With it, [`clears_motion`](crate::proximity::BvhSearch::clears_motion) and the questions like it need
-    /// fewer shapes: a piece that moves along the wall does not count as if it moved towards it, nor one that moves away. All ready
-    /// motions know their courses; [`bending_course`] helps where sections have a constant curvature. A course that is wrong
-    /// makes answers wrong. One that is not finite, or whose `off` is below 0, counts as none.
+    /// None by default. With it, [`clears_motion`](crate::proximity::BvhSearch::clears_motion) and
+    /// the questions like it need fewer shapes: a piece that moves along the wall does not
+    /// count as if it moved towards it, nor one that moves away. All ready motions know their
+    /// courses; [`bending_course`] helps where sections have a constant curvature. A course that is
+    /// wrong makes answers wrong. One that is not finite, or whose `off` is below 0, counts as
+    /// none.
     ///
-    /// Shares and times are as for [`speed`](Self::speed). What wraps a motion may pass its courses on if it does not change time or
-    /// place.
+    /// Shares and times are as for [`speed`](Self::speed). What wraps a motion may pass its courses
+    /// on if it does not change time or place.
     fn course(&self, section: usize, shares: [Real; 2], times: [Real; 2]) -> Option<Course> {
         let _ = (section, shares, times);
         None
     }
 
-    /// Into how many parts of the same length queries divide time from the beginning: 1, but for a path of many motions. What
-    /// wraps a motion passes its `legs` on.
+    /// Into how many parts of the same length queries divide time from the beginning: 1, but for a
+    /// path of many motions. What wraps a motion passes its `legs` on.
     fn legs(&self) -> usize {
         1
     }
 }
 
-/// How fast a centreline moves, per unit of the motion's time. At a steady speed this is how far it moves from t = 0 to 1.
+/// How fast a centreline moves, per unit of the motion's time. At a steady speed this is how far it
+/// moves from t = 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Speed {
     /// The speed of its points, in units of length.
     pub point: Real,
-    /// The speed at which its direction turns, in rad. Times the radius, this is how fast the rim of a disc moves relative to
-    /// the disc's centre.
+    /// The speed at which its direction turns, in rad. Times the radius, this is how fast the rim
+    /// of a disc moves relative to the disc's centre.
     pub turn: Real,
 }
 

@@ -7,9 +7,9 @@ use parry3d_f64::math::{Pose, Real};
 
 /// A path: motions one after another, each of which takes the same share of the time.
 ///
-/// Of n motions the first one is from t = 0 to 1 / n, the next to 2 / n, and so on; [`leg`](Self::leg) tells which one it is at
-/// a time. All have the same sections. One should begin where the one before ends, and
-/// [`verify_motion`](crate::verify_motion) finds out if not.
+/// Of n motions the first one is from t = 0 to 1 / n, the next to 2 / n, and so on;
+/// [`leg`](Self::leg) tells which one it is at a time. All have the same sections. One should begin
+/// where the one before ends, and [`verify_motion`](crate::verify_motion) finds out if not.
 ///
 /// ```
 /// use parry_continuum::{LinearMotion, MotionPath, parry::{math::Vector, shape::Ball}, proximity::BvhSearch};
@@ -85,8 +85,9 @@ impl<M: Motion> Motion for MotionPath<M> {
         }
         let inner = times.map(|t| self.time_in(last, t));
         let Course { ways, off } = self.motions[last].course(section, shares, inner)?;
-        // A time of a motion is rounded by less than `rounding` times the number of motions, and so are two others beside it; and
-        // times that are another motion's count as this one's end.
+        // A time of a motion is rounded by less than `rounding` times the number of motions, and so
+        // are two others beside it; and times that are another motion's count as this one's
+        // end.
         let unsure = 8.0 * rounding * self.motions.len() as Real;
         let around = [(inner[0] - unsure).max(0.0), (inner[1] + unsure).min(1.0)];
         let speed = self.motions[last].speed(section, shares, around);

@@ -1,19 +1,22 @@
 //! Any motion whose base moves as well.
 //!
-//! In the frame of its base a point moves by p(t), at most at the speed that the motion states there; the frame itself goes
-//! along a path (`rigid_path`): it turns about an axis a by the angle w in all and moves by v. In the mesh's frame the point
-//! then moves at v + R (w a x p + p'), which is at most |v| + w |a x p| + |p'|, and a direction turns at w and what the motion
-//! states.
+//! In the frame of its base a point moves by p(t), at most at the speed that the motion states
+//! there; the frame itself goes along a path (`rigid_path`): it turns about an axis a by the angle
+//! w in all and moves by v. In the mesh's frame the point then moves at v + R (w a x p + p'), which
+//! is at most |v| + w |a x p| + |p'|, and a direction turns at w and what the motion states.
 //!
-//! How far p is from the axis is known of the motion's shapes at three times. Until another time it moves away by no more than
-//! the motion moves it in between: by its stated speed between the two times, times how far they are apart. Two distances from
-//! a line differ by no more than the points are apart. Of the three bounds the least counts.
+//! How far p is from the axis is known of the motion's shapes at three times. Until another time it
+//! moves away by no more than the motion moves it in between: by its stated speed between the two
+//! times, times how far they are apart. Two distances from a line differ by no more than the points
+//! are apart. Of the three bounds the least counts.
 //!
-//! **Courses.** Let the motion know that from one time to another, T apart, p goes from p0 by m but for e, which is at most `off`. With p1 = p0 + m the
-//! point goes by the way b1 - b0 + R1 p1 - R0 p0, linear in p0 and m. What moves at p0 + q m evenly in the frame has the acceleration
-//! R (w a x (w a x p) + 2 w a x m), so it is at most (s^2 |a x p| + 2 s |m|) / 8 off that way, for the turn s = w T; p is off by e besides,
-//! which counts once, and s times where it is turned. From the end it is the same, but p1 may be off by e, whose turn counts once more.
-//! Where p0 is, is known from the nearest of the three shapes and the course since; what that is off counts s times.
+//! **Courses.** Let the motion know that from one time to another, T apart, p goes from p0 by m but
+//! for e, which is at most `off`. With p1 = p0 + m the point goes by the way b1 - b0 + R1 p1 - R0
+//! p0, linear in p0 and m. What moves at p0 + q m evenly in the frame has the acceleration R (w a x
+//! (w a x p) + 2 w a x m), so it is at most (s^2 |a x p| + 2 s |m|) / 8 off that way, for the turn
+//! s = w T; p is off by e besides, which counts once, and s times where it is turned. From the end
+//! it is the same, but p1 may be off by e, whose turn counts once more. Where p0 is, is known from
+//! the nearest of the three shapes and the course since; what that is off counts s times.
 
 use super::rigid_path::RigidPath;
 use super::{Course, Motion, Speed, rigid_pose};
@@ -21,11 +24,12 @@ use crate::distance::Scalar;
 use crate::robot::{RobotError, Tube};
 use parry3d_f64::math::{Pose, Real, Vector};
 
-/// A motion whose base is moved at the same time, evenly from one pose to another: what a robot does that is pushed or turned
-/// while its sections bend and grow.
+/// A motion whose base is moved at the same time, evenly from one pose to another: what a robot
+/// does that is pushed or turned while its sections bend and grow.
 ///
-/// The motion is any one without a jump, and its poses are in the frame of the base. The base's origin moves straight and evenly while the
-/// base turns evenly about one axis by the lesser angle, as in a [`RigidMotion`](crate::RigidMotion).
+/// The motion is any one without a jump, and its poses are in the frame of the base. The base's
+/// origin moves straight and evenly while the base turns evenly about one axis by the lesser angle,
+/// as in a [`RigidMotion`](crate::RigidMotion).
 ///
 /// ```
 /// use parry_continuum::{BendingMotion, BendingSection, MovingBase, parry::math::{Pose, Vector}, verify_motion};
@@ -51,11 +55,13 @@ pub struct MovingBase<M> {
 const KNOWN_AT: [Real; 3] = [0.0, 0.5, 1.0];
 
 impl<M: Motion> MovingBase<M> {
-    /// The motion of a robot whose base goes from the first pose to the second, in the mesh's frame.
+    /// The motion of a robot whose base goes from the first pose to the second, in the mesh's
+    /// frame.
     ///
     /// # Errors
-    /// A pose, of the base or of the motion, is not finite or out of range, or its rotation is not of unit length; or the motion has no shape at its beginning,
-    /// in its middle or at its end.
+    /// A pose, of the base or of the motion, is not finite or out of range, or its rotation is not
+    /// of unit length; or the motion has no shape at its beginning, in its middle or at its
+    /// end.
     pub fn new(motion: M, [from, to]: [Pose; 2]) -> Result<Self, RobotError> {
         let path = RigidPath::new([from, to])?;
         let shape = |t: Real| {
@@ -80,12 +86,14 @@ impl<M: Motion> MovingBase<M> {
         bounds.fold(none, |least, bound| if bound.point < least.point { bound } else { least })
     }
 
-    /// Where the ends of a piece are in the frame of the base at a time, and how far any point of it may be off what is between.
+    /// Where the ends of a piece are in the frame of the base at a time, and how far any point of
+    /// it may be off what is between.
     fn place(&self, section: usize, shares: [Real; 2], t: Real) -> Option<([Vector; 2], Real)> {
         let nearest = self.known.iter().min_by(|a, b| (a.0 - t).abs().total_cmp(&(b.0 - t).abs()));
         let (at, tube, pose) = nearest?;
         let off = RigidPath::beside(tube, tube.sections().get(section)?, shares);
-        let known = shares.map(|share| *pose * tube.at_share(&tube.sections()[section], share).point);
+        let known =
+            shares.map(|share| *pose * tube.at_share(&tube.sections()[section], share).point);
         if *at == t {
             return Some((known, off));
         }
@@ -117,7 +125,8 @@ impl<M: Motion> Motion for MovingBase<M> {
         let poses = times.map(|t| self.path.pose(t));
         let apart = times[1] - times[0];
         let turn = self.path.angle() * apart;
-        let ways = [0, 1].map(|end| poses[1] * (place[end] + inner.ways[end]) - poses[0] * place[end]);
+        let ways =
+            [0, 1].map(|end| poses[1] * (place[end] + inner.ways[end]) - poses[0] * place[end]);
         let turning = self.path.of_turning(self.carried(section, shares, times).point) * apart;
         let own = inner.ways[0].length().max(inner.ways[1].length());
         let bow = 0.125 * turn * (turning + turn * inner.off + 2.0 * own);

@@ -7,8 +7,8 @@ use parry3d_f64::math::{Pose, Real};
 
 /// The motion of a tube that does not change its shape, evenly from one pose to another.
 ///
-/// The robot's origin moves straight and evenly while the robot turns evenly about one axis by the lesser angle. Poses
-/// are the tube's in the mesh's frame.
+/// The robot's origin moves straight and evenly while the robot turns evenly about one axis by the
+/// lesser angle. Poses are the tube's in the mesh's frame.
 ///
 /// ```
 /// use parry_continuum::{Chain, RigidMotion, Tube, verify_motion};

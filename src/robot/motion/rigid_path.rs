@@ -1,12 +1,13 @@
 //! A frame that goes evenly from one pose to another, and how fast it carries a curve.
 //!
-//! The frame turns evenly about an axis a that is fixed in it, by the angle w in all, while its origin moves evenly by v. The
-//! point p of the frame then moves at v + w R(a x p), at most |v| + w |a x p| fast, and no direction turns faster than w.
-//! |a x p|, the distance from the axis, is a convex function of p; a piece of the centreline is within k l^2 / 8 of its chord,
+//! The frame turns evenly about an axis a that is fixed in it, by the angle w in all, while its
+//! origin moves evenly by v. The point p of the frame then moves at v + w R(a x p), at most |v| + w
+//! |a x p| fast, and no direction turns faster than w. |a x p|, the distance from the axis, is a convex function of p; a piece of the centreline is within k l^2 / 8 of its chord,
 //! where the larger of the chord's two ends counts.
 //!
-//! Its acceleration is w^2 times that distance. From one time to another, T apart, the point moves by v T + (R' - R) p, which is
-//! linear in p, and R' - R turns by at most w T: so what p is beside the chord moves otherwise by at most w T times as much.
+//! Its acceleration is w^2 times that distance. From one time to another, T apart, the point moves
+//! by v T + (R' - R) p, which is linear in p, and R' - R turns by at most w T: so what p is beside
+//! the chord moves otherwise by at most w T times as much.
 
 use super::{Course, Speed, rigid_pose};
 use crate::distance::Scalar;
@@ -70,13 +71,15 @@ impl RigidPath {
         let turning = self.of_turning(self.speed(tube, &Pose::IDENTITY, number, shares).point);
         let beside = Self::beside(tube, section, shares);
         let places = here.into_iter().chain(there);
-        let reach = places.fold(2.0 * tube.reach(), |most: Real, p| most.max(p.abs().max_element()));
+        let reach =
+            places.fold(2.0 * tube.reach(), |most: Real, p| most.max(p.abs().max_element()));
         let rounding = 64.0 * Real::UNIT_ROUNDOFF * reach;
         let off = (0.125 * turn * turning * apart + turn * beside + rounding) * UP;
         Some(Course::between(here, there, off))
     }
 
-    /// How far a point of a piece is at the most from the place between its two ends at the same share.
+    /// How far a point of a piece is at the most from the place between its two ends at the same
+    /// share.
     pub(super) fn beside(tube: &Tube, section: &Section, shares: [Real; 2]) -> Real {
         let off = shares.map(|share| tube.at_share(section, share).off);
         let known = tube.bound(section, tube.ticks_around(section, shares));
@@ -89,22 +92,34 @@ impl RigidPath {
     }
 
     /// How fast a piece of a tube moves that is at rest in the frame, at a pose there.
-    pub(super) fn speed(&self, tube: &Tube, pose: &Pose, section: usize, shares: [Real; 2]) -> Speed {
+    pub(super) fn speed(
+        &self,
+        tube: &Tube,
+        pose: &Pose,
+        section: usize,
+        shares: [Real; 2],
+    ) -> Speed {
         let angle = self.angle();
-        let Some(section) = tube.sections().get(section) else { return Speed { point: 0.0, turn: 0.0 } };
+        let Some(section) = tube.sections().get(section) else {
+            return Speed { point: 0.0, turn: 0.0 };
+        };
         let ends = shares.map(|share| tube.at_share(section, share));
         let [a, b] = ends.map(|end| self.turn.cross(*pose * end.point).length());
         let off = Self::beside(tube, section, shares);
         let reach = pose.translation.abs().max_element() + 2.0 * tube.reach();
         let rounding = 32.0 * Real::UNIT_ROUNDOFF * reach;
-        Speed { point: (self.shift.length() + a.max(b) + angle * (off + rounding)) * UP, turn: angle }
+        Speed {
+            point: (self.shift.length() + a.max(b) + angle * (off + rounding)) * UP,
+            turn: angle,
+        }
     }
 }
 
 /// Fewer than 32 roundings, each of a number no larger than those that are added up here.
 const UP: Real = 1.0 + 32.0 * Real::UNIT_ROUNDOFF;
 
-/// The axis of a rotation by half a turn or less, times its angle. (`to_scaled_axis` takes angles below 2e-8 for none.)
+/// The axis of a rotation by half a turn or less, times its angle. (`to_scaled_axis` takes angles
+/// below 2e-8 for none.)
 fn scaled_axis(rotation: Rotation) -> Vector {
     let half = Vector::new(rotation.x, rotation.y, rotation.z);
     let sine = half.length();

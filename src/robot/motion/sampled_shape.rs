@@ -1,4 +1,5 @@
-//! Some places of a shape: where they are, which way the curve leads there, and how well both are known.
+//! Some places of a shape: where they are, which way the curve leads there, and how well both are
+//! known.
 
 use crate::distance::Scalar;
 use crate::robot::Tube;
@@ -15,8 +16,8 @@ pub(super) struct SampledPlace {
     pub shares: [Real; 2],
 }
 
-/// The places to try: nine even shares of each section; and where a shape is given by samples, eight of its samples and
-/// the chords from them to the next, which are known best.
+/// The places to try: nine even shares of each section; and where a shape is given by samples,
+/// eight of its samples and the chords from them to the next, which are known best.
 pub(super) fn places(tube: &Tube) -> Vec<SampledPlace> {
     const PARTS: u32 = 8;
     let mut places = Vec::new();
@@ -28,7 +29,8 @@ pub(super) fn places(tube: &Tube) -> Vec<SampledPlace> {
         let mut last = None;
         for part in 0..PARTS {
             let middle = (Real::from(part) + 0.5) / Real::from(PARTS);
-            let Some(between) = tube.samples_around(section, middle).filter(|found| last != Some(*found))
+            let Some(between) =
+                tube.samples_around(section, middle).filter(|found| last != Some(*found))
             else {
                 continue;
             };
@@ -64,7 +66,8 @@ pub(super) struct SampledShape {
     stated: Vec<[Real; 2]>,
 }
 
-/// How far a place went from one shape to another, at the least, and how far by what was stated; and how far it turned.
+/// How far a place went from one shape to another, at the least, and how far by what was stated;
+/// and how far it turned.
 pub(super) struct PlaceMotion {
     pub way: Real,
     pub angle: Real,
@@ -74,8 +77,8 @@ impl SampledShape {
     /// Samples a shape.
     pub(super) fn take(&mut self, t: Real, tube: &Tube, pose: &Pose, places: &[SampledPlace]) {
         self.t = t;
-        // As in queries: a placed point is off by less than 16 roundings of the largest coordinate; a place along the
-        // curve by less than one of its length.
+        // As in queries: a placed point is off by less than 16 roundings of the largest coordinate;
+        // a place along the curve by less than one of its length.
         let reach = pose.translation.abs().max_element() + 2.0 * tube.reach() + tube.length();
         // Where a rounding of that vanishes, the steps between numbers do not.
         self.rounding = 64.0 * Real::UNIT_ROUNDOFF * reach + 64.0 * MIN_STEP;
@@ -100,12 +103,14 @@ impl SampledShape {
                 let there = tube.at_share(section, to);
                 let chord = *pose * there.point - sample.point;
                 let size = length(chord);
-                // The mean of the directions between two shares turns by no more than they do. The chord is that mean times
-                // the length, if shares of the curve are as long as those of the samples' lines: they are to `stretch`. And
-                // where the mean is 1 - b^2 / 24 long or longer, for the turn b in between, its direction turns by as
-                // much more.
+                // The mean of the directions between two shares turns by no more than they do. The
+                // chord is that mean times the length, if shares of the curve are
+                // as long as those of the samples' lines: they are to `stretch`. And
+                // where the mean is 1 - b^2 / 24 long or longer, for the turn b in between, its
+                // direction turns by as much more.
                 let known = tube.bound(section, tube.ticks_around(section, [from, to]));
-                let bend = known.curvature * (section.end - section.start) * (to - from) * section.stretch;
+                let bend =
+                    known.curvature * (section.end - section.start) * (to - from) * section.stretch;
                 sample.direction = direction(chord);
                 sample.tilt = (section.stretch - 1.0)
                     + (here.off + there.off + self.rounding) / size
@@ -141,8 +146,10 @@ impl SampledShape {
         let way = way.length() - off;
         // Without length there is no direction.
         let has_direction = from.direction != Vector::ZERO && there.direction != Vector::ZERO;
-        let turned = (there.direction - from.direction).length() * (from.shrink * there.shrink).sqrt();
-        let angle = if has_direction { turned - from.tilt - there.tilt } else { Real::NEG_INFINITY };
+        let turned =
+            (there.direction - from.direction).length() * (from.shrink * there.shrink).sqrt();
+        let angle =
+            if has_direction { turned - from.tilt - there.tilt } else { Real::NEG_INFINITY };
         Some(PlaceMotion { way, angle })
     }
 }

@@ -3,7 +3,8 @@
 use crate::robot::{CapPersistence, RobotError, Tube};
 use parry3d_f64::math::Real;
 
-/// The sections of the shapes so far: their radii, and which of their ends are always flat, as far as that matters.
+/// The sections of the shapes so far: their radii, and which of their ends are always flat, as far
+/// as that matters.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SectionSignature(Vec<(Real, [Option<bool>; 2])>);
 
@@ -32,8 +33,9 @@ impl SectionSignature {
             self.0.extend(found);
             return Ok(());
         }
-        let is_same =
-            |one: Option<bool>, other: Option<bool>| one.is_none() || other.is_none() || one == other;
+        let is_same = |one: Option<bool>, other: Option<bool>| {
+            one.is_none() || other.is_none() || one == other
+        };
         let mut count = 0;
         for ((radius, ends), known) in found.zip(&mut self.0) {
             if radius != known.0 || !(0..2).all(|end| is_same(ends[end], known.1[end])) {

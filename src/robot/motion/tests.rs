@@ -31,7 +31,8 @@ fn stated_speeds_hold_between_any_shares_and_times() {
     for _ in 0..300 {
         let count = 1 + random.below(4) as usize;
         let radii: Vec<_> = (0..count).map(|_| random.between(0.1, 1.0)).collect();
-        let from: Vec<_> = (0..=count).map(|k| random.point() * 2.0 + Vector::Z * k as Real).collect();
+        let from: Vec<_> =
+            (0..=count).map(|k| random.point() * 2.0 + Vector::Z * k as Real).collect();
         let to: Vec<_> = from.iter().map(|&point| point + random.point() * 3.0).collect();
         let mut bent = [sections(&mut random, &radii), sections(&mut random, &radii)];
         if random.below(2) == 0 {
@@ -43,7 +44,8 @@ fn stated_speeds_hold_between_any_shares_and_times() {
         let bending = BendingMotion::new(&bent[0], &bent[1], poses[0]).unwrap();
         let mut tube = Tube::empty();
         bending.shape(random.unit(), &mut tube).unwrap();
-        let moving = MovingBase::new(bending.clone(), [random.pose(3.0), random.pose(3.0)]).unwrap();
+        let moving =
+            MovingBase::new(bending.clone(), [random.pose(3.0), random.pose(3.0)]).unwrap();
         let motions: [&dyn Motion; 4] = [
             &LinearMotion::chain(&from, &to, &radii).unwrap(),
             &RigidMotion::new(tube, poses).unwrap(),
@@ -68,8 +70,14 @@ fn stated_speeds_hold_between_any_shares_and_times() {
                         let moved = (behind.0 - before.0).length() / step;
                         let turned = (behind.1 - before.1).length() / step;
                         let rounding = 1e-13 / step;
-                        assert!(moved <= stated.point + rounding, "{moved} {stated:?} {share} {times:?}");
-                        assert!(turned <= stated.turn + rounding, "{turned} {stated:?} {share} {times:?}");
+                        assert!(
+                            moved <= stated.point + rounding,
+                            "{moved} {stated:?} {share} {times:?}"
+                        );
+                        assert!(
+                            turned <= stated.turn + rounding,
+                            "{turned} {stated:?} {share} {times:?}"
+                        );
                         used[0] = used[0].max(moved / stated.point);
                         used[1] = used[1].max(turned / stated.turn);
                     }
@@ -82,7 +90,8 @@ fn stated_speeds_hold_between_any_shares_and_times() {
     assert!(used[3].iter().all(|used| *used > 0.5), "{used:?}");
 }
 
-/// The largest share of a stated speed that is used at the tip, in fine steps of a part of the time.
+/// The largest share of a stated speed that is used at the tip, in fine steps of a part of the
+/// time.
 fn used_at_tip(motion: &dyn Motion, times: [Real; 2]) -> [Real; 2] {
     let Speed { point, turn } = motion.speed(0, [1.0; 2], times);
     let step = (times[1] - times[0]) / 256.0;
@@ -96,22 +105,25 @@ fn used_at_tip(motion: &dyn Motion, times: [Real; 2]) -> [Real; 2] {
     used
 }
 
-/// Each term of a moving base alone is what differences find: its push, its turn, what bends on it, and that a point may be farther
-/// from the axis at other times than at those whose shapes are known.
+/// Each term of a moving base alone is what differences find: its push, its turn, what bends on it,
+/// and that a point may be farther from the axis at other times than at those whose shapes are
+/// known.
 #[test]
 fn each_term_of_a_moving_base_is_as_large_as_differences() {
     let section = |length, bend| BendingSection { length, radius: 0.5, bend: [bend, 0.0] };
     let inner = |from, to| BendingMotion::new(&[from], &[to], Pose::IDENTITY).unwrap();
     let still = inner(section(10.0, 0.0), section(10.0, 0.0));
-    let moving =
-        |motion: &BendingMotion, to: Pose| MovingBase::new(motion.clone(), [Pose::IDENTITY, to]).unwrap();
+    let moving = |motion: &BendingMotion, to: Pose| {
+        MovingBase::new(motion.clone(), [Pose::IDENTITY, to]).unwrap()
+    };
     let pushed = moving(&still, Pose::from_translation(Vector::new(1.0, 2.0, -3.0)));
     let turned = moving(&still, Pose::rotation(Vector::X * 0.5));
     let bent = moving(&inner(section(10.0, 0.0), section(10.0, 0.02)), Pose::IDENTITY);
     // Pushed along the tip's way as the base turns it.
     let both = moving(&still, Pose::new(Vector::Y * -3.0, Vector::X * 0.5));
     // Grows to twice the length; away from the axis, not only along itself.
-    let growing = moving(&inner(section(1.0, 0.0), section(41.0, 0.0)), Pose::rotation(Vector::X * 3.0));
+    let growing =
+        moving(&inner(section(1.0, 0.0), section(41.0, 0.0)), Pose::rotation(Vector::X * 3.0));
     for (name, motion, times, least) in [
         ("push", &pushed, [0.0, 1.0], [0.999, 0.0]),
         ("turn", &turned, [0.0, 1.0], [0.999, 0.999]),

@@ -1,9 +1,10 @@
 //! Whether a motion keeps to the speeds that it states, and to the courses.
 //!
-//! A single fine step shows little. A point between samples is known only to their deviation, and every point only to the
-//! stated error; in a short time a motion of any speed stays within that. So shapes far apart in time are compared too: 1, 2,
-//! 4 and more steps apart, and with the first shape. The ways that were stated for the steps between them add up, and what is
-//! unknown of the two shapes counts once.
+//! A single fine step shows little. A point between samples is known only to their deviation, and
+//! every point only to the stated error; in a short time a motion of any speed stays within that.
+//! So shapes far apart in time are compared too: 1, 2, 4 and more steps apart, and with the first
+//! shape. The ways that were stated for the steps between them add up, and what is unknown of the
+//! two shapes counts once.
 //!
 //! **Ranges of shares.** A bound holds for every place of the range that it is stated for. So each
 //! place is compared with the bounds of many ranges that hold it, and the least of them counts: the
@@ -11,8 +12,8 @@
 //! whole section, and one range that is drawn for each step. A bound that looks at one end of its
 //! range only is too low for some of these.
 //!
-//! A course is compared with three shapes: those at both ends of its time, and the one at its middle, where what moves at a constant
-//! acceleration is farthest off.
+//! A course is compared with three shapes: those at both ends of its time, and the one at its
+//! middle, where what moves at a constant acceleration is farthest off.
 
 use super::sampled_shape::{PlaceMotion, SampledPlace, SampledShape, places};
 use super::{Motion, SectionSignature, rigid_pose};
@@ -20,33 +21,37 @@ use crate::distance::Scalar;
 use crate::robot::{RobotError, Tube};
 use parry3d_f64::math::Real;
 
-/// Checks the speeds and the courses that a motion states, by its shapes at `steps` even steps of its time. Call it in your tests.
+/// Checks the speeds and the courses that a motion states, by its shapes at `steps` even steps of
+/// its time. Call it in your tests.
 ///
-/// Points are compared at nine places in each section, and at its samples. From one shape to the next no point may move
-/// farther than the stated speed allows, and no direction may turn more. The same holds for shapes that are 2, 4, 8 and more
-/// steps apart, and for each shape and the first. A bound that is too low only for a moment, or only between two places, shows
-/// if the steps are fine enough. Steps cannot be too fine.
+/// Points are compared at nine places in each section, and at its samples. From one shape to the
+/// next no point may move farther than the stated speed allows, and no direction may turn more. The
+/// same holds for shapes that are 2, 4, 8 and more steps apart, and for each shape and the first. A
+/// bound that is too low only for a moment, or only between two places, shows if the steps are fine
+/// enough. Steps cannot be too fine.
 ///
 /// A speed is asked for ranges of shares, and holds for every place of its range. So the motion is
 /// asked for several ranges that hold a place s: s alone, \[0, s\], \[s, 1\], \[0, 1\], the halves,
 /// quarters and eighths of the section, and one range that is drawn for each step, always the same
 /// ones. The least of these bounds counts, and is what the error names.
 ///
-/// A stated course ([`Motion::course`]) is compared with the shapes at the ends of its time and at its middle, between steps and
-/// between shapes that are 2, 4, 8 and more steps apart, for the same ranges.
+/// A stated course ([`Motion::course`]) is compared with the shapes at the ends of its time and at
+/// its middle, between steps and between shapes that are 2, 4, 8 and more steps apart, for the same
+/// ranges.
 ///
 /// Some of what moves may be an error of the shapes, which does not count against the motion:
 ///
-/// - the error that the tube states for itself ([`Tube::with_error`](crate::Tube::with_error)), twice;
-/// - between samples, how far the curve may be from the lines between them. This is 0 at samples that keep their shares of
-///   the section, and where the curve is a function.
+/// - the error that the tube states for itself ([`Tube::with_error`](crate::Tube::with_error)),
+///   twice;
+/// - between samples, how far the curve may be from the lines between them. This is 0 at samples
+///   that keep their shares of the section, and where the curve is a function.
 ///
-/// A speed that is too low is found if it makes a larger difference than these, at some place, from some shape to a later
-/// one.
+/// A speed that is too low is found if it makes a larger difference than these, at some place, from
+/// some shape to a later one.
 ///
 /// # Errors
-/// The first time and place at which the motion is faster than stated, with both speeds, or farther off its course; a shape that cannot be made; or
-/// sections that change.
+/// The first time and place at which the motion is faster than stated, with both speeds, or farther
+/// off its course; a shape that cannot be made; or sections that change.
 ///
 /// ```
 /// use parry_continuum::{Motion, RobotError, Speed, Tube, parry::math::{Pose, Real, Vector}, verify_motion};
@@ -71,7 +76,8 @@ pub fn verify_motion(motion: &impl Motion, steps: u32) -> Result<(), RobotError>
         (Tube::empty(), SectionSignature::default(), SampledShape::default());
     let (mut all, mut stated) = (Vec::new(), Vec::new());
     let mut ranges = Ranges::default();
-    // The first shape; then the last one of every step, of every second one, of every fourth and so on.
+    // The first shape; then the last one of every step, of every second one, of every fourth and so
+    // on.
     let mut kept = Vec::<SampledShape>::new();
     for step in 0..=steps {
         let t = Real::from(step) / Real::from(steps);
@@ -98,7 +104,8 @@ pub fn verify_motion(motion: &impl Motion, steps: u32) -> Result<(), RobotError>
                 check_courses([&kept[steps], &here], middle, &all, motion, &ranges)?;
             }
         }
-        let due = if step == 0 { 2 + steps.ilog2() as usize } else { 2 + step.trailing_zeros() as usize };
+        let due =
+            if step == 0 { 2 + steps.ilog2() as usize } else { 2 + step.trailing_zeros() as usize };
         kept.resize_with(kept.len().max(2 + steps.ilog2() as usize), SampledShape::default);
         let first = usize::from(step > 0);
         for before in kept.iter_mut().take(due).skip(first) {
@@ -166,10 +173,11 @@ impl Ranges {
                 dyadic.extend(dyadic_ranges().map(|range| (range, stated(section, range))));
             }
             let own = self.of_place(shares).map(|range| stated(section, range));
-            let around = dyadic.iter().filter(|(range, _)| holds(*range, shares)).map(|(_, stated)| *stated);
-            let least = own
-                .chain(around)
-                .fold([Real::INFINITY; 2], |least, stated| [0, 1].map(|k| smaller(least[k], stated[k])));
+            let around =
+                dyadic.iter().filter(|(range, _)| holds(*range, shares)).map(|(_, stated)| *stated);
+            let least = own.chain(around).fold([Real::INFINITY; 2], |least, stated| {
+                [0, 1].map(|k| smaller(least[k], stated[k]))
+            });
             out.push(least);
         }
     }
@@ -230,7 +238,8 @@ fn check(
 }
 
 /// # Errors
-/// A place is farther off its course between two shapes than stated, at the last one or at the one in the middle.
+/// A place is farther off its course between two shapes than stated, at the last one or at the one
+/// in the middle.
 fn check_courses(
     [before, here]: [&SampledShape; 2],
     middle: Option<&SampledShape>,
@@ -250,9 +259,11 @@ fn check_courses(
         if present != Some(section) {
             present = Some(section);
             dyadic.clear();
-            dyadic.extend(dyadic_ranges().map(|range| (range, motion.course(section, range, times))));
+            dyadic
+                .extend(dyadic_ranges().map(|range| (range, motion.course(section, range, times))));
         }
-        let own = ranges.of_place([share; 2]).map(|range| (range, motion.course(section, range, times)));
+        let own =
+            ranges.of_place([share; 2]).map(|range| (range, motion.course(section, range, times)));
         let around = dyadic.iter().copied().filter(|(range, _)| holds(*range, [share; 2]));
         for (shares, course) in own.chain(around) {
             let Some(course) = course else { continue };
@@ -270,7 +281,13 @@ fn check_courses(
                 let is_kept = found <= stated * (1.0 + 16.0 * Real::UNIT_ROUNDOFF);
                 if !is_kept {
                     let t = 0.5 * (times[0] + times[1]);
-                    return Err(RobotError::FartherOffThanStated { t, section, share, found, stated });
+                    return Err(RobotError::FartherOffThanStated {
+                        t,
+                        section,
+                        share,
+                        found,
+                        stated,
+                    });
                 }
             }
         }

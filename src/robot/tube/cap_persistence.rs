@@ -1,16 +1,19 @@
 //! Which flat ends stay flat while the robot moves.
 //!
-//! An end is flat by the radii alone, at the limits of the walks of Algorithm 1, or because it is less than a radius away
-//! from the last limit (`algorithm_1`, `faces`). Radii do not change during a motion. A distance between two points changes
-//! by no more than the points move: if it is D at one time and the points are v and w fast, then it is below the radius
-//! for a time tau before and after as long as D + tau (v + w) is.
+//! An end is flat by the radii alone, at the limits of the walks of Algorithm 1, or because it is
+//! less than a radius away from the last limit (`algorithm_1`, `faces`). Radii do not change during
+//! a motion. A distance between two points changes by no more than the points move: if it is D at
+//! one time and the points are v and w fast, then it is below the radius for a time tau before and
+//! after as long as D + tau (v + w) is.
 //!
 //! At the joints of a curve none of that matters: round or flat, the tube is its discs (`faces`).
 //!
-//! A chain may be capped by vertex radii instead. A link's radius r_k is then the smaller of its two vertices' R_k and
-//! R_k+1, and where r_k > r_k-1, R_k > R_k-1 too: every limit by the links' radii is one by the vertices'. Not the other way
-//! round: a single thick vertex is a limit that the links' radii don't show. So the true limit is the one that they show or
-//! a vertex between that and the end, and an end that is less than r_k <= R_k away from all of these is flat by either rule.
+//! A chain may be capped by vertex radii instead. A link's radius r_k is then the smaller of its
+//! two vertices' R_k and R_k+1, and where r_k > r_k-1, R_k > R_k-1 too: every limit by the links'
+//! radii is one by the vertices'. Not the other way round: a single thick vertex is a limit that
+//! the links' radii don't show. So the true limit is the one that they show or a vertex between
+//! that and the end, and an end that is less than r_k <= R_k away from all of these is flat by
+//! either rule.
 //!
 //! # Directions
 //! The flat ends of a section count as round in an interval of time in two cases. A ball around the
@@ -36,7 +39,8 @@ pub(crate) enum CapPersistence {
     Either,
     /// For want of room behind such a face.
     WhileNear,
-    /// The same in a chain that may be capped by vertex radii: behind such a face, or any vertex from there on.
+    /// The same in a chain that may be capped by vertex radii: behind such a face, or any vertex
+    /// from there on.
     WhileAllNear,
     /// Its direction is not known.
     Never,
@@ -115,7 +119,9 @@ impl Tube {
                 let limits = match face.persistence {
                     CapPersistence::WhileNear => limit..=limit,
                     CapPersistence::WhileAllNear => limit.min(number)..=limit.max(number),
-                    CapPersistence::Always | CapPersistence::Either | CapPersistence::Never => return,
+                    CapPersistence::Always | CapPersistence::Either | CapPersistence::Never => {
+                        return;
+                    }
                 };
                 let mut stays = true;
                 for limit in limits.filter(|limit| *limit != number) {
@@ -147,7 +153,8 @@ impl Tube {
             }
             // Both written so that NaN loses the direction.
             let length = section.end - section.start;
-            let keeps_length = !section.fades || length > drift.stretches(number) + MIN_LENGTH * rounding;
+            let keeps_length =
+                !section.fades || length > drift.stretches(number) + MIN_LENGTH * rounding;
             let turns = drift.turns(number);
             let turns_little = turns <= MAX_TURN;
             section.fades = !(keeps_length && turns_little);

@@ -9,7 +9,8 @@ use std::sync::Arc;
 /// A point and the direction of the curve there, by arc length.
 type Function = dyn Fn(Real) -> (Vector, Vector) + Send + Sync;
 
-/// How many ticks a section of a function has: more than any tolerance asks for that double precision can tell.
+/// How many ticks a section of a function has: more than any tolerance asks for that double
+/// precision can tell.
 pub(super) const TICKS: u32 = 1 << 20;
 
 /// Points on a centreline.
@@ -20,7 +21,8 @@ pub(super) struct Samples {
     pub arcs: Vec<Real>,
     /// For each point the segment of the input that begins there.
     pub segments: Vec<u32>,
-    /// For each point what is known of the curve from there to the next; none if all sections are even.
+    /// For each point what is known of the curve from there to the next; none if all sections are
+    /// even.
     pub bounds: Vec<CurveBound>,
 }
 
@@ -85,7 +87,8 @@ pub(super) enum Curve {
     Function(Arc<Function>),
 }
 
-/// Where a section is near a point: on the line between two points of its polyline, or at a point of its curve.
+/// Where a section is near a point: on the line between two points of its polyline, or at a point
+/// of its curve.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Foot {
     pub between: [Vector; 2],
@@ -182,7 +185,8 @@ impl Curve {
         match self {
             Self::Samples(Samples { arcs, .. }) => {
                 let within = &arcs[section.first as usize..=section.last as usize];
-                (section.first + within.partition_point(|&before| before < arc) as u32).min(section.last)
+                (section.first + within.partition_point(|&before| before < arc) as u32)
+                    .min(section.last)
             }
             Self::Function(_) => {
                 let share = (arc - section.start) / (section.end - section.start);
@@ -213,13 +217,20 @@ impl Curve {
                     let (mut low, mut high) = (section.first, section.last);
                     while low < high {
                         let tick = low + (high - low) / 2;
-                        if is_before(self.share(section, tick)) { low = tick + 1 } else { high = tick }
+                        if is_before(self.share(section, tick)) {
+                            low = tick + 1
+                        } else {
+                            high = tick
+                        }
                     }
                     low
                 };
                 let behind = count(&|share| share <= shares[0]);
-                let from =
-                    if self.share(section, behind) <= shares[0] { behind } else { behind.saturating_sub(1) };
+                let from = if self.share(section, behind) <= shares[0] {
+                    behind
+                } else {
+                    behind.saturating_sub(1)
+                };
                 let to = count(&|share| share < shares[1]);
                 [from.min(section.last - 1), to.max(section.first + 1)]
             }
@@ -231,9 +242,11 @@ impl Curve {
         }
     }
 
-    /// The place at a share of the section: between two samples, at the same share of the line between them.
+    /// The place at a share of the section: between two samples, at the same share of the line
+    /// between them.
     ///
-    /// There a curve of curvature k or less, l long between the two, is at most k l^2 u (1 - u) / 2 away at its share u.
+    /// There a curve of curvature k or less, l long between the two, is at most k l^2 u (1 - u) / 2
+    /// away at its share u.
     pub(super) fn at_share(&self, section: &Section, share: Real) -> PlaceOnCurve {
         match self {
             Self::Samples(Samples { points, arcs, .. }) => {
@@ -243,10 +256,12 @@ impl Curve {
                 let (a, b) = (points[from], points[to]);
                 let [before, behind] = [from, to].map(|tick| self.share(section, tick as u32));
                 let along = (share - before) / (behind - before);
-                // What the curve may turn by, and what the rounding of a few operations can turn the line by.
+                // What the curve may turn by, and what the rounding of a few operations can turn
+                // the line by.
                 let length = arcs[to] - arcs[from];
                 let rounding = 32.0 * Real::UNIT_ROUNDOFF * a.abs().max(b.abs()).max_element();
-                // A length that vanishes beside those before it, as a sum, says nothing of a direction.
+                // A length that vanishes beside those before it, as a sum, says nothing of a
+                // direction.
                 let rounded = if length > 0.0 { rounding / length } else { Real::INFINITY };
                 let bound = self.bound(section, [from as u32, to as u32]);
                 let apart = if length > 0.0 { 2.0 * bound.off / length } else { Real::INFINITY };
@@ -261,8 +276,8 @@ impl Curve {
         }
     }
 
-    /// A place of the section near `point`, found from an arc length nearby: not always the nearest, but always on the
-    /// section.
+    /// A place of the section near `point`, found from an arc length nearby: not always the
+    /// nearest, but always on the section.
     pub(super) fn foot(&self, section: &Section, arc: Real, point: Vector) -> Foot {
         match self {
             Self::Samples(Samples { points, arcs, .. }) => {
@@ -283,7 +298,8 @@ fn arc_of(section: &Section, tick: u32) -> Real {
     section.start + (section.end - section.start) * share
 }
 
-/// How far a curve may be from a share of the line between two of its points, if it is so long between them.
+/// How far a curve may be from a share of the line between two of its points, if it is so long
+/// between them.
 fn beside_chord(bound: &CurveBound, length: Real, share: Real) -> Real {
     0.5 * bound.curvature * length * length * (share * (1.0 - share)).max(0.0) + bound.off
 }

@@ -1,21 +1,24 @@
 //! A tube fitted to measured points.
 //!
-//! The points are off by the noise of a sensor. A smoothing spline goes near them, as smooth as cross-validation finds
-//! best; where that is farther from a point than the stated deviation, forces draw it near (`within`). Its parameter is its own arc length: the
-//! first one is the length of the polyline, which noise makes far too long where points are dense, and two more splines
-//! are fitted by the lengths of the last one. A number of splines that does not depend on the points is tried, each in
-//! time proportional to their number.
+//! The points are off by the noise of a sensor. A smoothing spline goes near them, as smooth as
+//! cross-validation finds best; where that is farther from a point than the stated deviation,
+//! forces draw it near (`within`). Its parameter is its own arc length: the first one is the length
+//! of the polyline, which noise makes far too long where points are dense, and two more splines are
+//! fitted by the lengths of the last one. A number of splines that does not depend on the points is
+//! tried, each in time proportional to their number.
 //!
-//! **What its bounds hold for.** All tubes whose centreline is within the deviation of the fitted one, in place: each of
-//! its points is that near to its counterpart. Nothing is known of directions. A disc of the tube lies in the ball of its
-//! radius around its centre, however it is turned; so bodies around balls, wider by the deviation, hold the tube. From
-//! the inside: let q be the centreline's point nearest to x. Unless q is an end of its section, x is in the plane of the
-//! disc there, and |x - q| - r away or less, where |x - q| is at most the deviation more than from any point of the
-//! fitted curve. If q may be an end, its centre is a point of the tube at least. So the only places where a direction is
-//! missed are flat faces: there the bounds are a radius apart, and that is what not stating a direction costs.
+//! **What its bounds hold for.** All tubes whose centreline is within the deviation of the fitted
+//! one, in place: each of its points is that near to its counterpart. Nothing is known of
+//! directions. A disc of the tube lies in the ball of its radius around its centre, however it is
+//! turned; so bodies around balls, wider by the deviation, hold the tube. From the inside: let q be
+//! the centreline's point nearest to x. Unless q is an end of its section, x is in the plane of the
+//! disc there, and |x - q| - r away or less, where |x - q| is at most the deviation more than from
+//! any point of the fitted curve. If q may be an end, its centre is a point of the tube at least.
+//! So the only places where a direction is missed are flat faces: there the bounds are a radius
+//! apart, and that is what not stating a direction costs.
 //!
-//! With a stated `turn`, every direction near a face is within it of the fitted one, and the derivation of bodies at a
-//! face holds with the tilt `turn` (`pieces::bounding_body`).
+//! With a stated `turn`, every direction near a face is within it of the fitted one, and the
+//! derivation of bodies at a face holds with the tilt `turn` (`pieces::bounding_body`).
 
 use super::Tube;
 use super::curve::{CurveBound, NextPoint};
@@ -34,7 +37,8 @@ const CLOSEST: Real = 1.0 / (1 << 20) as Real;
 /// How often the parameter is set anew.
 const PASSES: u32 = 3;
 
-/// In how many steps forces are looked for that bring the spline within the deviation, and for how many weights.
+/// In how many steps forces are looked for that bring the spline within the deviation, and for how
+/// many weights.
 const MAX_STEPS: u32 = 200;
 const MAX_SOFTENED: u32 = 32;
 
@@ -42,18 +46,22 @@ const MAX_SOFTENED: u32 = 32;
 const MAX_PARTS: u32 = 64;
 
 impl Tube {
-    /// The tube around a smooth curve within `deviation` of each of the measured `points`, with one radius for each
-    /// segment between them. Steps in radius stay at their points. `deviation` is how far a point may be from the truth:
-    /// five times the standard deviation of a sensor, say. Points may lie as densely as they like, and repeat.
+    /// The tube around a smooth curve within `deviation` of each of the measured `points`, with one
+    /// radius for each segment between them. Steps in radius stay at their points. `deviation`
+    /// is how far a point may be from the truth: five times the standard deviation of a sensor,
+    /// say. Points may lie as densely as they like, and repeat.
     ///
-    /// All bounds of answers hold for every tube whose centreline is within `deviation` of the fitted one, point by point,
-    /// however it wriggles in between. So they hold for the robot if that is within `deviation` of the curve that you see. At
-    /// flat faces it matters which way the centreline leads, too. As long as that is not stated, the lower bound takes a face
-    /// for a ball and the upper one for its centre, so they stay a radius apart there; [`with_turn`](Self::with_turn) states
-    /// it. Both are part of an answer's `uncertainty`, and none of the tolerance.
+    /// All bounds of answers hold for every tube whose centreline is within `deviation` of the
+    /// fitted one, point by point, however it wriggles in between. So they hold for the robot
+    /// if that is within `deviation` of the curve that you see. At flat faces it matters which
+    /// way the centreline leads, too. As long as that is not stated, the lower bound takes a face
+    /// for a ball and the upper one for its centre, so they stay a radius apart there;
+    /// [`with_turn`](Self::with_turn) states it. Both are part of an answer's `uncertainty`,
+    /// and none of the tolerance.
     ///
-    /// The curve is a cubic smoothing spline, as smooth as cross-validation finds best (see the source for references). How
-    /// far it is from the points is its [`residual`](Self::residual).
+    /// The curve is a cubic smoothing spline, as smooth as cross-validation finds best (see the
+    /// source for references). How far it is from the points is its
+    /// [`residual`](Self::residual).
     ///
     /// ```
     /// use parry_continuum::{Tube, parry::math::Vector};
@@ -66,17 +74,23 @@ impl Tube {
     /// ```
     ///
     /// # Errors
-    /// As [`Chain::from_centreline`](crate::Chain::from_centreline); a deviation that is negative or not finite; points so
-    /// far apart that the curve within the deviation could turn by more than 1 rad in a 64th of the way from one to the next.
-    pub fn fit(points: &[Vector], segment_radii: &[Real], deviation: Real) -> Result<Self, RobotError> {
+    /// As [`Chain::from_centreline`](crate::Chain::from_centreline); a deviation that is negative
+    /// or not finite; points so far apart that the curve within the deviation could turn by
+    /// more than 1 rad in a 64th of the way from one to the next.
+    pub fn fit(
+        points: &[Vector],
+        segment_radii: &[Real],
+        deviation: Real,
+    ) -> Result<Self, RobotError> {
         check_segments(points, segment_radii)?;
         if !(0.0..Real::INFINITY).contains(&deviation) {
             return Err(RobotError::Negative { parameter: "deviation", value: deviation });
         }
         // Squares of lengths neither overflow nor vanish at a size near 1, around the first point.
         let origin = points[0];
-        let reach =
-            points.iter().fold(0.0, |most: Real, point| (*point - origin).abs().max_element().max(most));
+        let reach = points
+            .iter()
+            .fold(0.0, |most: Real, point| (*point - origin).abs().max_element().max(most));
         if reach.is_nan() || reach <= 0.0 {
             return Err(RobotError::AllPointsEqual);
         }
@@ -112,7 +126,8 @@ pub(super) fn smooth(points: &[Vector], deviation: Real) -> SmoothingSpline {
 
 /// Ascending numbers with these distances, none of them nearly 0.
 fn knots_apart(lengths: impl Iterator<Item = Real> + Clone) -> Vec<Real> {
-    let (sum, count) = lengths.clone().fold((0.0, 0), |(sum, count), length| (sum + length, count + 1));
+    let (sum, count) =
+        lengths.clone().fold((0.0, 0), |(sum, count), length| (sum + length, count + 1));
     let least = CLOSEST * sum / Real::from(count);
     let mut knots = vec![0.0];
     let mut last = 0.0;
@@ -126,16 +141,19 @@ fn knots_apart(lengths: impl Iterator<Item = Real> + Clone) -> Vec<Real> {
 /// The spline with the best score, and its weight.
 fn best(knots: &[Real], points: &[Vector]) -> (SmoothingSpline, Real) {
     let weights = Weights::of(knots);
-    let weight = weights.at(weights.best(|step| Smoother::new(knots, weights.at(step)).score(points)));
+    let weight =
+        weights.at(weights.best(|step| Smoother::new(knots, weights.at(step)).score(points)));
     (Smoother::new(knots, weight).spline(points), weight)
 }
 
-/// The spline itself if it is within the deviation of each point; or else the smoothest one that is, about.
+/// The spline itself if it is within the deviation of each point; or else the smoothest one that
+/// is, about.
 ///
-/// That is the least of the same sum under the condition that each residual is short enough. The condition acts like a
-/// force on each point that is too far away: the spline of points that are moved by the forces. Of what is least as it
-/// depends on the forces, a residual is the slope, which changes by no more than they do. So the forces are found by
-/// accelerated steps along it (A. Beck, M. Teboulle, SIAM Journal on Imaging Sciences 2, 2009), each shortened by what a
+/// That is the least of the same sum under the condition that each residual is short enough. The
+/// condition acts like a force on each point that is too far away: the spline of points that are
+/// moved by the forces. Of what is least as it depends on the forces, a residual is the slope,
+/// which changes by no more than they do. So the forces are found by accelerated steps along it (A.
+/// Beck, M. Teboulle, SIAM Journal on Imaging Sciences 2, 2009), each shortened by what a
 /// residual may be.
 fn within(
     deviation: Real,
@@ -148,10 +166,12 @@ fn within(
         return spline;
     }
     let wanted = deviation * (1.0 - 1.0 / 64.0);
-    let (mut forces, mut ahead) = (vec![Vector::ZERO; points.len()], vec![Vector::ZERO; points.len()]);
+    let (mut forces, mut ahead) =
+        (vec![Vector::ZERO; points.len()], vec![Vector::ZERO; points.len()]);
     for _ in 0..MAX_SOFTENED {
         let smoother = Smoother::new(knots, weight);
-        // A softer spline gives way to smaller forces; and where it is far too stiff, forces would only bend it in jerks.
+        // A softer spline gives way to smaller forces; and where it is far too stiff, forces would
+        // only bend it in jerks.
         weight /= 16.0;
         smoother.fill(points.iter().copied(), &mut spline);
         if spline.largest_residual(points) > 4.0 * deviation {
@@ -173,7 +193,8 @@ fn within(
             for ((force, ahead), (point, value)) in forces.iter_mut().zip(&mut ahead).zip(both) {
                 let pulled = *ahead + *point - *value;
                 let size = pulled.length();
-                let next = if size > wanted { pulled * (1.0 - wanted / size) } else { Vector::ZERO };
+                let next =
+                    if size > wanted { pulled * (1.0 - wanted / size) } else { Vector::ZERO };
                 *ahead = next + (next - *force) * onward;
                 *force = next;
             }
@@ -182,7 +203,8 @@ fn within(
     Smoother::new(knots, 0.0).spline(points)
 }
 
-/// The weights that are tried, from a spline that follows each point to a straight line, in even steps of their logarithm.
+/// The weights that are tried, from a spline that follows each point to a straight line, in even
+/// steps of their logarithm.
 struct Weights {
     spacing: Real,
     shortest: Real,
@@ -201,7 +223,8 @@ impl Weights {
     /// A spline levels what is shorter than (weight * spacing)^(1/4).
     fn at(&self, step: Real) -> Real {
         let Self { spacing, shortest, longest } = self;
-        let over = shortest * libm::exp2(libm::log2(longest / shortest) * step / Real::from(Self::STEPS));
+        let over =
+            shortest * libm::exp2(libm::log2(longest / shortest) * step / Real::from(Self::STEPS));
         over * over * (over * over / spacing)
     }
 
@@ -243,7 +266,8 @@ fn lay(
 ) -> Result<(), RobotError> {
     let place = |point: Vector| origin + point * (1.0 / scale);
     let curve = std::mem::take(&mut tube.curve);
-    let mut builder = TubeBuilder::begin(curve, std::mem::take(&mut tube.sections), place(spline.values[0]));
+    let mut builder =
+        TubeBuilder::begin(curve, std::mem::take(&mut tube.sections), place(spline.values[0]));
     // Chords leave the curve by little beside what is open anyway.
     let target = (deviation / 64.0).max(2.0_f64.powi(-24));
     let (mut stretched, mut gap): (Real, Real) = (1.0, 0.0);
@@ -264,13 +288,16 @@ fn lay(
                 continue;
             }
             let most = [from, to]
-                .map(|share| (spline.seconds[k] * (1.0 - share) + spline.seconds[k + 1] * share).length())
+                .map(|share| {
+                    (spline.seconds[k] * (1.0 - share) + spline.seconds[k + 1] * share).length()
+                })
                 .into_iter()
                 .fold(0.0, Real::max);
             let halfway = spline.at(k, 0.5 * (from + to))[1].length();
             // Where it may stand still, it may turn at once.
             let slowest = (halfway - 0.5 * most * h / Real::from(parts)).max(0.0);
-            let curvature = if most > 0.0 { most / (slowest * slowest) * (1.0 + 1e-12) } else { 0.0 };
+            let curvature =
+                if most > 0.0 { most / (slowest * slowest) * (1.0 + 1e-12) } else { 0.0 };
             let turn = curvature * length;
             // Written so that NaN is too much.
             if turn.is_nan() || turn > 1.0 {

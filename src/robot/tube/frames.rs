@@ -1,13 +1,15 @@
-//! A tube from frames: points of the centreline with the directions that it has there. What is assumed between two of them is
-//! told in `hermite_segment`.
+//! A tube from frames: points of the centreline with the directions that it has there. What is
+//! assumed between two of them is told in `hermite_segment`.
 //!
-//! **A frame that is taken twice**, as where one section ends and the next begins. The curve arrives in the direction of the first and
-//! leaves in that of the last. Let q be by how much these differ. A curve that turned by q there would have a corner: the discs
-//! between the two would sweep the ball around the point, of which no arch knows and no face. So a corner is refused. But what is
-//! left of one direction by matrices in single precision, q <= 2^-16, is none. Then either direction may be the true one. Each disc
-//! is within r q of one that the tube has; and an arch of length l that left in the other direction would be off by up to
-//! 4/27 q l, the most that a cubic moves by a change of q in one of its end tangents. Both count in all bounds like the gap
-//! between the points.
+//! **A frame that is taken twice**, as where one section ends and the next begins. The curve
+//! arrives in the direction of the first and leaves in that of the last. Let q be by how much these
+//! differ. A curve that turned by q there would have a corner: the discs between the two would
+//! sweep the ball around the point, of which no arch knows and no face. So a corner is refused. But
+//! what is left of one direction by matrices in single precision, q <= 2^-16, is none. Then either
+//! direction may be the true one. Each disc is within r q of one that the tube has; and an arch of
+//! length l that left in the other direction would be off by up to 4/27 q l, the most that a cubic
+//! moves by a change of q in one of its end tangents. Both count in all bounds like the gap between
+//! the points.
 
 use super::Tube;
 use super::hermite_segment::HermiteSegment;
@@ -34,18 +36,21 @@ fn around<'a>(
 }
 
 impl Tube {
-    /// The tube around a smooth curve through `points` in the directions `tangents` (of any length, towards the tip), with
-    /// one radius for each segment between them: what a forward kinematics computes. Directions make the curve known far
-    /// better than points alone; so few of them serve, and flat faces are known at steps in radius too.
+    /// The tube around a smooth curve through `points` in the directions `tangents` (of any length,
+    /// towards the tip), with one radius for each segment between them: what a forward
+    /// kinematics computes. Directions make the curve known far better than points alone; so
+    /// few of them serve, and flat faces are known at steps in radius too.
     ///
-    /// Between two frames the curve may bend as the directions show there and in the neighbouring segments of the section, and
-    /// anything between; its curvature may jump from the one to the other at any place. In a section of one segment the bend
-    /// changes one way only, evenly or in jumps. What that leaves open counts in the
-    /// bounds of each answer, and is nearly nothing in an arc. A bend that is shorter than a segment, or sharper than in its
+    /// Between two frames the curve may bend as the directions show there and in the neighbouring
+    /// segments of the section, and anything between; its curvature may jump from the one to
+    /// the other at any place. In a section of one segment the bend changes one way only,
+    /// evenly or in jumps. What that leaves open counts in the bounds of each answer, and is
+    /// nearly nothing in an arc. A bend that is shorter than a segment, or sharper than in its
     /// segment and its neighbours, is not covered: give more frames there.
     ///
-    /// Points at one place and radii are taken as [`from_samples`](Self::from_samples) takes them. A frame may be taken twice, its
-    /// directions up to 2^-16 rad apart, which counts in all bounds.
+    /// Points at one place and radii are taken as [`from_samples`](Self::from_samples) takes them.
+    /// A frame may be taken twice, its directions up to 2^-16 rad apart, which counts in all
+    /// bounds.
     ///
     /// ```
     /// use parry_continuum::{Tube, parry::math::Vector};
@@ -60,8 +65,9 @@ impl Tube {
     /// ```
     ///
     /// # Errors
-    /// As [`from_samples`](Self::from_samples); not as many tangents as points, or one that is zero or not finite; or two frames at
-    /// one place with different directions, between which the curve would have a corner.
+    /// As [`from_samples`](Self::from_samples); not as many tangents as points, or one that is zero
+    /// or not finite; or two frames at one place with different directions, between which the
+    /// curve would have a corner.
     pub fn from_frames(
         points: &[Vector],
         tangents: &[Vector],
@@ -70,23 +76,33 @@ impl Tube {
         let mut tube = Self::empty();
         check_segments(points, segment_radii)?;
         if tangents.len() != points.len() {
-            return Err(RobotError::TangentsDiffer { points: points.len(), tangents: tangents.len() });
+            return Err(RobotError::TangentsDiffer {
+                points: points.len(),
+                tangents: tangents.len(),
+            });
         }
         let directions: Vec<_> = tangents.iter().map(|&tangent| direction(tangent)).collect();
         let is_bad = |tangent: &Vector| !tangent.is_finite() || *tangent == Vector::ZERO;
         if let Some(index) = directions.iter().position(is_bad) {
-            return Err(RobotError::BadTangent { parameter: "tangents", index, value: tangents[index] });
+            return Err(RobotError::BadTangent {
+                parameter: "tangents",
+                index,
+                value: tangents[index],
+            });
         }
         // Squares of lengths neither overflow nor vanish at a size near 1.
-        let reach = points.iter().fold(0.0, |reach: Real, point| point.abs().max_element().max(reach));
+        let reach =
+            points.iter().fold(0.0, |reach: Real, point| point.abs().max_element().max(reach));
         let scale = reach.power_of_two_to_unity();
         let reach = reach * scale;
-        let (rounding, one_place) = (4.0 * Real::UNIT_ROUNDOFF * reach, 32.0 * Real::UNIT_ROUNDOFF * reach);
+        let (rounding, one_place) =
+            (4.0 * Real::UNIT_ROUNDOFF * reach, 32.0 * Real::UNIT_ROUNDOFF * reach);
         let (mut arches, mut last, mut gap) = (Vec::<HermiteSegment>::new(), 0, 0.0);
         let (mut leaving, mut most_turn): (_, Real) = (directions[0], 0.0);
         let (mut widest, mut longest): (Real, Real) = (0.0, 0.0);
         for (k, &radius) in segment_radii.iter().enumerate() {
-            let (ends, arriving) = ([points[last] * scale, points[k + 1] * scale], directions[k + 1]);
+            let (ends, arriving) =
+                ([points[last] * scale, points[k + 1] * scale], directions[k + 1]);
             widest = widest.max(radius);
             let apart = (ends[1] - ends[0]).length();
             longest = longest.max(apart);
@@ -119,13 +135,19 @@ impl Tube {
             let neighbours = around(number, own);
             let is_section = neighbours.iter().all(|side| side[0].is_none());
             let neighbours = if is_section { around(number, any) } else { neighbours };
-            let known = arch.bound(arch.ball(neighbours), is_section, rounding + gap).map_err(|turn| {
-                let after = arch.segment as usize;
-                RobotError::TurnsTooSharply { index: after + arch.sharper_end(), after, turn }
-            })?;
+            let known =
+                arch.bound(arch.ball(neighbours), is_section, rounding + gap).map_err(|turn| {
+                    let after = arch.segment as usize;
+                    RobotError::TurnsTooSharply { index: after + arch.sharper_end(), after, turn }
+                })?;
             stretch = stretch.max(known.stretch);
             let end = arches.get(number + 1).map_or(points[last] * scale, |next| next.start);
-            builder.lay(arch.segment, arch.radius, arch.tangents, arch.points(known.bound, end, unscale));
+            builder.lay(
+                arch.segment,
+                arch.radius,
+                arch.tangents,
+                arch.points(known.bound, end, unscale),
+            );
         }
         // 0.15 is more than 4/27, and than an arch is longer than its chord.
         let turned = most_turn * (widest + 0.15 * longest * unscale);

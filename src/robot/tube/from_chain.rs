@@ -10,7 +10,8 @@ use crate::robot::scale::{direction, length};
 use crate::robot::{Cap, Chain};
 use parry3d_f64::math::{Real, Vector};
 
-/// Each link is a section of its own, with the link's caps. Queries have no error but rounding, so any tolerance will do.
+/// Each link is a section of its own, with the link's caps. Queries have no error but rounding, so
+/// any tolerance will do.
 impl From<&Chain> for Tube {
     fn from(chain: &Chain) -> Self {
         let mut tube = Self::empty();
@@ -40,8 +41,8 @@ impl Tube {
         self.set_straight(links, CapPersistence::WhileAllNear);
     }
 
-    /// The links between points: by Algorithm 1, or capsules. A link without length keeps its place, as a ball. `segments` are those of
-    /// the input that they stand for.
+    /// The links between points: by Algorithm 1, or capsules. A link without length keeps its
+    /// place, as a ball. `segments` are those of the input that they stand for.
     pub(crate) fn set_links(
         &mut self,
         points: impl Iterator<Item = Vector>,
@@ -61,7 +62,8 @@ impl Tube {
         let links = ends.windows(2).zip(radii).zip(&caps).zip(segments).map(
             |(((ends, &radius), &caps), &segment)| {
                 let ends = [ends[0], ends[1]];
-                let caps = if has_direction(ends[0], ends[1], radius) { caps } else { [Cap::Round; 2] };
+                let caps =
+                    if has_direction(ends[0], ends[1], radius) { caps } else { [Cap::Round; 2] };
                 StraightSection { ends, radius, caps, segment }
             },
         );
@@ -69,9 +71,11 @@ impl Tube {
         (self.ends, self.caps) = (ends, caps);
     }
 
-    /// Links of any tube whose centreline is within `deviation` of theirs, place by place; which way its discs stand nobody knows.
-    /// Flat of such a tube are its two ends and the ends of each run of links with one radius, whichever way; a step in radius is
-    /// taken for two of them, which leaves out nothing: their centres are in the tube, and a ball around each holds its disc.
+    /// Links of any tube whose centreline is within `deviation` of theirs, place by place; which
+    /// way its discs stand nobody knows. Flat of such a tube are its two ends and the ends of
+    /// each run of links with one radius, whichever way; a step in radius is taken for two of
+    /// them, which leaves out nothing: their centres are in the tube, and a ball around each holds
+    /// its disc.
     pub(crate) fn set_loose_links(
         &mut self,
         links: impl Iterator<Item = ([Vector; 2], Real, u32)>,
@@ -89,7 +93,8 @@ impl Tube {
         for number in 0..count {
             let Section { radius, first, last, .. } = self.sections[number];
             let ticks = [first, last];
-            let is_other = |other: Option<&Section>| other.is_none_or(|other| other.radius != radius);
+            let is_other =
+                |other: Option<&Section>| other.is_none_or(|other| other.radius != radius);
             let is_end = [
                 is_other(number.checked_sub(1).and_then(|before| self.sections.get(before))),
                 is_other(self.sections.get(number + 1)),
@@ -110,12 +115,18 @@ impl Tube {
     /// Whether only places of it are known, and no directions ([`Tube::set_loose_links`]).
     pub(crate) fn is_loose(&self) -> bool {
         let first = self.sections.first().and_then(|section| section.faces[0]);
-        first.is_some_and(|face| face.tilt == Real::INFINITY && face.persistence == CapPersistence::Never)
+        first.is_some_and(|face| {
+            face.tilt == Real::INFINITY && face.persistence == CapPersistence::Never
+        })
     }
 
-    /// Sections without curvature, in the memory that the tube has. One without length is a ball if its caps are round.
-    /// `persistence` knows flat ends that are not so by the radii alone.
-    fn set_straight(&mut self, sections: impl Iterator<Item = StraightSection>, persistence: CapPersistence) {
+    /// Sections without curvature, in the memory that the tube has. One without length is a ball if
+    /// its caps are round. `persistence` knows flat ends that are not so by the radii alone.
+    fn set_straight(
+        &mut self,
+        sections: impl Iterator<Item = StraightSection>,
+        persistence: CapPersistence,
+    ) {
         let Samples { mut points, mut arcs, mut segments, mut bounds } =
             std::mem::take(&mut self.curve).into_samples();
         bounds.clear();
@@ -159,7 +170,8 @@ impl Tube {
         (self.error, self.merged, self.turn) = (0.0, 0.0, None);
         (self.residual, self.deviation) = (0.0, 0.0);
         // Lengths along the tube are rounded too.
-        self.reach = points.iter().fold(start, |reach: Real, point| point.abs().max_element().max(reach));
+        self.reach =
+            points.iter().fold(start, |reach: Real, point| point.abs().max_element().max(reach));
         self.curve = Curve::Samples(Samples { points, arcs, segments, bounds });
         self.mark_persistent_faces();
     }

@@ -23,11 +23,13 @@ pub struct TubeSection {
 }
 
 impl Tube {
-    /// The tube around a curve that is computed where a query needs it: `curve` gives the point and the direction (of
-    /// any length) at an arc length from 0 to the sum of the sections' lengths.
+    /// The tube around a curve that is computed where a query needs it: `curve` gives the point and
+    /// the direction (of any length) at an arc length from 0 to the sum of the sections'
+    /// lengths.
     ///
-    /// Its direction must be continuous and, within each section, turn by no more than the section's curvature per
-    /// length. Answers are as good as that promise: [`verify`](Self::verify) tries it.
+    /// Its direction must be continuous and, within each section, turn by no more than the
+    /// section's curvature per length. Answers are as good as that promise:
+    /// [`verify`](Self::verify) tries it.
     ///
     /// ```
     /// use parry_continuum::{Tube, TubeSection, parry::math::Vector};
@@ -42,9 +44,9 @@ impl Tube {
     /// ```
     ///
     /// # Errors
-    /// No section; a length that is not positive, a radius or a curvature that is negative, or one that is not finite; a
-    /// curve that is not finite or out of range at the end of a section; a section with a flat end whose curvature times
-    /// its radius is 1 or more.
+    /// No section; a length that is not positive, a radius or a curvature that is negative, or one
+    /// that is not finite; a curve that is not finite or out of range at the end of a section;
+    /// a section with a flat end whose curvature times its radius is 1 or more.
     pub fn from_function(
         sections: &[TubeSection],
         curve: impl Fn(Real) -> (Vector, Vector) + Send + Sync + 'static,
@@ -58,10 +60,19 @@ impl Tube {
                 let (centre, tangent) = curve(arc_length);
                 check_place("curve", index, centre)?;
                 if !(tangent.length_squared() > 0.0 && tangent.is_finite()) {
-                    return Err(RobotError::BadTangent { parameter: "curve", index, value: tangent });
+                    return Err(RobotError::BadTangent {
+                        parameter: "curve",
+                        index,
+                        value: tangent,
+                    });
                 }
                 let outward = direction(if end == 0 { -tangent } else { tangent });
-                Ok(Some(EndFace { centre, outward, tilt: 0.0, persistence: CapPersistence::Either }))
+                Ok(Some(EndFace {
+                    centre,
+                    outward,
+                    tilt: 0.0,
+                    persistence: CapPersistence::Either,
+                }))
             };
             // The ends of sections are rounded.
             let curvature = given.curvature * (1.0 + 8.0 * Real::UNIT_ROUNDOFF);
@@ -83,7 +94,12 @@ impl Tube {
             });
             start = end;
         }
-        let ends = tube.sections.iter().flat_map(|section| section.faces).flatten().map(|face| face.centre);
+        let ends = tube
+            .sections
+            .iter()
+            .flat_map(|section| section.faces)
+            .flatten()
+            .map(|face| face.centre);
         tube.reach = ends.fold(0.0, |reach, point| point.abs().max_element().max(reach)) + start;
         for end in [0, 1] {
             tube.walk(end, |tube, number, limit| {
@@ -102,7 +118,8 @@ impl Tube {
 }
 
 /// # Errors
-/// No section; a length that is not positive, a radius or a curvature that is negative, or one that is not finite.
+/// No section; a length that is not positive, a radius or a curvature that is negative, or one that
+/// is not finite.
 pub(in crate::robot) fn check_sections(
     parameter: &'static str,
     sections: &[TubeSection],

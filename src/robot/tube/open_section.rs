@@ -85,7 +85,8 @@ impl OpenSection {
         self.is_uneven |= segment.is_uneven(before);
         let squared = (segment.direction - before.direction).length_squared();
         let noise = segment.noise + before.noise;
-        // Most turns are no larger than the largest so far, which is seen without a root and a division.
+        // Most turns are no larger than the largest so far, which is seen without a root and a
+        // division.
         let known = self.section.curvature * (0.5 * (segment.least + before.least)) - noise;
         if known < 0.0 || squared > known * known {
             self.raise(at, curvature_between(before, segment));
@@ -117,8 +118,8 @@ impl OpenSection {
         }
     }
 
-    /// Ends it at a sample. `bounds` are those of the segments, if any. A sample is returned as well that shows more than
-    /// others because another one is very near, if there is one.
+    /// Ends it at a sample. `bounds` are those of the segments, if any. A sample is returned as
+    /// well that shows more than others because another one is very near, if there is one.
     pub(super) fn close(
         mut self,
         last: usize,
@@ -167,8 +168,11 @@ impl OpenSection {
             section.curvature_at = [section.curvature; 2];
             section.stretch = stretch(bend);
             if bend > 1.0 {
-                sharpest =
-                    Some(Bend { at: self.sharpest - first, from: self.longest_from - first, turn: bend });
+                sharpest = Some(Bend {
+                    at: self.sharpest - first,
+                    from: self.longest_from - first,
+                    turn: bend,
+                });
             }
         }
         match sharpest {

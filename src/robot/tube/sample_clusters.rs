@@ -1,25 +1,30 @@
 //! Samples that crowd: where a sample was taken twice, a little apart.
 //!
-//! Two samples 0.01 mm apart, whose neighbours are a millimetre away, show a sharp bend if one of them is off by as much as
-//! they are apart. Then either the curve bends like that, or the bend is noise. Both are covered:
+//! Two samples 0.01 mm apart, whose neighbours are a millimetre away, show a sharp bend if one of
+//! them is off by as much as they are apart. Then either the curve bends like that, or the bend is
+//! noise. Both are covered:
 //!
-//! - *When.* Only where the tube would be refused because of a bend that one of them shows, or where that is sharper by a quarter
-//!   than all that samples show which are farther apart. They are as close together as
-//!   that one and its nearer neighbour, or up to 2^[`MAX_DOUBLINGS`] times as far if there are more than two; the other
-//!   samples before and behind are [`APART`] times as far from the first of them as the farthest of them is. The segments
-//!   between them have the radius of the segment before or of the one behind: a flange is no noise.
-//! - *What is taken to be.* The first of them stays. Let g be how far the others are from it at most, the gap. The curve passes
-//!   within g of the one that stays, and bends no more than the samples show that are on the curve: those that do not
-//!   crowd, and for each crowd the place within the gap where the curve is. Or else the curve goes through all of them, and
-//!   in the two segments before and the two behind bends no more than they show (`section_samples`). A bend is left out that would
-//!   be by more than 1 rad or within the radius, for which the tube would be refused. Where a tube that was good would be
-//!   refused because of a crowd, that is none.
-//! - *What follows.* Beside a curve through samples, the one that stays is off by g. So is every chord to it; all bodies and
-//!   witnesses count g. A chord l long between samples with the gaps g1 and g2 has an end moved by g1 and another by g2. Of
-//!   two vectors v and w with |v - w| <= g = g1 + g2, the unit vectors differ by at most 2 g / (|v| + |w|) <= g / (l - g)
-//!   (Dunkl and Williams, American Mathematical Monthly 71, 1964), and the lengths by g at most. So a turn is larger than it
-//!   seems by no more than that for each of its segments, half of their lengths together is less by no more than half of
-//!   their g, and the curve between them is longer by no more than the share g / l.
+//! - *When.* Only where the tube would be refused because of a bend that one of them shows, or
+//!   where that is sharper by a quarter than all that samples show which are farther apart. They
+//!   are as close together as that one and its nearer neighbour, or up to 2^[`MAX_DOUBLINGS`] times
+//!   as far if there are more than two; the other samples before and behind are [`APART`] times as
+//!   far from the first of them as the farthest of them is. The segments between them have the
+//!   radius of the segment before or of the one behind: a flange is no noise.
+//! - *What is taken to be.* The first of them stays. Let g be how far the others are from it at
+//!   most, the gap. The curve passes within g of the one that stays, and bends no more than the
+//!   samples show that are on the curve: those that do not crowd, and for each crowd the place
+//!   within the gap where the curve is. Or else the curve goes through all of them, and in the two
+//!   segments before and the two behind bends no more than they show (`section_samples`). A bend is
+//!   left out that would be by more than 1 rad or within the radius, for which the tube would be
+//!   refused. Where a tube that was good would be refused because of a crowd, that is none.
+//! - *What follows.* Beside a curve through samples, the one that stays is off by g. So is every
+//!   chord to it; all bodies and witnesses count g. A chord l long between samples with the gaps g1
+//!   and g2 has an end moved by g1 and another by g2. Of two vectors v and w with |v - w| <= g = g1
+//!   + g2, the unit vectors differ by at most 2 g / (|v| + |w|) <= g / (l - g) (Dunkl and Williams,
+//!   American Mathematical Monthly 71, 1964), and the lengths by g at most. So a turn is larger
+//!   than it seems by no more than that for each of its segments, half of their lengths together is
+//!   less by no more than half of their g, and the curve between them is longer by no more than the
+//!   share g / l.
 
 use super::segment::{Segment, curvature_between, curvature_from};
 use crate::robot::radius_steps::is_same;
@@ -48,17 +53,19 @@ pub(super) struct SampleCluster {
     pub bends: [Through; 2],
 }
 
-/// The bends that samples which crowd show, if the curve goes through all of them, for the two segments on one side.
+/// The bends that samples which crowd show, if the curve goes through all of them, for the two
+/// segments on one side.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Through {
-    /// For the segment beside them: what its turn into each segment between them shows, and what the second sample shows.
+    /// For the segment beside them: what its turn into each segment between them shows, and what
+    /// the second sample shows.
     beside: [Real; 2],
     /// For the segment beyond that one: what the first sample shows.
     beyond: Real,
 }
 
-/// Finds the crowds that are as close together as two of the samples around `at`, or a few times as far. Whether there are
-/// more of them than before.
+/// Finds the crowds that are as close together as two of the samples around `at`, or a few times as
+/// far. Whether there are more of them than before.
 pub(super) fn find(
     samples: &[Vector],
     radii: &[Real],
@@ -72,8 +79,9 @@ pub(super) fn find(
     let before = samples[..at].iter().rev().map(apart).find(is_apart);
     let behind = samples[at..].iter().map(apart).find(is_apart);
     let closest = before.into_iter().chain(behind).fold(Real::INFINITY, Real::min);
-    let left_out =
-        |crowds: &[SampleCluster]| crowds.iter().map(|crowd| crowd.last - crowd.first).sum::<usize>();
+    let left_out = |crowds: &[SampleCluster]| {
+        crowds.iter().map(|crowd| crowd.last - crowd.first).sum::<usize>()
+    };
     let known = left_out(crowds);
     let mut within = closest;
     for _ in 0..=MAX_DOUBLINGS {
@@ -104,7 +112,8 @@ fn find_within(
             next += 1;
         }
         let behind = if next < samples.len() { apart(next) } else { Real::INFINITY };
-        let beside = [first.checked_sub(1), Some(next - 1)].map(|k| k.and_then(|k| radii.get(k)).copied());
+        let beside =
+            [first.checked_sub(1), Some(next - 1)].map(|k| k.and_then(|k| radii.get(k)).copied());
         let is_no_flange = radii[first..next - 1]
             .iter()
             .all(|&radius| beside.into_iter().flatten().any(|beside| is_same(beside, radius)));
@@ -135,9 +144,9 @@ fn find_within(
     }
 }
 
-/// What samples that crowd show of the segments towards an end, if the curve goes through all of them: as if they did not
-/// crowd. `near` is the next sample at that end and `far` the one at the other, where the curve ends along `tangent` if there is
-/// none.
+/// What samples that crowd show of the segments towards an end, if the curve goes through all of
+/// them: as if they did not crowd. `near` is the next sample at that end and `far` the one at the
+/// other, where the curve ends along `tangent` if there is none.
 fn through(
     end: usize,
     samples: &[Vector],
@@ -178,7 +187,8 @@ fn through(
     Through { beside: [most, second], beyond }
 }
 
-/// What a segment next to a point that stands for samples bends, if the curve goes through all of them.
+/// What a segment next to a point that stands for samples bends, if the curve goes through all of
+/// them.
 pub(super) fn bend_at(crowds: &[SampleCluster], point: usize, end: usize) -> [Real; 2] {
     crowd_at(crowds, point).map_or([0.0; 2], |crowd| crowd.bends[end].beside)
 }

@@ -1,24 +1,28 @@
-//! A tube from samples: its sections, and how far the curve through the samples may be from the lines between them.
+//! A tube from samples: its sections, and how far the curve through the samples may be from the
+//! lines between them.
 //!
-//! Nobody knows the curve between two samples. It is taken to bend no more than the samples show: its curvature in a
-//! section is at most the largest of turn / distance over the section's samples, where turn is the change of direction
-//! (as the length of the difference of the unit vectors) between the two segments that meet in a sample, and distance is
-//! half of their lengths together. For a circle that is its curvature exactly. A turn at a step in radius counts only for
-//! a section that has fewer than two of its own. What means over two segments hide of a curvature that changes evenly is
-//! added (`between_samples`). Where samples lie unevenly, what a sample shows counts for the two segments on either side of it
-//! (`section_samples`).
+//! Nobody knows the curve between two samples. It is taken to bend no more than the samples show:
+//! its curvature in a section is at most the largest of turn / distance over the section's samples,
+//! where turn is the change of direction (as the length of the difference of the unit vectors)
+//! between the two segments that meet in a sample, and distance is half of their lengths together.
+//! For a circle that is its curvature exactly. A turn at a step in radius counts only for a section
+//! that has fewer than two of its own. What means over two segments hide of a curvature that
+//! changes evenly is added (`between_samples`). Where samples lie unevenly, what a sample shows
+//! counts for the two segments on either side of it (`section_samples`).
 //!
 //! With that curvature k, and h the length of a segment:
-//! - a piece of curve over a chord of length c with k c <= 1 is at most (2 / k) asin(k c / 2) <= c (1 + (k c)^2 / 20)
-//!   long (Schwarz: the chord of an arc of curvature k is the shortest; asin x <= x (1 + x^2 / 5) up to 1/2);
+//! - a piece of curve over a chord of length c with k c <= 1 is at most (2 / k) asin(k c / 2) <= c
+//!   (1 + (k c)^2 / 20) long (Schwarz: the chord of an arc of curvature k is the shortest; asin x
+//!   <= x (1 + x^2 / 5) up to 1/2);
 //! - it leaves the chord by at most k l^2 / 8, where l is its length.
 //!
-//! Samples at one place, but for rounding, are one. The first of them stays, and the curve goes on from within the gap: the
-//! directions on either side are unknown by the gap over the length, and every point by the gap. Samples that are not quite at one
-//! place, where a sample was taken twice, are told of in `sample_clusters`.
+//! Samples at one place, but for rounding, are one. The first of them stays, and the curve goes on
+//! from within the gap: the directions on either side are unknown by the gap over the length, and
+//! every point by the gap. Samples that are not quite at one place, where a sample was taken twice,
+//! are told of in `sample_clusters`.
 //!
-//! Both hold whether or not the curvature jumps: the tangent t need only have |t'| <= k almost everywhere. Which way a
-//! face stands is told in `direction_at_end`.
+//! Both hold whether or not the curvature jumps: the tangent t need only have |t'| <= k almost
+//! everywhere. Which way a face stands is told in `direction_at_end`.
 
 use super::Tube;
 use super::cap_persistence::CapPersistence;
@@ -50,7 +54,8 @@ impl Tube {
         end_tangents: Option<[Vector; 2]>,
     ) -> Result<(), RobotError> {
         // In one sweep without branches; what it does not find good is looked at closely.
-        let (mut reach, mut is_good) = ([0.0; 3], samples.len() >= 2 && radii.len() + 1 == samples.len());
+        let (mut reach, mut is_good) =
+            ([0.0; 3], samples.len() >= 2 && radii.len() + 1 == samples.len());
         for point in samples {
             for (reach, value) in reach.iter_mut().zip(point.abs().to_array()) {
                 // NaN is not larger, but not good either.
@@ -58,7 +63,9 @@ impl Tube {
                 is_good &= value <= COORDINATE_LIMIT;
             }
         }
-        is_good &= radii.iter().fold(true, |good, &radius| good & (0.0..=COORDINATE_LIMIT).contains(&radius));
+        is_good &= radii
+            .iter()
+            .fold(true, |good, &radius| good & (0.0..=COORDINATE_LIMIT).contains(&radius));
         if !is_good {
             check_segments(samples, radii)?;
         }
@@ -79,9 +86,9 @@ impl Tube {
             };
             let is_good = result.is_ok();
             good.clone_from(&crowds);
-            if !at
-                .is_some_and(|at| sample_clusters::find(samples, radii, tangents, at, one_place, &mut crowds))
-            {
+            if !at.is_some_and(|at| {
+                sample_clusters::find(samples, radii, tangents, at, one_place, &mut crowds)
+            }) {
                 break;
             }
             (result, crowding) = self.lay_samples(&given, &mut crowds, &mut hats);
@@ -98,8 +105,8 @@ impl Tube {
         result
     }
 
-    /// Fills the tube with good samples, of which those that crowd are one. A sample around which there may be more that
-    /// do is returned as well.
+    /// Fills the tube with good samples, of which those that crowd are one. A sample around which
+    /// there may be more that do is returned as well.
     fn lay_samples(
         &mut self,
         given: &InputSamples,
@@ -150,7 +157,9 @@ impl Tube {
                 off_here = if crowd.first == k + 1 { crowd.gap } else { 0.0 };
             }
             // What is left out of the curve before it is unknown of its direction.
-            let Some(segment) = Segment::between(points[last], sample, rounding + gap) else { continue };
+            let Some(segment) = Segment::between(points[last], sample, rounding + gap) else {
+                continue;
+            };
             if segment.length <= one_place {
                 gap = gap.max(segment.length);
                 widest_gap = widest_gap.max(gap);
@@ -164,8 +173,10 @@ impl Tube {
                 } else {
                     let turn = curvature_between(before, &segment);
                     open.at_ends = open.at_ends.max(turn);
-                    let done =
-                        std::mem::replace(&mut open, OpenSection::behind_step(last, arc, radius, turn));
+                    let done = std::mem::replace(
+                        &mut open,
+                        OpenSection::behind_step(last, arc, radius, turn),
+                    );
                     self.merged = self.merged.max(done.section.radius - done.least_radius);
                     let so_far = SamplePrefix { points: &points, arcs: &arcs, crowds };
                     match done.close(last, rounding + widest_gap, &so_far, hats, &mut bounds) {
@@ -224,13 +235,14 @@ impl Tube {
             result = self.stand_faces(&points, &bounds, unknown, given, crowds);
         }
         // The number of the sample in the input.
-        let crowding =
-            crowding.map(|at: usize| at.checked_sub(1).map_or(0, |before| segments[before] as usize + 1));
+        let crowding = crowding
+            .map(|at: usize| at.checked_sub(1).map_or(0, |before| segments[before] as usize + 1));
         self.curve = Curve::Samples(Samples { points, arcs, segments, bounds });
         (result, crowding)
     }
 
-    /// Finds the flat ends of the sections and their directions. `points` are the samples without those repeated.
+    /// Finds the flat ends of the sections and their directions. `points` are the samples without
+    /// those repeated.
     fn stand_faces(
         &mut self,
         points: &[Vector],
@@ -244,7 +256,8 @@ impl Tube {
             self.walk(end, |tube, number, limit| {
                 let section = &tube.sections[number];
                 let stretch = &points[section.first as usize..=section.last as usize];
-                let ahead = |k: usize| if end == 0 { stretch[k] } else { stretch[stretch.len() - 1 - k] };
+                let ahead =
+                    |k: usize| if end == 0 { stretch[k] } else { stretch[stretch.len() - 1 - k] };
                 let centre = ahead(0);
                 if !tube.is_flat(end, number, limit, centre) {
                     return;
@@ -258,10 +271,12 @@ impl Tube {
                     Some(outward) => (outward, 0.0),
                     None => {
                         let curvature = bend_at_end(section, end, bounds);
-                        let from = if end == 0 { section.first as usize } else { section.last as usize };
+                        let from =
+                            if end == 0 { section.first as usize } else { section.last as usize };
                         // In the order of their points.
-                        let first =
-                            crowds.partition_point(|crowd| crowd.point.saturating_add(FACE_SAMPLES) < from);
+                        let first = crowds.partition_point(|crowd| {
+                            crowd.point.saturating_add(FACE_SAMPLES) < from
+                        });
                         let near = crowds[first..]
                             .iter()
                             .take_while(|crowd| crowd.point <= from.saturating_add(FACE_SAMPLES));

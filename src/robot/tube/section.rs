@@ -5,8 +5,8 @@ use super::curve::CurveBound;
 use crate::distance::Scalar;
 use parry3d_f64::math::{Real, Vector};
 
-/// A stretch of the tube with one radius. Places along it are *ticks*: the samples, or even shares of the section where
-/// the curve is a function.
+/// A stretch of the tube with one radius. Places along it are *ticks*: the samples, or even shares
+/// of the section where the curve is a function.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Section {
     pub first: u32,
@@ -21,7 +21,8 @@ pub(crate) struct Section {
     pub mean_curvature: Real,
     /// What its curvature is at most within two radii of its ends, by arc length.
     pub curvature_at: [Real; 2],
-    /// What of that was stated or shown. A section with a flat end bends by less than 1 / radius next to it.
+    /// What of that was stated or shown. A section with a flat end bends by less than 1 / radius
+    /// next to it.
     pub shown_at: [Real; 2],
     /// Whether no more is known of one part than of another.
     pub is_even: bool,
@@ -86,9 +87,10 @@ impl Section {
         self.shown_at = self.curvature_at;
     }
 
-    /// How far from the flat face at an end, by arc length, a ball on the centreline stays behind it. A disc at arc length s
-    /// from the face lies at least sin(curvature s) / curvature behind its plane, which is the radius where s is
-    /// asin(curvature radius) / curvature, not farther away than pi / 2 radii.
+    /// How far from the flat face at an end, by arc length, a ball on the centreline stays behind
+    /// it. A disc at arc length s from the face lies at least sin(curvature s) / curvature
+    /// behind its plane, which is the radius where s is asin(curvature radius) / curvature, not
+    /// farther away than pi / 2 radii.
     pub(crate) fn room(&self, end: usize) -> Real {
         let curvature = self.curvature_at[end];
         let bend = (curvature * self.radius).min(1.0);

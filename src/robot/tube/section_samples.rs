@@ -1,47 +1,55 @@
 //! How much a section may bend between its samples.
 //!
-//! A sample shows a bend: the turn between its two segments over half of their lengths together. That is a mean of the
-//! curvature vector t', weighted by a hat over the two segments (for l1 and l2 long ones, and directions m1 and m2 as means
-//! of t: m2 - m1 is the integral of w t', w rising to 1 at the sample and falling again, and (l1 + l2) / 2 is that of w).
-//! The centre of a hat is (l2 - l1) / 3 behind its sample.
+//! A sample shows a bend: the turn between its two segments over half of their lengths together.
+//! That is a mean of the curvature vector t', weighted by a hat over the two segments (for l1 and
+//! l2 long ones, and directions m1 and m2 as means of t: m2 - m1 is the integral of w t', w rising
+//! to 1 at the sample and falling again, and (l1 + l2) / 2 is that of w). The centre of a hat is
+//! (l2 - l1) / 3 behind its sample.
 //!
-//! **A curvature that changes evenly** is shown exactly at the hat's centre, but for two places: at a section's ends, beyond
-//! the last centre, where the change goes on as far as the end; and at a peak, which lies up to two segments from the largest
-//! bend and above it by no more than twice what bends fall by on its flatter side. Where that would be more than a
-//! quarter of the bend at a peak, or half of it at an end, the change is not even, and no more is added.
+//! **A curvature that changes evenly** is shown exactly at the hat's centre, but for two places: at
+//! a section's ends, beyond the last centre, where the change goes on as far as the end; and at a
+//! peak, which lies up to two segments from the largest bend and above it by no more than twice
+//! what bends fall by on its flatter side. Where that would be more than a quarter of the bend at a
+//! peak, or half of it at an end, the change is not even, and no more is added.
 //!
-//! **A bend that turns about the curve**, as in a helix, by the angle q from one sample to the next: its mean over a hat
-//! is less than the curvature k by q^2 / 12 of it. The differences of bends are about q k long; q^2 / 8 is added.
+//! **A bend that turns about the curve**, as in a helix, by the angle q from one sample to the
+//! next: its mean over a hat is less than the curvature k by q^2 / 12 of it. The differences of
+//! bends are about q k long; q^2 / 8 is added.
 //!
-//! **Uneven samples.** The turn at samples that are close together shows the bend at one place, but is noisy, and it says
-//! little of how the bend changes farther on. So two chains of samples are looked at, and the larger curvature counts:
-//! the *wide* chain, whose samples are no closer together than a quarter of the usual distance (their geometric mean), and
-//! the *whole* chain, if that is another one.
+//! **Uneven samples.** The turn at samples that are close together shows the bend at one place, but
+//! is noisy, and it says little of how the bend changes farther on. So two chains of samples are
+//! looked at, and the larger curvature counts: the *wide* chain, whose samples are no closer
+//! together than a quarter of the usual distance (their geometric mean), and the *whole* chain, if
+//! that is another one.
 //!
 //! # Definitions
 //! - Chain: samples in order, the first and the last among them.
-//! - Hat of a sample: the stretch between its two neighbours in the chain. At an end whose tangent is given it is the
-//!   stretch to the only neighbour, and the bend is the turn from the tangent over half of that.
+//! - Hat of a sample: the stretch between its two neighbours in the chain. At an end whose tangent
+//!   is given it is the stretch to the only neighbour, and the bend is the turn from the tangent
+//!   over half of that.
 //! - b: the bend that a sample shows. e: what the rounding of the samples can do to b.
 //! - Counted bend of a sample in the whole chain: b + min(e, b).
 //!
 //! # Claim
-//! Let the curvature vector jump in a segment, and be constant on either side of it over a hat of one of the two samples next
-//! to that side. Then the curvature in the segment is at most the largest counted bend of the two samples before it
-//! and the two behind it, unless rounding hides more than half of what a sample shows.
+//! Let the curvature vector jump in a segment, and be constant on either side of it over a hat of
+//! one of the two samples next to that side. Then the curvature in the segment is at most the
+//! largest counted bend of the two samples before it and the two behind it, unless rounding hides
+//! more than half of what a sample shows.
 //!
 //! # Proof
-//! 1. The hat is an arc of curvature k, of two parts that turn by x and y. Their chords are (2 / k) sin(x / 2) and
-//!    (2 / k) sin(y / 2) long, and the angle between them is (x + y) / 2. So without rounding the sample shows
-//!    t = 2 k sin((x + y) / 4) / (sin(x / 2) + sin(y / 2)) = k / cos((x - y) / 4) >= k. With a tangent, x = 0.
+//! 1. The hat is an arc of curvature k, of two parts that turn by x and y. Their chords are (2 / k)
+//!    sin(x / 2) and (2 / k) sin(y / 2) long, and the angle between them is (x + y) / 2. So without
+//!    rounding the sample shows t = 2 k sin((x + y) / 4) / (sin(x / 2) + sin(y / 2)) = k / cos((x -
+//!    y) / 4) >= k. With a tangent, x = 0.
 //! 2. |b - t| <= e. If b >= e, b + e >= t. Otherwise 2 b >= t holds if |b - t| <= t / 2.
 //! 3. The curvature in the segment is that of one side or of the other.
 //!
-//! How bends change is looked at in the whole chain only from one hat to another whose two segments are about as long, as in
-//! a section whose samples lie evenly.
+//! How bends change is looked at in the whole chain only from one hat to another whose two segments
+//! are about as long, as in a section whose samples lie evenly.
 //!
-//! A counted bend is at most 2 b, so samples that show nothing but rounding cost no more than what they show. For their own
-//! two segments b + e counts in full. In the wide chain the noise is that of the closest samples in it.
+//! A counted bend is at most 2 b, so samples that show nothing but rounding cost no more than what
+//! they show. For their own two segments b + e counts in full. In the wide chain the noise is that
+//! of the closest samples in it.
 
 use super::curve::CurveBound;
 use super::sample_clusters::{SampleCluster, bend_at, beyond_at, gap_at};
@@ -49,7 +57,8 @@ use super::segment::{Segment, curvature_between, curvature_from};
 use crate::robot::RobotError;
 use parry3d_f64::math::{Real, Vector};
 
-/// Samples closer than this share of the usual distance to the one before are not in the wide chain.
+/// Samples closer than this share of the usual distance to the one before are not in the wide
+/// chain.
 const CLOSE: Real = 0.25;
 
 /// What a sample shows more than others counts where it turns a segment by more than this.
@@ -111,7 +120,11 @@ struct Chain<F: Fn(usize) -> Hat> {
 impl<F: Fn(usize) -> Hat> Chain<F> {
     /// The next place in the chain towards an end.
     fn next(&self, place: usize, end: usize) -> Option<usize> {
-        if end == 0 { place.checked_sub(1) } else { Some(place + 1).filter(|&next| next < self.count) }
+        if end == 0 {
+            place.checked_sub(1)
+        } else {
+            Some(place + 1).filter(|&next| next < self.count)
+        }
     }
 
     /// The curvature around a sample that shows `most`, but for what is beyond an end.
@@ -149,7 +162,8 @@ impl<F: Fn(usize) -> Hat> Chain<F> {
         curvature
     }
 
-    /// The curvature at an end, if it goes on changing as it does next to it. `points` are the samples.
+    /// The curvature at an end, if it goes on changing as it does next to it. `points` are the
+    /// samples.
     fn at_end(&self, end: usize, points: &[Vector]) -> Real {
         let end_of_chain = if end == 0 { 0 } else { self.count - 1 };
         let inwards = |place: usize| self.next(place, end ^ 1);
@@ -207,8 +221,8 @@ impl<'a> Sweep<'a> {
         Self { hats, ends, behind: 0 }
     }
 
-    /// Goes on to the segment that begins at a sample: the largest curvature that the two samples before it and the two behind
-    /// it show, and the sharpest of the four.
+    /// Goes on to the segment that begins at a sample: the largest curvature that the two samples
+    /// before it and the two behind it show, and the sharpest of the four.
     fn at(&mut self, from: usize) -> (Real, Hat) {
         while self.hats[self.behind].sample <= from {
             self.behind += 1;
@@ -218,8 +232,9 @@ impl<'a> Sweep<'a> {
         let four = &hats[behind.saturating_sub(2)..=(behind + 1).min(last)];
         // In this order the first of equals counts.
         let nearest = hats[behind - 1];
-        let sharpest =
-            four.iter().fold(nearest, |most, hat| if hat.around > most.around { *hat } else { most });
+        let sharpest = four
+            .iter()
+            .fold(nearest, |most, hat| if hat.around > most.around { *hat } else { most });
         let at_ends = [behind <= 2, behind + 1 >= last];
         let shown = [0, 1].map(|end| if at_ends[end] { self.ends[end] } else { 0.0 });
         (sharpest.around.max(shown[0]).max(shown[1]), sharpest)
@@ -239,24 +254,24 @@ impl SectionSamples<'_> {
 
     /// What a sample shows between two segments.
     fn hat(&self, sample: usize, before: Option<Segment>, behind: Option<Segment>) -> Hat {
-        let bend = match (before, behind) {
-            (Some(before), Some(behind)) => {
-                Some((behind.direction - before.direction) / (0.5 * (before.length + behind.length)))
-            }
-            (None, Some(behind)) if sample == 0 => {
-                self.tangents[0].map(|tangent| (behind.direction - tangent) / (0.5 * behind.length))
-            }
-            (Some(before), None) if sample == self.last() => {
-                self.tangents[1].map(|tangent| (tangent - before.direction) / (0.5 * before.length))
-            }
-            _ => None,
-        };
+        let bend =
+            match (before, behind) {
+                (Some(before), Some(behind)) => Some(
+                    (behind.direction - before.direction) / (0.5 * (before.length + behind.length)),
+                ),
+                (None, Some(behind)) if sample == 0 => self.tangents[0]
+                    .map(|tangent| (behind.direction - tangent) / (0.5 * behind.length)),
+                (Some(before), None) if sample == self.last() => self.tangents[1]
+                    .map(|tangent| (tangent - before.direction) / (0.5 * before.length)),
+                _ => None,
+            };
         let mut doubt = 0.0;
         if !self.crowds.is_empty() {
             let size = bend.map_or(0.0, |bend| bend.length());
             let sum = |of: fn(&Segment) -> Real| before.iter().chain(&behind).map(of).sum::<Real>();
             let gap = sum(|segment| segment.length - segment.least);
-            doubt = (2.0 * sum(|segment| segment.noise) + size * gap) / sum(|segment| segment.least);
+            doubt =
+                (2.0 * sum(|segment| segment.noise) + size * gap) / sum(|segment| segment.least);
         }
         Hat { sample, bend, doubt, is_even: true, shown: 0.0, around: 0.0 }
     }
@@ -282,7 +297,8 @@ impl SectionSamples<'_> {
         take(here, before, None);
     }
 
-    /// The curvature between samples that lie evenly, if the largest bend that they show is `most`, at the sample `at`.
+    /// The curvature between samples that lie evenly, if the largest bend that they show is `most`,
+    /// at the sample `at`.
     pub(super) fn between_samples(&self, at: usize, most: Real) -> Real {
         let last = self.last();
         let hat = |sample: usize| {
@@ -295,9 +311,14 @@ impl SectionSamples<'_> {
         ends[0].max(ends[1]).max(chain.around(at, most))
     }
 
-    /// The bend that a sample shows beside the next one on either side, what rounding and crowds can do to it included, and
-    /// how much of that is rounding.
-    fn own_bend(&self, sample: usize, before: Option<Segment>, behind: Option<Segment>) -> [Real; 2] {
+    /// The bend that a sample shows beside the next one on either side, what rounding and crowds
+    /// can do to it included, and how much of that is rounding.
+    fn own_bend(
+        &self,
+        sample: usize,
+        before: Option<Segment>,
+        behind: Option<Segment>,
+    ) -> [Real; 2] {
         let from = |end: usize, segment: &Segment| {
             self.tangents[end].map_or([0.0; 2], |tangent| {
                 let rounding = self.rounding / (0.5 * segment.least * segment.length);
@@ -316,8 +337,9 @@ impl SectionSamples<'_> {
         }
     }
 
-    /// The largest curvature of a segment if the curve goes through the samples that crowd around it. The tube would be refused for
-    /// a curve that bends by more than 1 rad there, or within its radius.
+    /// The largest curvature of a segment if the curve goes through the samples that crowd around
+    /// it. The tube would be refused for a curve that bends by more than 1 rad there, or within
+    /// its radius.
     fn through_crowds(&self, from: usize) -> Real {
         if self.crowds.is_empty() {
             return 0.0;
@@ -325,15 +347,17 @@ impl SectionSamples<'_> {
         let point = self.first + from;
         let length = self.arcs[from + 1] - self.arcs[from];
         let is_possible = |bend: &Real| bend * length <= 1.0 && bend * self.radius < 1.0;
-        let beside = bend_at(self.crowds, point, 1).into_iter().chain(bend_at(self.crowds, point + 1, 0));
+        let beside =
+            bend_at(self.crowds, point, 1).into_iter().chain(bend_at(self.crowds, point + 1, 0));
         let before = if from > 0 { beyond_at(self.crowds, point - 1, 1) } else { 0.0 };
-        let behind = if from + 2 <= self.last() { beyond_at(self.crowds, point + 2, 0) } else { 0.0 };
+        let behind =
+            if from + 2 <= self.last() { beyond_at(self.crowds, point + 2, 0) } else { 0.0 };
         beside.chain([before, behind]).filter(is_possible).fold(0.0, Real::max)
     }
 
-    /// Adds bounds of all segments. The sample at which the curve may turn too much between it and a neighbour is
-    /// returned, if there is one; and one that shows more than others because another one is very near. The curve bends
-    /// by `least` at least. `hats` is memory.
+    /// Adds bounds of all segments. The sample at which the curve may turn too much between it and
+    /// a neighbour is returned, if there is one; and one that shows more than others because
+    /// another one is very near. The curve bends by `least` at least. `hats` is memory.
     pub(super) fn bound_unevenly(
         self,
         least: Real,
@@ -391,7 +415,8 @@ impl SectionSamples<'_> {
                 sharpest = Some(Bend { at, from, turn });
             }
             if is_close(from + 1) && crowded.is_none() {
-                let length = |segment: Option<Segment>| segment.map_or(0.0, |segment| segment.length);
+                let length =
+                    |segment: Option<Segment>| segment.map_or(0.0, |segment| segment.length);
                 let longest_beside = length(before).max(length(next));
                 if (own.max(behind) - 1.25 * most) * longest_beside > SHARPER {
                     crowded = Some(from + 1);

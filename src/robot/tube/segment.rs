@@ -24,7 +24,12 @@ impl Segment {
         let length = along.length();
         if length > 0.0 {
             let inverse = 1.0 / length;
-            Some(Self { direction: along * inverse, length, least: length, noise: rounding * inverse })
+            Some(Self {
+                direction: along * inverse,
+                length,
+                least: length,
+                noise: rounding * inverse,
+            })
         } else {
             None
         }

@@ -1,15 +1,17 @@
-//! The natural cubic spline that goes smoothly near points: of all functions f it makes the sum of |y - f|^2 plus weight
-//! times the integral of |f''|^2 least.
+//! The natural cubic spline that goes smoothly near points: of all functions f it makes the sum of
+//! |y - f|^2 plus weight times the integral of |f''|^2 least.
 //!
-//! C. H. Reinsch, "Smoothing by spline functions", Numerische Mathematik 10, 1967. With h the distances of the knots, R
-//! the tridiagonal matrix of (h_i-1 + h_i) / 3 and h_i / 6, and Q the second differences, the second derivatives g at the
-//! inner knots solve (R + weight Q^T Q) g = Q^T y, and the values are y - weight Q g. The matrix has five diagonals, so
-//! the time is proportional to the number of points.
+//! C. H. Reinsch, "Smoothing by spline functions", Numerische Mathematik 10, 1967. With h the
+//! distances of the knots, R the tridiagonal matrix of (h_i-1 + h_i) / 3 and h_i / 6, and Q the
+//! second differences, the second derivatives g at the inner knots solve (R + weight Q^T Q) g = Q^T
+//! y, and the values are y - weight Q g. The matrix has five diagonals, so the time is proportional
+//! to the number of points.
 //!
-//! How smooth it should be nobody says: generalised cross-validation does (P. Craven, G. Wahba, Numerische Mathematik 31,
-//! 1979), which needs the trace of what maps y to the residuals. Of the inverse the five diagonals suffice, and the
-//! factors give them (M. F. Hutchinson, F. R. de Hoog, Numerische Mathematik 47, 1985). A parameter of the spline counts
-//! 1.4 times, as is usual against the few cases in which cross-validation follows the noise.
+//! How smooth it should be nobody says: generalised cross-validation does (P. Craven, G. Wahba,
+//! Numerische Mathematik 31, 1979), which needs the trace of what maps y to the residuals. Of the
+//! inverse the five diagonals suffice, and the factors give them (M. F. Hutchinson, F. R. de Hoog,
+//! Numerische Mathematik 47, 1985). A parameter of the spline counts 1.4 times, as is usual against
+//! the few cases in which cross-validation follows the noise.
 
 use parry3d_f64::math::{Real, Vector};
 
@@ -52,7 +54,8 @@ fn squared_differences(knots: &[Real], k: usize, count: usize) -> [Real; 3] {
 impl Factors {
     fn new(knots: &[Real], weight: Real) -> Self {
         let count = knots.len() - 2;
-        let (mut diagonal, mut first, mut second) = (vec![0.0; count], vec![0.0; count], vec![0.0; count]);
+        let (mut diagonal, mut first, mut second) =
+            (vec![0.0; count], vec![0.0; count], vec![0.0; count]);
         for k in 0..count {
             let [whole, next, beyond] = squared_differences(knots, k, count);
             let mut pivot = (knots[k + 2] - knots[k]) / 3.0 + weight * whole;
@@ -138,7 +141,11 @@ impl<'a> Smoother<'a> {
     }
 
     /// Makes a spline at the same knots the one near points, in the memory that it has.
-    pub(super) fn fill(&self, points: impl ExactSizeIterator<Item = Vector>, spline: &mut SmoothingSpline) {
+    pub(super) fn fill(
+        &self,
+        points: impl ExactSizeIterator<Item = Vector>,
+        spline: &mut SmoothingSpline,
+    ) {
         let SmoothingSpline { values, seconds, .. } = spline;
         values.clear();
         values.extend(points);
@@ -147,7 +154,9 @@ impl<'a> Smoother<'a> {
         let Some(factors) = &self.factors else { return };
         let last = values.len() - 1;
         let bends = &mut seconds[1..last];
-        for ((bend, points), [a, b, c]) in bends.iter_mut().zip(values.windows(3)).zip(&self.columns) {
+        for ((bend, points), [a, b, c]) in
+            bends.iter_mut().zip(values.windows(3)).zip(&self.columns)
+        {
             *bend = points[0] * *a + points[1] * *b + points[2] * *c;
         }
         factors.solve(bends);
@@ -162,7 +171,8 @@ impl<'a> Smoother<'a> {
     pub(super) fn score(&self, points: &[Vector]) -> Real {
         let Some(factors) = &self.factors else { return 0.0 };
         let values = self.spline(points).values;
-        let squares: Real = points.iter().zip(&values).map(|(a, b)| (*a - *b).length_squared()).sum();
+        let squares: Real =
+            points.iter().zip(&values).map(|(a, b)| (*a - *b).length_squared()).sum();
         let (count, free) = (points.len() as Real, self.weight * factors.trace(self.knots));
         let counted = count - CAUTION * (count - free);
         // Where more parameters are counted than there are points, nothing can be said for it.
@@ -178,7 +188,8 @@ impl SmoothingSpline {
         let [from, to] = [self.values[k], self.values[k + 1]];
         let [m, n] = [self.seconds[k], self.seconds[k + 1]];
         let value = from * a + to * b + (m * (a * a * a - a) + n * (b * b * b - b)) * (h * h / 6.0);
-        let slope = (to - from) / h + (n * (3.0 * b * b - 1.0) - m * (3.0 * a * a - 1.0)) * (h / 6.0);
+        let slope =
+            (to - from) / h + (n * (3.0 * b * b - 1.0) - m * (3.0 * a * a - 1.0)) * (h / 6.0);
         [value, slope]
     }
 

@@ -5,7 +5,8 @@ use super::smoothing_spline::SmoothingSpline;
 use nalgebra::DMatrix;
 use parry3d_f64::math::{Real, Vector};
 
-/// The integral of the squared second derivative, which is the squared curvature where the parameter is the arc length.
+/// The integral of the squared second derivative, which is the squared curvature where the
+/// parameter is the arc length.
 fn bending(spline: &SmoothingSpline) -> Real {
     let pairs = spline.seconds.windows(2).zip(spline.knots.windows(2));
     let of = |(seconds, knots): (&[Vector], &[Real])| {
@@ -15,8 +16,8 @@ fn bending(spline: &SmoothingSpline) -> Real {
     pairs.map(of).sum()
 }
 
-/// For evenly set points: the matrix whose quadratic form is the integral of the squared second derivative of the natural
-/// spline through values.
+/// For evenly set points: the matrix whose quadratic form is the integral of the squared second
+/// derivative of the natural spline through values.
 fn roughness(count: usize, spacing: Real) -> DMatrix<Real> {
     let inner = count - 2;
     let mut differences = DMatrix::zeros(count, inner);
@@ -42,7 +43,9 @@ fn a_fit_bends_little_more_than_the_smoothest_spline_that_is_as_far_from_the_poi
     let mut normal = || {
         let mut sum = -6.0;
         for _ in 0..12 {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
             sum += (state >> 11) as Real / (1_u64 << 53) as Real;
         }
         sum
@@ -64,7 +67,10 @@ fn a_fit_bends_little_more_than_the_smoothest_spline_that_is_as_far_from_the_poi
                     first + Vector::new(sin, cos, 0.0) * ahead + Vector::Z * up
                 };
                 let points: Vec<_> = (0..count)
-                    .map(|k| place(spacing * k as Real) + Vector::new(normal(), normal(), normal()) * noise)
+                    .map(|k| {
+                        place(spacing * k as Real)
+                            + Vector::new(normal(), normal(), normal()) * noise
+                    })
                     .collect();
                 let fitted = smooth(&points, 5.0 * noise);
                 let residual = fitted.largest_residual(&points);
@@ -80,7 +86,11 @@ fn a_fit_bends_little_more_than_the_smoothest_spline_that_is_as_far_from_the_poi
                 let (mut low, mut high) = (-20.0, 40.0);
                 for _ in 0..40 {
                     let middle = 0.5 * (low + high);
-                    if away(&smoothed(libm::exp2(middle))) < residual { low = middle } else { high = middle }
+                    if away(&smoothed(libm::exp2(middle))) < residual {
+                        low = middle
+                    } else {
+                        high = middle
+                    }
                 }
                 let values = smoothed(libm::exp2(low));
                 let reference = (values.transpose() * &rough * &values).trace();

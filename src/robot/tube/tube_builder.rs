@@ -1,4 +1,5 @@
-//! A tube that is laid along a curve known between its samples: points as close together as the curve's bends ask for.
+//! A tube that is laid along a curve known between its samples: points as close together as the
+//! curve's bends ask for.
 
 use super::Tube;
 use super::cap_persistence::CapPersistence;
@@ -68,8 +69,8 @@ impl TubeBuilder {
         self.merged = self.merged.max(section.radius - self.least_radius);
     }
 
-    /// Makes it the tube, whose faces stand across the curve up to `tilt`. The curve may be so many times as long as was
-    /// said. `gap` is what was left out of it.
+    /// Makes it the tube, whose faces stand across the curve up to `tilt`. The curve may be so many
+    /// times as long as was said. `gap` is what was left out of it.
     ///
     /// # Errors
     /// No point is behind the first, or a section bends within its radius next to a face.
@@ -85,8 +86,10 @@ impl TubeBuilder {
         samples.segments.push(samples.segments.last().copied().unwrap_or(0));
         samples.bounds.push(CurveBound::default());
         let end = samples.length();
-        tube.reach =
-            samples.points.iter().fold(end, |reach: Real, point| point.abs().max_element().max(reach));
+        tube.reach = samples
+            .points
+            .iter()
+            .fold(end, |reach: Real, point| point.abs().max_element().max(reach));
         tube.merged = merged + gap;
         tube.sections = sections;
         for section in &mut tube.sections {
@@ -95,7 +98,8 @@ impl TubeBuilder {
         for end in [0, 1] {
             tube.walk(end, |tube, number, limit| {
                 let section = &mut tube.sections[number];
-                let centre = samples.points[if end == 0 { section.first } else { section.last } as usize];
+                let centre =
+                    samples.points[if end == 0 { section.first } else { section.last } as usize];
                 let outward = if end == 0 { -tangents[number][0] } else { tangents[number][1] };
                 let persistence = CapPersistence::Either;
                 let tilt = tilt + 32.0 * Real::UNIT_ROUNDOFF;
@@ -107,7 +111,10 @@ impl TubeBuilder {
             });
         }
         let input = |section: &Section| samples.segments[section.first as usize] as usize;
-        let fit = tube.sections.iter().try_for_each(|section| super::check_faces(section, || input(section)));
+        let fit = tube
+            .sections
+            .iter()
+            .try_for_each(|section| super::check_faces(section, || input(section)));
         let is_point = samples.points.len() < 2;
         tube.curve = Curve::Samples(samples);
         if is_point {

@@ -1,19 +1,23 @@
 //! How far a tube turns between two of its places: at most, and at least.
 //!
-//! **At most.** The curvature of each stretch is at most k, so a stretch of length l turns by no more than k l. A chain is straight
-//! but for its joints, at which it turns by the angle between its links. Where two frames at one place were taken for one
-//! (`frames`), whose directions differ by q <= 2^-16, the segments on either side may have either direction: their curve is the assumed one
-//! and a cubic that changes a direction at an end by q. The second derivative of that goes evenly from 4 q / l to -2 q / l, so it adds
-//! 5/3 q, and 10/3 q from both ends. 4 q a segment is more than that with what the slope of the cubic does to it.
+//! **At most.** The curvature of each stretch is at most k, so a stretch of length l turns by no
+//! more than k l. A chain is straight but for its joints, at which it turns by the angle between
+//! its links. Where two frames at one place were taken for one (`frames`), whose directions differ
+//! by q <= 2^-16, the segments on either side may have either direction: their curve is the assumed
+//! one and a cubic that changes a direction at an end by q. The second derivative of that goes
+//! evenly from 4 q / l to -2 q / l, so it adds 5/3 q, and 10/3 q from both ends. 4 q a segment is
+//! more than that with what the slope of the cubic does to it.
 //!
-//! **At least.** A curve between two places turns by no less than any polygon through some of its points in order does, nor
-//! than its directions at some places in order. The former serves samples, the latter functions. Points that may be off by e
-//! leave the direction of a chord of length l open by asin(2 e / l), at most 4 e / l, so chords are the longer then; one that is open by
-//! more than 1 tells nothing. The samples outside of the two places are left out. A chain's turn is known exactly: the
-//! directions of two links hold anywhere on them.
+//! **At least.** A curve between two places turns by no less than any polygon through some of its
+//! points in order does, nor than its directions at some places in order. The former serves
+//! samples, the latter functions. Points that may be off by e leave the direction of a chord of
+//! length l open by asin(2 e / l), at most 4 e / l, so chords are the longer then; one that is open
+//! by more than 1 tells nothing. The samples outside of the two places are left out. A chain's turn
+//! is known exactly: the directions of two links hold anywhere on them.
 //!
-//! **Rounding.** An angle between two directions errs by less than 16 u, since they are unit vectors to 4 u and a sine and a cosine
-//! of them to 8 u, and so the sum over n of them by less than 16 n u and n^2 u for its own additions.
+//! **Rounding.** An angle between two directions errs by less than 16 u, since they are unit
+//! vectors to 4 u and a sine and a cosine of them to 8 u, and so the sum over n of them by less
+//! than 16 n u and n^2 u for its own additions.
 
 use super::Tube;
 use super::curve::Curve;
@@ -22,16 +26,16 @@ use crate::distance::Scalar;
 use crate::robot::scale::{direction, length};
 use parry3d_f64::math::{Real, Vector};
 
-/// What a segment between frames may turn by beyond what it shows, where directions were taken for one: 4 times as much as these
-/// may be apart.
+/// What a segment between frames may turn by beyond what it shows, where directions were taken for
+/// one: 4 times as much as these may be apart.
 const HIDDEN: Real = 4.0 * ONE_DIRECTION;
 
-/// A function is asked for its direction so often that it turns by 1 / 64 rad from one to the next, or a little less often
-/// where that would be more than this.
+/// A function is asked for its direction so often that it turns by 1 / 64 rad from one to the next,
+/// or a little less often where that would be more than this.
 const MAX_DIRECTIONS: u32 = 4096;
 
-/// Of samples that may be off, so many are left out that a chord's direction is open by no more than this, unless the curve
-/// turns by more than [`MAX_TURN`] along it.
+/// Of samples that may be off, so many are left out that a chord's direction is open by no more
+/// than this, unless the curve turns by more than [`MAX_TURN`] along it.
 const MIN_DOUBT: Real = 1.0 / 1024.0;
 const MAX_TURN: Real = 0.25;
 
@@ -132,7 +136,8 @@ impl Tube {
                     let arcs = [samples.arcs[start], samples.arcs[to]];
                     let chord = samples.points[to] - samples.points[start];
                     let doubt = if off > 0.0 { 4.0 * off / length(chord) } else { 0.0 };
-                    let is_long = doubt <= MIN_DOUBT || bound.curvature * (arcs[1] - arcs[0]) > MAX_TURN;
+                    let is_long =
+                        doubt <= MIN_DOUBT || bound.curvature * (arcs[1] - arcs[0]) > MAX_TURN;
                     if is_long || tick + 1 == section.last {
                         if doubt <= 1.0 {
                             head(direction(chord), doubt, arcs[0], arcs[1]);
@@ -144,13 +149,18 @@ impl Tube {
                     }
                     if bound.curvature * section.radius >= 1.0 {
                         let (arc_length, curvature) = (samples.arcs[from], bound.curvature);
-                        return Err(TooSharp::Bend { arc_length, curvature, radius: section.radius });
+                        return Err(TooSharp::Bend {
+                            arc_length,
+                            curvature,
+                            radius: section.radius,
+                        });
                     }
                     turns.at[from] = most;
                     let length = samples.arcs[to] - samples.arcs[from];
                     most += bound.curvature * length * section.stretch;
                     // Once for each segment of the input, which may be laid in parts.
-                    if tick == section.first || samples.segments[from] != samples.segments[from - 1] {
+                    if tick == section.first || samples.segments[from] != samples.segments[from - 1]
+                    {
                         most += hidden;
                     }
                     turns.at[to] = most;
@@ -196,9 +206,10 @@ impl TubeTurns {
         turn >= angle - self.slack
     }
 
-    /// Two arc lengths such that all places up to the one and all from the other on have a turn of at least `angle` between
-    /// them, as far as rounding tells: on either side of what turns between two places, which keep the same distance from
-    /// it. None if it is not known that the tube turns that far between the two.
+    /// Two arc lengths such that all places up to the one and all from the other on have a turn of
+    /// at least `angle` between them, as far as rounding tells: on either side of what turns
+    /// between two places, which keep the same distance from it. None if it is not known that
+    /// the tube turns that far between the two.
     pub(crate) fn room(&self, [from, to]: [Real; 2], angle: Real) -> Option<[Real; 2]> {
         let headings = &self.headings;
         let first = headings.partition_point(|heading| heading.from < from);
@@ -211,7 +222,8 @@ impl TubeTurns {
         if spare.is_nan() || spare < 0.0 {
             return None;
         }
-        let before = headings[..last].partition_point(|heading| heading.turned <= start + 0.5 * spare);
+        let before =
+            headings[..last].partition_point(|heading| heading.turned <= start + 0.5 * spare);
         let behind = headings[..last].partition_point(|heading| heading.turned < end - 0.5 * spare);
         Some([headings[before.saturating_sub(1).max(first)].from, headings[behind].to])
     }

@@ -1,13 +1,15 @@
-//! What is stated of how far a robot may be from its tube: in place, and in direction at flat faces.
+//! What is stated of how far a robot may be from its tube: in place, and in direction at flat
+//! faces.
 
 use super::{EndFace, Section, Tube};
 use crate::robot::RobotError;
 use parry3d_f64::math::Real;
 
 impl Tube {
-    /// The same tube, each point of which may be off by up to `error`, because the sensor or the kinematics are. For a
-    /// centreline that is off by c and whose direction is off by an angle a, that is c + radius a: the rim of a flat face
-    /// moves as the face turns. All bounds of answers count it, beside the deviation of a [`fit`](Self::fit).
+    /// The same tube, each point of which may be off by up to `error`, because the sensor or the
+    /// kinematics are. For a centreline that is off by c and whose direction is off by an angle
+    /// a, that is c + radius a: the rim of a flat face moves as the face turns. All bounds of
+    /// answers count it, beside the deviation of a [`fit`](Self::fit).
     ///
     /// # Errors
     /// The error is not finite or negative.
@@ -19,9 +21,10 @@ impl Tube {
         Ok(self)
     }
 
-    /// The same tube, whose direction near a flat face may be off by up to `turn` (rad) from that of the centreline: within
-    /// two radii of the face, by arc length. Nothing is known of the directions of a tube by [`fit`](Self::fit) before, so
-    /// that its bounds become closer and never looser; the directions of any other are known that much less.
+    /// The same tube, whose direction near a flat face may be off by up to `turn` (rad) from that
+    /// of the centreline: within two radii of the face, by arc length. Nothing is known of the
+    /// directions of a tube by [`fit`](Self::fit) before, so that its bounds become closer and
+    /// never looser; the directions of any other are known that much less.
     ///
     /// # Errors
     /// The turn is not finite or negative.
@@ -33,7 +36,8 @@ impl Tube {
         Ok(self)
     }
 
-    /// How far the centreline of a tube by [`fit`](Self::fit) is from the points at most; 0 for any other.
+    /// How far the centreline of a tube by [`fit`](Self::fit) is from the points at most; 0 for any
+    /// other.
     pub fn residual(&self) -> Real {
         self.residual
     }
@@ -43,7 +47,8 @@ impl Tube {
         (self.error, self.turn) = (0.0, None);
     }
 
-    /// How far a point of the tube may be from where it is said to be: what was stated, and what was taken for one.
+    /// How far a point of the tube may be from where it is said to be: what was stated, and what
+    /// was taken for one.
     pub(crate) fn error(&self) -> Real {
         self.error + self.deviation + self.merged
     }
@@ -77,9 +82,14 @@ impl Tube {
         section.faces.map(|face| face.map(|face| EndFace { tilt: tilt(face), ..face }))
     }
 
-    /// How far apart two bounds near a flat end of a section have to be because its direction may be off by a turn, or is
-    /// not known.
-    pub(crate) fn direction_uncertainty(&self, section: &Section, end: usize, turn: Option<Real>) -> Real {
+    /// How far apart two bounds near a flat end of a section have to be because its direction may
+    /// be off by a turn, or is not known.
+    pub(crate) fn direction_uncertainty(
+        &self,
+        section: &Section,
+        end: usize,
+        turn: Option<Real>,
+    ) -> Real {
         match (section.faces[end], turn) {
             (Some(_), Some(turn)) => section.radius * (2.0 * turn).min(1.0),
             (Some(EndFace { tilt: Real::INFINITY, .. }), None) => section.radius,

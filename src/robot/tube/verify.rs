@@ -7,12 +7,14 @@ use crate::robot::RobotError;
 use parry3d_f64::math::Real;
 
 impl Tube {
-    /// Tries the curve of [`from_function`](Self::from_function) at `steps` even steps in each section: that it is
-    /// finite, that its argument is the arc length, that its direction is that of the curve, and that it bends no more
-    /// than stated. A tube of samples has nothing to try.
+    /// Tries the curve of [`from_function`](Self::from_function) at `steps` even steps in each
+    /// section: that it is finite, that its argument is the arc length, that its direction is
+    /// that of the curve, and that it bends no more than stated. A tube of samples has nothing
+    /// to try.
     ///
-    /// With |c''| <= k, |c(s + h) - 2 c(s) + c(s - h)| is at most k h^2, and c(s + h) - c(s) is at most h long and at
-    /// least h (1 - (k h)^2 / 24); (c(s + h) - c(s - h)) / (2 h) is within k h / 2 of c'(s).
+    /// With |c''| <= k, |c(s + h) - 2 c(s) + c(s - h)| is at most k h^2, and c(s + h) - c(s) is at
+    /// most h long and at least h (1 - (k h)^2 / 24); (c(s + h) - c(s - h)) / (2 h) is within k
+    /// h / 2 of c'(s).
     ///
     /// # Errors
     /// The first arc length at which the curve breaks a promise.
@@ -24,7 +26,8 @@ impl Tube {
             let rounding = 64.0 * Real::UNIT_ROUNDOFF * self.reach + 4.0 * self.error();
             for step in 0..steps.max(1) {
                 let arc_length = start + (2.0 * Real::from(step) + 1.0) * h;
-                let [before, here, behind] = [arc_length - h, arc_length, arc_length + h].map(|s| curve(s));
+                let [before, here, behind] =
+                    [arc_length - h, arc_length, arc_length + h].map(|s| curve(s));
                 if ![before, here, behind]
                     .iter()
                     .all(|(point, tangent)| point.is_finite() && tangent.is_finite())

@@ -23,13 +23,18 @@ pub(crate) struct Blocks<E> {
 impl<E: Lane> Blocks<E> {
     /// The mesh's triangles; `prepare` is [`prepare`] for an instruction set.
     pub(crate) fn new(mesh: &Mesh, prepare: impl Fn(&mut [E], &mut [E]) + Sync + Send) -> Self {
-        let mut blocks = Self { frame: SearchFrame::new(mesh), spheres: Vec::new(), faces: Vec::new() };
+        let mut blocks =
+            Self { frame: SearchFrame::new(mesh), spheres: Vec::new(), faces: Vec::new() };
         blocks.refill(mesh, prepare);
         blocks
     }
 
     /// Fills the blocks with the triangles as they are now.
-    pub(crate) fn refill(&mut self, mesh: &Mesh, prepare: impl Fn(&mut [E], &mut [E]) + Sync + Send) {
+    pub(crate) fn refill(
+        &mut self,
+        mesh: &Mesh,
+        prepare: impl Fn(&mut [E], &mut [E]) + Sync + Send,
+    ) {
         self.frame = SearchFrame::new(mesh);
         let blocks = mesh.len().div_ceil(BLOCK);
         self.spheres.resize(blocks * BLOCK * SPHERE_ROWS, E::default());
@@ -63,7 +68,12 @@ impl<E: Lane> Blocks<E> {
 
     /// The triangles from `lane` on.
     #[inline(always)]
-    pub(crate) fn faces<L: Pack<Element = E>>(&self, token: L::Token, block: usize, lane: usize) -> Face<L> {
+    pub(crate) fn faces<L: Pack<Element = E>>(
+        &self,
+        token: L::Token,
+        block: usize,
+        lane: usize,
+    ) -> Face<L> {
         let rows = &self.faces[block * BLOCK * FACE_ROWS..][..BLOCK * FACE_ROWS];
         let dual = [load(token, rows, 9, lane), load(token, rows, 12, lane)];
         Face::again(load_vertices(token, rows, lane), dual)
@@ -83,7 +93,11 @@ fn fill<E: Lane>(frame: &SearchFrame, mesh: &Mesh, first: usize, faces: &mut [E]
 
 /// Puts the vertex opposite the longest edge first, and computes dual bases and spheres.
 #[inline(always)]
-pub(crate) fn prepare<L: Pack>(token: L::Token, faces: &mut [L::Element], spheres: &mut [L::Element]) {
+pub(crate) fn prepare<L: Pack>(
+    token: L::Token,
+    faces: &mut [L::Element],
+    spheres: &mut [L::Element],
+) {
     let faces = faces.chunks_exact_mut(BLOCK * FACE_ROWS);
     for (face, sphere) in faces.zip(spheres.chunks_exact_mut(BLOCK * SPHERE_ROWS)) {
         for lane in (0..BLOCK).step_by(L::LANES) {
@@ -92,11 +106,13 @@ pub(crate) fn prepare<L: Pack>(token: L::Token, faces: &mut [L::Element], sphere
             for (row, vector) in [a, b, c, made.dual[0], made.dual[1]].into_iter().enumerate() {
                 store(vector, face, 3 * row, lane);
             }
-            // Around the middle of the longest edge, which holds the apex of an obtuse triangle too.
+            // Around the middle of the longest edge, which holds the apex of an obtuse triangle
+            // too.
             let centre = (b + c) * a.x.lit(0.5);
             let apex = (a - centre).norm_squared();
             let half = (b - centre).norm_squared();
-            // An acute triangle's apex may lie outside: then around the centroid, if that is smaller.
+            // An acute triangle's apex may lie outside: then around the centroid, if that is
+            // smaller.
             let middle = (a + b + c) * a.x.lit(1.0 / 3.0);
             let around = (a - middle).norm_squared().max((b - middle).norm_squared());
             let around = around.max((c - middle).norm_squared());
@@ -104,7 +120,8 @@ pub(crate) fn prepare<L: Pack>(token: L::Token, faces: &mut [L::Element], sphere
             let centre = Vec3::select(take_edge, centre, middle);
             let radius = take_edge.select(apex.max(half), around).sqrt();
             store(centre, sphere, 0, lane);
-            (radius * radius.lit(1.0 + 8.0 * L::UNIT_ROUNDOFF)).store(&mut sphere[3 * BLOCK + lane..]);
+            (radius * radius.lit(1.0 + 8.0 * L::UNIT_ROUNDOFF))
+                .store(&mut sphere[3 * BLOCK + lane..]);
         }
     }
 }

@@ -1,5 +1,5 @@
-//! The loops of exhaustive search for each precision: functions without parameters, which are compiled for every
-//! instruction set in this crate and not again in each that uses an engine.
+//! The loops of exhaustive search for each precision: functions without parameters, which are
+//! compiled for every instruction set in this crate and not again in each that uses an engine.
 
 use super::blocks::prepare;
 use super::scan::{Job, ThreadFindings};

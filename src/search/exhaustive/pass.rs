@@ -29,8 +29,9 @@ impl<T: Kernels> Triangles<T> {
     }
 
     fn double(&self, level: Level) -> &Blocks<f64> {
-        self.double
-            .get_or_build(|| Blocks::new(&self.mesh, |faces, spheres| f64::prepare(level, faces, spheres)))
+        self.double.get_or_build(|| {
+            Blocks::new(&self.mesh, |faces, spheres| f64::prepare(level, faces, spheres))
+        })
     }
 
     /// Fills the blocks anew after the vertices of the mesh have moved.
@@ -123,7 +124,8 @@ impl<T: Kernels> Pass<T> {
         // A single link has all that it is near to, or nothing could be told of it.
         let most = if links > 1 { PAIRS_AT_ONCE / findings.len() } else { usize::MAX };
         let every = matches!(aim, PassGoal::Every(_)).then_some(most);
-        let job = Job { mesh, blocks: &triangles.blocks, links: resolved, bounds, stop_at_first, every };
+        let job =
+            Job { mesh, blocks: &triangles.blocks, links: resolved, bounds, stop_at_first, every };
         scan(level, culling, &job, findings);
         if !double.is_empty() {
             let blocks = triangles.double(level);
@@ -167,7 +169,9 @@ impl<T: Kernels> Pass<T> {
             for link in robot.placed_links().take(of_each.end).skip(of_each.start) {
                 let bound = if aim == PassGoal::EachLink { place } else { number };
                 let searched = SearchLink::new(&link, frame);
-                if is_double || searched.as_ref().is_some_and(|searched| searched.is_resolved(frame)) {
+                if is_double
+                    || searched.as_ref().is_some_and(|searched| searched.is_resolved(frame))
+                {
                     links.push(JobLink { link, searched, place, bound });
                 } else {
                     let searched = SearchLink::new(&link, &triangles.double(level).frame);
@@ -205,8 +209,9 @@ impl<T: Kernels> Pass<T> {
             .filter_map(|(link, place)| Some(self.placed[place].answer(link, &self.found(place)?)))
     }
 
-    /// The triangles that may be within the bound of the last pass, link by link and each once. None if there may be too
-    /// many to be kept at once: fewer links will have fewer, and a single one always gets its own.
+    /// The triangles that may be within the bound of the last pass, link by link and each once.
+    /// None if there may be too many to be kept at once: fewer links will have fewer, and a
+    /// single one always gets its own.
     pub(crate) fn within(&mut self) -> Option<&[(u32, u32)]> {
         let within = &mut self.findings[0].within;
         within.sort_unstable();
@@ -219,7 +224,8 @@ impl<T: Kernels> Pass<T> {
     }
 }
 
-/// So many pairs of a link and a triangle within its bound are kept at once, unless they are all of one link.
+/// So many pairs of a link and a triangle within its bound are kept at once, unless they are all of
+/// one link.
 const PAIRS_AT_ONCE: usize = 1 << 20;
 
 /// Fewer pairs than this are not worth a second thread.

@@ -10,7 +10,8 @@ use parry3d_f64::math::Real;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
 
-/// How many blocks one link meets before the next takes its turn: their spheres stay in the fastest cache.
+/// How many blocks one link meets before the next takes its turn: their spheres stay in the fastest
+/// cache.
 const CHUNK: usize = 64;
 
 /// One block in so many gives a first bound.
@@ -39,14 +40,14 @@ pub(crate) struct JobLink<E> {
     pub bound: usize,
 }
 
-/// What a triangle must not be farther than, a distance that only shrinks; or that nothing more is wanted. Seen by all
-/// threads.
+/// What a triangle must not be farther than, a distance that only shrinks; or that nothing more is
+/// wanted. Seen by all threads.
 ///
 /// Numbers that are not negative are ordered as their bits, to which one is added: 0 is the end.
 pub(crate) struct SharedBound {
     distance: AtomicU64,
-    /// The lowest triangle that touches: of those that touch, only lower ones are still wanted, or for another link the
-    /// same.
+    /// The lowest triangle that touches: of those that touch, only lower ones are still wanted, or
+    /// for another link the same.
     touching: AtomicU32,
 }
 
@@ -84,7 +85,8 @@ impl SharedBound {
 pub(crate) struct ThreadFindings {
     /// For each link, the nearest triangle of this thread, if it was within the bound at its time.
     pub nearest: Vec<Option<Nearest>>,
-    /// Where every triangle is wanted, each link's place and each triangle that may be within its bound.
+    /// Where every triangle is wanted, each link's place and each triangle that may be within its
+    /// bound.
     pub within: Vec<(u32, u32)>,
     pub work: Work,
 }
@@ -109,8 +111,8 @@ impl<E: Lane> Job<'_, E> {
         self.blocks.len().div_ceil(CHUNK)
     }
 
-    /// For each link, a bound from every so many of the spheres: without it, an order in which the triangles come
-    /// nearer and nearer would have them all measured.
+    /// For each link, a bound from every so many of the spheres: without it, an order in which the
+    /// triangles come nearer and nearer would have them all measured.
     #[inline(always)]
     pub(crate) fn first_bounds<L: Pack<Element = E>>(&self, token: L::Token) {
         for link in self.links {
@@ -130,8 +132,8 @@ impl<E: Lane> Job<'_, E> {
         }
     }
 
-    /// All links against one chunk of the mesh. With `CULLING` cheap, exact bounds spare what they can; without it every
-    /// pair costs its full distance, discs included.
+    /// All links against one chunk of the mesh. With `CULLING` cheap, exact bounds spare what they
+    /// can; without it every pair costs its full distance, discs included.
     #[inline(always)]
     pub(crate) fn scan<L: Pack<Element = E>, const CULLING: bool>(
         &self,
@@ -150,7 +152,8 @@ impl<E: Lane> Job<'_, E> {
             let best = Best::resume(bound, findings.nearest[link.place]);
             let best = best.touching_below(touching.saturating_add(1));
             let ThreadFindings { within, work, .. } = &mut *findings;
-            let mut turn = LinkScan { job: self, link: &link.link, place: link.place, best, within, work };
+            let mut turn =
+                LinkScan { job: self, link: &link.link, place: link.place, best, within, work };
             match &link.searched {
                 Some(searched) => turn.scan::<L, CULLING>(token, searched, blocks.clone()),
                 None => turn.measure_all(blocks.clone()),
@@ -225,7 +228,8 @@ impl<E: Lane> LinkScan<'_, E> {
         }
     }
 
-    /// Measures one triangle in double precision, or keeps it for later. True if it is the nearest so far.
+    /// Measures one triangle in double precision, or keeps it for later. True if it is the nearest
+    /// so far.
     #[inline(never)] // the same code whatever the instruction set
     fn measure(&mut self, triangle: usize) -> bool {
         if triangle >= self.job.mesh.len().min(self.best.triangle_limit() as usize) {

@@ -1,6 +1,7 @@
 //! What a node knows of a child: an oriented box.
 //!
-//! A patch of wall is flat, so a box whose one side follows the wall's normal is thin however the wall is turned.
+//! A patch of wall is flat, so a box whose one side follows the wall's normal is thin however the
+//! wall is turned.
 
 use crate::distance::lanes::Pack;
 use crate::distance::{Scalar, Vec3};
@@ -22,29 +23,35 @@ pub(crate) struct NodeBound<E> {
 #[derive(Clone, Copy)]
 pub(crate) struct NodeBounds<L> {
     pub centre: Vec3<L>,
-    /// How far the triangles reach from the centre along the normal, the tangent and the third axis.
+    /// How far the triangles reach from the centre along the normal, the tangent and the third
+    /// axis.
     pub half: Vec3<L>,
-    /// The axes of the box, of length one and perpendicular but for rounding. The third is their cross product.
+    /// The axes of the box, of length one and perpendicular but for rounding. The third is their
+    /// cross product.
     pub normal: Vec3<L>,
     pub tangent: Vec3<L>,
 }
 
 impl<L: Pack> NodeBounds<L> {
-    /// The squared distances between the axis of a link and what is bounded, from below but for rounding.
+    /// The squared distances between the axis of a link and what is bounded, from below but for
+    /// rounding.
     ///
-    /// Along each axis of a box the gap between the box and the link's axis is at most the distance's part along it,
-    /// and the three parts are perpendicular.
+    /// Along each axis of a box the gap between the box and the link's axis is at most the
+    /// distance's part along it, and the three parts are perpendicular.
     ///
-    /// The plane before the link's axis whose normal v leads to the centre keeps from the centre as far as v is long;
-    /// against v the box reaches at most (|v_1| h_1 + |v_2| h_2 + |v_3| h_3) / |v|. Where the link is longer than the box,
-    /// that shows what the gaps do not: the link may pass beside the box slantwise.
+    /// The plane before the link's axis whose normal v leads to the centre keeps from the centre as
+    /// far as v is long; against v the box reaches at most (|v_1| h_1 + |v_2| h_2 + |v_3| h_3)
+    /// / |v|. Where the link is longer than the box, that shows what the gaps do not: the link
+    /// may pass beside the box slantwise.
     ///
-    /// Rounding, in units of u reach, where reach is at least 1 and bounds all coordinates. The axes are of length one
-    /// within 10 u and perpendicular within 7 u, so a length is that of its parts within 17 u. The gaps: 60 for that, as
-    /// lengths are at most 3.5; 18 for three products with `middle`, which itself errs by 5; 9 for those with half the
-    /// link's axis, 9 for the differences. The plane: 102 for the axes, as a box reaches at most 3 from its centre; 25 for
-    /// products with the link, 22 for the reach of the box, 7 for the differences, 10 for the square and its division. So
-    /// neither errs by more than three times the link's `error`, which is 64: see
+    /// Rounding, in units of u reach, where reach is at least 1 and bounds all coordinates. The
+    /// axes are of length one within 10 u and perpendicular within 7 u, so a length is that of
+    /// its parts within 17 u. The gaps: 60 for that, as lengths are at most 3.5; 18 for three
+    /// products with `middle`, which itself errs by 5; 9 for those with half the link's axis, 9
+    /// for the differences. The plane: 102 for the axes, as a box reaches at most 3 from its
+    /// centre; 25 for products with the link, 22 for the reach of the box, 7 for the
+    /// differences, 10 for the square and its division. So neither errs by more than three
+    /// times the link's `error`, which is 64: see
     /// [`SearchLink::limit_of_bounds`](crate::pair::SearchLink::limit_of_bounds).
     ///
     /// The plane is left out where it excludes nothing.
@@ -59,11 +66,12 @@ impl<L: Pack> NodeBounds<L> {
         (ahead * ahead).over(squared).max(gaps)
     }
 
-    /// Which of them are below `limit` or may be, as bits, without a division; and how far the centres are from the
-    /// axis, squared.
+    /// Which of them are below `limit` or may be, as bits, without a division; and how far the
+    /// centres are from the axis, squared.
     ///
-    /// No product falls below the range where that could tell: whatever the plane keeps at `limit` has a centre as far
-    /// away, and `limit` is never less than the rounding of numbers near one.
+    /// No product falls below the range where that could tell: whatever the plane keeps at `limit`
+    /// has a centre as far away, and `limit` is never less than the rounding of numbers near
+    /// one.
     #[inline(always)]
     pub(crate) fn may_meet(&self, link: &LinkLanes<L>, limit: L) -> (u64, L) {
         let third = self.normal.cross(self.tangent);
@@ -86,7 +94,8 @@ impl<L: Pack> NodeBounds<L> {
         ((v.dot(relative) - link.link.reach_along(v) - reach).max(zero), v.norm_squared())
     }
 
-    /// The squared lengths of the gaps between the children and the axis, along the three axes of the boxes.
+    /// The squared lengths of the gaps between the children and the axis, along the three axes of
+    /// the boxes.
     #[inline(always)]
     fn squared_gaps(&self, link: &LinkLanes<L>, third: Vec3<L>) -> L {
         let half = link.link.end * self.half.x.lit(0.5);
@@ -98,7 +107,8 @@ impl<L: Pack> NodeBounds<L> {
     }
 }
 
-/// How far a segment, `half` to either side of `middle`, keeps along an axis from what reaches so far from the origin.
+/// How far a segment, `half` to either side of `middle`, keeps along an axis from what reaches so
+/// far from the origin.
 #[inline(always)]
 fn gap<T: Scalar>(middle: Vec3<T>, half: Vec3<T>, axis: Vec3<T>, reach: T) -> T {
     (middle.dot(axis).abs() - half.dot(axis).abs() - reach).max(reach.zero())
@@ -127,7 +137,9 @@ pub(crate) mod tests {
                 out.extend((0..3 * BLOCK).map(|k| at(k / BLOCK, k % BLOCK)));
             }
             Child::Node(node) => {
-                tree.nodes[node as usize].children().for_each(|child| corners_below(tree, child, out));
+                tree.nodes[node as usize]
+                    .children()
+                    .for_each(|child| corners_below(tree, child, out));
             }
         }
     }
@@ -147,7 +159,8 @@ pub(crate) mod tests {
         ((0..65 * 65).map(point).collect(), triangles.collect())
     }
 
-    /// What may meet a link is never fewer children than hold a corner near it, and the two ways to ask agree.
+    /// What may meet a link is never fewer children than hold a corner near it, and the two ways to
+    /// ask agree.
     #[test]
     fn no_child_near_a_link_is_left_out() {
         #[inline(always)]
@@ -175,10 +188,13 @@ pub(crate) mod tests {
             let share = |k: u32| f64::from((round * 7 + 1) * (k * 13 + 5) % 97) / 97.0 - 0.5;
             // Some reach far beyond the wall, where rounding is coarser.
             let spread = [1.0, 30.0][round as usize / 8 % 2];
-            let ends = [0, 3]
-                .map(|k| turn * Vector::new(share(k) * spread, share(k + 1) * spread, 0.2 * share(k + 2)));
+            let ends = [0, 3].map(|k| {
+                turn * Vector::new(share(k) * spread, share(k + 1) * spread, 0.2 * share(k + 2))
+            });
             let radius = 0.01 * f64::from(round % 4);
-            let Some(link) = SearchLink::between(ends, radius, [false; 2], &tree.frame) else { continue };
+            let Some(link) = SearchLink::between(ends, radius, [false; 2], &tree.frame) else {
+                continue;
+            };
             let start = Vector::from(<[f32; 3]>::from(link.start).map(f64::from));
             let end = start + Vector::from(<[f32; 3]>::from(link.along).map(f64::from));
             for node in &tree.nodes {
@@ -191,19 +207,24 @@ pub(crate) mod tests {
                     corners.iter().map(distance).fold(f64::INFINITY, f64::min)
                 };
                 let least: Vec<_> = children(node).map(least).collect();
-                // The limits of a query, and for each child one that its nearest corner is only just below.
+                // The limits of a query, and for each child one that its nearest corner is only
+                // just below.
                 let only_just = least.iter().map(|least| (*least as f32).next_up());
-                for axis_limit in
-                    [0.0, 0.01, 0.1].map(|within| link.axis_limit(within)).into_iter().chain(only_just)
+                for axis_limit in [0.0, 0.01, 0.1]
+                    .map(|within| link.axis_limit(within))
+                    .into_iter()
+                    .chain(only_just)
                 {
                     let limit = link.limit_of_bounds(axis_limit);
                     let level = Level::new();
-                    let [may_meet, nearer] =
-                        dispatch!(level, simd => ask::<<f32 as Lane>::Pack<_>>(simd, node, &link, limit));
+                    let [may_meet, nearer] = dispatch!(level, simd => ask::<<f32 as Lane>::Pack<_>>(simd, node, &link, limit));
                     differ += (may_meet ^ nearer).count_ones();
                     for (lane, least) in least.iter().enumerate() {
                         if *least < f64::from(axis_limit) {
-                            assert!(may_meet & nearer & 1 << lane != 0, "{round}: {least} and {axis_limit}");
+                            assert!(
+                                may_meet & nearer & 1 << lane != 0,
+                                "{round}: {least} and {axis_limit}"
+                            );
                             near += 1;
                         } else if may_meet & 1 << lane == 0 {
                             far += 1;

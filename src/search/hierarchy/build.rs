@@ -1,7 +1,8 @@
-//! The hierarchy over a mesh's triangles: 16 children a node, 16 triangles a leaf, in the precision of the search.
+//! The hierarchy over a mesh's triangles: 16 children a node, 16 triangles a leaf, in the precision
+//! of the search.
 //!
-//! A pack bounds all children of a node at once, and all triangles of a leaf at once. The leaves below a node stand one
-//! behind the other in memory.
+//! A pack bounds all children of a node at once, and all triangles of a leaf at once. The leaves
+//! below a node stand one behind the other in memory.
 
 use super::bound::NodeBound;
 use super::node::{Child, Leaf, Node, WIDTH};
@@ -42,8 +43,8 @@ impl<E: Lane> WideBvh<E> {
         tree
     }
 
-    /// Gives a node its children, for triangles that stand in order: a leaf each for up to 16 of them, a node for more.
-    /// Returns the lowest number of a triangle.
+    /// Gives a node its children, for triangles that stand in order: a leaf each for up to 16 of
+    /// them, a node for more. Returns the lowest number of a triangle.
     fn split(&mut self, node: usize, items: &[Item<E>]) -> u32 {
         let first = self.leaves.len();
         let mut lowest = u32::MAX;
@@ -71,7 +72,9 @@ impl<E: Lane> WideBvh<E> {
 
     /// The triangles below a child.
     pub(crate) fn triangles_below(&self, child: Child) -> impl Iterator<Item = u32> + Clone {
-        self.leaves[child.leaves(|node| self.nodes[node].leaves.clone())].iter().flat_map(Leaf::triangles)
+        self.leaves[child.leaves(|node| self.nodes[node].leaves.clone())]
+            .iter()
+            .flat_map(Leaf::triangles)
     }
 
     /// Fits all bounds to where the vertices are now; the division stays.
@@ -125,8 +128,8 @@ fn items<E: Lane>(frame: &SearchFrame, mesh: &Mesh) -> Vec<Item<E>> {
     items
 }
 
-/// How many triangles each child of a node with `count` triangles should hold, so that the nodes near the leaves,
-/// which are nearly all, are full: 16, 256, 4096 ...
+/// How many triangles each child of a node with `count` triangles should hold, so that the nodes
+/// near the leaves, which are nearly all, are full: 16, 256, 4096 ...
 fn full_subtree(count: usize) -> usize {
     let mut unit = BLOCK;
     // A few children of two units each are better than another level.
@@ -136,14 +139,14 @@ fn full_subtree(count: usize) -> usize {
     unit
 }
 
-/// Where so many triangles are divided in two, a multiple of `unit`; None for those of one child. `most` says how many
-/// children may come of them.
+/// Where so many triangles are divided in two, a multiple of `unit`; None for those of one child.
+/// `most` says how many children may come of them.
 fn middle(count: usize, most: usize, unit: usize) -> Option<usize> {
     (most > 1 && count > unit).then(|| (count / 2).next_multiple_of(unit).min(count - 1))
 }
 
-/// Brings the triangles below a node into an order in which those of a child stand together, and so on below: they are
-/// divided along the longest side of their centroids' box, again and again.
+/// Brings the triangles below a node into an order in which those of a child stand together, and so
+/// on below: they are divided along the longest side of their centroids' box, again and again.
 fn arrange<E: Lane>(items: &mut [Item<E>], most: usize, unit: usize) {
     let Some(middle) = middle(items.len(), most, unit) else {
         if items.len() > BLOCK {
@@ -163,7 +166,12 @@ fn arrange<E: Lane>(items: &mut [Item<E>], most: usize, unit: usize) {
 
 /// The parts of a node's triangles that [`arrange`] made of them.
 fn parts<E>(items: &[Item<E>]) -> Vec<&[Item<E>]> {
-    fn divide<'a, E>(items: &'a [Item<E>], most: usize, unit: usize, parts: &mut Vec<&'a [Item<E>]>) {
+    fn divide<'a, E>(
+        items: &'a [Item<E>],
+        most: usize,
+        unit: usize,
+        parts: &mut Vec<&'a [Item<E>]>,
+    ) {
         let Some(middle) = middle(items.len(), most, unit) else { return parts.push(items) };
         let (low, high) = items.split_at(middle);
         divide(low, most / 2, unit, parts);
@@ -179,7 +187,10 @@ fn longest_side<E: Lane>(items: &[Item<E>]) -> usize {
     let first = items[0].1;
     let (low, high) = items.iter().fold((first, first), |(low, high), (_, centroid)| {
         let axes = [0, 1, 2];
-        (axes.map(|axis| low[axis].min(centroid[axis])), axes.map(|axis| high[axis].max(centroid[axis])))
+        (
+            axes.map(|axis| low[axis].min(centroid[axis])),
+            axes.map(|axis| high[axis].max(centroid[axis])),
+        )
     });
     let [x, y, z] = [0, 1, 2].map(|axis| high[axis] - low[axis]);
     if z >= x && z >= y { 2 } else { usize::from(y >= x) }

@@ -1,7 +1,8 @@
 //! In which order candidates are measured.
 
-/// Brings the candidates with the least bounds to the first `count` places. The others stay where they are but for those
-/// that make room: they were met leaf by leaf, and triangles that are near each other often are in memory too.
+/// Brings the candidates with the least bounds to the first `count` places. The others stay where
+/// they are but for those that make room: they were met leaf by leaf, and triangles that are near
+/// each other often are in memory too.
 pub(crate) fn select_least<E: Copy + PartialOrd>(candidates: &mut [(E, u32)], count: usize) {
     let Some((first, others)) = candidates.split_at_mut_checked(count) else { return };
     let mut farthest = farthest_of(first);
@@ -40,8 +41,13 @@ mod tests {
             assert_eq!(kept, sorted);
             if let Some((first, others)) = after.split_at_checked(count) {
                 let largest = first.iter().map(|candidate| candidate.0).max();
-                assert!(others.iter().all(|candidate| largest.is_none_or(|largest| largest <= candidate.0)));
-                let strays = after.iter().zip(&before).skip(count).filter(|(after, before)| after != before);
+                assert!(
+                    others
+                        .iter()
+                        .all(|candidate| largest.is_none_or(|largest| largest <= candidate.0))
+                );
+                let strays =
+                    after.iter().zip(&before).skip(count).filter(|(after, before)| after != before);
                 // Whoever came forward left its place to another.
                 let came = first.iter().filter(|candidate| candidate.1 as usize >= count).count();
                 assert!(strays.clone().count() >= came);

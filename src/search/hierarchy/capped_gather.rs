@@ -6,7 +6,8 @@ use crate::distance::lanes::{Lane, Pack};
 use crate::mesh::{BLOCK, Mesh, load_vertices};
 use crate::pair::LinkLanes;
 
-/// Where triangles are gathered. What leaves them out is what leaves them out of a search for the nearest (`traverse`).
+/// Where triangles are gathered. What leaves them out is what leaves them out of a search for the
+/// nearest (`traverse`).
 pub(super) struct CappedGather<'a, E> {
     /// What a triangle's axis distance must be below.
     pub limit: E,

@@ -85,7 +85,8 @@ fn longest(mesh: &Mesh) -> Real {
         let [a, b, c] = triangle.map(|vertex| mesh.vertices()[vertex as usize]);
         (a.max(b).max(c) - a.min(b).min(c)).max_element()
     };
-    let mut shares: Vec<_> = mesh.indices().chunks(Mesh::TASK_SIZE).map(|share| (share, 0.0)).collect();
+    let mut shares: Vec<_> =
+        mesh.indices().chunks(Mesh::TASK_SIZE).map(|share| (share, 0.0)).collect();
     each(&mut shares, |_, (share, most)| *most = share.iter().map(edge).fold(0.0, Real::max));
     // Squares would overflow. The diagonal of a cube is less than twice its edge.
     2.0 * shares.into_iter().fold(0.0, |most: Real, (_, edge)| most.max(edge))

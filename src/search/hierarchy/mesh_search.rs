@@ -22,11 +22,13 @@ pub(crate) struct MeshSearch<'a> {
     pub level: Level,
     pub hierarchy: &'a Hierarchy,
     pub scratch: &'a mut Scratch,
-    /// Where the vertices are, if the mesh moves; what `nearest` and `may_meet` find is then found there.
+    /// Where the vertices are, if the mesh moves; what `nearest` and `may_meet` find is then found
+    /// there.
     pub moved: Option<MeshAt<'a>>,
 }
 
-/// Asks the traversal in the precision that resolves a link, or does something else where none does.
+/// Asks the traversal in the precision that resolves a link, or does something else where none
+/// does.
 macro_rules! resolved {
     ($search:ident, $link:expr, |$traversal:ident, $searched:ident| $ask:expr, $out_of_reach:expr) => {
         match $search.hierarchy.searched($search.level, $link) {
@@ -51,8 +53,14 @@ impl<'a> MeshSearch<'a> {
 }
 
 impl MeshSearch<'_> {
-    /// The triangle nearest to a link that improves on `best`. The triangles to `start` with come first.
-    pub(crate) fn nearest(&mut self, link: &PlacedLink, mut best: Best, start: [Option<u32>; 2]) -> Best {
+    /// The triangle nearest to a link that improves on `best`. The triangles to `start` with come
+    /// first.
+    pub(crate) fn nearest(
+        &mut self,
+        link: &PlacedLink,
+        mut best: Best,
+        start: [Option<u32>; 2],
+    ) -> Best {
         if let Some(moved) = &mut self.moved {
             let Hierarchy { mesh, .. } = self.hierarchy;
             return moved.nearest(
@@ -64,21 +72,26 @@ impl MeshSearch<'_> {
                 &mut self.scratch.work,
             );
         }
-        resolved!(self, link, |traversal, searched| traversal.nearest(link, &searched, best, start), {
-            let mesh = &self.hierarchy.mesh;
-            if !self.is_near(link, best.bound()) {
-                return best;
+        resolved!(
+            self,
+            link,
+            |traversal, searched| traversal.nearest(link, &searched, best, start),
+            {
+                let mesh = &self.hierarchy.mesh;
+                if !self.is_near(link, best.bound()) {
+                    return best;
+                }
+                for triangle in 0..mesh.len() as u32 {
+                    best.measure(link, triangle, mesh.corners(triangle));
+                }
+                self.scratch.work.measured += mesh.len() as u64;
+                best
             }
-            for triangle in 0..mesh.len() as u32 {
-                best.measure(link, triangle, mesh.corners(triangle));
-            }
-            self.scratch.work.measured += mesh.len() as u64;
-            best
-        })
+        )
     }
 
-    /// The same without a bound, unless few triangles are in question: they are then added to `few`, the likeliest first, and
-    /// not measured.
+    /// The same without a bound, unless few triangles are in question: they are then added to
+    /// `few`, the likeliest first, and not measured.
     pub(crate) fn nearest_or_candidates(
         &mut self,
         link: &PlacedLink,
@@ -93,8 +106,8 @@ impl MeshSearch<'_> {
         )
     }
 
-    /// The same as [`MeshSearch::nearest`], and what the link keeps from all triangles at the least, with a triangle about as
-    /// near if one was met.
+    /// The same as [`MeshSearch::nearest`], and what the link keeps from all triangles at the
+    /// least, with a triangle about as near if one was met.
     /// Nothing is looked for that is farther than `far`, which is `best`'s bound or more.
     pub(crate) fn nearest_with_lower_bound(
         &mut self,
@@ -106,17 +119,24 @@ impl MeshSearch<'_> {
         resolved!(
             self,
             link,
-            |traversal, searched| traversal.nearest_with_lower_bound(link, &searched, best, far, start),
+            |traversal, searched| traversal
+                .nearest_with_lower_bound(link, &searched, best, far, start),
             (self.nearest(link, best, start), 0.0, None)
         )
     }
 
     /// About the triangle nearest to a capsule around links, if any is within reach.
     pub(crate) fn approximate_nearest(&mut self, capsule: &PlacedLink) -> Option<u32> {
-        resolved!(self, capsule, |traversal, searched| traversal.approximate_nearest(&searched), None)
+        resolved!(
+            self,
+            capsule,
+            |traversal, searched| traversal.approximate_nearest(&searched),
+            None
+        )
     }
 
-    /// Whether any triangle may be at most `bound` from a capsule around links; false only if none is.
+    /// Whether any triangle may be at most `bound` from a capsule around links; false only if none
+    /// is.
     pub(crate) fn may_meet(&mut self, capsule: &PlacedLink, bound: Real) -> bool {
         if let Some(moved) = &mut self.moved {
             return moved.may_meet(self.hierarchy.single(), capsule, bound);
@@ -126,12 +146,16 @@ impl MeshSearch<'_> {
 
     /// The same of the triangles with a lower number than `below`.
     pub(crate) fn may_meet_below(&mut self, capsule: &PlacedLink, bound: Real, below: u32) -> bool {
-        resolved!(self, capsule, |traversal, searched| traversal.may_meet(&searched, bound, below), {
-            self.is_near(capsule, bound)
-        })
+        resolved!(
+            self,
+            capsule,
+            |traversal, searched| traversal.may_meet(&searched, bound, below),
+            { self.is_near(capsule, bound) }
+        )
     }
 
-    /// All triangles that may be at most `bound` from a link, in no order; false if they are more than `most`, or unknown.
+    /// All triangles that may be at most `bound` from a link, in no order; false if they are more
+    /// than `most`, or unknown.
     pub(crate) fn gather(
         &mut self,
         link: &PlacedLink,
@@ -141,15 +165,25 @@ impl MeshSearch<'_> {
     ) -> bool {
         found.clear();
         if let Some(moved) = &mut self.moved {
-            return moved.gather(&self.hierarchy.mesh, self.hierarchy.single(), link, bound, most, found);
+            return moved.gather(
+                &self.hierarchy.mesh,
+                self.hierarchy.single(),
+                link,
+                bound,
+                most,
+                found,
+            );
         }
-        resolved!(self, link, |traversal, searched| traversal.gather(&searched, bound, most, found), {
-            !self.is_near(link, bound)
-        })
+        resolved!(
+            self,
+            link,
+            |traversal, searched| traversal.gather(&searched, bound, most, found),
+            { !self.is_near(link, bound) }
+        )
     }
 
-    /// Whether a mesh that is tiny beside a link may be at most `bound` from it: all its triangles are about where the
-    /// first one is.
+    /// Whether a mesh that is tiny beside a link may be at most `bound` from it: all its triangles
+    /// are about where the first one is.
     fn is_near(&self, link: &PlacedLink, bound: Real) -> bool {
         let (first, size) = (self.any(link).distance, self.hierarchy.size);
         let extent = link.along().abs().max_element() + link.radius();
@@ -164,7 +198,9 @@ impl MeshSearch<'_> {
     /// The corners of a triangle.
     pub(crate) fn corners(&self, triangle: u32) -> [Vector; 3] {
         let mesh = &self.hierarchy.mesh;
-        self.moved.as_ref().map_or_else(|| mesh.corners(triangle), |moved| moved.corners(mesh, triangle))
+        self.moved
+            .as_ref()
+            .map_or_else(|| mesh.corners(triangle), |moved| moved.corners(mesh, triangle))
     }
 
     pub(crate) fn single(&mut self) -> Traversal<'_, f32> {

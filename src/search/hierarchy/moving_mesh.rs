@@ -1,13 +1,14 @@
 //! A mesh whose vertices move straight and evenly, and the search through it at a moment.
 //!
-//! A vertex goes from x to y, and is at x + t (y - x) at the time t. In a direction a it is at the share t between a x and a y, so
-//! a box that holds vertices at either end of the time, in the same axes, holds them at all times if its sides move evenly
-//! too. So each box is known from two boxes, and nothing is fitted again for a moment. The axes are those of the mesh's frame.
+//! A vertex goes from x to y, and is at x + t (y - x) at the time t. In a direction a it is at the
+//! share t between a x and a y, so a box that holds vertices at either end of the time, in the same
+//! axes, holds them at all times if its sides move evenly too. So each box is known from two boxes,
+//! and nothing is fitted again for a moment. The axes are those of the mesh's frame.
 //!
-//! The search is in double precision, the nearest child first. A child is left out by the gap between its box and the axis of the
-//! body along each axis, or by a plane before the axis that faces the box's centre (`bound`). Of a box and a link whose
-//! coordinates are below `reach` these bounds, and a vertex on its way, err by less than 64 u reach, which counts against
-//! leaving out.
+//! The search is in double precision, the nearest child first. A child is left out by the gap
+//! between its box and the axis of the body along each axis, or by a plane before the axis that
+//! faces the box's centre (`bound`). Of a box and a link whose coordinates are below `reach` these
+//! bounds, and a vertex on its way, err by less than 64 u reach, which counts against leaving out.
 
 use super::build::WideBvh;
 use super::node::Child;
@@ -55,7 +56,8 @@ pub(crate) struct MovingMesh {
 }
 
 impl MovingMesh {
-    /// Moves the vertices of a mesh to these places, which were checked; `tree` is any hierarchy of the mesh.
+    /// Moves the vertices of a mesh to these places, which were checked; `tree` is any hierarchy of
+    /// the mesh.
     pub(crate) fn set(&mut self, mesh: &Mesh, tree: &WideBvh<f32>, to: &[Vector]) {
         self.to.clear();
         self.to.extend_from_slice(to);
@@ -118,7 +120,8 @@ impl MeshAt<'_> {
         })
     }
 
-    /// The triangle nearest to a link that improves on `best`. The triangle to `start` with comes first.
+    /// The triangle nearest to a link that improves on `best`. The triangle to `start` with comes
+    /// first.
     pub(crate) fn nearest(
         &mut self,
         mesh: &Mesh,
@@ -155,7 +158,9 @@ impl MeshAt<'_> {
                     for triangle in tree.leaves[leaf as usize].triangles() {
                         work.visited += 1;
                         let corners = self.corners(mesh, triangle);
-                        let sides = corners.into_iter().fold(CoordinateRange::NOTHING, CoordinateRange::with);
+                        let sides = corners
+                            .into_iter()
+                            .fold(CoordinateRange::NOTHING, CoordinateRange::with);
                         if axis.bound(&[sides; 2], 0.0) <= best.bound() {
                             work.measured += 1;
                             best.measure(link, triangle, corners);
@@ -169,7 +174,12 @@ impl MeshAt<'_> {
     }
 
     /// Whether any triangle may be at most `bound` from a capsule; false only if none is.
-    pub(crate) fn may_meet(&mut self, tree: &WideBvh<f32>, capsule: &PlacedLink, bound: Real) -> bool {
+    pub(crate) fn may_meet(
+        &mut self,
+        tree: &WideBvh<f32>,
+        capsule: &PlacedLink,
+        bound: Real,
+    ) -> bool {
         let axis = Axis::new(capsule, self.moving.reach);
         let mut waiting = std::mem::take(&mut self.moving.waiting);
         waiting.clear();
@@ -181,14 +191,16 @@ impl MeshAt<'_> {
                 break;
             };
             let near = tree.nodes[node as usize].children();
-            let near = near.filter(|child| axis.bound(self.moving.sides(*child), self.share) <= bound);
+            let near =
+                near.filter(|child| axis.bound(self.moving.sides(*child), self.share) <= bound);
             waiting.extend(near.map(|child| (0.0, child.pack())));
         }
         self.moving.waiting = waiting;
         is_met
     }
 
-    /// All triangles that may be at most `bound` from a link, in no order; false if they are more than `most`.
+    /// All triangles that may be at most `bound` from a link, in no order; false if they are more
+    /// than `most`.
     pub(crate) fn gather(
         &mut self,
         mesh: &Mesh,
@@ -206,8 +218,8 @@ impl MeshAt<'_> {
             match Child::unpack(child) {
                 Child::Node(node) => {
                     let near = tree.nodes[node as usize].children();
-                    let near =
-                        near.filter(|child| axis.bound(self.moving.sides(*child), self.share) <= bound);
+                    let near = near
+                        .filter(|child| axis.bound(self.moving.sides(*child), self.share) <= bound);
                     waiting.extend(near.map(|child| (0.0, child.pack())));
                 }
                 Child::Leaf(leaf) => {
@@ -249,10 +261,13 @@ impl Axis {
         Self { start, along: link.along(), radius, error: 64.0 * Real::UNIT_ROUNDOFF * reach }
     }
 
-    /// What the link keeps from a box at the least, or a little less; below 0 where nothing is known.
+    /// What the link keeps from a box at the least, or a little less; below 0 where nothing is
+    /// known.
     fn bound(&self, sides: &MovingBox, share: Real) -> Real {
-        let [low, high] =
-            [between(sides[0].low, sides[1].low, share), between(sides[0].high, sides[1].high, share)];
+        let [low, high] = [
+            between(sides[0].low, sides[1].low, share),
+            between(sides[0].high, sides[1].high, share),
+        ];
         let (centre, half) = ((low + high) * 0.5, (high - low) * 0.5);
         let relative = centre - self.start;
         let middle = self.along * 0.5;

@@ -40,7 +40,8 @@ impl Child {
     }
 }
 
-/// Up to 16 children and what bounds them. Aligned, so that no row of a pack lies in two lines of the cache.
+/// Up to 16 children and what bounds them. Aligned, so that no row of a pack lies in two lines of
+/// the cache.
 #[derive(Clone)]
 #[repr(align(64))]
 pub(crate) struct Node<E> {
@@ -60,15 +61,15 @@ pub(crate) struct Node<E> {
 #[derive(Clone)]
 #[repr(align(64))]
 pub(crate) struct Leaf<E> {
-    /// Rows of the coordinates of three vertices, in the order in which a [`Face`](crate::distance::Face) has them; lanes
-    /// without a triangle repeat the last one.
+    /// Rows of the coordinates of three vertices, in the order in which a
+    /// [`Face`](crate::distance::Face) has them; lanes without a triangle repeat the last one.
     pub rows: [E; 9 * BLOCK],
     pub triangles: [u32; BLOCK],
 }
 
 impl<E: Lane> Node<E> {
-    /// Bounds beyond anything of a mesh, so that unused children are only near where no limit rules out anything:
-    /// [`Node::used`] drops them there.
+    /// Bounds beyond anything of a mesh, so that unused children are only near where no limit rules
+    /// out anything: [`Node::used`] drops them there.
     pub(crate) fn empty() -> Self {
         let far = E::round(1.0e9 * E::FARTHEST);
         let (zero, one) = (E::default(), E::default().one());
@@ -135,7 +136,11 @@ impl<E: Lane> Node<E> {
 
     /// The bounds of the children from `lane` on.
     #[inline(always)]
-    pub(crate) fn bounds<L: Pack<Element = E>>(&self, token: L::Token, lane: usize) -> NodeBounds<L> {
+    pub(crate) fn bounds<L: Pack<Element = E>>(
+        &self,
+        token: L::Token,
+        lane: usize,
+    ) -> NodeBounds<L> {
         NodeBounds {
             centre: load(token, &self.rows, 0, lane),
             half: load(token, &self.rows, 3, lane),
@@ -154,7 +159,8 @@ impl<E: Lane> Leaf<E> {
 
     /// The triangles, each once.
     pub(crate) fn triangles(&self) -> impl Iterator<Item = u32> + Clone {
-        let is_first = |&lane: &usize| lane == 0 || self.triangles[lane] != self.triangles[lane - 1];
+        let is_first =
+            |&lane: &usize| lane == 0 || self.triangles[lane] != self.triangles[lane - 1];
         (0..BLOCK).filter(is_first).map(|lane| self.triangles[lane])
     }
 

@@ -6,8 +6,8 @@ use crate::distance::lanes::{Lane, Pack};
 use crate::distance::{Scalar, Vec3};
 use crate::mesh::{BLOCK, load_vertices, splat};
 
-/// The directions of a box's sides across its normal that are tried: the angle from the first one in turns of a right
-/// angle, by its cosine and sine.
+/// The directions of a box's sides across its normal that are tried: the angle from the first one
+/// in turns of a right angle, by its cosine and sine.
 const TURNS: [[f64; 2]; 4] = [
     [1.0, 0.0],
     [0.923_879_532_511_286_7, 0.382_683_432_365_089_8],
@@ -16,14 +16,18 @@ const TURNS: [[f64; 2]; 4] = [
 ];
 
 impl<E: Lane> NodeBound<E> {
-    /// Around the triangles of leaves, of which there is at least one: the smallest of a few boxes with a side across the
-    /// direction that the wall has on the whole.
+    /// Around the triangles of leaves, of which there is at least one: the smallest of a few boxes
+    /// with a side across the direction that the wall has on the whole.
     #[inline(always)]
     pub(crate) fn around<L: Pack<Element = E>>(token: L::Token, leaves: &[Leaf<E>]) -> Self {
         let (one, zero) = (E::default().one(), E::default());
         let normal = mean_normal::<L>(token, leaves).normalised();
         // Without area any normal serves.
-        let normal = if one.lit(0.5).lt(normal.norm_squared()) { normal } else { Vec3::new(one, zero, zero) };
+        let normal = if one.lit(0.5).lt(normal.norm_squared()) {
+            normal
+        } else {
+            Vec3::new(one, zero, zero)
+        };
         let [first, second] = across(normal);
         let mut tangent = first;
         let mut sides = [[zero; 2]; 2];
@@ -46,16 +50,16 @@ impl<E: Lane> NodeBound<E> {
         let mut half = [zero; 3];
         for (half, (axis, [low, high])) in half.iter_mut().zip(axes.into_iter().zip(sides)) {
             let at = centre.dot(axis);
-            // The rounding of numbers near one: products of a corner and of the centre with the axis, their difference,
-            // and the third axis, which is computed again.
+            // The rounding of numbers near one: products of a corner and of the centre with the
+            // axis, their difference, and the third axis, which is computed again.
             *half = (high - at).max(at - low) + one.lit(32.0 * E::UNIT_ROUNDOFF);
         }
         Self { centre, half: half.into(), normal, tangent }
     }
 }
 
-/// Two unit vectors across a unit normal: the first in the plane of the normal and of the coordinate axis that is most
-/// across it.
+/// Two unit vectors across a unit normal: the first in the plane of the normal and of the
+/// coordinate axis that is most across it.
 fn across<E: Lane>(normal: Vec3<E>) -> [Vec3<E>; 2] {
     let (one, zero) = (normal.x.one(), normal.x.zero());
     let [x, y, z] = [normal.x.abs(), normal.y.abs(), normal.z.abs()];
@@ -88,7 +92,11 @@ where
 
 /// From where to where triangles reach along an axis.
 #[inline(always)]
-fn extent<L: Pack>(token: L::Token, leaves: &[Leaf<L::Element>], axis: Vec3<L::Element>) -> [L::Element; 2]
+fn extent<L: Pack>(
+    token: L::Token,
+    leaves: &[Leaf<L::Element>],
+    axis: Vec3<L::Element>,
+) -> [L::Element; 2]
 where
     L::Element: Lane,
 {
@@ -149,8 +157,9 @@ mod tests {
             let (vertices, triangles) = wall(bend, turn);
             let tree = WideBvh::new(Level::new(), &Mesh::of(vertices, triangles));
             for (child, bound) in tree.nodes.iter().flat_map(children) {
-                let [centre, half, normal, tangent] = [bound.centre, bound.half, bound.normal, bound.tangent]
-                    .map(|v| Vector::from(<[f32; 3]>::from(v).map(f64::from)));
+                let [centre, half, normal, tangent] =
+                    [bound.centre, bound.half, bound.normal, bound.tangent]
+                        .map(|v| Vector::from(<[f32; 3]>::from(v).map(f64::from)));
                 let third = normal.cross(tangent);
                 let axes = [normal, tangent, third];
                 for (axis, other) in [(normal, tangent), (tangent, third), (third, normal)] {
@@ -170,6 +179,9 @@ mod tests {
                 slight += usize::from(matches!(child, Child::Node(_)) && bound.half.x < 1e-3);
             }
         }
-        assert!(checked > 100_000 && slight > 100, "{checked} corners, {slight} nearly flat bounds of nodes");
+        assert!(
+            checked > 100_000 && slight > 100,
+            "{checked} corners, {slight} nearly flat bounds of nodes"
+        );
     }
 }

@@ -1,11 +1,12 @@
-//! The nearest triangle of one link: nearer children first. Where every triangle within a limit is wanted, their order
-//! does not matter.
+//! The nearest triangle of one link: nearer children first. Where every triangle within a limit is
+//! wanted, their order does not matter.
 //!
-//! All comparisons are in the precision of the search and of distances from the axis, the link's own distance and its
-//! radius. Where no flat cap decides that is the axis distance F; beyond a flat cap it lies between two bounds. A
-//! triangle whose upper bound was computed as u is nearer than u - r + e, with e the link's `error`; so another one can
-//! only win if its own lower bound is below u + 2 e. Such candidates are put off: at the end the few that are left are
-//! measured in double precision.
+//! All comparisons are in the precision of the search and of distances from the axis, the link's
+//! own distance and its radius. Where no flat cap decides that is the axis distance F; beyond a
+//! flat cap it lies between two bounds. A triangle whose upper bound was computed as u is nearer
+//! than u - r + e, with e the link's `error`; so another one can only win if its own lower bound is
+//! below u + 2 e. Such candidates are put off: at the end the few that are left are measured in
+//! double precision.
 
 use super::build::WideBvh;
 use super::candidates::select_least;
@@ -19,12 +20,12 @@ use crate::mesh::{BLOCK, Mesh, load_vertices};
 use crate::pair::{BATCH, Best, LinkLanes, PlacedLink, SearchLink};
 use fearless_simd::Level;
 
-/// A guess at the nearest is good enough after so many leaves: where many triangles are about as near, one is as good as
-/// another.
+/// A guess at the nearest is good enough after so many leaves: where many triangles are about as
+/// near, one is as good as another.
 const LEAVES_FOR_A_GUESS: u32 = 8;
 
-/// So many triangles in question or fewer share their packs with those of other links. Measured: more fill packs of their
-/// own well enough.
+/// So many triangles in question or fewer share their packs with those of other links. Measured:
+/// more fill packs of their own well enough.
 const FEW: usize = BATCH / 2;
 
 /// Memory that is used again.
@@ -85,8 +86,8 @@ impl<E: Lane> Target<'_, E> {
 }
 
 impl<E: Lane> Traversal<'_, E> {
-    /// The triangle nearest to a link that improves on `best`. The leaves of the triangles to `start` with come first,
-    /// for the bound they give.
+    /// The triangle nearest to a link that improves on `best`. The leaves of the triangles to
+    /// `start` with come first, for the bound they give.
     pub(crate) fn nearest(
         &mut self,
         link: &PlacedLink,
@@ -102,8 +103,9 @@ impl<E: Lane> Traversal<'_, E> {
         if let Goal::Nearest(_, best) = target.aim { best } else { best }
     }
 
-    /// The same without a bound where many triangles are in question. Where they are few, none is measured: they are added
-    /// to `few`, the likeliest first, for a pack that they share with those of other links.
+    /// The same without a bound where many triangles are in question. Where they are few, none is
+    /// measured: they are added to `few`, the likeliest first, for a pack that they share with
+    /// those of other links.
     pub(crate) fn nearest_or_candidates(
         &mut self,
         link: &PlacedLink,
@@ -112,7 +114,8 @@ impl<E: Lane> Traversal<'_, E> {
         few: &mut Vec<u32>,
     ) -> Option<Best> {
         let (limit, best) = (searched.axis_limit(f64::INFINITY), Best::within(f64::INFINITY));
-        let mut target = Target { searched, limit, below: u32::MAX, aim: Goal::Nearest(link, best) };
+        let mut target =
+            Target { searched, limit, below: u32::MAX, aim: Goal::Nearest(link, best) };
         self.search(&mut target, start);
         self.drop_candidates(&target);
         let candidates = &mut self.stack.candidates;
@@ -127,11 +130,13 @@ impl<E: Lane> Traversal<'_, E> {
         if let Goal::Nearest(_, best) = target.aim { Some(best) } else { None }
     }
 
-    /// The same as [`Traversal::nearest`], and what the link keeps from all triangles at the least, with the triangle that
-    /// seemed as near if one was met. Nothing is looked for that is farther than `far`, which is `best`'s bound or more.
+    /// The same as [`Traversal::nearest`], and what the link keeps from all triangles at the least,
+    /// with the triangle that seemed as near if one was met. Nothing is looked for that is
+    /// farther than `far`, which is `best`'s bound or more.
     ///
-    /// Whatever was left out on the way was no nearer than the limit was, which only ever falls. So nothing is nearer than
-    /// the nearest candidate, the limit that is left, and what was measured: a triangle that overlaps is at once.
+    /// Whatever was left out on the way was no nearer than the limit was, which only ever falls. So
+    /// nothing is nearer than the nearest candidate, the limit that is left, and what was
+    /// measured: a triangle that overlaps is at once.
     pub(crate) fn nearest_with_lower_bound(
         &mut self,
         link: &PlacedLink,
@@ -160,13 +165,14 @@ impl<E: Lane> Traversal<'_, E> {
     pub(crate) fn approximate_nearest(&mut self, searched: &SearchLink<E>) -> Option<u32> {
         let limit = searched.axis_limit(f64::INFINITY);
         let below = u32::MAX;
-        let mut target = Target { searched, limit, below, aim: Goal::About(None, LEAVES_FOR_A_GUESS) };
+        let mut target =
+            Target { searched, limit, below, aim: Goal::About(None, LEAVES_FOR_A_GUESS) };
         self.search(&mut target, [None; 2]);
         if let Goal::About(found, _) = target.aim { found } else { None }
     }
 
-    /// Whether some triangle with a lower number than `below` may be at most `bound` from the link; false only if none
-    /// is.
+    /// Whether some triangle with a lower number than `below` may be at most `bound` from the link;
+    /// false only if none is.
     pub(crate) fn may_meet(&mut self, searched: &SearchLink<E>, bound: f64, below: u32) -> bool {
         let limit = searched.axis_limit(bound);
         let mut target = Target { searched, limit, below, aim: Goal::Any(false) };
@@ -174,7 +180,8 @@ impl<E: Lane> Traversal<'_, E> {
         matches!(target.aim, Goal::Any(true))
     }
 
-    /// All triangles that may be at most `bound` from the link, in no order; false if they are more than `most`.
+    /// All triangles that may be at most `bound` from the link, in no order; false if they are more
+    /// than `most`.
     pub(crate) fn gather(
         &mut self,
         searched: &SearchLink<E>,
@@ -366,10 +373,13 @@ impl<E: Lane> Traversal<'_, E> {
 
     /// Drops the candidates that later ones have ruled out.
     fn drop_candidates(&mut self, target: &Target<E>) {
-        self.stack.candidates.retain(|candidate| candidate.0 < target.limit && candidate.1 < target.below);
+        self.stack
+            .candidates
+            .retain(|candidate| candidate.0 < target.limit && candidate.1 < target.below);
     }
 
-    /// Measures the candidates, several at a time and first those that are likely to rule out others.
+    /// Measures the candidates, several at a time and first those that are likely to rule out
+    /// others.
     #[inline(never)] // the same code whatever the instruction set
     fn measure_candidates(&mut self, target: &mut Target<E>) {
         let Goal::Nearest(link, best) = &mut target.aim else { return };
@@ -403,7 +413,8 @@ impl<E: Lane> Traversal<'_, E> {
     }
 }
 
-/// Which children of a node have a squared bound below a limit, one bit each, and the squared bounds.
+/// Which children of a node have a squared bound below a limit, one bit each, and the squared
+/// bounds.
 #[inline(always)]
 fn near_children<L: Pack>(
     token: L::Token,

@@ -1,4 +1,5 @@
-//! Tubes of samples some of which were taken twice, a little apart: their bounds hold, and the pair costs what it is apart.
+//! Tubes of samples some of which were taken twice, a little apart: their bounds hold, and the pair
+//! costs what it is apart.
 
 use super::frames::{Kind, frames, stretch};
 use super::{Seen, discs, judge};
@@ -7,9 +8,15 @@ use parry_continuum::Tube;
 use parry_continuum::parry::math::{Pose, Vector};
 
 /// Takes a sample once more, so far away; the wrong one comes first or second. Which it was.
-fn repeat(random: &mut Random, points: &mut Vec<Vector>, radii: &mut Vec<f64>, apart: f64) -> usize {
+fn repeat(
+    random: &mut Random,
+    points: &mut Vec<Vector>,
+    radii: &mut Vec<f64>,
+    apart: f64,
+) -> usize {
     let last = points.len() as u32 - 1;
-    let at = [0, last, random.below(last + 1), random.below(last + 1)][random.below(4) as usize] as usize;
+    let at = [0, last, random.below(last + 1), random.below(last + 1)][random.below(4) as usize]
+        as usize;
     let along = points[(at + 1).min(points.len() - 1)] - points[at.saturating_sub(1)];
     // Along the curve a pair shows no more than others do, and is believed.
     let way = loop {
@@ -76,7 +83,9 @@ fn a_pair_counts_in_the_uncertainty() {
     let mut points: Vec<_> = (0..40).map(|k| arc(f64::from(k))).collect();
     let width = |points: &[Vector]| {
         let tube = Tube::with_constant_radius(points, 0.5, None).unwrap();
-        let found = super::speck(arc(20.0) + Vector::Y * 3.0).clearance(&tube, &Pose::IDENTITY, 0.1).unwrap();
+        let found = super::speck(arc(20.0) + Vector::Y * 3.0)
+            .clearance(&tube, &Pose::IDENTITY, 0.1)
+            .unwrap();
         assert!(found.resolved && found.lower <= 2.5 && 2.5 <= found.upper, "{found:?}");
         found.uncertainty
     };
@@ -87,11 +96,12 @@ fn a_pair_counts_in_the_uncertainty() {
     assert_eq!(width(&points), 0.0);
 }
 
-/// A curve that goes through all samples and bends as they show is covered, also where samples at one place are among those
-/// that crowd, and where it all but bends too much.
+/// A curve that goes through all samples and bends as they show is covered, also where samples at
+/// one place are among those that crowd, and where it all but bends too much.
 #[test]
 fn a_curve_through_samples_that_crowd_is_covered() {
-    // Of a turn by the chord t at the end of a segment of 1 the curve beside it may leave that by k / 8.
+    // Of a turn by the chord t at the end of a segment of 1 the curve beside it may leave that by k
+    // / 8.
     let most = |from: Vector, to: Vector| {
         let along = to - from;
         let turn = (along / along.length() - Vector::Z).length();
@@ -103,11 +113,13 @@ fn a_curve_through_samples_that_crowd_is_covered() {
         super::speck(at).clearance(&tube, &Pose::IDENTITY, 0.01).unwrap().lower
     };
     let at = Vector::Z * 5.0;
-    let straight = |x: f64, range: std::ops::Range<u32>| range.map(move |k| Vector::new(x, 0.0, k.into()));
+    let straight =
+        |x: f64, range: std::ops::Range<u32>| range.map(move |k| Vector::new(x, 0.0, k.into()));
     // Once more at one place, and a little off.
     let off = Vector::new(0.004, 0.0, 5.01);
     let twin = Vector::new(1e-14, 0.0, 5.0);
-    let points: Vec<_> = straight(0.0, 0..6).chain([twin, off]).chain(straight(0.0, 6..12)).collect();
+    let points: Vec<_> =
+        straight(0.0, 0..6).chain([twin, off]).chain(straight(0.0, 6..12)).collect();
     let (lower, covered) = (speck_beside(&points), 2.8 - most(at, off));
     assert!(lower <= covered, "{lower} {covered}");
     // By half a radian, which is the most there may be.

@@ -1,4 +1,5 @@
-//! Tubes fitted to measured points: within the deviation of every point, smooth, and right in their bounds.
+//! Tubes fitted to measured points: within the deviation of every point, smooth, and right in their
+//! bounds.
 
 use super::{Discs, Seen, discs, judge};
 use continuum_testing::{Arcs, Random};
@@ -39,7 +40,8 @@ fn robot(random: &mut Random) -> Arcs {
 
 /// Samples of a robot, some of which are there twice, each off by up to the noise.
 fn measured(random: &mut Random, arcs: &Arcs, count: usize, noise: f64) -> (Vec<Vector>, Vec<f64>) {
-    let (mut points, mut radii, mut from) = (vec![arcs.at(0.0).0 + in_ball(random) * noise], Vec::new(), 0.0);
+    let (mut points, mut radii, mut from) =
+        (vec![arcs.at(0.0).0 + in_ball(random) * noise], Vec::new(), 0.0);
     for part in &arcs.stretches {
         let own = (part.length / arcs.length() * count as f64).round();
         for k in 1..=own as usize {
@@ -56,7 +58,8 @@ fn measured(random: &mut Random, arcs: &Arcs, count: usize, noise: f64) -> (Vec<
 
 #[test]
 fn noise_within_the_deviation_never_makes_a_bound_wrong() {
-    let (mut random, mut seen, mut roughest, mut refused) = (Random::new(91), Seen::default(), 0, 0);
+    let (mut random, mut seen, mut roughest, mut refused) =
+        (Random::new(91), Seen::default(), 0, 0);
     while seen.asked < 10_000 {
         let arcs = robot(&mut random);
         let deviation = [0.02, 0.05, 0.25, 1.0][random.below(4) as usize];
@@ -65,7 +68,8 @@ fn noise_within_the_deviation_never_makes_a_bound_wrong() {
         let (points, radii) = measured(&mut random, &arcs, count, noise);
         let tube = Tube::fit(&points, &radii, deviation);
         if noise == deviation {
-            // Points that were measured twice may be so far apart that only a kink is near enough to both.
+            // Points that were measured twice may be so far apart that only a kink is near enough
+            // to both.
             let found = tube.as_ref().is_ok_and(|tube| tube.residual() <= deviation);
             assert!(found || matches!(tube, Err(RobotError::TurnsTooSharply { .. })), "{tube:?}");
             (roughest, refused) = (roughest + 1, refused + usize::from(!found));
@@ -81,29 +85,35 @@ fn noise_within_the_deviation_never_makes_a_bound_wrong() {
     assert!(seen.resolved > 9_900, "{seen:?}");
 }
 
-/// A robot that wriggles about the fitted line, or arc, in place by as much as is stated, and in direction too.
+/// A robot that wriggles about the fitted line, or arc, in place by as much as is stated, and in
+/// direction too.
 #[test]
 fn whatever_wriggles_within_what_is_stated_is_within_the_bounds() {
     let (mut random, mut seen) = (Random::new(92), Seen::default());
     for round in 0..600 {
         let (length, radius) = (random.between(5.0, 40.0), random.between(0.3, 2.0));
         let mut arcs = Arcs::from_frame(random.pose(5.0));
-        let bend =
-            Vector::X * if round % 2 == 0 { 0.0 } else { random.between(0.0, 0.3 / radius).min(PI / length) };
+        let bend = Vector::X
+            * if round % 2 == 0 { 0.0 } else { random.between(0.0, 0.3 / radius).min(PI / length) };
         arcs.push(radius, &[(length, bend)]);
         let points: Vec<_> = (0..=200).map(|k| arcs.at(length * f64::from(k) / 200.0).0).collect();
         let size = radius * [0.02, 0.2, 0.6][random.below(3) as usize];
-        let (turns, phase) = ((random.between(0.1, 2.0) / radius).min(30.0 / length), TAU * random.unit());
+        let (turns, phase) =
+            ((random.between(0.1, 2.0) / radius).min(30.0 / length), TAU * random.unit());
         // What the fit is off the arc counts too.
         let (deviation, turn) = (size + 2e-3, (size * turns).atan() + 1e-2);
         let tube = Tube::fit(&points, &vec![radius; 200], deviation).unwrap();
         assert!(tube.residual() < 1e-3, "{}", tube.residual());
-        let up =
-            arcs.at(0.0).1.cross(arcs.at(0.5 * length).0 - arcs.at(0.0).0 + Vector::splat(1e-3)).normalize();
+        let up = arcs
+            .at(0.0)
+            .1
+            .cross(arcs.at(0.5 * length).0 - arcs.at(0.0).0 + Vector::splat(1e-3))
+            .normalize();
         let curve = |s: f64| {
             let ((point, along), angle) = (arcs.at(s), turns * s + phase);
             // Across the curve, and across the plane in which it lies.
-            let (across, here) = if bend == Vector::ZERO { (up, along) } else { (normal(&arcs), along) };
+            let (across, here) =
+                if bend == Vector::ZERO { (up, along) } else { (normal(&arcs), along) };
             (
                 point + across * (size * angle.sin()),
                 (here + across * (size * turns * angle.cos())).normalize(),
@@ -115,7 +125,10 @@ fn whatever_wriggles_within_what_is_stated_is_within_the_bounds() {
             judge(&mut random, &tube, (&all, &curve), [3.0 * radius, 0.05], 8, &mut seen);
         }
     }
-    assert!(seen.touching > 500 && seen.at_faces > 2_000 && seen.resolved > seen.asked * 9 / 10, "{seen:?}");
+    assert!(
+        seen.touching > 500 && seen.at_faces > 2_000 && seen.resolved > seen.asked * 9 / 10,
+        "{seen:?}"
+    );
 }
 
 /// Across the plane of an arc.
@@ -154,7 +167,10 @@ fn points_that_turn_back_are_refused() {
 }
 
 /// Whether an answer is at least as good as another one: it decides the same, or it decides at all.
-fn is_no_worse(known: &Result<Decision, ProximityError>, before: &Result<Decision, ProximityError>) -> bool {
+fn is_no_worse(
+    known: &Result<Decision, ProximityError>,
+    before: &Result<Decision, ProximityError>,
+) -> bool {
     match before {
         Ok(Decision::Undecided) => known.is_ok(),
         Ok(decided) => known.as_ref().ok() == Some(decided),
@@ -162,8 +178,8 @@ fn is_no_worse(known: &Result<Decision, ProximityError>, before: &Result<Decisio
     }
 }
 
-/// What is stated of directions never makes a bound looser, nor an answer less certain: beside a mesh, another tube and itself,
-/// near faces and far from them.
+/// What is stated of directions never makes a bound looser, nor an answer less certain: beside a
+/// mesh, another tube and itself, near faces and far from them.
 #[test]
 fn a_stated_turn_never_makes_an_answer_worse() {
     let (mut random, mut seen) = (Random::new(93), Seen::default());
@@ -182,17 +198,26 @@ fn a_stated_turn_never_makes_an_answer_worse() {
         let points: Vec<_> = points.iter().map(|point| *point * unit).collect();
         let radii: Vec<_> = radii.iter().map(|radius| radius * unit).collect();
         let tube = Tube::fit(&points, &radii, deviation * unit).unwrap();
-        let turned = tube.clone().with_turn([0.0, 0.02, 0.02, 0.3, 2.0][random.below(5) as usize]).unwrap();
+        let turned =
+            tube.clone().with_turn([0.0, 0.02, 0.02, 0.3, 2.0][random.below(5) as usize]).unwrap();
         let curve = |s: f64| arcs.at(s);
         for _ in 0..6 {
             let point = super::near(&mut random, &discs(&arcs), &curve, 4.0);
             let truth = super::distance(&discs(&arcs), &curve, point);
             let tolerance = [0.0, 0.01, 0.1][random.below(3) as usize] * unit;
-            let ask = |tube: &Tube| super::speck(point * unit).clearance(tube, &Pose::IDENTITY, tolerance);
+            let ask = |tube: &Tube| {
+                super::speck(point * unit).clearance(tube, &Pose::IDENTITY, tolerance)
+            };
             let [before, known] = [ask(&tube).unwrap(), ask(&turned).unwrap()];
-            assert!(before.lower <= known.lower && known.upper <= before.upper, "{before:?} {known:?}");
+            assert!(
+                before.lower <= known.lower && known.upper <= before.upper,
+                "{before:?} {known:?}"
+            );
             assert!(known.resolved || !before.resolved, "{before:?} {known:?}");
-            assert!(known.lower <= truth * unit * (1.0 + 1e-9) && truth * unit <= known.upper + 1e-9 * unit);
+            assert!(
+                known.lower <= truth * unit * (1.0 + 1e-9)
+                    && truth * unit <= known.upper + 1e-9 * unit
+            );
             let margin = (truth + random.between(-1.0, 1.0) * (deviation + 1.0)).max(0.0) * unit;
             let decide = |tube: &Tube| {
                 super::speck(point * unit).tube_clears(tube, &Pose::IDENTITY, margin, 1e-3 * unit)
@@ -204,20 +229,32 @@ fn a_stated_turn_never_makes_an_answer_worse() {
             decided += usize::from(matches!(before, Ok(Decision::Clear)));
         }
         if round % 8 == 0 {
-            let pose = Pose::from_parts(random.direction() * (5.0 * unit), random.pose(1.0).rotation);
+            let pose =
+                Pose::from_parts(random.direction() * (5.0 * unit), random.pose(1.0).rotation);
             let other = [&tube, &turned][random.below(2) as usize];
             let ask = |tube: &Tube| {
                 RobotPair::new().clearance(tube, &Pose::IDENTITY, other, &pose, 0.1 * unit).unwrap()
             };
             let [before, known] = [ask(&tube), ask(&turned)];
-            assert!(before.lower <= known.lower && known.upper <= before.upper, "{before:?} {known:?}");
+            assert!(
+                before.lower <= known.lower && known.upper <= before.upper,
+                "{before:?} {known:?}"
+            );
             let margin = before.upper * random.between(0.2, 1.2);
             let decide = |tube: &Tube| {
-                RobotPair::new().tubes_clear(tube, &Pose::IDENTITY, other, &pose, margin, 0.1 * unit)
+                RobotPair::new().tubes_clear(
+                    tube,
+                    &Pose::IDENTITY,
+                    other,
+                    &pose,
+                    margin,
+                    0.1 * unit,
+                )
             };
             let [before, known] = [decide(&tube), decide(&turned)];
             assert!(is_no_worse(&known, &before), "{before:?} {known:?}");
-            let decide = |tube: &Tube| RobotPair::new().tube_self_clears(tube, 0.1 * unit, 0.05 * unit);
+            let decide =
+                |tube: &Tube| RobotPair::new().tube_self_clears(tube, 0.1 * unit, 0.05 * unit);
             assert!(is_no_worse(&decide(&turned), &decide(&tube)));
             beside += usize::from(before.is_ok());
         }
@@ -228,7 +265,8 @@ fn a_stated_turn_never_makes_an_answer_worse() {
 /// What is refused is told in the words of the function that was called.
 #[test]
 fn what_is_refused_names_the_deviation() {
-    let zigzag: Vec<_> = (0..40).map(|k| Vector::new(f64::from(k % 2), 0.0, 0.1 * f64::from(k))).collect();
+    let zigzag: Vec<_> =
+        (0..40).map(|k| Vector::new(f64::from(k % 2), 0.0, 0.1 * f64::from(k))).collect();
     let error = Tube::fit(&zigzag, &[0.1; 39], 1e-3).unwrap_err();
     assert!(matches!(error, RobotError::TurnsTooSharply { .. }), "{error}");
     assert!(error.to_string().contains("a `deviation` as large as their noise"), "{error}");

@@ -20,7 +20,8 @@ pub(super) enum Kind {
     Swing,
 }
 
-/// A stretch as very short arcs: of each its length and curvature vector. No segment of the frames is longer than `spacing`.
+/// A stretch as very short arcs: of each its length and curvature vector. No segment of the frames
+/// is longer than `spacing`.
 pub(super) fn stretch(
     random: &mut Random,
     kind: Kind,
@@ -28,7 +29,8 @@ pub(super) fn stretch(
     spacing: f64,
     sharpest: f64,
 ) -> Vec<(f64, Vector)> {
-    let bend = |size: f64, angle: f64| Vector::new(angle.cos(), angle.sin(), 0.0) * (sharpest * size);
+    let bend =
+        |size: f64, angle: f64| Vector::new(angle.cos(), angle.sin(), 0.0) * (sharpest * size);
     let angle = TAU * random.unit();
     if kind == Kind::Arcs {
         let most = ((length / (2.0 * spacing)) as u32).clamp(1, 4);
@@ -39,7 +41,8 @@ pub(super) fn stretch(
     }
     const PARTS: u32 = 500;
     let [from, to] = [random.between(-1.0, 1.0), random.between(-1.0, 1.0)];
-    // From one segment to the next a helix turns by up to 0.5 rad about the curve, and a swing goes on by as much.
+    // From one segment to the next a helix turns by up to 0.5 rad about the curve, and a swing goes
+    // on by as much.
     let turns = random.between(0.0, 0.5) * length / spacing;
     let at = |k: u32| {
         let share = (f64::from(k) + 0.5) / f64::from(PARTS);
@@ -52,10 +55,16 @@ pub(super) fn stretch(
     (0..PARTS).map(|k| (length / f64::from(PARTS), at(k))).collect()
 }
 
-/// Frames of a curve, with a radius for each segment: no segment is longer than `spacing`, nor less than half as long.
-pub(super) fn frames(random: &mut Random, arcs: &Arcs, spacing: f64) -> (Vec<Vector>, Vec<Vector>, Vec<f64>) {
+/// Frames of a curve, with a radius for each segment: no segment is longer than `spacing`, nor less
+/// than half as long.
+pub(super) fn frames(
+    random: &mut Random,
+    arcs: &Arcs,
+    spacing: f64,
+) -> (Vec<Vector>, Vec<Vector>, Vec<f64>) {
     let (start, tangent) = arcs.at(0.0);
-    let (mut points, mut tangents, mut radii, mut from) = (vec![start], vec![tangent], Vec::new(), 0.0);
+    let (mut points, mut tangents, mut radii, mut from) =
+        (vec![start], vec![tangent], Vec::new(), 0.0);
     for part in &arcs.stretches {
         let mut lengths = Vec::new();
         while lengths.iter().sum::<f64>() < part.length {
@@ -101,8 +110,9 @@ fn curves_that_bend_as_their_frames_show_are_never_misjudged() {
     assert!(seen.resolved > 9_000, "{seen:?} {kinds:?}");
 }
 
-/// A tube of three radii whose middle section is a single segment, in which the bend jumps from that of the section before to that
-/// of the one behind: once or twice, at any place, or not at all.
+/// A tube of three radii whose middle section is a single segment, in which the bend jumps from
+/// that of the section before to that of the one behind: once or twice, at any place, or not at
+/// all.
 #[test]
 fn sections_of_one_segment_are_known_by_their_own_frames() {
     let (mut random, mut seen, mut straight) = (Random::new(72), Seen::default(), [0; 2]);
@@ -139,7 +149,14 @@ fn sections_of_one_segment_are_known_by_their_own_frames() {
         assert_eq!(radii.iter().filter(|&&radius| radius == 1.0).count(), 1);
         let tube = Tube::from_frames(&points, &tangents, &radii).unwrap();
         let before = seen.resolved;
-        judge(&mut random, &tube, (&discs(&arcs), &|s: f64| arcs.at(s)), [4.0, 0.01], 10, &mut seen);
+        judge(
+            &mut random,
+            &tube,
+            (&discs(&arcs), &|s: f64| arcs.at(s)),
+            [4.0, 0.01],
+            10,
+            &mut seen,
+        );
         if jumps == 0 {
             straight = [straight[0] + seen.resolved - before, straight[1] + 10];
         }
@@ -165,9 +182,14 @@ fn a_corner_between_two_frames_at_one_place_is_refused() {
         let radii = vec![0.5; points.len() - 1];
         Tube::from_frames(&points, &tangents, &radii)
     };
-    // Rounding is no corner, that of single precision neither. Either direction may be the true one.
+    // Rounding is no corner, that of single precision neither. Either direction may be the true
+    // one.
     let floor = BvhSearch::from_triangles(
-        &[Vector::new(-90.0, -1.3, -90.0), Vector::new(90.0, -1.3, -90.0), Vector::new(0.0, -1.3, 90.0)],
+        &[
+            Vector::new(-90.0, -1.3, -90.0),
+            Vector::new(90.0, -1.3, -90.0),
+            Vector::new(0.0, -1.3, 90.0),
+        ],
         &[[0, 1, 2]],
     );
     let mut floor = floor.unwrap();
@@ -184,7 +206,8 @@ fn a_corner_between_two_frames_at_one_place_is_refused() {
         let found = floor.clearance(&tube, &Pose::IDENTITY, 1e-3).unwrap();
         let onwards = turns[turns.len() - 1];
         for turn in turns {
-            // The lowest place of the rim at the tip, whose face stands in one of the two directions; or of the base.
+            // The lowest place of the rim at the tip, whose face stands in one of the two
+            // directions; or of the base.
             let tip = 1.3 + 4.0 * onwards.sin() - 0.5 * turn.cos();
             let truth = tip.min(0.8);
             assert!(found.lower <= truth && truth <= found.upper, "{turn} {truth} {found:?}");
@@ -193,7 +216,9 @@ fn a_corner_between_two_frames_at_one_place_is_refused() {
     // Those below 0.4 rad were taken for bends of the segment behind, which is straight.
     for corner in [1e-4, 0.01, 0.1, 0.3, 1.0, 2.0, std::f64::consts::PI] {
         let error = arms(&[0.0, corner]).unwrap_err();
-        let RobotError::TurnsTooSharply { index, after, turn } = error else { panic!("{corner}: {error}") };
+        let RobotError::TurnsTooSharply { index, after, turn } = error else {
+            panic!("{corner}: {error}")
+        };
         assert_eq!((index, after), (3, 2), "{error}");
         assert!((turn - corner).abs() < 1e-7, "{error}");
         // And where it is between them and one that is the first again.

@@ -1,4 +1,5 @@
-//! Tubes of frames and of measured points against the truth: the nearest of all discs across curves that are known everywhere.
+//! Tubes of frames and of measured points against the truth: the nearest of all discs across curves
+//! that are known everywhere.
 
 mod crowds;
 mod fit;
@@ -70,7 +71,8 @@ fn speck(point: Vector) -> BvhSearch {
     BvhSearch::new(&TriMesh::new(vec![point; 3], vec![[0, 1, 2]]).unwrap()).unwrap()
 }
 
-/// A point near a curve: beside it, ahead of a face, exactly on its axis or in its plane, on the tube or in it.
+/// A point near a curve: beside it, ahead of a face, exactly on its axis or in its plane, on the
+/// tube or in it.
 fn near(random: &mut Random, discs: &[Discs], curve: Curve, away: f64) -> Vector {
     let Discs { range, radius } = discs[random.below(discs.len() as u32) as usize];
     let inner = range[0] + (range[1] - range[0]) * random.unit();
@@ -86,7 +88,8 @@ fn near(random: &mut Random, discs: &[Discs], curve: Curve, away: f64) -> Vector
         3 => centre + across * (radius * random.unit()),
         4 => {
             centre
-                + (across * random.between(0.5, 1.5) + outward * random.unit()).normalize() * (radius + off)
+                + (across * random.between(0.5, 1.5) + outward * random.unit()).normalize()
+                    * (radius + off)
         }
         _ => centre + random.direction() * (radius + off),
     }
@@ -128,7 +131,8 @@ fn judge(
             (point - centre).length() < truth + 1.01 * radius
         };
         seen.at_faces += usize::from(
-            truth > size && (is_ahead(discs[0].range[0]) || is_ahead(discs[discs.len() - 1].range[1])),
+            truth > size
+                && (is_ahead(discs[0].range[0]) || is_ahead(discs[discs.len() - 1].range[1])),
         );
     }
 }

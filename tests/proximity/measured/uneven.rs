@@ -1,4 +1,5 @@
-//! Tubes of samples that lie as unevenly as one likes: each segment bends as the samples around it show.
+//! Tubes of samples that lie as unevenly as one likes: each segment bends as the samples around it
+//! show.
 
 use super::frames::{Kind, stretch};
 use super::{Seen, discs, judge};
@@ -28,7 +29,8 @@ fn samples(random: &mut Random, arcs: &Arcs, spacing: f64) -> (Vec<Vector>, Vec<
     (points, radii)
 }
 
-/// Whether the tube is known between two samples too, so that pieces begin there: seen from beside its longest segment.
+/// Whether the tube is known between two samples too, so that pieces begin there: seen from beside
+/// its longest segment.
 fn is_divided_between_samples(tube: &Tube, points: &[Vector]) -> bool {
     let longest = points.windows(2).max_by(|one, other| {
         let [one, other] = [one, other].map(|ends| (ends[1] - ends[0]).length());
@@ -43,13 +45,15 @@ fn is_divided_between_samples(tube: &Tube, points: &[Vector]) -> bool {
         *arc += (ends[1] - ends[0]).length();
         Some(*arc)
     }));
-    let is_sample = |arc: f64| arcs.iter().any(|sample| (sample - arc).abs() < 1e-9 * tube.length());
+    let is_sample =
+        |arc: f64| arcs.iter().any(|sample| (sample - arc).abs() < 1e-9 * tube.length());
     pieces.iter().any(|piece| !piece.arc_lengths.into_iter().all(is_sample))
 }
 
 #[test]
 fn uneven_samples_never_make_a_bound_wrong() {
-    let (mut random, mut seen, [mut sharper, mut arched]) = (Random::new(121), Seen::default(), [0; 2]);
+    let (mut random, mut seen, [mut sharper, mut arched]) =
+        (Random::new(121), Seen::default(), [0; 2]);
     for round in 0..1_500 {
         let mut arcs = Arcs::from_frame(random.pose(5.0));
         let spacing = random.between(0.5, 2.0);
@@ -67,23 +71,28 @@ fn uneven_samples_never_make_a_bound_wrong() {
         arched += usize::from(is_divided_between_samples(&tube, &points));
         let curve = |s: f64| arcs.at(s);
         judge(&mut random, &tube, (&discs(&arcs), &curve), [4.0, 0.1 * spacing], 8, &mut seen);
-        sharper += usize::from(kind == Kind::Arcs && arcs.stretches.iter().any(|part| part.curvature > 0.1));
+        sharper += usize::from(
+            kind == Kind::Arcs && arcs.stretches.iter().any(|part| part.curvature > 0.1),
+        );
     }
     assert!(seen.asked == 12_000 && seen.touching > 500 && seen.at_faces > 2_000, "{seen:?}");
     assert!(seen.resolved > 9 * seen.asked / 10 && sharper > 100, "{seen:?} {sharper}");
     assert!(arched > 400, "{arched}");
 }
 
-/// A sharp bend counts where it is: a wall beside the straight part is as well known as beside a straight tube.
+/// A sharp bend counts where it is: a wall beside the straight part is as well known as beside a
+/// straight tube.
 #[test]
 fn a_sharp_bend_costs_nothing_elsewhere() {
     let mut arcs = Arcs::from_frame(Pose::IDENTITY);
     arcs.push(0.5, &[(40.0, Vector::ZERO), (10.0, Vector::X * 0.2)]);
     // Far apart on the straight part, and near enough in the bend.
-    let places = (0..10).map(|k| 4.0 * f64::from(k)).chain((0..=20).map(|k| 40.0 + 0.5 * f64::from(k)));
+    let places =
+        (0..10).map(|k| 4.0 * f64::from(k)).chain((0..=20).map(|k| 40.0 + 0.5 * f64::from(k)));
     let points: Vec<_> = places.map(|s| arcs.at(s).0).collect();
     let tube = Tube::with_constant_radius(&points, 0.5, None).unwrap();
-    let found = super::speck(Vector::new(3.0, 0.0, 18.0)).clearance(&tube, &Pose::IDENTITY, 1e-6).unwrap();
+    let found =
+        super::speck(Vector::new(3.0, 0.0, 18.0)).clearance(&tube, &Pose::IDENTITY, 1e-6).unwrap();
     assert!(found.resolved && found.lower <= 2.5 && 2.5 <= found.upper, "{found:?}");
 }
 
@@ -96,21 +105,30 @@ fn a_long_segment_between_short_ones_is_known_better_than_by_its_chord() {
         let (spacing, bend) = (random.between(4.0, 8.0), random.between(0.01, 0.03));
         let angle = std::f64::consts::TAU * random.unit();
         let bend = Vector::new(angle.cos(), angle.sin(), 0.0) * bend;
-        // An arc, or one that bends back from some place on, which shows least a quarter of a segment from its ends.
+        // An arc, or one that bends back from some place on, which shows least a quarter of a
+        // segment from its ends.
         let change = if round % 2 == 0 { bend } else { -bend };
         let place = (2.0 + [0.25, 0.75, random.unit()][round % 3]) * spacing;
         arcs.push(0.5, &[(place, bend), (5.0 * spacing - place, change)]);
-        let places = (0..=5).flat_map(|k| [-0.01, 0.0, 0.01].map(|off| spacing * (f64::from(k) + off)));
+        let places =
+            (0..=5).flat_map(|k| [-0.01, 0.0, 0.01].map(|off| spacing * (f64::from(k) + off)));
         let points: Vec<_> =
             places.filter(|s| (0.0..=5.0 * spacing).contains(s)).map(|s| arcs.at(s).0).collect();
         let tube = Tube::with_constant_radius(&points, 0.5, None).unwrap();
         let before = seen.resolved;
-        // The chord leaves the arc by k l^2 / 8, and the bounds are up to twice that apart. Where bends change, they are to be as
-        // close as they can.
+        // The chord leaves the arc by k l^2 / 8, and the bounds are up to twice that apart. Where
+        // bends change, they are to be as close as they can.
         let does_change = round % 2 == 1;
         let half = 0.5 * bend.length() * spacing * spacing / 8.0;
         let tolerance = if does_change { 0.0 } else { half };
-        judge(&mut random, &tube, (&discs(&arcs), &|s: f64| arcs.at(s)), [4.0, tolerance], 10, &mut seen);
+        judge(
+            &mut random,
+            &tube,
+            (&discs(&arcs), &|s: f64| arcs.at(s)),
+            [4.0, tolerance],
+            10,
+            &mut seen,
+        );
         if does_change {
             seen.resolved = before;
         }
@@ -156,8 +174,9 @@ fn places(random: &mut Random, spacing: Spacing, close: f64) -> Vec<f64> {
     places
 }
 
-/// Whether samples show the bends of a curve that jumps at some places: each segment bends no more than one of the two samples
-/// before it and the two behind it shows, between whose neighbours the bend is the same.
+/// Whether samples show the bends of a curve that jumps at some places: each segment bends no more
+/// than one of the two samples before it and the two behind it shows, between whose neighbours the
+/// bend is the same.
 fn is_shown(places: &[f64], jumps: &[f64], bends: &[Vector], has_tangents: bool) -> bool {
     let last = places.len() - 1;
     let pieces = |from: f64, to: f64| {
@@ -172,13 +191,15 @@ fn is_shown(places: &[f64], jumps: &[f64], bends: &[Vector], has_tangents: bool)
         if around.start() == around.end() { bends[*around.start()].length() } else { 0.0 }
     };
     (0..last).all(|from| {
-        let most = pieces(places[from], places[from + 1]).map(|k| bends[k].length()).fold(0.0, f64::max);
+        let most =
+            pieces(places[from], places[from + 1]).map(|k| bends[k].length()).fold(0.0, f64::max);
         let four = from.saturating_sub(1)..=(from + 2).min(last);
         four.map(shown).fold(0.0, f64::max) >= most
     })
 }
 
-/// An S-curve, or one of arcs in any directions, through samples that show its bends; none if none was found.
+/// An S-curve, or one of arcs in any directions, through samples that show its bends; none if none
+/// was found.
 fn jumping(random: &mut Random, places: &[f64], has_tangents: bool, radius: f64) -> Option<Arcs> {
     let (last, longest) =
         (places.len() - 1, places.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max));
@@ -215,8 +236,8 @@ fn jumping(random: &mut Random, places: &[f64], has_tangents: bool, radius: f64)
     None
 }
 
-/// A bend that a sample shows counts for the two segments on either side, however close the next sample lies. The curves bend
-/// nowhere more than that.
+/// A bend that a sample shows counts for the two segments on either side, however close the next
+/// sample lies. The curves bend nowhere more than that.
 #[test]
 fn bends_count_however_close_the_samples_lie() {
     const KINDS: [Spacing; 5] =
@@ -255,8 +276,11 @@ fn bends_count_however_close_the_samples_lie() {
                 .map(|k| beside(f64::from(k) / 20.0))
                 .max_by(|one, other| one.1.length().total_cmp(&other.1.length()))
                 .unwrap();
-            let ((centre, tangent), away) =
-                if random.below(3) == 0 { (beside(random.unit()).0, random.direction()) } else { farthest };
+            let ((centre, tangent), away) = if random.below(3) == 0 {
+                (beside(random.unit()).0, random.direction())
+            } else {
+                farthest
+            };
             let side = [-1.0, 1.0, 1.0][random.below(3) as usize];
             let across = tangent.cross(away).cross(tangent).normalize() * side;
             if !across.is_finite() {
@@ -292,12 +316,15 @@ fn bends_count_however_close_the_samples_lie() {
     for kind in 0..KINDS.len() {
         let counts = [asked[kind], refused[kind], known[kind], close_by[kind]];
         assert!(asked[kind] > each / 2 && 5 * refused[kind] < each, "{kind} {counts:?}");
-        assert!(5 * known[kind] > 4 * asked[kind] && 5 * close_by[kind] > asked[kind], "{kind} {counts:?}");
+        assert!(
+            5 * known[kind] > 4 * asked[kind] && 5 * close_by[kind] > asked[kind],
+            "{kind} {counts:?}"
+        );
     }
 }
 
-/// Three samples of an S-curve that leaves the origin along z, a long and a short segment: two points, the direction at the tip, the
-/// radius and the true distance, and the wall.
+/// Three samples of an S-curve that leaves the origin along z, a long and a short segment: two
+/// points, the direction at the tip, the radius and the true distance, and the wall.
 #[test]
 fn a_short_segment_at_the_tip_shows_how_the_long_one_bends() {
     let cases = [
@@ -311,7 +338,10 @@ fn a_short_segment_at_the_tip_shows_how_the_long_one_bends() {
             [0.9064670236163008, 0.0, 0.5857788043138724],
         ),
         (
-            [[0.02335030562478964, 0.0, 0.9996673566181065], [0.023451224971835105, 0.0, 1.0058112380806774]],
+            [
+                [0.02335030562478964, 0.0, 0.9996673566181065],
+                [0.023451224971835105, 0.0, 1.0058112380806774],
+            ],
             [0.016225769060715566, 0.0, 0.9998683535437994],
             [1.082832838746682, 0.0016374913625238907],
             [-1.0732501925496014, 0.0, 0.6102091477625886],

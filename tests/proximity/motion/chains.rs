@@ -36,12 +36,18 @@ fn no_chain_is_misjudged() {
             let points: Vec<_> = from.iter().zip(&to).map(|(a, b)| a + (b - a) * t).collect();
             model(&points, &radii).unwrap()
         };
-        let chains: Vec<_> = (0..=count).map(|step| chain(Real::from(step) / Real::from(count))).collect();
-        let distance =
-            |search: &mut BvhSearch, chain: &Chain| search.minimum(chain, &Pose::IDENTITY).unwrap().distance;
+        let chains: Vec<_> =
+            (0..=count).map(|step| chain(Real::from(step) / Real::from(count))).collect();
+        let distance = |search: &mut BvhSearch, chain: &Chain| {
+            search.minimum(chain, &Pose::IDENTITY).unwrap().distance
+        };
         let distances: Vec<_> = chains.iter().map(|chain| distance(&mut search, chain)).collect();
         changing += usize::from(chains.iter().any(|chain| {
-            chain.links().iter().zip(chains[0].links()).any(|(link, first)| link.caps() != first.caps())
+            chain
+                .links()
+                .iter()
+                .zip(chains[0].links())
+                .any(|(link, first)| link.caps() != first.caps())
         }));
         let least = distances.iter().copied().fold(Real::INFINITY, Real::min);
         // Between two steps nothing moves farther than this, unless a cap changes.
@@ -52,7 +58,10 @@ fn no_chain_is_misjudged() {
                 (Decision::Clear, _) => {
                     clear += 1;
                     wide += usize::from(least > margin + 0.5);
-                    assert!(least > margin, "certified, but a step is {least} away, margin {margin}");
+                    assert!(
+                        least > margin,
+                        "certified, but a step is {least} away, margin {margin}"
+                    );
                 }
                 (Decision::Contact, Some(shape)) => {
                     let (t, upper) = (shape.t, shape.upper);
@@ -69,18 +78,28 @@ fn no_chain_is_misjudged() {
             // When it happens.
             let answer = search.time_of_contact(&motion, margin, 1e-3).unwrap();
             match (answer.decision, answer.contact) {
-                (Decision::Clear, _) => assert!(least > margin, "never, but {least} away, margin {margin}"),
+                (Decision::Clear, _) => {
+                    assert!(least > margin, "never, but {least} away, margin {margin}")
+                }
                 (Decision::Contact, Some(shape)) => {
                     let ([clear_until, t], upper) = (answer.interval, shape.upper);
                     assert!(clear_until <= t && t == shape.t);
                     let truth = distance(&mut search, &chain(t));
-                    assert!(truth <= margin + 1e-9 && upper <= margin, "{truth} at {t}, margin {margin}");
-                    let clear = distances.iter().take((clear_until * Real::from(count)).ceil() as usize);
-                    assert!(clear.clone().all(|distance| *distance > margin), "{clear_until} to {t}");
+                    assert!(
+                        truth <= margin + 1e-9 && upper <= margin,
+                        "{truth} at {t}, margin {margin}"
+                    );
+                    let clear =
+                        distances.iter().take((clear_until * Real::from(count)).ceil() as usize);
+                    assert!(
+                        clear.clone().all(|distance| *distance > margin),
+                        "{clear_until} to {t}"
+                    );
                 }
                 (Decision::Undecided, _) => {
                     let interval = answer.interval;
-                    let clear = distances.iter().take((interval[0] * Real::from(count)).ceil() as usize);
+                    let clear =
+                        distances.iter().take((interval[0] * Real::from(count)).ceil() as usize);
                     assert!(clear.clone().all(|distance| *distance > margin), "{interval:?}");
                 }
                 (Decision::Contact, None) => panic!("{answer:?}"),
@@ -95,8 +114,9 @@ fn no_chain_is_misjudged() {
     assert!(undecided < 40, "{undecided}");
 }
 
-/// A short robot with one thick point, which stands still for half of the time and then moves aside. The links behind it
-/// stand still all the time, but the first of them gets a round start when the thick point is a radius away.
+/// A short robot with one thick point, which stands still for half of the time and then moves
+/// aside. The links behind it stand still all the time, but the first of them gets a round start
+/// when the thick point is a radius away.
 struct ThickPoint;
 
 impl ThickPoint {
@@ -119,7 +139,8 @@ impl Motion for ThickPoint {
     }
 
     fn speed(&self, section: usize, shares: [Real; 2], _: [Real; 2]) -> Speed {
-        // The derivative of `aside` is at most 12, and a link of 0.25 beside it turns by 12 / 0.25 at most.
+        // The derivative of `aside` is at most 12, and a link of 0.25 beside it turns by 12 / 0.25
+        // at most.
         match section {
             0 => Speed { point: 12.0 * shares[1], turn: 48.0 },
             1 => Speed { point: 12.0 * (1.0 - shares[0]), turn: 48.0 },
@@ -137,14 +158,18 @@ fn a_cap_that_becomes_round_behind_a_thick_point_is_seen() {
     // A speck in the ball at that start, and in nothing else.
     let speck = Vector::new(0.8, 0.3, -0.8);
     let corners = [Vector::X, Vector::Y, Vector::Z].map(|off| speck + off * 1e-3);
-    let mut search = BvhSearch::new(&TriMesh::new(corners.to_vec(), vec![[0, 1, 2]]).unwrap()).unwrap();
+    let mut search =
+        BvhSearch::new(&TriMesh::new(corners.to_vec(), vec![[0, 1, 2]]).unwrap()).unwrap();
     let distances = (0..=100).map(|step| {
         let chain = ThickPoint::chain(Real::from(step) / 100.0).unwrap();
         search.minimum(&chain, &Pose::IDENTITY).unwrap().distance
     });
     let distances: Vec<_> = distances.collect();
     let first = distances.iter().position(|distance| *distance == 0.0).unwrap();
-    assert!(first > 60 && distances[..first].iter().all(|distance| *distance > 0.02), "{distances:?}");
+    assert!(
+        first > 60 && distances[..first].iter().all(|distance| *distance > 0.02),
+        "{distances:?}"
+    );
     let answer = search.clears_motion(&ThickPoint, 0.0, 1e-3).unwrap();
     assert!(answer.contact.is_some_and(|shape| shape.t > 0.6), "{answer:?}");
     // The thick point is a radius away when the square of `aside` is 1 - 0.25^2.
@@ -172,8 +197,8 @@ impl Motion for Pushed {
     }
 }
 
-/// Joints less than a radius behind the tip's face stay flat, as far as the motion cannot bring them away from it: round, the
-/// first of them would reach 0.35 beyond the tip.
+/// Joints less than a radius behind the tip's face stay flat, as far as the motion cannot bring
+/// them away from it: round, the first of them would reach 0.35 beyond the tip.
 #[test]
 fn short_links_do_not_reach_beyond_a_flat_tip() {
     let points: Vec<_> = (0..=120).map(|k| Vector::Z * (0.25 * Real::from(k))).collect();
@@ -182,23 +207,30 @@ fn short_links_do_not_reach_beyond_a_flat_tip() {
     let way = 0.05;
     for gap in [0.1, 0.2, 0.4] {
         let z = 30.0 + way + gap;
-        let wall = [Vector::new(-9.0, -9.0, z), Vector::new(9.0, -9.0, z), Vector::new(0.0, 9.0, z)];
+        let wall =
+            [Vector::new(-9.0, -9.0, z), Vector::new(9.0, -9.0, z), Vector::new(0.0, 9.0, z)];
         let mut search = BvhSearch::from_triangles(&wall, &[[0, 1, 2]]).unwrap();
-        let answer = search.clears_motion(&Pushed { chain: chain.clone(), way }, 0.0, 1e-3).unwrap();
+        let answer =
+            search.clears_motion(&Pushed { chain: chain.clone(), way }, 0.0, 1e-3).unwrap();
         assert!(answer.is_clear(), "{gap}: {answer:?}");
-        let answer = search.clears_motion(&Pushed { chain: chain.clone(), way }, 1.1 * gap, 1e-3).unwrap();
+        let answer =
+            search.clears_motion(&Pushed { chain: chain.clone(), way }, 1.1 * gap, 1e-3).unwrap();
         assert_eq!(answer.decision, Decision::Contact, "{gap}: {answer:?}");
     }
 }
 
-/// Segments without length are no links, and are counted all the same where an answer names the segment of the input.
+/// Segments without length are no links, and are counted all the same where an answer names the
+/// segment of the input.
 #[test]
 fn the_segment_of_an_answer_is_that_of_the_input() {
-    let from = [Vector::Z * 2.0, Vector::Z * 2.0, Vector::new(1.0, 0.0, 2.0), Vector::new(2.0, 0.0, 1.5)];
+    let from =
+        [Vector::Z * 2.0, Vector::Z * 2.0, Vector::new(1.0, 0.0, 2.0), Vector::new(2.0, 0.0, 1.5)];
     let to = from.map(|point| point - Vector::Z);
-    let floor = [Vector::new(-9.0, -9.0, 0.0), Vector::new(9.0, -9.0, 0.0), Vector::new(0.0, 9.0, 0.0)];
+    let floor =
+        [Vector::new(-9.0, -9.0, 0.0), Vector::new(9.0, -9.0, 0.0), Vector::new(0.0, 9.0, 0.0)];
     let mut search = BvhSearch::from_triangles(&floor, &[[0, 1, 2]]).unwrap();
-    for motion in [LinearMotion::chain, LinearMotion::capsules].map(|new| new(&from, &to, &[0.1; 3]).unwrap())
+    for motion in
+        [LinearMotion::chain, LinearMotion::capsules].map(|new| new(&from, &to, &[0.1; 3]).unwrap())
     {
         // The last of three segments comes to 0.4.
         let contact = search.clears_motion(&motion, 0.5, 1e-3).unwrap().contact.unwrap();

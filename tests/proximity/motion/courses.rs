@@ -1,4 +1,5 @@
-//! Where a motion says that it goes: fewer shapes are looked at, no answer changes, and what it says wrong is found.
+//! Where a motion says that it goes: fewer shapes are looked at, no answer changes, and what it
+//! says wrong is found.
 
 use super::{anatomy, polyline, random_edge};
 use continuum_demo::{ctr, ventricle};
@@ -6,7 +7,8 @@ use continuum_testing::Random;
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::proximity::{BvhSearch, Decision, Proximity};
 use parry_continuum::{
-    BendingMotion, Chain, Course, LinearMotion, Motion, RigidMotion, RobotError, Speed, Tube, verify_motion,
+    BendingMotion, Chain, Course, LinearMotion, Motion, RigidMotion, RobotError, Speed, Tube,
+    verify_motion,
 };
 use std::cell::Cell;
 
@@ -103,13 +105,17 @@ fn courses_that_are_too_narrow_or_lead_elsewhere_are_found() {
     assert!(found.iter().all(|found| *found > 30), "{found:?}");
 }
 
-/// What shows only in the middle of a time, only between shapes far apart, only at one place or only along a section.
+/// What shows only in the middle of a time, only between shapes far apart, only at one place or
+/// only along a section.
 #[test]
 fn each_way_to_be_off_a_course_is_found() {
     let motion = Accelerating(8.0);
     verify_motion(&motion, 64).unwrap();
     // Both ends of the time are where they should be.
-    assert!(is_found(&guided(&motion, &|course, _, _| Some(Course { off: 0.9 * course.off, ..course })), 64));
+    assert!(is_found(
+        &guided(&motion, &|course, _, _| Some(Course { off: 0.9 * course.off, ..course })),
+        64
+    ));
     let long = |course: Course, _: [Real; 2], times: [Real; 2]| {
         let off = if times[1] - times[0] > 0.3 { 0.0 } else { course.off };
         Some(Course { off, ..course })
@@ -120,7 +126,10 @@ fn each_way_to_be_off_a_course_is_found() {
     let joints = random_edge(&robot, &mut random, 10.0);
     for is_point in [false, true] {
         let narrow = |course: Course, shares: [Real; 2], _: [Real; 2]| {
-            Some(Course { off: if straight(shares, is_point) { 0.0 } else { course.off }, ..course })
+            Some(Course {
+                off: if straight(shares, is_point) { 0.0 } else { course.off },
+                ..course
+            })
         };
         assert!(is_found(&guided(&joints, &narrow), 64), "{is_point}");
     }
@@ -134,14 +143,15 @@ fn courses_spare_shapes_and_change_no_decision() {
     for round in 0..120 {
         let joints = random_edge(&robot, &mut random, [2.0, 5.0, 10.0][round % 3]);
         let bent =
-            BendingMotion::new(&joints.sections(0.0), &joints.sections(1.0), ventricle::entry()).unwrap();
+            BendingMotion::new(&joints.sections(0.0), &joints.sections(1.0), ventricle::entry())
+                .unwrap();
         let margin = [0.0, random.unit()][round % 2];
         let motions: [&dyn Motion; 2] = [&joints, &bent];
         for (kind, motion) in motions.into_iter().enumerate() {
             let with = guided(motion, &|course, _, _| Some(course));
             let without = guided(motion, &|_, _, _| None);
-            let decisions =
-                [&with, &without].map(|motion| search.clears_motion(motion, margin, 1e-3).unwrap().decision);
+            let decisions = [&with, &without]
+                .map(|motion| search.clears_motion(motion, margin, 1e-3).unwrap().decision);
             differ += usize::from(decisions[0] != decisions[1]);
             if decisions == [Decision::Clear; 2] {
                 clear += 1;
@@ -161,14 +171,16 @@ fn floor() -> BvhSearch {
     BvhSearch::from_triangles(&vertices, &[[0, 1, 2], [0, 2, 3]]).unwrap()
 }
 
-/// A thin disc turns about its own middle, whose place hardly changes; its rim comes down. In the middle of the time it is level.
+/// A thin disc turns about its own middle, whose place hardly changes; its rim comes down. In the
+/// middle of the time it is level.
 #[test]
 fn a_disc_that_turns_about_its_middle_is_not_taken_for_one_at_rest() {
     const RADIUS: Real = 5.0;
     const HALF: Real = 0.05;
     const MARGIN: Real = 0.5;
     let (mut search, mut random) = (floor(), Random::new(21));
-    let tube = Tube::from(&Chain::cylinders(&[Vector::Z * -HALF, Vector::Z * HALF], &[RADIUS]).unwrap());
+    let tube =
+        Tube::from(&Chain::cylinders(&[Vector::Z * -HALF, Vector::Z * HALF], &[RADIUS]).unwrap());
     let mut seen = [0; 2];
     for _ in 0..200 {
         let (angle, height) = (random.between(0.1, 0.7), random.between(1.0, 4.5));
@@ -215,7 +227,8 @@ fn a_wall_that_comes_nearer_counts_beside_the_course() {
     assert!(seen.iter().all(|seen| *seen > 20), "{seen:?}");
 }
 
-/// A capsule that is at rest until half of its time, then goes down evenly by `way`, but for a bulge that is `bulge` deep.
+/// A capsule that is at rest until half of its time, then goes down evenly by `way`, but for a
+/// bulge that is `bulge` deep.
 #[derive(Debug)]
 struct Bulging {
     way: Real,
@@ -247,8 +260,8 @@ impl Motion for Bulging {
     }
 }
 
-/// Off its way, a capsule touches the floor, between shapes that are both clear of it; the floor is the nearest wall, or a
-/// ceiling is, from which the capsule goes away.
+/// Off its way, a capsule touches the floor, between shapes that are both clear of it; the floor is
+/// the nearest wall, or a ceiling is, from which the capsule goes away.
 #[test]
 fn what_may_be_off_a_course_counts() {
     let mut random = Random::new(23);
@@ -266,7 +279,8 @@ fn what_may_be_off_a_course_counts() {
         }
         let ceiling = if has_ceiling { 1.0 + random.between(1.05, 1.2) * bulge } else { 100.0 };
         let square = |z: Real| {
-            [[-50.0, -50.0], [50.0, -50.0], [50.0, 50.0], [-50.0, 50.0]].map(|[x, y]| Vector::new(x, y, z))
+            [[-50.0, -50.0], [50.0, -50.0], [50.0, 50.0], [-50.0, 50.0]]
+                .map(|[x, y]| Vector::new(x, y, z))
         };
         let vertices = [square(-1.0 - gap), square(ceiling)].concat();
         let triangles = [[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]];
@@ -285,8 +299,9 @@ fn what_may_be_off_a_course_counts() {
 fn a_course_that_is_none_counts_as_none() {
     let mut search = floor();
     let points = [Vector::Z * 4.0, Vector::new(3.0, 0.0, 4.0)];
-    let [down, along] = [Vector::Z * -3.5, Vector::X * 6.0]
-        .map(|way| LinearMotion::capsules(&points, &points.map(|point| point + way), &[1.0]).unwrap());
+    let [down, along] = [Vector::Z * -3.5, Vector::X * 6.0].map(|way| {
+        LinearMotion::capsules(&points, &points.map(|point| point + way), &[1.0]).unwrap()
+    });
     for off in [-100.0, Real::NAN, Real::INFINITY, Real::NEG_INFINITY] {
         let state = |course: Course, _: [Real; 2], _: [Real; 2]| Some(Course { off, ..course });
         let mut decide = |motion: &LinearMotion| {

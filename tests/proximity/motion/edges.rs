@@ -50,7 +50,10 @@ fn judge(
     match (answer.decision, answer.contact) {
         (Decision::Clear, _) => {
             seen.clear += 1;
-            assert!(upper > margin, "certified, but a step comes as near as {upper}, margin {margin}");
+            assert!(
+                upper > margin,
+                "certified, but a step comes as near as {upper}, margin {margin}"
+            );
         }
         (Decision::Contact, Some(shape)) => {
             let (t, upper, arc_length) = (shape.t, shape.upper, shape.arc_length);
@@ -93,18 +96,24 @@ fn judge_edges(search: &mut BvhSearch, random: &mut Random, edges: usize, fine: 
         let motion = loop {
             let motion = random_edge(&robot, random, distance);
             let mut is_clear = |t: &Real| {
-                search.tube_clears(&motion.tube(*t).unwrap(), &ventricle::entry(), 0.0, 1e-3).unwrap()
+                search
+                    .tube_clears(&motion.tube(*t).unwrap(), &ventricle::entry(), 0.0, 1e-3)
+                    .unwrap()
                     == Decision::Clear
             };
             if edge % 8 == 7 || [0.0, 1.0].iter().all(&mut is_clear) {
                 break motion;
             }
         };
-        let fastest =
-            motion.speed(2, [0.0, 1.0], [0.0, 1.0]).point.max(motion.speed(0, [0.0, 1.0], [0.0, 1.0]).point);
+        let fastest = motion
+            .speed(2, [0.0, 1.0], [0.0, 1.0])
+            .point
+            .max(motion.speed(0, [0.0, 1.0], [0.0, 1.0]).point);
         // The bound is about twice the speed.
         let count = (0.5 * fastest.max(distance) / fine).ceil() as usize;
-        let steps = Steps::new(search, count, 0.1 * fine, |t| (motion.tube(t).unwrap(), ventricle::entry()));
+        let steps = Steps::new(search, count, 0.1 * fine, |t| {
+            (motion.tube(t).unwrap(), ventricle::entry())
+        });
         let [lower, upper] = steps.least();
         let margins = [
             [0.0, 0.25, 0.5, 1.0][random.below(4) as usize],
@@ -124,7 +133,10 @@ fn judge_edges(search: &mut BvhSearch, random: &mut Random, edges: usize, fine: 
 fn no_edge_is_misjudged() {
     let seen = judge_edges(&mut anatomy(), &mut Random::new(1), 200, 0.05);
     println!("{seen:?}");
-    assert!(seen.clear > 200 && seen.contact > 200 && seen.both_ends_clear_but_contact > 40, "{seen:?}");
+    assert!(
+        seen.clear > 200 && seen.contact > 200 && seen.both_ends_clear_but_contact > 40,
+        "{seen:?}"
+    );
     assert!(seen.undecided < 10, "{seen:?}");
 }
 

@@ -31,8 +31,9 @@ fn a_needle_that_grows_out_of_nothing_keeps_its_margin() {
                 let motions: [&dyn Motion; 3] = [&grows, &shrinks, &both];
                 for motion in motions {
                     let counted = Counted::new(motion);
-                    let mut decide =
-                        |margin| search.clears_motion(&counted, margin * unit, resolution * unit).unwrap();
+                    let mut decide = |margin| {
+                        search.clears_motion(&counted, margin * unit, resolution * unit).unwrap()
+                    };
                     let clear = decide(0.2);
                     assert!(clear.is_clear(), "{unit} {begin} {resolution}: {clear:?}");
                     let contact = decide(0.7).decision;
@@ -51,8 +52,9 @@ fn a_needle_that_grows_out_of_nothing_keeps_its_margin() {
 fn a_link_without_a_length_is_a_ball_for_a_moment() {
     let mut behind = point(Vector::Z * -0.5);
     let grown = [Vector::ZERO, Vector::Z * 10.0];
-    let from =
-        |length: Real| LinearMotion::chain(&[Vector::ZERO, Vector::Z * length], &grown, &[1.0]).unwrap();
+    let from = |length: Real| {
+        LinearMotion::chain(&[Vector::ZERO, Vector::Z * length], &grown, &[1.0]).unwrap()
+    };
     for length in [1e-9, 1e-6, 1e-3] {
         let answer = behind.clears_motion(&from(length), 0.2, 1e-3).unwrap();
         assert!(answer.is_clear(), "{length}: {answer:?}");
@@ -107,7 +109,8 @@ fn losing(count: usize, seed: u64) {
         let links = 1 + random.below(3) as usize;
         let fading = random.below(links as u32) as usize;
         let axis = random.direction();
-        let mut lengths = [[0.0; 2]; 3].map(|_: [Real; 2]| [0, 1].map(|_| random.between(0.2, 3.0)));
+        let mut lengths =
+            [[0.0; 2]; 3].map(|_: [Real; 2]| [0, 1].map(|_| random.between(0.2, 3.0)));
         // Out of nothing, to nothing, through nothing, or nearly.
         let little = [0.0, 1e-14, 1e-10, 1e-5][random.below(4) as usize];
         match random.below(3) {
@@ -119,25 +122,36 @@ fn losing(count: usize, seed: u64) {
         let aside = random.direction() * (little * Real::from(random.below(2)));
         let mut ends = [[Vector::ZERO; 4]; 2];
         for (k, lengths) in lengths.iter().take(links).enumerate() {
-            let way =
-                if aligned || k == fading { axis } else { (axis + random.direction() * 0.5).normalize() };
-            let turned =
-                if k == fading || aligned { way } else { (way + random.direction() * 0.2).normalize() };
-            ends[0][k + 1] = ends[0][k] + way * lengths[0] + aside * Real::from(u8::from(k == fading));
-            ends[1][k + 1] = ends[1][k] + turned * lengths[1] + aside * Real::from(u8::from(k == fading));
+            let way = if aligned || k == fading {
+                axis
+            } else {
+                (axis + random.direction() * 0.5).normalize()
+            };
+            let turned = if k == fading || aligned {
+                way
+            } else {
+                (way + random.direction() * 0.2).normalize()
+            };
+            ends[0][k + 1] =
+                ends[0][k] + way * lengths[0] + aside * Real::from(u8::from(k == fading));
+            ends[1][k + 1] =
+                ends[1][k] + turned * lengths[1] + aside * Real::from(u8::from(k == fading));
         }
         let shift = random.direction() * [0.0, random.unit()][random.below(2) as usize];
         let at = random.direction() * [0.0, 5.0][random.below(2) as usize];
         let place = |point: Vector, shift: Vector| (point + shift + at) * unit;
-        let from: Vec<_> = ends[0].iter().take(links + 1).map(|p| place(*p, Vector::ZERO)).collect();
+        let from: Vec<_> =
+            ends[0].iter().take(links + 1).map(|p| place(*p, Vector::ZERO)).collect();
         let to: Vec<_> = ends[1].iter().take(links + 1).map(|p| place(*p, shift)).collect();
-        let radii: Vec<_> = (0..links).map(|_| [0.5, 0.5, 0.3][random.below(3) as usize] * unit).collect();
+        let radii: Vec<_> =
+            (0..links).map(|_| [0.5, 0.5, 0.3][random.below(3) as usize] * unit).collect();
         let Ok(motion) = LinearMotion::chain(&from, &to, &radii) else { continue };
         let mut search = point(place(random.point() * 3.0, Vector::ZERO));
         let distances: Vec<_> = (0..=STEPS)
             .map(|step| {
                 let t = Real::from(step) / Real::from(STEPS);
-                let mut tube = Tube::from(&Chain::capsules(&[Vector::ZERO, Vector::X], &[1.0]).unwrap());
+                let mut tube =
+                    Tube::from(&Chain::capsules(&[Vector::ZERO, Vector::X], &[1.0]).unwrap());
                 let pose = motion.shape(t, &mut tube).unwrap();
                 search.clearance(&tube, &pose, 1e-9 * unit).unwrap().upper
             })
@@ -162,7 +176,10 @@ fn losing(count: usize, seed: u64) {
     }
     println!("{clear} {contact} {undecided}, {shapes} shapes");
     let all = clear + contact + undecided;
-    assert!(3 * clear > all && 10 * contact > all && 20 * undecided < all, "{clear} {contact} {undecided}");
+    assert!(
+        3 * clear > all && 10 * contact > all && 20 * undecided < all,
+        "{clear} {contact} {undecided}"
+    );
     assert!(shapes < 2_000, "{shapes}");
 }
 
@@ -174,6 +191,7 @@ fn a_growing_robot_is_asked_about_itself() {
     let motion = LinearMotion::chain(&from, &to, &[1.0, 0.5]).unwrap();
     verify_motion(&motion, 50).unwrap();
     assert!(motion_self_clears(&motion, 0.5, 1e-3).unwrap().is_clear());
-    let pose = motion.shape(0.5, &mut Tube::from(&Chain::capsules(&from[..2], &[1.0]).unwrap())).unwrap();
+    let pose =
+        motion.shape(0.5, &mut Tube::from(&Chain::capsules(&from[..2], &[1.0]).unwrap())).unwrap();
     assert_eq!(pose, Pose::IDENTITY);
 }

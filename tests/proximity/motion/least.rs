@@ -6,8 +6,8 @@ use continuum_testing::Random;
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::proximity::{BvhSearch, Decision, MotionClearance, ProximityError};
 use parry_continuum::{
-    BendingMotion, BendingSection, Chain, Course, LinearMotion, Motion, MotionPath, MovingBase, RigidMotion,
-    RobotError, Speed, Tube,
+    BendingMotion, BendingSection, Chain, Course, LinearMotion, Motion, MotionPath, MovingBase,
+    RigidMotion, RobotError, Speed, Tube,
 };
 use std::cell::Cell;
 
@@ -53,7 +53,13 @@ struct Judged {
 }
 
 /// Compares the bounds of a motion with its shapes in so many steps.
-fn judge(search: &mut BvhSearch, motion: &impl Motion, steps: usize, tolerance: Real, judged: &mut Judged) {
+fn judge(
+    search: &mut BvhSearch,
+    motion: &impl Motion,
+    steps: usize,
+    tolerance: Real,
+    judged: &mut Judged,
+) {
     let counted = Counted::new(motion);
     let least: MotionClearance = search.clearance_of_motion(&counted, tolerance).unwrap();
     let shape = |t: Real| {
@@ -97,7 +103,9 @@ fn edges(count: usize, seed: u64) {
     }
     println!("{judged:?}");
     assert!(
-        judged.resolved == judged.of && 10 * judged.touching > count && 10 * judged.touching < 9 * count,
+        judged.resolved == judged.of
+            && 10 * judged.touching > count
+            && 10 * judged.touching < 9 * count,
         "{judged:?}"
     );
 }
@@ -123,13 +131,21 @@ fn bases_and_chains(count: usize, seed: u64) {
         let inner = BendingMotion::new(&from, &to, Pose::IDENTITY).unwrap();
         let turn = random.direction() * random.between(0.0, 2.0);
         let start = Pose::new(near, turn);
-        let end =
-            Pose::new(near + random.point() * 2.0, turn + random.direction() * random.between(0.0, 0.5));
+        let end = Pose::new(
+            near + random.point() * 2.0,
+            turn + random.direction() * random.between(0.0, 0.5),
+        );
         let base = MovingBase::new(inner.clone(), [start, end]).unwrap();
         judge(&mut search, &base, 200, tolerance, &mut bases);
         let mut tube = Tube::from(&Chain::capsules(&[Vector::ZERO, Vector::X], &[1.0]).unwrap());
         inner.shape(0.3, &mut tube).unwrap();
-        judge(&mut search, &RigidMotion::new(tube, [start, end]).unwrap(), 200, tolerance, &mut rigid);
+        judge(
+            &mut search,
+            &RigidMotion::new(tube, [start, end]).unwrap(),
+            200,
+            tolerance,
+            &mut rigid,
+        );
         let (from, radii) = polyline(&mut random, near);
         let shift = random.direction() * random.between(0.0, 3.0);
         let to: Vec<_> = from.iter().map(|&point| point + shift + random.point() * 0.5).collect();
@@ -141,7 +157,10 @@ fn bases_and_chains(count: usize, seed: u64) {
     }
     println!("{bases:?}\n{chains:?}\n{rigid:?}\n{paths:?}");
     for judged in [&bases, &rigid, &chains, &paths] {
-        assert!(judged.touching > 5 && judged.touching + 10 < judged.of && judged.within > 20, "{judged:?}");
+        assert!(
+            judged.touching > 5 && judged.touching + 10 < judged.of && judged.within > 20,
+            "{judged:?}"
+        );
     }
     assert!(bases.resolved == bases.of && rigid.resolved == rigid.of, "{bases:?} {rigid:?}");
     // An end that turns round may be what comes nearest.
@@ -153,7 +172,8 @@ fn search_vertex(random: &mut Random, search: &BvhSearch) -> Vector {
     search.vertices()[random.below(search.vertices().len() as u32) as usize]
 }
 
-/// Capsules over a floor, whose least height is a vertex's where it begins or where it ends: scraping, and at the margin.
+/// Capsules over a floor, whose least height is a vertex's where it begins or where it ends:
+/// scraping, and at the margin.
 #[test]
 fn motions_that_scrape_are_never_misjudged() {
     scraping(150, 23);
@@ -168,11 +188,14 @@ fn scraping(count: usize, seed: u64) {
         let to: Vec<_> = from.iter().map(|&point| point + shift + random.point() * 0.5).collect();
         let low = |points: &[Vector]| {
             let links = points.windows(2).zip(&radii);
-            links.fold(Real::INFINITY, |low, (ends, radius)| low.min(ends[0].z.min(ends[1].z) - radius))
+            links.fold(Real::INFINITY, |low, (ends, radius)| {
+                low.min(ends[0].z.min(ends[1].z) - radius)
+            })
         };
         let gap = [0.0, 1e-9, 1e-6, 1e-3, random.between(0.0, 5.0)][round % 5];
         let lift = Vector::Z * (gap - low(&from).min(low(&to)));
-        let lifted = [from, to].map(|points| points.iter().map(|&point| point + lift).collect::<Vec<_>>());
+        let lifted =
+            [from, to].map(|points| points.iter().map(|&point| point + lift).collect::<Vec<_>>());
         let motion = LinearMotion::capsules(&lifted[0], &lifted[1], &radii).unwrap();
         for tolerance in [1e-3, 0.1] {
             let least = search.clearance_of_motion(&motion, tolerance).unwrap();
@@ -206,7 +229,8 @@ fn floor() -> BvhSearch {
     BvhSearch::from_triangles(&corners, &[[0, 1, 2], [0, 2, 3]]).unwrap()
 }
 
-/// What touches at one moment, what slides along a wall at one distance, what stands still, and what passes through.
+/// What touches at one moment, what slides along a wall at one distance, what stands still, and
+/// what passes through.
 #[test]
 fn touching_and_sliding_motions_are_bounded() {
     let mut search = floor();
@@ -215,10 +239,13 @@ fn touching_and_sliding_motions_are_bounded() {
     for gap in [0.0, 1e-12, 1e-9, 1e-3, 1.0] {
         let height = radius + gap;
         // Down and up again, exactly to the gap at half time.
-        let down = LinearMotion::chain(&link(-2.0, height + 3.0), &link(0.0, height), &[radius]).unwrap();
-        let up = LinearMotion::chain(&link(0.0, height), &link(2.0, height + 3.0), &[radius]).unwrap();
+        let down =
+            LinearMotion::chain(&link(-2.0, height + 3.0), &link(0.0, height), &[radius]).unwrap();
+        let up =
+            LinearMotion::chain(&link(0.0, height), &link(2.0, height + 3.0), &[radius]).unwrap();
         let bounce = MotionPath::new(vec![down, up]).unwrap();
-        let slide = LinearMotion::chain(&link(-2.0, height), &link(2.0, height), &[radius]).unwrap();
+        let slide =
+            LinearMotion::chain(&link(-2.0, height), &link(2.0, height), &[radius]).unwrap();
         let still = LinearMotion::chain(&link(0.0, height), &link(0.0, height), &[radius]).unwrap();
         for tolerance in [1e-3, 0.1] {
             for least in [
@@ -226,7 +253,10 @@ fn touching_and_sliding_motions_are_bounded() {
                 search.clearance_of_motion(&slide, tolerance).unwrap(),
                 search.clearance_of_motion(&still, tolerance).unwrap(),
             ] {
-                assert!(least.lower <= gap + 1e-14 && gap <= least.upper + 1e-14, "{gap}: {least:?}");
+                assert!(
+                    least.lower <= gap + 1e-14 && gap <= least.upper + 1e-14,
+                    "{gap}: {least:?}"
+                );
                 assert!(least.resolved, "{gap}: {least:?}");
             }
         }
@@ -241,7 +271,8 @@ fn touching_and_sliding_motions_are_bounded() {
 /// Walls of one point each.
 fn points(places: &[Vector]) -> BvhSearch {
     let vertices: Vec<_> = places.iter().flat_map(|place| [*place; 3]).collect();
-    let triangles: Vec<_> = (0..places.len() as u32).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
+    let triangles: Vec<_> =
+        (0..places.len() as u32).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
     BvhSearch::from_triangles(&vertices, &triangles).unwrap()
 }
 
@@ -258,7 +289,10 @@ fn what_displacements_settle_bounds_the_answer() {
     let mut search = points(&[Vector::new(12.5, 0.0, 50.0), Vector::new(8.0, 0.0, 250.0)]);
     for tolerance in [0.9, 1.0, 2.0] {
         let least = search.clearance_of_motion(&motion, tolerance).unwrap();
-        assert!(least.lower <= 7.5 && 7.5 <= least.upper && least.resolved, "{tolerance}: {least:?}");
+        assert!(
+            least.lower <= 7.5 && 7.5 <= least.upper && least.resolved,
+            "{tolerance}: {least:?}"
+        );
     }
     // Chains of which one part moves towards its wall, and another part rests beside one a little
     // farther away.
@@ -306,7 +340,10 @@ fn a_path_looks_closely_where_it_comes_nearest() {
     let counted = Counted::new(&path);
     let least = search.clearance_of_motion(&counted, 1e-3).unwrap();
     let lowest = heights.iter().copied().fold(Real::INFINITY, Real::min) - 0.5;
-    assert!(least.lower <= lowest && lowest <= least.upper && least.resolved, "{lowest}: {least:?}");
+    assert!(
+        least.lower <= lowest && lowest <= least.upper && least.resolved,
+        "{lowest}: {least:?}"
+    );
     // One for each, and a few more where it is low.
     assert!(counted.count() < 200 + 400, "{}", counted.count());
     let (leg, t) = path.leg(least.t);
@@ -321,14 +358,21 @@ fn what_cannot_be_bounded_is_refused() {
     let motion = LinearMotion::chain(&link, &link, &[0.1]).unwrap();
     for tolerance in [-1.0, Real::NAN] {
         let refused = search.clearance_of_motion(&motion, tolerance).unwrap_err();
-        assert!(matches!(refused, ProximityError::Negative { parameter: "tolerance", .. }), "{refused}");
+        assert!(
+            matches!(refused, ProximityError::Negative { parameter: "tolerance", .. }),
+            "{refused}"
+        );
     }
     // Without a tolerance the bounds are as close as rounding allows.
     let least = search.clearance_of_motion(&motion, 0.0).unwrap();
-    assert!(least.lower <= 1.0 && 1.0 <= least.upper && least.upper - least.lower < 1e-11, "{least:?}");
+    assert!(
+        least.lower <= 1.0 && 1.0 <= least.upper && least.upper - least.lower < 1e-11,
+        "{least:?}"
+    );
 }
 
-/// What an insertion costs beside the distances of some of its shapes, which prove nothing of those between. Run by name.
+/// What an insertion costs beside the distances of some of its shapes, which prove nothing of those
+/// between. Run by name.
 #[test]
 #[ignore = "prints a ratio of times"]
 fn an_insertion_costs_little_more_than_its_shapes() {
@@ -342,15 +386,18 @@ fn an_insertion_costs_little_more_than_its_shapes() {
         extensions: (0..3).map(|k| if k < sections { goal.extensions[k] } else { 0.01 }).collect(),
         angles: goal.angles.clone(),
     };
-    let leg = |k: usize| JointMotion::new(&robot, [&out(k), &out(k + 1)], ventricle::entry()).unwrap();
+    let leg =
+        |k: usize| JointMotion::new(&robot, [&out(k), &out(k + 1)], ventricle::entry()).unwrap();
     let path = MotionPath::new((0..3).map(leg).collect()).unwrap();
     let chains: Vec<_> = (0..500)
         .map(|k| {
             let (leg, t) = path.leg((Real::from(k) + 0.5) / 500.0);
-            let joints =
-                JointMotion::new(&robot, [&out(leg), &out(leg + 1)], ventricle::entry()).unwrap().joints(t);
+            let joints = JointMotion::new(&robot, [&out(leg), &out(leg + 1)], ventricle::entry())
+                .unwrap()
+                .joints(t);
             let line = robot.centreline(&joints, 100);
-            let (points, radii) = parry_continuum::stations(&line.points, &line.radii, 0.01).unwrap();
+            let (points, radii) =
+                parry_continuum::stations(&line.points, &line.radii, 0.01).unwrap();
             Chain::from_centreline(&points, &radii).unwrap()
         })
         .collect();

@@ -1,12 +1,12 @@
-//! Each term of a motion alone, left out of what is stated or stated too low, is found in as many steps as one likes; and
-//! motions that state what they do are never accused.
+//! Each term of a motion alone, left out of what is stated or stated too low, is found in as many
+//! steps as one likes; and motions that state what they do are never accused.
 
 use super::speeds::Understated;
 use continuum_testing::Random;
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::{
-    BendingMotion, BendingSection, Course, LinearMotion, Motion, RigidMotion, RobotError, Speed, Tube,
-    verify_motion,
+    BendingMotion, BendingSection, Course, LinearMotion, Motion, RigidMotion, RobotError, Speed,
+    Tube, verify_motion,
 };
 
 /// How a tube is given.
@@ -24,7 +24,8 @@ struct Arc {
     given: Given,
     curvature: Real,
     length: Real,
-    /// Added to the curvature during the motion, to the length, to the place, to the angle about an axis.
+    /// Added to the curvature during the motion, to the length, to the place, to the angle about
+    /// an axis.
     bending: Real,
     growth: Real,
     shift: Vector,
@@ -48,7 +49,8 @@ const STILL: Arc = Arc {
 
 impl Motion for Arc {
     fn shape(&self, t: Real, tube: &mut Tube) -> Result<Pose, RobotError> {
-        let (curvature, length) = (self.curvature + self.bending * t, self.length + self.growth * t);
+        let (curvature, length) =
+            (self.curvature + self.bending * t, self.length + self.growth * t);
         let (count, error) = match self.given {
             Given::Samples(count) => (count, 0.0),
             Given::Rough(count, error) => (count, error),
@@ -65,7 +67,8 @@ impl Motion for Arc {
         };
         let points: Vec<_> = (0..count).map(point).collect();
         tube.set_samples(&points, &vec![0.5; count - 1], None)?;
-        *tube = std::mem::replace(tube, Tube::from_samples(&points[..2], &[0.5], None)?).with_error(error)?;
+        *tube = std::mem::replace(tube, Tube::from_samples(&points[..2], &[0.5], None)?)
+            .with_error(error)?;
         Ok(Pose::new(self.shift * t, self.turn * t))
     }
 
@@ -78,8 +81,9 @@ impl Motion for Arc {
             + self.growth.abs() * shares[1] * growth
             + self.shift.length() * shift
             + turning * s;
-        let angle =
-            self.bending.abs() * s * bending + bent * self.growth.abs() * shares[1] * growth + turning;
+        let angle = self.bending.abs() * s * bending
+            + bent * self.growth.abs() * shares[1] * growth
+            + turning;
         Speed { point: point * (1.0 + 1e-12), turn: angle * self.turn_stated * (1.0 + 1e-12) }
     }
 }
@@ -99,16 +103,22 @@ const STEPS: [u32; 5] = [1, 10, 100, 1000, 3000];
 #[test]
 fn each_term_alone_is_missed() {
     for (term, motion) in each_alone().into_iter().enumerate() {
-        for given in [Given::Samples(10), Given::Samples(40), Given::Rough(40, 0.1), Given::Rough(10, 0.5)] {
+        for given in
+            [Given::Samples(10), Given::Samples(40), Given::Rough(40, 0.1), Given::Rough(10, 0.5)]
+        {
             for steps in STEPS {
                 let mut motion = Arc { given, ..motion };
                 assert_eq!(verify_motion(&motion, steps), Ok(()), "{motion:?}, {steps}");
                 motion.stated[term] = 0.0;
                 assert!(verify_motion(&motion, steps).is_err(), "left out: {motion:?}, {steps}");
-                // A tenth too slow makes 0.3 to 0.5 of a difference, in places whose error is none at samples.
+                // A tenth too slow makes 0.3 to 0.5 of a difference, in places whose error is none
+                // at samples.
                 motion.stated[term] = 1.0 / 1.1;
                 let refused = verify_motion(&motion, steps).is_err();
-                assert!(refused || matches!(given, Given::Rough(..)), "too low: {motion:?}, {steps}");
+                assert!(
+                    refused || matches!(given, Given::Rough(..)),
+                    "too low: {motion:?}, {steps}"
+                );
             }
         }
     }
@@ -204,16 +214,20 @@ fn a_bound_for_a_part_of_a_range_is_missed() {
         ("the nearer end", |shares| shares[0]),
         ("the middle", |shares| 0.5 * (shares[0] + shares[1])),
         ("the length", |shares| shares[1] - shares[0]),
-        ("the nearer end, but for the whole", |shares| if shares == [0.0, 1.0] { 1.0 } else { shares[0] }),
         (
-            "the nearer end, of short ranges",
-            |shares| {
-                if shares[1] - shares[0] < 0.2 { shares[0] } else { shares[1] }
-            },
+            "the nearer end, but for the whole",
+            |shares| if shares == [0.0, 1.0] { 1.0 } else { shares[0] },
         ),
+        ("the nearer end, of short ranges", |shares| {
+            if shares[1] - shares[0] < 0.2 { shares[0] } else { shares[1] }
+        }),
         ("the middle, of ranges off the grid", |shares| {
             let is_on_grid = |share: Real| (8.0 * share).fract() == 0.0;
-            if shares.into_iter().any(is_on_grid) { shares[1] } else { 0.5 * (shares[0] + shares[1]) }
+            if shares.into_iter().any(is_on_grid) {
+                shares[1]
+            } else {
+                0.5 * (shares[0] + shares[1])
+            }
         }),
     ];
     for is_course in [false, true] {
@@ -262,7 +276,9 @@ fn honest_motions_pass() {
             ..STILL
         };
         let steps = [1, 7, 64, 300][random.below(4) as usize];
-        match motion.shape(0.0, &mut Tube::from_samples(&[Vector::ZERO, Vector::Z], &[0.1], None).unwrap()) {
+        match motion
+            .shape(0.0, &mut Tube::from_samples(&[Vector::ZERO, Vector::Z], &[0.1], None).unwrap())
+        {
             Ok(_) => {}
             // Too few samples for its bend.
             Err(_) => continue,
@@ -272,7 +288,8 @@ fn honest_motions_pass() {
         assert!(
             matches!(
                 checked,
-                Ok(()) | Err(RobotError::TurnsTooSharply { .. } | RobotError::BendsWithinRadius { .. })
+                Ok(())
+                    | Err(RobotError::TurnsTooSharply { .. } | RobotError::BendsWithinRadius { .. })
             ),
             "{checked:?}: {motion:?}, {steps}"
         );
@@ -299,8 +316,9 @@ fn honest_motions_pass() {
                 .collect()
         };
         let (from, to) = (bent(), bent());
-        let place =
-            |random: &mut Random| Pose::from_parts(random.point() * (size + far), random.pose(0.0).rotation);
+        let place = |random: &mut Random| {
+            Pose::from_parts(random.point() * (size + far), random.pose(0.0).rotation)
+        };
         verify_motion(&BendingMotion::new(&from, &to, place(&mut random)).unwrap(), steps).unwrap();
         let mut tube = Tube::from_samples(&[Vector::ZERO, Vector::Z], &[0.1], None).unwrap();
         if motion.shape(0.5, &mut tube).is_ok() {

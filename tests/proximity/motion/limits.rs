@@ -5,8 +5,8 @@ use continuum_testing::Random;
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::proximity::{BvhSearch, Decision, RobotPair, UndecidedReason};
 use parry_continuum::{
-    BendingMotion, BendingSection, Chain, LinearMotion, Motion, MovingBase, RigidMotion, RobotError, Speed,
-    Tube,
+    BendingMotion, BendingSection, Chain, LinearMotion, Motion, MovingBase, RigidMotion,
+    RobotError, Speed, Tube,
 };
 
 const MOST_SHAPES: u64 = 1 << 16;
@@ -45,18 +45,30 @@ fn a_slide_along_a_plane_takes_few_shapes() {
         for resolution in [1e-2, 1e-4, 1e-6] {
             for room in [1.5, 2.5, 10.0] {
                 let height = room * resolution;
-                let (from, to) = (needle(-5.0, 0.0, height), needle(5.0, random.between(-3.0, 3.0), height));
+                let (from, to) =
+                    (needle(-5.0, 0.0, height), needle(5.0, random.between(-3.0, 3.0), height));
                 let [from, to] = [from, to].map(|points| points.map(|point| point * unit));
                 for motion in [LinearMotion::chain, LinearMotion::capsules] {
                     let motion = motion(&from, &to, &[0.5 * unit]).unwrap();
                     let counted = Counted::new(&motion);
                     let answer = search.clears_motion(&counted, 0.0, resolution * unit).unwrap();
                     assert!(answer.is_clear(), "{unit} {resolution} {room}: {answer:?}");
-                    assert!(counted.count() <= 64, "{unit} {resolution} {room}: {} shapes", counted.count());
+                    assert!(
+                        counted.count() <= 64,
+                        "{unit} {resolution} {room}: {} shapes",
+                        counted.count()
+                    );
                     let counted = Counted::new(&motion);
                     let least = search.clearance_of_motion(&counted, resolution * unit).unwrap();
-                    assert!(least.resolved && least.lower <= height * unit * (1.0 + 1e-6), "{least:?}");
-                    assert!(counted.count() <= 64, "{unit} {resolution} {room}: {} shapes", counted.count());
+                    assert!(
+                        least.resolved && least.lower <= height * unit * (1.0 + 1e-6),
+                        "{least:?}"
+                    );
+                    assert!(
+                        counted.count() <= 64,
+                        "{unit} {resolution} {room}: {} shapes",
+                        counted.count()
+                    );
                 }
             }
         }
@@ -64,7 +76,9 @@ fn a_slide_along_a_plane_takes_few_shapes() {
     // Other motions along the plane; across the margin in the beginning.
     let section = BendingSection { length: 2.0, radius: 0.5, bend: [0.0, 0.0] };
     let still = BendingMotion::new(&[section], &[section], Pose::IDENTITY).unwrap();
-    let at = |x: Real| Pose::new(Vector::new(x, 0.0, 0.5 + 2.5e-6), Vector::Y * std::f64::consts::FRAC_PI_2);
+    let at = |x: Real| {
+        Pose::new(Vector::new(x, 0.0, 0.5 + 2.5e-6), Vector::Y * std::f64::consts::FRAC_PI_2)
+    };
     let base = MovingBase::new(still, [at(-5.0), at(5.0)]).unwrap();
     let tube = Tube::from(&Chain::capsules(&needle(0.0, 0.0, 2.5e-6), &[0.5]).unwrap());
     let places = [-5.0, 5.0].map(|x| Pose::from_translation(Vector::X * x));
@@ -73,7 +87,11 @@ fn a_slide_along_a_plane_takes_few_shapes() {
     for motion in motions {
         let counted = Counted::new(motion);
         let answer = floor(0.0, 1.0).clears_motion(&counted, 0.0, 1e-6).unwrap();
-        assert!(answer.is_clear() && counted.count() < 64, "{} shapes: {answer:?}", counted.count());
+        assert!(
+            answer.is_clear() && counted.count() < 64,
+            "{} shapes: {answer:?}",
+            counted.count()
+        );
     }
 }
 
@@ -92,12 +110,16 @@ fn a_question_ends_at_its_limit_and_says_so() {
         } else {
             search.clears_motion(&counted, 0.0, 1e-6).unwrap()
         };
-        assert_eq!((answer.decision, answer.reason), (Decision::Undecided, limit), "{first}: {answer:?}");
+        assert_eq!(
+            (answer.decision, answer.reason),
+            (Decision::Undecided, limit),
+            "{first}: {answer:?}"
+        );
         assert!(counted.count() == MOST_SHAPES, "{}", counted.count());
         assert!(answer.interval[0] < 0.9 && answer.interval[0] < answer.interval[1], "{answer:?}");
     }
-    let vertices =
-        [[-20.0, -20.0], [20.0, -20.0], [20.0, 20.0], [-20.0, 20.0]].map(|[x, y]| Vector::new(x, y, 0.0));
+    let vertices = [[-20.0, -20.0], [20.0, -20.0], [20.0, 20.0], [-20.0, 20.0]]
+        .map(|[x, y]| Vector::new(x, y, 0.0));
     let counted = Counted::new(&slide);
     let answer = search.clears_motion_while(&vertices, &counted, 0.0, 1e-6).unwrap();
     assert_eq!((answer.reason, counted.count()), (limit, MOST_SHAPES));
@@ -112,5 +134,8 @@ fn a_question_ends_at_its_limit_and_says_so() {
     let ends = [-5.0, 5.0].map(|x| needle(x, 0.0, 5e-5));
     let near = LinearMotion::chain(&ends[0], &ends[1], &[0.5]).unwrap();
     let answer = search.clears_motion(&Speeds(&near), 0.0, 1e-4).unwrap();
-    assert_eq!((answer.decision, answer.reason), (Decision::Undecided, Some(UndecidedReason::Near)));
+    assert_eq!(
+        (answer.decision, answer.reason),
+        (Decision::Undecided, Some(UndecidedReason::Near))
+    );
 }

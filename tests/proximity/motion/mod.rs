@@ -69,7 +69,9 @@ impl Steps {
     }
 
     fn least(&self) -> [Real; 2] {
-        self.bounds.iter().fold([Real::INFINITY; 2], |least, bounds| [0, 1].map(|k| least[k].min(bounds[k])))
+        self.bounds
+            .iter()
+            .fold([Real::INFINITY; 2], |least, bounds| [0, 1].map(|k| least[k].min(bounds[k])))
     }
 
     /// The first step that is at most `margin` away.
@@ -78,10 +80,12 @@ impl Steps {
     }
 }
 
-/// A polyline near a vertex of the anatomy, with links shorter and longer than their radii, and steps in radius.
+/// A polyline near a vertex of the anatomy, with links shorter and longer than their radii, and
+/// steps in radius.
 fn polyline(random: &mut Random, from: Vector) -> (Vec<Vector>, Vec<Real>) {
     let mut points = vec![from];
-    let (mut heading, mut radii, mut radius) = (random.direction(), Vec::new(), random.between(0.2, 1.0));
+    let (mut heading, mut radii, mut radius) =
+        (random.direction(), Vec::new(), random.between(0.2, 1.0));
     for k in 0..2 + random.below(6) as usize {
         heading = (heading + random.direction() * 0.6).normalize();
         points.push(points[k] + heading * random.between(0.1, 2.0));

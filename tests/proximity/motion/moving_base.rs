@@ -1,10 +1,11 @@
-//! A base that moves while the robot bends and grows: each term of its speed alone, left out, is found.
+//! A base that moves while the robot bends and grows: each term of its speed alone, left out, is
+//! found.
 
 use parry_continuum::parry::math::{Pose, Real, Rotation, Vector};
 use parry_continuum::proximity::BvhSearch;
 use parry_continuum::{
-    BendingMotion, BendingSection, LinearMotion, Motion, MotionPath, MovingBase, RobotError, Speed, Tube,
-    verify_motion,
+    BendingMotion, BendingSection, LinearMotion, Motion, MotionPath, MovingBase, RobotError, Speed,
+    Tube, verify_motion,
 };
 
 type Stated = fn(&MovingBase<BendingMotion>, &BendingMotion, usize, [Real; 2], [Real; 2]) -> Speed;
@@ -36,8 +37,10 @@ fn each_term_that_is_left_out_is_found() {
     let place = Pose::new(Vector::new(3.0, -2.0, 1.0), Vector::new(0.3, 0.2, -0.4));
     let moved = |shift: Vector, turn: Vector| place * Pose::new(shift, turn);
     let all: Stated = |motion, _, section, shares, times| motion.speed(section, shares, times);
-    let inner_alone: Stated = |_, inner, section, shares, times| inner.speed(section, shares, times);
-    // As if the robot were at all times as long as in the middle, or did not move in the frame of its base.
+    let inner_alone: Stated =
+        |_, inner, section, shares, times| inner.speed(section, shares, times);
+    // As if the robot were at all times as long as in the middle, or did not move in the frame of
+    // its base.
     let base_alone: Stated = |motion, inner, section, shares, times| {
         let all = motion.speed(section, shares, [0.5, 0.5]);
         let own = inner.speed(section, shares, times);
@@ -62,14 +65,19 @@ fn each_term_that_is_left_out_is_found() {
             let mut states = States { motion: motion.clone(), inner: inner.clone(), stated: all };
             assert_eq!(verify_motion(&states, steps), Ok(()), "{name}, {steps}");
             states.stated = stated;
-            // One step sees that both ends of a path that is stated for its beginning are as near as that allows.
+            // One step sees that both ends of a path that is stated for its beginning are as near
+            // as that allows.
             let refused = verify_motion(&states, steps);
-            assert!(refused.is_err() || steps == 1 && name == "longer", "{name} was left out, {steps}");
+            assert!(
+                refused.is_err() || steps == 1 && name == "longer",
+                "{name} was left out, {steps}"
+            );
         }
     }
 }
 
-/// Pushed, rolled, bent and grown at once: what is stated holds, and is no more than a few times what happens.
+/// Pushed, rolled, bent and grown at once: what is stated holds, and is no more than a few times
+/// what happens.
 #[test]
 fn all_at_once_is_stated() {
     let from = [section(10.0, [0.0, 0.02]), section(5.0, [0.05, 0.0])];
@@ -80,7 +88,8 @@ fn all_at_once_is_stated() {
     for steps in [1, 10, 500] {
         assert_eq!(verify_motion(&motion, steps), Ok(()));
     }
-    let refused = MovingBase::new(motion.clone(), [Pose::IDENTITY, Pose::from_translation(Vector::NAN)]);
+    let refused =
+        MovingBase::new(motion.clone(), [Pose::IDENTITY, Pose::from_translation(Vector::NAN)]);
     assert!(matches!(refused, Err(RobotError::BadPose { parameter: "to", .. })));
     // A base on a base.
     let twice = MovingBase::new(motion, [Pose::IDENTITY, Pose::rotation(Vector::X * 0.2)]).unwrap();
@@ -103,17 +112,22 @@ fn a_motion_whose_pose_scales_is_refused() {
     }
     let turned = Pose::new(Vector::ZERO, Vector::X);
     let refused = MovingBase::new(Scales, [Pose::IDENTITY, turned]).map(|_| ());
-    assert!(matches!(refused, Err(RobotError::PoseNotRigid { parameter: "motion", .. })), "{refused:?}");
+    assert!(
+        matches!(refused, Err(RobotError::PoseNotRigid { parameter: "motion", .. })),
+        "{refused:?}"
+    );
 }
 
-/// A link that is turned over loses its direction on the way, in one leg of a path and not in the next.
+/// A link that is turned over loses its direction on the way, in one leg of a path and not in the
+/// next.
 #[test]
 fn a_link_may_fade_in_one_leg_of_a_path() {
     let leg = |from: Vector, to: Vector| {
         LinearMotion::chain(&[Vector::ZERO, from], &[Vector::ZERO, to], &[0.1]).unwrap()
     };
     let path =
-        MotionPath::new(vec![leg(Vector::Z, -Vector::Z), leg(-Vector::Z, Vector::X - Vector::Z)]).unwrap();
+        MotionPath::new(vec![leg(Vector::Z, -Vector::Z), leg(-Vector::Z, Vector::X - Vector::Z)])
+            .unwrap();
     let far = [[-9.0, -9.0], [9.0, -9.0], [0.0, 9.0]].map(|[x, y]| Vector::new(x, y, 5.0));
     let mut search = BvhSearch::from_triangles(&far, &[[0, 1, 2]]).unwrap();
     assert!(search.clears_motion(&path, 1.0, 1e-3).unwrap().is_clear());

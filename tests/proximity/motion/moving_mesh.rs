@@ -50,12 +50,19 @@ fn judge(
         match (answer.decision, answer.contact) {
             (Decision::Clear, _) => {
                 seen.clear += 1;
-                assert!(upper > margin, "clear, but a step comes as near as {upper}, margin {margin}");
+                assert!(
+                    upper > margin,
+                    "clear, but a step comes as near as {upper}, margin {margin}"
+                );
             }
             (Decision::Contact, Some(shape)) => {
                 seen.contact += 1;
                 let found = at(shape.t, 1e-6);
-                assert!(found.lower <= margin, "contact at {}, but {found:?}, margin {margin}", shape.t);
+                assert!(
+                    found.lower <= margin,
+                    "contact at {}, but {found:?}, margin {margin}",
+                    shape.t
+                );
                 assert!((shape.on_robot - shape.on_mesh).length() <= shape.upper + 1e-9);
                 // The place is on the mesh as it is then.
                 let corners = asked.triangles()[shape.triangle as usize];
@@ -65,7 +72,10 @@ fn judge(
                 });
                 let low = corners[0].min(corners[1]).min(corners[2]) - Vector::splat(1e-9);
                 let high = corners[0].max(corners[1]).max(corners[2]) + Vector::splat(1e-9);
-                assert!(shape.on_mesh.cmpge(low).all() && shape.on_mesh.cmple(high).all(), "{shape:?}");
+                assert!(
+                    shape.on_mesh.cmpge(low).all() && shape.on_mesh.cmple(high).all(),
+                    "{shape:?}"
+                );
                 let ends = [&truth[0], &truth[steps]];
                 seen.both_ends_clear += usize::from(ends.iter().all(|end| end.lower > margin));
             }
@@ -87,10 +97,12 @@ fn no_motion_in_a_moving_mesh_is_misjudged() {
         let size = [0.1, 0.5, 2.0, 6.0][round % 4];
         let (shift, wave) = (random.point() * size, random.point() * size);
         let phase = random.direction() * random.between(0.05, 0.4);
-        let to: Vec<_> = from.iter().map(|&point| point + shift + wave * point.dot(phase).sin()).collect();
+        let to: Vec<_> =
+            from.iter().map(|&point| point + shift + wave * point.dot(phase).sin()).collect();
         let motion = random_edge(&robot, &mut random, [0.5, 2.0, 6.0][round % 3]);
         judge(&search, &to, &motion, 60, &mut random, &mut moving);
-        let at_rest = RigidMotion::new(motion.tube(random.unit()).unwrap(), [ventricle::entry(); 2]).unwrap();
+        let at_rest =
+            RigidMotion::new(motion.tube(random.unit()).unwrap(), [ventricle::entry(); 2]).unwrap();
         judge(&search, &to, &at_rest, 60, &mut random, &mut still);
     }
     println!("{moving:?}\n{still:?}");
@@ -107,8 +119,8 @@ fn square(z: Real) -> [Vector; 4] {
     [[-10.0, -10.0], [10.0, -10.0], [10.0, 10.0], [-10.0, 10.0]].map(|[x, y]| Vector::new(x, y, z))
 }
 
-/// Walls that come as near as the margin, or by 1e-9 more or less; that pass through a robot which is clear at both ends; that
-/// collapse to a line on the way; and that go far away.
+/// Walls that come as near as the margin, or by 1e-9 more or less; that pass through a robot which
+/// is clear at both ends; that collapse to a line on the way; and that go far away.
 #[test]
 fn walls_that_touch_pass_and_collapse_are_judged() {
     let needle = [Vector::new(-2.0, 0.0, 5.0), Vector::new(2.0, 0.5, 5.0)];
@@ -147,9 +159,11 @@ fn a_robot_that_goes_with_the_wall_keeps_its_distance() {
     let needle = [Vector::new(-2.0, 0.0, 5.0), Vector::new(2.0, 0.5, 5.0)];
     let mut search = BvhSearch::from_triangles(&square(0.0), &SQUARE).unwrap();
     for shift in [Vector::Z * 3.0, Vector::new(0.5, -0.2, -2.0)] {
-        let motion = LinearMotion::capsules(&needle, &needle.map(|point| point + shift), &[1.0]).unwrap();
+        let motion =
+            LinearMotion::capsules(&needle, &needle.map(|point| point + shift), &[1.0]).unwrap();
         let to = square(0.0).map(|corner| corner + shift);
-        let mut decide = |margin| search.clears_motion_while(&to, &motion, margin, 1e-2).unwrap().decision;
+        let mut decide =
+            |margin| search.clears_motion_while(&to, &motion, margin, 1e-2).unwrap().decision;
         assert_eq!(decide(3.9), Decision::Clear);
         // At the margin itself rounding decides.
         assert_ne!(decide(4.0), Decision::Clear);
@@ -177,6 +191,9 @@ fn a_mesh_that_cannot_move_there_is_refused() {
     let mut broken = square(1.0);
     broken[2].y = Real::NAN;
     let broken = search.clears_motion_while(&broken, &motion, 0.0, 1e-3).unwrap_err();
-    assert!(matches!(broken, ProximityError::Mesh(MeshError::NotFinite { vertex: 2, .. })), "{broken}");
+    assert!(
+        matches!(broken, ProximityError::Mesh(MeshError::NotFinite { vertex: 2, .. })),
+        "{broken}"
+    );
     assert!(search.clears_motion_while(&square(1.0), &motion, -1.0, 1e-3).is_err());
 }

@@ -1,5 +1,5 @@
-//! What moves away from the nearest wall of a narrow tube, or along it, moves into another one. A bound that counts the speed
-//! towards the nearest wall alone would not see it.
+//! What moves away from the nearest wall of a narrow tube, or along it, moves into another one. A
+//! bound that counts the speed towards the nearest wall alone would not see it.
 
 use continuum_testing::Random;
 use parry_continuum::parry::math::{Pose, Real, Vector};
@@ -26,8 +26,8 @@ fn square_tube() -> BvhSearch {
     BvhSearch::from_triangles(&vertices, &triangles).unwrap()
 }
 
-/// Straight from one place in the tube to another, along it and across. The tube is convex, so the needle comes nearest at an
-/// end of its way.
+/// Straight from one place in the tube to another, along it and across. The tube is convex, so the
+/// needle comes nearest at an end of its way.
 #[test]
 fn a_needle_in_a_narrow_tube_meets_a_wall_that_is_not_the_nearest() {
     let (mut search, mut random) = (square_tube(), Random::new(3));
@@ -37,7 +37,8 @@ fn a_needle_in_a_narrow_tube_meets_a_wall_that_is_not_the_nearest() {
     let (mut clear, mut contact, mut opposite, mut along) = (0, 0, 0, 0);
     for _ in 0..700 {
         let y = random.between(-1.4, 1.4);
-        let mut place = |most: Real| Vector::new(random.between(-most, most), y, random.between(-10.0, 5.0));
+        let mut place =
+            |most: Real| Vector::new(random.between(-most, most), y, random.between(-10.0, 5.0));
         let (from, to) = (place(1.45), place(1.9));
         let margin = [0.0, random.between(0.0, 0.1)][random.below(2) as usize];
         let least = gap(from).min(gap(to));
@@ -48,7 +49,8 @@ fn a_needle_in_a_narrow_tube_meets_a_wall_that_is_not_the_nearest() {
         let expected = if least > margin { Decision::Clear } else { Decision::Contact };
         clear += usize::from(expected == Decision::Clear);
         contact += usize::from(expected == Decision::Contact);
-        // At a quarter of its way it moves away from the wall that is nearest; or in the middle along it.
+        // At a quarter of its way it moves away from the wall that is nearest; or in the middle
+        // along it.
         let [quarter, middle] = [0.25, 0.5].map(|share| from + (to - from) * share);
         let meets = gap(to) <= margin && gap(from) > margin;
         opposite += usize::from(meets && quarter.x * to.x < 0.0 && quarter.x.abs() > y.abs());

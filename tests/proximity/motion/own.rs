@@ -1,4 +1,5 @@
-//! Motions of one robot beside itself: against each of many steps, and against what may be between these.
+//! Motions of one robot beside itself: against each of many steps, and against what may be between
+//! these.
 
 use super::speeds::Understated;
 use continuum_testing::Random;
@@ -7,8 +8,8 @@ use parry_continuum::distance::Vec3;
 use parry_continuum::parry::math::{Pose, Real, Rotation, Vector};
 use parry_continuum::proximity::{Decision, RobotPair};
 use parry_continuum::{
-    BendingMotion, BendingSection, Chain, ConstantCurvature, LinearMotion, Motion, RigidMotion, RobotError,
-    Speed, Tube, verify_motion,
+    BendingMotion, BendingSection, Chain, ConstantCurvature, LinearMotion, Motion, RigidMotion,
+    RobotError, Speed, Tube, verify_motion,
 };
 use std::f64::consts::{PI, TAU};
 
@@ -50,7 +51,8 @@ impl<M: Motion> Robot<M> {
             let mut decisions = [0_usize; 3];
             for step in 0..=STEPS {
                 self.motion.shape(step as Real / STEPS as Real, &mut tube).unwrap();
-                decisions[pair.tube_self_clears(&tube, margin, 0.1 * RESOLUTION).unwrap() as usize] += 1;
+                decisions
+                    [pair.tube_self_clears(&tube, margin, 0.1 * RESOLUTION).unwrap() as usize] += 1;
             }
             decisions
         };
@@ -64,7 +66,9 @@ impl<M: Motion> Robot<M> {
         for (margin, contacts, clear, near) in all {
             let found = pair.motion_self_clears(&self.motion, margin, RESOLUTION).unwrap();
             counts.decisions[found.decision as usize] += 1;
-            let says = || format!("margin {margin}: {contacts} steps in contact, {clear} clear; {found:?}");
+            let says = || {
+                format!("margin {margin}: {contacts} steps in contact, {clear} clear; {found:?}")
+            };
             if contacts > 0 {
                 counts.contact_steps += 1;
                 assert_ne!(found.decision, Decision::Clear, "{}", says());
@@ -78,10 +82,15 @@ impl<M: Motion> Robot<M> {
             }
             if let Some(contact) = found.contact {
                 let pose = self.motion.shape(contact.t, &mut tube).unwrap();
-                let decision =
-                    pair.tube_self_clears(&tube, contact.upper * (1.0 + 1e-9) + 1e-12, 1e-6).unwrap();
+                let decision = pair
+                    .tube_self_clears(&tube, contact.upper * (1.0 + 1e-9) + 1e-12, 1e-6)
+                    .unwrap();
                 assert_ne!(decision, Decision::Clear, "{}", says());
-                assert!(contact.upper <= margin && contact.sections[0] <= contact.sections[1], "{}", says());
+                assert!(
+                    contact.upper <= margin && contact.sections[0] <= contact.sections[1],
+                    "{}",
+                    says()
+                );
                 // Both points are on the robot where it is then.
                 assert!(
                     (contact.on_first - contact.on_second).length() <= contact.upper + 1e-9,
@@ -89,8 +98,9 @@ impl<M: Motion> Robot<M> {
                     says()
                 );
                 for point in [contact.on_first, contact.on_second] {
-                    let dot =
-                        Tube::from(&Chain::capsules(&[point, point + Vector::X * 1e-6], &[0.0]).unwrap());
+                    let dot = Tube::from(
+                        &Chain::capsules(&[point, point + Vector::X * 1e-6], &[0.0]).unwrap(),
+                    );
                     let away = pair.clearance(&tube, &pose, &dot, &Pose::IDENTITY, 1e-4).unwrap();
                     assert!(away.lower <= 1e-5, "{away:?} {}", says());
                 }
@@ -110,7 +120,11 @@ fn curling(random: &mut Random) -> Robot<BendingMotion> {
         let length = random.between(10.0, 30.0);
         let at = |share: Real, angle: Real| {
             let curvature = share * turn / length;
-            BendingSection { length, radius, bend: [curvature * angle.cos(), curvature * angle.sin()] }
+            BendingSection {
+                length,
+                radius,
+                bend: [curvature * angle.cos(), curvature * angle.sin()],
+            }
         };
         let angle = random.between(-0.6, 0.6);
         from.push(at(random.between(0.0, 0.5), angle));
@@ -227,7 +241,8 @@ impl Flick {
         for (first, from, normal) in &discs {
             for (second, to, direction) in &discs {
                 if second - first >= PI {
-                    let found = disc_disc(*from, *normal, self.radius, *to, *direction, self.radius);
+                    let found =
+                        disc_disc(*from, *normal, self.radius, *to, *direction, self.radius);
                     apart = apart.min(found.distance);
                 }
             }
@@ -274,12 +289,18 @@ fn a_flick_between_two_steps_is_seen() {
     }
 }
 
-/// A robot the tip of which passes its base, carried along by a part that grows a thousand times as fast as it is thick.
+/// A robot the tip of which passes its base, carried along by a part that grows a thousand times as
+/// fast as it is thick.
 fn passing(gap: Real) -> LinearMotion {
     let at = |z: Real| {
         let tip = [Vector::new(10.0, 0.0, z), Vector::new(0.5 + gap, 0.0, z)];
-        let way =
-            [[0.0, -3.0, 0.0], [0.0, 3.0, 0.0], [10.0, 3.0, 0.0], [10.0, 3.0, -1000.0], [10.0, 0.0, -1000.0]];
+        let way = [
+            [0.0, -3.0, 0.0],
+            [0.0, 3.0, 0.0],
+            [10.0, 3.0, 0.0],
+            [10.0, 3.0, -1000.0],
+            [10.0, 0.0, -1000.0],
+        ];
         way.map(Vector::from_array).into_iter().chain(tip).collect::<Vec<_>>()
     };
     LinearMotion::chain(&at(-700.0), &at(300.0), &[0.5; 6]).unwrap()
@@ -302,8 +323,9 @@ fn a_pass_between_two_steps_is_seen() {
 
 #[test]
 fn what_turns_by_nearly_half_a_turn_is_not_asked_about_for_moving() {
-    // A thick arc, parts of which are near one another that turn by three quarters of that. Points move by less than the resolution,
-    // so that one shape would do for these, but for how they turn.
+    // A thick arc, parts of which are near one another that turn by three quarters of that. Points
+    // move by less than the resolution, so that one shape would do for these, but for how they
+    // turn.
     let at = |turn: Real| [BendingSection { length: turn / 0.9, radius: 1.0, bend: [0.9, 0.0] }];
     let motion = BendingMotion::new(&at(2.2), &at(2.6), Pose::IDENTITY).unwrap();
     let mut pair = RobotPair::new();
@@ -311,7 +333,8 @@ fn what_turns_by_nearly_half_a_turn_is_not_asked_about_for_moving() {
     // What turns by far more comes as near as that.
     let motion = BendingMotion::new(&at(2.6), &at(5.8), Pose::IDENTITY).unwrap();
     assert!(pair.motion_self_clears(&motion, 0.1, 1e-3).unwrap().contact.is_some());
-    // Beside a margin that is wider than the bend nobody knows what is asked about, and that is soon said.
+    // Beside a margin that is wider than the bend nobody knows what is asked about, and that is
+    // soon said.
     let motion = BendingMotion::new(&at(2.9), &at(3.1), Pose::IDENTITY).unwrap();
     let found = pair.motion_self_clears(&motion, 0.5, 1e-3).unwrap();
     assert!(found.decision == Decision::Undecided && found.reason.is_some(), "{found:?}");
@@ -319,7 +342,8 @@ fn what_turns_by_nearly_half_a_turn_is_not_asked_about_for_moving() {
 
 #[test]
 fn what_may_come_to_be_asked_about_is_no_contact() {
-    // Links with 170 degrees between them, 4 apart, that are carried about and turned: at no time are they asked about.
+    // Links with 170 degrees between them, 4 apart, that are carried about and turned: at no time
+    // are they asked about.
     let directions = [0.0, 85.0_f64, 170.0].map(|angle| {
         let (sin, cos) = angle.to_radians().sin_cos();
         Vector::new(sin, 0.0, cos)
@@ -383,10 +407,13 @@ struct Any {
 
 impl Motion for Any {
     fn shape(&self, t: Real, tube: &mut Tube) -> Result<Pose, RobotError> {
-        let ends = [Vector::new(5.0, 0.0, 30.0), Vector::new(5.0, 0.0, 0.0), Vector::new(5.0, 0.0, -9.0)];
+        let ends =
+            [Vector::new(5.0, 0.0, 30.0), Vector::new(5.0, 0.0, 0.0), Vector::new(5.0, 0.0, -9.0)];
         let count = if t > 0.6 { self.count } else { 1 };
-        let points: Vec<_> =
-            [Vector::ZERO, self.joint].into_iter().chain(ends.into_iter().take(count + 1)).collect();
+        let points: Vec<_> = [Vector::ZERO, self.joint]
+            .into_iter()
+            .chain(ends.into_iter().take(count + 1))
+            .collect();
         tube.set_chain(&Chain::from_centreline(&points, &vec![0.5; points.len() - 1])?);
         Ok(Pose::translation(0.0, 5.0, 0.0))
     }

@@ -24,18 +24,21 @@ fn points(motion: &JointMotion, t: Real, links: u32) -> Vec<Vector> {
     points
 }
 
-/// How far the curved robot leaves its shapes at most, place by place, and a little more for what is between the samples.
+/// How far the curved robot leaves its shapes at most, place by place, and a little more for what
+/// is between the samples.
 fn deviation(motion: &JointMotion, steps: u32) -> Real {
     let (fine, moments) = (4, 12);
     let mut most: Real = 0.0;
     for step in 0..steps {
-        let time = |k: u32| (Real::from(step) + Real::from(k) / Real::from(moments)) / Real::from(steps);
+        let time =
+            |k: u32| (Real::from(step) + Real::from(k) / Real::from(moments)) / Real::from(steps);
         let [from, to] = [0, moments].map(|k| points(motion, time(k), LINKS));
         for k in 0..=moments {
             let share = Real::from(k) / Real::from(moments);
             let line: Vec<_> = from.iter().zip(&to).map(|(a, b)| a + (b - a) * share).collect();
             for (k, point) in points(motion, time(k), LINKS * fine).into_iter().enumerate() {
-                let (link, along) = (k / fine as usize, (k % fine as usize) as Real / Real::from(fine));
+                let (link, along) =
+                    (k / fine as usize, (k % fine as usize) as Real / Real::from(fine));
                 let next = line[(link + 1).min(line.len() - 1)];
                 most = most.max((line[link] + (next - line[link]) * along - point).length());
             }
@@ -59,23 +62,35 @@ fn no_path_is_misjudged() {
         // Caps do not matter.
         let chain = [Chain::capsules, Chain::from_centreline, Chain::cylinders][round % 3];
         let shapes: Vec<_> = (0..=steps)
-            .map(|k| chain(&points(&motion, Real::from(k) / Real::from(steps), LINKS), &radii).unwrap())
+            .map(|k| {
+                chain(&points(&motion, Real::from(k) / Real::from(steps), LINKS), &radii).unwrap()
+            })
             .collect();
         let deviation = deviation(&motion, steps);
-        let truth = Steps::new(&mut search, 150, 1e-4, |t| (motion.tube(t).unwrap(), ventricle::entry()));
+        let truth =
+            Steps::new(&mut search, 150, 1e-4, |t| (motion.tube(t).unwrap(), ventricle::entry()));
         let [lower, upper] = truth.least();
-        for margin in [0.0, 0.5, (lower - 2.5 * deviation).max(0.0), upper + 0.01, upper + 2.5 * deviation] {
+        for margin in
+            [0.0, 0.5, (lower - 2.5 * deviation).max(0.0), upper + 0.01, upper + 2.5 * deviation]
+        {
             let answer = search.clears_path(&shapes, deviation, margin, 1e-3).unwrap();
             match (answer.decision, answer.contact) {
                 (Decision::Clear, _) => {
                     clear += 1;
-                    assert!(upper > margin, "clear, but a step comes as near as {upper}, margin {margin}");
+                    assert!(
+                        upper > margin,
+                        "clear, but a step comes as near as {upper}, margin {margin}"
+                    );
                 }
                 (Decision::Contact, Some(shape)) => {
                     contact += 1;
                     let tube = motion.tube(shape.t).unwrap();
                     let at = search.clearance(&tube, &ventricle::entry(), 1e-6).unwrap();
-                    assert!(at.lower <= margin, "contact at {}, but {at:?}, margin {margin}", shape.t);
+                    assert!(
+                        at.lower <= margin,
+                        "contact at {}, but {at:?}, margin {margin}",
+                        shape.t
+                    );
                 }
                 (Decision::Undecided, _) => undecided += 1,
                 (Decision::Contact, None) => panic!("{answer:?}"),
@@ -92,11 +107,13 @@ fn wall(z: Real) -> BvhSearch {
     BvhSearch::from_triangles(&corners, &[[0, 1, 2]]).unwrap()
 }
 
-/// A face may stand any way: it is in the ball around its centre, and holds that. On the side of the tube only the deviation counts.
+/// A face may stand any way: it is in the ball around its centre, and holds that. On the side of
+/// the tube only the deviation counts.
 #[test]
 fn faces_of_unknown_direction_are_bounded_by_ball_and_centre() {
-    let needle =
-        |tip: Real| Chain::from_centreline(&[Vector::ZERO, Vector::Z * 5.0, Vector::Z * tip], &[1.0; 2]);
+    let needle = |tip: Real| {
+        Chain::from_centreline(&[Vector::ZERO, Vector::Z * 5.0, Vector::Z * tip], &[1.0; 2])
+    };
     let shapes = [10.0, 11.0, 12.0].map(|tip| needle(tip).unwrap());
     let (deviation, resolution) = (0.1, 1e-3);
     let mut ahead = wall(20.0);
@@ -116,7 +133,8 @@ fn faces_of_unknown_direction_are_bounded_by_ball_and_centre() {
     let lowered = [3.0, 2.0].map(beside);
     let corners = [[-30.0, -30.0], [30.0, -30.0], [0.0, 50.0]].map(|[x, z]| Vector::new(x, 0.0, z));
     let mut floor = BvhSearch::from_triangles(&corners, &[[0, 1, 2]]).unwrap();
-    let mut decide = |margin| floor.clears_path(&lowered, deviation, margin, resolution).unwrap().decision;
+    let mut decide =
+        |margin| floor.clears_path(&lowered, deviation, margin, resolution).unwrap().decision;
     assert_eq!(decide(1.0 - 0.1 - 0.002), Decision::Clear);
     assert_eq!(decide(1.0 - 0.1 + 0.002), Decision::Undecided);
     assert_eq!(decide(1.0 + 0.1 - 0.002), Decision::Undecided);
@@ -126,11 +144,13 @@ fn faces_of_unknown_direction_are_bounded_by_ball_and_centre() {
 /// A shape alone is a path, and shapes between which the robot jumps through a wall are not clear.
 #[test]
 fn shapes_on_both_sides_of_a_wall_are_no_clear_path() {
-    let needle = |z: Real| Chain::capsules(&[Vector::Z * z, Vector::new(5.0, 0.0, z)], &[0.5]).unwrap();
+    let needle =
+        |z: Real| Chain::capsules(&[Vector::Z * z, Vector::new(5.0, 0.0, z)], &[0.5]).unwrap();
     let mut search = wall(0.0);
     let one = search.clears_path(&[needle(3.0)], 0.1, 1.0, 1e-3).unwrap();
     assert!(one.is_clear(), "{one:?}");
-    let through = search.clears_path(&[needle(3.0), needle(-3.0), needle(-4.0)], 0.1, 0.0, 1e-3).unwrap();
+    let through =
+        search.clears_path(&[needle(3.0), needle(-3.0), needle(-4.0)], 0.1, 0.0, 1e-3).unwrap();
     assert!(through.contact.is_some_and(|shape| (0.1..0.4).contains(&shape.t)), "{through:?}");
 }
 
@@ -145,7 +165,8 @@ fn paths_that_are_none_are_refused() {
     assert_eq!(none, ProximityError::Motion(RobotError::NoMotions { parameter: "shapes" }));
     let differ = refused(&mut search, &[chain(0.1), chain(0.1), chain(0.2)], 0.0);
     assert_eq!(differ, ProximityError::Motion(RobotError::ShapesDiffer { index: 2 }));
-    // Segments without length in other places: between the two, links would stand for other stretches.
+    // Segments without length in other places: between the two, links would stand for other
+    // stretches.
     let turning = |points: [[Real; 2]; 4]| {
         Chain::capsules(&points.map(|[y, z]| Vector::new(0.0, y, z)), &[0.5; 3]).unwrap()
     };
@@ -155,7 +176,10 @@ fn paths_that_are_none_are_refused() {
     assert_eq!(differ, ProximityError::Motion(RobotError::ShapesDiffer { index: 1 }));
     for deviation in [-1.0, Real::NAN] {
         let refused = refused(&mut search, &[chain(0.1)], deviation);
-        assert!(matches!(refused, ProximityError::Negative { parameter: "deviation", .. }), "{refused}");
+        assert!(
+            matches!(refused, ProximityError::Negative { parameter: "deviation", .. }),
+            "{refused}"
+        );
     }
     let infinite = refused(&mut search, &[chain(0.1)], Real::INFINITY);
     assert!(matches!(infinite, ProximityError::Motion(RobotError::Negative { .. })), "{infinite}");
@@ -164,11 +188,13 @@ fn paths_that_are_none_are_refused() {
 /// A path of many legs is fast, and its times are rounded all the same.
 #[test]
 fn one_shape_of_ten_thousand_is_not_missed_by_rounding() {
-    let link = |x: Real| Chain::capsules(&[Vector::X * x, Vector::new(x, 0.0, 1.0)], &[0.25]).unwrap();
+    let link =
+        |x: Real| Chain::capsules(&[Vector::X * x, Vector::new(x, 0.0, 1.0)], &[0.25]).unwrap();
     let corners = [[-30.0, -30.0], [30.0, -30.0], [0.0, 50.0]].map(|[y, z]| Vector::new(2.0, y, z));
     let mut search = BvhSearch::from_triangles(&corners, &[[0, 1, 2]]).unwrap();
     for near in [5005, 8049] {
-        let shapes: Vec<_> = (0..=10_000).map(|k| link(if k == near { 1.0 } else { 0.0 })).collect();
+        let shapes: Vec<_> =
+            (0..=10_000).map(|k| link(if k == near { 1.0 } else { 0.0 })).collect();
         // The robot comes as near as 0.75.
         for margin in [0.75, 0.75 + 1e-13] {
             let found = search.clears_path(&shapes, 0.0, margin, 1e-3).unwrap();

@@ -5,8 +5,8 @@ use continuum_demo::ventricle;
 use parry_continuum::parry::math::{Pose, Real, Rotation, Vector};
 use parry_continuum::proximity::{Decision, MotionAnswer, ProximityError};
 use parry_continuum::{
-    BendingMotion, BendingSection, Chain, LinearMotion, Motion, RigidMotion, RobotError, Speed, Tube,
-    verify_motion,
+    BendingMotion, BendingSection, Chain, LinearMotion, Motion, RigidMotion, RobotError, Speed,
+    Tube, verify_motion,
 };
 
 /// A motion that is made up of two functions.
@@ -36,7 +36,8 @@ fn a_motion_that_cannot_be_asked_about_is_refused() {
     let inside = ventricle::entry().translation;
     let straight = |links: usize, radius: Real| {
         move |_: Real, tube: &mut Tube| {
-            let points: Vec<_> = (0..=links).map(|k| inside + Vector::Z * (0.1 * k as Real)).collect();
+            let points: Vec<_> =
+                (0..=links).map(|k| inside + Vector::Z * (0.1 * k as Real)).collect();
             tube.set_samples(&points, &vec![radius; links], None)?;
             Ok(Pose::IDENTITY)
         }
@@ -56,24 +57,38 @@ fn a_motion_that_cannot_be_asked_about_is_refused() {
         search.clears_motion(&good, 0.0, Real::NAN),
         Err(ProximityError::Negative { parameter: "resolution", .. })
     ));
-    assert!(matches!(search.clears_motion(&good, 0.0, 0.0), Err(ProximityError::ToleranceTooFine { .. })));
+    assert!(matches!(
+        search.clears_motion(&good, 0.0, 0.0),
+        Err(ProximityError::ToleranceTooFine { .. })
+    ));
     for speed in [Real::NAN, -1.0, Real::INFINITY] {
         let refused = search.clears_motion(&Made(straight(3, 0.1), || speed), 0.0, 1e-3);
-        assert!(matches!(refused, Err(ProximityError::Motion(RobotError::BadSpeed { .. }))), "{refused:?}");
+        assert!(
+            matches!(refused, Err(ProximityError::Motion(RobotError::BadSpeed { .. }))),
+            "{refused:?}"
+        );
     }
     let fast = search.clears_motion(&Made(straight(3, 0.1), || 1e30), 0.0, 1e-3);
     assert!(matches!(fast, Err(ProximityError::TooFast { .. })), "{fast:?}");
     // The radius changes on the way.
-    let changing =
-        Made(|t: Real, tube: &mut Tube| straight(3, if t < 0.5 { 0.1 } else { 0.2 })(t, tube), || 100.0);
+    let changing = Made(
+        |t: Real, tube: &mut Tube| straight(3, if t < 0.5 { 0.1 } else { 0.2 })(t, tube),
+        || 100.0,
+    );
     let refused = search.clears_motion(&changing, 0.0, 1e-3);
-    assert!(matches!(refused, Err(ProximityError::Motion(RobotError::SectionsChange { .. }))), "{refused:?}");
+    assert!(
+        matches!(refused, Err(ProximityError::Motion(RobotError::SectionsChange { .. }))),
+        "{refused:?}"
+    );
     assert!(matches!(verify_motion(&changing, 4), Err(RobotError::SectionsChange { .. })));
     // There is no shape, or none that can be asked about.
-    let broken =
-        Made(|_: Real, tube: &mut Tube| tube.set_samples(&[], &[], None).map(|()| Pose::IDENTITY), || 0.0);
+    let broken = Made(
+        |_: Real, tube: &mut Tube| tube.set_samples(&[], &[], None).map(|()| Pose::IDENTITY),
+        || 0.0,
+    );
     assert!(matches!(search.clears_motion(&broken, 0.0, 1e-3), Err(ProximityError::Motion(_))));
-    let failing = Made(|t: Real, _: &mut Tube| Err(RobotError::NoShape { t, reason: "no solution" }), || 0.0);
+    let failing =
+        Made(|t: Real, _: &mut Tube| Err(RobotError::NoShape { t, reason: "no solution" }), || 0.0);
     let failed = search.clears_motion(&failing, 0.0, 1e-3).unwrap_err();
     assert_eq!(failed.kind(), "no_shape");
     assert_eq!(failed.to_string(), "the kinematics has no shape at t = 0.5: no solution");
@@ -89,7 +104,10 @@ fn a_motion_that_cannot_be_asked_about_is_refused() {
     assert_eq!(anatomy().clears_motion(&nothing, 0.0, 1e-3), Err(ProximityError::EmptyTube));
 
     let (a, b) = ([Vector::ZERO, Vector::Z], [Vector::ZERO, Vector::Z, Vector::X]);
-    assert_eq!(LinearMotion::chain(&a, &b, &[1.0]).unwrap_err(), RobotError::PointsDiffer { from: 2, to: 3 });
+    assert_eq!(
+        LinearMotion::chain(&a, &b, &[1.0]).unwrap_err(),
+        RobotError::PointsDiffer { from: 2, to: 3 }
+    );
     assert!(LinearMotion::capsules(&a, &a, &[-1.0]).is_err());
     assert!(LinearMotion::capsules(&a[..1], &a[..1], &[]).is_err());
     assert!(LinearMotion::capsules(&[Vector::ZERO; 2], &[Vector::X; 2], &[1.0]).is_err());
@@ -112,7 +130,9 @@ fn a_motion_that_cannot_be_asked_about_is_refused() {
         let refused = BendingMotion::new(&[section], &[section], pose);
         assert!(matches!(refused, Err(RobotError::BadPose { .. })), "{refused:?}");
     }
-    assert!(RigidMotion::new(Tube::from(&Chain::capsules(&a, &[1.0]).unwrap()), [lost, lost]).is_err());
+    assert!(
+        RigidMotion::new(Tube::from(&Chain::capsules(&a, &[1.0]).unwrap()), [lost, lost]).is_err()
+    );
 }
 
 /// What one motion states of its tube is not left to the next, which says nothing of it.

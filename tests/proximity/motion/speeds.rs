@@ -30,7 +30,8 @@ fn speeds_that_are_too_low_are_found() {
         let joints = random_edge(&robot, &mut random, 5.0);
         verify_motion(&joints, 60).unwrap();
         let bending =
-            BendingMotion::new(&joints.sections(0.0), &joints.sections(1.0), ventricle::entry()).unwrap();
+            BendingMotion::new(&joints.sections(0.0), &joints.sections(1.0), ventricle::entry())
+                .unwrap();
         verify_motion(&bending, 60).unwrap();
         let poses = [random.pose(5.0), random.pose(5.0)];
         let rigid = RigidMotion::new(joints.tube(0.0).unwrap(), poses).unwrap();

@@ -7,8 +7,8 @@ use continuum_testing::Random;
 use parry_continuum::parry::math::{Pose, Real, Rotation, Vector};
 use parry_continuum::proximity::{Decision, ProximityError, RobotMotionAnswer, RobotPair};
 use parry_continuum::{
-    BendingMotion, Chain, LinearMotion, Motion, MotionPath, MovingBase, RigidMotion, RobotError, Speed, Tube,
-    verify_motion,
+    BendingMotion, Chain, LinearMotion, Motion, MotionPath, MovingBase, RigidMotion, RobotError,
+    Speed, Tube, verify_motion,
 };
 
 const STEPS: usize = 300;
@@ -74,7 +74,8 @@ fn truth(pair: &mut RobotPair, motions: [&Any; 2]) -> [Real; 2] {
     let (mut shapes, mut bounds) = ([blank(), blank()], [Real::INFINITY; 2]);
     for step in 0..=STEPS {
         let t = step as Real / STEPS as Real;
-        let times = [t - 0.5 / STEPS as Real, t + 0.5 / STEPS as Real].map(|t: Real| t.clamp(0.0, 1.0));
+        let times =
+            [t - 0.5 / STEPS as Real, t + 0.5 / STEPS as Real].map(|t: Real| t.clamp(0.0, 1.0));
         let [first, second] = &mut shapes;
         let poses = [motions[0].shape(t, first).unwrap(), motions[1].shape(t, second).unwrap()];
         let found = pair.clearance(first, &poses[0], second, &poses[1], 1e-4).unwrap();
@@ -103,9 +104,13 @@ fn motions(random: &mut Random, kind: u32) -> [Any; 2] {
             let beside = if kind == 0 {
                 Pose::from_translation(across * random.between(1.0, 8.0))
             } else {
-                let far = entry.translation + entry.rotation * Vector::Z * random.between(20.0, 60.0);
+                let far =
+                    entry.translation + entry.rotation * Vector::Z * random.between(20.0, 60.0);
                 let turn = Rotation::from_axis_angle(across, std::f64::consts::PI);
-                Pose::from_parts(far + across * random.between(0.0, 4.0) - turn * entry.translation, turn)
+                Pose::from_parts(
+                    far + across * random.between(0.0, 4.0) - turn * entry.translation,
+                    turn,
+                )
             };
             let moved = Pose::from_translation(across * random.between(-3.0, 3.0)) * beside;
             let second = MovingBase::new(second, [beside, moved]).unwrap();
@@ -125,9 +130,12 @@ fn motions(random: &mut Random, kind: u32) -> [Any; 2] {
             let (points, radii) = ([Vector::ZERO, Vector::Z * 4.0, Vector::Z * 6.0], [1.0, 0.5]);
             let chain = Chain::from_centreline(&points, &radii).unwrap();
             let off = [Vector::ZERO, Vector::X * 2.0, Vector::X * 3.5][random.below(3) as usize];
+            let ends = [
+                off - Vector::Z * random.between(2.0, 15.0),
+                off + Vector::Z * random.between(7.0, 15.0),
+            ];
             let ends =
-                [off - Vector::Z * random.between(2.0, 15.0), off + Vector::Z * random.between(7.0, 15.0)];
-            let ends = if random.below(2) == 0 { ends } else { [ends[0], ends[0] + Vector::Y * 0.5] };
+                if random.below(2) == 0 { ends } else { [ends[0], ends[0] + Vector::Y * 0.5] };
             let turn = if random.below(2) == 0 {
                 Rotation::IDENTITY
             } else {
@@ -142,11 +150,13 @@ fn motions(random: &mut Random, kind: u32) -> [Any; 2] {
         }
         // A fast needle crosses the other one, or just misses it, on its second leg.
         _ => {
-            let needle = |ends: [Vector; 2]| move |to: [Vector; 2]| LinearMotion::chain(&ends, &to, &[0.5]);
+            let needle =
+                |ends: [Vector; 2]| move |to: [Vector; 2]| LinearMotion::chain(&ends, &to, &[0.5]);
             let standing = [Vector::ZERO, Vector::Z * 20.0];
             let high = [5.0, 19.0, 20.9, 21.2][random.below(4) as usize];
             let at = |x: Real| [Vector::new(x, -9.0, high), Vector::new(x, 9.0, high)];
-            let legs = [needle(at(-90.0))(at(-30.0)), needle(at(-30.0))(at(random.between(20.0, 300.0)))];
+            let legs =
+                [needle(at(-90.0))(at(-30.0)), needle(at(-30.0))(at(random.between(20.0, 300.0)))];
             let path = MotionPath::new(legs.map(Result::unwrap).to_vec()).unwrap();
             [Any::new(needle(standing)(standing).unwrap(), 1, 0.5), Any::new(path, 1, 0.5)]
         }
@@ -168,8 +178,10 @@ fn assert_true(
             let contact = found.contact.unwrap();
             let mut shapes = [blank(), blank()];
             let [first, second] = &mut shapes;
-            let poses =
-                [motions[0].shape(contact.t, first).unwrap(), motions[1].shape(contact.t, second).unwrap()];
+            let poses = [
+                motions[0].shape(contact.t, first).unwrap(),
+                motions[1].shape(contact.t, second).unwrap(),
+            ];
             let there = pair.clearance(first, &poses[0], second, &poses[1], 1e-6).unwrap();
             assert!(there.lower <= contact.upper && contact.upper <= margin);
             assert!((contact.on_first - contact.on_second).length() <= contact.upper + 1e-12);
@@ -193,8 +205,13 @@ fn two_motions_are_clear_where_their_steps_are() {
         let both = [&first, &second];
         let truth = truth(&mut pair, both);
         let step = 0.05 * truth[1].max(0.1);
-        let margins =
-            [0.0, 0.5 * truth[0].max(0.0), truth[0] - step, truth[1] - 0.5 * RESOLUTION, truth[1] + step];
+        let margins = [
+            0.0,
+            0.5 * truth[0].max(0.0),
+            truth[0] - step,
+            truth[1] - 0.5 * RESOLUTION,
+            truth[1] + step,
+        ];
         for margin in margins.into_iter().filter(|margin| *margin >= 0.0) {
             let found = pair.clears_motion(&first, &second, margin, RESOLUTION).unwrap();
             assert_true(&mut pair, both, margin, truth, &found);
@@ -203,10 +220,16 @@ fn two_motions_are_clear_where_their_steps_are() {
             let other = pair.clears_motion(&second, &first, margin, RESOLUTION).unwrap();
             assert_true(&mut pair, [&second, &first], margin, truth, &other);
             if margin <= truth[0] - 2.0 * RESOLUTION {
-                assert!(found.is_clear() && other.is_clear(), "{kind} {margin} {truth:?} {found:?}");
+                assert!(
+                    found.is_clear() && other.is_clear(),
+                    "{kind} {margin} {truth:?} {found:?}"
+                );
             }
             if margin >= truth[1] + 2.0 * RESOLUTION {
-                assert!(found.contact.is_some() && other.contact.is_some(), "{kind} {margin} {truth:?}");
+                assert!(
+                    found.contact.is_some() && other.contact.is_some(),
+                    "{kind} {margin} {truth:?}"
+                );
             }
         }
     }
@@ -217,7 +240,8 @@ fn two_motions_are_clear_where_their_steps_are() {
 
 #[test]
 fn a_pass_between_two_steps_is_seen() {
-    // Two needles cross at t = 0.7 alone, a thousand times as fast as they are thick: only the speeds tell.
+    // Two needles cross at t = 0.7 alone, a thousand times as fast as they are thick: only the
+    // speeds tell.
     let standing = [-Vector::Z * 20.0, Vector::Z * 20.0];
     let at_rest = LinearMotion::chain(&standing, &standing, &[0.5]).unwrap();
     let mut pair = RobotPair::new();
@@ -240,7 +264,8 @@ fn a_pass_between_two_steps_is_seen() {
 
 #[test]
 fn robots_of_many_links_may_be_fast() {
-    // All links of one may meet all of the other in the first interval: 160,000 pairs, more than are listed.
+    // All links of one may meet all of the other in the first interval: 160,000 pairs, more than
+    // are listed.
     let count = 400;
     let at = |y: Real, x: Real| -> Vec<_> {
         (0..=count).map(|k| Vector::new(x, y, Real::from(k) - 0.5 * Real::from(count))).collect()
@@ -272,8 +297,9 @@ fn robots_of_many_links_may_be_fast() {
         assert_eq!(pair.clears_motion(&slow, &motion, 0.4, 1e-3).unwrap_err().kind(), kind);
     }
     // Robots that overlap all the time are found to do so at once.
-    let short =
-        |y: Real| -> Vec<_> { (0..=count).map(|k| Vector::new(0.0, y, 0.1 * Real::from(k))).collect() };
+    let short = |y: Real| -> Vec<_> {
+        (0..=count).map(|k| Vector::new(0.0, y, 0.1 * Real::from(k))).collect()
+    };
     let thick = vec![2.0; count as usize];
     let one = LinearMotion::capsules(&short(0.0), &short(0.5), &thick).unwrap();
     let other = LinearMotion::capsules(&short(2.0), &short(30.0), &thick).unwrap();
@@ -283,7 +309,8 @@ fn robots_of_many_links_may_be_fast() {
 
 #[test]
 fn a_fast_link_far_from_many_slow_ones_is_seen() {
-    // Two robots at rest beside one another, 160,000 pairs of links. One has a last link far away, that swings to the other.
+    // Two robots at rest beside one another, 160,000 pairs of links. One has a last link far away,
+    // that swings to the other.
     let (count, radii) = (400, vec![0.1; 402]);
     let beside = |x: Real| (0..=count).map(move |k| Vector::new(x, 0.0, 0.5 * Real::from(k)));
     let resting: Vec<_> = beside(0.0).collect();
@@ -306,8 +333,8 @@ fn a_fast_link_far_from_many_slow_ones_is_seen() {
 
 #[test]
 fn a_disc_that_turns_about_its_centre_sweeps_its_rim() {
-    // A thin disc of radius 10 turns by 2 rad: its centre stays, and its rim passes the needle after a quarter of a turn alone, which
-    // no middle of a large interval shows.
+    // A thin disc of radius 10 turns by 2 rad: its centre stays, and its rim passes the needle
+    // after a quarter of a turn alone, which no middle of a large interval shows.
     let disc = Chain::cylinders(&[Vector::ZERO, Vector::Z * 0.1], &[10.0]).unwrap();
     let over = Pose::from_parts(Vector::ZERO, Rotation::from_axis_angle(Vector::X, 2.0));
     let turning = RigidMotion::new(Tube::from(&disc), [Pose::IDENTITY, over]).unwrap();
@@ -332,9 +359,11 @@ fn a_disc_that_turns_about_its_centre_sweeps_its_rim() {
 #[test]
 fn a_link_that_loses_its_length_is_no_fault() {
     // Its direction gets lost, so that it turns as fast as anything; its bodies are round.
-    let (from, to) = ([Vector::ZERO, Vector::Z, Vector::Z * 3.0], [Vector::ZERO, Vector::Z, Vector::Z]);
+    let (from, to) =
+        ([Vector::ZERO, Vector::Z, Vector::Z * 3.0], [Vector::ZERO, Vector::Z, Vector::Z]);
     let radii = [0.5; 2];
-    let fading = [LinearMotion::capsules(&from, &to, &radii), LinearMotion::chain(&from, &to, &radii)];
+    let fading =
+        [LinearMotion::capsules(&from, &to, &radii), LinearMotion::chain(&from, &to, &radii)];
     let needle = [Vector::new(2.0, 0.0, -9.0), Vector::new(2.0, 0.0, 9.0)];
     let at_rest = LinearMotion::chain(&needle, &needle, &[0.5]).unwrap();
     let mut pair = RobotPair::new();
@@ -346,10 +375,13 @@ fn a_link_that_loses_its_length_is_no_fault() {
 
 #[test]
 fn an_end_of_which_no_speed_is_stated_is_undecided() {
-    // The first link's end is flat because the tip is near. How fast that is nobody says, so that the end may become round, and
-    // come as near to the needle as the tip does not.
+    // The first link's end is flat because the tip is near. How fast that is nobody says, so that
+    // the end may become round, and come as near to the needle as the tip does not.
     let shape = |_: Real, tube: &mut Tube| {
-        tube.set_chain(&Chain::from_centreline(&[0.0, 5.0, 5.5].map(|z| Vector::Z * z), &[1.0, 1.0])?);
+        tube.set_chain(&Chain::from_centreline(
+            &[0.0, 5.0, 5.5].map(|z| Vector::Z * z),
+            &[1.0, 1.0],
+        )?);
         Ok(Pose::IDENTITY)
     };
     let needle = [-2.0, 2.0].map(|x| Vector::new(x, 0.0, 6.0));
@@ -359,10 +391,16 @@ fn an_end_of_which_no_speed_is_stated_is_undecided() {
             let point = if section == 1 && shares == [1.0, 1.0] { speed } else { 0.0 };
             Speed { point, turn: 0.0 }
         };
-        let motion =
-            Any { shape: Box::new(shape), speed: Box::new(stated), legs: 1, sections: 2, radius: 1.0 };
-        let decide =
-            |margin| RobotPair::new().clears_motion(&motion, &at_rest, margin, 1e-3).unwrap().decision;
+        let motion = Any {
+            shape: Box::new(shape),
+            speed: Box::new(stated),
+            legs: 1,
+            sections: 2,
+            radius: 1.0,
+        };
+        let decide = |margin| {
+            RobotPair::new().clears_motion(&motion, &at_rest, margin, 1e-3).unwrap().decision
+        };
         assert_eq!(decide(0.2), Decision::Undecided);
         assert_eq!(decide(0.41), Decision::Contact);
     }
@@ -374,7 +412,8 @@ fn what_is_wrong_names_the_motion() {
     let at_rest = LinearMotion::chain(&needle, &needle, &[0.1]).unwrap();
     let broken = |speed: Real, far: Real, count: usize| {
         let shape = move |t: Real, tube: &mut Tube| {
-            let points: Vec<_> = (0..=count + usize::from(t > 0.6)).map(|k| Vector::X * k as Real).collect();
+            let points: Vec<_> =
+                (0..=count + usize::from(t > 0.6)).map(|k| Vector::X * k as Real).collect();
             tube.set_samples(&points, &vec![0.1; points.len() - 1], None)?;
             Ok(Pose::translation(0.0, 5.0, far))
         };
@@ -393,10 +432,17 @@ fn what_is_wrong_names_the_motion() {
         let first = pair.clears_motion(&motion, &at_rest, 0.1, 1e-3).unwrap_err();
         let second = pair.clears_motion(&at_rest, &motion, 0.1, 1e-3).unwrap_err();
         assert_eq!([first.kind(), second.kind()], [kind; 2]);
-        assert!(first.to_string().starts_with("`a`: ") && second.to_string().starts_with("`b`: "), "{first}");
+        assert!(
+            first.to_string().starts_with("`a`: ") && second.to_string().starts_with("`b`: "),
+            "{first}"
+        );
     }
-    let negative = |margin, resolution| pair.clone().clears_motion(&at_rest, &at_rest, margin, resolution);
-    assert!(matches!(negative(-1.0, 1e-3), Err(ProximityError::Negative { parameter: "margin", .. })));
+    let negative =
+        |margin, resolution| pair.clone().clears_motion(&at_rest, &at_rest, margin, resolution);
+    assert!(matches!(
+        negative(-1.0, 1e-3),
+        Err(ProximityError::Negative { parameter: "margin", .. })
+    ));
     assert!(matches!(
         negative(1.0, Real::NAN),
         Err(ProximityError::Negative { parameter: "resolution", .. })

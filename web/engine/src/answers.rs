@@ -56,7 +56,8 @@ impl Answers {
 
     /// The two ends of each link.
     pub fn ends(&self) -> Vec<Real> {
-        let ends = self.robot.iter().flat_map(|link| [self.pose * link.start(), self.pose * link.end()]);
+        let ends =
+            self.robot.iter().flat_map(|link| [self.pose * link.start(), self.pose * link.end()]);
         flat(&ends.collect::<Vec<_>>())
     }
 

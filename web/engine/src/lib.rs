@@ -1,4 +1,5 @@
-//! What the page asks of the library: walls, robots, and how far they are apart. All in the wall's frame and unit.
+//! What the page asks of the library: walls, robots, and how far they are apart. All in the wall's
+//! frame and unit.
 
 mod answers;
 mod csv;

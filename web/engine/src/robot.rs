@@ -24,11 +24,13 @@ impl Robot {
     pub fn of_tubes(extensions: &[Real], angles: &[Real]) -> Result<Robot, String> {
         let joints = Joints { extensions: extensions.to_vec(), angles: angles.to_vec() };
         let line = three_tubes().centreline(&joints, LINKS);
-        let chain = Chain::from_centreline(&line.points, &line.radii).map_err(|error| error.to_string())?;
+        let chain =
+            Chain::from_centreline(&line.points, &line.radii).map_err(|error| error.to_string())?;
         Ok(Self { chain, stands_at_entry: true })
     }
 
-    /// Points in the wall's frame, as text: `x,y,z` or `x,y,z,radius` in each line. `radius` is for segments without.
+    /// Points in the wall's frame, as text: `x,y,z` or `x,y,z,radius` in each line. `radius` is for
+    /// segments without.
     ///
     /// # Errors
     /// A line is something else, or the points make no robot.

@@ -19,20 +19,22 @@ impl Wall {
     /// A brain ventricle, in millimetres.
     pub fn ventricle() -> Result<Wall, String> {
         let (vertices, triangles) = ventricle::mesh(ventricle::DEFAULT_TRIANGLES);
-        let search = BvhSearch::from_triangles(&vertices, &triangles).map_err(|error| error.to_string())?;
+        let search =
+            BvhSearch::from_triangles(&vertices, &triangles).map_err(|error| error.to_string())?;
         Ok(Self { search, entry: ventricle::entry() })
     }
 
-    /// A file of the user's: its name, whose extension says what it holds, and its bytes. A robot of tubes comes in at the
-    /// point that is deepest inside.
+    /// A file of the user's: its name, whose extension says what it holds, and its bytes. A robot
+    /// of tubes comes in at the point that is deepest inside.
     ///
     /// # Errors
     /// The file is broken, or of an unknown format.
     pub fn read(name: &str, bytes: &[u8]) -> Result<Wall, String> {
-        let mesh =
-            mesh_files::from_bytes(name, bytes, &Options::default()).map_err(|error| error.to_string())?;
+        let mesh = mesh_files::from_bytes(name, bytes, &Options::default())
+            .map_err(|error| error.to_string())?;
         let (vertices, triangles) = mesh.into_parts::<Vector>();
-        let search = BvhSearch::from_triangles(&vertices, &triangles).map_err(|error| error.to_string())?;
+        let search =
+            BvhSearch::from_triangles(&vertices, &triangles).map_err(|error| error.to_string())?;
         let middle = vertices.iter().copied().sum::<Vector>() / vertices.len() as Real;
         let mesh = TriMesh::new(vertices, triangles).map_err(|error| error.to_string())?;
         let from = steer::deepest_point(&mesh).unwrap_or(middle);
@@ -55,8 +57,11 @@ impl Wall {
     pub fn ask(&mut self, robot: &Robot) -> Result<Answers, String> {
         let pose = if robot.stands_at_entry() { self.entry } else { Pose::IDENTITY };
         let mut links = Vec::new();
-        self.search.per_link(robot.chain(), &pose, &mut links).map_err(|error| error.to_string())?;
-        let minimum = self.search.minimum(robot.chain(), &pose).map_err(|error| error.to_string())?;
+        self.search
+            .per_link(robot.chain(), &pose, &mut links)
+            .map_err(|error| error.to_string())?;
+        let minimum =
+            self.search.minimum(robot.chain(), &pose).map_err(|error| error.to_string())?;
         let base = robot
             .chain()
             .links()

@@ -1,8 +1,8 @@
 //! The concentric tube robot of the examples follows the published model.
 //!
-//! `data/ctr_oracle.json` holds centrelines of two robots, three and four tubes, solved by an integrator that shares
-//! nothing with `ctr` and `torsion` and printed to 1e-9 mm: each pair of joints with tubes that do not
-//! twist and with tubes that do.
+//! `data/ctr_oracle.json` holds centrelines of two robots, three and four tubes, solved by an
+//! integrator that shares nothing with `ctr` and `torsion` and printed to 1e-9 mm: each pair of
+//! joints with tubes that do not twist and with tubes that do.
 
 use continuum_demo::ctr::{Joints, Robot, Section, Tube, three_tubes};
 use continuum_demo::ventricle;
@@ -65,7 +65,8 @@ fn robot(sections: &[OracleSection]) -> Robot {
     Robot { sections: sections.iter().map(section).collect() }
 }
 
-/// The oracle prints 9 decimals of a millimetre: half of the last one in each coordinate is 0.87e-9 mm.
+/// The oracle prints 9 decimals of a millimetre: half of the last one in each coordinate is 0.87e-9
+/// mm.
 const TOLERANCE: Real = 0.9e-9;
 
 /// And 11 decimals of the tip's frame.
@@ -116,8 +117,9 @@ fn twisted_centrelines_match_the_oracle() {
         for (angle, expected) in found.base_angles.iter().zip(&case.psi_base) {
             turned = Real::max(turned, (angle - expected).abs());
         }
-        twisted +=
-            usize::from(case.psi_tip.iter().zip(&case.psi_base).any(|(tip, base)| (tip - base).abs() > 0.1));
+        twisted += usize::from(
+            case.psi_tip.iter().zip(&case.psi_base).any(|(tip, base)| (tip - base).abs() > 0.1),
+        );
     }
     assert!(worst < 1e-7 && turned < 1e-8, "worst {worst:e} mm, {turned:e} rad");
     assert_eq!((points, oracle.cases.len()), (18 * 65, 18));
@@ -130,7 +132,8 @@ fn the_three_tubes_of_the_examples_are_the_oracle_s() {
     assert_eq!(format!("{:?}", three_tubes()), format!("{expected:?}"));
 }
 
-/// The chain's vertices lie on the oracle's curve, and its radius changes exactly where a tube ends.
+/// The chain's vertices lie on the oracle's curve, and its radius changes exactly where a tube
+/// ends.
 #[test]
 fn centreline_changes_radius_where_a_tube_ends() {
     let oracle = oracle(RIGID);
@@ -148,19 +151,25 @@ fn centreline_changes_radius_where_a_tube_ends() {
             let vertex = centreline.radii.iter().rposition(|&r| r == section.radius).unwrap() + 1;
             assert!((centreline.points[vertex] - tip).length() < 1e-12 * end);
         }
-        // The segment nearest to a point of the oracle's has the oracle's radius, except next to a tube's end.
+        // The segment nearest to a point of the oracle's has the oracle's radius, except next to a
+        // tube's end.
         for ((&s, &point), &radius) in case.s.iter().zip(&case.centreline).zip(&case.radius) {
             let near_end = ends.iter().any(|end| (end - s).abs() < 0.01 * ends.last().unwrap());
             if !near_end {
                 let to_segment = |k: &usize| {
                     let (a, b) = (centreline.points[*k], centreline.points[k + 1]);
-                    let t = ((Vector::from(point) - a).dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0);
+                    let t = ((Vector::from(point) - a).dot(b - a) / (b - a).length_squared())
+                        .clamp(0.0, 1.0);
                     (Vector::from(point) - a.lerp(b, t)).length()
                 };
                 let nearest = (0..centreline.radii.len())
                     .min_by(|k, l| to_segment(k).total_cmp(&to_segment(l)))
                     .unwrap();
-                assert_eq!(centreline.radii[nearest], radius, "{} {:?} at {s}", case.robot, case.phi);
+                assert_eq!(
+                    centreline.radii[nearest], radius,
+                    "{} {:?} at {s}",
+                    case.robot, case.phi
+                );
                 compared += 1;
             }
         }
@@ -168,12 +177,14 @@ fn centreline_changes_radius_where_a_tube_ends() {
     assert!(compared > 900, "{compared}");
 }
 
-/// Against a derivation: three tubes at the same angle bend in one plane, along circles of known curvature.
+/// Against a derivation: three tubes at the same angle bend in one plane, along circles of known
+/// curvature.
 #[test]
 fn aligned_tubes_follow_circles() {
     let robot = three_tubes();
     let joints = Joints { extensions: vec![20.0, 15.0, 8.0], angles: vec![0.0; 3] };
-    let [first, second]: [Real; 2] = [(5.0 * 0.0522 + 0.05263 + 0.05e-9) / 6.05, (0.05263 + 0.05e-9) / 1.05];
+    let [first, second]: [Real; 2] =
+        [(5.0 * 0.0522 + 0.05263 + 0.05e-9) / 6.05, (0.05263 + 0.05e-9) / 1.05];
     // The third tube is straight where it is alone, but for its nominal 1e-9 / mm.
     let heading = first * 20.0 + second * 15.0;
     let tip = robot.frames(&joints, &[43.0])[0];
@@ -182,7 +193,9 @@ fn aligned_tubes_follow_circles() {
             + ((first * 20.0).cos() - heading.cos()) / second
             + 8.0 * heading.sin(),
         0.0,
-        (first * 20.0).sin() / first + (heading.sin() - (first * 20.0).sin()) / second + 8.0 * heading.cos(),
+        (first * 20.0).sin() / first
+            + (heading.sin() - (first * 20.0).sin()) / second
+            + 8.0 * heading.cos(),
     );
     assert!((tip.translation - expected).length() < 1e-6, "{} {expected}", tip.translation);
 }

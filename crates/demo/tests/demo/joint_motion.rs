@@ -20,7 +20,8 @@ fn a_moving_robot_is_that_of_its_joints() {
         let motion = motion(&robot, &mut random);
         for t in [0.0, 0.3, 1.0] {
             let joints = motion.joints(t);
-            let tip = ventricle::entry() * robot.frames(&joints, &[robot.length(&joints)])[0].translation;
+            let tip =
+                ventricle::entry() * robot.frames(&joints, &[robot.length(&joints)])[0].translation;
             assert!((motion.tip(t) - tip).length() < 1e-6, "{joints:?}");
             motion.tube(t).unwrap().verify(50).unwrap();
         }
@@ -55,10 +56,13 @@ fn stated_speeds_hold_and_are_not_loose() {
 #[test]
 fn what_cannot_be_bounded_is_refused() {
     let robot = three_tubes();
-    let joints = |extensions: [Real; 3]| Joints { extensions: extensions.to_vec(), angles: vec![0.0; 3] };
-    let is_good = |from, to| JointMotion::new(&robot, [&joints(from), &joints(to)], Pose::IDENTITY).is_some();
+    let joints =
+        |extensions: [Real; 3]| Joints { extensions: extensions.to_vec(), angles: vec![0.0; 3] };
+    let is_good =
+        |from, to| JointMotion::new(&robot, [&joints(from), &joints(to)], Pose::IDENTITY).is_some();
     assert!(is_good([30.0, 36.0, 12.0], [0.1, 0.1, 0.1]));
-    // The second tube is straight where the first is long, and a section that is not out has no length.
+    // The second tube is straight where the first is long, and a section that is not out has no
+    // length.
     assert!(!is_good([1.0, 1.0, 1.0], [31.0, 36.0, 1.0]));
     assert!(!is_good([1.0, 1.0, 0.0], [1.0, 1.0, 1.0]));
 }

@@ -1,5 +1,5 @@
-//! The scene of the examples is what it says: a closed ventricle with a robot that fits, a start and a goal in any
-//! other mesh, and pictures that show caps as they are queried.
+//! The scene of the examples is what it says: a closed ventricle with a robot that fits, a start
+//! and a goal in any other mesh, and pictures that show caps as they are queried.
 
 use continuum_demo::canvas::Canvas;
 use continuum_demo::colour_map::ColourMap;
@@ -22,8 +22,8 @@ fn small() -> &'static Mesh {
 }
 
 /// Asserts that a mesh is one closed surface: every edge has exactly two triangles, which run along
-/// it in opposite directions, those around a vertex form one ring, and Euler's characteristic is as given: 2 for a
-/// surface without handles, 0 for a ring.
+/// it in opposite directions, those around a vertex form one ring, and Euler's characteristic is as
+/// given: 2 for a surface without handles, 0 for a ring.
 fn assert_closed(points: &[Vector], triangles: &[[u32; 3]], euler: i64) {
     let mut edges = BTreeSet::new();
     let mut next = vec![BTreeMap::new(); points.len()];
@@ -70,9 +70,14 @@ fn smallest_angle([a, b, c]: [Vector; 3]) -> Real {
 fn ventricle_is_closed_oriented_and_of_well_shaped_triangles_at_any_size() {
     let field = ventricle::Ventricle::grow();
     for wanted in [ventricle::DEFAULT_TRIANGLES, 50_000] {
-        let mesh = if wanted == small().1.len() { small().clone() } else { ventricle::mesh(wanted) };
+        let mesh =
+            if wanted == small().1.len() { small().clone() } else { ventricle::mesh(wanted) };
         let (points, triangles) = &mesh;
-        assert!(triangles.len().abs_diff(wanted) <= wanted / 1000, "{} of {wanted}", triangles.len());
+        assert!(
+            triangles.len().abs_diff(wanted) <= wanted / 1000,
+            "{} of {wanted}",
+            triangles.len()
+        );
         assert_closed(points, triangles, 2);
         // Outward normals make the volume positive; an adult's ventricles hold 20 to 50 ml.
         assert!((20e3..50e3).contains(&volume(&mesh)), "{} ml", volume(&mesh) / 1e3);
@@ -102,7 +107,11 @@ fn coarsening_stops_before_it_closes_a_ring() {
     for target in [1000, 300, 100, 0] {
         let (points, triangles) = remesh::remesh(&ring, fine.clone(), target, 1e-4);
         assert_closed(&points, &triangles, 0);
-        assert!(triangles.len() >= target && triangles.len() < target.max(100) + 100, "{}", triangles.len());
+        assert!(
+            triangles.len() >= target && triangles.len() < target.max(100) + 100,
+            "{}",
+            triangles.len()
+        );
     }
 }
 
@@ -133,7 +142,10 @@ fn default_robot_starts_inside_a_burr_hole_and_keeps_clear_all_the_way() {
         assert!(clearance > 1.0, "{clearance} mm at step {step}");
     }
     let tip = base * shape[40].translation;
-    assert!((tip - Vector::new(0.0, -15.0, -5.0)).length() < 2.0, "{tip} is not the mouth of the aqueduct");
+    assert!(
+        (tip - Vector::new(0.0, -15.0, -5.0)).length() < 2.0,
+        "{tip} is not the mouth of the aqueduct"
+    );
 }
 
 /// A ball of about the given radius: an octahedron, cut finer three times.
@@ -174,13 +186,18 @@ fn a_start_and_a_goal_are_found_in_an_unknown_mesh() {
     assert!(goal.extensions[0] + goal.extensions[1] <= 66.7 + 1e-12);
 
     let mut cramped = BvhSearch::new(&ball(2.0)).unwrap();
-    assert!(matches!(steer::find_goal(&robot, &mut cramped, &Pose::IDENTITY), Err(steer::NoGoal::NoRoom)));
+    assert!(matches!(
+        steer::find_goal(&robot, &mut cramped, &Pose::IDENTITY),
+        Err(steer::NoGoal::NoRoom)
+    ));
     let sheet = TriMesh::new(vec![Vector::ZERO, Vector::X, Vector::Y], vec![[0, 1, 2]]).unwrap();
     assert_eq!(steer::deepest_point(&sheet), None);
     // Below a ball, the sheet makes the number of crossings odd: no telling what is inside.
     let (mut points, mut triangles) = (room.vertices().to_vec(), room.indices().to_vec());
     let last = points.len() as u32;
-    points.extend([[-500.0, -300.0], [500.0, -300.0], [0.0, 800.0]].map(|[x, y]| Vector::new(x, y, -400.0)));
+    points.extend(
+        [[-500.0, -300.0], [500.0, -300.0], [0.0, 800.0]].map(|[x, y]| Vector::new(x, y, -400.0)),
+    );
     triangles.push([last, last + 1, last + 2]);
     let deepest = steer::deepest_point(&TriMesh::new(points, triangles).unwrap());
     assert!(deepest.is_none_or(|p| p.length() < 60.0), "{deepest:?}");
@@ -222,7 +239,10 @@ fn pictures_show_caps_as_they_are_queried() {
 fn every_letter_can_be_drawn_and_every_scale_has_numbers() {
     for letter in ('a'..='z').chain('A'..='Z').chain('0'..='9').chain(".,:;'_-+=<>/()%*".chars()) {
         let (strokes, width) = lettering::strokes(&letter.to_string(), 7.0);
-        assert!(!strokes.is_empty() && strokes.iter().all(|s| s.len() > 1) && width < 8.0, "{letter}");
+        assert!(
+            !strokes.is_empty() && strokes.iter().all(|s| s.len() > 1) && width < 8.0,
+            "{letter}"
+        );
     }
     for largest in [1e-6, 0.03, 0.99, 1.0, 3.9, 4.1, 77.0, 12345.0] {
         let map = ColourMap::up_to(largest);

@@ -20,7 +20,8 @@ pub struct Arrays<'a> {
     left: Cell<u64>,
 }
 
-/// So many bytes a number takes at most: on its own, as an index, in a line, and as the point of a line.
+/// So many bytes a number takes at most: on its own, as an index, in a line, and as the point of a
+/// line.
 const EACH: u64 = 48;
 
 /// Some numbers.
@@ -57,9 +58,12 @@ impl<'a> Arrays<'a> {
             None | Some("") => false,
             Some("vtkZLibDataCompressor") => true,
             Some(other) => {
-                let name = other.strip_prefix("vtk").and_then(|name| name.strip_suffix("DataCompressor"));
+                let name =
+                    other.strip_prefix("vtk").and_then(|name| name.strip_suffix("DataCompressor"));
                 let name = shown(name.unwrap_or(other));
-                return Err(format!("it is packed by {name}; save it with the compressor ZLib, or none"));
+                return Err(format!(
+                    "it is packed by {name}; save it with the compressor ZLib, or none"
+                ));
             }
         };
         let header = if root.attribute("header_type") == Some("UInt64") { 8 } else { 4 };
@@ -105,8 +109,11 @@ impl<'a> Arrays<'a> {
             }
             "binary" => self.unpack_base64(text.trim().as_bytes(), size)?,
             "appended" => {
-                let offset = array.attribute("offset").and_then(|offset| offset.trim().parse::<usize>().ok());
-                let (all, is_base64) = self.appended.ok_or("its arrays are appended, but nothing is")?;
+                let offset = array
+                    .attribute("offset")
+                    .and_then(|offset| offset.trim().parse::<usize>().ok());
+                let (all, is_base64) =
+                    self.appended.ok_or("its arrays are appended, but nothing is")?;
                 let own = all.get(offset.ok_or("an array has no offset")?..).ok_or(SHORT)?;
                 if is_base64 { self.unpack_base64(own, size)? } else { self.unpack(own, size)? }
             }
@@ -114,13 +121,17 @@ impl<'a> Arrays<'a> {
         };
         let wide = |bytes: &[u8]| {
             let add = |number: u64, &byte: &u8| number << 8 | u64::from(byte);
-            if self.is_big_endian { bytes.iter().fold(0, add) } else { bytes.iter().rev().fold(0, add) }
+            if self.is_big_endian {
+                bytes.iter().fold(0, add)
+            } else {
+                bytes.iter().rev().fold(0, add)
+            }
         };
         let numbers = bytes.chunks_exact(size).map(wide);
         Ok(match kind {
-            "Float32" => {
-                DataArray::Floats(numbers.map(|bits| f64::from(f32::from_bits(bits as u32))).collect())
-            }
+            "Float32" => DataArray::Floats(
+                numbers.map(|bits| f64::from(f32::from_bits(bits as u32))).collect(),
+            ),
             "Float64" => DataArray::Floats(numbers.map(f64::from_bits).collect()),
             "Int8" => DataArray::Integers(numbers.map(|bits| i64::from(bits as i8)).collect()),
             "Int16" => DataArray::Integers(numbers.map(|bits| i64::from(bits as i16)).collect()),
@@ -133,13 +144,21 @@ impl<'a> Arrays<'a> {
         let from = place.checked_mul(self.header).ok_or(SHORT)?;
         let own = bytes.get(from..).and_then(|rest| rest.get(..self.header)).ok_or(SHORT)?;
         let add = |number: u64, &byte: &u8| number << 8 | u64::from(byte);
-        let length = if self.is_big_endian { own.iter().fold(0, add) } else { own.iter().rev().fold(0, add) };
+        let length = if self.is_big_endian {
+            own.iter().fold(0, add)
+        } else {
+            own.iter().rev().fold(0, add)
+        };
         usize::try_from(length).map_err(|_| SHORT.into())
     }
 
     /// Takes note of memory before it is taken.
     fn spend(&self, bytes: u64) -> Result<(), String> {
-        let left = self.left.get().checked_sub(bytes).ok_or("its arrays take more memory than is allowed")?;
+        let left = self
+            .left
+            .get()
+            .checked_sub(bytes)
+            .ok_or("its arrays take more memory than is allowed")?;
         self.left.set(left);
         Ok(())
     }
@@ -154,8 +173,10 @@ impl<'a> Arrays<'a> {
             return Ok(own.to_vec());
         }
         let blocks = self.length(bytes, 0)?;
-        let mut at =
-            blocks.checked_add(3).and_then(|lengths| lengths.checked_mul(self.header)).ok_or(SHORT)?;
+        let mut at = blocks
+            .checked_add(3)
+            .and_then(|lengths| lengths.checked_mul(self.header))
+            .ok_or(SHORT)?;
         if at > bytes.len() {
             return Err(SHORT.into());
         }
@@ -201,8 +222,11 @@ impl<'a> Arrays<'a> {
         for block in 0..blocks {
             packed = packed.checked_add(self.length(&bytes, 3 + block)?).ok_or(SHORT)?;
         }
-        let end =
-            packed.div_ceil(3).checked_mul(4).and_then(|text| text.checked_add(first_text)).ok_or(SHORT)?;
+        let end = packed
+            .div_ceil(3)
+            .checked_mul(4)
+            .and_then(|text| text.checked_add(first_text))
+            .ok_or(SHORT)?;
         bytes.truncate(lengths);
         bytes.extend(decode(text.get(first_text..end).ok_or(SHORT)?)?);
         self.unpack(&bytes, size)

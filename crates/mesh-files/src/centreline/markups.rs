@@ -36,14 +36,15 @@ enum Position {
 }
 
 pub fn read(bytes: &[u8]) -> Result<Lines, String> {
-    let File { markups } =
-        serde_json::from_slice(without_mark(bytes)).map_err(|error| error.to_string().replace('\n', " "))?;
+    let File { markups } = serde_json::from_slice(without_mark(bytes))
+        .map_err(|error| error.to_string().replace('\n', " "))?;
     let (mut lines, mut frame) = (Vec::new(), None);
     for markup in markups {
         let kind = shown(markup.r#type.as_deref().unwrap_or("Curve"));
         let own = own_frame(markup.coordinate_system.as_ref())?;
         let unit = own_unit(markup.coordinate_units.as_ref())?;
-        let points = markup.control_points.ok_or_else(|| format!("its {kind} has no controlPoints"))?;
+        let points =
+            markup.control_points.ok_or_else(|| format!("its {kind} has no controlPoints"))?;
         let other = (!["Curve", "Line"].contains(&kind.as_str())).then_some(kind);
         let mut line = Line { other, ..Line::default() };
         for (index, point) in points.into_iter().enumerate() {
@@ -85,17 +86,20 @@ fn own_frame(system: Option<&Value>) -> Result<Frame, String> {
     }
 }
 
-/// What makes millimetres of a coordinate: they are the unit unless the file says something else, by a name or by a code
-/// of three words such as `["mm", "UCUM", "millimeter"]`.
+/// What makes millimetres of a coordinate: they are the unit unless the file says something else,
+/// by a name or by a code of three words such as `["mm", "UCUM", "millimeter"]`.
 fn own_unit(units: Option<&Value>) -> Result<impl Fn(f64) -> f64 + Copy + use<>, String> {
     let name = match units {
         None | Some(Value::Null) => "mm",
         Some(Value::String(name)) => name,
-        Some(Value::Array(code)) => code.first().and_then(Value::as_str).unwrap_or("a code without a name"),
+        Some(Value::Array(code)) => {
+            code.first().and_then(Value::as_str).unwrap_or("a code without a name")
+        }
         Some(_) => "neither a name nor a code",
     };
-    let factor = unit_in_mm(name)
-        .ok_or_else(|| format!("its coordinateUnits are '{}', not mm; save it in mm", shown(name)))?;
+    let factor = unit_in_mm(name).ok_or_else(|| {
+        format!("its coordinateUnits are '{}', not mm; save it in mm", shown(name))
+    })?;
     // Division by a whole number is exact where multiplication by its inverse is not.
     Ok(move |x: f64| if factor < 1.0 { x / (1.0 / factor).round() } else { x * factor })
 }

@@ -20,11 +20,13 @@ pub use table::{load_shapes, load_table};
 pub struct Centreline {
     /// The points in the file's order.
     pub points: Vec<[f64; 3]>,
-    /// The radius of the segment that begins at each point but the last, if the file is a text with a column for it.
+    /// The radius of the segment that begins at each point but the last, if the file is a text
+    /// with a column for it.
     pub radii: Option<Vec<f64>>,
     /// The frame of the coordinates, where the file or its format states it.
     pub frame: Option<Frame>,
-    /// Whether the unit of length is stated. Markups state it, and come in millimetres before they are scaled.
+    /// Whether the unit of length is stated. Markups state it, and come in millimetres before they
+    /// are scaled.
     pub states_unit: bool,
     /// How many points of the line are left out, because nobody has placed them yet.
     pub skipped_points: usize,
@@ -51,7 +53,11 @@ impl Lines {
     fn of(data: PolyData) -> Result<Self, String> {
         let frame = data.frame;
         let line = |points| Line { points, ..Line::default() };
-        Ok(Self { lines: data.into_lines()?.into_iter().map(line).collect(), frame, states_unit: false })
+        Ok(Self {
+            lines: data.into_lines()?.into_iter().map(line).collect(),
+            frame,
+            states_unit: false,
+        })
     }
 }
 
@@ -91,15 +97,20 @@ impl Format {
     }
 }
 
-/// The centreline in the file: a curve of 3D Slicer's markups (`.mrk.json`), the points of a text file (`.csv`, `.tsv`,
-/// `.txt`, `.dat`) with x, y, z and optionally the radius, or a line of VTK's PolyData (`.vtp`, `.vtk`), as VMTK, SimVascular and SOFA write. Cells whose ends meet are one line. A file with several lines needs
-/// [`Options::line`], and so does what is no curve, such as a list of fiducials. Radii in files of VTK are not read:
-/// they are those of the vessel, not of the robot.
+/// The centreline in the file: a curve of 3D Slicer's markups (`.mrk.json`), the points of a text
+/// file (`.csv`, `.tsv`, `.txt`, `.dat`) with x, y, z and optionally the radius, or a line of VTK's
+/// PolyData (`.vtp`, `.vtk`), as VMTK, SimVascular and SOFA write. Cells whose ends meet are one
+/// line. A file with several lines needs [`Options::line`], and so does what is no curve, such as a
+/// list of fiducials. Radii in files of VTK are not read: they are those of the vessel, not of the
+/// robot.
 ///
 /// # Errors
-/// As [`load_with`](crate::load_with); there is no line, or several and none is chosen; or a line names a point that is
-/// not there.
-pub fn load_centreline(path: impl AsRef<Path>, options: &Options) -> Result<Centreline, MeshFileError> {
+/// As [`load_with`](crate::load_with); there is no line, or several and none is chosen; or a line
+/// names a point that is not there.
+pub fn load_centreline(
+    path: impl AsRef<Path>,
+    options: &Options,
+) -> Result<Centreline, MeshFileError> {
     let path = path.as_ref();
     Format::of(path)?;
     centreline_from_bytes(path, &read_file(path, options)?, options)
@@ -119,7 +130,9 @@ pub fn centreline_from_bytes(
     options.check_scale()?;
     let file = path.to_owned();
     let read = match format {
-        Format::Table => return one_line(&file, table::centreline(path, bytes, options)?, options.line),
+        Format::Table => {
+            return one_line(&file, table::centreline(path, bytes, options)?, options.line);
+        }
         Format::Markups => markups::read(bytes),
         Format::VtkLegacy => vtk_legacy::read(bytes).and_then(Lines::of),
         Format::VtkXml => vtk_xml::read(bytes, options.memory_limit).and_then(|data| {
@@ -133,7 +146,8 @@ pub fn centreline_from_bytes(
         let (file, format) = (file.clone(), format.name());
         match text::looks_like(bytes) {
             Some(
-                found @ ("PLY" | "STL" | "OBJ" | "NRRD" | "NIfTI" | "a zip archive" | "VTK" | "VTK XML"),
+                found @ ("PLY" | "STL" | "OBJ" | "NRRD" | "NIfTI" | "a zip archive" | "VTK"
+                | "VTK XML"),
             ) if found != format => MeshFileError::Misnamed { file, format, found },
             _ => MeshFileError::Broken { file, format, reason },
         }
@@ -155,7 +169,11 @@ pub fn centreline_from_bytes(
 }
 
 /// The centreline of a file that has no more.
-fn one_line(file: &Path, own: Centreline, line: Option<usize>) -> Result<Centreline, MeshFileError> {
+fn one_line(
+    file: &Path,
+    own: Centreline,
+    line: Option<usize>,
+) -> Result<Centreline, MeshFileError> {
     match line {
         None | Some(0) => Ok(own),
         Some(line) => Err(MeshFileError::NoSuchLine { file: file.to_owned(), line, count: 1 }),

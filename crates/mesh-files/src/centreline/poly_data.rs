@@ -23,9 +23,9 @@ impl PolyData {
     pub fn append(&mut self, other: Self) {
         let first = self.points.len() as u64;
         let moved = |cells: Vec<Vec<u64>>| {
-            cells
-                .into_iter()
-                .map(move |cell| cell.into_iter().map(|point| point.saturating_add(first)).collect())
+            cells.into_iter().map(move |cell| {
+                cell.into_iter().map(|point| point.saturating_add(first)).collect()
+            })
         };
         self.lines.extend(moved(other.lines));
         self.polygons.extend(moved(other.polygons));
@@ -40,10 +40,9 @@ impl PolyData {
     pub fn into_lines(self) -> Result<Vec<Vec<Point>>, String> {
         let count = self.points.len();
         let index = |point: u64| {
-            usize::try_from(point)
-                .ok()
-                .filter(|&index| index < count)
-                .ok_or_else(|| format!("a line names point {point}, but there are {count}, counted from 0"))
+            usize::try_from(point).ok().filter(|&index| index < count).ok_or_else(|| {
+                format!("a line names point {point}, but there are {count}, counted from 0")
+            })
         };
         let lines: Result<Vec<Vec<_>>, _> =
             self.lines.into_iter().map(|line| line.into_iter().map(index).collect()).collect();
@@ -58,7 +57,8 @@ impl PolyData {
         let mut faces = Faces::default();
         let corners = |cell: Vec<u64>| -> Result<Vec<u32>, String> {
             let corner = |point: u64| {
-                u32::try_from(point).map_err(|_| format!("a polygon names point {point}, which is not there"))
+                u32::try_from(point)
+                    .map_err(|_| format!("a polygon names point {point}, which is not there"))
             };
             cell.into_iter().map(corner).collect()
         };
@@ -79,9 +79,9 @@ type End = (usize, bool);
 
 /// Joins lines whose ends meet, in any order, as where each cell of a file is one segment. A joint
 /// is where two ends meet, and nothing else does. A line that begins where another one ends goes on
-/// there. Segments that share a point are joined either way around; longer lines are not, so that two
-/// branches that begin at one place stay two. Joined lines are in the order and the direction of
-/// their first ones in the file.
+/// there. Segments that share a point are joined either way around; longer lines are not, so that
+/// two branches that begin at one place stay two. Joined lines are in the order and the direction
+/// of their first ones in the file.
 fn join(lines: &[Vec<usize>], points: &[Point]) -> Vec<Vec<Point>> {
     // Adding 0 makes -0 and 0 the same.
     let key = |index: usize| points[index].map(|x| (x + 0.0).to_bits());
@@ -92,7 +92,9 @@ fn join(lines: &[Vec<usize>], points: &[Point]) -> Vec<Vec<Point>> {
     // The first two ends at each place, and how many more things are there.
     let mut places: HashMap<[u64; 3], ([Option<End>; 2], usize)> = HashMap::new();
     for number in 0..lines.len() {
-        let [Some(first), Some(last)] = [index((number, false)), index((number, true))] else { continue };
+        let [Some(first), Some(last)] = [index((number, false)), index((number, true))] else {
+            continue;
+        };
         if key(first) == key(last) {
             continue;
         }

@@ -26,7 +26,12 @@ struct Fault {
 
 impl Fault {
     fn named(self, file: &Path, expected: &'static str) -> MeshFileError {
-        MeshFileError::Line { file: file.to_owned(), line: self.line, problem: self.problem, expected }
+        MeshFileError::Line {
+            file: file.to_owned(),
+            line: self.line,
+            problem: self.problem,
+            expected,
+        }
     }
 }
 
@@ -34,11 +39,12 @@ fn fault<T>(line: usize, problem: String) -> Result<T, Fault> {
     Err(Fault { line, problem })
 }
 
-/// The numbers of each line of a text file. Empty lines, lines that begin with # and a heading are passed over. Columns
-/// are separated by semicolons, tabs, commas or spaces, and may be quoted.
+/// The numbers of each line of a text file. Empty lines, lines that begin with # and a heading are
+/// passed over. Columns are separated by semicolons, tabs, commas or spaces, and may be quoted.
 ///
 /// # Errors
-/// The file cannot be read, a line has another number of columns, or a word is no number; `expected` says what to write.
+/// The file cannot be read, a line has another number of columns, or a word is no number;
+/// `expected` says what to write.
 pub fn load_table(
     path: impl AsRef<Path>,
     columns: RangeInclusive<usize>,
@@ -56,8 +62,8 @@ pub fn load_table(
     Ok(table.rows.into_iter().map(|(_, row)| row).collect())
 }
 
-/// Many robots from a text file: lines of shape,x,y,z and optionally the radius of the segment that begins there. Lines
-/// that follow one another with the same number of a shape are one robot.
+/// Many robots from a text file: lines of shape,x,y,z and optionally the radius of the segment that
+/// begins there. Lines that follow one another with the same number of a shape are one robot.
 ///
 /// # Errors
 /// As [`load_table`]; some lines have a radius and others have not.
@@ -76,15 +82,19 @@ pub fn load_shapes(
 }
 
 /// One robot.
-pub fn centreline(path: &Path, bytes: &[u8], options: &Options) -> Result<Centreline, MeshFileError> {
+pub fn centreline(
+    path: &Path,
+    bytes: &[u8],
+    options: &Options,
+) -> Result<Centreline, MeshFileError> {
     let mut robots = read(path, bytes, 0, POINTS, options)?;
     let (_, mut robot) = robots.swap_remove(0);
     options.scale_all(path, &mut robot.points)?;
     Ok(robot)
 }
 
-/// The robots of a table before their points are scaled. Coordinates begin in this column unless the heading says something
-/// else.
+/// The robots of a table before their points are scaled. Coordinates begin in this column unless
+/// the heading says something else.
 fn read(
     path: &Path,
     bytes: &[u8],
@@ -101,11 +111,14 @@ fn read(
         return Err(MeshFileError::Broken { file, format, reason });
     }
     let mut robots = Vec::new();
-    for rows in table.rows.chunk_by(|(_, a), (_, b)| first == 0 || a[0].to_bits() == b[0].to_bits()) {
+    for rows in table.rows.chunk_by(|(_, a), (_, b)| first == 0 || a[0].to_bits() == b[0].to_bits())
+    {
         let points = rows.iter().map(|(_, row)| columns.axes.map(|axis| row[axis])).collect();
         let radii = columns.radii(rows).map_err(named)?;
-        let radii = radii.map(|radii| radii.into_iter().map(|radius| radius * options.scale).collect());
-        let robot = Centreline { points, radii, frame: None, states_unit: false, skipped_points: 0 };
+        let radii =
+            radii.map(|radii| radii.into_iter().map(|radius| radius * options.scale).collect());
+        let robot =
+            Centreline { points, radii, frame: None, states_unit: false, skipped_points: 0 };
         robots.push((rows[0].1[0], robot));
     }
     Ok(robots)
@@ -121,7 +134,12 @@ impl Columns {
     fn of(table: &Table, first: usize) -> Result<Self, Fault> {
         let plain = [first, first + 1, first + 2];
         let Some(heading) = &table.heading else {
-            return Self::check(table, Self { axes: plain, radius: Some(first + 3) }, first + 4, first);
+            return Self::check(
+                table,
+                Self { axes: plain, radius: Some(first + 3) },
+                first + 4,
+                first,
+            );
         };
         let named = |name: &str| heading.iter().position(|own| own == name);
         let radius = RADIUS.iter().find_map(|name| named(name));
@@ -140,7 +158,10 @@ impl Columns {
                 return fault(*line, format!("has {} columns", row.len()));
             }
             if row.len() > most {
-                return fault(*line, format!("has {} columns, but the heading names {most}", row.len()));
+                return fault(
+                    *line,
+                    format!("has {} columns, but the heading names {most}", row.len()),
+                );
             }
         }
         Ok(columns)
@@ -185,7 +206,10 @@ fn parse(bytes: &[u8]) -> Result<Table, Fault> {
         if std::mem::take(&mut is_first) && is_heading(&columns) {
             let names: Vec<_> = columns.iter().map(|word| name(word)).collect();
             if let Some(column) = misplaced(&names) {
-                return fault(line, format!("has '{}' in column {}", shown(&columns[column]), column + 1));
+                return fault(
+                    line,
+                    format!("has '{}' in column {}", shown(&columns[column]), column + 1),
+                );
             }
             table.heading = Some(names);
             continue;
@@ -214,8 +238,8 @@ fn bare(line: &str) -> &str {
     }
 }
 
-/// The words between semicolons, or tabs, or commas, empty ones too; without any of these, the words between spaces.
-/// Between quotes no word ends.
+/// The words between semicolons, or tabs, or commas, empty ones too; without any of these, the
+/// words between spaces. Between quotes no word ends.
 fn columns(line: &str) -> Vec<String> {
     let marks = [';', '\t', ','];
     let mut is_quoted = false;
@@ -246,7 +270,8 @@ fn name(word: &str) -> String {
     ["_mm", "_m", " mm"].iter().find_map(|unit| bare.strip_suffix(unit)).unwrap_or(&bare).to_owned()
 }
 
-/// Names of columns: words without a digit, none of which can be read as a number or is missing; or ParaView's names.
+/// Names of columns: words without a digit, none of which can be read as a number or is missing; or
+/// ParaView's names.
 fn is_heading(columns: &[String]) -> bool {
     if PARAVIEW.iter().all(|axis| columns.iter().any(|word| name(word) == *axis)) {
         return true;
@@ -255,7 +280,8 @@ fn is_heading(columns: &[String]) -> bool {
     columns.iter().all(is_name) && !columns.iter().any(|word| name(word).contains(char::is_numeric))
 }
 
-/// The column of a heading that names x, y or z out of their order, or without a column of shapes in front.
+/// The column of a heading that names x, y or z out of their order, or without a column of shapes
+/// in front.
 fn misplaced(names: &[String]) -> Option<usize> {
     let axis = |name: &str| ["x", "y", "z"].iter().position(|axis| *axis == name);
     let first = usize::from(names.first().is_some_and(|name| name == "shape"));

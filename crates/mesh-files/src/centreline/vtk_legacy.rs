@@ -1,5 +1,6 @@
-//! VTK's legacy files with PolyData or unstructured cells, in text or binary (whose numbers are big-endian), of any
-//! version: cells are counts and points, or since 5.1 an array of offsets and one of points.
+//! VTK's legacy files with PolyData or unstructured cells, in text or binary (whose numbers are
+//! big-endian), of any version: cells are counts and points, or since 5.1 an array of offsets and
+//! one of points.
 
 use super::poly_data::PolyData;
 use crate::mesh::Frame;
@@ -37,17 +38,20 @@ impl<'a> Reader<'a> {
         let rest = &self.bytes[from..];
         let end = rest.iter().position(u8::is_ascii_whitespace).unwrap_or(rest.len());
         self.bytes = &rest[end..];
-        std::str::from_utf8(&rest[..end]).map_err(|_| "it has no text where a number should be".into())
+        std::str::from_utf8(&rest[..end])
+            .map_err(|_| "it has no text where a number should be".into())
     }
 
     /// So many numbers of this type. Nothing is kept for numbers that are not there.
     fn numbers(&mut self, count: usize, kind: Kind) -> Result<Vec<f64>, String> {
         if !self.is_binary {
-            let number = |word: &str| word.parse().map_err(|_| format!("it has {}", no_number(word)));
+            let number =
+                |word: &str| word.parse().map_err(|_| format!("it has {}", no_number(word)));
             return (0..count).map(|_| self.word().and_then(number)).collect();
         }
         let own = self.take(count, kind.size)?;
-        let wide = |bytes: &[u8]| bytes.iter().fold(0_u64, |number, &byte| number << 8 | u64::from(byte));
+        let wide =
+            |bytes: &[u8]| bytes.iter().fold(0_u64, |number, &byte| number << 8 | u64::from(byte));
         let number = |bytes: &[u8]| {
             let bits = wide(bytes);
             match (kind.class, kind.size) {
@@ -64,7 +68,8 @@ impl<'a> Reader<'a> {
     }
 
     fn take(&mut self, count: usize, size: usize) -> Result<&'a [u8], String> {
-        let length = count.checked_mul(size).filter(|&length| length <= self.bytes.len()).ok_or(SHORT)?;
+        let length =
+            count.checked_mul(size).filter(|&length| length <= self.bytes.len()).ok_or(SHORT)?;
         let (own, rest) = self.bytes.split_at(length);
         self.bytes = rest;
         Ok(own)
@@ -74,19 +79,28 @@ impl<'a> Reader<'a> {
         let index = |number: f64| {
             // Above 2^53 no number is the next of another.
             let is_index = number >= 0.0 && number.fract() == 0.0 && number < 9e15;
-            is_index.then_some(number as u64).ok_or_else(|| format!("{number} is no number of a point"))
+            is_index
+                .then_some(number as u64)
+                .ok_or_else(|| format!("{number} is no number of a point"))
         };
         self.numbers(count, kind)?.into_iter().map(index).collect()
     }
 
-    /// Of the sizes that a type has on different machines, the one that `fits` what follows so many numbers.
-    fn sized(&self, count: usize, name: &str, fits: impl Fn(&[u8]) -> bool) -> Result<Kind, String> {
+    /// Of the sizes that a type has on different machines, the one that `fits` what follows so many
+    /// numbers.
+    fn sized(
+        &self,
+        count: usize,
+        name: &str,
+        fits: impl Fn(&[u8]) -> bool,
+    ) -> Result<Kind, String> {
         let (class, sizes) = Kind::named(name)?;
         let is_it = |size: usize| {
             let after = count.checked_mul(size).and_then(|length| self.bytes.get(length..));
             after.is_some_and(|after| fits(after.trim_ascii_start()))
         };
-        let size = sizes.iter().copied().find(|&size| sizes.len() == 1 || !self.is_binary || is_it(size));
+        let size =
+            sizes.iter().copied().find(|&size| sizes.len() == 1 || !self.is_binary || is_it(size));
         Ok(Kind { class, size: size.unwrap_or(sizes[0]) })
     }
 
@@ -98,8 +112,10 @@ impl<'a> Reader<'a> {
             let all = self.indices(second, Kind { class: Class::Signed, size: 4 })?;
             let (mut rest, mut cells) = (&all[..], Vec::new());
             while let Some((&count, others)) = rest.split_first() {
-                let count =
-                    usize::try_from(count).ok().filter(|&count| count <= others.len()).ok_or(SHORT)?;
+                let count = usize::try_from(count)
+                    .ok()
+                    .filter(|&count| count <= others.len())
+                    .ok_or(SHORT)?;
                 let (own, next) = others.split_at(count);
                 cells.push(own.to_vec());
                 rest = next;
@@ -118,7 +134,8 @@ impl<'a> Reader<'a> {
             _ => return Err("its OFFSETS are not followed by CONNECTIVITY".into()),
         };
         let cell = |ends: &[u64]| {
-            let [from, to] = [ends[0], ends[1]].map(|end| usize::try_from(end).unwrap_or(usize::MAX));
+            let [from, to] =
+                [ends[0], ends[1]].map(|end| usize::try_from(end).unwrap_or(usize::MAX));
             points
                 .get(from..to)
                 .map(<[u64]>::to_vec)
@@ -137,7 +154,10 @@ impl<'a> Reader<'a> {
                 head = self.words();
             }
             let [name, components, tuples, kind] = head[..] else {
-                return Err(format!("a field has '{}' where an array should begin", shown(&head.join(" "))));
+                return Err(format!(
+                    "a field has '{}' where an array should begin",
+                    shown(&head.join(" "))
+                ));
             };
             let count = |word: &str| {
                 word.parse::<usize>()
@@ -168,14 +188,16 @@ impl<'a> Reader<'a> {
         Ok(frame)
     }
 
-    /// A text of an array: a line, or its length and its bytes. The first two bits say how many bytes the length has.
+    /// A text of an array: a line, or its length and its bytes. The first two bits say how many
+    /// bytes the length has.
     fn text(&mut self) -> Result<&'a [u8], String> {
         if !self.is_binary {
             return Ok(self.line().ok_or(SHORT)?.as_bytes());
         }
         let &first = self.bytes.first().ok_or(SHORT)?;
         let size = [8, 4, 2, 1][usize::from(first >> 6)];
-        let wide = self.take(1, size)?.iter().fold(0_u64, |number, &byte| number << 8 | u64::from(byte));
+        let wide =
+            self.take(1, size)?.iter().fold(0_u64, |number, &byte| number << 8 | u64::from(byte));
         let length = wide & !(3 << (8 * size - 2));
         self.take(usize::try_from(length).map_err(|_| SHORT)?, 1)
     }
@@ -273,18 +295,22 @@ pub fn read(bytes: &[u8]) -> Result<PolyData, String> {
     while let Some(line) = file.line() {
         let words = words(line);
         let number = |place: usize| -> Result<usize, String> {
-            let word =
-                words.get(place).ok_or_else(|| format!("'{}' ends where a number should be", shown(line)))?;
-            word.parse()
-                .map_err(|_| format!("'{}' has '{}' where a number should be", shown(line), shown(word)))
+            let word = words
+                .get(place)
+                .ok_or_else(|| format!("'{}' ends where a number should be", shown(line)))?;
+            word.parse().map_err(|_| {
+                format!("'{}' has '{}' where a number should be", shown(line), shown(word))
+            })
         };
         match words.first().map(|word| word.to_ascii_uppercase()).as_deref() {
             None => {}
             Some("DATASET") => {
                 let kind = words.get(1).copied().unwrap_or_default();
-                if !["POLYDATA", "UNSTRUCTURED_GRID"].contains(&kind.to_ascii_uppercase().as_str()) {
+                if !["POLYDATA", "UNSTRUCTURED_GRID"].contains(&kind.to_ascii_uppercase().as_str())
+                {
                     return Err(
-                        "it holds no PolyData; export the centreline or the surface as PolyData".into()
+                        "it holds no PolyData; export the centreline or the surface as PolyData"
+                            .into(),
                     );
                 }
             }
@@ -307,7 +333,9 @@ pub fn read(bytes: &[u8]) -> Result<PolyData, String> {
             Some("FIELD") => found.frame = found.frame.or(file.field(number(2)?)?),
             // What follows belongs to the points and cells.
             Some("POINT_DATA" | "CELL_DATA") => break,
-            Some(_) => return Err(format!("it has '{}' where a section should begin", shown(line))),
+            Some(_) => {
+                return Err(format!("it has '{}' where a section should begin", shown(line)));
+            }
         }
     }
     found.frame = found.frame.or(noted_frame(bytes));

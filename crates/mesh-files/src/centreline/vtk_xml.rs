@@ -1,4 +1,5 @@
-//! VTK's XML files with PolyData: arrays as text, as base64, or appended behind the XML, packed by zlib or not.
+//! VTK's XML files with PolyData: arrays as text, as base64, or appended behind the XML, packed by
+//! zlib or not.
 
 use super::data_array::{Arrays, DataArray};
 use super::poly_data::PolyData;
@@ -30,12 +31,14 @@ pub fn read(bytes: &[u8], limit: u64) -> Result<PolyData, String> {
     Ok(all)
 }
 
-/// The frame that 3D Slicer notes as an array of text. Other programs' arrays of this name say nothing.
+/// The frame that 3D Slicer notes as an array of text. Other programs' arrays of this name say
+/// nothing.
 fn noted_space(field: &Element, arrays: &Arrays) -> Option<Frame> {
     let is_space = |array: &&Element| array.attribute("Name") == Some("SPACE");
     let array = field.children.iter().find(is_space)?;
     let DataArray::Integers(letters) = arrays.read(array).ok()? else { return None };
-    let letters: Option<Vec<u8>> = letters.into_iter().map(|letter| u8::try_from(letter).ok()).collect();
+    let letters: Option<Vec<u8>> =
+        letters.into_iter().map(|letter| u8::try_from(letter).ok()).collect();
     frame_named(letters?.split(|&letter| letter == 0).next()?)
 }
 

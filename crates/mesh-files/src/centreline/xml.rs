@@ -57,7 +57,8 @@ pub fn parse(text: &str, is_cut: bool) -> Result<Element, String> {
     let mut count = 0;
     loop {
         let place = reader.buffer_position();
-        let event = reader.read_event().map_err(|_| format!("its XML is damaged at byte {place}"))?;
+        let event =
+            reader.read_event().map_err(|_| format!("its XML is damaged at byte {place}"))?;
         if let Event::Start(start) | Event::Empty(start) = &event {
             count += 1;
             if count > MOST_ELEMENTS {

@@ -1,4 +1,5 @@
-//! MetaImage label maps: `.mha`, and `.mhd` with its voxels in a second file. Their frame is LPS, in millimetres, as ITK's.
+//! MetaImage label maps: `.mha`, and `.mhd` with its voxels in a second file. Their frame is LPS,
+//! in millimetres, as ITK's.
 
 use super::voxels::{Encoding, Kind, Voxels, last};
 use super::{Fault, Place, Volume, count, voxels_path};
@@ -28,9 +29,9 @@ impl<'a> File<'a> {
         while !fields.contains_key(LAST) {
             let end = data.iter().position(|&byte| byte == b'\n').unwrap_or(data.len());
             let line = String::from_utf8_lossy(&data[..end]);
-            let (name, value) = line
-                .split_once('=')
-                .ok_or_else(|| format!("its header has '{}' where a field should be", shown(line.trim())))?;
+            let (name, value) = line.split_once('=').ok_or_else(|| {
+                format!("its header has '{}' where a field should be", shown(line.trim()))
+            })?;
             fields.insert(name.trim().to_owned(), value.trim().to_owned());
             data = data.get(end + 1..).unwrap_or_default();
         }
@@ -56,7 +57,8 @@ impl<'a> File<'a> {
         otherwise: [f64; COUNT],
     ) -> Result<[f64; COUNT], String> {
         let Some(text) = self.get(names) else { return Ok(otherwise) };
-        let numbers: Option<Vec<f64>> = text.split_whitespace().map(|number| number.parse().ok()).collect();
+        let numbers: Option<Vec<f64>> =
+            text.split_whitespace().map(|number| number.parse().ok()).collect();
         let numbers = numbers.and_then(|numbers| numbers.try_into().ok());
         numbers.ok_or_else(|| format!("its '{}' is not {COUNT} numbers", names[0]))
     }
@@ -71,7 +73,8 @@ pub fn voxels_file(bytes: &[u8]) -> Option<PathBuf> {
 /// Header and voxels as one file.
 pub fn in_one(header: &[u8], voxels: &[u8]) -> Vec<u8> {
     let text = String::from_utf8_lossy(header);
-    let fields = text.lines().take_while(|line| line.split('=').next().map(str::trim) != Some(LAST));
+    let fields =
+        text.lines().take_while(|line| line.split('=').next().map(str::trim) != Some(LAST));
     let mut whole: String = fields.map(|line| format!("{line}\n")).collect();
     whole.push_str(&format!("{LAST} = {HERE}\n"));
     let mut whole = whole.into_bytes();
@@ -84,9 +87,10 @@ pub fn read(bytes: &[u8]) -> Result<Volume<'_>, Fault> {
     let here = file.need(LAST)?;
     if !is_here(here) {
         let other = shown(here);
-        return Err(
-            format!("its voxels are in a second file, '{other}'; keep it beside, or save one .mha").into()
-        );
+        return Err(format!(
+            "its voxels are in a second file, '{other}'; keep it beside, or save one .mha"
+        )
+        .into());
     }
     if file.need("NDims")? != "3"
         || file.get(&["ElementNumberOfChannels"]).is_some_and(|channels| channels != "1")
@@ -98,7 +102,8 @@ pub fn read(bytes: &[u8]) -> Result<Volume<'_>, Fault> {
     let sizes = sizes.and_then(|sizes| <[usize; 3]>::try_from(sizes).ok());
     let sizes = sizes.ok_or("its 'DimSize' is not three numbers")?;
     let kind = kind(file.need("ElementType")?)?;
-    let is_text = file.get(&["BinaryData"]).is_some_and(|value| value.eq_ignore_ascii_case("false"));
+    let is_text =
+        file.get(&["BinaryData"]).is_some_and(|value| value.eq_ignore_ascii_case("false"));
     let encoding = match (is_text, file.says("CompressedData")) {
         (true, _) => Encoding::Text,
         (_, true) => Encoding::Zlib,
@@ -106,15 +111,19 @@ pub fn read(bytes: &[u8]) -> Result<Volume<'_>, Fault> {
     };
     let count = count(sizes)?;
     // Bytes in front of the voxels; -1 means that these are the last ones.
-    let skip: i64 =
-        file.get(&["HeaderSize"]).unwrap_or("0").parse().map_err(|_| "its 'HeaderSize' is no number")?;
+    let skip: i64 = file
+        .get(&["HeaderSize"])
+        .unwrap_or("0")
+        .parse()
+        .map_err(|_| "its 'HeaderSize' is no number")?;
     let (data, skip) = match (usize::try_from(skip), encoding) {
         (Ok(skip), _) => (file.data, skip),
         (_, Encoding::Raw) if skip == -1 => (last(file.data, count, kind), 0),
         _ => {
-            return Err(
-                format!("its 'HeaderSize' is {skip}; save it again with 3D Slicer or ITK-SNAP").into()
-            );
+            return Err(format!(
+                "its 'HeaderSize' is {skip}; save it again with 3D Slicer or ITK-SNAP"
+            )
+            .into());
         }
     };
     let is_big_endian = file.says("BinaryDataByteOrderMSB") || file.says("ElementByteOrderMSB");
@@ -138,7 +147,8 @@ fn kind(name: &str) -> Result<Kind, String> {
     })
 }
 
-/// The matrix holds the direction of each axis in turn, and the offset is the centre of the first voxel.
+/// The matrix holds the direction of each axis in turn, and the offset is the centre of the first
+/// voxel.
 fn place(file: &File) -> Result<Place, String> {
     let spacing = file.numbers(&["ElementSpacing", "ElementSize"], [1.0; 3])?;
     let origin = file.numbers(&["Offset", "Position", "Origin"], [0.0; 3])?;

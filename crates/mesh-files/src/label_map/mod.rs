@@ -84,12 +84,13 @@ fn without_position([x, y, z]: [f64; 3]) -> [[f64; 4]; 3] {
     [[x, 0.0, 0.0, 0.0], [0.0, y, 0.0, 0.0], [0.0, 0.0, z, 0.0]]
 }
 
-/// The path of a file of voxels relative to its header, if it is in the same folder or below it. Neither a list of files
-/// nor a pattern of their names.
+/// The path of a file of voxels relative to its header, if it is in the same folder or below it.
+/// Neither a list of files nor a pattern of their names.
 fn voxels_path(name: &str) -> Option<PathBuf> {
     let is_list = name.split_whitespace().next() == Some("LIST") || name.contains('%');
     let path = PathBuf::from(name);
-    let is_below = path.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
+    let is_below =
+        path.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
     (!name.is_empty() && !is_list && !name.contains('\\') && is_below).then_some(path)
 }
 
@@ -99,7 +100,10 @@ fn count(sizes: [usize; 3]) -> Result<usize, String> {
     match count {
         Some(0) => Err("it has no voxels".into()),
         Some(count) if count <= MOST_VOXELS => Ok(count as usize),
-        _ => Err(format!("its {} x {} x {} voxels are too many; crop it", sizes[0], sizes[1], sizes[2])),
+        _ => Err(format!(
+            "its {} x {} x {} voxels are too many; crop it",
+            sizes[0], sizes[1], sizes[2]
+        )),
     }
 }
 
@@ -120,7 +124,8 @@ impl SignedDistance for Voxel {
 }
 
 impl Volume<'_> {
-    /// The surface of the voxels with this label, or of all that are not 0, if it takes no more bytes than the limit.
+    /// The surface of the voxels with this label, or of all that are not 0, if it takes no more
+    /// bytes than the limit.
     pub fn surface(&self, label: Option<u32>, limit: u64) -> Result<Mesh, Fault> {
         let is_inside = |found: u32| label.map_or(found != 0, |label| found == label);
         let mut low = [usize::MAX; 3];
@@ -133,21 +138,24 @@ impl Volume<'_> {
             let present = if label.is_some() { self.present()? } else { BTreeSet::new() };
             return Err(Fault::NoneOf(present));
         }
-        // One voxel of outside all around closes the surface at the border; a second one at the far sides, because the
-        // faces there belong to a neighbouring block that does not exist.
+        // One voxel of outside all around closes the surface at the border; a second one at the far
+        // sides, because the faces there belong to a neighbouring block that does not
+        // exist.
         let room = [0, 1, 2].map(|axis| high[axis] - low[axis] + 4);
         // A byte each here, and the number of a vertex in the net.
         let grid = 5 * count(room)? as u64;
-        let allowed = |bytes: u64| if bytes <= limit { Ok(()) } else { Err(Fault::TooLarge(bytes)) };
+        let allowed =
+            |bytes: u64| if bytes <= limit { Ok(()) } else { Err(Fault::TooLarge(bytes)) };
         allowed(grid)?;
         let mut voxels = vec![Voxel(false); room.iter().product()];
         self.each_inside(is_inside, &mut |voxel| {
             let [x, y, z] = [0, 1, 2].map(|axis| voxel[axis] - low[axis] + 1);
             voxels[(z * room[1] + y) * room[0] + x] = Voxel(true);
         })?;
-        // Each face between two unlike voxels is a quadrilateral of the net: two triangles, there and in the mesh, of 48
-        // bytes. A vertex, of 64 bytes in both, is in a cube of eight voxels that are not all alike; such a cube has three
-        // of the faces or more, and a face is in four cubes, so that there are at most 4 / 3 vertices for a face.
+        // Each face between two unlike voxels is a quadrilateral of the net: two triangles, there
+        // and in the mesh, of 48 bytes. A vertex, of 64 bytes in both, is in a cube of
+        // eight voxels that are not all alike; such a cube has three of the faces or more,
+        // and a face is in four cubes, so that there are at most 4 / 3 vertices for a face.
         let faces = faces(&voxels, room);
         let vertices = faces.div_ceil(3) * 4;
         allowed(grid + 48 * faces as u64 + 64 * vertices as u64)?;
@@ -162,8 +170,10 @@ impl Volume<'_> {
         surface_nets(&voxels, &shape, [0; 3], room.map(|size| size - 1), &mut net);
 
         let shift = low.map(|low| low as f64 - 1.0);
-        let place = |p: &[f32; 3]| self.place.apply([0, 1, 2].map(|axis| f64::from(p[axis]) + shift[axis]));
-        let turn = |&[a, b, c]: &[u32; 3]| if self.place.turn() < 0.0 { [a, c, b] } else { [a, b, c] };
+        let place =
+            |p: &[f32; 3]| self.place.apply([0, 1, 2].map(|axis| f64::from(p[axis]) + shift[axis]));
+        let turn =
+            |&[a, b, c]: &[u32; 3]| if self.place.turn() < 0.0 { [a, c, b] } else { [a, b, c] };
         Ok(Mesh {
             vertices: net.positions.iter().map(place).collect(),
             triangles: net.indices.as_chunks().0.iter().map(turn).collect(),
@@ -214,7 +224,9 @@ impl Volume<'_> {
 
 /// How many faces there are between a voxel inside and one outside.
 fn faces(voxels: &[Voxel], [width, height, _]: [usize; 3]) -> usize {
-    // The outermost voxels are outside, so that a neighbour in the next row is as much outside as none.
-    let along = |step: usize| voxels.iter().zip(&voxels[step..]).filter(|(a, b)| a.0 != b.0).count();
+    // The outermost voxels are outside, so that a neighbour in the next row is as much outside as
+    // none.
+    let along =
+        |step: usize| voxels.iter().zip(&voxels[step..]).filter(|(a, b)| a.0 != b.0).count();
     along(1) + along(width) + along(width * height)
 }

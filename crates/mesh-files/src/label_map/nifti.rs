@@ -28,7 +28,9 @@ impl<'a> Header<'a> {
             () if is_magic(4, b"n+2\0") => (true, false),
             () if is_magic(4, b"ni2\0") => (true, true),
             () if bytes.len() >= HEADS[0] => {
-                return Err("it has no mark of NIfTI; if it is Analyze 7.5, save it as NIfTI".into());
+                return Err(
+                    "it has no mark of NIfTI; if it is Analyze 7.5, save it as NIfTI".into()
+                );
             }
             () => return Err(WRONG.into()),
         };
@@ -91,7 +93,11 @@ impl<'a> Header<'a> {
     }
 
     fn offset(&self) -> f64 {
-        if self.is_second { i64::from_le_bytes(self.at(168)) as f64 } else { self.real([108, 168], 0) }
+        if self.is_second {
+            i64::from_le_bytes(self.at(168)) as f64
+        } else {
+            self.real([108, 168], 0)
+        }
     }
 
     /// The code of the unit of length.
@@ -118,7 +124,10 @@ pub fn in_one(header: &[u8], voxels: &[u8]) -> Result<Vec<u8>, String> {
         return Err("it holds the voxels itself; give it the extension .nii".into());
     }
     if !(skip >= 0.0 && skip <= voxels.len() as f64) {
-        return Err(format!("its voxels begin at byte {skip}, but their file has {} bytes", voxels.len()));
+        return Err(format!(
+            "its voxels begin at byte {skip}, but their file has {} bytes",
+            voxels.len()
+        ));
     }
     let mut whole = [&header[..length], &[0; MORE], &voxels[skip as usize..]].concat();
     let (place, mut offset) = if read.is_second {
@@ -141,7 +150,9 @@ pub fn read(bytes: &[u8], allow_no_position: bool) -> Result<Volume<'_>, Fault> 
         if is_packed { unpack(bytes, most)?.into() } else { bytes[..bytes.len().min(most)].into() };
     let header = Header::new(&head)?;
     if header.is_pair {
-        return Err("its voxels are in a second file; load the .hdr file beside its .img file".into());
+        return Err(
+            "its voxels are in a second file; load the .hdr file beside its .img file".into()
+        );
     }
     let dimensions = header.dimension(0) as usize;
     if dimensions < 3 || (4..=dimensions).any(|index| header.dimension(index) > 1) {
@@ -156,9 +167,10 @@ pub fn read(bytes: &[u8], allow_no_position: bool) -> Result<Volume<'_>, Fault> 
     let least = HEADS[usize::from(header.is_second)] as f64;
     // What does not fit in 32 bits is no header's length.
     if !(offset >= least && offset < f64::from(u32::MAX)) {
-        return Err(
-            format!("its voxels begin at byte {offset}, which is in the header or past the end").into()
-        );
+        return Err(format!(
+            "its voxels begin at byte {offset}, which is in the header or past the end"
+        )
+        .into());
     }
     let voxels = Voxels {
         data: bytes,
@@ -174,8 +186,8 @@ pub fn read(bytes: &[u8], allow_no_position: bool) -> Result<Volume<'_>, Fault> 
     Ok(Volume { sizes, voxels, place, frame, states_unit: header.unit() != 0 })
 }
 
-/// What is done with the numbers, as nibabel reads it: nothing where the slope is 0, infinite or not a number, whatever
-/// the intercept is; otherwise an intercept that is not finite is an error.
+/// What is done with the numbers, as nibabel reads it: nothing where the slope is 0, infinite or
+/// not a number, whatever the intercept is; otherwise an intercept that is not finite is an error.
 fn scaling(header: &Header) -> Result<Option<[f64; 2]>, String> {
     let [slope, intercept] = [[112, 176], [116, 184]].map(|places| header.real(places, 0));
     if slope == 0.0 || !slope.is_finite() {
@@ -203,8 +215,8 @@ fn kind(header: &Header) -> Result<Kind, String> {
     })
 }
 
-/// Where the voxels are, and whether the file says so: the sform if there is one, otherwise the qform (methods 3 and 2 of
-/// nifti1.h). Method 1 knows no patient. An sform of zeros is none.
+/// Where the voxels are, and whether the file says so: the sform if there is one, otherwise the
+/// qform (methods 3 and 2 of nifti1.h). Method 1 knows no patient. An sform of zeros is none.
 fn place(header: &Header, allow_no_position: bool) -> Result<(Place, bool), Fault> {
     let unit = match header.unit() {
         0 | 2 => 1.0,
@@ -212,16 +224,19 @@ fn place(header: &Header, allow_no_position: bool) -> Result<(Place, bool), Faul
         3 => 1e-3,
         code => return Err(format!("its unit of length has the unknown code {code}").into()),
     };
-    let scaled = |rows: [[f64; 4]; 3], name| Place::new(rows.map(|row| row.map(|x| x * unit)), name);
+    let scaled =
+        |rows: [[f64; 4]; 3], name| Place::new(rows.map(|row| row.map(|x| x * unit)), name);
     let [q, s] = [[252, 344], [254, 348]].map(|places| header.short_or_int(places) > 0);
-    let sform = [0, 1, 2].map(|row| [0, 1, 2, 3].map(|column| header.real([280, 400], 4 * row + column)));
+    let sform =
+        [0, 1, 2].map(|row| [0, 1, 2, 3].map(|column| header.real([280, 400], 4 * row + column)));
     let is_zero = sform.iter().all(|row| row[..3] == [0.0; 3]);
     let spacing = [1, 2, 3].map(|index| header.spacing(index));
     // Readers disagree: nibabel takes the form as it is, ITK mirrors the axis.
     if let Some(axis) = (0..3).find(|&axis| spacing[axis] < 0.0) {
         let (name, value) = (axis + 1, spacing[axis]);
-        let wrong =
-            format!("its pixdim[{name}] is {value}, which some programs mirror; write a positive one");
+        let wrong = format!(
+            "its pixdim[{name}] is {value}, which some programs mirror; write a positive one"
+        );
         return Err(wrong.into());
     }
     if s && !(is_zero && q) {
@@ -246,5 +261,6 @@ fn qform(header: &Header, [x, y, z]: [f64; 3]) -> [[f64; 4]; 3] {
         [2.0 * (b * d - a * c), 2.0 * (c * d + a * b), a * a + d * d - b * b - c * c],
     ];
     let z = if header.spacing(0) < 0.0 { -z } else { z };
-    [0, 1, 2].map(|row| [rotation[row][0] * x, rotation[row][1] * y, rotation[row][2] * z, shift[row]])
+    [0, 1, 2]
+        .map(|row| [rotation[row][0] * x, rotation[row][1] * y, rotation[row][2] * z, shift[row]])
 }

@@ -1,5 +1,5 @@
-//! NRRD label maps: raw, gzip or ASCII, in one file or with the voxels in a file beside the header. Their frame is what
-//! `space` says, RAS or LPS.
+//! NRRD label maps: raw, gzip or ASCII, in one file or with the voxels in a file beside the header.
+//! Their frame is what `space` says, RAS or LPS.
 
 use super::voxels::{Encoding, Kind, Voxels, last};
 use super::{Fault, Place, Volume, count, voxels_path, without_position};
@@ -75,12 +75,14 @@ pub fn in_one(header: &[u8], voxels: &[u8]) -> Vec<u8> {
         let name = line.split(':').next().unwrap_or_default().trim();
         ELSEWHERE.iter().any(|other| name.eq_ignore_ascii_case(other))
     };
-    let fields = text.lines().take_while(|line| !line.trim().is_empty()).filter(|line| !is_elsewhere(line));
+    let fields =
+        text.lines().take_while(|line| !line.trim().is_empty()).filter(|line| !is_elsewhere(line));
     let whole: String = fields.map(|line| format!("{line}\n")).collect();
     [whole.as_bytes(), b"\n", voxels].concat()
 }
 
-/// The axes of the voxels: how many there are along each, and the step from one to the next, if the file says so.
+/// The axes of the voxels: how many there are along each, and the step from one to the next, if the
+/// file says so.
 struct Axes {
     sizes: [usize; 3],
     steps: Option<[[f64; 3]; 3]>,
@@ -99,7 +101,8 @@ fn list<T: std::str::FromStr>(file: &File, name: &str, count: usize) -> Result<V
 fn vectors(file: &File, name: &str, count: usize) -> Result<Vec<Option<[f64; 3]>>, String> {
     let wrong = || format!("its '{name}' is not {count} x three numbers");
     let vector = |text: &str| -> Option<[f64; 3]> {
-        let numbers: Option<Vec<_>> = text.split(',').map(|number| number.trim().parse().ok()).collect();
+        let numbers: Option<Vec<_>> =
+            text.split(',').map(|number| number.trim().parse().ok()).collect();
         numbers?.try_into().ok()
     };
     let mut vectors = Vec::new();
@@ -116,7 +119,8 @@ fn vectors(file: &File, name: &str, count: usize) -> Result<Vec<Option<[f64; 3]>
 fn axes(file: &File) -> Result<Axes, String> {
     const LAYERS: &str =
         "3D Slicer writes segments that overlap so: export them one by one, or as a label map";
-    let count: usize = file.need("dimension")?.parse().map_err(|_| "its 'dimension' is no number")?;
+    let count: usize =
+        file.need("dimension")?.parse().map_err(|_| "its 'dimension' is no number")?;
     if !(3..=4).contains(&count) {
         return Err(format!("it has {count} dimensions, not three; export one label map"));
     }
@@ -151,9 +155,10 @@ pub fn read(bytes: &[u8], allow_no_position: bool) -> Result<Volume<'_>, Fault> 
     let file = File::new(bytes)?;
     if let Some(other) = ELSEWHERE.iter().find_map(|name| file.get(name)) {
         let other = shown(other);
-        return Err(
-            format!("its voxels are in a second file, '{other}'; keep it beside, or save one .nrrd").into()
-        );
+        return Err(format!(
+            "its voxels are in a second file, '{other}'; keep it beside, or save one .nrrd"
+        )
+        .into());
     }
     let axes = axes(&file)?;
     let count = count(axes.sizes)?;
@@ -166,7 +171,9 @@ pub fn read(bytes: &[u8], allow_no_position: bool) -> Result<Volume<'_>, Fault> 
         "raw" => Encoding::Raw,
         "gzip" | "gz" => Encoding::Gzip,
         encoding if is_text(encoding) => Encoding::Text,
-        "bzip2" | "bz2" => return Err("its encoding 'bzip2' cannot be read; save it as gzip or raw".into()),
+        "bzip2" | "bz2" => {
+            return Err("its encoding 'bzip2' cannot be read; save it as gzip or raw".into());
+        }
         encoding => return Err(File::unknown("encoding", encoding).into()),
     };
     let skip = |name: &str| -> Result<i64, String> {
@@ -183,14 +190,21 @@ pub fn read(bytes: &[u8], allow_no_position: bool) -> Result<Volume<'_>, Fault> 
         (Ok(skip), _) => (data, skip),
         (_, Encoding::Raw) if byte_skip == -1 => (last(data, count, kind), 0),
         _ => {
-            return Err(
-                format!("its 'byte skip' is {byte_skip}; save it again with 3D Slicer or ITK-SNAP").into()
-            );
+            return Err(format!(
+                "its 'byte skip' is {byte_skip}; save it again with 3D Slicer or ITK-SNAP"
+            )
+            .into());
         }
     };
     let (place, frame) = place(&file, &axes, allow_no_position)?;
     let voxels = Voxels { data, encoding, skip, count, kind, is_big_endian, scaling: None };
-    Ok(Volume { sizes: axes.sizes, voxels, place, frame, states_unit: file.get("space units").is_some() })
+    Ok(Volume {
+        sizes: axes.sizes,
+        voxels,
+        place,
+        frame,
+        states_unit: file.get("space units").is_some(),
+    })
 }
 
 fn is_text(encoding: &str) -> bool {
@@ -201,12 +215,18 @@ fn kind(name: &str) -> Result<Kind, String> {
     Ok(match name.to_ascii_lowercase().as_str() {
         "signed char" | "int8" | "int8_t" => Kind::I8,
         "uchar" | "unsigned char" | "uint8" | "uint8_t" => Kind::U8,
-        "short" | "short int" | "signed short" | "signed short int" | "int16" | "int16_t" => Kind::I16,
+        "short" | "short int" | "signed short" | "signed short int" | "int16" | "int16_t" => {
+            Kind::I16
+        }
         "ushort" | "unsigned short" | "unsigned short int" | "uint16" | "uint16_t" => Kind::U16,
         "int" | "signed int" | "int32" | "int32_t" => Kind::I32,
         "uint" | "unsigned int" | "uint32" | "uint32_t" => Kind::U32,
-        "longlong" | "long long" | "long long int" | "signed long long" | "int64" | "int64_t" => Kind::I64,
-        "ulonglong" | "unsigned long long" | "unsigned long long int" | "uint64" | "uint64_t" => Kind::U64,
+        "longlong" | "long long" | "long long int" | "signed long long" | "int64" | "int64_t" => {
+            Kind::I64
+        }
+        "ulonglong" | "unsigned long long" | "unsigned long long int" | "uint64" | "uint64_t" => {
+            Kind::U64
+        }
         "float" => Kind::F32,
         "double" => Kind::F64,
         _ => return Err(File::unknown("type", name)),
@@ -214,7 +234,11 @@ fn kind(name: &str) -> Result<Kind, String> {
 }
 
 /// Where the voxels are, and in which frame.
-fn place(file: &File, axes: &Axes, allow_no_position: bool) -> Result<(Place, Option<Frame>), Fault> {
+fn place(
+    file: &File,
+    axes: &Axes,
+    allow_no_position: bool,
+) -> Result<(Place, Option<Frame>), Fault> {
     let space = file.get("space").unwrap_or_default();
     // The third frame of the format has no name here: mirrored, it is RAS.
     let (frame, mirror) = match space.to_ascii_lowercase().as_str() {
@@ -224,12 +248,15 @@ fn place(file: &File, axes: &Axes, allow_no_position: bool) -> Result<(Place, Op
         "" | "3d-right-handed" => (None, 1.0),
         _ => return Err(File::unknown("space", space).into()),
     };
-    let missing = ["space directions", "space origin"].into_iter().find(|name| file.get(name).is_none());
+    let missing =
+        ["space directions", "space origin"].into_iter().find(|name| file.get(name).is_none());
     if let Some(missing) = missing.filter(|_| !allow_no_position) {
         return Err(Fault::NoPosition(format!("its header has no field '{missing}'")));
     }
     let origin = match file.get("space origin") {
-        Some(_) => vectors(file, "space origin", 1)?[0].ok_or("its 'space origin' is not three numbers")?,
+        Some(_) => {
+            vectors(file, "space origin", 1)?[0].ok_or("its 'space origin' is not three numbers")?
+        }
         None => [0.0; 3],
     };
     let units = file.get("space units").unwrap_or("\"mm\"").to_lowercase();

@@ -61,8 +61,8 @@ pub enum Encoding {
     Text,
 }
 
-/// The voxels of a file. They are read again whenever they are asked for and never kept, so that a small archive of a
-/// large volume takes no memory.
+/// The voxels of a file. They are read again whenever they are asked for and never kept, so that a
+/// small archive of a large volume takes no memory.
 pub struct Voxels<'a> {
     pub data: &'a [u8],
     pub encoding: Encoding,
@@ -81,7 +81,8 @@ impl Voxels<'_> {
     /// # Errors
     /// There are fewer than the header says, or what is there cannot be read as labels.
     pub fn each(&self, see: &mut dyn FnMut(&[u32])) -> Result<(), Fault> {
-        let size = self.count.checked_mul(self.kind.size()).and_then(|size| size.checked_add(self.skip));
+        let size =
+            self.count.checked_mul(self.kind.size()).and_then(|size| size.checked_add(self.skip));
         match (self.encoding, size) {
             (Encoding::Text, _) => self.each_of_text(see),
             (Encoding::Raw, Some(size)) => {
@@ -104,7 +105,11 @@ impl Voxels<'_> {
     }
 
     /// Numbers of [`Kind`] from a stream that may hold more.
-    fn each_of_bytes(&self, mut stream: impl Read, see: &mut dyn FnMut(&[u32])) -> Result<(), Fault> {
+    fn each_of_bytes(
+        &self,
+        mut stream: impl Read,
+        see: &mut dyn FnMut(&[u32]),
+    ) -> Result<(), Fault> {
         let mut bytes = vec![0; AT_ONCE * self.kind.size()];
         let mut labels = Vec::with_capacity(AT_ONCE);
         for first in (0..self.count).step_by(AT_ONCE) {
@@ -160,14 +165,15 @@ impl Voxels<'_> {
         self.scaling.map_or(number, |[slope, intercept]| slope * number + intercept)
     }
 
-    /// Numbers as words. As few as two bytes are a voxel, so that no more voxels are read than the file has bytes.
+    /// Numbers as words. As few as two bytes are a voxel, so that no more voxels are read than the
+    /// file has bytes.
     fn each_of_text(&self, see: &mut dyn FnMut(&[u32])) -> Result<(), Fault> {
         let text = String::from_utf8_lossy(self.data.get(self.skip..).ok_or(SHORT)?);
         let mut seen = 0;
         for word in text.split_whitespace().take(self.count) {
             let number = word.parse();
-            let number =
-                number.map_err(|_| format!("a voxel holds '{}', which is no number", shown(word)))?;
+            let number = number
+                .map_err(|_| format!("a voxel holds '{}', which is no number", shown(word)))?;
             see(&[label(self.scaled(number))?]);
             seen += 1;
         }

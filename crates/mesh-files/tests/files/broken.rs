@@ -17,9 +17,12 @@ fn what_is_wrong_with_a_file_is_said_in_one_line() {
     let ply = |faces: &str| ply_header(3, 1, "ascii", "float") + "0 0 0\n1 0 0\n0 1 0\n" + faces;
     let flat = ply("3 0 1 2\n").replace("property float z\n", "").replace(" 0\n", "\n");
     let mut packed = ply_header(3, 1, "binary_big_endian", "double").into_bytes();
-    [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, f64::NAN, 0.0].iter().for_each(|x| packed.extend(x.to_be_bytes()));
+    [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, f64::NAN, 0.0]
+        .iter()
+        .for_each(|x| packed.extend(x.to_be_bytes()));
     packed.extend([3, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 2]);
-    let huge = ply_header(3, 1, "binary_little_endian", "float").replace("vertex 3", "vertex 99999999999");
+    let huge =
+        ply_header(3, 1, "binary_little_endian", "float").replace("vertex 3", "vertex 99999999999");
     let obj = "# by hand\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
     for (name, bytes, expected) in [
         ("a.xyz", vec![], "ends in .stl, .obj or .ply"),
@@ -32,7 +35,11 @@ fn what_is_wrong_with_a_file_is_said_in_one_line() {
         ("nan.stl", nan, "repair that vertex"),
         ("facet.stl", b"solid x\nfacet normal\n".to_vec(), "ends without 'endsolid'"),
         ("half.stl", half.into(), "ends without 'endsolid'"),
-        ("word.stl", text.replacen("vertex", "vertices", 1).into(), "line 4 has the unknown word 'vertices'"),
+        (
+            "word.stl",
+            text.replacen("vertex", "vertices", 1).into(),
+            "line 4 has the unknown word 'vertices'",
+        ),
         ("number.stl", text.replacen("vertex ", "vertex x", 1).into(), "line 4 has 'x"),
         ("corners.stl", text.replacen("endfacet", "", 1).into(), "has 6 vertices, not 3"),
         ("obj.stl", obj.into(), "holds OBJ, not STL"),
@@ -40,10 +47,22 @@ fn what_is_wrong_with_a_file_is_said_in_one_line() {
         ("stl.ply", text.into(), "holds STL, not PLY"),
         ("page.stl", b"<!doctype html>\n<p>Not found</p>\n".to_vec(), "holds XML or HTML"),
         ("points.obj", b"v 0 0 0\nv 1 0 0\n".to_vec(), "no triangles"),
-        ("beyond.obj", obj.replace("1 2 3", "1 2 4").into(), "line 5 names vertex 4, but there are 3"),
-        ("zero.obj", obj.replace("1 2 3", "0 1 2").into(), "line 5 has '0' where the number of a vertex"),
+        (
+            "beyond.obj",
+            obj.replace("1 2 3", "1 2 4").into(),
+            "line 5 names vertex 4, but there are 3",
+        ),
+        (
+            "zero.obj",
+            obj.replace("1 2 3", "0 1 2").into(),
+            "line 5 has '0' where the number of a vertex",
+        ),
         ("before.obj", obj.replace("1 2 3", "-1 -2 -4").into(), "line 5 has '-4'"),
-        ("edge.obj", obj.replace("1 2 3", "1 2").into(), "no triangles, but a face without area; export"),
+        (
+            "edge.obj",
+            obj.replace("1 2 3", "1 2").into(),
+            "no triangles, but a face without area; export",
+        ),
         (
             "beyond-edge.obj",
             obj.replace("1 2 3", "1 4\nf 1 2 3").into(),
@@ -69,7 +88,8 @@ fn what_is_wrong_with_a_file_is_said_in_one_line() {
         refused(name, read(name, bytes), expected);
     }
     let scaled = |scale| {
-        from_bytes("a.ply", ply("3 0 1 2\n").as_bytes(), &Options::scaled(scale)).map_err(|e| e.to_string())
+        from_bytes("a.ply", ply("3 0 1 2\n").as_bytes(), &Options::scaled(scale))
+            .map_err(|e| e.to_string())
     };
     for scale in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         refused("scale", scaled(scale), "give a positive number");
@@ -86,7 +106,8 @@ fn a_label_of_triangles_is_refused() {
         let labelled = from_bytes(name, &bytes, &options).map_err(|e| e.to_string());
         refused(name, labelled, "holds triangles without labels");
     }
-    let misnamed = from_bytes("a.stl", b"NRRD0004\ntype: uchar\n\n", &options).map_err(|e| e.to_string());
+    let misnamed =
+        from_bytes("a.stl", b"NRRD0004\ntype: uchar\n\n", &options).map_err(|e| e.to_string());
     refused("misnamed", misnamed, "give it the extension of what it holds");
 }
 

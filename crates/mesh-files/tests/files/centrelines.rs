@@ -1,4 +1,5 @@
-//! Centrelines as VTK and 3D Slicer write them, and what is wrong with others. `tests/data/make.py` wrote the files by VTK.
+//! Centrelines as VTK and 3D Slicer write them, and what is wrong with others. `tests/data/make.py`
+//! wrote the files by VTK.
 
 use crate::{Vertex, refused};
 use mesh_files::{Centreline, Frame, Options, centreline_from_bytes, load_centreline};
@@ -15,7 +16,8 @@ fn line(number: usize) -> Vec<Vertex> {
 }
 
 fn read(name: &str, bytes: impl AsRef<[u8]>) -> Result<Centreline, String> {
-    centreline_from_bytes(name, bytes.as_ref(), &Options::default()).map_err(|error| error.to_string())
+    centreline_from_bytes(name, bytes.as_ref(), &Options::default())
+        .map_err(|error| error.to_string())
 }
 
 const FILES: [&str; 10] = [
@@ -36,8 +38,8 @@ fn every_kind_of_file_by_vtk_holds_the_same_lines() {
     for name in FILES {
         for number in [0, 1] {
             let options = Options::scaled(2.0).with_line(Some(number));
-            let found =
-                load_centreline(data(name), &options).unwrap_or_else(|error| panic!("{name}: {error}"));
+            let found = load_centreline(data(name), &options)
+                .unwrap_or_else(|error| panic!("{name}: {error}"));
             assert_eq!(
                 found.points,
                 line(number).into_iter().map(|p| p.map(|x| 2.0 * x)).collect::<Vec<_>>(),
@@ -47,9 +49,13 @@ fn every_kind_of_file_by_vtk_holds_the_same_lines() {
         }
         let error = load_centreline(data(name), &Options::default()).unwrap_err().to_string();
         assert!(error.ends_with("holds 2 lines; choose one from 0 to 1"), "{error}");
-        let error =
-            load_centreline(data(name), &Options::default().with_line(Some(2))).unwrap_err().to_string();
-        assert!(error.ends_with("has no line 2, but 2, counted from 0; choose one of them"), "{error}");
+        let error = load_centreline(data(name), &Options::default().with_line(Some(2)))
+            .unwrap_err()
+            .to_string();
+        assert!(
+            error.ends_with("has no line 2, but 2, counted from 0; choose one of them"),
+            "{error}"
+        );
     }
 }
 
@@ -59,7 +65,8 @@ fn a_file_that_ends_too_early_or_holds_other_bytes_never_breaks_the_reader() {
         let whole = std::fs::read(data(name)).unwrap();
         let mut refused = 0;
         for end in 0..whole.len() {
-            refused += usize::from(read(name, &whole[..end]).is_err_and(|error| !error.contains('\n')));
+            refused +=
+                usize::from(read(name, &whole[..end]).is_err_and(|error| !error.contains('\n')));
         }
         // Two lines without a choice: whole as they may be, none is read.
         assert_eq!(refused, whole.len(), "{name}");
@@ -78,25 +85,33 @@ fn a_file_that_ends_too_early_or_holds_other_bytes_never_breaks_the_reader() {
 
 #[test]
 fn arrays_take_no_more_memory_than_is_allowed() {
-    for name in
-        ["lines_binary.vtp", "lines_binary_packed.vtp", "lines_appended.vtp", "lines_appended_packed.vtp"]
-    {
+    for name in [
+        "lines_binary.vtp",
+        "lines_binary_packed.vtp",
+        "lines_appended.vtp",
+        "lines_appended_packed.vtp",
+    ] {
         let bytes = std::fs::read(data(name)).unwrap();
         // 21 coordinates, 7 points of lines and 2 ends take 48 bytes each, and 8 before.
         for (limit, is_enough) in [(30 * 57, true), (29 * 48, false), (100, false)] {
             let options = Options::default().with_line(Some(0)).with_memory_limit(limit);
-            let found = centreline_from_bytes(name, &bytes, &options).map_err(|error| error.to_string());
+            let found =
+                centreline_from_bytes(name, &bytes, &options).map_err(|error| error.to_string());
             assert_eq!(found.is_ok(), is_enough, "{name}, {limit}: {found:?}");
             assert!(is_enough || found.unwrap_err().contains("more memory than is allowed"));
         }
     }
     // Many pieces that name one and the same array.
-    let text = String::from_utf8_lossy(&std::fs::read(data("lines_ascii.vtp")).unwrap()).into_owned();
+    let text =
+        String::from_utf8_lossy(&std::fs::read(data("lines_ascii.vtp")).unwrap()).into_owned();
     let [head, rest] = text.split_once("<Piece").map(|(head, rest)| [head, rest]).unwrap();
     let (piece, tail) = rest.split_once("</Piece>").unwrap();
     let many = format!("{head}{}{tail}", format!("<Piece{piece}</Piece>").repeat(50));
     let options = Options::default().with_line(Some(99));
-    assert_eq!(centreline_from_bytes("many.vtp", many.as_bytes(), &options).unwrap().points, line(1));
+    assert_eq!(
+        centreline_from_bytes("many.vtp", many.as_bytes(), &options).unwrap().points,
+        line(1)
+    );
 }
 
 const CURVE: &str = r#"{"markups": [{"type": "Curve", "coordinateSystem": "LPS", "coordinateUnits": "mm", "controlPoints": [
@@ -133,7 +148,11 @@ fn what_is_wrong_with_a_centreline_is_said_in_one_line() {
         ("a.xyz", String::new(), "ends in .mrk.json, .vtp or .vtk, or a text"),
         ("a.vtk", String::new(), "'# vtk DataFile'"),
         ("a.vtk", "solid x".into(), "holds STL, not VTK"),
-        ("a.vtk", vtk.replace("POLYDATA", "STRUCTURED_GRID"), "export the centreline or the surface as"),
+        (
+            "a.vtk",
+            vtk.replace("POLYDATA", "STRUCTURED_GRID"),
+            "export the centreline or the surface as",
+        ),
         ("a.vtk", vtk.replace("POINTS 7", "POINTS 99999999999999"), "where a number should be"),
         ("a.vtk", vtk.replace("LINES 2 9", "LINES 2 99999999999999"), "where a number should be"),
         ("a.vtk", vtk.replace("4 0 1 2 3", "4 0 1 2 7"), "a line names point 7, but there are 7"),

@@ -15,7 +15,8 @@ fn apply(matrix: &Matrix, voxel: Vertex) -> Vertex {
     matrix.map(|row| row[0] * voxel[0] + row[1] * voxel[1] + row[2] * voxel[2] + row[3])
 }
 
-/// Voxels of 1, 1.2 and 0.8 mm, turned about (1, 2, 2) / 3 by 40 degrees (Rodrigues' formula), and moved.
+/// Voxels of 1, 1.2 and 0.8 mm, turned about (1, 2, 2) / 3 by 40 degrees (Rodrigues' formula), and
+/// moved.
 fn oblique(mirror: f64) -> Matrix {
     let (axis, angle) = ([1.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0], 40_f64.to_radians());
     let (sin, cos) = angle.sin_cos();
@@ -29,7 +30,8 @@ fn oblique(mirror: f64) -> Matrix {
     [0, 1, 2].map(|i| [entry(i, 0), entry(i, 1), entry(i, 2), shift[i]])
 }
 
-/// A ball of label 3 of this radius around a voxel in the matrix's millimetres; a corner of label 7; and its centre.
+/// A ball of label 3 of this radius around a voxel in the matrix's millimetres; a corner of label
+/// 7; and its centre.
 fn ball(matrix: &Matrix, radius: f64) -> (Vec<u8>, Vertex) {
     let centre = apply(matrix, [19.3, 16.6, 14.9]);
     let mut labels = Vec::new();
@@ -117,7 +119,8 @@ fn gzip(bytes: &[u8]) -> Vec<u8> {
 }
 
 fn label(name: &str, bytes: &[u8], label: u32) -> Result<Mesh, String> {
-    from_bytes(name, bytes, &Options::default().with_label(Some(label))).map_err(|error| error.to_string())
+    from_bytes(name, bytes, &Options::default().with_label(Some(label)))
+        .map_err(|error| error.to_string())
 }
 
 /// Every edge is passed as often in one direction as in the other.
@@ -143,8 +146,8 @@ fn volume(mesh: &Mesh) -> f64 {
     six.sum::<f64>() / 6.0
 }
 
-/// A closed surface around the ball: each vertex lies in a cube of voxels that the sphere passes through, so it is off the
-/// sphere by no more than the cube's diagonal.
+/// A closed surface around the ball: each vertex lies in a cube of voxels that the sphere passes
+/// through, so it is off the sphere by no more than the cube's diagonal.
 fn assert_ball(name: &str, mesh: &Mesh, centre: Vertex, radius: f64, unit: f64) {
     assert_closed(mesh);
     assert!(mesh.triangles.len() > 2000, "{name}: {}", mesh.triangles.len());
@@ -187,7 +190,9 @@ fn every_type_of_number_gives_the_same_surface() {
     let (voxels, _) = ball(&matrix, 9.5);
     let expected = label("a.nrrd", &nrrd(&matrix, "uchar", "raw", "LPS", &voxels), 3).unwrap();
     assert_eq!(expected.frame, Some(Frame::Lps));
-    let big = |bytes: fn(u8) -> Vec<u8>| voxels.iter().flat_map(|&label| bytes(label)).collect::<Vec<u8>>();
+    let big = |bytes: fn(u8) -> Vec<u8>| {
+        voxels.iter().flat_map(|&label| bytes(label)).collect::<Vec<u8>>()
+    };
     let text: String = voxels.iter().map(|label| format!("{label} ")).collect();
     for (kind, encoding, bytes) in [
         ("signed char", "raw", voxels.clone()),
@@ -209,7 +214,8 @@ fn every_type_of_number_gives_the_same_surface() {
     assert_eq!(label("a.nii", &scaled, 7).unwrap().triangles, expected.triangles);
 }
 
-/// What nibabel 5.4 makes of slopes and intercepts: `get_slope_inter`, and 1 and 0 where that says None.
+/// What nibabel 5.4 makes of slopes and intercepts: `get_slope_inter`, and 1 and 0 where that says
+/// None.
 #[test]
 fn numbers_are_scaled_as_nibabel_scales_them() {
     let matrix = oblique(1.0);
@@ -222,7 +228,12 @@ fn numbers_are_scaled_as_nibabel_scales_them() {
     for slope in [nan, -nan, infinite, -infinite, 0.0, -0.0] {
         for intercept in [0.0, 5.0, nan, infinite, -infinite] {
             let read = label("a.nii", &scaled(slope, intercept), 3);
-            assert_eq!(read.as_ref().ok(), Some(&plain), "{slope} {intercept} {:?}", read.as_ref().err());
+            assert_eq!(
+                read.as_ref().ok(),
+                Some(&plain),
+                "{slope} {intercept} {:?}",
+                read.as_ref().err()
+            );
         }
     }
     for intercept in [nan, infinite, -infinite] {
@@ -237,7 +248,8 @@ fn units_and_frames_are_those_of_the_file() {
     let matrix = oblique(1.0);
     let (voxels, centre) = ball(&matrix, 9.5);
     let metres =
-        label("m.nii", &Nifti::new(voxels.clone()).sform(&matrix).put(123, &[1]).bytes(), 3).unwrap();
+        label("m.nii", &Nifti::new(voxels.clone()).sform(&matrix).put(123, &[1]).bytes(), 3)
+            .unwrap();
     assert_ball("metres", &metres, centre.map(|x| x * 1000.0), 9500.0, 1000.0);
     let las = label("las.nrrd", &nrrd(&matrix, "uchar", "raw", "LAS", &voxels), 3).unwrap();
     assert_eq!(las.frame, Some(Frame::Ras));
@@ -302,8 +314,16 @@ fn what_is_wrong_with_a_label_map_is_said_in_one_line() {
         ),
         ("placeless.nii", whole().bytes(), "does not say where its voxels are"),
         ("plane.nii", whole().sform(&[matrix[0], matrix[1], matrix[1]]).bytes(), "into one plane"),
-        ("series.nii", whole().sform(&matrix).shorts(40, &[4, 10, 10, 10, 5]).bytes(), "a single label map"),
-        ("many.nii", whole().sform(&matrix).shorts(42, &[32000, 32000, 32000]).bytes(), "too many; crop it"),
+        (
+            "series.nii",
+            whole().sform(&matrix).shorts(40, &[4, 10, 10, 10, 5]).bytes(),
+            "a single label map",
+        ),
+        (
+            "many.nii",
+            whole().sform(&matrix).shorts(42, &[32000, 32000, 32000]).bytes(),
+            "too many; crop it",
+        ),
         ("flat.nii", whole().sform(&matrix).shorts(42, &[0]).bytes(), "no voxels"),
         ("colour.nii", whole().sform(&matrix).shorts(70, &[128, 24]).bytes(), "type 128"),
         ("offset.nii", whole().sform(&matrix).floats(108, &[f32::NAN]).bytes(), "byte NaN"),
@@ -322,11 +342,23 @@ fn what_is_wrong_with_a_label_map_is_said_in_one_line() {
         ("sizes.nrrd", header("sizes: 40 34 30", "sizes: 40 x 30"), "not three numbers"),
         ("layers.nrrd", header("dimension: 3", "dimension: 4"), "not 4 numbers"),
         ("packed.nrrd", header("raw", "bzip2"), "its encoding 'bzip2' cannot be read"),
-        ("space.nrrd", header("space: RAS", "space: scanner-xyz"), "its space 'scanner-xyz' cannot be read"),
+        (
+            "space.nrrd",
+            header("space: RAS", "space: scanner-xyz"),
+            "its space 'scanner-xyz' cannot be read",
+        ),
         ("second.nrrd", header("endian", "data file: brain.raw\nendian"), "second file"),
         ("where.nrrd", header("space origin: ", "origin: "), "no field 'space origin'"),
-        ("none.nrrd", header("space directions: ", "space directions: none "), "not 3 x three numbers"),
-        ("unit.nrrd", header("endian", "space units: \"mm\" \"mm\" \"m\"\nendian"), "not all the same"),
+        (
+            "none.nrrd",
+            header("space directions: ", "space directions: none "),
+            "not 3 x three numbers",
+        ),
+        (
+            "unit.nrrd",
+            header("endian", "space units: \"mm\" \"mm\" \"m\"\nendian"),
+            "not all the same",
+        ),
         ("empty-line.nrrd", b"NRRD0004\ntype: uchar\n".to_vec(), "not followed by an empty line"),
         ("other.nrrd", b"something else\n\n".to_vec(), "does not begin with 'NRRD000'"),
     ] {
@@ -334,7 +366,11 @@ fn what_is_wrong_with_a_label_map_is_said_in_one_line() {
     }
     // One byte has no order, so its header need not name one.
     assert!(read("plain.nrrd", header("endian: big\n", "")).is_ok());
-    refused("order", read("order.nrrd", header("type: uchar\n", "type: short\n").as_slice()), "shorter");
+    refused(
+        "order",
+        read("order.nrrd", header("type: uchar\n", "type: short\n").as_slice()),
+        "shorter",
+    );
     // The file is as it should be: only the label is not in it.
     refused(
         "label",
@@ -361,10 +397,15 @@ fn labels_that_a_writer_scaled_are_rounded_and_images_refused() {
     let matrix = oblique(1.0);
     let (voxels, _) = ball(&matrix, 9.5);
     let plain = label("a.nii", &Nifti::new(voxels.clone()).sform(&matrix).bytes(), 3).unwrap();
-    // 7 is 255 parts of 7 / 255, in single precision or in a few digits: 6.9999998, 7.00005, 6.9999.
+    // 7 is 255 parts of 7 / 255, in single precision or in a few digits: 6.9999998, 7.00005,
+    // 6.9999.
     let scaled: Vec<_> = voxels.iter().map(|&label| (u32::from(label) * 255 / 7) as u8).collect();
     let of = |slope: f32, voxels: &[u8]| {
-        label("a.nii", &Nifti::new(voxels.to_vec()).sform(&matrix).floats(112, &[slope, 0.0]).bytes(), 7)
+        label(
+            "a.nii",
+            &Nifti::new(voxels.to_vec()).sform(&matrix).floats(112, &[slope, 0.0]).bytes(),
+            7,
+        )
     };
     let sevens: Vec<_> = scaled.iter().map(|&part| if part == 255 { 255 } else { 0 }).collect();
     for slope in [7.0 / 255.0, 0.027_451, 0.027_450_8] {
@@ -376,14 +417,21 @@ fn labels_that_a_writer_scaled_are_rounded_and_images_refused() {
     }
     // 3 / 7 of 255 is no whole number: 109 parts are 2.992.
     refused("image", of(7.0 / 255.0, &scaled), "holds an image, in which a voxel is 2.99");
-    for (number, expected) in [(2.999_99_f32, true), (3.000_01, true), (2.999, false), (3.001, false)] {
-        let bytes: Vec<_> =
-            voxels.iter().flat_map(|&voxel| if voxel == 3 { number } else { 0.0 }.to_be_bytes()).collect();
+    for (number, expected) in
+        [(2.999_99_f32, true), (3.000_01, true), (2.999, false), (3.001, false)]
+    {
+        let bytes: Vec<_> = voxels
+            .iter()
+            .flat_map(|&voxel| if voxel == 3 { number } else { 0.0 }.to_be_bytes())
+            .collect();
         let read = label("a.nrrd", &nrrd(&matrix, "float", "raw", "LPS", &bytes), 3);
         assert_eq!(read.is_ok(), expected, "{number}");
     }
     // A whole number that single precision cannot hold is no image.
-    assert!(of(16_777_217.0 / 255.0, &sevens).is_err_and(|error| error.contains("no voxel with label 7")));
+    assert!(
+        of(16_777_217.0 / 255.0, &sevens)
+            .is_err_and(|error| error.contains("no voxel with label 7"))
+    );
 }
 
 #[test]
@@ -422,7 +470,8 @@ fn a_form_of_nifti_that_says_nothing_is_not_used() {
     let corner = from_bytes("a.nii", &none.bytes(), &options).unwrap();
     assert_eq!(corner.frame, None);
     // The corner has voxels 0 to 3 along each axis.
-    let far = [0, 1, 2].map(|axis| corner.vertices.iter().map(|v| v[axis]).fold(f64::MIN, f64::max));
+    let far =
+        [0, 1, 2].map(|axis| corner.vertices.iter().map(|v| v[axis]).fold(f64::MIN, f64::max));
     assert!(
         [2.0, 3.0, 4.0].iter().zip(far).all(|(size, far)| far > 3.0 * size && far < 4.0 * size),
         "{far:?}"

@@ -14,15 +14,19 @@ fn memory(ask: impl FnOnce()) -> u64 {
 #[test]
 fn headers_that_count_what_is_not_there_take_no_memory() {
     let vertex = |count: u64, format: &str| {
-        ply_header(3, 1, format, "float").replace("vertex 3", &format!("vertex {count}")).into_bytes()
+        ply_header(3, 1, format, "float")
+            .replace("vertex 3", &format!("vertex {count}"))
+            .into_bytes()
     };
     let face = |count: u32| {
-        let head = ply_header(0, 1, "binary_little_endian", "float").replace("uchar int", "uint int");
+        let head =
+            ply_header(0, 1, "binary_little_endian", "float").replace("uchar int", "uint int");
         [head.as_bytes(), &count.to_le_bytes(), &[0; 40]].concat()
     };
     let nothing = |format: &str, count: u64| {
         let head = ply_header(3, 1, format, "float");
-        let head = head.replace("element vertex", &format!("element nothing {count}\nelement vertex"));
+        let head =
+            head.replace("element vertex", &format!("element nothing {count}\nelement vertex"));
         [head.as_bytes(), &[0; 100]].concat()
     };
     let mut stl = vec![0; 84 + 50];
@@ -34,7 +38,11 @@ fn headers_that_count_what_is_not_there_take_no_memory() {
         ("face.ply", face(u32::MAX), "end early"),
         // Any number of elements of no words or no bytes: what follows them is read.
         ("lines.ply", nothing("ascii", 4_000_000_000), "where a number should be"),
-        ("bytes.ply", nothing("binary_little_endian", u64::MAX / 2), "3 of element 'vertex' end early"),
+        (
+            "bytes.ply",
+            nothing("binary_little_endian", u64::MAX / 2),
+            "3 of element 'vertex' end early",
+        ),
         ("count.stl", stl, "counts 4294967294 triangles, but it ends after 1"),
     ] {
         let bytes = if name == "bytes.ply" { bytes[..bytes.len() - 99].to_vec() } else { bytes };
@@ -51,7 +59,9 @@ fn elements_that_are_not_needed_are_not_kept() {
     let other = format!("element other {count}\nproperty uchar colour\nelement vertex");
     let mut bytes = head.replace("element vertex", &other).into_bytes();
     bytes.extend(vec![7; count]);
-    [0.0_f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0].iter().for_each(|x| bytes.extend(x.to_le_bytes()));
+    [0.0_f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0]
+        .iter()
+        .for_each(|x| bytes.extend(x.to_le_bytes()));
     bytes.extend([3, 0, 0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0]);
     let taken = memory(|| assert_eq!(read("other.ply", &bytes).unwrap().triangles, [[0, 1, 2]]));
     assert!(taken < LITTLE, "{taken}");
@@ -112,7 +122,9 @@ mod label_maps {
                 let options = Options::default().with_label(label).with_memory_limit(0);
                 match (from_bytes("a.nrrd", &zeros, &options), label) {
                     (Err(MeshFileError::NothingSegmented { .. }), None) => {}
-                    (Err(MeshFileError::NoSuchLabel { present, .. }), Some(_)) => assert_eq!(present, [0]),
+                    (Err(MeshFileError::NoSuchLabel { present, .. }), Some(_)) => {
+                        assert_eq!(present, [0])
+                    }
                     other => panic!("{other:?}"),
                 }
             });
@@ -142,7 +154,8 @@ mod label_maps {
         let numbers: String = (0..count).rev().map(|number| format!("{number} ")).collect();
         let file = text.replace("gzip", "text").replace("uchar", "int") + "\n\n" + &numbers;
         let options = Options::default().with_label(Some(u32::MAX));
-        let Err(MeshFileError::NoSuchLabel { present, .. }) = from_bytes("a.nrrd", file.as_bytes(), &options)
+        let Err(MeshFileError::NoSuchLabel { present, .. }) =
+            from_bytes("a.nrrd", file.as_bytes(), &options)
         else {
             panic!("there is no such label")
         };
@@ -152,7 +165,8 @@ mod label_maps {
     /// The bytes that a refusal names suffice, and no more than them are taken.
     #[test]
     fn the_memory_that_is_asked_for_is_enough_and_no_more_is_taken() {
-        let hash = |[x, y, z]: [usize; 3]| (x * 7919 + y * 104_729 + z * 1_299_709) ^ (x * y + z * 31);
+        let hash =
+            |[x, y, z]: [usize; 3]| (x * 7919 + y * 104_729 + z * 1_299_709) ^ (x * y + z * 31);
         type Inside<'a> = &'a dyn Fn([usize; 3]) -> bool;
         let volumes: [(&str, Inside<'_>); 5] = [
             ("full", &|_| true),

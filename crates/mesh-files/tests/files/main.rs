@@ -25,7 +25,8 @@ fn ring() -> (Vec<Vertex>, Vec<[u32; 3]>) {
     const AROUND: u32 = 24;
     const ACROSS: u32 = 14;
     let place = |i: u32, j: u32| {
-        let (a, b) = ((f64::from(i) + 0.13) / f64::from(AROUND) * TAU, (f64::from(j) + 0.29) / 14.0 * TAU);
+        let (a, b) =
+            ((f64::from(i) + 0.13) / f64::from(AROUND) * TAU, (f64::from(j) + 0.29) / 14.0 * TAU);
         let r = 9.0 + (3.0 + 0.1 * (2.0 * a).sin()) * b.cos();
         [3.0 + r * a.cos(), -7.0 + r * a.sin(), 11.0 + 3.0 * b.sin() + 0.3 * a.cos()]
     };
@@ -47,7 +48,8 @@ fn file(name: &str, bytes: &[u8]) -> PathBuf {
 
 /// Bytes as a file of this name.
 fn read(name: &str, bytes: impl AsRef<[u8]>) -> Result<Mesh, String> {
-    mesh_files::from_bytes(name, bytes.as_ref(), &Default::default()).map_err(|error| error.to_string())
+    mesh_files::from_bytes(name, bytes.as_ref(), &Default::default())
+        .map_err(|error| error.to_string())
 }
 
 /// An error must be one line that says this, in words of our own.
@@ -61,8 +63,10 @@ fn refused<T>(name: &str, result: Result<T, String>, expected: &str) {
 
 fn binary_stl((points, triangles): &(Vec<Vertex>, Vec<[u32; 3]>)) -> Vec<u8> {
     let vertex = |i: u32| stl_io::Vertex::new(points[i as usize].map(|x| x as f32));
-    let facet =
-        |t: &[u32; 3]| stl_io::Triangle { normal: stl_io::Normal::new([0.0; 3]), vertices: t.map(vertex) };
+    let facet = |t: &[u32; 3]| stl_io::Triangle {
+        normal: stl_io::Normal::new([0.0; 3]),
+        vertices: t.map(vertex),
+    };
     let facets: Vec<_> = triangles.iter().map(facet).collect();
     let mut bytes = Vec::new();
     stl_io::write_stl(&mut bytes, facets.iter()).unwrap();

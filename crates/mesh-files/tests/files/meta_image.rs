@@ -1,4 +1,5 @@
-//! A ball in a MetaImage label map, written by SimpleITK (`tests/data/make.py`), is where SimpleITK says.
+//! A ball in a MetaImage label map, written by SimpleITK (`tests/data/make.py`), is where SimpleITK
+//! says.
 
 use crate::{read, refused};
 use mesh_files::{Frame, Options, load_with};
@@ -20,12 +21,14 @@ fn a_ball_is_where_its_voxels_are() {
     assert!(packed.frame == Some(Frame::Lps) && packed.states_unit);
     // Voxels are 2.7 from corner to corner.
     let off = |vertex: &[f64; 3]| {
-        let away = [0, 1, 2].map(|axis| (vertex[axis] - CENTRE[axis]).powi(2)).iter().sum::<f64>().sqrt();
+        let away =
+            [0, 1, 2].map(|axis| (vertex[axis] - CENTRE[axis]).powi(2)).iter().sum::<f64>().sqrt();
         (away - RADIUS).abs()
     };
     assert!(packed.vertices.iter().all(|vertex| off(vertex) < 2.7));
-    let mean: [f64; 3] = [0, 1, 2]
-        .map(|axis| packed.vertices.iter().map(|v| v[axis]).sum::<f64>() / packed.vertices.len() as f64);
+    let mean: [f64; 3] = [0, 1, 2].map(|axis| {
+        packed.vertices.iter().map(|v| v[axis]).sum::<f64>() / packed.vertices.len() as f64
+    });
     assert!([0, 1, 2].iter().all(|&axis| (mean[axis] - CENTRE[axis]).abs() < 0.3), "{mean:?}");
 }
 
@@ -50,8 +53,14 @@ fn what_is_wrong_with_a_meta_image_is_said_in_one_line() {
     }
     for (text, body) in [
         (one.replace("LOCAL", "Local"), voxels.clone()),
-        (one.replace("ElementDataFile", "HeaderSize = 3\nElementDataFile"), "123".to_owned() + &voxels),
-        (one.replace("ElementDataFile", "HeaderSize = -1\nElementDataFile"), "12345".to_owned() + &voxels),
+        (
+            one.replace("ElementDataFile", "HeaderSize = 3\nElementDataFile"),
+            "123".to_owned() + &voxels,
+        ),
+        (
+            one.replace("ElementDataFile", "HeaderSize = -1\nElementDataFile"),
+            "12345".to_owned() + &voxels,
+        ),
     ] {
         assert!(read("ball.mha", text + &body).is_ok());
     }

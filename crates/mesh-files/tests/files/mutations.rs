@@ -24,7 +24,8 @@ impl Draws {
     }
 }
 
-/// One to four changes: a flipped bit, another byte, an end, lines that change places, a line twice, a digit more.
+/// One to four changes: a flipped bit, another byte, an end, lines that change places, a line
+/// twice, a digit more.
 fn spoilt(whole: &[u8], draws: &mut Draws) -> Vec<u8> {
     let mut bytes = whole.to_vec();
     for _ in 0..=draws.below(4) {
@@ -34,7 +35,8 @@ fn spoilt(whole: &[u8], draws: &mut Draws) -> Vec<u8> {
             1 if !bytes.is_empty() => bytes[at] = draws.below(256) as u8,
             2 => bytes.truncate(at),
             3 | 4 => {
-                let mut lines: Vec<_> = bytes.split(|&byte| byte == b'\n').map(<[u8]>::to_vec).collect();
+                let mut lines: Vec<_> =
+                    bytes.split(|&byte| byte == b'\n').map(<[u8]>::to_vec).collect();
                 let [a, b] = [draws.below(lines.len()), draws.below(lines.len())];
                 if draws.below(2) == 0 {
                     lines.swap(a, b)
@@ -61,7 +63,11 @@ fn check(name: &str, whole: &[u8], read: impl Fn(&[u8]) -> Result<(), MeshFileEr
         let start = Instant::now();
         let mut answer = Ok(());
         let taken = allocation_counter::measure(|| answer = read(&bytes)).bytes_max;
-        assert!(taken < MEMORY && start.elapsed() < TIME, "{name}, {round}: {taken}, {:?}", start.elapsed());
+        assert!(
+            taken < MEMORY && start.elapsed() < TIME,
+            "{name}, {round}: {taken}, {:?}",
+            start.elapsed()
+        );
         if let Err(error) = answer {
             let text = error.to_string();
             assert!(!text.contains('\n') && text.contains(name), "{name}, {round}: {text}");
@@ -79,7 +85,9 @@ fn check_meshes(files: &[(&str, &str)]) {
         check(name, &whole, |bytes| {
             let mesh = from_bytes(name, bytes, &Options::default().with_memory_limit(MEMORY / 2))?;
             let count = mesh.vertices.len();
-            assert!(!mesh.triangles.is_empty() && mesh.vertices.iter().flatten().all(|x| x.is_finite()));
+            assert!(
+                !mesh.triangles.is_empty() && mesh.vertices.iter().flatten().all(|x| x.is_finite())
+            );
             assert!(mesh.triangles.iter().flatten().all(|&corner| (corner as usize) < count));
             Ok(())
         });

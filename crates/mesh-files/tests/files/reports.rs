@@ -1,5 +1,6 @@
-//! The situations of public bug reports, each a small file in `tests/data/reports`. What is right follows from how the
-//! files were made: a tetrahedron with corners at the origin and one along each axis, or a block of voxels.
+//! The situations of public bug reports, each a small file in `tests/data/reports`. What is right
+//! follows from how the files were made: a tetrahedron with corners at the origin and one along
+//! each axis, or a block of voxels.
 
 use crate::{Vertex, refused};
 use mesh_files::{Mesh, Options, load_with};
@@ -14,7 +15,10 @@ pub fn load(name: &str, options: &Options) -> Result<Mesh, String> {
 }
 
 pub fn corners(mesh: &Mesh) -> Vec<[Vertex; 3]> {
-    mesh.triangles.iter().map(|triangle| triangle.map(|corner| mesh.vertices[corner as usize])).collect()
+    mesh.triangles
+        .iter()
+        .map(|triangle| triangle.map(|corner| mesh.vertices[corner as usize]))
+        .collect()
 }
 
 fn cross([a, b, c]: [Vertex; 3]) -> Vertex {
@@ -49,7 +53,8 @@ pub fn obj(text: &str) -> Result<Mesh, String> {
     crate::read("a.obj", text)
 }
 
-const TETRAHEDRON: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
+const TETRAHEDRON: &str =
+    "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
 
 #[test]
 fn lines_of_obj_that_end_in_a_backslash_go_on_only_where_they_may() {
@@ -107,7 +112,10 @@ fn strips_and_numbers_of_ply_are_read_in_every_spelling() {
     for (name, bytes) in [
         ("CR alone", bytes(text.replace('\n', "\r"))),
         ("CRLF", bytes(text.replace('\n', "\r\n"))),
-        ("blank lines", bytes(text.replace("end_header\n", "end_header\n\n\n").replace("\n3 ", "\n\n3 "))),
+        (
+            "blank lines",
+            bytes(text.replace("end_header\n", "end_header\n\n\n").replace("\n3 ", "\n\n3 ")),
+        ),
         ("blank lines in the header", bytes(text.replace("element", "\nelement"))),
         ("Latin-1", latin),
         ("points without digits", bytes(text.replace("1 \n", "1. \n").replace("0 \n", ".0 \n"))),
@@ -128,14 +136,16 @@ fn strips_of_ply_are_cut_by_the_rules_of_strips() {
         )
     };
     let points: String = (0..6).map(|i| format!("{} {} 0\n", i / 2, i % 2)).collect();
-    // Two strips; one that is drawn on by naming vertices twice, whose turns stay; and one too short.
+    // Two strips; one that is drawn on by naming vertices twice, whose turns stay; and one too
+    // short.
     for (strip, expected) in [
         (&[0, 1, 2, 3, -1, 5, 4, 3][..], &[[0, 1, 2], [2, 1, 3], [5, 4, 3]][..]),
         (&[0, 1, 2, 2, 3, 3, 4, 5], &[[0, 1, 2], [4, 3, 5]]),
         (&[-1, -1, 0, 1, -1, 1, 2, 3, -1], &[[1, 2, 3]]),
     ] {
         let words: Vec<_> = strip.iter().map(i32::to_string).collect();
-        let text = head("ascii", "int") + &points + &format!("{} {}\n", strip.len(), words.join(" "));
+        let text =
+            head("ascii", "int") + &points + &format!("{} {}\n", strip.len(), words.join(" "));
         let mesh = crate::read("a.ply", text).unwrap();
         assert_eq!(mesh.triangles, expected, "{strip:?}");
         let mut bytes = head("binary_big_endian", "uchar").into_bytes();
@@ -164,7 +174,11 @@ fn stl_is_read_where_its_length_is_certain() {
     let upper = load("A07_upper_exponent.stl", &Options::default()).unwrap();
     assert_eq!(upper.triangles.len(), 4);
     assert_eq!(load("A07_two_solids.stl", &Options::default()).unwrap().triangles.len(), 8);
-    refused("commas", load("A07_comma_decimal.stl", &Options::default()), "write decimals with a point");
+    refused(
+        "commas",
+        load("A07_comma_decimal.stl", &Options::default()),
+        "write decimals with a point",
+    );
     refused("cut", load("A07_no_endsolid.stl", &Options::default()), "without 'endsolid'");
     let whole = std::fs::read(report("A08_binary_solid.stl")).unwrap();
     let counted = |count: u32, length: usize| {
@@ -174,7 +188,8 @@ fn stl_is_read_where_its_length_is_certain() {
         bytes[80..84].copy_from_slice(&count.to_le_bytes());
         crate::read("a.stl", bytes)
     };
-    // What a writer leaves that never came back to count; and fewer bytes than a triangle behind the last one.
+    // What a writer leaves that never came back to count; and fewer bytes than a triangle behind
+    // the last one.
     assert_tetrahedron("no count", counted(0, 284));
     assert_tetrahedron("no count", counted(u32::MAX, 284));
     assert_tetrahedron("a tail", counted(4, 333));
@@ -187,7 +202,9 @@ fn stl_is_read_where_its_length_is_certain() {
         refused("count", counted(count, length), expected);
     }
     let text = std::fs::read_to_string(report("A07_end_solid.stl")).unwrap();
-    for (from, to) in [("end solid", "END SOLID"), ("end loop", "endloop"), ("endfacet", "end facet")] {
+    for (from, to) in
+        [("end solid", "END SOLID"), ("end loop", "endloop"), ("endfacet", "end facet")]
+    {
         assert_tetrahedron(to, crate::read("a.stl", text.replace(from, to)));
     }
 }
@@ -217,7 +234,11 @@ mod label_maps {
             "A11_pair.img",
         ] {
             let mesh = load(name, &Options::default().with_label(Some(1))).unwrap();
-            assert_eq!((centre(&mesh), mesh.frame), ([16.0, 26.0, 54.0], Some(Frame::Ras)), "{name}");
+            assert_eq!(
+                (centre(&mesh), mesh.frame),
+                ([16.0, 26.0, 54.0], Some(Frame::Ras)),
+                "{name}"
+            );
         }
         for (name, frame) in [
             ("A13_byte_skip_minus_1.nrrd", Frame::Lps),
@@ -271,7 +292,11 @@ mod centrelines {
             ("A19_units_um.mrk.json", 2, 0),
         ] {
             let found = load(name).unwrap();
-            assert_eq!((&found.points[..], found.frame), (&curve[..count], Some(Frame::Lps)), "{name}");
+            assert_eq!(
+                (&found.points[..], found.frame),
+                (&curve[..count], Some(Frame::Lps)),
+                "{name}"
+            );
             assert_eq!(found.skipped_points, skipped, "{name}");
         }
         refused("none", load("A19_no_control_points.mrk.json"), "no controlPoints");

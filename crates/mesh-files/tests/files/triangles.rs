@@ -13,16 +13,20 @@ fn meshes_are_read_as_they_were_written() {
     let ascii = ascii_stl(mesh);
     let line = |head: &str, words: [String; 3]| format!("{head} {}\n", words.join(" "));
     let vertices: String = points.iter().map(|p| line("v", p.map(|x| x.to_string()))).collect();
-    let faces: String = triangles.iter().map(|t| line("f", t.map(|i| (i + 1).to_string()))).collect();
-    let relative: String =
-        triangles.iter().map(|t| line("f", t.map(|i| format!("-{}", points.len() as u32 - i)))).collect();
+    let faces: String =
+        triangles.iter().map(|t| line("f", t.map(|i| (i + 1).to_string()))).collect();
+    let relative: String = triangles
+        .iter()
+        .map(|t| line("f", t.map(|i| format!("-{}", points.len() as u32 - i))))
+        .collect();
     let obj = vertices.clone() + &faces;
     let ply: String = points
         .iter()
         .map(|p| line("", p.map(|x| x.to_string())))
         .chain(triangles.iter().map(|t| line("3", t.map(|i| i.to_string()))))
         .collect();
-    let mut packed = ply_header(points.len(), triangles.len(), "binary_little_endian", "float").into_bytes();
+    let mut packed =
+        ply_header(points.len(), triangles.len(), "binary_little_endian", "float").into_bytes();
     points.iter().flatten().for_each(|&x| packed.extend((x as f32).to_le_bytes()));
     for triangle in triangles {
         packed.push(3);
@@ -60,7 +64,8 @@ fn meshes_are_read_as_they_were_written() {
                 for corner in 0..3 {
                     let p = read.vertices[read_triangle[corner] as usize];
                     let q = points[written[corner] as usize].map(|x| x * scale);
-                    let off = [0, 1, 2].map(|i| (p[i] - q[i]).abs()).into_iter().fold(0.0, f64::max);
+                    let off =
+                        [0, 1, 2].map(|i| (p[i] - q[i]).abs()).into_iter().fold(0.0, f64::max);
                     assert!(off <= tolerance * scale, "{name}: {p:?} for {q:?}");
                 }
             }
@@ -72,7 +77,8 @@ fn meshes_are_read_as_they_were_written() {
 fn polygons_are_cut_and_objects_joined() {
     let quad = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
     assert_eq!(read("quad.obj", quad).unwrap().triangles, [[0, 1, 2], [0, 2, 3]]);
-    let two = "o one\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\no two\nv 0 0 9\nv 1 0 9\nv 0 1 9\nf 4 5 6\n";
+    let two =
+        "o one\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\no two\nv 0 0 9\nv 1 0 9\nv 0 1 9\nf 4 5 6\n";
     let read_two = read("two.obj", two).unwrap();
     assert_eq!(read_two.triangles, [[0, 1, 2], [3, 4, 5]]);
     assert!(read_two.vertices[..3].iter().all(|p| p[2] == 0.0));
@@ -102,20 +108,23 @@ fn faces_without_area_are_left_out_and_counted() {
         (&[7, 8, 7], &[]),
         (&[7, 8, 7, 8, 7, 8], &[]),
         (&[1, 2, 3], &[[1, 2, 3]]),
-        // Twice in a row, at the end, again as the first one, and two triangles that share their first corner.
+        // Twice in a row, at the end, again as the first one, and two triangles that share their
+        // first corner.
         (&[1, 1, 2, 3], &[[1, 2, 3]]),
         (&[1, 2, 3, 3], &[[1, 2, 3]]),
         (&[1, 2, 3, 1], &[[1, 2, 3]]),
         (&[1, 2, 3, 1, 4, 5], &[[1, 2, 3], [1, 4, 5]]),
     ];
     let skipped = faces.iter().filter(|(_, cut)| cut.is_empty()).count();
-    let cut = |faces: &[(&[u32], &[[u32; 3]])]| faces.iter().flat_map(|(_, cut)| cut.to_vec()).collect();
+    let cut =
+        |faces: &[(&[u32], &[[u32; 3]])]| faces.iter().flat_map(|(_, cut)| cut.to_vec()).collect();
     let expected: [Vec<[u32; 3]>; 3] = [cut(&faces[..3]), triangles.clone(), cut(&faces)];
     let expected = expected.concat();
 
     let good: String = triangles.iter().map(|triangle| face(triangle)).collect();
-    let bad =
-        |faces: &[(&[u32], &[[u32; 3]])]| faces.iter().map(|(corners, _)| face(corners)).collect::<String>();
+    let bad = |faces: &[(&[u32], &[[u32; 3]])]| {
+        faces.iter().map(|(corners, _)| face(corners)).collect::<String>()
+    };
     let obj = read("a.obj", vertices + &bad(&faces[..3]) + &good + &bad(&faces)).unwrap();
     assert_eq!((obj.skipped_faces, &obj.triangles), (skipped + 3, &expected));
     assert_eq!(obj.vertices, points);
@@ -133,7 +142,8 @@ fn faces_without_area_are_left_out_and_counted() {
     let ascii = ply_header(points.len(), all.len(), "ascii", "double")
         + &points.iter().map(|[x, y, z]| format!("{x} {y} {z}\n")).collect::<String>()
         + &all.iter().map(line).collect::<String>();
-    let mut binary = ply_header(points.len(), all.len(), "binary_big_endian", "double").into_bytes();
+    let mut binary =
+        ply_header(points.len(), all.len(), "binary_big_endian", "double").into_bytes();
     points.iter().flatten().for_each(|x| binary.extend(x.to_be_bytes()));
     for corners in &all {
         binary.push(corners.len() as u8);
@@ -148,9 +158,10 @@ fn faces_without_area_are_left_out_and_counted() {
     // STL names no vertices: those at one place are one.
     let mut twice = triangles.clone();
     twice.splice(5..5, [[9, 9, 9], [9, 10, 9]]);
-    for bytes in
-        [binary_stl(&(points.clone(), twice.clone())), ascii_stl(&(points.clone(), twice)).into_bytes()]
-    {
+    for bytes in [
+        binary_stl(&(points.clone(), twice.clone())),
+        ascii_stl(&(points.clone(), twice)).into_bytes(),
+    ] {
         let stl = read("a.stl", bytes).unwrap();
         assert_eq!((stl.skipped_faces, stl.triangles.len()), (2, triangles.len()));
     }

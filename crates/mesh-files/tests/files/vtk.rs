@@ -26,7 +26,11 @@ fn cells(cells: &[&[usize]]) -> String {
         let words: Vec<_> = cell.iter().map(usize::to_string).collect();
         format!("{} {}\n", cell.len(), words.join(" "))
     };
-    text(&format!("LINES {} {numbers}\n{}", cells.len(), cells.iter().map(line).collect::<String>()))
+    text(&format!(
+        "LINES {} {numbers}\n{}",
+        cells.len(),
+        cells.iter().map(line).collect::<String>()
+    ))
 }
 
 fn places(indices: &[usize]) -> Vec<Vertex> {
@@ -102,16 +106,20 @@ fn what_stands_before_the_points_is_passed_over_and_its_frame_is_kept() {
         "FIELD FieldData 2\ntime 1 1 double\n0.5\nMETADATA\nINFORMATION 1\nNAME a LOCATION b\nDATA 1\n\n\nids 2 2 long\n1 2 3 4\n",
         "FIELD FieldData 1\nnames 1 2 string\ntwo%20words\nPOINTS\n",
     ] {
-        let found = lines("a.vtk", whole.replace("POINTS", &format!("{before}POINTS")), None).unwrap();
+        let found =
+            lines("a.vtk", whole.replace("POINTS", &format!("{before}POINTS")), None).unwrap();
         assert_eq!((found.points, found.frame), (places(&[0, 1, 2]), None), "{before}");
     }
     let noted = whole.replace("POINTS", "FIELD FieldData 1\nSPACE 1 1 string\nLPS\nPOINTS");
     assert_eq!(lines("a.vtk", noted, None).unwrap().frame, Some(Frame::Lps));
     // In bytes: a text has its length before it, numbers of the same type have four bytes or eight.
-    for (kind, size) in [("vtkIdType", 4), ("vtkIdType", 8), ("long", 4), ("long", 8), ("vtktypeint64", 8)] {
+    for (kind, size) in
+        [("vtkIdType", 4), ("vtkIdType", 8), ("long", 4), ("long", 8), ("vtktypeint64", 8)]
+    {
         let number = |x: u64| x.to_be_bytes()[8 - size..].to_vec();
         let mut bytes =
-            b"# vtk DataFile Version 5.1\nx\nBINARY\nDATASET POLYDATA\nFIELD FieldData 3\n".to_vec();
+            b"# vtk DataFile Version 5.1\nx\nBINARY\nDATASET POLYDATA\nFIELD FieldData 3\n"
+                .to_vec();
         bytes.extend(format!("ids 1 3 {kind}\n").bytes());
         (1..4).for_each(|id| bytes.extend(number(id)));
         bytes.extend(b"\nSPACE 1 1 string\n\xc3RAS\nbits 1 9 bit\n\xff\x80\nPOINTS 3 double\n");
@@ -128,8 +136,10 @@ fn what_stands_before_the_points_is_passed_over_and_its_frame_is_kept() {
             "{kind} {size}"
         );
     }
-    // What LPS may be called in a file of VTK's XML, as numbers of letters; any other array of this name says nothing.
-    let vtp = std::fs::read_to_string(crate::reports::report("A18_space_lps_in_field_data.vtp")).unwrap();
+    // What LPS may be called in a file of VTK's XML, as numbers of letters; any other array of this
+    // name says nothing.
+    let vtp =
+        std::fs::read_to_string(crate::reports::report("A18_space_lps_in_field_data.vtp")).unwrap();
     for (letters, frame) in
         [("82 65 83 0", Some(Frame::Ras)), ("76 80 83", Some(Frame::Lps)), ("1 2 3", None)]
     {
@@ -140,15 +150,15 @@ fn what_stands_before_the_points_is_passed_over_and_its_frame_is_kept() {
     for (letters, frame) in [("BAAAAFJBUwA=", Frame::Ras), ("BAAAAExQUwA=", Frame::Lps)] {
         let start = vtp.find("SPACE").unwrap();
         let (head, tail) = vtp.split_at(start);
-        let binary = head.to_owned() + &tail.replacen("ascii", "binary", 1).replace("76 80 83 0", letters);
+        let binary =
+            head.to_owned() + &tail.replacen("ascii", "binary", 1).replace("76 80 83 0", letters);
         assert_eq!(lines("a.vtp", binary, None).unwrap().frame, Some(frame));
     }
 }
 
 #[test]
 fn surfaces_of_vtk_are_meshes() {
-    let head =
-        "# vtk DataFile Version 3.0\nx\nASCII\nDATASET POLYDATA\nPOINTS 4 float\n0 0 0 1 0 0 0 1 0 0 0 1\n";
+    let head = "# vtk DataFile Version 3.0\nx\nASCII\nDATASET POLYDATA\nPOINTS 4 float\n0 0 0 1 0 0 0 1 0 0 0 1\n";
     let polygons = "POLYGONS 4 16\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n";
     let new = "POLYGONS 5 12\nOFFSETS vtktypeint64\n0 3 6 9 12\nCONNECTIVITY vtktypeint64\n0 2 1 0 1 3 1 2 3 2 0 3\n";
     let cells = polygons.replace("POLYGONS", "CELLS") + "CELL_TYPES 4\n5\n5\n5\n5\n";
@@ -174,7 +184,8 @@ fn surfaces_of_vtk_are_meshes() {
     let pixel = grid + "CELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n8\n";
     assert_eq!(read("a.vtk", pixel).unwrap().triangles, [[0, 1, 3], [0, 3, 2]]);
     let vtp = |polys: &str, offsets: &str| {
-        let text = std::fs::read_to_string(crate::reports::report("A17_two_point_cells.vtp")).unwrap();
+        let text =
+            std::fs::read_to_string(crate::reports::report("A17_two_point_cells.vtp")).unwrap();
         let text = text.replace("0 0 0 0 0 10 1 0 20 3 0 29", "0 0 0 1 0 0 0 1 0 0 0 1");
         text.replace("0 1 1 2 2 3", polys).replace("2 4 6", offsets).replace("Lines>", "Polys>")
     };
@@ -184,7 +195,8 @@ fn surfaces_of_vtk_are_meshes() {
     assert!(square.triangles.len() == 2 && area(&square) > 0.0);
     refused("beyond", read("a.vtp", vtp("0 1 4", "3")), "names vertex 4, but there are 4");
     for (packer, name) in [("vtkLZ4DataCompressor", "LZ4"), ("vtkLZMADataCompressor", "LZMA")] {
-        let text = vtp("0 1 2", "3").replace("version", &format!("compressor=\"{packer}\" version"));
+        let text =
+            vtp("0 1 2", "3").replace("version", &format!("compressor=\"{packer}\" version"));
         refused(
             name,
             read("a.vtp", text),
@@ -213,7 +225,10 @@ fn units_of_markups_are_brought_to_millimetres_and_unset_points_are_counted() {
         let curve = lines("a.mrk.json", CURVE.replace("UNITS", units), None).unwrap();
         let expected = [[1500.0, -2000.0, 3000.0], [4000.0, 5000.0, 6250.0]];
         assert_eq!(curve.points, expected.map(|point: Vertex| point.map(|x| x / scale)), "{units}");
-        assert!(curve.skipped_points == 4 && curve.states_unit && curve.frame == Some(Frame::Lps), "{units}");
+        assert!(
+            curve.skipped_points == 4 && curve.states_unit && curve.frame == Some(Frame::Lps),
+            "{units}"
+        );
     }
     for (units, expected) in [
         (r#""coordinateUnits": "inch","#, "'inch', not mm; save it in mm"),
@@ -253,11 +268,18 @@ fn texts_have_radii_where_they_say_so() {
     assert_eq!(radii("0,0,0,2\n0,0,1\n"), Ok((2, two.clone())));
     assert_eq!(radii("x,y,z,radius\n0,0,0,2\n0,0,1,2\n"), Ok((2, two.clone())));
     assert_eq!(radii("x,y,z,distance_to_wall_mm\n0,0,0,2\n0,0,1,2\n"), Ok((2, None)));
-    assert_eq!(radii("x,y,z,distance_to_wall_mm,Radius (mm)\n0,0,0,9,2\n0,0,1,9,2\n"), Ok((2, two)));
-    let report =
-        lines("a.csv", std::fs::read(crate::reports::report("A20_bom_heading_units.csv")).unwrap(), None);
+    assert_eq!(
+        radii("x,y,z,distance_to_wall_mm,Radius (mm)\n0,0,0,9,2\n0,0,1,9,2\n"),
+        Ok((2, two))
+    );
+    let report = lines(
+        "a.csv",
+        std::fs::read(crate::reports::report("A20_bom_heading_units.csv")).unwrap(),
+        None,
+    );
     assert_eq!(report.unwrap().points, [[0.0, 0.0, 0.0], [0.0, 0.0, 10.0]]);
-    let scaled = centreline_from_bytes("a.csv", b"1;2;3;4\n1;2;4,5;4\n", &Options::scaled(10.0)).unwrap();
+    let scaled =
+        centreline_from_bytes("a.csv", b"1;2;3;4\n1;2;4,5;4\n", &Options::scaled(10.0)).unwrap();
     assert_eq!((scaled.points[1], scaled.radii), ([10.0, 20.0, 45.0], Some(vec![40.0])));
     for (text, expected) in [
         ("", "has no points; write x,y,z or x,y,z,radius"),

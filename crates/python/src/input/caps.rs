@@ -20,8 +20,10 @@ impl<'a, 'py> FromPyObject<'a, 'py> for Caps {
             Ok("capsules") => Ok(Self::Capsules),
             Ok("cylinders") => Ok(Self::Cylinders),
             _ => {
-                let text =
-                    format!("`caps` is {}; it must be 'fitted', 'capsules' or 'cylinders'", given.repr()?);
+                let text = format!(
+                    "`caps` is {}; it must be 'fitted', 'capsules' or 'cylinders'",
+                    given.repr()?
+                );
                 Err(Refused::other("bad_caps", text).raise(given.py(), None))
             }
         }

@@ -1,14 +1,17 @@
 //! An array of any type and memory order, as `f64` one after the other.
 
 use crate::error::Refused;
-use numpy::{PyArrayDescrMethods, PyArrayDyn, PyArrayMethods, PyUntypedArray, PyUntypedArrayMethods};
+use numpy::{
+    PyArrayDescrMethods, PyArrayDyn, PyArrayMethods, PyUntypedArray, PyUntypedArrayMethods,
+};
 use parry_continuum::parry::math::Vector;
 use pyo3::exceptions::PyException;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::PyFloat;
 
-/// Numbers with a shape. They belong to Python: whoever looks at them holds the GIL, since another thread may write there.
+/// Numbers with a shape. They belong to Python: whoever looks at them holds the GIL, since another
+/// thread may write there.
 pub(crate) struct Numbers<'py>(Bound<'py, PyArrayDyn<f64>>);
 
 impl<'py> Numbers<'py> {
@@ -30,7 +33,9 @@ impl<'py> Numbers<'py> {
         let array = numpy(py)?.call_method1("require", (array, "float64", "CA"))?;
         match array.cast_into::<PyArrayDyn<f64>>() {
             Ok(array) => Ok(Self(array)),
-            Err(_) => Err(refuse(format!("`{name}` is no array of numbers; give an array of floats"))),
+            Err(_) => {
+                Err(refuse(format!("`{name}` is no array of numbers; give an array of floats")))
+            }
         }
     }
 
@@ -45,8 +50,8 @@ impl<'py> Numbers<'py> {
 
     /// All numbers, in the order of the last index first.
     pub(crate) fn values(&self) -> &[f64] {
-        // SAFETY: the array is contiguous and aligned. It is not written meanwhile: whoever calls holds the GIL, and gives
-        // the numbers up before Python's code runs again.
+        // SAFETY: the array is contiguous and aligned. It is not written meanwhile: whoever calls
+        // holds the GIL, and gives the numbers up before Python's code runs again.
         unsafe { self.0.as_slice() }.unwrap_or_default()
     }
 
@@ -69,7 +74,8 @@ pub(crate) fn vectors(points: &[[f64; 3]]) -> Vec<Vector> {
 /// The module `numpy`.
 pub(crate) fn numpy(py: Python<'_>) -> PyResult<&Bound<'_, PyAny>> {
     static NUMPY: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
-    let module = NUMPY.get_or_try_init(py, || Ok::<_, PyErr>(py.import("numpy")?.into_any().unbind()))?;
+    let module =
+        NUMPY.get_or_try_init(py, || Ok::<_, PyErr>(py.import("numpy")?.into_any().unbind()))?;
     Ok(module.bind(py))
 }
 
@@ -82,7 +88,10 @@ pub(crate) fn shape_text(shape: &[usize]) -> String {
 }
 
 /// What numpy makes of an argument, whatever its type.
-pub(crate) fn as_array<'py>(given: &Bound<'py, PyAny>, name: &str) -> PyResult<Bound<'py, PyUntypedArray>> {
+pub(crate) fn as_array<'py>(
+    given: &Bound<'py, PyAny>,
+    name: &str,
+) -> PyResult<Bound<'py, PyUntypedArray>> {
     let py = given.py();
     let refuse = |why: String| {
         let text = format!("`{name}` is no array of numbers ({why}); give a numpy array");

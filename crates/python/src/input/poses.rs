@@ -39,7 +39,10 @@ impl<'py> Poses<'py> {
             [4, 4] => Ok((Self::Shared(numbers), None)),
             [count, 4, 4] => Ok((Self::Each(numbers), Some(count))),
             ref shape => {
-                let text = format!("`{name}` has the shape {}; give (4, 4) or (B, 4, 4)", shape_text(shape));
+                let text = format!(
+                    "`{name}` has the shape {}; give (4, 4) or (B, 4, 4)",
+                    shape_text(shape)
+                );
                 Err(Refused::other("bad_shape", text).raise(given.py(), None))
             }
         }
@@ -50,7 +53,8 @@ impl<'py> Poses<'py> {
         matches!(self, Self::Shared(_))
     }
 
-    /// The matrices of some of the batch: one where one stands for all, and none where all are the identity.
+    /// The matrices of some of the batch: one where one stands for all, and none where all are the
+    /// identity.
     pub(crate) fn matrices(&self, range: Range<usize>) -> &[[f64; 16]] {
         match self {
             Self::Identity => &[],

@@ -73,7 +73,10 @@ fn refuse(py: Python<'_>, text: String) -> PyErr {
 }
 
 /// Points of one robot, (N, 3), or of many, (B, N, 3).
-fn points<'py>(given: &Bound<'py, PyAny>, name: &str) -> PyResult<(Numbers<'py>, Option<usize>, usize)> {
+fn points<'py>(
+    given: &Bound<'py, PyAny>,
+    name: &str,
+) -> PyResult<(Numbers<'py>, Option<usize>, usize)> {
     let numbers = Numbers::new(given, name)?;
     match *numbers.shape() {
         [each, 3] => Ok((numbers, None, each)),
@@ -92,8 +95,10 @@ fn points<'py>(given: &Bound<'py, PyAny>, name: &str) -> PyResult<(Numbers<'py>,
                 [_, 3, _] => "give its transpose, `.swapaxes(1, 2)`",
                 _ => "give a row of three coordinates for each point",
             };
-            let text =
-                format!("`{name}` has the shape {}, not (N, 3) or (B, N, 3); {advice}", shape_text(shape));
+            let text = format!(
+                "`{name}` has the shape {}, not (N, 3) or (B, N, 3); {advice}",
+                shape_text(shape)
+            );
             Err(refuse(given.py(), text))
         }
     }
@@ -110,12 +115,25 @@ impl<'py> Robots<'py> {
         let (points, count, points_each) = points(given, name)?;
         let radii = Radii::new(radii, count, points_each)?;
         let poses = pose.map_or(Ok(Poses::Identity), |pose| Poses::new(pose, count))?;
-        Ok(Self { count, points_each, points, more: None, radii, poses, is_one: false, others: None })
+        Ok(Self {
+            count,
+            points_each,
+            points,
+            more: None,
+            radii,
+            poses,
+            is_one: false,
+            others: None,
+        })
     }
 
-    /// Paths, each of several shapes of one robot, (S, N, 3) or (B, S, N, 3): the points of a path are those of its shapes, one
-    /// shape after the other.
-    pub(crate) fn paths(name: &str, given: &Bound<'py, PyAny>, radii: &Bound<'py, PyAny>) -> PyResult<Self> {
+    /// Paths, each of several shapes of one robot, (S, N, 3) or (B, S, N, 3): the points of a path
+    /// are those of its shapes, one shape after the other.
+    pub(crate) fn paths(
+        name: &str,
+        given: &Bound<'py, PyAny>,
+        radii: &Bound<'py, PyAny>,
+    ) -> PyResult<Self> {
         let points = Numbers::new(given, name)?;
         let (count, points_each) = match *points.shape() {
             [.., (1..), 0, 3] | [(1..), 0, _, 3] => {
@@ -138,7 +156,16 @@ impl<'py> Robots<'py> {
         };
         let radii = Radii::new(radii, count, points_each)?;
         let poses = Poses::Identity;
-        Ok(Self { count, points_each, points, more: None, radii, poses, is_one: false, others: None })
+        Ok(Self {
+            count,
+            points_each,
+            points,
+            more: None,
+            radii,
+            poses,
+            is_one: false,
+            others: None,
+        })
     }
 
     /// The same with as many points more, such as those at which a motion ends.
@@ -161,8 +188,13 @@ impl<'py> Robots<'py> {
         Ok(self)
     }
 
-    /// The same with directions of each robot's curve, at its two ends or at all of its points. `name` is the parameter's.
-    pub(crate) fn with_tangents(mut self, name: &str, given: Option<&Bound<'py, PyAny>>) -> PyResult<Self> {
+    /// The same with directions of each robot's curve, at its two ends or at all of its points.
+    /// `name` is the parameter's.
+    pub(crate) fn with_tangents(
+        mut self,
+        name: &str,
+        given: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Self> {
         let Some(given) = given else { return Ok(self) };
         let (tangents, count, each) = points(given, name)?;
         if count != self.count || !(each == 2 || each == self.points_each) {
@@ -178,8 +210,8 @@ impl<'py> Robots<'py> {
         Ok(self)
     }
 
-    /// These robots, each beside one of the others. Where there is one of either, it stands for as many as there are of the
-    /// others.
+    /// These robots, each beside one of the others. Where there is one of either, it stands for as
+    /// many as there are of the others.
     pub(crate) fn with_others(mut self, py: Python<'_>, mut others: Self) -> PyResult<Self> {
         match (self.count, others.count) {
             (None, Some(count)) => self.stand_for(count),
@@ -187,8 +219,9 @@ impl<'py> Robots<'py> {
             (one, other) if one == other => {}
             (one, other) => {
                 let [one, other] = [one, other].map(Option::unwrap_or_default);
-                let text =
-                    format!("there are {one} robots beside {other}; give as many of both, or one of either");
+                let text = format!(
+                    "there are {one} robots beside {other}; give as many of both, or one of either"
+                );
                 return Err(refuse(py, text));
             }
         }

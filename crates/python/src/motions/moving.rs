@@ -2,7 +2,8 @@
 
 use parry_continuum::parry::math::Pose;
 use parry_continuum::{
-    BendingMotion, Course, LinearMotion, Motion, MotionPath, MovingBase, RigidMotion, RobotError, Speed, Tube,
+    BendingMotion, Course, LinearMotion, Motion, MotionPath, MovingBase, RigidMotion, RobotError,
+    Speed, Tube,
 };
 
 /// One motion of a batch, of whatever kind.

@@ -15,7 +15,10 @@ pub(super) struct Way {
 }
 
 impl Way {
-    pub(super) fn new(start_pose: &Bound<'_, PyAny>, end_pose: &Bound<'_, PyAny>) -> PyResult<Self> {
+    pub(super) fn new(
+        start_pose: &Bound<'_, PyAny>,
+        end_pose: &Bound<'_, PyAny>,
+    ) -> PyResult<Self> {
         let [start, end] = [(start_pose, NAMES[0]), (end_pose, NAMES[1])].map(|(pose, name)| {
             let (poses, count) = Poses::batch(pose, name)?;
             Ok::<_, PyErr>((poses.matrices(0..count.unwrap_or(1)).to_vec(), count))

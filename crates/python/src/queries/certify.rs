@@ -13,9 +13,10 @@ use pyo3::prelude::*;
 impl Mesh {
     /// Bounds on the distances of a `PerLink` answer that hold whatever was rounded on the way.
     ///
-    /// Each bounds the distance between a segment's link and the triangle that the answer names, of the mesh as it is now. They
-    /// are computed in twice the digits, without trust in the code that answered: ``lower <= answer.distance <= upper`` but for
-    /// the last bits of the distance.
+    /// Each bounds the distance between a segment's link and the triangle that the answer names, of
+    /// the mesh as it is now. They are computed in twice the digits, without trust in the code
+    /// that answered: ``lower <= answer.distance <= upper`` but for the last bits of the
+    /// distance.
     ///
     /// Parameters
     /// ----------
@@ -26,7 +27,8 @@ impl Mesh {
     /// Returns
     /// -------
     /// Certificate
-    ///     ``lower`` and ``upper``, arrays of the shape of ``answer.distance``; NaN for segments without length.
+    ///     ``lower`` and ``upper``, arrays of the shape of ``answer.distance``; NaN for segments
+    /// without length.
     ///
     /// Raises
     /// ------
@@ -54,9 +56,9 @@ impl Mesh {
         let robots = Robots::new("points", points, radii, pose)?;
         let segments = robots.segments_each();
         let refuse = |text: String| Refused::other("answer_does_not_fit", text).raise(py, None);
-        let triangles = answer
-            .getattr("triangle")
-            .map_err(|_| refuse("`answer` has no triangles; give what `per_link` returned".into()))?;
+        let triangles = answer.getattr("triangle").map_err(|_| {
+            refuse("`answer` has no triangles; give what `per_link` returned".into())
+        })?;
         let triangles = Numbers::new(&triangles, "answer.triangle")?;
         let shape = robots.shape(&[segments]);
         if triangles.shape() != shape {
@@ -89,9 +91,14 @@ impl Mesh {
             }
             Ok(())
         };
-        ask_each(py, &self.engine(py), &robots, ([f64::NAN; 2], segments.max(1)), ask, |_, found| {
-            bounds.extend(found)
-        })?;
+        ask_each(
+            py,
+            &self.engine(py),
+            &robots,
+            ([f64::NAN; 2], segments.max(1)),
+            ask,
+            |_, found| bounds.extend(found),
+        )?;
         let lower = array(py, shape.clone(), bounds.iter().map(|it| it[0]).collect())?;
         let upper = array(py, shape, bounds.iter().map(|it| it[1]).collect())?;
         crate::output::answer!(py, "Certificate", (lower, upper))

@@ -45,7 +45,8 @@ pub(crate) fn tube(robot: &Given<'_>, stated: Stated) -> Result<Tube, Refused> {
 }
 
 impl Session {
-    /// Makes the session's tube that of a robot, in the memory that it has where the robot is given by samples alone.
+    /// Makes the session's tube that of a robot, in the memory that it has where the robot is given
+    /// by samples alone.
     fn set_tube(&mut self, robot: &Given<'_>, stated: Stated) -> Result<Pose, Refused> {
         let has_samples = stated.deviation == 0.0 && stated.turn.is_none() && !has_frames(robot);
         match &mut self.tube {
@@ -82,18 +83,22 @@ pub(crate) fn tubes<'py>(
 
 /// `set_tube` leaves one.
 fn no_tube() -> Refused {
-    Refused::other("defect", "no tube was made; this is a defect of parry-continuum, please report it")
+    Refused::other(
+        "defect",
+        "no tube was made; this is a defect of parry-continuum, please report it",
+    )
 }
 
 #[pymethods]
 impl Mesh {
     /// The clearance of curved tubes, between proven bounds.
     ///
-    /// A robot is taken for what it is: a smooth tube through its points, with flat ends. Between two points it bends no more
-    /// than the points show. ``lower <= clearance <= upper`` always holds, rounding included.
+    /// A robot is taken for what it is: a smooth tube through its points, with flat ends. Between
+    /// two points it bends no more than the points show. ``lower <= clearance <= upper`` always
+    /// holds, rounding included.
     ///
-    /// Of a batch, a robot that is refused costs the others nothing: its bounds are NaN, and its ``status`` is the ``kind`` of
-    /// its error. Of all others the status is the empty string.
+    /// Of a batch, a robot that is refused costs the others nothing: its bounds are NaN, and its
+    /// ``status`` is the ``kind`` of its error. Of all others the status is the empty string.
     ///
     /// Parameters
     /// ----------
@@ -102,26 +107,28 @@ impl Mesh {
     /// tolerance : float
     ///     How far apart the bounds may be, at least 0.
     /// tangents : (2, 3), (N, 3), (B, 2, 3) or (B, N, 3) array, optional
-    ///     The directions of the curve at its two ends or at all points, towards the tip, of any length. Those of the ends tell
-    ///     how the flat ends are turned, and those of all points how the curve bends between them: without them the bounds are
-    ///     as wide as the points leave that open. A point that is given twice needs one direction.
-    /// deviation : float
-    ///     How far a point may be from the curve, for points that are measured: a smooth curve is fitted within that, and the
-    ///     bounds hold for every tube whose centreline is so near to it. It is for points without tangents.
-    /// turn : float, optional
-    ///     The largest angle, in rad, between the robot's true direction and the curve's at flat ends: its two ends, and steps in
-    ///     radius. Without it, a ``deviation`` leaves the bounds a radius apart there.
+    ///     The directions of the curve at its two ends or at all points, towards the tip, of any
+    /// length. Those of the ends tell     how the flat ends are turned, and those of all points
+    /// how the curve bends between them: without them the bounds are     as wide as the points
+    /// leave that open. A point that is given twice needs one direction. deviation : float
+    ///     How far a point may be from the curve, for points that are measured: a smooth curve is
+    /// fitted within that, and the     bounds hold for every tube whose centreline is so near
+    /// to it. It is for points without tangents. turn : float, optional
+    ///     The largest angle, in rad, between the robot's true direction and the curve's at flat
+    /// ends: its two ends, and steps in     radius. Without it, a ``deviation`` leaves the
+    /// bounds a radius apart there.
     ///
     /// Returns
     /// -------
     /// Clearance
-    ///     Numbers and points of one robot, or arrays with one for each robot. ``resolved`` says whether the bounds are as close
-    ///     as was asked for.
+    ///     Numbers and points of one robot, or arrays with one for each robot. ``resolved`` says
+    /// whether the bounds are as close     as was asked for.
     ///
     /// Raises
     /// ------
     /// ContinuumError
-    ///     The tolerance is negative or NaN. Of one robot: the turn is negative or not finite, its points turn too sharply for a tube, or as for `distance`.
+    ///     The tolerance is negative or NaN. Of one robot: the turn is negative or not finite, its
+    /// points turn too sharply for a tube, or as for `distance`.
     ///
     /// Examples
     /// --------
@@ -147,7 +154,8 @@ impl Mesh {
         pose: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let stated = Stated { deviation, turn };
-        let robots = tubes(Robots::new("points", points, radii, pose)?, "tangents", tangents, stated)?;
+        let robots =
+            tubes(Robots::new("points", points, radii, pose)?, "tangents", tangents, stated)?;
         if tolerance.is_nan() || tolerance < 0.0 {
             let error = parry_continuum::proximity::ProximityError::Negative {
                 parameter: "tolerance",
@@ -158,34 +166,43 @@ impl Mesh {
         let is_batch = robots.count.is_some();
         let mut all: Vec<Option<Clearance>> = Vec::with_capacity(robots.len());
         let mut status = Vec::with_capacity(robots.len());
-        let ask =
-            |session: &mut Session, robot: &Given<'_>, row: &mut [(Option<Clearance>, &'static str)]| {
-                let pose = session.set_tube(robot, stated);
-                let found = pose.and_then(|pose| {
-                    let tube = session.tube.as_ref().ok_or_else(no_tube)?;
-                    Ok(session.search.clearance(tube, &pose, tolerance)?)
-                });
-                row[0] = match found {
-                    Ok(found) => (Some(found), ""),
-                    Err(refused) if is_batch => (None, refused.kind()),
-                    Err(refused) => return Err(refused),
-                };
-                Ok(())
+        let ask = |session: &mut Session,
+                   robot: &Given<'_>,
+                   row: &mut [(Option<Clearance>, &'static str)]| {
+            let pose = session.set_tube(robot, stated);
+            let found = pose.and_then(|pose| {
+                let tube = session.tube.as_ref().ok_or_else(no_tube)?;
+                Ok(session.search.clearance(tube, &pose, tolerance)?)
+            });
+            row[0] = match found {
+                Ok(found) => (Some(found), ""),
+                Err(refused) if is_batch => (None, refused.kind()),
+                Err(refused) => return Err(refused),
             };
+            Ok(())
+        };
         ask_each(py, &self.engine(py), &robots, ((None, ""), 1), ask, |_, found| {
             all.extend(found.iter().map(|row| row.0));
             status.extend(found.iter().map(|row| row.1));
         })?;
         let shape = || robots.shape(&[]);
         let numbers = |of: fn(&Clearance) -> f64| {
-            array_or_number(py, shape(), all.iter().map(|it| it.as_ref().map_or(f64::NAN, of)).collect())
+            array_or_number(
+                py,
+                shape(),
+                all.iter().map(|it| it.as_ref().map_or(f64::NAN, of)).collect(),
+            )
         };
         let places = |of: fn(&Clearance) -> u32| {
             let places = all.iter().map(|it| it.as_ref().map_or(-1, |it| of(it).into()));
             array_or_number(py, shape(), places.collect::<Vec<i64>>())
         };
         let points = |of: fn(&Clearance) -> Vector| {
-            array(py, robots.shape(&[3]), flat(all.iter().map(|it| it.as_ref().map_or(Vector::NAN, of))))
+            array(
+                py,
+                robots.shape(&[3]),
+                flat(all.iter().map(|it| it.as_ref().map_or(Vector::NAN, of))),
+            )
         };
         let resolved = all.iter().map(|it| it.as_ref().is_some_and(|it| it.resolved)).collect();
         let status = match robots.count {
@@ -216,8 +233,8 @@ impl Mesh {
     /// margin : float
     ///     A length, at least 0.
     /// resolution : float
-    ///     The answer is undecided only where the clearance is within this of the margin, or where 65,536
-    ///     pieces do not decide it.
+    ///     The answer is undecided only where the clearance is within this of the margin, or where
+    /// 65,536     pieces do not decide it.
     ///
     /// Returns
     /// -------
@@ -227,8 +244,9 @@ impl Mesh {
     /// Raises
     /// ------
     /// ContinuumError
-    ///     The margin or the resolution is negative or NaN, or the resolution is finer than the points allow: ``possible`` says
-    ///     what can be had. Of a batch, ``robot`` is the first that is refused.
+    ///     The margin or the resolution is negative or NaN, or the resolution is finer than the
+    /// points allow: ``possible`` says     what can be had. Of a batch, ``robot`` is the first
+    /// that is refused.
     #[pyo3(signature = (points, radii, margin, resolution, *, tangents = None, deviation = 0.0, turn = None, pose = None))]
     #[allow(clippy::too_many_arguments)] // they are named in Python
     fn tube_clears<'py>(
@@ -244,7 +262,8 @@ impl Mesh {
         pose: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let stated = Stated { deviation, turn };
-        let robots = tubes(Robots::new("points", points, radii, pose)?, "tangents", tangents, stated)?;
+        let robots =
+            tubes(Robots::new("points", points, radii, pose)?, "tangents", tangents, stated)?;
         let mut all: Vec<i8> = Vec::with_capacity(robots.len());
         let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [i8]| {
             let pose = session.set_tube(robot, stated)?;

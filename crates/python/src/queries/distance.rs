@@ -12,7 +12,11 @@ use pyo3::prelude::*;
 
 impl Session {
     /// The closest link and triangle of a robot.
-    pub(crate) fn minimum(&mut self, robot: &Given<'_>, caps: Caps) -> Result<LinkProximity, Refused> {
+    pub(crate) fn minimum(
+        &mut self,
+        robot: &Given<'_>,
+        caps: Caps,
+    ) -> Result<LinkProximity, Refused> {
         let chain = set_chain(&mut self.chain, robot, caps)?;
         Ok(self.search.minimum(chain, &robot.pose()?)?)
     }
@@ -39,8 +43,9 @@ pub(crate) fn set_chain<'a>(
 impl Mesh {
     /// The distance between robots and the mesh's surface.
     ///
-    /// It is 0 where they touch or overlap, and exact for the shape that `points`, `radii` and `caps` describe. It has no
-    /// sign: a robot that touches nothing may be on either side of the wall (`side`, `clears_inside`).
+    /// It is 0 where they touch or overlap, and exact for the shape that `points`, `radii` and
+    /// `caps` describe. It has no sign: a robot that touches nothing may be on either side of
+    /// the wall (`side`, `clears_inside`).
     ///
     /// Parameters
     /// ----------
@@ -49,9 +54,10 @@ impl Mesh {
     /// radii : float, (N - 1,) or (B, N - 1) array
     ///     One radius for each segment between two points.
     /// pose : (4, 4) or (B, 4, 4) array, optional
-    ///     From the robot's frame to the mesh's: a rotation, a shift in the last column, and 0 0 0 1.
-    /// caps : {"fitted", "capsules", "cylinders"}
-    ///     How links end: flat at the robot's ends and at steps in radius, and round at bends; all round; or all flat.
+    ///     From the robot's frame to the mesh's: a rotation, a shift in the last column, and 0 0 0
+    /// 1. caps : {"fitted", "capsules", "cylinders"}
+    ///     How links end: flat at the robot's ends and at steps in radius, and round at bends; all
+    /// round; or all flat.
     ///
     /// Returns
     /// -------
@@ -60,7 +66,8 @@ impl Mesh {
     /// Raises
     /// ------
     /// ContinuumError
-    ///     Points or radii are no robot, or the pose is not rigid. Of a batch, ``robot`` is the first that is refused.
+    ///     Points or radii are no robot, or the pose is not rigid. Of a batch, ``robot`` is the
+    /// first that is refused.
     ///
     /// Examples
     /// --------
@@ -87,7 +94,9 @@ impl Mesh {
             row[0] = session.minimum(robot, caps)?.distance;
             Ok(())
         };
-        ask_each(py, &self.engine(py), &robots, (f64::NAN, 1), ask, |_, found| distances.extend(found))?;
+        ask_each(py, &self.engine(py), &robots, (f64::NAN, 1), ask, |_, found| {
+            distances.extend(found)
+        })?;
         array_or_number(py, robots.shape(&[]), distances)
     }
 
@@ -101,8 +110,8 @@ impl Mesh {
     /// Returns
     /// -------
     /// Minimum
-    ///     Numbers and points of one robot, or arrays with one for each robot. Of equal distances the lowest triangle is
-    ///     named, then the lowest segment.
+    ///     Numbers and points of one robot, or arrays with one for each robot. Of equal distances
+    /// the lowest triangle is     named, then the lowest segment.
     ///
     /// Raises
     /// ------
@@ -142,9 +151,17 @@ impl Mesh {
             array_or_number(py, shape(), all.iter().map(|found| found.distance).collect())?,
             points(|found| found.on_robot)?,
             points(|found| found.on_mesh)?,
-            array_or_number(py, shape(), all.iter().map(|found| i64::from(found.segment)).collect())?,
+            array_or_number(
+                py,
+                shape(),
+                all.iter().map(|found| i64::from(found.segment)).collect(),
+            )?,
             array_or_number(py, shape(), all.iter().map(|found| found.arc_length).collect())?,
-            array_or_number(py, shape(), all.iter().map(|found| i64::from(found.triangle)).collect())?,
+            array_or_number(
+                py,
+                shape(),
+                all.iter().map(|found| i64::from(found.triangle)).collect(),
+            )?,
         );
         answer!(py, "Minimum", values)
     }

@@ -15,7 +15,11 @@ struct Least {
 }
 
 impl Question<MotionClearance> for Least {
-    fn ask(&self, session: &mut Session, motion: &impl Motion) -> Result<MotionClearance, ProximityError> {
+    fn ask(
+        &self,
+        session: &mut Session,
+        motion: &impl Motion,
+    ) -> Result<MotionClearance, ProximityError> {
         session.search.clearance_of_motion(motion, self.tolerance)
     }
 }
@@ -63,14 +67,24 @@ impl Mesh {
         caps: Option<Caps>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let way = Way::new(&Arguments { start, end, radii, caps })?;
-        let all = way.ask(py, &self.engine(py), &Least { tolerance: needed(py, "tolerance", tolerance)? })?;
+        let all = way.ask(
+            py,
+            &self.engine(py),
+            &Least { tolerance: needed(py, "tolerance", tolerance)? },
+        )?;
         let shape = |last: &[usize]| way.count().iter().chain(last).copied().collect::<Vec<_>>();
-        let numbers =
-            |of: fn(&MotionClearance) -> f64| array_or_number(py, shape(&[]), all.iter().map(of).collect());
-        let places = |of: fn(&MotionClearance) -> u32| {
-            array_or_number(py, shape(&[]), all.iter().map(|it| of(it).into()).collect::<Vec<i64>>())
+        let numbers = |of: fn(&MotionClearance) -> f64| {
+            array_or_number(py, shape(&[]), all.iter().map(of).collect())
         };
-        let points = |of: fn(&MotionClearance) -> Vector| array(py, shape(&[3]), flat(all.iter().map(of)));
+        let places = |of: fn(&MotionClearance) -> u32| {
+            array_or_number(
+                py,
+                shape(&[]),
+                all.iter().map(|it| of(it).into()).collect::<Vec<i64>>(),
+            )
+        };
+        let points =
+            |of: fn(&MotionClearance) -> Vector| array(py, shape(&[3]), flat(all.iter().map(of)));
         let values = (
             numbers(|found| found.lower)?,
             numbers(|found| found.upper)?,

@@ -16,8 +16,9 @@ fn one(py: Python<'_>, count: Option<usize>) -> PyResult<()> {
     match count {
         None => Ok(()),
         Some(count) => {
-            let text =
-                format!("a proof is about one robot or motion, and {count} are given; give them one by one");
+            let text = format!(
+                "a proof is about one robot or motion, and {count} are given; give them one by one"
+            );
             Err(Refused::other("bad_shape", text).raise(py, None))
         }
     }
@@ -41,7 +42,9 @@ impl Mesh {
             row[0] = ask(session, robot)?;
             Ok(())
         };
-        ask_each(py, &self.engine(py), robots, (None, 1), ask, |_, found| proof = found[0].clone())?;
+        ask_each(py, &self.engine(py), robots, (None, 1), ask, |_, found| {
+            proof = found[0].clone()
+        })?;
         Ok(text(proof))
     }
 }
@@ -52,19 +55,25 @@ struct Proves {
 }
 
 impl Question<Option<Proof>> for Proves {
-    fn ask(&self, session: &mut Session, motion: &impl Motion) -> Result<Option<Proof>, ProximityError> {
+    fn ask(
+        &self,
+        session: &mut Session,
+        motion: &impl Motion,
+    ) -> Result<Option<Proof>, ProximityError> {
         session.search.prove_motion(motion, self.margin, self.resolution)
     }
 }
 
 #[pymethods]
 impl Mesh {
-    /// A proof that a robot keeps more than a margin away, for those who do not trust this library: a text that a short program in
-    /// plain Python checks, ``docs/book/check_proof.py`` in the repository. The page on proofs beside it says what it means.
+    /// A proof that a robot keeps more than a margin away, for those who do not trust this library:
+    /// a text that a short program in plain Python checks, ``docs/book/check_proof.py`` in the
+    /// repository. The page on proofs beside it says what it means.
     ///
     /// The proof does not say on which side of the wall the robot is: `side` answers that.
     ///
-    /// The program reads the mesh as an OBJ file with the vertices and triangles that the mesh has here, in its order.
+    /// The program reads the mesh as an OBJ file with the vertices and triangles that the mesh has
+    /// here, in its order.
     ///
     /// Parameters
     /// ----------
@@ -110,8 +119,8 @@ impl Mesh {
         })
     }
 
-    /// The same for a curved tube. What the proof takes for granted of the curve is printed by the program that checks it: points,
-    /// and how long and how bent it is between them at most.
+    /// The same for a curved tube. What the proof takes for granted of the curve is printed by the
+    /// program that checks it: points, and how long and how bent it is between them at most.
     ///
     /// Parameters
     /// ----------
@@ -148,15 +157,16 @@ impl Mesh {
         pose: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Option<String>> {
         let stated = Stated { deviation, turn };
-        let robots = tubes(Robots::new("points", points, radii, pose)?, "tangents", tangents, stated)?;
+        let robots =
+            tubes(Robots::new("points", points, radii, pose)?, "tangents", tangents, stated)?;
         self.prove_one(py, &robots, |session, robot| {
             let tube = super::clearance::tube(robot, stated)?;
             Ok(session.search.prove_tube(&tube, &robot.pose()?, margin, resolution)?)
         })
     }
 
-    /// The same for a motion: the proof that the robot keeps more than the margin away at every time from 0 to 1. The speeds of
-    /// the motion are taken for granted, and printed.
+    /// The same for a motion: the proof that the robot keeps more than the margin away at every
+    /// time from 0 to 1. The speeds of the motion are taken for granted, and printed.
     ///
     /// Parameters
     /// ----------
@@ -166,8 +176,8 @@ impl Mesh {
     /// Returns
     /// -------
     /// str or None
-    ///     None if some shape does not keep the margin, or by no more than about the resolution; or if the proof would take
-    ///     more than 65,536 shapes or 16 MiB.
+    ///     None if some shape does not keep the margin, or by no more than about the resolution; or
+    /// if the proof would take     more than 65,536 shapes or 16 MiB.
     ///
     /// Raises
     /// ------

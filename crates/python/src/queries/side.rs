@@ -11,8 +11,8 @@ use pyo3::prelude::*;
 impl Mesh {
     /// On which side of the mesh points are, proven.
     ///
-    /// Triangles may face outward or inward, as long as all do the same. Near holes of an open mesh, and on triangles, the
-    /// answer is ``Side.UNDECIDED``.
+    /// Triangles may face outward or inward, as long as all do the same. Near holes of an open
+    /// mesh, and on triangles, the answer is ``Side.UNDECIDED``.
     ///
     /// Parameters
     /// ----------
@@ -22,8 +22,8 @@ impl Mesh {
     /// Returns
     /// -------
     /// Side or array of int8
-    ///     The side of one point, or an array of the shape that `points` has without its last axis: -1 inside, 1 outside and 0
-    ///     undecided.
+    ///     The side of one point, or an array of the shape that `points` has without its last axis:
+    /// -1 inside, 1 outside and 0     undecided.
     ///
     /// Raises
     /// ------
@@ -39,9 +39,15 @@ impl Mesh {
     /// True
     /// >>> tetrahedron.side([[0.1, 0.1, 0.1], [2, 2, 2], [0, 0, 0]])
     /// array([-1,  1,  0], dtype=int8)
-    fn side<'py>(&self, py: Python<'py>, points: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    fn side<'py>(
+        &self,
+        py: Python<'py>,
+        points: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyAny>> {
         let numbers = Numbers::new(points, "points")?;
-        let Some((3, shape)) = numbers.shape().split_last().map(|(last, rest)| (*last, rest.to_vec())) else {
+        let Some((3, shape)) =
+            numbers.shape().split_last().map(|(last, rest)| (*last, rest.to_vec()))
+        else {
             let text = format!(
                 "`points` has the shape {}, not (..., 3); give a row of three coordinates for each point",
                 shape_text(numbers.shape())
@@ -49,8 +55,9 @@ impl Mesh {
             return Err(Refused::other("bad_shape", text).raise(py, None));
         };
         let points = vectors(numbers.points());
-        let sides =
-            ask_points(py, &self.engine(py), &points, |search, point| side_value(search.side(point)))?;
+        let sides = ask_points(py, &self.engine(py), &points, |search, point| {
+            side_value(search.side(point))
+        })?;
         members(py, "Side", shape, sides)
     }
 }

@@ -63,7 +63,8 @@ impl<'a, 'py> Way<'a, 'py> {
         let end = needed(py, "end", given.end)?;
         let radii = needed(py, "radii", given.radii)?;
         let make = maker(py, given.caps.unwrap_or(Caps::Fitted))?;
-        let robots = Robots::new("start", given.start, radii, None)?.with_as_many("end", end, "start")?;
+        let robots =
+            Robots::new("start", given.start, radii, None)?.with_as_many("end", end, "start")?;
         Ok(Self::Linear(robots, make))
     }
 

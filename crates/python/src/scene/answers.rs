@@ -90,8 +90,9 @@ pub(super) fn per_structure<'py>(
     shape: &[usize],
     all: &[StructureProximity],
 ) -> PyResult<Bound<'py, PyAny>> {
-    let numbers =
-        |of: fn(&StructureProximity) -> f64| array(py, shape.to_vec(), all.iter().map(of).collect());
+    let numbers = |of: fn(&StructureProximity) -> f64| {
+        array(py, shape.to_vec(), all.iter().map(of).collect())
+    };
     let places = |of: fn(&StructureProximity) -> u32| {
         array(py, shape.to_vec(), all.iter().map(|it| of(it).into()).collect::<Vec<i64>>())
     };
@@ -118,15 +119,19 @@ pub(super) fn contacts<'py>(
     offsets: Vec<i64>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let count = || vec![all.len()];
-    let numbers =
-        |of: fn(&Contact) -> f64| array(py, count(), all.iter().map(|it| of(&it.contact)).collect());
+    let numbers = |of: fn(&Contact) -> f64| {
+        array(py, count(), all.iter().map(|it| of(&it.contact)).collect())
+    };
     let places = |of: fn(&SceneContact) -> u32| {
         array(py, count(), all.iter().map(|it| of(it).into()).collect::<Vec<i64>>())
     };
     let points = |of: fn(&Contact) -> Vector| {
         array(py, vec![all.len(), 3], flat(all.iter().map(|it| of(&it.contact))))
     };
-    let set_of = offsets.windows(2).zip(0_i64..).flat_map(|(ends, set)| (ends[0]..ends[1]).map(move |_| set));
+    let set_of = offsets
+        .windows(2)
+        .zip(0_i64..)
+        .flat_map(|(ends, set)| (ends[0]..ends[1]).map(move |_| set));
     let values = [
         places(|it| it.structure)?.into_any(),
         places(|it| it.robot)?.into_any(),

@@ -18,16 +18,17 @@ use std::sync::Arc;
 
 /// Several meshes, the structures, each with a margin of its own or none, and robots among them.
 ///
-/// A structure is a `Mesh`: where that moves, the structure has moved for all queries that begin later. Robots are a list, each
-/// ``(points, radii)`` or ``(points, radii, pose)``; each is one shape or a batch of as many.
+/// A structure is a `Mesh`: where that moves, the structure has moved for all queries that begin
+/// later. Robots are a list, each ``(points, radii)`` or ``(points, radii, pose)``; each is one
+/// shape or a batch of as many.
 ///
 /// Parameters
 /// ----------
 /// robot_margin : float, optional
 ///     What robots keep from one another. Without it they are not held against one another.
 /// nested : sequence of (int, int), optional
-///     Pairs of robots one of which is inside the other, as a tube in the tube that guides it: they touch, and are not held
-///     against one another. The numbers are places in the list of robots.
+///     Pairs of robots one of which is inside the other, as a tube in the tube that guides it: they
+/// touch, and are not held     against one another. The numbers are places in the list of robots.
 ///
 /// Raises
 /// ------
@@ -76,11 +77,15 @@ impl Lender for Snapshot {
     type Session = Session;
 
     fn lend(&self, py: Python<'_>) -> PyResult<Session> {
-        let lent =
-            self.structures.iter().map(|(_, engine, ..)| engine.lend(py)).collect::<PyResult<Vec<_>>>()?;
+        let lent = self
+            .structures
+            .iter()
+            .map(|(_, engine, ..)| engine.lend(py))
+            .collect::<PyResult<Vec<_>>>()?;
         let mut scene = proximity::Scene::new();
         let mut build = || -> Result<(), Refused> {
-            for (number, ((name, _, margin, pose), session)) in self.structures.iter().zip(&lent).enumerate()
+            for (number, ((name, _, margin, pose), session)) in
+                self.structures.iter().zip(&lent).enumerate()
             {
                 scene.add(name.clone(), session.search.clone(), *margin)?;
                 scene.set_pose(number, pose)?;
@@ -93,7 +98,8 @@ impl Lender for Snapshot {
     }
 
     fn take_back(&self, py: Python<'_>, lent: usize, sessions: impl IntoIterator<Item = Session>) {
-        let mut free: Vec<Vec<threads::Session>> = self.structures.iter().map(|_| Vec::new()).collect();
+        let mut free: Vec<Vec<threads::Session>> =
+            self.structures.iter().map(|_| Vec::new()).collect();
         for session in sessions {
             session.lent.into_iter().zip(&mut free).for_each(|(session, free)| free.push(session));
         }
@@ -106,7 +112,8 @@ impl Lender for Snapshot {
 impl Scene {
     fn snapshot(&self, py: Python<'_>) -> Snapshot {
         let structures = self.structures.with(py, |structures| {
-            let copy = |it: &Structure| (it.name.clone(), it.mesh.clone_ref(py), it.margin, it.pose);
+            let copy =
+                |it: &Structure| (it.name.clone(), it.mesh.clone_ref(py), it.margin, it.pose);
             structures.iter().map(copy).collect::<Vec<_>>()
         });
         let engines = structures
@@ -124,7 +131,8 @@ impl Scene {
 fn check(py: Python<'_>, parameter: &'static str, margin: Option<f64>) -> PyResult<()> {
     match margin {
         Some(value) if value.is_nan() || value < 0.0 => {
-            Err(Refused::Query(proximity::ProximityError::Negative { parameter, value }).raise(py, None))
+            Err(Refused::Query(proximity::ProximityError::Negative { parameter, value })
+                .raise(py, None))
         }
         _ => Ok(()),
     }
@@ -169,7 +177,8 @@ impl Scene {
             None => Pose::IDENTITY,
             Some(pose) => {
                 let numbers = Numbers::new(pose, "pose")?;
-                let (&[4, 4], Some(matrix)) = (numbers.shape(), numbers.values().as_chunks::<16>().0.first())
+                let (&[4, 4], Some(matrix)) =
+                    (numbers.shape(), numbers.values().as_chunks::<16>().0.first())
                 else {
                     let text = format!(
                         "`pose` has the shape {}; give None, or the shape (4, 4)",
@@ -236,7 +245,8 @@ impl Scene {
     /// Returns
     /// -------
     /// Tightest
-    ///     Of one set of robots, or arrays with one entry for each. Of equal slacks the lowest structure is named.
+    ///     Of one set of robots, or arrays with one entry for each. Of equal slacks the lowest
+    /// structure is named.
     ///
     /// Raises
     /// ------
@@ -254,7 +264,8 @@ impl Scene {
         let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [Row]| {
             let placed = place(&mut session.chains, robot, caps)?;
             let chains: Vec<_> = placed.iter().map(|(chain, pose, _)| (*chain, *pose)).collect();
-            row[0] = session.scene.tightest(&chains)?.map_or(NOTHING, |found| Row::new(&found, &placed));
+            row[0] =
+                session.scene.tightest(&chains)?.map_or(NOTHING, |found| Row::new(&found, &placed));
             Ok(())
         };
         ask_each(py, &self.snapshot(py), &robots, (NOTHING, 1), ask, |_, found| all.extend(found))?;
@@ -285,8 +296,11 @@ impl Scene {
         caps: Caps,
     ) -> PyResult<Bound<'py, PyAny>> {
         let (robots, snapshot) = (robots::robots(py, robots)?, self.snapshot(py));
-        let mut all: Vec<StructureProximity> = Vec::with_capacity(robots.len() * snapshot.structures.len());
-        let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [Vec<StructureProximity>]| {
+        let mut all: Vec<StructureProximity> =
+            Vec::with_capacity(robots.len() * snapshot.structures.len());
+        let ask = |session: &mut Session,
+                   robot: &Given<'_>,
+                   row: &mut [Vec<StructureProximity>]| {
             let placed = place(&mut session.chains, robot, caps)?;
             let placed: Vec<_> = placed.into_iter().map(|(chain, pose, _)| (chain, pose)).collect();
             Ok(session.scene.per_structure(&placed, &mut row[0])?)
@@ -297,8 +311,9 @@ impl Scene {
         per_structure(py, &robots.shape(&[snapshot.structures.len()]), &all)
     }
 
-    /// Every contact of every robot with every structure that is at most `reach` away, whether that has a margin or not, structure
-    /// by structure and robot by robot: `Mesh.within` of all of them.
+    /// Every contact of every robot with every structure that is at most `reach` away, whether that
+    /// has a margin or not, structure by structure and robot by robot: `Mesh.within` of all of
+    /// them.
     ///
     /// Parameters
     /// ----------
@@ -310,7 +325,8 @@ impl Scene {
     /// Returns
     /// -------
     /// SceneContacts
-    ///     Arrays of one length, with a row for each contact. Those of set k of the batch are ``offsets[k]:offsets[k + 1]``.
+    ///     Arrays of one length, with a row for each contact. Those of set k of the batch are
+    /// ``offsets[k]:offsets[k + 1]``.
     ///
     /// Raises
     /// ------

@@ -21,7 +21,9 @@ pub(super) fn place<'a>(
         chains.resize_with(robots.len(), || None);
     }
     let placed = chains.iter_mut().zip(&robots);
-    placed.map(|(chain, robot)| Ok((set_chain(chain, robot, caps)?, robot.pose()?, robot.points))).collect()
+    placed
+        .map(|(chain, robot)| Ok((set_chain(chain, robot, caps)?, robot.pose()?, robot.points)))
+        .collect()
 }
 
 /// Each robot of a list holds the next one.
@@ -34,9 +36,12 @@ pub(super) fn robots<'py>(py: Python<'py>, given: Vec<Bound<'py, PyAny>>) -> PyR
         if let Ok((points, radii)) = given.extract::<(Bound<'py, PyAny>, Bound<'py, PyAny>)>() {
             return Robots::new("points", &points, &radii, None);
         }
-        let three = given.extract::<(Bound<'py, PyAny>, Bound<'py, PyAny>, Option<Bound<'py, PyAny>>)>();
+        let three =
+            given.extract::<(Bound<'py, PyAny>, Bound<'py, PyAny>, Option<Bound<'py, PyAny>>)>();
         let (points, radii, pose) = three.map_err(|_| {
-            refuse("`robots` has an entry that is no tuple (points, radii) or (points, radii, pose)")
+            refuse(
+                "`robots` has an entry that is no tuple (points, radii) or (points, radii, pose)",
+            )
         })?;
         Robots::new("points", &points, &radii, pose.as_ref())
     };
@@ -48,6 +53,7 @@ pub(super) fn robots<'py>(py: Python<'py>, given: Vec<Bound<'py, PyAny>>) -> PyR
         return Err(refuse(&text));
     }
     let mut all = given.iter().rev();
-    let last = all.next().ok_or_else(|| refuse("`robots` is empty; give a list of at least one robot"))?;
+    let last =
+        all.next().ok_or_else(|| refuse("`robots` is empty; give a list of at least one robot"))?;
     all.try_fold(one(last)?, |others, given| one(given)?.with_others(py, others))
 }

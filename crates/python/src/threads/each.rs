@@ -55,7 +55,12 @@ pub(crate) trait Lender {
     fn lend(&self, py: Python<'_>) -> PyResult<Self::Session>;
 
     /// Takes sessions back: as many as were lent, or fewer where a defect cost some of them.
-    fn take_back(&self, py: Python<'_>, lent: usize, sessions: impl IntoIterator<Item = Self::Session>);
+    fn take_back(
+        &self,
+        py: Python<'_>,
+        lent: usize,
+        sessions: impl IntoIterator<Item = Self::Session>,
+    );
 }
 
 impl<L: Lender> Lender for Arc<L> {
@@ -65,15 +70,21 @@ impl<L: Lender> Lender for Arc<L> {
         (**self).lend(py)
     }
 
-    fn take_back(&self, py: Python<'_>, lent: usize, sessions: impl IntoIterator<Item = Self::Session>) {
+    fn take_back(
+        &self,
+        py: Python<'_>,
+        lent: usize,
+        sessions: impl IntoIterator<Item = Self::Session>,
+    ) {
         (**self).take_back(py, lent, sessions);
     }
 }
 
-/// Answers about each robot, or motion, `width` of them for each, at least one, in order. `take` gets them chunk by chunk, with
-/// the place of the first of them.
+/// Answers about each robot, or motion, `width` of them for each, at least one, in order. `take`
+/// gets them chunk by chunk, with the place of the first of them.
 ///
-/// The first robot that is refused ends it. All are asked about the same mesh, whatever moves meanwhile.
+/// The first robot that is refused ends it. All are asked about the same mesh, whatever moves
+/// meanwhile.
 pub(crate) fn ask_each<T: Clone + Send, L: Lender, Q: Asked>(
     py: Python<'_>,
     lender: &L,
@@ -135,13 +146,21 @@ struct Rows<'a, Q: Asked, A> {
 }
 
 impl<Q: Asked, A> Rows<'_, Q, A> {
-    /// Asks about the robots from the place `first` on, one for each row of answers. Returns the first that is refused.
-    fn ask<S, T>(&self, session: &mut S, first: usize, answers: &mut [T]) -> Option<(usize, Refused)>
+    /// Asks about the robots from the place `first` on, one for each row of answers. Returns the
+    /// first that is refused.
+    fn ask<S, T>(
+        &self,
+        session: &mut S,
+        first: usize,
+        answers: &mut [T],
+    ) -> Option<(usize, Refused)>
     where
         A: Fn(&mut S, &Q::One<'_>, &mut [T]) -> Result<(), Refused>,
     {
         answers.chunks_mut(self.width).zip(first..).find_map(|(row, place)| {
-            (self.answer)(session, &Q::one(self.block, place), row).err().map(|refused| (place, refused))
+            (self.answer)(session, &Q::one(self.block, place), row)
+                .err()
+                .map(|refused| (place, refused))
         })
     }
 

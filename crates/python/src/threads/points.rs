@@ -33,7 +33,9 @@ pub(crate) fn ask_points<T: Send>(
         let (pool, session) = (pool(py)?, engine.lend(py)?);
         let search = &session.search;
         let found = compute(py, || {
-            pool.install(|| chunk.par_iter().map(|&point| answer(search, point)).collect::<Vec<_>>())
+            pool.install(|| {
+                chunk.par_iter().map(|&point| answer(search, point)).collect::<Vec<_>>()
+            })
         });
         engine.take_back(py, 1, [session]);
         answers.extend(found?);

@@ -1,7 +1,7 @@
 //! The root finders on the GPU (feature `gpu`).
 //!
-//! Each function has the name of its twin in this crate and does the same in the same order, in WGSL that is one text
-//! for both precisions.
+//! Each function has the name of its twin in this crate and does the same in the same order, in
+//! WGSL that is one text for both precisions.
 
 use crate::{Complex, bairstow, closed_form, companion, jenkins_traub};
 use gpu_batch::{Batch, Device, DeviceError, DeviceFailure, Kernel, Precision, Shader};
@@ -29,19 +29,22 @@ pub enum Finder {
 
 impl Finder {
     /// Every method.
-    pub const ALL: [Self; 4] = [Self::ClosedForm, Self::Bairstow, Self::Companion, Self::JenkinsTraub];
+    pub const ALL: [Self; 4] =
+        [Self::ClosedForm, Self::Bairstow, Self::Companion, Self::JenkinsTraub];
 }
 
-/// The method in WGSL for polynomials up to this degree, for kernels that find roots on their way. It declares
-/// `COEFFICIENTS`, `Coefficients` (lowest power first), the function
-/// `approximate(monic: ptr<function, Coefficients>, degree: u32)`, and what that finds: `root_count`, `root_re` and
-/// `root_im`. It builds on [`wgsl`](gpu_batch::wgsl).
+/// The method in WGSL for polynomials up to this degree, for kernels that find roots on their way.
+/// It declares `COEFFICIENTS`, `Coefficients` (lowest power first), the function
+/// `approximate(monic: ptr<function, Coefficients>, degree: u32)`, and what that finds:
+/// `root_count`, `root_re` and `root_im`. It builds on [`wgsl`](gpu_batch::wgsl).
 pub fn approximate(finder: Finder, precision: Precision, degree: u16) -> String {
     let (name, text) = match finder {
         Finder::ClosedForm => ("closed_form", shaders!("closed_form")),
         Finder::Bairstow => ("bairstow", shaders!("division", "direction", "bairstow")),
         Finder::Companion => ("companion", shaders!("companion")),
-        Finder::JenkinsTraub => ("jenkins_traub", shaders!("division", "direction", "jenkins_traub")),
+        Finder::JenkinsTraub => {
+            ("jenkins_traub", shaders!("division", "direction", "jenkins_traub"))
+        }
     };
     let constants = constants(precision, degree);
     let roots = shaders!("roots");
@@ -56,7 +59,8 @@ fn approximate(monic: ptr<function, Coefficients>, degree: u32) {{
 
 /// What the shaders and their twins both know.
 fn constants(precision: Precision, degree: u16) -> String {
-    // Powers of what is larger may be infinite; and the steps of the iterations that start in single precision.
+    // Powers of what is larger may be infinite; and the steps of the iterations that start in
+    // single precision.
     let (largest, root_steps) = match precision {
         Precision::F32 => (2.0_f64.powi(126), 2),
         Precision::F64 => (2.0_f64.powi(1022), 3),
@@ -94,9 +98,9 @@ const MOST: u16 = u16::MAX / 2;
 
 /// The roots of many polynomials at once, a GPU thread each, for coefficients of comparable size.
 ///
-/// The approximations come as they are: unlike on the CPU, nothing is cut into pieces, tested or polished afterwards. In
-/// double precision, where shading languages have no cosine or cube root, the closed form starts these in single
-/// precision and refines them.
+/// The approximations come as they are: unlike on the CPU, nothing is cut into pieces, tested or
+/// polished afterwards. In double precision, where shading languages have no cosine or cube root,
+/// the closed form starts these in single precision and refines them.
 #[derive(Debug)]
 pub struct GpuRoots {
     degree: usize,
@@ -114,12 +118,17 @@ impl GpuRoots {
         Ok(Self { degree: degree.into(), batch: Batch::new(device, &kernel(&text, degree))? })
     }
 
-    /// The roots of polynomials that stand one after another, each lowest power first: as many as the degree for each,
-    /// conjugates side by side, NaN for those that did not converge. `out` is cleared first.
+    /// The roots of polynomials that stand one after another, each lowest power first: as many as
+    /// the degree for each, conjugates side by side, NaN for those that did not converge. `out`
+    /// is cleared first.
     ///
     /// # Errors
     /// The GPU has failed.
-    pub fn solve(&mut self, coefficients: &[f64], out: &mut Vec<Complex<f64>>) -> Result<(), DeviceFailure> {
+    pub fn solve(
+        &mut self,
+        coefficients: &[f64],
+        out: &mut Vec<Complex<f64>>,
+    ) -> Result<(), DeviceFailure> {
         out.clear();
         let degree = self.degree;
         self.batch.run(coefficients.iter().copied(), |answer| {
@@ -132,7 +141,8 @@ impl GpuRoots {
         })
     }
 
-    /// How long the GPU computed for the last polynomials, without transfers; `None` if it keeps no time.
+    /// How long the GPU computed for the last polynomials, without transfers; `None` if it keeps no
+    /// time.
     pub fn device_time(&self) -> Option<Duration> {
         self.batch.device_time()
     }

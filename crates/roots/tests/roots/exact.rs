@@ -37,7 +37,10 @@ impl Z {
     }
 
     pub fn times(&self, other: &Z) -> Z {
-        Z { re: &self.re * &other.re - &self.im * &other.im, im: &self.re * &other.im + &self.im * &other.re }
+        Z {
+            re: &self.re * &other.re - &self.im * &other.im,
+            im: &self.re * &other.im + &self.im * &other.re,
+        }
     }
 
     fn over(&self, other: &Z) -> Z {
@@ -119,8 +122,8 @@ pub fn expanded(leading: f64, roots: &[Z]) -> Vec<Z> {
     product
 }
 
-/// The largest difference between a coefficient and that of the polynomial with these roots, relative to the
-/// largest coefficient.
+/// The largest difference between a coefficient and that of the polynomial with these roots,
+/// relative to the largest coefficient.
 pub fn backward_error(coefficients: &[f64], roots: &[Z]) -> f64 {
     let leading = coefficients[coefficients.len() - 1];
     let rebuilt = expanded(leading, roots);
@@ -129,7 +132,8 @@ pub fn backward_error(coefficients: &[f64], roots: &[Z]) -> f64 {
     coefficients.iter().zip(&rebuilt).map(off).fold(0.0, f64::max)
 }
 
-/// The relative errors of the sum and of the product of the roots, the sum's relative to the sum of magnitudes.
+/// The relative errors of the sum and of the product of the roots, the sum's relative to the sum of
+/// magnitudes.
 pub fn vieta_errors(coefficients: &[f64], roots: &[Z]) -> [f64; 2] {
     let degree = coefficients.len() - 1;
     let (mut sum, mut sizes, mut product) = (Z::new(0.0, 0.0), big(0.0), Z::new(1.0, 0.0));
@@ -149,8 +153,9 @@ pub fn vieta_errors(coefficients: &[f64], roots: &[Z]) -> [f64; 2] {
 pub fn reference(coefficients: &[f64]) -> Vec<Z> {
     let degree = coefficients.len() - 1;
     // Cauchy's bounds.
-    let size =
-        |over: f64, rest: &[f64]| 1.0 + rest.iter().fold(0.0_f64, |most, a| most.max((a / over).abs()));
+    let size = |over: f64, rest: &[f64]| {
+        1.0 + rest.iter().fold(0.0_f64, |most, a| most.max((a / over).abs()))
+    };
     let outer = size(coefficients[degree], &coefficients[..degree]);
     let inner = 1.0 / size(coefficients[0], &coefficients[1..]);
     let mut roots: Vec<Z> = (0..degree)

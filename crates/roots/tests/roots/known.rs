@@ -1,7 +1,9 @@
-//! The root finders on polynomials whose roots are known: Wilkinson's, clusters, multiple roots, roots of unity.
+//! The root finders on polynomials whose roots are known: Wilkinson's, clusters, multiple roots,
+//! roots of unity.
 //!
-//! A computed root z has |p(z)| <= c u S with S the sum of |a_k| |z|^k, and near a root r of multiplicity m
-//! p(z) is about p^(m)(r) / m! (z - r)^m. So |z - r| <= (c u S m! / |p^(m)(r)|)^(1/m): the most that rounding allows.
+//! A computed root z has |p(z)| <= c u S with S the sum of |a_k| |z|^k, and near a root r of
+//! multiplicity m p(z) is about p^(m)(r) / m! (z - r)^m. So |z - r| <= (c u S m! /
+//! |p^(m)(r)|)^(1/m): the most that rounding allows.
 
 use crate::exact::{self, Big, Z, big, ratio};
 use polynomial_roots::*;
@@ -57,7 +59,9 @@ fn known() -> Vec<Known> {
         let roots = 1..=n;
         all.push(roots.fold(Known::new(&format!("Wilkinson {n}")), |p, root| p.root(root, 1, 1)));
     }
-    all.push((-7..=7).filter(|&r| r != 0).fold(Known::new("both signs"), |p, root| p.root(root, 1, 1)));
+    all.push(
+        (-7..=7).filter(|&r| r != 0).fold(Known::new("both signs"), |p, root| p.root(root, 1, 1)),
+    );
     all.push(Known::new("double").root(1, 1, 2).root(-2, 1, 1));
     all.push(Known::new("two double").root(1, 1, 2).root(2, 1, 2));
     all.push(Known::new("double and pair").root(3, 1, 2).pair(1, 2, 1));
@@ -69,7 +73,13 @@ fn known() -> Vec<Known> {
     all.push(Known::new("double pair off the axis").pair(2, 1, 2));
     all.push(Known::new("triple and double").root(1, 1, 3).root(-2, 1, 2).pair(1, 3, 1));
     all.push(Known::new("cluster of 3").root(256, 256, 1).root(257, 256, 1).root(255, 256, 1));
-    all.push(Known::new("cluster of 2").root(1024, 1024, 1).root(1025, 1024, 1).root(-3, 1, 1).root(2, 1, 1));
+    all.push(
+        Known::new("cluster of 2")
+            .root(1024, 1024, 1)
+            .root(1025, 1024, 1)
+            .root(-3, 1, 1)
+            .root(2, 1, 1),
+    );
     all.push(Known::new("near pair of pairs").pair(10, 1, 1).pair(10, 2, 1).root(7, 1, 1));
     all.push(Known::new("biquadratic").root(1, 1, 1).root(-1, 1, 1).pair(0, 3, 1));
     for n in 2..=15 {
@@ -136,11 +146,15 @@ fn check<F: RootFinder, T: Real + Into<f64>, const M: usize>(known: &Known) -> b
     if !known.coefficients.iter().zip(&coefficients).all(fits) {
         return false; // not this polynomial in this precision
     }
-    let name = format!("{} {} {}", known.name, std::any::type_name::<F>(), std::any::type_name::<T>());
+    let name =
+        format!("{} {} {}", known.name, std::any::type_name::<F>(), std::any::type_name::<T>());
     let roots = F::roots(coefficients).unwrap_or_else(|error| panic!("{name}: {error}"));
     let found: Vec<Z> = roots.iter().map(Z::of).collect();
-    let expected: Vec<(Z, usize)> =
-        known.roots.iter().flat_map(|&(root, m)| std::iter::repeat_n((Z::of(root), m), m)).collect();
+    let expected: Vec<(Z, usize)> = known
+        .roots
+        .iter()
+        .flat_map(|&(root, m)| std::iter::repeat_n((Z::of(root), m), m))
+        .collect();
     let places: Vec<Z> = expected.iter().map(|(z, _)| z.clone()).collect();
     let n = found.len() as f64;
     for (i, j) in exact::matched(&found, &places) {
@@ -150,11 +164,16 @@ fn check<F: RootFinder, T: Real + Into<f64>, const M: usize>(known: &Known) -> b
         } else {
             let sum = exact::sum_of_terms(&exact, root);
             let curvature = ratio(&sum, &taylor(&exact, *m, root));
-            // Twice, for what the first term leaves out; and the rounding of the expected root itself.
+            // Twice, for what the first term leaves out; and the rounding of the expected root
+            // itself.
             2.0 * (20.0 * n * T::UNIT_ROUNDOFF * curvature).powf(1.0 / *m as f64) + 1e-15
         };
         let off = ratio(&found[i].minus(root).modulus(), &big(1.0));
-        assert!(off <= allowed, "{name}: {:?} is {off:e} off, allowed {allowed:e}", roots.as_slice()[i]);
+        assert!(
+            off <= allowed,
+            "{name}: {:?} is {off:e} off, allowed {allowed:e}",
+            roots.as_slice()[i]
+        );
     }
     // Conjugates side by side, the upper one first.
     let slice = roots.as_slice();
@@ -175,7 +194,8 @@ fn check_all<F: RootFinder, T: Real + Into<f64>>(closed_form: bool) {
         if closed_form && degree > 4 {
             continue;
         }
-        let visited = if degree <= 4 { check::<F, T, 5>(&known) } else { check::<F, T, 16>(&known) };
+        let visited =
+            if degree <= 4 { check::<F, T, 5>(&known) } else { check::<F, T, 16>(&known) };
         if visited {
             visits.polynomials += 1;
             visits.multiple_roots += usize::from(known.roots.iter().any(|&(_, m)| m > 1));

@@ -1,4 +1,5 @@
-//! The root finders on the paper's polynomials, coefficients at random in [-100, 100], against 256-bit arithmetic.
+//! The root finders on the paper's polynomials, coefficients at random in [-100, 100], against
+//! 256-bit arithmetic.
 
 use crate::exact::{self, Z};
 use continuum_testing::Random;
@@ -18,7 +19,10 @@ struct Tally {
     forward: f64,
 }
 
-fn tally<F: RootFinder, T: Real + Into<f64>, const M: usize>(count: usize, references: usize) -> Tally {
+fn tally<F: RootFinder, T: Real + Into<f64>, const M: usize>(
+    count: usize,
+    references: usize,
+) -> Tally {
     let mut random = Random::new(M as u64);
     let mut tally = Tally::default();
     for index in 0..count {
@@ -29,8 +33,9 @@ fn tally<F: RootFinder, T: Real + Into<f64>, const M: usize>(count: usize, refer
             Err(RootsError::NotConverged { found }) => {
                 tally.not_converged += 1;
                 for root in &found {
-                    tally.residual =
-                        tally.residual.max(exact::residual(&exact, &Z::of(root)) / T::UNIT_ROUNDOFF);
+                    tally.residual = tally
+                        .residual
+                        .max(exact::residual(&exact, &Z::of(root)) / T::UNIT_ROUNDOFF);
                 }
                 continue;
             }
@@ -53,7 +58,8 @@ fn tally<F: RootFinder, T: Real + Into<f64>, const M: usize>(count: usize, refer
             let expected = exact::reference(&exact);
             for (i, j) in exact::matched(&exact_roots, &expected) {
                 let off = exact::relative_distance(&exact_roots[i], &expected[j]);
-                tally.forward = tally.forward.max(unit(off / exact::condition(&exact, &expected[j])));
+                tally.forward =
+                    tally.forward.max(unit(off / exact::condition(&exact, &expected[j])));
             }
         }
     }
@@ -75,7 +81,10 @@ fn check<F: RootFinder, T: Real + Into<f64>, const M: usize>(count: usize) {
     assert!(tally.backward.max(tally.sum).max(tally.product) <= 20.0 * n * n, "{name} {tally:?}");
     if M > 2 {
         let roots = tally.real_roots + tally.complex_roots;
-        assert!(tally.real_roots * 10 > roots && tally.complex_roots * 3 > roots, "{name} {tally:?}");
+        assert!(
+            tally.real_roots * 10 > roots && tally.complex_roots * 3 > roots,
+            "{name} {tally:?}"
+        );
     }
 }
 

@@ -7,7 +7,8 @@ use polynomial_roots::*;
 /// Coefficients whose exponents are uniform in +-`spread`, some of them 0.
 fn wild<T: Real, const M: usize>(random: &mut Random, spread: f64) -> [T; M] {
     std::array::from_fn(|_| {
-        let value = random.between(1.0, 2.0) * random.between(-spread, spread).exp2().max(f64::MIN_POSITIVE);
+        let value = random.between(1.0, 2.0)
+            * random.between(-spread, spread).exp2().max(f64::MIN_POSITIVE);
         let signed = if random.unit() < 0.5 { -value } else { value };
         T::of(if random.unit() < 0.1 { 0.0 } else { signed })
     })
@@ -60,7 +61,8 @@ fn tally<F: RootFinder, T: Real + Into<f64>, const M: usize>(count: usize, sprea
 
 fn check<F: RootFinder, T: Real + Into<f64>, const M: usize>(spread: f64) {
     let tally = tally::<F, T, M>(60, spread);
-    let name = format!("{} {} degree {}", std::any::type_name::<F>(), std::any::type_name::<T>(), M - 1);
+    let name =
+        format!("{} {} degree {}", std::any::type_name::<F>(), std::any::type_name::<T>(), M - 1);
     println!("{name} spread {spread} {tally:.1?}");
     assert_eq!(tally.complete, tally.polynomials, "{name} {tally:?}");
     assert!(tally.residual <= 20.0 * (M - 1) as f64, "{name} {tally:?}");

@@ -47,12 +47,15 @@ impl Pair {
         }
     }
 
-    /// The gap between the bounds in units of u x extent, and between which features; None where there is no such link.
+    /// The gap between the bounds in units of u x extent, and between which features; None where
+    /// there is no such link.
     fn gap(&self) -> Option<(Features, f64)> {
         let Self { triangle, ends: [start, end], radius, flat, exponent } = *self;
-        let large = |point: Vector| Vector::from_array(point.to_array().map(|x| scaled(x, exponent)));
+        let large =
+            |point: Vector| Vector::from_array(point.to_array().map(|x| scaled(x, exponent)));
         let caps = flat.map(|flat| if flat { Cap::Flat } else { Cap::Round });
-        let link = ModifiedCylinder::new(large(start), large(end), scaled(radius, exponent), caps).ok()?;
+        let link =
+            ModifiedCylinder::new(large(start), large(end), scaled(radius, exponent), caps).ok()?;
         let bounds = Certificate::between(&link, &Pose::IDENTITY, triangle.map(large)).ok()?;
         let [a, b, c] = triangle;
         let extent = extent(&[a, b, c, start, end], radius);
@@ -85,7 +88,11 @@ impl Pair {
         };
         let axis = (end - start).normalize_or_zero();
         let (before, beyond) = ((on_link - start).dot(axis), (on_link - end).dot(axis));
-        let cap = if beyond >= -rounding { Some(flat[1]) } else { (before <= rounding).then_some(flat[0]) };
+        let cap = if beyond >= -rounding {
+            Some(flat[1])
+        } else {
+            (before <= rounding).then_some(flat[0])
+        };
         let link = match cap {
             None => "barrel",
             Some(false) => "round cap",
@@ -103,7 +110,8 @@ pub struct Gaps(BTreeMap<Features, Vec<f64>>);
 
 /// The gaps on the links of the reference cases and of the extreme problems.
 pub fn measure(cases: &[Case], problems: &[Problem<f64>]) -> Gaps {
-    let of_problems = problems.iter().flat_map(|problem| CAPS.map(|flat| Pair::of_problem(problem, flat)));
+    let of_problems =
+        problems.iter().flat_map(|problem| CAPS.map(|flat| Pair::of_problem(problem, flat)));
     let mut gaps: BTreeMap<Features, Vec<f64>> = BTreeMap::new();
     for (features, gap) in
         cases.iter().filter_map(Pair::of_case).chain(of_problems).filter_map(|pair| pair.gap())
@@ -131,8 +139,9 @@ impl Gaps {
 
     /// A line for each feature of the triangle with each of the link.
     pub fn lines(&self) -> String {
-        let mut text =
-            String::from("of the triangle,of the link,certificates,median gap,widest gap,wider than 16\n");
+        let mut text = String::from(
+            "of the triangle,of the link,certificates,median gap,widest gap,wider than 16\n",
+        );
         for (features, gaps) in &self.0 {
             let (mesh, link) = features.unwrap_or((MEETING, ""));
             writeln!(text, "{mesh},{link},{}", summary(gaps.clone()).join(",")).ok();

@@ -1,4 +1,5 @@
-//! The engines on the extreme problems: a mesh of a dozen of their triangles against the links of two.
+//! The engines on the extreme problems: a mesh of a dozen of their triangles against the links of
+//! two.
 
 use super::measure::{Problem, scaled};
 use super::problems::Extreme;
@@ -26,8 +27,10 @@ struct Scene {
 impl Scene {
     fn new(problems: &[&Problem<f64>], of_link: usize, flat: bool) -> Option<Self> {
         let exponent = problems[of_link].exponent;
-        let large = |point: Vector| Vector::from_array(point.to_array().map(|x| scaled(x, exponent)));
-        let near_one: Vec<_> = problems.iter().map(|problem| problem.near_one.triangle.map(vector)).collect();
+        let large =
+            |point: Vector| Vector::from_array(point.to_array().map(|x| scaled(x, exponent)));
+        let near_one: Vec<_> =
+            problems.iter().map(|problem| problem.near_one.triangle.map(vector)).collect();
         let input = &problems[of_link].near_one;
         let (start, end) = (vector(input.start), vector(input.end));
         let link = if flat {
@@ -38,7 +41,8 @@ impl Scene {
         .ok()?;
         let (points, radii) = ([large(start), large(end)], [scaled(input.radius, exponent)]);
         let robot =
-            if flat { Chain::cylinders(&points, &radii) } else { Chain::capsules(&points, &radii) }.ok()?;
+            if flat { Chain::cylinders(&points, &radii) } else { Chain::capsules(&points, &radii) }
+                .ok()?;
         let vertices: Vec<_> = near_one.iter().flatten().map(|&point| large(point)).collect();
         let indices = (0..near_one.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
         let mesh = TriMesh::new(vertices, indices).ok()?;
@@ -51,7 +55,8 @@ impl Scene {
         Some(Self { mesh, robot, exponent, near_one, link, bounds })
     }
 
-    /// The error of an engine's answer in units of u x extent of the link and the triangle that it names.
+    /// The error of an engine's answer in units of u x extent of the link and the triangle that it
+    /// names.
     fn error(&self, answer: &LinkProximity) -> f64 {
         let [a, b, c] = self.near_one[answer.triangle as usize];
         let points = [a, b, c, self.link.start(), self.link.end()];
@@ -99,6 +104,7 @@ fn exhaustive<T: SearchPrecision>(scene: &Scene, level: Level, name: &str, error
 }
 
 fn ask(scene: &Scene, mut engine: impl Proximity, name: &str, errors: &mut Errors) {
-    let error = engine.minimum(&scene.robot, &Pose::IDENTITY).map_or(f64::INFINITY, |a| scene.error(&a));
+    let error =
+        engine.minimum(&scene.robot, &Pose::IDENTITY).map_or(f64::INFINITY, |a| scene.error(&a));
     errors.entry(name.to_owned()).or_default().push(error);
 }

@@ -1,4 +1,5 @@
-//! The errors of every kernel on the extreme problems: as plain numbers, and at every instruction set.
+//! The errors of every kernel on the extreme problems: as plain numbers, and at every instruction
+//! set.
 
 use super::packed::{self, LinkDistance, NUMBERS};
 use super::problems::{Extreme, Range, Sample, samples};
@@ -24,7 +25,8 @@ pub const PAIRS: [(&str, &[usize]); 11] = [
     ("triangle and modified cylinder", &[13, 14]),
 ];
 
-/// The kernels that engines run on packs, and their caps: first of them in [`KERNELS`] is the capsule.
+/// The kernels that engines run on packs, and their caps: first of them in [`KERNELS`] is the
+/// capsule.
 const PACKED: [(usize, [bool; 2]); 4] =
     [(10, [false; 2]), (12, [true; 2]), (13, [true, false]), (14, [false, true])];
 
@@ -98,8 +100,8 @@ impl<T: Measured> Problem<T> {
     /// Rounds a sample to the precision and proves its distances.
     pub fn new(sample: &Sample) -> Self {
         let Sample { extreme, power, exponent, .. } = *sample;
-        // Rounded near one, scaled, and back again, so that the proof is of the very numbers the kernels get. Normals
-        // have no length to speak of.
+        // Rounded near one, scaled, and back again, so that the proof is of the very numbers the
+        // kernels get. Normals have no length to speak of.
         let rounded = sample.input.map(T::from_f64);
         let mut input = rounded.map(|x| T::from_f64(scaled(x.into(), exponent)));
         (input.plane_normal, input.disc_normal) = (rounded.plane_normal, rounded.disc_normal);
@@ -163,8 +165,8 @@ pub fn problems<T: Measured>(each: usize) -> Vec<Problem<T>> {
     samples(T::RANGE, each).iter().map(Problem::new).collect()
 }
 
-/// From which power of two to which a precision answers problems of that size within 16 units: the smallest and the
-/// largest exponent around 0 up to which none is worse.
+/// From which power of two to which a precision answers problems of that size within 16 units: the
+/// smallest and the largest exponent around 0 up to which none is worse.
 pub fn range<T: Measured>(largest: i32) -> [i32; 2] {
     let smallest = T::RANGE.smallest;
     let near_one: Vec<_> = samples(Range { scale: 0, ..T::RANGE }, 1)
@@ -177,19 +179,25 @@ pub fn range<T: Measured>(largest: i32) -> [i32; 2] {
             let sample = Sample { input: sample.input, exponent: *exponent, ..*sample };
             let problem = Problem::<T>::new(&sample);
             let answers = problem.input.answers().into_iter().enumerate();
-            let mut errors = answers.filter_map(|(kernel, answer)| problem.error(kernel, answer.distance));
+            let mut errors =
+                answers.filter_map(|(kernel, answer)| problem.error(kernel, answer.distance));
             errors.all(|error| error <= 16.0)
         })
     };
     // Every exponent near the ends of the range, every tenth between.
-    let step = |exponent: &i32| exponent % 10 == 0 || *exponent < smallest + 60 || largest - 10 < *exponent;
+    let step = |exponent: &i32| {
+        exponent % 10 == 0 || *exponent < smallest + 60 || largest - 10 < *exponent
+    };
     let low = (smallest..=0).rev().filter(step).take_while(holds).last().unwrap_or(0);
     let high = (0..=largest).filter(step).take_while(holds).last().unwrap_or(0);
     [low, high]
 }
 
 /// The errors on the given problems.
-pub fn measure<T: Measured>(problems: &[Problem<T>], levels: &[(&'static str, Level)]) -> Measurement {
+pub fn measure<T: Measured>(
+    problems: &[Problem<T>],
+    levels: &[(&'static str, Level)],
+) -> Measurement {
     let packed: Vec<_> = PACKED
         .map(|(kernel, flat)| {
             let numbers: Vec<_> =
@@ -202,12 +210,29 @@ pub fn measure<T: Measured>(problems: &[Problem<T>], levels: &[(&'static str, Le
     for (index, problem) in problems.iter().enumerate() {
         for (kernel, answer) in problem.input.answers().into_iter().enumerate() {
             let Some(scalar) = problem.error(kernel, answer.distance) else { continue };
-            let at_levels =
-                packed.iter().filter(|(packed, _)| *packed == kernel).flat_map(|(_, levels)| levels);
-            let levels = at_levels.filter_map(|answers| problem.error(kernel, answers[index][0])).collect();
-            found.push(Found { extreme: problem.extreme, power: problem.power, kernel, scalar, levels });
-            gap = problem.proofs[kernel].iter().map(|proof| proof.gap / proof.unit).fold(gap, f64::max);
+            let at_levels = packed
+                .iter()
+                .filter(|(packed, _)| *packed == kernel)
+                .flat_map(|(_, levels)| levels);
+            let levels =
+                at_levels.filter_map(|answers| problem.error(kernel, answers[index][0])).collect();
+            found.push(Found {
+                extreme: problem.extreme,
+                power: problem.power,
+                kernel,
+                scalar,
+                levels,
+            });
+            gap = problem.proofs[kernel]
+                .iter()
+                .map(|proof| proof.gap / proof.unit)
+                .fold(gap, f64::max);
         }
     }
-    Measurement { precision: T::NAME, levels: levels.iter().map(|(name, _)| *name).collect(), found, gap }
+    Measurement {
+        precision: T::NAME,
+        levels: levels.iter().map(|(name, _)| *name).collect(),
+        found,
+        gap,
+    }
 }

@@ -43,9 +43,17 @@ impl Extreme {
     /// Every one of them with its name and what it is.
     pub const ALL: [(Self, &str, &str); 18] = [
         (Self::Generic, "generic", "no relation"),
-        (Self::Parallel, "parallel", "an edge or the face exactly parallel to the axis or to a cap"),
+        (
+            Self::Parallel,
+            "parallel",
+            "an edge or the face exactly parallel to the axis or to a cap",
+        ),
         (Self::NearParallel, "near parallel", "the same, tilted by 10^-k"),
-        (Self::CapTransition, "cap transition", "the nearest axis point 10^-k before or after an end"),
+        (
+            Self::CapTransition,
+            "cap transition",
+            "the nearest axis point 10^-k before or after an end",
+        ),
         (Self::TangentRim, "tangent rim", "an edge tangent to a rim, up to 10^-k"),
         (Self::Contact, "contact", "a gap or an overlap of 10^-k"),
         (Self::Crossing, "crossing", "the triangle cuts the axis or a cap"),
@@ -59,7 +67,11 @@ impl Extreme {
         (Self::LongLink, "long link", "a length of 10^k radii"),
         (Self::Offset, "offset", "10^k away from the origin"),
         (Self::Scale, "scale", "times 2^-300 to 2^300, in f32 2^-90 to 2^90"),
-        (Self::Subnormal, "subnormal", "integers from -40 to 40 times the smallest number there is"),
+        (
+            Self::Subnormal,
+            "subnormal",
+            "integers from -40 to 40 times the smallest number there is",
+        ),
     ];
 
     /// The largest power of ten it is driven to, for numbers of so many digits.
@@ -85,7 +97,8 @@ pub struct Range {
     pub smallest: i32,
 }
 
-/// All problems for a precision: `each` for every power of ten, and eight times as many where there is none.
+/// All problems for a precision: `each` for every power of ten, and eight times as many where there
+/// is none.
 pub fn samples(range: Range, each: usize) -> Vec<Sample> {
     let mut random = Random::new(13);
     let mut samples = Vec::new();
@@ -93,7 +106,9 @@ pub fn samples(range: Range, each: usize) -> Vec<Sample> {
         let last = extreme.powers(range.digits);
         let (powers, count) = if last == 0 { (0..=0, 8 * each) } else { (1..=last, each) };
         for power in powers {
-            samples.extend((0..count).map(|number| sample(&mut random, extreme, power, range, number)));
+            samples.extend(
+                (0..count).map(|number| sample(&mut random, extreme, power, range, number)),
+            );
         }
     }
     samples
@@ -104,7 +119,13 @@ pub fn ten_to(power: i32) -> f64 {
     format!("1e{power}").parse().unwrap_or(f64::NAN)
 }
 
-fn sample(random: &mut Random, extreme: Extreme, power: i32, range: Range, number: usize) -> Sample {
+fn sample(
+    random: &mut Random,
+    extreme: Extreme,
+    power: i32,
+    range: Range,
+    number: usize,
+) -> Sample {
     let mut exponent = 0;
     let problem = match extreme {
         Extreme::Scale => {
@@ -129,7 +150,8 @@ fn sample(random: &mut Random, extreme: Extreme, power: i32, range: Range, numbe
     Sample { extreme, power, input: Input::from(&problem), exponent }
 }
 
-/// A unit vector between two perpendicular ones: half a turn by an angle that is no rational part of one.
+/// A unit vector between two perpendicular ones: half a turn by an angle that is no rational part
+/// of one.
 fn turned(u: Vector, v: Vector, by: f64) -> Vector {
     (u * (1.0 - by * by) + v * (2.0 * by)) / (1.0 + by * by)
 }
@@ -157,9 +179,11 @@ fn problem(random: &mut Random, extreme: Extreme, power: i32) -> Problem {
             let across = random.direction();
             match random.below(3) {
                 0 => {
-                    let from = start + u * random.between(-1.0, 3.0) + axis * random.between(-2.0, 2.0);
+                    let from =
+                        start + u * random.between(-1.0, 3.0) + axis * random.between(-2.0, 2.0);
                     problem.triangle[0] = from;
-                    problem.triangle[1] = from + (axis + across * small) * random.between(-3.0, 3.0);
+                    problem.triangle[1] =
+                        from + (axis + across * small) * random.between(-3.0, 3.0);
                 }
                 1 => {
                     let height = axis * random.between(-1.0, 1.0);
@@ -169,7 +193,8 @@ fn problem(random: &mut Random, extreme: Extreme, power: i32) -> Problem {
                     });
                 }
                 _ => {
-                    let from = end + u * random.between(-1.5, 1.5) + axis * random.between(-0.5, 1.0);
+                    let from =
+                        end + u * random.between(-1.5, 1.5) + axis * random.between(-0.5, 1.0);
                     problem.triangle[0] = from;
                     problem.triangle[1] = from + (v + across * small) * random.between(-3.0, 3.0);
                     problem.triangle[2] = from + axis * random.between(0.0, 2.0) + u;
@@ -191,7 +216,8 @@ fn problem(random: &mut Random, extreme: Extreme, power: i32) -> Problem {
         }
         Extreme::TangentRim => {
             let other = tenth * random.between(-1.0, 1.0);
-            let (gap, tilt) = [(small, other), (small, 0.0), (other, small)][random.below(3) as usize];
+            let (gap, tilt) =
+                [(small, other), (small, 0.0), (other, small)][random.below(3) as usize];
             let rim = end + u * (radius * (1.0 + gap)) + axis * (tilt * random.between(-1.0, 1.0));
             let along = v + axis * tilt;
             problem.triangle = [
@@ -201,7 +227,8 @@ fn problem(random: &mut Random, extreme: Extreme, power: i32) -> Problem {
             ];
         }
         Extreme::Contact => {
-            // A supporting plane of the link (barrel, cap or rim), and the triangle on or beyond it.
+            // A supporting plane of the link (barrel, cap or rim), and the triangle on or beyond
+            // it.
             let (touched, normal) = match random.below(3) {
                 0 => (start + (end - start) * random.unit() + u * radius, u),
                 1 => (end + u * (radius * random.unit()), axis),
@@ -230,8 +257,8 @@ fn problem(random: &mut Random, extreme: Extreme, power: i32) -> Problem {
             let normal = random.direction();
             let side = random.perpendicular_to(normal);
             let (other, size) = (normal.cross(side), ten_to(random.below(2) as i32));
-            problem.triangle =
-                [0.0, 1.7, -1.7].map(|by| at + turned(side, other, by) * (size * random.between(0.1, 1.0)));
+            problem.triangle = [0.0, 1.7, -1.7]
+                .map(|by| at + turned(side, other, by) * (size * random.between(0.1, 1.0)));
         }
         Extreme::Needle => {
             let which = random.below(3) as usize;
@@ -249,7 +276,8 @@ fn problem(random: &mut Random, extreme: Extreme, power: i32) -> Problem {
                 let foot = a + (b - a) * (at + random.between(-0.1, 0.1));
                 problem.start = foot.lerp(problem.triangle[2], random.between(0.05, 0.95))
                     + normal * random.between(0.3, 2.0);
-                problem.end = problem.start + normal * random.between(0.1, 2.0) + random.direction() * 0.1;
+                problem.end =
+                    problem.start + normal * random.between(0.1, 2.0) + random.direction() * 0.1;
                 problem.radius *= 0.2;
             }
         }
@@ -286,7 +314,8 @@ fn problem(random: &mut Random, extreme: Extreme, power: i32) -> Problem {
     problem
 }
 
-/// Small integers along perpendicular integer directions: parallel to the last bit, in any precision.
+/// Small integers along perpendicular integer directions: parallel to the last bit, in any
+/// precision.
 fn parallel(random: &mut Random, problem: &mut Problem) {
     const TURNS: [[[f64; 3]; 3]; 2] = [
         [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
@@ -300,7 +329,8 @@ fn parallel(random: &mut Random, problem: &mut Problem) {
     let start = problem.start;
     problem.triangle = [0; 3].map(|_| start + axis * height + u * step(4) + v * step(4));
     match random.below(3) {
-        // The face parallel to the caps; an edge parallel to the axis; only an edge parallel to the caps.
+        // The face parallel to the caps; an edge parallel to the axis; only an edge parallel to the
+        // caps.
         0 => {}
         1 => problem.triangle[1] = problem.triangle[0] + axis * (f64::from(random.below(9)) - 4.0),
         _ => problem.triangle[2] += axis * (f64::from(random.below(4)) + 1.0),
@@ -315,8 +345,10 @@ fn zero_area(random: &mut Random, problem: &mut Problem) {
         0 => problem.triangle[2] = a + (b - a) * random.between(-1.0, 2.0),
         1 => {
             let mut integer = || f64::from(random.below(9)) - 4.0;
-            let (from, step) =
-                (Vector::new(integer(), integer(), integer()), Vector::new(integer(), integer(), integer()));
+            let (from, step) = (
+                Vector::new(integer(), integer(), integer()),
+                Vector::new(integer(), integer(), integer()),
+            );
             problem.triangle = [from, from + step, from - step * integer()];
         }
         2 => problem.triangle[2] = if random.below(2) == 0 { a } else { b },

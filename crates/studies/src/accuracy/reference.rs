@@ -1,6 +1,7 @@
 //! The errors of the narrow phase on the reference cases, as tables.
 //!
-//! The kernels use only operations that IEEE 754 rounds correctly, so these tables are the same on every machine.
+//! The kernels use only operations that IEEE 754 rounds correctly, so these tables are the same on
+//! every machine.
 
 use continuum_testing::Case;
 use continuum_testing::precision::Precision;
@@ -71,7 +72,8 @@ pub fn in_millimetres(cases: &[Case]) -> String {
     for (kind, name) in KINDS {
         let cases = of_kind(cases, kind);
         let single: Vec<_> = cases.iter().copied().filter(|case| case.f32).collect();
-        let [double, single] = [worst_share::<f64>(&cases), worst_share::<f32>(&single)].map(at_hundred);
+        let [double, single] =
+            [worst_share::<f64>(&cases), worst_share::<f32>(&single)].map(at_hundred);
         text += &format!("| {name} | {double} mm | {single} mm |\n");
     }
     text
@@ -91,8 +93,7 @@ fn at_hundred(share: f64) -> String {
 }
 
 /// The head of [`lines`].
-pub const HEAD: &str =
-    "pair,category,cases,f64 median,f64 worst,f32 cases,f32 median,f32 worst,parry median,parry worst";
+pub const HEAD: &str = "pair,category,cases,f64 median,f64 worst,f32 cases,f32 median,f32 worst,parry median,parry worst";
 
 /// One line for each pair and category. `peer` writes what is known of parry.
 pub fn lines(cases: &[Case], mut peer: impl FnMut(&[&Case]) -> String) -> Vec<String> {
@@ -123,7 +124,8 @@ fn errors_in_both(cases: &[&Case]) -> String {
 
 /// Number of cases, median and worst error in units of u x extent.
 fn errors<T: Precision>(cases: &[&Case]) -> String {
-    let error = |case: &&Case| (distance::<T>(case, 1.0) - case.distance()).abs() / (T::UNIT * case.scale);
+    let error =
+        |case: &&Case| (distance::<T>(case, 1.0) - case.distance()).abs() / (T::UNIT * case.scale);
     match median_and_worst(cases.iter().map(error).collect()) {
         Some((median, worst)) => format!("{} | {median:.2} | {worst:.2}", cases.len()),
         None => "0 | - | -".into(),

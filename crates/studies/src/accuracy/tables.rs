@@ -1,4 +1,5 @@
-//! What was measured at the extremes, as tables and as one line for each pair, category and precision.
+//! What was measured at the extremes, as tables and as one line for each pair, category and
+//! precision.
 
 use super::measure::{Found, Measurement, PAIRS};
 use super::problems::Extreme;
@@ -18,18 +19,23 @@ pub fn cell(errors: Vec<f64>) -> String {
 }
 
 /// One line for each precision, category and pair. `peer` writes what is known of parry.
-pub fn lines(measurement: &Measurement, mut peer: impl FnMut(Extreme, &[usize]) -> String) -> Vec<String> {
+pub fn lines(
+    measurement: &Measurement,
+    mut peer: impl FnMut(Extreme, &[usize]) -> String,
+) -> Vec<String> {
     let mut lines = Vec::new();
     for (extreme, category, _) in Extreme::ALL {
         for (pair, kernels) in PAIRS {
             let here = |found: &&Found| found.extreme == extreme && kernels.contains(&found.kernel);
             let found: Vec<_> = measurement.found.iter().filter(here).collect();
             let scalar = cell(found.iter().map(|found| found.scalar).collect());
-            let mut line = format!("{},{category},{pair},{},{scalar}", measurement.precision, found.len());
+            let mut line =
+                format!("{},{category},{pair},{},{scalar}", measurement.precision, found.len());
             for level in LEVELS {
                 let index = measurement.levels.iter().position(|name| *name == level);
-                let errors =
-                    |index: usize| found.iter().filter_map(|f| f.levels.get(index).copied()).collect();
+                let errors = |index: usize| {
+                    found.iter().filter_map(|f| f.levels.get(index).copied()).collect()
+                };
                 write!(line, ",{}", cell(index.map(errors).unwrap_or_default())).ok();
             }
             write!(line, ",{}", peer(extreme, kernels)).ok();
@@ -42,7 +48,9 @@ pub fn lines(measurement: &Measurement, mut peer: impl FnMut(Extreme, &[usize]) 
 /// The head of the lines.
 pub fn head() -> String {
     let levels = LEVELS.map(|level| format!("{level} median,{level} worst")).join(",");
-    format!("precision,category,pair,problems,scalar median,scalar worst,{levels},parry median,parry worst")
+    format!(
+        "precision,category,pair,problems,scalar median,scalar worst,{levels},parry median,parry worst"
+    )
 }
 
 /// The categories on the page, the worst of all among them; a file has the others too.
@@ -102,10 +110,13 @@ pub fn by_pair(double: &Measurement, single: &Measurement) -> String {
     text
 }
 
-/// The worst error of any pair at each power of ten: a line for each power, a column for each category and precision.
+/// The worst error of any pair at each power of ten: a line for each power, a column for each
+/// category and precision.
 pub fn powers(double: &Measurement, single: &Measurement) -> String {
-    let series: Vec<_> = Extreme::ALL.into_iter().filter(|(extreme, ..)| extreme.powers(16) > 0).collect();
-    let names: Vec<_> = series.iter().map(|(_, name, _)| format!("{name} f64,{name} f32")).collect();
+    let series: Vec<_> =
+        Extreme::ALL.into_iter().filter(|(extreme, ..)| extreme.powers(16) > 0).collect();
+    let names: Vec<_> =
+        series.iter().map(|(_, name, _)| format!("{name} f64,{name} f32")).collect();
     let mut text = format!("k,{}\n", names.join(","));
     for power in 1..=16 {
         write!(text, "{power}").ok();
@@ -113,7 +124,8 @@ pub fn powers(double: &Measurement, single: &Measurement) -> String {
             for measurement in [double, single] {
                 let here = |found: &&Found| found.extreme == *extreme && found.power == power;
                 let errors = measurement.found.iter().filter(here).map(|found| found.scalar);
-                let worst = errors.reduce(f64::max).map_or("-".into(), |worst| format!("{worst:.1}"));
+                let worst =
+                    errors.reduce(f64::max).map_or("-".into(), |worst| format!("{worst:.1}"));
                 write!(text, ",{worst}").ok();
             }
         }
@@ -123,7 +135,8 @@ pub fn powers(double: &Measurement, single: &Measurement) -> String {
 }
 
 fn row(measurement: &Measurement, of: impl Fn(&Found) -> bool) -> String {
-    let errors: Vec<_> = measurement.found.iter().filter(|found| of(found)).map(|f| f.scalar).collect();
+    let errors: Vec<_> =
+        measurement.found.iter().filter(|found| of(found)).map(|f| f.scalar).collect();
     let count = errors.len();
     match median_and_worst(errors) {
         Some((median, worst)) => format!("{count} | {median:.2} | {worst:.2}"),

@@ -1,6 +1,7 @@
-//! Curves as they come: clean, joined, repeated, unevenly spaced, noisy. How many tubes are accepted, how close their
-//! bounds are, and how far from the truth; and how finely tubes are divided beside flat faces. Writes the tables of
-//! `docs/book/tube.md` and the plot `docs/curves.svg`.
+//! Curves as they come: clean, joined, repeated, unevenly spaced, noisy. How many tubes are
+//! accepted, how close their bounds are, and how far from the truth; and how finely tubes are
+//! divided beside flat faces. Writes the tables of `docs/book/tube.md` and the plot
+//! `docs/curves.svg`.
 //!
 //! ```text
 //! cargo run --release -p continuum-studies --bin curves
@@ -54,7 +55,12 @@ type Centreline = Arc<dyn Fn(f64) -> (Vector, Vector) + Send + Sync>;
 
 impl Scene {
     /// The robot beside three specks of a wall 0.5 to 5 mm away.
-    fn new(random: &mut Random, curve: Centreline, sections: Vec<TubeSection>, ends: Vec<f64>) -> Self {
+    fn new(
+        random: &mut Random,
+        curve: Centreline,
+        sections: Vec<TubeSection>,
+        ends: Vec<f64>,
+    ) -> Self {
         let length: f64 = sections.iter().map(|section| section.length).sum();
         let mut vertices = Vec::new();
         for _ in 0..3 {
@@ -66,7 +72,8 @@ impl Scene {
             let at = centre + across * (radius_at(&sections, s) + random.between(0.5, 5.0));
             vertices.extend([at, at + random.direction() * 0.3, at + random.direction() * 0.3]);
         }
-        let mesh = TriMesh::new(vertices, vec![[0, 1, 2], [3, 4, 5], [6, 7, 8]]).expect("three triangles");
+        let mesh =
+            TriMesh::new(vertices, vec![[0, 1, 2], [3, 4, 5], [6, 7, 8]]).expect("three triangles");
         let given = Arc::clone(&curve);
         let exact = Tube::from_function(&sections, move |s| given(s)).expect("a tube");
         let mut search = BvhSearch::new(&mesh).expect("a mesh");
@@ -105,7 +112,8 @@ fn scene(seed: u64) -> Scene {
     });
     arcs.push(RADIUS, &parts);
     let stretch = arcs.stretches[0];
-    let section = TubeSection { length: stretch.length, radius: RADIUS, curvature: stretch.curvature };
+    let section =
+        TubeSection { length: stretch.length, radius: RADIUS, curvature: stretch.curvature };
     let ends = vec![lengths[0], lengths[0] + lengths[1], LENGTH];
     Scene::new(&mut random, Arc::new(move |s| arcs.at(s)), vec![section], ends)
 }
@@ -172,7 +180,8 @@ fn measure(scene: &Scene, input: Input, random: &mut Random) -> (Vec<f64>, Vec<V
     let mut points: Vec<_> = places
         .iter()
         .map(|&s| {
-            (scene.curve)(s).0 + Vector::new(normal(random), normal(random), normal(random)) * input.noise
+            (scene.curve)(s).0
+                + Vector::new(normal(random), normal(random), normal(random)) * input.noise
         })
         .collect();
     match input.spacing {
@@ -239,7 +248,8 @@ struct Outcome {
     resolved: usize,
     /// The median of how far apart the bounds are, but for what was stated.
     width: f64,
-    /// The median of how far the clearance of the tube itself, without its deviation, is from the truth.
+    /// The median of how far the clearance of the tube itself, without its deviation, is from the
+    /// truth.
     off: f64,
     covered: usize,
     /// What the tube and the query took at least, in microseconds.
@@ -271,8 +281,10 @@ fn ask(scenes: &[Scene], input: Input, way: Way, tolerance: f64) -> Outcome {
             off.push((0.5 * (found.upper + found.lower) - scene.truth).abs());
         }
     }
-    let widths =
-        answers.iter().map(|(found, _)| (found.upper - found.lower - found.uncertainty).max(0.0)).collect();
+    let widths = answers
+        .iter()
+        .map(|(found, _)| (found.upper - found.lower - found.uncertainty).max(0.0))
+        .collect();
     Outcome {
         accepted: answers.len(),
         resolved: answers.iter().filter(|(found, _)| found.resolved).count(),
@@ -306,7 +318,12 @@ fn main() -> ExitCode {
         ("clean, 60 frames".into(), clean(60), Frames, 0.001),
         ("clean, 20 frames, at the sections' ends too".into(), at_ends(20), Frames, 0.01),
         ("clean, 60 frames, at the sections' ends too".into(), at_ends(60), Frames, 0.001),
-        ("three sections with end points of their own".into(), spaced(Spacing::Joined), Samples, 0.1),
+        (
+            "three sections with end points of their own".into(),
+            spaced(Spacing::Joined),
+            Samples,
+            0.1,
+        ),
         ("at random places".into(), scattered(0.0), Samples, 0.1),
         ("at random places".into(), scattered(0.0), Samples, 0.2),
         ("at random places".into(), scattered(0.0), Fit(0.01), 0.1),
@@ -336,8 +353,12 @@ fn main() -> ExitCode {
     );
     let mut refused = Vec::new();
     for (name, input, way, tolerance) in &rows {
-        let Outcome { accepted, resolved, width, off, covered, times } =
-            ask(if name.starts_with(VENTRICLE) { &ventricle } else { &scenes }, *input, *way, *tolerance);
+        let Outcome { accepted, resolved, width, off, covered, times } = ask(
+            if name.starts_with(VENTRICLE) { &ventricle } else { &scenes },
+            *input,
+            *way,
+            *tolerance,
+        );
         let [tube, query] = times;
         let _ = writeln!(
             table,
@@ -356,8 +377,8 @@ fn main() -> ExitCode {
     let faces = faces(my.robots);
     print!("{faces}");
     let page = my.out.join("book/tube.md");
-    let written =
-        quote::in_page(&table, "curves", &page).and_then(|()| quote::in_page(&faces, "faces", &page));
+    let written = quote::in_page(&table, "curves", &page)
+        .and_then(|()| quote::in_page(&faces, "faces", &page));
     let written = written.and_then(|()| {
         plot(&refused, my.robots, &my.out.join("curves.svg")).map_err(|error| error.to_string())
     });
@@ -370,7 +391,8 @@ fn main() -> ExitCode {
     }
 }
 
-/// A tube of radius 1 beside triangles that are near its flat base: how finely it is divided, and how long that takes.
+/// A tube of radius 1 beside triangles that are near its flat base: how finely it is divided, and
+/// how long that takes.
 fn faces(count: u64) -> String {
     let mut table = String::from(
         "| tube of radius 1 | tolerance | pieces, median | most | resolved | µs, median | most |\n|---|---|---|---|---|---|---|\n",
@@ -401,11 +423,15 @@ fn faces(count: u64) -> String {
                 let corners = (0..3).map(|_| corner(&mut random)).collect();
                 let mesh = TriMesh::new(corners, vec![[0, 1, 2]]).expect("a triangle");
                 let pose = Pose::from_translation(Vector::new(far, -far, far));
-                let moved =
-                    TriMesh::new(mesh.vertices().iter().map(|p| pose * *p).collect(), vec![[0, 1, 2]]);
+                let moved = TriMesh::new(
+                    mesh.vertices().iter().map(|p| pose * *p).collect(),
+                    vec![[0, 1, 2]],
+                );
                 let mut search = BvhSearch::new(&moved.expect("a triangle")).expect("a mesh");
                 let mut all = Vec::new();
-                let found = search.clearance_pieces(&tube, &pose, tolerance, &mut all).expect("a clearance");
+                let found = search
+                    .clearance_pieces(&tube, &pose, tolerance, &mut all)
+                    .expect("a clearance");
                 let time = (0..5).map(|_| {
                     search.forget();
                     let clock = Instant::now();
@@ -467,24 +493,37 @@ fn plot(
         .x_label_formatter(&|doubled: &f64| format!("{:.0}", FEWEST * doubled.exp2()))
         .y_label_formatter(&|resolved| format!("{resolved:.0}"))
         .draw()?;
-    let colours =
-        [RGBColor(0, 114, 178), RGBColor(213, 94, 0), RGBColor(0, 158, 115), RGBColor(204, 121, 167), BLACK];
+    let colours = [
+        RGBColor(0, 114, 178),
+        RGBColor(213, 94, 0),
+        RGBColor(0, 158, 115),
+        RGBColor(204, 121, 167),
+        BLACK,
+    ];
     let mut below = 60;
-    for (number, (noise, colour)) in [0.01, 0.03, 0.1, 0.2, 0.5].into_iter().zip(colours).enumerate() {
+    for (number, (noise, colour)) in
+        [0.01, 0.03, 0.1, 0.2, 0.5].into_iter().zip(colours).enumerate()
+    {
         for fit in [true, false] {
             let line: Vec<_> = refused
                 .iter()
                 .filter(|(by_fit, _, of, _)| *by_fit == fit && *of == noise)
-                .map(|&(_, samples, _, resolved)| ((samples as f64 / FEWEST).log2(), resolved as f64))
+                .map(|&(_, samples, _, resolved)| {
+                    ((samples as f64 / FEWEST).log2(), resolved as f64)
+                })
                 .collect();
             if line.is_empty() {
                 continue;
             }
-            let style =
-                ShapeStyle { color: colour.to_rgba(), filled: false, stroke_width: if fit { 3 } else { 1 } };
+            let style = ShapeStyle {
+                color: colour.to_rgba(),
+                filled: false,
+                stroke_width: if fit { 3 } else { 1 },
+            };
             chart.draw_series(LineSeries::new(line.clone(), style))?;
-            chart
-                .draw_series(line.into_iter().map(|at| EmptyElement::at(at) + mark((0, 0), number, style)))?;
+            chart.draw_series(
+                line.into_iter().map(|at| EmptyElement::at(at) + mark((0, 0), number, style)),
+            )?;
             let name = format!("noise {noise}, {}", if fit { "fit" } else { "from_samples" });
             right.draw(&PathElement::new([(0, below), (24, below)], style))?;
             right.draw(&mark((12, below), number, style))?;

@@ -1,5 +1,6 @@
-//! Which parts of a robot are held against one another: this crate's rule beside the one that planners use, the parts that are
-//! more than three radii apart along the robot. Writes the table of `docs/book/robots.md`.
+//! Which parts of a robot are held against one another: this crate's rule beside the one that
+//! planners use, the parts that are more than three radii apart along the robot. Writes the table
+//! of `docs/book/robots.md`.
 //!
 //! ```text
 //! cargo run --release -p continuum-studies --bin own_parts
@@ -36,7 +37,8 @@ struct Shape {
     radii: Vec<f64>,
 }
 
-/// Three sections of 60 mm with one bend each, up to nine tenths of the tightest that the radius allows.
+/// Three sections of 60 mm with one bend each, up to nine tenths of the tightest that the radius
+/// allows.
 fn tendon_robot(random: &mut Random) -> Shape {
     const RADIUS: f64 = 5.0;
     let (mut frame, mut points) = (Pose::IDENTITY, vec![Vector::ZERO]);
@@ -72,7 +74,8 @@ fn snake(random: &mut Random) -> Shape {
     let (mut frame, mut points) = (Pose::IDENTITY, vec![Vector::ZERO]);
     for _ in 0..20 {
         let plane = random.between(0.0, TAU);
-        let bend = Vector::new(plane.cos(), plane.sin(), 0.0) * random.between(0.0, 80.0_f64.to_radians());
+        let bend =
+            Vector::new(plane.cos(), plane.sin(), 0.0) * random.between(0.0, 80.0_f64.to_radians());
         frame = frame * Pose::new(Vector::ZERO, bend) * Pose::from_translation(Vector::Z * 20.0);
         points.push(frame.translation);
     }
@@ -109,8 +112,9 @@ impl Samples {
         (self.points[i] - self.points[j]).length() - self.radii[i] - self.radii[j]
     }
 
-    /// The nearest of all pairs of places that come no nearer when either moves along the robot, and of which the robot is not
-    /// simply the one thing: the way down does not lead to where both are one.
+    /// The nearest of all pairs of places that come no nearer when either moves along the robot,
+    /// and of which the robot is not simply the one thing: the way down does not lead to where
+    /// both are one.
     fn truth(&self, most: f64) -> f64 {
         const AROUND: usize = 2;
         let count = self.points.len();
@@ -136,12 +140,14 @@ impl Samples {
         let count = self.points.len();
         let pairs = (0..count).flat_map(|i| (i + 1..count).map(move |j| (i, j)));
         let far = pairs.filter(|&(i, j)| {
-            self.arc_lengths[j] - self.arc_lengths[i] > 3.0 * self.radii[i].max(self.radii[j]) + more
+            self.arc_lengths[j] - self.arc_lengths[i]
+                > 3.0 * self.radii[i].max(self.radii[j]) + more
         });
         far.fold(f64::INFINITY, |least, (i, j)| least.min(self.apart(i, j)))
     }
 
-    /// How far the nearest two samples may be farther apart than the nearest two places: half a step along each.
+    /// How far the nearest two samples may be farther apart than the nearest two places: half a
+    /// step along each.
     fn step(&self) -> f64 {
         self.arc_lengths.windows(2).fold(0.0, |most, ends| f64::max(most, ends[1] - ends[0]))
     }
@@ -169,8 +175,8 @@ fn counted(my: &Options, shape: fn(&mut Random) -> Shape, margin: f64) -> Result
     for _ in 0..my.shapes {
         let shape = shape(&mut random);
         let samples = Samples::of(&shape);
-        // Two places may be half a step off on either side, across their distance of about two radii: to be near for certain, or
-        // clear, it takes more than that.
+        // Two places may be half a step off on either side, across their distance of about two
+        // radii: to be near for certain, or clear, it takes more than that.
         let step = samples.step();
         let radius = shape.radii.iter().fold(f64::INFINITY, |least, &r| least.min(r));
         let off = 0.25 * step * step / radius;
@@ -179,7 +185,8 @@ fn counted(my: &Options, shape: fn(&mut Random) -> Shape, margin: f64) -> Result
             counts.unclear += 1;
             continue;
         }
-        let robot = Chain::capsules(&shape.points, &shape.radii).map_err(|error| error.to_string())?;
+        let robot =
+            Chain::capsules(&shape.points, &shape.radii).map_err(|error| error.to_string())?;
         let ours = !pair.self_clears(&robot, margin).map_err(|error| error.to_string())?;
         let [arcs, longer] = [0.0, margin].map(|more| samples.by_arc_length(more) <= margin);
         let is_near = truth <= margin;

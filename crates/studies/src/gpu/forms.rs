@@ -48,18 +48,24 @@ impl GpuForms {
         Ok(Self(Batch::new(gpu.device(), &kernel(&text(form)))?))
     }
 
-    /// The squared distances between the segments of the first and the last two points, or between the first point and
-    /// the triangle of the others. Coordinates are near one. `out` is cleared first.
+    /// The squared distances between the segments of the first and the last two points, or between
+    /// the first point and the triangle of the others. Coordinates are near one. `out` is
+    /// cleared first.
     ///
     /// # Errors
     /// The GPU has failed.
-    pub fn solve(&mut self, points: &[[Vec3<f64>; 4]], out: &mut Vec<f64>) -> Result<(), DeviceFailure> {
+    pub fn solve(
+        &mut self,
+        points: &[[Vec3<f64>; 4]],
+        out: &mut Vec<f64>,
+    ) -> Result<(), DeviceFailure> {
         out.clear();
         let numbers = points.iter().flatten().flat_map(|&point| <[f64; 3]>::from(point));
         self.0.run(numbers, |answer| out.extend(answer))
     }
 
-    /// How long the GPU computed for the last problems, without transfers; `None` if it keeps no time.
+    /// How long the GPU computed for the last problems, without transfers; `None` if it keeps no
+    /// time.
     pub fn device_time(&self) -> Option<Duration> {
         self.0.device_time()
     }

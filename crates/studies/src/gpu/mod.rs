@@ -1,5 +1,5 @@
-//! What compares with the paper on the GPU (feature `gpu`): the routes to a disc, single pairs of the narrow phase, and
-//! branches against clamps.
+//! What compares with the paper on the GPU (feature `gpu`): the routes to a disc, single pairs of
+//! the narrow phase, and branches against clamps.
 
 mod discs;
 pub mod forms;

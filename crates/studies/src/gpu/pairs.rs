@@ -7,7 +7,8 @@ use parry_continuum::distance::{Closest, Scalar, Vec3};
 use parry_continuum::gpu::{Gpu, laboratory};
 use std::time::Duration;
 
-/// A pair of shapes of [`distance`](parry_continuum::distance), and which parts of a [`PairProblem`] they are.
+/// A pair of shapes of [`distance`](parry_continuum::distance), and which parts of a
+/// [`PairProblem`] they are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Pair {
     /// The link's axis against the triangle's first edge.
@@ -68,7 +69,8 @@ impl Pair {
     }
 }
 
-/// A triangle, a plane through its first vertex, a link, and a disc around the link's end. A pair takes its part.
+/// A triangle, a plane through its first vertex, a link, and a disc around the link's end. A pair
+/// takes its part.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PairProblem {
     /// The triangle's vertices.
@@ -133,7 +135,8 @@ struct Frame {
 
 impl Frame {
     fn around(origin: Vec3<f64>, points: &[Vec3<f64>], length: f64) -> Self {
-        let extent = points.iter().fold(length, |extent, &point| extent.max(largest(point - origin)));
+        let extent =
+            points.iter().fold(length, |extent, &point| extent.max(largest(point - origin)));
         Self { origin, scale: extent.power_of_two_to_unity() }
     }
 
@@ -141,7 +144,8 @@ impl Frame {
         (point - self.origin) * self.scale
     }
 
-    /// An answer of this frame in the problem's coordinates, with one common point where the distance is 0.
+    /// An answer of this frame in the problem's coordinates, with one common point where the
+    /// distance is 0.
     fn answer(&self, distance: f64, on_first: Vec3<f64>, on_second: Vec3<f64>) -> Closest<f64> {
         let place = |point: Vec3<f64>| self.origin + point * (1.0 / self.scale);
         let point1 = place(on_first);
@@ -180,7 +184,8 @@ impl GpuPairs {
         Ok(Self { pair, batch: Batch::new(gpu.device(), &kernel(&text))? })
     }
 
-    /// The closest points of every problem, in their order, computed in the GPU's precision. `out` is cleared first.
+    /// The closest points of every problem, in their order, computed in the GPU's precision. `out`
+    /// is cleared first.
     ///
     /// # Errors
     /// The GPU has failed.
@@ -200,7 +205,8 @@ impl GpuPairs {
         })
     }
 
-    /// How long the GPU computed for the last problems, without transfers; `None` if it keeps no time.
+    /// How long the GPU computed for the last problems, without transfers; `None` if it keeps no
+    /// time.
     pub fn device_time(&self) -> Option<Duration> {
         self.batch.device_time()
     }

@@ -20,8 +20,12 @@ fn clamps_and_trees_give_the_librarys_distances() {
             let mut wrong = 0;
             for (&[a, b, c, d], squared) in points.iter().zip(&squared) {
                 let expected = match form {
-                    Form::ClampedSegments | Form::TreeSegments => segment_segment([a, b], [c, d]).distance,
-                    Form::ClampedTriangle | Form::TreeTriangle => point_triangle(a, [b, c, d]).distance,
+                    Form::ClampedSegments | Form::TreeSegments => {
+                        segment_segment([a, b], [c, d]).distance
+                    }
+                    Form::ClampedTriangle | Form::TreeTriangle => {
+                        point_triangle(a, [b, c, d]).distance
+                    }
                 };
                 wrong += usize::from((squared - expected * expected).abs() > tolerance);
             }

@@ -1,5 +1,5 @@
-//! Every function of the narrow phase on the GPU against its twin on the CPU: the reference cases, and random
-//! problems of the kinds that break distance code.
+//! Every function of the narrow phase on the GPU against its twin on the CPU: the reference cases,
+//! and random problems of the kinds that break distance code.
 
 use continuum_studies::gpu::{Discs, GpuPairs, Pair, PairProblem};
 use continuum_testing::kernels::Input;
@@ -30,7 +30,9 @@ fn twin(pair: Pair, problem: &PairProblem) -> Closest<f64> {
         Pair::TriangleDisc => triangle_disc(triangle, end, disc_normal, radius),
         Pair::PointModifiedCylinder => point_modified_cylinder(a, start, end, radius, flat),
         Pair::TriangleCapsule => triangle_capsule(triangle, start, end, radius),
-        Pair::TriangleModifiedCylinder => triangle_modified_cylinder(triangle, start, end, radius, flat),
+        Pair::TriangleModifiedCylinder => {
+            triangle_modified_cylinder(triangle, start, end, radius, flat)
+        }
     }
 }
 
@@ -47,7 +49,9 @@ fn extent(pair: Pair, problem: &PairProblem) -> f64 {
         Pair::SegmentDisc => (&[end, a, b], problem.radius),
         Pair::TriangleDisc => (&[end, a, b, c], problem.radius),
         Pair::PointModifiedCylinder => (&[start, end, a], problem.radius),
-        Pair::TriangleCapsule | Pair::TriangleModifiedCylinder => (&[start, end, a, b, c], problem.radius),
+        Pair::TriangleCapsule | Pair::TriangleModifiedCylinder => {
+            (&[start, end, a, b, c], problem.radius)
+        }
     };
     continuum_testing::precision::extent(points, length)
 }
@@ -63,7 +67,10 @@ fn worst(gpu: &Gpu, pair: Pair, problems: &[PairProblem]) -> (f64, usize) {
         let unit = unit(gpu.precision()) * extent(pair, problem);
         let error = (answer.distance - expected.distance).abs();
         // Written so that NaN fails; all points of a problem may be one.
-        assert!(error <= 16.0 * unit, "{pair:?}: {error}, {answer:?} for {expected:?}, {problem:?}");
+        assert!(
+            error <= 16.0 * unit,
+            "{pair:?}: {error}, {answer:?} for {expected:?}, {problem:?}"
+        );
         let vector = continuum_testing::precision::vector::<f64>;
         let gap = (vector(answer.point1) - vector(answer.point2)).length();
         let magnitude = vector(answer.point1).length() + vector(answer.point2).length();
@@ -82,20 +89,31 @@ fn worst(gpu: &Gpu, pair: Pair, problems: &[PairProblem]) -> (f64, usize) {
 fn reference_cases() {
     for (name, precision) in gpu::PRECISIONS {
         let Some(gpu) = gpu::open(precision) else { continue };
-        let cases: Vec<_> =
-            distance_cases().into_iter().filter(|case| case.f32 || precision == Precision::F64).collect();
+        let cases: Vec<_> = distance_cases()
+            .into_iter()
+            .filter(|case| case.f32 || precision == Precision::F64)
+            .collect();
         assert!(cases.len() > 1000);
         for pair in Pair::ALL {
             let of_pair = |case: &&Case| pair_of(case) == pair;
             let cases: Vec<_> = cases.iter().filter(of_pair).collect();
-            let problems: Vec<_> =
-                cases.iter().map(|case| PairProblem::of(&Input::from(*case), case.flat())).collect();
+            let problems: Vec<_> = cases
+                .iter()
+                .map(|case| PairProblem::of(&Input::from(*case), case.flat()))
+                .collect();
             let mut answers = Vec::new();
             GpuPairs::new(gpu, pair).unwrap().solve(&problems, &mut answers).unwrap();
             let mut worst = 0.0_f64;
             for (case, answer) in cases.iter().zip(&answers) {
-                let error = (answer.distance - case.distance()).abs() / (unit(precision) * case.scale);
-                assert!(error <= 16.0, "{name} {} {} {}: {error} units", case.id, case.kind, case.cat);
+                let error =
+                    (answer.distance - case.distance()).abs() / (unit(precision) * case.scale);
+                assert!(
+                    error <= 16.0,
+                    "{name} {} {} {}: {error} units",
+                    case.id,
+                    case.kind,
+                    case.cat
+                );
                 worst = worst.max(error);
             }
             println!("{name} {pair:?}: {} cases, worst {worst:.2}", cases.len());
@@ -150,7 +168,8 @@ fn random_and_nasty_problems() {
     }
 }
 
-/// A link as short as a power of ten, with flat caps of radius 0.5, and a triangle at a distance of about 1.
+/// A link as short as a power of ten, with flat caps of radius 0.5, and a triangle at a distance of
+/// about 1.
 fn short_link(random: &mut Random, power: i32, precision: Precision) -> PairProblem {
     let held = |v: Vector| match precision {
         Precision::F32 => Vec3::from(v.as_vec3().as_dvec3()),
@@ -159,10 +178,19 @@ fn short_link(random: &mut Random, power: i32, precision: Precision) -> PairProb
     let centre = random.direction();
     let triangle = [(); 3].map(|()| held(centre + random.point() * 0.3));
     let [start, end] = [Vector::ZERO, random.direction() * 10.0_f64.powi(power)].map(held);
-    PairProblem { triangle, plane_normal: end, start, end, disc_normal: end, radius: 0.5, flat: [true; 2] }
+    PairProblem {
+        triangle,
+        plane_normal: end,
+        start,
+        end,
+        disc_normal: end,
+        radius: 0.5,
+        flat: [true; 2],
+    }
 }
 
-/// A link keeps its flat caps however short it is, on devices too that have no numbers below the normal ones.
+/// A link keeps its flat caps however short it is, on devices too that have no numbers below the
+/// normal ones.
 #[test]
 fn short_links() {
     for (name, precision) in gpu::PRECISIONS {
@@ -170,11 +198,12 @@ fn short_links() {
         let shortest = if precision == Precision::F32 { -18 } else { -150 };
         let mut random = Random::new(43);
         let powers = (shortest..0).flat_map(|power| [power; 20]);
-        let problems: Vec<_> = powers.map(|power| short_link(&mut random, power, precision)).collect();
+        let problems: Vec<_> =
+            powers.map(|power| short_link(&mut random, power, precision)).collect();
         let pair = Pair::TriangleModifiedCylinder;
         let decided_by_cap = |problem: &&PairProblem| {
-            let [flat, round] =
-                [true, false].map(|cap| twin(pair, &PairProblem { flat: [cap; 2], ..**problem }).distance);
+            let [flat, round] = [true, false]
+                .map(|cap| twin(pair, &PairProblem { flat: [cap; 2], ..**problem }).distance);
             flat > round + 0.05
         };
         let caps = problems.iter().filter(decided_by_cap).count();
@@ -186,15 +215,16 @@ fn short_links() {
     }
 }
 
-/// The paper's quartic finds the distance of most discs, and never less than it is: its candidates are points of the
-/// segment. (The closed form loses digits on nearly double roots.)
+/// The paper's quartic finds the distance of most discs, and never less than it is: its candidates
+/// are points of the segment. (The closed form loses digits on nearly double roots.)
 #[test]
 fn discs_by_the_quartic() {
     for (name, precision) in gpu::PRECISIONS {
         let Some(gpu) = gpu::open(precision) else { continue };
         let mut random = Random::new(41);
         let mut problems = Vec::new();
-        for family in [Family::Generic, Family::Lattice, Family::EdgeTangentToRim, Family::Touching] {
+        for family in [Family::Generic, Family::Lattice, Family::EdgeTangentToRim, Family::Touching]
+        {
             problems.extend(random_problems(&mut random, family, precision));
         }
         for pair in [Pair::SegmentDisc, Pair::TriangleDisc, Pair::TriangleModifiedCylinder] {
@@ -208,7 +238,10 @@ fn discs_by_the_quartic() {
                     let expected = twin(pair, problem).distance;
                     let unit = unit(precision) * extent(pair, problem);
                     let beyond = answer.distance - expected;
-                    assert!(beyond >= -16.0 * unit, "{name} {pair:?} {discs:?}: {answer:?} for {expected}");
+                    assert!(
+                        beyond >= -16.0 * unit,
+                        "{name} {pair:?} {discs:?}: {answer:?} for {expected}"
+                    );
                     exact += usize::from(beyond <= 16.0 * unit);
                 }
                 let exact = exact as f64 / problems.len() as f64;

@@ -1,5 +1,5 @@
-//! Every shader, on machines without a GPU: it is valid in both precisions and translates to what drivers take, and it
-//! keeps the rules that no driver checks.
+//! Every shader, on machines without a GPU: it is valid in both precisions and translates to what
+//! drivers take, and it keeps the rules that no driver checks.
 
 use continuum_studies::gpu::{Discs, Form, Pair, forms, pairs};
 use gpu_batch::{Precision, Shader};
@@ -31,8 +31,9 @@ fn capabilities(precision: Precision) -> Capabilities {
 }
 
 fn parse(kernel: &Shader, precision: Precision) -> (Module, ModuleInfo) {
-    let module = naga::front::wgsl::parse_str(&kernel.text)
-        .unwrap_or_else(|error| panic!("{}: {}", kernel.entry_point, error.emit_to_string(&kernel.text)));
+    let module = naga::front::wgsl::parse_str(&kernel.text).unwrap_or_else(|error| {
+        panic!("{}: {}", kernel.entry_point, error.emit_to_string(&kernel.text))
+    });
     let info = validate(kernel.entry_point, &module, precision);
     (module, info)
 }
@@ -63,21 +64,27 @@ fn every_kernel_translates() {
             assert_eq!((entry.name.as_str(), module.entry_points.len()), (name, 1));
             assert_eq!(entry.stage, ShaderStage::Compute);
             for constants in choices(&module) {
-                let (module, info) =
-                    process_overrides(&module, &info, Some((ShaderStage::Compute, name)), &constants)
-                        .unwrap_or_else(|error| panic!("{name} {precision:?}: {error}"));
+                let (module, info) = process_overrides(
+                    &module,
+                    &info,
+                    Some((ShaderStage::Compute, name)),
+                    &constants,
+                )
+                .unwrap_or_else(|error| panic!("{name} {precision:?}: {error}"));
                 validate(name, &module, precision);
                 let words = spv::write_vec(&module, &info, &spv::Options::default(), None)
                     .unwrap_or_else(|error| panic!("{name} {precision:?}: {error}"));
                 assert!(words.len() > 100);
                 if precision == Precision::F32 {
                     let pipeline = msl::PipelineOptions::default();
-                    let text = msl::write_string(&module, &info, &msl::Options::default(), &pipeline)
-                        .unwrap_or_else(|error| panic!("{name}: {error}"))
-                        .0;
+                    let text =
+                        msl::write_string(&module, &info, &msl::Options::default(), &pipeline)
+                            .unwrap_or_else(|error| panic!("{name}: {error}"))
+                            .0;
                     assert!(text.contains(name));
                     let mut text = String::new();
-                    let options = hlsl::Options { fake_missing_bindings: true, ..Default::default() };
+                    let options =
+                        hlsl::Options { fake_missing_bindings: true, ..Default::default() };
                     hlsl::Writer::new(&mut text, &options, &Default::default())
                         .write(&module, &info, None)
                         .unwrap_or_else(|error| panic!("{name}: {error}"));
@@ -117,7 +124,11 @@ fn double_precision_keeps_to_what_drivers_compute() {
                         == Some(naga::ScalarKind::Float);
                 match expression {
                     Expression::Math { fun, .. } if double => {
-                        assert!(DOUBLE_PRECISION.contains(fun), "{}: {fun:?} of an f64", kernel.entry_point);
+                        assert!(
+                            DOUBLE_PRECISION.contains(fun),
+                            "{}: {fun:?} of an f64",
+                            kernel.entry_point
+                        );
                         checked += 1;
                     }
                     Expression::Binary { op: naga::BinaryOperator::Modulo, .. } if double => {
@@ -133,7 +144,10 @@ fn double_precision_keeps_to_what_drivers_compute() {
 
 /// The text without comments.
 fn code(text: &str) -> String {
-    text.lines().map(|line| line.split("//").next().unwrap_or_default()).collect::<Vec<_>>().join("\n")
+    text.lines()
+        .map(|line| line.split("//").next().unwrap_or_default())
+        .collect::<Vec<_>>()
+        .join("\n")
 }
 
 /// The floating-point literals of a text, each with what stands right before it.
@@ -142,7 +156,8 @@ fn literals(text: &str) -> Vec<(String, String)> {
     let bytes = text.as_bytes();
     let mut at = 0;
     while at < bytes.len() {
-        let inside_name = at > 0 && (bytes[at - 1].is_ascii_alphanumeric() || b"_.".contains(&bytes[at - 1]));
+        let inside_name =
+            at > 0 && (bytes[at - 1].is_ascii_alphanumeric() || b"_.".contains(&bytes[at - 1]));
         if !bytes[at].is_ascii_digit() || inside_name {
             at += 1;
             continue;
@@ -165,14 +180,15 @@ fn literals(text: &str) -> Vec<(String, String)> {
     found
 }
 
-/// A literal without a type may become an f32 in the middle of double precision; and a length has no natural size, so
-/// no literal is a threshold for one.
+/// A literal without a type may become an f32 in the middle of double precision; and a length has
+/// no natural size, so no literal is a threshold for one.
 #[test]
 fn literals_have_a_type_and_are_no_tolerances() {
     let mut checked = 0;
     for kernel in kernels(Precision::F64) {
         for line in code(&kernel.text).lines() {
-            // What precedes the functions is generated, and the start values of iterations are powers of two.
+            // What precedes the functions is generated, and the start values of iterations are
+            // powers of two.
             let is_constant = line.starts_with("const ");
             for (before, literal) in literals(line) {
                 let typed = before.ends_with("real(")

@@ -8,7 +8,8 @@ use parry_continuum::gpu::Precision;
 fn the_speed_of_the_gpu_is_measured_and_written() {
     let gpu_speed = env!("CARGO_BIN_EXE_gpu_speed");
     let _ = std::fs::remove_dir_all(place("gpu_speed"));
-    let arguments = ["--largest", "1000", "--problems", "20", "--enough", "0", "--out", "gpu_speed"];
+    let arguments =
+        ["--largest", "1000", "--problems", "20", "--enough", "0", "--out", "gpu_speed"];
     if gpu::open(Precision::F32).is_none() {
         refuse(gpu_speed, &arguments, "adapter");
         return;
@@ -40,7 +41,11 @@ fn the_speed_of_the_gpu_is_measured_and_written() {
     // Of seven degrees.
     assert_eq!(rows("gpu_speed/internals/gpu_roots.csv"), 4 * 7 - 4);
     // To the last bit.
-    assert_eq!(studies.matches(": the distances are the search's, and ").count(), precisions, "{studies}");
+    assert_eq!(
+        studies.matches(": the distances are the search's, and ").count(),
+        precisions,
+        "{studies}"
+    );
 
     let adapter = gpu::open(Precision::F32).unwrap().adapter();
     if adapter.is_software {

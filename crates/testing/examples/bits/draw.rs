@@ -7,7 +7,8 @@ use parry_continuum::parry::math::{Pose, Rotation, Vector};
 pub fn wall(random: &mut Random, n: u32, offset: f64) -> (Vec<Vector>, Vec<[u32; 3]>) {
     let vertices = (0..(n + 1) * (n + 1))
         .map(|k| {
-            let [i, j] = [k / (n + 1), k % (n + 1)].map(|k| 2.0 * f64::from(k) / f64::from(n) - 1.0);
+            let [i, j] =
+                [k / (n + 1), k % (n + 1)].map(|k| 2.0 * f64::from(k) / f64::from(n) - 1.0);
             let height = 2.0 + i * i - j * j + 0.05 * random.unit();
             Vector::new(5.0 * i + offset, 5.0 * j, height)
         })
@@ -43,10 +44,12 @@ pub fn centreline(random: &mut Random) -> Vec<Vector> {
     points
 }
 
-/// Thirteen points along two arms and the half circle that joins them: a robot that comes near itself.
+/// Thirteen points along two arms and the half circle that joins them: a robot that comes near
+/// itself.
 pub fn hairpin(random: &mut Random) -> Vec<Vector> {
     /// Cosines and sines in steps of pi / 8.
-    const QUARTER: [[f64; 2]; 4] = [[1.0, 0.0], [0.92388, 0.38268], [0.70711, 0.70711], [0.38268, 0.92388]];
+    const QUARTER: [[f64; 2]; 4] =
+        [[1.0, 0.0], [0.92388, 0.38268], [0.70711, 0.70711], [0.38268, 0.92388]];
     let [radius, rise] = [0.3 + 0.1 * random.unit(), 0.05 * random.unit()];
     let left = QUARTER.map(|[x, y]| [-x, y]);
     let right = QUARTER.map(|[x, y]| [y, x]);

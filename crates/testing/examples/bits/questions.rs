@@ -106,7 +106,8 @@ pub fn curves(offset: f64) -> Result<Vec<Record>, Box<dyn Error>> {
             place = nudged(random, &place);
         }
         let bend = [0.3 * random.unit(), random.unit()];
-        let section = ConstantCurvature::new(&[BendingSection { length: 3.0, radius: 0.2, bend }])?.tube()?;
+        let section =
+            ConstantCurvature::new(&[BendingSection { length: 3.0, radius: 0.2, bend }])?.tube()?;
         sections.add(&near.search.clearance(&section, &place, 0.001)?);
         let to: Vec<_> = points.iter().map(|point| *point + 0.1 * random.point()).collect();
         let bending = LinearMotion::chain(&points, &to, &radii)?;
@@ -128,7 +129,8 @@ pub fn curves(offset: f64) -> Result<Vec<Record>, Box<dyn Error>> {
 
 /// Two robots, and one and itself.
 pub fn pairs(offset: f64) -> Result<Vec<Record>, Box<dyn Error>> {
-    let mut all = records(["pair", "pair_clears", "pair_within", "pair_tubes", "pair_motions", "self"]);
+    let mut all =
+        records(["pair", "pair_clears", "pair_within", "pair_tubes", "pair_motions", "self"]);
     let [pair, clears, within, tubes, motions, own] = &mut all;
     let random = &mut Random::new(9);
     let mut robots = RobotPair::new();
@@ -169,7 +171,11 @@ pub fn pairs(offset: f64) -> Result<Vec<Record>, Box<dyn Error>> {
         let tube = Tube::from_samples(&bent, &radii[0], None)?;
         own.add(&robots.tube_self_clears(&tube, 0.1, 0.05));
         let to: Vec<_> = bent.iter().map(|point| *point + 0.02 * random.point()).collect();
-        own.add(&robots.motion_self_clears(&LinearMotion::chain(&bent, &to, &radii[0])?, 0.05, 0.05));
+        own.add(&robots.motion_self_clears(
+            &LinearMotion::chain(&bent, &to, &radii[0])?,
+            0.05,
+            0.05,
+        ));
     }
     Ok(all.into())
 }
@@ -210,7 +216,8 @@ pub fn scenes(offset: f64) -> Result<Vec<Record>, Box<dyn Error>> {
 
 /// parry's questions through the dispatcher.
 pub fn hosts(offset: f64) -> Result<Vec<Record>, Box<dyn Error>> {
-    let mut all = records(["host_distance", "host_contact", "host_manifolds", "host_casts", "host_masses"]);
+    let mut all =
+        records(["host_distance", "host_contact", "host_manifolds", "host_casts", "host_masses"]);
     let [distance, contact, manifolds, casts, masses] = &mut all;
     let random = &mut Random::new(11);
     let near = Anatomy::new(random, 0.0)?;
@@ -230,7 +237,8 @@ pub fn hosts(offset: f64) -> Result<Vec<Record>, Box<dyn Error>> {
             distance.add(&dispatcher.distance(&place, &chain, shape)?.distance);
             distance.add(&dispatcher.intersection_test(&place, &chain, shape)?.intersecting);
             contact.add(&dispatcher.contact(&place, &chain, shape, 0.5)?);
-            let (velocity, options) = (random.point(), ShapeCastOptions::with_max_time_of_impact(5.0));
+            let (velocity, options) =
+                (random.point(), ShapeCastOptions::with_max_time_of_impact(5.0));
             casts.add(&dispatcher.cast_shapes(&place, velocity, &chain, shape, options)?);
             let mut list: Vec<ContactManifold<(), ()>> = Vec::new();
             dispatcher.contact_manifolds(&place, &chain, shape, 0.1, &mut list, &mut None)?;

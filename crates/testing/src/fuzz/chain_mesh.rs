@@ -9,8 +9,8 @@ use parry_continuum::{Chain, ModifiedCylinder};
 /// Beyond this parry's own mesh is not asked for.
 const LARGEST: f64 = 1e150;
 
-/// Every link's distance lies within 16 units of the extent of its pair of the certificate, and no triangle is nearer by
-/// more than those of its own pair; minimum and clearance agree with it.
+/// Every link's distance lies within 16 units of the extent of its pair of the certificate, and no
+/// triangle is nearer by more than those of its own pair; minimum and clearance agree with it.
 pub fn chain_mesh(bytes: &[u8]) {
     let mut source = Source::new(bytes);
     let pose = source.pose();
@@ -25,7 +25,8 @@ pub fn chain_mesh(bytes: &[u8]) {
     let vertices: Vec<_> = (0..3 + source.below(10)).map(|_| source.point()).collect();
     let count = vertices.len() as u8;
     let mut corner = || source.below(count) as u32;
-    let indices: Vec<_> = (0..1 + usize::from(count)).map(|_| [corner(), corner(), corner()]).collect();
+    let indices: Vec<_> =
+        (0..1 + usize::from(count)).map(|_| [corner(), corner(), corner()]).collect();
     if !vertices.iter().all(|vertex| vertex.abs().max_element() <= LARGEST && vertex.is_finite()) {
         return;
     }
@@ -46,7 +47,8 @@ pub fn chain_mesh(bytes: &[u8]) {
         if pairs.is_empty() {
             pairs = robot.links().iter().map(|link| Pair::all(link, &pose, &mesh)).collect();
         }
-        let problem = || format!("{name}\n{robot:?}\n{pose:?}\n{:?} {:?}", mesh.vertices(), mesh.indices());
+        let problem =
+            || format!("{name}\n{robot:?}\n{pose:?}\n{:?} {:?}", mesh.vertices(), mesh.indices());
         assert_eq!(answers.len(), robot.links().len(), "{}", problem());
         for (answer, pairs) in answers.iter().zip(&pairs) {
             check(answer, pairs).unwrap_or_else(|why| panic!("{why}: {answer:?} {}", problem()));
@@ -73,9 +75,11 @@ impl Pair {
         let pair = |corners: [Vector; 3]| {
             let start = pose * link.start();
             let others = corners.into_iter().chain([pose * link.end()]);
-            let extent =
-                others.map(|point| (point - start).abs().max_element()).fold(link.radius(), f64::max);
-            let bounds = Certificate::between(link, pose, corners).expect("what was answered is in range");
+            let extent = others
+                .map(|point| (point - start).abs().max_element())
+                .fold(link.radius(), f64::max);
+            let bounds =
+                Certificate::between(link, pose, corners).expect("what was answered is in range");
             Self { bounds, slack: 16.0 * f64::EPSILON * extent + 4.0 * f64::from_bits(1) }
         };
         mesh.triangles().map(|triangle| pair([triangle.a, triangle.b, triangle.c])).collect()

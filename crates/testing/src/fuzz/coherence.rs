@@ -1,5 +1,5 @@
-//! One engine in a long loop beside a fresh one for each question: what was asked before changes no answer, nor do vertices
-//! that moved, and every margin means the same everywhere.
+//! One engine in a long loop beside a fresh one for each question: what was asked before changes no
+//! answer, nor do vertices that moved, and every margin means the same everywhere.
 
 use super::source::Source;
 use parry_continuum::parry::math::{Pose, Vector};
@@ -32,7 +32,8 @@ pub fn coherence(bytes: &[u8]) {
     let mut source = Source::new(bytes);
     let (vertices, indices) = source.wall();
     let (Some(first), Some(second)) = (source.chain(), source.chain()) else { return };
-    let mut scene = Scene { vertices, indices, robots: [first, second], robot: 0, pose: source.pose() };
+    let mut scene =
+        Scene { vertices, indices, robots: [first, second], robot: 0, pose: source.pose() };
     let Some(mut search) = scene.mesh().and_then(|mesh| BvhSearch::new(&mesh).ok()) else { return };
     for _ in 0..2 + source.below(10) {
         change(&mut source, &mut scene, &mut search);
@@ -67,7 +68,13 @@ fn change(source: &mut Source, scene: &mut Scene, search: &mut BvhSearch) {
 }
 
 /// A question, and what answers it: both engines say the same.
-fn ask(source: &mut Source, scene: &Scene, search: &mut BvhSearch, mut fresh: BvhSearch, mesh: &TriMesh) {
+fn ask(
+    source: &mut Source,
+    scene: &Scene,
+    search: &mut BvhSearch,
+    mut fresh: BvhSearch,
+    mesh: &TriMesh,
+) {
     let (robot, pose) = (&scene.robots[scene.robot], &scene.pose);
     let problem = || scene.problem();
     let (mut ours, mut theirs) = (Vec::new(), Vec::new());
@@ -82,7 +89,8 @@ fn ask(source: &mut Source, scene: &Scene, search: &mut BvhSearch, mut fresh: Bv
         let (one, other) = ((least.distance, least.triangle), (link.distance, link.triangle));
         if other < one { *link } else { least }
     };
-    let least = ours.iter().copied().reduce(|least, link| nearer(least, &link)).expect("a robot has links");
+    let least =
+        ours.iter().copied().reduce(|least, link| nearer(least, &link)).expect("a robot has links");
     assert_eq!(search.minimum(robot, pose).as_ref(), Ok(&least), "minimum{}", problem());
     let mut exhaustive = Exhaustive::<f32>::new(mesh).expect("a mesh as before");
     assert_eq!(exhaustive.minimum(robot, pose).as_ref(), Ok(&least), "exhaustive{}", problem());
@@ -103,7 +111,11 @@ fn ask(source: &mut Source, scene: &Scene, search: &mut BvhSearch, mut fresh: Bv
     for _ in 0..2 {
         match search.clears(robot, pose, margin) {
             Ok(clears) => {
-                assert!(margin >= 0.0 && clears == (distance > margin), "{margin} {distance}{}", problem())
+                assert!(
+                    margin >= 0.0 && clears == (distance > margin),
+                    "{margin} {distance}{}",
+                    problem()
+                )
             }
             Err(_) => assert!(margin.is_nan() || margin < 0.0, "clears {margin}{}", problem()),
         }
@@ -111,8 +123,12 @@ fn ask(source: &mut Source, scene: &Scene, search: &mut BvhSearch, mut fresh: Bv
             Ok(Some(found)) => {
                 assert!(found == least && distance <= margin, "{margin} {found:?}{}", problem())
             }
-            Ok(None) => assert!(distance > margin, "nothing within {margin}, but {distance}{}", problem()),
-            Err(_) => assert!(margin.is_nan() || margin < 0.0, "minimum within {margin}{}", problem()),
+            Ok(None) => {
+                assert!(distance > margin, "nothing within {margin}, but {distance}{}", problem())
+            }
+            Err(_) => {
+                assert!(margin.is_nan() || margin < 0.0, "minimum within {margin}{}", problem())
+            }
         }
     }
     let (mut contacts, mut others) = (Vec::new(), Vec::new());
@@ -120,7 +136,11 @@ fn ask(source: &mut Source, scene: &Scene, search: &mut BvhSearch, mut fresh: Bv
     let asked = fresh.within(robot, pose, margin, 0.0, &mut others);
     assert_eq!((kept.is_ok(), &contacts), (asked.is_ok(), &others), "within {margin}{}", problem());
     assert_eq!(kept.is_ok(), margin >= 0.0, "within {margin}{}", problem());
-    assert!(contacts.iter().all(|contact| contact.distance <= margin), "beyond {margin}{}", problem());
+    assert!(
+        contacts.iter().all(|contact| contact.distance <= margin),
+        "beyond {margin}{}",
+        problem()
+    );
     if distance <= margin && margin >= 0.0 {
         let nearest = contacts.iter().map(|contact| contact.distance).fold(f64::INFINITY, f64::min);
         assert_eq!(nearest, distance, "within {margin}{}", problem());

@@ -31,7 +31,10 @@ pub fn constructors(bytes: &[u8]) {
         assert_eq!(kept.len(), kept_radii.len() + 1);
         assert_eq!((kept.first(), kept.last()), (points.first(), points.last()));
         let mut rest = points.iter();
-        assert!(kept.iter().all(|vertex| rest.any(|point| point == vertex)), "{kept:?} of {points:?}");
+        assert!(
+            kept.iter().all(|vertex| rest.any(|point| point == vertex)),
+            "{kept:?} of {points:?}"
+        );
     }
     if let [start, end, ..] = points[..] {
         let cap = |flat| if flat { Cap::Flat } else { Cap::Round };
@@ -50,7 +53,11 @@ fn check(chain: &Chain, points: &[Vector]) {
         assert!(link.start().is_finite() && link.end().is_finite() && link.radius() >= 0.0);
         assert!(link.start() != link.end() || link.caps() == [Cap::Round; 2]);
         let segments = chain.segments_of(place);
-        assert!(segments.start >= covered && segments.end > segments.start && segments.end < points.len());
+        assert!(
+            segments.start >= covered
+                && segments.end > segments.start
+                && segments.end < points.len()
+        );
         covered = segments.end;
     }
     assert!(!chain.links().is_empty());

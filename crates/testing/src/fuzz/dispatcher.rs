@@ -1,17 +1,19 @@
-//! The dispatcher between a robot and every kind of shape that parry has: an answer or a refusal, never a panic and
-//! never a NaN, whatever the pose, the margin and the options. Of aligned pairs that touch more is asked.
+//! The dispatcher between a robot and every kind of shape that parry has: an answer or a refusal,
+//! never a panic and never a NaN, whatever the pose, the margin and the options. Of aligned pairs
+//! that touch more is asked.
 
 use super::source::Source;
 use crate::Random;
 use crate::placements::{Placement, Wall};
 use parry_continuum::parry::math::{IVector, Pose, Rot3, Vector};
 use parry_continuum::parry::query::{
-    ContactManifold, NonlinearRigidMotion, PersistentQueryDispatcher, QueryDispatcher, ShapeCastOptions,
+    ContactManifold, NonlinearRigidMotion, PersistentQueryDispatcher, QueryDispatcher,
+    ShapeCastOptions,
 };
 use parry_continuum::parry::shape::{
-    Ball, Capsule, Compound, Cone, ConvexPolyhedron, Cuboid, Cylinder, HalfSpace, HeightField, Polyline,
-    RoundCone, RoundCuboid, RoundCylinder, RoundTriangle, Segment, Shape, SharedShape, TriMesh, Triangle,
-    Voxels,
+    Ball, Capsule, Compound, Cone, ConvexPolyhedron, Cuboid, Cylinder, HalfSpace, HeightField,
+    Polyline, RoundCone, RoundCuboid, RoundCylinder, RoundTriangle, Segment, Shape, SharedShape,
+    TriMesh, Triangle, Voxels,
 };
 use parry_continuum::parry::utils::Array2;
 use parry_continuum::{Cap, Chain, ContinuumDispatcher, ModifiedCylinder};
@@ -51,7 +53,8 @@ fn aligned_pair(source: &mut Source) {
     let margin = source.number();
     let dispatcher = ContinuumDispatcher::default();
     for (pos12, g1, g2) in [(pose, &*robot, &*wall), (pose.inverse(), &*wall, &*robot)] {
-        let problem = || format!("{:?} {:?} {pos12:?} {margin}", g1.as_typed_shape(), g2.as_typed_shape());
+        let problem =
+            || format!("{:?} {:?} {pos12:?} {margin}", g1.as_typed_shape(), g2.as_typed_shape());
         ask(source, &pos12, g1, g2, margin);
         let Ok(all) = dispatcher.contact(&pos12, g1, g2, f64::MAX) else { continue };
         assert!(all.is_some(), "no contact: {}", problem());
@@ -66,7 +69,9 @@ fn robot(source: &mut Source) -> Option<SharedShape> {
     let radius = source.number().abs();
     let caps = [source.flag(), source.flag()].map(|flat| if flat { Cap::Flat } else { Cap::Round });
     if points.len() == 2 {
-        return ModifiedCylinder::new(points[0], points[1], radius, caps).ok().map(SharedShape::new);
+        return ModifiedCylinder::new(points[0], points[1], radius, caps)
+            .ok()
+            .map(SharedShape::new);
     }
     Chain::from_centreline(&points, &vec![radius; points.len() - 1]).ok().map(SharedShape::new)
 }
@@ -88,9 +93,13 @@ fn other(source: &mut Source, kind: usize) -> Option<SharedShape> {
     // parry cannot even bound a shape whose size is not a number.
     let size = |source: &mut Source| source.number().abs().max(0.0);
     let finite = |points: &[Vector]| {
-        points.iter().all(|point| point.is_finite() && point.abs().max_element() <= LARGEST).then_some(())
+        points
+            .iter()
+            .all(|point| point.is_finite() && point.abs().max_element() <= LARGEST)
+            .then_some(())
     };
-    let triangle = |source: &mut Source| Triangle::new(source.point(), source.point(), source.point());
+    let triangle =
+        |source: &mut Source| Triangle::new(source.point(), source.point(), source.point());
     Some(match kind {
         0 => SharedShape::new(Ball::new(size(source))),
         1 => SharedShape::new(Cuboid::new(source.point().abs())),
@@ -112,7 +121,10 @@ fn other(source: &mut Source, kind: usize) -> Option<SharedShape> {
             inner_shape: Cone::new(size(source), size(source)),
             border_radius: size(source),
         }),
-        11 => SharedShape::new(RoundTriangle { inner_shape: triangle(source), border_radius: size(source) }),
+        11 => SharedShape::new(RoundTriangle {
+            inner_shape: triangle(source),
+            border_radius: size(source),
+        }),
         12 => {
             // A box's corners, moved: parry's hulls panic on what spans no volume.
             let half = source.point().abs().max(Vector::splat(1e-3)).min(Vector::splat(1e3));
@@ -145,7 +157,13 @@ fn other(source: &mut Source, kind: usize) -> Option<SharedShape> {
             let size = source.point().abs().max(Vector::splat(1e-3)).min(Vector::splat(1e3));
             finite(&[size])?;
             let cells: Vec<_> = (0..1 + source.below(4))
-                .map(|_| IVector::new(source.below(4) as i64, source.below(4) as i64, source.below(4) as i64))
+                .map(|_| {
+                    IVector::new(
+                        source.below(4) as i64,
+                        source.below(4) as i64,
+                        source.below(4) as i64,
+                    )
+                })
                 .collect();
             SharedShape::new(Voxels::new(size, &cells))
         }
@@ -183,7 +201,8 @@ fn sign(bit: u32) -> f64 {
 /// Every query, every answer of which must be a number.
 fn ask(source: &mut Source, pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape, margin: f64) {
     let dispatcher = ContinuumDispatcher::default();
-    let problem = || format!("{:?} {:?} {pos12:?} {margin}", g1.as_typed_shape(), g2.as_typed_shape());
+    let problem =
+        || format!("{:?} {:?} {pos12:?} {margin}", g1.as_typed_shape(), g2.as_typed_shape());
     let apart = dispatcher.distance(pos12, g1, g2);
     if let Ok(apart) = &apart {
         assert!(apart.distance >= 0.0, "{apart:?}");
@@ -206,7 +225,9 @@ fn ask(source: &mut Source, pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape, margin
     let moving = NonlinearRigidMotion::new(*pos12, source.point(), source.point(), source.point());
     let times = (source.number(), source.number());
     let stop = source.flag();
-    if let Ok(Some(hit)) = dispatcher.cast_shapes_nonlinear(&still, g1, &moving, g2, times.0, times.1, stop) {
+    if let Ok(Some(hit)) =
+        dispatcher.cast_shapes_nonlinear(&still, g1, &moving, g2, times.0, times.1, stop)
+    {
         assert!(!hit.time_of_impact.is_nan(), "{}", problem());
     }
     let (mut manifolds, mut workspace): (Vec<ContactManifold<(), ()>>, _) = (vec![], None);

@@ -35,16 +35,24 @@ fn check<T: Precision>(points: [Vector; 5], radius: f64, caps: [Cap; 2]) {
     let all = [a, b, c, start, end];
     let extent = extent(&all, round(radius));
     let magnitude = all.iter().map(|point| point.abs().max_element()).fold(0.0, f64::max);
-    let (least, shortest) =
-        if T::UNIT == f64::UNIT { (f64::from_bits(1), 1e-150) } else { (f32::from_bits(1).into(), 1e-18) };
-    // A link whose squared length vanishes has no direction; its caps count as round, as documented.
-    if flat.contains(&true) && (end - start).abs().max_element() < shortest * extent && radius > 0.0 {
+    let (least, shortest) = if T::UNIT == f64::UNIT {
+        (f64::from_bits(1), 1e-150)
+    } else {
+        (f32::from_bits(1).into(), 1e-18)
+    };
+    // A link whose squared length vanishes has no direction; its caps count as round, as
+    // documented.
+    if flat.contains(&true) && (end - start).abs().max_element() < shortest * extent && radius > 0.0
+    {
         return;
     }
     // Answers that are subnormal have their own roundings.
     let slack = 16.0 * T::UNIT * extent + 4.0 * least;
     let context = || {
-        format!("{found:?}\n{bounds:?}\n{all:?} {radius} {caps:?}\nextent {extent}", found = values(&found))
+        format!(
+            "{found:?}\n{bounds:?}\n{all:?} {radius} {caps:?}\nextent {extent}",
+            found = values(&found)
+        )
     };
     let distance: f64 = found.distance.into();
     let largest = if T::UNIT == f64::UNIT { f64::MAX } else { f32::MAX.into() };

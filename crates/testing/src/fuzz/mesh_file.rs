@@ -1,10 +1,12 @@
-//! Any bytes as a file: an error of one line, or a mesh whose triangles name vertices that are there, or a centreline.
+//! Any bytes as a file: an error of one line, or a mesh whose triangles name vertices that are
+//! there, or a centreline.
 
 use mesh_files::{MeshFileError, Options, centreline_from_bytes, from_bytes};
 
 /// The first byte chooses the format.
 pub fn mesh_file(bytes: &[u8]) {
-    const MESHES: [&str; 6] = ["fuzz.stl", "fuzz.obj", "fuzz.ply", "fuzz.nii.gz", "fuzz.nrrd", "fuzz.mha"];
+    const MESHES: [&str; 6] =
+        ["fuzz.stl", "fuzz.obj", "fuzz.ply", "fuzz.nii.gz", "fuzz.nrrd", "fuzz.mha"];
     const CENTRELINES: [&str; 4] = ["fuzz.mrk.json", "fuzz.vtk", "fuzz.vtp", "fuzz.csv"];
     const SURFACES: [&str; 2] = ["surface.vtk", "surface.vtp"];
     let Some((&first, file)) = bytes.split_first() else { return };

@@ -1,5 +1,6 @@
-//! What is fuzzed. Each body takes any bytes and panics where a promise is broken. The fuzzer calls them through
-//! `fuzz/fuzz_targets` for hours, the test suite through `tests/proximity/fuzz.rs` for a moment.
+//! What is fuzzed. Each body takes any bytes and panics where a promise is broken. The fuzzer calls
+//! them through `fuzz/fuzz_targets` for hours, the test suite through `tests/proximity/fuzz.rs` for
+//! a moment.
 
 mod chain_mesh;
 mod coherence;

@@ -1,10 +1,12 @@
-//! Motions beside the shapes that they pass: tiny turns and long ways, from starts that touch. What is proven clear is clear
-//! at every time that is looked at.
+//! Motions beside the shapes that they pass: tiny turns and long ways, from starts that touch. What
+//! is proven clear is clear at every time that is looked at.
 
 use super::source::Source;
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::shape::TriMesh;
-use parry_continuum::proximity::{BvhSearch, Decision, MotionAnswer, Proximity, RobotPair, self_minimum};
+use parry_continuum::proximity::{
+    BvhSearch, Decision, MotionAnswer, Proximity, RobotPair, self_minimum,
+};
 use parry_continuum::{Chain, LinearMotion, Motion, RigidMotion, Tube, verify_motion};
 
 /// At so many times a motion is compared with its shapes.
@@ -32,7 +34,8 @@ pub fn motions(bytes: &[u8]) {
         let to: Vec<_> = points.iter().map(|&point| moved(point)).collect();
         let Ok(motion) = LinearMotion::chain(&points, &to, &radii) else { return };
         check(&mut source, search, &mesh, &motion, |t| {
-            let between: Vec<_> = points.iter().zip(&to).map(|(from, to)| from.lerp(*to, t)).collect();
+            let between: Vec<_> =
+                points.iter().zip(&to).map(|(from, to)| from.lerp(*to, t)).collect();
             if rounding_decides(&points, &to, &between) {
                 return None;
             }
@@ -41,10 +44,11 @@ pub fn motions(bytes: &[u8]) {
     }
 }
 
-/// Whether the rounding of a shape between two decides which way a segment leads, or whether there is one: a motion knows
-/// where it began and ends.
+/// Whether the rounding of a shape between two decides which way a segment leads, or whether there
+/// is one: a motion knows where it began and ends.
 fn rounding_decides(from: &[Vector], to: &[Vector], between: &[Vector]) -> bool {
-    let reach = from.iter().chain(to).fold(0.0, |most: f64, point| point.abs().max_element().max(most));
+    let reach =
+        from.iter().chain(to).fold(0.0, |most: f64, point| point.abs().max_element().max(most));
     let segments = from.windows(2).zip(to.windows(2)).zip(between.windows(2));
     segments.into_iter().any(|((from, to), between)| {
         let is_there = from[0] != from[1] || to[0] != to[1];
@@ -55,7 +59,8 @@ fn rounding_decides(from: &[Vector], to: &[Vector], between: &[Vector]) -> bool 
 /// The shape at a time, as a chain.
 type Shape<'a> = &'a dyn Fn(f64) -> Option<(Chain, Pose)>;
 
-/// Whether the robot keeps the margin to itself: so far as any shape shows it does where that is said, and not where a shape is named.
+/// Whether the robot keeps the margin to itself: so far as any shape shows it does where that is
+/// said, and not where a shape is named.
 fn beside_itself<M: Motion>(
     motion: &M,
     shape: Shape<'_>,
@@ -72,7 +77,8 @@ fn beside_itself<M: Motion>(
     let nearest = |t: f64| {
         let (chain, _) = shape(t)?;
         let found = self_minimum(&chain).ok()??;
-        let turned = chain.links().iter().map(|link| link.radius() / link.length().max(f64::MIN_POSITIVE));
+        let turned =
+            chain.links().iter().map(|link| link.radius() / link.length().max(f64::MIN_POSITIVE));
         Some((found, slack(turned.fold(0.0, f64::max))))
     };
     if let Some(contact) = answer.contact {
@@ -102,7 +108,8 @@ fn check<M: Motion>(
     // And by how much a rim is off where rounding turns a link that is shorter than thick.
     let mut distance_and_rim = |t: f64| {
         let (chain, pose) = shape(t)?;
-        let turned = chain.links().iter().map(|link| link.radius() / link.length().max(f64::MIN_POSITIVE));
+        let turned =
+            chain.links().iter().map(|link| link.radius() / link.length().max(f64::MIN_POSITIVE));
         let rim = turned.fold(0.0, f64::max);
         exact.minimum(&chain, &pose).ok().map(|found| (found.distance, rim))
     };
@@ -132,14 +139,23 @@ fn check<M: Motion>(
         search.clears_motion(motion, margin, resolution),
         search.time_of_contact(motion, margin, resolution),
     ];
-    assert_eq!(format!("{again:?}"), format!("{:?}", [&answer, &first]), "asked again{}", problem());
+    assert_eq!(
+        format!("{again:?}"),
+        format!("{:?}", [&answer, &first]),
+        "asked again{}",
+        problem()
+    );
     // Until when it is said to be clear.
     let clear_until = [
         match &answer {
             Ok(MotionAnswer { decision: Decision::Clear, .. }) => Some(2.0),
             Ok(MotionAnswer { contact: Some(shape), .. }) => {
                 let (t, upper) = (shape.t, shape.upper);
-                assert!((0.0..=1.0).contains(&t) && upper <= margin, "{answer:?} {margin}{}", problem());
+                assert!(
+                    (0.0..=1.0).contains(&t) && upper <= margin,
+                    "{answer:?} {margin}{}",
+                    problem()
+                );
                 let there = distance_and_rim(t);
                 assert!(
                     there.is_none_or(|(there, rim)| there <= upper + slack(rim)),

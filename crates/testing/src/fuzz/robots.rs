@@ -1,4 +1,5 @@
-//! Two robots, and one and itself: the nearest pair of links is that of all pairs in twice the digits.
+//! Two robots, and one and itself: the nearest pair of links is that of all pairs in twice the
+//! digits.
 
 use super::source::Source;
 use crate::narrow_phase::modified_cylinder_modified_cylinder;
@@ -8,8 +9,9 @@ use parry_continuum::parry::math::Pose;
 use parry_continuum::proximity::{ProximityError, RobotPair, RobotProximity, between};
 use parry_continuum::{Cap, Chain, ModifiedCylinder, Tube};
 
-/// Each pair's distance is within 16 units of its extent; `minimum`, `per_link`, `clears` and `within` agree with it and with
-/// one another, in both orders; the bounds of both as tubes hold it. A robot and itself: what is found is a pair of its links.
+/// Each pair's distance is within 16 units of its extent; `minimum`, `per_link`, `clears` and
+/// `within` agree with it and with one another, in both orders; the bounds of both as tubes hold
+/// it. A robot and itself: what is found is a pair of its links.
 pub fn robots(bytes: &[u8]) {
     let mut source = Source::new(bytes);
     let poses = [source.pose(), source.pose()];
@@ -29,17 +31,22 @@ pub fn robots(bytes: &[u8]) {
 
     let mut each = Vec::new();
     pair.per_link(&a, &poses[0], &b, &poses[1], &mut each).expect("poses as before");
-    let least =
-        each.iter().copied().reduce(|best, next| if next.distance < best.distance { next } else { best });
+    let least = each
+        .iter()
+        .copied()
+        .reduce(|best, next| if next.distance < best.distance { next } else { best });
     assert_eq!(least, Some(found), "{}", problem());
     for (one, nearest) in first.iter().zip(&each) {
-        check(one, &second, nearest).unwrap_or_else(|why| panic!("{why}: {nearest:?} {}", problem()));
+        check(one, &second, nearest)
+            .unwrap_or_else(|why| panic!("{why}: {nearest:?} {}", problem()));
     }
     assert_eq!(between(&a, &poses[0], &b, &poses[1]), Ok(found), "{}", problem());
     let turned = pair.minimum(&b, &poses[1], &a, &poses[0]).expect("poses as before").distance;
-    let slack = first.iter().chain(&second).fold(0.0, |most: f64, link| most.max(slack(link, &first[0])));
-    let bounds =
-        found.certify(&a, &poses[0], &b, &poses[1]).unwrap_or_else(|why| panic!("{why}: {}", problem()));
+    let slack =
+        first.iter().chain(&second).fold(0.0, |most: f64, link| most.max(slack(link, &first[0])));
+    let bounds = found
+        .certify(&a, &poses[0], &b, &poses[1])
+        .unwrap_or_else(|why| panic!("{why}: {}", problem()));
     let holds = bounds.lower - slack <= found.distance && found.distance <= bounds.upper + slack;
     assert!(holds && bounds.upper - bounds.lower <= slack, "{bounds:?} {}", problem());
     assert!((turned - found.distance).abs() <= 2.0 * slack, "{turned:e} {}", problem());
@@ -54,11 +61,13 @@ pub fn robots(bytes: &[u8]) {
         Ok(()) if d > margin => assert!(places.is_empty(), "{places:?} {}", problem()),
         Ok(()) => assert!(places.contains(&found), "{places:?} {}", problem()),
     }
-    // Where a pose moves a chain far, rounding turns the axes of its short links; the tube keeps its faces.
+    // Where a pose moves a chain far, rounding turns the axes of its short links; the tube keeps
+    // its faces.
     let here = Pose::IDENTITY;
-    if let (Ok(truth), Ok(found)) =
-        (between(&a, &here, &b, &here), pair.clearance(&Tube::from(&a), &here, &Tube::from(&b), &here, 0.0))
-    {
+    if let (Ok(truth), Ok(found)) = (
+        between(&a, &here, &b, &here),
+        pair.clearance(&Tube::from(&a), &here, &Tube::from(&b), &here, 0.0),
+    ) {
         let truth = truth.distance;
         assert!(found.lower <= truth && truth <= found.upper, "{truth:e} {found:?} {}", problem());
     }
@@ -99,7 +108,9 @@ fn exactly(one: &ModifiedCylinder, two: &ModifiedCylinder) -> f64 {
     };
     let flat = |link: &ModifiedCylinder| link.caps().map(|cap| cap == Cap::Flat);
     let (r, s) = (wide(one.radius()), wide(two.radius()));
-    modified_cylinder_modified_cylinder(axis(one), r, flat(one), axis(two), s, flat(two)).distance.rounded()
+    modified_cylinder_modified_cylinder(axis(one), r, flat(one), axis(two), s, flat(two))
+        .distance
+        .rounded()
 }
 
 /// What rounding may do to the distance of two links.

@@ -3,7 +3,8 @@
 use super::source::Source;
 use polynomial_roots::{Bairstow, ClosedForm, Companion, JenkinsTraub, Real, RootFinder};
 
-/// A root's residual, as a share of the sum of the magnitudes of the terms, stays below the square root of rounding.
+/// A root's residual, as a share of the sum of the magnitudes of the terms, stays below the square
+/// root of rounding.
 pub fn root_finders(bytes: &[u8]) {
     let mut source = Source::new(bytes);
     let coefficients: [f64; 10] = std::array::from_fn(|_| source.number());
@@ -25,7 +26,8 @@ fn check<F: RootFinder, T: Real + Into<f64>, const M: usize>(coefficients: [T; M
     let coefficients = coefficients.map(Into::<f64>::into);
     let degree = coefficients.iter().rposition(|&a| a != 0.0);
     assert_eq!(Some(roots.len()), degree);
-    let smallest = if size_of::<T>() == 4 { f64::from(f32::MIN_POSITIVE) } else { f64::MIN_POSITIVE };
+    let smallest =
+        if size_of::<T>() == 4 { f64::from(f32::MIN_POSITIVE) } else { f64::MIN_POSITIVE };
     for root in roots.as_slice() {
         let (re, im): (f64, f64) = (root.re.into(), root.im.into());
         assert!(re.is_finite() && im.is_finite());

@@ -1,4 +1,5 @@
-//! Numbers from bytes, of the kinds that break geometry: equal, nearly equal, tiny, huge, and not numbers at all.
+//! Numbers from bytes, of the kinds that break geometry: equal, nearly equal, tiny, huge, and not
+//! numbers at all.
 
 use arbitrary::Unstructured;
 use parry_continuum::Chain;
@@ -79,7 +80,10 @@ impl<'a> Source<'a> {
             axis @ 0..3 => Vector::AXES[axis],
             axis @ 3..6 => -Vector::AXES[axis - 3],
             6 => Vector::new(0.6, 0.0, 0.8),
-            _ => Vector::new(f64::from(self.byte() as i8), f64::from(self.byte() as i8), 40.0) / 128.0,
+            _ => {
+                Vector::new(f64::from(self.byte() as i8), f64::from(self.byte() as i8), 40.0)
+                    / 128.0
+            }
         };
         if self.flag() { way } else { way * size }
     }
@@ -116,27 +120,32 @@ impl<'a> Source<'a> {
             }
             1 => Cuboid::new(Vector::new(0.5, 0.25, 1.0)).to_trimesh(),
             _ => {
-                let limit = |vertex: Vector| vertex.map(|x| if x.abs() < 1e3 { x } else { x.sin() });
-                let vertices: Vec<_> = (0..3 + self.below(10)).map(|_| limit(self.point())).collect();
+                let limit =
+                    |vertex: Vector| vertex.map(|x| if x.abs() < 1e3 { x } else { x.sin() });
+                let vertices: Vec<_> =
+                    (0..3 + self.below(10)).map(|_| limit(self.point())).collect();
                 let vertices: Vec<_> = vertices
                     .into_iter()
                     .map(|vertex| if vertex.is_finite() { vertex } else { Vector::ONE })
                     .collect();
                 let count = vertices.len() as u8;
-                let corners = (0..1 + count).map(|_| [0; 3].map(|_| self.below(count) as u32)).collect();
+                let corners =
+                    (0..1 + count).map(|_| [0; 3].map(|_| self.below(count) as u32)).collect();
                 (vertices, corners)
             }
         }
     }
 
-    /// Points and radii of size one: along an axis and lying on what is aligned with it, or anything.
+    /// Points and radii of size one: along an axis and lying on what is aligned with it, or
+    /// anything.
     pub fn centreline(&mut self) -> (Vec<Vector>, Vec<f64>) {
         let count = 1 + self.below(6);
         let radius = [0.0, 0.125, 0.25, 0.1][self.below(4)];
         let near = Vector::Z * radius + self.way();
         let along = Vector::AXES[self.below(3)] * 0.25;
         let is_any = self.below(4) == 0;
-        let points = (0..=count).map(|k| if is_any { self.point() } else { near + along * k as f64 });
+        let points =
+            (0..=count).map(|k| if is_any { self.point() } else { near + along * k as f64 });
         let points: Vec<_> =
             points.map(|point| point.clamp(Vector::splat(-1e3), Vector::splat(1e3))).collect();
         let step = if self.flag() { 0.5 } else { 1.0 };

@@ -1,17 +1,19 @@
-//! The dispatcher where robots and walls are aligned and touch: what scenes are made of, and random poses never reach.
-//! Whatever is asked, in either order and again, is the same answer.
+//! The dispatcher where robots and walls are aligned and touch: what scenes are made of, and random
+//! poses never reach. Whatever is asked, in either order and again, is the same answer.
 
 use super::source::Source;
 use crate::Random;
 use crate::placements::{Placement, Wall};
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::query::{
-    ContactManifold, NonlinearRigidMotion, PersistentQueryDispatcher, QueryDispatcher, ShapeCastOptions,
+    ContactManifold, NonlinearRigidMotion, PersistentQueryDispatcher, QueryDispatcher,
+    ShapeCastOptions,
 };
 use parry_continuum::parry::shape::Shape;
 use parry_continuum::{Chain, ContinuumDispatcher, ModifiedCylinder};
 
-/// What is asked: a wall, a robot, and how exact the answers for them must be. All lengths are about 1.
+/// What is asked: a wall, a robot, and how exact the answers for them must be. All lengths are
+/// about 1.
 struct Pair<'a> {
     g1: &'a dyn Shape,
     g2: &'a dyn Shape,
@@ -33,7 +35,8 @@ pub fn touching(bytes: &[u8]) {
     }
     let Placement { robot, wall, pose, .. } = Random::new(source.bits()).placement(kind);
     let pose = source.nudged(pose);
-    let is_exact = !matches!(kind, Wall::Cuboid | Wall::Cone | Wall::ConvexPolyhedron | Wall::Compound);
+    let is_exact =
+        !matches!(kind, Wall::Cuboid | Wall::Cone | Wall::ConvexPolyhedron | Wall::Compound);
     // What parry's iterations answer is stated in the dispatcher's table, for shapes of size one.
     let (apart, overlapping) = if is_exact { (1e-11, 1e-9) } else { (1e-4, 0.1) };
     let early = if is_exact { 1e-8 } else { 1e-4 };
@@ -47,15 +50,17 @@ pub fn touching(bytes: &[u8]) {
 
 impl Pair<'_> {
     fn problem(&self, pose: &Pose) -> String {
-        let shown =
-            |shape: &dyn Shape| match (shape.as_shape::<ModifiedCylinder>(), shape.as_shape::<Chain>()) {
-                (Some(link), _) => format!("{link:?}"),
-                (_, Some(chain)) => format!("{chain:?}"),
-                _ => match shape.as_trimesh() {
-                    Some(mesh) => format!("{:?} {:?}", mesh.vertices(), mesh.indices()),
-                    None => format!("{:?}", shape.as_typed_shape()),
-                },
-            };
+        let shown = |shape: &dyn Shape| match (
+            shape.as_shape::<ModifiedCylinder>(),
+            shape.as_shape::<Chain>(),
+        ) {
+            (Some(link), _) => format!("{link:?}"),
+            (_, Some(chain)) => format!("{chain:?}"),
+            _ => match shape.as_trimesh() {
+                Some(mesh) => format!("{:?} {:?}", mesh.vertices(), mesh.indices()),
+                None => format!("{:?}", shape.as_typed_shape()),
+            },
+        };
         format!("\n{}\n{}\n{pose:?}", shown(self.g1), shown(self.g2))
     }
 
@@ -66,7 +71,9 @@ impl Pair<'_> {
 
     fn distance(&self, pose: &Pose) -> f64 {
         let answer = ContinuumDispatcher::default().distance(pose, self.g1, self.g2);
-        answer.unwrap_or_else(|_| panic!("a pair in range is refused{}", self.problem(pose))).distance
+        answer
+            .unwrap_or_else(|_| panic!("a pair in range is refused{}", self.problem(pose)))
+            .distance
     }
 
     /// Every query at this pose; the distance, negative where the two overlap.
@@ -75,26 +82,43 @@ impl Pair<'_> {
         let problem = || self.problem(pose);
         let apart = self.distance(pose);
         assert!(apart >= 0.0 && apart.is_finite(), "distance {apart}{}", problem());
-        let touches =
-            dispatcher.intersection_test(pose, self.g1, self.g2).expect("a pair in range").intersecting;
+        let touches = dispatcher
+            .intersection_test(pose, self.g1, self.g2)
+            .expect("a pair in range")
+            .intersecting;
         let contact = |prediction| {
-            let contact = dispatcher.contact(pose, self.g1, self.g2, prediction).expect("a pair in range");
+            let contact =
+                dispatcher.contact(pose, self.g1, self.g2, prediction).expect("a pair in range");
             contact.map(|contact| contact.dist)
         };
-        let whole = contact(f64::MAX).unwrap_or_else(|| panic!("no contact however far{}", problem()));
+        let whole =
+            contact(f64::MAX).unwrap_or_else(|| panic!("no contact however far{}", problem()));
         assert!(whole.is_finite(), "a contact of {whole}{}", problem());
-        assert!((whole.max(0.0) - apart).abs() <= self.apart, "a contact of {whole} at {apart}{}", problem());
+        assert!(
+            (whole.max(0.0) - apart).abs() <= self.apart,
+            "a contact of {whole} at {apart}{}",
+            problem()
+        );
         // Where they touch, rounding decides.
         let agree = if touches { whole <= self.apart } else { whole >= -self.apart };
         assert!(agree, "touches: {touches}, {whole}{}", problem());
-        for prediction in [f64::INFINITY, 0.0, 0.05, -0.05, -f64::INFINITY, whole, source.number()] {
+        for prediction in [f64::INFINITY, 0.0, 0.05, -0.05, -f64::INFINITY, whole, source.number()]
+        {
             if prediction.is_nan() {
                 continue;
             }
             match contact(prediction) {
                 Some(dist) => {
-                    assert!(dist <= prediction, "{dist} beyond the prediction {prediction}{}", problem());
-                    assert!((dist - whole).abs() <= self.slack(whole), "{dist} and {whole}{}", problem());
+                    assert!(
+                        dist <= prediction,
+                        "{dist} beyond the prediction {prediction}{}",
+                        problem()
+                    );
+                    assert!(
+                        (dist - whole).abs() <= self.slack(whole),
+                        "{dist} and {whole}{}",
+                        problem()
+                    );
                 }
                 None => {
                     let least = prediction - self.slack(whole);
@@ -112,23 +136,37 @@ impl Pair<'_> {
         let prediction = [0.0, 0.02, 0.3][source.below(3)];
         let dispatcher = ContinuumDispatcher::default();
         let ask = |pose: &Pose, (manifolds, workspace): &mut (Vec<ContactManifold<(), ()>>, _)| {
-            let asked =
-                dispatcher.contact_manifolds(pose, self.g1, self.g2, prediction, manifolds, workspace);
+            let asked = dispatcher
+                .contact_manifolds(pose, self.g1, self.g2, prediction, manifolds, workspace);
             asked.expect("a pair in range");
             let points = manifolds.iter().flat_map(|manifold| &manifold.points);
-            points.map(|point| point.dist).reduce(|least, dist| if dist < least { dist } else { least })
+            points
+                .map(|point| point.dist)
+                .reduce(|least, dist| if dist < least { dist } else { least })
         };
         let mut kept = (Vec::new(), None);
         let check = |pose: &Pose, least: Option<f64>, whole: f64| {
             let problem = || self.problem(pose);
-            assert!(least.is_none_or(|least| least.is_finite()), "a contact of {least:?}{}", problem());
+            assert!(
+                least.is_none_or(|least| least.is_finite()),
+                "a contact of {least:?}{}",
+                problem()
+            );
             if whole < prediction - self.slack(whole) {
-                assert!(least.is_some(), "no contact within {prediction}, but {whole}{}", problem());
+                assert!(
+                    least.is_some(),
+                    "no contact within {prediction}, but {whole}{}",
+                    problem()
+                );
             }
             if let Some(least) = least {
                 let off = (least - whole).abs();
                 assert!(off <= self.slack(whole), "{least} in the manifold, {whole}{}", problem());
-                assert!(least <= prediction + self.slack(whole), "{least} beyond {prediction}{}", problem());
+                assert!(
+                    least <= prediction + self.slack(whole),
+                    "{least} beyond {prediction}{}",
+                    problem()
+                );
             }
         };
         let first = ask(pose, &mut kept);
@@ -137,7 +175,8 @@ impl Pair<'_> {
         check(pose, again, whole);
         let moved = source.nudged(*pose);
         let goes_on = ask(&moved, &mut kept);
-        let contact = dispatcher.contact(&moved, self.g1, self.g2, f64::MAX).expect("a pair in range");
+        let contact =
+            dispatcher.contact(&moved, self.g1, self.g2, f64::MAX).expect("a pair in range");
         if let Some(contact) = contact {
             check(&moved, goes_on, contact.dist);
         }
@@ -156,7 +195,13 @@ impl Pair<'_> {
         let hit = dispatcher.cast_shapes(pose, way, self.g1, self.g2, options);
         if let Ok(hit) = hit {
             let at = |time: f64| Pose::from_translation(way * time) * *pose;
-            self.never_late("cast", pose, hit.map_or(longest, |hit| hit.time_of_impact), target, at);
+            self.never_late(
+                "cast",
+                pose,
+                hit.map_or(longest, |hit| hit.time_of_impact),
+                target,
+                at,
+            );
             if let Some(hit) = hit.filter(|hit| hit.time_of_impact > 0.0) {
                 let there = self.distance(&at(hit.time_of_impact));
                 assert!(
@@ -169,10 +214,17 @@ impl Pair<'_> {
         let turning = source.way() * 0.5;
         let still = NonlinearRigidMotion::constant_position(Pose::IDENTITY);
         let moving = NonlinearRigidMotion::new(*pose, Vector::ZERO, way, turning);
-        let hit = dispatcher.cast_shapes_nonlinear(&still, self.g1, &moving, self.g2, 0.0, longest, true);
+        let hit =
+            dispatcher.cast_shapes_nonlinear(&still, self.g1, &moving, self.g2, 0.0, longest, true);
         if let Ok(hit) = hit {
             let at = |time| moving.position_at_time(time);
-            self.never_late("nonlinear", pose, hit.map_or(longest, |hit| hit.time_of_impact), 0.0, at);
+            self.never_late(
+                "nonlinear",
+                pose,
+                hit.map_or(longest, |hit| hit.time_of_impact),
+                0.0,
+                at,
+            );
         }
     }
 
@@ -183,7 +235,14 @@ impl Pair<'_> {
     }
 
     /// Before the time of a hit the two are farther apart than the target.
-    fn never_late(&self, cast: &str, pose: &Pose, time: f64, target: f64, at: impl Fn(f64) -> Pose) {
+    fn never_late(
+        &self,
+        cast: &str,
+        pose: &Pose,
+        time: f64,
+        target: f64,
+        at: impl Fn(f64) -> Pose,
+    ) {
         let samples = if time > 0.0 { 16 } else { 0 };
         for k in 0..samples {
             let before = time * f64::from(k) / f64::from(samples);

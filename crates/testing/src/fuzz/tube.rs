@@ -8,13 +8,14 @@ use parry_continuum::proximity::{BvhSearch, Decision, Proximity};
 use parry_continuum::{Chain, Tube, TubeSection};
 use std::sync::Arc;
 
-/// Any points are a tube or an error. The bounds of a chain's tube hold the chain's distance; those of a curve of known
-/// curvature hold that of a finely divided chain.
+/// Any points are a tube or an error. The bounds of a chain's tube hold the chain's distance; those
+/// of a curve of known curvature hold that of a finely divided chain.
 pub fn tube(bytes: &[u8]) {
     let mut source = Source::new(bytes);
     let vertices: Vec<_> = (0..3 + source.below(6)).map(|_| source.point()).collect();
     let count = vertices.len() as u8;
-    let indices = (0..1 + usize::from(count)).map(|_| [0; 3].map(|_| source.below(count) as u32)).collect();
+    let indices =
+        (0..1 + usize::from(count)).map(|_| [0; 3].map(|_| source.below(count) as u32)).collect();
     if !vertices.iter().all(|vertex| vertex.abs().max_element() <= 1e150 && vertex.is_finite()) {
         return;
     }
@@ -43,13 +44,18 @@ fn anything(source: &mut Source, search: &mut BvhSearch) {
     let Ok(chain) = Chain::from_centreline(&points, &radii) else { return };
     let tube = Tube::from(&chain);
     ask(search, &tube, &pose, margin, tolerance);
-    // Where a pose moves a chain far, rounding turns the axes of its short links; the tube keeps its faces.
+    // Where a pose moves a chain far, rounding turns the axes of its short links; the tube keeps
+    // its faces.
     let pose = Pose::IDENTITY;
-    let (Ok(truth), Ok(found)) = (search.minimum(&chain, &pose), search.clearance(&tube, &pose, tolerance))
+    let (Ok(truth), Ok(found)) =
+        (search.minimum(&chain, &pose), search.clearance(&tube, &pose, tolerance))
     else {
         return;
     };
-    assert!(found.lower <= truth.distance && truth.distance <= found.upper, "{truth:?} {found:?} {chain:?}");
+    assert!(
+        found.lower <= truth.distance && truth.distance <= found.upper,
+        "{truth:?} {found:?} {chain:?}"
+    );
 }
 
 /// Answers agree with one another.
@@ -57,7 +63,10 @@ fn ask(search: &mut BvhSearch, tube: &Tube, pose: &Pose, margin: f64, tolerance:
     // What is far finer than the scene takes its time.
     let tolerance = tolerance.max(1e-3 * tube.length());
     let Ok(found) = search.clearance(tube, pose, tolerance) else { return };
-    assert!(0.0 <= found.lower && found.lower <= found.upper && found.upper.is_finite(), "{found:?}");
+    assert!(
+        0.0 <= found.lower && found.lower <= found.upper && found.upper.is_finite(),
+        "{found:?}"
+    );
     match search.tube_clears(tube, pose, margin, tolerance) {
         Ok(Decision::Clear) => assert!(found.upper > margin, "{found:?} {margin} {tube:?}"),
         Ok(Decision::Contact) => assert!(found.lower <= margin, "{found:?} {margin} {tube:?}"),
@@ -81,8 +90,9 @@ fn arcs(source: &mut Source, search: &mut BvhSearch) {
     }
     let sharpest = arcs.stretches.iter().fold(0.1, |most: f64, part| most.max(part.curvature));
     let spacing = (8e-5 / sharpest).sqrt();
-    // Outside of a bend, the flat ends of two cylinders leave a wedge between them, up to twice this wide. Inside of it
-    // their rims stand out by as much, where the way is short to the end of a section even beyond its face.
+    // Outside of a bend, the flat ends of two cylinders leave a wedge between them, up to twice
+    // this wide. Inside of it their rims stand out by as much, where the way is short to the
+    // end of a section even beyond its face.
     let half_wedge =
         arcs.stretches.iter().fold(0.0, |most: f64, part| most.max(part.radius * part.curvature))
             * 0.5
@@ -93,7 +103,11 @@ fn arcs(source: &mut Source, search: &mut BvhSearch) {
     let sections: Vec<_> = arcs
         .stretches
         .iter()
-        .map(|part| TubeSection { length: part.length, radius: part.radius, curvature: part.curvature })
+        .map(|part| TubeSection {
+            length: part.length,
+            radius: part.radius,
+            curvature: part.curvature,
+        })
         .collect();
     let arcs = Arc::new(arcs);
     let Ok(tube) = Tube::from_function(&sections, move |s| arcs.at(s)) else { return };
@@ -105,9 +119,12 @@ fn arcs(source: &mut Source, search: &mut BvhSearch) {
         found.lower <= truth + off + half_wedge && truth <= found.upper + off + half_wedge,
         "{truth} {found:?} {sections:?}"
     );
-    for margin in [truth - 2.0 * off, truth + 2.0 * off].into_iter().filter(|margin| *margin >= 0.0) {
+    for margin in [truth - 2.0 * off, truth + 2.0 * off].into_iter().filter(|margin| *margin >= 0.0)
+    {
         match search.tube_clears(&tube, &Pose::IDENTITY, margin, 1e-4) {
-            Ok(Decision::Clear) => assert!(truth + half_wedge > margin, "{truth} {margin} {sections:?}"),
+            Ok(Decision::Clear) => {
+                assert!(truth + half_wedge > margin, "{truth} {margin} {sections:?}")
+            }
             Ok(Decision::Contact) => {
                 assert!(truth < margin + half_wedge, "{truth} {margin} {sections:?}")
             }

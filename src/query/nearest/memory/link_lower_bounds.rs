@@ -1,9 +1,10 @@
-//! What each link is known to keep from the mesh when the robot has moved a little, without a search.
+//! What each link is known to keep from the mesh when the robot has moved a little, without a
+//! search.
 //!
-//! Once a link kept more than a distance, or exactly it. No point of the link now is farther from all points of the link
-//! then than [`ReferenceOutline::moved_to`] tells, so the link keeps what is left. What it keeps does not depend on the robot that
-//! it is a part of: any may follow. The same is true of the capsule around all links, which serves for a robot far from the
-//! wall at a glance.
+//! Once a link kept more than a distance, or exactly it. No point of the link now is farther from
+//! all points of the link then than [`ReferenceOutline::moved_to`] tells, so the link keeps what is
+//! left. What it keeps does not depend on the robot that it is a part of: any may follow. The same
+//! is true of the capsule around all links, which serves for a robot far from the wall at a glance.
 
 use super::look_ahead::LookAhead;
 use super::placed_outline::{PlacedOutline, ROUNDING, ReferenceOutline};
@@ -59,7 +60,11 @@ impl LinkLowerBounds {
             return false;
         }
         // The tip moves most, so it comes first.
-        self.links.iter().rev().zip(PlacedOutline::of_all(robot)).all(|(kept, link)| kept.at(&link) > margin)
+        self.links
+            .iter()
+            .rev()
+            .zip(PlacedOutline::of_all(robot))
+            .all(|(kept, link)| kept.at(&link) > margin)
     }
 
     /// Makes out what each link keeps.
@@ -79,8 +84,9 @@ impl LinkLowerBounds {
         count - kept.iter().filter(|&&kept| kept > bound).count()
     }
 
-    /// By how much a search for `bound` is to be wider, so that it speaks for the next queries too. None where it is better
-    /// not to be, as where it would be `most` or more. `reach` is the largest coordinate of the mesh.
+    /// By how much a search for `bound` is to be wider, so that it speaks for the next queries too.
+    /// None where it is better not to be, as where it would be `most` or more. `reach` is the
+    /// largest coordinate of the mesh.
     pub(crate) fn look_ahead(
         &mut self,
         robot: PlacedRobot,
@@ -94,10 +100,12 @@ impl LinkLowerBounds {
         wider
     }
 
-    /// Notes whether what the last query kept, if anything, is of use to this one about so many links.
+    /// Notes whether what the last query kept, if anything, is of use to this one about so many
+    /// links.
     pub(crate) fn drop_if_useless(&mut self, count: usize, bound: Real) {
         if self.is_new
-            && MIN_SKIPPED_SHARE * self.count_open(0..count, bound) > (MIN_SKIPPED_SHARE - 1) * count
+            && MIN_SKIPPED_SHARE * self.count_open(0..count, bound)
+                > (MIN_SKIPPED_SHARE - 1) * count
         {
             self.links.clear();
             self.widening.record_failure();
@@ -134,18 +142,26 @@ impl LinkLowerBounds {
     ) {
         let count = robot.links().len();
         if self.links.len() != count {
-            let unknown = LinkLowerBound::new(PlacedOutline::of(robot, 0), Real::NEG_INFINITY, None, reach);
+            let unknown =
+                LinkLowerBound::new(PlacedOutline::of(robot, 0), Real::NEG_INFINITY, None, reach);
             self.links.clear();
             self.links.resize(count, unknown);
         }
         for link in links {
             let triangle = triangle.or(self.links[link].triangle);
-            self.links[link] = LinkLowerBound::new(PlacedOutline::of(robot, link), apart, triangle, reach);
+            self.links[link] =
+                LinkLowerBound::new(PlacedOutline::of(robot, link), apart, triangle, reach);
         }
     }
 
     /// Notes what keeps `apart` or more.
-    pub(crate) fn set_all(&mut self, robot: PlacedRobot, apart: Real, known: ClearedBy, reach: Real) {
+    pub(crate) fn set_all(
+        &mut self,
+        robot: PlacedRobot,
+        apart: Real,
+        known: ClearedBy,
+        reach: Real,
+    ) {
         self.links.clear();
         self.capsule = None;
         match known {
@@ -155,7 +171,8 @@ impl LinkLowerBounds {
             }
             ClearedBy::Links => {
                 self.links.extend(
-                    PlacedOutline::of_all(robot).map(|link| LinkLowerBound::new(link, apart, None, reach)),
+                    PlacedOutline::of_all(robot)
+                        .map(|link| LinkLowerBound::new(link, apart, None, reach)),
                 );
                 self.links.reverse();
             }
@@ -172,13 +189,15 @@ impl LinkLowerBounds {
 }
 
 impl LinkLowerBound {
-    /// `reach` is the largest coordinate of the mesh. The link later reaches no farther than now and what it has moved.
+    /// `reach` is the largest coordinate of the mesh. The link later reaches no farther than now
+    /// and what it has moved.
     fn new(link: PlacedOutline, apart: Real, triangle: Option<u32>, reach: Real) -> Self {
         let apart = apart - ROUNDING * (reach + 2.0 * link.extent());
         Self { link: ReferenceOutline::new(link, reach), apart, triangle }
     }
 
-    /// What the link keeps at least when it has become `now`. Not a number where that can't be told.
+    /// What the link keeps at least when it has become `now`. Not a number where that can't be
+    /// told.
     #[inline(always)] // where links are looked at one after another
     fn at(&self, now: &PlacedOutline) -> Real {
         self.apart - (1.0 + ROUNDING) * self.link.moved_to(now)

@@ -1,8 +1,10 @@
-//! How much farther than asked a search is to look, so that its answer speaks for the next queries too.
+//! How much farther than asked a search is to look, so that its answer speaks for the next queries
+//! too.
 //!
-//! A search for a little more costs little more. How much more pays follows from how far the robot moves from one query to
-//! the next. Where it does not pay, queries search for what they are asked alone, and a wider search is tried later, ever
-//! more rarely. Whether it pays is seen from what queries with it and one without it have cost.
+//! A search for a little more costs little more. How much more pays follows from how far the robot
+//! moves from one query to the next. Where it does not pay, queries search for what they are asked
+//! alone, and a wider search is tried later, ever more rarely. Whether it pays is seen from what
+//! queries with it and one without it have cost.
 
 use super::placed_outline::{PlacedOutline, ROUNDING, ReferenceOutline};
 use crate::pair::PlacedRobot;
@@ -10,12 +12,12 @@ use parry3d_f64::math::Real;
 
 /// How many queries a wider search is to speak for at the most.
 const QUERIES: Real = 8.0;
-/// So many queries with a wider search are a trial, and after so many trials that paid it is found out again what one without
-/// it costs.
+/// So many queries with a wider search are a trial, and after so many trials that paid it is found
+/// out again what one without it costs.
 const TRIAL: u32 = 16;
 const TRIALS: u32 = 16;
-/// A search that met something is tried again after so many queries at the latest, one that did not pay after so many: it
-/// takes as long as several others.
+/// A search that met something is tried again after so many queries at the latest, one that did not
+/// pay after so many: it takes as long as several others.
 const REST_AFTER_MEETING: u32 = 63;
 const REST_WITHOUT_PAY: u32 = 255;
 
@@ -30,7 +32,8 @@ pub(crate) struct LookAhead {
     last_rest: u32,
     /// What a query without a wider search has cost of late.
     plain_cost: Option<u64>,
-    /// What the queries of this trial have cost after its first, how many they are with it, and how many trials have paid.
+    /// What the queries of this trial have cost after its first, how many they are with it, and
+    /// how many trials have paid.
     trial_cost: u64,
     tried: u32,
     trials: u32,
@@ -52,8 +55,8 @@ impl Default for LookAhead {
 }
 
 impl LookAhead {
-    /// By how much a query about this robot is to widen its search. `reach` is the largest coordinate of the mesh. None
-    /// where it is better not to.
+    /// By how much a query about this robot is to widen its search. `reach` is the largest
+    /// coordinate of the mesh. None where it is better not to.
     pub(crate) fn next(&mut self, robot: PlacedRobot, reach: Real) -> Option<Real> {
         let now = PlacedOutline::of_whole(robot);
         let before = self.before.replace(now)?;
@@ -70,10 +73,11 @@ impl LookAhead {
         self.plain_cost = Some(self.plain_cost.map_or(cost, |before| (3 * before + cost) / 4));
     }
 
-    /// Notes what a query with a wider search has cost. False if the next one is better off without it, and without what
-    /// it has found.
+    /// Notes what a query with a wider search has cost. False if the next one is better off without
+    /// it, and without what it has found.
     ///
-    /// The first of a row pays for the others. These must not cost more than as many queries without it, and one.
+    /// The first of a row pays for the others. These must not cost more than as many queries
+    /// without it, and one.
     pub(crate) fn record_wide_cost(&mut self, cost: u64) -> bool {
         if self.tried > 0 {
             self.trial_cost += cost;
@@ -121,8 +125,8 @@ impl LookAhead {
 mod tests {
     use super::*;
 
-    /// How many of so many queries go with a wider search, if the first of a row costs `first` and another `later` where one
-    /// without costs 100.
+    /// How many of so many queries go with a wider search, if the first of a row costs `first` and
+    /// another `later` where one without costs 100.
     fn wider_of(queries: u32, first: u64, later: u64) -> u32 {
         let (mut widening, mut is_first, mut wider) = (LookAhead::default(), true, 0);
         widening.record_plain_cost(100);

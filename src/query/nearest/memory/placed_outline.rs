@@ -5,8 +5,9 @@ use crate::pair::PlacedRobot;
 use crate::robot::{LinkNode, length};
 use parry3d_f64::math::{Real, Vector};
 
-/// What rounding can do to two distances and to what is between them, for coordinates of size one: 16 u of the extent, which
-/// is at most two, for each distance, and 8 u for the ends of each link and their differences.
+/// What rounding can do to two distances and to what is between them, for coordinates of size one:
+/// 16 u of the extent, which is at most two, for each distance, and 8 u for the ends of each link
+/// and their differences.
 pub(crate) const ROUNDING: Real = 128.0 * f64::EPSILON;
 
 /// A link in the mesh's frame.
@@ -43,7 +44,8 @@ impl PlacedOutline {
         Self { ends, radius, flat }
     }
 
-    /// The robot as one link from its base to its tip, with the radius and the caps of its last one.
+    /// The robot as one link from its base to its tip, with the radius and the caps of its last
+    /// one.
     pub(crate) fn of_whole(robot: PlacedRobot) -> Self {
         let tip = &robot.links()[robot.links().len() - 1];
         Self { ends: robot.ends(), radius: tip.radius(), flat: tip.flat() }
@@ -82,22 +84,25 @@ impl ReferenceOutline {
     /// `reach` is the largest coordinate of the mesh.
     pub(crate) fn new(link: PlacedOutline, reach: Real) -> Self {
         let scale = (reach + link.extent()).power_of_two_to_unity();
-        let per_length = if link.flat == [false; 2] { 0.0 } else { 0.5 / (length(link.along()) * scale) };
+        let per_length =
+            if link.flat == [false; 2] { 0.0 } else { 0.5 / (length(link.along()) * scale) };
         Self { link, scale, unit: 1.0 / scale, per_length }
     }
 
-    /// How far a point of the link, as it is `now`, can be from all points of it as it was. Not a number where that can't be
-    /// told.
+    /// How far a point of the link, as it is `now`, can be from all points of it as it was. Not a
+    /// number where that can't be told.
     ///
-    /// No point of an axis moves farther than the farther of its ends; the ball around it moves along; and where a flat cap
-    /// makes it a disc, that turns with the axis, by at most r |a' - a| at its rim, which is at most
-    /// 2 r |d' - d| / (|d'| + |d|) for the ways d and d' from start to end (Dunkl and Williams, 1964). With
-    /// x = |d' - d| / (2 |d|) and |d'| >= |d| - |d' - d| that is 2 r x / (1 - x) or less, and so 2 r x (1 + 2 x) or less up
-    /// to x = 1/2, where it is 2 r: more it never is. A radius that has grown adds its growth.
+    /// No point of an axis moves farther than the farther of its ends; the ball around it moves
+    /// along; and where a flat cap makes it a disc, that turns with the axis, by at most r |a'
+    /// - a| at its rim, which is at most 2 r |d' - d| / (|d'| + |d|) for the ways d and d' from
+    /// start to end (Dunkl and Williams, 1964). With x = |d' - d| / (2 |d|) and |d'| >= |d| -
+    /// |d' - d| that is 2 r x / (1 - x) or less, and so 2 r x (1 + 2 x) or less up to x = 1/2,
+    /// where it is 2 r: more it never is. A radius that has grown adds its growth.
     ///
-    /// Rounding: d and d' err by u of them, and so x by less than 3 u up to 1/2: 18 u r, for which the extent has room.
-    /// Squares vanish where what is measured is below 2^-537 of the extent and the mesh; a flat cap's radius is less than
-    /// 2^400 lengths of its axis, so that 2^-136 of them is lost.
+    /// Rounding: d and d' err by u of them, and so x by less than 3 u up to 1/2: 18 u r, for which
+    /// the extent has room. Squares vanish where what is measured is below 2^-537 of the extent
+    /// and the mesh; a flat cap's radius is less than 2^400 lengths of its axis, so that 2^-136
+    /// of them is lost.
     #[inline(always)] // where links are looked at one after another
     pub(crate) fn moved_to(&self, now: &PlacedOutline) -> Real {
         let then = &self.link;
@@ -105,7 +110,8 @@ impl ReferenceOutline {
             return Real::NAN;
         }
         let squared = |way: Vector| (way * self.scale).length_squared();
-        let [start, end] = [squared(now.ends[0] - then.ends[0]), squared(now.ends[1] - then.ends[1])];
+        let [start, end] =
+            [squared(now.ends[0] - then.ends[0]), squared(now.ends[1] - then.ends[1])];
         let grown = (now.radius - then.radius).max(0.0);
         let turned = if now.flat == [false; 2] {
             0.0
@@ -135,8 +141,8 @@ mod tests {
         link.ends[end] + out * link.radius
     }
 
-    /// No point of a link that has moved is farther from where the link was than this says, in any unit, and some are nearly as
-    /// far.
+    /// No point of a link that has moved is farther from where the link was than this says, in any
+    /// unit, and some are nearly as far.
     #[test]
     fn no_point_has_moved_farther_than_told() {
         let (mut nearly, mut turned, mut jumps) = (0, 0, 0);
@@ -160,7 +166,8 @@ mod tests {
                 flat,
             };
             let then = link(start, way, radius);
-            let now = link(start + shift * step, way + turn * (step * way.length()), radius + grown);
+            let now =
+                link(start + shift * step, way + turn * (step * way.length()), radius + grown);
             let told = ReferenceOutline::new(then, 4.0 * size).moved_to(&now);
             let [from, to] = then.ends.map(Vec3::from);
             let farthest = (0..40).map(|_| {
@@ -170,8 +177,9 @@ mod tests {
             let farthest = farthest.fold(0.0, Real::max);
             assert!(farthest <= told + 1e-12 * size, "seed {seed}: {farthest:e} of {told:e}");
             nearly += u32::from(farthest > 0.9 * told);
-            turned +=
-                u32::from(shift == Vector::ZERO && radius > 3.0 * way.length() && farthest > 0.6 * told);
+            turned += u32::from(
+                shift == Vector::ZERO && radius > 3.0 * way.length() && farthest > 0.6 * told,
+            );
             jumps += u32::from((now.along() - then.along()).length() > way.length() * size);
         }
         assert!(nearly > 1000 && turned > 300 && jumps > 1000, "{nearly} {turned} {jumps}");

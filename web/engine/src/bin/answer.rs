@@ -1,5 +1,6 @@
-//! The same questions without a browser: reads a CSV of points (`x,y,z,radius`) and, if one is named, a mesh file; prints
-//! the distance of each link from it, or from the ventricle, with all digits.
+//! The same questions without a browser: reads a CSV of points (`x,y,z,radius`) and, if one is
+//! named, a mesh file; prints the distance of each link from it, or from the ventricle, with all
+//! digits.
 
 use continuum_web::{Robot, Wall};
 use std::path::Path;

@@ -17,7 +17,8 @@ pub(super) struct Row {
 
 impl Row {
     pub(super) fn new(found: RobotProximity, chains: [&Chain; 2], points: [&[Vector]; 2]) -> Self {
-        let segments = std::array::from_fn(|k| segment_of(chains[k], points[k], found.links[k] as usize));
+        let segments =
+            std::array::from_fn(|k| segment_of(chains[k], points[k], found.links[k] as usize));
         Self { found, segments }
     }
 }
@@ -25,7 +26,8 @@ impl Row {
 /// The segment of the input that a link is: of those that it stands for, the one with its ends.
 pub(crate) fn segment_of(chain: &Chain, points: &[Vector], link: usize) -> i64 {
     let has_its_ends = |&segment: &usize| {
-        chain.links()[link].start() == points[segment] && chain.links()[link].end() == points[segment + 1]
+        chain.links()[link].start() == points[segment]
+            && chain.links()[link].end() == points[segment + 1]
     };
     chain.segments_of(link).find(has_its_ends).map_or(-1, |segment| segment as i64)
 }
@@ -61,8 +63,10 @@ fn tuple<'py>(
     };
     let distances = rows.iter().map(|row| row.map_or(without, |row| row.found.distance)).collect();
     let segments = rows.iter().flat_map(|row| row.map_or([-1; 2], |row| row.segments)).collect();
-    let lengths =
-        rows.iter().flat_map(|row| row.map_or([f64::NAN; 2], |row| row.found.arc_lengths)).collect();
+    let lengths = rows
+        .iter()
+        .flat_map(|row| row.map_or([f64::NAN; 2], |row| row.found.arc_lengths))
+        .collect();
     let values = (
         array_or_number(py, shape.to_vec(), distances)?,
         points(|found| found.on_first)?,
@@ -83,8 +87,10 @@ pub(super) fn proximities_within<'py>(
     let points = |of: fn(&RobotProximity) -> Vector| {
         array(py, vec![count, 3], flat(rows.iter().map(|row| of(&row.found))))
     };
-    let pair_of =
-        offsets.windows(2).zip(0_i64..).flat_map(|(ends, pair)| (ends[0]..ends[1]).map(move |_| pair));
+    let pair_of = offsets
+        .windows(2)
+        .zip(0_i64..)
+        .flat_map(|(ends, pair)| (ends[0]..ends[1]).map(move |_| pair));
     let values = (
         array(py, vec![count], rows.iter().map(|row| row.found.distance).collect())?,
         points(|found| found.on_first)?,

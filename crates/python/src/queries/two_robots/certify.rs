@@ -13,10 +13,12 @@ use pyo3::prelude::*;
 
 #[pymethods]
 impl RobotPair {
-    /// Bounds on the distances of a `RobotProximity` answer that hold whatever was rounded on the way.
+    /// Bounds on the distances of a `RobotProximity` answer that hold whatever was rounded on the
+    /// way.
     ///
-    /// Each bounds the distance between the two segments that the answer names, as `Mesh.certify` does for a segment and a triangle:
-    /// ``lower <= answer.distance <= upper`` but for the last bits of the distance.
+    /// Each bounds the distance between the two segments that the answer names, as `Mesh.certify`
+    /// does for a segment and a triangle: ``lower <= answer.distance <= upper`` but for the
+    /// last bits of the distance.
     ///
     /// Parameters
     /// ----------
@@ -28,7 +30,8 @@ impl RobotPair {
     /// Returns
     /// -------
     /// Certificate
-    ///     ``lower`` and ``upper``, in the shape of ``answer.distance``; NaN for segments without length.
+    ///     ``lower`` and ``upper``, in the shape of ``answer.distance``; NaN for segments without
+    /// length.
     ///
     /// Raises
     /// ------
@@ -93,8 +96,11 @@ impl RobotPair {
             }
             Ok(())
         };
-        ask_each(py, &self.0, &robots, ([f64::NAN; 2], rows.max(1)), ask, |_, found| bounds.extend(found))?;
-        let side = |k: usize| array_or_number(py, shape.clone(), bounds.iter().map(|it| it[k]).collect());
+        ask_each(py, &self.0, &robots, ([f64::NAN; 2], rows.max(1)), ask, |_, found| {
+            bounds.extend(found)
+        })?;
+        let side =
+            |k: usize| array_or_number(py, shape.clone(), bounds.iter().map(|it| it[k]).collect());
         answer!(py, "Certificate", (side(0)?, side(1)?))
     }
 }

@@ -47,7 +47,8 @@ impl Lender for Pairs {
     }
 }
 
-/// A pair of robots in the chains of a session: who is asked about them, their poses and points, and memory for the answers.
+/// A pair of robots in the chains of a session: who is asked about them, their poses and points,
+/// and memory for the answers.
 struct Placed<'a> {
     pair: &'a mut proximity::RobotPair,
     chains: [&'a Chain; 2],
@@ -86,7 +87,12 @@ fn pairs<'py>(
 }
 
 impl Pairs {
-    fn minimum<'py>(&self, py: Python<'py>, robots: &Robots<'py>, caps: Caps) -> PyResult<Bound<'py, PyAny>> {
+    fn minimum<'py>(
+        &self,
+        py: Python<'py>,
+        robots: &Robots<'py>,
+        caps: Caps,
+    ) -> PyResult<Bound<'py, PyAny>> {
         let mut rows = Vec::with_capacity(robots.len());
         let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [Option<Row>]| {
             let Placed { pair, chains, poses, points, .. } = session.place(robot, caps)?;
@@ -119,7 +125,9 @@ impl Pairs {
             }
             Ok(())
         };
-        ask_each(py, self, robots, (None, segments.max(1)), ask, |_, found| rows.extend_from_slice(found))?;
+        ask_each(py, self, robots, (None, segments.max(1)), ask, |_, found| {
+            rows.extend_from_slice(found)
+        })?;
         proximities_of_segments(py, robots, &rows)
     }
 
@@ -172,8 +180,10 @@ impl Pairs {
         let mut rows = Vec::with_capacity(robots.len());
         let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [Option<Row>]| {
             let chain = set_chain(&mut session.chains[0], robot, caps)?;
-            row[0] =
-                session.pair.self_minimum(chain)?.map(|found| Row::new(found, [chain; 2], [robot.points; 2]));
+            row[0] = session
+                .pair
+                .self_minimum(chain)?
+                .map(|found| Row::new(found, [chain; 2], [robot.points; 2]));
             Ok(())
         };
         ask_each(py, self, robots, (None, 1), ask, |_, found| rows.extend_from_slice(found))?;

@@ -9,8 +9,8 @@ use continuum_studies::accuracy::{
 use parry_continuum::gpu::{Gpu, Precision};
 use std::path::Path;
 
-/// Measures the GPU, and writes the table by category beside the page. None where there is no GPU, or where it is one in
-/// software and another was measured before.
+/// Measures the GPU, and writes the table by category beside the page. None where there is no GPU,
+/// or where it is one in software and another was measured before.
 ///
 /// # Errors
 /// The GPU fails, or the table cannot be written.
@@ -50,7 +50,9 @@ pub fn section(
 /// The errors by pair.
 fn table(measured: &[(&str, Vec<Found>)]) -> String {
     let mut text = String::from("| pair |");
-    measured.iter().for_each(|(precision, _)| text += &format!(" {precision} median | {precision} worst |"));
+    measured
+        .iter()
+        .for_each(|(precision, _)| text += &format!(" {precision} median | {precision} worst |"));
     text += &format!("\n|---|{}\n", "---|---|".repeat(measured.len()));
     for (pair, kernels) in PAIRS.into_iter().filter(|(pair, _)| is_pair_shown(pair)) {
         text += &format!("| {pair} |");

@@ -1,9 +1,11 @@
-//! Measures the narrow phase, the engines and parry: `cargo run --release -p continuum-studies --bin accuracy`.
+//! Measures the narrow phase, the engines and parry: `cargo run --release -p continuum-studies
+//! --bin accuracy`.
 //!
-//! Writes `docs/ACCURACY.md`, tables by category beside it (`accuracy*.csv`) and the picture `docs/correctness.png`. They
-//! tell how far this crate's distances are from the truth, on the reference cases and on seeded problems at the
-//! extremes, and how far those of parry's `query::distance` are for the same links. With the feature `gpu` the kernels
-//! on the GPU are measured too.
+//! Writes `docs/ACCURACY.md`, tables by category beside it (`accuracy*.csv`) and the picture
+//! `docs/correctness.png`. They tell how far this crate's distances are from the truth, on the
+//! reference cases and on seeded problems at the extremes, and how far those of parry's
+//! `query::distance` are for the same links. With the feature `gpu` the kernels on the GPU are
+//! measured too.
 
 #[cfg(feature = "gpu")]
 mod device;
@@ -151,15 +153,17 @@ fn write_all(docs: &Path) -> Result<(), String> {
     let (double_errors, single_errors) = (measure(&problems, &levels), measure(&single, &levels));
     stages.next("parry");
     let peer = Peer::ask(&problems);
-    std::fs::create_dir_all(docs)
-        .map_err(|error| format!("cannot make {} ({error}); choose another --out", docs.display()))?;
+    std::fs::create_dir_all(docs).map_err(|error| {
+        format!("cannot make {} ({error}); choose another --out", docs.display())
+    })?;
     let before = std::fs::read_to_string(&path).unwrap_or_default();
     let on_gpu = between(&before, "gpu").unwrap_or("No GPU has been measured yet.\n").to_owned();
     #[cfg(feature = "gpu")]
     let on_gpu = device::section(docs, &on_gpu, &problems, &single)?.unwrap_or(on_gpu);
     stages.next("certificates");
     let gaps = certificates::measure(&cases, &problems);
-    let parry = long_table::write(&peer.table(), &docs.join("accuracy_parry.csv"), peers::is_shown)?;
+    let parry =
+        long_table::write(&peer.table(), &docs.join("accuracy_parry.csv"), peers::is_shown)?;
     stages.next("engines");
     let page = [
         INTRODUCTION,
@@ -167,7 +171,11 @@ fn write_all(docs: &Path) -> Result<(), String> {
         IN_ROUNDINGS,
         &reference::table(&cases),
         EXTREMES,
-        &tables::tables(&double_errors, &single_errors, [range::<f64>(LARGEST[0]), range::<f32>(LARGEST[1])]),
+        &tables::tables(
+            &double_errors,
+            &single_errors,
+            [range::<f64>(LARGEST[0]), range::<f32>(LARGEST[1])],
+        ),
         LEVELS,
         &by_level(&double_errors, &single_errors),
         ENGINES,
@@ -199,7 +207,9 @@ fn write_all(docs: &Path) -> Result<(), String> {
     save(&docs.join("accuracy_cases.csv"), &(lines.join("\n") + "\n"))?;
     stages.next("picture");
     let picture = docs.join("correctness.png");
-    slice::draw().save(&picture).map_err(|error| format!("cannot write {} ({error})", picture.display()))?;
+    slice::draw()
+        .save(&picture)
+        .map_err(|error| format!("cannot write {} ({error})", picture.display()))?;
     println!("{}", picture.display());
     Ok(())
 }
@@ -221,8 +231,8 @@ fn by_level(double: &Measurement, single: &Measurement) -> String {
         write!(text, "| {name} |").ok();
         for measurement in [double, single] {
             let packed = measurement.found.iter().filter(|found| !found.levels.is_empty());
-            let errors =
-                packed.map(|found| if column == 0 { found.scalar } else { found.levels[column - 1] });
+            let errors = packed
+                .map(|found| if column == 0 { found.scalar } else { found.levels[column - 1] });
             write!(text, " {} |", tables::cell(errors.collect()).replace(',', " | ")).ok();
         }
         text.push('\n');
@@ -240,7 +250,8 @@ fn engines_table(errors: &engines::Errors) -> String {
 }
 
 fn save(path: &Path, text: &str) -> Result<(), String> {
-    std::fs::write(path, text).map_err(|error| format!("cannot write {} ({error})", path.display()))?;
+    std::fs::write(path, text)
+        .map_err(|error| format!("cannot write {} ({error})", path.display()))?;
     println!("{}", path.display());
     Ok(())
 }

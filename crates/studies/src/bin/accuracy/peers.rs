@@ -17,7 +17,12 @@ const PROGRAMS: [(&str, Program); 2] = [("this crate", distance::<f64>), ("parry
 const UNITS: [(&str, f64); 2] = [("as given", 1.0), ("x 1e-3", 1e-3)];
 
 /// parry's distance between a triangle and a capsule or a cylinder; NaN where it gives none.
-pub fn parry_distance(triangle: [Vector; 3], [start, end]: [Vector; 2], radius: f64, flat: bool) -> f64 {
+pub fn parry_distance(
+    triangle: [Vector; 3],
+    [start, end]: [Vector; 2],
+    radius: f64,
+    flat: bool,
+) -> f64 {
     let [a, b, c] = triangle;
     let triangle = Triangle::new(a, b, c);
     let world = Pose::identity();
@@ -27,7 +32,12 @@ pub fn parry_distance(triangle: [Vector; 3], [start, end]: [Vector; 2], radius: 
             .try_normalize()
             .map_or(Rot3::IDENTITY, |axis| Rot3::from_rotation_arc(Vector::Y, axis));
         let pose = Pose::from_parts(start + (end - start) * 0.5, turn);
-        query::distance(&world, &triangle, &pose, &Cylinder::new((end - start).length() * 0.5, radius))
+        query::distance(
+            &world,
+            &triangle,
+            &pose,
+            &Cylinder::new((end - start).length() * 0.5, radius),
+        )
     } else {
         query::distance(&world, &triangle, &world, &Capsule::new(start, end, radius))
     };
@@ -70,7 +80,11 @@ impl Peer {
                 let distance = scaled(catch_unwind(ask).unwrap_or(f64::NAN), -problem.exponent);
                 let over = distance - proof.middle.rounded();
                 let is_over = over > 1e-9 * problem.near_one.extents()[kernel];
-                answers.push((problem.extreme, flat, Answer { error: proof.error(distance), is_over }));
+                answers.push((
+                    problem.extreme,
+                    flat,
+                    Answer { error: proof.error(distance), is_over },
+                ));
             }
         }
         std::panic::set_hook(hook);
@@ -78,9 +92,11 @@ impl Peer {
     }
 
     fn of(&self, extreme: Extreme, flat: bool) -> Option<(f64, f64, usize, usize)> {
-        let here = |(category, caps, _): &&(Extreme, bool, Answer)| *category == extreme && *caps == flat;
+        let here =
+            |(category, caps, _): &&(Extreme, bool, Answer)| *category == extreme && *caps == flat;
         let answers: Vec<_> = self.answers.iter().filter(here).map(|(.., answer)| answer).collect();
-        let (median, worst) = median_and_worst(answers.iter().map(|answer| answer.error).collect())?;
+        let (median, worst) =
+            median_and_worst(answers.iter().map(|answer| answer.error).collect())?;
         Some((median, worst, answers.iter().filter(|answer| answer.is_over).count(), answers.len()))
     }
 
@@ -91,8 +107,9 @@ impl Peer {
             [12] => true,
             _ => return "-,-".into(),
         };
-        self.of(extreme, flat)
-            .map_or("-,-".into(), |(median, worst, ..)| format!("{},{}", digit(median), digit(worst)))
+        self.of(extreme, flat).map_or("-,-".into(), |(median, worst, ..)| {
+            format!("{},{}", digit(median), digit(worst))
+        })
     }
 
     /// A row for each category.
@@ -142,7 +159,8 @@ pub fn comparison(cases: &[Case]) -> String {
 
 /// Median and worst error of parry on some cases of a kind, in units of u x extent.
 pub fn on_cases(cases: &[&Case]) -> String {
-    let is_asked = |case: &&&Case| ["triangle_capsule", "triangle_cylinder"].contains(&case.kind.as_str());
+    let is_asked =
+        |case: &&&Case| ["triangle_capsule", "triangle_cylinder"].contains(&case.kind.as_str());
     let unit = f64::EPSILON / 2.0;
     let error = |case: &&Case| {
         let error = (parry(case, 1.0) - case.distance()).abs() / (unit * case.scale);
@@ -166,17 +184,22 @@ struct Total {
 
 impl Total {
     fn of(cases: &[&Case], answer: Program, factor: f64) -> Self {
-        let signed: Vec<_> =
-            cases.iter().map(|case| (answer(case, factor) / factor - case.distance()) / case.scale).collect();
+        let signed: Vec<_> = cases
+            .iter()
+            .map(|case| (answer(case, factor) / factor - case.distance()) / case.scale)
+            .collect();
         let (median, worst) =
             median_and_worst(signed.iter().map(|error| error.abs()).collect()).unwrap_or_default();
-        let relative = signed.iter().zip(cases).filter(|(_, case)| case.distance() >= 1e-3 * case.scale);
+        let relative =
+            signed.iter().zip(cases).filter(|(_, case)| case.distance() >= 1e-3 * case.scale);
         Self {
             median,
             worst,
             off: signed.iter().filter(|error| error.abs() > 1e-6).count(),
             over: signed.iter().filter(|&&error| error > 1e-9).count(),
-            largest: relative.map(|(error, case)| error * case.scale / case.distance()).fold(0.0, f64::max),
+            largest: relative
+                .map(|(error, case)| error * case.scale / case.distance())
+                .fold(0.0, f64::max),
         }
     }
 }

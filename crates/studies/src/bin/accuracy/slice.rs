@@ -1,7 +1,9 @@
-//! The picture of correctness: the error of parry's GJK and of this crate over a slice of configurations.
+//! The picture of correctness: the error of parry's GJK and of this crate over a slice of
+//! configurations.
 //!
-//! A tube of half a millimetre, in metres, and a triangle beside it: from right to left the gap between them grows
-//! smaller, from the bottom up the triangle tilts away from the tube's axis. Every cell is one query.
+//! A tube of half a millimetre, in metres, and a triangle beside it: from right to left the gap
+//! between them grows smaller, from the bottom up the triangle tilts away from the tube's axis.
+//! Every cell is one query.
 
 use crate::peers::parry_distance;
 use continuum_demo::canvas::{Align, Canvas, Colour, hex};
@@ -39,7 +41,10 @@ impl Scale {
     /// Up to the power of ten above the largest error.
     fn new(errors: impl Iterator<Item = f64>) -> Self {
         let largest = errors.fold(0.0, f64::max).log10().ceil();
-        Self { decades: (largest - f64::from(LEAST)).max(1.0) as u32, colours: ColourMap::up_to(1.0) }
+        Self {
+            decades: (largest - f64::from(LEAST)).max(1.0) as u32,
+            colours: ColourMap::up_to(1.0),
+        }
     }
 
     fn shade(&self, error: f64) -> Colour {
@@ -67,10 +72,13 @@ fn errors(column: usize, row: usize) -> [f64; 2] {
         near + (axis + side * tilt) * 1e-3 - other * 2.5e-3 + side * (1e-3 * tilt),
     ];
     let Ok(link) = ModifiedCylinder::cylinder(start, end, RADIUS) else { return [f64::NAN; 2] };
-    let Ok(proof) = Certificate::between(&link, &Pose::IDENTITY, triangle) else { return [f64::NAN; 2] };
+    let Ok(proof) = Certificate::between(&link, &Pose::IDENTITY, triangle) else {
+        return [f64::NAN; 2];
+    };
     let truth = proof.lower.midpoint(proof.upper);
     let [from, to] = [start, end].map(f64::vec3);
-    let ours = triangle_modified_cylinder(triangle.map(f64::vec3), from, to, RADIUS, [true; 2]).distance;
+    let ours =
+        triangle_modified_cylinder(triangle.map(f64::vec3), from, to, RADIUS, [true; 2]).distance;
     [parry_distance(triangle, [start, end], RADIUS, true), ours]
         .map(|distance| (distance - truth).abs() / truth)
 }
@@ -82,14 +90,14 @@ pub fn draw() -> Canvas {
     let panel = CELLS * CELL;
     let (left, top, between) = (150, 150, 150);
     let mut canvas = Canvas::new(2 * panel + left + between + 60, panel + top + 330, |_, _| PAPER);
-    let title =
-        "The error of the clearance: a tube 0.5 mm thick and 10 mm long, in metres, beside a triangle";
+    let title = "The error of the clearance: a tube 0.5 mm thick and 10 mm long, in metres, beside a triangle";
     canvas.text(title, [left as f32, 60.0], Align::Left, 24.0, INK);
     let scale = Scale::new(cells.iter().flatten().copied());
     for (which, name) in ["parry, GJK on its Cylinder", "this crate"].into_iter().enumerate() {
         let x = left + which * (panel + between);
-        let picture =
-            Canvas::new(panel, panel, |x, y| scale.shade(cells[x / CELL + y / CELL * CELLS][which]));
+        let picture = Canvas::new(panel, panel, |x, y| {
+            scale.shade(cells[x / CELL + y / CELL * CELLS][which])
+        });
         canvas.paste(&picture, [x, top], 0.0);
         let frame = [x as f32, top as f32, (x + panel) as f32, (top + panel) as f32];
         canvas.frame(frame, 0.0, 2.0, INK);
@@ -122,7 +130,13 @@ fn ticks(canvas: &mut Canvas, [x0, y0, x1, y1]: [f32; 4]) {
         mark(canvas, [x0, y], [x0 - 8.0, y]);
         canvas.text(&format!("1e{power}"), [x0 - 16.0, y + 8.0], Align::Right, 17.0, INK);
     }
-    canvas.text("tilt", [x0 - 16.0, 0.5 * (y0 + y1) + 8.0 - (y1 - y0) / 8.0], Align::Right, 19.0, PALE);
+    canvas.text(
+        "tilt",
+        [x0 - 16.0, 0.5 * (y0 + y1) + 8.0 - (y1 - y0) / 8.0],
+        Align::Right,
+        19.0,
+        PALE,
+    );
 }
 
 /// The colours of the errors.
@@ -137,6 +151,12 @@ fn legend(canvas: &mut Canvas, scale: &Scale, [x, y]: [f32; 2], width: f32) {
     canvas.frame([x, y, x + width, y + 34.0], 0.0, 2.0, INK);
     for decade in (0..=scale.decades).step_by(2) {
         let at = x + width * decade as f32 / scale.decades as f32;
-        canvas.text(&format!("1e{}", LEAST + decade as i32), [at, y + 64.0], Align::Centre, 17.0, INK);
+        canvas.text(
+            &format!("1e{}", LEAST + decade as i32),
+            [at, y + 64.0],
+            Align::Centre,
+            17.0,
+            INK,
+        );
     }
 }

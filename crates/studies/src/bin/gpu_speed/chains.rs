@@ -1,4 +1,5 @@
-//! The paper's experiment: a robot of 30 links, as capsules, with caps that fit, and as cylinders, against every triangle.
+//! The paper's experiment: a robot of 30 links, as capsules, with caps that fit, and as cylinders,
+//! against every triangle.
 
 use crate::timed::{Timed, medians, milliseconds};
 use crate::{Opened, text};
@@ -57,7 +58,12 @@ pub fn chapter(
             ] {
                 engine.compute_every_pair(&discs.route(opened.gpu.precision())).map_err(text)?;
                 let timed = all_models(&mut engine, models, enough)?;
-                every_pair.push_str(&row(&format!("{name} | {route}"), size, opened.tflops, &timed)?);
+                every_pair.push_str(&row(
+                    &format!("{name} | {route}"),
+                    size,
+                    opened.tflops,
+                    &timed,
+                )?);
             }
         }
     }
@@ -73,9 +79,11 @@ fn page(culling: &str, every_pair: &str, checks: &str, out: &Path) -> Result<Str
         )
     };
     let every_pair = table("triangles | precision | discs") + every_pair;
-    let largest = every_pair.lines().last().and_then(|row| row.split('|').nth(1)).unwrap_or_default();
-    let shown =
-        long_table::write(&every_pair, &out.join("gpu_every_pair.csv"), |cells| cells[0] == largest.trim())?;
+    let largest =
+        every_pair.lines().last().and_then(|row| row.split('|').nth(1)).unwrap_or_default();
+    let shown = long_table::write(&every_pair, &out.join("gpu_every_pair.csv"), |cells| {
+        cells[0] == largest.trim()
+    })?;
     Ok(format!(
         "## Figure 9 and Table IV: {LINKS} links against a mesh\n\n\
          Milliseconds. Index: 1 / (seconds x TFLOPS) by the device's time, for the peak that the command gives. The paper's \
@@ -89,7 +97,10 @@ fn page(culling: &str, every_pair: &str, checks: &str, out: &Path) -> Result<Str
     ))
 }
 
-fn answers(engine: &mut dyn Proximity, models: &[(&str, Chain); 3]) -> Result<Vec<LinkProximity>, String> {
+fn answers(
+    engine: &mut dyn Proximity,
+    models: &[(&str, Chain); 3],
+) -> Result<Vec<LinkProximity>, String> {
     let (mut all, mut out) = (Vec::new(), Vec::new());
     for (_, robot) in models {
         engine.per_link(robot, &ventricle::entry(), &mut out).map_err(text)?;
@@ -119,23 +130,41 @@ fn all_models(
     let mut out = [Vec::new(), Vec::new(), Vec::new()];
     let [out1, out2, out3] = &mut out;
     medians(
-        &mut [&mut || query(capsules, out1), &mut || query(fitted, out2), &mut || query(cylinders, out3)],
+        &mut [&mut || query(capsules, out1), &mut || query(fitted, out2), &mut || {
+            query(cylinders, out3)
+        }],
         enough,
     )
 }
 
-fn row(name: &str, triangles: usize, tflops: Option<f64>, timed: &[Timed]) -> Result<String, String> {
+fn row(
+    name: &str,
+    triangles: usize,
+    tflops: Option<f64>,
+    timed: &[Timed],
+) -> Result<String, String> {
     let mut row = format!("| {name} |");
     for time in timed {
-        let index = tflops
-            .zip(time.device)
-            .map_or("-".into(), |(tflops, device)| format!("{:.1}", 1.0 / (device.as_secs_f64() * tflops)));
-        write!(row, " {} | {} | {index} |", milliseconds(time.device), milliseconds(Some(time.whole)))
-            .map_err(text)?;
-    }
-    let seconds: Vec<_> = timed.iter().map(|time| time.device.unwrap_or(time.whole).as_secs_f64()).collect();
-    let pairs = triangles as f64 * LINKS as f64 / seconds[0];
-    writeln!(row, " {:.2} | {:.2} | {pairs:.1e} |", seconds[1] / seconds[0], seconds[2] / seconds[0])
+        let index = tflops.zip(time.device).map_or("-".into(), |(tflops, device)| {
+            format!("{:.1}", 1.0 / (device.as_secs_f64() * tflops))
+        });
+        write!(
+            row,
+            " {} | {} | {index} |",
+            milliseconds(time.device),
+            milliseconds(Some(time.whole))
+        )
         .map_err(text)?;
+    }
+    let seconds: Vec<_> =
+        timed.iter().map(|time| time.device.unwrap_or(time.whole).as_secs_f64()).collect();
+    let pairs = triangles as f64 * LINKS as f64 / seconds[0];
+    writeln!(
+        row,
+        " {:.2} | {:.2} | {pairs:.1e} |",
+        seconds[1] / seconds[0],
+        seconds[2] / seconds[0]
+    )
+    .map_err(text)?;
     Ok(row)
 }

@@ -42,7 +42,12 @@ pub fn chapter(
     ))
 }
 
-fn one_robot(opened: &[Opened], mesh: &TriMesh, robot: &Chain, enough: Duration) -> Result<String, String> {
+fn one_robot(
+    opened: &[Opened],
+    mesh: &TriMesh,
+    robot: &Chain,
+    enough: Duration,
+) -> Result<String, String> {
     let base = ventricle::entry();
     let mut first = BvhSearch::new(mesh).map_err(text)?;
     let mut out = Vec::new();
@@ -75,7 +80,12 @@ fn one_robot(opened: &[Opened], mesh: &TriMesh, robot: &Chain, enough: Duration)
     Ok(format!("| {} |{row}\n", mesh.num_triangles()))
 }
 
-fn batch(opened: &[Opened], mesh: &TriMesh, robot: &Chain, enough: Duration) -> Result<String, String> {
+fn batch(
+    opened: &[Opened],
+    mesh: &TriMesh,
+    robot: &Chain,
+    enough: Duration,
+) -> Result<String, String> {
     let samples = samples(robot);
     let mut engines: Vec<Box<dyn Proximity>> = vec![Box::new(BvhSearch::new(mesh).map_err(text)?)];
     engines.extend(on_gpus(opened, mesh)?);
@@ -99,7 +109,8 @@ fn samples(robot: &Chain) -> Vec<(&Chain, Pose)> {
     (0..BATCH)
         .map(|sample| {
             let angle = f64::from(sample) * 0.1;
-            let turn = Pose::rotation(Vector::new(angle.sin(), angle.cos(), (3.0 * angle).sin()) * 0.02);
+            let turn =
+                Pose::rotation(Vector::new(angle.sin(), angle.cos(), (3.0 * angle).sin()) * 0.02);
             (robot, base * turn)
         })
         .collect()
@@ -108,5 +119,8 @@ fn samples(robot: &Chain) -> Vec<(&Chain, Pose)> {
 /// What each of the jobs takes for a robot, in turns.
 fn times(jobs: &mut [Job], enough: Duration, robots: u32) -> Result<String, String> {
     let times = medians(jobs, enough)?;
-    Ok(times.iter().map(|timed| format!(" {} |", milliseconds(Some(timed.whole / robots)))).collect())
+    Ok(times
+        .iter()
+        .map(|timed| format!(" {} |", milliseconds(Some(timed.whole / robots))))
+        .collect())
 }

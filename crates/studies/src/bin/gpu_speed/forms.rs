@@ -19,7 +19,8 @@ pub fn chapter(opened: &[Opened], count: usize, enough: Duration) -> Result<Stri
     );
     let mut state = 7_u64;
     let mut number = || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        state =
+            state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (state >> 11) as f64 * 2.0_f64.powi(-53)
     };
     let points: Vec<_> =
@@ -36,8 +37,12 @@ pub fn chapter(opened: &[Opened], count: usize, enough: Duration) -> Result<Stri
             let (mut one, mut other) = (Vec::new(), Vec::new());
             let timed = medians(
                 &mut [
-                    &mut || clamps.solve(&points, &mut one).map_err(text).map(|()| clamps.device_time()),
-                    &mut || tree.solve(&points, &mut other).map_err(text).map(|()| tree.device_time()),
+                    &mut || {
+                        clamps.solve(&points, &mut one).map_err(text).map(|()| clamps.device_time())
+                    },
+                    &mut || {
+                        tree.solve(&points, &mut other).map_err(text).map(|()| tree.device_time())
+                    },
                 ],
                 enough,
             )?;

@@ -1,12 +1,14 @@
-//! How fast on the GPU: single queries, batches and moving anatomy against the engines on the CPU. Writes
-//! `docs/GPU_SPEED.md`. The paper's Figure 9 and Tables II to V on the GPU go to `docs/internals/gpu_studies.md`.
+//! How fast on the GPU: single queries, batches and moving anatomy against the engines on the CPU.
+//! Writes `docs/GPU_SPEED.md`. The paper's Figure 9 and Tables II to V on the GPU go to
+//! `docs/internals/gpu_studies.md`.
 //!
 //! ```text
 //! cargo run --release -p continuum-studies --features gpu --bin gpu_speed -- --tflops 66.9,33.5
 //! ```
 //!
-//! The program needs nothing but itself: built here, it can be carried to the machine with the GPU. Meshes grow to ten
-//! million triangles, which takes minutes and 16 GB; `--largest 100000` is a rehearsal.
+//! The program needs nothing but itself: built here, it can be carried to the machine with the GPU.
+//! Meshes grow to ten million triangles, which takes minutes and 16 GB; `--largest 100000` is a
+//! rehearsal.
 
 mod chains;
 mod engines;
@@ -47,13 +49,15 @@ struct Options {
     #[arg(long, value_name = "SECONDS", default_value_t = 1.0)]
     enough: f64,
 
-    /// The GPU's peak in single and double precision, for the paper's index: 1 / (seconds x TFLOPS)
+    /// The GPU's peak in single and double precision, for the paper's index: 1 / (seconds x
+    /// TFLOPS)
     #[arg(long, value_name = "F32,F64", value_parser = peaks)]
     tflops: Option<[f64; 2]>,
 }
 
 fn peaks(text: &str) -> Result<[f64; 2], String> {
-    let numbers: Result<Vec<f64>, _> = text.split(',').map(|number| number.trim().parse()).collect();
+    let numbers: Result<Vec<f64>, _> =
+        text.split(',').map(|number| number.trim().parse()).collect();
     match numbers.as_deref() {
         Ok(&[single, double]) if single > 0.0 && double > 0.0 => Ok([single, double]),
         _ => Err("write two numbers, for example 66.9,33.5".into()),
@@ -80,10 +84,13 @@ fn measure(options: &Options) -> Result<(), String> {
         [("f32", Precision::F32), ("f64", Precision::F64)].into_iter().enumerate()
     {
         match Gpu::open(precision) {
-            Ok(gpu) => opened.push(Opened { name, gpu, tflops: options.tflops.map(|peaks| peaks[place]) }),
+            Ok(gpu) => {
+                opened.push(Opened { name, gpu, tflops: options.tflops.map(|peaks| peaks[place]) })
+            }
             // Single precision alone is worth measuring.
             Err(GpuError::Device(
-                error @ (DeviceError::NoDoublePrecision { .. } | DeviceError::WrongArithmetic { .. }),
+                error @ (DeviceError::NoDoublePrecision { .. }
+                | DeviceError::WrongArithmetic { .. }),
             )) if !opened.is_empty() => {
                 missing = Some(error.to_string());
             }
@@ -134,7 +141,8 @@ fn measure(options: &Options) -> Result<(), String> {
          {written} Device: the GPU's own clock, from the first kernel to the last. End to end: the whole call, with transfers \
          and what the CPU measures again.\n{remarks}"
     );
-    let chains = chains::chapter(&opened, &meshes, options.every_pair, &models, enough, &internals)?;
+    let chains =
+        chains::chapter(&opened, &meshes, options.every_pair, &models, enough, &internals)?;
     add(&mut studies, "chains", chains);
     add(&mut studies, "forms", forms::chapter(&opened, options.problems as usize, enough)?);
     let roots = roots::chapter(&opened, options.problems as usize, enough / 4, &internals)?;
@@ -145,9 +153,9 @@ fn measure(options: &Options) -> Result<(), String> {
 
 fn write(path: &Path, page: &str) -> Result<(), String> {
     let directory = path.parent().unwrap_or(Path::new("."));
-    fs::create_dir_all(directory)
-        .and_then(|()| fs::write(path, page))
-        .map_err(|error| format!("cannot write {} ({error}); choose another --out", path.display()))?;
+    fs::create_dir_all(directory).and_then(|()| fs::write(path, page)).map_err(|error| {
+        format!("cannot write {} ({error}); choose another --out", path.display())
+    })?;
     println!("{}", path.display());
     Ok(())
 }

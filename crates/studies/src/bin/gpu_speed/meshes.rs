@@ -7,11 +7,13 @@ use parry_continuum::gpu::GpuExhaustive;
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::Proximity;
 
-/// The meshes, 1e4 triangles and more, and the largest: the ventricle divided in four until it has enough, shuffled,
-/// and of that the first so many.
+/// The meshes, 1e4 triangles and more, and the largest: the ventricle divided in four until it has
+/// enough, shuffled, and of that the first so many.
 pub fn meshes(largest: u32) -> Result<Vec<TriMesh>, String> {
-    let mut sizes: Vec<_> =
-        [10_000, 100_000, 1_000_000, 10_000_000].into_iter().filter(|&size| size < largest).collect();
+    let mut sizes: Vec<_> = [10_000, 100_000, 1_000_000, 10_000_000]
+        .into_iter()
+        .filter(|&size| size < largest)
+        .collect();
     sizes.push(largest);
     sizes.into_iter().map(mesh).collect()
 }

@@ -41,7 +41,12 @@ struct Moving<'a> {
     out: Vec<LinkProximity>,
 }
 
-fn row(opened: &[Opened], mesh: &TriMesh, robot: &Chain, enough: Duration) -> Result<String, String> {
+fn row(
+    opened: &[Opened],
+    mesh: &TriMesh,
+    robot: &Chain,
+    enough: Duration,
+) -> Result<String, String> {
     let beats = ventricle::beat(mesh.vertices());
     let base = ventricle::entry();
     let mut engines: Vec<Box<dyn Proximity>> = vec![

@@ -13,7 +13,12 @@ const DEGREES: [usize; 7] = [2, 3, 4, 6, 8, 10, 15];
 const SHOWN: [&str; 3] = ["4", "8", "15"];
 
 /// The chapter of the page, and its whole table beside it in `out`.
-pub fn chapter(opened: &[Opened], count: usize, enough: Duration, out: &Path) -> Result<String, String> {
+pub fn chapter(
+    opened: &[Opened],
+    count: usize,
+    enough: Duration,
+    out: &Path,
+) -> Result<String, String> {
     let introduction = format!(
         "## Table V: roots of random polynomials\n\n\
          {count} polynomials of each degree, coefficients uniform in [-100, 100], a thread each. Milliseconds by the \
@@ -28,7 +33,8 @@ pub fn chapter(opened: &[Opened], count: usize, enough: Duration, out: &Path) ->
     writeln!(table, "\n|---|---|{}", "---|---|---|".repeat(opened.len())).map_err(text)?;
     let mut state = 5_u64;
     let mut number = || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        state =
+            state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (state >> 11) as f64 * 2.0_f64.powi(-53) * 200.0 - 100.0
     };
     for degree in DEGREES {
@@ -48,7 +54,8 @@ pub fn chapter(opened: &[Opened], count: usize, enough: Duration, out: &Path) ->
                     }],
                     enough,
                 )?;
-                let found = out.iter().filter(|root| !root.re.is_nan()).count() as f64 / out.len() as f64;
+                let found =
+                    out.iter().filter(|root| !root.re.is_nan()).count() as f64 / out.len() as f64;
                 write!(
                     table,
                     " {} | {} | {:.2} % |",

@@ -12,8 +12,9 @@ pub struct Timed {
 /// A job that returns what the device's clock says.
 pub type Job<'a> = &'a mut dyn FnMut() -> Result<Option<Duration>, String>;
 
-/// Medians of each of the jobs, called in turns until `enough` has passed (at least 3 rounds), and before that untimed
-/// for as long (at least one round): a GPU at rest runs at a fraction of its clock.
+/// Medians of each of the jobs, called in turns until `enough` has passed (at least 3 rounds), and
+/// before that untimed for as long (at least one round): a GPU at rest runs at a fraction of its
+/// clock.
 pub fn medians(jobs: &mut [Job], enough: Duration) -> Result<Vec<Timed>, String> {
     let start = Instant::now();
     while {
@@ -38,7 +39,10 @@ pub fn medians(jobs: &mut [Job], enough: Duration) -> Result<Vec<Timed>, String>
     };
     Ok(times
         .into_iter()
-        .map(|(device, whole)| Timed { device: median(device), whole: median(whole).unwrap_or_default() })
+        .map(|(device, whole)| Timed {
+            device: median(device),
+            whole: median(whole).unwrap_or_default(),
+        })
         .collect())
 }
 

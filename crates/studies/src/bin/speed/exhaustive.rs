@@ -1,4 +1,5 @@
-//! Exhaustive engines against parry, pair by pair and on one thread; and how they use two threads and memory.
+//! Exhaustive engines against parry, pair by pair and on one thread; and how they use two threads
+//! and memory.
 
 use crate::Effort;
 use crate::goals::{Goal, Goals};
@@ -28,7 +29,10 @@ pub fn divided(times: u32) -> (Vec<Vector>, Vec<[u32; 3]>) {
 }
 
 pub fn on_one_thread<T: Send>(job: impl FnOnce() -> T + Send) -> Result<T, String> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().map_err(|error| error.to_string())?;
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(1)
+        .build()
+        .map_err(|error| error.to_string())?;
     Ok(pool.install(job))
 }
 
@@ -50,7 +54,9 @@ pub fn chapter(effort: Effort, goals: &mut Goals) -> Result<String, String> {
     );
     let models = models().map_err(|error| error.to_string())?;
     let sorted = divided(times);
-    for (order, (vertices, indices)) in [("shuffled", shuffled(sorted.clone(), 1)), ("sorted", sorted)] {
+    for (order, (vertices, indices)) in
+        [("shuffled", shuffled(sorted.clone(), 1)), ("sorted", sorted)]
+    {
         let mesh = TriMesh::new(vertices, indices).map_err(|error| error.to_string())?;
         let (mesh, models, goals) = (&mesh, &models, &mut *goals);
         let (rows, shares) = on_one_thread(move || -> Result<_, String> {
@@ -64,7 +70,8 @@ pub fn chapter(effort: Effort, goals: &mut Goals) -> Result<String, String> {
     Ok(page + &work + &instruction_sets(divided(times), &models[0].1, effort)?)
 }
 
-/// What each instruction set of the machine makes of the same kernels: none may fall back to narrower ones.
+/// What each instruction set of the machine makes of the same kernels: none may fall back to
+/// narrower ones.
 fn instruction_sets(
     (vertices, indices): (Vec<Vector>, Vec<[u32; 3]>),
     robot: &Chain,
@@ -182,15 +189,20 @@ fn rows<T: SearchPrecision + Send>(
             );
             for work in [capsules.work(), fitted.work(), flat.work()] {
                 let share = |count: u64| 100.0 * count as f64 / work.visited as f64;
-                let _ =
-                    write!(shares, " {:.2} %, {:.4} % |", share(work.axis_distances), share(work.measured));
+                let _ = write!(
+                    shares,
+                    " {:.2} %, {:.4} % |",
+                    share(work.axis_distances),
+                    share(work.measured)
+                );
             }
         }
     }
     Ok((page, shares + "\n"))
 }
 
-/// Bytes a triangle, as the system sees them grow: to be measured first, while no memory is there to be used again.
+/// Bytes a triangle, as the system sees them grow: to be measured first, while no memory is there
+/// to be used again.
 pub fn memory(effort: Effort) -> Result<String, String> {
     let (vertices, indices) = divided(effort.largest.min(4));
     let mesh = TriMesh::new(vertices, indices).map_err(|error| error.to_string())?;
@@ -199,16 +211,18 @@ pub fn memory(effort: Effort) -> Result<String, String> {
         "## Memory\n\nHeld for each triangle of {triangles} (the engine's copy of the mesh included):\n\n| engine | bytes |\n|---|---|\n"
     );
     let mut engines = Vec::new();
-    let mut measure =
-        |name: &str, build: &dyn Fn() -> Result<Box<dyn Proximity>, String>| -> Result<(), String> {
-            let before = machine::memory();
-            let engine = build()?;
-            let after = machine::memory();
-            let bytes =
-                before.zip(after).map_or("unknown".into(), |(a, b)| format!("{:.0}", (b - a) / triangles));
-            engines.push(engine);
-            writeln!(page, "| {name} | {bytes} |").map_err(|error| error.to_string())
-        };
+    let mut measure = |name: &str,
+                       build: &dyn Fn() -> Result<Box<dyn Proximity>, String>|
+     -> Result<(), String> {
+        let before = machine::memory();
+        let engine = build()?;
+        let after = machine::memory();
+        let bytes = before
+            .zip(after)
+            .map_or("unknown".into(), |(a, b)| format!("{:.0}", (b - a) / triangles));
+        engines.push(engine);
+        writeln!(page, "| {name} | {bytes} |").map_err(|error| error.to_string())
+    };
     let text = |error: parry_continuum::proximity::MeshError| error.to_string();
     measure("`BvhSearch`", &|| Ok(Box::new(BvhSearch::new(&mesh).map_err(text)?)))?;
     measure("`Exhaustive<f32>`", &|| Ok(Box::new(Exhaustive::<f32>::new(&mesh).map_err(text)?)))?;

@@ -29,8 +29,9 @@ impl Goals {
              | job | goal | measured | met |\n|---|---|---|---|\n",
         );
         for (job, goal, measured) in &self.0 {
-            let (low, high) =
-                measured.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), &x| (low.min(x), high.max(x)));
+            let (low, high) = measured
+                .iter()
+                .fold((f64::INFINITY, 0.0_f64), |(low, high), &x| (low.min(x), high.max(x)));
             let met = |x: &&f64| match *goal {
                 Goal::AtLeast(least) => **x >= least,
                 Goal::AtMost(most) => **x <= most,
@@ -44,8 +45,11 @@ impl Goals {
                 Goal::AtLeast(least) => format!("at least {least} x"),
                 Goal::AtMost(most) => format!("at most {most} x"),
             };
-            let measured =
-                if measured.len() == 1 { ratio(low) } else { format!("{} to {}", ratio(low), ratio(high)) };
+            let measured = if measured.len() == 1 {
+                ratio(low)
+            } else {
+                format!("{} to {}", ratio(low), ratio(high))
+            };
             // Writing to a string cannot fail.
             let _ = writeln!(page, "| {job} | {goal} | {measured} | {met} |");
         }

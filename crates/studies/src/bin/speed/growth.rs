@@ -1,4 +1,5 @@
-//! Time against the number of triangles, links and threads: the paper's Figure 9 on the CPU, with culling.
+//! Time against the number of triangles, links and threads: the paper's Figure 9 on the CPU, with
+//! culling.
 
 use crate::Effort;
 use crate::exhaustive::on_one_thread;
@@ -18,7 +19,8 @@ use std::time::Duration;
 /// Triangles of the mesh that is divided.
 const SMALLEST: usize = 10_000;
 
-/// Each with a dash of its own: the length of a stroke and of a gap. One stroke is longer than the picture.
+/// Each with a dash of its own: the length of a stroke and of a gap. One stroke is longer than the
+/// picture.
 const ENGINES: [(&str, [i32; 2]); 4] = [
     ("exhaustive f32", [9, 4]),
     ("exhaustive f64", [2, 4]),
@@ -27,7 +29,8 @@ const ENGINES: [(&str, [i32; 2]); 4] = [
 ];
 
 /// Each model with a colour of its own, which colour-blind readers tell apart (Okabe and Ito).
-const COLOURS: [RGBColor; 3] = [RGBColor(230, 159, 0), RGBColor(0, 158, 115), RGBColor(0, 114, 178)];
+const COLOURS: [RGBColor; 3] =
+    [RGBColor(230, 159, 0), RGBColor(0, 158, 115), RGBColor(0, 114, 178)];
 
 /// A line of the plot.
 struct Series {
@@ -54,7 +57,11 @@ pub fn chapter(effort: Effort, out: &Path) -> Result<String, String> {
                 let mut times = vec![
                     time(&mut exhaustive::<f32>(&tri_mesh)?, robot, enough)?,
                     time(&mut exhaustive::<f64>(&tri_mesh)?, robot, enough)?,
-                    time(&mut BvhSearch::new(&tri_mesh).map_err(|error| error.to_string())?, robot, enough)?,
+                    time(
+                        &mut BvhSearch::new(&tri_mesh).map_err(|error| error.to_string())?,
+                        robot,
+                        enough,
+                    )?,
                 ];
                 if *short == "cylinders" {
                     times.push(time_parry(&tri_mesh, robot, enough)?);
@@ -63,7 +70,8 @@ pub fn chapter(effort: Effort, out: &Path) -> Result<String, String> {
             };
             for (engine, time) in on_one_thread(job)??.into_iter().enumerate() {
                 let point = (tri_mesh.num_triangles() as f64, time);
-                match all.iter_mut().find(|series| (series.model, series.engine) == (model, engine)) {
+                match all.iter_mut().find(|series| (series.model, series.engine) == (model, engine))
+                {
                     Some(series) => series.points.push(point),
                     None => {
                         let name = format!("{short}, {}", ENGINES[engine].0);
@@ -150,7 +158,8 @@ fn table(all: &[Series]) -> Result<String, String> {
 }
 
 fn plot(all: &[Series], path: &Path) -> Result<(), String> {
-    draw(all, path).map_err(|error| format!("cannot draw {} ({error}); choose another --out", path.display()))
+    draw(all, path)
+        .map_err(|error| format!("cannot draw {} ({error}); choose another --out", path.display()))
 }
 
 fn draw(all: &[Series], path: &Path) -> Result<(), Box<dyn std::error::Error>> {
@@ -158,17 +167,23 @@ fn draw(all: &[Series], path: &Path) -> Result<(), Box<dyn std::error::Error>> {
         std::fs::create_dir_all(directory)?;
     }
     // In microseconds.
-    let scaled = |series: &Series| -> Vec<_> { series.points.iter().map(|p| (p.0, p.1 * 1e6)).collect() };
+    let scaled =
+        |series: &Series| -> Vec<_> { series.points.iter().map(|p| (p.0, p.1 * 1e6)).collect() };
     let points = || all.iter().flat_map(scaled);
-    let (low, high) = points().fold((f64::INFINITY, 0.0_f64), |(low, high), p| (low.min(p.1), high.max(p.1)));
-    let (few, many) = points().fold((f64::INFINITY, 0.0_f64), |(few, many), p| (few.min(p.0), many.max(p.0)));
+    let (low, high) =
+        points().fold((f64::INFINITY, 0.0_f64), |(low, high), p| (low.min(p.1), high.max(p.1)));
+    let (few, many) =
+        points().fold((f64::INFINITY, 0.0_f64), |(few, many), p| (few.min(p.0), many.max(p.0)));
     let area = SVGBackend::new(path, (900, 560)).into_drawing_area();
     area.fill(&WHITE)?;
     let mut chart = ChartBuilder::on(&area)
         .margin(16)
         .x_label_area_size(40)
         .y_label_area_size(70)
-        .build_cartesian_2d((few * 0.9..many * 1.1).log_scale(), (low * 0.5..high * 2.0).log_scale())?;
+        .build_cartesian_2d(
+            (few * 0.9..many * 1.1).log_scale(),
+            (low * 0.5..high * 2.0).log_scale(),
+        )?;
     chart
         .configure_mesh()
         .x_desc("triangles")
@@ -182,8 +197,12 @@ fn draw(all: &[Series], path: &Path) -> Result<(), Box<dyn std::error::Error>> {
         chart
             .draw_series(DashedLineSeries::new(scaled(series), stroke, gap, style))?
             .label(&series.name)
-            .legend(move |(x, y)| DashedPathElement::new([(x, y), (x + 40, y)], stroke, gap, style));
-        chart.draw_series(scaled(series).into_iter().map(|at| Circle::new(at, 3, colour.filled())))?;
+            .legend(move |(x, y)| {
+                DashedPathElement::new([(x, y), (x + 40, y)], stroke, gap, style)
+            });
+        chart.draw_series(
+            scaled(series).into_iter().map(|at| Circle::new(at, 3, colour.filled())),
+        )?;
     }
     chart
         .configure_series_labels()

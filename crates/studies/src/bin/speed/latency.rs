@@ -88,7 +88,9 @@ pub fn chapter(effort: Effort) -> Result<(String, String), String> {
             if name == "per_link" {
                 let [alone, after_work] = medians;
                 let triangles = mesh.num_triangles();
-                slowed.push(format!("{after_work:.1} us instead of {alone:.1} at {triangles} triangles"));
+                slowed.push(format!(
+                    "{after_work:.1} us instead of {alone:.1} at {triangles} triangles"
+                ));
             }
         }
     }

@@ -1,13 +1,13 @@
-//! How fast: every engine against parry on the same mesh and links, in one run. Writes `docs/SPEED.md`, its plot and the
-//! README's table.
+//! How fast: every engine against parry on the same mesh and links, in one run. Writes
+//! `docs/SPEED.md`, its plot and the README's table.
 //!
 //! ```text
 //! cargo run --release -p continuum-studies --bin speed
 //! ```
 //!
-//! Needs a few minutes and 8 GB; `--largest 6` goes to meshes of 41 million triangles. `--largest 1 --enough 0`, with an
-//! `--out` of its own, is a rehearsal. `--only rare`, `--only robots` and `--only scenes` measure that chapter
-//! again and leave the others as they are.
+//! Needs a few minutes and 8 GB; `--largest 6` goes to meshes of 41 million triangles. `--largest 1
+//! --enough 0`, with an `--out` of its own, is a rehearsal. `--only rare`, `--only robots` and
+//! `--only scenes` measure that chapter again and leave the others as they are.
 
 mod exhaustive;
 mod goals;
@@ -81,7 +81,8 @@ fn main() -> ExitCode {
 
 fn measure(options: &Options) -> Result<(), String> {
     command::directory(&options.out)?;
-    let effort = Effort { largest: options.largest, enough: Duration::from_secs_f64(options.enough) };
+    let effort =
+        Effort { largest: options.largest, enough: Duration::from_secs_f64(options.enough) };
     let written = format!(
         "Written by `{}` on {}",
         command::line("-p continuum-studies --bin speed"),
@@ -131,9 +132,18 @@ fn measure(options: &Options) -> Result<(), String> {
     stages.next("several structures");
     let scenes = marked(scenes::MARK, &scenes::chapter(effort, &written)?);
     stages.next("moving meshes");
-    for chapter in
-        [search, planner, latency, rare, robots, scenes, exhaustive, growth, moving::chapter(effort)?, memory]
-    {
+    for chapter in [
+        search,
+        planner,
+        latency,
+        rare,
+        robots,
+        scenes,
+        exhaustive,
+        growth,
+        moving::chapter(effort)?,
+        memory,
+    ] {
         page.push('\n');
         page.push_str(&chapter);
     }
@@ -141,7 +151,8 @@ fn measure(options: &Options) -> Result<(), String> {
     let internals = options.out.join("internals");
     write(&internals.join("speed_goals.md"), &goals.page(&written))?;
     println!("{}", file.display());
-    let table: String = rows.iter().filter(|row| !row.contains("| 327680 |")).map(String::as_str).collect();
+    let table: String =
+        rows.iter().filter(|row| !row.contains("| 327680 |")).map(String::as_str).collect();
     let quote = format!(
         "{written}: a robot of 30 links in a cavity of about 100 mm, near the wall (2 mm away) and far from it (19 mm). \
          Microseconds a query, and how many times faster than parry, which is given the same bounds. The first time the engine has \

@@ -31,7 +31,10 @@ pub fn chapter(effort: Effort) -> Result<String, String> {
         let [out1, out2, out3, out4] = &mut out;
         let mut frames = [0; 3];
         let [frame1, frame2, frame3] = &mut frames;
-        let step = |engine: &mut dyn Proximity, frame: &mut usize, out: &mut Vec<_>| -> Result<(), String> {
+        let step = |engine: &mut dyn Proximity,
+                    frame: &mut usize,
+                    out: &mut Vec<_>|
+         -> Result<(), String> {
             *frame += 1;
             engine.set_vertices(&beats[*frame % 2]).map_err(text)?;
             engine.per_link(&robot, &base, out).map_err(|error| error.to_string())

@@ -1,4 +1,5 @@
-//! A planner's question: is this new shape free? Random shapes, free and colliding apart, and many of them at once.
+//! A planner's question: is this new shape free? Random shapes, free and colliding apart, and many
+//! of them at once.
 
 use crate::Effort;
 use crate::goals::{Goal, Goals};
@@ -14,8 +15,8 @@ use std::fmt::Write;
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
-/// How many random shapes a scene is asked about: so many do not stay in the caches, where a batch of 1,500, asked again and
-/// again, sometimes does and sometimes does not.
+/// How many random shapes a scene is asked about: so many do not stay in the caches, where a batch
+/// of 1,500, asked again and again, sometimes does and sometimes does not.
 const SHAPES: usize = 10_000;
 
 struct Shape {
@@ -31,7 +32,8 @@ fn shapes() -> Result<Vec<Shape>, String> {
     let (robot, mut random) = (ctr::three_tubes(), Random(7));
     let shape = |_| {
         let line = robot.centreline(&robot.any_joints(&mut random), 30);
-        let chain = Chain::from_centreline(&line.points, &line.radii).map_err(|error| error.to_string())?;
+        let chain =
+            Chain::from_centreline(&line.points, &line.radii).map_err(|error| error.to_string())?;
         Ok(Shape { cylinders: timing::cylinders(&chain), chain })
     };
     (0..SHAPES).map(shape).collect()
@@ -51,7 +53,10 @@ fn parry_clears(mesh: &TriMesh, shape: &Shape, base: &Pose) -> Result<bool, Stri
 /// Meshes by name, with the pose at which the robot enters, the smallest first.
 fn scenes(effort: Effort) -> Result<Vec<(&'static str, TriMesh, Pose)>, String> {
     let inwards = Vector::new(-0.3, 0.2, 1.0).normalize();
-    let aside = Pose::from_parts(Vector::new(20.0, 0.0, -30.0), Rot3::from_rotation_arc(Vector::Z, inwards));
+    let aside = Pose::from_parts(
+        Vector::new(20.0, 0.0, -30.0),
+        Rot3::from_rotation_arc(Vector::Z, inwards),
+    );
     let mut scenes = Vec::new();
     for times in [0, 2].into_iter().filter(|times| *times <= effort.largest) {
         let (vertices, indices) = ventricle::mesh(ventricle::DEFAULT_TRIANGLES << (2 * times));
@@ -92,10 +97,12 @@ pub fn chapter(effort: Effort, goals: &mut Goals) -> Result<(String, String), St
         for table in [&mut page, &mut quote] {
             let _ = write!(table, "| {scene} | {} |", mesh.num_triangles());
         }
-        let [parry, clears, minimum] = times(&mesh, &search, &shapes, &clear, &base, effort.enough / 4)?;
+        let [parry, clears, minimum] =
+            times(&mesh, &search, &shapes, &clear, &base, effort.enough / 4)?;
         for (kind, is_clear) in [("colliding", false), ("free", true)] {
             let count = clear.iter().filter(|clear| **clear == is_clear).count();
-            let [parry, clears, minimum] = [parry, clears, minimum].map(|of| of[usize::from(is_clear)]);
+            let [parry, clears, minimum] =
+                [parry, clears, minimum].map(|of| of[usize::from(is_clear)]);
             let _ = write!(
                 page,
                 " {count} | {parry:.2} | {clears:.2} ({:.1} x) | {minimum:.2} |",
@@ -103,7 +110,11 @@ pub fn chapter(effort: Effort, goals: &mut Goals) -> Result<(String, String), St
             );
             let _ = write!(quote, " {parry:.1} | {clears:.1} ({:.1} x) |", parry / clears);
             let goal = if is_clear { 20.0 } else { 10.0 };
-            goals.note(&format!("clears, random shapes, {kind}"), Goal::AtLeast(goal), parry / clears);
+            goals.note(
+                &format!("clears, random shapes, {kind}"),
+                Goal::AtLeast(goal),
+                parry / clears,
+            );
         }
         page.push('\n');
         quote.push('\n');
@@ -119,9 +130,11 @@ fn text(error: ProximityError) -> String {
     error.to_string()
 }
 
-/// Microseconds a shape of those that touch and of those that are free: parry, `clears` and the minimum.
+/// Microseconds a shape of those that touch and of those that are free: parry, `clears` and the
+/// minimum.
 ///
-/// Each query is timed alone, and the shapes take turns as they were drawn. The robot is written to its place just before.
+/// Each query is timed alone, and the shapes take turns as they were drawn. The robot is written to
+/// its place just before.
 fn times(
     mesh: &TriMesh,
     search: &BvhSearch,
@@ -158,7 +171,8 @@ fn times(
             passes.iter_mut().zip(sums).for_each(|(passes, sum)| passes.push(sum));
         }
     }
-    let count = |kind: usize| clear.iter().filter(|&&clear| usize::from(clear) == kind).count().max(1);
+    let count =
+        |kind: usize| clear.iter().filter(|&&clear| usize::from(clear) == kind).count().max(1);
     Ok(passes.map(|passes| {
         let [touching, free] = passes.map(|mut sums| {
             sums.sort_unstable();
@@ -174,7 +188,11 @@ fn keep<T>(answer: T) {
 }
 
 /// How many shapes a second a batch answers on one thread and on two, which take turns.
-fn batch(search: &BvhSearch, robots: &[(&Chain, Pose)], enough: Duration) -> Result<[f64; 2], String> {
+fn batch(
+    search: &BvhSearch,
+    robots: &[(&Chain, Pose)],
+    enough: Duration,
+) -> Result<[f64; 2], String> {
     let on = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         let (mut search, mut out) = (search.clone(), Vec::new());

@@ -1,4 +1,5 @@
-//! How much longer than its median a question about a new shape may take, once the engine is prepared.
+//! How much longer than its median a question about a new shape may take, once the engine is
+//! prepared.
 
 use crate::Effort;
 use crate::goals::{Goal, Goals};
@@ -14,8 +15,8 @@ use std::hint::black_box;
 /// How many shapes are asked about.
 const SHAPES: usize = 100_000;
 
-/// How often each: what counts is the least time, and of it what the thread itself computed, so that whatever else the machine
-/// does is left out.
+/// How often each: what counts is the least time, and of it what the thread itself computed, so
+/// that whatever else the machine does is left out.
 const ROUNDS: usize = 3;
 
 /// Contacts up to so far away, mm.
@@ -46,7 +47,10 @@ pub fn chapter(effort: Effort, written: &str, goals: &mut Goals) -> Result<Strin
          |---|---|---|---|---|---|---|---|---|---|---|---|\n"
     );
     let inwards = Vector::new(-0.3, 0.2, 1.0).normalize();
-    let base = Pose::from_parts(Vector::new(20.0, 0.0, -30.0), Rot3::from_rotation_arc(Vector::Z, inwards));
+    let base = Pose::from_parts(
+        Vector::new(20.0, 0.0, -30.0),
+        Rot3::from_rotation_arc(Vector::Z, inwards),
+    );
     for level in [4, 6, 8].into_iter().filter(|level| *level <= 4 + effort.largest) {
         let mesh = cavity::mesh(level);
         let mut search = BvhSearch::new(&mesh).map_err(|error| error.to_string())?;
@@ -59,7 +63,8 @@ pub fn chapter(effort: Effort, written: &str, goals: &mut Goals) -> Result<Strin
                 let mut times: Vec<_> = of_kind.map(|shape| shape.micros[number]).collect();
                 times.sort_unstable_by(f64::total_cmp);
                 let Some(&worst) = times.last() else { return Err(format!("no shape is {kind}")) };
-                let (median, rare) = (times[times.len() / 2], times[times.len() - 1 - times.len() / 1000]);
+                let (median, rare) =
+                    (times[times.len() / 2], times[times.len() - 1 - times.len() / 1000]);
                 let _ = write!(
                     page,
                     " {} | {median:.1} | {rare:.1} | {worst:.1} | {:.1} |",
@@ -95,8 +100,8 @@ fn least_times(search: &mut BvhSearch, base: &Pose, shapes: usize) -> Result<Vec
         let mut random = Random(7);
         for shape in &mut least {
             let line = robot.centreline(&robot.any_joints(&mut random), 30);
-            let chain =
-                Chain::from_centreline(&line.points, &line.radii).map_err(|error| error.to_string())?;
+            let chain = Chain::from_centreline(&line.points, &line.radii)
+                .map_err(|error| error.to_string())?;
             let mut timed = |number: usize, query: &mut dyn FnMut(&mut BvhSearch) -> Asked| {
                 search.forget();
                 let begin = ThreadTime::now();
@@ -109,7 +114,9 @@ fn least_times(search: &mut BvhSearch, base: &Pose, shapes: usize) -> Result<Vec
             timed(1, &mut |search| {
                 search.minimum(&chain, base).map(|found| black_box(found).distance > 0.0)
             })?;
-            timed(2, &mut |search| search.within(&chain, base, MARGIN, 0.0, &mut contacts).map(|()| true))?;
+            timed(2, &mut |search| {
+                search.within(&chain, base, MARGIN, 0.0, &mut contacts).map(|()| true)
+            })?;
         }
     }
     Ok(least)

@@ -1,5 +1,5 @@
-//! Two robots beside one another, and one that coils beside itself: this crate's search, every pair of links in turn, and
-//! parry's shapes.
+//! Two robots beside one another, and one that coils beside itself: this crate's search, every pair
+//! of links in turn, and parry's shapes.
 
 use crate::Effort;
 use continuum_demo::timing::medians;
@@ -81,15 +81,22 @@ fn axes_apart(one: &ModifiedCylinder, two: &ModifiedCylinder) -> f64 {
     segment_segment(axis(one), axis(two)).distance - one.radius() - two.radius()
 }
 
-/// The nearer of a distance and that of two links; the distance where the capsules around them are farther apart.
+/// The nearer of a distance and that of two links; the distance where the capsules around them are
+/// farther apart.
 fn nearer(least: f64, one: &ModifiedCylinder, two: &ModifiedCylinder) -> f64 {
     if axes_apart(one, two) > least {
         return least;
     }
     let flat = |link: &ModifiedCylinder| link.caps().map(|cap| cap == Cap::Flat);
     let (flat1, flat2) = (flat(one), flat(two));
-    let found =
-        modified_cylinder_modified_cylinder(axis(one), one.radius(), flat1, axis(two), two.radius(), flat2);
+    let found = modified_cylinder_modified_cylinder(
+        axis(one),
+        one.radius(),
+        flat1,
+        axis(two),
+        two.radius(),
+        flat2,
+    );
     found.distance.min(least)
 }
 
@@ -113,7 +120,10 @@ fn compound(capsules: &[Capsule]) -> Compound {
 pub type Job<'a> = Box<dyn FnMut() -> Result<(), String> + 'a>;
 
 /// A job that asks about every place of a robot.
-pub fn at_all<'a>(poses: &'a [Pose], mut ask: impl FnMut(&Pose) -> Result<f64, String> + 'a) -> Job<'a> {
+pub fn at_all<'a>(
+    poses: &'a [Pose],
+    mut ask: impl FnMut(&Pose) -> Result<f64, String> + 'a,
+) -> Job<'a> {
     Box::new(move || {
         for pose in poses {
             black_box(ask(black_box(pose))?);
@@ -122,7 +132,8 @@ pub fn at_all<'a>(poses: &'a [Pose], mut ask: impl FnMut(&Pose) -> Result<f64, S
     })
 }
 
-/// Writes a row: the median times of the jobs, each of `count` questions; what is not there has no time.
+/// Writes a row: the median times of the jobs, each of `count` questions; what is not there has no
+/// time.
 fn row(
     effort: Effort,
     head: &str,
@@ -155,10 +166,15 @@ fn two_robots(effort: Effort, name: &str, offset: f64, page: &mut String) -> Res
     let here = Pose::IDENTITY;
     let (one, two) = (capsules(&a), capsules(&b));
     let compounds = [compound(&one), compound(&two)];
-    let least = |pose: &Pose| between(&a, &here, &b, pose).map(|found| found.distance).map_err(text);
-    let margin =
-        0.5 * poses.iter().map(least).try_fold(f64::INFINITY, |most, d| Ok::<_, String>(most.min(d?)))?;
-    let placed = |pose: &Pose| b.links().iter().map(|link| link.transformed(pose)).collect::<Vec<_>>();
+    let least =
+        |pose: &Pose| between(&a, &here, &b, pose).map(|found| found.distance).map_err(text);
+    let margin = 0.5
+        * poses
+            .iter()
+            .map(least)
+            .try_fold(f64::INFINITY, |most, d| Ok::<_, String>(most.min(d?)))?;
+    let placed =
+        |pose: &Pose| b.links().iter().map(|link| link.transformed(pose)).collect::<Vec<_>>();
     let every = |pose: &Pose, bound: f64| {
         let placed = placed(pose);
         let pairs = a.links().iter().flat_map(|one| placed.iter().map(move |two| (one, two)));
@@ -174,7 +190,9 @@ fn two_robots(effort: Effort, name: &str, offset: f64, page: &mut String) -> Res
         pairs.try_fold(bound, |least, (one, two)| parry_nearer(least, one, pose, two))
     };
     let beside = |pose: &Pose| {
-        query::distance(&here, &compounds[0], pose, &compounds[1]).map(|found| found.distance).map_err(text)
+        query::distance(&here, &compounds[0], pose, &compounds[1])
+            .map(|found| found.distance)
+            .map_err(text)
     };
     let mut pair = RobotPair::new();
     let jobs = vec![
@@ -187,12 +205,22 @@ fn two_robots(effort: Effort, name: &str, offset: f64, page: &mut String) -> Res
         Some(at_all(&poses, |pose| parry(pose, f64::MAX))),
         Some(at_all(&poses, beside)),
     ];
-    row(effort, &format!("| 30 and 30 links, {name} | `minimum` | 5, 2 in a loop |"), jobs, PLACES, page)?;
+    row(
+        effort,
+        &format!("| 30 and 30 links, {name} | `minimum` | 5, 2 in a loop |"),
+        jobs,
+        PLACES,
+        page,
+    )?;
     let mut pair = RobotPair::new();
     let as_number = |clears: bool| f64::from(u8::from(clears));
     let jobs = vec![
-        Some(at_all(&poses, |pose| clears_between(&a, &here, &b, pose, margin).map(as_number).map_err(text))),
-        Some(at_all(&poses, |pose| pair.clears(&a, &here, &b, pose, margin).map(as_number).map_err(text))),
+        Some(at_all(&poses, |pose| {
+            clears_between(&a, &here, &b, pose, margin).map(as_number).map_err(text)
+        })),
+        Some(at_all(&poses, |pose| {
+            pair.clears(&a, &here, &b, pose, margin).map(as_number).map_err(text)
+        })),
         Some(at_all(&poses, |pose| Ok(every(pose, margin)))),
         None,
         Some(at_all(&poses, |pose| parry(pose, margin))),
@@ -219,14 +247,17 @@ fn two_robots(effort: Effort, name: &str, offset: f64, page: &mut String) -> Res
         })),
         Some(at_all(&poses, |pose| {
             let placed = placed(pose);
-            let least = |one| placed.iter().fold(f64::INFINITY, |least, two| nearer(least, one, two));
+            let least =
+                |one| placed.iter().fold(f64::INFINITY, |least, two| nearer(least, one, two));
             Ok(a.links().iter().map(least).sum())
         })),
         None,
         Some(at_all(&poses, |pose| {
             let mut sum = 0.0;
             for one in &one {
-                sum += two.iter().try_fold(f64::MAX, |least, two| parry_nearer(least, one, pose, two))?;
+                sum += two
+                    .iter()
+                    .try_fold(f64::MAX, |least, two| parry_nearer(least, one, pose, two))?;
             }
             Ok(sum)
         })),
@@ -243,7 +274,9 @@ fn one_robot(effort: Effort, links: i32, page: &mut String) -> Result<(), String
     let pairs = || (0..all.len()).flat_map(|i| (i + 2..all.len()).map(move |j| (i, j)));
     let every = |bound: f64| pairs().fold(bound, |least, (i, j)| nearer(least, &all[i], &all[j]));
     let parry = |bound: f64| {
-        pairs().try_fold(bound, |least, (i, j)| parry_nearer(least, &parts[i], &Pose::IDENTITY, &parts[j]))
+        pairs().try_fold(bound, |least, (i, j)| {
+            parry_nearer(least, &parts[i], &Pose::IDENTITY, &parts[j])
+        })
     };
     let mut pair = RobotPair::new();
     let distance = |found: Option<parry_continuum::proximity::RobotProximity>| {
@@ -265,7 +298,9 @@ fn one_robot(effort: Effort, links: i32, page: &mut String) -> Result<(), String
     let as_number = |clears: bool| f64::from(u8::from(clears));
     let jobs = vec![
         Some(at_all(&once, |_| self_clears(black_box(&robot), 1.0).map(as_number).map_err(text))),
-        Some(at_all(&once, |_| pair.self_clears(black_box(&robot), 1.0).map(as_number).map_err(text))),
+        Some(at_all(&once, |_| {
+            pair.self_clears(black_box(&robot), 1.0).map(as_number).map_err(text)
+        })),
         Some(at_all(&once, |_| Ok(every(1.0)))),
         None,
         Some(at_all(&once, |_| parry(1.0))),

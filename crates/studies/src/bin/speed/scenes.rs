@@ -1,4 +1,5 @@
-//! Twenty organs around a robot, each an engine of its own in a scene, beside one engine of all their triangles.
+//! Twenty organs around a robot, each an engine of its own in a scene, beside one engine of all
+//! their triangles.
 
 use crate::Effort;
 use crate::latency::{OTHER_WORK, walk};
@@ -49,10 +50,12 @@ type Surface = (Vec<Vector>, Vec<[u32; 3]>);
 /// One of five organs around the robot at four heights: an uneven egg.
 fn organ(number: u32) -> Surface {
     let (vertices, triangles) = Ball::new(1.0).to_trimesh(33, 32);
-    let (around, height) = (f64::from(number % 5) + 0.3 * f64::from(number / 5), f64::from(number / 5));
+    let (around, height) =
+        (f64::from(number % 5) + 0.3 * f64::from(number / 5), f64::from(number / 5));
     let (sin, cos) = (TAU * around / 5.0).sin_cos();
     let centre = Vector::new(15.0 * cos, 15.0 * sin, 8.0 + 15.0 * height);
-    let uneven = |v: Vector| v * (1.0 + 0.1 * (5.0 * v.x + f64::from(number)).sin() * (4.0 * v.z).cos());
+    let uneven =
+        |v: Vector| v * (1.0 + 0.1 * (5.0 * v.x + f64::from(number)).sin() * (4.0 * v.z).cos());
     let place = |v: &Vector| centre + uneven(*v) * Vector::new(8.0, 7.0, 9.0);
     (vertices.iter().map(place).collect(), triangles)
 }
@@ -99,8 +102,10 @@ fn rows(
     let whole = BvhSearch::from_triangles(&vertices, &triangles).map_err(text)?;
     whole.prepare();
     let poses: Vec<_> = (0..PLACES).map(|k| f64::from(k) / f64::from(PLACES)).collect();
-    let poses: Vec<_> =
-        poses.iter().map(|t| Pose::translation(away + 2.0 * (TAU * t).sin(), 3.0 * t, 2.0 * t)).collect();
+    let poses: Vec<_> = poses
+        .iter()
+        .map(|t| Pose::translation(away + 2.0 * (TAU * t).sin(), 3.0 * t, 2.0 * t))
+        .collect();
 
     let (mut scene1, mut whole1) = (scene.clone(), whole.clone());
     let (mut scene2, mut whole2) = (scene.clone(), whole.clone());
@@ -113,7 +118,9 @@ fn rows(
             "`clears`",
             [
                 Box::new(move |pose| scene1.clears(&[(robot, *pose)]).map(as_number).map_err(text)),
-                Box::new(move |pose| whole1.clears(robot, pose, MARGIN).map(as_number).map_err(text)),
+                Box::new(move |pose| {
+                    whole1.clears(robot, pose, MARGIN).map(as_number).map_err(text)
+                }),
             ],
         ),
         (

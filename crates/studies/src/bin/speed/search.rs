@@ -12,7 +12,8 @@ use std::cell::RefCell;
 use std::fmt::Write;
 use std::hint::black_box;
 
-/// parry's fair peer of `clears`: it may stop looking beyond the margin, and stops at the first link within it.
+/// parry's fair peer of `clears`: it may stop looking beyond the margin, and stops at the first
+/// link within it.
 fn parry_clears(
     mesh: &TriMesh,
     links: &[(Pose, Cylinder)],
@@ -20,7 +21,8 @@ fn parry_clears(
     margin: f64,
 ) -> Result<bool, String> {
     for (place, cylinder) in links {
-        let found = query::closest_points(&(*pose * *place), cylinder, &Pose::IDENTITY, mesh, margin);
+        let found =
+            query::closest_points(&(*pose * *place), cylinder, &Pose::IDENTITY, mesh, margin);
         if found.map_err(|error| error.to_string())? != ClosestPoints::Disjoint {
             return Ok(false);
         }
@@ -32,7 +34,8 @@ fn parry_clears(
 fn parry_minimum(mesh: &TriMesh, links: &[(Pose, Cylinder)], pose: &Pose) -> Result<f64, String> {
     let mut least = f64::MAX;
     for (place, cylinder) in links {
-        let found = query::closest_points(&(*pose * *place), cylinder, &Pose::IDENTITY, mesh, least);
+        let found =
+            query::closest_points(&(*pose * *place), cylinder, &Pose::IDENTITY, mesh, least);
         match found.map_err(|error| error.to_string())? {
             ClosestPoints::Intersecting => return Ok(0.0),
             ClosestPoints::WithinMargin(one, other) => least = least.min(one.distance(other)),
@@ -42,7 +45,8 @@ fn parry_minimum(mesh: &TriMesh, links: &[(Pose, Cylinder)], pose: &Pose) -> Res
     Ok(least)
 }
 
-/// How many queries a job makes in its turn, all but parry's distances, so that each finds its own data in the caches.
+/// How many queries a job makes in its turn, all but parry's distances, so that each finds its own
+/// data in the caches.
 const BURST: usize = 60;
 
 fn burst(mut query: impl FnMut() -> Result<(), String>) -> Result<(), String> {
@@ -148,7 +152,8 @@ fn row(
     )?;
     let mut times: Vec<_> = times.iter().map(|time| time.as_secs_f64() * 1e6).collect();
     [1, 3, 4, 5, 6, 7].into_iter().for_each(|job| times[job] /= BURST as f64);
-    let [all, room, closest, per_link, per_link_again, minimum, minimum_again, clears] = times[..] else {
+    let [all, room, closest, per_link, per_link_again, minimum, minimum_again, clears] = times[..]
+    else {
         return Err("a job was not timed".into());
     };
     let triangles = mesh.num_triangles();
@@ -162,9 +167,11 @@ fn row(
         cell(clears, room),
     );
     match triangles {
-        0..=100_000 => {
-            goals.note("per link, first time, to 100,000 triangles", Goal::AtLeast(50.0), all / per_link)
-        }
+        0..=100_000 => goals.note(
+            "per link, first time, to 100,000 triangles",
+            Goal::AtLeast(50.0),
+            all / per_link,
+        ),
         1_000_000.. => {
             goals.note("per link, first time, at 1.3 million", Goal::AtLeast(150.0), all / per_link)
         }

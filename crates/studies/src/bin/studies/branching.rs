@@ -1,9 +1,9 @@
-//! The two distances of Tables II and III three ways: by a decision tree, by clamping as in the paper's formulas, and as
-//! the library computes them.
+//! The two distances of Tables II and III three ways: by a decision tree, by clamping as in the
+//! paper's formulas, and as the library computes them.
 //!
-//! Trees and clamped formulas return the squared distance and use the same products, so that they differ in branching
-//! alone. Neither is as exact as the library, which takes the determinant from a cross product, scales the problem by a
-//! power of two and returns the closest points.
+//! Trees and clamped formulas return the squared distance and use the same products, so that they
+//! differ in branching alone. Neither is as exact as the library, which takes the determinant from
+//! a cross product, scales the problem by a power of two and returns the closest points.
 
 use parry_continuum::distance::laboratory::Mask;
 use parry_continuum::distance::{Scalar, Vec3, point_triangle, segment_segment};
@@ -48,7 +48,8 @@ impl<T: Scalar> Two<T> {
     }
 }
 
-/// (7) and (8) without a branch, corrected: the parameter of the second segment follows from that of the first.
+/// (7) and (8) without a branch, corrected: the parameter of the second segment follows from that
+/// of the first.
 pub struct ClampedSegments;
 
 impl Query for ClampedSegments {
@@ -59,13 +60,15 @@ impl Query for ClampedSegments {
         let zero = a.zero();
         let free = (e * b - d * c) / (a * c - b * b);
         let (to_start, to_end) = (-d, -(d + b));
-        let t = (free * a).max(to_start.min(to_end)).min(to_start.max(to_end)).max(zero).min(a).over(a);
+        let t =
+            (free * a).max(to_start.min(to_end)).min(to_start.max(to_end)).max(zero).min(a).over(a);
         let v = (-(e + b * t)).max(zero).min(c).over(c);
         two.squared(t, v)
     }
 }
 
-/// The same by a decision tree: which of interior, end or start holds the closest point of either segment.
+/// The same by a decision tree: which of interior, end or start holds the closest point of either
+/// segment.
 pub struct TreeSegments;
 
 impl Query for TreeSegments {
@@ -115,7 +118,8 @@ impl Query for LibrarySegments {
     }
 }
 
-/// Point and triangle without a branch: the face where the foot lies inside, and the three edges by clamping.
+/// Point and triangle without a branch: the face where the foot lies inside, and the three edges by
+/// clamping.
 pub struct ClampedTriangle;
 
 impl Query for ClampedTriangle {

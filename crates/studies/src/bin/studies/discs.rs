@@ -1,4 +1,5 @@
-//! Table I: the root finders where the paper needs them, in the distance between a segment and a disc.
+//! Table I: the root finders where the paper needs them, in the distance between a segment and a
+//! disc.
 
 use super::turns::in_turns;
 use continuum_studies::Number;
@@ -107,7 +108,10 @@ struct Row {
     counts: Counts,
 }
 
-fn rows<T: Number + Into<f64>>(problems: &[(DiscProblem, f64)], sample: &[DiscProblem]) -> Vec<Row> {
+fn rows<T: Number + Into<f64>>(
+    problems: &[(DiscProblem, f64)],
+    sample: &[DiscProblem],
+) -> Vec<Row> {
     let local: Vec<Local<T>> = sample.iter().map(Local::new).collect();
     let routes = routes::<T>();
     let mut jobs = routes.each_ref().map(|route| |_: usize| (route.all)(&local));
@@ -118,7 +122,8 @@ fn rows<T: Number + Into<f64>>(problems: &[(DiscProblem, f64)], sample: &[DiscPr
             if error.is_nan() { f64::INFINITY } else { error }
         };
         let errors: Vec<f64> = problems.par_iter().map(error).collect();
-        let share = |limit: f64| errors.iter().filter(|&&e| e > limit).count() as f64 / errors.len() as f64;
+        let share =
+            |limit: f64| errors.iter().filter(|&&e| e > limit).count() as f64 / errors.len() as f64;
         Row {
             name: route.name,
             worst: errors.iter().copied().fold(0.0, f64::max) / <T as Real>::UNIT_ROUNDOFF,
@@ -131,8 +136,8 @@ fn rows<T: Number + Into<f64>>(problems: &[(DiscProblem, f64)], sample: &[DiscPr
     routes.iter().zip(times).map(row).collect()
 }
 
-/// Seconds for one problem by the convex route, when the compiler may compute several at once with the widest
-/// instructions of the machine.
+/// Seconds for one problem by the convex route, when the compiler may compute several at once with
+/// the widest instructions of the machine.
 fn wide<T: Number>(sample: &[DiscProblem]) -> f64 {
     let local: Vec<Local<T>> = sample.iter().map(Local::new).collect();
     let number = |i: usize| {
@@ -144,7 +149,8 @@ fn wide<T: Number>(sample: &[DiscProblem]) -> f64 {
     let rows: [Vec<T>; 10] = std::array::from_fn(|i| local.iter().map(number(i)).collect());
     let mut out = vec![T::ZERO; local.len()];
     let level = Level::new();
-    let [time] = in_turns(TURNS, [&mut |_| dispatch!(level, simd => in_packs(simd, &rows, &mut out))]);
+    let [time] =
+        in_turns(TURNS, [&mut |_| dispatch!(level, simd => in_packs(simd, &rows, &mut out))]);
     black_box(&out);
     time / local.len() as f64
 }
@@ -176,7 +182,8 @@ pub fn chapter(count: usize, out: &Path) -> Result<String, String> {
     let tables = [rows::<f32>(&usable(single), &sample), rows::<f64>(&usable(double), &sample)];
     let text = |error: std::fmt::Error| error.to_string();
     // A polish does the same for every finder.
-    let is_shown = |cells: &[&str]| !cells[0].ends_with("polish") || cells[0].contains("closed form");
+    let is_shown =
+        |cells: &[&str]| !cells[0].ends_with("polish") || cells[0].contains("closed form");
     let table = table(&tables).map_err(text)?;
     let routes = long_table::write(&table, &out.join("studies_discs.csv"), is_shown)?;
     write_page(count, &tables, [wide::<f32>(&sample), wide::<f64>(&sample)], &routes).map_err(text)
@@ -252,7 +259,8 @@ fn write_page(
     } else {
         "not every quartic as printed failed, or the convex route erred by more than 8 units"
     };
-    let recentred = tables.each_ref().map(|table| table[5..].iter().map(|row| row.worst).fold(0.0, f64::max));
+    let recentred =
+        tables.each_ref().map(|table| table[5..].iter().map(|row| row.worst).fold(0.0, f64::max));
     writeln!(
         page,
         "\nFinding: {finding}. What fails is the equation, not the finder: of the recentred quartic the worst answer of \

@@ -1,4 +1,5 @@
-//! Figure 9 and Table IV on the CPU: every triangle against every link, with the paper's solvers and with ours.
+//! Figure 9 and Table IV on the CPU: every triangle against every link, with the paper's solvers
+//! and with ours.
 
 use super::peak;
 use continuum_demo::subdivide::{in_four, shuffled};
@@ -22,7 +23,8 @@ use std::time::Instant;
 const ROUNDS: usize = 5;
 const ENOUGH: f64 = 1.0;
 
-/// Model, how pairs are taken and the route to a disc, and the engine that takes them alike for capsules.
+/// Model, how pairs are taken and the route to a disc, and the engine that takes them alike for
+/// capsules.
 const ENGINES: [(&str, &str, usize); 8] = [
     ("capsules", "packed, no discs", 0),
     ("fitted caps", "packed, convex", 0),
@@ -38,14 +40,17 @@ const PRECISIONS: [&str; 2] = ["f32", "f64"];
 /// The paper's model of each of them.
 const PAPERS: [usize; COUNT] = [0, 1, 2, 0, 1, 1, 2, 2];
 
-/// The paper's Table IV: seconds for 1e6 triangles and the index per TFLOPS, for capsules, fitted caps and cylinders in
-/// float, then in double.
-const PAPER: [[(f64, f64); 3]; 2] =
-    [[(0.016, 11.93), (0.016, 11.93), (0.276, 0.69)], [(0.037, 10.32), (0.037, 10.32), (0.330, 1.16)]];
+/// The paper's Table IV: seconds for 1e6 triangles and the index per TFLOPS, for capsules, fitted
+/// caps and cylinders in float, then in double.
+const PAPER: [[(f64, f64); 3]; 2] = [
+    [(0.016, 11.93), (0.016, 11.93), (0.276, 0.69)],
+    [(0.037, 10.32), (0.037, 10.32), (0.330, 1.16)],
+];
 /// Seconds and index of the peer that the paper compares itself with.
 const PEER: (f64, f64) = (0.946, 0.33);
 
-/// Seconds of each engine for a query of all links, and the largest error of a link's distance in mm.
+/// Seconds of each engine for a query of all links, and the largest error of a link's distance in
+/// mm.
 type Measured = [(f64, f64); COUNT];
 
 /// The distances of a robot's links.
@@ -102,16 +107,22 @@ fn packed<T: SearchPrecision>(mesh: &TriMesh) -> Result<Engine<'static>, String>
     }))
 }
 
-fn one_by_one<'a, T: Number + 'a, S: DiscSolver<T> + DiscSolver<f64> + 'a>(mesh: &TriMesh) -> Engine<'a> {
+fn one_by_one<'a, T: Number + 'a, S: DiscSolver<T> + DiscSolver<f64> + 'a>(
+    mesh: &TriMesh,
+) -> Engine<'a> {
     let engine = EveryPair::<T, S>::new(mesh);
     Box::new(move |robot, pose| {
         Ok(engine.per_link(robot, pose).iter().map(|nearest| nearest.distance).collect())
     })
 }
 
-/// The chapter of the page. `largest` is the number of triangles for Table IV; long tables go to `out`.
+/// The chapter of the page. `largest` is the number of triangles for Table IV; long tables go to
+/// `out`.
 pub fn chapter(largest: usize, out: &Path) -> Result<String, String> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().map_err(|error| error.to_string())?;
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(1)
+        .build()
+        .map_err(|error| error.to_string())?;
     let mut sizes = Vec::new();
     let mut mesh = ventricle::mesh(ventricle::DEFAULT_TRIANGLES);
     loop {
@@ -121,8 +132,9 @@ pub fn chapter(largest: usize, out: &Path) -> Result<String, String> {
             let (vertices, mut indices) = shuffled(mesh.clone(), 1);
             indices.truncate(largest);
             let mesh = TriMesh::new(vertices, indices).map_err(|error| error.to_string())?;
-            let times = pool
-                .install(|| -> Result<_, String> { Ok([measure::<f32>(&mesh)?, measure::<f64>(&mesh)?]) })?;
+            let times = pool.install(|| -> Result<_, String> {
+                Ok([measure::<f32>(&mesh)?, measure::<f64>(&mesh)?])
+            })?;
             sizes.push((mesh.num_triangles(), times));
         }
         if last {
@@ -154,7 +166,11 @@ fn times(sizes: &[Size]) -> Result<String, std::fmt::Error> {
     for (triangles, _) in sizes {
         write!(table, " {triangles} |")?;
     }
-    write!(table, " time / capsules | error, mm |\n|---|---|---|{}---|---|\n", "---|".repeat(sizes.len()))?;
+    write!(
+        table,
+        " time / capsules | error, mm |\n|---|---|---|{}---|---|\n",
+        "---|".repeat(sizes.len())
+    )?;
     let Some((_, last)) = sizes.last() else { return Ok(table) };
     for (precision, name) in PRECISIONS.into_iter().enumerate() {
         for (engine, (model, route, capsules)) in ENGINES.into_iter().enumerate() {

@@ -1,11 +1,13 @@
-//! The paper's studies on your own processor: branching (Tables II and III), root finders (Tables I and V) and the
-//! exhaustive engines with the paper's solvers (Figure 9, Table IV). Writes `docs/internals/studies.md`.
+//! The paper's studies on your own processor: branching (Tables II and III), root finders (Tables I
+//! and V) and the exhaustive engines with the paper's solvers (Figure 9, Table IV). Writes
+//! `docs/internals/studies.md`.
 //!
 //! ```text
 //! cargo run --release -p continuum-studies --bin studies
 //! ```
 //!
-//! Needs a few minutes and 3 GB. `--only` measures one chapter again and leaves the others as they are.
+//! Needs a few minutes and 3 GB. `--only` measures one chapter again and leaves the others as they
+//! are.
 
 mod branching;
 mod discs;
@@ -62,7 +64,8 @@ enum Chapter {
 }
 
 impl Chapter {
-    const ALL: [Self; 5] = [Self::Discs, Self::Branching, Self::Engines, Self::Polynomials, Self::Schur];
+    const ALL: [Self; 5] =
+        [Self::Discs, Self::Branching, Self::Engines, Self::Polynomials, Self::Schur];
 
     /// The line that ends the chapter.
     fn mark(self) -> String {
@@ -116,7 +119,9 @@ fn measure(options: &Options) -> Result<(), String> {
     }
     fs::create_dir_all(&options.out)
         .and_then(|()| fs::write(&path, page.trim_end().to_owned() + "\n"))
-        .map_err(|error| format!("cannot write {} ({error}); choose another --out", path.display()))?;
+        .map_err(|error| {
+            format!("cannot write {} ({error}); choose another --out", path.display())
+        })?;
     println!("{}", path.display());
     Ok(())
 }

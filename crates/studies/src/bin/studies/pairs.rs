@@ -60,7 +60,8 @@ fn in_packs<Q: Query, T: Scalar<Mask = bool>, S>(_: S, rows: &[&[T]; 12], out: &
     }
 }
 
-/// Seconds for a batch: clamped, tree and library one by one, then clamped, library and tree in packs.
+/// Seconds for a batch: clamped, tree and library one by one, then clamped, library and tree in
+/// packs.
 fn times<C: Query, B: Query, L: Query, T: Number>(pool: &Pool<T>, turns: usize) -> [f64; 6] {
     let level = Level::new();
     let mut out = vec![T::ZERO; BATCH];
@@ -81,7 +82,8 @@ fn times<C: Query, B: Query, L: Query, T: Number>(pool: &Pool<T>, turns: usize) 
     times
 }
 
-/// How far tree and library are from the clamped formula, on the whole pool: all three compute the same thing.
+/// How far tree and library are from the clamped formula, on the whole pool: all three compute the
+/// same thing.
 fn disagreement<C: Query, B: Query, L: Query, T: Number + Into<f64>>(pool: &Pool<T>) -> f64 {
     let mut worst = 0.0_f64;
     for turn in 0..POOL / BATCH {
@@ -96,7 +98,8 @@ fn disagreement<C: Query, B: Query, L: Query, T: Number + Into<f64>>(pool: &Pool
     worst
 }
 
-/// A table, and the paper's milliseconds: clamped and branching, for 1e4 and 1e8 queries in float, then in double.
+/// A table, and the paper's milliseconds: clamped and branching, for 1e4 and 1e8 queries in float,
+/// then in double.
 struct Study {
     title: &'static str,
     paper: [[f64; 2]; 4],
@@ -136,7 +139,10 @@ pub fn chapters(queries: usize) -> Result<[String; 2], String> {
 /// Seconds for both counts, and the disagreement of the three ways.
 type Table = ([[f64; 6]; 2], f64);
 
-fn table<C: Query, B: Query, L: Query, T: Number + Into<f64>>(pool: &Pool<T>, queries: usize) -> Table {
+fn table<C: Query, B: Query, L: Query, T: Number + Into<f64>>(
+    pool: &Pool<T>,
+    queries: usize,
+) -> Table {
     let of = |count: usize| {
         let turns = (count / BATCH).max(11);
         times::<C, B, L, T>(pool, turns).map(|time| time * count as f64 / BATCH as f64)
@@ -146,7 +152,11 @@ fn table<C: Query, B: Query, L: Query, T: Number + Into<f64>>(pool: &Pool<T>, qu
     ([of(FEW), of(queries)], disagreement)
 }
 
-fn write_page(study: &Study, tables: &[Table; 2], queries: usize) -> Result<String, std::fmt::Error> {
+fn write_page(
+    study: &Study,
+    tables: &[Table; 2],
+    queries: usize,
+) -> Result<String, std::fmt::Error> {
     let mut page = format!(
         "{}\n\n\
          Random points in a cube, one thread; milliseconds, from the median batch of {BATCH} queries (at least 11 batches \
@@ -159,7 +169,9 @@ fn write_page(study: &Study, tables: &[Table; 2], queries: usize) -> Result<Stri
         study.title
     );
     let mut ratios = Vec::new();
-    for (row, (count, paper)) in [FEW, queries, FEW, queries].into_iter().zip(study.paper).enumerate() {
+    for (row, (count, paper)) in
+        [FEW, queries, FEW, queries].into_iter().zip(study.paper).enumerate()
+    {
         let [clamped, tree, library, clamped_packed, library_packed, tree_packed] =
             tables[row / 2].0[row % 2].map(|seconds| seconds * 1e3);
         let precision = if row < 2 { "f32" } else { "f64" };
@@ -174,7 +186,8 @@ fn write_page(study: &Study, tables: &[Table; 2], queries: usize) -> Result<Stri
             count = count as f64,
         )?;
     }
-    let [least, most] = [f64::min, f64::max].map(|pick| ratios.iter().copied().reduce(pick).unwrap_or(1.0));
+    let [least, most] =
+        [f64::min, f64::max].map(|pick| ratios.iter().copied().reduce(pick).unwrap_or(1.0));
     let finding = match (least > 1.02, most > 1.02) {
         (true, _) => "confirmed",
         (false, true) => "confirmed in part",

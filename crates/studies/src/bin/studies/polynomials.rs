@@ -9,14 +9,16 @@ use std::fmt::Write;
 use std::hint::black_box;
 use std::path::Path;
 
-/// On one thread the finders take turns with so many parts of the polynomials, each so small a share of all.
+/// On one thread the finders take turns with so many parts of the polynomials, each so small a
+/// share of all.
 const TURNS: usize = 20;
 const SHARE: usize = 200;
 /// The degrees of the page: the quartics that discs lead to, and larger ones.
 const SHOWN: [&str; 3] = ["4", "8", "15"];
 const FINDERS: [&str; 4] = ["closed form", "Bairstow", "companion", "Jenkins-Traub"];
 
-/// The paper's milliseconds for 1e6 polynomials: degree, finder, then CPU float, CPU double, GPU float, GPU double.
+/// The paper's milliseconds for 1e6 polynomials: degree, finder, then CPU float, CPU double, GPU
+/// float, GPU double.
 const PAPER: [(usize, usize, [f64; 4]); 24] = [
     (2, 0, [8.70, 12.82, 2.65, 4.07]),
     (2, 1, [8.58, 13.35, 2.59, 4.11]),
@@ -91,7 +93,8 @@ fn outcomes<T: Real + Send + Sync, const M: usize>(count: usize) -> [Outcome; 4]
     );
     std::array::from_fn(|i| {
         let mut found = 0;
-        let [all] = in_turns(1, [&mut |_| found = polynomials.par_chunks(1000).map(finders[i]).sum()]);
+        let [all] =
+            in_turns(1, [&mut |_| found = polynomials.par_chunks(1000).map(finders[i]).sum()]);
         Outcome {
             one: one[i] * count as f64 / part as f64,
             all,
@@ -153,7 +156,8 @@ fn table(measured: &[Measured]) -> Result<String, std::fmt::Error> {
             write!(page, " {:.0} | {:.0} | {} |", one * 1e3, all * 1e3, percent(found))?;
         }
         for (precision, finders) in both.into_iter().enumerate() {
-            let [cpu, gpu] = [precision, precision + 2].map(|column| paper[column] / paper_unit[column]);
+            let [cpu, gpu] =
+                [precision, precision + 2].map(|column| paper[column] / paper_unit[column]);
             write!(page, " {:.2} | {cpu:.2} | {gpu:.2} |", finders[finder].one / unit[precision])?;
         }
         writeln!(page)?;

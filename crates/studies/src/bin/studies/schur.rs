@@ -33,7 +33,8 @@ struct Outcome {
 /// A root, its real part first.
 type Root = [f64; 2];
 
-/// The least relative change of the coefficients that makes `root` exact: |p(z)| / sum |p_k| |z|^k, in units of u.
+/// The least relative change of the coefficients that makes `root` exact: |p(z)| / sum |p_k| |z|^k,
+/// in units of u.
 fn backward_error(coefficients: &[f64], root: Root) -> f64 {
     let [re, im] = root.map(DoubleDouble::from);
     let size = root[0].hypot(root[1]);
@@ -55,7 +56,10 @@ fn by_ours<const M: usize>(coefficients: &[f64; M]) -> Vec<Root> {
     }
 }
 
-fn by_nalgebra<const M: usize, const N: usize>(coefficients: &[f64; M], is_balanced: bool) -> Vec<Root>
+fn by_nalgebra<const M: usize, const N: usize>(
+    coefficients: &[f64; M],
+    is_balanced: bool,
+) -> Vec<Root>
 where
     Const<N>: DimSub<U1>,
     DefaultAllocator: Allocator<Const<N>, DimDiff<Const<N>, U1>> + Allocator<DimDiff<Const<N>, U1>>,
@@ -88,7 +92,8 @@ where
         0 => random.between(-100.0, 100.0),
         _ => 10.0_f64.powf(random.between(-6.0, 6.0)) * [1.0, -1.0][random.below(2) as usize],
     };
-    let polynomials: Vec<[f64; M]> = (0..count).map(|_| std::array::from_fn(|_| coefficient())).collect();
+    let polynomials: Vec<[f64; M]> =
+        (0..count).map(|_| std::array::from_fn(|_| coefficient())).collect();
     let routes: [Route<M>; 3] = [
         by_ours::<M>,
         |coefficients| by_nalgebra::<M, N>(coefficients, false),
@@ -96,10 +101,13 @@ where
     ];
     let part = count.div_ceil(TURNS);
     let piece = |turn: usize| polynomials.chunks(part).nth(turn).unwrap_or_default();
-    let run =
-        |route: usize, turn: usize| piece(turn).iter().for_each(|one| _ = black_box(routes[route](one)));
-    let times =
-        in_turns(TURNS, [&mut |turn| run(0, turn), &mut |turn| run(1, turn), &mut |turn| run(2, turn)]);
+    let run = |route: usize, turn: usize| {
+        piece(turn).iter().for_each(|one| _ = black_box(routes[route](one)))
+    };
+    let times = in_turns(
+        TURNS,
+        [&mut |turn| run(0, turn), &mut |turn| run(1, turn), &mut |turn| run(2, turn)],
+    );
     std::array::from_fn(|route| {
         let mut outcome = Outcome { time: times[route] * 1e6 / part as f64, ..Outcome::default() };
         for coefficients in &polynomials {
@@ -130,7 +138,10 @@ pub fn chapter(count: usize) -> Result<String, String> {
     write_page(count, &measured).map_err(|error| error.to_string())
 }
 
-fn write_page(count: usize, measured: &[(usize, usize, [Outcome; 3])]) -> Result<String, std::fmt::Error> {
+fn write_page(
+    count: usize,
+    measured: &[(usize, usize, [Outcome; 3])],
+) -> Result<String, std::fmt::Error> {
     let mut page = format!(
         "## The companion matrix, ours and nalgebra's\n\n\
          The eigenvalues of the companion matrix of {count} random polynomials of each degree in f64: by `polynomial-roots`, and by \
@@ -155,7 +166,11 @@ fn write_page(count: usize, measured: &[(usize, usize, [Outcome; 3])]) -> Result
     page.push_str("\nFindings:");
     for (route, name) in ROUTES.iter().enumerate().skip(1) {
         let ratios = least(route);
-        write!(page, " {name} takes {:.1} to {:.1} times as long as ours.", ratios.start, ratios.end)?;
+        write!(
+            page,
+            " {name} takes {:.1} to {:.1} times as long as ours.",
+            ratios.start, ratios.end
+        )?;
     }
     page.push_str(
         " Ours adds to the eigenvalues what they lack: the test of each root, scaling by powers of two, single precision, and \

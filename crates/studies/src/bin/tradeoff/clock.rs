@@ -41,7 +41,8 @@ pub struct Building {
     pub chain: f64,
 }
 
-/// A curve, its directions at the ends, and the numbers of the points that fix the directions of faces.
+/// A curve, its directions at the ends, and the numbers of the points that fix the directions of
+/// faces.
 type Given = (Centreline, [Vector; 2], Vec<usize>);
 
 /// Times the shapes on one thread.
@@ -113,8 +114,10 @@ fn queries(
                 None => first.push((way.model, clearances)),
             }
         }
-        let links: Option<Vec<_>> =
-            subjects.iter().map(|[_, now]| now.links(way.model).map(|links| links as f64)).collect();
+        let links: Option<Vec<_>> = subjects
+            .iter()
+            .map(|[_, now]| now.links(way.model).map(|links| links as f64))
+            .collect();
         rows.push(Timed {
             model: way.model,
             way: way.name,

@@ -1,4 +1,5 @@
-//! From the samples of a curve to the answer: what a query costs when the robot has a new shape each time.
+//! From the samples of a curve to the answer: what a query costs when the robot has a new shape
+//! each time.
 
 use crate::statistics::quantile;
 use crate::ways::text;
@@ -47,7 +48,8 @@ impl Shape {
             for section in &sections {
                 let count = (section.length / spacing(section)).ceil().max(1.0) as usize;
                 points.extend(
-                    (1..=count).map(|k| curve.at(from + section.length * k as Real / count as Real).0),
+                    (1..=count)
+                        .map(|k| curve.at(from + section.length * k as Real / count as Real).0),
                 );
                 radii.extend(std::iter::repeat_n(section.radius, count));
                 from += section.length;
@@ -78,8 +80,8 @@ pub struct FromSamples {
 /// A way from a shape to an answer.
 type Way<'a> = Box<dyn FnMut(&Shape) -> Result<(), String> + 'a>;
 
-/// The chapter: shapes that are free and that touch apart, and the mesh as it is and divided in four twice. And what it
-/// says of the mesh as it is. Its long table goes to `out`.
+/// The chapter: shapes that are free and that touch apart, and the mesh as it is and divided in
+/// four twice. And what it says of the mesh as it is. Its long table goes to `out`.
 pub fn chapter(
     robot: &Robot,
     [free, touching]: [&[Joints]; 2],
@@ -112,19 +114,28 @@ pub fn chapter(
     );
     let fine = in_four(in_four((mesh.vertices().to_vec(), mesh.indices().to_vec())));
     let fine = TriMesh::new(fine.0, fine.1).map_err(text)?;
-    let row =
-        |&tolerance| FromSamples { triangles: mesh.num_triangles(), tolerance, ..FromSamples::default() };
+    let row = |&tolerance| FromSamples {
+        triangles: mesh.num_triangles(),
+        tolerance,
+        ..FromSamples::default()
+    };
     let mut rows: Vec<_> = TOLERANCES.iter().map(row).collect();
     for (is_coarse, mesh) in [(true, mesh), (false, &fine)] {
-        for (kind, (name, joints)) in [("free", free), ("touching", touching)].into_iter().enumerate() {
-            let shapes: Vec<_> =
-                joints.iter().take(SHAPES).map(|joints| Shape::new(robot, joints, spacing)).collect();
+        for (kind, (name, joints)) in
+            [("free", free), ("touching", touching)].into_iter().enumerate()
+        {
+            let shapes: Vec<_> = joints
+                .iter()
+                .take(SHAPES)
+                .map(|joints| Shape::new(robot, joints, spacing))
+                .collect();
             for (index, &tolerance) in TOLERANCES.iter().enumerate() {
                 let times = times(&shapes, clearances(mesh, base, tolerance, index)?)?;
                 if is_coarse {
                     rows[index].free_and_touching[kind] = [times[0], times[3]];
                 }
-                let cells: Vec<_> = times.iter().map(|time| format!("{:.1} us", time * 1e6)).collect();
+                let cells: Vec<_> =
+                    times.iter().map(|time| format!("{:.1} us", time * 1e6)).collect();
                 // Writing to a string cannot fail.
                 let _ = writeln!(
                     table,
@@ -135,7 +146,8 @@ pub fn chapter(
             }
             let times = times(&shapes, decisions(mesh, base)?)?;
             let cells: Vec<_> = times.iter().map(|time| format!("{:.1} us", time * 1e6)).collect();
-            let _ = writeln!(clears, "| {} | {name} | {} |", mesh.num_triangles(), cells.join(" | "));
+            let _ =
+                writeln!(clears, "| {} | {name} | {} |", mesh.num_triangles(), cells.join(" | "));
         }
     }
     let triangles = mesh.num_triangles().to_string();
@@ -238,7 +250,8 @@ fn clearances<'a>(
 }
 
 /// What chooses links.
-type Choose = fn(&[Vector], &[Real], Real) -> Result<(Vec<Vector>, Vec<Real>), parry_continuum::RobotError>;
+type Choose =
+    fn(&[Vector], &[Real], Real) -> Result<(Vec<Vector>, Vec<Real>), parry_continuum::RobotError>;
 
 /// Every way to a decision, and building a tube alone.
 fn decisions<'a>(mesh: &TriMesh, base: &'a Pose) -> Result<Vec<Way<'a>>, String> {

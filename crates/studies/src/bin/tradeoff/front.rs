@@ -25,7 +25,9 @@ pub fn errors(outcomes: &[Outcome]) -> Vec<[Errors; Model::ALL.len()]> {
     let of = |tolerance: usize, model: usize| {
         Errors::of(free.iter().map(|shape| shape.each[tolerance].clearances[model] - shape.truth))
     };
-    (0..TOLERANCES.len()).map(|tolerance| std::array::from_fn(|model| of(tolerance, model))).collect()
+    (0..TOLERANCES.len())
+        .map(|tolerance| std::array::from_fn(|model| of(tolerance, model)))
+        .collect()
 }
 
 /// Every combination that was timed.

@@ -15,7 +15,10 @@ pub fn devices() -> Vec<Device> {
                 way,
                 name,
                 engine: Box::new(move |mesh, model| {
-                    Ok(Box::new(Engine { engine: GpuExhaustive::on(&gpu, mesh).map_err(text)?, model }))
+                    Ok(Box::new(Engine {
+                        engine: GpuExhaustive::on(&gpu, mesh).map_err(text)?,
+                        model,
+                    }))
                 }),
             })
         })

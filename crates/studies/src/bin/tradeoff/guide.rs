@@ -27,7 +27,8 @@ pub struct Facts<'a> {
 pub fn text(facts: &Facts) -> String {
     let Facts { command, all, times, from_samples, forbidden, torsion: [median, worst] } = facts;
     let time = |model: Model, way: &str| {
-        let same = |one: &&Combination| one.model == model && one.way == way && one.tolerance == 0.1;
+        let same =
+            |one: &&Combination| one.model == model && one.way == way && one.tolerance == 0.1;
         all.iter().find(same).map_or(f64::NAN, |one| one.time)
     };
     let again = time(Model::Modified, "search, again");

@@ -20,14 +20,19 @@ const SPACING: Real = 0.1;
 struct Twisted {
     /// The true clearance.
     truth: Real,
-    /// Without torsion, the tubes' angles being those at the base, where motors set them: clearance and how far off
-    /// the tip is.
+    /// Without torsion, the tubes' angles being those at the base, where motors set them:
+    /// clearance and how far off the tip is.
     by_base: (Real, Real),
     /// Without torsion, the tubes' angles being those at the tubes' own ends.
     by_tip: (Real, Real),
 }
 
-fn twisted(robot: &Robot, joints: &Joints, base: &Pose, search: &mut BvhSearch) -> Result<Twisted, String> {
+fn twisted(
+    robot: &Robot,
+    joints: &Joints,
+    base: &Pose,
+    search: &mut BvhSearch,
+) -> Result<Twisted, String> {
     let stations = Stations::graded(robot, joints, SPACING);
     let solution = robot.twisted(joints, &stations.arc_lengths);
     let mut clearance = |points: &[Vector]| -> Result<Real, String> {
@@ -47,8 +52,9 @@ fn twisted(robot: &Robot, joints: &Joints, base: &Pose, search: &mut BvhSearch) 
     Ok(Twisted { truth, by_base: rigid(&set)?, by_tip })
 }
 
-/// The chapter of the page, on some of the shapes, whose `outcomes` these are; and by how much the clearance is off in
-/// the median and at worst where torsion is left out and the angles at the base are the same.
+/// The chapter of the page, on some of the shapes, whose `outcomes` these are; and by how much the
+/// clearance is off in the median and at worst where torsion is left out and the angles at the base
+/// are the same.
 pub fn chapter(
     robot: &Robot,
     shapes: &[Joints],
@@ -96,9 +102,16 @@ pub fn chapter(
         (Model::Modified, 4),
         (Model::Modified, 6),
     ] {
-        let pairs: Vec<_> =
-            outcomes.iter().map(|shape| (shape.truth, shape.each[index].clearances[model.index()])).collect();
-        row(&mut page, &format!("{} within {} mm", model.name(), TOLERANCES[index]), "0 | 0", &pairs);
+        let pairs: Vec<_> = outcomes
+            .iter()
+            .map(|shape| (shape.truth, shape.each[index].clearances[model.index()]))
+            .collect();
+        row(
+            &mut page,
+            &format!("{} within {} mm", model.name(), TOLERANCES[index]),
+            "0 | 0",
+            &pairs,
+        );
     }
     let off = differences(&by_base);
     let worst = off.iter().copied().fold(0.0, Real::max);
@@ -114,8 +127,10 @@ fn differences(pairs: &[(Real, Real)]) -> Vec<Real> {
 fn row(page: &mut String, name: &str, tip: &str, pairs: &[(Real, Real)]) {
     let off = differences(pairs);
     let worst = off.iter().copied().fold(0.0, Real::max);
-    let [median, most] = [0.5, 0.95].map(|share| length(quantile(off.clone(), share).unwrap_or(0.0)));
+    let [median, most] =
+        [0.5, 0.95].map(|share| length(quantile(off.clone(), share).unwrap_or(0.0)));
     let otherwise = Share::of(pairs.iter(), |(a, b)| (*a > 0.0) != (*b > 0.0));
     // Writing to a string cannot fail.
-    let _ = writeln!(page, "| {name} | {tip} | {median} | {most} | {} | {otherwise} |", length(worst));
+    let _ =
+        writeln!(page, "| {name} | {tip} | {median} | {most} | {} | {otherwise} |", length(worst));
 }

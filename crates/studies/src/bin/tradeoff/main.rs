@@ -1,12 +1,12 @@
-//! What accuracy costs: every model, tolerance and engine on seeded shapes of a concentric tube robot in a ventricle.
-//! Writes `docs/TRADEOFF.md`, its plot and the guide in docs/book/trade.md.
+//! What accuracy costs: every model, tolerance and engine on seeded shapes of a concentric tube
+//! robot in a ventricle. Writes `docs/TRADEOFF.md`, its plot and the guide in docs/book/trade.md.
 //!
 //! ```text
 //! cargo run --release -p continuum-studies --bin tradeoff
 //! ```
 //!
-//! Needs a few minutes. With `--features gpu` the engines on the GPU take part. `--mesh` takes other anatomy; then the page goes to `target/tradeoff`, as it does with other
-//! numbers of shapes.
+//! Needs a few minutes. With `--features gpu` the engines on the GPU take part. `--mesh` takes
+//! other anatomy; then the page goes to `target/tradeoff`, as it does with other numbers of shapes.
 
 mod clock;
 mod from_samples;
@@ -37,7 +37,8 @@ use std::fs;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// Measure what accuracy costs: models, tolerances and engines on many shapes of a concentric tube robot.
+/// Measure what accuracy costs: models, tolerances and engines on many shapes of a concentric tube
+/// robot.
 #[derive(Parser)]
 struct Options {
     #[command(flatten)]
@@ -59,7 +60,8 @@ struct Options {
     #[arg(long, value_enum)]
     only: Option<Chapter>,
 
-    /// Where to write TRADEOFF.md, its long tables as tradeoff_*.csv, and tradeoff.svg [default: docs, or target/tradeoff with other options]
+    /// Where to write TRADEOFF.md, its long tables as tradeoff_*.csv, and tradeoff.svg [default:
+    /// docs, or target/tradeoff with other options]
     #[arg(long, value_name = "DIRECTORY")]
     out: Option<PathBuf>,
 }
@@ -86,7 +88,10 @@ fn measure(options: &Options) -> Result<(), String> {
         && options.shapes == SHAPES
         && options.timed == TIMED
         && options.edges == EDGES;
-    let out = options.out.clone().unwrap_or_else(|| if usual { "docs" } else { "target/tradeoff" }.into());
+    let out = options
+        .out
+        .clone()
+        .unwrap_or_else(|| if usual { "docs" } else { "target/tradeoff" }.into());
     let mesh = options.anatomy.load()?;
     let base = options.anatomy.pose(&mesh)?;
     let robot = ctr::three_tubes();
@@ -140,8 +145,14 @@ fn measure(options: &Options) -> Result<(), String> {
     let times = clock::time(&robot, &timed, &mesh, &base, &devices)?;
 
     stages.next("from samples");
-    let (from_samples, rows) =
-        from_samples::chapter(&robot, [&timed, &touching], &mesh, &base, outcome::INPUT_SPACING, &out)?;
+    let (from_samples, rows) = from_samples::chapter(
+        &robot,
+        [&timed, &touching],
+        &mesh,
+        &base,
+        outcome::INPUT_SPACING,
+        &out,
+    )?;
 
     stages.next("motions");
     let motions = motions::chapter(&robot, &mesh, &base, options.edges as usize)?;
@@ -152,8 +163,11 @@ fn measure(options: &Options) -> Result<(), String> {
     let features = if cfg!(feature = "gpu") { "--features gpu " } else { "" };
     let command = command::line(&format!("-p continuum-studies {features}--bin tradeoff"));
     let widest = robot.sections.iter().map(|section| section.radius).fold(0.0, f64::max);
-    let trade =
-        long_table::write(&page::table(&times, &errors), &out.join("tradeoff_links.csv"), page::is_shown)?;
+    let trade = long_table::write(
+        &page::table(&times, &errors),
+        &out.join("tradeoff_links.csv"),
+        page::is_shown,
+    )?;
     let page = page::page(&page::Facts {
         command: &command,
         triangles: mesh.num_triangles(),

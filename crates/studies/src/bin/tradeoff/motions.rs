@@ -28,10 +28,12 @@ const RESOLUTION: Real = 0.001;
 /// How often each edge is checked; its time is the median.
 const TURNS: usize = 3;
 
-/// Random edges of a length that are tried for each that is wanted: both ends have to keep the margin.
+/// Random edges of a length that are tried for each that is wanted: both ends have to keep the
+/// margin.
 const TRIES: usize = 300;
 
-/// How far the wall moves where it moves, mm, and how long the wave is in which it does, as a factor of 2 pi mm.
+/// How far the wall moves where it moves, mm, and how long the wave is in which it does, as a
+/// factor of 2 pi mm.
 const WALL_MOVES: Real = 0.5;
 const WAVE: Real = 10.0;
 
@@ -97,9 +99,9 @@ fn by_moving_walls(
     Ok(verdict(search.clears_motion_while(to, motion, margin, RESOLUTION).map_err(text)?.decision))
 }
 
-/// By one bound for the whole robot: its clearance in the middle of an interval tells for how long before and after
-/// nothing can come nearer than the margin, if all of it moves as fast as its fastest point. What is left is
-/// halved. (Conservative advancement, to both sides.)
+/// By one bound for the whole robot: its clearance in the middle of an interval tells for how long
+/// before and after nothing can come nearer than the margin, if all of it moves as fast as its
+/// fastest point. What is left is halved. (Conservative advancement, to both sides.)
 fn by_one_bound(
     search: &mut BvhSearch,
     motion: &Counted,
@@ -114,7 +116,8 @@ fn by_one_bound(
     };
     let speed = (0..sections).map(fastest).fold(0.0, Real::max);
     let mut tube = motion.motion.tube(0.0).map_err(text)?;
-    let (mut waiting, mut verdict) = (std::collections::VecDeque::from([[0.0, 1.0]]), Verdict::Clear);
+    let (mut waiting, mut verdict) =
+        (std::collections::VecDeque::from([[0.0, 1.0]]), Verdict::Clear);
     while let Some([from, to]) = waiting.pop_front() {
         let (middle, half): (Real, Real) = (0.5 * (from + to), 0.5 * (to - from));
         motion.shape(middle, &mut tube).map_err(text)?;
@@ -190,7 +193,8 @@ fn measure(
         for ((way, search), measured) in ways.iter().zip(&mut *searches).zip(&mut all) {
             let (mut seconds, mut seen) = (Vec::with_capacity(TURNS), None);
             for _ in 0..TURNS {
-                let counted = Counted { motion, shapes: Cell::new(0), has_courses: Cell::new(true) };
+                let counted =
+                    Counted { motion, shapes: Cell::new(0), has_courses: Cell::new(true) };
                 search.forget();
                 let begin = Instant::now();
                 let verdict = way(search, &counted, *margin)?;
@@ -237,7 +241,10 @@ fn insertion(robot: &Robot, goal: &Joints) -> Result<Vec<JointMotion>, String> {
     const NOT_OUT: Real = 0.01;
     let out = |sections: usize| {
         let length = |k: usize| if k < sections { goal.extensions[k] } else { NOT_OUT };
-        Joints { extensions: (0..goal.extensions.len()).map(length).collect(), angles: goal.angles.clone() }
+        Joints {
+            extensions: (0..goal.extensions.len()).map(length).collect(),
+            angles: goal.angles.clone(),
+        }
     };
     (0..goal.extensions.len())
         .map(|k| {
@@ -255,18 +262,21 @@ pub fn chapter(robot: &Robot, mesh: &TriMesh, base: &Pose, count: usize) -> Resu
     let one_bound = |search: &mut BvhSearch, motion: &Counted, margin: Real| {
         by_one_bound(search, motion, base, sections, margin)
     };
-    let coarse =
-        |search: &mut BvhSearch, motion: &Counted, margin: Real| by_steps(search, motion, base, 0.5, margin);
-    let fine =
-        |search: &mut BvhSearch, motion: &Counted, margin: Real| by_steps(search, motion, base, 0.1, margin);
+    let coarse = |search: &mut BvhSearch, motion: &Counted, margin: Real| {
+        by_steps(search, motion, base, 0.5, margin)
+    };
+    let fine = |search: &mut BvhSearch, motion: &Counted, margin: Real| {
+        by_steps(search, motion, base, 0.1, margin)
+    };
     let from = search.vertices().to_vec();
     let wave = |point: &Vector| point + Vector::Z * (WALL_MOVES * (point.x / WAVE).sin());
     let to: Vec<_> = from.iter().map(wave).collect();
     let staying = |search: &mut BvhSearch, motion: &Counted, margin: Real| {
         by_moving_walls(search, motion, &from, margin)
     };
-    let moving =
-        |search: &mut BvhSearch, motion: &Counted, margin: Real| by_moving_walls(search, motion, &to, margin);
+    let moving = |search: &mut BvhSearch, motion: &Counted, margin: Real| {
+        by_moving_walls(search, motion, &to, margin)
+    };
     let ways: [Way; 7] = [&by_pieces, &by_speeds, &one_bound, &coarse, &fine, &staying, &moving];
     let mut searches: Vec<_> = ways.iter().map(|_| search.clone()).collect();
 
@@ -333,7 +343,8 @@ pub fn chapter(robot: &Robot, mesh: &TriMesh, base: &Pose, count: usize) -> Resu
         let _ = write!(walls, "| {length} mm ");
         for way in [proof, staying, moving] {
             let contacts = way.count(Verdict::Contact);
-            let _ = write!(walls, "| {:.1} | {:.0} us | {contacts} ", way.shapes(), way.microseconds());
+            let _ =
+                write!(walls, "| {:.1} | {:.0} us | {contacts} ", way.shapes(), way.microseconds());
         }
         let _ = writeln!(walls, "| {} |", moving.count(Verdict::Undecided));
     }
@@ -343,7 +354,8 @@ pub fn chapter(robot: &Robot, mesh: &TriMesh, base: &Pose, count: usize) -> Resu
         let goal = ventricle::goal();
         let (mut shapes, mut is_clear) = (0, true);
         for motion in insertion(robot, &goal)? {
-            let counted = Counted { motion: &motion, shapes: Cell::new(0), has_courses: Cell::new(true) };
+            let counted =
+                Counted { motion: &motion, shapes: Cell::new(0), has_courses: Cell::new(true) };
             is_clear &= by_pieces(&mut search, &counted, MARGINS[1])? == Verdict::Clear;
             shapes += counted.shapes.get();
         }

@@ -16,7 +16,8 @@ pub const TOLERANCES: [Real; 7] = [0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0];
 /// The tolerance at which parry is asked in metres too.
 pub const METRES_AT: usize = 4;
 
-/// Spacing of the curve that is simplified, mm. Its chords stay within 0.1^2 x 0.052 / 8 = 7e-5 mm of the arcs.
+/// Spacing of the curve that is simplified, mm. Its chords stay within 0.1^2 x 0.052 / 8 = 7e-5 mm
+/// of the arcs.
 pub const INPUT_SPACING: Real = 0.1;
 
 /// Largest spacing of the reference's stations, mm.
@@ -40,7 +41,8 @@ pub struct Outcome {
 pub struct AtTolerance {
     /// In the order of [`Model::ALL`].
     pub clearances: [Real; Model::ALL.len()],
-    /// By how much the rim of a flat face is out of place at most, because the face follows the last link.
+    /// By how much the rim of a flat face is out of place at most, because the face follows the
+    /// last link.
     pub tilt: Real,
 }
 
@@ -61,7 +63,10 @@ pub fn outcomes(
     let metres = TriMesh::new(vertices, mesh.indices().to_vec()).map_err(text)?;
     let of_some = |shapes: &[Joints]| -> Result<Vec<Outcome>, String> {
         let mut search = BvhSearch::new(mesh).map_err(text)?;
-        shapes.iter().map(|joints| outcome(robot, joints, mesh, &metres, base, &mut search)).collect()
+        shapes
+            .iter()
+            .map(|joints| outcome(robot, joints, mesh, &metres, base, &mut search))
+            .collect()
     };
     let some: Result<Vec<_>, _> = shapes.par_chunks(64).map(of_some).collect();
     Ok(some?.into_iter().flatten().collect())
@@ -88,7 +93,8 @@ fn outcome(
         metres: [0.0; 2],
     };
     for (index, (each, tolerance)) in outcome.each.iter_mut().zip(TOLERANCES).enumerate() {
-        let subject = Subject::new(&curve, tangents, &stations.at_faces, tolerance).map_err(text)?;
+        let subject =
+            Subject::new(&curve, tangents, &stations.at_faces, tolerance).map_err(text)?;
         each.tilt = tilt(&subject, &faces);
         for (clearance, model) in each.clearances.iter_mut().zip(Model::ALL) {
             *clearance = if Model::OURS.contains(&model) {
@@ -113,9 +119,11 @@ fn outcome(
 /// parry's clearances of capsules and cylinders, all lengths in metres.
 fn in_metres(subject: &Subject, mesh: &TriMesh, base: &Pose) -> Result<[Real; 2], String> {
     let smaller = |pose: &Pose| Pose::from_parts(pose.translation * 1e-3, pose.rotation);
-    let capsule = |c: &Capsule| Capsule::new(c.segment.a * 1e-3, c.segment.b * 1e-3, c.radius * 1e-3);
+    let capsule =
+        |c: &Capsule| Capsule::new(c.segment.a * 1e-3, c.segment.b * 1e-3, c.radius * 1e-3);
     let cylinder = |c: &Cylinder| Cylinder::new(c.half_height * 1e-3, c.radius * 1e-3);
-    let capsules: Vec<_> = subject.capsules.iter().map(|(at, link)| (smaller(at), capsule(link))).collect();
+    let capsules: Vec<_> =
+        subject.capsules.iter().map(|(at, link)| (smaller(at), capsule(link))).collect();
     let cylinders: Vec<_> =
         subject.cylinders.iter().map(|(at, link)| (smaller(at), cylinder(link))).collect();
     Ok([least(mesh, &capsules, &smaller(base))?, least(mesh, &cylinders, &smaller(base))?])
@@ -152,9 +160,13 @@ fn tilt(subject: &Subject, faces: &[Face]) -> Real {
     let at = |face: &Face| {
         let ends = |link: &&parry_continuum::ModifiedCylinder| {
             link.radius() == face.radius
-                && (link.end().distance(face.place) < 1e-9 || link.start().distance(face.place) < 1e-9)
+                && (link.end().distance(face.place) < 1e-9
+                    || link.start().distance(face.place) < 1e-9)
         };
-        links.iter().find(ends).map_or(0.0, |link| face.radius * link.axis().cross(face.direction).length())
+        links
+            .iter()
+            .find(ends)
+            .map_or(0.0, |link| face.radius * link.axis().cross(face.direction).length())
     };
     faces.iter().map(at).fold(0.0, Real::max)
 }

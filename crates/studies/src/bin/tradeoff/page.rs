@@ -33,8 +33,19 @@ pub struct Facts<'a> {
 
 /// The page, without the chapters of the shares and of torsion.
 pub fn page(facts: &Facts) -> String {
-    let Facts { command, triangles, timed, outcomes, checked, times, errors, trade, all, widest, device } =
-        *facts;
+    let Facts {
+        command,
+        triangles,
+        timed,
+        outcomes,
+        checked,
+        times,
+        errors,
+        trade,
+        all,
+        widest,
+        device,
+    } = *facts;
     format!(
         "# What accuracy costs\n\n\
          Written by `{command}` on {}{}.\n\n\
@@ -110,7 +121,8 @@ pub fn table(times: &Times, errors: &[[Errors; Model::ALL.len()]]) -> String {
         for (index, tolerance) in TOLERANCES.into_iter().enumerate() {
             let error = &errors[index][which];
             let links = of_model(index, model).next();
-            let mut cells: Vec<_> = of_model(index, model).map(|timed| microseconds(timed.time)).collect();
+            let mut cells: Vec<_> =
+                of_model(index, model).map(|timed| microseconds(timed.time)).collect();
             // parry has one way, a search without memory.
             cells.resize(ways.len(), String::new());
             // Writing to a string cannot fail.
@@ -131,7 +143,8 @@ pub fn table(times: &Times, errors: &[[Errors; Model::ALL.len()]]) -> String {
 
 /// The front, from the fastest to the most accurate.
 fn front_table(all: &[Combination]) -> String {
-    let mut page = String::from("| time | worst error | model | within | way |\n|---|---|---|---|---|\n");
+    let mut page =
+        String::from("| time | worst error | model | within | way |\n|---|---|---|---|---|\n");
     for one in front(all) {
         let _ = writeln!(
             page,
@@ -176,7 +189,10 @@ fn by_algorithm_1(apart: f64) -> String {
     if apart == 0.0 {
         "`Chain::from_centreline` with the same links gives the same clearances".into()
     } else {
-        format!("`Chain::from_centreline` with the same links differs by at most {} mm", length(apart))
+        format!(
+            "`Chain::from_centreline` with the same links differs by at most {} mm",
+            length(apart)
+        )
     }
 }
 
@@ -224,7 +240,8 @@ fn building(times: &Times) -> String {
 
 /// The longest and the middle clearance, to know what the errors are to be compared with.
 fn clearances(outcomes: &[Outcome]) -> String {
-    let free: Vec<_> = outcomes.iter().map(|shape| shape.truth).filter(|&truth| truth > 0.0).collect();
+    let free: Vec<_> =
+        outcomes.iter().map(|shape| shape.truth).filter(|&truth| truth > 0.0).collect();
     let base = outcomes.iter().filter(|shape| shape.truth > 0.0 && shape.at_base).count();
     format!(
         "{} of the {} shapes do not touch the wall. Their clearance is {} mm in the median and at most {} mm; in {} of \

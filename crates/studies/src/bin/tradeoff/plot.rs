@@ -43,7 +43,10 @@ fn marks(all: &[Combination], area: &DrawingArea<SVGBackend, Shift>) -> Drawn {
         .x_label_area_size(44)
         .y_label_area_size(64)
         // Room for the front's labels on the left, and for the legend on the right.
-        .build_cartesian_2d((fast * 0.3..slow * 25.0).log_scale(), (good * 0.4..bad * 2.0).log_scale())?;
+        .build_cartesian_2d(
+            (fast * 0.3..slow * 25.0).log_scale(),
+            (good * 0.4..bad * 2.0).log_scale(),
+        )?;
     chart
         .configure_mesh()
         .x_desc("microseconds a query of the whole robot (median)")
@@ -71,12 +74,15 @@ fn marks(all: &[Combination], area: &DrawingArea<SVGBackend, Shift>) -> Drawn {
     // A label goes down, line by line, until it is on no other.
     let mut labels: Vec<(i32, i32)> = Vec::new();
     for one in &line {
-        let style = ("sans-serif", 12).into_font().color(&BLACK).pos(Pos::new(HPos::Right, VPos::Top));
+        let style =
+            ("sans-serif", 12).into_font().color(&BLACK).pos(Pos::new(HPos::Right, VPos::Top));
         let label = format!("{}, {} mm", one.model.name().replace(',', ""), one.tolerance);
         let at = (one.time * 1e6, one.error);
         let (x, y) = chart.backend_coord(&at);
         let is_taken = |down: &i32| {
-            labels.iter().any(|label| (label.0 - x).abs() < 150 && (label.1 - y - down).abs() < LINE)
+            labels
+                .iter()
+                .any(|label| (label.0 - x).abs() < 150 && (label.1 - y - down).abs() < LINE)
         };
         let down = (0..).map(|row| 4 + row * LINE).find(|down| !is_taken(down)).unwrap_or(4);
         labels.push((x, y + down));
@@ -113,14 +119,20 @@ fn legend(all: &[Combination], chart: &mut Chart) -> Drawn {
         let series = chart.draw_series(nothing())?.label(way);
         match shape(way) {
             Shape::Disc => series.legend(|(x, y)| Circle::new((x + 7, y), 4, BLACK.filled())),
-            Shape::Ring => series.legend(|(x, y)| Circle::new((x + 7, y), 4, BLACK.stroke_width(1))),
-            Shape::Triangle => series.legend(|(x, y)| TriangleMarker::new((x + 7, y), 5, BLACK.filled())),
-            Shape::Cross => series.legend(|(x, y)| Cross::new((x + 7, y), 4, BLACK.stroke_width(1))),
-            Shape::Square => {
-                series.legend(|(x, y)| Rectangle::new([(x + 4, y - 3), (x + 10, y + 3)], BLACK.filled()))
+            Shape::Ring => {
+                series.legend(|(x, y)| Circle::new((x + 7, y), 4, BLACK.stroke_width(1)))
             }
-            Shape::Frame => series
-                .legend(|(x, y)| Rectangle::new([(x + 3, y - 4), (x + 11, y + 4)], BLACK.stroke_width(1))),
+            Shape::Triangle => {
+                series.legend(|(x, y)| TriangleMarker::new((x + 7, y), 5, BLACK.filled()))
+            }
+            Shape::Cross => {
+                series.legend(|(x, y)| Cross::new((x + 7, y), 4, BLACK.stroke_width(1)))
+            }
+            Shape::Square => series
+                .legend(|(x, y)| Rectangle::new([(x + 4, y - 3), (x + 10, y + 3)], BLACK.filled())),
+            Shape::Frame => series.legend(|(x, y)| {
+                Rectangle::new([(x + 3, y - 4), (x + 11, y + 4)], BLACK.stroke_width(1))
+            }),
             Shape::Diamond => series.legend(|(x, y)| diamond((x + 7, y), BLACK.stroke_width(1))),
         };
     }

@@ -1,4 +1,5 @@
-//! How exact the reference is: its stations twice as close, and chains capped by Algorithm 1 at the same stations.
+//! How exact the reference is: its stations twice as close, and chains capped by Algorithm 1 at the
+//! same stations.
 
 use crate::outcome::{REFERENCE_SPACING, reference};
 use crate::shapes::Stations;
@@ -20,7 +21,12 @@ pub struct Checked {
 }
 
 /// Checks the reference on some shapes.
-pub fn check(robot: &Robot, shapes: &[Joints], mesh: &TriMesh, base: &Pose) -> Result<Checked, String> {
+pub fn check(
+    robot: &Robot,
+    shapes: &[Joints],
+    mesh: &TriMesh,
+    base: &Pose,
+) -> Result<Checked, String> {
     let mut search = BvhSearch::new(mesh).map_err(text)?;
     let mut checked = Checked { halved: 0.0, quartered: 0.0, algorithm_1: 0.0 };
     for joints in shapes {

@@ -5,18 +5,21 @@ use continuum_demo::steer::Random;
 use parry_continuum::parry::math::{Real, Vector};
 use std::f64::consts::TAU;
 
-/// How far out a shape reaches at most: one of these shares of each section's length, each as likely.
+/// How far out a shape reaches at most: one of these shares of each section's length, each as
+/// likely.
 pub const REACHES: [Real; 3] = [0.15, 0.3, 0.6];
 
 /// Random joints: every extension and angle uniform within the reach.
 pub fn draw(robot: &Robot, random: &mut Random) -> Joints {
     let reach = REACHES[(random.share() * REACHES.len() as Real) as usize];
-    let extensions = robot.sections.iter().map(|section| section.length * reach * random.share()).collect();
+    let extensions =
+        robot.sections.iter().map(|section| section.length * reach * random.share()).collect();
     let tubes: usize = robot.sections.iter().map(|section| section.tubes.len()).sum();
     Joints { extensions, angles: (0..tubes).map(|_| TAU * random.share()).collect() }
 }
 
-/// The joints a step of a slow motion earlier: every section out by 0.1 mm less, every tube turned by 0.01 rad less.
+/// The joints a step of a slow motion earlier: every section out by 0.1 mm less, every tube turned
+/// by 0.01 rad less.
 pub fn step_before(joints: &Joints) -> Joints {
     Joints {
         extensions: joints.extensions.iter().map(|out| (out - 0.1).max(0.9 * out)).collect(),
@@ -24,9 +27,10 @@ pub fn step_before(joints: &Joints) -> Joints {
     }
 }
 
-/// How far from a flat face the stations lie that fix its direction, mm. A link that ends at d before the face has its
-/// own end tilted by half its length times the curvature; its rim stays behind the face if it is no longer than
-/// 2 d / (radius x curvature), here 30 d. So the face follows the nearer one, and neither sticks out.
+/// How far from a flat face the stations lie that fix its direction, mm. A link that ends at d
+/// before the face has its own end tilted by half its length times the curvature; its rim stays
+/// behind the face if it is no longer than 2 d / (radius x curvature), here 30 d. So the face
+/// follows the nearer one, and neither sticks out.
 const AT_FACE: [Real; 2] = [0.01, 0.3];
 
 /// Arc lengths along the robot, from 0 to its tip, and the radius between each two.
@@ -38,8 +42,8 @@ pub struct Stations {
 }
 
 impl Stations {
-    /// Of each section that is out as `divide` says, which gets the section's extension and answers with ascending
-    /// arc lengths, 0 left out and the extension included.
+    /// Of each section that is out as `divide` says, which gets the section's extension and answers
+    /// with ascending arc lengths, 0 left out and the extension included.
     fn of(robot: &Robot, joints: &Joints, divide: impl Fn(Real) -> Vec<Real>) -> Self {
         let (mut arc_lengths, mut radii, mut from) = (vec![0.0], Vec::new(), 0.0);
         for (section, &extension) in robot.sections.iter().zip(&joints.extensions) {
@@ -58,7 +62,8 @@ impl Stations {
         let near = |extension: Real| AT_FACE.into_iter().filter(move |off| *off < 0.5 * extension);
         let mut stations = Self::of(robot, joints, |extension| {
             let count = (extension / spacing).ceil().max(1.0);
-            let mut all: Vec<_> = (1..=count as usize).map(|k| extension * k as Real / count).collect();
+            let mut all: Vec<_> =
+                (1..=count as usize).map(|k| extension * k as Real / count).collect();
             // At a section's start too, because the base has a face.
             all.extend(near(extension).flat_map(|off| [off, extension - off]));
             all.sort_by(Real::total_cmp);
@@ -78,8 +83,9 @@ impl Stations {
         stations
     }
 
-    /// No further than `spacing` apart, and ever closer towards the flat faces at which sections begin and end, to a
-    /// hundredth of that: a face follows the direction of the segment that ends there.
+    /// No further than `spacing` apart, and ever closer towards the flat faces at which sections
+    /// begin and end, to a hundredth of that: a face follows the direction of the segment that
+    /// ends there.
     pub fn graded(robot: &Robot, joints: &Joints, spacing: Real) -> Self {
         Self::of(robot, joints, |extension| {
             let (mut from_face, mut at, mut step) = (Vec::new(), 0.0, 0.01 * spacing);

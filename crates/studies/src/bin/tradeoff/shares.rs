@@ -36,18 +36,23 @@ pub fn chapter(outcomes: &[Outcome], out: &Path) -> Result<String, String> {
     );
     for margin in MARGINS {
         for model in Model::ALL {
-            // parry's answers are those of capsules and cylinders but for what GJK does, which has its own table.
-            for tolerance in
-                if Model::OURS.contains(&model) || model == Model::Tube { &SHOWN[..] } else { &SHOWN[1..2] }
-            {
+            // parry's answers are those of capsules and cylinders but for what GJK does, which has
+            // its own table.
+            for tolerance in if Model::OURS.contains(&model) || model == Model::Tube {
+                &SHOWN[..]
+            } else {
+                &SHOWN[1..2]
+            } {
                 let tolerance = *tolerance;
                 let model_of = |shape: &&Outcome| shape.each[tolerance].clearances[model.index()];
-                let forbids = Share::of(outcomes.iter().filter(|shape| shape.truth > margin), |shape| {
-                    model_of(shape) <= margin
-                });
-                let allows = Share::of(outcomes.iter().filter(|shape| shape.truth <= margin), |shape| {
-                    model_of(shape) > margin
-                });
+                let forbids =
+                    Share::of(outcomes.iter().filter(|shape| shape.truth > margin), |shape| {
+                        model_of(shape) <= margin
+                    });
+                let allows =
+                    Share::of(outcomes.iter().filter(|shape| shape.truth <= margin), |shape| {
+                        model_of(shape) > margin
+                    });
                 // Writing to a string cannot fail.
                 let _ = writeln!(
                     table,
@@ -65,7 +70,8 @@ pub fn chapter(outcomes: &[Outcome], out: &Path) -> Result<String, String> {
     Ok(page + &table + &alone(outcomes))
 }
 
-/// What the gaps of cylinders do alone, and the iterations of GJK: against the same links without them.
+/// What the gaps of cylinders do alone, and the iterations of GJK: against the same links without
+/// them.
 fn alone(outcomes: &[Outcome]) -> String {
     let mut page = String::from(
         "\n### Gaps alone, and GJK alone\n\n\
@@ -78,8 +84,10 @@ fn alone(outcomes: &[Outcome]) -> String {
         let pairs: Vec<_> = outcomes.iter().map(pair).collect();
         let off = |a: f64, (one, other): &(f64, f64)| a.max(one - other);
         let above = pairs.iter().fold(0.0, off);
-        let below = pairs.iter().map(|&(one, other)| (other, one)).fold(0.0, |a, pair| off(a, &pair));
-        let allowed = Share::of(pairs.iter().filter(|(_, exact)| *exact <= 0.0), |(one, _)| *one > 0.0);
+        let below =
+            pairs.iter().map(|&(one, other)| (other, one)).fold(0.0, |a, pair| off(a, &pair));
+        let allowed =
+            Share::of(pairs.iter().filter(|(_, exact)| *exact <= 0.0), |(one, _)| *one > 0.0);
         let _ = writeln!(
             page,
             "| {name} | {} mm | {} | {} | {allowed} |",
@@ -114,7 +122,8 @@ fn alone(outcomes: &[Outcome]) -> String {
         );
     }
     for (index, model) in [Model::Capsule, Model::Cylinder].into_iter().enumerate() {
-        let name = format!("GJK: the same in metres, {}", if index == 0 { "Capsule" } else { "Cylinder" });
+        let name =
+            format!("GJK: the same in metres, {}", if index == 0 { "Capsule" } else { "Cylinder" });
         row(&name, METRES_AT, &|shape| {
             (shape.metres[index], shape.each[METRES_AT].clearances[model.index()])
         });

@@ -56,7 +56,8 @@ impl Model {
     }
 }
 
-/// The spheres that stand for a link in the way of the sphere chains: as many, evenly along the axis, ends included.
+/// The spheres that stand for a link in the way of the sphere chains: as many, evenly along the
+/// axis, ends included.
 const SPHERES: usize = 7;
 
 /// The robot with the fewest links within a tolerance.
@@ -73,7 +74,8 @@ pub struct Subject {
 }
 
 impl Subject {
-    /// Of a curve, its directions at both ends, and the numbers of its points that fix the directions of faces.
+    /// Of a curve, its directions at both ends, and the numbers of its points that fix the
+    /// directions of faces.
     pub fn new(
         curve: &Centreline,
         tangents: [Vector; 2],
@@ -89,8 +91,9 @@ impl Subject {
             Chain::from_centreline(&faced.points, &faced.radii)?,
         ];
         let links = chains[0].links();
-        let capsule =
-            |link: &parry_continuum::ModifiedCylinder| Capsule::new(link.start(), link.end(), link.radius());
+        let capsule = |link: &parry_continuum::ModifiedCylinder| {
+            Capsule::new(link.start(), link.end(), link.radius())
+        };
         let capsules = links.iter().map(|link| (Pose::IDENTITY, capsule(link))).collect();
         let spheres = links
             .iter()
@@ -106,7 +109,9 @@ impl Subject {
 
     /// The lower of the two bounds on the tube's clearance, which is the one to rely on.
     pub fn least_of_tube(&self, search: &mut BvhSearch, base: &Pose) -> Result<Real, String> {
-        let found = search.clearance(&self.tube, base, self.tolerance).map_err(|error| error.to_string())?;
+        let found = search
+            .clearance(&self.tube, base, self.tolerance)
+            .map_err(|error| error.to_string())?;
         Ok(found.lower)
     }
 
@@ -115,7 +120,8 @@ impl Subject {
         (model != Model::Tube).then(|| self.chain(model).links().len())
     }
 
-    /// The chain of one of this crate's models; of another model, the one with the same links, or what is nearest to it.
+    /// The chain of one of this crate's models; of another model, the one with the same links, or
+    /// what is nearest to it.
     pub fn chain(&self, model: Model) -> &Chain {
         match model {
             Model::Capsule | Model::ParryCapsule | Model::Spheres => &self.chains[0],
@@ -127,11 +133,16 @@ impl Subject {
 }
 
 /// The fewest links within a tolerance that keep some of the points.
-fn keeping(curve: &Centreline, points: &[usize], tolerance: Real) -> Result<Centreline, RobotError> {
+fn keeping(
+    curve: &Centreline,
+    points: &[usize],
+    tolerance: Real,
+) -> Result<Centreline, RobotError> {
     let mut kept = Centreline { points: vec![curve.points[0]], radii: Vec::new() };
     let mut from = 0;
     for to in points.iter().copied().chain([curve.points.len() - 1]) {
-        let (points, radii) = simplify(&curve.points[from..=to], &curve.radii[from..to], tolerance)?;
+        let (points, radii) =
+            simplify(&curve.points[from..=to], &curve.radii[from..to], tolerance)?;
         kept.points.extend(&points[1..]);
         kept.radii.extend(radii);
         from = to;

@@ -110,7 +110,8 @@ impl Clearance for OfTube {
     }
 }
 
-/// parry's queries, one link or sphere after the other; each may stop beyond the least clearance so far.
+/// parry's queries, one link or sphere after the other; each may stop beyond the least clearance so
+/// far.
 pub struct Peer<'a> {
     pub mesh: &'a TriMesh,
     pub model: Model,
