@@ -2,12 +2,12 @@
 //! bounds that prove themselves: two points that lie in the shapes, and a plane that separates
 //! them.
 
-use continuum_testing::Random;
 use continuum_testing::certificate::{Bounds, Exact, Shape, certify, directions, shapes};
 use continuum_testing::kernels::{Input, KERNELS};
 use continuum_testing::narrow_phase::{segment_disc, triangle_modified_cylinder};
 use continuum_testing::precision::{Precision, extent, vector};
 use continuum_testing::problems::Family;
+use continuum_testing::{Random, rounds};
 use parry_continuum::distance::*;
 use parry_continuum::parry::math::Vector;
 
@@ -166,12 +166,12 @@ fn check_random<T: Precision>(each: u32, finest: f64) {
 
 #[test]
 fn answers_lie_within_proven_bounds_in_double_precision() {
-    check_random::<f64>(600, -17.0);
+    check_random::<f64>(rounds(600), -17.0);
 }
 
 #[test]
 fn answers_lie_within_proven_bounds_in_single_precision() {
-    check_random::<f32>(600, -8.0);
+    check_random::<f32>(rounds(600), -8.0);
 }
 
 /// Small integers make ties, parallels and zeros that random numbers never do.

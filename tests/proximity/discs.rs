@@ -4,7 +4,7 @@
 
 use crate::tube::all_ways;
 use continuum_testing::narrow_phase::triangle_disc;
-use continuum_testing::{Arcs, Random};
+use continuum_testing::{Arcs, Random, rounds};
 use parry_continuum::distance::Vec3;
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::shape::TriMesh;
@@ -86,7 +86,7 @@ fn distance(arcs: &Arcs, mesh: &TriMesh) -> Real {
 fn short_sections_are_their_discs() {
     let mut random = Random::new(9);
     let (mut free, mut touching, mut answers, mut too_fine) = (0, 0, 0, 0);
-    for round in 0..1_500 {
+    for round in 0..rounds(1_500) {
         let arcs = Arc::new(short_sections(&mut random));
         let mesh = near_an_end(&mut random, &arcs);
         let truth = distance(&arcs, &mesh);
@@ -123,7 +123,7 @@ fn short_sections_are_their_discs() {
         if truth > TOUCHING { free += 1 } else { touching += 1 }
     }
     assert!(
-        free > 400 && touching > 400 && too_fine < answers / 4,
+        free > rounds(400) && touching > rounds(400) && too_fine < answers / 4,
         "{free} {touching} {answers} {too_fine}"
     );
 }

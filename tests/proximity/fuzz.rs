@@ -1,11 +1,12 @@
 //! What the fuzzer runs for hours, for a moment: random bytes, and all that once broke something
 //! (fuzz/corpus).
 
-use continuum_testing::{Random, fuzz};
+use continuum_testing::{Random, fuzz, rounds};
 use std::fs;
 use std::path::Path;
 
 fn try_bytes(name: &str, body: fn(&[u8]), count: usize) {
+    let count = rounds(count);
     let mut random = Random::new(1);
     for _ in 0..count {
         let bytes: Vec<_> = (0..random.below(400)).map(|_| random.bits() as u8).collect();

@@ -2,7 +2,7 @@
 //! bounds.
 
 use super::{Discs, Seen, discs, judge};
-use continuum_testing::{Arcs, Random};
+use continuum_testing::{Arcs, Random, rounds};
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::proximity::{Decision, ProximityError, RobotPair};
 use parry_continuum::{RobotError, Tube};
@@ -60,7 +60,7 @@ fn measured(random: &mut Random, arcs: &Arcs, count: usize, noise: f64) -> (Vec<
 fn noise_within_the_deviation_never_makes_a_bound_wrong() {
     let (mut random, mut seen, mut roughest, mut refused) =
         (Random::new(91), Seen::default(), 0, 0);
-    while seen.asked < 10_000 {
+    while seen.asked < rounds(10_000) {
         let arcs = robot(&mut random);
         let deviation = [0.02, 0.05, 0.25, 1.0][random.below(4) as usize];
         let count = [50, 100, 200, 400][random.below(4) as usize];
@@ -80,9 +80,9 @@ fn noise_within_the_deviation_never_makes_a_bound_wrong() {
         let curve = |s: f64| arcs.at(s);
         judge(&mut random, &tube, (&discs(&arcs), &curve), [5.0, 0.1], 10, &mut seen);
     }
-    assert!(roughest > 200 && 20 * refused < roughest, "{refused} of {roughest}");
-    assert!(seen.touching > 500 && seen.at_faces > 2_000, "{seen:?}");
-    assert!(seen.resolved > 9_900, "{seen:?}");
+    assert!(roughest > rounds(200) && 20 * refused < roughest, "{refused} of {roughest}");
+    assert!(seen.touching > rounds(500) && seen.at_faces > rounds(2_000), "{seen:?}");
+    assert!(seen.resolved > rounds(9_900), "{seen:?}");
 }
 
 /// A robot that wriggles about the fitted line, or arc, in place by as much as is stated, and in
@@ -90,7 +90,7 @@ fn noise_within_the_deviation_never_makes_a_bound_wrong() {
 #[test]
 fn whatever_wriggles_within_what_is_stated_is_within_the_bounds() {
     let (mut random, mut seen) = (Random::new(92), Seen::default());
-    for round in 0..600 {
+    for round in 0..rounds(600) {
         let (length, radius) = (random.between(5.0, 40.0), random.between(0.3, 2.0));
         let mut arcs = Arcs::from_frame(random.pose(5.0));
         let bend = Vector::X
@@ -126,7 +126,9 @@ fn whatever_wriggles_within_what_is_stated_is_within_the_bounds() {
         }
     }
     assert!(
-        seen.touching > 500 && seen.at_faces > 2_000 && seen.resolved > seen.asked * 9 / 10,
+        seen.touching > rounds(500)
+            && seen.at_faces > rounds(2_000)
+            && seen.resolved > seen.asked * 9 / 10,
         "{seen:?}"
     );
 }

@@ -1,7 +1,7 @@
 //! Tubes of frames: their bounds hold wherever the curve bends as the frames show.
 
 use super::{Seen, discs, judge};
-use continuum_testing::{Arcs, Random};
+use continuum_testing::{Arcs, Random, rounds};
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::proximity::BvhSearch;
 use parry_continuum::{RobotError, Tube};
@@ -88,7 +88,7 @@ pub(super) fn frames(
 #[test]
 fn curves_that_bend_as_their_frames_show_are_never_misjudged() {
     let (mut random, mut seen, mut kinds) = (Random::new(71), Seen::default(), [0; 4]);
-    for round in 0..1_000 {
+    for round in 0..rounds(1_000) {
         let mut arcs = Arcs::from_frame(random.pose(5.0));
         let spacing = random.between(0.5, 3.0);
         let kind = [Kind::Arcs, Kind::Clothoid, Kind::Helix, Kind::Swing][round % 4];
@@ -106,8 +106,9 @@ fn curves_that_bend_as_their_frames_show_are_never_misjudged() {
         judge(&mut random, &tube, (&discs(&arcs), &curve), [4.0, 0.01], 10, &mut seen);
         kinds[round % 4] += seen.resolved - before;
     }
-    assert!(seen.asked == 10_000 && seen.touching > 500 && seen.at_faces > 2_000, "{seen:?}");
-    assert!(seen.resolved > 9_000, "{seen:?} {kinds:?}");
+    assert!(seen.asked == 10 * rounds(1_000), "{seen:?}");
+    assert!(seen.touching > rounds(500) && seen.at_faces > rounds(2_000), "{seen:?}");
+    assert!(seen.resolved > rounds(9_000), "{seen:?} {kinds:?}");
 }
 
 /// A tube of three radii whose middle section is a single segment, in which the bend jumps from
@@ -116,7 +117,7 @@ fn curves_that_bend_as_their_frames_show_are_never_misjudged() {
 #[test]
 fn sections_of_one_segment_are_known_by_their_own_frames() {
     let (mut random, mut seen, mut straight) = (Random::new(72), Seen::default(), [0; 2]);
-    for _ in 0..1_000 {
+    for _ in 0..rounds(1_000) {
         let mut arcs = Arcs::from_frame(random.pose(5.0));
         let spacing = random.between(1.0, 4.0);
         let radii = [1.25, 1.0, 0.5];
@@ -161,9 +162,13 @@ fn sections_of_one_segment_are_known_by_their_own_frames() {
             straight = [straight[0] + seen.resolved - before, straight[1] + 10];
         }
     }
-    assert!(seen.asked == 10_000 && seen.touching > 500 && seen.at_faces > 1_500, "{seen:?}");
+    assert!(seen.asked == 10 * rounds(1_000), "{seen:?}");
+    assert!(seen.touching > rounds(500) && seen.at_faces > rounds(1_500), "{seen:?}");
     // An arc is known although its neighbours bend otherwise.
-    assert!(straight[0] * 100 >= straight[1] * 99 && straight[1] > 3_000, "{straight:?} {seen:?}");
+    assert!(
+        straight[0] * 100 >= straight[1] * 99 && straight[1] > rounds(3_000),
+        "{straight:?} {seen:?}"
+    );
 }
 
 /// Two straight arms that meet at a corner, or do not: the frame there is taken twice.

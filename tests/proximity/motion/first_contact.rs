@@ -2,7 +2,7 @@
 
 use super::{Steps, anatomy, random_edge};
 use continuum_demo::{ctr, ventricle};
-use continuum_testing::Random;
+use continuum_testing::{Random, rounds};
 use parry_continuum::LinearMotion;
 use parry_continuum::parry::math::{Real, Vector};
 use parry_continuum::proximity::{BvhSearch, Decision};
@@ -13,7 +13,7 @@ use parry_continuum::proximity::{BvhSearch, Decision};
 fn the_first_contact_is_found() {
     let mut search = anatomy();
     let (robot, mut random, mut found, mut later) = (ctr::three_tubes(), Random::new(5), 0, 0);
-    while found < 60 {
+    while found < rounds(60) {
         let motion = random_edge(&robot, &mut random, 8.0);
         let steps =
             Steps::new(&mut search, 300, 1e-3, |t| (motion.tube(t).unwrap(), ventricle::entry()));

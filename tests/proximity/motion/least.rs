@@ -2,7 +2,7 @@
 
 use super::{Steps, anatomy, polyline, random_edge};
 use continuum_demo::ctr;
-use continuum_testing::Random;
+use continuum_testing::{Random, rounds};
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::proximity::{BvhSearch, Decision, MotionClearance, ProximityError};
 use parry_continuum::{
@@ -112,7 +112,7 @@ fn edges(count: usize, seed: u64) {
 
 #[test]
 fn bounds_hold_for_bases_that_move_and_for_chains() {
-    bases_and_chains(60, 22);
+    bases_and_chains(rounds(60), 22);
 }
 
 /// Four times as many motions.
@@ -158,7 +158,9 @@ fn bases_and_chains(count: usize, seed: u64) {
     println!("{bases:?}\n{chains:?}\n{rigid:?}\n{paths:?}");
     for judged in [&bases, &rigid, &chains, &paths] {
         assert!(
-            judged.touching > 5 && judged.touching + 10 < judged.of && judged.within > 20,
+            judged.touching > rounds(5)
+                && judged.touching + rounds(10) < judged.of
+                && judged.within > rounds(20),
             "{judged:?}"
         );
     }
