@@ -190,7 +190,6 @@ fn short_arc(length: f64, curvature: f64) -> Tube {
 #[test]
 fn pieces_grow_like_the_root_of_the_tolerance_beside_a_face() {
     let mut random = Random::new(8);
-    let mut many = 0;
     for round in 0..60 {
         let length = [0.15, 0.7, 2.0, 8.0][round % 4] * random.between(0.7, 1.3);
         // It does not come back to the wall.
@@ -210,10 +209,8 @@ fn pieces_grow_like_the_root_of_the_tolerance_beside_a_face() {
             counts[1] <= 10 * counts[0].max(4) && counts[2] <= 10 * counts[1],
             "{length} {bend}: {counts:?}"
         );
-        many += usize::from(counts[2] > counts[0]);
-        assert!(counts[2] < 600, "{length} {bend}: {counts:?}");
+        assert!(counts[2] < 16, "{length} {bend}: {counts:?}");
     }
-    assert!(many > 10, "{many}");
 }
 
 /// What is far away is as large as one likes, and costs no digits of what is near.

@@ -166,3 +166,42 @@ fn hostile_xml_is_refused_at_once() {
         assert!(start.elapsed() < Duration::from_secs(10), "{expected}: {:?}", start.elapsed());
     }
 }
+
+/// Faces that are cut by ears: their time is quadratic at worst, so that their corners are limited.
+#[test]
+fn faces_of_many_corners_are_cut_soon_or_refused() {
+    // A comb, and corners drawn at random, whose edges cross everywhere.
+    let comb = |i: usize, count: usize| match i {
+        0 => [0.0, -1e3],
+        _ if i + 1 == count => [count as f64, -1e3],
+        _ => [i as f64, if i % 2 == 0 { 0.0 } else { 1e3 }],
+    };
+    let mut draws = Draws(7);
+    let drawn: Vec<_> =
+        (0..20_000).map(|_| [draws.below(1 << 20) as f64, draws.below(1 << 20) as f64]).collect();
+    let obj = |corners: &[[f64; 2]]| {
+        let vertices: String = corners.iter().map(|[x, y]| format!("v {x} {y} 0\n")).collect();
+        let face: Vec<_> = (1..=corners.len()).map(|corner| corner.to_string()).collect();
+        format!("{vertices}f {}\n", face.join(" "))
+    };
+    for count in [1000, 16_384, 20_000] {
+        for corners in
+            [(0..count).map(|i| comb(i, count)).collect::<Vec<_>>(), drawn[..count].to_vec()]
+        {
+            let text = obj(&corners);
+            let start = Instant::now();
+            let answer = crate::read("a.obj", &text);
+            assert!(start.elapsed() < 60 * TIME, "{count}: {:?}", start.elapsed());
+            println!("took {count}: {:?}", start.elapsed());
+            if count > 16_384 {
+                crate::refused(
+                    "a.obj",
+                    answer,
+                    "a face of 20000 corners is not convex; triangulate it before",
+                );
+            } else {
+                assert!(!answer.unwrap().triangles.is_empty());
+            }
+        }
+    }
+}
