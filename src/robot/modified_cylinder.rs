@@ -112,6 +112,13 @@ impl ModifiedCylinder {
     }
 
     /// The unit vector from start to end, or zero for a ball.
+    ///
+    /// ```
+    /// # use parry_continuum::{ModifiedCylinder, parry::math::Vector};
+    /// let link = ModifiedCylinder::capsule(Vector::ZERO, Vector::Z * 3.0, 1.0)?;
+    /// assert_eq!(link.axis(), Vector::Z);
+    /// # Ok::<(), parry_continuum::RobotError>(())
+    /// ```
     pub fn axis(&self) -> Vector {
         scale::direction(self.end - self.start)
     }

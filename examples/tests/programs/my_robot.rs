@@ -126,8 +126,9 @@ fn what_is_wrong_with_my_files_is_said_in_one_line() {
     let refuse_shape = |text: &str, expected: &str| {
         refuse("my_robot", &["--mesh", room, "--centreline", &file("bad.csv", text)], expected);
     };
-    refuse_shape("x,y,z\n30,30,20\n30,30,40\n", "line 2 of ");
-    refuse_shape("30,30,20\n30,30,40\n", "no radius; write it behind x,y,z, or give --radius");
+    for text in ["x,y,z\n30,30,20\n30,30,40\n", "30,30,20\n30,30,40\n"] {
+        refuse_shape(text, "no radius; write it behind x,y,z, or give --radius");
+    }
     refuse_shape("30,30,20,1\n30,zero,40\n", "line 2 of ");
     refuse_shape("30,30,20,1\n30,zero,40\n", "write x,y,z or x,y,z,radius");
     refuse_shape("x1,zero,0\n0,0,1,1\n0,0,2", "line 1 of ");
