@@ -113,7 +113,7 @@ pub(crate) enum Examined<F> {
     /// Nothing is within the bound of its body.
     Away,
     /// It was divided, since its body is too wide.
-    Refinable,
+    Divided,
     /// It is measured.
     Measured(F),
 }
@@ -146,7 +146,7 @@ impl<P: Copy, B: Body, F: UpperBound> PendingPieces<P, B, F> {
 
     pub(crate) fn push<T>(&mut self, tube: &T, piece: PendingPiece<P, B, F>)
     where
-        T: Refinable<Piece = P, Body = B, Found = F>,
+        T: Refinable<Piece = P, Body = B, Upper = F>,
     {
         let slot = self.free.pop().unwrap_or(self.pieces.len() as u32);
         let (doubt, upper, is_measured) = match &piece.state {
@@ -201,13 +201,13 @@ impl<P: Copy, B: Body, F: UpperBound> PendingPieces<P, B, F> {
         width: impl Fn(&B) -> Real,
     ) -> Result<Examined<F>, ProximityError>
     where
-        T: Refinable<Piece = P, Body = B, Found = F>,
+        T: Refinable<Piece = P, Body = B, Upper = F>,
     {
         let body = tube.body(&open.piece);
         tube.check_finite(&open.piece, &body)?;
         if open.levels > 0
             && width(&body) > open.narrow
-            && let Some(halves) = tube.halves(&open.piece, &body, AIM_OF_HALVES * body.over())
+            && let Some(halves) = tube.halves(&open.piece, &body, AIM_OF_HALVES * body.excess())
         {
             if !tube.may_meet(&body, bound) {
                 return Ok(Examined::Away);
@@ -215,7 +215,7 @@ impl<P: Copy, B: Body, F: UpperBound> PendingPieces<P, B, F> {
             for piece in halves {
                 self.push(tube, PendingPiece { piece, levels: open.levels - 1, ..*open });
             }
-            return Ok(Examined::Refinable);
+            return Ok(Examined::Divided);
         }
         let Some(nearest) = tube.nearest(&body, bound, start) else { return Ok(Examined::Away) };
         let found = tube.found(&open.piece, &body, &nearest);
@@ -234,9 +234,9 @@ impl<P: Copy, B: Body, F: UpperBound> PendingPieces<P, B, F> {
         narrow: Real,
     ) -> bool
     where
-        T: Refinable<Piece = P, Body = B, Found = F>,
+        T: Refinable<Piece = P, Body = B, Upper = F>,
     {
-        let Some(halves) = tube.halves(&piece.piece, body, AIM_OF_HALVES * body.over()) else {
+        let Some(halves) = tube.halves(&piece.piece, body, AIM_OF_HALVES * body.excess()) else {
             return false;
         };
         for half in halves {

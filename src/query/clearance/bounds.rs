@@ -191,7 +191,7 @@ impl<'a, T: Refinable> BoundsSearch<'a, T> {
                 let (lower, state) = (piece.lower.max(bound), PieceState::Distant);
                 self.pieces.push(self.tube, PendingPiece { lower, state, ..piece });
             }
-            Examined::Refinable => {}
+            Examined::Divided => {}
             Examined::Measured(found) => self.hint.take(&found),
         }
         Ok(())

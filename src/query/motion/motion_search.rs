@@ -237,7 +237,7 @@ impl<M: Motion> MotionSearch<'_, M> {
             if let Some(error) = too_fine {
                 return Err(error);
             }
-            let near = undecided.map(|interval| (interval, UndecidedReason::BoundedPiece));
+            let near = undecided.map(|interval| (interval, UndecidedReason::Near));
             let first = near.or(left.map(|interval| (interval, UndecidedReason::Work)));
             return Ok(first.map_or_else(MotionAnswer::clear, MotionAnswer::undecided));
         };

@@ -51,11 +51,8 @@ impl Progress {
             let earlier = |first: [Real; 2], times: [Real; 2]| {
                 if times[0] < first[0] { [times[0], times[1].max(near[1])] } else { first }
             };
-            let reason = if self.is_exhausted {
-                UndecidedReason::Work
-            } else {
-                UndecidedReason::BoundedPiece
-            };
+            let reason =
+                if self.is_exhausted { UndecidedReason::Work } else { UndecidedReason::Near };
             return Some((left.fold(near, earlier), reason));
         }
         if shapes < MAX_SHAPES {
@@ -67,6 +64,6 @@ impl Progress {
 
     /// The first interval that stays undecided, and why, after all were looked at.
     pub(super) fn undecided(&self) -> Option<([Real; 2], UndecidedReason)> {
-        self.undecided.map(|first| (first, UndecidedReason::BoundedPiece))
+        self.undecided.map(|first| (first, UndecidedReason::Near))
     }
 }

@@ -36,7 +36,7 @@ pub(crate) fn motion_proof(
         let pose = motion.shape(t, &mut tube)?;
         sections.check(t, &tube)?;
         shapes += 1;
-        tube.hold_faces(&MotionDrift { motion, times, t, half });
+        tube.mark_lasting_faces_between(&MotionDrift { motion, times, t, half_length: half });
         let placed = PlacedTube::new(&tube, &pose, reach)?.moving();
         let fastest = (0..placed.sections().len()).map(|section| {
             let speed = motion.speed(section, [0.0, 1.0], times).point;

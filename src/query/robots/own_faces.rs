@@ -45,7 +45,7 @@
 //! largest coordinate cover all. What [`JoinedLink`] takes for a local minimum, since the way may
 //! err, is shown too.
 
-use super::robot_with_itself::Turns;
+use super::robot_with_itself::TurnSums;
 use crate::distance::Scalar;
 use crate::pair::{PlacedRobot, Tolerance};
 use crate::robot::{ModifiedCylinder, is_step};
@@ -120,7 +120,7 @@ pub(super) enum Band {
 
 impl OwnFaces {
     /// Makes ready for a robot. Returns whether there is any pair to look at.
-    pub fn begin(&mut self, robot: &PlacedRobot, turns: &Turns) -> bool {
+    pub fn begin(&mut self, robot: &PlacedRobot, turns: &TurnSums) -> bool {
         self.nodes.clear();
         #[cfg(test)]
         {
@@ -144,7 +144,7 @@ impl OwnFaces {
     fn run_of_few(
         &self,
         robot: &PlacedRobot,
-        turns: &Turns,
+        turns: &TurnSums,
         mut bound: Real,
         mut visit: impl FnMut([usize; 2], [bool; 2]) -> Option<Real>,
     ) -> bool {
@@ -181,7 +181,7 @@ impl OwnFaces {
         true
     }
 
-    fn add(&mut self, robot: &PlacedRobot, turns: &Turns, first: usize, count: usize) {
+    fn add(&mut self, robot: &PlacedRobot, turns: &TurnSums, first: usize, count: usize) {
         if count == 1 {
             self.nodes.push(Node::of_link(robot, turns, first));
             return;
@@ -200,7 +200,7 @@ impl OwnFaces {
     pub fn run(
         &mut self,
         robot: &PlacedRobot,
-        turns: &Turns,
+        turns: &TurnSums,
         band: Band,
         mut bound: Real,
         mut visit: impl FnMut([usize; 2], [bool; 2]) -> Option<Real>,
@@ -255,7 +255,7 @@ impl OwnFaces {
 
     /// Whether pairs of two nodes may count that are in the band, and faces that look at one
     /// another.
-    fn asks(&self, turns: &Turns, band: Band, bound: Real, one: &Node, two: &Node) -> [bool; 2] {
+    fn asks(&self, turns: &TurnSums, band: Band, bound: Real, one: &Node, two: &Node) -> [bool; 2] {
         let last = two.first + two.count - 1;
         if last < one.first + 2 {
             return [false; 2];
@@ -291,7 +291,7 @@ impl OwnFaces {
 }
 
 impl Node {
-    fn of_link(robot: &PlacedRobot, turns: &Turns, link: usize) -> Self {
+    fn of_link(robot: &PlacedRobot, turns: &TurnSums, link: usize) -> Self {
         let links = robot.links();
         let (placed, direction) = (&links[link], turns.directions[link]);
         let [start, end] = [placed.start(), placed.end()];

@@ -3,7 +3,8 @@
 
 use crate::answer::{Decision, ProximityError, RobotClearance};
 use crate::pieces::{
-    Divided, Outer, PairQueue, PairUpperBound, PendingPieces, PiecePair, PlacedTube, TubePair,
+    BoundingBody, PairQueue, PairUpperBound, PendingPieces, PiecePair, PlacedTube, Refinable,
+    TubePair,
 };
 use crate::query::clearance::{BoundedClearance, BoundsSearch, Hint, Wanted, clears_pieces};
 use crate::robot::Tube;
@@ -14,7 +15,7 @@ use parry3d_f64::math::{Pose, Real};
 pub(crate) struct TubesMemory {
     beginning: PairQueue,
     pairs: Vec<PiecePair>,
-    pending: PendingPieces<PiecePair, [Outer; 2], PairUpperBound>,
+    pending: PendingPieces<PiecePair, [BoundingBody; 2], PairUpperBound>,
     /// The sections and arc lengths where a query ended.
     last: Option<([u32; 2], [Real; 2])>,
 }

@@ -15,14 +15,14 @@ pub(crate) struct MotionDrift<'a, M> {
     /// The time of the shape.
     pub t: Real,
     /// Half of the interval, or a little more.
-    pub half: Real,
+    pub half_length: Real,
 }
 
 impl<M: Motion> Drift for MotionDrift<'_, M> {
     fn moves(&self, section: usize, end: usize) -> Real {
         // A speed that is none holds nothing; it is refused where it is asked for.
         let speed = self.motion.speed(section, [end as Real; 2], self.times).point;
-        self.half * if speed >= 0.0 { speed } else { Real::INFINITY }
+        self.half_length * if speed >= 0.0 { speed } else { Real::INFINITY }
     }
 
     /// The displacements of both ends if these are known, and else how far the two ends move.
@@ -42,10 +42,10 @@ impl<M: Motion> Drift for MotionDrift<'_, M> {
 
     fn turns(&self, section: usize) -> Real {
         let turn = self.motion.speed(section, [0.0, 1.0], self.times).turn;
-        self.half * if turn >= 0.0 { turn } else { Real::INFINITY }
+        self.half_length * if turn >= 0.0 { turn } else { Real::INFINITY }
     }
 
     fn can_follow(&self, turn: Real) -> bool {
-        turn <= FASTEST_TURN * self.half
+        turn <= FASTEST_TURN * self.half_length
     }
 }
