@@ -48,8 +48,8 @@ impl BvhSearch {
     /// let from = [Vector::ZERO, Vector::new(0.0, 0.0, 4.0)];
     /// let to = [Vector::ZERO, Vector::new(4.0, 0.0, 0.0)];
     /// let inside = LinearMotion::chain(&from, &to, &[1.0])?;
+    /// assert!(search.clears_motion(&inside, 1.0, 1e-3)?.is_clear());
     /// // From inside to outside. Both end shapes are clear.
-    /// // From inside to outside, whose ends are both clear.
     /// let through = LinearMotion::chain(&from, &from.map(|point| point + Vector::X * 20.0), &[1.0])?;
     /// let answer = search.clears_motion(&through, 0.0, 1e-3)?;
     /// assert_eq!(answer.decision, Decision::Contact);
