@@ -45,7 +45,7 @@ impl Candidates {
     /// this submission.
     ///
     /// # Errors
-    /// The kernel did not write them: the slot has another submission's mark.
+    /// Not every block has written its mark into a slot, so the slot is no answer.
     pub(super) fn read(
         &mut self,
         mesh: &DeviceMesh,
