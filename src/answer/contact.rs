@@ -65,12 +65,14 @@ impl Contact {
     ///
     /// Both are in the mesh's frame. Beside the link and beyond a round cap only the velocity
     /// counts. At a flat cap the turn moves the closest point too:
+    ///
     /// ```text
     /// normal . (velocity + angular_velocity x lever)
     /// ```
     ///
     /// `None` if there is no normal. At a [`kink`](Self::kink) this is the derivative for one of
     /// several points.
+    ///
     /// ```
     /// use parry_continuum::Chain;
     /// use parry_continuum::parry::{math::{Pose, Vector}, shape::TriMesh};
@@ -100,6 +102,7 @@ impl Contact {
     ///
     /// `jacobian(arc_length, joint)` returns the velocity and the angular velocity of the
     /// centreline at an arc length. `out` is cleared first; it stays empty if there is no normal.
+    ///
     /// ```
     /// # use parry_continuum::Chain;
     /// # use parry_continuum::parry::{math::{Pose, Vector}, shape::TriMesh};

@@ -29,6 +29,7 @@ use std::sync::Arc;
 /// For most triangles a test of their bounding sphere is enough.
 ///
 /// A clone shares the mesh until one of the two moves it.
+///
 /// ```
 /// use parry_continuum::{Chain, proximity::{BvhSearch, Exhaustive, Proximity}};
 /// use parry_continuum::parry::{math::{Pose, Vector}, shape::Ball};

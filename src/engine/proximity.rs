@@ -59,6 +59,7 @@ pub trait Proximity: Engine {
     /// The answer is that of [`minimum`](Proximity::minimum). If nothing is within the bound, the
     /// query is cheaper. To search several meshes, pass the best distance so far as the bound of
     /// the next one:
+    ///
     /// ```
     /// use parry_continuum::Chain;
     /// use parry_continuum::parry::{math::{Pose, Vector}, shape::{Ball, TriMesh}};
@@ -203,6 +204,7 @@ pub trait Proximity: Engine {
     /// [`minimum`](Self::minimum) for many robots.
     ///
     /// Writes one result per robot to `out`, in order.
+    ///
     /// ```
     /// use parry_continuum::Chain;
     /// use parry_continuum::parry::{math::{Pose, Vector}, shape::Ball};
@@ -258,6 +260,7 @@ pub trait Proximity: Engine {
     /// - The answer does not fit link and triangle: the robot or the pose is another one, or the
     ///   mesh has moved since. An answer fits if its error is at most 16 u (c + d), where u =
     ///   2^-53, c is the largest coordinate of the two, and d is their extent.
+    ///
     /// ```
     /// use parry_continuum::Chain;
     /// use parry_continuum::parry::{math::{Pose, Vector}, shape::TriMesh};
@@ -293,6 +296,7 @@ pub trait Proximity: Engine {
     ///
     /// # Errors
     /// The error of the first answer that has one; `out` is then empty.
+    ///
     /// ```
     /// use parry_continuum::Chain;
     /// use parry_continuum::parry::math::{Pose, Vector};
@@ -326,6 +330,7 @@ pub trait Proximity: Engine {
     ///
     /// # Errors
     /// As [`contact`](Self::contact).
+    ///
     /// ```
     /// use parry_continuum::Chain;
     /// use parry_continuum::parry::math::{Pose, Vector};
@@ -373,13 +378,17 @@ pub trait Proximity: Engine {
     /// much, so that searches stay fast. Some queries need further structures. The first such query
     /// after a move builds them, unless [`prepare`](super::BvhSearch::prepare) has done so:
     ///
-    /// | question | what is built after a move |
-    /// |---|---|
-    /// | [`per_link`](Self::per_link), [`minimum`](Self::minimum), [`minimum_within`](Self::minimum_within), tubes and motions | nothing |
-    /// | [`clears`](Self::clears) | nothing, unless the bounding box has moved by several cells of a coarse grid: then the grid of the sides of the wall |
-    /// | [`within`](Self::within) | one pass over all vertices finds those that have met or parted; if there are any, which triangles are joined; near the robot, the neighbours of triangles |
-    /// | [`side`](super::BvhSearch::side), [`clears_inside`](super::BvhSearch::clears_inside) | the far field of each node |
-    /// | any, if single precision does not resolve the robot | nothing: the move itself refits the second hierarchy, if that was built, and takes two to three times as long |
+    /// - [`per_link`](Self::per_link), [`minimum`](Self::minimum),
+    ///   [`minimum_within`](Self::minimum_within), tubes and motions: nothing.
+    /// - [`clears`](Self::clears): the grid of the sides of the wall, only if the bounding box has
+    ///   moved by several cells of the grid.
+    /// - [`within`](Self::within): one pass over all vertices finds vertices that have met or parted.
+    ///   If there are any, the query also builds which triangles are joined. Near the robot it builds
+    ///   the neighbours of triangles.
+    /// - [`side`](super::BvhSearch::side), [`clears_inside`](super::BvhSearch::clears_inside): the far
+    ///   field of each node.
+    /// - Any query, if single precision is too coarse: nothing. The move itself refits the second
+    ///   hierarchy, if that was built, and then takes two to three times as long.
     ///
     /// The engine keeps the places of its last answers as seeds of the next searches. It drops the
     /// cached distances.

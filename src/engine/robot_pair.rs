@@ -154,6 +154,7 @@ impl RobotPair {
     ///
     /// The work grows with the number of pieces near one another, about as 1 / sqrt(tolerance) if
     /// the tubes cross. It also grows with the product of the numbers of sections.
+    ///
     /// ```
     /// use parry_continuum::{Tube, proximity::RobotPair};
     /// use parry_continuum::parry::math::{Pose, Vector};
@@ -225,6 +226,7 @@ impl RobotPair {
     /// The work is one query about two tubes for each time that the proof needs. Slow robots with a
     /// wide gap need few times. The stated speeds are premises: see
     /// [`verify_motion`](crate::verify_motion).
+    ///
     /// ```
     /// use parry_continuum::{LinearMotion, parry::math::Vector, proximity::{Decision, RobotPair}};
     ///
@@ -311,6 +313,7 @@ impl RobotPair {
 ///
 /// # Errors
 /// As [`RobotPair::minimum`].
+///
 /// ```
 /// use parry_continuum::{Chain, proximity::between};
 /// use parry_continuum::parry::math::{Pose, Vector};
@@ -336,6 +339,7 @@ pub fn between(
 ///
 /// # Errors
 /// As [`RobotPair::clears`].
+///
 /// ```
 /// use parry_continuum::{Chain, proximity::clears_between};
 /// use parry_continuum::parry::math::{Pose, Vector};
@@ -385,6 +389,7 @@ pub fn clears_between(
 /// # Errors
 /// A joint is so sharp that its links overlap over more than half of the shorter one: r tan(angle /
 /// 2) > length / 2. The rule above holds for tubes that are thinner than their bends.
+///
 /// ```
 /// use parry_continuum::{Chain, proximity::self_minimum};
 /// use parry_continuum::parry::math::Vector;
@@ -408,6 +413,7 @@ pub fn self_minimum(robot: &Chain) -> Result<Option<RobotProximity>, ProximityEr
 ///
 /// # Errors
 /// As [`self_minimum`], or the margin is negative or NaN.
+///
 /// ```
 /// use parry_continuum::{Chain, proximity::self_clears};
 /// use parry_continuum::parry::math::Vector;
@@ -445,6 +451,7 @@ pub fn self_clears(robot: &Chain, margin: Real) -> Result<bool, ProximityError> 
 ///   made from a chain with a joint that is too sharp for [`self_minimum`].
 /// - Samples do not allow a decision at that resolution, or the curve of the tube is not finite
 ///   somewhere.
+///
 /// ```
 /// use parry_continuum::{Tube, proximity::{Decision, tube_self_clears}};
 /// use parry_continuum::parry::math::Vector;
@@ -486,6 +493,7 @@ pub fn tube_self_clears(
 /// **Premises.** The stated speeds and turns hold: see [`verify_motion`](crate::verify_motion). At
 /// all times [`tube_self_clears`] accepts the robot: it bends by less than 1 / radius. The query
 /// checks the latter only for the shapes that it visits.
+///
 /// ```
 /// use parry_continuum::{LinearMotion, parry::math::Vector, proximity::{Decision, motion_self_clears}};
 ///

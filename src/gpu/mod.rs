@@ -13,8 +13,8 @@
 //! | file | contents |
 //! |---|---|
 //! | `engine` | the engine and its answers: [`GpuExhaustive`] |
-//! | `answers`, `measure` | from robots to links, and from candidates to answers in double precision |
-//! | `query` | the four kernels of a query; `plan` assigns pairs to threads, `candidates` reads the results |
+//! | `answers`, `measure` | from robots to links, and from candidates to answers in `f64` |
+//! | `query` | the four kernels; `plan` assigns pairs to threads, `candidates` reads the results |
 //! | `mesh`, `link`, `buffers` | the contents of the device's memory |
 //! | `opened`, `error` | the [`Gpu`] and its errors; its device is from the crate `gpu-batch` |
 //! | `wgsl`, `shaders/` | the text of the kernels |

@@ -13,6 +13,7 @@ impl Scene {
     /// [`clears`](Self::clears) for many sets of robots, on all cores.
     ///
     /// Writes one result per set to `out`, in order.
+    ///
     /// ```
     /// use parry_continuum::Chain;
     /// use parry_continuum::parry::{math::{Pose, Real, Vector}, shape::Ball};
@@ -41,6 +42,7 @@ impl Scene {
     /// [`tightest`](Self::tightest) for many sets of robots, on all cores.
     ///
     /// Writes one result per set to `out`, in order.
+    ///
     /// ```
     /// use parry_continuum::Chain;
     /// use parry_continuum::parry::{math::{Pose, Vector}, shape::Ball};

@@ -61,6 +61,7 @@ impl BvhSearch {
     /// for a tube that states a turn: the answer then combines two queries, and the pieces are
     /// those of the second. Once the query finds a common point with the mesh, it divides no
     /// further. The `lower` of a farther piece depends on earlier queries. `out` is cleared first.
+    ///
     /// ```
     /// use parry_continuum::{Tube, parry::{math::{Pose, Vector}, shape::{Ball, TriMesh}}};
     /// use parry_continuum::proximity::BvhSearch;
@@ -98,6 +99,7 @@ impl BvhSearch {
     /// `margin` and `resolution` are lengths. `Clear` and `Contact` are proven. `Undecided` occurs
     /// only if the clearance is within `resolution` of the margin, or if 65,536 pieces of the tube
     /// do not decide.
+    ///
     /// ```
     /// use parry_continuum::{Tube, parry::{math::{Pose, Vector}, shape::{Ball, TriMesh}}};
     /// use parry_continuum::proximity::{BvhSearch, Decision};
@@ -129,6 +131,7 @@ impl BvhSearch {
     /// [`clearance`](Self::clearance) for many tubes, on all cores.
     ///
     /// Writes one result per tube to `out`, in order.
+    ///
     /// ```
     /// use parry_continuum::{Tube, parry::{math::{Pose, Vector}, shape::Ball}};
     /// use parry_continuum::proximity::BvhSearch;

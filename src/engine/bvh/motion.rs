@@ -84,6 +84,7 @@ impl BvhSearch {
     /// the query ends after 65,536 shapes.
     ///
     /// Decisions mean the same as for [`clears_motion`](Self::clears_motion).
+    ///
     /// ```
     /// use parry_continuum::{LinearMotion, parry::{math::Vector, shape::{Ball, TriMesh}}};
     /// use parry_continuum::proximity::BvhSearch;
@@ -131,6 +132,7 @@ impl BvhSearch {
     /// - `Contact`: every such tube is at most the margin away at the time of the named shape.
     ///   Times are evenly spaced: the k-th of n shapes, from 0, is at t = k / (n - 1).
     /// - `Undecided`: the decision depends on the tube, or on less than `resolution`.
+    ///
     /// ```
     /// use parry_continuum::{Chain, parry::{math::Vector, shape::Ball}, proximity::{BvhSearch, Decision}};
     ///
@@ -182,6 +184,7 @@ impl BvhSearch {
     /// call visits all triangles once. The speed of the fastest vertex counts as the speed of the
     /// whole mesh. If the whole mesh moves alike, move the robot instead
     /// ([`MovingBase`](crate::MovingBase)).
+    ///
     /// ```
     /// use parry_continuum::{Chain, RigidMotion, Tube, parry::{math::{Pose, Vector}, shape::Ball}};
     /// use parry_continuum::proximity::{BvhSearch, Decision};
@@ -228,6 +231,7 @@ impl BvhSearch {
     /// turns from flat to round, or because the query ends after 65,536 shapes. A
     /// [`MotionPath`](crate::MotionPath) bounds many motions at once: the query refines each motion
     /// only as far as it may be the nearest.
+    ///
     /// ```
     /// use parry_continuum::{LinearMotion, parry::{math::Vector, shape::Ball}, proximity::BvhSearch};
     ///

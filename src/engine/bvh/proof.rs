@@ -30,6 +30,7 @@ impl BvhSearch {
     /// program prints this, and the premises.
     ///
     /// The work is that of many queries: a proof is for a plan that is signed off, not for a loop.
+    ///
     /// ```
     /// use parry_continuum::Chain;
     /// use parry_continuum::parry::{math::{Pose, Vector}, shape::Ball};
@@ -111,6 +112,7 @@ impl BvhSearch {
     /// shape does not keep the margin, or keeps it by at most about `resolution`; or if the proof
     /// would need more than 65,536 shapes or 16 MiB. A shape takes 0.2 to 2 kB, so a motion that
     /// needs many shapes has a long proof.
+    ///
     /// ```
     /// use parry_continuum::{LinearMotion, parry::{math::Vector, shape::Ball}};
     /// use parry_continuum::proximity::BvhSearch;

@@ -137,6 +137,7 @@ impl BvhSearch {
     ///
     /// # Errors
     /// There are no triangles, a vertex is not finite or out of range, or an index has no vertex.
+    ///
     /// ```
     /// use parry_continuum::Chain;
     /// use parry_continuum::parry::{math::{Pose, Vector}, shape::TriMesh};
@@ -167,12 +168,13 @@ impl BvhSearch {
     ///
     /// Clones share the structures. Call it after [`set_vertices`](Proximity::set_vertices) too:
     /// structures that depend on the positions of the vertices are then built anew.
+    ///
     /// | query | what it needs beside the hierarchy |
     /// |---|---|
-    /// | [`clears`](Proximity::clears) | a coarse grid of the sides of the wall, a guess for robots that cross it |
+    /// | [`clears`](Proximity::clears) | a coarse grid of the sides of the wall |
     /// | [`within`](Proximity::within) | which triangles share corners and edges |
     /// | [`side`](Self::side) | the far field of each node |
-    /// | any, if single precision does not resolve the robot | a second hierarchy, in double precision |
+    /// | any, if single precision is too coarse | a second hierarchy, in double precision |
     ///
     /// ```
     /// use parry_continuum::{Chain, proximity::{BvhSearch, Proximity, Side}};

@@ -21,6 +21,7 @@ impl BvhSearch {
     /// The first query builds the far field of each node, and so does the first one after
     /// [`set_vertices`](Proximity::set_vertices), unless [`prepare`](Self::prepare) has built it.
     /// Clones share the far fields.
+    ///
     /// ```
     /// use parry_continuum::parry::{math::Vector, shape::{Ball, TriMesh}};
     /// use parry_continuum::proximity::{BvhSearch, Side};
@@ -46,6 +47,7 @@ impl BvhSearch {
     /// the anatomy. In a closed mesh a robot that touches nothing and whose base is inside is
     /// inside as a whole. It may leave through a hole of an open mesh: query the
     /// [`side`](Self::side) of every point that matters there.
+    ///
     /// ```
     /// use parry_continuum::{Chain, proximity::{BvhSearch, Side}};
     /// use parry_continuum::parry::{math::{Pose, Vector}, shape::{Ball, TriMesh}};
