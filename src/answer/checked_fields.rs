@@ -36,9 +36,8 @@ macro_rules! checked_fields {
 
 pub(super) use checked_fields;
 
-/// Rejects fields that no query about a motion returns: times out of order or outside [0, 1], a
-/// contact without the decision `Contact` or the reverse, a reason without `Undecided` or the
-/// reverse.
+/// Rejects fields that no query about a motion returns. The times must be ordered within 0 to 1.
+/// There is a contact exactly for `Contact`, and a reason exactly for `Undecided`.
 #[cfg(feature = "serde-serialize")]
 pub(super) fn check_motion<C: std::fmt::Debug>(
     decision: super::Decision,

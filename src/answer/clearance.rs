@@ -22,8 +22,8 @@ pub struct Clearance {
     /// Whether the bounds meet the tolerance: `upper - lower <= tolerance + uncertainty`.
     pub resolved: bool,
     /// The part of the gap that no finer tolerance closes: the errors that the tube states of
-    /// itself, and, near a flat face of unknown direction ([`Tube::fit`](crate::Tube::fit)), the
-    /// effect of that direction.
+    /// itself. Near a flat face of unknown direction ([`Tube::fit`](crate::Tube::fit)) it includes
+    /// the effect of that direction.
     pub uncertainty: Real,
     /// The section of constant radius at the place that realises `upper`, counted from the base.
     pub section: u32,

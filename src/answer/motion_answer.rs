@@ -15,10 +15,12 @@ use parry3d_f64::math::Real;
 )]
 #[non_exhaustive]
 pub struct MotionAnswer {
-    /// Whether the motion keeps the margin at every time from 0 to 1. For `Undecided`, `reason`
-    /// names one of three cases: a shape is farther than the margin by at most the resolution; the
-    /// end of a link becomes flat or round so close to the mesh that this decides; or the query has
-    /// reached its limit of work.
+    /// Whether the motion keeps the margin at every time from 0 to 1. `Undecided` has one of these
+    /// causes, which `reason` names:
+    ///
+    /// - A shape is farther than the margin by at most the resolution.
+    /// - The end of a link becomes flat or round so close to the mesh that this decides.
+    /// - The query has reached its limit of work.
     pub decision: Decision,
     /// The first interval of time in which the motion may not keep the margin; it keeps the margin
     /// before. `[1, 1]` if it always does.

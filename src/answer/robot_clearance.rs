@@ -19,8 +19,8 @@ pub struct RobotClearance {
     /// Whether the bounds meet the tolerance: `upper - lower <= tolerance + uncertainty`.
     pub resolved: bool,
     /// The part of the gap that no finer tolerance closes: the errors that the tubes state of
-    /// themselves, and, near a flat face of unknown direction ([`Tube::fit`](crate::Tube::fit)),
-    /// the effect of that direction.
+    /// themselves. Near a flat face of unknown direction ([`Tube::fit`](crate::Tube::fit)) it
+    /// includes the effect of that direction.
     pub uncertainty: Real,
     /// The sections of constant radius that realise `upper`, counted from each base.
     pub sections: [u32; 2],

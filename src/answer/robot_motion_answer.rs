@@ -15,10 +15,13 @@ use parry3d_f64::math::Real;
 )]
 #[non_exhaustive]
 pub struct RobotMotionAnswer {
-    /// Whether the robots keep the margin at every time from 0 to 1. For `Undecided`, `reason`
-    /// names one of three cases: two shapes are farther apart than the margin by at most the
-    /// resolution and the stated errors; the end of a link becomes flat or round so close to the
-    /// other robot that this decides; or the query has reached its limit of work.
+    /// Whether the robots keep the margin at every time from 0 to 1. `Undecided` has one of these
+    /// causes, which `reason` names:
+    ///
+    /// - Two shapes are farther apart than the margin by at most the resolution and the stated
+    ///   errors.
+    /// - The end of a link becomes flat or round so close to the other robot that this decides.
+    /// - The query has reached its limit of work.
     pub decision: Decision,
     /// The first interval of time in which it is unknown whether the robots keep the margin; they
     /// keep it before. `[1, 1]` if they always do. A contact may not be the first one, so its

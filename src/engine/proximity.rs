@@ -125,7 +125,7 @@ pub trait Proximity: Engine {
     /// - A connected region of the wall inside the link is one contact. It names the triangle
     ///   nearest to the axis.
     /// - If the closest point of [`per_link`](Proximity::per_link) is within the margin, it is a
-    ///   contact, or an equally near place in the same region of the wall is.
+    ///   contact. An equally near place in the same region of the wall may replace it.
     ///
     /// Triangles are neighbours if they have corners at the same place, whether they share an index
     /// or not.
@@ -258,8 +258,8 @@ pub trait Proximity: Engine {
     /// - The answer's link or triangle does not exist.
     /// - The pose is not finite, or it moves the link out of range.
     /// - The answer does not fit link and triangle: the robot or the pose is another one, or the
-    ///   mesh has moved since. An answer fits if its error is at most 16 u (c + d), where u =
-    ///   2^-53, c is the largest coordinate of the two, and d is their extent.
+    ///   mesh has moved since. An answer fits if its error is at most 16 u (c + d). Here u = 2^-53,
+    ///   c is the largest coordinate of the two, and d is their extent.
     ///
     /// ```
     /// use parry_continuum::Chain;
@@ -382,11 +382,11 @@ pub trait Proximity: Engine {
     ///   [`minimum_within`](Self::minimum_within), tubes and motions: nothing.
     /// - [`clears`](Self::clears): the grid of the sides of the wall, only if the bounding box has
     ///   moved by several cells of the grid.
-    /// - [`within`](Self::within): one pass over all vertices finds vertices that have met or parted.
-    ///   If there are any, the query also builds which triangles are joined. Near the robot it builds
-    ///   the neighbours of triangles.
-    /// - [`side`](super::BvhSearch::side), [`clears_inside`](super::BvhSearch::clears_inside): the far
-    ///   field of each node.
+    /// - [`within`](Self::within): one pass over all vertices finds vertices that have met or
+    ///   parted. If there are any, the query also builds which triangles are joined. Near the robot
+    ///   it builds the neighbours of triangles.
+    /// - [`side`](super::BvhSearch::side), [`clears_inside`](super::BvhSearch::clears_inside): the
+    ///   far field of each node.
     /// - Any query, if single precision is too coarse: nothing. The move itself refits the second
     ///   hierarchy, if that was built, and then takes two to three times as long.
     ///

@@ -169,8 +169,9 @@ impl RobotPair {
     /// ```
     ///
     /// # Errors
-    /// The tolerance is negative or NaN; the curve of a tube is not finite somewhere; or a pose is
-    /// not finite or not rigid, or moves its tube out of range.
+    /// - The tolerance is negative or NaN.
+    /// - The curve of a tube is not finite somewhere.
+    /// - A pose is not finite or not rigid, or moves its tube out of range.
     pub fn clearance(
         &mut self,
         a: &Tube,
@@ -219,7 +220,7 @@ impl RobotPair {
     /// - `Contact` names a time, and two points of the shapes at that time that are at most the
     ///   margin apart.
     /// - `Undecided`: the robots come within `resolution` of the margin, beyond the errors that
-    ///   they state of themselves; or an end that comes near turns from flat to round; or the query
+    ///   they state of themselves. Or an end that comes near turns from flat to round. Or the query
     ///   ends after 65,536 shapes of each robot, or after a million pairs of pieces in total. The
     ///   [reason](RobotMotionAnswer::reason) says which.
     ///
@@ -244,10 +245,11 @@ impl RobotPair {
     /// ```
     ///
     /// # Errors
-    /// The margin or the resolution is negative or NaN; a motion has no shape at some time, its
-    /// sections change, or a stated speed is not finite; a robot is out of range; the resolution is
-    /// finer than rounding or the samples of a shape allow; or a motion is too fast to be divided
-    /// that finely.
+    /// - The margin or the resolution is negative or NaN.
+    /// - A motion has no shape at some time, its sections change, or a stated speed is not finite.
+    /// - A robot is out of range.
+    /// - The resolution is finer than rounding or the samples of a shape allow, or a motion is too
+    ///   fast to be divided that finely.
     pub fn clears_motion(
         &mut self,
         a: &impl Motion,
@@ -428,27 +430,30 @@ pub fn self_clears(robot: &Chain, margin: Real) -> Result<bool, ProximityError> 
 
 /// Decides whether a tube is farther than `margin` from itself.
 ///
-/// The query considers the parts of the curve that [`self_minimum`] considers: two places with a
-/// turn of at least pi between them; a flat face and a place in front of it, with a turn of at
-/// least pi / 2; and two faces that look at one another. It leaves out a piece if the robot leads
-/// nearer to the face from every place of the piece. So a bend never collides with its own
-/// neighbourhood.
+/// The query considers the same parts as [`self_minimum`], on the curve itself:
+///
+/// 1. Two places with a turn of at least pi between them.
+/// 2. A flat face and a place in front of it, with a turn of at least pi / 2.
+/// 3. Two faces that look at one another.
+///
+/// It leaves out a piece if the robot leads nearer to the face from every place of the piece. So a
+/// bend never collides with its own neighbourhood.
 ///
 /// `margin` and `resolution` are lengths. `Clear` and `Contact` are proven. All distances allow for
 /// the errors that the tube states of itself; the parts are selected on the curve as it was given.
 /// `Undecided` occurs only if
 ///
 /// - the distance of such parts is within `resolution` of the margin, or within the stated errors;
-/// - the margin is as wide as the tightest bend: at least 1 / curvature - r beside a step, or at
-///   least 2 / curvature - r1 - r2 elsewhere, where the known curve may not determine which parts
-///   count;
+/// - the margin is as wide as the tightest bend, so that the known curve may not determine which
+///   parts count: at least 1 / curvature - r beside a step, at least 2 / curvature - r1 - r2
+///   elsewhere;
 /// - the samples are too few to show how far the curve turns; or
 /// - 65,536 pairs of pieces do not decide.
 ///
 /// # Errors
 /// - The margin or the resolution is negative or NaN.
-/// - The tube bends within its radius somewhere, as far as its curvature is known; or the tube is
-///   made from a chain with a joint that is too sharp for [`self_minimum`].
+/// - The tube bends, or may bend, within its radius somewhere.
+/// - The tube is made from a chain with a joint that is too sharp for [`self_minimum`].
 /// - Samples do not allow a decision at that resolution, or the curve of the tube is not finite
 ///   somewhere.
 ///
@@ -482,13 +487,13 @@ pub fn tube_self_clears(
 /// - `Contact` names a time at which the shape violates the margin in the sense of
 ///   [`tube_self_clears`], and two points of that shape in the mesh's frame.
 /// - `Undecided`: the robot comes within `resolution` of the margin, beyond the errors that it
-///   states of itself; or margin or samples are among the cases that [`tube_self_clears`] leaves
-///   undecided; or an end that comes near turns from flat to round; or the query ends after 65,536
+///   states of itself. Or margin or samples are among the cases that [`tube_self_clears`] leaves
+///   undecided. Or an end that comes near turns from flat to round. Or the query ends after 65,536
 ///   shapes, or after 262,144 pairs of pieces in total. The [reason](RobotMotionAnswer::reason)
 ///   says which.
 ///
-/// The work is one query about a tube and itself for each time that the proof needs: four to eight
-/// per rad that a part of the robot turns, and more near a contact.
+/// The work is one query about a tube and itself for each time that the proof needs. It needs four
+/// to eight times per rad that a part of the robot turns, and more near a contact.
 ///
 /// **Premises.** The stated speeds and turns hold: see [`verify_motion`](crate::verify_motion). At
 /// all times [`tube_self_clears`] accepts the robot: it bends by less than 1 / radius. The query
@@ -506,10 +511,12 @@ pub fn tube_self_clears(
 /// ```
 ///
 /// # Errors
-/// The margin or the resolution is negative or NaN; the motion has no shape at some time, or one
-/// that [`tube_self_clears`] refuses; its sections change; a stated speed or turn is not finite; a
-/// turn is more than 2^18 rad; the resolution is finer than rounding or the samples of a shape
-/// allow; or the motion is too fast to be divided that finely.
+/// - The margin or the resolution is negative or NaN.
+/// - The motion has no shape at some time, or one that [`tube_self_clears`] refuses, or its
+///   sections change.
+/// - A stated speed or turn is not finite, or a turn is more than 2^18 rad.
+/// - The resolution is finer than rounding or the samples of a shape allow, or the motion is too
+///   fast to be divided that finely.
 pub fn motion_self_clears(
     motion: &impl Motion,
     margin: Real,

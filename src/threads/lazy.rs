@@ -9,8 +9,11 @@
 //! # Deadlock
 //! **Claim.** A build never waits for a task that waits for the build.
 //!
-//! **Proof.** A build that used the pool could wait for such a task in two ways: (1) its thread
-//! takes up a task that needs the same value; (2) its helpers wait for the value themselves.
+//! **Proof.** A build that used the pool could wait for such a task in two ways:
+//!
+//! 1. Its thread takes up a task that needs the same value.
+//! 2. Its helpers wait for the value themselves.
+//!
 //! [`on_this_thread`] excludes both: the build has no helpers and takes up no tasks.
 
 use super::parallel::on_this_thread;

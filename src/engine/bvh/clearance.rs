@@ -41,8 +41,9 @@ impl BvhSearch {
     /// The work grows with the number of pieces near the wall, about as 1 / sqrt(tolerance).
     ///
     /// # Errors
-    /// The tolerance is negative or NaN; the curve of the tube is not finite somewhere; or the pose
-    /// is not finite or moves the tube out of range.
+    /// - The tolerance is negative or NaN.
+    /// - The curve of the tube is not finite somewhere.
+    /// - The pose is not finite, or moves the tube out of range.
     pub fn clearance(
         &mut self,
         tube: &Tube,
@@ -114,9 +115,9 @@ impl BvhSearch {
     /// ```
     ///
     /// # Errors
-    /// The margin or the resolution is negative or NaN, samples do not allow a decision at that
-    /// resolution, or as [`clearance`](Self::clearance). A contact that is found is reported before
-    /// any error about samples.
+    /// As [`clearance`](Self::clearance); or the margin or the resolution is negative or NaN; or
+    /// samples do not allow a decision at that resolution. A contact that is found is reported
+    /// before any error about samples.
     pub fn tube_clears(
         &mut self,
         tube: &Tube,

@@ -120,13 +120,15 @@ impl BvhSearch {
     ///
     /// **Premises.** Between two steps every vertex of the links moves on a straight line at
     /// constant speed. At every time the robot is some tube with a smooth centreline within
-    /// `deviation` of the links, place by place. So the deviation must cover three errors: of the
-    /// links against the curve, of the straight path against the true path between two steps, and
-    /// of the kinematics or the sensor.
+    /// `deviation` of the links, place by place. So the deviation must cover three errors:
     ///
-    /// A place implies no direction. So the side of the tube is known to the deviation. The flat
-    /// faces of its two ends and of steps in radius may have any direction: a face lies within the
-    /// ball around its centre, and contains that centre. So the caps of the shapes do not matter.
+    /// 1. of the links against the curve,
+    /// 2. of the straight path between two steps against the true path,
+    /// 3. of the kinematics or the sensor.
+    ///
+    /// A place implies no direction. So the side of the tube is known to within the deviation. The
+    /// flat faces of its two ends and of steps in radius may have any direction. A face lies within
+    /// the ball around its centre and contains the centre. So the caps of the shapes do not matter.
     ///
     /// - `Clear`: every such tube keeps the margin at every time.
     /// - `Contact`: every such tube is at most the margin away at the time of the named shape.
@@ -250,8 +252,10 @@ impl BvhSearch {
     /// ```
     ///
     /// # Errors
-    /// The tolerance is negative or NaN; the motion has no shape at some time, its sections change,
-    /// or a stated speed is not finite; or the robot is out of range.
+    /// - The tolerance is negative or NaN.
+    /// - The motion has no shape at some time, its sections change, or a stated speed is not
+    ///   finite.
+    /// - The robot is out of range.
     pub fn clearance_of_motion(
         &mut self,
         motion: &impl Motion,

@@ -109,9 +109,9 @@ impl BvhSearch {
     /// to 1.
     ///
     /// The speeds that the motion states are premises of the proof, and printed. `None` if some
-    /// shape does not keep the margin, or keeps it by at most about `resolution`; or if the proof
-    /// would need more than 65,536 shapes or 16 MiB. A shape takes 0.2 to 2 kB, so a motion that
-    /// needs many shapes has a long proof.
+    /// shape does not keep the margin, or keeps it by at most about `resolution`. Also `None` if
+    /// the proof would need more than 65,536 shapes or 16 MiB. A shape takes 0.2 to 2 kB, so a
+    /// motion that needs many shapes has a long proof.
     ///
     /// ```
     /// use parry_continuum::{LinearMotion, parry::{math::Vector, shape::Ball}};
