@@ -12,9 +12,9 @@ use parry3d_f64::math::{Pose, Real, Vector};
 
 /// An engine that answers proximity queries between a robot and the mesh it was built for.
 ///
-/// `pose` is the robot's pose in the mesh's frame. Answers are in the mesh's frame too, in its unit
-/// of length. Distances are to the mesh's surface and unsigned: a link that touches nothing may be
-/// on either side of the mesh.
+/// `pose` is the robot's pose in the mesh's frame. Answers are in the mesh's frame too. Distances,
+/// margins and bounds are in its unit of length. Distances are to the mesh's surface and unsigned:
+/// a link that touches nothing may be on either side of the mesh.
 ///
 /// All engines return the same distances. [`BvhSearch`](super::BvhSearch) and
 /// [`Exhaustive`](super::Exhaustive) break ties alike, on any number of threads: the lowest
@@ -70,7 +70,7 @@ pub trait Proximity: Engine {
     ///     let vertices = vertices.into_iter().map(|vertex| vertex + centre).collect();
     ///     Ok(BvhSearch::new(&TriMesh::new(vertices, triangles)?)?)
     /// };
-    /// // A wall that keeps 0.5 mm, and a vessel that keeps 2 mm.
+    /// // A wall with a margin of 0.5 mm, and a vessel with a margin of 2 mm.
     /// let mut anatomy = [(ball(Vector::ZERO, 10.0)?, 0.5), (ball(Vector::X * 6.0, 1.0)?, 2.0)];
     /// let robot = Chain::from_centreline(&[Vector::ZERO, Vector::Z * 6.0], &[0.5])?;
     ///

@@ -465,7 +465,7 @@ pub fn self_clears(robot: &Chain, margin: Real) -> Result<bool, ProximityError> 
 /// let angles = (0..=240).map(|k| std::f64::consts::PI * f64::from(k) / 60.0);
 /// let rise = 4.0 / (2.0 * std::f64::consts::PI);
 /// let coil: Vec<_> = angles.map(|a| Vector::new(10.0 * a.cos(), 10.0 * a.sin(), rise * a)).collect();
-/// let along = Vector::new(0.0, 10.0, rise); // as it begins and, after whole turns, ends
+/// let along = Vector::new(0.0, 10.0, rise); // at both ends, after whole turns
 /// let tube = Tube::with_constant_radius(&coil, 1.0, Some([along; 2]))?;
 /// assert_eq!(tube_self_clears(&tube, 1.9, 0.01)?, Decision::Clear);
 /// assert_eq!(tube_self_clears(&tube, 2.1, 0.01)?, Decision::Contact);

@@ -6,8 +6,9 @@
 //!
 //! # Claim
 //! The nearest triangle is among the candidates with c(t) <= min c + 2 e, if no candidates were
-//! lost. **Proof.** Let c be least at s, and let t be the nearest. Then c(t) <= d(t) + e <= d(s) +
-//! e <= c(s) + 2 e.
+//! lost.
+//! **Proof.** Let c be least at s, and let t be the nearest. Then c(t) <= d(t) + e <= d(s) + e <=
+//! c(s) + 2 e.
 //!
 //! A link whose candidates did not all come back, or that the device cannot represent, is measured
 //! against all triangles on the CPU.

@@ -11,9 +11,9 @@
 //! 3. The lower bound is `reached_at - s - r = d - (s - s0) - 2 r`
 //!    ([`DistanceCache::lower_bound`]).
 //!
-//! **Claim.** The lower bound is at most the distance that an engine would measure now. **Proof.**
-//! No point of the robot has moved by more than s - s0 since the record, so the distance is at
-//! least d - (s - s0). Each r covers one measurement: step 2 the old one, step 3 the new one.
+//! **Claim.** The lower bound is at most the distance that an engine would measure now.
+//! **Proof.** No point of the robot has moved by more than s - s0 since the record, so the distance
+//! is at least d - (s - s0). Each r covers one measurement: step 2 the old one, step 3 the new one.
 //!
 //! **Rounding.** The path is measured in the scene's frame, the distance in a mesh's frame. Let M
 //! be the largest coordinate of robot and structure in the scene, radius and translations included.

@@ -24,11 +24,12 @@
 //!
 //! # Correctness
 //! **Claim.** Warm starts never change an answer. `tightest` returns the least (slack, structure,
-//! robot), pairs of robots last. **Proof.** Steps 1, 3 and 4 skip a pair only if d(k, i) > `bound`.
-//! So `tightest` searches every pair at the final slack, ties included, and `offer` orders ties by
-//! number. **Rounding.** Slacks are compared exactly ([`DoubleDouble`]). [`beyond`] and the key of
-//! step 3 are rounded outward, and the best slack is rounded up before it stops step 4. So rounding
-//! can only search a pair too many.
+//! robot), pairs of robots last.
+//! **Proof.** Steps 1, 3 and 4 skip a pair only if d(k, i) > `bound`. So `tightest` searches every
+//! pair at the final slack, ties included, and `offer` orders ties by number.
+//! **Rounding.** Slacks are compared exactly ([`DoubleDouble`]). [`beyond`] and the key of step 3
+//! are rounded outward, and the best slack is rounded up before it stops step 4. So rounding can
+//! only search a pair too many.
 
 use super::distance_cache::DistanceCache;
 use super::scene_bounds::SceneBounds;

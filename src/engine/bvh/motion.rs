@@ -96,7 +96,7 @@ impl BvhSearch {
     /// let motion = LinearMotion::chain(&from, &to, &[0.01])?;
     /// let found = search.time_of_contact(&motion, 0.0, 1e-3)?;
     /// let [clear_until, t] = found.interval;
-    /// assert!(clear_until <= 0.45 && 0.449 <= t && t - clear_until <= 1e-3); // where the tip has gone 9 of 20
+    /// assert!(clear_until <= 0.45 && 0.449 <= t && t - clear_until <= 1e-3); // the tip has moved 9 of 20
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///
@@ -146,7 +146,7 @@ impl BvhSearch {
     /// let found = search.clears_path(&shapes, 0.1, 1.0, 1e-3)?;
     /// assert_eq!(found.decision, Decision::Clear);
     /// let found = search.clears_path(&shapes, 0.1, 5.0, 1e-3)?;
-    /// assert_eq!(found.decision, Decision::Contact); // the tip is less than 4 away in the end
+    /// assert_eq!(found.decision, Decision::Contact); // at the end the tip is less than 4 away
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///

@@ -183,7 +183,7 @@ impl BvhSearch {
     /// let (vertices, triangles) = Ball::new(10.0).to_trimesh(64, 32);
     /// let search = BvhSearch::from_triangles(&vertices, &triangles)?;
     /// search.prepare();
-    /// assert_eq!(search.side(Vector::X), Side::Inside); // at once
+    /// assert_eq!(search.side(Vector::X), Side::Inside); // without a build
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn prepare(&self) {
