@@ -29,7 +29,7 @@ pub struct Contact {
     /// triangle.
     ///
     /// Beside the link and beyond a round cap it is the distance between axis and triangle, minus
-    /// the radius, unless the axis crosses the triangle or a flat cap is nearer.
+    /// the radius. The exceptions are an axis that crosses the triangle, and a nearer flat cap.
     pub depth: Option<Real>,
     /// The unit vector from the wall to the robot. If the two overlap, a translation of the link by
     /// `-depth * normal` separates them.

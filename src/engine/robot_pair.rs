@@ -444,9 +444,9 @@ pub fn self_clears(robot: &Chain, margin: Real) -> Result<bool, ProximityError> 
 /// `Undecided` occurs only if
 ///
 /// - the distance of such parts is within `resolution` of the margin, or within the stated errors;
-/// - the margin is as wide as the tightest bend, so that the known curve may not determine which
-///   parts count: at least 1 / curvature - r beside a step, at least 2 / curvature - r1 - r2
-///   elsewhere;
+/// - the margin is as wide as the tightest bend: at least 1 / curvature - r beside a step, and at
+///   least 2 / curvature - r1 - r2 elsewhere. The known curve may then leave open which parts
+///   count;
 /// - the samples are too few to show how far the curve turns; or
 /// - 65,536 pairs of pieces do not decide.
 ///

@@ -109,8 +109,9 @@ impl GpuExhaustive {
     /// Builds an engine for `mesh` on an open GPU.
     ///
     /// # Errors
-    /// The mesh has no triangles, or a vertex is not finite or out of range; the mesh does not fit
-    /// into the GPU's memory; or the GPU has failed.
+    /// - The mesh has no triangles, or a vertex is not finite or out of range.
+    /// - The mesh does not fit into the GPU's memory.
+    /// - The GPU has failed.
     pub fn on(gpu: &Gpu, mesh: &TriMesh) -> Result<Self, GpuError> {
         Self::tuned(gpu, Mesh::new(mesh)?, Tuning::default())
     }

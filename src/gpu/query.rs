@@ -3,10 +3,11 @@
 //! # Algorithm
 //! 1. `sample`: the bounding spheres of a sample of the triangles give each link its first limit,
 //!    an upper bound on its distance.
-//! 2. `nearest`: all triangles against all links. A triangle whose sphere exceeds the limit is
+//! 2. `nearest`: all triangles against all links. A triangle whose sphere is beyond the limit is
 //!    skipped. Any other costs the distance from the axis and the bounds of a flat cap. Each block
-//!    of triangles keeps its least bounds.
-//! 3. `reduce`: the least bound of all blocks is the link's limit.
+//!    of triangles keeps its least lower and its least upper bound.
+//! 3. `reduce`: the link's limit is the least upper bound of all blocks, plus twice the error
+//!    bound.
 //! 4. `collect`: in the blocks that may be within the limit, the discs of flat caps decide. The
 //!    triangles within the limit come back.
 

@@ -1,8 +1,8 @@
 //! The text of the shaders.
 //!
 //! Rust declares the constants and records that the host shares; their text precedes the shaders. A
-//! function has the name of its twin in `distance` or `proximity`, after the name of the twin's
-//! file where needed, and does the same in the same order. `real` is `f32` or `f64`.
+//! function has the name of its twin in `distance` or `proximity`, with the name of the twin's file
+//! before it where needed. It does the same in the same order. `real` is `f32` or `f64`.
 
 use super::layout::{
     CAPACITY, FACE_VECTORS, FAR, LinkRecord, MOST_LINKS, Round, SAMPLES, SLOT, THREADS,

@@ -28,8 +28,8 @@
 //! 5. All of that is less than 1024 u M, with the rim of a flat cap accounted for
 //!    ([`Odometer::error_from_ends`]). The code uses r = 2048 u M.
 //!
-//! If coordinates are so large that a place in a mesh's frame could be out of range, r is infinite:
-//! the bound is useless and the engine is asked.
+//! If coordinates are so large that a place in a mesh's frame could be out of range, r is infinite.
+//! The lower bound is then -infinity, and the engine is asked.
 
 use crate::distance::Scalar;
 use crate::pair::PlacedRobot;

@@ -56,11 +56,11 @@ use std::cmp::Ordering;
 /// Each query takes the robots with their poses in the scene's frame. If a [margin between
 /// robots](Self::set_robot_margin) is set, the queries also test each robot against the others.
 ///
-/// The scene warm-starts its queries. It keeps the warm starts of its engines, the pair that
-/// decided the last answer, and a lower bound on the distance of each robot from each structure.
-/// All queries but `per_structure` skip a structure that a robot cannot have reached since. Robots
-/// are identified by their index in a query; any robots may follow. A clone shares the meshes and
-/// has its own memory: use one clone per thread.
+/// The scene warm-starts its queries. It keeps the warm starts of its engines and the pair that
+/// decided the last answer. It also keeps a lower bound on the distance of each robot from each
+/// structure. All queries but `per_structure` skip a structure that a robot cannot have reached
+/// since. Robots are identified by their index in a query; any robots may follow. A clone shares
+/// the meshes and has its own memory: use one clone per thread.
 ///
 /// ```
 /// use parry_continuum::Chain;

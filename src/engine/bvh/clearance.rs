@@ -9,8 +9,8 @@
 //!
 //! **Claim.** A stated turn never makes an answer worse.
 //! **Proof.** Both answers are valid for the tube, and step 3 keeps the better. Step 2 alone would
-//! not do: a body with flat ends is wider beside them than a body with round ends, so either body
-//! may give the tighter bound.
+//! not do, because a body with flat ends is wider beside them than a body with round ends. So
+//! either body may give the tighter bound.
 
 use super::search::{BvhSearch, Context};
 use crate::answer::{Clearance, Decision, ProximityError, TubePiece};
