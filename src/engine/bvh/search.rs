@@ -76,7 +76,7 @@ pub(super) struct Memory {
     answers: Remembered,
 }
 
-/// The warm starts, one field per kind of query.
+/// The memory of each kind of query: warm starts and scratch.
 #[derive(Clone, Default)]
 pub(super) struct Remembered {
     pub per_link: PerLinkMemory,
