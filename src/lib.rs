@@ -1,4 +1,4 @@
-//! Exact proximity queries between continuum robots and triangle meshes, and among robots, for
+//! Exact proximity queries between continuum robots and triangle meshes, and between robots, for
 //! parry and rapier.
 //!
 //! How far is each link of a catheter, a concentric tube robot or a snake from the wall around it,
@@ -27,53 +27,54 @@
 //! ```
 //!
 //! # The tour
-//! - **The robot.** A [`Chain`] of [`ModifiedCylinder`]s, each a tube whose two ends are
-//!   [`Cap::Flat`] or [`Cap::Round`]. [`Chain::from_centreline`] decides which; [`Chain::capsules`]
-//!   and [`Chain::cylinders`] are the simpler models. [`simplify`] finds the fewest links within a
-//!   tolerance, [`stations`] nearly as few in far less time.
-//! - **The curve.** A [`Tube`] is the robot without links: samples or a function, and the error
-//!   that a query may make. [`BvhSearch::clearance`](proximity::BvhSearch::clearance) bounds its
-//!   clearance from both sides.
-//! - **The kinematics.** [`ConstantCurvature`] leads from curvatures to points;
-//!   [`book::kinematics`] from other models.
-//! - **Inside or outside.** [`BvhSearch::side`](proximity::BvhSearch::side), by the mesh's winding
-//!   number, proven.
-//! - **The queries.** An engine of [`proximity`] is built once per mesh and asked often:
+//! - **The robot.** A [`Chain`] is a sequence of [`ModifiedCylinder`]s: links whose two ends are
+//!   [`Cap::Flat`] or [`Cap::Round`]. [`Chain::from_centreline`] chooses the caps;
+//!   [`Chain::capsules`] and [`Chain::cylinders`] are the simpler models. [`simplify`] finds the
+//!   fewest links within a tolerance; [`stations`] finds nearly as few in far less time.
+//! - **The curve.** A [`Tube`] is the robot as a curve, without links: samples or a function. Each
+//!   query names its tolerance. [`BvhSearch::clearance`](proximity::BvhSearch::clearance) bounds
+//!   the clearance from both sides.
+//! - **The kinematics.** [`ConstantCurvature`] computes points from curvatures;
+//!   [`book::kinematics`] covers other models.
+//! - **Inside or outside.** [`BvhSearch::side`](proximity::BvhSearch::side) decides by the mesh's
+//!   winding number, with a bound on its error.
+//! - **The queries.** Build one engine of [`proximity`] per mesh and reuse it:
 //!   [`BvhSearch`](proximity::BvhSearch) or [`Exhaustive`](proximity::Exhaustive), with the same
-//!   answers. The feature `gpu` adds `gpu::GpuExhaustive`. The first page of [`proximity`] has a
-//!   call for each question.
+//!   answers. The feature `gpu` adds `gpu::GpuExhaustive`. The first page of [`proximity`] lists
+//!   the call for each question.
 //! - **The motion.** [`BvhSearch::clears_motion`](proximity::BvhSearch::clears_motion) proves that
-//!   a [`Motion`] keeps a margin all the way.
-//! - **Several robots.** [`RobotPair`](proximity::RobotPair) holds two robots, or one and itself,
-//!   against one another; [`Scene`](proximity::Scene) has several structures, each with its margin:
+//!   a [`Motion`] keeps a margin at every time.
+//! - **Several robots.** [`RobotPair`](proximity::RobotPair) answers about two robots, or one robot
+//!   and itself. A [`Scene`](proximity::Scene) has several structures, each with its margin: see
 //!   [`book::robots`].
-//! - **Threads.** Each has a clone of the engine: [`book::threads`].
+//! - **Threads.** Each thread has a clone of the engine: see [`book::threads`].
 //! - **Contacts.** [`within`](proximity::Proximity::within) finds every place where the robot is
-//!   near the wall, with a normal, and how it changes with the joints. [`book::control`] is about
+//!   near the wall, with its normal and its derivative by the joints. [`book::control`] is about
 //!   controllers.
-//! - **parry and rapier.** Links and chains are parry shapes with exact point and ray queries. Hand
+//! - **parry and rapier.** Links and chains are parry shapes with exact point and ray queries. Pass
 //!   a [`ContinuumDispatcher`] to parry's queries or to rapier's narrow phase. The feature `rapier`
-//!   adds a helper that does so and sets what depends on the unit of length.
+//!   adds a function that does so and sets the parameters that depend on the unit of length.
 //! - **The narrow phase.** [`distance`] has one function per pair of simple shapes, in `f64` and
 //!   `f32`.
-//! - **The registration.** [`pose_from_matrix`] takes the 4x4 matrix that brings the robot into the
-//!   mesh's frame.
-//! - **The book.** [`book`] explains the shape, the queries, the trade of accuracy for time,
-//!   certificates and limits, how to get [from CT to clearance](book::from_ct), and what changes
-//!   for those who [come from](book::coming_from) capsules, FCL or parry.
+//! - **The registration.** [`pose_from_matrix`] converts the 4x4 matrix from the robot's frame to
+//!   the mesh's frame.
+//! - **The book.** [`book`] explains the shape, the queries, accuracy against time, certificates
+//!   and limits. It leads [from CT to clearance](book::from_ct), and shows what changes for users
+//!   who [come from](book::coming_from) capsules, FCL or parry.
 //!
 //! # What an answer means
-//! Distances are to the mesh's surface and unsigned: 0 where a link touches or crosses it. A robot
-//! that starts inside a closed wall and touches nothing is inside. Distances are exact up to
-//! rounding: within 16 u x extent of the true distance between the link, after its pose is applied,
-//! and the triangle. u is 2^-53, and the extent is the largest difference between two coordinates
-//! of the pair, or the radius. There are no absolute tolerances, so the unit of length does not
-//! matter. Lengths may have magnitudes up to 1e150.
+//! Distances are to the mesh's surface and unsigned: 0 if a link touches or crosses it. A robot
+//! that starts inside a closed wall and touches nothing is inside.
+//!
+//! A distance is within 16 u x extent of the true distance between the placed link and the
+//! triangle. Here u = 2^-53, and the extent is the largest difference between two coordinates of
+//! the pair, or the radius if that is larger. There are no absolute tolerances, so the unit of
+//! length does not matter. Lengths may have magnitudes up to 1e150.
 //!
 //! # Source
-//! Leibrandt and Yang, "Efficient Proximity Queries for Continuum Robots on Parallel Computing
-//! Hardware", is *the paper* in these pages. Its formulas are used with corrections, which stand
-//! where they apply.
+//! *The paper* in these pages is Leibrandt and Yang, "Efficient Proximity Queries for Continuum
+//! Robots on Parallel Computing Hardware". This library corrects some of its formulas; each page
+//! names the corrections that it uses.
 #![cfg_attr(docsrs, feature(doc_cfg))]
 #![forbid(unsafe_code)]
 #![warn(missing_debug_implementations, missing_docs)]
@@ -107,7 +108,7 @@ pub use robot::{
     simplify, stations, verify_motion,
 };
 
-/// Runs the code in the README, where rapier is among it.
+/// Runs the code of the README as doc-tests. One example needs rapier.
 #[cfg(all(doctest, feature = "rapier"))]
 #[doc = include_str!("../README.md")]
 struct Readme;

@@ -1,12 +1,13 @@
-//! A proof of an answer.
+//! Bounds on a distance that prove an answer.
 
 use super::checked_fields::checked_fields;
 use parry3d_f64::math::Real;
 
-/// Bounds on a distance that hold whatever was rounded on the way: `lower <= true <= upper`.
+/// Bounds on a distance that include all rounding: `lower <= true <= upper`.
 ///
-/// The true distance is that between the triangle, or another link, and the link whose axis ends
-/// are `pose * start` and `pose * end`, both computed in `f64`, and whose radius is as given.
+/// The true distance is from the placed link to the triangle or to another link. The placed link
+/// has the axis ends `pose * start` and `pose * end`, both computed in `f64`, and the radius as
+/// given.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde-serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
@@ -15,9 +16,9 @@ use parry3d_f64::math::Real;
 )]
 #[non_exhaustive]
 pub struct Certificate {
-    /// The distance is at least this, in the unit of the shapes.
+    /// Lower bound on the distance, in the unit of the shapes.
     pub lower: Real,
-    /// The distance is at most this.
+    /// Upper bound on the distance.
     pub upper: Real,
 }
 

@@ -1,7 +1,7 @@
-//! Answers as their fields: written as they are, and read back only if an answer can have them.
+//! Serialisation of answers: fields are written as they are, and checked when they are read.
 
-/// What serde sees of an answer: its fields, under the name that is written. `$check` says what is
-/// wrong with fields that no answer has.
+/// Defines the serde form of an answer: its fields, under the written name. `$check` returns an
+/// error for fields that no query returns.
 macro_rules! checked_fields {
     ($written:literal, $name:ident { $($(#[$of_field:meta])* $field:ident: $type:ty),+ $(,)? }, $check:expr) => {
         #[cfg(feature = "serde-serialize")]
@@ -36,8 +36,8 @@ macro_rules! checked_fields {
 
 pub(super) use checked_fields;
 
-/// What no answer about a motion has: times that are none, or a contact without that decision, or
-/// that without a contact; or a reason without `Undecided`.
+/// Rejects fields that no query about a motion returns. The times must be ordered within 0 to 1.
+/// There is a contact exactly for `Contact`, and a reason exactly for `Undecided`.
 #[cfg(feature = "serde-serialize")]
 pub(super) fn check_motion<C: std::fmt::Debug>(
     decision: super::Decision,

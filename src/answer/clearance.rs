@@ -1,11 +1,12 @@
-//! An answer about a tube.
+//! The clearance of a tube, between bounds.
 
 use super::Witness;
 use super::checked_fields::checked_fields;
 use parry3d_f64::math::Real;
 use std::ops::{Deref, DerefMut};
 
-/// Where a tube is closest to a mesh, between bounds. All in the mesh's frame and unit.
+/// The place where a tube is closest to a mesh, between bounds. All fields are in the mesh's frame
+/// and unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde-serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
@@ -14,25 +15,25 @@ use std::ops::{Deref, DerefMut};
 )]
 #[non_exhaustive]
 pub struct Clearance {
-    /// The clearance is at least this.
+    /// Lower bound on the clearance.
     pub lower: Real,
-    /// The clearance is at most this: 0 where the tube touches the mesh.
+    /// Upper bound on the clearance: 0 if the tube touches the mesh.
     pub upper: Real,
-    /// Whether the bounds are as close as was asked for: no farther apart than the tolerance and
-    /// `uncertainty`.
+    /// Whether the bounds meet the tolerance: `upper - lower <= tolerance + uncertainty`.
     pub resolved: bool,
-    /// What the errors cost that the tube states for itself, and no finer tolerance can mend; and
-    /// near a flat face whose direction is not known ([`Tube::fit`](crate::Tube::fit)), what
-    /// that costs.
+    /// The part of the gap that no finer tolerance closes: the errors that the tube states of
+    /// itself. Near a flat face of unknown direction ([`Tube::fit`](crate::Tube::fit)) it includes
+    /// the effect of that direction.
     pub uncertainty: Real,
     /// The section of constant radius at the place that realises `upper`, counted from the base.
     pub section: u32,
-    /// A point of the tube and one of the mesh that are `upper` apart, or nearer.
+    /// A point of the tube and a point of the mesh that are at most `upper` apart.
     pub witness: Witness,
 }
 
 impl Clearance {
-    /// What two answers to one question say together.
+    /// Combines two answers to one query: the larger `lower`, and the smaller `upper` with its
+    /// place.
     pub(crate) fn and(self, other: Self, tolerance: Real) -> Self {
         let nearer = if other.upper < self.upper { other } else { self };
         let lower = self.lower.max(other.lower);
@@ -41,7 +42,7 @@ impl Clearance {
         Self { lower, resolved, uncertainty, ..nearer }
     }
 
-    /// What stands in the place of an answer until its turn comes.
+    /// Placeholder in a batch.
     pub(crate) fn placeholder() -> Self {
         Self {
             lower: Real::NAN,
@@ -54,8 +55,7 @@ impl Clearance {
     }
 }
 
-/// Whether the bounds of two answers to one question are as close together as was asked for, and
-/// the uncertainty that it takes.
+/// Returns whether a gap of `apart` meets the tolerance with either uncertainty, and which one.
 pub(super) fn resolve(apart: Real, [one, other]: [Real; 2], tolerance: Real) -> (bool, Real) {
     let (least, most) = (one.min(other), one.max(other));
     if apart <= tolerance + least { (true, least) } else { (apart <= tolerance + most, most) }

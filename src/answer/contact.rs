@@ -1,68 +1,67 @@
-//! Where and how link and wall are nearest: what a controller needs beyond two points.
+//! The contact of a link with the wall, with its normal and its derivative by the joints.
 
 use super::Witness;
 use super::feature::ContactFeature;
 use parry3d_f64::math::{Real, Vector};
 use std::ops::{Deref, DerefMut};
 
-/// Where a link is near a mesh, and in which direction. All in the mesh's frame and unit.
+/// A place where a link is near a mesh. All fields are in the mesh's frame and unit.
 ///
-/// Where the two touch or overlap, the distance is 0 and both points are the same. `depth` and
-/// `normal` then give the least translation that separates the link from this triangle, and
-/// `fraction`, `lever`, `feature` and `kink` belong to the points that separate last. This leads
-/// out of one triangle, and not out of the wall that it is part of.
+/// If the two touch or overlap, `distance` is 0 and both points are the same. `depth` and `normal`
+/// then give the least translation that separates the link from this triangle. `fraction`, `lever`,
+/// `feature` and `kink` then belong to the points that separate last. This translation leads out of
+/// one triangle, not out of the wall that the triangle belongs to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Contact {
-    /// The link's position in [`Chain::links`](crate::Chain::links).
+    /// The link's index in [`Chain::links`](crate::Chain::links).
     pub link: u32,
-    /// Where along the link's axis, from 0 at its start to 1 at its end.
+    /// The place along the link's axis, from 0 at its start to 1 at its end.
     pub fraction: Real,
-    /// Which parts of link and triangle are nearest to each other.
+    /// The nearest parts of link and triangle.
     pub feature: ContactFeature,
-    /// The distance between link and triangle, 0 where they touch or overlap.
+    /// The distance between link and triangle, 0 if they touch or overlap.
     pub distance: Real,
-    /// The distance with a sign. Where the two are apart it is the distance; where they overlap,
-    /// minus the length of the least translation that separates the link from this triangle.
-    /// It is always there, and the same as the dispatcher's `contact` gives for link and
+    /// The signed distance: `distance` if the two are apart; otherwise minus the length of the
+    /// least translation that separates the link from this triangle.
+    ///
+    /// It is always `Some`, and equals the `dist` of the dispatcher's `contact` for link and
     /// triangle.
     ///
-    /// Beside the link and beyond a round cap it is the distance between axis and triangle less
-    /// the radius, as long as the axis does not cross the triangle and no flat cap is nearer.
+    /// Beside the link and beyond a round cap it is the distance between axis and triangle, minus
+    /// the radius. The exceptions are an axis that crosses the triangle, and a nearer flat cap.
     pub depth: Option<Real>,
-    /// The unit vector from the wall to the robot. Where they overlap, moving the link by `-depth`
-    /// along it separates the two.
+    /// The unit vector from the wall to the robot. If the two overlap, a translation of the link by
+    /// `-depth * normal` separates them.
     ///
     /// Beside the link and beyond a round cap it points from the triangle to the link's axis. At a
-    /// flat cap, and where the axis crosses the triangle, it points to the nearer side. There
-    /// is none where the opposite way out is as short, up to rounding (16 u of the extent):
-    /// the axis then lies in the plane of the triangle and meets it, and neither side is the
-    /// robot's.
+    /// flat cap, and if the axis crosses the triangle, it points to the nearer side. It is `None`
+    /// if the opposite way out is as short, up to rounding (16 u of the extent). The axis then lies
+    /// in the plane of the triangle and meets the triangle, and neither side is the robot's.
     pub normal: Option<Vector>,
-    /// The two closest points, and where they are. The arc length is that of `fraction`.
+    /// The two closest points and their places. The arc length belongs to `fraction`.
     pub witness: Witness,
-    /// From the point of the axis at `fraction` to the link's closest point, or the one that
-    /// separates last. A turn of the link moves that point by this arm.
+    /// The vector from the point of the axis at `fraction` to the link's closest point, or to the
+    /// point that separates last. It is the lever arm of that point in a turn of the link.
     pub lever: Vector,
-    /// Whether the distance, or the depth, has a kink here: its derivative depends on the
-    /// direction of the motion, and the one that is computed is that of the points named here.
-    /// Up to rounding, this is where
+    /// Whether the distance, or the depth, has a kink here. The derivative then depends on the
+    /// direction of the motion; the computed derivative is that of the points named here. Up to
+    /// rounding, a kink occurs if
     ///
     /// - other points are as near: an edge or a face lies along the link, or across a flat cap;
-    /// - another way out is as short, where the two overlap;
+    /// - another way out is as short, and the two overlap;
     /// - the triangle has no area, so that its corners can move against one another.
     pub kink: bool,
 }
 
 impl Contact {
-    /// How fast the distance changes with a joint q, or with time, while the wall stands still: the
-    /// derivative of [`depth`](Self::depth), which is the [`distance`](Self::distance) where
-    /// the two are apart.
+    /// The derivative of [`depth`](Self::depth) by a joint value q, or by time, while the wall
+    /// rests. If the two are apart, the depth is the [`distance`](Self::distance).
     ///
-    /// - `velocity` is dc/dq, the velocity of the centreline's point at
+    /// - `velocity` is dc/dq, the velocity of the centreline's point c at
     ///   [`arc_length`](Witness::arc_length).
-    /// - `angular_velocity` is how the link turns there: dt/dq = angular_velocity x t for its
-    ///   direction t. A turn about the link's own axis has no effect.
+    /// - `angular_velocity` is the rate of turn of the link there: dt/dq = angular_velocity x t for
+    ///   its direction t. A turn about the link's own axis has no effect.
     ///
     /// Both are in the mesh's frame. Beside the link and beyond a round cap only the velocity
     /// counts. At a flat cap the turn moves the closest point too:
@@ -71,7 +70,7 @@ impl Contact {
     /// normal . (velocity + angular_velocity x lever)
     /// ```
     ///
-    /// `None` where there is no normal. At a [`kink`](Self::kink) this is the derivative for one of
+    /// `None` if there is no normal. At a [`kink`](Self::kink) this is the derivative for one of
     /// several points.
     ///
     /// ```
@@ -82,7 +81,7 @@ impl Contact {
     /// let wall = [Vector::new(-9.0, 0.0, 3.0), Vector::new(9.0, 0.0, 3.0), Vector::new(0.0, 9.0, 4.0)];
     /// let mesh = TriMesh::new(wall.to_vec(), vec![[0, 1, 2]])?;
     /// let mut search = BvhSearch::new(&mesh)?;
-    /// // One link with flat caps that turns about the x axis through its base, by q.
+    /// // One link with flat caps, turned by q about the x axis through its base.
     /// let robot = |q: f64| Chain::from_centreline(&[Vector::ZERO, Vector::new(0.0, -q.sin(), q.cos())], &[0.5]);
     /// let q = 0.2;
     /// let closest = search.minimum(&robot(q)?, &Pose::IDENTITY)?;
@@ -99,9 +98,10 @@ impl Contact {
         Some(self.normal?.dot(velocity + angular_velocity.cross(self.lever)))
     }
 
-    /// [`rate`](Self::rate) for each joint of a robot: `jacobian(arc_length, joint)` gives velocity
-    /// and angular velocity of the centreline at an arc length. `out` is cleared first, and
-    /// stays empty where there is no rate.
+    /// [`rate`](Self::rate) for each joint of a robot.
+    ///
+    /// `jacobian(arc_length, joint)` returns the velocity and the angular velocity of the
+    /// centreline at an arc length. `out` is cleared first; it stays empty if there is no normal.
     ///
     /// ```
     /// # use parry_continuum::Chain;
@@ -113,7 +113,7 @@ impl Contact {
     /// # let mut search = BvhSearch::new(&mesh)?;
     /// # let closest = search.minimum(&robot, &Pose::IDENTITY)?;
     /// # let contact = search.contact(&robot, &Pose::IDENTITY, &closest)?;
-    /// // A straight robot that moves along z by joint 0 and turns about x by joint 1.
+    /// // A straight robot. Joint 0 moves it along z, joint 1 turns it about x.
     /// let mut rates = Vec::new();
     /// contact.gradient(2, |arc_length, joint| match joint {
     ///     0 => (Vector::Z, Vector::ZERO),

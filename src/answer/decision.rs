@@ -1,37 +1,37 @@
-//! Yes, no, or too close to tell.
+//! Yes, no, or undecided.
 
-/// Whether a margin is kept: by a tube, by a motion at every time, by all of a scene.
+/// Whether a tube, a motion at every time, or a whole scene keeps a margin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde-serialize", derive(serde::Serialize, serde::Deserialize))]
 pub enum Decision {
-    /// The clearance is more than the margin. This is proven.
+    /// Proven: the clearance is more than the margin.
     Clear,
-    /// The clearance is at most the margin. This is proven.
+    /// Proven: the clearance is at most the margin.
     Contact,
     /// Neither: the clearance is within the resolution of the margin; or the input, or a limit on
-    /// the work, leaves it open.
+    /// the work, does not allow a decision.
     Undecided,
 }
 
-/// Why it stays open whether a motion keeps a margin.
+/// The reason why a query about a motion is undecided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde-serialize", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum UndecidedReason {
-    /// A shape comes within the resolution of the margin, as far as it is known; or the end of a
+    /// A shape comes within the resolution of the margin, up to its stated errors; or the end of a
     /// link becomes flat or round where that decides. A finer resolution may help.
     Near,
-    /// The question has reached its limit of work. A coarser resolution helps, or a motion in
-    /// several parts.
+    /// The query has reached its limit of work. A coarser resolution helps, or a motion in several
+    /// parts.
     Work,
 }
 
 impl Decision {
-    /// The better of two answers to one question: one that decides, or else one that is no error.
-    /// The second is asked for only if the first does not decide.
+    /// Returns the better of two answers to one query: one that decides, or else one without an
+    /// error. Computes the second only if the first does not decide.
     ///
     /// # Errors
-    /// Both are errors.
+    /// Both answers are errors.
     pub(crate) fn better_of<E>(
         first: Result<Self, E>,
         second: impl FnOnce() -> Result<Self, E>,

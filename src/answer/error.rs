@@ -1,4 +1,4 @@
-//! Why there is no answer. Each message names the value at fault and what to change.
+//! Errors of meshes and queries. Each message names the value at fault and what to change.
 
 use crate::robot::{RobotError, TooSharp};
 #[cfg(feature = "gpu")]
@@ -7,7 +7,7 @@ use parry3d_f64::math::Real;
 use strum::IntoStaticStr;
 use thiserror::Error;
 
-/// Why a mesh cannot be queried.
+/// The reason why a mesh cannot be queried.
 #[derive(Clone, Copy, Debug, PartialEq, Error, IntoStaticStr)]
 #[strum(serialize_all = "snake_case")]
 #[non_exhaustive]
@@ -17,31 +17,31 @@ pub enum MeshError {
         "vertex {vertex} of the mesh has a coordinate that is not finite ({value}); repair its vertices"
     )]
     NotFinite {
-        /// The vertex's position in the mesh.
+        /// The vertex's index in the mesh.
         vertex: usize,
         /// The offending coordinate.
         value: Real,
     },
-    /// A vertex lies so far out that squares of coordinates could overflow.
+    /// A vertex is so far out that squares of coordinates could overflow.
     #[error(
         "vertex {vertex} of the mesh has the coordinate {value}, beyond +-{limit:e}; choose a larger unit for its vertices"
     )]
     OutOfRange {
-        /// The vertex's position in the mesh.
+        /// The vertex's index in the mesh.
         vertex: usize,
         /// The offending coordinate.
         value: Real,
         /// The largest magnitude accepted.
         limit: Real,
     },
-    /// New vertices must be as many as the old ones.
+    /// The number of new vertices differs from the number of old ones.
     #[error(
         "the mesh has {expected} vertices but {got} were given; build a new engine for a new mesh"
     )]
     VertexCount {
-        /// How many vertices the mesh has.
+        /// The number of vertices of the mesh.
         expected: usize,
-        /// How many were given.
+        /// The number of vertices that were given.
         got: usize,
     },
     /// A triangle names a vertex that the mesh does not have.
@@ -49,19 +49,19 @@ pub enum MeshError {
         "triangle {triangle} names vertex {vertex}, but there are {vertices} vertices; repair the mesh's triangles"
     )]
     NoSuchVertex {
-        /// The triangle's position in the mesh.
+        /// The triangle's index in the mesh.
         triangle: usize,
         /// The vertex that it names.
         vertex: u32,
-        /// How many vertices there are.
+        /// The number of vertices.
         vertices: usize,
     },
-    /// The mesh has no triangle, so nothing is closest.
+    /// The mesh has no triangle.
     #[error("the mesh has no triangles")]
     Empty,
 }
 
-/// Why a query has no answer.
+/// The reason why a query has no answer.
 #[derive(Clone, Copy, Debug, PartialEq, Error, IntoStaticStr)]
 #[strum(serialize_all = "snake_case")]
 #[non_exhaustive]
@@ -69,17 +69,17 @@ pub enum ProximityError {
     /// The robot's pose has a component that is NaN or infinite.
     #[error("the robot's pose is not finite; check its translation and rotation")]
     PoseNotFinite,
-    /// The rotation of the robot's pose scales: the length of its quaternion is not 1, even for
+    /// The rotation of the robot's pose scales: the length of its quaternion is not 1, even within
     /// single precision.
     #[error("the robot's pose has a quaternion of length {length}; normalise its rotation")]
     PoseNotRigid {
         /// The length of the quaternion.
         length: Real,
     },
-    /// The pose carries a link beyond the range in which squares of coordinates are finite.
+    /// The pose moves a link out of the range in which squares of coordinates are finite.
     #[error("the pose moves link {link} beyond +-{limit:e}; choose a larger unit")]
     OutOfRange {
-        /// The link's position in the chain.
+        /// The link's index in the chain.
         link: usize,
         /// The largest magnitude accepted.
         limit: Real,
@@ -87,93 +87,94 @@ pub enum ProximityError {
     /// One of two robots cannot be placed.
     #[error("`{parameter}`: {fault}")]
     Placement {
-        /// The robot's pose, as the function that was called names it.
+        /// The robot's pose, in the words of the function that was called.
         parameter: &'static str,
-        /// What is wrong with it.
+        /// What is wrong with the pose.
         fault: PlacementFault,
     },
-    /// A joint is so sharp that its links overlap over more than half of the shorter one, which
-    /// leaves no saying which parts of the robot are neighbours.
+    /// A joint is so sharp that its links overlap over more than half of the shorter one.
+    /// Neighbouring parts of the robot then cannot be identified.
     #[error(
         "joint {joint} bends by {angle} rad between links of radius {radius}, the shorter of which has the length {length}; \
          make the radius smaller, or spread the bend over more points"
     )]
     JointTooSharp {
-        /// The joint before the link with this number.
+        /// The joint before the link of this index.
         joint: usize,
-        /// By how much it bends, rad.
+        /// The angle of the joint, rad.
         angle: Real,
         /// The larger radius of its links.
         radius: Real,
         /// The length of the shorter link.
         length: Real,
     },
-    /// A tube bends within its own radius, or may do so as far as its curvature is known, which
-    /// leaves no saying which parts of it are neighbours.
+    /// A tube bends within its own radius, or may do so for the curvature that is known.
+    /// Neighbouring parts of the tube then cannot be identified.
     #[error(
         "near the arc length {arc_length} the tube has the curvature {curvature} and the radius {radius}; their product must be \
          below 1, so check the unit of length; if the points are measured, fit them with a `deviation` as large as their noise \
          (`Tube::fit`)"
     )]
     BendsWithinRadius {
-        /// Where it may bend so sharply: from there on.
+        /// The arc length from which the tube may bend so sharply.
         arc_length: Real,
-        /// Its curvature there at most.
+        /// Upper bound on its curvature there.
         curvature: Real,
         /// Its radius.
         radius: Real,
     },
-    /// The pose carries a tube beyond that range.
+    /// The pose moves a tube out of that range.
     #[error("the pose moves the tube beyond +-{limit:e}; choose a larger unit")]
     TubeOutOfRange {
         /// The largest magnitude accepted.
         limit: Real,
     },
-    /// A margin, a tolerance or a resolution must be a number that is at least 0.
+    /// A margin, a tolerance or a resolution is negative or NaN.
     #[error("`{parameter}` is {value}; it must be at least 0")]
     Negative {
-        /// The parameter, as the function that was called names it.
+        /// The parameter, in the words of the function that was called.
         parameter: &'static str,
         /// The offending number.
         value: Real,
     },
-    /// A bound must be a number, of either sign.
+    /// A bound is NaN. It may have either sign.
     #[error("`{parameter}` is NaN; it must be a number")]
     NotANumber {
-        /// The parameter, as the function that was called names it.
+        /// The parameter, in the words of the function that was called.
         parameter: &'static str,
     },
-    /// The bounds of a tube cannot come as close as was asked for.
+    /// The bounds of a tube cannot meet the tolerance.
     #[error(
         "the bounds are {possible} apart at best, not {tolerance}; give a larger {parameter}; of a curve through samples, give more of \
          them and the tangents at the ends; if coordinates are so large that rounding is {possible}, move the origin to the robot"
     )]
     ToleranceTooFine {
-        /// The parameter, as the function that was called names it: a tolerance or a resolution.
+        /// The parameter, in the words of the function that was called: a tolerance or a
+        /// resolution.
         parameter: &'static str,
-        /// What was asked for.
+        /// The value that was given.
         tolerance: Real,
-        /// What the samples and the stated error allow here.
+        /// The least gap that the samples and the stated error allow.
         possible: Real,
     },
-    /// A motion left its tube empty.
+    /// A motion returned a tube without points.
     #[error("the motion gave a tube without points; fill the tube in `Motion::shape`")]
     EmptyTube,
     /// The curve of a tube has a coordinate that is NaN or infinite.
     #[error("the tube's curve is not finite near the arc length {arc_length}; repair the function")]
     CurveNotFinite {
-        /// Where it is not.
+        /// The arc length near which the curve is not finite.
         arc_length: Real,
     },
-    /// A motion has no shape at some time, or breaks a promise.
+    /// A motion has no shape at some time, or violates one of its stated properties.
     #[error(transparent)]
     Motion(#[from] RobotError),
-    /// One of two motions has no shape at some time, or breaks a promise.
+    /// One of two motions has no shape at some time, or violates one of its stated properties.
     #[error("`{parameter}`: {fault}")]
     OneMotion {
-        /// The motion, as the function that was called names it.
+        /// The motion, in the words of the function that was called.
         parameter: &'static str,
-        /// What is wrong with it.
+        /// What is wrong with the motion.
         fault: RobotError,
     },
     /// A motion is so fast that time cannot be divided finely enough.
@@ -186,7 +187,7 @@ pub enum ProximityError {
         section: usize,
         /// The speed that the motion states for it.
         speed: Real,
-        /// What was asked for.
+        /// The resolution that was given.
         resolution: Real,
     },
     /// A direction turns so fast that time cannot be divided finely enough.
@@ -199,7 +200,7 @@ pub enum ProximityError {
         section: usize,
         /// The turn that the motion states for it.
         turn: Real,
-        /// The largest that is accepted.
+        /// The largest accepted turn.
         limit: Real,
     },
     /// An answer names a link that the robot does not have.
@@ -209,7 +210,7 @@ pub enum ProximityError {
     NoSuchLink {
         /// The answer's link.
         link: usize,
-        /// How many links the robot has.
+        /// The number of links of the robot.
         links: usize,
     },
     /// An answer names a triangle that the mesh does not have.
@@ -219,10 +220,10 @@ pub enum ProximityError {
     NoSuchTriangle {
         /// The answer's triangle.
         triangle: usize,
-        /// How many triangles the mesh has.
+        /// The number of triangles of the mesh.
         triangles: usize,
     },
-    /// An answer is not that of the link and the triangle that it names, as they are now.
+    /// An answer does not fit the link and the triangle that it names, as they are now.
     #[error(
         "the answer about link {link} and triangle {triangle} does not fit them: its `{field}` is off by {off:e}, of which \
          rounding explains {limit:e}; ask again where robot, pose or mesh have changed"
@@ -232,14 +233,14 @@ pub enum ProximityError {
         link: usize,
         /// The answer's triangle.
         triangle: usize,
-        /// The field of the answer that is off: a point that is not in its shape, or the distance.
+        /// The field at fault: a point that is not in its shape, or the distance.
         field: &'static str,
-        /// How far it is off.
+        /// The error of the field.
         off: Real,
-        /// How far rounding may put it off.
+        /// The largest error that rounding explains.
         limit: Real,
     },
-    /// An answer about two robots is not that of the links that it names, as they are now.
+    /// An answer about two robots does not fit the links that it names, as they are now.
     #[error(
         "the answer about the links {links:?} does not fit them: its `{field}` is off by {off:e}, of which rounding explains \
          {limit:e}; ask again where robots or poses have changed"
@@ -247,23 +248,23 @@ pub enum ProximityError {
     LinksDoNotFit {
         /// The answer's links.
         links: [u32; 2],
-        /// The field of the answer that is off: a point that is not in its link, or the distance.
+        /// The field at fault: a point that is not in its link, or the distance.
         field: &'static str,
-        /// How far it is off.
+        /// The error of the field.
         off: Real,
-        /// How far rounding may put it off.
+        /// The largest error that rounding explains.
         limit: Real,
     },
     /// A vertex of the mesh cannot be used.
     #[error(transparent)]
     Mesh(#[from] MeshError),
-    /// The GPU that was asked failed.
+    /// The GPU failed.
     #[cfg(feature = "gpu")]
     #[error(transparent)]
     Device(#[from] DeviceFailure),
 }
 
-/// Why a robot cannot be placed at its pose.
+/// The reason why a robot cannot be placed at its pose.
 #[derive(Clone, Copy, Debug, PartialEq, Error, IntoStaticStr)]
 #[strum(serialize_all = "snake_case")]
 #[non_exhaustive]
@@ -271,21 +272,21 @@ pub enum PlacementFault {
     /// The pose has a component that is NaN or infinite.
     #[error("the pose is not finite; check its translation and rotation")]
     PoseNotFinite,
-    /// The rotation scales: the length of its quaternion is not 1, even for single precision.
+    /// The rotation scales: the length of its quaternion is not 1, even within single precision.
     #[error("the pose has a quaternion of length {length}; normalise its rotation")]
     PoseNotRigid {
         /// The length of the quaternion.
         length: Real,
     },
-    /// The pose carries a link beyond the range in which squares of coordinates are finite.
+    /// The pose moves a link out of the range in which squares of coordinates are finite.
     #[error("the pose moves link {link} beyond +-{limit:e}; choose a larger unit")]
     OutOfRange {
-        /// The link's position in the chain.
+        /// The link's index in the chain.
         link: usize,
         /// The largest magnitude accepted.
         limit: Real,
     },
-    /// The pose carries a tube beyond that range.
+    /// The pose moves a tube out of that range.
     #[error("the pose moves the tube beyond +-{limit:e}; choose a larger unit")]
     TubeOutOfRange {
         /// The largest magnitude accepted.
@@ -294,14 +295,14 @@ pub enum PlacementFault {
 }
 
 impl PlacementFault {
-    /// What went wrong in one word, the same in Rust and Python: the variant in snake case.
+    /// The error in one word, the same in Rust and Python: the variant in snake case.
     pub fn kind(&self) -> &'static str {
         self.into()
     }
 }
 
 impl MeshError {
-    /// What went wrong in one word, the same in Rust and Python: the variant in snake case.
+    /// The error in one word, the same in Rust and Python: the variant in snake case.
     pub fn kind(&self) -> &'static str {
         self.into()
     }
@@ -321,7 +322,7 @@ impl From<TooSharp> for ProximityError {
 }
 
 impl ProximityError {
-    /// The same of one of two robots, whose pose or motion the function that was called names so.
+    /// Attributes the error to one of two robots, whose pose or motion has this parameter name.
     pub(crate) fn of_robot(self, parameter: &'static str) -> Self {
         let fault = match self {
             Self::PoseNotFinite => PlacementFault::PoseNotFinite,
@@ -334,8 +335,8 @@ impl ProximityError {
         Self::Placement { parameter, fault }
     }
 
-    /// What went wrong in one word, the same in Rust and Python: the variant in snake case, or that
-    /// of the error that it passes on.
+    /// The error in one word, the same in Rust and Python: the variant in snake case; for a wrapped
+    /// error, the word of that error.
     pub fn kind(&self) -> &'static str {
         match self {
             Self::Motion(error) | Self::OneMotion { fault: error, .. } => error.kind(),

@@ -1,4 +1,4 @@
-//! The parts of a link and of a triangle that can be nearest to each other.
+//! The parts of a link and a triangle at their closest points.
 
 /// A part of a link.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -14,7 +14,7 @@ pub enum LinkFeature {
 /// A part of a triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TriangleFeature {
-    /// The inside.
+    /// The interior.
     Face,
     /// The edge from this corner (0, 1 or 2) to the next.
     Edge(u8),
@@ -35,8 +35,8 @@ pub enum TriangleFeature {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct ContactFeature {
-    /// Where on the link.
+    /// The part of the link.
     pub link: LinkFeature,
-    /// Where on the triangle, as far as rounding can tell.
+    /// The part of the triangle, up to rounding.
     pub triangle: TriangleFeature,
 }

@@ -1,11 +1,11 @@
-//! An answer about one link.
+//! The closest place of one link.
 
 use super::Witness;
 use super::checked_fields::checked_fields;
 use parry3d_f64::math::Real;
 use std::ops::{Deref, DerefMut};
 
-/// Where one link of a robot is closest to a mesh, in the mesh's frame and unit.
+/// The place where one link of a robot is closest to a mesh, in the mesh's frame and unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde-serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
@@ -14,16 +14,16 @@ use std::ops::{Deref, DerefMut};
 )]
 #[non_exhaustive]
 pub struct LinkProximity {
-    /// The link's position in [`Chain::links`](crate::Chain::links).
+    /// The link's index in [`Chain::links`](crate::Chain::links).
     pub link: u32,
-    /// The distance between link and triangle, 0 where they touch or overlap.
+    /// The distance between link and triangle, 0 if they touch or overlap.
     pub distance: Real,
-    /// The two closest points, and where they are.
+    /// The two closest points and their places.
     pub witness: Witness,
 }
 
 impl LinkProximity {
-    /// What stands in the place of an answer until its turn comes.
+    /// Placeholder in a batch.
     pub(crate) fn placeholder() -> Self {
         Self { link: 0, distance: Real::NAN, witness: Witness::placeholder() }
     }

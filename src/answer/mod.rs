@@ -1,4 +1,4 @@
-//! What comes back: plain data and errors, in the mesh's frame and unit. Nothing here computes.
+//! Results and errors: plain data, in the mesh's frame and unit. Nothing here computes.
 
 mod certificate;
 mod checked_fields;

@@ -1,4 +1,4 @@
-//! An answer about a motion.
+//! The decision about a motion.
 
 #[cfg(feature = "serde-serialize")]
 use super::checked_fields::check_motion;
@@ -15,18 +15,19 @@ use parry3d_f64::math::Real;
 )]
 #[non_exhaustive]
 pub struct MotionAnswer {
-    /// Whether the margin is kept at every time from 0 to 1. `Undecided`: no shape was found that
-    /// is at most the margin away, but one that is so by the resolution more; or one in which
-    /// the end of a link becomes flat or round, so close to the mesh that this decides; or the
-    /// limit of work was reached. `reason` says which.
+    /// Whether the motion keeps the margin at every time from 0 to 1. `Undecided` has one of these
+    /// causes, which `reason` names:
+    ///
+    /// - A shape is farther than the margin by at most the resolution.
+    /// - The end of a link becomes flat or round so close to the mesh that this decides.
+    /// - The query has reached its limit of work.
     pub decision: Decision,
-    /// The first interval of time in which the margin may not be kept: it is kept before it. `[1,
-    /// 1]` where it always is.
+    /// The first interval of time in which the motion may not keep the margin; it keeps the margin
+    /// before. `[1, 1]` if it always does.
     pub interval: [Real; 2],
-    /// Where the decision is `Contact`, a shape that does not keep it, which stands at the end of
-    /// the interval.
+    /// For `Contact`: a shape at most the margin away, at the end of the interval.
     pub contact: Option<ShapeInContact>,
-    /// Where the decision is `Undecided`, why.
+    /// For `Undecided`: the reason.
     pub reason: Option<UndecidedReason>,
 }
 
@@ -48,7 +49,7 @@ impl MotionAnswer {
         }
     }
 
-    /// Whether the margin is kept at every time. This is proven.
+    /// Returns whether the motion provably keeps the margin at every time.
     pub fn is_clear(&self) -> bool {
         self.decision == Decision::Clear
     }

@@ -1,11 +1,11 @@
-//! How near a motion comes.
+//! The least clearance of a motion, between bounds.
 
 use super::Witness;
 use parry3d_f64::math::Real;
 use std::ops::{Deref, DerefMut};
 
-/// When and where a motion comes nearest to a mesh, between bounds. All in the mesh's frame and
-/// unit.
+/// The time and the place where a motion is closest to a mesh, between bounds. All fields are in
+/// the mesh's frame and unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde-serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
@@ -14,20 +14,20 @@ use std::ops::{Deref, DerefMut};
 )]
 #[non_exhaustive]
 pub struct MotionClearance {
-    /// No shape of the motion is nearer than this.
+    /// Lower bound on the clearance of every shape of the motion.
     pub lower: Real,
-    /// The shape at `t` is no farther away than this: 0 where it touches the mesh.
+    /// Upper bound on the clearance of the shape at `t`: 0 if it touches the mesh.
     pub upper: Real,
-    /// Whether the bounds are as close as was asked for: no farther apart than the tolerance and
-    /// `uncertainty`.
+    /// Whether the bounds meet the tolerance: `upper - lower <= tolerance + uncertainty`.
     pub resolved: bool,
-    /// What the errors that shapes state for themselves cost, and no finer tolerance can mend.
+    /// The part of the gap that no finer tolerance closes: the errors that the shapes state of
+    /// themselves.
     pub uncertainty: Real,
     /// The time of the shape that realises `upper`, from 0 to 1.
     pub t: Real,
     /// The section of constant radius at the place that realises `upper`, counted from the base.
     pub section: u32,
-    /// A point of the tube and one of the mesh that are `upper` apart, or nearer.
+    /// A point of the tube and a point of the mesh that are at most `upper` apart.
     pub witness: Witness,
 }
 
@@ -73,8 +73,8 @@ mod serialised {
         }
     }
 
-    /// No engine gives bounds that are negative, in the wrong order or not finite, or a time
-    /// outside of the motion.
+    /// Rejects fields that no engine returns: bounds that are negative, out of order or not finite,
+    /// or a time outside the motion.
     impl TryFrom<Fields> for MotionClearance {
         type Error = String;
 

@@ -2,15 +2,14 @@
 
 use std::fmt;
 
-/// A proof that a robot keeps more than a margin away from a mesh, as a text to be written to a
-/// file.
+/// A proof that a robot is farther than a margin from a mesh, as a text for a file.
 ///
-/// Whoever has the mesh can check it, without this library: `docs/book/check_proof.py` is a short
-/// program in plain Python that calculates in whole numbers. It answers yes or no, and prints the
-/// premises of the proof and what it does not cover: the side of the wall. The [page on
+/// The checker needs the mesh, not this library: `docs/book/check_proof.py` is a short program in
+/// plain Python that calculates in whole numbers. It answers yes or no. It prints the premises of
+/// the proof, and that the proof does not cover the side of the wall. The [page on
 /// proofs](crate::book::proofs) has the format and the reasoning.
 ///
-/// The text is what [`to_string`](ToString::to_string) gives.
+/// [`to_string`](ToString::to_string) returns the text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Proof {
@@ -24,12 +23,12 @@ impl Proof {
         Self { text, planes, shapes }
     }
 
-    /// How many planes part the robot from the mesh.
+    /// The number of planes that separate the robot from the mesh.
     pub fn planes(&self) -> usize {
         self.planes
     }
 
-    /// How many shapes of the robot they are about: one, unless it moves.
+    /// The number of shapes of the robot in the proof: 1, unless it moves.
     pub fn shapes(&self) -> usize {
         self.shapes
     }

@@ -1,9 +1,9 @@
-//! An answer about two tubes.
+//! The clearance of two tubes, between bounds.
 
 use super::clearance::resolve;
 use parry3d_f64::math::{Real, Vector};
 
-/// How near two tubes are, between bounds, in the frame and unit of the poses.
+/// The place where two tubes are closest, between bounds, in the frame and unit of the poses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde-serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
@@ -12,29 +12,29 @@ use parry3d_f64::math::{Real, Vector};
 )]
 #[non_exhaustive]
 pub struct RobotClearance {
-    /// The clearance is at least this.
+    /// Lower bound on the clearance.
     pub lower: Real,
-    /// The clearance is at most this: 0 where the tubes touch or overlap.
+    /// Upper bound on the clearance: 0 if the tubes touch or overlap.
     pub upper: Real,
-    /// Whether the bounds are as close as was asked for: no farther apart than the tolerance and
-    /// `uncertainty`.
+    /// Whether the bounds meet the tolerance: `upper - lower <= tolerance + uncertainty`.
     pub resolved: bool,
-    /// What the errors cost that the tubes state for themselves, and no finer tolerance can mend;
-    /// and near a flat face whose direction is not known ([`Tube::fit`](crate::Tube::fit)),
-    /// what that costs.
+    /// The part of the gap that no finer tolerance closes: the errors that the tubes state of
+    /// themselves. Near a flat face of unknown direction ([`Tube::fit`](crate::Tube::fit)) it
+    /// includes the effect of that direction.
     pub uncertainty: Real,
     /// The sections of constant radius that realise `upper`, counted from each base.
     pub sections: [u32; 2],
-    /// A point of the first tube, `upper` or less from `on_second`.
+    /// A point of the first tube, at most `upper` from `on_second`.
     pub on_first: Vector,
-    /// A point of the second tube; the same as `on_first` where they touch or overlap.
+    /// A point of the second tube; equal to `on_first` if the tubes touch or overlap.
     pub on_second: Vector,
-    /// Where along each tube's centreline, from the base.
+    /// The places along each tube's centreline, from the base.
     pub arc_lengths: [Real; 2],
 }
 
 impl RobotClearance {
-    /// What two answers to one question say together.
+    /// Combines two answers to one query: the larger `lower`, and the smaller `upper` with its
+    /// place.
     pub(crate) fn and(self, other: Self, tolerance: Real) -> Self {
         let nearer = if other.upper < self.upper { other } else { self };
         let lower = self.lower.max(other.lower);
@@ -74,7 +74,8 @@ mod serialised {
         }
     }
 
-    /// No bound is negative or not finite.
+    /// Rejects fields that no query returns: bounds that are negative, out of order or not finite,
+    /// or a place that is not finite.
     impl TryFrom<Fields> for RobotClearance {
         type Error = String;
 

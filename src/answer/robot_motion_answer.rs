@@ -1,4 +1,4 @@
-//! An answer about two motions.
+//! The decision about two motions.
 
 #[cfg(feature = "serde-serialize")]
 use super::checked_fields::check_motion;
@@ -6,7 +6,7 @@ use super::checked_fields::checked_fields;
 use super::{Decision, RobotsInContact, UndecidedReason};
 use parry3d_f64::math::Real;
 
-/// Whether two robots that move keep a margin between them, and which shapes do not.
+/// Whether two moving robots keep a margin between them, and which shapes do not.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde-serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
@@ -15,20 +15,21 @@ use parry3d_f64::math::Real;
 )]
 #[non_exhaustive]
 pub struct RobotMotionAnswer {
-    /// Whether the margin is kept at every time from 0 to 1. `Undecided`: no shapes were found
-    /// that are at most the margin apart, but some that are farther apart than that by no more
-    /// than the resolution and stated errors; or some in which the end of a link becomes flat
-    /// or round, so close to the other robot that this decides; or the limit of
-    /// work was reached. `reason` says which.
+    /// Whether the robots keep the margin at every time from 0 to 1. `Undecided` has one of these
+    /// causes, which `reason` names:
+    ///
+    /// - Two shapes are farther apart than the margin by at most the resolution and the stated
+    ///   errors.
+    /// - The end of a link becomes flat or round so close to the other robot that this decides.
+    /// - The query has reached its limit of work.
     pub decision: Decision,
-    /// The first interval of time in which it is not known whether the margin is kept: it is kept
-    /// before it. `[1, 1]` where it always is; a contact may not be the first one, so that the
+    /// The first interval of time in which it is unknown whether the robots keep the margin; they
+    /// keep it before. `[1, 1]` if they always do. A contact may not be the first one, so its
     /// interval begins with 0.
     pub interval: [Real; 2],
-    /// Where the decision is `Contact`, two shapes that do not keep it, which stand at the end of
-    /// the interval.
+    /// For `Contact`: two shapes at most the margin apart, at the end of the interval.
     pub contact: Option<RobotsInContact>,
-    /// Where the decision is `Undecided`, why.
+    /// For `Undecided`: the reason.
     pub reason: Option<UndecidedReason>,
 }
 
@@ -50,7 +51,7 @@ impl RobotMotionAnswer {
         }
     }
 
-    /// Whether the margin is kept at every time. This is proven.
+    /// Returns whether the robots provably keep the margin at every time.
     pub fn is_clear(&self) -> bool {
         self.decision == Decision::Clear
     }

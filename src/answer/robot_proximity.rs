@@ -1,11 +1,11 @@
-//! An answer about two robots, or about two parts of one.
+//! The closest place of two robots, or of two parts of one robot.
 
 use parry3d_f64::math::{Real, Vector};
 
-/// Where two links are closest, one of each robot, in the frame and unit of the poses.
+/// The place where two links are closest, one of each robot, in the frame and unit of the poses.
 ///
-/// Of one robot and itself the first link is the one nearer to the base, and all is in the robot's
-/// own frame.
+/// For one robot and itself, the first link is the one nearer to the base, and the frame is the
+/// robot's own.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde-serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
@@ -14,17 +14,17 @@ use parry3d_f64::math::{Real, Vector};
 )]
 #[non_exhaustive]
 pub struct RobotProximity {
-    /// The links' positions in [`Chain::links`](crate::Chain::links), of the first robot and of
-    /// the second.
+    /// The links' indices in [`Chain::links`](crate::Chain::links), of the first robot and of the
+    /// second.
     pub links: [u32; 2],
-    /// The distance between the two links, 0 where they touch or overlap.
+    /// The distance between the two links, 0 if they touch or overlap.
     pub distance: Real,
-    /// The first link's point.
+    /// The first link's closest point.
     pub on_first: Vector,
-    /// The second link's point; the same as `on_first` where they touch or overlap.
+    /// The second link's closest point; equal to `on_first` if the links touch or overlap.
     pub on_second: Vector,
-    /// Where along each robot's centreline, from the base: the place on the link's axis nearest to
-    /// the other's point.
+    /// The places along each robot's centreline, from the base: on the link's axis, nearest to the
+    /// other link's point.
     pub arc_lengths: [Real; 2],
 }
 
@@ -53,7 +53,8 @@ mod serialised {
         }
     }
 
-    /// No answer is negative or not finite.
+    /// Rejects fields that no query returns: a distance that is negative or not finite, or a place
+    /// that is not finite.
     impl TryFrom<Fields> for RobotProximity {
         type Error = String;
 

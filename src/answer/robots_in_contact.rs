@@ -1,9 +1,9 @@
-//! Two shapes of robots that move, which do not keep a margin.
+//! Two shapes of moving robots that violate a margin.
 
 use parry3d_f64::math::{Real, Vector};
 
-/// Two shapes through which motions pass at the same time, at most the margin apart, in the frame
-/// and unit of the motions.
+/// Two shapes that motions take at the same time, at most the margin apart, in the frame and unit
+/// of the motions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde-serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
@@ -14,16 +14,15 @@ use parry3d_f64::math::{Real, Vector};
 pub struct RobotsInContact {
     /// The time of the shapes, from 0 to 1.
     pub t: Real,
-    /// Their clearance is at most this, which is at most the margin: 0 where they touch or
-    /// overlap.
+    /// Upper bound on their clearance, at most the margin: 0 if they touch or overlap.
     pub upper: Real,
     /// The sections of constant radius that realise `upper`, counted from each base.
     pub sections: [u32; 2],
-    /// A point of the first robot, `upper` or less from `on_second`.
+    /// A point of the first robot, at most `upper` from `on_second`.
     pub on_first: Vector,
-    /// A point of the second robot; the same as `on_first` where they touch or overlap.
+    /// A point of the second robot; equal to `on_first` if the robots touch or overlap.
     pub on_second: Vector,
-    /// Where along each centreline, from the base.
+    /// The places along each centreline, from the base.
     pub arc_lengths: [Real; 2],
 }
 
@@ -53,7 +52,8 @@ mod serialised {
         }
     }
 
-    /// No time is outside of the motions, and no clearance is negative or not finite.
+    /// Rejects fields that no query returns: a time outside the motions, a clearance that is
+    /// negative or not finite, or a place that is not finite.
     impl TryFrom<Fields> for RobotsInContact {
         type Error = String;
 

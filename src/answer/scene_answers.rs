@@ -1,19 +1,19 @@
-//! Answers about a scene of several structures and robots.
+//! Results of queries about a scene of several structures and robots.
 
 use super::{Contact, LinkProximity, RobotProximity};
 use parry3d_f64::math::Real;
 
-/// The least room that is left in a scene, and between whom, in the scene's frame and unit.
+/// The least slack of a scene and its place, in the scene's frame and unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Tightest {
-    /// The distance less the margin: below 0 where the margin is not kept.
+    /// Distance minus margin: negative if the margin is violated.
     pub slack: Real,
-    /// Who is so near.
+    /// The two objects with this slack.
     pub between: Between,
 }
 
-/// Two that are near one another in a scene.
+/// Two objects that are near one another in a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Between {
@@ -21,24 +21,25 @@ pub enum Between {
     Structure(StructureProximity),
     /// Two robots.
     Robots {
-        /// Their positions among the robots that were given, the lower first.
+        /// Their indices among the given robots, the lower first.
         robots: [u32; 2],
         /// Their closest links.
         nearest: RobotProximity,
     },
 }
 
-/// Where the robots are closest to one structure of a scene, in the scene's frame and unit.
+/// The place where the robots are closest to one structure of a scene, in the scene's frame and
+/// unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct StructureProximity {
     /// The structure's number, in the order in which structures were added.
     pub structure: u32,
-    /// The robot's position among those that were given.
+    /// The robot's index among the given robots.
     pub robot: u32,
     /// Its closest link, and the closest triangle of the structure.
     pub nearest: LinkProximity,
-    /// The distance less the structure's margin, if it has one.
+    /// Distance minus the structure's margin, if it has one.
     pub slack: Option<Real>,
 }
 
@@ -48,8 +49,8 @@ pub struct StructureProximity {
 pub struct SceneContact {
     /// The structure's number.
     pub structure: u32,
-    /// The robot's position among those that were given.
+    /// The robot's index among the given robots.
     pub robot: u32,
-    /// Where and how they are near.
+    /// The contact itself.
     pub contact: Contact,
 }

@@ -1,13 +1,13 @@
-//! Why a scene has no answer.
+//! Errors of queries about a scene.
 
 use super::ProximityError;
 use thiserror::Error;
 
-/// Why a scene has no answer, or a structure cannot be part of it.
+/// The reason why a scene has no answer, or why a structure cannot be part of it.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum SceneError {
-    /// What is wrong with a structure.
+    /// A structure is at fault.
     #[error("structure `{name}`: {error}")]
     Structure {
         /// The structure's name.
@@ -15,15 +15,15 @@ pub enum SceneError {
         /// What is wrong, and what to change.
         error: ProximityError,
     },
-    /// What is wrong with a robot.
+    /// A robot is at fault.
     #[error("robot {robot}: {error}")]
     Robot {
-        /// The robot's position among those that were given.
+        /// The robot's index among the given robots.
         robot: usize,
         /// What is wrong, and what to change.
         error: ProximityError,
     },
-    /// The margin between robots cannot be kept.
+    /// The margin between robots is at fault.
     #[error("between robots: {0}")]
     BetweenRobots(ProximityError),
     /// There is no structure with this number.
@@ -33,14 +33,14 @@ pub enum SceneError {
     NoSuchStructure {
         /// The number that was given.
         structure: usize,
-        /// How many structures there are.
+        /// The number of structures.
         structures: usize,
     },
 }
 
 impl SceneError {
-    /// What went wrong in one word, the same in Rust and Python: that of the error that it passes
-    /// on.
+    /// The error in one word, the same in Rust and Python; for a wrapped error, the word of that
+    /// error.
     pub fn kind(&self) -> &'static str {
         match self {
             Self::Structure { error, .. }

@@ -1,12 +1,11 @@
-//! A shape of a motion that does not keep a margin.
+//! A shape of a motion that violates a margin.
 
 use super::Witness;
 use super::checked_fields::checked_fields;
 use parry3d_f64::math::Real;
 use std::ops::{Deref, DerefMut};
 
-/// A shape that a motion passes through and that is at most the margin away, in the mesh's frame
-/// and unit.
+/// A shape of a motion that is at most the margin away, in the mesh's frame and unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde-serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
@@ -17,11 +16,11 @@ use std::ops::{Deref, DerefMut};
 pub struct ShapeInContact {
     /// The time of the shape, from 0 to 1.
     pub t: Real,
-    /// Its clearance is at most this, which is at most the margin.
+    /// Upper bound on its clearance, at most the margin.
     pub upper: Real,
     /// The section of constant radius at the place that realises `upper`, counted from the base.
     pub section: u32,
-    /// A point of the tube and one of the mesh that are `upper` apart, or nearer.
+    /// A point of the tube and a point of the mesh that are at most `upper` apart.
     pub witness: Witness,
 }
 

@@ -1,11 +1,11 @@
-//! What realises an answer.
+//! The two points that realise an answer.
 
 use parry3d_f64::math::{Real, Vector};
 
-/// Two points that realise a distance, and where on robot and mesh they are, in the mesh's frame
-/// and unit.
+/// Two points that realise a distance, and their places on robot and mesh, in the mesh's frame and
+/// unit.
 ///
-/// Every answer that names a place has one, and reads as it: `answer.on_mesh` is
+/// Every answer that names a place has a witness and dereferences to it: `answer.on_mesh` is
 /// `answer.witness.on_mesh`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde-serialize", derive(serde::Serialize, serde::Deserialize))]
@@ -17,20 +17,20 @@ use parry3d_f64::math::{Real, Vector};
 pub struct Witness {
     /// The robot's point.
     pub on_robot: Vector,
-    /// The triangle's point; the same as `on_robot` where they touch or overlap.
+    /// The triangle's point; equal to `on_robot` if they touch or overlap.
     pub on_mesh: Vector,
-    /// The triangle's position in the mesh.
+    /// The triangle's index in the mesh.
     pub triangle: u32,
-    /// Where along the robot's centreline, from the base: the place nearest to `on_mesh` on the
-    /// axis of the link, or on that of the tube.
+    /// The place along the robot's centreline, from the base: the point nearest to `on_mesh` on the
+    /// axis of the link, or of the tube.
     pub arc_length: Real,
-    /// The segment of the robot's input there, between points `segment` and `segment + 1`. Of a
-    /// tube that has no points it is the section of constant radius.
+    /// The segment of the robot's input at this place, between the points `segment` and `segment +
+    /// 1`. For a tube without points, the section of constant radius.
     pub segment: u32,
 }
 
 impl Witness {
-    /// What stands in a batch until its turn comes.
+    /// Placeholder in a batch.
     pub(crate) fn placeholder() -> Self {
         let nowhere = Vector::splat(Real::NAN);
         Self { on_robot: nowhere, on_mesh: nowhere, triangle: 0, arc_length: Real::NAN, segment: 0 }
@@ -62,7 +62,7 @@ mod serialised {
         }
     }
 
-    /// Every answer names a finite place.
+    /// Rejects places that are not finite: no query returns them.
     impl TryFrom<Fields> for Witness {
         type Error = String;
 

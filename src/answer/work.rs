@@ -1,6 +1,6 @@
-//! What an answer has cost.
+//! The work of an engine.
 
-/// How much an engine has computed since it was built, batches left out.
+/// The work of an engine since it was built, batches excluded.
 ///
 /// ```
 /// use parry_continuum::Chain;
@@ -21,13 +21,14 @@
 #[cfg_attr(feature = "serde-serialize", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Work {
-    /// Nodes of the hierarchy whose up to 16 children were bounded; none in an exhaustive engine.
+    /// Nodes of the hierarchy whose children (up to 16) were bounded; 0 in an exhaustive engine.
     pub nodes: u64,
     /// Pairs of link and triangle that were visited, 16 triangles at a time.
     pub visited: u64,
-    /// Pairs for which the distance between axis and triangle was computed, a pack at a time.
+    /// Pairs whose distance between axis and triangle was computed, a pack at a time.
     pub axis_distances: u64,
-    /// Pairs that were measured in double precision, with the disc of a flat cap where it decides.
+    /// Pairs that were measured in double precision, with the disc of a flat cap if the disc
+    /// decides.
     pub measured: u64,
 }
 

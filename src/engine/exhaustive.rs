@@ -1,4 +1,7 @@
-//! Proximity by looking at every triangle.
+//! The exhaustive engine: proximity queries that visit every triangle.
+//!
+//! Each query is one [`Pass`] over the blocks of triangles, with a [`PassGoal`]. A batch runs one
+//! pass per group of robots, so that a chunk of the mesh serves all their links from the cache.
 
 use super::proximity::{Engine, Proximity, any_triangle, placed};
 use crate::answer::{Contact, LinkProximity, MeshError, ProximityError, Work};
@@ -13,18 +16,19 @@ use parry3d_f64::shape::TriMesh;
 use std::iter::once;
 use std::sync::Arc;
 
-/// Proximity queries that visit every triangle: the work grows with the number of triangles, and
-/// moving the mesh leaves nothing to be built anew.
+/// Proximity queries that visit every triangle.
 ///
-/// `T` is the precision of the search, `f64` or `f32`. What rounding leaves in question is measured
-/// again in `f64`, so both return the double-precision answer, and `f32` is the faster. Triangles
-/// are taken 2 to 16 at a time with the widest instructions of the machine, and (feature
-/// `parallel`) on all its cores. Where single precision is too coarse, because a triangle or the
-/// robot lies very far out, the search is in double precision whatever `T`.
+/// The work grows with the number of triangles. After the mesh has moved, nothing is built again.
 ///
-/// Every triangle is visited, but most need no more than a look at the sphere around them.
+/// `T` is the precision of the search, `f64` or `f32`. The engine measures every candidate again in
+/// `f64`, so both return the double-precision answer; `f32` is the faster. The kernels take 2 to 16
+/// triangles at a time with the widest instructions of the machine, and (feature `parallel`) on all
+/// its cores. If single precision is too coarse, because a triangle or the robot lies very far out,
+/// the search runs in double precision for any `T`.
 ///
-/// A clone shares the mesh, until one of them moves it.
+/// For most triangles a test of their bounding sphere is enough.
+///
+/// A clone shares the mesh until one of the two moves it.
 ///
 /// ```
 /// use parry_continuum::{Chain, proximity::{BvhSearch, Exhaustive, Proximity}};
@@ -75,7 +79,7 @@ impl<T: SearchPrecision> std::fmt::Debug for Exhaustive<T> {
 }
 
 impl<T: SearchPrecision> Exhaustive<T> {
-    /// An engine for `mesh`, whose triangles are copied.
+    /// Builds an engine for `mesh`, whose triangles are copied.
     ///
     /// # Errors
     /// The mesh has no triangles, or a vertex is not finite or out of range.
@@ -83,12 +87,13 @@ impl<T: SearchPrecision> Exhaustive<T> {
         Ok(Self::of(Mesh::new(mesh)?))
     }
 
-    /// An engine for triangles, each given by the positions of its corners among the vertices; both
-    /// are copied. It spares the hierarchy that a [`TriMesh`] builds for itself.
+    /// Builds an engine from vertices and triangles, which are copied.
+    ///
+    /// Each triangle is three indices into `vertices`. Unlike [`new`](Self::new) this needs no
+    /// [`TriMesh`], whose constructor builds a hierarchy of its own.
     ///
     /// # Errors
-    /// There are no triangles, a vertex is not finite or out of range, or a triangle names one that
-    /// is not there.
+    /// There are no triangles, a vertex is not finite or out of range, or an index has no vertex.
     pub fn from_triangles(vertices: &[Vector], triangles: &[[u32; 3]]) -> Result<Self, MeshError> {
         Ok(Self::of(Mesh::from_triangles(vertices, triangles)?))
     }
@@ -105,26 +110,25 @@ impl<T: SearchPrecision> Exhaustive<T> {
         }
     }
 
-    /// Whether cheap, exact bounds may spare a visited triangle its narrow phase. They may unless
-    /// told otherwise.
+    /// Sets whether cheap, exact bounds may skip the narrow phase of a visited triangle (default:
+    /// yes).
     ///
-    /// Without them every pair of link and triangle costs its full distance, discs included: the
-    /// work of the paper, for comparison with it.
+    /// Without them every pair of link and triangle costs its full distance, discs included. That
+    /// is the work of the paper, for comparison with it.
     #[cfg(feature = "laboratory")]
     #[doc(hidden)]
     pub fn set_culling(&mut self, culling: bool) {
         self.culling = culling;
     }
 
-    /// Uses another instruction set than the widest of this machine: for the comparison of
-    /// instruction sets.
+    /// Sets the instruction set, to compare it with the widest of this machine.
     #[cfg(feature = "laboratory")]
     #[doc(hidden)]
     pub fn set_level(&mut self, level: Level) {
         self.level = level;
     }
 
-    /// How much was computed since the engine was built.
+    /// The work since the engine was built.
     pub fn work(&self) -> Work {
         self.work
     }
@@ -138,9 +142,10 @@ impl<T: SearchPrecision> Exhaustive<T> {
             self.pass.run(self.level, self.culling, &self.triangles, robots, 0..usize::MAX, aim);
     }
 
-    /// Answers many robots, some together: all their links meet a chunk of the mesh while it is in
-    /// the cache. `answer` gets the place of each among those of the last pass, but for those
-    /// that are refused.
+    /// Answers many robots, in groups of [`count_at_once`].
+    ///
+    /// All links of a group visit a chunk of the mesh while the chunk is in the cache. `answer`
+    /// gets the index of each accepted robot within its pass.
     fn run_batch<A>(
         &mut self,
         robots: &[(&Chain, Pose)],
@@ -164,8 +169,7 @@ impl<T: SearchPrecision> Exhaustive<T> {
         }
     }
 
-    /// The nearest of a robot's links; of several the one with the lowest triangle, then the lowest
-    /// link.
+    /// The closest of a robot's links. Ties go to the lowest triangle, then to the lowest link.
     fn least(&self, number: usize) -> Option<LinkProximity> {
         let order = |a: &LinkProximity, b: &LinkProximity| {
             a.distance.total_cmp(&b.distance).then(a.triangle.cmp(&b.triangle))
@@ -174,11 +178,11 @@ impl<T: SearchPrecision> Exhaustive<T> {
     }
 }
 
-/// So many links of a batch meet the mesh at once, or those of one robot: each thread keeps what it
-/// found for each.
+/// The most links of a batch in one pass, except for a single robot with more links. Each thread
+/// keeps its findings per link, so the limit bounds memory.
 const LINKS_AT_ONCE: usize = 1 << 12;
 
-/// How many of the first robots, one at least, meet the mesh at once.
+/// The number of leading robots that share the next pass, at least one.
 fn count_at_once(robots: &[(&Chain, Pose)]) -> usize {
     let mut links = 0;
     let fits = |robot: &Chain| {

@@ -1,4 +1,4 @@
-//! Who answers: the trait of all engines, and the engines.
+//! The engines, and the trait that all of them implement.
 
 pub(crate) mod bvh;
 mod exhaustive;

@@ -1,3 +1,7 @@
+//! The trait of all engines: proximity queries between a robot and one mesh.
+//!
+//! [`Proximity`] is the public interface. It checks the arguments, places the robot and clears
+//! `out`. [`Engine`] holds the part that each engine implements itself.
 use crate::answer::{Contact, Derivative, LinkProximity, MeshError, ProximityError};
 use crate::mesh::Mesh;
 use crate::pair::{PlacedLink, PlacedRobot, contact, contacts, derivative};
@@ -8,22 +12,25 @@ use parry3d_f64::math::{Pose, Real, Vector};
 
 /// An engine that answers proximity queries between a robot and the mesh it was built for.
 ///
-/// `pose` is the robot's pose in the mesh's frame, and answers are in that frame too. Distances are
-/// to the mesh's surface and unsigned: a link that touches nothing may be on either side of it.
+/// `pose` is the robot's pose in the mesh's frame. Answers are in the mesh's frame too. Distances,
+/// margins and bounds are in its unit of length. Distances are to the mesh's surface and unsigned:
+/// a link that touches nothing may be on either side of the mesh.
 ///
-/// All engines give the same distances. Where several triangles are equally close, or touch,
-/// [`BvhSearch`](super::BvhSearch) and [`Exhaustive`](super::Exhaustive) name the one with the
-/// lowest number, and of the links that share it the lowest, on any number of threads.
+/// All engines return the same distances. [`BvhSearch`](super::BvhSearch) and
+/// [`Exhaustive`](super::Exhaustive) break ties alike, on any number of threads: the lowest
+/// triangle of equally close ones, then the lowest link.
 ///
-/// The batches take many robots, such as a planner's samples, and answer them on all cores, in the
-/// order given. Each robot has a `Result` of its own: one that is refused costs the others nothing.
+/// The batch methods answer many robots, such as a planner's samples, on all cores. Each robot has
+/// its own `Result`, in the order given: one bad robot does not fail the batch.
 ///
 /// A query that returns an error leaves `out` empty.
 ///
-/// Only the engines of this crate are engines: the trait is sealed.
+/// The trait is sealed: only this crate implements it.
 #[allow(private_bounds)]
 pub trait Proximity: Engine {
-    /// The closest triangle of every link, in link order. `out` is cleared first.
+    /// Finds the closest triangle of every link, in link order.
+    ///
+    /// `out` is cleared first.
     ///
     /// # Errors
     /// The pose is not finite, or it moves a link out of range.
@@ -37,7 +44,7 @@ pub trait Proximity: Engine {
         self.ask_per_link(PlacedRobot::new(robot, pose)?, out)
     }
 
-    /// The closest link and triangle of the whole robot.
+    /// Returns the closest link of the whole robot and its closest triangle.
     ///
     /// # Errors
     /// The pose is not finite, or it moves a link out of range.
@@ -47,9 +54,11 @@ pub trait Proximity: Engine {
         Ok(found.unwrap_or_else(|| any_triangle(self.mesh(), &robot.link(0))))
     }
 
-    /// The closest link and triangle, if they are at most `bound` apart:
-    /// [`minimum`](Proximity::minimum) for less work where nothing is as near. Several meshes
-    /// are asked in turn, each for what is nearer than the last:
+    /// Returns the closest link and triangle if they are at most `bound` apart.
+    ///
+    /// The answer is that of [`minimum`](Proximity::minimum). If nothing is within the bound, the
+    /// query is cheaper. To search several meshes, pass the best distance so far as the bound of
+    /// the next one:
     ///
     /// ```
     /// use parry_continuum::Chain;
@@ -61,11 +70,11 @@ pub trait Proximity: Engine {
     ///     let vertices = vertices.into_iter().map(|vertex| vertex + centre).collect();
     ///     Ok(BvhSearch::new(&TriMesh::new(vertices, triangles)?)?)
     /// };
-    /// // A wall that keeps 0.5 mm, and a vessel that keeps 2 mm.
+    /// // A wall with a margin of 0.5 mm, and a vessel with a margin of 2 mm.
     /// let mut anatomy = [(ball(Vector::ZERO, 10.0)?, 0.5), (ball(Vector::X * 6.0, 1.0)?, 2.0)];
     /// let robot = Chain::from_centreline(&[Vector::ZERO, Vector::Z * 6.0], &[0.5])?;
     ///
-    /// // The least room that is left, and where.
+    /// // The least slack (distance - margin), and its place.
     /// let (mut room, mut tightest) = (f64::INFINITY, None);
     /// for (mesh, (search, margin)) in anatomy.iter_mut().enumerate() {
     ///     if let Some(found) = search.minimum_within(&robot, &Pose::IDENTITY, room + *margin)? {
@@ -77,9 +86,8 @@ pub trait Proximity: Engine {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///
-    /// A bound below zero asks for nothing, and the answer is `None`. In the example above it is
-    /// below zero where one margin is violated by more than another mesh's margin: that mesh
-    /// cannot be tighter.
+    /// If `bound` is negative, the answer is `None` without a search. The bound of the example is
+    /// negative if another margin is violated by more than `margin`: this mesh cannot be tighter.
     ///
     /// # Errors
     /// The bound is NaN, the pose is not finite, or it moves a link out of range.
@@ -94,8 +102,9 @@ pub trait Proximity: Engine {
         if bound < 0.0 { Ok(None) } else { self.ask_nearest(robot, bound) }
     }
 
-    /// Whether the robot keeps more than `margin` away from the mesh: exactly `minimum().distance >
-    /// margin`, for less work.
+    /// Returns whether the robot is farther than `margin` from the mesh.
+    ///
+    /// Equal to `minimum().distance > margin`, at lower cost.
     ///
     /// # Errors
     /// The margin is negative or NaN, the pose is not finite, or it moves a link out of range.
@@ -104,21 +113,21 @@ pub trait Proximity: Engine {
         self.ask_clears(PlacedRobot::new(robot, pose)?, margin)
     }
 
-    /// Every contact at most `margin` away, link by link and nearest first: where the distance
-    /// between a link and the mesh has a local minimum. `out` is cleared first.
+    /// Finds every contact at most `margin` away, by link and then by distance.
     ///
-    /// A place of the mesh is a local minimum for a link if every way on the mesh to a nearer place
-    /// first leads farther away.
+    /// A contact is a local minimum of the distance between a link and the mesh. A place of the
+    /// mesh is a local minimum for a link if every path on the mesh to a nearer place first leads
+    /// farther away. `out` is cleared first.
     ///
     /// - A wall that bends towards the link is one contact, however many triangles it has.
     /// - A link in a narrow lumen has a contact on each side.
-    /// - A piece of wall that is equally near everywhere, up to rounding, is one contact.
-    /// - A connected piece of wall inside the link is one contact. It names the triangle nearest to
-    ///   the axis.
-    /// - The closest point that [`per_link`](Proximity::per_link) finds is among them if it is
-    ///   within the margin, or another place as near on the same piece of wall.
+    /// - A region of the wall at constant distance, up to rounding, is one contact.
+    /// - A connected region of the wall inside the link is one contact. It names the triangle
+    ///   nearest to the axis.
+    /// - If the closest point of [`per_link`](Proximity::per_link) is within the margin, it is a
+    ///   contact. An equally near place in the same region of the wall may replace it.
     ///
-    /// Triangles are joined where they have corners at the same place, whether they share an index
+    /// Triangles are neighbours if they have corners at the same place, whether they share an index
     /// or not.
     ///
     /// ```
@@ -142,24 +151,24 @@ pub trait Proximity: Engine {
     /// ```
     ///
     /// # Prominence
-    /// A rough wall has a contact at each of its bumps. The prominence of a contact is how much
-    /// farther every way on the mesh to a nearer place first leads; it is infinite where no
-    /// such way stays within the margin. `prominence` is the least that a contact must have, in
-    /// the mesh's unit. With 0 each local minimum is a contact. For a surface made of voxels, the
-    /// size of a voxel leaves a few contacts for each link.
+    /// A rough wall has a contact at each of its bumps. The prominence of a contact is the rise of
+    /// the distance along the best path on the mesh to a nearer place. The prominence is infinite
+    /// if every such path leaves the margin. `prominence` is the least prominence of a reported
+    /// contact, in the mesh's unit. With 0 every local minimum is a contact. For a surface made of
+    /// voxels, the size of a voxel leaves a few contacts per link.
     ///
-    /// No wall is lost, whatever the prominence:
+    /// The filter loses no wall at any prominence:
     ///
-    /// - Each connected piece of wall within the margin keeps its nearest contact.
-    /// - Contacts whose normals differ by more than 60 degrees are never merged, so that both sides
-    ///   of a groove stay. The way that counts is the one to a nearer contact that is kept and
-    ///   whose normal is within 60 degrees.
-    /// - So each contact that is left out has a nearer one that stands for it. The direction in
-    ///   which that one pushes the link is within 60 degrees of its own.
+    /// - Each connected region of the wall within the margin keeps its nearest contact.
+    /// - Contacts whose normals differ by more than 60 degrees are never merged. So both sides of a
+    ///   groove stay. The prominence counts only paths to a nearer kept contact whose normal is
+    ///   within 60 degrees.
+    /// - So each contact that is dropped is represented by a nearer one. That contact pushes the
+    ///   link in a direction within 60 degrees.
     /// - A contact without a [`normal`](Contact::normal) stays.
     ///
-    /// A contact that is kept is the same as without a prominence. With a smaller margin there may
-    /// be more of them within it: a way beyond the margin joins nothing.
+    /// The filter does not change a contact that it keeps. A smaller margin may yield more contacts
+    /// within it, because a path that leaves the margin joins nothing.
     ///
     /// # Errors
     /// The margin or the prominence is negative or NaN, the pose is not finite, or it moves a link
@@ -178,8 +187,9 @@ pub trait Proximity: Engine {
         self.ask_contacts(PlacedRobot::new(robot, pose)?, ContactQuery { margin, prominence }, out)
     }
 
-    /// [`per_link`](Self::per_link) for many robots. `out` gets the answer of each, or why there is
-    /// none; inner vectors are used again.
+    /// [`per_link`](Self::per_link) for many robots.
+    ///
+    /// Writes one result per robot to `out`, in order, and reuses the inner vectors of `out`.
     ///
     /// # Errors
     /// The engine's device failed. `out` is then empty.
@@ -191,8 +201,9 @@ pub trait Proximity: Engine {
         self.ask_per_link_batch(robots, out).inspect_err(|_| out.clear())
     }
 
-    /// [`minimum`](Self::minimum) for many robots. `out` gets the answer of each, or why there is
-    /// none.
+    /// [`minimum`](Self::minimum) for many robots.
+    ///
+    /// Writes one result per robot to `out`, in order.
     ///
     /// ```
     /// use parry_continuum::Chain;
@@ -220,8 +231,9 @@ pub trait Proximity: Engine {
         self.ask_minimum_batch(robots, out).inspect_err(|_| out.clear())
     }
 
-    /// [`clears`](Self::clears) for many robots. `out` gets the answer of each, or why there is
-    /// none.
+    /// [`clears`](Self::clears) for many robots, with one margin.
+    ///
+    /// Writes one result per robot to `out`, in order.
     ///
     /// # Errors
     /// The margin is negative or NaN, or the engine's device failed. `out` is then empty.
@@ -236,14 +248,18 @@ pub trait Proximity: Engine {
         self.ask_clears_batch(robots, margin, out).inspect_err(|_| out.clear())
     }
 
-    /// An answer with its normal, its place on the robot and the features that are nearest, of the
-    /// mesh that the engine has now. Give the same robot and pose as to the query.
+    /// Returns the contact of an answer: its normal, its place on the robot and its nearest
+    /// features.
+    ///
+    /// The contact is about the mesh as the engine has it now. Give the same robot and pose as to
+    /// the query.
     ///
     /// # Errors
-    /// The answer's link or triangle does not exist, or the pose is not finite or moves the link
-    /// out of range. Or the answer does not fit the two: it is about another robot or another
-    /// pose, or the mesh has moved since. It fits if it is off by no more than 16 units in the
-    /// last place of the largest coordinate and of the extent of link and triangle.
+    /// - The answer's link or triangle does not exist.
+    /// - The pose is not finite, or it moves the link out of range.
+    /// - The answer does not fit link and triangle: the robot or the pose is another one, or the
+    ///   mesh has moved since. An answer fits if its error is at most 16 u (c + d). Here u = 2^-53,
+    ///   c is the largest coordinate of the two, and d is their extent.
     ///
     /// ```
     /// use parry_continuum::Chain;
@@ -259,7 +275,7 @@ pub trait Proximity: Engine {
     /// assert_eq!(contact.feature.link, LinkFeature::EndCap);
     /// assert_eq!(contact.feature.triangle, TriangleFeature::Face);
     /// assert!((contact.arc_length - (1.0 + 2.0_f64.sqrt())).abs() < 1e-15);
-    /// // Once the floor has moved the answer is about one that is no more.
+    /// // The floor has moved, so the old answer no longer fits.
     /// search.set_vertices(&floor.map(|corner| corner - Vector::Z))?;
     /// assert!(search.contact(&robot, &Pose::IDENTITY, &closest).is_err());
     /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -273,11 +289,13 @@ pub trait Proximity: Engine {
         contact(self.mesh(), robot, pose, answer)
     }
 
-    /// [`contact`](Self::contact) of every answer, in order. It takes a fraction of the time,
-    /// because several are computed at once. `out` is cleared first.
+    /// [`contact`](Self::contact) for every answer, in order.
+    ///
+    /// One call takes a fraction of the time of single calls, because it computes several contacts
+    /// at once. `out` is cleared first.
     ///
     /// # Errors
-    /// Those of the first answer that has one; `out` is then empty.
+    /// The error of the first answer that has one; `out` is then empty.
     ///
     /// ```
     /// use parry_continuum::Chain;
@@ -303,12 +321,12 @@ pub trait Proximity: Engine {
         contacts(self.mesh(), robot, pose, answers, out)
     }
 
-    /// How an answer's distance changes with the ends of the link, its radius and the triangle's
-    /// corners, of the mesh that the engine has now. Give the same robot and pose as to the
-    /// query.
+    /// Returns the derivative of an answer's distance by the ends of the link, its radius and the
+    /// triangle's corners.
     ///
-    /// `None` where there is no normal, because neither side of the triangle is the robot's: see
-    /// [`Contact::normal`].
+    /// The derivative is about the mesh as the engine has it now. Give the same robot and pose as
+    /// to the query. `None` if the contact has no normal, because neither side of the triangle is
+    /// the robot's: see [`Contact::normal`].
     ///
     /// # Errors
     /// As [`contact`](Self::contact).
@@ -341,43 +359,46 @@ pub trait Proximity: Engine {
         self.mesh().vertices()
     }
 
-    /// The mesh's triangles, each as the positions of its corners among the
-    /// [`vertices`](Self::vertices).
+    /// The mesh's triangles, each as three indices into [`vertices`](Self::vertices).
     fn triangles(&self) -> &[[u32; 3]] {
         self.mesh().indices()
     }
 
-    /// Moves the mesh's vertices; the triangles stay as they are. Answers given before are about
-    /// the mesh as it was, and [`contact`](Self::contact) refuses those that no longer fit.
+    /// Moves the mesh's vertices and keeps its triangles.
     ///
-    /// The next question that this engine is asked is about the new vertices. Its clones keep the
-    /// mesh that they had, and a clone made afterwards has the new one. While a clone lives
-    /// that shares the mesh, the mesh and all that was built for it are copied first.
+    /// `vertices` has one position per vertex, in the mesh's frame. Earlier answers are about the
+    /// old mesh; [`contact`](Self::contact) refuses those that no longer fit.
     ///
-    /// The vertices are copied and what bounds them is fitted to them, on all cores, in a time that
-    /// grows with the mesh. The division of the mesh into nodes stays as it was: build a new
-    /// engine where the mesh has become another shape, so that searches are fast again. What
-    /// else has to be built depends on the question. Where the table names something, the first
-    /// such question after the move waits for it, unless [`prepare`](super::BvhSearch::prepare) is
-    /// called before:
+    /// The next query uses the new vertices. Clones made before keep the old mesh; clones made
+    /// afterwards have the new one. If a clone shares the mesh, the engine first copies the mesh
+    /// and everything built for it.
     ///
-    /// | question | what is built after a move |
-    /// |---|---|
-    /// | [`per_link`](Self::per_link), [`minimum`](Self::minimum), [`minimum_within`](Self::minimum_within), tubes and motions | nothing |
-    /// | [`clears`](Self::clears) | nothing, but where the box around the mesh has moved by several cells of a coarse grid: then which space lies on which side of the wall |
-    /// | [`within`](Self::within) | which triangles are joined, if vertices that were at one place have parted or others have met: that is compared once, over all vertices; and near the robot where neighbours of triangles are |
-    /// | [`side`](super::BvhSearch::side), [`clears_inside`](super::BvhSearch::clears_inside) | what each part of the mesh is from far away |
-    /// | any, about what single precision does not resolve | nothing: a second hierarchy that was built is fitted too, which made the move take two to three times as long |
+    /// The call copies the vertices and refits the bounding volumes on all cores. Its time grows
+    /// with the mesh. The tree keeps its topology: build a new engine if the shape has changed
+    /// much, so that searches stay fast. Some queries need further structures. The first such query
+    /// after a move builds them, unless [`prepare`](super::BvhSearch::prepare) has done so:
     ///
-    /// The places of the last answers stay, and the next searches start there. The distances that
-    /// were known are dropped.
+    /// - [`per_link`](Self::per_link), [`minimum`](Self::minimum),
+    ///   [`minimum_within`](Self::minimum_within), tubes and motions: nothing.
+    /// - [`clears`](Self::clears): the grid of the sides of the wall, only if the bounding box has
+    ///   moved by several cells of the grid.
+    /// - [`within`](Self::within): one pass over all vertices finds vertices that have met or
+    ///   parted. If there are any, the query also builds which triangles are joined. Near the robot
+    ///   it builds the neighbours of triangles.
+    /// - [`side`](super::BvhSearch::side), [`clears_inside`](super::BvhSearch::clears_inside): the
+    ///   far field of each node.
+    /// - Any query, if single precision is too coarse: nothing. The move itself refits the second
+    ///   hierarchy, if that was built, and then takes two to three times as long.
     ///
-    /// [`Exhaustive`](super::Exhaustive) refills its blocks of triangles, and the GPU's engine
-    /// sends the vertices with the next query.
+    /// The engine keeps the places of its last answers as seeds of the next searches. It drops the
+    /// cached distances.
+    ///
+    /// [`Exhaustive`](super::Exhaustive) refills its blocks of triangles. The GPU engine sends the
+    /// vertices with the next query.
     ///
     /// # Errors
-    /// The number of vertices differs or one of them is not finite or out of range. The engine then
-    /// keeps the old ones.
+    /// The number of vertices differs, or a vertex is not finite or out of range. The engine then
+    /// keeps the old vertices.
     fn set_vertices(&mut self, vertices: &[Vector]) -> Result<(), MeshError> {
         self.mesh().check_moved(vertices)?;
         self.move_vertices(vertices);
@@ -385,31 +406,33 @@ pub trait Proximity: Engine {
     }
 }
 
-/// What an engine does itself: all else is the same for all engines, and stands in [`Proximity`].
-/// Robots are placed, margins and bounds at least 0.
+/// The part of an engine that is its own. [`Proximity`] holds the part that all engines share.
+///
+/// The robots are placed; margins and bounds are at least 0.
 pub(crate) trait Engine {
     /// The mesh as it is now.
     fn mesh(&self) -> &Mesh;
 
-    /// The closest triangle of every link, in `out`, which is empty.
+    /// Appends the closest triangle of every link to `out`, which is empty.
     fn ask_per_link(
         &mut self,
         robot: PlacedRobot,
         out: &mut Vec<LinkProximity>,
     ) -> Result<(), ProximityError>;
 
-    /// The closest link and triangle, if they are at most `bound` apart. Without a bound there is
-    /// none only where rounding hides all distances.
+    /// Returns the closest link and triangle if they are at most `bound` apart.
+    ///
+    /// With an infinite bound, `None` occurs only if rounding hides all distances.
     fn ask_nearest(
         &mut self,
         robot: PlacedRobot,
         bound: Real,
     ) -> Result<Option<LinkProximity>, ProximityError>;
 
-    /// Whether every link keeps more than `margin` away.
+    /// Returns whether every link is farther than `margin` from the mesh.
     fn ask_clears(&mut self, robot: PlacedRobot, margin: Real) -> Result<bool, ProximityError>;
 
-    /// The contacts that are asked for, in `out`, which is empty.
+    /// Appends the contacts of `query` to `out`, which is empty.
     fn ask_contacts(
         &mut self,
         robot: PlacedRobot,
@@ -436,16 +459,16 @@ pub(crate) trait Engine {
         out: &mut Vec<Result<bool, ProximityError>>,
     ) -> Result<(), ProximityError>;
 
-    /// Moves the vertices, which were checked.
+    /// Moves the vertices, which [`Proximity::set_vertices`] has checked.
     fn move_vertices(&mut self, vertices: &[Vector]);
 }
 
-/// Some triangle for the first link of a robot whose nearest no search finds.
+/// Returns the first link with triangle 0, for a robot whose closest triangle no search finds.
 pub(crate) fn any_triangle(mesh: &Mesh, link: &PlacedLink) -> LinkProximity {
     link.answer(0, &link.measure(0, mesh.corners(0)))
 }
 
-/// The robots of a batch in the mesh's frame, or why they are refused.
+/// Places the robots of a batch in the mesh's frame; an element is the error of a bad robot.
 pub(crate) fn placed<'a>(
     robots: &'a [(&Chain, Pose)],
 ) -> impl Iterator<Item = Result<PlacedRobot<'a>, ProximityError>> {

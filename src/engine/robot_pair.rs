@@ -1,4 +1,9 @@
-//! Two robots beside one another.
+//! Queries about two robots, and about one robot and itself.
+//!
+//! [`RobotPair`] checks the arguments, places the robots and holds the warm starts. [`TwoRobots`],
+//! [`place_tubes`] and [`MotionPair`] answer for two robots. [`RobotWithItself`],
+//! [`self_clears_tube`] and [`self_clears_motion`] answer for one robot and itself; the module of
+//! [`RobotWithItself`] derives which pairs of parts count.
 
 use crate::answer::{Decision, ProximityError, RobotClearance, RobotMotionAnswer, RobotProximity};
 use crate::query::motion::{
@@ -12,14 +17,14 @@ use crate::query::{check_decision, check_margin, check_not_negative};
 use crate::robot::{Chain, Motion, Tube};
 use parry3d_f64::math::{Pose, Real};
 
-/// Questions about two robots, exactly: which links are closest, and whether all keep a margin.
+/// Exact queries about two robots: the closest links, and whether all links keep a margin.
 ///
-/// It remembers what was nearest, which bounds the next query: any robots and poses may follow, and
-/// small motions are answered fastest. A clone has the memory too; each thread should have one of
-/// its own. [`between`] and [`clears_between`] are the same without a memory.
+/// The last answers warm-start the next query. Any robots and poses may follow; small motions are
+/// answered fastest. A clone copies the memory. Each thread should have its own pair. [`between`]
+/// and [`clears_between`] are the same without a memory.
 ///
-/// Both poses bring their robot into one frame, in which the answers are. Distances are unsigned, 0
-/// where the robots touch or overlap, and exact as those to a mesh.
+/// Each pose places its robot in a common frame; answers are in this frame. Distances are unsigned,
+/// 0 if the robots touch or overlap, and as exact as distances to a mesh.
 ///
 /// ```
 /// use parry_continuum::{Chain, proximity::RobotPair};
@@ -47,25 +52,24 @@ pub struct RobotPair {
     own_motion: SelfMotionMemory,
 }
 
-/// What the parameters are called.
+/// The names of the parameters in errors.
 const POSES: [&str; 2] = ["pose_a", "pose_b"];
 const MOTIONS: [&str; 2] = ["a", "b"];
 
 impl RobotPair {
-    /// With an empty memory.
+    /// Makes a pair with an empty memory.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Forgets the last answers.
+    /// Forgets the last answers: the next query starts without a warm start.
     pub fn forget(&mut self) {
         self.memory.forget();
         self.own.forget();
         self.tubes.forget();
     }
 
-    /// The two links that are closest. Of equal distances the lowest link of `a` counts, then the
-    /// lowest of `b`.
+    /// Returns the two closest links. Ties return the lowest link of `a`, then the lowest of `b`.
     ///
     /// # Errors
     /// A pose is not finite or not rigid, or moves a link out of range.
@@ -79,7 +83,7 @@ impl RobotPair {
         Ok(TwoRobots::new([a, b], [pose_a, pose_b], POSES)?.minimum(&mut self.memory))
     }
 
-    /// For each link of `a`, in order, the closest link of `b`. `out` is cleared first.
+    /// Finds the closest link of `b` for each link of `a`, in order. `out` is cleared first.
     ///
     /// # Errors
     /// As [`minimum`](Self::minimum).
@@ -96,8 +100,9 @@ impl RobotPair {
         Ok(())
     }
 
-    /// Whether all links of one robot are farther than `margin` from all of the other: true exactly
-    /// when the distance of [`minimum`](Self::minimum) is more than it.
+    /// Returns whether every link of `a` is farther than `margin` from every link of `b`.
+    ///
+    /// True exactly if the distance of [`minimum`](Self::minimum) exceeds the margin.
     ///
     /// # Errors
     /// As [`minimum`](Self::minimum), or the margin is negative or NaN.
@@ -113,12 +118,12 @@ impl RobotPair {
         Ok(TwoRobots::new([a, b], [pose_a, pose_b], POSES)?.clears(margin, &mut self.memory))
     }
 
-    /// Every place where the robots are at most `margin` apart, in the order of the links. `out` is
-    /// cleared first.
+    /// Finds every place where the robots are at most `margin` apart, in the order of the links.
     ///
-    /// A place is a pair of links of which no neighbours, one link on along either robot or both,
-    /// are closer. Neighbours that are as close count as one place, at the lowest links: two
-    /// robots that overlap along a stretch do so once.
+    /// A place is a pair of links (i, j) at a local minimum: no neighbouring pair, one link on
+    /// along either robot or both, is closer. Neighbouring pairs at equal distance count as one
+    /// place, at the lowest links. So two robots that overlap along several links have one place
+    /// there. `out` is cleared first.
     ///
     /// # Errors
     /// As [`clears`](Self::clears).
@@ -137,17 +142,18 @@ impl RobotPair {
         Ok(())
     }
 
-    /// How near two tubes are, between bounds that are at most `tolerance` apart where the tubes
-    /// allow that.
+    /// Bounds the clearance of two tubes from both sides.
     ///
+    /// `tolerance` is a length: the bounds differ by at most the tolerance if the tubes allow that.
     /// The bounds hold for the tubes as they were given, all rounding included: `lower` <=
-    /// clearance <= `upper`, and `upper` is realised by the points of the answer. There are
-    /// always bounds, and [`resolved`](RobotClearance::resolved) says whether they are as close
-    /// as was asked for, as of [`BvhSearch::clearance`](crate::proximity::BvhSearch::clearance).
-    /// What both tubes state as their own errors is in both bounds.
+    /// clearance <= `upper`. The points of the answer realise `upper`. Both bounds allow for the
+    /// errors that the tubes state of themselves.
     ///
-    /// The work grows with the pieces near one another, about the root of 1 / tolerance where the
-    /// tubes cross, and with the number of sections of the one times that of the other.
+    /// The answer always has bounds. [`resolved`](RobotClearance::resolved) says whether they meet
+    /// the tolerance, as for [`BvhSearch::clearance`](crate::proximity::BvhSearch::clearance).
+    ///
+    /// The work grows with the number of pieces near one another, about as 1 / sqrt(tolerance) if
+    /// the tubes cross. It also grows with the product of the numbers of sections.
     ///
     /// ```
     /// use parry_continuum::{Tube, proximity::RobotPair};
@@ -155,7 +161,7 @@ impl RobotPair {
     ///
     /// let arc: Vec<_> = (0..=60).map(|k| f64::from(k) / 60.0).map(|a| Vector::new(a.cos(), 0.0, a.sin()) * 30.0).collect();
     /// let tube = Tube::from_samples(&arc, &[1.0; 60], Some([Vector::Z, Vector::new(-1.0_f64.sin(), 0.0, 1.0_f64.cos())]))?;
-    /// // The same tube turned around its base, whose tip bends to the other side.
+    /// // The same tube, turned around its base. Its tip bends to the other side.
     /// let turned = Pose::new(Vector::X * 65.0, Vector::Z * std::f64::consts::PI);
     /// let found = RobotPair::new().clearance(&tube, &Pose::IDENTITY, &tube, &turned, 0.01)?;
     /// assert!(found.resolved && found.lower <= 3.0 && 3.0 <= found.upper && found.upper - found.lower <= 0.01);
@@ -163,8 +169,9 @@ impl RobotPair {
     /// ```
     ///
     /// # Errors
-    /// The tolerance is negative or NaN; the curve of a tube is not finite somewhere; or a pose is
-    /// not finite or not rigid, or moves its tube out of range.
+    /// - The tolerance is negative or NaN.
+    /// - The curve of a tube is not finite somewhere.
+    /// - A pose is not finite or not rigid, or moves its tube out of range.
     pub fn clearance(
         &mut self,
         a: &Tube,
@@ -178,14 +185,16 @@ impl RobotPair {
         clearance_between(&mut tubes, &mut self.tubes, tolerance)
     }
 
-    /// Whether two tubes keep more than `margin`. `Clear` and `Contact` are proven; `Undecided` is
-    /// the answer only where the clearance is within `resolution` of the margin, or where
-    /// 65,536 pairs of pieces do not decide it.
+    /// Decides whether two tubes are farther than `margin` apart.
+    ///
+    /// `margin` and `resolution` are lengths. `Clear` and `Contact` are proven. `Undecided` occurs
+    /// only if the clearance is within `resolution` of the margin, or if 65,536 pairs of pieces do
+    /// not decide.
     ///
     /// # Errors
     /// The margin or the resolution is negative or NaN, samples do not allow a decision at that
-    /// resolution, or as [`clearance`](Self::clearance). A contact that is found first is the
-    /// answer, whatever the curves do elsewhere.
+    /// resolution, or as [`clearance`](Self::clearance). A contact that is found first is reported
+    /// before any error about the curves elsewhere.
     pub fn tubes_clear(
         &mut self,
         a: &Tube,
@@ -200,27 +209,29 @@ impl RobotPair {
         tubes_clear(&mut tubes, &mut self.tubes, margin, resolution)
     }
 
-    /// Whether two robots that move at the same time keep more than `margin` between them, at every
-    /// time from 0 to 1. Both motions place their robot in one frame. A robot at rest is a
-    /// [`RigidMotion`](crate::RigidMotion) from a pose to the same pose.
+    /// Decides whether two robots that move at the same time stay farther than `margin` apart, at
+    /// every time from 0 to 1.
     ///
-    /// - `Clear` is proven from the speeds that the motions state, for every instant and not only
-    ///   for some.
+    /// Both motions place their robot in a common frame. A robot at rest is a
+    /// [`RigidMotion`](crate::RigidMotion) from a pose to the same pose. `margin` and `resolution`
+    /// are lengths.
+    ///
+    /// - `Clear` is proven for every instant from the speeds that the motions state.
     /// - `Contact` names a time, and two points of the shapes at that time that are at most the
     ///   margin apart.
-    /// - `Undecided`: the robots come within `resolution` of the margin and of what they state as
-    ///   their own errors, or an end turns from flat to round there; or the question ends after
-    ///   65,536 shapes of each, or after a million pairs of pieces in all of them. The
+    /// - `Undecided`: the robots come within `resolution` of the margin, beyond the errors that
+    ///   they state of themselves. Or an end that comes near turns from flat to round. Or the query
+    ///   ends after 65,536 shapes of each robot, or after a million pairs of pieces in total. The
     ///   [reason](RobotMotionAnswer::reason) says which.
     ///
-    /// The work is one query about two tubes for each time that the proof needs, which are the
-    /// fewer, the slower the robots are compared with the room between them. The speeds are
-    /// trusted: see [`verify_motion`](crate::verify_motion).
+    /// The work is one query about two tubes for each time that the proof needs. Slow robots with a
+    /// wide gap need few times. The stated speeds are premises: see
+    /// [`verify_motion`](crate::verify_motion).
     ///
     /// ```
     /// use parry_continuum::{LinearMotion, parry::math::Vector, proximity::{Decision, RobotPair}};
     ///
-    /// // Two needles, the tips of which pass one another.
+    /// // Two needles whose tips pass one another.
     /// let needle = |y: f64, x: [f64; 2]| {
     ///     let ends = x.map(|x| [Vector::new(0.0, y, -40.0), Vector::new(x, y, 0.0)]);
     ///     LinearMotion::chain(&ends[0], &ends[1], &[1.0])
@@ -234,10 +245,11 @@ impl RobotPair {
     /// ```
     ///
     /// # Errors
-    /// The margin or the resolution is negative or NaN; a motion has no shape at some time, its
-    /// sections change, or a stated speed is not finite; a robot is out of range; or the
-    /// resolution is finer than rounding, than the samples of a shape allow, or than so fast a
-    /// motion can be divided.
+    /// - The margin or the resolution is negative or NaN.
+    /// - A motion has no shape at some time, its sections change, or a stated speed is not finite.
+    /// - A robot is out of range.
+    /// - The resolution is finer than rounding or the samples of a shape allow, or a motion is too
+    ///   fast to be divided that finely.
     pub fn clears_motion(
         &mut self,
         a: &impl Motion,
@@ -250,7 +262,7 @@ impl RobotPair {
         motions.clear(MarginQuery { margin, resolution })
     }
 
-    /// As [`self_minimum`], with a memory.
+    /// [`self_minimum`], with a memory.
     ///
     /// # Errors
     /// As [`self_minimum`].
@@ -261,7 +273,7 @@ impl RobotPair {
         Ok(RobotWithItself::new(robot, &mut self.own)?.minimum(&mut self.own))
     }
 
-    /// As [`self_clears`], in memory that is used again.
+    /// [`self_clears`], with reused memory.
     ///
     /// # Errors
     /// As [`self_clears`].
@@ -270,7 +282,7 @@ impl RobotPair {
         Ok(RobotWithItself::new(robot, &mut self.own)?.clears(margin, &mut self.own))
     }
 
-    /// As [`tube_self_clears`], in memory that is used again.
+    /// [`tube_self_clears`], with reused memory.
     ///
     /// # Errors
     /// As [`tube_self_clears`].
@@ -284,7 +296,7 @@ impl RobotPair {
         self_clears_tube(tube, &mut self.own_tube, margin, resolution)
     }
 
-    /// As [`motion_self_clears`], in memory that is used again.
+    /// [`motion_self_clears`], with reused memory.
     ///
     /// # Errors
     /// As [`motion_self_clears`].
@@ -299,7 +311,7 @@ impl RobotPair {
     }
 }
 
-/// The two links that are closest: [`RobotPair::minimum`] without a memory.
+/// Returns the two closest links of two robots: [`RobotPair::minimum`] without a memory.
 ///
 /// # Errors
 /// As [`RobotPair::minimum`].
@@ -309,7 +321,7 @@ impl RobotPair {
 /// use parry_continuum::parry::math::{Pose, Vector};
 ///
 /// let robot = Chain::from_centreline(&[Vector::ZERO, Vector::Z * 40.0], &[1.0])?;
-/// // Tip to tip, the second robot comes from the other side.
+/// // Tip to tip: the second robot comes from the other side.
 /// let facing = Pose::new(Vector::Z * 85.0, Vector::X * std::f64::consts::PI);
 /// let closest = between(&robot, &Pose::IDENTITY, &robot, &facing)?;
 /// assert!((closest.distance - 5.0).abs() < 1e-12);
@@ -324,7 +336,8 @@ pub fn between(
     RobotPair::new().minimum(a, pose_a, b, pose_b)
 }
 
-/// Whether two robots keep a margin: [`RobotPair::clears`] without a memory.
+/// Returns whether two robots are farther than `margin` apart: [`RobotPair::clears`] without a
+/// memory.
 ///
 /// # Errors
 /// As [`RobotPair::clears`].
@@ -336,7 +349,7 @@ pub fn between(
 /// let robot = Chain::from_centreline(&[Vector::ZERO, Vector::Z * 40.0], &[1.0])?;
 /// let beside = Pose::translation(3.0, 0.0, 0.0);
 /// assert!(clears_between(&robot, &Pose::IDENTITY, &robot, &beside, 0.5)?);
-/// assert!(!clears_between(&robot, &Pose::IDENTITY, &robot, &beside, 1.0)?); // a margin is kept by what is farther
+/// assert!(!clears_between(&robot, &Pose::IDENTITY, &robot, &beside, 1.0)?); // exactly at the margin is not clear
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn clears_between(
@@ -349,35 +362,41 @@ pub fn clears_between(
     RobotPair::new().clears(a, pose_a, b, pose_b, margin)
 }
 
-/// Where a robot comes closest to itself, or nothing if no two of its parts can: a straight robot,
-/// or one that bends too little.
+/// Returns the place where a robot comes closest to itself, or `None` if no two of its parts can.
 ///
-/// Parts that are close only because they are neighbours do not count. Asked for are
+/// `None` occurs for a robot that is straight or bends too little. Parts that are close only
+/// because they are neighbours do not count. The query considers these pairs of parts:
 ///
-/// - two links with a turn of at least pi between them, which is the sum of the angles of the
-///   joints;
-/// - a face (the base or the tip, if flat, or the wider side of a step, if round too) and a link,
-///   with a turn of at least pi / 2;
-/// - two faces that look at one another: the end of a link and the start of a later one.
+/// 1. Two links with a turn of at least pi between them. The turn is the sum of the angles of the
+///    joints.
+/// 2. A face and a link, with a turn of at least pi / 2. A face is the base or the tip, if flat, or
+///    the wider side of a step, also if round.
+/// 3. Two faces that look at one another, at any turn: the end of a link and the start of a later
+///    one.
 ///
-/// A face counts if the way to the other part leaves it outwards, the robot leads nowhere nearer
-/// from there, and the adjoining link does not hold the nearest point of the face. So the shoulders
-/// of a taper never meet. Radii that differ by less than a share of 2^-32 are no step.
+/// A face counts if three conditions hold at the nearest place:
 ///
-/// No other two places can be a local minimum of the distance, however the robot is bent: a closed
-/// curve turns by at least 2 pi, of which the two corners of arc and chord take pi at most
-/// (Fenchel's theorem). So a bend never collides with its own neighbourhood, and no number of
-/// neighbours has to be chosen.
+/// - The way to the other part leaves the face outwards.
+/// - The robot leads nowhere nearer from there.
+/// - The adjoining link does not contain the nearest point of the face.
+///
+/// So the shoulders of a taper never meet. Radii that differ by less than a share of 2^-32 are no
+/// step.
+///
+/// No other two places can be a local minimum of the distance, however the robot bends. A closed
+/// curve turns by at least 2 pi (Fenchel's theorem), and the two corners of arc and chord take at
+/// most pi of it. So a bend never collides with its own neighbourhood, and no number of neighbours
+/// has to be chosen.
 ///
 /// # Errors
 /// A joint is so sharp that its links overlap over more than half of the shorter one: r tan(angle /
-/// 2) is more than half of its length. The rule is one for tubes thinner than they bend.
+/// 2) > length / 2. The rule above holds for tubes that are thinner than their bends.
 ///
 /// ```
 /// use parry_continuum::{Chain, proximity::self_minimum};
 /// use parry_continuum::parry::math::Vector;
 ///
-/// // A hairpin: two straight legs and half a circle of radius 10 between them.
+/// // A hairpin: two straight legs, and half a circle of radius 10 between them.
 /// let angles = (0..=20).map(|k| std::f64::consts::PI * f64::from(k) / 20.0);
 /// let arc = angles.map(|a| Vector::new(10.0 * (1.0 - a.cos()), 0.0, 30.0 + 10.0 * a.sin()));
 /// let points: Vec<_> = [Vector::ZERO].into_iter().chain(arc).chain([Vector::new(20.0, 0.0, 0.0)]).collect();
@@ -390,8 +409,9 @@ pub fn self_minimum(robot: &Chain) -> Result<Option<RobotProximity>, ProximityEr
     RobotPair::new().self_minimum(robot)
 }
 
-/// Whether a robot keeps a margin to itself: true exactly when [`self_minimum`] finds nothing, or
-/// something farther than `margin`.
+/// Returns whether a robot keeps a margin to itself.
+///
+/// True exactly if [`self_minimum`] returns `None` or a distance of more than `margin`.
 ///
 /// # Errors
 /// As [`self_minimum`], or the margin is negative or NaN.
@@ -408,27 +428,32 @@ pub fn self_clears(robot: &Chain, margin: Real) -> Result<bool, ProximityError> 
     RobotPair::new().self_clears(robot, margin)
 }
 
-/// Whether a tube keeps more than `margin` to itself.
+/// Decides whether a tube is farther than `margin` from itself.
 ///
-/// Asked for are the parts that [`self_minimum`] asks for, of the curve itself: two places with a
-/// turn of at least pi between them, a flat face and what is in front of it with a turn of at least
-/// pi / 2, and two faces that look at one another. Pieces from all of which the robot leads nearer
-/// to the face are left out. So a bend never collides with its own neighbourhood.
+/// The query considers the same parts as [`self_minimum`], on the curve itself:
 ///
-/// `Clear` and `Contact` are proven. Errors that the tube states for itself count in all distances;
-/// which parts are asked for is told by the curve as it was given. `Undecided` is the answer only
-/// - where the distance of such parts is within `resolution` of the margin, or within what was
-///   stated;
-/// - where the margin is as wide as the tightest bend: from 1 / curvature less the radius on beside
-///   a step, and from 2 / curvature less both radii on elsewhere. What is known of the curve may
-///   leave open there which parts are asked for;
-/// - where samples are so few that they do not show how far the curve turns; or
-/// - where 65,536 pairs of pieces do not decide it.
+/// 1. Two places with a turn of at least pi between them.
+/// 2. A flat face and a place in front of it, with a turn of at least pi / 2.
+/// 3. Two faces that look at one another.
+///
+/// It leaves out a piece if the robot leads nearer to the face from every place of the piece. So a
+/// bend never collides with its own neighbourhood.
+///
+/// `margin` and `resolution` are lengths. `Clear` and `Contact` are proven. All distances allow for
+/// the errors that the tube states of itself; the parts are selected on the curve as it was given.
+/// `Undecided` occurs only if
+///
+/// - the distance of such parts is within `resolution` of the margin, or within the stated errors;
+/// - the margin is as wide as the tightest bend: at least 1 / curvature - r beside a step, and at
+///   least 2 / curvature - r1 - r2 elsewhere. The known curve may then leave open which parts
+///   count;
+/// - the samples are too few to show how far the curve turns; or
+/// - 65,536 pairs of pieces do not decide.
 ///
 /// # Errors
 /// - The margin or the resolution is negative or NaN.
-/// - The tube bends within its radius somewhere, as far as its curvature is known; or a chain,
-///   taken as a tube, has a joint too sharp for [`self_minimum`].
+/// - The tube bends, or may bend, within its radius somewhere.
+/// - The tube is made from a chain with a joint that is too sharp for [`self_minimum`].
 /// - Samples do not allow a decision at that resolution, or the curve of the tube is not finite
 ///   somewhere.
 ///
@@ -436,11 +461,11 @@ pub fn self_clears(robot: &Chain, margin: Real) -> Result<bool, ProximityError> 
 /// use parry_continuum::{Tube, proximity::{Decision, tube_self_clears}};
 /// use parry_continuum::parry::math::Vector;
 ///
-/// // Two turns of a coil of radius 10 and pitch 4, around a wire of 1.
+/// // Two turns of a coil of radius 10 and pitch 4; the wire has radius 1.
 /// let angles = (0..=240).map(|k| std::f64::consts::PI * f64::from(k) / 60.0);
 /// let rise = 4.0 / (2.0 * std::f64::consts::PI);
 /// let coil: Vec<_> = angles.map(|a| Vector::new(10.0 * a.cos(), 10.0 * a.sin(), rise * a)).collect();
-/// let along = Vector::new(0.0, 10.0, rise); // as it begins and, after whole turns, ends
+/// let along = Vector::new(0.0, 10.0, rise); // at both ends, after whole turns
 /// let tube = Tube::with_constant_radius(&coil, 1.0, Some([along; 2]))?;
 /// assert_eq!(tube_self_clears(&tube, 1.9, 0.01)?, Decision::Clear);
 /// assert_eq!(tube_self_clears(&tube, 2.1, 0.01)?, Decision::Contact);
@@ -454,27 +479,30 @@ pub fn tube_self_clears(
     RobotPair::new().tube_self_clears(tube, margin, resolution)
 }
 
-/// Whether a robot that moves keeps more than `margin` to itself, at every time from 0 to 1.
+/// Decides whether a moving robot stays farther than `margin` from itself, at every time from 0 to
+/// 1.
 ///
-/// - `Clear` is proven from the speeds and turns that the motion states: at no instant are two
-///   places closest to one another, and at most the margin apart, unless they are neighbours.
-/// - `Contact` names a time at which the shape does not keep the margin as [`tube_self_clears`]
-///   asks for it, and two points of that shape in the mesh's frame.
-/// - `Undecided`: the robot comes within `resolution` of the margin and of what it states as its
-///   own errors, or as wide margins or few samples as [`tube_self_clears`] leaves undecided; or an
-///   end turns from flat to round there; or the question ends after 65,536 shapes, or after 262,144
-///   pairs of pieces in all of them. The [reason](RobotMotionAnswer::reason) says which.
+/// - `Clear` is proven from the speeds and turns that the motion states. At no instant are two
+///   places closest to one another and at most the margin apart, unless they are neighbours.
+/// - `Contact` names a time at which the shape violates the margin in the sense of
+///   [`tube_self_clears`], and two points of that shape in the mesh's frame.
+/// - `Undecided`: the robot comes within `resolution` of the margin, beyond the errors that it
+///   states of itself. Or margin or samples are among the cases that [`tube_self_clears`] leaves
+///   undecided. Or an end that comes near turns from flat to round. Or the query ends after 65,536
+///   shapes, or after 262,144 pairs of pieces in total. The [reason](RobotMotionAnswer::reason)
+///   says which.
 ///
-/// The work is one query about a tube beside itself for each time that the proof needs: four to
-/// eight for each rad that a part of the robot turns, and more near a contact. The speeds and turns
-/// are trusted: see [`verify_motion`](crate::verify_motion). So is that at all times the robot is
-/// one that [`tube_self_clears`] does not refuse: it bends by less than 1 / radius. Only the shapes
-/// that are looked at are checked for that.
+/// The work is one query about a tube and itself for each time that the proof needs. It needs four
+/// to eight times per rad that a part of the robot turns, and more near a contact.
+///
+/// **Premises.** The stated speeds and turns hold: see [`verify_motion`](crate::verify_motion). At
+/// all times [`tube_self_clears`] accepts the robot: it bends by less than 1 / radius. The query
+/// checks the latter only for the shapes that it visits.
 ///
 /// ```
 /// use parry_continuum::{LinearMotion, parry::math::Vector, proximity::{Decision, motion_self_clears}};
 ///
-/// // A hairpin of straight links, whose tip swings past its base.
+/// // A hairpin of straight links. Its tip swings past its base.
 /// let hairpin = |y: f64| [[0.0, 0.0, 0.0], [0.0, 0.0, 40.0], [8.0, 0.0, 40.0], [4.0, y, 2.0]].map(Vector::from_array);
 /// let motion = LinearMotion::chain(&hairpin(-6.0), &hairpin(6.0), &[1.0; 3])?;
 /// assert!(motion_self_clears(&motion, 1.5, 1e-3)?.is_clear());
@@ -483,10 +511,12 @@ pub fn tube_self_clears(
 /// ```
 ///
 /// # Errors
-/// The margin or the resolution is negative or NaN; the motion has no shape at some time, or one
-/// that [`tube_self_clears`] refuses; its sections change; a stated speed or turn is not finite; a
-/// turn is more than 2^18 rad; or the resolution is finer than rounding, than the samples of a
-/// shape allow, or than so fast a motion can be divided.
+/// - The margin or the resolution is negative or NaN.
+/// - The motion has no shape at some time, or one that [`tube_self_clears`] refuses, or its
+///   sections change.
+/// - A stated speed or turn is not finite, or a turn is more than 2^18 rad.
+/// - The resolution is finer than rounding or the samples of a shape allow, or the motion is too
+///   fast to be divided that finely.
 pub fn motion_self_clears(
     motion: &impl Motion,
     margin: Real,

@@ -1,5 +1,17 @@
-//! From robots to answers: the links go to the device, and what it leaves in question is measured
-//! here.
+//! From robots to answers: the device finds candidates, the CPU measures them.
+//!
+//! # Definitions
+//! - c(t): the distance of triangle t, as the device computed it; d(t): the exact value.
+//! - e: the bound on the error, |c(t) - d(t)| <= e ([`DeviceLink::error`]).
+//!
+//! # Claim
+//! The nearest triangle is among the candidates with c(t) <= min c + 2 e, if no candidates were
+//! lost.
+//! **Proof.** Let c be least at s, and let t be the nearest. Then c(t) <= d(t) + e <= d(s) + e <=
+//! c(s) + 2 e.
+//!
+//! A link whose candidates did not all come back, or that the device cannot represent, is measured
+//! against all triangles on the CPU.
 
 use super::GpuExhaustive;
 use super::candidates::CandidateTriangle;
@@ -11,8 +23,8 @@ use crate::pair::{Nearest, PlacedRobot};
 use parry3d_f64::math::Real;
 
 impl GpuExhaustive {
-    /// Places the robots' links and has the device find their candidates. Only triangles within
-    /// `margin` are of interest if there is one.
+    /// Places the robots' links and runs the device's search for their candidates. With a `margin`,
+    /// only triangles within it are candidates.
     pub(super) fn search<'a>(
         &mut self,
         robots: impl Iterator<Item = Result<PlacedRobot<'a>, ProximityError>>,
@@ -53,17 +65,17 @@ impl GpuExhaustive {
         Ok(())
     }
 
-    /// What the device knows of a link: its candidates, if it could tell all that matter.
+    /// The candidates of a link, if all candidates came back from the device.
     fn candidates(&self, place: usize) -> Option<(&DeviceLink, &[CandidateTriangle])> {
         let number = self.links[place].1?;
         let link = &self.device_links[number];
         let (candidates, too_many) = self.query.candidates(number);
-        // Without a margin there is always one.
+        // Without a margin there is at least one candidate.
         let complete = !too_many && (link.has_margin() || !candidates.is_empty());
         complete.then_some((link, candidates))
     }
 
-    /// The nearest triangle of a link among those at most `bound` away.
+    /// The nearest triangle of a link, if it is at most `bound` away.
     fn nearest(&mut self, place: usize, bound: Real) -> Option<Nearest> {
         let link = &self.links[place].0;
         let Some((device_link, candidates)) = self.candidates(place) else {
@@ -71,29 +83,29 @@ impl GpuExhaustive {
             self.answered_on_cpu += 1;
             return nearest;
         };
-        // What the device computed errs, for the least of them and for any other.
+        // The limit of the claim: min c + 2 e.
         let limit = least_distance(candidates) + 2.0 * device_link.error();
         let near = candidates.iter().filter(|candidate| candidate.distance <= limit);
         nearest_of(link, near.map(|candidate| candidate.triangle), bound, &self.mesh)
     }
 
-    /// A lower bound on a link's distance by what the device computed.
+    /// A lower bound on a link's distance, from the device's distances.
     fn at_least(&self, place: usize) -> Real {
         self.candidates(place)
             .map_or(0.0, |(link, candidates)| link.at_least(least_distance(candidates)))
     }
 
-    /// The nearest triangle of each link of a robot.
+    /// Appends the nearest triangle of each link of a robot to `out`.
     ///
     /// # Errors
-    /// It is refused.
+    /// The error of a bad robot.
     pub(super) fn answers(
         &mut self,
         robot: usize,
         out: &mut Vec<LinkProximity>,
     ) -> Result<(), ProximityError> {
         for (link, place) in self.robots[robot].clone()?.enumerate() {
-            // Some triangle is always the nearest; this is any other.
+            // Some triangle is always the nearest. If rounding hides it, triangle 0 is the answer.
             let nearest =
                 self.nearest(place, Real::INFINITY).unwrap_or_else(|| self.first_triangle(place));
             out.push(self.links[place].0.answer(link, &nearest));
@@ -105,16 +117,15 @@ impl GpuExhaustive {
         self.links[place].0.measure(0, self.mesh.corners(0))
     }
 
-    /// The nearest of a robot's links; of several the one with the lowest triangle, then the lowest
-    /// link.
+    /// The closest of a robot's links. Ties go to the lowest triangle, then to the lowest link.
     ///
     /// # Errors
-    /// The robot is refused.
+    /// The error of a bad robot.
     pub(super) fn least(&mut self, robot: usize) -> Result<LinkProximity, ProximityError> {
         let places = self.robots[robot].clone()?;
         let first = places.start;
         let mut best: Option<LinkProximity> = None;
-        // The likeliest link first: its distance rules out most others.
+        // The link with the least lower bound is first, because its distance prunes most others.
         let likeliest = places
             .clone()
             .min_by(|&a, &b| self.at_least(a).total_cmp(&self.at_least(b)))
@@ -138,10 +149,10 @@ impl GpuExhaustive {
         Ok(best.unwrap_or_else(|| self.links[first].0.answer(0, &self.first_triangle(first))))
     }
 
-    /// Whether a robot keeps its distance.
+    /// Returns whether every link of a robot is farther than `margin`.
     ///
     /// # Errors
-    /// It is refused.
+    /// The error of a bad robot.
     pub(super) fn is_clear(&mut self, robot: usize, margin: Real) -> Result<bool, ProximityError> {
         Ok(self.robots[robot].clone()?.all(|place| self.nearest(place, margin).is_none()))
     }

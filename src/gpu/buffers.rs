@@ -1,4 +1,4 @@
-//! The buffers of a query, which serve every query of the same shape.
+//! The device buffers of a query, reused by every query with the same plan.
 
 use super::layout::{BLOCK_BOUNDS, CAPACITY, LinkRecord, Round, SLOT};
 use super::mesh::DeviceMesh;
@@ -7,7 +7,7 @@ use super::plan::Plan;
 use gpu_batch::wgpu::{self, BindGroup, Buffer, BufferUsages};
 use gpu_batch::{Clock, Precision, READINGS, Record};
 
-/// Buffers that serve any query with this plan, of at most these sizes.
+/// Buffers for any query with this plan.
 pub(super) struct Buffers {
     pub plan: Plan,
     pub rounds: Buffer,
@@ -17,12 +17,12 @@ pub(super) struct Buffers {
     pub distances: Buffer,
     pub readback: Buffer,
     pub clock: Option<Clock>,
-    /// One for each part of the mesh.
+    /// One per part of the mesh.
     pub groups: Vec<BindGroup>,
 }
 
 impl Buffers {
-    /// Bytes of what is found for so many links, but for the distances.
+    /// Bytes of the results of `links` links, without the distances.
     pub(super) fn found_size(links: usize, mesh: &DeviceMesh) -> u64 {
         (links * mesh.parts.len()) as u64 * u64::from(SLOT) * 4
     }

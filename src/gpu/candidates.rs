@@ -1,4 +1,4 @@
-//! What comes back from a query: the few triangles of each link that may be the nearest.
+//! The result of a query on the device: for each link, the few triangles that may be the nearest.
 
 use super::Precision;
 use super::buffers::Buffers;
@@ -25,7 +25,7 @@ pub(super) struct Candidates {
 #[derive(Clone, Debug, Default)]
 struct LinkSlots {
     range: Range<usize>,
-    /// Whether there are more than came back.
+    /// Whether some candidates did not come back.
     too_many: bool,
 }
 
@@ -35,17 +35,17 @@ impl Candidates {
         self.links.clear();
     }
 
-    /// The candidates of a link by triangle, and whether there are more.
+    /// The candidates of a link, sorted by triangle, and whether some did not come back.
     pub(super) fn of(&self, link: usize) -> (&[CandidateTriangle], bool) {
         let LinkSlots { range, too_many } = &self.links[link];
         (&self.all[range.clone()], *too_many)
     }
 
-    /// Adds the candidates of the next so many links, as kernels/collect.wgsl wrote them for this
-    /// submission.
+    /// Appends the candidates of the next `links` links, as kernels/collect.wgsl wrote them for
+    /// this submission.
     ///
     /// # Errors
-    /// It did not write them: what is there says nothing.
+    /// Not every block has written its mark into a slot, so the slot is no answer.
     pub(super) fn read(
         &mut self,
         mesh: &DeviceMesh,
@@ -77,7 +77,7 @@ impl Candidates {
                     self.all.push(CandidateTriangle { triangle, distance });
                 }
             }
-            // They come in any order.
+            // The kernel writes them in any order.
             self.all[begin..].sort_by_key(|candidate| candidate.triangle);
             self.links.push(LinkSlots { range: begin..self.all.len(), too_many });
         }

@@ -1,4 +1,4 @@
-//! Exhaustive proximity on the GPU.
+//! The exhaustive engine on the GPU.
 
 use super::link::DeviceLink;
 use super::mesh::DeviceMesh;
@@ -24,12 +24,12 @@ use std::time::Duration;
 
 /// Proximity queries that visit every triangle, on the GPU.
 ///
-/// The mesh is uploaded once. A query sends the links and gets back, for each of them, the few
-/// triangles that rounding leaves in question; those are measured here in double precision. So the
-/// distances are those of [`Exhaustive<f64>`](crate::proximity::Exhaustive) whatever the precision
-/// of the search. A link with more than 64 such triangles, for example a cylinder that lies along a
+/// The mesh is uploaded once. A query uploads the links and reads back, for each link, the few
+/// triangles that rounding does not exclude. The CPU measures these candidates in double precision.
+/// So the distances are those of [`Exhaustive<f64>`](crate::proximity::Exhaustive) in either
+/// precision of the search. A link with more than 64 candidates, for example a cylinder along a
 /// flat wall, is measured against all triangles on the CPU; [`GpuExhaustive::answered_on_cpu`]
-/// counts such links. Answers are the same every time on one device.
+/// counts such links. Answers repeat exactly on one device.
 ///
 /// ```no_run
 /// use parry_continuum::gpu::{GpuExhaustive, Precision};
@@ -44,7 +44,7 @@ use std::time::Duration;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
-/// Opening a GPU takes a moment. Engines for several meshes share one:
+/// Opening a GPU takes a moment. Engines for several meshes can share one:
 ///
 /// ```no_run
 /// use parry_continuum::gpu::{Gpu, GpuExhaustive, Precision};
@@ -66,22 +66,22 @@ pub struct GpuExhaustive {
     pub(super) mesh: Mesh,
     pub(super) frame: SearchFrame,
     pub(super) tuning: Tuning,
-    /// None after a failure: what is left on the device then is not known, so that it is made
-    /// anew.
+    /// `None` after a failure: the state of the device is then unknown, so the next query allocates
+    /// it anew.
     pub(super) on_device: Option<DeviceMesh>,
-    /// The kernel without culling, where that is wanted.
+    /// The kernel without culling, if it is selected.
     pub(super) every_pair: Option<ComputePipeline>,
     pub(super) answered_on_cpu: u64,
     pub(super) query: Query,
-    /// Every link of the query, and its place among `device_links` unless it is too far out for
-    /// the device.
+    /// Every link of the query, with its index in `device_links` unless it is too far out for the
+    /// device.
     pub(super) links: Vec<(PlacedLink, Option<usize>)>,
     pub(super) device_links: Vec<DeviceLink>,
     /// The links of each robot.
     pub(super) robots: Vec<Result<Range<usize>, ProximityError>>,
 }
 
-// A planner may own an engine on a thread of its own.
+// A planner may own an engine on its own thread.
 const _: () = {
     const fn is_send<T: Send>() {}
     is_send::<GpuExhaustive>();
@@ -98,27 +98,28 @@ impl std::fmt::Debug for GpuExhaustive {
 }
 
 impl GpuExhaustive {
-    /// An engine for `mesh` on the fastest GPU of this machine, searching in this precision.
+    /// Builds an engine for `mesh` on the fastest GPU of this machine, with this search precision.
     ///
     /// # Errors
-    /// Those of [`Gpu::open`] and of [`GpuExhaustive::on`].
+    /// As [`Gpu::open`] and [`GpuExhaustive::on`].
     pub fn new(mesh: &TriMesh, precision: Precision) -> Result<Self, GpuError> {
         Self::on(&Gpu::open(precision)?, mesh)
     }
 
-    /// An engine for `mesh` on a GPU that is open already.
+    /// Builds an engine for `mesh` on an open GPU.
     ///
     /// # Errors
-    /// The mesh has no triangles, or a vertex is not finite or out of range; the mesh does not fit
-    /// into the GPU's memory; or the GPU has failed.
+    /// - The mesh has no triangles, or a vertex is not finite or out of range.
+    /// - The mesh does not fit into the GPU's memory.
+    /// - The GPU has failed.
     pub fn on(gpu: &Gpu, mesh: &TriMesh) -> Result<Self, GpuError> {
         Self::tuned(gpu, Mesh::new(mesh)?, Tuning::default())
     }
 
-    /// The same for triangles, each given by the positions of its corners among the vertices.
+    /// Builds an engine for triangles, each given as three indices into `vertices`.
     ///
     /// # Errors
-    /// As [`GpuExhaustive::on`]; or a triangle names a vertex that is not there.
+    /// As [`GpuExhaustive::on`]; or an index has no vertex.
     pub fn from_triangles(
         gpu: &Gpu,
         vertices: &[Vector],
@@ -153,19 +154,19 @@ impl GpuExhaustive {
         })
     }
 
-    /// Which GPU this is.
+    /// The GPU of this engine.
     pub fn adapter(&self) -> &Adapter {
         self.gpu.adapter()
     }
 
-    /// Whether cheap, exact bounds may spare a visited triangle its narrow phase. They may unless
-    /// told otherwise.
+    /// Sets whether cheap, exact bounds may skip the narrow phase of a visited triangle (default:
+    /// yes).
     ///
-    /// Without them every pair of link and triangle costs its full distance, discs included: the
-    /// work of the paper, for comparison with it.
+    /// Without them every pair of link and triangle costs its full distance, discs included. That
+    /// is the work of the paper, for comparison with it.
     ///
     /// # Errors
-    /// The driver does not compile the kernel for that.
+    /// The driver does not compile the kernel.
     #[cfg(feature = "laboratory")]
     #[doc(hidden)]
     pub fn set_culling(&mut self, culling: bool) -> Result<(), GpuError> {
@@ -176,13 +177,15 @@ impl GpuExhaustive {
         self.compute_every_pair(CONVEX)
     }
 
-    /// As `set_culling(false)`, by another route from a segment to a disc: WGSL with the function
-    /// `segment_disc_from_centre(start: vec3<real>, end: vec3<real>, normal: vec3<real>, radius:
-    /// real) -> Closest` for a disc around the origin with a unit normal. The answers are the
-    /// same if what it finds is never too near.
+    /// Like `set_culling(false)`, with another route from a segment to a disc.
+    ///
+    /// `route` is WGSL with the function `segment_disc_from_centre(start: vec3<real>, end:
+    /// vec3<real>, normal: vec3<real>, radius: real) -> Closest` for a disc around the origin with
+    /// a unit normal. The answers are the same if the route never returns a distance that is too
+    /// small.
     ///
     /// # Errors
-    /// The driver does not compile the kernel for that.
+    /// The driver does not compile the kernel.
     #[cfg(feature = "laboratory")]
     #[doc(hidden)]
     pub fn compute_every_pair(&mut self, route: &str) -> Result<(), GpuError> {
@@ -190,15 +193,15 @@ impl GpuExhaustive {
         Ok(())
     }
 
-    /// How long the GPU computed for the last query, without transfers and the CPU's share; `None`
-    /// if it keeps no time.
+    /// The time that the GPU computed for the last query, without transfers and the CPU's share;
+    /// `None` if the GPU keeps no time.
     pub fn device_time(&self) -> Option<Duration> {
         self.query.device_time
     }
 
-    /// How many links had to be measured against every triangle on the CPU since the engine was
-    /// built: too many triangles were equally near, or the link lay too far out for the
-    /// precision of the search.
+    /// The number of links that the CPU measured against every triangle since the engine was built.
+    /// Either too many triangles were equally near, or the link was too far out for the search
+    /// precision.
     pub fn answered_on_cpu(&self) -> u64 {
         self.answered_on_cpu
     }
@@ -223,7 +226,7 @@ impl Engine for GpuExhaustive {
         self.answers(0, out)
     }
 
-    /// Of all triangles, whatever the bound.
+    /// Searches all triangles, for any bound.
     fn ask_nearest(
         &mut self,
         robot: PlacedRobot,
@@ -239,7 +242,7 @@ impl Engine for GpuExhaustive {
         self.is_clear(0, margin)
     }
 
-    /// On the CPU: the device names the nearest triangles of a link, and not all that are near.
+    /// Runs on the CPU: the device finds the nearest triangles of a link, not all that are near.
     fn ask_contacts(
         &mut self,
         robot: PlacedRobot,

@@ -3,13 +3,13 @@ use gpu_batch::{DeviceError, DeviceFailure};
 use strum::IntoStaticStr;
 use thiserror::Error;
 
-/// Why there is no engine on a GPU.
+/// The reason why an engine on a GPU cannot be built.
 #[derive(Clone, Debug, PartialEq, Error, IntoStaticStr)]
 #[strum(serialize_all = "snake_case")]
 #[non_exhaustive]
 pub enum GpuError {
-    /// The GPU cannot be opened, or failed while the engine was built. In single precision, which
-    /// finds the same distances, more GPUs can be opened than in double.
+    /// The GPU cannot be opened, or failed while the engine was built. More GPUs support single
+    /// precision than double; the distances are the same.
     #[error(transparent)]
     Device(#[from] DeviceError),
     /// The GPU's memory does not hold the mesh.
@@ -19,7 +19,7 @@ pub enum GpuError {
     MeshTooLarge {
         /// The GPU.
         adapter: String,
-        /// How many triangles the mesh has.
+        /// The number of triangles of the mesh.
         triangles: usize,
     },
     /// The mesh cannot be queried on any engine.
@@ -28,8 +28,8 @@ pub enum GpuError {
 }
 
 impl GpuError {
-    /// What went wrong in one word, the same in Rust and Python: the variant in snake case, or that
-    /// of the error that it passes on.
+    /// The error in one word, the same in Rust and Python: the variant in snake case; for a wrapped
+    /// error, the word of that error.
     pub fn kind(&self) -> &'static str {
         match self {
             Self::Device(error) => error.kind(),

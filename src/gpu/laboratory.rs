@@ -1,16 +1,17 @@
-//! What this project's own studies and tests build on (hidden feature `laboratory`): the shaders'
-//! text, for kernels that ask the narrow phase alone, and for whoever checks or translates all of
-//! it without a GPU. It is no part of the interface and changes at any time.
+//! The text of the shaders, for this project's own studies and tests (hidden feature `laboratory`).
+//!
+//! Kernels can use the narrow phase alone, and the text can be checked or translated without a GPU.
+//! This module is no part of the interface and changes at any time.
 
 use super::wgsl;
 use gpu_batch::{Precision, Shader};
 
 pub use super::wgsl::{CONVEX, narrow_phase};
 
-/// Vectors alone.
+/// The functions for vectors alone.
 pub const VECTORS: &str = include_str!("shaders/shared/vec3.wgsl");
 
-/// All that [`Gpu::open`](super::Gpu::open) compiles.
+/// The kernels that [`Gpu::open`](super::Gpu::open) compiles.
 pub fn kernels(precision: Precision) -> Vec<Shader> {
     vec![
         wgsl::prepare(precision),
@@ -21,8 +22,8 @@ pub fn kernels(precision: Precision) -> Vec<Shader> {
     ]
 }
 
-/// What [`GpuExhaustive::compute_every_pair`](super::GpuExhaustive::compute_every_pair) compiles
-/// for a route.
+/// The kernel that [`GpuExhaustive::compute_every_pair`](super::GpuExhaustive::compute_every_pair)
+/// compiles for a route.
 pub fn every_pair(precision: Precision, route: &str) -> Shader {
     wgsl::nearest(precision, route)
 }

@@ -1,41 +1,41 @@
-//! What the host and the shaders both know: sizes, and records.
+//! Sizes and records that host and shaders share.
 
 use gpu_batch::record;
 use parry3d_f64::math::Real;
 
-/// Threads of a workgroup of a query.
+/// Threads per workgroup of a query.
 pub(super) const THREADS: u32 = 256;
-/// Links of a workgroup at most.
+/// The most links per workgroup.
 pub(super) const MOST_LINKS: u32 = 32;
-/// Triangles of a part that the first limit of a link is taken from, at most.
+/// The most triangles of a part that are sampled for the first limit of a link.
 pub(super) const SAMPLES: u32 = 1 << 14;
-/// Candidates of a link and part that come back.
+/// The most candidates per link and part that come back.
 pub(super) const CAPACITY: u32 = 64;
-/// Words of a link and part: what says that it was written, how many candidates there are, and
-/// their triangles.
+/// Words per link and part: the submission's mark, the number of candidates, and their triangles.
 pub(super) const SLOT: u32 = 2 + CAPACITY;
-/// Bytes for the bounds of a block and a link.
+/// Bytes for the bounds of one block and link.
 pub(super) const BLOCK_BOUNDS: u64 = 8;
 
-/// Vectors of four numbers that a triangle takes in memory (shared/face_record.wgsl).
+/// Vectors of four numbers per triangle (shared/face_record.wgsl).
 pub(super) const FACE_VECTORS: u32 = 4;
-/// More than any distance near one.
+/// Larger than any distance in a search frame, where coordinates are near 1.
 pub(super) const FAR: f32 = f32::from_bits((127 + 100) << 23);
 
 record! {
-    /// What the kernels know of the links of a round and a part of the mesh.
+    /// The kernels' parameters for one round of links and one part of the mesh.
     pub(super) struct Round {
-        /// The first link, and how many there are.
+        /// The first link, and the number of links.
         pub first_link: u32,
         pub links: u32,
-        /// How many links a workgroup takes, and how many triangles each of its threads.
+        /// Links per workgroup, and triangles per thread.
         pub links_at_once: u32,
         pub triangles_at_once: u32,
-        /// The triangles of this part, its first block of all blocks, and how many blocks all parts have.
+        /// The triangles of this part, the index of its first block, and the number of blocks of
+        /// all parts.
         pub triangles: u32,
         pub first_block: u32,
         pub blocks: u32,
-        /// Where the candidates of the first link and this part go.
+        /// The slot of the candidates of the first link and this part.
         pub first_slot: u32,
         /// The number of the submission.
         pub submission: u32,
@@ -43,11 +43,11 @@ record! {
 }
 
 record! {
-    /// What shaders/shared/query.wgsl reads of a link.
+    /// A link, as shaders/shared/query.wgsl reads it.
     pub(super) struct LinkRecord {
         pub start: [Real; 3],
         pub length: Real,
-        /// From the start, as the axis.
+        /// Relative to the start, as the axis is.
         pub end: [Real; 3],
         pub radius: Real,
         pub axis: [Real; 3],

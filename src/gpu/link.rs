@@ -1,3 +1,4 @@
+//! A link in the device's frame and precision, and the conversion of its results.
 use super::Precision;
 use super::layout::{FAR, LinkRecord};
 use crate::distance::Vec3;
@@ -6,15 +7,15 @@ use crate::mesh::SearchFrame;
 use crate::pair::{PlacedLink, SearchLink};
 use parry3d_f64::math::Real;
 
-/// Shaders pass bounds on in single precision, so that links farther out are none for double
-/// precision either.
+/// The largest magnitude of a coordinate. Shaders pass bounds on in single precision, so the limit
+/// of single precision holds for double precision too.
 const FARTHEST: Real = <f32 as Lane>::FARTHEST;
 
-/// A link as the GPU sees it, and the way from what the GPU finds to the mesh's unit.
+/// A link as the GPU reads it, and the conversion of the GPU's distances to the mesh's unit.
 #[derive(Debug)]
 pub(super) struct DeviceLink {
     pub record: LinkRecord,
-    /// What a triangle's distance from the axis must not exceed to be of interest.
+    /// The upper bound on the distance from the axis for a triangle to be a candidate.
     pub limit: f32,
     searched: DeviceSearch,
 }
@@ -27,8 +28,8 @@ enum DeviceSearch {
 }
 
 impl DeviceLink {
-    /// A link of which only triangles at most `bound` away are of interest, if there is a bound.
-    /// None where it lies too far out for the search.
+    /// Converts a link. With a `bound`, only triangles within it are candidates. Returns `None` if
+    /// the link lies too far out for the search.
     pub(super) fn new(
         link: &PlacedLink,
         frame: &SearchFrame,
@@ -49,7 +50,7 @@ impl DeviceLink {
         let number = |value: E| -> Real { value.into() };
         let point = |Vec3 { x, y, z }: Vec3<E>| [x, y, z].map(number);
         let [flat_start, flat_end] = link.flat.map(|flat| if flat { 1.0 } else { 0.0 });
-        // A bound is rounded up; beyond FAR it bounds nothing.
+        // A bound is rounded up. A bound above FAR excludes nothing.
         let limit =
             bound.map_or(FAR, |bound| (number(link.axis_limit(bound)) as f32).next_up().min(FAR));
         let record = LinkRecord {
@@ -70,13 +71,13 @@ impl DeviceLink {
         (reach <= FARTHEST).then(|| Self { record, limit, searched: searched(link) })
     }
 
-    /// Whether only triangles within a margin are of interest.
+    /// Returns whether only triangles within a margin are candidates.
     pub(super) fn has_margin(&self) -> bool {
         self.limit < FAR
     }
 
-    /// What a triangle is at least from the link, in the mesh's unit, by the distance that the GPU
-    /// computed.
+    /// A lower bound on a triangle's distance from the link, in the mesh's unit, from the distance
+    /// that the GPU computed.
     pub(super) fn at_least(&self, distance: Real) -> Real {
         match &self.searched {
             DeviceSearch::Single(link) => link.at_least(distance),
@@ -84,7 +85,7 @@ impl DeviceLink {
         }
     }
 
-    /// What rounding can do to a distance that the GPU computed, in its units.
+    /// The bound on the rounding error of a distance that the GPU computed, in the device's unit.
     pub(super) fn error(&self) -> Real {
         self.record.error
     }

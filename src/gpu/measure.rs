@@ -1,4 +1,4 @@
-//! Triangles measured on the CPU in double precision: the device's candidates, or all.
+//! Measures triangles on the CPU in double precision: the device's candidates, or all.
 
 use super::candidates::CandidateTriangle;
 use crate::mesh::Mesh;
@@ -11,8 +11,8 @@ pub(super) fn least_distance(candidates: &[CandidateTriangle]) -> Real {
     candidates.iter().map(|candidate| candidate.distance).fold(Real::INFINITY, Real::min)
 }
 
-/// The nearest of some triangles, of those at most `bound` away. Once one touches, only lower ones
-/// are measured.
+/// The nearest of some triangles, if it is at most `bound` away. Once a triangle touches, only
+/// lower triangles are measured.
 pub(super) fn nearest_of(
     link: &PlacedLink,
     triangles: impl Iterator<Item = u32>,
@@ -28,10 +28,10 @@ pub(super) fn nearest_of(
     best.nearest()
 }
 
-/// Triangles that a core of the CPU takes at a time.
+/// Triangles per task of the CPU.
 const TASK_SIZE: usize = 4096;
 
-/// The nearest of all triangles, of those at most `bound` away.
+/// The nearest of all triangles, if it is at most `bound` away.
 pub(super) fn nearest_of_all(link: &PlacedLink, bound: Real, mesh: &Mesh) -> Option<Nearest> {
     let mut shares = vec![None; mesh.len().div_ceil(TASK_SIZE)];
     each(&mut shares, |share, nearest| {

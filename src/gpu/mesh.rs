@@ -1,4 +1,4 @@
-//! A mesh in a device's memory, in as many parts as its largest buffer calls for.
+//! A mesh in the device's memory, in as many parts as its largest buffer requires.
 
 use super::layout::{FACE_VECTORS, THREADS};
 use super::opened::Opened;
@@ -9,35 +9,34 @@ use crate::threads::each;
 use gpu_batch::Precision;
 use gpu_batch::wgpu::{BindGroup, Buffer, BufferUsages};
 
-/// Numbers of a triangle's sphere, and of its face.
+/// Numbers per bounding sphere of a triangle, and per face.
 const SPHERE: u64 = 4;
 const FACE: u64 = 4 * FACE_VECTORS as u64;
 
-/// The mesh, moved to its centre and near one.
+/// The mesh in the search frame: moved to its centre and scaled to coordinates near 1.
 #[derive(Debug)]
 pub(super) struct DeviceMesh {
     pub parts: Vec<DevicePart>,
     is_current: bool,
 }
 
-/// Consecutive triangles.
+/// A part: consecutive triangles.
 #[derive(Debug)]
 pub(super) struct DevicePart {
-    /// The place of the first in the mesh, and how many there are.
+    /// The index of the first triangle in the mesh, and the number of triangles.
     pub first: u32,
     pub triangles: u32,
     pub spheres: Buffer,
     pub faces: Buffer,
-    /// The mesh's vertices that they have, in order, so that memory is read in order when they
-    /// move.
+    /// The mesh's vertices of these triangles, sorted, so that an upload reads memory in order.
     vertices: Vec<u32>,
     pub vertex_buffer: Buffer,
     group: BindGroup,
 }
 
 impl DeviceMesh {
-    /// Room for a mesh, in parts of at most `most` triangles, or as many as a buffer takes. Whether
-    /// the device has that room, its failures show.
+    /// Allocates a mesh in parts of at most `most` triangles, or as many as a buffer holds. If
+    /// memory runs out, the device's failures report it.
     pub(super) fn new(gpu: &Opened, mesh: &Mesh, most: usize) -> Self {
         let fit = (gpu.device.largest_binding() / (FACE * gpu.device.precision().size())) as usize;
         let mut places = vec![u32::MAX; mesh.vertices().len()];
@@ -50,13 +49,13 @@ impl DeviceMesh {
         Self { parts, is_current: false }
     }
 
-    /// The vertices have moved: what is on the device is no longer true.
+    /// Marks the uploaded vertices as stale.
     pub(super) fn invalidate(&mut self) {
         self.is_current = false;
     }
 
-    /// Sends the vertices where that is called for: only they travel, the rest is computed on the
-    /// device. Whether they arrive, the query that follows reports it.
+    /// Uploads the vertices if they are stale; the device computes the rest. A failure shows in the
+    /// query that follows.
     pub(super) fn update(&mut self, gpu: &Opened, frame: &SearchFrame, mesh: &Mesh) {
         if std::mem::replace(&mut self.is_current, true) {
             return;
@@ -80,15 +79,15 @@ impl DeviceMesh {
         gpu.device.queue().submit([encoder.finish()]);
     }
 
-    /// How many triangles there are.
+    /// The number of triangles.
     pub(super) fn triangles(&self) -> u64 {
         self.parts.iter().map(|part| u64::from(part.triangles)).sum()
     }
 }
 
 impl DevicePart {
-    /// `places` says for each vertex of the mesh where it is in the part; none is set before or
-    /// after.
+    /// `places` maps each vertex of the mesh to its index in the part. All entries are unset before
+    /// and after.
     fn new(gpu: &Opened, first: u32, triangles: &[[u32; 3]], places: &mut [u32]) -> Self {
         let indices = triangles.as_flattened();
         let mut vertices = Vec::new();
@@ -130,7 +129,7 @@ impl DevicePart {
         }
     }
 
-    /// The vertices as a shader reads them.
+    /// Writes the vertices in the format of the shader.
     fn write<E: Lane, const SIZE: usize>(
         &self,
         frame: &SearchFrame,

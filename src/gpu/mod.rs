@@ -1,23 +1,23 @@
 //! Exhaustive queries on the GPU, through `wgpu`: Vulkan, Metal or Direct3D 12 (feature `gpu`).
 //!
 //! [`GpuExhaustive`] is an engine like those of [`proximity`](crate::proximity), with the same
-//! trait and the same distances. It pays where the mesh is large or moves, or where many robots are
-//! asked for at once ([`per_link_batch`](crate::proximity::Proximity::per_link_batch) answers them
-//! in one go); a single query waits for the GPU and back, some hundred microseconds.
+//! trait and the same distances. It pays if the mesh is large or moves, or if many robots are
+//! queried at once: [`per_link_batch`](crate::proximity::Proximity::per_link_batch) answers them in
+//! one submission. A single query waits some hundred microseconds for the GPU.
 //!
-//! The kernels are the narrow phase of [`distance`](crate::distance), function by function, in
-//! WGSL. Each is one text for both precisions.
+//! The kernels repeat the narrow phase of [`distance`](crate::distance), function by function, in
+//! WGSL. Each kernel is one text for both precisions.
 //!
-//! The way of a query, from top to bottom:
+//! The files, in the order of a query:
 //!
-//! | file | what it knows |
+//! | file | contents |
 //! |---|---|
-//! | `engine` | what the engine is and answers: [`GpuExhaustive`] |
-//! | `answers`, `measure` | from robots to links, and from candidates to answers in double precision |
-//! | `query` | the four kernels of a query; `plan` deals the pairs to threads, `candidates` reads what comes back |
-//! | `mesh`, `link`, `buffers` | what lies in the device's memory |
-//! | `opened`, `error` | the [`Gpu`], and what can go wrong; its device is that of the crate `gpu-batch` |
-//! | `wgsl`, `shaders/` | the kernels' text |
+//! | `engine` | the engine and its answers: [`GpuExhaustive`] |
+//! | `answers`, `measure` | from robots to links, and from candidates to answers in `f64` |
+//! | `query` | the four kernels; `plan` assigns pairs to threads, `candidates` reads the results |
+//! | `mesh`, `link`, `buffers` | the contents of the device's memory |
+//! | `opened`, `error` | the [`Gpu`] and its errors; its device is from the crate `gpu-batch` |
+//! | `wgsl`, `shaders/` | the text of the kernels |
 //! | `layout` | the sizes and the records that host and shaders share |
 
 mod answers;

@@ -1,39 +1,41 @@
+//! An open GPU with the compiled kernels of a query.
 use super::GpuError;
 use super::wgsl::{self, CONVEX};
 use gpu_batch::wgpu::{BindGroupLayout, ComputePipeline};
 use gpu_batch::{Adapter, Binding, Device, DeviceError, Precision, Shader};
 use std::sync::Arc;
 
-/// A GPU, opened and with its kernels compiled, which takes a moment; engines for several meshes
-/// can share it.
+/// An open GPU with compiled kernels. Opening takes a moment, so engines for several meshes can
+/// share one.
 ///
-/// Copies stand for the same GPU.
+/// A clone is the same GPU.
 #[derive(Clone)]
 pub struct Gpu(pub(super) Arc<Opened>);
 
 impl Gpu {
-    /// The fastest GPU of this machine, to search in this precision. The distances are those of
-    /// double precision either way. The environment variables of `wgpu`, such as
-    /// `WGPU_BACKEND`, narrow the choice.
+    /// Opens the fastest GPU of this machine for searches in this precision.
+    ///
+    /// The distances are those of double precision either way. The environment variables of `wgpu`,
+    /// such as `WGPU_BACKEND`, narrow the choice.
     ///
     /// # Errors
-    /// There is no GPU, its driver refuses it or a kernel, or it lacks double precision and that
-    /// was asked for.
+    /// There is no GPU; its driver refuses it or a kernel; or it lacks double precision and
+    /// `precision` asks for it.
     pub fn open(precision: Precision) -> Result<Self, GpuError> {
         Ok(Self(Arc::new(Opened::new(Device::open(precision)?)?)))
     }
 
-    /// Which GPU it is.
+    /// The name and the backend of the GPU.
     pub fn adapter(&self) -> &Adapter {
         self.0.device.adapter()
     }
 
-    /// The numbers with which it searches.
+    /// The search precision.
     pub fn precision(&self) -> Precision {
         self.0.device.precision()
     }
 
-    /// The GPU for other kernels.
+    /// The device, for other kernels.
     #[cfg(feature = "laboratory")]
     #[doc(hidden)]
     pub fn device(&self) -> &Device {
@@ -84,7 +86,8 @@ impl Opened {
         })
     }
 
-    /// The kernel that computes every pair in full, by this route from a segment to a disc.
+    /// Compiles the kernel that computes every pair in full, with this route from a segment to a
+    /// disc.
     #[cfg(feature = "laboratory")]
     pub(super) fn every_pair(&self, route: &str) -> Result<ComputePipeline, DeviceError> {
         let kernel = wgsl::nearest(self.device.precision(), route);

@@ -1,23 +1,31 @@
-//! How the pairs of a query are dealt to threads, and what is done in one go.
+//! The division of a query's pairs into threads, rounds and submissions.
+//!
+//! # Definitions
+//! - A **thread** takes `links_at_once` links and `triangles_at_once` triangles.
+//! - A **block** is the triangles of one workgroup: `THREADS * triangles_at_once`.
+//! - A **round** is the links whose bounds of all blocks are kept at once.
+//! - A **submission** is the links whose candidates come back together.
+//!
+//! The answers do not depend on the division.
 
 use super::layout::{BLOCK_BOUNDS, CAPACITY, MOST_LINKS, SLOT, THREADS};
 use super::mesh::DeviceMesh;
 use super::opened::Opened;
 
-/// Bytes of a number at most.
+/// The most bytes of a number.
 const NUMBER: u64 = 8;
-/// What is large enough, and what too large: the answers do not depend on it.
+/// Sizes that trade memory for parallel work.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Tuning {
-    /// Triangles of a part of the mesh at most.
+    /// The most triangles per part of the mesh.
     pub part: usize,
-    /// As many threads keep the largest GPUs busy.
+    /// The number of threads that keeps the largest GPUs busy.
     pub threads: u64,
-    /// Triangles of a thread, unless a dispatch cannot hold as many workgroups as that takes.
+    /// The most triangles per thread, unless a dispatch has too few workgroups for that.
     pub triangles_of_thread: u64,
-    /// Bytes for the bounds of all blocks that are worth keeping for more links in one round.
+    /// The most bytes for the bounds of all blocks in one round.
     pub round: u64,
-    /// Bytes that come back from one submission.
+    /// The most bytes that come back from one submission.
     pub answer: u64,
 }
 
@@ -33,16 +41,16 @@ impl Default for Tuning {
     }
 }
 
-/// The shape of a query.
+/// The division of a query.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Plan {
-    /// Links that a workgroup takes.
+    /// Links per workgroup.
     pub links_at_once: u32,
-    /// Triangles that a thread takes.
+    /// Triangles per thread.
     pub triangles_at_once: u32,
-    /// Links of a round: the bounds of all their blocks are kept.
+    /// Links per round.
     pub links_per_round: u32,
-    /// Links of a submission: all their candidates come back together.
+    /// Links per submission.
     pub links_per_submission: usize,
 }
 
@@ -78,7 +86,7 @@ impl Plan {
         }
     }
 
-    /// Blocks of so many triangles.
+    /// The number of blocks of a part with `triangles` triangles.
     pub(super) fn blocks(&self, triangles: u32) -> u32 {
         triangles.div_ceil(THREADS * self.triangles_at_once)
     }

@@ -1,12 +1,15 @@
-//! One query on the device: links up, kernels in four steps, candidates back.
+//! One query on the device: upload the links, run four kernels, read the candidates.
 //!
-//! 1. `sample`: the spheres of a sample of the triangles give each link a first limit.
-//! 2. `nearest`: all triangles against all links. What its sphere does not rule out costs the
-//!    distance from the axis and the bounds of a flat cap; each block of triangles keeps the least
-//!    bounds.
-//! 3. `reduce`: the least of all blocks is the link's limit.
-//! 4. `collect`: in the blocks that may be as near, the discs of flat caps decide; what is as near
-//!    comes back.
+//! # Algorithm
+//! 1. `sample`: the bounding spheres of a sample of the triangles give each link its first limit,
+//!    an upper bound on its distance.
+//! 2. `nearest`: all triangles against all links. A triangle whose sphere is beyond the limit is
+//!    skipped. Any other costs the distance from the axis and the bounds of a flat cap. Each block
+//!    of triangles keeps its least lower and its least upper bound.
+//! 3. `reduce`: the link's limit is the least upper bound of all blocks, plus twice the error
+//!    bound.
+//! 4. `collect`: in the blocks that may be within the limit, the discs of flat caps decide. The
+//!    triangles within the limit come back.
 
 use super::buffers::Buffers;
 use super::candidates::{CandidateTriangle, Candidates};
@@ -19,22 +22,23 @@ use gpu_batch::wgpu::{self, Buffer, CommandEncoder, ComputePipeline};
 use gpu_batch::{Clock, DeviceFailure, READINGS, Record, Watch};
 use std::time::Duration;
 
-/// Memory of the last query, here and on the device, used again.
+/// Memory of a query, here and on the device, reused by the next.
 pub(super) struct Query {
     tuning: Tuning,
     watch: Watch,
-    /// The number of the last submission. It is odd: no number of blocks makes its multiple 0,
-    /// which is what buffers are cleared to.
+    /// The number of the last submission. It is odd, so its product with a number of blocks below
+    /// 2^32 is never 0 modulo 2^32. Buffers are cleared to 0, so a slot that no kernel wrote is
+    /// recognised.
     submission: u32,
     buffers: Option<Buffers>,
     bytes: Vec<u8>,
     candidates: Candidates,
-    /// How long the kernels of the last query took, if the device keeps time.
+    /// The time of the kernels of the last query, if the device keeps time.
     pub device_time: Option<Duration>,
 }
 
 impl Query {
-    /// `watch` has heard of what does not matter to the queries to come.
+    /// `watch` has already reported the failures before the first query.
     pub(super) fn new(tuning: Tuning, watch: Watch) -> Self {
         Self {
             tuning,
@@ -47,13 +51,14 @@ impl Query {
         }
     }
 
-    /// The candidates of a link of the last query by triangle, and whether there are more.
+    /// The candidates of a link of the last query, sorted by triangle, and whether some did not
+    /// come back.
     pub(super) fn candidates(&self, link: usize) -> (&[CandidateTriangle], bool) {
         self.candidates.of(link)
     }
 
-    /// Finds the candidates of every link; there is at least one. `nearest` is the kernel of step
-    /// 2.
+    /// Finds the candidates of every link; there is at least one link. `nearest` is the kernel of
+    /// step 2.
     ///
     /// # Errors
     /// The device has failed since the last query, or did not answer.
@@ -66,9 +71,9 @@ impl Query {
     ) -> Result<(), DeviceFailure> {
         self.candidates.clear();
         self.device_time = gpu.device.tick().map(|_| Duration::ZERO);
-        // Robots of nearly as many links share a plan, and with it the buffers.
+        // Rounding up lets robots with nearly as many links share a plan, and so the buffers.
         let plan = Plan::new(gpu, mesh, links.len().next_multiple_of(32), &self.tuning);
-        // On failure the buffers are gone, and made anew for the next query.
+        // A failure drops the buffers; the next query makes new ones.
         let buffers = match self.buffers.take() {
             Some(buffers) if buffers.plan == plan => buffers,
             _ => Buffers::new(gpu, mesh, plan),
@@ -155,7 +160,7 @@ impl Query {
     }
 }
 
-/// The four steps for each round of links.
+/// Records the four steps for each round of links.
 fn record_passes(
     encoder: &mut CommandEncoder,
     gpu: &Opened,

@@ -1,9 +1,8 @@
-//! The shaders' text.
+//! The text of the shaders.
 //!
-//! What the host knows too, constants and records, is declared once, in Rust, and precedes the
-//! text. A function has the name of its twin in `distance` or `proximity` (with the name of the
-//! twin's file before it where that is needed) and does the same in the same order. `real` is `f32`
-//! or `f64`.
+//! Rust declares the constants and records that the host shares; their text precedes the shaders. A
+//! function has the name of its twin in `distance` or `proximity`, with the name of the twin's file
+//! before it where needed. It does the same in the same order. `real` is `f32` or `f64`.
 
 use super::layout::{
     CAPACITY, FACE_VECTORS, FAR, LinkRecord, MOST_LINKS, Round, SAMPLES, SLOT, THREADS,
@@ -41,7 +40,7 @@ const NARROW_PHASE: &str = shared!(
 /// This crate's route from a segment to a disc.
 pub const CONVEX: &str = shared!("convex");
 
-/// Computes what is known of each triangle, whenever the vertices move.
+/// The kernel that computes the record of each triangle, after the vertices have moved.
 pub(super) fn prepare(precision: Precision) -> Shader {
     let text = prelude(precision)
         + &passes(precision)
@@ -55,7 +54,7 @@ pub(super) fn sample(precision: Precision) -> Shader {
     of_query("sample", kernel!("sample"), precision, CONVEX)
 }
 
-/// `route` is that from a segment to a disc.
+/// `route` computes the distance from a segment to a disc.
 pub(super) fn nearest(precision: Precision, route: &str) -> Shader {
     of_query("nearest", kernel!("nearest"), precision, route)
 }
@@ -89,13 +88,13 @@ fn of_query(entry_point: &'static str, kernel: &str, precision: Precision, route
     Shader::new(entry_point, text)
 }
 
-/// The narrow phase from point and segment to link and triangle, but for a route from a segment to
-/// a disc, such as [`CONVEX`].
+/// The narrow phase, from point and segment to link and triangle. It lacks a route from a segment
+/// to a disc, such as [`CONVEX`].
 pub fn narrow_phase(precision: Precision) -> String {
     passes(precision) + NARROW_PHASE
 }
 
-/// How often the narrow phase refines.
+/// The numbers of refinement steps of the narrow phase.
 fn passes(precision: Precision) -> String {
     let [face, halley] = match precision {
         Precision::F32 => [f32::FACE_PASSES, f32::HALLEY_STEPS],

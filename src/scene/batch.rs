@@ -1,4 +1,4 @@
-//! Many sets of robots in one scene, on all cores: a planner's shapes.
+//! Queries about many sets of robots in one scene, on all cores: a planner's shapes.
 
 use super::Scene;
 use crate::answer::{SceneError, Tightest};
@@ -6,12 +6,13 @@ use crate::robot::Chain;
 use crate::threads::in_chunks;
 use parry3d_f64::math::Pose;
 
-/// A set's answer, or why there is none.
+/// The answer about one set of robots.
 type Answer<T> = Result<T, SceneError>;
 
 impl Scene {
-    /// [`clears`](Self::clears) for many sets of robots, on all cores. `out` gets the answer of
-    /// each set, or why there is none.
+    /// [`clears`](Self::clears) for many sets of robots, on all cores.
+    ///
+    /// Writes one result per set to `out`, in order.
     ///
     /// ```
     /// use parry_continuum::Chain;
@@ -38,8 +39,9 @@ impl Scene {
         self.batch(sets, false, out, |scene, robots| scene.clears(robots));
     }
 
-    /// [`tightest`](Self::tightest) for many sets of robots, on all cores. `out` gets the answer of
-    /// each set, or why there is none.
+    /// [`tightest`](Self::tightest) for many sets of robots, on all cores.
+    ///
+    /// Writes one result per set to `out`, in order.
     ///
     /// ```
     /// use parry_continuum::Chain;
@@ -66,7 +68,7 @@ impl Scene {
         self.batch(sets, None, out, |scene, robots| scene.tightest(robots));
     }
 
-    /// Each share asks a scene of its own, which has the same meshes.
+    /// Answers the sets in chunks. Each chunk has a clone of the scene, which shares the meshes.
     fn batch<T: Clone + Send>(
         &self,
         sets: &[&[(&Chain, Pose)]],

@@ -1,11 +1,11 @@
-//! A box around triangles, and what a robot keeps from it.
+//! The bounding box of triangles, and lower bounds on a robot's distance from it.
 
 use crate::distance::Scalar;
 use crate::pair::{PlacedLink, PlacedRobot};
 use crate::robot::{LinkNode, length};
 use parry3d_f64::math::{Pose, Real, Vector};
 
-/// The corners of a box; around nothing the low one is above the high one.
+/// The corners of a box. For an empty box `low` is above `high`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BoundingBox {
     low: Vector,
@@ -26,7 +26,7 @@ impl BoundingBox {
         })
     }
 
-    /// A box around this one where the pose brings it.
+    /// The bounding box of this box after a pose.
     pub fn moved(&self, pose: &Pose) -> Self {
         let Self { low, high } = *self;
         let corners = (0..8).map(|corner| {
@@ -40,18 +40,25 @@ impl BoundingBox {
         Self { low: self.low.min(other.low), high: self.high.max(other.high) }
     }
 
-    /// The largest coordinate.
+    /// The largest magnitude of a coordinate.
     pub fn size(&self) -> Real {
         self.low.abs().max(self.high.abs()).max_element()
     }
 
-    /// What the distance of a robot is at least, by the box around the capsule that holds it.
+    /// A lower bound on the distance of a robot, by the bounding box of the capsule that contains
+    /// the robot.
     ///
-    /// Rounding: with M the largest magnitude of the capsule's ends, its radius and the box'
-    /// corners, each coordinate of the way between the boxes is a difference of sums that errs
-    /// by 6 u M at most, their length by less than 11 u M for that, and by less than 14 u M for
-    /// its own squares, sums and root; what is taken off errs by less than 6 u M. And what is
-    /// measured may be less than it is by 16 u of an extent of 2 M. So 64 u M are taken off.
+    /// **Rounding.** Let M be the largest magnitude of the capsule's ends, its radius and the box's
+    /// corners.
+    ///
+    /// 1. Each coordinate of the gap between the boxes is a difference of sums and errs by at most
+    ///    6 u M.
+    /// 2. So the length of the gap errs by less than 11 u M, and by less than 14 u M for its own
+    ///    squares, sums and root.
+    /// 3. The final subtraction errs by less than 6 u M.
+    /// 4. A measured distance may fall short by 16 u of an extent of 2 M.
+    ///
+    /// The sum is less than the 64 u M that are subtracted.
     pub fn at_least(&self, robot: &PlacedRobot) -> Real {
         let ([start, end], radius, _) = robot.outline(&robot.link_tree()[0]);
         let Self { low, high } = *self;
@@ -62,7 +69,8 @@ impl BoundingBox {
         length(way) - 64.0 * Real::UNIT_ROUNDOFF * largest
     }
 
-    /// Whether some link of a robot may be at most `bound` away, by the capsules around its links.
+    /// Returns whether some link of a robot may be at most `bound` away, by the capsules around its
+    /// links.
     pub fn may_be_within(&self, robot: &PlacedRobot, bound: Real) -> bool {
         let (nodes, mut place) = (robot.link_tree(), 0);
         while let Some(node) = nodes.get(place) {

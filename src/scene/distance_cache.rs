@@ -1,24 +1,35 @@
-//! What a robot is known to keep from each structure while it moves, without a look at the
-//! structure.
+//! Lower bounds on the distances of a moving robot from the structures of a scene, without a query.
 //!
-//! A robot that once kept a distance keeps what is left of it when it has moved on: the
-//! [`Odometer`] counts the way once for all structures. So a structure is looked at again when the
-//! robot may have reached it, and not before.
+//! # Definitions
+//! - s: the reading of the [`Odometer`], an upper bound on the path of any point of the robot.
+//! - d: a distance of the robot from a structure, recorded at the reading s0.
+//! - r: the bound on rounding below.
 //!
-//! Rounding. The way is counted in the scene's frame, distances are measured in a mesh's. Let M be
-//! the largest coordinate of robot and structure in the scene, radius and translations included. A
-//! link is placed with an error of 74 u M in the scene, as in [`PlacedRobot`]. In the mesh's frame
-//! it is placed by the product of two poses: its rotation errs by less than 24 u and its
-//! length by as much, which moves points of the size 2 M by less than 170 u M; the rotated point,
-//! the rotated translation and that of the inverse err by 70 u M, 35 u M and 35 u M, and sums by 11
-//! u M. So the two places of an axis' end are less than 400 u M apart. A distance errs by 16 u of
-//! an extent below 4 M, and what is subtracted here by 4 u of it. All of that is less than
-//! 1024 u M, with a flat cap's rim [accounted for](Odometer::error_from_ends); 2048 u M are taken
-//! off when a distance is noted, for what it was measured with then, and again when it is asked
-//! for, for what it would be measured with now.
+//! # Algorithm
+//! 1. Advance the odometer once per query, for all structures ([`DistanceCache::begin`]).
+//! 2. Record `reached_at = d - r + s0` ([`DistanceCache::record`]).
+//! 3. The lower bound is `reached_at - s - r = d - (s - s0) - 2 r`
+//!    ([`DistanceCache::lower_bound`]).
 //!
-//! Where coordinates are so large that a place in a mesh's frame could be out of range nothing is
-//! known, so that it is looked at.
+//! **Claim.** The lower bound is at most the distance that an engine would measure now.
+//! **Proof.** No point of the robot has moved by more than s - s0 since the record, so the distance
+//! is at least d - (s - s0). Each r covers one measurement: step 2 the old one, step 3 the new one.
+//!
+//! **Rounding.** The path is measured in the scene's frame, the distance in a mesh's frame. Let M
+//! be the largest coordinate of robot and structure in the scene, radius and translations included.
+//!
+//! 1. In the scene a link is placed with an error of 74 u M, as in [`PlacedRobot`].
+//! 2. In the mesh's frame the product of two poses places the link. Its rotation errs by less than
+//!    24 u and its length by as much, which moves points of size 2 M by less than 170 u M. The
+//!    rotated point errs by 70 u M, the rotated translation and that of the inverse by 35 u M each,
+//!    and sums by 11 u M.
+//! 3. So the two places of an axis end are less than 400 u M apart.
+//! 4. A distance errs by 16 u of an extent below 4 M. The subtractions here err by 4 u of it.
+//! 5. All of that is less than 1024 u M, with the rim of a flat cap accounted for
+//!    ([`Odometer::error_from_ends`]). The code uses r = 2048 u M.
+//!
+//! If coordinates are so large that a place in a mesh's frame could be out of range, r is infinite.
+//! The lower bound is then -infinity, and the engine is asked.
 
 use crate::distance::Scalar;
 use crate::pair::PlacedRobot;
@@ -26,25 +37,24 @@ use crate::query::nearest::{Odometer, PlacedOutline};
 use crate::robot::COORDINATE_LIMIT;
 use parry3d_f64::math::Real;
 
-/// A look is to speak for so many steps of the robot.
+/// The number of steps of the robot that one look-ahead query serves.
 const STEPS: Real = 8.0;
 
-/// What one robot keeps from the structures of a scene.
+/// The distances of one robot from the structures of a scene.
 #[derive(Clone, Debug, Default)]
 pub(super) struct DistanceCache {
     odometer: Odometer,
     structures: Vec<CachedDistance>,
-    /// How much farther than asked a look is to go, so that it speaks for the next questions too;
-    /// nothing where it would not.
+    /// The extra search radius of a look-ahead query; `None` if such a query does not pay.
     room: Option<Real>,
 }
 
-/// What it keeps from one of them.
+/// The distance from one structure.
 #[derive(Clone, Copy, Debug)]
 struct CachedDistance {
-    /// The reading of the odometer at which the robot may have reached it.
+    /// The reading of the odometer at which the robot may reach the structure.
     reached_at: Real,
-    /// Whether the robot was near of late, so that a look would tell nothing.
+    /// Whether the robot was near at the last query. A look-ahead query would then fail.
     is_near: bool,
 }
 
@@ -53,42 +63,42 @@ impl CachedDistance {
 }
 
 impl DistanceCache {
-    /// A question begins, with the robot here, among so many structures.
+    /// Begins a query: the robot has moved here, among `structures` structures.
     pub fn begin(&mut self, robot: PlacedRobot, structures: usize) {
         if !self.odometer.advance(robot) {
             self.structures.clear();
         }
         self.structures.resize(structures, CachedDistance::UNKNOWN);
         let room = STEPS * self.odometer.last_step();
-        // For a robot that jumps nothing would be far enough, and one that rests is answered by the
-        // engines' memory.
+        // A look-ahead query cannot cover a robot that jumps. For a robot that rests, the warm
+        // start of the engines is enough.
         self.room = (0.0 < room && room < PlacedOutline::around_all(robot).size()).then_some(room);
     }
 
-    /// Forgets what the robot keeps from a structure that has moved.
+    /// Forgets the distance from a structure that has moved.
     pub fn forget(&mut self, structure: usize) {
         if let Some(watched) = self.structures.get_mut(structure) {
             *watched = CachedDistance::UNKNOWN;
         }
     }
 
-    /// How much farther than asked a look is to go, so that it speaks for the next questions too.
+    /// The extra search radius of a look-ahead query; `None` if such a query does not pay.
     pub fn look_ahead(&self) -> Option<Real> {
         self.room
     }
 
-    /// Whether a look at a structure is likely to tell more than that the robot is near. After one
-    /// that did not, or an answer that the robot is near, the next is left out.
+    /// Returns whether a look-ahead query is likely to succeed. Skips one such query after each
+    /// failure, and after each answer that the robot is near.
     pub fn is_worth_a_query(&mut self, structure: usize) -> bool {
         !std::mem::take(&mut self.structures[structure].is_near)
     }
 
-    /// Notes that the robot is near a structure.
+    /// Records that the robot is near a structure.
     pub fn mark_near(&mut self, structure: usize) {
         self.structures[structure].is_near = true;
     }
 
-    /// Notes that the robot keeps `apart` or more from a structure of this `size`: the largest
+    /// Step 2: records that the robot is at least `apart` from a structure. `size` is the largest
     /// coordinate of its mesh and its pose.
     pub fn record(&mut self, structure: usize, apart: Real, size: Real) {
         let at = (apart - self.rounding(size) + self.odometer.reading()).next_down();
@@ -96,7 +106,7 @@ impl DistanceCache {
         *reached_at = reached_at.max(at);
     }
 
-    /// What the robot keeps from a structure of this `size` at least.
+    /// Step 3: a lower bound on the distance from a structure of this `size`.
     pub fn lower_bound(&self, structure: usize, size: Real) -> Real {
         let left = self.structures[structure].reached_at - self.odometer.reading();
         left.next_down() - self.rounding(size)
@@ -121,7 +131,7 @@ mod tests {
     use continuum_testing::Random;
     use parry3d_f64::math::{Pose, Vector};
 
-    /// What makes a robot approach the wall z = 0.
+    /// The motion that brings a robot to the wall z = 0.
     #[derive(Clone, Copy, Debug, PartialEq)]
     enum Way {
         Whole,
@@ -130,9 +140,9 @@ mod tests {
         Radius,
         /// The rim of a thin disc that turns.
         Rim,
-        /// All of these a little, and back again.
+        /// A little of each of these, forward and back.
         Any,
-        /// Others take its place: with other caps, or more links.
+        /// Another robot takes its place: with other caps, or with more links.
         Swaps,
     }
 
@@ -199,8 +209,8 @@ mod tests {
         }
     }
 
-    /// No robot is nearer to a wall than is told, wherever both are and in any unit, and where it
-    /// heads for the wall with what is nearest it is told next to nothing less.
+    /// The lower bound never exceeds the distance, at any place and in any unit. If the nearest
+    /// point heads for the wall, the bound is almost the distance.
     #[test]
     fn no_robot_is_nearer_than_told() {
         let (mut told, mut sharp) = ([0_u32; 7], [0_u32; 7]);

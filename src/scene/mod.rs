@@ -1,4 +1,4 @@
-//! Several structures and robots at once.
+//! Scenes: several structures and robots, queried together.
 
 mod batch;
 mod bounding_box;

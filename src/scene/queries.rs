@@ -1,4 +1,35 @@
-//! A scene, and what is asked of all of it at once.
+//! A scene of structures and robots, and the queries about all of them.
+//!
+//! # Definitions
+//! - d(k, i): the distance of robot i from structure k; m(k): the margin of structure k.
+//! - slack(k, i) = d(k, i) - m(k).
+//! - `lower`: the lower bound on d(k, i) that [`DistanceCache`] keeps while robots move.
+//! - `box`: the lower bound on d(k, i) by the bounding boxes
+//!   ([`BoundingBox`](super::bounding_box::BoundingBox)).
+//! - `bound`: the distance beyond which d(k, i) cannot matter: m(k) for [`Scene::clears`], the best
+//!   slack plus m(k) for [`Scene::tightest`], `reach` for [`Scene::contacts`].
+//!
+//! # Algorithm
+//! 1. **Begin** ([`Scene::begin`]). Place all robots, which finds their errors. Stop if every robot
+//!    is beyond `bound` of the bounds of all structures. Advance the odometer of each robot.
+//! 2. **Seed.** Query the pair (k, i) that decided the last query: it violated a margin, or was
+//!    tightest.
+//! 3. **Gather** ([`Scene::gather`]). Skip the pairs with `lower > bound` or `box > bound`. Sort
+//!    the others: least `box - m(k)` first, or by number for contacts.
+//! 4. **Query** the pairs in order. [`Scene::place_unless_clear`] skips a pair that is beyond
+//!    `bound`; where it pays, it queries `bound + look_ahead`, so that `lower` serves the next
+//!    queries. `clears` stops at the first violated margin, `tightest` once `box - m(k)` exceeds
+//!    the best slack.
+//! 5. **Robots.** If a margin between robots is set, query the pairs of robots that are not nested.
+//!
+//! # Correctness
+//! **Claim.** Warm starts never change an answer. `tightest` returns the least (slack, structure,
+//! robot), pairs of robots last.
+//! **Proof.** Steps 1, 3 and 4 skip a pair only if d(k, i) > `bound`. So `tightest` searches every
+//! pair at the final slack, ties included, and `offer` orders ties by number.
+//! **Rounding.** Slacks are compared exactly ([`DoubleDouble`]). [`beyond`] and the key of step 3
+//! are rounded outward, and the best slack is rounded up before it stops step 4. So rounding can
+//! only search a pair too many.
 
 use super::distance_cache::DistanceCache;
 use super::scene_bounds::SceneBounds;
@@ -15,20 +46,21 @@ use crate::robot::Chain;
 use parry3d_f64::math::{Pose, Real, Vector};
 use std::cmp::Ordering;
 
-/// Several structures, each with a margin of its own or none, and the robots among them.
+/// Several structures, each with or without a margin, and the robots among them.
 ///
-/// A structure is a mesh with a name. The margin is what a robot must keep from it; the *slack* is
-/// the distance less the margin. A structure without a margin may be touched, as a target is: it is
-/// measured by [`per_structure`](Self::per_structure) and [`contacts`](Self::contacts), and is no
-/// part of the other questions.
+/// A structure is a mesh with a name. Its margin is the least distance that a robot must exceed;
+/// the *slack* is the distance minus the margin. A robot may touch a structure without a margin,
+/// such as a target. [`per_structure`](Self::per_structure) and [`contacts`](Self::contacts)
+/// measure such a structure; the other queries ignore it.
 ///
-/// Robots are given to each question, with their poses in the scene's frame. If a
-/// [margin between robots](Self::set_robot_margin) is set, they are held against one another too.
+/// Each query takes the robots with their poses in the scene's frame. If a [margin between
+/// robots](Self::set_robot_margin) is set, the queries also test each robot against the others.
 ///
-/// The scene remembers what its engines do, whom the last answer was about, who is asked first, and
-/// what each robot kept from each structure: one that a robot cannot have reached since is passed
-/// over by all questions but `per_structure`. Robots are told apart by their place in a question;
-/// any may follow. A clone shares the meshes and has a memory of its own: one for each thread.
+/// The scene warm-starts its queries. It keeps the warm starts of its engines and the pair that
+/// decided the last answer. It also keeps a lower bound on the distance of each robot from each
+/// structure. All queries but `per_structure` skip a structure that a robot cannot have reached
+/// since. Robots are identified by their index in a query; any robots may follow. A clone shares
+/// the meshes and has its own memory: use one clone per thread.
 ///
 /// ```
 /// use parry_continuum::Chain;
@@ -64,36 +96,37 @@ use std::cmp::Ordering;
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
     structures: Vec<Structure>,
-    /// All of these; none where one of them has changed since the last question.
+    /// The bounds of all structures; `None` after a structure has changed.
     all: Option<SceneBounds>,
     robot_margin: Option<Real>,
-    /// The lower number first.
+    /// Pairs of nested robots, the lower number first.
     nested: Vec<[usize; 2]>,
     pair: RobotPair,
-    /// Structure and robot that were tightest, and that did not keep a margin.
+    /// The last pair (structure, robot) that was tightest, and the last that violated a margin.
     tightest: Option<[usize; 2]>,
     met: Option<[usize; 2]>,
-    /// For each robot, by its number, what it keeps.
+    /// The distance cache of each robot, by its number.
     watches: Vec<DistanceCache>,
-    /// How much room structures leave robots at least.
+    /// Lower bounds on the slack of the gathered pairs (structure, robot).
     order: Vec<(Real, [usize; 2])>,
     contacts: Vec<Contact>,
 }
 
-/// The tightest so far, and its slack without rounding.
+/// The tightest pair so far, and its exact slack.
 type Best = Option<(DoubleDouble, Tightest)>;
 
 impl Scene {
-    /// Without structures.
+    /// Makes a scene without structures.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Adds a structure, and returns its number: structures count from 0 in the order in which they
-    /// are added.
+    /// Adds a structure and returns its number.
+    ///
+    /// Structures count from 0 in the order in which they are added.
     ///
     /// # Errors
-    /// The margin is negative or NaN. The message has the structure's name.
+    /// The margin is negative or NaN. The message names the structure.
     pub fn add(
         &mut self,
         name: impl Into<String>,
@@ -107,27 +140,27 @@ impl Scene {
         Ok(self.structures.len() - 1)
     }
 
-    /// How many structures there are.
+    /// The number of structures.
     pub fn len(&self) -> usize {
         self.structures.len()
     }
 
-    /// Whether there is no structure.
+    /// Returns whether there is no structure.
     pub fn is_empty(&self) -> bool {
         self.structures.is_empty()
     }
 
-    /// A structure's name.
+    /// The name of a structure, or `None` if there is no such structure.
     pub fn name(&self, structure: usize) -> Option<&str> {
         self.structures.get(structure).map(|structure| structure.name.as_str())
     }
 
-    /// A structure's margin; nothing if it has none.
+    /// The margin of a structure, or `None` if it has none.
     pub fn margin(&self, structure: usize) -> Option<Real> {
         self.structures.get(structure)?.margin
     }
 
-    /// Gives a structure another margin, or none.
+    /// Sets or removes the margin of a structure.
     ///
     /// # Errors
     /// There is no such structure, or the margin is negative or NaN.
@@ -139,8 +172,9 @@ impl Scene {
         Ok(())
     }
 
-    /// Moves a structure as a whole: `pose` brings its mesh's frame into the scene's. Nothing is
-    /// built anew.
+    /// Moves a structure as a whole. `pose` maps its mesh's frame to the scene's frame.
+    ///
+    /// Nothing is built anew.
     ///
     /// # Errors
     /// There is no such structure, or the pose is not finite or not rigid.
@@ -152,8 +186,7 @@ impl Scene {
         Ok(())
     }
 
-    /// Moves the vertices of a structure's mesh, in the mesh's own frame:
-    /// [`Proximity::set_vertices`].
+    /// Moves the vertices of a structure's mesh, in the mesh's frame: [`Proximity::set_vertices`].
     ///
     /// # Errors
     /// There is no such structure, the number of vertices differs, or one is not finite or out of
@@ -170,8 +203,8 @@ impl Scene {
         Ok(())
     }
 
-    /// The margin that robots keep from one another; nothing if they are not held against one
-    /// another, which is so at first.
+    /// Sets the margin between robots. With `None`, the default, robots are not tested against one
+    /// another.
     ///
     /// # Errors
     /// The margin is negative or NaN.
@@ -181,18 +214,21 @@ impl Scene {
         Ok(())
     }
 
-    /// Names the pairs of robots one of which is inside the other, as a tube in the tube that
-    /// guides it: they touch, and are not held against one another. The numbers are those of
-    /// the robots that are given to a question, in any order; a pair that is not there changes
-    /// nothing. What was named before is forgotten.
+    /// Sets the pairs of nested robots: one is inside the other, as a tube in the tube that guides
+    /// it.
+    ///
+    /// Nested robots touch, so they are not tested against one another. A pair has the indices of
+    /// two robots of a query, in any order; a pair without such robots has no effect. The new pairs
+    /// replace the old ones.
     pub fn set_nested(&mut self, pairs: &[[usize; 2]]) {
         self.nested.clear();
         self.nested.extend(pairs.iter().map(|&[a, b]| [a.min(b), a.max(b)]));
     }
 
-    /// Whether all robots keep all margins: true exactly when the slack of
-    /// [`tightest`](Self::tightest) is more than 0, or there is none. The first margin that is
-    /// not kept ends the query.
+    /// Returns whether all robots keep all margins.
+    ///
+    /// True exactly if the slack of [`tightest`](Self::tightest) is more than 0, or there is none.
+    /// The query ends at the first violated margin.
     ///
     /// # Errors
     /// A pose is not finite or not rigid, or moves a link out of range. The message has the robot's
@@ -234,11 +270,11 @@ impl Scene {
         asked.map(|()| self.met.is_none())
     }
 
-    /// The least slack, and whom it is between; nothing if no robot is given or nothing has a
+    /// Returns the least slack and the pair that has it, or `None` if there is no robot or no
     /// margin.
     ///
-    /// Slacks are compared without rounding. Of equal ones that of the lowest structure counts,
-    /// then that of the lowest robot; pairs of robots come last.
+    /// Slacks are compared without rounding. Ties return the lowest structure, then the lowest
+    /// robot; pairs of robots come last.
     ///
     /// # Errors
     /// As [`clears`](Self::clears).
@@ -248,7 +284,8 @@ impl Scene {
         if let Some([structure, robot]) = self.tightest.filter(|last| self.have(*last, robots)) {
             self.offer(structure, robot, robots, &mut best)?;
         }
-        // Those that may be tightest are asked first: they rule out the others.
+        // Step 3. The pair with the least lower bound is first, because its slack excludes the most
+        // others.
         let mut order = std::mem::take(&mut self.order);
         let near =
             |structure: &Structure| structure.margin.map(|margin| (margin, beyond(&best, margin)));
@@ -281,8 +318,9 @@ impl Scene {
         Ok(best.map(|(_, best)| best))
     }
 
-    /// For each structure, in order, where the robots are closest to it, whether it has a margin or
-    /// not. `out` is cleared first, and stays empty where no robot is given.
+    /// Finds the closest robot of each structure, in order, with or without a margin.
+    ///
+    /// `out` is cleared first, and stays empty if no robot is given.
     ///
     /// # Errors
     /// As [`clears`](Self::clears).
@@ -317,9 +355,10 @@ impl Scene {
         Ok(())
     }
 
-    /// Every contact of every robot with every structure that is at most `reach` away:
-    /// [`Proximity::within`], structure by structure and robot by robot. `out` is cleared
-    /// first.
+    /// Finds every contact of every robot with every structure at most `reach` away.
+    ///
+    /// Each contact is one of [`Proximity::within`]; they are sorted by structure, then by robot.
+    /// `out` is cleared first.
     ///
     /// # Errors
     /// As [`clears`](Self::clears), or `reach` is negative or NaN.
@@ -364,7 +403,7 @@ impl Scene {
         asked
     }
 
-    /// Builds all that a later query would build.
+    /// Builds every structure that a later query would build at first use.
     pub fn prepare(&self) {
         self.structures.iter().for_each(|structure| structure.search.prepare());
     }
@@ -380,15 +419,16 @@ impl Scene {
         structure < self.structures.len() && robot < robots.len()
     }
 
-    /// What robots kept from a structure, they kept from where it was.
+    /// Drops the cached distances from a structure, which were measured at its old place.
     fn has_moved(&mut self, structure: usize) {
         self.watches.iter_mut().for_each(|watch| watch.forget(structure));
         self.all = None;
     }
 
-    /// A question about all of these robots begins. False if all of them are farther than `bound`
-    /// from all structures, or than all margins where it is not given. Also those are placed
-    /// that are held against nothing: what is asked afterwards finds no fault with one.
+    /// Step 1. Returns false if all robots are farther than `bound` from all structures; without a
+    /// bound, farther than the largest margin.
+    ///
+    /// It places robots without any partner too, so that the steps below meet no bad robot.
     fn begin(
         &mut self,
         robots: &[(&Chain, Pose)],
@@ -401,7 +441,7 @@ impl Scene {
             may_be_near = may_be_near || !all.are_beyond(bound, &placed);
         }
         if !may_be_near {
-            // Their ways are counted from where they were last, when they are near again.
+            // The odometers stay: a robot that comes near again is counted from its last pose.
             return Ok(false);
         }
         if self.watches.len() < robots.len() {
@@ -432,9 +472,10 @@ impl Scene {
         Ok(clears)
     }
 
-    /// The robot in the frame of a structure's mesh, or nothing if it keeps more than `bound` at a
-    /// look: one that speaks for the next questions too where the robot moves little, or else
-    /// one at the boxes alone.
+    /// Places the robot in the frame of a structure's mesh, unless it is farther than `bound`.
+    ///
+    /// If the robot moves little, one query of `bound + look_ahead` also serves the next queries.
+    /// Otherwise the bounding boxes alone are tested.
     fn place_unless_clear<'a>(
         &mut self,
         number: usize,
@@ -465,10 +506,11 @@ impl Scene {
         Ok(Some(placed))
     }
 
-    /// Writes to `order` which robots may be as near to which structures as is asked, and how much
-    /// room these leave them at least. `asked` tells a structure's margin, and how far away is
-    /// near enough; nothing if it takes no part. Each robot is placed once for all structures
-    /// that have not moved.
+    /// Step 3: writes to `order` the pairs that may be within their bound, with a lower bound on
+    /// the slack.
+    ///
+    /// `asked` returns the margin and the bound of a structure, or `None` if the query ignores the
+    /// structure. Each robot is placed once for all structures whose frame is the scene's.
     fn gather(
         &mut self,
         robots: &[(&Chain, Pose)],
@@ -495,7 +537,7 @@ impl Scene {
         Ok(())
     }
 
-    /// Takes a structure and a robot for the tightest if they are.
+    /// Step 4 of `tightest`: keeps the pair if it is tighter than the best, and lowers the best.
     fn offer(
         &mut self,
         number: usize,
@@ -543,12 +585,12 @@ impl Scene {
     }
 }
 
-/// Those with the least room come first, then those with the lowest numbers.
+/// Orders pairs by the lower bound on their slack, then by their numbers.
 fn nearest_first(one: &(Real, [usize; 2]), other: &(Real, [usize; 2])) -> Ordering {
     one.0.total_cmp(&other.0).then(one.1.cmp(&other.1))
 }
 
-/// The distance less the margin, which may be infinite.
+/// The slack, exactly. The margin may be infinite.
 fn slack(distance: Real, margin: Real) -> DoubleDouble {
     if margin == Real::INFINITY {
         return Real::NEG_INFINITY.into();
@@ -556,7 +598,7 @@ fn slack(distance: Real, margin: Real) -> DoubleDouble {
     DoubleDouble::from(distance) - margin.into()
 }
 
-/// A margin that can be kept, if there is one.
+/// Checks a margin, if there is one.
 fn check(margin: Option<Real>) -> Result<(), ProximityError> {
     margin.map_or(Ok(()), check_margin)
 }
@@ -569,14 +611,12 @@ fn of_robot(robot: usize) -> impl Fn(ProximityError) -> SceneError {
     move |error| SceneError::Robot { robot, error }
 }
 
-/// With this margin no distance beyond this has a slack as small as the best, whatever is rounded
-/// here.
+/// The distance beyond which a structure with this margin is not tighter than the best, rounded up.
 fn beyond(best: &Best, margin: Real) -> Real {
     best.as_ref().map_or(Real::INFINITY, |(_, best)| (best.slack.next_up() + margin).next_up())
 }
 
-/// The pairs of so many robots that are held against one another, in order: all but those that are
-/// nested.
+/// The pairs of robots that are tested against one another, in order: all but the nested pairs.
 fn pairs_apart(robots: usize, nested: &[[usize; 2]]) -> impl Iterator<Item = [usize; 2]> {
     let pairs =
         (0..robots).flat_map(move |first| (first + 1..robots).map(move |second| [first, second]));
@@ -604,8 +644,8 @@ mod tests {
         scene
     }
 
-    /// Along a smooth walk most structures are passed over, and a scene says what one says that
-    /// knows of no way of a robot.
+    /// Along a smooth walk most structures are skipped, and the answers equal those without a
+    /// cache.
     #[test]
     fn what_cannot_be_near_is_not_looked_at() {
         let points: Vec<_> = (0..=8).map(|k| Vector::Z * Real::from(k)).collect();
@@ -628,7 +668,7 @@ mod tests {
                 });
                 assert_eq!(one, other);
                 contacts += one.2.len();
-                // Those that were not passed over are put in order.
+                // `order` has the pairs that were not skipped.
                 let looked = scenes.each_ref().map(|scene| scene.order.len());
                 silent[question] += u32::from(looked[0] == 0);
                 looked_at[question][0] += looked[0];

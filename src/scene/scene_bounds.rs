@@ -1,4 +1,4 @@
-//! All structures of a scene at a glance.
+//! The bounds of all structures of a scene: one test for a robot that is far from all of them.
 
 use super::bounding_box::BoundingBox;
 use super::structure::Structure;
@@ -8,14 +8,14 @@ use crate::query::nearest::PlacedOutline;
 use crate::robot::COORDINATE_LIMIT;
 use parry3d_f64::math::{Real, Vector};
 
-/// All structures of a scene at a glance.
+/// The bounds of all structures of a scene.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SceneBounds {
-    /// In the scene's frame.
+    /// The bounding box, in the scene's frame.
     around: BoundingBox,
-    /// The largest coordinate of their meshes and poses.
+    /// The largest coordinate of the meshes and poses.
     size: Real,
-    /// The largest margin, if there is one.
+    /// The largest margin, or -infinity.
     pub margin: Real,
 }
 
@@ -34,15 +34,18 @@ impl SceneBounds {
         })
     }
 
-    /// Whether a robot, placed in the scene's frame, certainly keeps more than `bound` from all of
-    /// them.
+    /// Returns whether a robot, placed in the scene's frame, is certainly farther than `bound` from
+    /// all structures.
     ///
-    /// Rounding: where distances are measured, in a mesh's frame, the ends of the capsule that
-    /// holds the robot are less than 400 u M from where they are here, with M as in
-    /// [`DistanceCache`](super::distance_cache::DistanceCache). The corners of a box err by less
-    /// than 80 u M where they are moved, and what is measured by less than 64 u M. So 1024 u M
-    /// are taken off. Where coordinates are so large that a place in a mesh's frame could be
-    /// out of range, nothing is known.
+    /// **Rounding.** M is as in [`DistanceCache`](super::distance_cache::DistanceCache).
+    ///
+    /// 1. Distances are measured in a mesh's frame. The ends of the robot's capsule there are less
+    ///    than 400 u M from their places here.
+    /// 2. The corners of a moved box err by less than 80 u M.
+    /// 3. The lower bound of the box errs by less than 64 u M.
+    ///
+    /// The sum is less than the 1024 u M that are subtracted. If coordinates are so large that a
+    /// place in a mesh's frame could be out of range, the answer is false.
     pub fn are_beyond(&self, bound: Real, robot: &PlacedRobot) -> bool {
         let translation = robot.placed(Vector::ZERO).abs().max_element();
         let largest = PlacedOutline::around_all(*robot).extent().max(translation) + self.size;
@@ -59,8 +62,8 @@ mod tests {
     use continuum_testing::Random;
     use parry3d_f64::math::Pose;
 
-    /// A robot in front of a square, whose distance is that of the boxes: it is never said to keep
-    /// what it does not, and next to nothing less.
+    /// The distance of a robot in front of a square equals the distance of the boxes. The test
+    /// never claims too much, and almost as much as is true.
     #[test]
     fn what_is_beyond_is_beyond() {
         for seed in 0..4000 {
@@ -86,7 +89,7 @@ mod tests {
         }
     }
 
-    /// However structures and robots are turned, and with flat caps.
+    /// The same for any pose of structures and robots, and with flat caps.
     #[test]
     fn what_is_beyond_is_beyond_in_any_pose() {
         let mut beyond = 0;

@@ -1,4 +1,4 @@
-//! One structure of a scene: a mesh, where it is, and the margin that robots keep from it.
+//! One structure of a scene: a mesh, its pose, and its margin.
 
 use super::bounding_box::BoundingBox;
 use crate::answer::{Contact, LinkProximity, MeshError, ProximityError};
@@ -11,14 +11,14 @@ use parry3d_f64::math::{Pose, Real, Vector};
 pub(super) struct Structure {
     pub name: String,
     pub margin: Option<Real>,
-    /// In a place of its own, so that the rest, which tells that a robot is far, is one small
-    /// piece of memory for all structures.
+    /// Boxed, so that the fields that reject a far robot lie close together in memory for all
+    /// structures.
     pub search: Box<BvhSearch>,
-    /// From the mesh's frame to the scene's; none where they are one.
+    /// Maps the mesh's frame to the scene's; `None` if they are the same.
     pose: Option<Pose>,
-    /// The box around the triangles, in the mesh's frame.
+    /// The bounding box of the triangles, in the mesh's frame.
     pub around: BoundingBox,
-    /// The largest coordinate of these and of the pose.
+    /// The largest coordinate of the box and of the pose.
     size: Real,
 }
 
@@ -48,6 +48,8 @@ impl Structure {
         self.size
     }
 
+    /// Sets the pose.
+    ///
     /// # Errors
     /// The pose is not finite or not rigid.
     pub fn set_pose(&mut self, pose: &Pose) -> Result<(), ProximityError> {
@@ -57,20 +59,22 @@ impl Structure {
         Ok(())
     }
 
+    /// Moves the vertices.
+    ///
     /// # Errors
-    /// As those of the engine.
+    /// As [`Proximity::set_vertices`].
     pub fn set_vertices(&mut self, vertices: &[Vector]) -> Result<(), MeshError> {
         self.search.set_vertices(vertices)?;
         self.update_bounds();
         Ok(())
     }
 
-    /// A robot's pose in the mesh's frame.
+    /// Maps a robot's pose to the mesh's frame.
     pub fn in_mesh(&self, robot: &Pose) -> Pose {
         self.pose.map_or(*robot, |pose| pose.inverse() * *robot)
     }
 
-    /// A robot in the mesh's frame, from where it is `placed` in the scene's.
+    /// Places a robot in the mesh's frame. `placed` is the robot placed in the scene's frame.
     ///
     /// # Errors
     /// The structure's pose moves a link out of range.
@@ -83,12 +87,12 @@ impl Structure {
         if self.pose.is_none() { Ok(*placed) } else { PlacedRobot::new(robot, &self.in_mesh(at)) }
     }
 
-    /// The box around it in the scene's frame.
+    /// The bounding box in the scene's frame.
     pub fn around_in_scene(&self) -> BoundingBox {
         self.pose.map_or(self.around, |pose| self.around.moved(&pose))
     }
 
-    /// An answer of the mesh's frame in the scene's.
+    /// Maps an answer from the mesh's frame to the scene's.
     pub fn placed(&self, mut nearest: LinkProximity) -> LinkProximity {
         if let Some(pose) = &self.pose {
             nearest.on_robot = pose * nearest.on_robot;
@@ -97,7 +101,7 @@ impl Structure {
         nearest
     }
 
-    /// A contact of the mesh's frame in the scene's.
+    /// Maps a contact from the mesh's frame to the scene's.
     pub fn placed_contact(&self, mut contact: Contact) -> Contact {
         if let Some(pose) = &self.pose {
             contact.on_robot = pose * contact.on_robot;

@@ -1,15 +1,28 @@
-//! What is built when it is first asked for, and shared by all threads.
+//! Values that are built at first use and shared by all threads.
+//!
+//! # Definitions
+//! - Build: the closure of [`Lazy::get_or_build`]. It runs once, in the first thread that needs the
+//!   value.
+//! - Pool: the threads of rayon. A thread of the pool that waits for its helpers takes up other
+//!   tasks.
+//!
+//! # Deadlock
+//! **Claim.** A build never waits for a task that waits for the build.
+//!
+//! **Proof.** A build that used the pool could wait for such a task in two ways:
+//!
+//! 1. Its thread takes up a task that needs the same value.
+//! 2. Its helpers wait for the value themselves.
+//!
+//! [`on_this_thread`] excludes both: the build has no helpers and takes up no tasks.
 
 use super::parallel::on_this_thread;
 use std::sync::OnceLock;
 
-/// Something that is built at the first question for it, by the thread that asks, alone.
+/// A value that the first thread to need it builds, on that thread alone.
 ///
-/// Threads that ask meanwhile wait, tasks of a pool among them. So the builder must not wait for
-/// the pool: a thread of the pool that waits for its helpers takes up other tasks, and one of these
-/// may ask for the very thing that this thread has begun to build; and helpers that themselves wait
-/// for it never come. Neither happens where a builder has no helpers, so it has none: what
-/// [`each`](super::parallel::each) and the like do for it they do on its own thread.
+/// Other threads that need the value wait for it, tasks of a pool included. During the build,
+/// [`each`](super::parallel::each) and the like work on the builder's thread.
 #[derive(Clone)]
 pub(crate) struct Lazy<T>(OnceLock<T>);
 
@@ -18,7 +31,7 @@ impl<T> Lazy<T> {
         Self(OnceLock::new())
     }
 
-    /// Builds it alone, unless it is there.
+    /// Returns the value, and builds it on this thread alone if it is missing.
     #[inline(always)] // most often it is there
     pub(crate) fn get_or_build(&self, build: impl FnOnce() -> T) -> &T {
         self.0.get_or_init(|| on_this_thread(build))
@@ -32,7 +45,7 @@ impl<T> Lazy<T> {
         self.0.get_mut()
     }
 
-    /// Leaves nothing: it is built again at the next question.
+    /// Removes the value: the next use builds it again.
     pub(crate) fn take(&mut self) -> Option<T> {
         self.0.take()
     }
@@ -47,7 +60,7 @@ mod tests {
     use std::thread;
     use std::time::Duration;
 
-    /// Though the pool has nothing else to do.
+    /// Although the pool is idle.
     #[test]
     fn a_builder_has_no_helpers() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(16).build().unwrap();

@@ -1,4 +1,4 @@
-//! Work for all cores, and what is built by one thread while others may wait for it.
+//! Work on all cores, and lazy values that one thread builds while others may wait for them.
 
 mod lazy;
 mod parallel;

@@ -1,19 +1,19 @@
-//! The same work for many items, on all cores (feature `parallel`). Nothing else in the crate uses
-//! a pool of threads.
+//! The same work for many items, on all cores (feature `parallel`). No other file uses a thread
+//! pool.
 
 #[cfg(feature = "parallel")]
 use rayon::prelude::*;
 use std::cell::Cell;
 
 thread_local! {
-    /// Whether this thread does something alone.
+    /// Whether this thread works alone, inside [`on_this_thread`].
     static IS_ALONE: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Does something on this thread alone: nothing in here waits for other threads of the pool, or
-/// takes up their tasks.
+/// Runs `work` on this thread alone: it neither waits for other threads of the pool nor takes up
+/// their tasks.
 pub(crate) fn on_this_thread<T>(work: impl FnOnce() -> T) -> T {
-    /// Puts back what was before, after a panic too.
+    /// Restores the previous flag, after a panic too.
     struct Before(bool);
     impl Drop for Before {
         fn drop(&mut self) {
@@ -24,7 +24,7 @@ pub(crate) fn on_this_thread<T>(work: impl FnOnce() -> T) -> T {
     work()
 }
 
-/// How many threads could work.
+/// The number of threads that may work.
 pub(crate) fn threads() -> usize {
     #[cfg(feature = "parallel")]
     if !IS_ALONE.get() {
@@ -33,10 +33,9 @@ pub(crate) fn threads() -> usize {
     1
 }
 
-/// Does `work` on every item, which it gets with its place. An item should be worth some
-/// microseconds.
+/// Calls `work` with the index of every item, and the item. An item should take some microseconds.
 pub(crate) fn each<T: Send>(items: &mut [T], work: impl Fn(usize, &mut T) + Sync + Send) {
-    // To wake another thread for one item would take longer than the item.
+    // Waking another thread takes longer than one item.
     #[cfg(feature = "parallel")]
     if items.len() > 1 && !IS_ALONE.get() {
         return items.par_iter_mut().enumerate().for_each(|(place, item)| work(place, item));
@@ -44,7 +43,7 @@ pub(crate) fn each<T: Send>(items: &mut [T], work: impl Fn(usize, &mut T) + Sync
     items.iter_mut().enumerate().for_each(|(place, item)| work(place, item));
 }
 
-/// Does two things, on two cores if it is worth it.
+/// Runs two closures, on two cores if that is worth it.
 #[cfg(feature = "parallel")]
 pub(crate) fn both(is_worth_it: bool, one: impl FnOnce() + Send, other: impl FnOnce() + Send) {
     if is_worth_it && !IS_ALONE.get() {
@@ -55,14 +54,14 @@ pub(crate) fn both(is_worth_it: bool, one: impl FnOnce() + Send, other: impl FnO
     }
 }
 
-/// Does two things.
+/// Runs two closures.
 #[cfg(not(feature = "parallel"))]
 pub(crate) fn both(_: bool, one: impl FnOnce(), other: impl FnOnce()) {
     one();
     other();
 }
 
-/// Answers questions in shares, each share with a memory of its own.
+/// Answers questions in chunks, each chunk with its own memory.
 pub(crate) fn in_chunks<Q: Sync, A: Send, M: Default + Send>(
     questions: &[Q],
     answers: &mut [A],
@@ -71,7 +70,7 @@ pub(crate) fn in_chunks<Q: Sync, A: Send, M: Default + Send>(
 ) {
     #[cfg(feature = "parallel")]
     if !IS_ALONE.get() {
-        // A few shares for each thread, because questions differ in the time they take.
+        // Four chunks per thread balance the load, because questions differ in their time.
         let share = questions.len().div_ceil(4 * threads()).max(1);
         memories.resize_with(questions.len().div_ceil(share), M::default);
         let shares = questions.par_chunks(share).zip(answers.par_chunks_mut(share));
@@ -92,7 +91,7 @@ mod tests {
     use std::thread::{self, ThreadId};
     use std::time::Duration;
 
-    /// The threads on which items are done, each of which takes a while.
+    /// The threads on which slow items run.
     fn threads_of_each() -> HashSet<ThreadId> {
         let seen = Mutex::new(HashSet::new());
         each(&mut [(); 64], |_, ()| {
@@ -122,8 +121,8 @@ mod tests {
         answers.into_iter().flatten().collect()
     }
 
-    /// A task of a pool that does something alone has no helpers, and takes up no other task
-    /// meanwhile. That holds until it is done, and when it fails.
+    /// A pool task that works alone has no helpers and takes up no other task. The flag is cleared
+    /// at its end, and after a panic.
     #[test]
     fn who_is_alone_stays_on_one_thread() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(16).build().unwrap();

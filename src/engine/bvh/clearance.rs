@@ -1,4 +1,16 @@
 //! Queries about tubes, as [`BvhSearch`] answers them.
+//!
+//! # Algorithm
+//! A tube may state no more of its flat ends than a turn. For such a tube:
+//!
+//! 1. Answer the query as if the turn had not been stated ([`clearance_without_turn`]).
+//! 2. Answer the query with the turn.
+//! 3. Combine both: the tighter bounds, or the better decision.
+//!
+//! **Claim.** A stated turn never makes an answer worse.
+//! **Proof.** Both answers are valid for the tube, and step 3 keeps the better. Step 2 alone would
+//! not do, because a body with flat ends is wider beside them than a body with round ends. So
+//! either body may give the tighter bound.
 
 use super::search::{BvhSearch, Context};
 use crate::answer::{Clearance, Decision, ProximityError, TubePiece};
@@ -9,27 +21,30 @@ use crate::robot::Tube;
 use parry3d_f64::math::{Pose, Real};
 
 impl BvhSearch {
-    /// The clearance of a tube, between bounds that are at most `tolerance` apart where the tube
-    /// allows that.
+    /// Bounds the clearance of a tube from both sides.
     ///
-    /// `pose` is the tube's in the mesh's frame. The bounds hold for the tube as it was given, all
-    /// rounding included: `lower` <= clearance <= `upper`, and `upper` is realised by the
-    /// points of the answer. With a tolerance of 0, which suits straight pieces alone, they
-    /// differ by rounding.
+    /// `pose` is the tube's pose in the mesh's frame. `tolerance` is a length: the bounds differ by
+    /// at most the tolerance if the tube allows that. A tolerance of 0 suits straight pieces alone;
+    /// the bounds then differ by rounding.
     ///
-    /// There are always bounds. [`resolved`](Clearance::resolved) says whether they are as close as
-    /// was asked for: samples may be too coarse for that, rounding may hide it, and a query
-    /// ends after 65,536 pieces. What the tube states as its own error is in both bounds, and
-    /// no part of the tolerance: that is the answer's [`uncertainty`](Clearance::uncertainty).
+    /// The bounds hold for the tube as it was given, all rounding included: `lower` <= clearance <=
+    /// `upper`. The points of the answer realise `upper`.
     ///
-    /// The answer is the same to the last bit, whatever was asked before. A finer tolerance never
-    /// gives looser bounds.
+    /// The answer always has bounds, and [`resolved`](Clearance::resolved) says whether they meet
+    /// the tolerance. They may not, because samples are too coarse, because rounding hides more, or
+    /// because the query ends after 65,536 pieces. Both bounds allow for the error that the tube
+    /// states of itself. This error is no part of the tolerance; the answer's
+    /// [`uncertainty`](Clearance::uncertainty) reports it.
     ///
-    /// The work grows with the number of pieces near the wall, about the root of 1 / tolerance.
+    /// The answer does not depend on earlier queries, bit for bit. A finer tolerance never gives
+    /// looser bounds.
+    ///
+    /// The work grows with the number of pieces near the wall, about as 1 / sqrt(tolerance).
     ///
     /// # Errors
-    /// The tolerance is negative or NaN; the curve of the tube is not finite somewhere; or the pose
-    /// is not finite or moves it out of range.
+    /// - The tolerance is negative or NaN.
+    /// - The curve of the tube is not finite somewhere.
+    /// - The pose is not finite, or moves the tube out of range.
     pub fn clearance(
         &mut self,
         tube: &Tube,
@@ -40,14 +55,14 @@ impl BvhSearch {
         self.context().clearance(tube, pose, tolerance)
     }
 
-    /// [`clearance`](Self::clearance), and the pieces into which the query divided the tube for it,
-    /// in the order of their arc lengths: what the tolerance cost.
+    /// [`clearance`](Self::clearance), and the pieces into which the query divided the tube.
     ///
-    /// Together the pieces are the whole tube, without gap or overlap: few and long far from the
-    /// wall, short near it. The least of their `lower` is that of the answer, unless it is the
-    /// answer's `upper`. Once a common point with the mesh is found, pieces stay as they are.
-    /// The `lower` of pieces that are farther away depends on earlier queries. `out` is cleared
-    /// first.
+    /// The pieces show where the tolerance costs work. They are sorted by arc length and cover the
+    /// tube without gap or overlap: few and long far from the wall, short near it. The answer's
+    /// `lower` is the least `lower` of the pieces, or else the answer's `upper`. It may be larger
+    /// for a tube that states a turn: the answer then combines two queries, and the pieces are
+    /// those of the second. Once the query finds a common point with the mesh, it divides no
+    /// further. The `lower` of a farther piece depends on earlier queries. `out` is cleared first.
     ///
     /// ```
     /// use parry_continuum::{Tube, parry::{math::{Pose, Vector}, shape::{Ball, TriMesh}}};
@@ -81,10 +96,11 @@ impl BvhSearch {
         answer
     }
 
-    /// Whether a tube keeps more than `margin` away from the mesh.
+    /// Decides whether a tube is farther than `margin` from the mesh.
     ///
-    /// `Clear` and `Contact` are proven. `Undecided` is the answer only where the clearance is
-    /// within `resolution` of the margin, or where 65,536 pieces of the tube do not decide it.
+    /// `margin` and `resolution` are lengths. `Clear` and `Contact` are proven. `Undecided` occurs
+    /// only if the clearance is within `resolution` of the margin, or if 65,536 pieces of the tube
+    /// do not decide.
     ///
     /// ```
     /// use parry_continuum::{Tube, parry::{math::{Pose, Vector}, shape::{Ball, TriMesh}}};
@@ -100,9 +116,9 @@ impl BvhSearch {
     /// ```
     ///
     /// # Errors
-    /// The margin or the resolution is negative or NaN, samples do not allow a decision at that
-    /// resolution, or as [`clearance`](Self::clearance). A contact that is found is the answer,
-    /// whatever samples allow elsewhere.
+    /// As [`clearance`](Self::clearance); or the margin or the resolution is negative or NaN; or
+    /// samples do not allow a decision at that resolution. A contact that is found is reported
+    /// before any error about samples.
     pub fn tube_clears(
         &mut self,
         tube: &Tube,
@@ -114,8 +130,9 @@ impl BvhSearch {
         self.context().tube_clears(tube, pose, margin, resolution)
     }
 
-    /// [`clearance`](Self::clearance) for many tubes, on all cores. `out` gets the answer of each,
-    /// or why there is none.
+    /// [`clearance`](Self::clearance) for many tubes, on all cores.
+    ///
+    /// Writes one result per tube to `out`, in order.
     ///
     /// ```
     /// use parry_continuum::{Tube, parry::{math::{Pose, Vector}, shape::Ball}};
@@ -148,8 +165,9 @@ impl BvhSearch {
         Ok(())
     }
 
-    /// [`tube_clears`](Self::tube_clears) for many tubes, on all cores. `out` gets the answer of
-    /// each, or why there is none.
+    /// [`tube_clears`](Self::tube_clears) for many tubes, on all cores.
+    ///
+    /// Writes one result per tube to `out`, in order.
     ///
     /// # Errors
     /// The margin or the resolution is negative or NaN; `out` is then empty.
@@ -174,9 +192,7 @@ impl BvhSearch {
     }
 }
 
-/// The clearance of a tube of whose flat ends nothing is known but a turn, as if that had not been
-/// stated; none of any other tube. Bodies with flat ends are wider beside them than those with
-/// round ends, so that either may tell more.
+/// Step 1: the clearance of a tube as if no turn had been stated, or `None` if none was stated.
 fn clearance_without_turn(
     tube: &mut TubeInMesh,
     memory: &mut TubeMemory,
@@ -244,7 +260,7 @@ impl<'a> Context<'a> {
         Decision::better_of(decision, || tube_clears(&mut tube, memory, margin, resolution))
     }
 
-    /// The tube in the mesh, and what the last query about a tube left.
+    /// Places the tube in the mesh's frame and returns it with the warm start of tube queries.
     fn tube_in_mesh(
         self,
         tube: &'a Tube,

@@ -1,4 +1,4 @@
-//! The engine that searches a hierarchy, one short file a question.
+//! The engine on a bounding volume hierarchy: one file per kind of query.
 
 mod clearance;
 mod motion;

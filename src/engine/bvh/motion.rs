@@ -1,4 +1,6 @@
 //! Queries about motions, as [`BvhSearch`] answers them.
+//!
+//! Each query is a [`MotionSearch`] with the warm start of the last one.
 
 use super::search::{BvhSearch, Context, Remembered};
 use crate::answer::{MotionAnswer, MotionClearance, ProximityError};
@@ -8,32 +10,34 @@ use crate::robot::{Chain, Motion, ShapePath};
 use parry3d_f64::math::{Real, Vector};
 
 impl BvhSearch {
-    /// Whether a motion keeps more than `margin` away from the mesh at every time from 0 to 1.
+    /// Decides whether a motion stays farther than `margin` from the mesh at every time from 0 to
+    /// 1.
     ///
-    /// - `Clear`: no point of the robot comes as near as the margin at any time. This is proven
-    ///   from the speeds that the motion states, rounding included. A robot that passes through a
-    ///   wall is never `Clear`, although it may be far from the wall on both sides.
+    /// `margin` and `resolution` are lengths in the mesh's unit.
+    ///
+    /// - `Clear`: every point of the robot is farther than the margin at every time. The proof uses
+    ///   the speeds that the motion states, and includes rounding. A robot that passes through a
+    ///   wall is never `Clear`, however far from the wall it is on both sides.
     /// - `Contact`: the answer names a shape that is at most the margin away, and its time.
-    /// - `Undecided`, because of [`Near`](crate::proximity::UndecidedReason::Near): some shape is
-    ///   farther away than the margin by no more than `resolution`, which is a length. There are
-    ///   two other cases: an end of a link or section that lies one radius behind a flat face turns
-    ///   from flat to round, and it is this end that comes near; or a link loses its length for a
-    ///   moment, and what comes near is the ball that it is then.
-    /// - `Undecided`, because of [`Work`](crate::proximity::UndecidedReason::Work): the question
+    /// - `Undecided` with the reason [`Near`](crate::proximity::UndecidedReason::Near): the
+    ///   distance of some shape exceeds the margin by at most `resolution`. Two other cases have
+    ///   this reason. An end of a link or section lies one radius behind a flat face, turns from
+    ///   flat to round, and is the part that comes near. Or the length of a link vanishes for an
+    ///   instant, and the ball that the link then is comes near.
+    /// - `Undecided` with the reason [`Work`](crate::proximity::UndecidedReason::Work): the query
     ///   ends after 65,536 shapes.
     ///
-    /// The work is one tube query for each shape that the proof needs. One shape is enough where
-    /// the motion is small beside the room that it has, and more are needed where it passes
-    /// close by. Only the pieces of the robot that are not proven yet are looked at again.
+    /// The work is one tube query for each shape that the proof needs. One shape is enough if the
+    /// motion is small compared with its clearance; a narrow passage needs more. Each further shape
+    /// searches only the pieces of the robot that are not proven yet.
     ///
-    /// The stated speeds are trusted. Let your tests check them by
+    /// The stated speeds are premises. Check them in your tests with
     /// [`verify_motion`](crate::verify_motion).
     ///
-    /// The query allocates nothing once its memory has grown. Making the shapes may:
-    /// [`LinearMotion`](crate::LinearMotion) and [`RigidMotion`](crate::RigidMotion) reuse
-    /// their memory, [`BendingMotion`](crate::BendingMotion) allocates a few times
-    /// for each shape, and a motion of your own reuses memory if it calls
-    /// [`Tube::set_samples`](crate::Tube::set_samples).
+    /// The query allocates nothing once its memory has grown. The motion may allocate when it makes
+    /// a shape: [`LinearMotion`](crate::LinearMotion) and [`RigidMotion`](crate::RigidMotion) reuse
+    /// their memory; [`BendingMotion`](crate::BendingMotion) allocates a few times per shape. Your
+    /// own motion reuses memory if it calls [`Tube::set_samples`](crate::Tube::set_samples).
     ///
     /// ```
     /// use parry_continuum::{LinearMotion, parry::{math::Vector, shape::{Ball, TriMesh}}};
@@ -45,7 +49,7 @@ impl BvhSearch {
     /// let to = [Vector::ZERO, Vector::new(4.0, 0.0, 0.0)];
     /// let inside = LinearMotion::chain(&from, &to, &[1.0])?;
     /// assert!(search.clears_motion(&inside, 1.0, 1e-3)?.is_clear());
-    /// // From inside to outside, whose ends are both clear.
+    /// // From inside to outside. Both end shapes are clear.
     /// let through = LinearMotion::chain(&from, &from.map(|point| point + Vector::X * 20.0), &[1.0])?;
     /// let answer = search.clears_motion(&through, 0.0, 1e-3)?;
     /// assert_eq!(answer.decision, Decision::Contact);
@@ -54,9 +58,10 @@ impl BvhSearch {
     /// ```
     ///
     /// # Errors
+    /// # Errors
     /// - The margin or the resolution is negative or NaN.
-    /// - The resolution is finer than rounding, than the samples of a shape allow, or than a motion
-    ///   so fast can be divided.
+    /// - The resolution is finer than rounding or the samples of a shape allow, or the motion is
+    ///   too fast to be divided that finely.
     /// - The motion has no shape at some time, its sections change, or a stated speed is not
     ///   finite.
     /// - The robot is out of range.
@@ -70,15 +75,15 @@ impl BvhSearch {
         self.context().motion(motion).clears(MarginQuery { margin, resolution })
     }
 
-    /// When a motion first comes as close to the mesh as `margin`: between the two times of the
-    /// answer's [`interval`](MotionAnswer::interval).
+    /// Bounds the time at which a motion first comes within `margin` of the mesh.
     ///
-    /// Until the first time the margin is kept, which is proven. At the second time a shape does
-    /// not keep it, which the answer names. Between the two, the place that touches moves by no
-    /// more than the resolution. They are farther apart only if the motion comes within the
-    /// resolution of the margin before, or if the question ends after 65,536 shapes.
+    /// The answer's [`interval`](MotionAnswer::interval) is `[clear_until, t]`. The motion provably
+    /// keeps the margin until `clear_until`. The shape at `t`, which the answer names, does not
+    /// keep it. Between the two times the touching place moves by at most `resolution`. The times
+    /// are farther apart only if the motion comes within the resolution of the margin before, or if
+    /// the query ends after 65,536 shapes.
     ///
-    /// Decisions mean what they do for [`clears_motion`](Self::clears_motion).
+    /// Decisions mean the same as for [`clears_motion`](Self::clears_motion).
     ///
     /// ```
     /// use parry_continuum::{LinearMotion, parry::{math::Vector, shape::{Ball, TriMesh}}};
@@ -91,7 +96,7 @@ impl BvhSearch {
     /// let motion = LinearMotion::chain(&from, &to, &[0.01])?;
     /// let found = search.time_of_contact(&motion, 0.0, 1e-3)?;
     /// let [clear_until, t] = found.interval;
-    /// assert!(clear_until <= 0.45 && 0.449 <= t && t - clear_until <= 1e-3); // where the tip has gone 9 of 20
+    /// assert!(clear_until <= 0.45 && 0.449 <= t && t - clear_until <= 1e-3); // the tip has moved 9 of 20
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///
@@ -107,44 +112,50 @@ impl BvhSearch {
         self.context().motion(motion).first_contact(MarginQuery { margin, resolution })
     }
 
-    /// Whether the robot keeps more than `margin` away all the way along a planner's own shapes,
-    /// where no speed is stated.
+    /// Decides whether the robot stays farther than `margin` along a planner's own shapes, without
+    /// stated speeds.
     ///
-    /// `shapes` are the robot at the planner's steps, in the mesh's frame, with the same number of
-    /// links and the same radii. Between two of them every vertex is taken to move straight and
-    /// evenly. At every moment the robot is some tube whose centreline is smooth and lies
-    /// within `deviation` of the links, place by place: the deviation counts how far the links
-    /// leave the curve, how far the robot's way leaves the straight one between two steps, and
-    /// what the kinematics or a sensor errs.
+    /// `shapes` are the robot at the planner's steps, in the mesh's frame. They have the same
+    /// number of links and the same radii. `deviation`, `margin` and `resolution` are lengths.
     ///
-    /// A place says nothing of a direction. On its side the tube is known to the deviation; at the
-    /// flat faces of its two ends and of steps in radius it may stand any way: it lies within
-    /// the ball around its centre, and holds that centre. So caps of the shapes do not matter.
+    /// **Premises.** Between two steps every vertex of the links moves on a straight line at
+    /// constant speed. At every time the robot is some tube with a smooth centreline within
+    /// `deviation` of the links, place by place. So the deviation must cover three errors:
+    ///
+    /// 1. of the links against the curve,
+    /// 2. of the straight path between two steps against the true path,
+    /// 3. of the kinematics or the sensor.
+    ///
+    /// A place implies no direction. So the side of the tube is known to within the deviation. The
+    /// flat faces of its two ends and of steps in radius may have any direction. A face lies within
+    /// the ball around its centre and contains the centre. So the caps of the shapes do not matter.
     ///
     /// - `Clear`: every such tube keeps the margin at every time.
     /// - `Contact`: every such tube is at most the margin away at the time of the named shape.
-    ///   Times are shared out evenly: of n shapes the first is at t = 0, the next at 1 / (n - 1).
-    /// - `Undecided`: it depends on the tube, or on less than `resolution`.
+    ///   Times are evenly spaced: the k-th of n shapes, from 0, is at t = k / (n - 1).
+    /// - `Undecided`: the decision depends on the tube, or on less than `resolution`.
     ///
     /// ```
     /// use parry_continuum::{Chain, parry::{math::Vector, shape::Ball}, proximity::{BvhSearch, Decision}};
     ///
     /// let (vertices, triangles) = Ball::new(10.0).to_trimesh(64, 32);
     /// let mut search = BvhSearch::from_triangles(&vertices, &triangles)?;
-    /// // A needle that is pushed by 5 in steps of 1.
+    /// // A needle that advances by 5 in steps of 1.
     /// let needle = |tip: u32| Chain::capsules(&[Vector::ZERO, Vector::Z * f64::from(tip)], &[0.5]);
     /// let shapes = (1..=6).map(needle).collect::<Result<Vec<_>, _>>()?;
     /// let found = search.clears_path(&shapes, 0.1, 1.0, 1e-3)?;
     /// assert_eq!(found.decision, Decision::Clear);
     /// let found = search.clears_path(&shapes, 0.1, 5.0, 1e-3)?;
-    /// assert_eq!(found.decision, Decision::Contact); // the tip is less than 4 away in the end
+    /// assert_eq!(found.decision, Decision::Contact); // at the end the tip is less than 4 away
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///
     /// # Errors
-    /// - The margin or the resolution is negative or NaN, or the deviation is, or is not finite.
+    /// - The margin or the resolution is negative or NaN, or the deviation is negative or not
+    ///   finite.
     /// - There are no shapes, or they differ in radii or in which segments have a length.
-    /// - The resolution is finer than rounding, or than shapes so far apart can be divided.
+    /// - The resolution is finer than rounding allows, or the shapes are too far apart to be
+    ///   divided that finely.
     /// - The robot is out of range.
     pub fn clears_path(
         &mut self,
@@ -159,19 +170,21 @@ impl BvhSearch {
         self.context().motion(&path).clears(MarginQuery { margin, resolution })
     }
 
-    /// Whether a motion keeps more than `margin` away from a mesh that moves meanwhile: each vertex
-    /// goes straight and evenly from where it is to its place in `to`, in the same time from 0
-    /// to 1.
+    /// Decides whether a motion stays farther than `margin` from a mesh that moves at the same
+    /// time.
     ///
-    /// That is an organ that breathes, a registration that is corrected, or a step of a simulation
-    /// of tissue. `Clear` is proven for every instant, as for
-    /// [`clears_motion`](Self::clears_motion); a `Contact` names the time, and its points are those
-    /// of robot and mesh at that time. The engine's mesh stays where it was:
-    /// [`set_vertices`](crate::proximity::Proximity::set_vertices) moves it to `to` for good.
+    /// Each vertex moves from its present position to its position in `to`, on a straight line at
+    /// constant speed, while t goes from 0 to 1. Examples are an organ that breathes, a corrected
+    /// registration, or a step of a tissue simulation.
+    ///
+    /// `Clear` is proven for every instant, as for [`clears_motion`](Self::clears_motion). A
+    /// `Contact` names the time; its points are those of robot and mesh at that time. The engine's
+    /// mesh stays where it is: [`set_vertices`](crate::proximity::Proximity::set_vertices) moves it
+    /// to `to`.
     ///
     /// A robot at rest is a [`RigidMotion`](crate::RigidMotion) from a pose to the same pose. Each
-    /// call goes once through all triangles. The fastest vertex is taken for the speed of the
-    /// whole mesh: what moves everywhere alike had better move the robot instead
+    /// call visits all triangles once. The speed of the fastest vertex counts as the speed of the
+    /// whole mesh. If the whole mesh moves alike, move the robot instead
     /// ([`MovingBase`](crate::MovingBase)).
     ///
     /// ```
@@ -207,26 +220,26 @@ impl BvhSearch {
         search.clears(MarginQuery { margin, resolution })
     }
 
-    /// How near a motion comes to the mesh at any time from 0 to 1, between bounds that are at most
-    /// `tolerance` apart where the motion's shapes allow that.
+    /// Bounds the least clearance of a motion over all times from 0 to 1.
     ///
-    /// `lower` <= the least clearance of all shapes <= `upper`, for every instant and not only for
-    /// some: this is proven from the speeds that the motion states, rounding included. The
-    /// shape at [`t`](MotionClearance::t) realises `upper`, at the two points of the answer.
-    /// Where the motion stays as near for a while, `t` is one such time.
+    /// `lower` <= least clearance of all shapes <= `upper`. `tolerance` is a length: the bounds
+    /// differ by at most the tolerance if the motion's shapes allow that. The bounds hold for every
+    /// instant, rounding included, given the speeds that the motion states. The shape at
+    /// [`t`](MotionClearance::t) realises `upper`, at the two points of the answer. If the motion
+    /// stays as near for a while, `t` is one such time.
     ///
-    /// There are always bounds; [`resolved`](MotionClearance::resolved) says whether they are as
-    /// close as was asked for. Samples may be too coarse for that, an end may turn from flat to
-    /// round and be what comes near, or the query ends after 65,536
-    /// shapes. A [`MotionPath`](crate::MotionPath) asks about many motions at once: each is looked
-    /// at only as closely as it may be the one that comes nearest.
+    /// The answer always has bounds; [`resolved`](MotionClearance::resolved) says whether they meet
+    /// the tolerance. They may not, because samples are too coarse, because an end that comes near
+    /// turns from flat to round, or because the query ends after 65,536 shapes. A
+    /// [`MotionPath`](crate::MotionPath) bounds many motions at once: the query refines each motion
+    /// only as far as it may be the nearest.
     ///
     /// ```
     /// use parry_continuum::{LinearMotion, parry::{math::Vector, shape::Ball}, proximity::BvhSearch};
     ///
     /// let (vertices, triangles) = Ball::new(10.0).to_trimesh(64, 32);
     /// let mut search = BvhSearch::from_triangles(&vertices, &triangles)?;
-    /// // The tip goes from the one side to the other.
+    /// // The tip moves from one side to the other.
     /// let motion = LinearMotion::chain(
     ///     &[Vector::Z * 2.0, Vector::new(-4.0, 0.0, 6.0)],
     ///     &[Vector::Z * 2.0, Vector::new(4.0, 0.0, 6.0)],
@@ -239,8 +252,10 @@ impl BvhSearch {
     /// ```
     ///
     /// # Errors
-    /// The tolerance is negative or NaN; the motion has no shape at some time, its sections change,
-    /// or a stated speed is not finite; or the robot is out of range.
+    /// - The tolerance is negative or NaN.
+    /// - The motion has no shape at some time, its sections change, or a stated speed is not
+    ///   finite.
+    /// - The robot is out of range.
     pub fn clearance_of_motion(
         &mut self,
         motion: &impl Motion,
@@ -250,8 +265,9 @@ impl BvhSearch {
         self.context().motion(motion).clearance(tolerance)
     }
 
-    /// [`clears_motion`](Self::clears_motion) for many motions, on all cores. `out` gets the answer
-    /// of each, or why there is none.
+    /// [`clears_motion`](Self::clears_motion) for many motions, on all cores.
+    ///
+    /// Writes one result per motion to `out`, in order.
     ///
     /// # Errors
     /// The margin or the resolution is negative or NaN; `out` is then empty.
@@ -272,7 +288,7 @@ impl BvhSearch {
 }
 
 impl<'a> Context<'a> {
-    /// A search along a motion.
+    /// A search along a motion, with the warm start of the last one.
     fn motion<M: Motion>(self, motion: &'a M) -> MotionSearch<'a, M> {
         let (search, Remembered { motion: memory, .. }) = self.search();
         MotionSearch { search, memory, motion, shapes: 0, last: None, does_mesh_move: false }

@@ -1,4 +1,4 @@
-//! A mesh with all that questions need of it.
+//! A mesh with every structure that queries need of it.
 
 use crate::mesh::Mesh;
 use crate::query::contacts::OppositeCorners;
@@ -9,16 +9,16 @@ use crate::threads::Lazy;
 use fearless_simd::Level;
 use parry3d_f64::math::Vector;
 
-/// The hierarchy of a mesh, and what some questions need beside it: built at the first of them, or
-/// when it is prepared.
+/// The hierarchy of a mesh, and the structures of some queries: built by the first of them, or by
+/// [`prepare`](Self::prepare).
 #[derive(Clone)]
 pub(super) struct PreparedMesh {
     pub hierarchy: Hierarchy,
-    /// For those who ask for contacts.
+    /// Neighbours of triangles, for contacts.
     across: Lazy<OppositeCorners<f32>>,
-    /// For those who ask on which side of the mesh a point is.
+    /// Far fields of nodes, for the side of a point.
     far_fields: Lazy<FarFields>,
-    /// For those who ask whether a margin is kept.
+    /// A coarse grid of the sides of the wall, for queries about a margin.
     sides: Lazy<SideGrid>,
 }
 
@@ -28,7 +28,7 @@ impl PreparedMesh {
         Self { hierarchy, across: Lazy::new(), far_fields: Lazy::new(), sides: Lazy::new() }
     }
 
-    /// Builds all that a question would build.
+    /// Builds every structure that a query would build at first use.
     pub(super) fn prepare(&self, level: Level) {
         self.hierarchy.prepare(level);
         self.sides();
@@ -37,24 +37,25 @@ impl PreparedMesh {
         across.prepare(self.hierarchy.single(), &self.hierarchy.mesh);
     }
 
-    /// For each edge of each triangle the corner of a neighbour beyond it.
+    /// For each edge of each triangle, the opposite corner of the neighbour.
     pub(super) fn across(&self) -> &Lazy<OppositeCorners<f32>> {
         &self.across
     }
 
-    /// What the hierarchy's nodes are from far away, for the side of a point. The division of
-    /// either hierarchy serves.
+    /// The far fields of the hierarchy's nodes, for the side of a point.
+    ///
+    /// Both hierarchies have the same nodes, so either would do.
     pub(super) fn far_fields(&self) -> &FarFields {
         let Hierarchy { mesh, .. } = &self.hierarchy;
         self.far_fields.get_or_build(|| FarFields::new(self.hierarchy.single(), mesh))
     }
 
-    /// On which side of the wall space lies, roughly.
+    /// A coarse guess at the side of the wall on which a cell of space lies.
     pub(super) fn sides(&self) -> &SideGrid {
         self.sides.get_or_build(|| SideGrid::new(&self.hierarchy.mesh))
     }
 
-    /// Moves the vertices, which were checked.
+    /// Moves the vertices, which are checked, and drops the structures that no longer fit.
     pub(super) fn set_vertices(&mut self, level: Level, vertices: &[Vector]) {
         self.hierarchy.set_vertices(level, vertices);
         self.far_fields.take();

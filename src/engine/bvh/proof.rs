@@ -1,4 +1,11 @@
 //! Proofs that others can check, as [`BvhSearch`] writes them.
+//!
+//! # Algorithm
+//! 1. Decide by the query itself. Without `Clear` there is no proof.
+//! 2. Divide the robot into convex bodies, and search separating planes between the bodies and the
+//!    triangles ([`PlaneSearch`]).
+//! 3. For a tube, divide it more finely while planes are missing. The excess of the bodies goes
+//!    from 1/16 of the tube's length down to 1/4 of the resolution, by a factor of 4.
 
 use super::search::BvhSearch;
 use crate::answer::{Decision, Proof, ProximityError};
@@ -12,15 +19,17 @@ use fearless_simd::Level;
 use parry3d_f64::math::{Pose, Real};
 
 impl BvhSearch {
-    /// A proof that the robot keeps more than `margin` away from the mesh, for those who do not
-    /// trust this library: a text that a short program in plain Python checks. The [page on
-    /// proofs](crate::book::proofs) has both.
+    /// Proves that the robot is farther than `margin` from the mesh, for readers who do not trust
+    /// this library.
     ///
-    /// The proof does not say on which side of the wall the robot is: [`side`](Self::side) answers
-    /// that. The program prints this, and the premises.
+    /// The proof is a text that a short program in plain Python checks. The [page on
+    /// proofs](crate::book::proofs) has both. `None` if the robot does not keep the margin, or
+    /// keeps it by no more than rounding.
     ///
-    /// `None` if the robot does not keep the margin, or by no more than rounding. The work is that
-    /// of many queries: a proof is for a plan that somebody signs, and not for a loop.
+    /// The proof does not cover the side of the wall: [`side`](Self::side) answers that. The
+    /// program prints this, and the premises.
+    ///
+    /// The work is that of many queries: a proof is for a plan that is signed off, not for a loop.
     ///
     /// ```
     /// use parry_continuum::Chain;
@@ -56,11 +65,11 @@ impl BvhSearch {
         }))
     }
 
-    /// [`prove`](Self::prove) for a tube. What the proof takes for granted of the curve is printed
-    /// by the program that checks it: points, and how long and how bent it is between them at
-    /// most.
+    /// [`prove`](Self::prove) for a tube.
     ///
-    /// `None` if the tube does not keep the margin, or by no more than `resolution`.
+    /// The checking program prints the premises about the curve: points, and upper bounds on its
+    /// length and bend between them. `None` if the tube does not keep the margin, or keeps it by at
+    /// most `resolution`.
     ///
     /// # Errors
     /// As [`tube_clears`](Self::tube_clears).
@@ -76,7 +85,7 @@ impl BvhSearch {
         }
         let placed = PlacedTube::new(tube, pose, self.prepared().hierarchy.reach)?;
         let mut plane_search = self.plane_search();
-        // Coarse pieces, and finer ones as long as they do not suffice.
+        // Step 3: coarse pieces first, finer ones as long as planes are missing.
         let finest = (0.25 * resolution).max(placed.slack());
         let mut over = tube.length() / 16.0;
         loop {
@@ -96,13 +105,13 @@ impl BvhSearch {
         }
     }
 
-    /// [`prove`](Self::prove) for a motion: the proof that the robot keeps more than `margin` away
-    /// at every time from 0 to 1. The speeds that the motion states are taken for granted, and
-    /// printed.
+    /// [`prove`](Self::prove) for a motion: the robot is farther than `margin` at every time from 0
+    /// to 1.
     ///
-    /// `None` if some shape does not keep the margin, or by no more than about `resolution`; or if
-    /// the proof would take more than 65,536 shapes or 16 MiB. A motion that needs many shapes has
-    /// a long proof, of 0.2 to 2 kB a shape.
+    /// The speeds that the motion states are premises of the proof, and printed. `None` if some
+    /// shape does not keep the margin, or keeps it by at most about `resolution`. Also `None` if
+    /// the proof would need more than 65,536 shapes or 16 MiB. A shape takes 0.2 to 2 kB, so a
+    /// motion that needs many shapes has a long proof.
     ///
     /// ```
     /// use parry_continuum::{LinearMotion, parry::{math::Vector, shape::Ball}};

@@ -1,4 +1,11 @@
-//! Proximity by a bounding volume hierarchy.
+//! The engine on a bounding volume hierarchy: its state, its clones, and its part of [`Engine`].
+//!
+//! # Definitions
+//! - [`PreparedMesh`]: the mesh, its hierarchy and the structures of some queries. Clones share it.
+//! - [`Memory`]: scratch and the warm start of the next query. Each clone has its own.
+//! - [`Context`]: the two together, for one query.
+//!
+//! A batch has one [`Memory`] per chunk of robots and forgets its warm start at each call.
 
 use super::prepared_mesh::PreparedMesh;
 use crate::answer::{Contact, LinkProximity, MeshError, ProximityError, Work};
@@ -19,24 +26,25 @@ use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::shape::TriMesh;
 use std::sync::Arc;
 
-/// Proximity queries by a bounding volume hierarchy: the work per link grows with the logarithm of
-/// the number of triangles.
+/// Proximity queries on a bounding volume hierarchy.
 ///
-/// The engine keeps the mesh and a hierarchy of its own, 16 children and 16 triangles wide, in
-/// single precision; what rounding leaves in question is measured in double precision, so the
-/// answers are those of [`Exhaustive`](crate::proximity::Exhaustive). Where single precision is too
-/// coarse, because a triangle or the robot lies very far out, a second hierarchy in double
-/// precision takes its place; it is built when first needed.
+/// The work per link grows with the logarithm of the number of triangles.
 ///
-/// The engine remembers its last answers, which bound the next query: any robot and pose may
-/// follow, and small motions are answered fastest. [`BvhSearch::forget`] drops them.
+/// The engine has its own hierarchy of the mesh, in single precision, with 16 children per node and
+/// 16 triangles per leaf. It measures every candidate again in double precision, so the answers
+/// equal those of [`Exhaustive`](crate::proximity::Exhaustive). If single precision is too coarse,
+/// because a triangle or the robot lies very far out, a second hierarchy in double precision
+/// replaces the first. The engine builds it at first use.
 ///
-/// Some questions need more of the mesh than the hierarchy: it is built when the first of them is
-/// asked, or all of it by [`prepare`](Self::prepare), so that no question has to wait for it.
+/// The last answers warm-start the next query. Any robot and pose may follow; small motions are
+/// answered fastest. [`BvhSearch::forget`] drops the warm start.
 ///
-/// A clone shares mesh and hierarchy and has a memory of its own, still empty: one for each thread
-/// costs nothing. Where [`set_vertices`](Proximity::set_vertices) moves the mesh of one, the others
-/// keep theirs.
+/// Some queries need more than the hierarchy. The first such query builds it;
+/// [`prepare`](Self::prepare) builds it all beforehand.
+///
+/// A clone shares mesh and hierarchy and starts with an empty memory, so one clone per thread costs
+/// nothing. [`set_vertices`](Proximity::set_vertices) of one clone leaves the mesh of the others
+/// unchanged.
 ///
 /// ```
 /// use parry_continuum::{Chain, proximity::{BvhSearch, Proximity}};
@@ -57,18 +65,18 @@ pub struct BvhSearch {
     level: Level,
     mesh: Arc<PreparedMesh>,
     memory: Memory,
-    /// One for each share of a batch.
+    /// One memory per chunk of a batch.
     batch: Vec<Memory>,
 }
 
-/// What one query leaves for the next.
+/// The state that one query leaves for the next.
 #[derive(Clone, Default)]
 pub(super) struct Memory {
     scratch: Scratch,
     answers: Remembered,
 }
 
-/// What the last answers say of the next, a field for each question.
+/// The memory of each kind of query: warm starts and scratch.
 #[derive(Clone, Default)]
 pub(super) struct Remembered {
     pub per_link: PerLinkMemory,
@@ -87,7 +95,7 @@ impl Remembered {
         self.tube.forget();
     }
 
-    /// Forgets what only holds as long as the mesh is still.
+    /// Forgets the cached distances, which hold only while the mesh rests.
     fn forget_distances(&mut self) {
         self.minimum.forget_distances();
         self.clears.forget_distances();
@@ -114,7 +122,7 @@ impl std::fmt::Debug for BvhSearch {
 }
 
 impl BvhSearch {
-    /// An engine for `mesh`, whose vertices and triangles are copied.
+    /// Builds an engine for `mesh`, whose vertices and triangles are copied.
     ///
     /// # Errors
     /// The mesh has no triangles, or a vertex is not finite or out of range.
@@ -122,12 +130,13 @@ impl BvhSearch {
         Ok(Self::of(Mesh::new(mesh)?))
     }
 
-    /// An engine for triangles, each given by the positions of its corners among the vertices; both
-    /// are copied. It spares the hierarchy that a [`TriMesh`] builds for itself.
+    /// Builds an engine from vertices and triangles, which are copied.
+    ///
+    /// Each triangle is three indices into `vertices`. Unlike [`new`](Self::new) this needs no
+    /// [`TriMesh`], whose constructor builds a hierarchy of its own.
     ///
     /// # Errors
-    /// There are no triangles, a vertex is not finite or out of range, or a triangle names one that
-    /// is not there.
+    /// There are no triangles, a vertex is not finite or out of range, or an index has no vertex.
     ///
     /// ```
     /// use parry_continuum::Chain;
@@ -139,7 +148,7 @@ impl BvhSearch {
     /// search.set_vertices(&wall.map(|corner| corner + Vector::Z))?;
     /// let robot = Chain::from_centreline(&[Vector::ZERO, Vector::X], &[0.5])?;
     /// let closest = search.minimum(&robot, &Pose::IDENTITY)?;
-    /// // A proof against what the engine has now.
+    /// // A certificate for the mesh as the engine has it now.
     /// let mesh = TriMesh::new(search.vertices().to_vec(), search.triangles().to_vec())?;
     /// let proof = closest.certify(&robot, &Pose::IDENTITY, &mesh)?;
     /// assert!(proof.lower <= 3.5 && 3.5 <= proof.upper);
@@ -155,16 +164,17 @@ impl BvhSearch {
         Self { level, mesh, memory: Memory::default(), batch: Vec::new() }
     }
 
-    /// Builds all that a question would build when it is first asked, so that none has to wait;
-    /// clones share it. Call it after [`set_vertices`](Proximity::set_vertices) too: what
-    /// depends on where the vertices are is built anew.
+    /// Builds every structure that a query would build at first use.
     ///
-    /// | question | what it needs beside the hierarchy |
+    /// Clones share the structures. Call it after [`set_vertices`](Proximity::set_vertices) too:
+    /// structures that depend on the positions of the vertices are then built anew.
+    ///
+    /// | query | what it needs beside the hierarchy |
     /// |---|---|
-    /// | [`clears`](Proximity::clears) | roughly which space lies on which side of the wall |
+    /// | [`clears`](Proximity::clears) | a coarse grid of the sides of the wall |
     /// | [`within`](Proximity::within) | which triangles share corners and edges |
-    /// | [`side`](Self::side) | what each part of the mesh is from far away |
-    /// | any, about a robot so far away that single precision does not resolve it | a second hierarchy, in double precision |
+    /// | [`side`](Self::side) | the far field of each node |
+    /// | any, if single precision is too coarse | a second hierarchy, in double precision |
     ///
     /// ```
     /// use parry_continuum::{Chain, proximity::{BvhSearch, Proximity, Side}};
@@ -173,25 +183,26 @@ impl BvhSearch {
     /// let (vertices, triangles) = Ball::new(10.0).to_trimesh(64, 32);
     /// let search = BvhSearch::from_triangles(&vertices, &triangles)?;
     /// search.prepare();
-    /// assert_eq!(search.side(Vector::X), Side::Inside); // at once
+    /// assert_eq!(search.side(Vector::X), Side::Inside); // without a build
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn prepare(&self) {
         self.mesh.prepare(self.level);
     }
 
-    /// Forgets the last answers, so that the next query starts without bounds.
+    /// Forgets the last answers: the next query starts without a warm start.
     pub fn forget(&mut self) {
         self.memory.answers.forget();
     }
 
-    /// How much was computed since the engine was built, batches left out.
+    /// The work since the engine was built, batches excluded.
     pub fn work(&self) -> Work {
         self.memory.scratch.work
     }
 
-    /// The answers about many robots, on all cores. `out` gets them in order; what it had is there
-    /// to be used again.
+    /// Answers many robots on all cores and writes the results to `out`, in order.
+    ///
+    /// `out` keeps its old elements, so that `answer` can reuse their memory.
     pub(super) fn batch<R: Sync, T: Send>(
         &mut self,
         robots: &[R],
@@ -209,9 +220,9 @@ impl BvhSearch {
         });
     }
 
-    /// Whether a robot keeps more than `margin`, for one that is likely to: neither is it first
-    /// asked about where it seems to pass through the wall, nor does what the last query proved
-    /// count.
+    /// Returns whether a robot that probably clears the mesh is farther than `margin`.
+    ///
+    /// Skips the guess at a link that crosses the wall, and the lower bounds of the last query.
     pub(crate) fn clears_unless_crossing(&mut self, robot: PlacedRobot, margin: Real) -> bool {
         let (search, last) = self.context().search();
         ClearsSearch { search, sides: None, robot, memory: &mut last.clears }
@@ -228,7 +239,7 @@ impl BvhSearch {
     }
 }
 
-/// What a query asks through: the mesh, and what the last one left.
+/// A query's view of the engine: the mesh and the memory.
 pub(super) struct Context<'a> {
     level: Level,
     pub mesh: &'a PreparedMesh,
@@ -236,7 +247,7 @@ pub(super) struct Context<'a> {
 }
 
 impl<'a> Context<'a> {
-    /// The search in the hierarchy, and what the last answers say.
+    /// Returns the search in the hierarchy and the warm starts.
     pub fn search(self) -> (MeshSearch<'a>, &'a mut Remembered) {
         let Memory { scratch, answers } = self.memory;
         (MeshSearch::new(self.level, &self.mesh.hierarchy, scratch), answers)
@@ -351,7 +362,7 @@ impl Engine for BvhSearch {
 
     fn move_vertices(&mut self, vertices: &[Vector]) {
         Arc::make_mut(&mut self.mesh).set_vertices(self.level, vertices);
-        // It spoke of the mesh as it was.
+        // The cached distances are about the old mesh.
         self.memory.answers.forget_distances();
     }
 }

@@ -1,4 +1,7 @@
 //! Inside or outside, as [`BvhSearch`] answers it.
+//!
+//! The side of a point is its winding number ([`Winding`]). The side of a robot is the side of its
+//! base.
 
 use super::search::BvhSearch;
 use crate::answer::{InsideAnswer, ProximityError, Side};
@@ -9,16 +12,15 @@ use crate::robot::Chain;
 use parry3d_f64::math::{Pose, Real, Vector};
 
 impl BvhSearch {
-    /// On which side of the mesh a point in the mesh's frame is.
+    /// Returns the side of the mesh on which a point lies. The point is in the mesh's frame.
     ///
     /// `Inside` and `Outside` are proven: the error of the winding number is bounded, rounding
-    /// included. In a closed mesh the answer is [`Side::Undecided`] only for points that
-    /// rounding cannot tell from points of a triangle, and for those that are not finite.
-    /// [`Side`] says what an open mesh means.
+    /// included. In a closed mesh the answer is [`Side::Undecided`] only if the point lies on the
+    /// surface, within rounding, or is not finite. [`Side`] defines the answer for an open mesh.
     ///
-    /// The first question builds what each part of the mesh is from far away, and so does the first
-    /// one after [`set_vertices`](Proximity::set_vertices), unless [`prepare`](Self::prepare)
-    /// has done so. Clones share it.
+    /// The first query builds the far field of each node, and so does the first one after
+    /// [`set_vertices`](Proximity::set_vertices), unless [`prepare`](Self::prepare) has built it.
+    /// Clones share the far fields.
     ///
     /// ```
     /// use parry_continuum::parry::{math::Vector, shape::{Ball, TriMesh}};
@@ -38,12 +40,13 @@ impl BvhSearch {
         Winding { mesh, tree, fields: prepared.far_fields(), point }.side()
     }
 
-    /// Whether every link keeps more than `margin` from the mesh and the robot's base is inside.
+    /// Returns whether every link is farther than `margin` from the mesh, and the side of the
+    /// robot's base.
     ///
-    /// Distances are unsigned, so [`clears`](Proximity::clears) alone is true of a robot that
-    /// stands beside the anatomy. A robot whose base is inside a closed mesh and which touches
-    /// nothing is inside as a whole. Through a hole of an open mesh it may leave: there ask for
-    /// the [`side`](Self::side) of every point that matters.
+    /// Distances are unsigned, so [`clears`](Proximity::clears) alone is true of a robot outside
+    /// the anatomy. In a closed mesh a robot that touches nothing and whose base is inside is
+    /// inside as a whole. It may leave through a hole of an open mesh: query the
+    /// [`side`](Self::side) of every point that matters there.
     ///
     /// ```
     /// use parry_continuum::{Chain, proximity::{BvhSearch, Side}};

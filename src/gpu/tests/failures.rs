@@ -1,4 +1,4 @@
-//! Devices that fail, and drivers that do not do as they are told.
+//! Devices that fail, and drivers that do not follow their commands.
 
 use super::{ball, gpu, robot};
 use crate::answer::ProximityError;
@@ -23,7 +23,7 @@ fn a_lost_device_is_an_error_of_every_query() {
     gpu.0.device.raw().destroy();
     for _ in 0..2 {
         assert_eq!(engine.minimum(&robot, &pose), Err(ProximityError::Device(DeviceFailure::Lost)));
-        // The vertices are as good as others.
+        // The engine accepts vertices although the device is lost.
         assert_eq!(engine.set_vertices(mesh.vertices()), Ok(()));
     }
     let error = GpuExhaustive::on(&gpu, &mesh).expect_err("an error");
@@ -31,13 +31,13 @@ fn a_lost_device_is_an_error_of_every_query() {
     assert!(error.to_string().contains("open it anew"), "{error}");
 }
 
-/// Asks a device for what it cannot do.
+/// Requests an impossible buffer from the device.
 fn provoke(gpu: &Gpu) {
     gpu.0.device.buffer(u64::MAX / 4, wgpu::BufferUsages::STORAGE);
 }
 
-/// Whose command it was a driver does not say: every engine on the device hears of it, once, and
-/// then answers as before.
+/// A driver does not say whose command failed. So every engine on the device reports the failure
+/// once, and then answers as before.
 #[test]
 fn a_refused_command_is_an_error_of_every_engine_once() {
     if gpu().is_none() {
@@ -62,14 +62,14 @@ fn a_refused_command_is_an_error_of_every_engine_once() {
         );
         assert_eq!(engine.minimum(&robot, &pose).unwrap().distance, expected.distance);
     }
-    // What failed before an engine was built is none of its business.
+    // A failure before an engine was built does not concern the engine.
     provoke(&gpu);
     let mut engine = GpuExhaustive::on(&gpu, &mesh).unwrap();
     assert_eq!(engine.minimum(&robot, &pose).unwrap().distance, expected.distance);
 }
 
-/// New vertices hold from the moment that they are accepted. If they do not arrive, the next query
-/// says so, and the one after it sends them again, into memory of its own.
+/// New vertices count from the moment they are accepted. If an upload fails, the next query reports
+/// it, and the query after uploads them again, into new memory.
 #[test]
 fn an_upload_that_is_refused_is_an_error_of_the_query_and_done_again() {
     if gpu().is_none() {
@@ -95,21 +95,21 @@ fn an_upload_that_is_refused_is_an_error_of_the_query_and_done_again() {
     assert_eq!(failed, Err(ProximityError::Device(DeviceFailure::Refused)));
     assert!(out.is_empty());
     assert_eq!(engine.minimum(&robot, &pose).unwrap().distance, expected);
-    // What no engine accepts changes nothing.
+    // A call that every engine rejects changes nothing.
     let mut bad = mesh.vertices().to_vec();
     bad[3].y = Real::NAN;
     engine.set_vertices(&bad).unwrap_err();
     assert_eq!(engine.minimum(&robot, &pose).unwrap().distance, expected);
 }
 
-/// Kernels that run and write nothing: no candidate would be the same as a clear way.
+/// Kernels that run and write nothing must not pass for a clear margin.
 #[test]
 fn what_was_not_written_is_no_answer() {
     if gpu().is_none() {
         return;
     }
     let mesh = ball();
-    // Through the wall.
+    // Crosses the wall.
     let robot = Chain::capsules(&[Vector::ZERO, Vector::X * 20.0], &[0.5]).unwrap();
     let mut gpu = Gpu::open(Precision::F32).unwrap();
     let idle = Shader::new("idle", "@compute @workgroup_size(1) fn idle() {}");

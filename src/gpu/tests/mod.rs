@@ -1,5 +1,5 @@
-//! What no caller can bring about: small buffers, failing devices and drivers. Without a GPU these
-//! tests pass without doing anything, unless PARRY_CONTINUUM_REQUIRE_GPU is set.
+//! Cases that no caller can bring about: small buffers, failing devices and drivers. Without a GPU
+//! these tests pass without a check, unless PARRY_CONTINUUM_REQUIRE_GPU is set.
 
 mod failures;
 
@@ -31,8 +31,8 @@ fn gpu() -> Option<&'static Gpu> {
     GPU.get_or_init(open).as_ref()
 }
 
-/// As many parts as that takes, few threads with several pairs each, and little that is kept or
-/// comes back at once.
+/// Parts of at most `part` triangles, few threads with several pairs each, and small rounds and
+/// submissions.
 fn in_parts(part: usize) -> Tuning {
     Tuning { part, threads: 1 << 12, round: 1 << 10, answer: 100 << 10, ..Tuning::default() }
 }
@@ -42,7 +42,7 @@ fn ball() -> TriMesh {
     TriMesh::new(vertices, indices).unwrap()
 }
 
-/// A bent robot, turned and moved differently for every number.
+/// A bent robot with another pose for every number.
 fn robot(number: usize) -> (Chain, Pose) {
     let points: Vec<_> = (0..8)
         .map(|k| Vector::new((Real::from(k) * 0.3).sin(), Real::from(k) * 0.4, Real::from(k) * 0.7))
@@ -65,7 +65,7 @@ fn a_mesh_in_many_parts_is_the_same_mesh() {
     let (robot, pose) = robot(3);
     let mut exhaustive = Exhaustive::<f64>::new(&mesh).unwrap();
     for most in [1, 7, 300, 1599] {
-        // A part a triangle is slow; a few suffice.
+        // One part per triangle is slow, so 20 triangles are enough.
         let mesh = if most == 1 {
             TriMesh::new(mesh.vertices().to_vec(), mesh.indices()[..20].to_vec()).unwrap()
         } else {
@@ -110,7 +110,7 @@ fn a_batch_takes_many_rounds_and_submissions() {
     assert_eq!(engine.answered_on_cpu(), 0);
 }
 
-/// A wall of many triangles along which the robot lies: more are equally near than come back.
+/// A wall of many triangles along the robot: more of them are equally near than come back.
 #[test]
 fn too_many_equals_are_measured_on_the_cpu() {
     let Some(gpu) = gpu() else { return };
@@ -134,7 +134,7 @@ fn too_many_equals_are_measured_on_the_cpu() {
     assert!(!engine.clears(&robot, &Pose::IDENTITY, 1.5).unwrap());
 }
 
-/// What Rust says of a record's size, WGSL says too.
+/// Rust and WGSL agree on the size of a record.
 #[test]
 fn records_are_as_large_as_shaders_see_them() {
     for precision in [Precision::F32, Precision::F64] {

@@ -1,13 +1,14 @@
-// The candidates of each link, the triangles whose distance does not exceed the limit, discs included: what
-// Findings of search/exhaustive/scan.rs collect.
+// Step 4 of a query: the candidates of each link, the triangles within the limit, discs included.
+// The twin of what ThreadFindings in search/exhaustive/scan.rs collect.
 //
-// Second pass of two: only blocks and triangles whose lower bound survived the first are looked at, and only those
-// that a flat cap decides cost a disc. They come in any order; the host sorts them.
+// The second pass of two visits only blocks and triangles whose lower bound is within the limit. It
+// computes a disc only if a flat cap decides. The candidates come in any order; the host sorts
+// them.
 
-// For each slot: how many blocks have answered, times the submission's number; how many candidates there are; and the
-// triangles of the first CAPACITY.
+// For each slot: the number of blocks that have answered, times the submission's number; the number
+// of candidates; and the triangles of the first CAPACITY candidates.
 @group(0) @binding(6) var<storage, read_write> found: array<atomic<u32>>;
-// Their distances.
+// The distances of these candidates.
 @group(0) @binding(7) var<storage, read_write> distances: array<real>;
 
 var<workgroup> survives: array<u32, MOST_LINKS>;
@@ -56,7 +57,7 @@ fn collect(@builtin(workgroup_id) workgroup: vec3<u32>, @builtin(local_invocatio
             }
         }
     }
-    // What nobody has written is no answer: the host counts the blocks.
+    // The host counts the blocks, so that it recognises a slot that a block has not written.
     if (lane < count) {
         atomicAdd(&found[(round.first_slot + first + lane) * SLOT], round.submission);
     }

@@ -1,8 +1,9 @@
-// Every triangle against every link, the least bounds of each block of triangles and each link: the twin of Job::scan
-// in search/exhaustive/scan.rs.
+// Step 2 of a query: every triangle against every link, with the least bounds of each block of
+// triangles and each link. The twin of Job::scan in search/exhaustive/scan.rs.
 //
-// First pass of two (bounds; then the discs that survive): with culling a triangle that its sphere does not rule
-// out costs the distance from the axis and the cap's bounds. Without, every pair costs its full distance.
+// The first pass of two computes bounds. With culling, a triangle whose sphere meets the limit
+// costs the distance from the axis and the bounds of the cap. Without culling, every pair costs its
+// full distance.
 
 override CULLING: bool = true;
 
@@ -39,7 +40,7 @@ fn nearest(@builtin(workgroup_id) workgroup: vec3<u32>, @builtin(local_invocatio
             }
             let lower = bitcast<u32>(from_below(bounds.lower));
             let upper = bitcast<u32>(from_above(bounds.upper));
-            // A look first: most are not the least.
+            // A load first, because most bounds are not the least.
             if (lower < atomicLoad(&least_lower[i])) {
                 atomicMin(&least_lower[i], lower);
             }

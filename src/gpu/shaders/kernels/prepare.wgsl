@@ -1,9 +1,9 @@
-// What is computed once per triangle, whenever the vertices move: the twin of prepare in
-// search/exhaustive/blocks.rs.
+// Computes the sphere and the face of each triangle, after the vertices have moved. The twin of
+// prepare in search/exhaustive/blocks.rs.
 
 @group(0) @binding(0) var<storage, read> vertices: array<real>;
 @group(0) @binding(1) var<storage, read> indices: array<u32>;
-// A sphere's centre and radius.
+// Centres and radii of bounding spheres.
 @group(0) @binding(2) var<storage, read_write> spheres: array<vec4<real>>;
 @group(0) @binding(3) var<storage, read_write> faces: array<FaceRecord>;
 
@@ -23,10 +23,12 @@ fn prepare(
     }
     let corner = 3u * triangle;
     let face = face_new(vertex(indices[corner]), vertex(indices[corner + 1u]), vertex(indices[corner + 2u]));
-    // Around the middle of the longest edge, which holds the apex of an obtuse triangle too.
+    // Around the midpoint of the longest edge. This sphere contains the apex of an obtuse triangle
+    // too.
     let middle = (face.b + face.c) * real(0.5);
     let around_middle = max(norm_squared(face.a - middle), norm_squared(face.b - middle));
-    // An acute triangle's apex may lie outside: then around the centroid, if that is smaller.
+    // The apex of an acute triangle may lie outside. Then the sphere around the centroid is used,
+    // if it is smaller.
     let centroid = (face.a + face.b + face.c) * real(1.0 / 3.0);
     let around_centroid = max(
         max(norm_squared(face.a - centroid), norm_squared(face.b - centroid)),
@@ -35,7 +37,7 @@ fn prepare(
     let take_middle = around_middle <= around_centroid;
     let centre = select(centroid, middle, take_middle);
     let radius = sqrt(select(around_centroid, around_middle, take_middle));
-    // Twice the margin of the twin: square roots of shading languages are less exact.
+    // Twice the margin of the twin, because square roots of shading languages are less exact.
     spheres[triangle] = vec4<real>(centre, radius * (real(1.0) + real(16.0) * UNIT_ROUNDOFF));
     faces[triangle] = face_pack(face);
 }

@@ -1,5 +1,6 @@
-// The limit of each link, from the least upper bound of all blocks: what exceeds it by more than rounding is farther. The
-// twin of SharedBound::shrink_to in search/exhaustive/scan.rs.
+// Step 3 of a query: the limit of each link, from the least upper bound of all blocks. A triangle
+// that exceeds the limit by more than rounding is farther than another. The twin of
+// SharedBound::lower_to in search/exhaustive/scan.rs.
 
 var<workgroup> least: atomic<u32>;
 

@@ -1,5 +1,5 @@
-// A first limit for each link, from the spheres of a sample of the triangles: the twin of
-// Job::first_bounds in search/exhaustive/scan.rs.
+// Step 1 of a query: a first limit for each link, from the bounding spheres of a sample of the
+// triangles. The twin of Job::first_bounds in search/exhaustive/scan.rs.
 
 var<workgroup> least: atomic<u32>;
 

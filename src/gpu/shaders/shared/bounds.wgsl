@@ -5,7 +5,8 @@ struct Bounds {
     upper: real,
 }
 
-// The plane's lower bound, less what rounding can have added to it, and the distance of the triangle's point.
+// The plane's lower bound minus the rounding that may be in it, and the distance of the triangle's
+// point.
 fn bounds_separating_plane(
     a: vec3<real>,
     b: vec3<real>,

@@ -1,4 +1,5 @@
-// The distance between two shapes and a pair of points that realises it: the twin of distance/mod.rs.
+// The distance between two shapes and a pair of points that realises it: the twin of
+// distance/mod.rs.
 
 struct Closest {
     distance: real,
@@ -6,7 +7,7 @@ struct Closest {
     point2: vec3<real>,
 }
 
-// `yes` where the condition holds.
+// `yes` if the condition holds.
 fn closest_select(condition: bool, yes: Closest, no: Closest) -> Closest {
     return Closest(
         select(no.distance, yes.distance, condition),

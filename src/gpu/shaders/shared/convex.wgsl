@@ -26,7 +26,7 @@ fn line_nearest_to_disc(line: Line, radius: real) -> NearestToDisc {
     let turn0 = over(line.n, rho0);
     let slope0 = line.lambda * line.lambda + (line.m * (real(1.0) - ratio0) + ratio0 * turn0 * turn0);
     let from_zero = select(top, over(ratio0 * line.n, slope0), real(0.0) < slope0);
-    // Case 4, as tau x, so that tau = 0 needs no exception.
+    // Case 4, as tau x, so that tau = 0 is no special case.
     let rim_m = rim * line.m;
     let tangent = sqrt(max((rim_m - line.tau) * (rim_m + line.tau), real(0.0)));
     let cusp = cbrt_estimate(over(line.n + line.n, line.tau)) * line.tau + tangent;
@@ -56,7 +56,8 @@ fn line_nearest_to_disc(line: Line, radius: real) -> NearestToDisc {
     return NearestToDisc(select(s, plane, pierces), pierces);
 }
 
-// The radius over the distance from the axis, kept where its powers are finite: beyond, the line meets the axis.
+// The radius over the distance from the axis, limited so that its powers are finite. Above the
+// limit the line meets the axis.
 fn disc_ratio(ratio: real) -> real {
     return min(ratio, real(1099511627776.0)); // 2^40
 }

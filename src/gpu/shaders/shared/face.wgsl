@@ -1,18 +1,19 @@
-// A triangle with a basis of its plane that stays accurate on slivers: the twin of distance/face.rs.
+// A triangle with a basis of its plane that stays accurate on slivers: the twin of
+// distance/face.rs.
 
 struct Face {
     // The vertices, the one opposite the longest edge first.
     a: vec3<real>,
     b: vec3<real>,
     c: vec3<real>,
-    // A normal of twice the area's length.
+    // A normal whose length is twice the area.
     across: vec3<real>,
     // The basis dual to the edges from the first vertex; zero without area.
     dual1: vec3<real>,
     dual2: vec3<real>,
 }
 
-// A point seen from the plane of a face.
+// The projection of a point onto the plane of a face.
 struct Projection {
     residual: vec3<real>,
     inside: bool,
@@ -43,12 +44,12 @@ fn face_new(a: vec3<real>, b: vec3<real>, c: vec3<real>) -> Face {
     return face;
 }
 
-// The face that face_new made, put together again from its vertices and its dual basis.
+// The face that face_new made, rebuilt from its vertices and its dual basis.
 fn face_again(a: vec3<real>, b: vec3<real>, c: vec3<real>, dual1: vec3<real>, dual2: vec3<real>) -> Face {
     return Face(a, b, c, face_across(a, b, c), dual1, dual2);
 }
 
-// A normal of twice the area's length, without a component along the longest edge.
+// A normal whose length is twice the area, without a component along the longest edge.
 fn face_across(a: vec3<real>, b: vec3<real>, c: vec3<real>) -> vec3<real> {
     let longest = c - b;
     let across = cross(b - a, c - a);
@@ -64,12 +65,13 @@ fn face_has_area(face: Face) -> bool {
     return real(0.0) < norm_squared(face.dual1);
 }
 
-// The same triangle in coordinates from `start`. Far from the triangle that rounds its vertices, but not its plane.
+// The same triangle in coordinates from `start`. Far from the triangle this rounds its vertices,
+// but not its plane.
 fn face_seen_from(face: Face, start: vec3<real>) -> Face {
     return Face(face.a - start, face.b - start, face.c - start, face.across, face.dual1, face.dual2);
 }
 
-// The foot of `point` on the plane and what is left, refined.
+// The foot of `point` on the plane and the residual, refined.
 fn face_project(face: Face, point: vec3<real>) -> Projection {
     let relative = point - face.a;
     let e1 = face.b - face.a;

@@ -1,4 +1,4 @@
-// A face in memory: its vertices and its dual basis, which are 15 numbers, and one to spare.
+// A face in memory: its vertices and its dual basis, 15 numbers and one unused.
 
 alias FaceRecord = array<vec4<real>, FACE_VECTORS>;
 

@@ -6,15 +6,17 @@ struct PlaneDisc {
     distance: real,
 }
 
-// The point nearest to the plane at signed `height` along its unit normal, for the disc around the origin.
+// The point nearest to the plane at signed `height` along its unit normal, for the disc around the
+// origin.
 fn plane_disc_from_centre(height: real, plane_normal: vec3<real>, disc_normal: vec3<real>, radius: real) -> PlaneDisc {
     let radial = along(plane_normal, disc_normal, -dot(plane_normal, disc_normal));
     let slope = norm(radial);
-    // How far out along the radial direction the plane is met, unless the rim comes first.
+    // The distance along the radial direction at which it meets the plane, at most the radius.
     let reach = abs(height);
     let out = select(over(reach, slope), radius, radius * slope < reach);
     let tilted = radial * over(real(1.0), slope);
-    // Back into the disc's plane: a remainder as short as its own rounding points anywhere.
+    // Projects back into the disc's plane: a radial part no longer than its rounding has any
+    // direction.
     let direction = along(tilted, disc_normal, -dot(tilted, disc_normal));
     return PlaneDisc(
         direction * select(out, -out, height < real(0.0)),

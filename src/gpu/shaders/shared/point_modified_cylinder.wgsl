@@ -1,4 +1,5 @@
-// Point against modified cylinder: the twin of distance/point_modified_cylinder.rs, which has the cases.
+// Point against modified cylinder: the twin of distance/point_modified_cylinder.rs, which has the
+// cases.
 
 // A link that starts at the origin.
 struct Link {
@@ -17,18 +18,21 @@ struct PointLink {
 }
 
 fn link_new(end: vec3<real>, radius: real, flat_start: bool, flat_end: bool) -> Link {
-    // Where the squared length is below the normal numbers, nothing can tell the ends apart. It is compared as it is: a
-    // smaller multiple of it would be 0 on devices that have no numbers below the normal ones.
+    // If the squared length is below the normal numbers, the ends cannot be told apart. It is
+    // compared without a factor: a smaller multiple would be 0 on devices without subnormal
+    // numbers.
     let has_direction = SMALLEST_NORMAL <= norm_squared(end);
     return Link(end, select(zero(), normalised(end), has_direction), radius, flat_start, flat_end);
 }
 
-// The distance of a point from the solid link, and the link's nearest point (the point itself inside).
+// The distance of a point from the solid link, and the link's nearest point (the point itself
+// inside).
 fn link_closest_to(link: Link, point: vec3<real>) -> PointLink {
     let beyond_end = real(0.0) < dot(point - link.end, link.axis);
     let before_start = !beyond_end && dot(point, link.axis) < real(0.0);
 
-    // Cases 2 and 3 measure from the end that the point is beyond; case 1 from the nearest axis point.
+    // Cases 2 and 3 measure from the end that the point is beyond; case 1 from the nearest axis
+    // point.
     let centre = select(zero(), link.end, beyond_end);
     let relative = point - centre;
     let radial = along(relative, link.axis, -dot(relative, link.axis));

@@ -1,25 +1,27 @@
-// What the kernels of a query share: the links of a round, the triangles of a part of the mesh, and bounds.
+// Shared by the kernels of a query: the links of a round, the triangles of a part of the mesh, and
+// bounds.
 //
-// Distances are counted from the axis, as in pair/link_lanes.rs: a link's own and its radius. A bound on its way
-// between workgroups is an f32 that is not negative, kept as its bits, which are ordered as the number is. So the
-// least one is found by integer arithmetic: whatever the order, the answer is the same.
+// Distances are measured from the axis, as in pair/link_lanes.rs: the distance from the link plus
+// the radius. Between workgroups a bound is the bits of a non-negative f32. These bits have the
+// order of the numbers, so integer arithmetic finds the least bound, the same in any order.
 
-// A link in the frame of the mesh; `link` counts from its start.
+// A link in the frame of the mesh; `link` is relative to its start.
 struct DeviceLink {
     start: vec3<real>,
     length: real,
-    // What rounding can do to a distance.
+    // The bound on the rounding error of a distance.
     error: real,
     link: Link,
 }
 
 @group(0) @binding(0) var<uniform> round: Round;
 @group(0) @binding(1) var<storage, read> links: array<LinkRecord>;
-// For each link, as the bits of an f32: what a triangle's bound must not exceed to be of interest.
+// For each link, as the bits of an f32: the limit on the lower bound of a candidate.
 @group(0) @binding(2) var<storage, read_write> limits: array<atomic<u32>>;
 @group(0) @binding(3) var<storage, read> spheres: array<vec4<real>>;
 @group(0) @binding(4) var<storage, read> faces: array<FaceRecord>;
-// For each link of the round and each block of triangles: the least lower and the least upper bound, as bits.
+// For each link of the round and each block of triangles: the least lower and the least upper
+// bound, as bits.
 @group(0) @binding(5) var<storage, read_write> block_bounds: array<vec2<u32>>;
 
 fn load_link(number: u32) -> DeviceLink {
@@ -38,21 +40,22 @@ fn load_limit(number: u32) -> f32 {
     return bitcast<f32>(atomicLoad(&limits[number]));
 }
 
-// Where the bounds of a link of this round and a block stand.
+// The index of the bounds of a link of this round and a block.
 fn block_place(link: u32, block: u32) -> u32 {
     return link * round.blocks + round.first_block + block;
 }
 
-// From the axis point nearest to `point`, to it.
+// The vector from the nearest axis point to `point`.
 fn offset_from_axis(placed: DeviceLink, point: vec3<real>) -> vec3<real> {
     let relative = point - placed.start;
     let t = min(max(dot(relative, placed.link.axis), real(0.0)), placed.length);
     return along(relative, placed.link.axis, -t);
 }
 
-// An upper bound on the distance of what is in a sphere: some point of it is that near.
+// An upper bound on the distance of the triangle in a sphere.
 fn reach_of_sphere(placed: DeviceLink, sphere: vec4<real>) -> real {
-    // Any point of a triangle bounds F; beyond a flat cap F bounds the distance alone.
+    // With F the axis distance and d the link's distance: a point of the triangle bounds F from
+    // above. At a flat cap d <= F, so that d + radius <= F + radius.
     let flat_cap = placed.link.flat_start || placed.link.flat_end;
     let beyond = select(real(0.0), placed.link.radius, flat_cap);
     return norm(offset_from_axis(placed, sphere.xyz)) + sphere.w + beyond;
@@ -64,7 +67,7 @@ fn meets_sphere(placed: DeviceLink, sphere: vec4<real>, limit: real) -> bool {
     return norm_squared(offset_from_axis(placed, sphere.xyz)) <= reach * reach;
 }
 
-// Bounds on how near a triangle is: the axis distance twice where no flat cap decides.
+// Bounds on the distance of a triangle. Both are the axis distance if no flat cap decides.
 fn near_bounds(placed: DeviceLink, face: Face) -> Bounds {
     let seen = face_seen_from(face, placed.start);
     let axial = axial_new(placed.link, seen);
@@ -87,8 +90,8 @@ fn full_distance(placed: DeviceLink, face: Face) -> real {
     return beside_barrel(placed, axial, sqrt(axial.axis_squared));
 }
 
-// The axis distance where no flat cap decides. Rounding alone may have put p* behind a flat cap: then there is a gap,
-// however near the axis is, and nothing is counted nearer than what touches.
+// The axis distance if no flat cap decides. If rounding alone has put p* behind a flat cap, there
+// is a gap however near the axis is. So no triangle counts as nearer than one that touches.
 fn beside_barrel(placed: DeviceLink, axial: Axial, axis: real) -> real {
     let along = dot(axial.on_triangle, placed.link.axis);
     let before = placed.link.flat_start && along <= placed.error;

@@ -1,17 +1,17 @@
-// Segment against disc: a line seen from a disc around the origin, and what every route to its nearest point shares. The
-// twin of distance/segment_disc.rs, which has the derivation and the cases. The route itself is the function
-// `segment_disc_from_centre` of another text.
+// Segment against disc: a line in the frame of a disc around the origin, and the parts that every
+// route to its nearest point shares. The twin of distance/segment_disc.rs, which has the derivation
+// and the cases. Another text has the route itself, the function `segment_disc_from_centre`.
 
 struct Line {
     // Unit direction of the segment.
     direction: vec3<real>,
-    // The end nearer to the foot of the disc's centre, from which positions along the direction count.
+    // The end nearer to the foot of the disc's centre. Positions along the direction start here.
     near: vec3<real>,
     far: vec3<real>,
     // The positions of the foot and of the far end.
     foot: real,
     far_at: real,
-    // -1 where s runs against the direction.
+    // -1 if s runs against the direction.
     sign: real,
     h: real,
     lambda: real,
@@ -66,7 +66,7 @@ fn line_closest_at(line: Line, s: real, pierces: bool, normal: vec3<real>, radiu
     let high = max(line.far_at, real(0.0));
     let pierced = pierces && low <= position && position <= high;
     let t = min(max(position, low), high);
-    // From the end nearer to it, so that the rounding of a long segment's direction counts least.
+    // From the nearer end, so that the rounding of a long segment's direction has the least effect.
     let by_near_end = abs(t + t) <= abs(line.far_at);
     let point = select(
         along(line.far, line.direction, t - line.far_at),

@@ -1,4 +1,5 @@
-// Segment against segment: the twin of distance/segment_segment.rs, which has the derivation and the cases.
+// Segment against segment: the twin of distance/segment_segment.rs, which has the derivation and
+// the cases.
 
 struct Parameters {
     s: real,

@@ -1,6 +1,7 @@
 // Segment against triangle: the twin of distance/segment_triangle.rs, which has the cases.
 
-// How far a segment that meets an edge may be from it for rounding, in units of u and the largest coordinate.
+// The bound on the distance of a segment from an edge that it meets, due to rounding, in units of u
+// and the largest coordinate.
 const AT_AN_EDGE = real(4.0);
 
 // The axis of a link against a triangle.
@@ -22,7 +23,7 @@ fn axis_triangle_nearer_where(condition: bool, other: AxisTriangle, nearest: Axi
     );
 }
 
-// For the segment from the origin to `end` and numbers near one.
+// For the segment from the origin to `end` and coordinates near 1.
 fn segment_triangle_from_start(end: vec3<real>, face: Face) -> AxisTriangle {
     // Case 3.
     var nearest = segment_triangle_edge(end, face.a, face.b);

@@ -1,9 +1,10 @@
 // Triangle against disc: the twin of distance/triangle_disc.rs, which has the cases.
 
-// How far rounding may bring a point of the triangle from it, in units of u and numbers near one.
+// The bound on the distance of a computed point of the triangle from the triangle, in units of u
+// and for coordinates near 1.
 const TRIANGLE_DISC_ROUNDING = real(32.0);
 
-// For a disc around the origin, a unit normal and numbers near one.
+// For a disc around the origin, a unit normal and coordinates near 1.
 fn triangle_disc_from_centre(face: Face, normal: vec3<real>, radius: real) -> Closest {
     // Case 1.
     var edges = segment_disc_from_centre(face.a, face.b, normal, radius);

@@ -1,10 +1,12 @@
-// Triangle against modified cylinder: the twin of distance/triangle_modified_cylinder.rs, which has the cases.
+// Triangle against modified cylinder: the twin of distance/triangle_modified_cylinder.rs, which has
+// the cases.
 
-// What is known of a link and a triangle by the axis alone, in coordinates from the link's start.
+// The part of the answer about a link and a triangle that depends on the axis alone, in coordinates
+// from the link's start.
 struct Axial {
     // The squared distance between axis and triangle.
     axis_squared: real,
-    // Whether the axis meets the triangle, which may be as far as rounding can tell.
+    // Whether the axis meets the triangle, up to rounding.
     meets: bool,
     // The triangle's point.
     on_triangle: vec3<real>,
@@ -21,7 +23,8 @@ struct LinkCap {
 fn axial_new(link: Link, face: Face) -> Axial {
     let axis = segment_triangle_from_start(link.end, face);
     let has_axis = real(0.0) < norm_squared(link.axis);
-    // Both ends of a short link may be as near as rounding can tell; then the end that the point is beyond decides.
+    // Both ends of a short link may be equally near within rounding. The end that the point is
+    // beyond then decides.
     let before_start = dot(axis.on_triangle, link.axis) < real(0.0);
     let beyond_end = real(0.0) < dot(axis.on_triangle - link.end, link.axis);
     let at_start = before_start || (axis.s <= real(0.0) && !beyond_end);
@@ -39,7 +42,7 @@ fn axial_beyond_flat_cap(axial: Axial) -> bool {
     return axial.at_flat_start || axial.at_flat_end;
 }
 
-// Between the triangle's point and the link: an upper bound, and the answer in case 1.
+// The distance between the triangle's point and the link: an upper bound, and the answer in case 1.
 fn axial_without_caps(axial: Axial, link: Link) -> Closest {
     let found = link_closest_to(link, axial.on_triangle);
     return Closest(
@@ -77,15 +80,16 @@ fn axial_with_caps(axial: Axial, link: Link, face: Face) -> Closest {
     return settled(closest, beyond, extent_with(link, face));
 }
 
-// The largest difference in a coordinate of two of the points, the link's start among them, or the radius.
+// The extent: the largest coordinate difference of two of the points, the link's start included, or
+// the radius.
 fn extent_with(link: Link, face: Face) -> real {
     let low = min(min(min(zero(), link.end), min(face.a, face.b)), face.c);
     let high = max(max(max(zero(), link.end), max(face.a, face.b)), face.c);
     return max(largest(high - low), link.radius);
 }
 
-// The same, but where a flat cap decides and the distance is no more than rounding it is 0, with one common point: the twin of
-// distance/touching.rs.
+// The same, but 0 with one common point if a flat cap decides and the distance is within rounding.
+// The twin of distance/touching.rs.
 fn settled(closest: Closest, at_cap: bool, extent: real) -> Closest {
     let limit = extent * (real(8.0) * UNIT_ROUNDOFF);
     let meets = at_cap && real(0.0) < closest.distance && closest.distance <= limit;
@@ -98,8 +102,8 @@ struct WayIn {
     point: vec3<real>,
 }
 
-// Whether the way from the triangle's point to the vertex that lies deepest behind the cap passes through the disc, and
-// where.
+// Whether the segment from the triangle's point to the vertex deepest behind the cap passes through
+// the disc, and where.
 fn axial_way_in(axial: Axial, cap: LinkCap, radius: real, face: Face) -> WayIn {
     let a = face.a - cap.centre;
     let b = face.b - cap.centre;
@@ -116,7 +120,8 @@ fn axial_way_in(axial: Axial, cap: LinkCap, radius: real, face: Face) -> WayIn {
     return WayIn(real(0.0) < depth && norm_squared(radial) <= radius * radius, cap.centre + radial);
 }
 
-// The centre and the outward normal of the cap that the triangle's point is beyond; the start's if neither.
+// The centre and the outward normal of the cap that the triangle's point is beyond; those of the
+// start if neither.
 fn axial_cap(axial: Axial, link: Link) -> LinkCap {
     return LinkCap(
         select(zero(), link.end, axial.at_flat_end),

@@ -1,6 +1,8 @@
-// Vectors: the twin of distance/vec3.rs. What distance/scalar.rs has beyond arithmetic precedes every text.
+// Vectors: the twin of distance/vec3.rs. The functions of distance/scalar.rs beyond arithmetic
+// precede every text.
 //
-// A shader may be compiled as if no NaN and no infinity arose, so both arms of every choice are finite.
+// A compiler may assume that no NaN and no infinity arises, so both arms of every choice are
+// finite.
 
 fn norm_squared(v: vec3<real>) -> real {
     return dot(v, v);
