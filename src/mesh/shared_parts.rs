@@ -17,8 +17,8 @@
 use parry3d_f64::math::{Real, Vector};
 use std::iter::successors;
 
-/// The number of parts of a triangle: its three corners, then its edges from the first corner to
-/// the second, from the second to the third and from the third to the first.
+/// The number of parts of a triangle. Parts 0 to 2 are the corners a, b and c; parts 3 to 5 are the
+/// edges ab, bc and ca.
 pub(crate) const PARTS: usize = 6;
 
 /// The part of a triangle that holds its nearest point, by the corners without a share in that

@@ -55,10 +55,10 @@
 //!
 //! - In units of `u reach`, a corner errs by 2 and a computed point of an edge by 11; seen from the
 //!   link's start, by 16. A projection moves no farther than its point. The projection itself errs
-//!   by 17 along the axis, for the product and the direction, by 4 for the length, and by 13 for
-//!   the multiple of the axis. With the error of the point that is 49, below e. For a link with
-//!   flat caps, subtracting the part across the axis adds 42. So every W is within `2 e` of the
-//!   true one, leaving `36 u reach`, and D is within `2 e`.
+//!   by 17 along the axis, for the product and the direction. It also errs by 4 for the length, and
+//!   by 13 for the multiple of the axis. With the error of the point that is 49, below e. For a
+//!   link with flat caps, subtracting the part across the axis adds 42. So every W is within `2 e`
+//!   of the true one, leaving `36 u reach`, and D is within `2 e`.
 //! - The gap errs by `2 e |AB|` for W and by `|W| e / 8` for AB. `3 e |AB| + |W| e / 8` are added
 //!   to it, which includes its own rounding. `|AB|` is replaced by the sum of the magnitudes of its
 //!   coordinates.
@@ -68,12 +68,12 @@
 //!   <W(z), h> > |h| (sqrt(gap) + 2 e) + e |W(z)|.
 //!   ```
 //!
-//!   The true product differs by at most `2 e |h| + (|W| + 2 e) e / 4`, and the computed one by
-//!   `11 u reach |W|`. The product of two errors is within the `36 u reach` left; otherwise `|W|`
-//!   is below `6 e`, and condition 2 fails. The code avoids roots: `(sqrt(gap) + 2 e)^2` is at most
-//!   `5/4 gap + 20 e^2`. The squares err by `8 u` of themselves, and so the sides by
-//!   `14 u reach |h|`, which is within the `36 u reach` too. No square underflows, since `|h|` is
-//!   above e if the right side is not 0.
+//!   The true product differs by at most `2 e |h| + (|W| + 2 e) e / 4`. The computed product
+//!   differs by `11 u reach |W|`. The product of two errors is within the `36 u reach` left;
+//!   otherwise `|W|` is below `6 e`, and condition 2 fails. The code avoids roots:
+//!   `(sqrt(gap) + 2 e)^2` is at most `5/4 gap + 20 e^2`. The squares err by `8 u` of themselves,
+//!   and so the sides by `14 u reach |h|`, which is within the `36 u reach` too. No square
+//!   underflows, since `|h|` is above e if the right side is not 0.
 //! - In condition 2 each length errs by `2 e`. The tangent errs by `3 e` more, because D(z) is
 //!   known only within `2 e`. So it counts only if `gap < |W(z)|^2` and `|W(z)| > 12 e`. P errs by
 //!   `25 u reach` from the link's start, which leaves W(P) within `2 e` too. A total of `12 e` is
@@ -87,9 +87,8 @@ use crate::pair::LinkLanes;
 impl<L: Pack> LinkLanes<L> {
     /// Returns which triangles certainly lie on a slope towards a nearer one, one bit per lane.
     ///
-    /// `across` are the opposite corners of neighbours, beyond the edges from the first corner to
-    /// the second, from the second to the third and from the third to the first; NaN if there is no
-    /// neighbour. `error` is the link's.
+    /// `across` are the opposite corners of the neighbours beyond the edges ab, bc and ca; NaN if
+    /// there is no neighbour. `error` is the link's.
     #[inline(always)]
     pub(crate) fn descends(&self, [a, b, c]: [Vec3<L>; 3], across: [Vec3<L>; 3], error: L) -> u64 {
         let (zero, one, half) = (error.zero(), error.one(), error.lit(0.5));

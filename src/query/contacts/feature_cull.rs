@@ -54,9 +54,8 @@ use crate::pair::{LinkLanes, Nearer};
 pub(crate) struct FeatureMask {
     /// For each corner: it certainly has no share in the nearest point.
     pub away: [u64; 3],
-    /// For each edge: it is certainly farther than the nearest point, by more than the rounding of
-    /// measured distances. The edges go from the first corner to the second, from the second to the
-    /// third and from the third to the first.
+    /// For each of the edges ab, bc and ca: it is certainly farther than the nearest point, by more
+    /// than the rounding of measured distances.
     pub beyond: [u64; 3],
 }
 

@@ -20,7 +20,7 @@
 //!
 //! # Claim
 //! 1. *None is missed*: from every point x of the wall a path on the wall leads to a reported
-//!    minimum, along which d never exceeds `d(x) + 2 t`.
+//!    minimum. Along it d never exceeds `d(x) + 2 t`.
 //! 2. *None is found twice*: each path from one reported minimum to another exceeds the farther of
 //!    the two by more than `2 t`.
 //! 3. *Each is a minimum*: no point of a triangle that contains it is nearer, beyond rounding.
@@ -39,7 +39,7 @@
 //! 2. **Measure** the others and sort them, nearest first.
 //! 3. **Sweep.** Each triangle T in turn starts a piece. It meets a piece at each f that it shares
 //!    with an earlier, nearer triangle. If d(f) is at most `2 t` above the farther of the two
-//!    pieces' minima, the piece with that minimum ends (the elder rule of persistent homology).
+//!    minima, the piece with that minimum ends. (This is the elder rule of persistent homology.)
 //! 4. **Report** the first triangle of each piece that has not ended.
 //!
 //! If the least point of T lies on f, d(f) is d(T) and is not computed. That holds for nearly all

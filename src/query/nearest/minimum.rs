@@ -3,7 +3,8 @@
 //! # Definitions
 //! - `upper`: the caller's bound or the best distance so far, whichever is smaller (field `bound`).
 //! - `lower[k]`: a lower bound on the distance of link k ([`LinkLowerBounds`]).
-//! - `look_ahead`: extra search radius that yields `lower[k]` for later queries, if it pays.
+//! - `look_ahead`: extra search radius that yields `lower[k]` for later queries; 0 if it does not
+//!   pay.
 //! - Link k is *open* if `lower[k] <= upper` or if `lower[k]` is unknown.
 //!
 //! # Algorithm

@@ -5,8 +5,8 @@
 //!
 //! # Algorithm
 //! 1. Lay a grid of cells over the mesh and cut each triangle into pieces of less than a cell.
-//! 2. For each piece, mark the cell of its centroid as wall. Vote +1 for the cell one cell before
-//!    it (along the normal), and -1 for the cell behind it.
+//! 2. For each piece, mark the cell of its centroid as wall. The cell in front of it (one cell's
+//!    length along the normal) gets a vote of +1, the cell behind it one of -1.
 //! 3. The sign of the votes is the side of a cell. Cells without votes take the side of their
 //!    nearest neighbours, breadth first.
 //! 4. To find a crossing, look up the base and the tip. If their sides differ, bisect the joints.
@@ -15,7 +15,8 @@ use crate::mesh::Mesh;
 use crate::pair::PlacedRobot;
 use parry3d_f64::math::{Real, Vector};
 
-/// Limits of memory: the most cells for each triangle, and the most cells along a side of the mesh.
+/// The most cells for each triangle, and the most cells along a side of the mesh. Both bound the
+/// memory.
 const CELLS_FOR_A_TRIANGLE: Real = 24.0;
 const CELLS_ALONG_A_SIDE: Real = 62.0;
 /// The least length of a cell, in typical edges. It limits the number of pieces of large triangles.

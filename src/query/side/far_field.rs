@@ -42,8 +42,8 @@
 //!
 //! - Edges are at most `2 r` long and s at most r; both err by u of their length.
 //! - A cross product errs by `4 u sqrt(3)` of the product of its edges: half of it by `14 r^2`.
-//! - A centroid errs by `5 u r`. So a term of C errs by `(14 + 1.3 (5 + 1)) r^3 < 24 r^3`, since a
-//!   triangle in the ball has at most the area `1.3 r^2`.
+//! - A centroid errs by `5 u r`. A triangle in the ball has at most the area `1.3 r^2`. So a term
+//!   of C errs by `(14 + 1.3 (5 + 1)) r^3 < 24 r^3`.
 //! - A sum adds m u times its magnitude.
 //! - C counts 4.74 times (`sqrt(3)` for its trace, and 3), over `R > r`. Together that is
 //!   `m (14 + 114) r^2 + m (1 + 4.74) A`.

@@ -1,9 +1,9 @@
 //! The side of a mesh on which a point lies, by the winding number of the mesh, with error bounds.
 //!
 //! The generalised winding number is the sum of the signed solid angles of all triangles, over
-//! `4 pi` (Jacobson, Kavan and Sorkine-Hornung, "Robust inside-outside segmentation using
-//! generalized winding numbers", 2013). A closed mesh winds around each point a whole number of
-//! times, and around each outside point 0 times.
+//! `4 pi`. (Jacobson, Kavan and Sorkine-Hornung, "Robust inside-outside segmentation using
+//! generalized winding numbers", 2013.) The number is whole for a closed mesh, and 0 at each
+//! outside point.
 //!
 //! - `solid_angle`: the solid angle of a triangle, with an error bound.
 //! - `far_field`: the solid angle of many triangles far away, with an error bound (after Barill et

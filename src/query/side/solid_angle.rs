@@ -15,8 +15,8 @@
 //!    the differences. A quotient errs by one u more. So the unit vectors err by at most `6 u`.
 //! 2. A dot product errs by `2 x 6 u`, and by its own `3 u`. Three of them and 1 are summed at
 //!    sizes of at most 2, 3 and 4. The sum errs by `3 x 15 u + 9 u = 54 u`.
-//! 3. The determinant errs by `3 x 6 u` from its vectors, and by `3.5 u` and `3 u` from a cross
-//!    product and a dot product: `25 u`.
+//! 3. The determinant errs by `3 x 6 u` from its vectors. It also errs by `3.5 u` from a cross
+//!    product and by `3 u` from a dot product: `25 u`.
 //! 4. Together z errs by less than `60 u`. [`ROUNDING`] has room for squares of u.
 //!
 //! Let z err by e, and let the negative numbers be farther from z than e. Then its argument errs by

@@ -80,7 +80,7 @@ impl<L: Pack> NodeBounds<L> {
     /// returns the squared distances of the centres from the axis.
     ///
     /// The tests are as in [`squared_distances`](Self::squared_distances). No product that decides
-    /// underflows: a box that the plane excludes at `limit` has a centre at least as far away, and
+    /// underflows. A box that the plane excludes at `limit` has a centre at least as far away. And
     /// `limit` is at least the rounding of numbers near one.
     #[inline(always)]
     pub(crate) fn may_meet(&self, link: &LinkLanes<L>, limit: L) -> (u64, L) {

@@ -107,8 +107,8 @@ impl MeshSearch<'_> {
         )
     }
 
-    /// Returns the nearest triangle as [`MeshSearch::nearest`] does, a lower bound on the distance
-    /// of all triangles, and a triangle at about that bound if one was met.
+    /// Returns the nearest triangle as [`MeshSearch::nearest`] does, and a lower bound on the
+    /// distance of all triangles. Also returns a triangle at about that bound, if one was met.
     ///
     /// No triangle farther than `far` is searched; `far` is at least the bound of `best`.
     pub(crate) fn nearest_with_lower_bound(
@@ -138,8 +138,8 @@ impl MeshSearch<'_> {
         )
     }
 
-    /// Returns true if any triangle may be at most `bound` from a capsule around links. False is
-    /// certain.
+    /// Returns true if any triangle may be at most `bound` from a capsule around links.
+    /// Conservative: false is exact.
     pub(crate) fn may_meet(&mut self, capsule: &PlacedLink, bound: Real) -> bool {
         if let Some(moved) = &mut self.moved {
             return moved.may_meet(self.hierarchy.single(), capsule, bound);

@@ -1,14 +1,14 @@
 //! A mesh whose vertices move along straight lines at constant speed, and the search through it.
 //!
 //! # Definitions
-//! - A vertex moves from x to y; at the time t in [0, 1] it is at `x + t (y - x)`.
+//! - A vertex moves from x to y; at the time t in `[0, 1]` it is at `x + t (y - x)`.
 //! - A *moving box* is a pair of boxes in the axes of the mesh's frame, at t = 0 and t = 1. At the
 //!   time t each side lies at the share t between its two places.
 //!
 //! **Claim.** If a moving box holds some vertices at t = 0 and at t = 1, it holds them at all t.
 //!
 //! **Proof.** In each direction a, a vertex is at the share t between `a x` and `a y`. Each side of
-//! the box moves likewise, so the inequality of the two ends holds at t.
+//! the box moves likewise. The vertex is on the inner side of it at both ends, and so at t.
 //!
 //! So no box is refitted for an instant.
 //!
@@ -181,7 +181,8 @@ impl MeshAt<'_> {
         best
     }
 
-    /// Returns true if any triangle may be at most `bound` from a capsule. False is certain.
+    /// Returns true if any triangle may be at most `bound` from a capsule. Conservative: false is
+    /// exact.
     pub(crate) fn may_meet(
         &mut self,
         tree: &WideBvh<f32>,

@@ -103,7 +103,7 @@ impl<E: Lane> Target<'_, E> {
     fn is_settled(&self) -> bool {
         match &self.aim {
             Goal::Nearest(..) => self.below == 0,
-            // Once a triangle overlaps, the limit is 0 and no bound is below it.
+            // Once a triangle meets the axis, the limit is 0 and no bound is below it.
             Goal::About(_, leaves) => *leaves == 0,
             Goal::Any(found) => *found,
         }
@@ -162,10 +162,10 @@ impl<E: Lane> Traversal<'_, E> {
     ///
     /// No triangle farther than `far` is searched; `far` is at least the bound of `best`.
     ///
-    /// **Proof of the lower bound.** A triangle that was pruned had a lower bound of at least
-    /// `limit` at that time, and so of at least the final `limit`. The other triangles are
-    /// candidates, or were measured. So no triangle is nearer than the least of three: the final
-    /// `limit`, the candidates' bounds and the measured distance (0 for a triangle that overlaps).
+    /// **Proof of the lower bound.** A pruned triangle had a lower bound of at least `limit` at
+    /// that time. The final `limit` is not larger. The other triangles are candidates, or were
+    /// measured. So no triangle is nearer than the least of three: the final `limit`, the
+    /// candidates' bounds and the measured distance (0 for a triangle that overlaps).
     pub(crate) fn nearest_with_lower_bound(
         &mut self,
         link: &PlacedLink,
@@ -201,7 +201,7 @@ impl<E: Lane> Traversal<'_, E> {
     }
 
     /// Returns true if a triangle with a number less than `below` may be at most `bound` from the
-    /// link. False is certain.
+    /// link. Conservative: false is exact.
     pub(crate) fn may_meet(&mut self, searched: &SearchLink<E>, bound: f64, below: u32) -> bool {
         let limit = searched.axis_limit(bound);
         let mut target = Target { searched, limit, below, aim: Goal::Any(false) };
@@ -362,7 +362,7 @@ impl<E: Lane> Traversal<'_, E> {
         }
         match &mut target.aim {
             Goal::Any(found) => {
-                // `below` is ignored here: a true answer may be wrong.
+                // Conservative: `below` is ignored here.
                 *found = near != 0;
                 return;
             }

@@ -16,8 +16,8 @@
 //! for the capsule around all links. The capsule answers for a robot far from the wall in one step.
 //!
 //! **Rounding.** `ROUNDING (reach + 2 extent)` is subtracted from `d`, and `m` is multiplied by
-//! `1 + ROUNDING`. The factor 2 is room for the motion: the link now reaches no farther than
-//! `extent + m`.
+//! `1 + ROUNDING`. The factor 2 is for the link then and now. The link now reaches at most
+//! `extent + m`; the factor `1 + ROUNDING` covers m.
 
 use super::look_ahead::LookAhead;
 use super::placed_outline::{PlacedOutline, ROUNDING, ReferenceOutline};
@@ -205,7 +205,8 @@ impl LinkLowerBounds {
 }
 
 impl LinkLowerBound {
-    /// `reach` is the largest coordinate of the mesh. `2 extent` is room for the motion until `at`.
+    /// `reach` is the largest coordinate of the mesh. `2 extent` is for the link then and later
+    /// (see the module).
     fn new(link: PlacedOutline, apart: Real, triangle: Option<u32>, reach: Real) -> Self {
         let apart = apart - ROUNDING * (reach + 2.0 * link.extent());
         Self { link: ReferenceOutline::new(link, reach), apart, triangle }

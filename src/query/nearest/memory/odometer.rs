@@ -119,8 +119,8 @@ impl Odometer {
 
     /// Returns how far any point of a link can be off if the ends of all axes err by `error`.
     ///
-    /// A flat cap of radius r turns with its axis of length l by less than `4 error / l`, and its
-    /// rim by r times that.
+    /// A flat cap of radius r turns with its axis of length l by less than `4 error / l`. Its rim
+    /// moves by r times that angle.
     pub(crate) fn error_from_ends(&self, error: Real) -> Real {
         error * self.lever
     }

@@ -94,9 +94,10 @@ impl ReferenceOutline {
     /// **Definitions.** d, d': the vectors from start to end, then and now. a, a': their
     /// directions. r: the radius now. `x = |d' - d| / (2 |d|)`.
     ///
-    /// **Claim.** `m = s + t + g`. Here s is the larger displacement of the two ends,
-    /// `t = 2 r x (1 + 2 x)` with x capped at 1/2, and g is the growth of the radius, at least 0.
-    /// If both caps are round, `t = 0`.
+    /// **Claim.** `m = s + t + g`.
+    /// - s is the larger displacement of the two ends.
+    /// - `t = 2 r x (1 + 2 x)` with x capped at 1/2; 0 if both caps are round.
+    /// - g is the growth of the radius, at least 0.
     ///
     /// **Proof.**
     /// 1. No point of the axis moves farther than the farther of its ends. The ball around that
@@ -108,10 +109,10 @@ impl ReferenceOutline {
     ///    `x <= 1/2` that is at most `2 r x (1 + 2 x)`, which is `2 r` at 1/2. No turn moves the
     ///    rim farther than `2 r`.
     ///
-    /// **Rounding.** d and d' err by u of their coordinates, and so x by less than `3 u` for
-    /// `x <= 1/2`. That is `18 u r`, which [`ROUNDING`] times the extent includes. A square
-    /// vanishes if its root is below 2^-537 of the extent and the mesh. The radius of a flat cap is
-    /// less than 2^400 lengths of its axis, so at most 2^-136 of the extent is lost.
+    /// **Rounding.** d and d' err by u of themselves, and so x by less than `3 u` for `x <= 1/2`.
+    /// That is `18 u r`, which [`ROUNDING`] times the extent includes. A square vanishes if its
+    /// root is below 2^-537 of the extent and the mesh. The radius of a flat cap is less than 2^400
+    /// lengths of its axis, so at most 2^-136 of the extent is lost.
     #[inline(always)] // in the loop over all links
     pub(crate) fn moved_to(&self, now: &PlacedOutline) -> Real {
         let then = &self.link;
