@@ -61,7 +61,8 @@ impl WallComponents<'_> {
             if others.next().is_some() {
                 around = *self.around.around(shared, self.near, self.index, [index, part], add);
             }
-            // No part of a triangle is nearer than the triangle.
+            // If a culled triangle is certainly farther than this one, so is each part that they
+            // share.
             let meets_left_out = around.slopes || around.left_out_from < known.upper;
             let first = around.first;
             let others = [meets_left_out.then_some(CULLED), (first < place).then_some(first)];
