@@ -1,10 +1,10 @@
-//! What every engine refuses of a mesh.
+//! The checks of a mesh that every engine makes.
 
 use crate::answer::MeshError;
 use crate::robot::COORDINATE_LIMIT;
 use parry3d_f64::math::Vector;
 
-/// Triangles whose corners are all among so many vertices.
+/// Checks that the corners of all triangles are among `vertices` vertices.
 pub(crate) fn check_triangles(triangles: &[[u32; 3]], vertices: usize) -> Result<(), MeshError> {
     triangles
         .iter()
@@ -12,7 +12,8 @@ pub(crate) fn check_triangles(triangles: &[[u32; 3]], vertices: usize) -> Result
         .try_for_each(|(triangle, corners)| check_triangle(triangle, corners, vertices))
 }
 
-/// A triangle with the number `triangle` whose corners are among so many vertices.
+/// Checks that the corners of the triangle with the number `triangle` are among `vertices`
+/// vertices.
 pub(crate) fn check_triangle(
     triangle: usize,
     corners: &[u32; 3],
@@ -24,7 +25,7 @@ pub(crate) fn check_triangle(
     }
 }
 
-/// Vertices that are all within range.
+/// Checks that all vertices are finite and within range.
 pub(crate) fn check_vertices(vertices: &[Vector]) -> Result<(), MeshError> {
     match vertices.iter().position(|&point| !in_range(point)) {
         Some(vertex) => check_vertex(vertex, vertices[vertex]),
@@ -32,7 +33,7 @@ pub(crate) fn check_vertices(vertices: &[Vector]) -> Result<(), MeshError> {
     }
 }
 
-/// A vertex within range; `vertex` is its place in the mesh.
+/// Checks that a vertex is finite and within range. `vertex` is its number in the mesh.
 pub(crate) fn check_vertex(vertex: usize, point: Vector) -> Result<(), MeshError> {
     for value in point.to_array() {
         if !value.is_finite() {
@@ -45,7 +46,7 @@ pub(crate) fn check_vertex(vertex: usize, point: Vector) -> Result<(), MeshError
     Ok(())
 }
 
-/// Written so that NaN is out of range too.
+/// Returns true if the point is within range. The comparison fails for NaN.
 pub(crate) fn in_range(point: Vector) -> bool {
     point.abs().cmple(Vector::splat(COORDINATE_LIMIT)).all()
 }

@@ -1,4 +1,4 @@
-//! A mesh as every engine keeps it.
+//! The mesh of an engine: vertices and triangles.
 
 use super::checks::{check_triangles, check_vertices};
 use super::shared_parts::SharedParts;
@@ -15,14 +15,14 @@ pub(crate) struct Mesh {
     indices: Vec<[u32; 3]>,
     /// The vertices that triangles use, unless all are used.
     used: Option<Vec<u32>>,
-    /// For those who ask which triangles are joined, found at the first question.
+    /// The shared corners and edges, built on first use.
     parts: Lazy<Arc<SharedParts>>,
-    /// What they were before the vertices moved.
+    /// The shared corners and edges before the vertices moved.
     parts_before: Option<Arc<SharedParts>>,
 }
 
 impl Mesh {
-    /// Vertices that one thread goes through at a time.
+    /// Vertices that one task takes.
     pub(crate) const TASK_SIZE: usize = 1 << 14;
 
     /// A copy of `mesh`.
@@ -36,8 +36,9 @@ impl Mesh {
     /// A copy of vertices and triangles.
     ///
     /// # Errors
-    /// There are no triangles, a vertex is not finite or out of range, or a triangle names one that
-    /// is not there.
+    /// - There are no triangles.
+    /// - A vertex is not finite or out of range.
+    /// - A triangle names a vertex that does not exist.
     pub(crate) fn from_triangles(
         vertices: &[Vector],
         triangles: &[[u32; 3]],
@@ -59,10 +60,11 @@ impl Mesh {
         Self { vertices, indices, used, parts: Lazy::new(), parts_before: None }
     }
 
-    /// Whether the vertices can move there.
+    /// Checks that the vertices can move to these places.
     ///
     /// # Errors
-    /// Their number differs, or one is not finite or out of range.
+    /// - The number of vertices differs.
+    /// - A vertex is not finite or out of range.
     pub(crate) fn check_moved(&self, vertices: &[Vector]) -> Result<(), MeshError> {
         if vertices.len() != self.vertices.len() {
             return Err(MeshError::VertexCount {
@@ -73,12 +75,12 @@ impl Mesh {
         check_all(vertices)
     }
 
-    /// Moves the vertices to these places, which were checked.
+    /// Moves the vertices to these places, which the caller has checked.
     pub(crate) fn set_vertices(&mut self, vertices: &[Vector]) {
         let shares =
             self.vertices.chunks_mut(Mesh::TASK_SIZE).zip(vertices.chunks(Mesh::TASK_SIZE));
         each(&mut shares.collect::<Vec<_>>(), |_, (own, moved)| own.copy_from_slice(moved));
-        // Whether they stay the same is for those to find out who ask.
+        // The next call of `parts` checks whether they are still valid.
         self.parts_before = self.parts.take().or(self.parts_before.take());
     }
 
@@ -90,7 +92,7 @@ impl Mesh {
         &self.indices
     }
 
-    /// How many triangles there are.
+    /// The number of triangles.
     pub(crate) fn len(&self) -> usize {
         self.indices.len()
     }
@@ -112,7 +114,7 @@ impl Mesh {
         })
     }
 
-    /// For each edge of a triangle the third corner of another that has it; not a number where
+    /// For each edge of a triangle the opposite corner of another triangle at that edge; NaN if
     /// there is none.
     pub(crate) fn corners_across(&self, triangle: u32) -> [Vector; 3] {
         [3, 4, 5].map(|edge| {
@@ -121,8 +123,8 @@ impl Mesh {
         })
     }
 
-    /// The corners of the box around all triangles. Vertices that no triangle uses do not count:
-    /// exported meshes have some anywhere.
+    /// The corners of the box around all triangles. Vertices without a triangle do not count:
+    /// exported meshes may have some anywhere.
     pub(crate) fn bounds(&self) -> [Vector; 2] {
         match &self.used {
             None => box_around(&self.vertices, |&point| point),
@@ -131,11 +133,11 @@ impl Mesh {
     }
 }
 
-/// [`check_vertices`], on all cores.
+/// [`check_vertices`] on all cores.
 fn check_all(vertices: &[Vector]) -> Result<(), MeshError> {
     let mut shares: Vec<_> = vertices.chunks(Mesh::TASK_SIZE).map(|share| (share, true)).collect();
     each(&mut shares, |_, (share, is_right)| *is_right = check_vertices(share).is_ok());
-    // The error names the vertex by its place among all.
+    // Runs again in order, so that the error names the vertex by its number in the whole mesh.
     if shares.iter().all(|(_, is_right)| *is_right) { Ok(()) } else { check_vertices(vertices) }
 }
 

@@ -1,4 +1,4 @@
-//! The triangles as every engine keeps them.
+//! The triangles of a mesh in the form that every engine stores.
 
 mod checks;
 mod engine_mesh;

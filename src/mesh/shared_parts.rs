@@ -1,19 +1,28 @@
-//! The corners and edges of a mesh: which triangles have the same, at the same place.
+//! Which triangles share a corner or an edge, by place.
 //!
-//! The triangles that have a corner or an edge stand in a ring around it, in which each names the
-//! next; around an edge there may be any number of them (Weiler's radial edge). So nothing is
-//! numbered but the corners, and that by their places alone: as long as those stay together that
-//! were, and none meets another, the rings stay as they are.
+//! # Definitions
+//! - *part* of a triangle: one of its three corners or three edges. Two parts are the same if their
+//!   ends lie at the same places.
+//! - *ring* of a part: a circular list of all triangles with the same part, in which each names the
+//!   next. Around an edge there may be any number of triangles (Weiler's radial edge).
+//!
+//! Only corners are numbered, by their places; an edge is the pair of its ends. So the rings stay
+//! valid after a motion if the same vertices coincide as before.
+//!
+//! # Algorithm
+//! 1. Number the places: a hash table gives each vertex the first vertex at its place.
+//! 2. Join the corners at each place to one ring.
+//! 3. For each place, walk its ring and join the edges that lead to the same other place.
 
 use parry3d_f64::math::{Real, Vector};
 use std::iter::successors;
 
-/// The parts of a triangle: its three corners, then its edges from the first corner to the second,
-/// from the second to the third and from the third to the first.
+/// The number of parts of a triangle. Parts 0 to 2 are the corners a, b and c; parts 3 to 5 are the
+/// edges ab, bc and ca.
 pub(crate) const PARTS: usize = 6;
 
-/// The part of a triangle that holds its nearest point if some of its corners have no share in it,
-/// by the bits of these corners.
+/// The part of a triangle that holds its nearest point, by the corners without a share in that
+/// point. One bit per corner.
 pub(crate) const PART_WITHOUT: [Option<u8>; 8] =
     [None, Some(4), Some(5), Some(2), Some(3), Some(1), Some(0), None];
 
@@ -23,7 +32,7 @@ const NONE: u32 = u32::MAX;
 /// Which triangles share corners and edges.
 #[derive(Clone)]
 pub(crate) struct SharedParts {
-    /// For each vertex the first at the same place.
+    /// For each vertex the first vertex at the same place.
     corners: Vec<u32>,
     rings: Rings,
 }
@@ -35,7 +44,7 @@ struct SharedPart {
     number: u8,
 }
 
-/// What is next around each part of a triangle.
+/// The next part in the ring of each part of a triangle.
 #[derive(Clone, Copy)]
 struct Next {
     triangles: [u32; PARTS],
@@ -53,7 +62,7 @@ impl SharedParts {
             corners[indices[part.triangle as usize][usize::from(part.number)] as usize]
         };
         let mut rings = Rings::of_one(indices.len() as u32);
-        // A part in the ring around each corner.
+        // One part in the ring of each corner.
         let mut around = vec![None; vertices.len()];
         for triangle in 0..indices.len() as u32 {
             for number in 0..3 {
@@ -65,7 +74,7 @@ impl SharedParts {
                 }
             }
         }
-        // For each corner the last one from which an edge led to it, and that edge.
+        // For each corner the last corner from which an edge led to it, and that edge.
         let mut edges = vec![(NONE, SharedPart { triangle: 0, number: 0 }); vertices.len()];
         for (from, &first) in (0..).zip(&around) {
             let mut next = first;
@@ -73,8 +82,8 @@ impl SharedParts {
                 let [after, before] = [(number + 1) % 3, (number + 2) % 3];
                 for (end, edge) in [(after, number + 3), (before, before + 3)] {
                     let to = corner(SharedPart { triangle, number: end });
-                    // Each edge once: from its lower end, or where both are one from that at which
-                    // it begins.
+                    // Counts each edge once: from its lower end, or from its beginning if both ends
+                    // are the same.
                     if to < from || (to == from && end == before) {
                         continue;
                     }
@@ -90,32 +99,32 @@ impl SharedParts {
         Self { corners, rings }
     }
 
-    /// The first vertex at the place of a vertex.
+    /// Returns the first vertex at the place of a vertex.
     #[inline(always)]
     pub(crate) fn first_at(&self, vertex: u32) -> u32 {
         self.corners[vertex as usize]
     }
 
-    /// Whether they are the same with the vertices at these places.
+    /// Returns true if the same vertices coincide at these places, so that the rings stay valid.
     pub(crate) fn stay(&self, vertices: &[Vector]) -> bool {
         first_at_same_place(vertices) == self.corners
     }
 
-    /// The other triangles that have a part of a triangle.
+    /// Returns the other triangles with the same part.
     #[inline(always)]
     pub(crate) fn others(&self, triangle: u32, part: usize) -> impl Iterator<Item = u32> {
         self.rings.others(SharedPart { triangle, number: part as u8 }).map(|part| part.triangle)
     }
 
-    /// All triangles that have a part of a triangle, itself first, and which of their parts that
-    /// is.
+    /// Returns all triangles with the same part and the number of the part in each. The triangle
+    /// itself comes first.
     pub(crate) fn ring(&self, triangle: u32, part: usize) -> impl Iterator<Item = (u32, usize)> {
         let own = SharedPart { triangle, number: part as u8 };
         let all = std::iter::once(own).chain(self.rings.others(own));
         all.map(|part| (part.triangle, usize::from(part.number)))
     }
 
-    /// Another triangle that has an edge of a triangle, and the corner that it has beyond the edge.
+    /// Returns another triangle at an edge, and its corner opposite to that edge.
     pub(crate) fn across(&self, triangle: u32, edge: usize) -> Option<(u32, usize)> {
         let next = self.rings.next(SharedPart { triangle, number: edge as u8 });
         (next.triangle != triangle).then(|| (next.triangle, (usize::from(next.number) + 2) % 3))
@@ -145,7 +154,7 @@ impl Rings {
         others.take_while(move |part| *part != own)
     }
 
-    /// Makes one ring of the two that hold these parts.
+    /// Joins the rings of two parts; the rings must differ.
     fn join(&mut self, one: SharedPart, other: SharedPart) {
         let (after_one, after_other) = (self.next(one), self.next(other));
         self.set_next(one, after_other);
@@ -172,10 +181,9 @@ pub(crate) fn ends_of<T: Copy>([a, b, c]: [T; 3], part: usize) -> [T; 2] {
     }
 }
 
-/// For each vertex the first at the same place.
+/// For each vertex the first vertex at the same place.
 fn first_at_same_place(vertices: &[Vector]) -> Vec<u32> {
-    // Each first one stands at its hash or behind, where there is room, which is left at every
-    // second place.
+    // Open addressing with linear probing. The table is at most half full.
     let mut firsts = vec![NONE; (2 * vertices.len()).next_power_of_two()];
     let last = firsts.len() - 1;
     let find = |(vertex, &point): (u32, &Vector)| {
@@ -195,12 +203,12 @@ fn first_at_same_place(vertices: &[Vector]) -> Vec<u32> {
     (0..).zip(vertices).map(find).collect()
 }
 
-/// A place; 0 and -0 are the same.
+/// A place as bits; 0 and -0 are the same.
 fn place(point: Vector) -> [u64; 3] {
     (point + Vector::ZERO).to_array().map(Real::to_bits)
 }
 
-/// Nobody chooses places to collide.
+/// A simple mix suffices: places are not chosen to collide.
 fn hash(place: [u64; 3]) -> u64 {
     let mix = |hash: u64, bits: u64| {
         let mixed = (hash ^ bits).wrapping_mul(0x9e37_79b9_7f4a_7c15);
@@ -215,8 +223,8 @@ mod tests {
     use super::*;
     use continuum_testing::Random;
 
-    /// A few triangles between a few points, some of which are at the same place; with edges of
-    /// three triangles and more, and triangles that have a corner twice.
+    /// A few triangles between a few points, some of them at the same place. Some edges have three
+    /// or more triangles, and some triangles have a corner twice.
     fn soup(random: &mut Random) -> (Vec<Vector>, Vec<[u32; 3]>) {
         let places: Vec<_> = (0..6).map(|_| (random.point() * 2.0).round()).collect();
         let vertices = (0..12)
@@ -236,7 +244,7 @@ mod tests {
                     indices[triangle as usize].map(|vertex| vertices[vertex as usize]),
                     part,
                 );
-                // An edge is the same in both directions, but not one without length and a corner.
+                // An edge is the same in both directions; an edge without length is not a corner.
                 (part < 3, [from, to])
             };
             let is_same = |one: (bool, [Vector; 2]),
@@ -264,8 +272,7 @@ mod tests {
         assert!(shared > 10_000 && several > 1000 && twice > 1000, "{shared} {several} {twice}");
     }
 
-    /// Where vertices move together or apart, what triangles share is what it is at their new
-    /// places.
+    /// After vertices coincide or separate, the shared parts follow from the new places.
     #[test]
     fn moved_vertices_meet_and_part() {
         let (mut stayed, mut changed) = (0, 0);
@@ -274,7 +281,7 @@ mod tests {
             let (vertices, indices) = soup(random);
             let mut mesh = Mesh::of(vertices.clone(), indices.clone());
             mesh.parts();
-            // Not asked for each time.
+            // The parts are not built after every motion.
             for turn in 0..3 {
                 let moved = match random.below(3) {
                     0 => vertices.iter().map(|vertex| *vertex * 1.5 + Vector::X).collect(),

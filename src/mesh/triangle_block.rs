@@ -1,5 +1,4 @@
-//! How triangles stand in memory: in blocks of 16, each coordinate in a row of its own, to be
-//! loaded in packs.
+//! The memory layout of triangles: blocks of 16, one row per coordinate, loaded in packs.
 
 use super::engine_mesh::Mesh;
 use crate::distance::lanes::{Lane, Pack};
@@ -7,12 +6,11 @@ use crate::distance::{Face, Vec3};
 use crate::mesh::SearchFrame;
 use parry3d_f64::math::Vector;
 
-/// How many triangles stand together: the widest pack, so that any narrower one divides it.
+/// Triangles per block: the widest pack, so that every narrower one divides it.
 pub(crate) const BLOCK: usize = 16;
 
-/// Writes the corners of a triangle into its lane of a block, in the order in which a [`Face`] has
-/// them.
-#[inline(always)] // where the block's length is known, no place in it is checked
+/// Writes the corners of a triangle into its lane of a block, in the order of a [`Face`].
+#[inline(always)] // with a known block length, no index is checked
 pub(crate) fn place_face<E: Lane>(
     frame: &SearchFrame,
     mesh: &Mesh,
@@ -24,19 +22,19 @@ pub(crate) fn place_face<E: Lane>(
     put(rotated(corners, Face::first_of(corners)), rows, lane);
 }
 
-/// Which corner of a triangle [`place_face`] writes first.
+/// Returns the corner of a triangle that [`place_face`] writes first.
 pub(crate) fn first_of_face<E: Lane>(frame: &SearchFrame, mesh: &Mesh, triangle: u32) -> usize {
     Face::first_of(mesh.corners(triangle).map(|corner| frame.point::<E>(corner)))
 }
 
-/// What there is for each of three corners or edges, from one of them on.
+/// Rotates the values of three corners or edges so that `first` comes first.
 #[inline(always)]
 pub(crate) fn rotated<T>(mut three: [T; 3], first: usize) -> [T; 3] {
     three.rotate_left(first);
     three
 }
 
-/// Writes the corners of a triangle into its lane of a block.
+/// Writes the corners of a triangle into its lane of a block, in the triangle's own order.
 pub(crate) fn place_triangle<E: Lane>(
     frame: &SearchFrame,
     mesh: &Mesh,
@@ -66,8 +64,8 @@ fn put<E: Lane>(points: [Vec3<E>; 3], rows: &mut [E], lane: usize) {
     }
 }
 
-// Functions and not closures below a dispatch: a closure may escape inlining, and its code would
-// then be compiled without the instruction set.
+// Functions, not closures, below a dispatch: a closure may escape inlining, and is then compiled
+// without the instruction set.
 
 /// One point in every lane.
 #[inline(always)]

@@ -1,8 +1,7 @@
-//! Things that are joined one after another (Galler and Fischer): each names an earlier one of the
-//! same piece, or itself if it is the first.
+//! Union-find (Galler and Fischer). Each item names an earlier item of the same set, or itself if
+//! it is the first.
 
-/// The first of the piece that a thing is part of. The way there becomes shorter for those who ask
-/// later.
+/// Returns the first item of a set, and halves the path to it.
 #[inline(always)]
 pub(crate) fn find_root(joined: &mut [u32], mut place: u32) -> u32 {
     while joined[place as usize] != place {
@@ -13,8 +12,8 @@ pub(crate) fn find_root(joined: &mut [u32], mut place: u32) -> u32 {
     place
 }
 
-/// Joins the pieces of two things. Returns the first of the one, which is now the other's too, and
-/// of that one before.
+/// Unites the sets of two items. Returns the first item of the united set, then the former first
+/// item of the other set; both are equal if the items were in one set.
 #[inline(always)]
 pub(crate) fn unite(joined: &mut [u32], one: u32, other: u32) -> [u32; 2] {
     let (one, other) = (find_root(joined, one), find_root(joined, other));

@@ -1,4 +1,4 @@
-//! Which pairs can matter: through a hierarchy, or exhaustively.
+//! Finds the candidate triangles of a link: through a hierarchy, or exhaustively.
 
 pub(crate) mod exhaustive;
 pub(crate) mod hierarchy;

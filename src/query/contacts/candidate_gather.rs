@@ -1,5 +1,7 @@
-//! Every triangle within a margin of a link: those of a leaf that neither a plane nor a slope rules
-//! out wait until they fill a block, and are then looked at closely.
+//! Gathers every triangle within a margin of a link, with bounds and features.
+//!
+//! Triangles of a leaf that are excluded by a plane or culled on a slope are left out. The others
+//! are collected until they fill a block, and are then tested together.
 
 use super::feature_cull::CERTAIN;
 use super::opposite_corners::OppositeCorners;
@@ -12,8 +14,8 @@ use crate::search::hierarchy::{LeafVisitor, Traversal, WideBvh};
 use fearless_simd::Level;
 use parry3d_f64::math::Real;
 
-/// Adds to `found` every triangle that may be at most `bound` from the link. `opposite_corners`
-/// shows which lie on a slope; it is for single precision.
+/// Adds to `found` every triangle that may be at most `bound` from the link. `across` are the
+/// opposite corners, with which triangles on a slope are culled; single precision only.
 pub(super) fn gather<E: Lane>(
     mut traversal: Traversal<E>,
     searched: &SearchLink<E>,
@@ -29,27 +31,27 @@ pub(super) fn gather<E: Lane>(
     traversal.work.axis_distances += gathering.finish();
 }
 
-/// Where triangles are gathered.
+/// The triangles gathered so far.
 struct CandidateGather<'a, E> {
     level: Level,
     searched: &'a SearchLink<E>,
-    /// What a triangle's axis distance must be below.
+    /// A gathered triangle has an axis distance below this.
     limit: E,
-    /// Shows which lie on a slope.
+    /// The opposite corners, with which triangles on a slope are culled.
     across: Option<&'a OppositeCorners<E>>,
     found: &'a mut TriangleCandidates,
-    /// Those that wait, in rows like those of a leaf.
+    /// The pending triangles, in rows like the rows of a leaf.
     rows: [E; 9 * BLOCK],
     triangles: [u32; BLOCK],
-    /// Which corner of each stands first.
+    /// The corner that each pending triangle has first.
     firsts: [usize; BLOCK],
     waiting: usize,
-    /// For how many the distance from the axis was computed.
+    /// The number of axis distances computed.
     computed: u64,
 }
 
 impl<E: Lane> LeafVisitor<E> for CandidateGather<'_, E> {
-    /// Adds the leaf's triangles that may be within the limit.
+    /// Adds the triangles of a leaf that may be within the limit.
     #[inline(always)]
     fn visit<L: Pack<Element = E>>(
         &mut self,
@@ -124,7 +126,7 @@ impl<'a, E: Lane> CandidateGather<'a, E> {
         }
     }
 
-    /// Looks at those that are left. Returns for how many the distance from the axis was computed.
+    /// Tests the remaining triangles. Returns the number of axis distances computed.
     fn finish(mut self) -> u64 {
         if self.waiting > 0 {
             self.measure_pending();
@@ -132,8 +134,8 @@ impl<'a, E: Lane> CandidateGather<'a, E> {
         self.computed
     }
 
-    /// Adds to those found those that wait and may be within the limit.
-    #[inline(never)] // compiled once for all that search
+    /// Tests the pending triangles and adds each that may be within the limit.
+    #[inline(never)] // compiled once for all searches
     fn measure_pending(&mut self) {
         dispatch!(self.level, simd => self.take::<E::Pack<_>>(simd));
         self.waiting = 0;
@@ -151,7 +153,7 @@ impl<'a, E: Lane> CandidateGather<'a, E> {
             let (bounds, feet) = lanes.nearer_and_features(vertices, limit, error);
             bounds.lower.store(&mut lower);
             bounds.upper.store(&mut upper);
-            // Behind those that wait there stands what was there before.
+            // The lanes behind the pending triangles hold stale values.
             let mut near = bounds.nearer & ((1 << (self.waiting - first).min(L::LANES)) - 1);
             while near != 0 {
                 let lane = near.trailing_zeros() as usize;
@@ -175,8 +177,8 @@ impl<'a, E: Lane> CandidateGather<'a, E> {
     }
 }
 
-/// A lane's bits for the corners or edges of a triangle, which stand there from its corner `first`
-/// on. That of its own first one is lowest.
+/// Returns a lane's bits for the corners or edges of a triangle, in the triangle's own order. The
+/// lane has them from the corner `first` on.
 #[inline(always)]
 fn three_bits(lanes: [u64; 3], lane: usize, first: usize) -> u8 {
     let [a, b, c] = lanes.map(|lanes| (lanes >> lane & 1) as u8);

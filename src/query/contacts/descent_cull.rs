@@ -1,80 +1,94 @@
-//! Which triangles certainly lie on a slope towards a neighbour, a pack at a time: a test that
-//! costs a fraction of the distance between link and triangle, and spares it.
+//! Which triangles certainly lie on a slope towards a nearer neighbour, a pack at a time.
 //!
-//! # Two conditions
-//! Let d be the distance from the link, B its axis where both caps are round and the link itself
-//! where one is flat, and W(z) the way to a point z from the nearest point of B. Then |W(z)| is
-//! d(z) and the radius, or d(z); call it D(z). It is convex, and W(z) points the way in which it
-//! grows. The projection onto a convex set is firmly nonexpansive, and so is what it leaves: with
-//! delta = W(z) - W(m) and s = z - m,
+//! The test costs a fraction of the distance between link and triangle, and makes that distance
+//! unnecessary.
 //!
-//! ```text
-//! <delta, s> >= |delta|^2,   so   |delta - s / 2| <= |s| / 2.                                              (1)
-//! ```
+//! # Definitions
+//! - d(z): the distance of a point z from the link.
+//! - B: the link's axis if both caps are round, otherwise the link.
+//! - W(z): the vector to z from the nearest point of B. `D(z) = |W(z)|` is d(z) plus the radius, or
+//!   d(z). D is convex, and grows in the direction of W(z).
+//! - T: a triangle; f = AB: one of its edges; C: its third corner; `h = C - F` for a point F of f.
+//! - m: the point of f that is nearest to B; z: any point of f.
 //!
-//! Let f be the edge AB of a triangle T with the third corner C, m the point of f that is nearest
-//! to B, and z any point of f. Let F be a point of f, h = C - F. As m is the nearest, <W(m), m - z>
-//! <= 0, so that (1) gives for s = m - z
+//! **Lemma.** The projection onto a convex set is firmly nonexpansive, and so is W. With
+//! `delta = W(z) - W(m)` and `s = z - m`,
 //!
 //! ```text
-//! |delta|^2 <= <W(m), s> - <W(z), s> <= -<W(z), s> <= gap = max(-<W(z), A - z>, -<W(z), B - z>).             (2)
+//! <delta, s> >= |delta|^2,   so   |delta - s / 2| <= |s| / 2.                         (1)
 //! ```
 //!
-//! 1. *T's nearest point is on f.* Any point of T is m' + g h, with m' on f and g >= 0, and <W(m),
-//!    m' - m> >= 0. So none of T is nearer than m if
+//! As m is nearest, `<W(m), m - z> <= 0`. So (1) gives, with `delta = W(m) - W(z)` and `s = m - z`,
+//!
+//! ```text
+//! |delta|^2 <= <W(m), s> - <W(z), s> <= -<W(z), s> <= gap,
+//! gap = max(-<W(z), A - z>, -<W(z), B - z>).                                          (2)
+//! ```
+//!
+//! # Conditions
+//! 1. *The nearest point of T is on f.* This holds if
 //!
 //!    ```text
 //!    <W(m), h> >= <W(z), h> - sqrt(gap) |h| > 0.
 //!    ```
 //!
-//!    F is the point of f that is nearest to C, which makes h short.
-//! 2. *A neighbour is nearer.* D being convex, it lies above its tangents: on all of f it is at
-//!    least D(z) - gap / D(z). Another triangle that has f reaches to its own third corner C' and
-//!    holds the way from z to it. It is nearer if D is less at a point P on that way.
+//!    **Proof.** Any point of T is `m' + g h` with m' on f and `g >= 0`, and `<W(m), m' - m> >= 0`.
+//!    So no point of T is nearer than m. F is the point of f that is nearest to C, which makes h
+//!    short.
+//! 2. *A neighbour is nearer.* This holds if D at some point P of the neighbour is less than
+//!    `D(z) - gap / D(z)`.
 //!
-//! So T's nearest point is on f, and a triangle that has f too is nearer: T is left out as
-//! `local_minima` says. Of T's edges the one opposite to the corner that is farthest from the axis
-//! is tried. Any z and P will do. They are those at which D is least on the edge and on the way to
-//! C' if W leads from the middle of the axis, or from an end of it, all along as it does at the
-//! middle of the edge and at z.
+//!    **Proof.** D is convex, so it lies above its tangents: on all of f it is at least
+//!    `D(z) - gap / D(z)`. Another triangle at f, with the third corner C', contains the segment
+//!    from z to C'. P is a point of that segment.
+//!
+//! If both hold, the nearest point of T is on f, and another triangle at f is nearer. So T is
+//! culled (`local_minima`).
+//!
+//! The edge tried is the one opposite to the corner of T that is farthest from the axis. Any z and
+//! P are valid. They minimise D on the edge and on the segment to C', if the nearest point of the
+//! axis stays of one kind all along: an inner point, or the same end. The kind is taken at the
+//! middle of the edge, and at z.
 //!
 //! # Rounding
-//! Let e be the link's `error`, 64 u reach; it is that of single precision.
+//! Let e be the link's `error`, `64 u reach`; it is the error of single precision.
 //!
-//! - In units of u reach a corner errs by 2 and a computed point of an edge by 11, seen from the
-//!   link's start by 16. A projection moves no farther than its point. In itself it errs by 17
-//!   along the axis, for the product and the direction, 4 for the length, and 13 for the multiple
-//!   of the axis: 49 with the point's own, below e. To a link with flat caps 42 more are due to the
-//!   part across the axis, which is taken off. So every W is within 2 e of the true one, 36 u reach
-//!   to spare, and D within 2 e.
-//! - The gap errs by 2 e |AB| for W and by |W| e / 8 for AB: 3 e |AB| + |W| e / 8 are added to it,
-//!   its own rounding included, with the sum of the magnitudes of AB's coordinates for |AB|.
-//! - h errs by e / 4. So condition 1 holds if
+//! - In units of `u reach`, a corner errs by 2 and a computed point of an edge by 11; seen from the
+//!   link's start, by 16. A projection moves no farther than its point. The projection itself errs
+//!   by 17 along the axis, for the product and the direction. It also errs by 4 for the length, and
+//!   by 13 for the multiple of the axis. With the error of the point that is 49, below e. For a
+//!   link with flat caps, subtracting the part across the axis adds 42. So every W is within `2 e`
+//!   of the true one, leaving `36 u reach`, and D is within `2 e`.
+//! - The gap errs by `2 e |AB|` for W and by `|W| e / 8` for AB. `3 e |AB| + |W| e / 8` are added
+//!   to it, which includes its own rounding. `|AB|` is replaced by the sum of the magnitudes of its
+//!   coordinates.
+//! - h errs by `e / 4`. So condition 1 holds if
 //!
 //!   ```text
-//!   <W(z), h> > |h| (sqrt(gap) + 2 e) + e |W(z)|:
+//!   <W(z), h> > |h| (sqrt(gap) + 2 e) + e |W(z)|.
 //!   ```
 //!
-//!   the true product differs by 2 e |h| + (|W| + 2 e) e / 4 at most, and the computed one by 11 u
-//! reach |W|; the product of   two errors is within what W has to spare, or |W| is below 6 e and no
-//! condition 2 holds. It is asked without roots:   (sqrt(gap) + 2 e)^2 is at most 5/4 gap + 20 e^2.
-//! The squares err by 8 u of themselves, so the sides by 14 u reach |h|,   which W has to spare
-//! too; and none falls below the range, as |h| is above e where the right side is not 0.
-//! - In condition 2 each length errs by 2 e, and the tangent by 3 e more for D(z) that is |W(z)|
-//!   only within 2 e: it counts only while gap < |W(z)|^2 and |W(z)| > 12 e. P errs by 25 u reach
-//!   from the link's start, which leaves W(P) within 2 e too. With 12 e in all, 5 e are left by
-//!   which the neighbour is nearer, far above what a measurement in double precision errs by. T
-//!   must keep as much, lest it touch.
+//!   The true product differs by at most `2 e |h| + (|W| + 2 e) e / 4`. The computed product
+//!   differs by `11 u reach |W|`. The product of two errors is within the `36 u reach` left;
+//!   otherwise `|W|` is below `6 e`, and condition 2 fails. The code avoids roots:
+//!   `(sqrt(gap) + 2 e)^2` is at most `5/4 gap + 20 e^2`. The squares err by `8 u` of themselves,
+//!   and so the sides by `14 u reach |h|`, which is within the `36 u reach` too. No square
+//!   underflows, since `|h|` is above e if the right side is not 0.
+//! - In condition 2 each length errs by `2 e`. The tangent errs by `3 e` more, because D(z) is
+//!   known only within `2 e`. So it counts only if `gap < |W(z)|^2` and `|W(z)| > 12 e`. P errs by
+//!   `25 u reach` from the link's start, which leaves W(P) within `2 e` too. A total of `12 e` is
+//!   subtracted. So `5 e` remain by which the neighbour is nearer, far above the error of a
+//!   measurement in double precision. The same margin keeps T from touching.
 
 use crate::distance::lanes::Pack;
 use crate::distance::{Mask, Scalar, Vec3};
 use crate::pair::LinkLanes;
 
 impl<L: Pack> LinkLanes<L> {
-    /// Which triangles certainly lie on a slope towards a nearer one, one bit per lane.
-    /// `opposite_corners` are the corners beyond the edges from the first corner to the second,
-    /// from the second to the third and from the third to the first; no numbers where there are
-    /// none. `error` is the link's.
+    /// Returns which triangles certainly lie on a slope towards a nearer one, one bit per lane.
+    ///
+    /// `across` are the opposite corners of the neighbours beyond the edges ab, bc and ca; NaN if
+    /// there is no neighbour. `error` is the link's.
     #[inline(always)]
     pub(crate) fn descends(&self, [a, b, c]: [Vec3<L>; 3], across: [Vec3<L>; 3], error: L) -> u64 {
         let (zero, one, half) = (error.zero(), error.one(), error.lit(0.5));
@@ -111,8 +125,8 @@ impl<L: Pack> LinkLanes<L> {
         )
     }
 
-    /// How many steps from a point the way is about shortest, no number or infinite where it is as
-    /// long everywhere.
+    /// Returns the number of steps from a point to about the least D. NaN or infinite if D is
+    /// constant along the step.
     #[inline(always)]
     fn steps_to_lowest(&self, way: Vec3<L>, point: Vec3<L>, step: Vec3<L>) -> L {
         let zero = self.length.zero();
@@ -122,14 +136,13 @@ impl<L: Pack> LinkLanes<L> {
         -way.dot(step) / (step.norm_squared() - along_axis * along_axis)
     }
 
-    /// The way to a point from the nearest point of the axis, if both caps are round, else of the
-    /// link; and the length of the ways to points that touch.
+    /// Returns W of a point, and the length of W for points that touch.
     #[inline(always)]
     fn way_to(&self, point: Vec3<L>) -> (Vec3<L>, L) {
         self.way_from_start(point - self.start)
     }
 
-    /// The same to a point that is seen from the link's start.
+    /// Returns the same for a point relative to the link's start.
     #[inline(always)]
     pub(crate) fn way_from_start(&self, relative: Vec3<L>) -> (Vec3<L>, L) {
         let (zero, radius) = (self.length.zero(), self.link.radius);
@@ -141,14 +154,14 @@ impl<L: Pack> LinkLanes<L> {
         let [start, end] = self.link.flat;
         let is_beyond_disc = (start & height.lt(zero)) | (end & self.length.lt(height));
         let arm = Vec3::select(is_beyond_disc, relative.along(self.link.axis, -height), from_axis);
-        // What is over a disc or in the link has no way to go across.
+        // Over a disc or inside the link, W has no part across the axis.
         let reach = arm.norm();
         let share = radius.lt(reach).select(radius.over(reach), zero.one());
         (from_axis.along(arm, -share), zero)
     }
 }
 
-/// An edge of a triangle, as it is seen in the module's derivation.
+/// An edge of a triangle, in the terms of the module's derivation.
 struct Edge<L: Scalar> {
     /// AB.
     along: Vec3<L>,
@@ -166,22 +179,22 @@ impl<L: Pack> Edge<L> {
         (self.rise.norm_squared() * turn_squared).lt(rise * rise)
     }
 
-    /// The gap with what it errs by.
+    /// The gap with its rounding added.
     #[inline(always)]
     fn gap(&self, apart: L, gap: L) -> L {
         let length = self.along.x.abs() + self.along.y.abs() + self.along.z.abs();
         gap + self.error * (length * gap.lit(3.0) + apart * gap.lit(0.125))
     }
 
-    /// What the edge certainly keeps, with room for a neighbour that is nearer.
+    /// A lower bound on D on the edge, less the margin by which the neighbour must be nearer.
     #[inline(always)]
     fn kept(&self, apart: L, gap: L) -> L {
         apart - gap.over(apart) - self.error * gap.lit(12.0)
     }
 }
 
-/// The first where the first mask is true, the second where only the second one is, else the third.
-/// (A function, because a closure may escape inlining.)
+/// Selects `a` if the first mask is true, else `b` if the second one is, else `c`. (A function,
+/// because a closure may escape inlining.)
 #[inline(always)]
 fn choose<L: Pack>([first, second]: [L::Mask; 2], a: Vec3<L>, b: Vec3<L>, c: Vec3<L>) -> Vec3<L> {
     Vec3::select(first, a, Vec3::select(second, b, c))
@@ -223,8 +236,8 @@ mod tests {
         slopes
     }
 
-    /// A wall of 2 x 4 squares, cut in two, over a plane that tilts: level or steep, even or rough,
-    /// with slivers or not.
+    /// A wall of 2 x 4 squares, cut in two, over a tilted plane: level or steep, even or rough,
+    /// with slivers or without.
     fn wall(random: &mut Random) -> Mesh {
         let size = [0.02, 0.3, 1.0][random.below(3) as usize];
         let tilt = 10.0_f64.powi(-(random.below(7) as i32));
@@ -243,7 +256,7 @@ mod tests {
         Mesh::of(corners, squares.flat_map(|k| [[k, k + 1, k + 6], [k, k + 6, k + 5]]).collect())
     }
 
-    /// An axis that crosses an edge at a small angle, over the triangle at one end and beside it at
+    /// An axis that crosses an edge at a small angle: over the triangle at one end and beside it at
     /// the other.
     fn over_an_edge(random: &mut Random, mesh: &Mesh) -> (Vector, Vector) {
         let corners = mesh.corners(random.below(BLOCK as u32));
@@ -262,8 +275,8 @@ mod tests {
         )
     }
 
-    /// Not only is the nearest point on an edge: another triangle that has it is nearer, by more
-    /// than measurements err.
+    /// The nearest point is on an edge, and another triangle at that edge is nearer by more than
+    /// measurements err.
     #[test]
     fn a_triangle_on_a_slope_has_a_nearer_neighbour() {
         let (mut found, mut others, mut flat) = (0, 0, 0);
@@ -275,7 +288,7 @@ mod tests {
             let size = [0.02, 0.3, 1.0][random.below(3) as usize];
             let start =
                 Vector::new(0.0, 0.0, random.between(0.0, 1.0) * size) + random.point() * size;
-            // A short link near a large triangle is where the way to it turns most.
+            // W turns most for a short link near a large triangle.
             let long = [1.0, 0.1, 0.01][random.below(3) as usize];
             let way =
                 [random.point(), Vector::X, Vector::Z][random.below(3) as usize] * size * long;

@@ -1,8 +1,8 @@
-//! Lists of numbers that are appended to each other at once.
+//! Linked lists of numbers that are concatenated in constant time.
 
 use super::local_minima::NONE;
 
-/// Lists in which each number stands at most once, and in at most one of them.
+/// Disjoint lists: each number is in at most one list, and once.
 #[derive(Clone, Default)]
 pub(super) struct DisjointLists {
     /// For each list its first and its last number.
@@ -12,18 +12,18 @@ pub(super) struct DisjointLists {
 }
 
 impl DisjointLists {
-    /// Forgets all lists and numbers.
+    /// Removes all lists and numbers.
     pub(super) fn clear(&mut self) {
         self.ends.clear();
         self.next.clear();
     }
 
-    /// Begins another list, that of the next place.
+    /// Adds an empty list; lists are numbered in order.
     pub(super) fn begin(&mut self) {
         self.ends.push([NONE; 2]);
     }
 
-    /// Puts a number that is in no list in front of a list.
+    /// Prepends a number that is in no list.
     pub(super) fn put(&mut self, list: u32, number: u32) {
         let (at, number_at) = (list as usize, number as usize);
         let [head, tail] = self.ends[at];
@@ -32,7 +32,7 @@ impl DisjointLists {
         self.ends[at] = [number, if tail == NONE { number } else { tail }];
     }
 
-    /// Appends the numbers of one list to another; the one is empty then.
+    /// Appends the numbers of the list `from` to the list `to`, and empties `from`.
     pub(super) fn append(&mut self, from: u32, to: u32) {
         let [head, tail] = std::mem::replace(&mut self.ends[from as usize], [NONE; 2]);
         if head == NONE {
@@ -47,7 +47,7 @@ impl DisjointLists {
         }
     }
 
-    /// Moves the numbers of a list behind those in `out`.
+    /// Moves the numbers of a list to the end of `out`.
     pub(super) fn take(&mut self, list: u32, out: &mut Vec<u32>) {
         let [mut at, _] = std::mem::replace(&mut self.ends[list as usize], [NONE; 2]);
         while at != NONE {
@@ -56,7 +56,8 @@ impl DisjointLists {
         }
     }
 
-    /// Whether a number of a list is such. It becomes the first of the list.
+    /// Returns true if `is_such` holds for a number of a list, and moves the first such number to
+    /// the front.
     pub(super) fn find(&mut self, list: u32, is_such: impl Fn(u32) -> bool) -> bool {
         let [head, tail] = self.ends[list as usize];
         let (mut before, mut at) = (NONE, head);

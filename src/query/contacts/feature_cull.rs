@@ -1,59 +1,74 @@
 //! Where on a triangle the point nearest to a link can lie, a pack of triangles at a time, in the
 //! precision of the search.
 //!
-//! # What is certain although the nearest points are not
-//! Let B be the link, or its axis where both caps are round, and W(x) the way to a point x from the
-//! nearest point of B. Let m be the triangle's point that is nearest to B, and v = W(m): <v, x - m>
-//! >= 0 for every point x of the triangle. Let X and Y be corners with <v, X - Y> > 0: m would come
-//! nearer if X's share in it went over to Y. So X has none: m lies on the edge opposite to X. Where
-//! that is known of two corners it is the third.
+//! # Definitions
+//! - B: the axis of the link if both caps are round, otherwise the link.
+//! - W(x): the vector to a point x from the nearest point of B.
+//! - m: the point of the triangle that is nearest to B; `v = W(m)`.
+//! - z: any point of the triangle. Here it is the nearest point of the edge that is nearest to the
+//!   axis.
+//! - X, Y, Z: corners.
 //!
-//! W is firmly nonexpansive (see `descent_cull`), so for any point z of the triangle
+//! **Claim 1.** If `<v, X - Y> > 0`, the corner X has no share in m: m lies on the edge opposite to
+//! X. If two corners have no share, m is the third.
+//!
+//! **Proof.** `<v, x - m> >= 0` for every point x of the triangle. If X had a share in m, moving
+//! that share to Y would bring m nearer.
+//!
+//! **Claim 2.** v is close to W(z), however uncertain m is along two parallels:
 //!
 //! ```text
-//! |v - W(z)|^2 <= <v, m - z> - <W(z), m - z> <= -<W(z), m - z> <= gap = max over the corners Z of -<W(z), Z - z>:
+//! |v - W(z)|^2 <= gap,   gap = max over the corners Z of -<W(z), Z - z>.
 //! ```
 //!
-//! however uncertain m is along two parallels, v is known where z is about as near (the gap is that
-//! of Frank and Wolfe). Here z is the nearest point of the edge that is nearest to the axis.
+//! **Proof.** W is firmly nonexpansive (see `descent_cull`). So
+//!
+//! ```text
+//! |v - W(z)|^2 <= <v, m - z> - <W(z), m - z> <= -<W(z), m - z> <= gap.
+//! ```
+//!
+//! The gap is the duality gap of Frank and Wolfe.
 //!
 //! # Rounding
-//! Let e be the link's `error`, 64 u reach. z is a computed point of an edge, so that W(z) is
-//! within 2 e of the true one, with 36 u reach to spare (see `descent_cull`). The gap errs by 2 e
-//! |Z - z| for that and by |W| e / 4 for Z and z. With l the longest of the Z - z and t = sqrt(gap
-//! + 3 e l + |W| e / 4) + 2 e, and as the corners are each rounded by less than e / 16, <v, X - Y>
-//! > 0 if
+//! Let e be the link's `error`, `64 u reach`.
+//! - z is a computed point of an edge, so W(z) is within `2 e` of the true one, leaving
+//!   `36 u reach` (see `descent_cull`).
+//! - The gap errs by `2 e |Z - z|` for W(z), and by `|W| e / 4` for Z and z.
+//! - The corners are each rounded by less than `e / 16`.
+//!
+//! Let l be the longest of the `Z - z`, and `t = sqrt(gap + 3 e l + |W| e / 4) + 2 e`. Then
+//! `<v, X - Y> > 0` if
 //!
 //! ```text
 //! <W, X - Y> > t |X - Y| + (|W| + t) e / 8.
 //! ```
 //!
-//! What is computed here errs by 8 u |W| |X - Y| at most, which is within what W has to spare: |W|
-//! is below 3.5 reach.
+//! The computation itself errs by at most `8 u |W| |X - Y|`. That is within the `36 u reach` left,
+//! since `|W|` is below `3.5 reach`.
 
 use crate::distance::lanes::Pack;
 use crate::distance::{Axial, Face, Scalar, Vec3};
 use crate::pair::{LinkLanes, Nearer};
 
-/// Where on a pack of triangles their nearest points can lie, one bit per lane.
+/// Where the nearest points of a pack of triangles can lie, one bit per lane.
 pub(crate) struct FeatureMask {
-    /// Where each corner certainly has no share in the nearest point.
+    /// For each corner: it certainly has no share in the nearest point.
     pub away: [u64; 3],
-    /// Where each edge is certainly farther than the nearest point, by more than the rounding of
-    /// measured distances: the edges from the first corner to the second, from the second to
-    /// the third and from the third to the first.
+    /// For each of the edges ab, bc and ca: it is certainly farther than the nearest point, by more
+    /// than the rounding of measured distances.
     pub beyond: [u64; 3],
 }
 
-/// How many times the link's `error` two computed axis distances differ if the measured distances
-/// certainly differ, by more than their own rounding: once for each of the two, and as much for
-/// what double precision does, ties included.
+/// Two measured distances certainly differ, beyond their own rounding, if the computed axis
+/// distances differ by this many `error`. One `error` is for each axis distance; two are for double
+/// precision, ties included.
 pub(crate) const CERTAIN: f64 = 4.0;
 
 impl<L: Pack> LinkLanes<L> {
-    /// Which triangles, their corners in the order of [`Face::vertices`], may be nearer than the
-    /// bound whose axis limit is `limit`, and where on them the nearest points are. `error` is
-    /// the link's.
+    /// Returns which triangles may be nearer than the bound whose axis limit is `limit`, and where
+    /// their nearest points can lie.
+    ///
+    /// `corners` are in the order of [`Face::vertices`]; `error` is the link's.
     #[inline(always)]
     pub(crate) fn nearer_and_features(
         &self,
@@ -66,7 +81,7 @@ impl<L: Pack> LinkLanes<L> {
         let nearer = self.nearer(&axial, &face, limit);
         let certain = error * error.lit(CERTAIN);
         let away = self.corners_away(corners, &axial, error);
-        // Of what may touch, all is equally near.
+        // Triangles that may touch tie at distance 0.
         let is_apart = (self.link.radius + certain).lt(nearer.lower);
         let upper = nearer.upper + certain;
         let [first, second, third] = axial.edges_squared;
@@ -103,17 +118,17 @@ impl<L: Pack> LinkLanes<L> {
     }
 }
 
-/// The way W from link to triangle.
+/// The vector W(z) with its uncertainty.
 struct Slope<L: Scalar> {
     way: Vec3<L>,
-    /// t^2.
+    /// `t^2`.
     turn_squared: L,
-    /// (|W| + t) e / 8.
+    /// `(|W| + t) e / 8`.
     rest: L,
 }
 
 impl<L: Scalar> Slope<L> {
-    /// Whether `a` is certainly uphill from `b`, and `b` from `a`.
+    /// Returns whether `a` is certainly uphill from `b`, and `b` from `a`.
     #[inline(always)]
     fn of(&self, a: Vec3<L>, b: Vec3<L>) -> [L::Mask; 2] {
         let edge = a - b;
@@ -141,7 +156,7 @@ mod tests {
     use fearless_simd::Level;
     use parry3d_f64::math::{Pose, Vector};
 
-    /// The feet of a block of triangles.
+    /// The features of a block of triangles.
     fn feet_of<E: Lane>(
         level: Level,
         searched: &SearchLink<E>,
@@ -152,7 +167,7 @@ mod tests {
         feet
     }
 
-    /// Each lane's feet in the lowest bits.
+    /// The bits of each lane, moved to the lowest bit.
     #[inline(always)]
     fn fill<L: Pack>(
         token: L::Token,
@@ -175,14 +190,14 @@ mod tests {
         }
     }
 
-    /// What was certain: that the nearest point lies on an edge, on a corner, or not on an edge;
-    /// the last for each edge.
+    /// Counts what was certain: the nearest point lies on an edge, on a corner, or not on an edge
+    /// (for each of the three edges).
     #[derive(Debug, Default)]
     struct Census([usize; 5]);
 
     fn judge<E: Lane>(seed: u64, census: &mut Census) {
         let mut random = Random::new(seed);
-        // Nearly level triangles below a link, so that what is uphill hangs on small tilts.
+        // Nearly level triangles below a link, so that small tilts decide which corner is uphill.
         let tilt = 10.0_f64.powi(-(random.below(10) as i32));
         let size = [0.02, 0.3, 1.0][random.below(3) as usize];
         let corners: Vec<_> = (0..3 * BLOCK)

@@ -1,5 +1,18 @@
-//! Pieces of wall below rising distances, each grown from a minimum only as far as it must be.
-//! `prominence` says what for.
+//! Floods the wall near one link below rising distances, from its minima, until each is decided.
+//!
+//! It answers whether a minimum reaches a kept one below a distance; `prominence` states the
+//! problem.
+//!
+//! # Algorithm
+//! 1. Each reached triangle belongs to a piece (union-find). A piece has a list of *open* triangles
+//!    and a list of its kept minima.
+//! 2. If a kept minimum of the piece represents the query's minimum, it is reached.
+//! 3. Otherwise take the open triangles as a *wave*. Reach all triangles around each of their
+//!    corners that is a pass. A triangle with a corner that is no pass is *closed*.
+//! 4. If there is no open triangle left, follow those edges of the closed triangles that are passes
+//!    although both ends are none.
+//! 5. Repeat from step 2. If no step reaches anything, the minimum is not reached. The closed
+//!    triangles become open for the next, greater distance.
 
 use super::disjoint_lists::DisjointLists;
 use super::link_neighbourhood::LinkNeighbourhood;
@@ -8,31 +21,29 @@ use crate::pair::{Height, measure_points, measure_segments};
 use fearless_simd::Level;
 use parry3d_f64::math::{Real, Vector};
 
-/// What was reached of the wall near one link, in memory that is used again.
+/// The reached part of the wall near one link; memory is reused by later queries.
 #[derive(Clone, Default)]
 pub(super) struct Flood {
-    /// The triangles that were reached.
+    /// The reached triangles.
     reached: Vec<Reached>,
-    /// For each triangle of the mesh where it stands among them. What stands there of other links
-    /// does no harm.
+    /// For each triangle of the mesh its index in `reached`. Stale values are harmless, because the
+    /// triangle there is compared.
     of_triangle: Vec<u32>,
-    /// Their corners, those at one place as one.
+    /// The corners of the reached triangles, one for each place.
     corners: Vec<Corner>,
-    /// How far away they are, as far as they were measured.
+    /// The distances of the first corners; the others are not measured yet.
     heights: Vec<Height>,
-    /// For each vertex of the mesh where it stands among them.
+    /// For each vertex of the mesh its index in `corners`.
     of_vertex: Vec<u32>,
-    /// For each that was reached an earlier one of the same piece, or itself.
+    /// Union-find: for each reached triangle an earlier one of the same piece, or itself.
     joined: Vec<u32>,
-    /// For the first of each piece those from which more may be reached, and its minima that are
-    /// kept.
+    /// For the first triangle of each piece: the open triangles, and the kept minima of the piece.
     open: DisjointLists,
     kept: DisjointLists,
-    /// Those from which more is reached at the moment, and those from which no corner leads
-    /// farther.
+    /// The open triangles of the current step, and the closed triangles.
     wave: Vec<u32>,
     closed: Vec<u32>,
-    /// Edges to be measured: the triangle that names each, and which of its parts it is.
+    /// Edges to be measured: a triangle that has the edge, and the number of the part.
     edges: Vec<(u32, usize)>,
 }
 
@@ -46,12 +57,12 @@ struct Reached {
 struct Corner {
     /// The first vertex at its place.
     vertex: u32,
-    /// Whether all that is near around it was reached and is one piece.
+    /// Whether all near triangles around it were reached and are one piece.
     is_followed: bool,
 }
 
 impl Flood {
-    /// Nothing was reached yet.
+    /// Starts again for a link, without reached triangles.
     pub(super) fn begin(&mut self, around: LinkNeighbourhood) {
         let mesh = around.wall.mesh;
         self.of_triangle.resize(mesh.len(), 0);
@@ -64,14 +75,14 @@ impl Flood {
         self.kept.clear();
     }
 
-    /// Keeps a minimum, at a triangle that is near.
+    /// Adds a kept minimum at a near triangle.
     pub(super) fn keep(&mut self, around: LinkNeighbourhood, triangle: u32, minimum: u32) {
         let place = self.reach(around, triangle);
         self.kept.put(find_root(&mut self.joined, place), minimum);
     }
 
-    /// Whether one that is kept and `stands_for` a minimum at a triangle is reached from there
-    /// below a distance. That distance may not be less than for those who asked before.
+    /// Returns true if a path below the distance `below` leads from a triangle to a kept minimum
+    /// for which `stands_for` holds. `below` must not decrease from call to call.
     pub(super) fn reaches(
         &mut self,
         level: Level,
@@ -82,7 +93,7 @@ impl Flood {
     ) -> bool {
         let place = self.reach(around, triangle);
         self.closed.clear();
-        // Of the closed ones so many have edges that lead no farther.
+        // The closed triangles whose edges have been followed.
         let mut ended = 0;
         let is_reached = loop {
             let piece = find_root(&mut self.joined, place);
@@ -105,7 +116,7 @@ impl Flood {
         is_reached
     }
 
-    /// Where a triangle stands that is near: behind all that were reached, if it was not yet.
+    /// Returns the index of a near triangle in `reached`, and appends the triangle if it is new.
     fn reach(&mut self, around: LinkNeighbourhood, triangle: u32) -> u32 {
         if let Some(place) = self.place(triangle) {
             return place;
@@ -130,7 +141,7 @@ impl Flood {
         place
     }
 
-    /// Where a triangle stands that was reached.
+    /// Returns the index of a triangle in `reached`, if it was reached.
     #[inline(always)]
     fn place(&self, triangle: u32) -> Option<u32> {
         let place = self.of_triangle[triangle as usize];
@@ -138,7 +149,8 @@ impl Flood {
         (reached.triangle == triangle).then_some(place)
     }
 
-    /// Reaches all that is near around a corner or an edge of one that was reached.
+    /// Reaches all near triangles around a corner or an edge of a reached triangle, and unites
+    /// their pieces.
     fn follow(&mut self, around: LinkNeighbourhood, triangle: u32, part: usize) {
         let own = self.reach(around, triangle);
         for other in around.wall.mesh.parts().others(triangle, part) {
@@ -154,8 +166,8 @@ impl Flood {
         }
     }
 
-    /// Follows the corners of the wave that are passes below a distance. Where one is none, its
-    /// triangle is closed.
+    /// Step 3: follows the corners of the wave that are passes below a distance, and closes
+    /// triangles with a corner that is no pass.
     fn follow_corners(&mut self, level: Level, around: LinkNeighbourhood, below: Real) {
         let vertices = around.wall.mesh.vertices();
         let unknown = self.corners[self.heights.len()..].iter();
@@ -183,8 +195,8 @@ impl Flood {
         self.wave = wave;
     }
 
-    /// Follows the edges of the closed ones, from one of them on, that are passes below a distance
-    /// although their ends are none.
+    /// Step 4: follows the edges of the closed triangles, from one of them on, that are passes
+    /// below a distance although their ends are none.
     fn follow_edges(&mut self, level: Level, around: LinkNeighbourhood, below: Real, from: usize) {
         let mesh = around.wall.mesh;
         self.edges.clear();
@@ -214,7 +226,7 @@ impl Flood {
         let mut of_heights = edges.iter();
         measure_segments(level, around.link, segments, |height| {
             let Some(&(triangle, part)) = of_heights.next() else { return };
-            // Another that names it may have been followed already.
+            // Another triangle with this edge may have been followed already.
             if around.is_pass(&height, below) && self.reaches_other_piece(around, triangle, part) {
                 self.follow(around, triangle, part);
             }
@@ -222,8 +234,8 @@ impl Flood {
         self.edges = edges;
     }
 
-    /// Whether behind one that was reached, the next in the ring of an edge that is near belongs to
-    /// another piece. If it is so for none of them, all in the ring are one piece.
+    /// Returns true if the next near triangle in the ring of an edge belongs to another piece, or
+    /// is not reached. If this is false for all triangles of the ring, they are one piece.
     fn reaches_other_piece(
         &mut self,
         around: LinkNeighbourhood,
@@ -243,7 +255,7 @@ impl Flood {
     }
 }
 
-/// The ends of an edge in an order that does not depend on the triangle that names it.
+/// The ends of an edge in an order that does not depend on the triangle.
 fn in_order([from, to]: [Vector; 2]) -> [Vector; 2] {
     if from.to_array() <= to.to_array() { [from, to] } else { [to, from] }
 }

@@ -1,72 +1,88 @@
-//! The local minima of the distance between one link and a mesh.
+//! The local minima of the distance between one link and a mesh: triangles sorted by distance, and
+//! union-find.
 //!
-//! # What a local minimum is
-//! Let d(x) be the distance of a point x from the link. Two triangles are joined at a corner or an
-//! edge that both have, at the same place; the wall within a distance c is what of the mesh has
-//! d(x) <= c. As c grows, connected pieces of it appear, grow and join. Where a piece appears there
-//! is a *local minimum*: the nearest point of the piece. A piece that joins another before it has
-//! grown by more than rounding is none of its own: a flat wall along the link, whose triangles are
-//! all as near as far as rounding can tell, is one piece, and so is a triangle's least point that
-//! lies on a nearer neighbour. Of the two the one that is farther ends, so that the nearest point
-//! of each connected piece of wall within the margin is always among the minima.
+//! # Definitions
+//! - d(x): the distance of a point x from the link. d(T), d(f): the least distance of a triangle T,
+//!   and of a corner or an edge f.
+//! - Two triangles *share* f if both have it, at the same place.
+//! - The wall within c: all points x of the mesh with `d(x) <= c`. A *piece* is a connected
+//!   component of the wall within c. As c grows, pieces appear, grow and merge.
+//! - *Local minimum*: the nearest point of a piece, where the piece appears.
+//! - t: the rounding of a distance, `32 u extent` of the link and a triangle, edge or corner. It is
+//!   far above the error of a measurement. `2 t` stands for t of the triangle where a piece
+//!   appeared plus t of the f where the piece merges.
 //!
-//! Let t be the rounding of a distance, 32 u extent of link and triangle, edge or corner: far above
-//! what a measurement errs by. A piece has grown by more than rounding where d exceeds its minimum
-//! by t of the triangle at which it appeared and t of the edge or corner at which it joins another.
-//! Of the minima found
+//! If two pieces merge at most `2 t` above the farther of their minima, the farther piece *ends*:
+//! its minimum is not reported. So a flat wall along the link, whose triangles tie within rounding,
+//! is one piece. A triangle whose least point lies on a nearer neighbour starts no piece of its
+//! own. Since the nearer piece stays, the nearest point of each connected piece of wall within the
+//! margin is always reported.
 //!
-//! 1. *none is missed*: from every point x of the wall a way on the wall leads to one of them,
-//!    along which d never exceeds d(x) + 2 t;
-//! 2. *none is found twice*: a way from one to another exceeds the farther of the two by more than
-//!    2 t;
-//! 3. *each is one*: no point of a triangle that contains it is nearer, but for rounding.
+//! # Claim
+//! 1. *None is missed*: from every point x of the wall a path on the wall leads to a reported
+//!    minimum. Along it d never exceeds `d(x) + 2 t`.
+//! 2. *None is found twice*: each path from one reported minimum to another exceeds the farther of
+//!    the two by more than `2 t`.
+//! 3. *Each is a minimum*: no point of a triangle that contains it is nearer, beyond rounding.
 //!
-//! # Why it is enough to look at triangles, edges and corners
-//! A link is convex, so d is a convex function, and what of a triangle has d <= c is convex:
-//! connected. Let T's least distance be d(T), and that of a corner or an edge f be d(f). T is part
-//! of the wall within c from c = d(T) on, as one piece. Two triangles that share f are joined by it
-//! exactly from c = d(f) on: their pieces then both contain f's nearest point. So the pieces are
-//! the components of a graph with the triangles as nodes, which exist from d(T) on, and an edge for
-//! each shared f, from d(f) >= max(d(T), d(T')) on.
+//! # Reduction to a graph
+//! The link is convex, so d is a convex function. So the part of a triangle with `d <= c` is
+//! convex, and connected. T belongs to the wall within c from `c = d(T)` on, as one piece. Two
+//! triangles that share f are joined by f exactly from `c = d(f)` on, when both pieces contain the
+//! nearest point of f.
 //!
-//! The triangles are taken nearest first. T starts a piece of its own. It meets a piece at each f
-//! that an earlier, nearer triangle has. If d(f) is at most 2 t above the farther of the two
-//! pieces' minima, that one ends there (the elder rule of persistent homology). No pair is
-//! overlooked for being met too early: the minimum of a piece that could end is at least d(f) - 2 t
-//! >= d(T) - 2 t, and all that is nearer than T has been seen. That is 2. For 1, follow the pieces:
-//! from x straight to the least point of its triangle, and whenever a piece has ended, through its
-//! f to the one that it joined, whose minimum is nearer. For 3, a triangle that contains the
-//! minimum of T shares there an f with d(f) <= d(T) + 2 t, so that one of the two pieces ended, T's
-//! if the other is nearer.
+//! So the pieces are the components of a graph. Its nodes are the triangles; T exists from d(T) on.
+//! It has an edge for each shared f, from `d(f) >= max(d(T), d(T'))` on.
 //!
-//! Where T's least point lies on f, d(f) is d(T) and need not be computed; that spares nearly all
-//! of them.
+//! # Algorithm
+//! 1. **Cull** triangles that certainly hold no reported minimum (see below).
+//! 2. **Measure** the others and sort them, nearest first.
+//! 3. **Sweep.** Each triangle T in turn starts a piece. It meets a piece at each f that it shares
+//!    with an earlier, nearer triangle. If d(f) is at most `2 t` above the farther of the two
+//!    minima, the piece with that minimum ends. (This is the elder rule of persistent homology.)
+//! 4. **Report** the first triangle of each piece that has not ended.
 //!
-//! # What need not be measured
-//! Most triangles lie on a slope: their nearest point is on an edge or a corner f that another
-//! triangle has too, and that one is nearer by far more than 2 t. The search can see that, from a
-//! look at the neighbour (`descent_cull`) or from all that it found (`feature_cull`). Such a
-//! triangle D is *left out*: at d(D) it joins a piece whose minimum is nearer by far more than 2 t,
-//! so that no piece ever ends for being that of D. So is one whose nearest point is on an f that it
-//! shares with another that is left out: at d(f) it joins that one, which is in such a piece from a
-//! distance on that is no greater. For the others what is left out still counts where they join it.
-//! A piece that has an f with D, and d(f) at most 2 t above its own minimum, ends there: d(f) >=
-//! d(D), so that the minimum of D's piece is the nearer one. Which piece D is part of makes no
-//! difference, and all that are left out are taken for one, nearer than any.
+//! If the least point of T lies on f, d(f) is d(T) and is not computed. That holds for nearly all
+//! f.
 //!
-//! At an edge or a corner that is certainly farther than its nearest point a triangle joins nothing
-//! that is nearer.
+//! # Proof
+//! - Claim 2. The sweep handles f at d(T), before d(f), but misses no pair of pieces thereby. The
+//!   minimum of a piece that could end is at least `d(f) - 2 t >= d(T) - 2 t`, and every triangle
+//!   nearer than T has been processed.
+//! - Claim 1. Go from x straight to the least point of its triangle. Whenever the piece there has
+//!   ended, go through its f to the piece that it joined, whose minimum is nearer.
+//! - Claim 3. A triangle that contains the minimum of T shares with T an f there, with
+//!   `d(f) <= d(T) + 2 t`. So one of the two pieces ended: the piece of T, if the other one is
+//!   nearer.
 //!
-//! # How much work it is
-//! A triangle asks about all that have a corner or an edge with it. What it asks of them, whether
-//! any is nearer by far or left out, and which came first, can be asked of all in the ring at once:
-//! where there are very many, it is gathered once for all of them (`long_rings`). So the work grows
-//! with the triangles near a link and those around their corners, and not with the square of their
-//! number.
+//! # Culling
+//! Most triangles lie on a slope: their nearest point is on a shared edge or corner f, and the
+//! other triangle is nearer by far more than `2 t`. The search detects that from the neighbour
+//! (`descent_cull`) or from the bounds of all candidates (`feature_cull`). A triangle D is *culled*
+//! in two cases:
+//! - It lies on a slope. At d(D) it joins a piece whose minimum is nearer by far more than `2 t`,
+//!   so no piece ever ends in favour of D.
+//! - Its nearest point is on an f that it shares with a culled triangle. At d(f) it joins that
+//!   triangle, which is in such a piece from a distance on that is not greater.
 //!
-//! # Where link and wall overlap
-//! There d = 0, and a piece is a connected piece of wall inside the link: it is one contact. Of its
-//! triangles the one nearest to the axis comes first and stands for it, the lowest of equals.
+//! Culled triangles still count where other pieces meet them. If a piece shares f with D, and d(f)
+//! is at most `2 t` above the minimum of that piece, the piece ends. For `d(f) >= d(D)`, so the
+//! minimum of D's piece is the nearer one. The piece to which D belongs makes no difference, so all
+//! culled triangles count as one piece, nearer than any other ([`CULLED`]).
+//!
+//! An f that is certainly farther than the nearest point of a triangle joins that triangle to no
+//! nearer one. Such an f is skipped.
+//!
+//! # Cost
+//! A triangle queries all triangles that share a corner or an edge with it: whether one is nearer
+//! by far or culled, and which came first. The answers are the same for the whole ring, so a long
+//! ring is evaluated once (`long_rings`). So the cost grows linearly with the triangles near a link
+//! and around their corners.
+//!
+//! # Overlap
+//! Where link and wall overlap, d = 0. A piece is then a connected piece of wall inside the link,
+//! and one contact. Its representative is the triangle nearest to the axis; ties go to the lowest
+//! triangle.
 
 use super::link_neighbourhood::LinkNeighbourhood;
 use super::long_rings::{FEW, LongRings};
@@ -80,61 +96,60 @@ use fearless_simd::Level;
 use parry3d_f64::math::Real;
 use std::ops::Range;
 
-/// The place of all that are left out.
+/// The index of the piece of all culled triangles.
 pub(crate) const CULLED: u32 = 0;
 
-/// The place of no triangle.
+/// The index of no triangle.
 pub(crate) const NONE: u32 = u32::MAX;
 
-/// Links are put off while no more triangles than these are to be measured, so that packs are full
-/// and memory is small.
+/// Links are collected until more triangles than this are to be measured. More fill the packs
+/// better; fewer need less memory.
 const FLUSH_AT: usize = 1 << 12;
 
-/// Memory that is used again.
+/// State of a query; its memory is reused by later queries.
 #[derive(Clone, Default)]
 pub(crate) struct LocalMinima {
-    /// The links that something may be near to.
+    /// The links that may be near the wall.
     links: Vec<ActiveLink>,
     /// The triangles that may be within the margin, link by link.
     triangles: TriangleCandidates,
-    /// For each of them that is in question its place among those within the margin of its link,
-    /// counted from 1, or that of all that are left out.
+    /// For each candidate its index in the sorted triangles of its link, counted from 1; or
+    /// [`CULLED`] or [`NONE`].
     places: Vec<u32>,
-    /// Where the triangles of the link at hand stand.
+    /// The index of the candidates of the current link.
     index: CandidateIndex,
-    /// Those that are measured, link by link.
+    /// The triangles to measure, link by link.
     measured: Vec<u32>,
-    /// What was measured of them.
+    /// The measurement of each triangle in `measured`.
     ranked: Vec<Ranked>,
-    /// What long rings of triangles are to those that they may leave out, and to those that may
-    /// join them.
+    /// Long rings, as they concern a triangle that may be culled, and one that may be joined.
     lowest: LongRings<Lowest>,
     around: LongRings<IncidentTriangles>,
-    /// For each place an earlier one of the same piece, or itself.
+    /// Union-find: for each index an earlier one of the same piece, or itself.
     piece: Vec<u32>,
     /// The minima that were found.
     found: Vec<LinkProximity>,
     prominence: Prominence,
-    /// Whether each of them is prominent.
+    /// For each contact whether it is prominent.
     keep: Vec<bool>,
 }
 
-/// A link that something may be near to.
+/// A link that may be near the wall.
 #[derive(Clone)]
 struct ActiveLink {
     number: usize,
     link: PlacedLink,
-    /// Where its triangles begin and end.
+    /// The begin and end of its candidates.
     triangles: [CandidateEnd; 2],
     measured: Range<usize>,
 }
 
-/// What the triangles around a corner or an edge are to one whose nearest point lies there.
+/// The ring of a corner or an edge, as it concerns a triangle whose nearest point lies there.
 #[derive(Clone)]
 struct Lowest {
-    /// The most that one of those in question may keep.
+    /// The least upper bound on the distance of a candidate in the ring.
     upper: Real,
-    /// Whether one is left out.
+    /// Whether a triangle of the ring is culled.
     is_left_out: bool,
 }
 
@@ -144,7 +159,7 @@ impl Default for Lowest {
     }
 }
 
-/// The contacts of a robot, link by link, in `out`.
+/// Collects the contacts of a robot in `out`, link by link.
 pub(crate) struct ContactCollector<'a> {
     level: Level,
     wall: Wall<'a>,
@@ -152,12 +167,12 @@ pub(crate) struct ContactCollector<'a> {
     query: ContactQuery,
     minima: &'a mut LocalMinima,
     out: &'a mut Vec<Contact>,
-    /// How many triangles were measured.
+    /// The number of triangles measured.
     measured: u64,
 }
 
 impl<'a> ContactCollector<'a> {
-    /// Nothing yet.
+    /// A collector without contacts.
     pub(crate) fn new(
         level: Level,
         wall: Wall<'a>,
@@ -170,8 +185,8 @@ impl<'a> ContactCollector<'a> {
         Self { level, wall, robot, query, minima, out, measured: 0 }
     }
 
-    /// Looks at a link, behind the last one. `near` adds the triangles that may be within the
-    /// margin; some may be farther away, and none may stand there twice.
+    /// Adds the next link. `near` adds the triangles that may be within the margin, each once; some
+    /// may be farther.
     pub(crate) fn add(
         &mut self,
         number: usize,
@@ -189,13 +204,14 @@ impl<'a> ContactCollector<'a> {
         }
     }
 
-    /// The contacts of all links, nearest first for each. Returns how many triangles were measured.
+    /// Writes the contacts of all links, nearest first for each link. Returns the number of
+    /// triangles measured.
     pub(crate) fn finish(mut self) -> u64 {
         self.flush();
         self.measured
     }
 
-    /// Finds the contacts of the links that were put off.
+    /// Finds the contacts of the links collected so far.
     fn flush(&mut self) {
         let Self { level, wall, robot, query, .. } = *self;
         self.minima.find_minima(level, wall, query.margin);
@@ -230,7 +246,8 @@ impl LocalMinima {
         self.measured.clear();
     }
 
-    /// Leaves out the triangles of a link that certainly lie on a slope towards a nearer one.
+    /// Step 1: culls the candidates of a link that certainly lie on a slope towards a nearer
+    /// triangle.
     fn cull(&mut self, wall: Wall, triangles: [CandidateEnd; 2]) {
         let near = self.triangles.between(triangles);
         if near.in_question.is_empty() {
@@ -242,7 +259,7 @@ impl LocalMinima {
         self.places.resize(first + near.in_question.len(), NONE);
         let places = &mut self.places[first..];
         self.lowest.clear();
-        // What one leaves out may leave out another: most of these are met the second time.
+        // A culled triangle may cull another; the second round finds most such cases.
         for _ in 0..2 {
             for (place, known) in near.in_question.iter().enumerate() {
                 let Some(foot) = known.nearest_feature().filter(|_| places[place] != CULLED) else {
@@ -268,7 +285,8 @@ impl LocalMinima {
                         }
                     };
                     let lowest = self.lowest.around(shared, near, &self.index, [place, foot], add);
-                    // It is not below itself.
+                    // The ring includes the triangle itself, but its `upper` is not below its
+                    // `lower`.
                     is_left_out = lowest.is_left_out || lowest.upper < known.lower;
                 }
                 if is_left_out {
@@ -281,7 +299,7 @@ impl LocalMinima {
         self.measured.extend(others.map(|(known, _)| known.triangle));
     }
 
-    /// Finds the local minima of all links, nearest first for each.
+    /// Steps 2 to 4: finds the local minima of all links, nearest first for each link.
     fn find_minima(&mut self, level: Level, wall: Wall, margin: Real) {
         self.ranked.clear();
         let of_link = |at: &ActiveLink| self.measured[at.measured.clone()].iter();
@@ -311,7 +329,7 @@ impl LocalMinima {
         }
     }
 
-    /// Leaves out the contacts, from `first` on, that are not prominent.
+    /// Drops the contacts, from `first` on, that are not prominent.
     fn keep_prominent(
         &mut self,
         level: Level,
@@ -345,9 +363,9 @@ impl LocalMinima {
     }
 }
 
-/// Those within the margin, nearest first.
+/// Sorts the triangles, nearest first, and returns those within the margin.
 fn nearest_first(ranked: &mut [Ranked], margin: Real) -> &[Ranked] {
-    // Those beyond it come last: their rank is their distance.
+    // Triangles beyond the margin come last, because their rank is their distance.
     ranked.sort_unstable_by(|a, b| {
         a.rank.total_cmp(&b.rank).then(a.nearest.triangle.cmp(&b.nearest.triangle))
     });
@@ -355,7 +373,7 @@ fn nearest_first(ranked: &mut [Ranked], margin: Real) -> &[Ranked] {
     &ranked[..count]
 }
 
-/// The contacts of a robot, for an engine without a search of its own for them.
+/// The contacts of a robot, for an engine without its own search for contacts.
 #[cfg(feature = "gpu")]
 pub(crate) fn contacts_by_all_triangles(
     wall: Wall,

@@ -1,22 +1,21 @@
-//! What is known of the long rings of triangles around corners and edges.
+//! Results for long rings of triangles around corners and edges, computed once per ring.
 //!
-//! A triangle asks about all others around its corners and edges. Where these are many, as in a
-//! fan, or where all invalid vertices were put at the origin, each of them would ask about as many.
-//! So what can be asked about a long ring is gathered by one walk around it, near each link, and
-//! kept for all that are in it.
+//! A triangle queries all others around its corners and edges. In a fan, or if all invalid vertices
+//! were put at the origin, a ring is long, and the cost would be quadratic. So one walk around a
+//! long ring, near each link, collects the result for all of its triangles.
 
 use super::triangle_candidates::{CandidateIndex, LinkCandidates};
 use crate::mesh::{PARTS, SharedParts};
 
-/// So many others are asked one by one. Around the corners of a mesh that was made with care there
-/// are fewer.
+/// Triangles of a ring that are queried one by one. A carefully made mesh has fewer around its
+/// corners.
 pub(crate) const FEW: usize = 24;
 
-/// What is known of the long rings near one link.
+/// The results for the long rings near one link.
 #[derive(Clone)]
 pub(crate) struct LongRings<K> {
-    /// For each part of each triangle in question the number of its ring, counted from 1, or 0 if
-    /// nothing is known of it. Empty as long as nothing is known of any.
+    /// For each part of each candidate the number of its ring, counted from 1; 0 without a result.
+    /// Empty before the first result.
     of_part: Vec<u32>,
     known: Vec<K>,
 }
@@ -28,17 +27,17 @@ impl<K> Default for LongRings<K> {
 }
 
 impl<K: Default> LongRings<K> {
-    /// Forgets all of them: the next will be those near another link.
+    /// Removes all results, before the next link.
     pub(crate) fn clear(&mut self) {
         self.of_part.clear();
         self.known.clear();
     }
 
-    /// What is known of the ring around a part of a triangle in question, the triangle itself
+    /// Returns the result for the ring around a part of a candidate; the candidate itself is
     /// included.
     ///
-    /// At the first question `add` gets every triangle of the ring, with its place among those in
-    /// question.
+    /// The first call for a ring computes it: `add` receives every triangle of the ring with its
+    /// index among the candidates.
     pub(crate) fn around(
         &mut self,
         shared: &SharedParts,
@@ -63,7 +62,7 @@ impl<K: Default> LongRings<K> {
         &self.known[ring]
     }
 
-    /// The same to be changed, for all rings of a triangle in question of which something is known.
+    /// Calls `change` for the results of all rings of a candidate.
     pub(crate) fn all_around(&mut self, place: usize, mut change: impl FnMut(&mut K)) {
         if self.known.is_empty() {
             return;

@@ -1,4 +1,4 @@
-//! Every place where a link is near the mesh: the local minima of the distance.
+//! All places where a link is near the mesh: the local minima of the distance.
 
 mod candidate_gather;
 mod descent_cull;

@@ -1,22 +1,21 @@
-//! For each edge of each triangle the corner of a neighbour beyond it, as the leaves stand in
-//! memory.
+//! For each edge of each triangle the opposite corner of a neighbour, in the memory layout of the
+//! leaves.
 
 use crate::distance::lanes::Lane;
 use crate::mesh::{BLOCK, Mesh, first_of_face, place_points, rotated};
 use crate::search::hierarchy::WideBvh;
 use crate::threads::Lazy;
 
-/// The corners beyond the edges of a leaf's triangles.
+/// The opposite corners beyond the edges of a leaf's triangles.
 #[derive(Clone)]
 pub(crate) struct LeafCorners<E> {
-    /// In rows and an order like those of the triangles' own corners; no numbers where an edge has
-    /// no second triangle.
+    /// Rows in the layout of the triangles' own corners; NaN if an edge has no second triangle.
     pub rows: [E; 9 * BLOCK],
-    /// Which of its own corners each triangle has first there, two bits each.
+    /// The corner that each triangle has first in its leaf, two bits per triangle.
     firsts: u32,
 }
 
-/// The corners beyond the edges of all triangles, found when a leaf is first asked for.
+/// The opposite corners of all triangles. Each leaf is filled on first use.
 #[derive(Clone)]
 pub(crate) struct OppositeCorners<E>(Vec<Lazy<LeafCorners<E>>>);
 
@@ -25,19 +24,19 @@ impl<E: Lane> OppositeCorners<E> {
         Self(tree.leaves.iter().map(|_| Lazy::new()).collect())
     }
 
-    /// Forgets where the corners are.
+    /// Empties all leaves, after the vertices moved.
     pub(crate) fn forget(&mut self) {
         self.0.iter_mut().for_each(|leaf| *leaf = Lazy::new());
     }
 
-    /// Finds those of all leaves.
+    /// Fills all leaves.
     pub(crate) fn prepare(&self, tree: &WideBvh<E>, mesh: &Mesh) {
         for leaf in 0..self.0.len() as u32 {
             self.of(leaf, tree, mesh);
         }
     }
 
-    /// Those of a leaf, in the frame of the search.
+    /// Returns the opposite corners of a leaf, in the frame of the search.
     pub(crate) fn of(&self, leaf: u32, tree: &WideBvh<E>, mesh: &Mesh) -> &LeafCorners<E> {
         self.0[leaf as usize].get_or_build(|| {
             let mut corners = LeafCorners { rows: [E::round(f64::NAN); 9 * BLOCK], firsts: 0 };
@@ -53,7 +52,7 @@ impl<E: Lane> OppositeCorners<E> {
 }
 
 impl<E> LeafCorners<E> {
-    /// Which of its corners the triangle in a lane has first.
+    /// Returns the corner that the triangle in a lane has first.
     #[inline(always)]
     pub(crate) fn first(&self, lane: usize) -> usize {
         (self.firsts >> (2 * lane) & 3) as usize

@@ -1,5 +1,5 @@
-//! The contacts of a robot by search: those of every link whose surroundings hold a part of the
-//! wall.
+//! The contacts of a robot by search: the link tree is pruned by capsules, then each link is
+//! searched.
 
 use super::candidate_gather::gather;
 use super::local_minima::{ContactCollector, LocalMinima};
@@ -14,15 +14,15 @@ use crate::search::hierarchy::{MeshSearch, Searched};
 use crate::threads::Lazy;
 use parry3d_f64::math::Real;
 
-/// A search that sees which triangles lie on a slope towards a neighbour.
+/// A search that culls triangles on a slope towards a neighbour.
 pub(crate) struct ContactSearch<'a> {
     pub search: MeshSearch<'a>,
-    /// Begun at the first question.
+    /// Built on first use.
     pub across: &'a Lazy<OppositeCorners<f32>>,
 }
 
 impl ContactSearch<'_> {
-    /// The contacts of the robot, link by link.
+    /// Writes the contacts of the robot to `out`, link by link.
     pub(crate) fn within(
         &mut self,
         robot: PlacedRobot,
@@ -58,7 +58,7 @@ impl ContactSearch<'_> {
                 let across = self.across.get_or_build(|| OppositeCorners::new(hierarchy.single()));
                 gather(self.search.single(), &searched, bound, Some(across), found);
             }
-            // Such links are rare: they do without the corners beyond the edges.
+            // Links that need double precision are rare, so they have no table of opposite corners.
             Searched::Double(searched) => {
                 gather(self.search.double(), &searched, bound, None, found)
             }

@@ -1,5 +1,5 @@
-//! What a search knows of the triangles that may be within a margin of a link, before they are
-//! measured.
+//! The triangles that may be within a margin of a link, with the bounds of the search, before they
+//! are measured.
 
 use crate::mesh::{BLOCK, PART_WITHOUT};
 use parry3d_f64::math::Real;
@@ -7,13 +7,13 @@ use parry3d_f64::math::Real;
 /// The triangles that may be within a margin of the links of a robot, link by link.
 #[derive(Clone, Default)]
 pub(crate) struct TriangleCandidates {
-    /// Those that may hold a local minimum.
+    /// Candidates: triangles that may hold a local minimum.
     pub in_question: Vec<TriangleCandidate>,
-    /// Those that certainly lie on a slope.
+    /// Triangles that certainly lie on a slope.
     slopes: Vec<CulledLeaf>,
 }
 
-/// Where the triangles of one link end.
+/// The end of the triangles of one link.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct CandidateEnd {
     pub in_question: usize,
@@ -31,32 +31,32 @@ pub(crate) struct LinkCandidates<'a> {
 #[derive(Clone, Copy)]
 pub(crate) struct TriangleCandidate {
     pub triangle: u32,
-    /// Another triangle whose `upper` is below this is certainly nearer, by more than the rounding
-    /// of both distances.
+    /// A lower bound. A triangle whose `upper` is below it is certainly nearer, by more than the
+    /// rounding of both distances.
     pub lower: Real,
     pub upper: Real,
     /// One bit for each corner that certainly has no share in the nearest point.
     pub away: u8,
-    /// One bit for each edge, from the one between the first corners on, that is certainly farther
-    /// than the nearest point, by more than the rounding of both distances.
+    /// One bit for each edge that is certainly farther than the nearest point, by more than the
+    /// rounding of both distances. The lowest bit is the edge from the first corner to the second.
     pub beyond: u8,
 }
 
-/// Those of a leaf that lie on a slope.
+/// The triangles of a leaf that lie on a slope.
 #[derive(Clone, Copy)]
 struct CulledLeaf {
     leaf: u32,
-    /// One bit for each that does.
+    /// One bit per triangle.
     lanes: u64,
 }
 
-/// Where the triangles of one link stand. What is written there of other links does no harm: it is
-/// compared with what stands at the place.
+/// The index of each triangle of one link. Stale values of other links are harmless, because the
+/// triangle there is compared.
 #[derive(Clone, Default)]
 pub(crate) struct CandidateIndex {
-    /// For each triangle of the mesh where it stands among those in question.
+    /// For each triangle of the mesh its index among the candidates.
     of_triangle: Vec<u32>,
-    /// For each leaf of the search where it stands among the slopes.
+    /// For each leaf of the search its index among the slopes.
     of_leaf: Vec<u32>,
 }
 
@@ -66,24 +66,24 @@ impl TriangleCandidates {
         self.slopes.clear();
     }
 
-    /// Adds triangles of which nothing is known.
+    /// Adds triangles without bounds.
     pub(crate) fn add_unclassified(&mut self, triangles: impl Iterator<Item = u32>) {
         self.in_question.extend(triangles.map(TriangleCandidate::unclassified));
     }
 
-    /// Adds those of a leaf that certainly lie on a slope, one bit for each.
+    /// Adds the triangles of a leaf that certainly lie on a slope, one bit per triangle.
     pub(crate) fn add_culled(&mut self, leaf: u32, lanes: u64) {
         if lanes != 0 {
             self.slopes.push(CulledLeaf { leaf, lanes });
         }
     }
 
-    /// Where those of the next link will stand.
+    /// Returns the current end, where the triangles of the next link begin.
     pub(crate) fn end(&self) -> CandidateEnd {
         CandidateEnd { in_question: self.in_question.len(), slopes: self.slopes.len() }
     }
 
-    /// Those of one link.
+    /// Returns the triangles of one link.
     pub(crate) fn between(&self, [from, to]: [CandidateEnd; 2]) -> LinkCandidates<'_> {
         LinkCandidates {
             in_question: &self.in_question[from.in_question..to.in_question],
@@ -93,15 +93,15 @@ impl TriangleCandidates {
 }
 
 impl LinkCandidates<'_> {
-    /// Where a triangle stands among those in question, if it does.
+    /// Returns the index of a triangle among the candidates, if it is one.
     #[inline(always)]
     pub(crate) fn index(&self, index: &CandidateIndex, triangle: u32) -> Option<usize> {
         let index = index.of_triangle[triangle as usize] as usize;
         self.in_question.get(index).filter(|known| known.triangle == triangle).map(|_| index)
     }
 
-    /// Whether a triangle certainly lies on a slope. `place_of` says where each triangle of the
-    /// mesh stands in the leaves of the search; where there are none, nothing does.
+    /// Returns true if a triangle certainly lies on a slope. `place_of` gives the place of each
+    /// triangle of the mesh in the leaves of the search; it is empty without such a search.
     #[inline(always)]
     pub(crate) fn is_culled(
         &self,
@@ -118,7 +118,7 @@ impl LinkCandidates<'_> {
 }
 
 impl CandidateIndex {
-    /// Writes down where the triangles of a link stand, in a mesh of so many.
+    /// Indexes the triangles of a link, in a mesh of `triangles` triangles.
     pub(crate) fn number(&mut self, near: LinkCandidates, triangles: usize) {
         self.of_triangle.resize(triangles, 0);
         for (index, known) in (0..).zip(near.in_question) {
@@ -127,7 +127,7 @@ impl CandidateIndex {
         for (index, slopes) in (0..).zip(near.slopes) {
             let leaf = slopes.leaf as usize;
             if leaf >= self.of_leaf.len() {
-                // No leaf has no triangle.
+                // Every leaf has a triangle.
                 self.of_leaf.resize(triangles, 0);
             }
             self.of_leaf[leaf] = index;
@@ -136,19 +136,19 @@ impl CandidateIndex {
 }
 
 impl TriangleCandidate {
-    /// A triangle of which nothing is known.
+    /// A triangle without bounds.
     fn unclassified(triangle: u32) -> Self {
         let everywhere = Real::INFINITY;
         Self { triangle, lower: -everywhere, upper: everywhere, away: 0, beyond: 0 }
     }
 
-    /// The corner or edge on which the nearest point certainly lies, if there is one.
+    /// Returns the corner or edge on which the nearest point certainly lies, if one is known.
     pub(crate) fn nearest_feature(&self) -> Option<usize> {
         PART_WITHOUT[self.away as usize].map(usize::from)
     }
 
-    /// Whether a corner or an edge is certainly farther than the nearest point. A corner is where
-    /// one of its edges is.
+    /// Returns true if a corner or an edge is certainly farther than the nearest point. A corner
+    /// is, if one of its edges is.
     pub(crate) fn is_beyond(&self, part: usize) -> bool {
         let edge = |number: usize| self.beyond >> (number % 3) & 1 == 1;
         if part < 3 { edge(part) || edge(part + 2) } else { edge(part) }

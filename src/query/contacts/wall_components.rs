@@ -1,4 +1,5 @@
-//! The pieces of wall near one link, as they grow and join; `local_minima` derives what they are.
+//! The sweep over the triangles near one link: pieces of wall appear and merge. `local_minima` has
+//! the derivation.
 
 use super::local_minima::{CULLED, NONE};
 use super::long_rings::{FEW, LongRings};
@@ -8,7 +9,7 @@ use crate::mesh::{PARTS, ends_of, find_root};
 use crate::pair::{Nearest, PlacedLink, Ranked, rounding};
 use parry3d_f64::math::{Real, Vector};
 
-/// The pieces of wall within the margin of one link, as they grow and join.
+/// The pieces of wall within the margin of one link.
 pub(crate) struct WallComponents<'a> {
     pub link: &'a PlacedLink,
     pub wall: Wall<'a>,
@@ -17,13 +18,14 @@ pub(crate) struct WallComponents<'a> {
     pub index: &'a CandidateIndex,
     /// The triangles within the margin, nearest first.
     pub ranked: &'a [Ranked],
-    /// For each place an earlier one of the same piece, or itself.
+    /// Union-find: for each index an earlier one of the same piece, or itself.
     pub piece: &'a mut Vec<u32>,
     pub around: &'a mut LongRings<IncidentTriangles>,
 }
 
 impl WallComponents<'_> {
-    /// The triangles at which the pieces appeared that are left, nearest first.
+    /// Runs the sweep. Returns the first triangles of the pieces that have not ended, nearest
+    /// first.
     pub(crate) fn first_triangles(&mut self) -> impl Iterator<Item = &Nearest> {
         self.piece.clear();
         self.piece.push(CULLED);
@@ -34,14 +36,14 @@ impl WallComponents<'_> {
         places.filter(|((_, piece), place)| *piece == place).map(|((ranked, _), _)| &ranked.nearest)
     }
 
-    /// Joins a triangle with the pieces that nearer ones have made.
+    /// Merges a triangle with the pieces of nearer triangles (step 3).
     fn join(&mut self, place: u32) {
         self.piece.push(place);
         let Ranked { nearest, rounding: own_rounding, .. } = self.ranked[place as usize - 1];
         let Some(index) = self.near.index(self.index, nearest.triangle) else { return };
         let (known, shared) = (self.near.in_question[index], self.wall.mesh.parts());
         let corners = self.wall.mesh.corners(nearest.triangle);
-        // Whom it meets at its corners and edges, and whether at its least point.
+        // Which piece it meets at which part, and whether its least point is on that part.
         let (mut met, mut count) = ([(0, CULLED, false); 2 * PARTS], 0);
         for part in (0..PARTS).filter(|&part| !known.is_beyond(part)) {
             let add = |around: &mut IncidentTriangles, other: u32, index: Option<usize>| match index
@@ -59,7 +61,8 @@ impl WallComponents<'_> {
             if others.next().is_some() {
                 around = *self.around.around(shared, self.near, self.index, [index, part], add);
             }
-            // An edge or a corner of what is certainly farther is itself farther.
+            // If a culled triangle is certainly farther than this one, so is each part that they
+            // share.
             let meets_left_out = around.slopes || around.left_out_from < known.upper;
             let first = around.first;
             let others = [meets_left_out.then_some(CULLED), (first < place).then_some(first)];
@@ -72,7 +75,7 @@ impl WallComponents<'_> {
                 count += 1;
             }
         }
-        // Those that hold its least point come first: they are met at its own distance.
+        // Parts with the least point come first: they are met at the triangle's own distance.
         for met_there in [true, false] {
             for &(part, with, holds_least_point) in &met[..count] {
                 if holds_least_point != met_there {
@@ -88,28 +91,30 @@ impl WallComponents<'_> {
                 if nearest.distance <= farther
                     && (met_there || self.link.comes_within(farther, from, to))
                 {
-                    // The piece appeared where the nearer one did.
+                    // The merged piece appeared with the nearer of the two.
                     self.piece[mine.max(other) as usize] = mine.min(other);
                 }
             }
         }
     }
 
-    /// How far the wall can rise from where a piece appeared before it has grown.
+    /// Returns the minimum of a piece plus its rounding; a piece that merges below this (and the
+    /// rounding of the pass) ends.
     fn grown(&self, place: u32) -> Real {
         let ranked = (place as usize).checked_sub(1).map(|place| &self.ranked[place]);
         ranked.map_or(Real::NEG_INFINITY, |ranked| ranked.nearest.distance + ranked.rounding)
     }
 }
 
-/// What the triangles around a corner or an edge are to one that may join them.
+/// The ring of a corner or an edge, as it concerns a triangle that may be joined there.
 #[derive(Clone, Copy)]
 pub(crate) struct IncidentTriangles {
-    /// The least that one of those that are left out may keep.
+    /// The least lower bound on the distance of a culled candidate in the ring.
     left_out_from: Real,
-    /// Whether one lies on a slope and is in no question.
+    /// Whether a triangle of the ring was culled by the search as lying on a slope.
     slopes: bool,
-    /// The first place. (One that asks where it is the first itself joins none.)
+    /// The least index of a measured triangle. If it is the querying triangle's own, it joins none
+    /// there.
     first: u32,
 }
 
@@ -120,7 +125,7 @@ impl Default for IncidentTriangles {
 }
 
 impl IncidentTriangles {
-    /// Adds a triangle that is in question.
+    /// Adds a candidate.
     #[inline(always)]
     fn add(&mut self, place: u32, lower: Real) {
         if place == CULLED {
@@ -131,11 +136,11 @@ impl IncidentTriangles {
     }
 }
 
-/// Whether a point lies on the segment between two, as far as rounding can tell.
+/// Returns true if a point lies on a segment, within rounding.
 fn is_on(point: Vector, [from, to]: [Vector; 2], rounding: Real) -> bool {
     let (edge, relative) = (to - from, point - from);
     let share = relative.dot(edge) / edge.length_squared();
-    // 0 / 0 where the segment is a point: the comparison turns it into 0.
+    // For a segment without length this is 0 / 0; the comparison turns NaN into 0.
     let share = if share > 0.0 { share.min(1.0) } else { 0.0 };
     (relative - edge * share).abs().max_element() <= 0.5 * rounding
 }

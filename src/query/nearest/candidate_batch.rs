@@ -1,5 +1,6 @@
-//! Links of which each has few triangles in question: these are measured together, several links in
-//! a pack.
+//! Measures links with few candidate triangles together, several links in a pack.
+//!
+//! A link with many candidates fills packs of its own and is answered at once.
 
 use crate::answer::LinkProximity;
 use crate::mesh::Mesh;
@@ -7,16 +8,16 @@ use crate::pair::{Best, PlacedLink, rank_each};
 use fearless_simd::Level;
 use parry3d_f64::math::Real;
 
-/// Memory that is used again.
+/// The links, their candidates and results; reused by later queries.
 #[derive(Clone, Default)]
 pub(crate) struct CandidateBatch {
     /// The links, with their numbers.
     links: Vec<(usize, PlacedLink)>,
-    /// What was measured for each of them.
+    /// The best result of each link.
     nearest: Vec<Best>,
-    /// The triangles in question, link by link.
+    /// The candidate triangles, link by link.
     triangles: Vec<u32>,
-    /// For each of them where its link stands.
+    /// For each candidate the index of its link in `links`.
     owners: Vec<usize>,
 }
 
@@ -28,8 +29,8 @@ impl CandidateBatch {
         self.owners.clear();
     }
 
-    /// What `search` finds for a link. Where it adds triangles in question instead, the first of
-    /// these; they are measured later.
+    /// Runs `search` for a link. Returns its answer, or the first of the candidates that it adds;
+    /// the link is then answered by `answer`.
     pub(crate) fn add(
         &mut self,
         number: usize,
@@ -45,8 +46,8 @@ impl CandidateBatch {
         })
     }
 
-    /// Measures all that are in question and writes the answers of their links. Returns how many
-    /// were measured.
+    /// Measures all candidates and writes the answers of their links to `out`. Returns the number
+    /// of candidates measured.
     pub(crate) fn answer(&mut self, level: Level, mesh: &Mesh, out: &mut [LinkProximity]) -> u64 {
         let Self { links, nearest, triangles, owners } = self;
         let pairs =
@@ -73,8 +74,8 @@ mod tests {
     use continuum_testing::Random;
     use parry3d_f64::math::Pose;
 
-    /// Each link's answer has the bits of its triangles measured alone, whatever shares the pack,
-    /// on each instruction set.
+    /// A shared pack gives each link the same bits as its triangles measured alone, on each
+    /// instruction set.
     #[test]
     fn links_that_share_a_pack_are_answered_as_if_alone() {
         let bits = |answer: &LinkProximity| {
@@ -86,7 +87,7 @@ mod tests {
         for seed in 0..400 {
             let random = &mut Random::new(seed);
             let corners: Vec<_> = (0..60).map(|_| (random.point() * 4.0).round() / 4.0).collect();
-            // Each triangle stands there twice.
+            // Each triangle is in the mesh twice.
             let triangles = (0..40).map(|k| [k % 20 * 3, k % 20 * 3 + 1, k % 20 * 3 + 2]).collect();
             let mesh = Mesh::of(corners, triangles);
             let mut links = Vec::new();

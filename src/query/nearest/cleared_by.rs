@@ -1,10 +1,10 @@
-//! What of a robot is known to keep away from the mesh.
+//! Which part of a robot a search has proven clear of the mesh.
 
-/// What is known to keep away from the mesh.
+/// The shape that is proven farther than the margin from the mesh.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum ClearedBy {
     /// Every link by itself.
     Links,
-    /// Even the capsule around all links.
+    /// The capsule around all links.
     Capsule,
 }

@@ -1,8 +1,15 @@
-//! Whether a robot keeps a margin.
+//! Decides whether a robot keeps a margin.
 //!
-//! What the last query proved may still hold for a robot that has moved a little. If not, a search
-//! for a little more than the margin helps the next queries too, where robots move little. A robot
-//! that is new is asked about first where it seems to pass through the wall.
+//! # Algorithm
+//! 1. **Reuse.** If every lower bound of the last query, less the displacement since, exceeds the
+//!    margin: true.
+//! 2. **Look ahead.** If it pays, search with `margin + look_ahead`. A robot that clears that
+//!    radius yields lower bounds for later queries.
+//! 3. **Search** with the margin itself. The first pair is the link that probably passes through
+//!    the wall, if the side grid finds one.
+//!
+//! Each search runs in single precision, or in double precision if single does not resolve the
+//! robot, or else link by link. The answer is the same.
 
 use super::cleared_by::ClearedBy;
 use super::dual_traversal::{DualTraversal, PairStack};
@@ -12,7 +19,7 @@ use crate::pair::{Best, PlacedRobot};
 use crate::search::hierarchy::{MeshSearch, Scratch};
 use parry3d_f64::math::Real;
 
-/// What a query about a margin leaves for the next.
+/// State that warm-starts the next query.
 #[derive(Clone, Default)]
 pub(crate) struct ClearsMemory {
     single: PairStack<f32>,
@@ -27,23 +34,23 @@ impl ClearsMemory {
         self.forget_distances();
     }
 
-    /// Forgets what only holds as long as the mesh is still.
+    /// Forgets the lower bounds, which hold only while the mesh is at rest.
     pub(crate) fn forget_distances(&mut self) {
         self.lower_bounds.forget();
     }
 }
 
-/// A search for anything at most a margin from a robot.
+/// A search for any triangle at most a margin from a robot.
 pub(crate) struct ClearsSearch<'a> {
     pub search: MeshSearch<'a>,
-    /// They tell where to look first for a robot that passes through the wall.
+    /// Predicts which link passes through the wall, so that this link is searched first.
     pub sides: Option<&'a SideGrid>,
     pub robot: PlacedRobot<'a>,
     pub memory: &'a mut ClearsMemory,
 }
 
 impl ClearsSearch<'_> {
-    /// Whether every link keeps more than the margin away.
+    /// Returns true if every link is farther than `margin` from the mesh.
     pub(crate) fn clears(&mut self, margin: Real) -> bool {
         let (robot, reach) = (self.robot, self.search.hierarchy.reach);
         if self.memory.lower_bounds.all_exceed(robot, margin) {
@@ -61,7 +68,8 @@ impl ClearsSearch<'_> {
         self.cleared_by(margin).is_some()
     }
 
-    /// What of the robot is known to keep more than `margin` away. None where some link does not.
+    /// Returns which part of the robot is proven farther than `margin` from the mesh. None if some
+    /// link is not.
     pub(crate) fn cleared_by(&mut self, margin: Real) -> Option<ClearedBy> {
         let robot = self.robot;
         let MeshSearch { level, hierarchy, scratch, .. } = &mut self.search;

@@ -1,11 +1,19 @@
-//! Whether a robot keeps away from the mesh: its links and the triangles are parted together.
+//! Decides whether a robot clears a margin: a dual traversal of the link tree and the mesh.
 //!
-//! A pair is a run of links, or one link, and a part of the mesh. A pair whose capsule and bound
-//! keep apart is done with. Of any other the larger is parted, and each half meets the other. So
-//! what a run of links is far from is never looked at again for one of its links. The first link
-//! and triangle that are near enough for certain end the search: those whose distance in the
-//! precision of the search is below the margin by more than rounding can do. Those of which it
-//! cannot decide are measured in double precision.
+//! # Definitions
+//! - *run*: a node of the link tree, with the capsule around its links; a leaf is one link.
+//! - *pair*: a run and a child of the mesh hierarchy.
+//! - `limit`, `certain`: an axis distance below `limit` is possibly within the margin; one below
+//!   `certain` is within it beyond rounding.
+//!
+//! # Algorithm
+//! 1. Pop a pair. If the run is larger than the child, replace the pair by the two halves of the
+//!    run. So a run that is far from a part of the mesh prunes all its links at once.
+//! 2. Otherwise visit the node: push a pair for each of its children that may be within `limit`.
+//! 3. Otherwise visit the leaf. A run of several links is split if a triangle may be within
+//!    `limit`. A single link ends the search if a triangle is within `certain`. A triangle between
+//!    `certain` and `limit` becomes *doubtful*.
+//! 4. At the end, measure the doubtful pairs in double precision.
 
 use crate::answer::Work;
 use crate::distance::lanes::{Lane, Pack};
@@ -17,31 +25,33 @@ use crate::search::hierarchy::{Child, WIDTH, WideBvh};
 use fearless_simd::Level;
 use parry3d_f64::math::Real;
 
-/// A run is parted before it meets a node this many times smaller, or a leaf. Measured: a run that
-/// is parted late meets more of the mesh, one that is parted early meets it more often.
+/// A run is split before it meets a node this many times smaller, or such a leaf. Measured: a run
+/// that is split late meets more of the mesh; a run that is split early meets it more often.
 const NODE_SHARE: f64 = 1.0;
 const LEAF_SHARE: f64 = 3.0;
 
 /// The root of the hierarchy.
 const WHOLE_MESH: u32 = Child::Node(0).pack();
 
-/// Memory that is used again.
+/// State of a search, reused by later queries.
 #[derive(Clone, Default)]
 pub(crate) struct PairStack<E> {
-    /// The nodes of the link tree in the frame of the search, those that this query has placed.
+    /// The nodes of the link tree in the frame of the search, placed on first use by a query.
     runs: Vec<PlacedNode<E>>,
     query: u64,
     waiting: Vec<NodePair<E>>,
-    /// The links and triangles that the precision of the search cannot decide.
+    /// The pairs of link and triangle that the precision of the search cannot decide.
     doubtful: Vec<(u32, u32)>,
-    /// The link and the leaf of the last triangle that was near enough.
+    /// The run and the leaf of the last triangle that was within the margin; a later query tests
+    /// this pair first.
     last: Option<(u32, u32)>,
-    /// Whether this query had to look at less than all links together.
+    /// True once the root of the link tree is split; true at once if it is a single link.
     has_parted_all: bool,
 }
 
 impl<E> PairStack<E> {
-    /// Whether, if all links keep away, the capsule around them is known to do so too.
+    /// Returns true if a search without a hit also proves that the capsule around all links is
+    /// clear.
     pub(crate) fn clears_capsule(&self) -> bool {
         !self.has_parted_all
     }
@@ -57,51 +67,51 @@ struct PlacedNode<E> {
     /// The query that placed it.
     query: u64,
     searched: SearchLink<E>,
-    /// How long it is, tips included.
+    /// The length, tips included.
     size: E,
-    /// What an axis distance must be below to be possibly within the margin.
+    /// An axis distance below this is possibly within the margin.
     limit: E,
-    /// What it must be below to be so for certain.
+    /// An axis distance below this is within the margin beyond rounding.
     certain: E,
 }
 
-/// A run of links and a part of the mesh that may be near each other.
+/// A run and a part of the mesh that may be within the margin of each other.
 #[derive(Clone, Copy)]
 struct NodePair<E> {
-    /// The run's place in the link tree.
+    /// The run's index in the link tree.
     run: u32,
     child: u32,
-    /// How large the part of the mesh is.
+    /// The largest side of the box around the part of the mesh.
     size: E,
-    /// How far its centre is from the run's axis, squared.
+    /// The squared distance of the centre of that box from the run's axis.
     apart: E,
 }
 
-/// What the precision of the search can decide.
+/// The outcome in the precision of the search.
 enum SearchOutcome {
-    /// Nothing is within the margin, unless it is doubtful.
+    /// Only doubtful pairs may be within the margin.
     Doubtful,
     /// Some triangle is within the margin.
     Near,
-    /// It does not resolve the robot.
+    /// The precision does not resolve the robot.
     Unresolved,
 }
 
-/// A search for anything at most `margin` from a robot.
+/// A search for any triangle at most `margin` from a robot.
 pub(crate) struct DualTraversal<'a, E> {
     pub level: Level,
     pub tree: &'a WideBvh<E>,
     pub robot: PlacedRobot<'a>,
     pub margin: Real,
-    /// The link that is likely to meet the mesh, if one is.
+    /// The link that probably meets the mesh, if one does; its pair is searched early.
     pub first: Option<usize>,
     pub pairs: &'a mut PairStack<E>,
     pub work: &'a mut Work,
 }
 
 impl<E: Lane> DualTraversal<'_, E> {
-    /// Whether every link keeps more than the margin away; None where the precision of the search
-    /// does not resolve the robot.
+    /// Returns true if every link is farther than `margin` from the mesh. None if the precision of
+    /// the search does not resolve the robot.
     pub(crate) fn clears_all(mut self, mesh: &Mesh) -> Option<bool> {
         match self.search() {
             SearchOutcome::Unresolved => None,
@@ -131,7 +141,7 @@ impl<E: Lane> DualTraversal<'_, E> {
         *has_parted_all = matches!(links[0], LinkNode::Leaf(_));
         doubtful.clear();
         waiting.clear();
-        // The mesh is between one and two long.
+        // In the frame of the search the mesh has a length between one and two.
         let whole = NodePair { run: 0, child: WHOLE_MESH, size: zero.one(), apart: zero };
         waiting.push(whole);
         if let Some(first) = self.first {
@@ -181,9 +191,9 @@ impl<E: Lane> DualTraversal<'_, E> {
         SearchOutcome::Doubtful
     }
 
-    /// Brings a node of the link tree into the frame of the search. None where the precision does
-    /// not resolve it.
-    #[inline(never)] // not compiled anew for each instruction set
+    /// Brings a node of the link tree into the frame of the search. None if the precision does not
+    /// resolve the node.
+    #[inline(never)] // compiled once, not for each instruction set
     fn place(&mut self, place: u32) -> Option<()> {
         let (ends, radius, flat) = self.robot.outline(&self.robot.link_tree()[place as usize]);
         let frame = &self.tree.frame;
@@ -199,7 +209,8 @@ impl<E: Lane> DualTraversal<'_, E> {
         Some(())
     }
 
-    /// Puts both halves of a pair's run in its place; false if it is one link.
+    /// Replaces the run of a pair by both halves of the run (step 1). Returns false for a single
+    /// link.
     #[inline(always)]
     fn split_links(&mut self, pair: NodePair<E>) -> bool {
         let tree = self.robot.link_tree();
@@ -211,15 +222,15 @@ impl<E: Lane> DualTraversal<'_, E> {
         let below =
             if let LinkNode::Inner { below, .. } = tree[low as usize] { below as u32 } else { 0 };
         let high = low + 1 + below;
-        // Whatever collides has most often got there with its tip; near a part of the mesh no half
-        // is the likelier one.
+        // A robot that collides does so most often with its tip. Near a part of the mesh both
+        // halves are equally likely.
         let last_and_first = if pair.child == WHOLE_MESH { [low, high] } else { [high, low] };
         self.pairs.waiting.extend(last_and_first.map(|run| NodePair { run, ..pair }));
         true
     }
 
-    /// Pairs a run with those children of a node that it may be near, the one with the nearest
-    /// centre on top.
+    /// Pairs a run with the children of a node that may be within its limit, the nearest centre on
+    /// top (step 2).
     #[inline(always)]
     fn visit_node<L: Pack<Element = E>>(&mut self, token: L::Token, node: u32, run: u32) {
         self.work.nodes += 1;
@@ -246,7 +257,7 @@ impl<E: Lane> DualTraversal<'_, E> {
                 size: node.size(child),
                 apart: apart[child],
             };
-            // Insertion keeps the few new pairs in order.
+            // Insertion sort: there are few new pairs.
             waiting.push(pair);
             let mut place = waiting.len() - 1;
             while place > bottom && waiting[place - 1].apart < pair.apart {
@@ -257,10 +268,11 @@ impl<E: Lane> DualTraversal<'_, E> {
         }
     }
 
-    /// Whether a triangle of a leaf is within the margin of a link for certain. A run is parted,
-    /// unless it is too far from all of them: from their planes, and if it is no longer than
-    /// the leaf, from the triangles themselves. (A long one is about as wide as the triangles
-    /// are large, so that their planes tell as much.)
+    /// Step 3. Returns true if a triangle of the leaf is certainly within the margin of a link.
+    ///
+    /// A run of several links is split unless all triangles are too far: their planes, and for a
+    /// run no longer than the leaf the triangles themselves. (A longer run is about as wide as the
+    /// triangles are large, so the test of their planes is as sharp.)
     #[inline(always)]
     fn visit_leaf<L: Pack<Element = E>>(
         &mut self,

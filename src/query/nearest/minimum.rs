@@ -1,9 +1,30 @@
-//! The closest link and triangle.
+//! The closest link of a chain and its nearest triangle: branch and bound over the link tree.
 //!
-//! The link that was closest last time comes first and gives a bound. The tree over the links then
-//! leaves out what is farther: runs of links whose distances are known to be larger still, and
-//! those around which a capsule is. What is searched is searched a little farther than the bound,
-//! so that the next queries know those distances.
+//! # Definitions
+//! - `upper`: the caller's bound or the best distance so far, whichever is smaller (field `bound`).
+//! - `lower[k]`: a lower bound on the distance of link k ([`LinkLowerBounds`]).
+//! - `look_ahead`: extra search radius that yields `lower[k]` for later queries; 0 if it does not
+//!   pay.
+//! - Link k is *open* if `lower[k] <= upper` or if `lower[k]` is unknown.
+//!
+//! # Algorithm
+//! 1. **Reuse.** Subtract the displacement of link k from `lower[k]`. Stop if no link is open.
+//! 2. **Seed.** Search the closest link of the last query, or a guess. Its distance lowers `upper`.
+//! 3. **Prune.** Walk the link tree in preorder. Skip a subtree if none of its links is open, or if
+//!    its capsule is farther than `upper + look_ahead` from the mesh.
+//! 4. **Search** the mesh from each link that is left. Update `upper` and `lower[k]`.
+//!
+//! # Correctness
+//! **Claim.** The answer is the least (distance, triangle, link) among the links at most the
+//! caller's bound from the mesh. The warm start and the seed never change it.
+//!
+//! **Proof.** `upper` never grows. Steps 1 and 3 skip a link only if its distance exceeds `upper`.
+//! One other case skips a link: at `upper = 0`, every triangle that it may touch is higher than the
+//! best one. Such a link loses the tie. So steps 2 and 4 search every link at the final distance,
+//! ties included; [`closer`] orders ties.
+//!
+//! **Rounding.** `lower[k]` is rounded down and the capsule test is conservative: both can only
+//! search a link too many.
 
 use crate::answer::Work;
 use crate::mesh::BLOCK;
@@ -17,12 +38,12 @@ use std::ops::Range;
 /// A link of the robot and its nearest triangle.
 pub(crate) type LinkHit = (usize, Nearest);
 
-/// What a query for the minimum leaves for the next.
+/// State that warm-starts the next query.
 #[derive(Clone, Default)]
 pub(crate) struct WarmStart {
     /// The closest link and its triangle at the last query.
     last: Option<(usize, u32)>,
-    /// What the links kept.
+    /// Lower bounds on the distances of the links.
     lower_bounds: LinkLowerBounds,
 }
 
@@ -32,13 +53,13 @@ impl WarmStart {
         self.forget_distances();
     }
 
-    /// Forgets what only holds as long as the mesh is still.
+    /// Forgets the lower bounds, which hold only while the mesh is at rest.
     pub(crate) fn forget_distances(&mut self) {
         self.lower_bounds.forget();
     }
 }
 
-/// The closest link of a robot and its nearest triangle, if they are at most `bound` apart.
+/// Returns the closest link and its nearest triangle, if they are at most `bound` apart.
 pub(crate) fn minimum_within(
     search: MeshSearch,
     robot: PlacedRobot,
@@ -53,14 +74,15 @@ pub(crate) fn minimum_within(
     found
 }
 
-/// A search for the closest link that is at most so far away.
+/// A branch-and-bound search for the closest link (see the module).
 struct BranchAndBound<'a> {
     search: MeshSearch<'a>,
     robot: PlacedRobot<'a>,
     lower_bounds: &'a mut LinkLowerBounds,
+    /// The upper bound `upper`.
     bound: Real,
     best: Option<LinkHit>,
-    /// By how much searches are wider than the bound, so that the next query knows more.
+    /// Extra search radius; none if the search is no wider than `upper`.
     look_ahead: Option<Real>,
 }
 
@@ -74,7 +96,7 @@ impl<'a> BranchAndBound<'a> {
         Self { search, robot, lower_bounds, bound, best: None, look_ahead: None }
     }
 
-    /// The closest link and triangle, if there are any. `last` are those to start with.
+    /// Runs the search from the closest link and triangle of the last query, and records its cost.
     fn nearest(mut self, last: Option<(usize, u32)>) -> Option<LinkHit> {
         let before = self.visited();
         self.run(last);
@@ -82,12 +104,13 @@ impl<'a> BranchAndBound<'a> {
         self.best
     }
 
-    /// How many nodes and leaves were visited since the engine was built.
+    /// Returns the nodes and leaves visited since the engine was built.
     fn visited(&self) -> u64 {
         let Work { nodes, visited, .. } = self.search.scratch.work;
         nodes + visited / BLOCK as u64
     }
 
+    /// Steps 1 to 4.
     fn run(&mut self, last: Option<(usize, u32)>) {
         let (robot, reach) = (self.robot, self.search.hierarchy.reach);
         let count = robot.links().len();
@@ -106,8 +129,7 @@ impl<'a> BranchAndBound<'a> {
             self.offer(first, nearest);
         }
         self.lower_bounds.drop_if_useless(count, self.bound);
-        // A robot that jumps would make it so wide that nothing of the mesh is left out, or no link
-        // of the robot.
+        // A robot that jumps would make the look-ahead so wide that nothing is pruned.
         let (last, before) = (&robot.links()[count - 1], robot.length_before(count - 1));
         let size = before + last.length() + 2.0 * last.radius();
         self.look_ahead = self.lower_bounds.look_ahead(robot, self.bound, size.min(reach), reach);
@@ -138,11 +160,10 @@ impl<'a> BranchAndBound<'a> {
         }
     }
 
-    /// Whether no link of a run improves on the best; false where that is not clear from its
-    /// capsule.
+    /// Step 3: returns true if no link of a subtree can improve on the best. False proves nothing.
     fn can_prune(&mut self, capsule: &BoundingCapsule, links: Range<usize>) -> bool {
         let in_question = self.lower_bounds.count_open(links.clone(), self.bound);
-        // The capsule of many links says little about a few of them.
+        // The capsule of many links is a weak bound on a few of them.
         if 2 * in_question <= links.len() {
             return in_question == 0;
         }
@@ -157,7 +178,7 @@ impl<'a> BranchAndBound<'a> {
         keep_away
     }
 
-    /// Searches for the triangle nearest to a link.
+    /// Step 4: searches the triangle nearest to a link.
     fn search_link(&mut self, number: usize) {
         let link = self.robot.link(number);
         let wanted = Best::within(self.bound).touching_below(self.triangle_limit());
@@ -182,13 +203,14 @@ impl<'a> BranchAndBound<'a> {
         self.offer(number, found.nearest());
     }
 
-    /// How far a search is to look so that the next queries know more. None where that is as far as
-    /// the bound: of the links that touch only some triangles are asked.
+    /// Returns `upper + look_ahead`. None without a look-ahead, and at `upper = 0`: then only links
+    /// that touch can still win a tie.
     fn search_radius(&self) -> Option<Real> {
         self.look_ahead.filter(|_| self.bound > 0.0).map(|look_ahead| self.bound + look_ahead)
     }
 
-    /// Of the links that touch, the one with the lowest triangle counts, then the lowest link.
+    /// Returns the lowest triangle number that is excluded. Of the links that touch, the one with
+    /// the lowest triangle wins, then the lowest link.
     fn triangle_limit(&self) -> u32 {
         match self.best {
             Some((_, nearest)) if nearest.distance <= 0.0 => nearest.triangle.saturating_add(1),
@@ -196,7 +218,7 @@ impl<'a> BranchAndBound<'a> {
         }
     }
 
-    /// Keeps the triangle nearest to a link, if it is near enough.
+    /// Keeps the closer of the best and this one, and lowers `upper`.
     fn offer(&mut self, link: usize, nearest: Option<Nearest>) {
         let Some(nearest) = nearest else { return };
         let found = (link, nearest);
@@ -205,8 +227,8 @@ impl<'a> BranchAndBound<'a> {
         self.bound = best.1.distance;
     }
 
-    /// About the triangle nearest to the capsule around the robot, and the link nearest to that
-    /// triangle.
+    /// The guess of step 2: a triangle about nearest to the robot's capsule, and the link closest
+    /// to the centroid of that triangle.
     fn seed(&mut self) -> (usize, u32) {
         let Some(LinkNode::Inner { bound, .. }) = self.robot.link_tree().first() else {
             return (0, 0);
@@ -224,7 +246,7 @@ impl<'a> BranchAndBound<'a> {
     }
 }
 
-/// The nearer of two, or of links as near the one with the lower triangle, then the lower link.
+/// Returns the closer of two. Ties go to the lower triangle, then to the lower link.
 fn closer(one: LinkHit, other: LinkHit) -> LinkHit {
     let key = |of: &LinkHit| (of.1.triangle, of.0);
     let is_nearer = one.1.distance < other.1.distance

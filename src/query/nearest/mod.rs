@@ -1,4 +1,4 @@
-//! The nearest triangle of every link, of the robot, and whether a margin is kept.
+//! The nearest triangle of every link and of the whole robot, and whether a robot keeps a margin.
 
 mod candidate_batch;
 mod cleared_by;

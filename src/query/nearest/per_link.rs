@@ -1,14 +1,18 @@
 //! The nearest triangle of every link.
+//!
+//! Each search starts at two triangles: the link's own answer of the last query, and the answer of
+//! the link before it. Links with few candidates are measured together at the end
+//! ([`CandidateBatch`]).
 
 use super::candidate_batch::CandidateBatch;
 use crate::answer::LinkProximity;
 use crate::pair::PlacedRobot;
 use crate::search::hierarchy::MeshSearch;
 
-/// What a query for every link leaves for the next.
+/// State that warm-starts the next query.
 #[derive(Clone, Default)]
 pub(crate) struct PerLinkMemory {
-    /// The closest triangle of each link at the last query.
+    /// The nearest triangle of each link at the last query.
     last: Vec<u32>,
     few: CandidateBatch,
 }
@@ -19,7 +23,7 @@ impl PerLinkMemory {
     }
 }
 
-/// The closest triangle of every link of a robot, in `out`.
+/// Writes the nearest triangle of every link of a robot to `out`, in the order of the links.
 pub(crate) fn per_link(
     mut search: MeshSearch,
     robot: PlacedRobot,

@@ -1,48 +1,50 @@
-//! On which side of the nearest wall a point lies, roughly: a guess that no answer depends on.
+//! A coarse grid that guesses on which side of the wall a point lies. No answer depends on it.
 //!
-//! A robot whose base is on one side and whose tip on the other passes through the wall in between.
-//! Whoever asks whether it keeps away looks there first.
+//! A robot with its base on one side and its tip on the other passes through the wall in between. A
+//! query about a margin searches there first.
 //!
-//! A grid of cells lies over the mesh. Cells with a triangle are close to the wall. Cells that a
-//! triangle is seen from are on that side of it, and all others on that of their nearest
-//! neighbours.
+//! # Algorithm
+//! 1. Lay a grid of cells over the mesh and cut each triangle into pieces of less than a cell.
+//! 2. For each piece, mark the cell of its centroid as wall. The cell in front of it (one cell's
+//!    length along the normal) gets a vote of +1, the cell behind it one of -1.
+//! 3. The sign of the votes is the side of a cell. Cells without votes take the side of their
+//!    nearest neighbours, breadth first.
+//! 4. To find a crossing, look up the base and the tip. If their sides differ, bisect the joints.
 
 use crate::mesh::Mesh;
 use crate::pair::PlacedRobot;
 use parry3d_f64::math::{Real, Vector};
 
-/// How many cells there are for each triangle at the most, and how many along a side of the mesh.
+/// The most cells for each triangle, and the most cells along a side of the mesh. Both bound the
+/// memory.
 const CELLS_FOR_A_TRIANGLE: Real = 24.0;
 const CELLS_ALONG_A_SIDE: Real = 62.0;
-/// A cell is at least so long beside a typical edge, lest large triangles be cut into too many
-/// pieces.
+/// The least length of a cell, in typical edges. It limits the number of pieces of large triangles.
 const CELL_BESIDE_AN_EDGE: Real = 0.5;
-/// No edge of a piece is longer beside a cell. No point of it is then farther than half a cell from
-/// its centroid, so that a wall between the centres of two neighbouring cells is noted in one of
-/// them.
+/// The longest edge of a piece, in cells. Then no point of a piece is farther than half a cell from
+/// its centroid. So a wall between the centres of two neighbouring cells marks one of them.
 const PIECE_BESIDE_A_CELL: Real = 0.75;
-/// Of triangles that are far smaller than a cell no more are looked at than about so many.
+/// Samples about this many of the triangles that are far smaller than a cell, to limit the time.
 const ENOUGH_TRIANGLES: usize = 1 << 17;
 const FAR_SMALLER: Real = 0.25;
-/// The grid is made anew when the box around the mesh has moved by more cells.
+/// The grid is rebuilt once the box around the mesh has moved by more than this many cells.
 const CELLS_MOVED: Real = 4.0;
-/// How many joints are looked at, from the tip on, for one that is not close to the wall.
+/// How many joints are tried, from the tip on, to find one that is not close to the wall.
 const JOINTS_AT_THE_TIP: usize = 4;
 
-/// How many more triangles a cell was seen from before them than behind them.
+/// How many more triangles have the cell before them than behind them.
 type Votes = i8;
-/// Close to the wall, or beyond the grid.
+/// Close to the wall, or in the outermost layer of the grid.
 const WALL: Votes = Votes::MIN;
 const MOST: Votes = Votes::MAX;
 
-/// The sides of a mesh as it was when it was first asked for them, or moved far.
+/// The sides of a mesh, as the mesh was when the grid was built.
 #[derive(Clone)]
 pub(crate) struct SideGrid {
     /// The box around the mesh.
     bounds: [Vector; 2],
-    /// The corner of the grid. Its outermost cells are beyond all others, so that every other has
-    /// six neighbours, and the next layer is free of the mesh and speaks for all that is
-    /// outside.
+    /// The corner of the grid. The outermost layer of cells is a sentinel: every other cell has six
+    /// neighbours. The next layer is free of the mesh and stands for all points outside the grid.
     corner: Vector,
     /// Cells for a unit of length.
     inverse: Real,
@@ -63,7 +65,7 @@ impl SideGrid {
         let typical = (squared.sum::<Real>() / few().len() as Real).sqrt();
         let finest =
             ((CELLS_FOR_A_TRIANGLE * mesh.len() as Real).cbrt() - 2.0).min(CELLS_ALONG_A_SIDE);
-        // Of a mesh without extent nothing is a number, and everything falls into the first cell.
+        // Without extent all quotients are NaN, and everything falls into the first cell.
         let inner = finest.min(1.0 / (CELL_BESIDE_AN_EDGE * typical)).max(1.0).floor();
         let count = inner as usize + 4;
         let mut sides = Self {
@@ -84,7 +86,7 @@ impl SideGrid {
         sides
     }
 
-    /// Adds a triangle, in units of cells.
+    /// Steps 1 and 2 for one triangle, in units of cells.
     fn vote(&mut self, [a, b, c]: [Vector; 3]) {
         let normal = (b - a).cross(c - a).normalize_or_zero();
         for centroid in centroids([a, b, c], self.count) {
@@ -100,14 +102,15 @@ impl SideGrid {
         }
     }
 
-    /// Whether a mesh with this box around it lies about where it lay.
+    /// Returns true if a mesh with this bounding box still lies about where the grid was built.
     pub(crate) fn covers(&self, bounds: [Vector; 2]) -> bool {
         let moved =
             |(now, then): (Vector, Vector)| ((now - then) * self.inverse).abs().max_element();
         bounds.into_iter().zip(self.bounds).map(moved).all(|cells| cells <= CELLS_MOVED)
     }
 
-    /// The links that seem to pass through the wall lie between two joints; the middle one of them.
+    /// Returns the middle of the links that seem to pass through the wall. None if base and tip are
+    /// on one side.
     pub(crate) fn likely_crossing(&self, robot: PlacedRobot) -> Option<usize> {
         let links = robot.links();
         let at_joint = |joint: usize| self.side(robot.placed(links[joint].start()));
@@ -120,33 +123,33 @@ impl SideGrid {
         if base * tip >= 0 {
             return None;
         }
-        // Joints close to the wall may belong to either side: where do they begin, and where do
-        // they end?
+        // Joints close to the wall are on an unknown side. Find where they begin and where they
+        // end.
         let begin = first_joint([0, last], |joint| at_joint(joint) != base);
         let end = first_joint([begin - 1, last], |joint| at_joint(joint) == tip);
         Some((begin + end - 1) / 2)
     }
 
-    /// 1 before the wall and -1 behind it, 0 close to it.
-    #[inline(always)] // a few joints each time
+    /// 1 before the wall, -1 behind it, 0 close to it.
+    #[inline(always)] // called for a few joints of each query
     fn side(&self, point: Vector) -> Votes {
         let [point] = self.in_cells([point]);
         let votes = self.cells[self.cell(point)];
         if votes == WALL { 0 } else { votes.signum() }
     }
 
-    /// In units of cells.
+    /// Converts to units of cells.
     fn in_cells<const N: usize>(&self, points: [Vector; N]) -> [Vector; N] {
         points.map(|point| (point - self.corner) * self.inverse)
     }
 
-    /// The cell of a point in units of cells, or the nearest cell.
+    /// The cell of a point in units of cells; for points outside, the nearest cell.
     fn cell(&self, point: Vector) -> usize {
         let [x, y, z] = point.to_array().map(|place| (place as usize).clamp(1, self.count - 2));
         x + self.count * (y + self.count * z)
     }
 
-    /// Cells that are on no side yet get that of their nearest neighbours.
+    /// Step 3: gives cells without votes the side of their nearest neighbours.
     fn fill_unknown(&mut self) {
         let Self { count, cells, .. } = self;
         let (across, last) = (*count * *count, *count - 1);
@@ -177,8 +180,8 @@ impl SideGrid {
     }
 }
 
-/// The first joint behind `low` and not behind `high` of which something is true that is true of
-/// `high`, if it is true of all behind it.
+/// Bisects for the first joint in `low + 1..=high` at which `is_true` holds. Assumes that it holds
+/// at `high`, and from its first joint on.
 fn first_joint([mut low, mut high]: [usize; 2], is_true: impl Fn(usize) -> bool) -> usize {
     while high - low > 1 {
         let middle = (low + high) / 2;
@@ -187,14 +190,14 @@ fn first_joint([mut low, mut high]: [usize; 2], is_true: impl Fn(usize) -> bool)
     high
 }
 
-/// The longest edge of a triangle near one.
+/// The longest edge of a triangle whose coordinates are of size one.
 fn longest([a, b, c]: [Vector; 3]) -> Real {
     (b - a).length_squared().max((c - b).length_squared()).max((a - c).length_squared()).sqrt()
 }
 
-/// The centroids of small pieces of a triangle in units of cells.
+/// The centroids of the pieces of a triangle, in units of cells.
 fn centroids(triangle @ [a, b, c]: [Vector; 3], count: usize) -> impl Iterator<Item = Vector> {
-    // No edge is longer than the diagonal of a grid.
+    // No edge is longer than the diagonal of the grid.
     let pieces = ((longest(triangle) / PIECE_BESIDE_A_CELL).ceil() as usize).clamp(1, 3 * count);
     let [ab, ac] = [b - a, c - a].map(|edge| edge / pieces as Real);
     (0..pieces).flat_map(move |row| {
@@ -227,7 +230,7 @@ mod tests {
         [Mesh::of(vertices.clone(), triangles), Mesh::of(vertices, open)]
     }
 
-    /// Points all around, in and out.
+    /// Points on both sides, all around.
     fn places() -> impl Iterator<Item = Vector> {
         let share = |k: u32, prime: u32| f64::from(k * prime % 1009) / 1009.0 * 2.0 - 1.0;
         (0..2000)
@@ -257,7 +260,7 @@ mod tests {
         }
     }
 
-    /// In any unit of length: the one of the last is so small that squares vanish.
+    /// Holds in any unit of length. In the last one squares underflow.
     #[test]
     fn a_robot_passes_through_the_wall_where_it_is_said_to() {
         for size in [1.0, 2.0_f64.powi(400), 2.0_f64.powi(-560)] {

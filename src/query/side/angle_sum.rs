@@ -5,10 +5,10 @@ use crate::distance::Scalar;
 use parry3d_f64::math::Real;
 use std::f64::consts::PI;
 
-/// The part of the view, out of 4 pi, that a hole may cover at most.
+/// The largest solid angle, out of `4 pi`, that holes in the mesh may cover together.
 const HOLE: Real = PI;
 
-/// A signed solid angle in steradians, and the most that the true one is off.
+/// A signed solid angle in steradians, and a bound on its error.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct SolidAngle {
     pub(super) value: Real,
@@ -16,9 +16,10 @@ pub(crate) struct SolidAngle {
 }
 
 impl SolidAngle {
-    /// The side that the sum of all solid angles proves; none where a smaller error might.
+    /// Returns the side that the sum of all solid angles proves. None if a smaller error might
+    /// prove one.
     pub(crate) fn side(self) -> Option<Side> {
-        // What rounding took from the sum of the errors.
+        // Covers the rounding in the sum of the errors.
         let error = self.error * (1.0 + 1e-6);
         let (least, most) = (self.value.abs() - error, self.value.abs() + error);
         if least > 4.0 * PI - HOLE {
@@ -38,9 +39,10 @@ impl SolidAngle {
 }
 
 impl std::ops::AddAssign for SolidAngle {
-    /// The sum, whose rounding counts as an error. The errors are themselves summed with rounding,
-    /// which 2^32 times adds less than 2^-20 of them: [`side`](Self::side) allows for that, and
-    /// with it for the few roundings of each error.
+    /// Adds a solid angle, and counts the rounding of the sum as an error.
+    ///
+    /// The errors are summed with rounding too. For 2^32 summands that is less than 2^-20 of the
+    /// sum. [`side`](Self::side) allows for it, and for the few roundings of each error.
     fn add_assign(&mut self, other: Self) {
         self.value += other.value;
         self.error += other.error + f64::UNIT_ROUNDOFF * self.value.abs();

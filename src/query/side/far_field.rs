@@ -1,75 +1,96 @@
-//! The solid angle of many triangles that are farther away than they are apart, and how far it is
-//! from the true one.
+//! The solid angle of many triangles from afar: a series of two terms, with an error bound.
 //!
-//! The solid angle is the integral of n f(x) over the triangles, where n is the normal and f(x) = x
-//! / |x|^3 at the place x as seen from the point. Let d be the centre, R its distance, and every x
-//! = d + s with |s| <= r < R. Taylor's series of f around d begins with
+//! # Definitions
+//! - x: a point of a triangle as seen from the query point; n: the normal there.
+//! - d: the centre of the triangles; `R = |d|`; `e = d / R`.
+//! - `x = d + s` with `|s| <= r < R`; `q = r / R`.
+//! - N: the sum of all areas times normals (the dipole).
+//! - C: the sum of all areas times `s n^T` at the centroids (the quadrupole).
 //!
-//! d / R^3 + (s - 3 e (e s)) / R^3, where e = d / R.
+//! # Series
+//! The solid angle is the integral of `n . f(x)` over the triangles, with `f(x) = x / |x|^3`.
+//! Taylor's series of f around d begins with
 //!
-//! Integrated, the first term needs the sum N of all areas times their normals, and the second the
-//! sum C of all areas times s n^T at their centroids, both known beforehand (the dipole and the
-//! quadrupole):
+//! ```text
+//! d / R^3 + (s - 3 e (e . s)) / R^3.
+//! ```
 //!
-//! N e / R^2 + (trace C - 3 e^T C e) / R^3.
+//! Integrated, these two terms are
 //!
-//! **What is left out.** The k-th derivative of 1 / |x| along a unit vector is k! P_k / |x|^(k+1)
-//! with a Legendre polynomial P_k <= 1, and a symmetric form is largest where all its arguments are
-//! the same (Banach). f is the gradient of -1 / |x|, so the j-th term of its series, in any
-//! direction n, is at most (j + 1) |s|^j / R^(j+2). The sum from j = 2 on is at most
+//! ```text
+//! N . e / R^2 + (trace C - 3 e^T C e) / R^3.
+//! ```
 //!
-//! |s|^2 / R^4 (3 + 4 q + 5 q^2 ...) = |s|^2 (3 - 2 q) / (R (R - r))^2, where q = r / R,
+//! N and C are computed once for each group of triangles.
 //!
-//! and the integral of |s|^2 over the triangles is known beforehand.
+//! # Truncation
+//! **Claim.** The rest of the series is at most the integral over the triangles of
 //!
-//! **Rounding**, for m triangles of the area A, in units of u / R^2 with u = 2^-53. Edges and s are
-//! at most 2 r and r long, and off by u of their length. A cross product is off by 4 u sqrt(3) of
-//! its edges' product: half of it by 14 r^2. A centroid is off by 5 u r, so a term of C by (14 +
-//! 1.3 (5 + 1)) r^3 < 24 r^3; a triangle in the ball has at most the area 1.3 r^2. Summing adds m u
-//! times what is summed. C counts 4.74 times (sqrt(3) for its trace and 3), over R > r. That makes
-//! m (14 + 114) r^2 + m (1 + 4.74) A. The evaluation itself takes at most 22 u of the first term
-//! and 38 u of the second: 22 A + 4.74 x 38 A. All this is less than [`ROUNDING`] m (A + r^2). The
-//! sums that are all positive, areas and squares, err by less than that share of A + r^2, and of
-//! r^2 times it.
+//! ```text
+//! |s|^2 / R^4 (3 + 4 q + 5 q^2 + ...) = |s|^2 (3 - 2 q) / (R (R - r))^2.
+//! ```
 //!
-//! All lengths are scaled by the power of two that brings the mesh to size one, so that their
-//! powers neither overflow nor vanish.
+//! **Proof.** The k-th derivative of `1 / |x|` along a unit vector is `k! P_k / |x|^(k+1)`, with a
+//! Legendre polynomial `P_k <= 1`. A symmetric form is largest where all its arguments are equal
+//! (Banach). f is the gradient of `-1 / |x|`. So the j-th term of its series, in any direction n,
+//! is at most `(j + 1) |s|^j / R^(j+2)`. The claim is the sum from `j = 2` on.
+//!
+//! The integral of `|s|^2` over the triangles is computed once too.
+//!
+//! # Rounding
+//! For m triangles of the total area A, in units of `u / R^2` with `u = 2^-53`:
+//!
+//! - Edges are at most `2 r` long and s at most r; both err by u of their length.
+//! - A cross product errs by `4 u sqrt(3)` of the product of its edges: half of it by `14 r^2`.
+//! - A centroid errs by `5 u r`. A triangle in the ball has at most the area `1.3 r^2`. So a term
+//!   of C errs by `(14 + 1.3 (5 + 1)) r^3 < 24 r^3`.
+//! - A sum adds m u times its magnitude.
+//! - C counts 4.74 times (`sqrt(3)` for its trace, and 3), over `R > r`. Together that is
+//!   `m (14 + 114) r^2 + m (1 + 4.74) A`.
+//! - The evaluation takes at most 22 u of the first term and 38 u of the second:
+//!   `22 A + 4.74 x 38 A`.
+//!
+//! The total is less than [`ROUNDING`] `m (A + r^2)`. The sums of areas and squares have positive
+//! terms only. They err by less than the same share of `A + r^2`, and of `r^2` times it.
+//!
+//! All lengths are scaled by the power of two that brings the mesh to size one. So their powers
+//! stay in range.
 
 use super::SolidAngle;
 use crate::distance::Scalar;
 use crate::robot::{direction, length};
 use parry3d_f64::math::{Matrix, Real, Vector};
 
-/// What rounding can do, for each triangle.
+/// The relative rounding for each triangle.
 const ROUNDING: Real = 256.0 * f64::UNIT_ROUNDOFF;
 
-/// Beyond this, fourth powers of a radius vanish beside a mesh of size one.
+/// The least radius, beside a mesh of size one, whose fourth power does not underflow.
 const SMALLEST: Real = 1.0 / (1_u128 << 100) as Real / (1_u128 << 100) as Real;
 
-/// What is known beforehand of many triangles.
+/// The moments of a group of triangles.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct FarField {
-    /// In the mesh's unit; all else is scaled.
+    /// The centre, in the mesh's unit; all other fields are scaled.
     centre: Vector,
     /// No triangle reaches farther from the centre.
     radius: Real,
-    /// The areas times the normals.
+    /// N: the sum of areas times normals.
     dipole: Vector,
-    /// trace C - 3 C, where C is the sum of areas times places times normals, all from the centre.
+    /// `trace C - 3 C`.
     quadrupole: Matrix,
-    /// The integral of the squared distance from the centre, or more.
+    /// An upper bound on the integral of the squared distance from the centre.
     second_moment: Real,
-    /// What rounding can add, times the squared distance from the point.
+    /// A bound on the rounding, times the squared distance from the query point.
     rounding: Real,
 }
 
 impl FarField {
-    /// Of at least one triangle, in a unit in which the mesh is multiplied by `scale`.
+    /// The moments of at least one triangle. `scale` brings the mesh to size one.
     pub(crate) fn new(scale: Real, triangles: impl Iterator<Item = [Vector; 3]> + Clone) -> Self {
         let around = |[low, high]: [Vector; 2], point: Vector| [low.min(point), high.max(point)];
         let nothing = [Vector::INFINITY, Vector::NEG_INFINITY];
         let [low, high] = triangles.clone().flatten().fold(nothing, around);
-        // Any centre serves. The middle is near every triangle, and cannot overflow.
+        // Any centre is valid. The middle of the box is near every triangle, and cannot overflow.
         let centre = low.midpoint(high);
         let mut count = 0.0;
         let (mut radius, mut area, mut second_moment) = (0.0, 0.0, 0.0);
@@ -97,15 +118,15 @@ impl FarField {
         let second_moment = if radius >= SMALLEST {
             second_moment + rounding * radius * radius
         } else {
-            // Never to be trusted.
+            // The error is then infinite, so this field is never used.
             Real::INFINITY
         };
         let quadrupole = Matrix::from_diagonal(Vector::splat(trace)) - spread * 3.0;
         Self { centre, radius, dipole, quadrupole, second_moment, rounding }
     }
 
-    /// The solid angle as seen from a point, in a unit in which the mesh is multiplied by `scale`.
-    /// The error is infinite near the triangles.
+    /// Returns the solid angle from a point; `scale` brings the mesh to size one. The error is
+    /// infinite near the triangles.
     pub(crate) fn solid_angle(&self, scale: Real, point: Vector) -> SolidAngle {
         let offset = self.centre - point;
         let distance = length(offset) * scale;
@@ -113,7 +134,7 @@ impl FarField {
         if gap <= 0.0 {
             return SolidAngle { value: 0.0, error: Real::INFINITY };
         }
-        // Nothing is left at a distance that overflows.
+        // At a distance that overflows, the solid angle is 0.
         let (inverse, towards) = (1.0 / distance, direction(offset));
         let second = self.quadrupole.mul_vec3(towards).dot(towards) * inverse;
         let value = (self.dipole.dot(towards) + second) * (inverse * inverse);

@@ -1,14 +1,15 @@
-//! How a mesh winds around a point: the solid angle under which the point sees it, with a bound on
-//! its error.
+//! The side of a mesh on which a point lies, by the winding number of the mesh, with error bounds.
 //!
-//! The generalised winding number (Jacobson, Kavan and Sorkine-Hornung, "Robust inside-outside
-//! segmentation using generalized winding numbers", 2013) is the sum of the signed solid angles of
-//! all triangles, over 4 pi. A closed mesh winds around every point a whole number of times: never
-//! around those outside.
+//! The generalised winding number is the sum of the signed solid angles of all triangles, over
+//! `4 pi`. (Jacobson, Kavan and Sorkine-Hornung, "Robust inside-outside segmentation using
+//! generalized winding numbers", 2013.) The number is whole for a closed mesh, and 0 at each
+//! outside point.
 //!
-//! `solid_angle` is that of a triangle, `far_field` that of many triangles far away (after Barill
-//! et al., "Fast winding numbers for soups and clouds", 2018), and both bound their error.
-//! `angle_sum` adds them up and decides on the side.
+//! - `solid_angle`: the solid angle of a triangle, with an error bound.
+//! - `far_field`: the solid angle of many triangles far away, with an error bound (after Barill et
+//!   al., "Fast winding numbers for soups and clouds", 2018).
+//! - `angle_sum`: the sum, and the side that it proves.
+//! - `winding`: the traversal of the hierarchy.
 
 mod angle_sum;
 mod far_field;

@@ -1,25 +1,27 @@
-//! The solid angle of a triangle, and what rounding can do to it.
+//! The solid angle of a triangle, with a bound on its rounding.
 //!
-//! With the unit vectors a, b and c from the point to the corners, the solid angle is twice the
-//! argument of
+//! # Definitions
+//! - a, b, c: the unit vectors from the point to the corners.
+//! - `z = 1 + ab + bc + ca + i det(a, b, c)`.
 //!
-//! z = 1 + ab + bc + ca + i det(a, b, c)
+//! The solid angle is twice the argument of z (Van Oosterom and Strackee, "The solid angle of a
+//! plane triangle", 1983). `|z|^2 = 2 (1 + ab) (1 + bc) (1 + ca)` is 0 only on the edges. z is a
+//! negative number only inside the triangle: there the solid angle jumps from `2 pi` to `-2 pi`.
 //!
-//! (Van Oosterom and Strackee, "The solid angle of a plane triangle", 1983). |z|^2 = 2 (1 + ab) (1
-//! + bc) (1 + ca) is 0 on the edges alone, and z is a negative number inside of the triangle alone:
-//! there the solid angle jumps from 2 pi to -2 pi.
+//! # Rounding
+//! With `u = 2^-53`:
 //!
-//! **Rounding**, with u = 2^-53. A difference of coordinates is off by u of itself, a length by 3.5
-//! u (u of it from the differences), a quotient by one u more: the unit vectors are off by 6 u at
-//! most. Then a dot product is off by 2 x 6 u and its own 3 u. Three of them and 1, added up at
-//! sizes of at most 2, 3 and 4, are off by 3 x 15 u + 9 u = 54 u. The determinant is off by 3 x 6 u
-//! from its vectors, and by 3.5 u and 3 u from a cross and a dot product: 25 u. Together z is off
-//! by less than 60 u, and [`ROUNDING`] has room for squares of u.
+//! 1. A difference of coordinates errs by u of itself. A length errs by `3.5 u`, including u from
+//!    the differences. A quotient errs by one u more. So the unit vectors err by at most `6 u`.
+//! 2. A dot product errs by `2 x 6 u`, and by its own `3 u`. Three of them and 1 are summed at
+//!    sizes of at most 2, 3 and 4. The sum errs by `3 x 15 u + 9 u = 54 u`.
+//! 3. The determinant errs by `3 x 6 u` from its vectors. It also errs by `3.5 u` from a cross
+//!    product and by `3 u` from a dot product: `25 u`.
+//! 4. Together z errs by less than `60 u`. [`ROUNDING`] has room for squares of u.
 //!
-//! If z is off by e and the negative numbers are farther away than that, its argument is off by
-//! asin(e / |z|), which is less than pi / 2 e / |z|. At e = 64 u and |z| up to 4 the difference
-//! between the two is 9 u or more: enough for an arc tangent that is off by two units in the last
-//! place.
+//! Let z err by e, and let the negative numbers be farther from z than e. Then its argument errs by
+//! `asin(e / |z|) < pi / 2 e / |z|`. For `e = 64 u` and `|z|` up to 4 these two differ by at least
+//! `9 u`. That covers an arc tangent that errs by two units in the last place.
 
 use super::SolidAngle;
 use crate::distance::Scalar;
@@ -27,12 +29,14 @@ use crate::robot::direction;
 use parry3d_f64::math::{Real, Vector};
 use std::f64::consts::{PI, TAU};
 
-/// How far rounding can move z.
+/// A bound on the rounding of z.
 const ROUNDING: Real = 64.0 * f64::UNIT_ROUNDOFF;
 
-/// The solid angle of a triangle, positive where its corners turn counter-clockwise as seen from
-/// behind, so that outward triangles are positive from inside. Between -2 pi and 2 pi, where the
+/// Returns the solid angle of a triangle, between `-2 pi` and `2 pi`. The error is `2 pi` if the
 /// point may lie on the triangle.
+///
+/// It is positive if the corners turn counter-clockwise as seen from behind. So the triangles of an
+/// outward mesh are positive from inside.
 pub(crate) fn solid_angle(corners: [Vector; 3], point: Vector) -> SolidAngle {
     let [a, b, c] = corners.map(|corner| direction(corner - point));
     let across = a.dot(b.cross(c));

@@ -1,4 +1,4 @@
-//! Bounds against solid angles of twice the digits.
+//! Tests of the error bounds against solid angles of twice the digits.
 
 use super::SolidAngle;
 use super::far_field::FarField;
@@ -17,7 +17,7 @@ fn reference(corners: [Vector; 3], point: Vector) -> f64 {
     2.0 * across.rounded().atan2(along.rounded())
 }
 
-/// Any size, place and shape: slivers too.
+/// Any size, place and shape, slivers included.
 fn triangle(random: &mut Random) -> [Vector; 3] {
     let size = 10.0_f64.powf(random.between(-6.0, 6.0));
     let centre = random.point() * size * [0.0, 1.0, 1e3][random.below(3) as usize];
@@ -46,7 +46,7 @@ fn a_triangles_solid_angle_is_within_its_bound() {
         };
         let point = on + random.direction() * size * 10.0_f64.powf(random.between(-16.0, 4.0));
         let (found, truth) = (solid_angle(corners, point), reference(corners, point));
-        // The reference itself: an arc tangent of two rounded numbers.
+        // The error of the reference: an arc tangent of two rounded numbers.
         let error = (found.value - truth).abs() - 16.0 * f64::UNIT_ROUNDOFF;
         assert!(error <= found.error, "{found:?} for {truth}: {corners:?} from {point}");
         if found.error == TAU {
@@ -75,7 +75,7 @@ fn points_of_a_triangle_are_not_told() {
             "{point}"
         );
     }
-    // In the plane and on the edges' lines, but beside the triangle, it is seen under no angle.
+    // In the plane and on the lines of the edges, but beside the triangle, the solid angle is 0.
     for point in
         [[-1.0, 0.0, 0.0], [5.0, 0.0, 0.0], [3.0, 3.0, 0.0], [-1e-9, 1.0, 0.0]].map(Vector::from)
     {
@@ -151,7 +151,7 @@ fn many_triangles_are_within_their_bound_from_afar() {
             far += usize::from(away > 1e6);
         }
     }
-    // The bounds are not idle: of what is left out, and of rounding.
+    // The bounds are nearly attained, both for truncation and for rounding.
     assert!(worst > 0.5 && worst_far > 1e-3, "{worst} {worst_far}");
     assert!(near > 1000 && far > 1000, "{near} {far}");
 }

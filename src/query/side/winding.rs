@@ -1,4 +1,4 @@
-//! The solid angle of a mesh from a point, through its hierarchy: far nodes at once, near triangles
+//! The solid angle of a mesh from a point, by its hierarchy: far nodes as a whole, near triangles
 //! one by one.
 
 use super::SolidAngle;
@@ -12,10 +12,10 @@ use crate::search::hierarchy::{Child, WideBvh};
 use crate::threads::each;
 use parry3d_f64::math::{Real, Vector};
 
-/// How much each node may be off, in steradians, at one attempt after the other.
+/// The error allowed for each node, in steradians, in successive attempts.
 const ATTEMPTS: [Real; 4] = [0.1, 0.02, 0.004, 0.0005];
 
-/// What all nodes and leaves of a hierarchy are from far away.
+/// The far fields of all nodes and leaves of a hierarchy.
 #[derive(Clone)]
 pub(crate) struct FarFields {
     /// Brings the mesh to size one.
@@ -46,7 +46,7 @@ impl FarFields {
     }
 }
 
-/// A mesh around a point.
+/// A query for the side of a point.
 pub(crate) struct Winding<'a, E> {
     pub mesh: &'a Mesh,
     pub tree: &'a WideBvh<E>,
@@ -55,7 +55,7 @@ pub(crate) struct Winding<'a, E> {
 }
 
 impl<E: Lane> Winding<'_, E> {
-    /// The side on which the point is.
+    /// Returns the side on which the point lies.
     pub(crate) fn side(&self) -> Side {
         if !self.point.is_finite() {
             return Side::Undecided;
@@ -68,7 +68,7 @@ impl<E: Lane> Winding<'_, E> {
         ATTEMPTS.into_iter().find_map(attempt).unwrap_or(Side::Undecided)
     }
 
-    /// Adds what is below `child`, every node of which may be off by `error`.
+    /// Adds the solid angle of the triangles below `child`. Each node may err by `error`.
     fn add(&self, child: Child, error: Real, sum: &mut SolidAngle) {
         let from_afar = self.fields.of(child).solid_angle(self.fields.scale, self.point);
         if from_afar.error() <= error {

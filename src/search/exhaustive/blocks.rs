@@ -1,18 +1,19 @@
-//! A mesh in blocks of 16 triangles, each with the sphere around it.
+//! A mesh in blocks of 16 triangles, each triangle with its bounding sphere.
 
 use crate::distance::lanes::{Lane, Pack};
 use crate::distance::{Face, Mask, Vec3};
 use crate::mesh::{BLOCK, Mesh, SearchFrame, load, load_vertices, place_triangle, store};
 use crate::threads::each;
 
-/// Rows of a block that bound its triangles: a sphere's centre and radius.
+/// Rows of a block for the bounding spheres: centre and radius.
 const SPHERE_ROWS: usize = 4;
-/// Rows of a block that hold its triangles: three vertices and the dual basis.
+/// Rows of a block for the triangles: three vertices and the dual basis.
 const FACE_ROWS: usize = 15;
-/// How many blocks one thread works on at a time.
+/// Blocks that one task takes.
 const TASK_SIZE: usize = 64;
 
-/// The triangles of a mesh, near one, with what is computed once for each.
+/// The triangles of a mesh in the frame of the search, with the values that are computed once for
+/// each.
 #[derive(Clone)]
 pub(crate) struct Blocks<E> {
     pub frame: SearchFrame,
@@ -21,7 +22,7 @@ pub(crate) struct Blocks<E> {
 }
 
 impl<E: Lane> Blocks<E> {
-    /// The mesh's triangles; `prepare` is [`prepare`] for an instruction set.
+    /// Fills blocks with the triangles of a mesh. `prepare` is [`prepare`] for an instruction set.
     pub(crate) fn new(mesh: &Mesh, prepare: impl Fn(&mut [E], &mut [E]) + Sync + Send) -> Self {
         let mut blocks =
             Self { frame: SearchFrame::new(mesh), spheres: Vec::new(), faces: Vec::new() };
@@ -29,7 +30,7 @@ impl<E: Lane> Blocks<E> {
         blocks
     }
 
-    /// Fills the blocks with the triangles as they are now.
+    /// Fills the blocks with the current vertices.
     pub(crate) fn refill(
         &mut self,
         mesh: &Mesh,
@@ -49,12 +50,12 @@ impl<E: Lane> Blocks<E> {
         });
     }
 
-    /// How many blocks there are.
+    /// The number of blocks.
     pub(crate) fn len(&self) -> usize {
         self.spheres.len() / (BLOCK * SPHERE_ROWS)
     }
 
-    /// Centres and radii of the spheres around the triangles from `lane` on.
+    /// The centres and radii of the spheres around the triangles from `lane` on.
     #[inline(always)]
     pub(crate) fn spheres<L: Pack<Element = E>>(
         &self,
@@ -80,7 +81,7 @@ impl<E: Lane> Blocks<E> {
     }
 }
 
-/// Writes the corners of the triangles into blocks, the first of which has the number `first`.
+/// Writes the corners of the triangles into blocks; `first` is the number of the first block.
 fn fill<E: Lane>(frame: &SearchFrame, mesh: &Mesh, first: usize, faces: &mut [E]) {
     for (block, rows) in faces.chunks_exact_mut(BLOCK * FACE_ROWS).enumerate() {
         for lane in 0..BLOCK {
@@ -91,7 +92,7 @@ fn fill<E: Lane>(frame: &SearchFrame, mesh: &Mesh, first: usize, faces: &mut [E]
     }
 }
 
-/// Puts the vertex opposite the longest edge first, and computes dual bases and spheres.
+/// Puts the vertex opposite the longest edge first, and computes dual bases and bounding spheres.
 #[inline(always)]
 pub(crate) fn prepare<L: Pack>(
     token: L::Token,
@@ -106,13 +107,13 @@ pub(crate) fn prepare<L: Pack>(
             for (row, vector) in [a, b, c, made.dual[0], made.dual[1]].into_iter().enumerate() {
                 store(vector, face, 3 * row, lane);
             }
-            // Around the middle of the longest edge, which holds the apex of an obtuse triangle
+            // The sphere around the middle of the longest edge. It holds an obtuse triangle's apex
             // too.
             let centre = (b + c) * a.x.lit(0.5);
             let apex = (a - centre).norm_squared();
             let half = (b - centre).norm_squared();
-            // An acute triangle's apex may lie outside: then around the centroid, if that is
-            // smaller.
+            // The apex of an acute triangle may lie outside. Then the sphere around the centroid
+            // may be smaller.
             let middle = (a + b + c) * a.x.lit(1.0 / 3.0);
             let around = (a - middle).norm_squared().max((b - middle).norm_squared());
             let around = around.max((c - middle).norm_squared());

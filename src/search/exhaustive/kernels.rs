@@ -1,5 +1,6 @@
-//! The loops of exhaustive search for each precision: functions without parameters, which are
-//! compiled for every instruction set in this crate and not again in each that uses an engine.
+//! The loops of exhaustive search for each precision, as functions without type parameters. So they
+//! are compiled for every instruction set in this crate, and not again in each crate that uses an
+//! engine.
 
 use super::blocks::prepare;
 use super::scan::{Job, ThreadFindings};
@@ -15,7 +16,7 @@ pub(crate) trait Kernels: Lane {
     fn first_bounds(level: Level, job: &Job<Self>);
     /// [`Job::scan`] with culling.
     fn scan(level: Level, job: &Job<Self>, chunk: usize, findings: &mut ThreadFindings);
-    /// [`Job::scan`] without.
+    /// [`Job::scan`] without culling.
     fn scan_every_pair(level: Level, job: &Job<Self>, chunk: usize, findings: &mut ThreadFindings);
 }
 

@@ -1,4 +1,4 @@
-//! Search that looks at every triangle.
+//! Exhaustive search: every link against every triangle.
 
 mod blocks;
 mod kernels;

@@ -1,4 +1,11 @@
-//! One pass over all triangles for the links of one robot or many.
+//! One pass over all triangles for the links of one or more robots.
+//!
+//! # Algorithm
+//! 1. **Place** the links. Single precision is used if it resolves a link, else double precision.
+//! 2. **First bounds.** With culling, bound the nearest distance of each link by a sample of
+//!    spheres.
+//! 3. **Scan.** Every thread takes the next chunk of the mesh until none is left.
+//! 4. **Merge** the findings of all threads.
 
 use super::blocks::Blocks;
 use super::kernels::Kernels;
@@ -18,7 +25,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 pub(crate) struct Triangles<T> {
     pub mesh: Mesh,
     blocks: Blocks<T>,
-    /// For links that single precision does not resolve, filled when the first of them comes.
+    /// For links that single precision does not resolve; filled on first use.
     double: Lazy<Blocks<f64>>,
 }
 
@@ -34,7 +41,7 @@ impl<T: Kernels> Triangles<T> {
         })
     }
 
-    /// Fills the blocks anew after the vertices of the mesh have moved.
+    /// Refills the blocks after the vertices have moved.
     pub(crate) fn refill(&mut self, level: Level) {
         self.blocks.refill(&self.mesh, |faces, spheres| T::prepare(level, faces, spheres));
         if let Some(double) = self.double.get_mut() {
@@ -43,16 +50,16 @@ impl<T: Kernels> Triangles<T> {
     }
 }
 
-/// What a pass looks for.
+/// What a pass looks for. Each number is a bound on the distance.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum PassGoal {
     /// The nearest triangle of every link.
     EachLink,
-    /// The nearest triangle of all links of a robot together, if it is at most so far away.
+    /// The nearest triangle of all links of a robot together, within the bound.
     Least(Real),
-    /// Any triangle at most so far away, for each robot.
+    /// Any triangle within the bound, for each robot.
     Within(Real),
-    /// Every triangle that may be at most so far away, for each link.
+    /// Every triangle that may be within the bound, for each link.
     Every(Real),
 }
 
@@ -65,19 +72,19 @@ impl PassGoal {
     }
 }
 
-/// The links of a pass and what it found, in memory that is used again.
+/// The links of a pass and its findings; memory is reused by later passes.
 pub(crate) struct Pass<T> {
     links: Vec<JobLink<T>>,
     /// Links that the precision `T` does not resolve.
     double: Vec<JobLink<f64>>,
     /// All links in the mesh's frame.
     placed: Vec<PlacedLink>,
-    /// The links of each robot, or why it is refused.
+    /// The links of each robot, or the error of a refused robot.
     robots: Vec<Result<Range<usize>, ProximityError>>,
     bounds: Vec<SharedBound>,
-    /// One for each thread; the first has what all have found.
+    /// The findings of each thread; the first one holds the merged findings.
     findings: Vec<ThreadFindings>,
-    /// Whether there may be more than was kept of what is within the bound.
+    /// Whether pairs within the bound may have been dropped.
     is_full: bool,
 }
 
@@ -96,7 +103,7 @@ impl<T> Default for Pass<T> {
 }
 
 impl<T: Kernels> Pass<T> {
-    /// Looks at all triangles, for some links of each robot. Those that are refused find nothing.
+    /// Runs a pass for the given links of each robot. A refused robot finds nothing.
     pub(crate) fn run<'a>(
         &mut self,
         level: Level,
@@ -121,7 +128,7 @@ impl<T: Kernels> Pass<T> {
         }
         let mesh = &triangles.mesh;
         let stop_at_first = matches!(aim, PassGoal::Within(_));
-        // A single link has all that it is near to, or nothing could be told of it.
+        // A single link keeps all its pairs; otherwise no pass could ever answer it.
         let most = if links > 1 { PAIRS_AT_ONCE / findings.len() } else { usize::MAX };
         let every = matches!(aim, PassGoal::Every(_)).then_some(most);
         let job =
@@ -140,7 +147,8 @@ impl<T: Kernels> Pass<T> {
         first[0].work
     }
 
-    /// Sorts the robots' links by the precision that resolves them, and counts them.
+    /// Step 1: places the robots' links, sorted by the precision that resolves them, and counts
+    /// them.
     fn place<'a>(
         &mut self,
         level: Level,
@@ -185,12 +193,12 @@ impl<T: Kernels> Pass<T> {
         place
     }
 
-    /// What the last pass found for a link.
+    /// The result of the last pass for a link.
     fn found(&self, place: usize) -> Option<Nearest> {
         self.findings[0].nearest[place]
     }
 
-    /// The places of a robot's links, or why it is refused.
+    /// The places of a robot's links, or the error of a refused robot.
     pub(crate) fn links_of(&self, robot: usize) -> Result<Range<usize>, ProximityError> {
         self.robots[robot].clone()
     }
@@ -209,34 +217,35 @@ impl<T: Kernels> Pass<T> {
             .filter_map(|(link, place)| Some(self.placed[place].answer(link, &self.found(place)?)))
     }
 
-    /// The triangles that may be within the bound of the last pass, link by link and each once.
-    /// None if there may be too many to be kept at once: fewer links will have fewer, and a
-    /// single one always gets its own.
+    /// The triangles that may be within the bound of the last pass, sorted by link, each pair once.
+    ///
+    /// None if pairs may have been dropped. A pass over fewer links has fewer pairs, and a single
+    /// link always keeps all of its pairs.
     pub(crate) fn within(&mut self) -> Option<&[(u32, u32)]> {
         let within = &mut self.findings[0].within;
         within.sort_unstable();
         Some(&**within).filter(|_| !self.is_full)
     }
 
-    /// Whether nothing was found for a robot.
+    /// Returns true if the pass found nothing for a robot.
     pub(crate) fn is_clear(&self, robot: usize) -> bool {
         self.links_of(robot).unwrap_or_default().all(|place| self.found(place).is_none())
     }
 }
 
-/// So many pairs of a link and a triangle within its bound are kept at once, unless they are all of
-/// one link.
+/// How many pairs of a link and a triangle within its bound a pass keeps, unless it has a single
+/// link. Limits the memory.
 const PAIRS_AT_ONCE: usize = 1 << 20;
 
-/// Fewer pairs than this are not worth a second thread.
+/// The least number of pairs that is worth another thread.
 const PAIRS_PER_THREAD: usize = 1 << 17;
 
-/// How many threads are worth while.
+/// The number of threads for this many pairs.
 fn threads_for(pairs: usize) -> usize {
     threads().min(1 + pairs / PAIRS_PER_THREAD)
 }
 
-/// Has every thread take the next chunk until there is none.
+/// Step 3: every thread takes the next chunk until none is left.
 fn scan<E: Kernels>(level: Level, culling: bool, job: &Job<E>, findings: &mut [ThreadFindings]) {
     if culling && !job.stop_at_first && job.every.is_none() {
         E::first_bounds(level, job);

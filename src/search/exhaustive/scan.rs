@@ -1,4 +1,4 @@
-//! Every triangle against every link: the loop of exhaustive search.
+//! The loop of exhaustive search: every link against every triangle.
 
 use super::blocks::Blocks;
 use crate::answer::Work;
@@ -10,44 +10,45 @@ use parry3d_f64::math::Real;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
 
-/// How many blocks one link meets before the next takes its turn: their spheres stay in the fastest
-/// cache.
+/// Blocks of a chunk. Each link meets a whole chunk before the next link does, so that the spheres
+/// stay in the fastest cache.
 const CHUNK: usize = 64;
 
-/// One block in so many gives a first bound.
+/// One block in `STRIDE` gives a first bound.
 const STRIDE: usize = 16;
 
-/// What one query asks of the mesh.
+/// A query to the mesh, shared by all threads.
 pub(crate) struct Job<'a, E> {
     pub mesh: &'a Mesh,
     pub blocks: &'a Blocks<E>,
     pub links: &'a [JobLink<E>],
     pub bounds: &'a [SharedBound],
-    /// Any triangle within the bound will do.
+    /// Whether any triangle within the bound answers the query.
     pub stop_at_first: bool,
-    /// Every triangle that may be within the bound is wanted; of each thread so many at the most.
+    /// If every triangle that may be within the bound is wanted: the most pairs that one thread
+    /// keeps.
     pub every: Option<usize>,
 }
 
-/// A link that a job is about.
+/// A link of a job.
 pub(crate) struct JobLink<E> {
     pub link: PlacedLink,
-    /// How it looks in the precision of the search, if that reaches so far.
+    /// The link in the precision of the search; none if it is too far out.
     pub searched: Option<SearchLink<E>>,
-    /// Its place among the findings.
+    /// The index of the link in the findings.
     pub place: usize,
-    /// The number of its bound; links whose nearest is wanted together share one.
+    /// The index of its bound. Links whose common nearest triangle is wanted share one.
     pub bound: usize,
 }
 
-/// What a triangle must not be farther than, a distance that only shrinks; or that nothing more is
-/// wanted. Seen by all threads.
+/// The shared upper bound on the distance of a wanted triangle; 0 stops the scan. It never grows.
 ///
-/// Numbers that are not negative are ordered as their bits, to which one is added: 0 is the end.
+/// Numbers that are not negative are ordered as their bits. One is added to the bits, so that 0 is
+/// free for the stop.
 pub(crate) struct SharedBound {
     distance: AtomicU64,
-    /// The lowest triangle that touches: of those that touch, only lower ones are still wanted, or
-    /// for another link the same.
+    /// The lowest triangle that touches. Of the triangles that touch, only those up to this one are
+    /// wanted; this one itself may win with a lower link.
     touching: AtomicU32,
 }
 
@@ -69,7 +70,7 @@ impl SharedBound {
         self.touching.load(Ordering::Relaxed)
     }
 
-    /// Notes that a triangle touches.
+    /// Records that a triangle touches.
     fn touch(&self, triangle: u32) {
         self.touching.fetch_min(triangle, Ordering::Relaxed);
         self.lower_to(0.0);
@@ -80,19 +81,19 @@ impl SharedBound {
     }
 }
 
-/// What one thread has found.
+/// The findings of one thread.
 #[derive(Default)]
 pub(crate) struct ThreadFindings {
-    /// For each link, the nearest triangle of this thread, if it was within the bound at its time.
+    /// For each link the nearest triangle of this thread, if it was within the bound at that time.
     pub nearest: Vec<Option<Nearest>>,
-    /// Where every triangle is wanted, each link's place and each triangle that may be within its
+    /// If every triangle is wanted: pairs of a link's index and a triangle that may be within the
     /// bound.
     pub within: Vec<(u32, u32)>,
     pub work: Work,
 }
 
 impl ThreadFindings {
-    /// Adds what another thread found.
+    /// Merges the findings of another thread into this one.
     pub(crate) fn merge(&mut self, other: &ThreadFindings) {
         self.work += other.work;
         self.within.extend(&other.within);
@@ -106,13 +107,13 @@ impl ThreadFindings {
 }
 
 impl<E: Lane> Job<'_, E> {
-    /// How many chunks there are.
+    /// The number of chunks.
     pub(crate) fn chunks(&self) -> usize {
         self.blocks.len().div_ceil(CHUNK)
     }
 
-    /// For each link, a bound from every so many of the spheres: without it, an order in which the
-    /// triangles come nearer and nearer would have them all measured.
+    /// Lowers the bound of each link by a sample of the spheres. Without this step, triangles in
+    /// the order of falling distance would all be measured.
     #[inline(always)]
     pub(crate) fn first_bounds<L: Pack<Element = E>>(&self, token: L::Token) {
         for link in self.links {
@@ -132,8 +133,8 @@ impl<E: Lane> Job<'_, E> {
         }
     }
 
-    /// All links against one chunk of the mesh. With `CULLING` cheap, exact bounds spare what they
-    /// can; without it every pair costs its full distance, discs included.
+    /// Scans one chunk of the mesh for all links. With `CULLING`, exact lower bounds skip most
+    /// pairs. Without it every pair costs its full distance, discs included.
     #[inline(always)]
     pub(crate) fn scan<L: Pack<Element = E>, const CULLING: bool>(
         &self,
@@ -171,7 +172,7 @@ impl<E: Lane> Job<'_, E> {
     }
 }
 
-/// One link's turn with a chunk.
+/// The scan of one chunk for one link.
 struct LinkScan<'a, E> {
     job: &'a Job<'a, E>,
     link: &'a PlacedLink,
@@ -220,7 +221,7 @@ impl<E: Lane> LinkScan<'_, E> {
         }
     }
 
-    /// The scan of a link that is too far out for the precision of the search.
+    /// Measures every triangle, for a link that is too far out for the precision of the search.
     fn measure_all(&mut self, blocks: Range<usize>) {
         self.work.visited += (blocks.len() * BLOCK) as u64;
         for triangle in blocks.start * BLOCK..blocks.end * BLOCK {
@@ -228,9 +229,9 @@ impl<E: Lane> LinkScan<'_, E> {
         }
     }
 
-    /// Measures one triangle in double precision, or keeps it for later. True if it is the nearest
-    /// so far.
-    #[inline(never)] // the same code whatever the instruction set
+    /// Measures one triangle in double precision, or keeps it if every triangle is wanted. Returns
+    /// true if it is the nearest so far.
+    #[inline(never)] // the same code on every instruction set
     fn measure(&mut self, triangle: usize) -> bool {
         if triangle >= self.job.mesh.len().min(self.best.triangle_limit() as usize) {
             return false;

@@ -1,7 +1,7 @@
-//! What a node knows of a child: an oriented box.
+//! The bounding volume of a child: an oriented box.
 //!
-//! A patch of wall is flat, so a box whose one side follows the wall's normal is thin however the
-//! wall is turned.
+//! A patch of wall is nearly flat. So a box with one side along the wall's normal is thin, however
+//! the wall is turned.
 
 use crate::distance::lanes::Pack;
 use crate::distance::{Scalar, Vec3};
@@ -10,7 +10,7 @@ use crate::pair::LinkLanes;
 /// How many numbers a bound has.
 pub(crate) const BOUND_ROWS: usize = 12;
 
-/// What holds all triangles below a child. The fields are those of [`NodeBounds`].
+/// The box around all triangles below a child. The fields are as in [`NodeBounds`].
 #[derive(Clone, Copy)]
 pub(crate) struct NodeBound<E> {
     pub centre: Vec3<E>,
@@ -19,42 +19,52 @@ pub(crate) struct NodeBound<E> {
     pub tangent: Vec3<E>,
 }
 
-/// The bounds of a pack of children.
+/// The boxes of a pack of children.
 #[derive(Clone, Copy)]
 pub(crate) struct NodeBounds<L> {
     pub centre: Vec3<L>,
-    /// How far the triangles reach from the centre along the normal, the tangent and the third
-    /// axis.
+    /// The half extents along the normal, the tangent and the third axis.
     pub half: Vec3<L>,
-    /// The axes of the box, of length one and perpendicular but for rounding. The third is their
-    /// cross product.
+    /// The axes of the box, orthonormal within rounding. The third axis is their cross product.
     pub normal: Vec3<L>,
     pub tangent: Vec3<L>,
 }
 
 impl<L: Pack> NodeBounds<L> {
-    /// The squared distances between the axis of a link and what is bounded, from below but for
-    /// rounding.
+    /// Returns lower bounds on the squared distances between the axis of a link and the boxes,
+    /// within rounding.
     ///
-    /// Along each axis of a box the gap between the box and the link's axis is at most the
-    /// distance's part along it, and the three parts are perpendicular.
+    /// **Definitions.** c: the centre of a box; `h_i`: its half extents along its axes; v: the
+    /// vector from the nearest point of the link's axis to c; `v_i`: its parts along the axes of
+    /// the box.
     ///
-    /// The plane before the link's axis whose normal v leads to the centre keeps from the centre as
-    /// far as v is long; against v the box reaches at most (|v_1| h_1 + |v_2| h_2 + |v_3| h_3)
-    /// / |v|. Where the link is longer than the box, that shows what the gaps do not: the link
-    /// may pass beside the box slantwise.
+    /// **Claim.** The distance is at least each of
+    /// 1. the length of the vector of the *gaps* between box and link along the three axes of the
+    ///    box;
+    /// 2. the *plane* bound `|v| - (|v_1| h_1 + |v_2| h_2 + |v_3| h_3) / |v|`.
     ///
-    /// Rounding, in units of u reach, where reach is at least 1 and bounds all coordinates. The
-    /// axes are of length one within 10 u and perpendicular within 7 u, so a length is that of
-    /// its parts within 17 u. The gaps: 60 for that, as lengths are at most 3.5; 18 for three
-    /// products with `middle`, which itself errs by 5; 9 for those with half the link's axis, 9
-    /// for the differences. The plane: 102 for the axes, as a box reaches at most 3 from its
-    /// centre; 25 for products with the link, 22 for the reach of the box, 7 for the
-    /// differences, 10 for the square and its division. So neither errs by more than three
-    /// times the link's `error`, which is 64: see
+    /// **Proof.**
+    /// 1. Each gap is at most the part of the distance along that axis. The three parts are
+    ///    perpendicular.
+    /// 2. The plane through the nearest point of the axis with normal v has the whole axis behind
+    ///    it. Its distance from c is `|v|`. The box reaches from c towards it by at most the
+    ///    fraction.
+    ///
+    /// Bound 2 is sharper where the link is longer than the box, because the link may pass beside
+    /// the box slantwise. `plane_tells` is false where bound 2 excludes nothing.
+    ///
+    /// **Rounding**, in units of `u reach`, where reach is at least 1 and bounds all coordinates.
+    /// The axes are of length one within `10 u` and perpendicular within `7 u`, so a length is that
+    /// of its parts within `17 u`.
+    /// 1. The gaps: 60 for the axes, as lengths are at most 3.5; 18 for three products with
+    ///    `middle`, which itself errs by 5; 9 for the products with half the link's axis; 9 for the
+    ///    differences.
+    /// 2. The plane: 102 for the axes, as a box reaches at most 3 from its centre; 25 for products
+    ///    with the link; 22 for the reach of the box; 7 for the differences; 10 for the square and
+    ///    its division.
+    ///
+    /// So neither bound errs by more than three times the link's `error`, which is 64: see
     /// [`SearchLink::limit_of_bounds`](crate::pair::SearchLink::limit_of_bounds).
-    ///
-    /// The plane is left out where it excludes nothing.
     #[inline(always)]
     pub(crate) fn squared_distances(&self, link: &LinkLanes<L>, plane_tells: bool) -> L {
         let third = self.normal.cross(self.tangent);
@@ -66,23 +76,23 @@ impl<L: Pack> NodeBounds<L> {
         (ahead * ahead).over(squared).max(gaps)
     }
 
-    /// Which of them are below `limit` or may be, as bits, without a division; and how far the
-    /// centres are from the axis, squared.
+    /// Returns which boxes may be closer than `limit`, one bit each, without a division. Also
+    /// returns the squared distances of the centres from the axis.
     ///
-    /// No product falls below the range where that could tell: whatever the plane keeps at `limit`
-    /// has a centre as far away, and `limit` is never less than the rounding of numbers near
-    /// one.
+    /// The tests are as in [`squared_distances`](Self::squared_distances). No product that decides
+    /// underflows. A box that the plane excludes at `limit` has a centre at least as far away. And
+    /// `limit` is at least the rounding of numbers near one.
     #[inline(always)]
     pub(crate) fn may_meet(&self, link: &LinkLanes<L>, limit: L) -> (u64, L) {
         let third = self.normal.cross(self.tangent);
         let (ahead, squared) = self.ahead_of_plane(link, third);
         let limit = limit * limit;
-        // A centre on the axis rules nothing out.
+        // A centre on the axis excludes nothing.
         let near = self.squared_gaps(link, third).lt(limit) & !(limit * squared).lt(ahead * ahead);
         (L::bits(near), squared)
     }
 
-    /// How far the children keep from the plane before the axis, in units of 1 / |v|, and |v|^2.
+    /// Returns the plane bound times `|v|`, at least 0, and `|v|^2`.
     #[inline(always)]
     fn ahead_of_plane(&self, link: &LinkLanes<L>, third: Vec3<L>) -> (L, L) {
         let zero = self.half.x.zero();
@@ -94,8 +104,8 @@ impl<L: Pack> NodeBounds<L> {
         ((v.dot(relative) - link.link.reach_along(v) - reach).max(zero), v.norm_squared())
     }
 
-    /// The squared lengths of the gaps between the children and the axis, along the three axes of
-    /// the boxes.
+    /// Returns the squared lengths of the gaps between the boxes and the axis, along the three axes
+    /// of the boxes.
     #[inline(always)]
     fn squared_gaps(&self, link: &LinkLanes<L>, third: Vec3<L>) -> L {
         let half = link.link.end * self.half.x.lit(0.5);
@@ -107,8 +117,8 @@ impl<L: Pack> NodeBounds<L> {
     }
 }
 
-/// How far a segment, `half` to either side of `middle`, keeps along an axis from what reaches so
-/// far from the origin.
+/// The gap along an axis between a segment, `half` to either side of `middle`, and a box that
+/// reaches `reach` from the origin.
 #[inline(always)]
 fn gap<T: Scalar>(middle: Vec3<T>, half: Vec3<T>, axis: Vec3<T>, reach: T) -> T {
     (middle.dot(axis).abs() - half.dot(axis).abs() - reach).max(reach.zero())
@@ -159,8 +169,7 @@ pub(crate) mod tests {
         ((0..65 * 65).map(point).collect(), triangles.collect())
     }
 
-    /// What may meet a link is never fewer children than hold a corner near it, and the two ways to
-    /// ask agree.
+    /// Both tests find every child that holds a corner near a link, and they agree.
     #[test]
     fn no_child_near_a_link_is_left_out() {
         #[inline(always)]
@@ -207,8 +216,8 @@ pub(crate) mod tests {
                     corners.iter().map(distance).fold(f64::INFINITY, f64::min)
                 };
                 let least: Vec<_> = children(node).map(least).collect();
-                // The limits of a query, and for each child one that its nearest corner is only
-                // just below.
+                // The limits of a query, and for each child a limit just above the distance of its
+                // nearest corner.
                 let only_just = least.iter().map(|least| (*least as f32).next_up());
                 for axis_limit in [0.0, 0.01, 0.1]
                     .map(|within| link.axis_limit(within))
@@ -234,7 +243,7 @@ pub(crate) mod tests {
             }
         }
         assert!(near > 10_000 && far > 10_000, "{near} near, {far} left out");
-        // But for what rounding decides.
+        // Except where rounding decides.
         assert!(differ < near / 100, "{differ}");
     }
 }

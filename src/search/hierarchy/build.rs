@@ -1,8 +1,13 @@
-//! The hierarchy over a mesh's triangles: 16 children a node, 16 triangles a leaf, in the precision
-//! of the search.
+//! Builds and refits the hierarchy over a mesh: 16 children per node, 16 triangles per leaf.
 //!
-//! A pack bounds all children of a node at once, and all triangles of a leaf at once. The leaves
-//! below a node stand one behind the other in memory.
+//! One pack bounds all children of a node, or all triangles of a leaf. The leaves below a node are
+//! contiguous in memory.
+//!
+//! # Algorithm
+//! 1. **Arrange.** Split the triangles near the median of their centroids along the longest side of
+//!    the centroids' box. Repeat until each node has 16 parts, and recursively below each part.
+//! 2. **Split.** Create the nodes and leaves from that order.
+//! 3. **Refit.** Fill the leaves with vertices, then bound each child by the leaves below it.
 
 use super::bound::NodeBound;
 use super::node::{Child, Leaf, Node, WIDTH};
@@ -14,16 +19,16 @@ use fearless_simd::Level;
 use std::cmp::Ordering;
 use std::ops::Range;
 
-/// How many leaves one thread works on at a time.
+/// Leaves that one task takes.
 const TASK_SIZE: usize = 64;
 
-/// The hierarchy of a mesh.
+/// The hierarchy of a mesh, in the precision of the search.
 #[derive(Clone)]
 pub(crate) struct WideBvh<E> {
     pub frame: SearchFrame,
     pub nodes: Vec<Node<E>>,
     pub leaves: Vec<Leaf<E>>,
-    /// Where each triangle stands: its lane, and 16 times the number of its leaf.
+    /// For each triangle 16 times the number of its leaf, plus its lane.
     pub place_of: Vec<u32>,
 }
 
@@ -43,8 +48,8 @@ impl<E: Lane> WideBvh<E> {
         tree
     }
 
-    /// Gives a node its children, for triangles that stand in order: a leaf each for up to 16 of
-    /// them, a node for more. Returns the lowest number of a triangle.
+    /// Step 2: gives a node its children. Each part of up to 16 triangles becomes a leaf, a larger
+    /// part a node. Returns the lowest triangle number.
     fn split(&mut self, node: usize, items: &[Item<E>]) -> u32 {
         let first = self.leaves.len();
         let mut lowest = u32::MAX;
@@ -70,21 +75,21 @@ impl<E: Lane> WideBvh<E> {
         lowest
     }
 
-    /// The triangles below a child.
+    /// Returns the triangles below a child.
     pub(crate) fn triangles_below(&self, child: Child) -> impl Iterator<Item = u32> + Clone {
         self.leaves[child.leaves(|node| self.nodes[node].leaves.clone())]
             .iter()
             .flat_map(Leaf::triangles)
     }
 
-    /// Fits all bounds to where the vertices are now; the division stays.
+    /// Step 3: fits all bounds to the current vertices. The tree itself stays the same.
     pub(crate) fn refit(&mut self, level: Level, mesh: &Mesh) {
         self.frame = SearchFrame::new(mesh);
         let frame = &self.frame;
         each(&mut self.leaves.chunks_mut(TASK_SIZE).collect::<Vec<_>>(), |_, leaves| {
             leaves.iter_mut().for_each(|leaf| leaf.fill(frame, mesh));
         });
-        // No bound waits for another.
+        // Each bound is computed from the leaves, so all nodes are independent.
         let leaves = &self.leaves;
         let below: Vec<_> = self.nodes.iter().map(|node| node.leaves.clone()).collect();
         each(&mut self.nodes.chunks_mut(TASK_SIZE / WIDTH).collect::<Vec<_>>(), |_, nodes| {
@@ -93,7 +98,7 @@ impl<E: Lane> WideBvh<E> {
     }
 }
 
-/// Bounds the children of nodes. `below` says which leaves are below a node.
+/// Bounds the children of nodes. `below` gives the leaves below each node.
 #[inline(always)]
 fn bound_children<L: Pack>(
     token: L::Token,
@@ -116,7 +121,7 @@ fn bound_children<L: Pack>(
 /// A triangle and three times its centroid.
 type Item<E> = (u32, [E; 3]);
 
-/// All triangles of a mesh.
+/// The triangles of a mesh with their centroids.
 fn items<E: Lane>(frame: &SearchFrame, mesh: &Mesh) -> Vec<Item<E>> {
     let mut items = vec![Item::default(); mesh.len()];
     each(&mut items.chunks_mut(Mesh::TASK_SIZE).collect::<Vec<_>>(), |share, items| {
@@ -128,8 +133,8 @@ fn items<E: Lane>(frame: &SearchFrame, mesh: &Mesh) -> Vec<Item<E>> {
     items
 }
 
-/// How many triangles each child of a node with `count` triangles should hold, so that the nodes
-/// near the leaves, which are nearly all, are full: 16, 256, 4096 ...
+/// Returns how many triangles each child of a node with `count` triangles should hold: 16, 256,
+/// 4096, ... Then the nodes near the leaves, which are nearly all nodes, are full.
 fn full_subtree(count: usize) -> usize {
     let mut unit = BLOCK;
     // A few children of two units each are better than another level.
@@ -139,14 +144,14 @@ fn full_subtree(count: usize) -> usize {
     unit
 }
 
-/// Where so many triangles are divided in two, a multiple of `unit`; None for those of one child.
-/// `most` says how many children may come of them.
+/// Returns where `count` triangles are split in two, a multiple of `unit`. None if they belong to
+/// one child. `most` is the number of children that may result.
 fn middle(count: usize, most: usize, unit: usize) -> Option<usize> {
     (most > 1 && count > unit).then(|| (count / 2).next_multiple_of(unit).min(count - 1))
 }
 
-/// Brings the triangles below a node into an order in which those of a child stand together, and so
-/// on below: they are divided along the longest side of their centroids' box, again and again.
+/// Step 1: orders the triangles below a node so that the triangles of each child are contiguous,
+/// recursively.
 fn arrange<E: Lane>(items: &mut [Item<E>], most: usize, unit: usize) {
     let Some(middle) = middle(items.len(), most, unit) else {
         if items.len() > BLOCK {
@@ -164,7 +169,7 @@ fn arrange<E: Lane>(items: &mut [Item<E>], most: usize, unit: usize) {
     both(is_worth_it, || arrange(low, most / 2, unit), || arrange(high, most / 2, unit));
 }
 
-/// The parts of a node's triangles that [`arrange`] made of them.
+/// The parts of a node's triangles in the order of [`arrange`].
 fn parts<E>(items: &[Item<E>]) -> Vec<&[Item<E>]> {
     fn divide<'a, E>(
         items: &'a [Item<E>],
@@ -182,7 +187,7 @@ fn parts<E>(items: &[Item<E>]) -> Vec<&[Item<E>]> {
     parts
 }
 
-/// The axis along which centroids are spread most.
+/// The axis along which the centroids spread most.
 fn longest_side<E: Lane>(items: &[Item<E>]) -> usize {
     let first = items[0].1;
     let (low, high) = items.iter().fold((first, first), |(low, high), (_, centroid)| {

@@ -1,8 +1,9 @@
-//! In which order candidates are measured.
+//! The order in which candidates are measured.
 
-/// Brings the candidates with the least bounds to the first `count` places. The others stay where
-/// they are but for those that make room: they were met leaf by leaf, and triangles that are near
-/// each other often are in memory too.
+/// Moves the candidates with the least bounds to the first `count` places.
+///
+/// The others keep their places, except where they make room. They are in the order of the leaves,
+/// so triangles that are near each other are often near in memory too.
 pub(crate) fn select_least<E: Copy + PartialOrd>(candidates: &mut [(E, u32)], count: usize) {
     let Some((first, others)) = candidates.split_at_mut_checked(count) else { return };
     let mut farthest = farthest_of(first);
@@ -29,7 +30,7 @@ mod tests {
         let random = &mut Random::new(5);
         let mut moved = 0;
         for _ in 0..1000 {
-            // Bounds that are often the same, each triangle once.
+            // Many bounds are equal; each triangle occurs once.
             let length = random.below(40);
             let before: Vec<_> = (0..length).map(|triangle| (random.below(12), triangle)).collect();
             let count = random.below(10) as usize;
@@ -48,7 +49,7 @@ mod tests {
                 );
                 let strays =
                     after.iter().zip(&before).skip(count).filter(|(after, before)| after != before);
-                // Whoever came forward left its place to another.
+                // Each candidate that moved to the front swapped places with another.
                 let came = first.iter().filter(|candidate| candidate.1 as usize >= count).count();
                 assert!(strays.clone().count() >= came);
                 moved += came;

@@ -1,4 +1,4 @@
-//! The triangles that may be within a bound of a link, if they are not too many.
+//! Gathers the triangles that may be within a bound of a link, up to a number.
 
 use super::{LeafVisitor, WideBvh};
 use crate::distance::Face;
@@ -6,16 +6,16 @@ use crate::distance::lanes::{Lane, Pack};
 use crate::mesh::{BLOCK, Mesh, load_vertices};
 use crate::pair::LinkLanes;
 
-/// Where triangles are gathered. What leaves them out is what leaves them out of a search for the
-/// nearest (`traverse`).
+/// The triangles gathered so far. The tests are the same as in a search for the nearest triangle
+/// (`traverse`).
 pub(super) struct CappedGather<'a, E> {
-    /// What a triangle's axis distance must be below.
+    /// A gathered triangle has an axis distance below this.
     pub limit: E,
-    /// How many there may be.
+    /// The most triangles to gather.
     pub most: usize,
-    /// Those so far.
+    /// The triangles so far.
     pub found: &'a mut Vec<u32>,
-    /// Whether there are more.
+    /// Whether there are more than `most`.
     pub is_overfull: bool,
 }
 

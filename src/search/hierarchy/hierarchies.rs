@@ -1,4 +1,4 @@
-//! A mesh's hierarchies, and the precision that resolves a link.
+//! The hierarchies of a mesh in single and double precision, and which of them resolves a link.
 
 use super::build::WideBvh;
 use crate::mesh::Mesh;
@@ -15,10 +15,10 @@ pub(crate) struct Hierarchy {
     pub reach: Real,
     /// The longest side of the box around all triangles.
     pub size: Real,
-    /// The longest edge of a triangle.
+    /// An upper bound on the longest edge, computed on first use.
     longest: Lazy<Real>,
     single: WideBvh<f32>,
-    /// For links that single precision does not resolve, built when the first of them comes.
+    /// For links that single precision does not resolve; built on first use.
     double: Lazy<WideBvh<f64>>,
 }
 
@@ -32,23 +32,23 @@ impl Hierarchy {
         self.double.get_or_build(|| WideBvh::new(level, &self.mesh))
     }
 
-    /// The longest edge of a triangle, or more.
+    /// An upper bound on the longest edge of a triangle.
     pub(crate) fn longest(&self) -> Real {
         *self.longest.get_or_build(|| longest(&self.mesh))
     }
 
-    /// The hierarchy that is always there.
+    /// The single-precision hierarchy, which always exists.
     pub(crate) fn single(&self) -> &WideBvh<f32> {
         &self.single
     }
 
-    /// Builds what a query far out would build.
+    /// Builds everything that a later query might build.
     pub(crate) fn prepare(&self, level: Level) {
         self.double(level);
         self.longest();
     }
 
-    /// The link in the precision that resolves it.
+    /// Returns the link in the precision that resolves it.
     pub(crate) fn searched(&self, level: Level, link: &PlacedLink) -> Searched {
         let single = SearchLink::new(link, &self.single.frame);
         if let Some(single) = single.filter(|single| single.is_resolved(&self.single.frame)) {
@@ -60,7 +60,7 @@ impl Hierarchy {
         }
     }
 
-    /// Moves the vertices of the mesh, which were checked.
+    /// Moves the vertices, which the caller has checked, and refits.
     pub(crate) fn set_vertices(&mut self, level: Level, vertices: &[Vector]) {
         self.mesh.set_vertices(vertices);
         [self.reach, self.size] = extent(self.mesh.bounds());
@@ -74,12 +74,12 @@ impl Hierarchy {
     }
 }
 
-/// The largest coordinate of what lies in a box, and the box's longest side.
+/// The largest coordinate of a box, and its longest side.
 fn extent([low, high]: [Vector; 2]) -> [Real; 2] {
     [low.abs().max(high.abs()).max_element(), (high - low).max_element()]
 }
 
-/// The longest edge of a triangle, or up to twice as much.
+/// An upper bound on the longest edge of a triangle, at most twice as long.
 fn longest(mesh: &Mesh) -> Real {
     let edge = |triangle: &[u32; 3]| {
         let [a, b, c] = triangle.map(|vertex| mesh.vertices()[vertex as usize]);
@@ -88,7 +88,8 @@ fn longest(mesh: &Mesh) -> Real {
     let mut shares: Vec<_> =
         mesh.indices().chunks(Mesh::TASK_SIZE).map(|share| (share, 0.0)).collect();
     each(&mut shares, |_, (share, most)| *most = share.iter().map(edge).fold(0.0, Real::max));
-    // Squares would overflow. The diagonal of a cube is less than twice its edge.
+    // The largest side of a box is used, because squares would overflow. The diagonal of a cube is
+    // less than twice its edge.
     2.0 * shares.into_iter().fold(0.0, |most: Real, (_, edge)| most.max(edge))
 }
 
@@ -96,6 +97,6 @@ fn longest(mesh: &Mesh) -> Real {
 pub(crate) enum Searched {
     Single(SearchLink<f32>),
     Double(SearchLink<f64>),
-    /// Farther out than double precision reaches beside a mesh so small.
+    /// Too far out even for double precision, beside a mesh so small.
     OutOfReach,
 }

@@ -1,15 +1,16 @@
-//! What looks at the leaves that a link comes near to.
+//! The action at each leaf that a traversal reaches.
 
 use super::WideBvh;
 use crate::distance::lanes::{Lane, Pack};
 use crate::mesh::Mesh;
 use crate::pair::LinkLanes;
 
-/// Is shown the leaves of a [`Traversal`](super::Traversal), one after another. (A closure would
-/// not do: it is not compiled into the loop for each instruction set, and would call a function for
-/// every operation on a pack.)
+/// Receives the leaves of a [`Traversal`](super::Traversal), one after another.
+///
+/// A closure would be too slow: it is not inlined into the loop for each instruction set, so every
+/// operation on a pack would be a function call.
 pub(crate) trait LeafVisitor<E: Lane> {
-    /// Implementations are to be inlined always.
+    /// Processes one leaf. Implementations must be `#[inline(always)]`.
     fn visit<L: Pack<Element = E>>(
         &mut self,
         token: L::Token,

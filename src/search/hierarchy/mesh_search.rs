@@ -9,7 +9,7 @@ use crate::pair::{Best, Nearest, PlacedLink};
 use fearless_simd::Level;
 use parry3d_f64::math::{Real, Vector};
 
-/// Memory of a query, used again by the next.
+/// Stacks and counters of a query, reused by later queries.
 #[derive(Clone, Default)]
 pub(crate) struct Scratch {
     single: Stack<f32>,
@@ -17,18 +17,18 @@ pub(crate) struct Scratch {
     pub work: Work,
 }
 
-/// A search through a mesh, with the memory it needs.
+/// A search through a mesh, with its scratch memory.
 pub(crate) struct MeshSearch<'a> {
     pub level: Level,
     pub hierarchy: &'a Hierarchy,
     pub scratch: &'a mut Scratch,
-    /// Where the vertices are, if the mesh moves; what `nearest` and `may_meet` find is then found
+    /// The placement of a moving mesh. `nearest`, `may_meet` and `gather` then search the mesh
     /// there.
     pub moved: Option<MeshAt<'a>>,
 }
 
-/// Asks the traversal in the precision that resolves a link, or does something else where none
-/// does.
+/// Runs `$ask` on the traversal in the precision that resolves a link. Runs `$out_of_reach` if
+/// neither precision does.
 macro_rules! resolved {
     ($search:ident, $link:expr, |$traversal:ident, $searched:ident| $ask:expr, $out_of_reach:expr) => {
         match $search.hierarchy.searched($search.level, $link) {
@@ -53,8 +53,8 @@ impl<'a> MeshSearch<'a> {
 }
 
 impl MeshSearch<'_> {
-    /// The triangle nearest to a link that improves on `best`. The triangles to `start` with come
-    /// first.
+    /// Returns the nearest triangle of a link, or `best` if no triangle improves on it. The `start`
+    /// triangles are tested first.
     pub(crate) fn nearest(
         &mut self,
         link: &PlacedLink,
@@ -90,8 +90,9 @@ impl MeshSearch<'_> {
         )
     }
 
-    /// The same without a bound, unless few triangles are in question: they are then added to
-    /// `few`, the likeliest first, and not measured.
+    /// Returns the nearest triangle at any distance, if a triangle overlaps or many candidates
+    /// remain. Otherwise returns none and adds the candidates to `few`, unmeasured, the least bound
+    /// first.
     pub(crate) fn nearest_or_candidates(
         &mut self,
         link: &PlacedLink,
@@ -106,9 +107,10 @@ impl MeshSearch<'_> {
         )
     }
 
-    /// The same as [`MeshSearch::nearest`], and what the link keeps from all triangles at the
-    /// least, with a triangle about as near if one was met.
-    /// Nothing is looked for that is farther than `far`, which is `best`'s bound or more.
+    /// Returns the nearest triangle as [`MeshSearch::nearest`] does, and a lower bound on the
+    /// distance of all triangles. Also returns a triangle at about that bound, if one was met.
+    ///
+    /// No triangle farther than `far` is searched; `far` is at least the bound of `best`.
     pub(crate) fn nearest_with_lower_bound(
         &mut self,
         link: &PlacedLink,
@@ -125,7 +127,8 @@ impl MeshSearch<'_> {
         )
     }
 
-    /// About the triangle nearest to a capsule around links, if any is within reach.
+    /// Returns a triangle about nearest to a capsule around links. None if the capsule is out of
+    /// reach.
     pub(crate) fn approximate_nearest(&mut self, capsule: &PlacedLink) -> Option<u32> {
         resolved!(
             self,
@@ -135,8 +138,8 @@ impl MeshSearch<'_> {
         )
     }
 
-    /// Whether any triangle may be at most `bound` from a capsule around links; false only if none
-    /// is.
+    /// Returns true if any triangle may be at most `bound` from a capsule around links.
+    /// Conservative: false is exact.
     pub(crate) fn may_meet(&mut self, capsule: &PlacedLink, bound: Real) -> bool {
         if let Some(moved) = &mut self.moved {
             return moved.may_meet(self.hierarchy.single(), capsule, bound);
@@ -144,7 +147,7 @@ impl MeshSearch<'_> {
         self.may_meet_below(capsule, bound, u32::MAX)
     }
 
-    /// The same of the triangles with a lower number than `below`.
+    /// The same for the triangles with a number less than `below`.
     pub(crate) fn may_meet_below(&mut self, capsule: &PlacedLink, bound: Real, below: u32) -> bool {
         resolved!(
             self,
@@ -154,8 +157,8 @@ impl MeshSearch<'_> {
         )
     }
 
-    /// All triangles that may be at most `bound` from a link, in no order; false if they are more
-    /// than `most`, or unknown.
+    /// Writes to `found` all triangles that may be at most `bound` from a link, in no order.
+    /// Returns false if there are more than `most`, or if they are unknown.
     pub(crate) fn gather(
         &mut self,
         link: &PlacedLink,
@@ -182,20 +185,20 @@ impl MeshSearch<'_> {
         )
     }
 
-    /// Whether a mesh that is tiny beside a link may be at most `bound` from it: all its triangles
-    /// are about where the first one is.
+    /// Returns true if a mesh that is tiny beside a link may be at most `bound` from it. Such a
+    /// mesh lies about where its first triangle is.
     fn is_near(&self, link: &PlacedLink, bound: Real) -> bool {
         let (first, size) = (self.any(link).distance, self.hierarchy.size);
         let extent = link.along().abs().max_element() + link.radius();
         first - 2.0 * size - 64.0 * Real::UNIT_ROUNDOFF * (first + size + extent) <= bound
     }
 
-    /// Some triangle, for a link whose nearest no search finds.
+    /// Returns the distance of the first triangle, for a link whose search finds none.
     pub(crate) fn any(&self, link: &PlacedLink) -> Nearest {
         link.measure(0, self.corners(0))
     }
 
-    /// The corners of a triangle.
+    /// Returns the corners of a triangle, at its current placement if the mesh moves.
     pub(crate) fn corners(&self, triangle: u32) -> [Vector; 3] {
         let mesh = &self.hierarchy.mesh;
         self.moved

@@ -1,4 +1,5 @@
-//! Search through a hierarchy 16 children wide, a pack of them at a time.
+//! Search through a bounding volume hierarchy with 16 children per node, a pack of children at a
+//! time.
 
 mod bound;
 mod build;

@@ -1,14 +1,23 @@
-//! A mesh whose vertices move straight and evenly, and the search through it at a moment.
+//! A mesh whose vertices move along straight lines at constant speed, and the search through it.
 //!
-//! A vertex goes from x to y, and is at x + t (y - x) at the time t. In a direction a it is at the
-//! share t between a x and a y, so a box that holds vertices at either end of the time, in the same
-//! axes, holds them at all times if its sides move evenly too. So each box is known from two boxes,
-//! and nothing is fitted again for a moment. The axes are those of the mesh's frame.
+//! # Definitions
+//! - A vertex moves from x to y; at the time t in `[0, 1]` it is at `x + t (y - x)`.
+//! - A *moving box* is a pair of boxes in the axes of the mesh's frame, at t = 0 and t = 1. At the
+//!   time t each side lies at the share t between its two places.
 //!
-//! The search is in double precision, the nearest child first. A child is left out by the gap
-//! between its box and the axis of the body along each axis, or by a plane before the axis that
-//! faces the box's centre (`bound`). Of a box and a link whose coordinates are below `reach` these
-//! bounds, and a vertex on its way, err by less than 64 u reach, which counts against leaving out.
+//! **Claim.** If a moving box holds some vertices at t = 0 and at t = 1, it holds them at all t.
+//!
+//! **Proof.** In each direction a, a vertex is at the share t between `a x` and `a y`. Each side of
+//! the box moves likewise. The vertex is on the inner side of it at both ends, and so at t.
+//!
+//! So no box is refitted for an instant.
+//!
+//! # Search
+//! The search is in double precision, nearest child first. It prunes a child by the larger of two
+//! lower bounds: the gaps between box and link along the axes, and the plane test of `bound`.
+//!
+//! **Rounding.** For a box and a link with coordinates below `reach`, these bounds and an
+//! interpolated vertex err by less than `64 u reach`. That error is subtracted from each bound.
 
 use super::build::WideBvh;
 use super::node::Child;
@@ -18,7 +27,7 @@ use crate::mesh::Mesh;
 use crate::pair::{Best, PlacedLink};
 use parry3d_f64::math::{Real, Vector};
 
-/// From where to where a coordinate reaches in a box.
+/// The ranges of the three coordinates in a box.
 #[derive(Clone, Copy, Debug)]
 struct CoordinateRange {
     low: Vector,
@@ -37,27 +46,26 @@ impl CoordinateRange {
     }
 }
 
-/// The boxes around what is below a child, at both ends of the time.
+/// The boxes around the triangles below a child at t = 0 and t = 1.
 type MovingBox = [CoordinateRange; 2];
 
-/// Where the vertices of a mesh go, and boxes around its triangles on the way.
+/// The final vertices of a moving mesh, and boxes around its triangles.
 #[derive(Clone, Default)]
 pub(crate) struct MovingMesh {
     to: Vec<Vector>,
-    /// Those of the nodes, and of the leaves.
+    /// The boxes of the nodes; `leaves` has those around leaves.
     nodes: Vec<MovingBox>,
     leaves: Vec<MovingBox>,
-    /// No vertex of a triangle is faster.
+    /// An upper bound on the speed of every vertex of a triangle.
     speed: Real,
     /// The largest coordinate of a triangle at either end.
     reach: Real,
-    /// Memory: what waits for its turn, the nearest last.
+    /// Scratch memory: children to visit, the nearest last.
     waiting: Vec<(Real, u32)>,
 }
 
 impl MovingMesh {
-    /// Moves the vertices of a mesh to these places, which were checked; `tree` is any hierarchy of
-    /// the mesh.
+    /// Sets the final vertices, which the caller has checked. `tree` is any hierarchy of the mesh.
     pub(crate) fn set(&mut self, mesh: &Mesh, tree: &WideBvh<f32>, to: &[Vector]) {
         self.to.clear();
         self.to.extend_from_slice(to);
@@ -73,7 +81,7 @@ impl MovingMesh {
             }
             self.leaves.push(sides);
         }
-        // Differences and a length.
+        // Covers the rounding of differences and a length.
         self.speed *= 1.0 + 8.0 * Real::UNIT_ROUNDOFF;
         self.nodes.clear();
         self.nodes.resize(tree.nodes.len(), [CoordinateRange::NOTHING; 2]);
@@ -104,7 +112,7 @@ impl MovingMesh {
     }
 }
 
-/// A mesh that moves, at a moment.
+/// A moving mesh at one instant.
 pub(crate) struct MeshAt<'a> {
     pub moving: &'a mut MovingMesh,
     /// The time, from 0 to 1.
@@ -112,7 +120,7 @@ pub(crate) struct MeshAt<'a> {
 }
 
 impl MeshAt<'_> {
-    /// The corners of a triangle.
+    /// The corners of a triangle at this instant.
     pub(crate) fn corners(&self, mesh: &Mesh, triangle: u32) -> [Vector; 3] {
         mesh.indices()[triangle as usize].map(|vertex| {
             let (from, to) = (mesh.vertices()[vertex as usize], self.moving.to[vertex as usize]);
@@ -120,8 +128,8 @@ impl MeshAt<'_> {
         })
     }
 
-    /// The triangle nearest to a link that improves on `best`. The triangle to `start` with comes
-    /// first.
+    /// Returns the nearest triangle of a link, or `best` if no triangle improves on it. The `start`
+    /// triangle is tested first.
     pub(crate) fn nearest(
         &mut self,
         mesh: &Mesh,
@@ -173,7 +181,8 @@ impl MeshAt<'_> {
         best
     }
 
-    /// Whether any triangle may be at most `bound` from a capsule; false only if none is.
+    /// Returns true if any triangle may be at most `bound` from a capsule. Conservative: false is
+    /// exact.
     pub(crate) fn may_meet(
         &mut self,
         tree: &WideBvh<f32>,
@@ -199,8 +208,8 @@ impl MeshAt<'_> {
         is_met
     }
 
-    /// All triangles that may be at most `bound` from a link, in no order; false if they are more
-    /// than `most`.
+    /// Adds to `found` all triangles that may be at most `bound` from a link, in no order. Returns
+    /// false if there are more than `most`.
     pub(crate) fn gather(
         &mut self,
         mesh: &Mesh,
@@ -245,12 +254,12 @@ fn between(from: Vector, to: Vector, share: Real) -> Vector {
     from + (to - from) * share
 }
 
-/// The axis of a link.
+/// The axis and radius of a link.
 struct Axis {
     start: Vector,
     along: Vector,
     radius: Real,
-    /// What rounding can do to a bound.
+    /// An upper bound on the rounding of a lower bound.
     error: Real,
 }
 
@@ -261,8 +270,7 @@ impl Axis {
         Self { start, along: link.along(), radius, error: 64.0 * Real::UNIT_ROUNDOFF * reach }
     }
 
-    /// What the link keeps from a box at the least, or a little less; below 0 where nothing is
-    /// known.
+    /// Returns a lower bound on the distance of the link from a box. Below 0 it says nothing.
     fn bound(&self, sides: &MovingBox, share: Real) -> Real {
         let [low, high] = [
             between(sides[0].low, sides[1].low, share),
@@ -272,9 +280,9 @@ impl Axis {
         let relative = centre - self.start;
         let middle = self.along * 0.5;
         let gaps = ((relative - middle).abs() - middle.abs() - half).max(Vector::ZERO);
-        // The plane before the axis whose normal leads from its nearest place to the centre.
+        // The plane through the nearest point of the axis, with its normal towards the centre.
         let place = relative.dot(self.along) / self.along.length_squared();
-        // 0 / 0 without a length: the comparison turns it into 0.
+        // Without a length this is 0 / 0; the comparison turns NaN into 0.
         let place = if place > 0.0 { place.min(1.0) } else { 0.0 };
         let ahead = relative - self.along * place;
         let away = ahead.length();

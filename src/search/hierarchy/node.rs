@@ -1,4 +1,4 @@
-//! A node of the hierarchy with its up to 16 children, and a leaf with its up to 16 triangles.
+//! A node of the hierarchy with up to 16 children, and a leaf with up to 16 triangles.
 
 use super::bound::{BOUND_ROWS, NodeBound, NodeBounds};
 #[cfg(test)]
@@ -7,10 +7,10 @@ use crate::distance::lanes::{Lane, Pack};
 use crate::mesh::{BLOCK, Mesh, SearchFrame, load, place_face};
 use std::ops::Range;
 
-/// How many children a node has: as many as a leaf has triangles, so that both are loaded alike.
+/// Children per node: as many as a leaf has triangles, so that both are loaded alike.
 pub(crate) const WIDTH: usize = BLOCK;
 
-/// A child's number, and what it is.
+/// The number of a child, and its kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Child {
     Node(u32),
@@ -31,7 +31,8 @@ impl Child {
         if packed & Self::LEAF == 0 { Self::Node(packed) } else { Self::Leaf(packed & !Self::LEAF) }
     }
 
-    /// The leaves below, or it alone; `of_node` gives those of a node.
+    /// Returns the leaves below the child, or the child itself. `of_node` gives the leaves of a
+    /// node.
     pub(crate) fn leaves(self, of_node: impl Fn(usize) -> Range<usize>) -> Range<usize> {
         match self {
             Self::Node(node) => of_node(node as usize),
@@ -40,19 +41,18 @@ impl Child {
     }
 }
 
-/// Up to 16 children and what bounds them. Aligned, so that no row of a pack lies in two lines of
-/// the cache.
+/// Up to 16 children and their bounds. Aligned, so that no row of a pack straddles two cache lines.
 #[derive(Clone)]
 #[repr(align(64))]
 pub(crate) struct Node<E> {
     /// Rows of centre, half extents, normal and tangent, three numbers each; see [`NodeBounds`].
     rows: [E; BOUND_ROWS * WIDTH],
     pub children: [u32; WIDTH],
-    /// The lowest number of a triangle below each child.
+    /// The lowest triangle number below each child.
     pub lowest: [u32; WIDTH],
     /// The size of the largest child.
     pub largest: E,
-    /// The leaves below.
+    /// The leaves below the node.
     pub leaves: Range<usize>,
     count: usize,
 }
@@ -61,15 +61,15 @@ pub(crate) struct Node<E> {
 #[derive(Clone)]
 #[repr(align(64))]
 pub(crate) struct Leaf<E> {
-    /// Rows of the coordinates of three vertices, in the order in which a
-    /// [`Face`](crate::distance::Face) has them; lanes without a triangle repeat the last one.
+    /// Rows of the coordinates of three vertices, in the order of a
+    /// [`Face`](crate::distance::Face). Lanes without a triangle repeat the last triangle.
     pub rows: [E; 9 * BLOCK],
     pub triangles: [u32; BLOCK],
 }
 
 impl<E: Lane> Node<E> {
-    /// Bounds beyond anything of a mesh, so that unused children are only near where no limit rules
-    /// out anything: [`Node::used`] drops them there.
+    /// A node without children. The bounds of unused children lie far beyond the mesh. They pass
+    /// only a limit that excludes nothing; [`Node::used`] drops them there.
     pub(crate) fn empty() -> Self {
         let far = E::round(1.0e9 * E::FARTHEST);
         let (zero, one) = (E::default(), E::default().one());
@@ -114,7 +114,7 @@ impl<E: Lane> Node<E> {
         NodeBound { centre: point(0), half: point(3), normal: point(6), tangent: point(9) }
     }
 
-    /// The largest side of a child's box.
+    /// The longest side of a child's box.
     #[inline(always)]
     pub(crate) fn size(&self, child: usize) -> E {
         let half = |axis: usize| self.rows[(3 + axis) * WIDTH + child];
@@ -151,7 +151,7 @@ impl<E: Lane> Node<E> {
 }
 
 impl<E: Lane> Leaf<E> {
-    /// Of up to 16 triangles and at least one; the last is repeated in the lanes that are left.
+    /// A leaf of 1 to 16 triangles. The last triangle is repeated in the remaining lanes.
     pub(crate) fn of(triangles: impl Fn(usize) -> u32, count: usize) -> Self {
         let triangles = std::array::from_fn(|lane| triangles(lane.min(count - 1)));
         Self { rows: [E::default(); 9 * BLOCK], triangles }
@@ -164,7 +164,7 @@ impl<E: Lane> Leaf<E> {
         (0..BLOCK).filter(is_first).map(|lane| self.triangles[lane])
     }
 
-    /// Fills the leaf with the triangles as they are now.
+    /// Fills the leaf with the current vertices of its triangles.
     pub(crate) fn fill(&mut self, frame: &SearchFrame, mesh: &Mesh) {
         for lane in 0..BLOCK {
             place_face(frame, mesh, self.triangles[lane], &mut self.rows, lane);

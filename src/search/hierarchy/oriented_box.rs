@@ -1,4 +1,10 @@
-//! The box around the triangles of leaves.
+//! The oriented box around the triangles of leaves.
+//!
+//! # Algorithm
+//! 1. The first axis is the mean normal of the triangles, weighted by area.
+//! 2. The second axis is the best of four directions across it, a quarter of a right angle apart:
+//!    the least area of the box across the normal.
+//! 3. The third axis is the cross product. The half extents are rounded up.
 
 use super::bound::NodeBound;
 use super::node::Leaf;
@@ -6,8 +12,8 @@ use crate::distance::lanes::{Lane, Pack};
 use crate::distance::{Scalar, Vec3};
 use crate::mesh::{BLOCK, load_vertices, splat};
 
-/// The directions of a box's sides across its normal that are tried: the angle from the first one
-/// in turns of a right angle, by its cosine and sine.
+/// The directions across the normal that are tried: the cosine and sine of the angle from the first
+/// one, in quarters of a right angle.
 const TURNS: [[f64; 2]; 4] = [
     [1.0, 0.0],
     [0.923_879_532_511_286_7, 0.382_683_432_365_089_8],
@@ -16,8 +22,7 @@ const TURNS: [[f64; 2]; 4] = [
 ];
 
 impl<E: Lane> NodeBound<E> {
-    /// Around the triangles of leaves, of which there is at least one: the smallest of a few boxes
-    /// with a side across the direction that the wall has on the whole.
+    /// The box around the triangles of at least one leaf (see the module).
     #[inline(always)]
     pub(crate) fn around<L: Pack<Element = E>>(token: L::Token, leaves: &[Leaf<E>]) -> Self {
         let (one, zero) = (E::default().one(), E::default());
@@ -58,8 +63,8 @@ impl<E: Lane> NodeBound<E> {
     }
 }
 
-/// Two unit vectors across a unit normal: the first in the plane of the normal and of the
-/// coordinate axis that is most across it.
+/// Two unit vectors across a unit normal. The first lies in the plane of the normal and of the
+/// coordinate axis that is most nearly perpendicular to it.
 fn across<E: Lane>(normal: Vec3<E>) -> [Vec3<E>; 2] {
     let (one, zero) = (normal.x.one(), normal.x.zero());
     let [x, y, z] = [normal.x.abs(), normal.y.abs(), normal.z.abs()];
@@ -74,7 +79,7 @@ fn across<E: Lane>(normal: Vec3<E>) -> [Vec3<E>; 2] {
     [second.cross(normal), second]
 }
 
-/// The sum of the triangles' normals, each as long as twice the area.
+/// The sum of the triangles' normals, each with twice the area as its length.
 #[inline(always)]
 fn mean_normal<L: Pack>(token: L::Token, leaves: &[Leaf<L::Element>]) -> Vec3<L::Element>
 where
@@ -90,7 +95,7 @@ where
     Vec3::new(fold(area.x, add), fold(area.y, add), fold(area.z, add))
 }
 
-/// From where to where triangles reach along an axis.
+/// The range of the triangles along an axis.
 #[inline(always)]
 fn extent<L: Pack>(
     token: L::Token,
@@ -119,7 +124,7 @@ fn add<E: Scalar>(a: E, b: E) -> E {
     a + b
 }
 
-/// One number of all lanes.
+/// Combines all lanes into one number.
 #[inline(always)]
 fn fold<L: Pack>(row: L, both: impl Fn(L::Element, L::Element) -> L::Element) -> L::Element
 where
@@ -128,7 +133,7 @@ where
     let mut lanes = [L::Element::default(); BLOCK];
     row.store(&mut lanes);
     let mut count = L::LANES;
-    // In halves, so that no lane waits for another.
+    // By halves, which keeps the operations independent.
     while count > 1 {
         count /= 2;
         for lane in 0..count {
@@ -147,7 +152,7 @@ mod tests {
     use fearless_simd::Level;
     use parry3d_f64::math::{Rotation, Vector};
 
-    /// Angles between normals of which the cosine rounds to one are angles all the same.
+    /// Where the cosine of the angle between normals rounds to one, the box must still hold them.
     #[test]
     fn every_bound_holds_its_triangles() {
         let (mut checked, mut slight) = (0, 0);

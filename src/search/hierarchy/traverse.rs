@@ -1,12 +1,37 @@
-//! The nearest triangle of one link: nearer children first. Where every triangle within a limit is
-//! wanted, their order does not matter.
+//! Traversal of the hierarchy for one link: the nearest triangle, a guess at it, or all within a
+//! bound.
 //!
-//! All comparisons are in the precision of the search and of distances from the axis, the link's
-//! own distance and its radius. Where no flat cap decides that is the axis distance F; beyond a
-//! flat cap it lies between two bounds. A triangle whose upper bound was computed as u is nearer
-//! than u - r + e, with e the link's `error`; so another one can only win if its own lower bound is
-//! below u + 2 e. Such candidates are put off: at the end the few that are left are measured in
-//! double precision.
+//! The nearest triangle is searched nearest child first. For all triangles within a bound the order
+//! does not matter.
+//!
+//! # Definitions
+//! - F: the axis distance of a triangle from the link; r: the radius; e: the link's `error`.
+//! - `lower`, `upper`: the computed bounds of a triangle. Both are F, unless a flat cap decides.
+//!   The distance d of the triangle satisfies `lower - r - e < d < upper - r + e`; if the right
+//!   side is not positive, d is 0.
+//! - `limit`: an axis distance; no triangle with `lower >= limit` is wanted. It never grows.
+//! - `below`: no triangle with this number or a higher one is wanted.
+//!
+//! All comparisons are in the precision of the search.
+//!
+//! # Algorithm
+//! 1. Push the root, and on top of it the leaves of the start triangles.
+//! 2. **Node.** Push the children whose bound is below `limit`, the nearest on top.
+//! 3. **Leaf.** A triangle with `lower < limit` becomes a candidate: `limit` falls to `upper + 2 e`
+//!    at most. A triangle that certainly overlaps (`upper + e < r`) is measured at once. Then
+//!    `limit` falls to that of distance 0, and only lower triangles are wanted.
+//! 4. **Settle.** Measure the candidates with `lower < limit` in double precision, least bounds
+//!    first.
+//!
+//! # Correctness
+//! **Claim.** The answer is the least (distance, triangle) within the bound, for every start.
+//!
+//! **Proof.** Let a triangle have `lower >= upper' + 2 e`, where `upper'` belongs to another
+//! candidate at distance d'. Then `d > lower - r - e >= upper' - r + e >= d'`, since candidates
+//! have `upper' + e >= r`. So such a triangle is strictly farther, and all ties are measured. A
+//! triangle at the initial `limit` or beyond is farther than the bound. A triangle numbered `below`
+//! or higher loses the tie at distance 0. A node's bound is compared conservatively: see
+//! [`SearchLink::limit_of_bounds`].
 
 use super::build::WideBvh;
 use super::candidates::select_least;
@@ -20,26 +45,26 @@ use crate::mesh::{BLOCK, Mesh, load_vertices};
 use crate::pair::{BATCH, Best, LinkLanes, PlacedLink, SearchLink};
 use fearless_simd::Level;
 
-/// A guess at the nearest is good enough after so many leaves: where many triangles are about as
-/// near, one is as good as another.
+/// Leaves that a guess at the nearest triangle visits. Where more triangles are about as near, any
+/// of them serves.
 const LEAVES_FOR_A_GUESS: u32 = 8;
 
-/// So many triangles in question or fewer share their packs with those of other links. Measured:
-/// more fill packs of their own well enough.
+/// Up to this many candidates share their packs with other links. Measured: more candidates fill
+/// packs of their own well enough.
 const FEW: usize = BATCH / 2;
 
-/// Memory that is used again.
+/// Stacks of a traversal, reused by later queries.
 #[derive(Clone, Default)]
 pub(crate) struct Stack<E> {
-    /// Children that wait for their turn, the nearest last.
+    /// Children to visit with their squared bounds, the nearest last.
     waiting: Vec<(E, u32)>,
-    /// Nodes that wait where their order does not matter.
+    /// Nodes to visit where the order does not matter.
     nodes: Vec<u32>,
-    /// Triangles that may be the nearest, with their lower bounds.
+    /// Candidates for the nearest triangle, with their lower bounds.
     candidates: Vec<(E, u32)>,
 }
 
-/// A search through a mesh.
+/// A search through a mesh at rest.
 pub(crate) struct Traversal<'a, E> {
     pub level: Level,
     pub mesh: &'a Mesh,
@@ -48,37 +73,37 @@ pub(crate) struct Traversal<'a, E> {
     pub work: &'a mut Work,
 }
 
-/// What is searched for.
+/// What a search wants.
 struct Target<'a, E> {
     searched: &'a SearchLink<E>,
-    /// What a triangle's axis distance must be below.
+    /// A wanted triangle has an axis distance below this.
     limit: E,
-    /// What its number must be below.
+    /// A wanted triangle has a number below this.
     below: u32,
     aim: Goal<'a>,
 }
 
 enum Goal<'a> {
-    /// The nearest triangle of a link that improves on the best so far.
+    /// The nearest triangle of a link, if it improves on the best so far.
     Nearest(&'a PlacedLink, Best),
-    /// Some triangle that is about the nearest, and how many leaves may still be visited for it.
+    /// A triangle about nearest, and how many leaves may still be visited.
     About(Option<u32>, u32),
     /// Whether any triangle may be within the limit.
     Any(bool),
 }
 
 impl<E: Lane> Target<'_, E> {
-    /// What the squared bound of a child must be below for it to hold a triangle within the limit.
+    /// A child whose squared bound is not below this holds no triangle within the limit.
     #[inline(always)]
     fn squared_limit_of_bounds(&self) -> E {
         self.searched.squared_limit_of_bounds(self.limit)
     }
 
-    /// Whether nothing can change the answer any more.
+    /// Returns true if nothing can change the answer any more.
     fn is_settled(&self) -> bool {
         match &self.aim {
             Goal::Nearest(..) => self.below == 0,
-            // Once a triangle overlaps, the limit is 0 and nothing is below it.
+            // Once a triangle meets the axis, the limit is 0 and no bound is below it.
             Goal::About(_, leaves) => *leaves == 0,
             Goal::Any(found) => *found,
         }
@@ -86,8 +111,8 @@ impl<E: Lane> Target<'_, E> {
 }
 
 impl<E: Lane> Traversal<'_, E> {
-    /// The triangle nearest to a link that improves on `best`. The leaves of the triangles to
-    /// `start` with come first, for the bound they give.
+    /// Returns the nearest triangle of a link, or `best` if no triangle improves on it. The leaves
+    /// of the `start` triangles are visited first, because their distances lower the limit.
     pub(crate) fn nearest(
         &mut self,
         link: &PlacedLink,
@@ -103,9 +128,11 @@ impl<E: Lane> Traversal<'_, E> {
         if let Goal::Nearest(_, best) = target.aim { best } else { best }
     }
 
-    /// The same without a bound where many triangles are in question. Where they are few, none is
-    /// measured: they are added to `few`, the likeliest first, for a pack that they share with
-    /// those of other links.
+    /// Returns the nearest triangle at any distance, if a triangle overlaps or many candidates
+    /// remain.
+    ///
+    /// Otherwise returns none and adds the candidates to `few`, unmeasured, the least bound first.
+    /// Their caller measures them in a pack with the candidates of other links.
     pub(crate) fn nearest_or_candidates(
         &mut self,
         link: &PlacedLink,
@@ -130,13 +157,15 @@ impl<E: Lane> Traversal<'_, E> {
         if let Goal::Nearest(_, best) = target.aim { Some(best) } else { None }
     }
 
-    /// The same as [`Traversal::nearest`], and what the link keeps from all triangles at the least,
-    /// with the triangle that seemed as near if one was met. Nothing is looked for that is
-    /// farther than `far`, which is `best`'s bound or more.
+    /// Returns the nearest triangle as [`Traversal::nearest`] does, and a lower bound on the
+    /// distance of all triangles. Also returns the triangle with that bound, if one was met.
     ///
-    /// Whatever was left out on the way was no nearer than the limit was, which only ever falls. So
-    /// nothing is nearer than the nearest candidate, the limit that is left, and what was
-    /// measured: a triangle that overlaps is at once.
+    /// No triangle farther than `far` is searched; `far` is at least the bound of `best`.
+    ///
+    /// **Proof of the lower bound.** A pruned triangle had a lower bound of at least `limit` at
+    /// that time. The final `limit` is not larger. The other triangles are candidates, or were
+    /// measured. So no triangle is nearer than the least of three: the final `limit`, the
+    /// candidates' bounds and the measured distance (0 for a triangle that overlaps).
     pub(crate) fn nearest_with_lower_bound(
         &mut self,
         link: &PlacedLink,
@@ -161,7 +190,7 @@ impl<E: Lane> Traversal<'_, E> {
         (best, best.nearest().map_or(apart, |nearest| apart.min(nearest.distance)), least.1)
     }
 
-    /// A triangle nearly as near as the nearest, or any that overlaps the link.
+    /// Returns a triangle about as near as the nearest, or any that overlaps the link.
     pub(crate) fn approximate_nearest(&mut self, searched: &SearchLink<E>) -> Option<u32> {
         let limit = searched.axis_limit(f64::INFINITY);
         let below = u32::MAX;
@@ -171,8 +200,8 @@ impl<E: Lane> Traversal<'_, E> {
         if let Goal::About(found, _) = target.aim { found } else { None }
     }
 
-    /// Whether some triangle with a lower number than `below` may be at most `bound` from the link;
-    /// false only if none is.
+    /// Returns true if a triangle with a number less than `below` may be at most `bound` from the
+    /// link. Conservative: false is exact.
     pub(crate) fn may_meet(&mut self, searched: &SearchLink<E>, bound: f64, below: u32) -> bool {
         let limit = searched.axis_limit(bound);
         let mut target = Target { searched, limit, below, aim: Goal::Any(false) };
@@ -180,8 +209,8 @@ impl<E: Lane> Traversal<'_, E> {
         matches!(target.aim, Goal::Any(true))
     }
 
-    /// All triangles that may be at most `bound` from the link, in no order; false if they are more
-    /// than `most`.
+    /// Adds to `found` all triangles that may be at most `bound` from the link, in no order.
+    /// Returns false if there are more than `most`.
     pub(crate) fn gather(
         &mut self,
         searched: &SearchLink<E>,
@@ -195,7 +224,8 @@ impl<E: Lane> Traversal<'_, E> {
         !near.is_overfull
     }
 
-    /// Shows every leaf that may hold a triangle within the limit, in the order in which they come.
+    /// Calls `visitor` for every leaf that may hold a triangle within the limit, in the order of
+    /// the traversal.
     #[inline(always)]
     pub(crate) fn visit_leaves<L: Pack<Element = E>>(
         &mut self,
@@ -227,7 +257,7 @@ impl<E: Lane> Traversal<'_, E> {
         }
     }
 
-    #[inline(never)] // compiled for each instruction set, not for each aim as well
+    #[inline(never)] // compiled once per instruction set, not per goal
     fn search(&mut self, target: &mut Target<E>, start: [Option<u32>; 2]) {
         dispatch!(self.level, simd => self.descend::<E::Pack<_>>(simd, target, start));
     }
@@ -248,7 +278,7 @@ impl<E: Lane> Traversal<'_, E> {
         }
         self.stack.waiting.clear();
         self.stack.waiting.push((zero, Child::Node(0).pack()));
-        // Below 0, to tell a leaf to start with from the same leaf met again.
+        // Marks the start leaves with a negative bound, so that they are skipped when met again.
         let first = zero - zero.one();
         self.stack
             .waiting
@@ -272,7 +302,7 @@ impl<E: Lane> Traversal<'_, E> {
         self.tree.place_of.get(triangle? as usize).map(|place| place / BLOCK as u32)
     }
 
-    /// Puts the children that may hold a nearer triangle on the stack, the nearest on top.
+    /// Pushes the children that may hold a nearer triangle, the nearest on top (step 2).
     #[inline(always)]
     fn visit_node<L: Pack<Element = E>>(
         &mut self,
@@ -293,7 +323,7 @@ impl<E: Lane> Traversal<'_, E> {
             if node.lowest[child] >= target.below {
                 continue;
             }
-            // Insertion keeps the few new entries in order.
+            // Insertion sort: there are few new entries.
             let entry = (bounds[child], node.children[child]);
             waiting.push(entry);
             let mut place = waiting.len() - 1;
@@ -305,7 +335,7 @@ impl<E: Lane> Traversal<'_, E> {
         }
     }
 
-    /// Makes candidates of the leaf's triangles that may be nearest.
+    /// Adds the triangles of a leaf that may be nearest to the candidates (step 3).
     #[inline(always)]
     fn visit_leaf<L: Pack<Element = E>>(
         &mut self,
@@ -332,7 +362,7 @@ impl<E: Lane> Traversal<'_, E> {
         }
         match &mut target.aim {
             Goal::Any(found) => {
-                // A triangle whose number is too high does no harm.
+                // Conservative: `below` is ignored here.
                 *found = near != 0;
                 return;
             }
@@ -340,7 +370,7 @@ impl<E: Lane> Traversal<'_, E> {
             Goal::Nearest(..) => {}
         }
         let (error, radius) = (target.searched.error, target.searched.radius);
-        // The lowest of those that overlap for certain: of these no other is wanted.
+        // The lowest triangle that certainly overlaps: no higher one is wanted.
         let mut overlapping = u32::MAX;
         while near != 0 {
             let lane = near.trailing_zeros() as usize;
@@ -365,22 +395,22 @@ impl<E: Lane> Traversal<'_, E> {
         }
     }
 
-    /// Measures the candidates that are still in question.
+    /// Measures the candidates that are still within the limit (step 4).
     fn settle(&mut self, target: &mut Target<E>) {
         self.drop_candidates(target);
         self.measure_candidates(target);
     }
 
-    /// Drops the candidates that later ones have ruled out.
+    /// Drops the candidates that later ones have excluded.
     fn drop_candidates(&mut self, target: &Target<E>) {
         self.stack
             .candidates
             .retain(|candidate| candidate.0 < target.limit && candidate.1 < target.below);
     }
 
-    /// Measures the candidates, several at a time and first those that are likely to rule out
-    /// others.
-    #[inline(never)] // the same code whatever the instruction set
+    /// Measures the candidates in batches. Those with the least bounds come first, because they
+    /// most probably exclude others.
+    #[inline(never)] // the same code on every instruction set
     fn measure_candidates(&mut self, target: &mut Target<E>) {
         let Goal::Nearest(link, best) = &mut target.aim else { return };
         let candidates = &mut self.stack.candidates;
@@ -413,8 +443,8 @@ impl<E: Lane> Traversal<'_, E> {
     }
 }
 
-/// Which children of a node have a squared bound below a limit, one bit each, and the squared
-/// bounds.
+/// Returns the children of a node whose squared bound is below a limit, one bit each, and the
+/// squared bounds.
 #[inline(always)]
 fn near_children<L: Pack>(
     token: L::Token,
@@ -427,7 +457,7 @@ where
     L::Element: Lane,
 {
     let limit = L::splat(token, squared_limit);
-    // A link that is shorter than the children does not pass beside them slantwise.
+    // The plane test gains nothing for a link that is shorter than the children.
     let plane_tells = node.largest < searched.length;
     let mut bounds = [L::Element::default(); WIDTH];
     let mut near = 0;

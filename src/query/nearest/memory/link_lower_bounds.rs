@@ -1,10 +1,23 @@
-//! What each link is known to keep from the mesh when the robot has moved a little, without a
-//! search.
+//! Lower bounds on the distances of the links after the robot has moved, without a search.
 //!
-//! Once a link kept more than a distance, or exactly it. No point of the link now is farther from
-//! all points of the link then than [`ReferenceOutline::moved_to`] tells, so the link keeps what is
-//! left. What it keeps does not depend on the robot that it is a part of: any may follow. The same
-//! is true of the capsule around all links, which serves for a robot far from the wall at a glance.
+//! # Definitions
+//! - `d`: a lower bound on the distance of a link from the mesh, at an earlier query.
+//! - `m`: an upper bound on the distance of any point of the link now from the link then
+//!   ([`ReferenceOutline::moved_to`]).
+//! - `reach`: the largest coordinate of the mesh.
+//!
+//! # Correctness
+//! **Claim.** The link is now at least `d - m` from the mesh.
+//!
+//! **Proof.** Each point p of the link now has a point q of the link then with `|p - q| <= m`. Each
+//! point of the mesh is at least `d` from q, and so at least `d - m` from p.
+//!
+//! The claim holds for any link, so the robot may be another one with as many links. It also holds
+//! for the capsule around all links. The capsule answers for a robot far from the wall in one step.
+//!
+//! **Rounding.** `ROUNDING (reach + 2 extent)` is subtracted from `d`, and `m` is multiplied by
+//! `1 + ROUNDING`. The factor 2 is for the link then and now. The link now reaches at most
+//! `extent + m`; the factor `1 + ROUNDING` covers m.
 
 use super::look_ahead::LookAhead;
 use super::placed_outline::{PlacedOutline, ROUNDING, ReferenceOutline};
@@ -13,32 +26,33 @@ use crate::query::nearest::cleared_by::ClearedBy;
 use parry3d_f64::math::Real;
 use std::ops::Range;
 
-/// A wider search pays only if it spares the next query the search of one link in so many.
+/// Cached bounds must skip at least one link in four; otherwise they are cleared.
 const MIN_SKIPPED_SHARE: usize = 4;
 
-/// To make out what so many links keep takes about as long as to visit a node.
+/// Links per visited node in the cost model: bounding this many links takes about as long as a
+/// visit.
 const LINKS_PER_NODE: usize = 4;
 
-/// Distances that the links of a robot kept.
+/// Lower bounds on the distances of the links of a robot.
 #[derive(Clone, Default)]
 pub(crate) struct LinkLowerBounds {
-    /// Link by link; none where nothing is known.
+    /// The bound of each link at its reference placement; empty if unknown.
     links: Vec<LinkLowerBound>,
-    /// The capsule around all links, where it is known to keep away.
+    /// The bound of the capsule around all links, if one is known.
     capsule: Option<LinkLowerBound>,
-    /// What each link of the robot now asked about keeps by that; none where nothing is known.
+    /// The bound of each link of the current robot, set by `refresh`; empty if unknown.
     now: Vec<Real>,
     widening: LookAhead,
-    /// Whether the last query has widened its search.
+    /// Whether the last call of `look_ahead` returned a radius.
     is_new: bool,
 }
 
-/// A link where it was, and what it kept at the least, less what rounding can do.
+/// A link at its reference placement, and a lower bound on its distance, rounding subtracted.
 #[derive(Clone, Copy)]
 struct LinkLowerBound {
     link: ReferenceOutline,
     apart: Real,
-    /// A triangle about as near as that, if one was met.
+    /// A triangle at about this distance, if one was met.
     triangle: Option<u32>,
 }
 
@@ -51,7 +65,7 @@ impl LinkLowerBounds {
         self.is_new = false;
     }
 
-    /// Whether every link certainly keeps more than `margin`.
+    /// Returns true if every link is proven farther than `margin` from the mesh.
     pub(crate) fn all_exceed(&self, robot: PlacedRobot, margin: Real) -> bool {
         if let Some(capsule) = &self.capsule {
             return capsule.at(&PlacedOutline::around_all(robot)) > margin;
@@ -59,7 +73,7 @@ impl LinkLowerBounds {
         if self.links.is_empty() || self.links.len() != robot.links().len() {
             return false;
         }
-        // The tip moves most, so it comes first.
+        // The tip moves most, so it fails first.
         self.links
             .iter()
             .rev()
@@ -67,7 +81,7 @@ impl LinkLowerBounds {
             .all(|(kept, link)| kept.at(&link) > margin)
     }
 
-    /// Makes out what each link keeps.
+    /// Computes the bound of each link at its current placement.
     pub(crate) fn refresh(&mut self, robot: PlacedRobot) {
         self.now.clear();
         if self.links.len() == robot.links().len() {
@@ -77,16 +91,17 @@ impl LinkLowerBounds {
         }
     }
 
-    /// How many of these links do not certainly keep more than `bound`, by what was recalled.
+    /// Counts the links whose bound, as computed by `refresh`, does not exceed `bound`.
     pub(crate) fn count_open(&self, links: Range<usize>, bound: Real) -> usize {
         let count = links.len();
         let kept = self.now.get(links).unwrap_or_default();
         count - kept.iter().filter(|&&kept| kept > bound).count()
     }
 
-    /// By how much a search for `bound` is to be wider, so that it speaks for the next queries too.
-    /// None where it is better not to be, as where it would be `most` or more. `reach` is the
-    /// largest coordinate of the mesh.
+    /// Returns the extra search radius for this query, or none if looking ahead does not pay.
+    ///
+    /// None as well if the extra radius would be `most` or more. `reach` is the largest coordinate
+    /// of the mesh.
     pub(crate) fn look_ahead(
         &mut self,
         robot: PlacedRobot,
@@ -100,8 +115,8 @@ impl LinkLowerBounds {
         wider
     }
 
-    /// Notes whether what the last query kept, if anything, is of use to this one about so many
-    /// links.
+    /// Clears the cached bounds if the last query looked ahead and its bounds exclude fewer than
+    /// 1/4 of the `count` links.
     pub(crate) fn drop_if_useless(&mut self, count: usize, bound: Real) {
         if self.is_new
             && MIN_SKIPPED_SHARE * self.count_open(0..count, bound)
@@ -112,7 +127,7 @@ impl LinkLowerBounds {
         }
     }
 
-    /// Notes how many nodes and leaves this query about so many links has visited.
+    /// Records how many nodes and leaves this query visited for `links` links.
     pub(crate) fn record_cost(&mut self, visited: u64, links: usize) {
         if self.is_new {
             if !self.widening.record_wide_cost(visited + (links / LINKS_PER_NODE) as u64) {
@@ -121,17 +136,18 @@ impl LinkLowerBounds {
         } else if self.now.is_empty() {
             self.widening.record_plain_cost(visited);
         } else {
-            // It still made use of what others had kept.
+            // This query used earlier bounds, so its cost is no baseline. Clearing them makes the
+            // next one so.
             self.links.clear();
         }
     }
 
-    /// A triangle about as near to a link as any was, if one was met.
+    /// Returns a triangle at about the distance of the link, if one was met.
     pub(crate) fn approximate_nearest(&self, link: usize) -> Option<u32> {
         self.links.get(link)?.triangle
     }
 
-    /// Notes that all of these links keep `apart` or more.
+    /// Sets the lower bound of `links` to `apart`, at their current placement.
     pub(crate) fn set(
         &mut self,
         robot: PlacedRobot,
@@ -154,7 +170,7 @@ impl LinkLowerBounds {
         }
     }
 
-    /// Notes what keeps `apart` or more.
+    /// Sets the lower bound of all links, or of the capsule around them, to `apart`.
     pub(crate) fn set_all(
         &mut self,
         robot: PlacedRobot,
@@ -180,7 +196,7 @@ impl LinkLowerBounds {
         self.widening.record_success();
     }
 
-    /// Notes that a wider search met something.
+    /// Records that a search with look-ahead met the mesh, and clears the bounds.
     pub(crate) fn record_miss(&mut self) {
         self.links.clear();
         self.capsule = None;
@@ -189,16 +205,16 @@ impl LinkLowerBounds {
 }
 
 impl LinkLowerBound {
-    /// `reach` is the largest coordinate of the mesh. The link later reaches no farther than now
-    /// and what it has moved.
+    /// `reach` is the largest coordinate of the mesh. `2 extent` is for the link then and later
+    /// (see the module).
     fn new(link: PlacedOutline, apart: Real, triangle: Option<u32>, reach: Real) -> Self {
         let apart = apart - ROUNDING * (reach + 2.0 * link.extent());
         Self { link: ReferenceOutline::new(link, reach), apart, triangle }
     }
 
-    /// What the link keeps at least when it has become `now`. Not a number where that can't be
-    /// told.
-    #[inline(always)] // where links are looked at one after another
+    /// Returns a lower bound on the distance of the link at its placement `now`. NaN if its caps
+    /// differ.
+    #[inline(always)] // in the loop over all links
     fn at(&self, now: &PlacedOutline) -> Real {
         self.apart - (1.0 + ROUNDING) * self.link.moved_to(now)
     }

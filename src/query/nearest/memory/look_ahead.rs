@@ -1,39 +1,44 @@
-//! How much farther than asked a search is to look, so that its answer speaks for the next queries
-//! too.
+//! How much farther than its bound a query searches, so that later queries can reuse its lower
+//! bounds.
 //!
-//! A search for a little more costs little more. How much more pays follows from how far the robot
-//! moves from one query to the next. Where it does not pay, queries search for what they are asked
-//! alone, and a wider search is tried later, ever more rarely. Whether it pays is seen from what
-//! queries with it and one without it have cost.
+//! A slightly wider search costs slightly more. The width follows from the robot's displacement
+//! since the last query. The controller compares the measured cost of queries with and without
+//! look-ahead. If look-ahead does not pay, it pauses; each failure doubles the pause.
+//!
+//! # Definitions
+//! - *baseline cost*: nodes and leaves that a query without look-ahead visits, as a running mean.
+//! - *trial*: a run of consecutive queries with look-ahead.
+//! - *rest*: queries until look-ahead is tried again; 1, 3, 7, .. after consecutive failures.
 
 use super::placed_outline::{PlacedOutline, ROUNDING, ReferenceOutline};
 use crate::pair::PlacedRobot;
 use parry3d_f64::math::Real;
 
-/// How many queries a wider search is to speak for at the most.
+/// How many queries the look-ahead covers at first. Each search that meets the mesh halves the
+/// number.
 const QUERIES: Real = 8.0;
-/// So many queries with a wider search are a trial, and after so many trials that paid it is found
-/// out again what one without it costs.
+/// Queries of one trial. After `TRIALS` successful trials, one query re-measures the baseline cost.
 const TRIAL: u32 = 16;
 const TRIALS: u32 = 16;
-/// A search that met something is tried again after so many queries at the latest, one that did not
-/// pay after so many: it takes as long as several others.
+/// The longest rest after a search that met the mesh, and after one that did not pay. The second is
+/// longer, because a failed trial costs as much as several queries.
 const REST_AFTER_MEETING: u32 = 63;
 const REST_WITHOUT_PAY: u32 = 255;
 
+/// Decides whether, and how far, a query looks ahead.
 #[derive(Clone)]
 pub(crate) struct LookAhead {
-    /// The robot of the last query, as one link from its base to its tip.
+    /// The robot at the last query, as one link from its base to its tip.
     before: Option<PlacedOutline>,
-    /// How many queries the next wider search is to speak for.
+    /// How many queries the next look-ahead covers.
     queries: Real,
-    /// How many queries are not to try one, and how many it was after the last that did not pay.
+    /// Queries left of this rest, and the length of the last rest since look-ahead paid.
     rest: u32,
     last_rest: u32,
-    /// What a query without a wider search has cost of late.
+    /// The baseline cost, if one was measured.
     plain_cost: Option<u64>,
-    /// What the queries of this trial have cost after its first, how many they are with it, and
-    /// how many trials have paid.
+    /// The cost of this trial without its first query, the number of its queries, and the number of
+    /// successful trials.
     trial_cost: u64,
     tried: u32,
     trials: u32,
@@ -55,8 +60,8 @@ impl Default for LookAhead {
 }
 
 impl LookAhead {
-    /// By how much a query about this robot is to widen its search. `reach` is the largest
-    /// coordinate of the mesh. None where it is better not to.
+    /// Returns the look-ahead for a query about this robot, or none during a rest. `reach` is the
+    /// largest coordinate of the mesh.
     pub(crate) fn next(&mut self, robot: PlacedRobot, reach: Real) -> Option<Real> {
         let now = PlacedOutline::of_whole(robot);
         let before = self.before.replace(now)?;
@@ -68,16 +73,16 @@ impl LookAhead {
         Some(self.queries * ReferenceOutline::new(before, reach).moved_to(&now) + 4.0 * rounding)
     }
 
-    /// Notes what a query without a wider search has cost.
+    /// Records the cost of a query without look-ahead.
     pub(crate) fn record_plain_cost(&mut self, cost: u64) {
         self.plain_cost = Some(self.plain_cost.map_or(cost, |before| (3 * before + cost) / 4));
     }
 
-    /// Notes what a query with a wider search has cost. False if the next one is better off without
-    /// it, and without what it has found.
+    /// Records the cost of a query with look-ahead. Returns false if the next query should search
+    /// without look-ahead and without the cached bounds.
     ///
-    /// The first of a row pays for the others. These must not cost more than as many queries
-    /// without it, and one.
+    /// The first query of a trial fills the bounds for the others, so its cost does not count. The
+    /// trial fails once its n - 1 later queries cost more than n queries at the baseline cost.
     pub(crate) fn record_wide_cost(&mut self, cost: u64) -> bool {
         if self.tried > 0 {
             self.trial_cost += cost;
@@ -98,18 +103,18 @@ impl LookAhead {
         true
     }
 
-    /// Notes that the last wider search paid.
+    /// Records that the last look-ahead paid.
     pub(crate) fn record_success(&mut self) {
         self.last_rest = 0;
     }
 
-    /// Notes that wider searches do not pay.
+    /// Records that look-ahead does not pay.
     pub(crate) fn record_failure(&mut self) {
         (self.trial_cost, self.tried, self.trials) = (0, 0, 0);
         self.extend_rest(REST_WITHOUT_PAY);
     }
 
-    /// Notes that the last wider search met what a search less wide may not meet.
+    /// Records that a search met the mesh within its look-ahead: halves the look-ahead and rests.
     pub(crate) fn shrink(&mut self) {
         self.queries = (0.5 * self.queries).max(1.0);
         self.extend_rest(REST_AFTER_MEETING);
@@ -125,8 +130,8 @@ impl LookAhead {
 mod tests {
     use super::*;
 
-    /// How many of so many queries go with a wider search, if the first of a row costs `first` and
-    /// another `later` where one without costs 100.
+    /// Counts the queries with look-ahead, out of `queries`. The first of a run costs `first`, each
+    /// other one `later`, and one without look-ahead 100.
     fn wider_of(queries: u32, first: u64, later: u64) -> u32 {
         let (mut widening, mut is_first, mut wider) = (LookAhead::default(), true, 0);
         widening.record_plain_cost(100);
@@ -146,7 +151,7 @@ mod tests {
 
     #[test]
     fn wider_searches_are_made_where_they_cost_less() {
-        // All but the few that tell what one without them costs.
+        // All except the few that re-measure the baseline cost.
         for later in [0, 20, 90] {
             let wider = wider_of(10_000, 400, later);
             assert!((9_900..10_000).contains(&wider), "{wider} where another costs {later}");

@@ -1,4 +1,5 @@
-//! What a query leaves for the next one about a robot that has moved a little.
+//! State that lets a query reuse the distances of the last one, for a robot that has moved a
+//! little.
 
 mod link_lower_bounds;
 mod look_ahead;

@@ -1,45 +1,56 @@
-//! How far a robot's links have moved in all, from question to question.
+//! An upper bound on how far the links of a robot have moved, summed over all queries.
 //!
-//! The *step* of a question is at least as far as any point of a link now is from all points of the
-//! same link at the question before. The odometer reads the sum of all steps. So if the links kept
-//! `apart` from something still when it read R, they keep `apart` - (R' - R) at least when it reads
-//! R'.
+//! # Definitions
+//! - *step*: an upper bound on the distance of any point of a link now from the same link at the
+//!   query before.
+//! - *reading* R: the sum of all steps.
 //!
-//! A step follows the rule of
-//! [`ReferenceOutline::moved_to`](super::placed_outline::ReferenceOutline::moved_to): the ends of
-//! the axis move by s at most, a radius grows by g at most, and a flat cap of radius r turns with
-//! its axis by 2 r x (1 + 2 x) at most, for x up to 1/2 as there, and beyond because that is more
-//! than 2 r. The largest of each over all links makes a step no less than that of any link,
-//! s + 2 (r x) (1 + 2 x) + g, and leaves three roots for all of them. Other caps and another number
-//! of links are no step: the odometer begins anew.
+//! **Claim.** If the links were at least `apart` from a resting shape at reading R, they are at
+//! least `apart - (R' - R)` from it at reading R'.
 //!
-//! Rounding. Relatively a step errs by less than [`ROUNDING`], and x by 3 u, which is 18 u of the
-//! radius: both are added. Sums are rounded upwards, so that no difference of two readings is less
-//! than the steps between them. Squares vanish where what is measured is below 2^-537 of the
-//! extent: 2^400 such steps are next to nothing beside [`ends_err`](Odometer::error_from_ends).
+//! **Proof.** Triangle inequality, step by step.
+//!
+//! # The step
+//! The bound of a single link is proven at
+//! [`ReferenceOutline::moved_to`](super::placed_outline::ReferenceOutline::moved_to):
+//! `s + 2 r x (1 + 2 x) + g`. Here s bounds the displacement of the ends of the axis, and g is the
+//! growth of the radius. A flat cap of radius r turns with its axis by at most `2 r x (1 + 2 x)`
+//! for `x <= 1/2`. For larger x that expression exceeds `2 r`, which bounds every turn.
+//!
+//! The maximum of each term over all links gives one step: `s + 2 (r x) (1 + 2 x) + g`. It is at
+//! least the step of each link, and takes three square roots for all links together. If the caps or
+//! the number of links change, the step is unknown and the odometer starts again at 0.
+//!
+//! # Rounding
+//! - A step errs relatively by less than [`ROUNDING`], and x by `3 u`, which is `18 u` of the
+//!   radius. Both are added.
+//! - Sums are rounded upwards. So no difference of two readings is less than the steps between
+//!   them.
+//! - A square vanishes if its root is below 2^-537 of the extent. Even 2^400 such steps are
+//!   negligible beside [`error_from_ends`](Odometer::error_from_ends).
 
 use super::placed_outline::{PlacedOutline, ROUNDING};
 use crate::distance::Scalar;
 use crate::pair::PlacedRobot;
 use parry3d_f64::math::{Real, Vector};
 
-/// The way of links that are asked about again and again.
+/// The summed displacement of links that are queried again and again.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Odometer {
-    /// At the last question, from the tip to the base.
+    /// The links at the last query, from the tip to the base.
     links: Vec<PlacedOutline>,
-    /// The largest coordinate of links and pose then.
+    /// The largest coordinate of the links and the pose at the last query.
     extent: Real,
-    /// How much farther than both ends of its axis any point of a link can move: the rim of a flat
-    /// cap.
+    /// How far a point of a link can move if the ends of its axis move by 1; more than 1 at the rim
+    /// of a flat cap.
     lever: Real,
     step: Real,
     reading: Real,
 }
 
 impl Odometer {
-    /// Counts the way to where a robot is now. False where that can't be told, and the odometer
-    /// begins anew.
+    /// Accumulates the displacement since the last query. Returns false if the displacement is
+    /// unknown; the odometer then starts again at 0.
     pub(crate) fn advance(&mut self, robot: PlacedRobot) -> bool {
         let translation = robot.placed(Vector::ZERO).abs().max_element();
         let extent = PlacedOutline::around_all(robot).extent().max(translation);
@@ -49,7 +60,7 @@ impl Odometer {
         } else {
             self.links.clear();
             self.links.extend(PlacedOutline::of_all(robot));
-            // What caps add is told by the next step.
+            // The next step computes the lever.
             (self.step, self.lever) = (Real::INFINITY, Real::INFINITY);
         }
         self.reading = (self.reading + self.step).next_up();
@@ -60,8 +71,8 @@ impl Odometer {
         is_known
     }
 
-    /// How far the links move at the most to where they are now; infinite where that can't be told.
-    /// No coordinate is larger than `extent`.
+    /// Returns an upper bound on the displacement of the links to their current placement; infinite
+    /// if unknown. No coordinate is larger than `extent`.
     fn step_to(&mut self, robot: PlacedRobot, extent: Real) -> Real {
         let scale = extent.power_of_two_to_unity();
         let squared = |way: Vector| (way * scale).length_squared();
@@ -91,31 +102,31 @@ impl Odometer {
         if is_known { step + ROUNDING * (step + radius) } else { Real::INFINITY }
     }
 
-    /// The last step; infinite where it can't be told.
+    /// Returns the last step; infinite if unknown.
     pub(crate) fn last_step(&self) -> Real {
         self.step
     }
 
-    /// The sum of all steps.
+    /// Returns the sum of all steps.
     pub(crate) fn reading(&self) -> Real {
         self.reading
     }
 
-    /// The largest coordinate of the links and of the robot's pose.
+    /// Returns the largest coordinate of the links and of the robot's pose.
     pub(crate) fn extent(&self) -> Real {
         self.extent
     }
 
-    /// How far any point of a link can be from where it is, if the ends of all axes err by `error`.
+    /// Returns how far any point of a link can be off if the ends of all axes err by `error`.
     ///
-    /// A flat cap of radius r turns with its axis of length l, by less than 4 `error` / l, and its
-    /// rim by r times that.
+    /// A flat cap of radius r turns with its axis of length l by less than `4 error / l`. Its rim
+    /// moves by r times that angle.
     pub(crate) fn error_from_ends(&self, error: Real) -> Real {
         error * self.lever
     }
 }
 
-/// The larger of two, as one instruction; the second if the first is not a number.
+/// The larger of two, as one instruction; `other` if `one` is NaN.
 #[inline(always)]
 fn larger(one: Real, other: Real) -> Real {
     if one > other { one } else { other }

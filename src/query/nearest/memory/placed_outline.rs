@@ -1,13 +1,13 @@
-//! Where a link is, and how far from there any of its points can be when it has moved.
+//! The placement of a link, and how far any of its points can be from there after a motion.
 
 use crate::distance::Scalar;
 use crate::pair::PlacedRobot;
 use crate::robot::{LinkNode, length};
 use parry3d_f64::math::{Real, Vector};
 
-/// What rounding can do to two distances and to what is between them, for coordinates of size one:
-/// 16 u of the extent, which is at most two, for each distance, and 8 u for the ends of each link
-/// and their differences.
+/// Bounds the rounding of two distances and of the motion between them, relative to coordinates of
+/// size 1. It covers `16 u` of the extent, which is at most 2, for each distance. It also covers
+/// `8 u` for the ends of each link and their differences.
 pub(crate) const ROUNDING: Real = 128.0 * f64::EPSILON;
 
 /// A link in the mesh's frame.
@@ -18,14 +18,14 @@ pub(crate) struct PlacedOutline {
     pub(super) flat: [bool; 2],
 }
 
-/// A link where it was, from which its motion is counted.
+/// A link at the placement from which its motion is measured.
 #[derive(Clone, Copy)]
 pub(crate) struct ReferenceOutline {
     link: PlacedOutline,
-    /// A power of two that brings lengths to one, and its inverse.
+    /// A power of two that scales lengths to about 1, and its inverse.
     scale: Real,
     unit: Real,
-    /// The inverse of twice the axis' length, where a cap is flat.
+    /// The inverse of twice the scaled length of the axis; 0 if both caps are round.
     per_length: Real,
 }
 
@@ -44,14 +44,13 @@ impl PlacedOutline {
         Self { ends, radius, flat }
     }
 
-    /// The robot as one link from its base to its tip, with the radius and the caps of its last
-    /// one.
+    /// The robot as one link from its base to its tip, with the radius and caps of the last link.
     pub(crate) fn of_whole(robot: PlacedRobot) -> Self {
         let tip = &robot.links()[robot.links().len() - 1];
         Self { ends: robot.ends(), radius: tip.radius(), flat: tip.flat() }
     }
 
-    /// All links from the tip to the base, each end placed once where two share it.
+    /// All links from the tip to the base. An end that two links share is placed once.
     pub(crate) fn of_all(robot: PlacedRobot) -> impl Iterator<Item = Self> {
         let mut shared: Option<(Vector, Vector)> = None;
         robot.links().iter().rev().map(move |link| {
@@ -70,7 +69,7 @@ impl PlacedOutline {
         self.ends[0].abs().max(self.ends[1].abs()).max_element() + self.radius
     }
 
-    /// How long it is, with its radius at both ends.
+    /// The length with one radius added at each end.
     pub(crate) fn size(&self) -> Real {
         length(self.along()) + 2.0 * self.radius
     }
@@ -89,21 +88,32 @@ impl ReferenceOutline {
         Self { link, scale, unit: 1.0 / scale, per_length }
     }
 
-    /// How far a point of the link, as it is `now`, can be from all points of it as it was. Not a
-    /// number where that can't be told.
+    /// Returns an upper bound m on the distance of any point of the link `now` from the link then.
+    /// NaN if the caps differ.
     ///
-    /// No point of an axis moves farther than the farther of its ends; the ball around it moves
-    /// along; and where a flat cap makes it a disc, that turns with the axis, by at most r |a'
-    /// - a| at its rim, which is at most 2 r |d' - d| / (|d'| + |d|) for the ways d and d' from
-    /// start to end (Dunkl and Williams, 1964). With x = |d' - d| / (2 |d|) and |d'| >= |d| -
-    /// |d' - d| that is 2 r x / (1 - x) or less, and so 2 r x (1 + 2 x) or less up to x = 1/2,
-    /// where it is 2 r: more it never is. A radius that has grown adds its growth.
+    /// **Definitions.** d, d': the vectors from start to end, then and now. a, a': their
+    /// directions. r: the radius now. `x = |d' - d| / (2 |d|)`.
     ///
-    /// Rounding: d and d' err by u of them, and so x by less than 3 u up to 1/2: 18 u r, for which
-    /// the extent has room. Squares vanish where what is measured is below 2^-537 of the extent
-    /// and the mesh; a flat cap's radius is less than 2^400 lengths of its axis, so that 2^-136
-    /// of them is lost.
-    #[inline(always)] // where links are looked at one after another
+    /// **Claim.** `m = s + t + g`.
+    /// - s is the larger displacement of the two ends.
+    /// - `t = 2 r x (1 + 2 x)` with x capped at 1/2; 0 if both caps are round.
+    /// - g is the growth of the radius, at least 0.
+    ///
+    /// **Proof.**
+    /// 1. No point of the axis moves farther than the farther of its ends. The ball around that
+    ///    point moves with it: s.
+    /// 2. A radius that grows adds its growth: g.
+    /// 3. At a flat cap the ball becomes a disc, which turns with the axis. Its rim moves by at
+    ///    most `r |a' - a| <= 2 r |d' - d| / (|d'| + |d|)` (Dunkl and Williams, 1964).
+    /// 4. Since `|d'| >= |d| - |d' - d|`, the bound of 3 is at most `2 r x / (1 - x)`. For
+    ///    `x <= 1/2` that is at most `2 r x (1 + 2 x)`, which is `2 r` at 1/2. No turn moves the
+    ///    rim farther than `2 r`.
+    ///
+    /// **Rounding.** d and d' err by u of themselves, and so x by less than `3 u` for `x <= 1/2`.
+    /// That is `18 u r`, which [`ROUNDING`] times the extent includes. A square vanishes if its
+    /// root is below 2^-537 of the extent and the mesh. The radius of a flat cap is less than 2^400
+    /// lengths of its axis, so at most 2^-136 of the extent is lost.
+    #[inline(always)] // in the loop over all links
     pub(crate) fn moved_to(&self, now: &PlacedOutline) -> Real {
         let then = &self.link;
         if now.flat != then.flat {
@@ -117,7 +127,7 @@ impl ReferenceOutline {
             0.0
         } else {
             let x = squared(now.along() - then.along()).sqrt() * self.per_length;
-            // Where it is not a number the cap has turned no more than halfway round either.
+            // NaN takes the cap too: no turn exceeds half a revolution.
             let x = if x < 0.5 { x } else { 0.5 };
             2.0 * now.radius * (x * (1.0 + 2.0 * x))
         };
@@ -131,7 +141,7 @@ mod tests {
     use crate::distance::{Vec3, point_modified_cylinder};
     use continuum_testing::Random;
 
-    /// A point of a link on its rims, or on the half balls at its ends where they are round.
+    /// A point of a link on its rims, or on the half balls of its round ends.
     fn extreme(random: &mut Random, link: &PlacedOutline) -> Vector {
         let (end, direction) = (random.below(2) as usize, random.direction());
         let outward = link.along().normalize() * [-1.0, 1.0][end];
@@ -141,8 +151,8 @@ mod tests {
         link.ends[end] + out * link.radius
     }
 
-    /// No point of a link that has moved is farther from where the link was than this says, in any
-    /// unit, and some are nearly as far.
+    /// No point of a moved link is farther from the link then than the bound, in any unit of
+    /// length. Some points are nearly as far.
     #[test]
     fn no_point_has_moved_farther_than_told() {
         let (mut nearly, mut turned, mut jumps) = (0, 0, 0);
