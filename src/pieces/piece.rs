@@ -104,8 +104,8 @@ impl PlacedTube<'_> {
         }
     }
 
-    /// Returns the ticks of the range of a section that is clear of its faces. The first tick is
-    /// not below the second if no range is clear.
+    /// Returns the ticks of the range of a section that is clear of its faces. The ticks are equal
+    /// if no range is clear.
     pub(crate) fn between_faces(&self, number: u32) -> [u32; 2] {
         let section = self.section(number);
         let [first, last] = self.faces(section).map(|face| face.is_some());
