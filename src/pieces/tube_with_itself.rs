@@ -62,8 +62,9 @@
 //!
 //! # Faces
 //! **No local minimum is missed**: the shortest segment leaves the face outwards
-//! (`query::robots::robot_with_itself`), so the place is ahead of it. A pair with a face is excluded
-//! if the other body is entirely behind the plane of the face, as far as the normal is known.
+//! (`query::robots::robot_with_itself`), so the place is ahead of it. A pair with a face is
+//! excluded if the other body is entirely behind the plane of the face; the test allows for the
+//! uncertainty of the normal.
 //!
 //! A place counts if it is known to be ahead. So slightly more than the local minima is queried:
 //! also places beside the rim, at the distance of a bend, or beside the wider part of a step that
@@ -118,7 +119,8 @@ use std::f64::consts::{FRAC_PI_2, PI};
 /// (rad).
 const MIN_TURN: Real = 1.0 / 1024.0;
 
-/// Nor if it is uncertain by less than this share of their extra turn while moving.
+/// While the tube moves, they are not halved if their turn is uncertain by less than this share of
+/// their extra turn.
 const MAX_SHARE_OF_EXTRA_TURN: Real = 1.0 / 16.0;
 
 /// How far the body of a face goes into the tube, in radii.
