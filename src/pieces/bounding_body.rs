@@ -155,6 +155,7 @@ impl PlacedTube<'_> {
         let length = (arcs[1] - arcs[0]) * section.stretch;
         let known = self.tube.bound(section, [piece.from, piece.to]);
         let bend = known.curvature * length;
+        // Case 1.
         if exposed == [false; 2] || bend > FRAC_PI_2 || known.curvature * section.radius >= 1.0 {
             return self.along_chord(section, piece, &known, length, [false; 2]);
         }
@@ -167,6 +168,7 @@ impl PlacedTube<'_> {
         ];
         let flat_ends = Real::from(u8::from(exposed[0])) + Real::from(u8::from(exposed[1]));
         let by_chord = 0.25 * sideways + 0.5 * section.radius * bend * flat_ends;
+        // Case 3.
         for (end, face) in ends.into_iter().enumerate() {
             let Some(face) = face else { continue };
             // Without a face at the other end, the body's flat back ends inside the tube, which is
@@ -201,6 +203,7 @@ impl PlacedTube<'_> {
                 };
             }
         }
+        // Case 1 or 2.
         self.along_chord(section, piece, &known, length, exposed)
     }
 
@@ -218,6 +221,7 @@ impl PlacedTube<'_> {
         let along = end - start;
         let mut excess = 0.125 * curvature * length * length;
         let mut shift = Vector::ZERO;
+        // Case 1, shifted chord.
         if excess > self.slack && piece.to - piece.from >= 2 {
             let arcs = self.arcs(piece);
             let tick = self
@@ -246,6 +250,7 @@ impl PlacedTube<'_> {
         let chord = along.length();
         // A chord within rounding has no direction.
         let flat = if chord > 4.0 * (loose + self.slack) { flat } else { [false; 2] };
+        // Case 2.
         if flat != [false; 2] {
             let unit = along / chord;
             let bend = 0.5 * curvature * length;

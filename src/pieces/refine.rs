@@ -129,8 +129,10 @@ pub(crate) fn refine<T: Refinable, P: WorkItem<T>, Q: RefinePolicy<T, P>>(
         let piece = part.piece(tube);
         let outer = tube.body(&piece);
         tube.check_finite(&piece, &outer)?;
+        // Step 1.
         let BodyQuery { bound, is_wide, aim, start } =
             question.body_query(tube, &part, &piece, &outer)?;
+        // Step 2.
         if is_wide && let Some(halves) = tube.halves(&piece, &outer, aim) {
             if tube.may_meet(&outer, bound) {
                 parts.extend(part.halves(tube, halves));
@@ -139,10 +141,12 @@ pub(crate) fn refine<T: Refinable, P: WorkItem<T>, Q: RefinePolicy<T, P>>(
             }
             continue;
         }
+        // Step 3.
         let Some(nearest) = tube.nearest(&outer, bound, start) else {
             question.on_cleared(&piece, &outer, bound);
             continue;
         };
+        // Step 4.
         let found = tube.found(&piece, &outer, &nearest);
         let near = BoundedPiece {
             part: &part,
@@ -151,6 +155,7 @@ pub(crate) fn refine<T: Refinable, P: WorkItem<T>, Q: RefinePolicy<T, P>>(
             nearest: &nearest,
             found: &found,
         };
+        // Step 5.
         match question.decide(tube, &near)? {
             RefineAction::Settled => {}
             RefineAction::Answered => return Ok(()),

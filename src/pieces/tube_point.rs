@@ -82,6 +82,7 @@ impl PlacedTube<'_> {
         let reach = away + foot.off + rounding;
         let mut best = TubePoint { upper: Real::INFINITY, arc: foot.arc, point: x };
         let mut is_beside = true;
+        // Case 5.
         for (end, limit) in limits.into_iter().enumerate() {
             let Some(limit) = limit else { continue };
             let is_within = if end == 0 { limit <= foot.arc } else { foot.arc <= limit };
@@ -91,6 +92,7 @@ impl PlacedTube<'_> {
             }
         }
         for (end, face) in self.all_faces(section).iter().enumerate() {
+            // Cases 2 to 4.
             let Some(face) = face.as_ref().filter(|_| limits[end].is_none()) else { continue };
             let face = self.face(face);
             let offset = x - face.centre;
@@ -127,6 +129,7 @@ impl PlacedTube<'_> {
                 }
             }
         }
+        // Case 1.
         if is_beside {
             // NaN means unknown, not contact.
             let upper =

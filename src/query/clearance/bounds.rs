@@ -158,9 +158,11 @@ impl<'a, T: Refinable> BoundsSearch<'a, T> {
                 self.measure(piece)?;
                 continue;
             };
+            // Step 2.
             if self.improves(found) {
                 self.best = Some(*found);
             }
+            // Step 3.
             if first.least >= self.upper() - self.aim || self.left == 0 {
                 self.pieces.push(self.tube, piece);
                 return Ok(true);

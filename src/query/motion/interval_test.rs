@@ -106,6 +106,7 @@ impl<D: Refinable, P, V: RelativeMotion<D, P>> RefinePolicy<D, P> for IntervalTe
     ) -> Result<RefineAction, ProximityError> {
         self.moving.record(near);
         let upper = near.found.upper();
+        // Step 1.
         if upper <= self.wanted.margin {
             self.result.contact = Some(*near.found);
             self.result.is_fine = self.is_fine();
@@ -113,6 +114,7 @@ impl<D: Refinable, P, V: RelativeMotion<D, P>> RefinePolicy<D, P> for IntervalTe
             self.moving.record_unresolved(near, &self.approach_bound);
             return Ok(RefineAction::Answered);
         }
+        // Step 2.
         let is_time_to_blame = !self.is_fine()
             && (upper <= self.bound(tube.slack())
                 || near.outer.excess() <= 0.25 * self.approach_bound.max_approach());
@@ -120,11 +122,13 @@ impl<D: Refinable, P, V: RelativeMotion<D, P>> RefinePolicy<D, P> for IntervalTe
             self.record_unresolved(tube, near)?;
             return Ok(RefineAction::Settled);
         }
+        // Step 3.
         let apart = upper - D::distance(near.nearest) - tube.uncertainty(near.piece);
         if self.is_fine() && apart <= 0.5 * self.wanted.resolution {
             self.result.is_undecided = true;
             return Ok(RefineAction::Settled);
         }
+        // Step 4.
         Ok(RefineAction::Halve(0.25 * near.outer.excess()))
     }
 

@@ -53,6 +53,7 @@ impl<M: Motion> MotionSearch<'_, M> {
         };
         self.begin();
         while let Some(interval) = self.pop_nearest() {
+            // Step 1.
             if known.is_settled(interval.lower) || self.shapes >= MAX_SHAPES {
                 // All other intervals have larger lower bounds.
                 known.lower = known.lower.min(interval.lower);
@@ -61,7 +62,9 @@ impl<M: Motion> MotionSearch<'_, M> {
             let t = interval.midpoint();
             let ((nearest, hold, is_left), pieces) =
                 self.with_middle_shape(&interval, |tube, turn, moving, approach_bound| {
+                    // Step 2.
                     known.seed(tube, t);
+                    // Step 3.
                     turn.begin(tube, known.upper().max(tolerance));
                     let mut approach =
                         MinimumPolicy::new(moving, approach_bound, &mut known, t, tube);
@@ -69,6 +72,7 @@ impl<M: Motion> MotionSearch<'_, M> {
                     if approach.is_done() {
                         approach.settle(0.0);
                     }
+                    // Step 4.
                     let is_left = if approach.is_done() {
                         [true; 2]
                     } else {
@@ -76,6 +80,7 @@ impl<M: Motion> MotionSearch<'_, M> {
                     };
                     Ok((approach.nearest, approach.approach_bound.hold, is_left))
                 })?;
+            // Step 5.
             let interval = interval.with_lower_bound(nearest);
             self.memory
                 .intervals

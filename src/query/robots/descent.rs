@@ -221,9 +221,11 @@ impl Descent {
                 let TreePlace { node, first, .. } = entry.places[robot];
                 first..first + robots[robot].link_tree()[node].links()
             });
+            // Step 1.
             if limit.excludes(entry.at_least, firsts) || queried_from(firsts[0]) >= links[1].end {
                 continue;
             }
+            // Steps 3 to 5.
             if links.iter().all(|links| links.len() <= SWEPT) {
                 self.queried_from.clear();
                 self.queried_from.extend(links[0].clone().map(&queried_from));
@@ -233,6 +235,7 @@ impl Descent {
                 limit = self.sweep(robots, links, &outlines, limit, &mut visit);
                 continue;
             }
+            // Step 2.
             let divided = usize::from(links[1].len() > links[0].len());
             let frame = &self.frame;
             let kept = frame.outline(robots[1 - divided], entry.places[1 - divided].node);
@@ -284,6 +287,7 @@ impl Descent {
         };
         let is_bounded = limit.distance < Real::INFINITY;
         let mut looked_at = None;
+        // Step 4.
         if !is_bounded || find_near(frame.length(limit.distance), &mut near) > MANY {
             let before = limit.distance;
             looked_at = match &heights {
@@ -303,6 +307,7 @@ impl Descent {
         for [link, other] in looked_at.into_iter().flat_map(|pair| sweep.beside(pair)) {
             near[link - first.start] &= !(1 << (other - second.start));
         }
+        // Step 5.
         let pairs = near[..first.len()].iter().zip(first.clone());
         let pairs = pairs
             .flat_map(|(&row, link)| set_bits(row).map(move |lane| [link, second.start + lane]));

@@ -264,6 +264,7 @@ impl OwnFaces {
         if last < one.first + 2 {
             return [false; 2];
         }
+        // Case 1.
         let mut in_band = last >= turns.quarter_from[one.first];
         if band == Band::Faces {
             let has_face = one.has_face() || two.has_face();
@@ -275,12 +276,14 @@ impl OwnFaces {
         }
         let way = two.centre - one.centre;
         let away = way.length();
+        // Case 2.
         if away - one.reach - two.reach - one.radius - two.radius - self.rounding.0 > bound {
             return [false; 2];
         }
         if one.first == two.first {
             return [in_band, look];
         }
+        // Case 3.
         let from_one = two.seen_from(one, way, away, self.rounding);
         let from_two = one.seen_from(two, -way, away, self.rounding);
         let may_count = one.may_see(&from_two) && from_one.may_be_local
