@@ -20,16 +20,16 @@
 //! is the longer of the two parts that c(m) separates.
 //! 1. In a part, at the share q of the way to c(m), the curve deviates from q e by at most D q (1 -
 //!    q).
-//! 2. So its distance from the chord moved by e / 2 is at most |q - 1/2| |e| + D q (1 - q) = u |e|
-//!    + D (1/4 - u^2), with u = |q - 1/2|.
+//! 2. Let u = |q - 1/2|. The distance of the curve from the chord moved by e / 2 is at most `|q -
+//!    1/2| |e| + D q (1 - q) = u |e| + D (1/4 - u^2)`.
 //! 3. The maximum over u is D / 4 + |e|^2 / (4 D) if |e| <= D, and |e| / 2 otherwise.
 //!
 //! ## Case 2: along the chord, flat ends
 //! 1. For k l <= pi / 2, the angle between t(s) and d is at most k l / 2. Seen from t(s), the two
 //!    parts p + q = l of the curve add up to at most (2 - cos kp - cos kq) / k across and at least
 //!    (sin kp + sin kq) / k along. Their quotient is at most tan(k l / 2).
-//! 2. So <c(s), d> increases with s, and w reaches at most r sin(k l / 2) along d. So x is behind
-//!    the plane that is this far beyond the end.
+//! 2. So the component of c(s) along d increases with s, and w reaches at most r sin(k l / 2) along
+//!    d. So x is behind the plane that is this far beyond the end.
 //! 3. A flat end in that plane cuts off no x, since x is also within the capsule's radius of the
 //!    longer axis.
 //!
@@ -37,9 +37,9 @@
 //! Let T be the tangent at the face and s the arc length from the face.
 //! 1. The angle between t(s) and T is at most k s. So c(s) is at least sin(k s) / k behind the
 //!    face's plane, and at most (1 - cos ks) / k <= k l^2 / 2 beside its normal.
-//! 2. w reaches at most r sin ks ahead. Since k r < 1, x is behind the plane, and within r + k l^2
-//!    / 2 of the normal through the face's centre. The body's axis follows that normal for the
-//!    length l.
+//! 2. The vector w reaches at most r sin ks ahead. Since k r < 1, x is behind the plane. It is
+//!    within `r + k l^2 / 2` of the normal through the face's centre. The body's axis follows that
+//!    normal for the length l.
 //! 3. If the normal is known only to an angle a, the angle between t(s) and it is at most ks + a.
 //!    Then x is at most r sin a ahead of the plane and r + k l^2 / 2 + a l beside the normal.
 //! 4. If the other end must be flat too, x is at most l + r sin(k l + a) behind the plane.

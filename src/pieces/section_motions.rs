@@ -3,30 +3,29 @@
 //!
 //! # Definitions
 //! - tau: half of an interval of time.
-//! - w: a bound on the turning rate: each direction of the curve turns by at most tau w from its
-//!   direction at the middle of the interval. The curvature at other times is not bounded: the
-//!   curve may be wavier.
+//! - w: a bound on the turning rate. Each direction of the curve is within tau w of its direction
+//!   at the middle. The curvature at other times is not bounded: the curve may be wavier.
 //! - U: the turn between two places in the shape at the middle.
 //!
 //! # Claim
 //! If U + 6 tau w < pi, two places are no local minimum of the distance at any time of the
 //! interval. A face and a place are none if U + 6 tau w < pi / 2.
 //!
-//! **Proof.** Let x and y be a local minimum at some time, c the unit vector from x to y, and T the
-//! directions of the curve between x and y.
+//! **Proof.** Let x and y be a local minimum at some time, and c the unit vector from x to y. Let T
+//! be the directions of the curve between them.
 //! 1. Curve and chord form a closed curve. So the T and -c have a weighted mean of 0 with positive
 //!    weights. So no vector m has both T . m > 0 for all T and -c . m > 0.
-//! 2. Consider this closed curve on the sphere of directions: along the directions at the middle
-//!    from x to y (length U), to T at y (tau w), to -c, to T at x, and to the direction of x at the
-//!    middle (tau w). The two angles at -c sum to at most pi, or 3/2 pi if one place is a face
-//!    (`query::robots::robot_with_itself`). If x and y coincide there is no c: the way from T at y
-//!    to T at x is at most pi. So the length L of the closed curve is at most U + 2 tau w + pi (or
-//!    3/2 pi).
-//! 3. If L < 2 pi, the whole closed curve lies within L / 4 of one point m: the middle of the arc
-//!    between two points that halve the curve. A half turn around m takes a point z to z'. While
-//!    angle(z, m) <= pi / 2, the angle between z and z' is 2 angle(z, m). By way of a halving point
-//!    it is at most L / 2. So angle(z, m) <= L / 4 < pi / 2. The angle is continuous along the
-//!    curve, so it never exceeds pi / 2.
+//! 2. Form a closed curve on the sphere of directions. It follows the directions at the middle from
+//!    x to y (length U) and goes to T at y (tau w), to -c, to T at x, and back to the start (tau
+//!    w). The two angles at -c sum to at most pi, or 3/2 pi if one place is a face
+//!    (`query::robots::robot_with_itself`). If x and y coincide there is no c: the angle from T at
+//!    y to T at x is at most pi. So the length L of the closed curve is at most U + 2 tau w + pi
+//!    (or 3/2 pi).
+//! 3. If L < 2 pi, the whole closed curve lies within L / 4 of one point m. Two points halve the
+//!    curve, and m is the middle of the arc between them. A half turn around m takes a point z to
+//!    z'. While angle(z, m) <= pi / 2, the angle between z and z' is 2 angle(z, m). By way of a
+//!    halving point it is at most L / 2. So angle(z, m) <= L / 4 < pi / 2. The angle is continuous
+//!    along the curve, so it never exceeds pi / 2.
 //! 4. All T are within tau w of the closed curve. If L / 4 + tau w < pi / 2, m is a vector that
 //!    step 1 excludes. So U + 6 tau w >= pi (or pi / 2).
 //!
@@ -38,8 +37,8 @@
 //! be a bound on the displacement of q relative to c. The normal turns by at most tau w, so (q - c)
 //! . n grows by at most d + (|q - c| + d) tau w.
 //!
-//! **Shortest segments between two convex parts.** Their error is as in `tube_with_itself`, with
-//! bodies that are off by the displacement of both as well, and a normal that is off by tau w more.
+//! **Shortest segments between two convex parts.** The error is as in `tube_with_itself`. The
+//! bodies are off by the displacement of both in addition, and the normal by tau w.
 //!
 //! **w of a pair.** The largest w between two places is replaced by the largest w from the base to
 //! the second place, taken per section. So it holds for every pair.

@@ -25,9 +25,9 @@
 //!    (`recedes_between`). The rest of the section, from m on, has no such face, so case 1 applies
 //!    to it.
 //! 4. **Overhanging cap.** The section's own face cuts off the ball at its round end if the ball
-//!    sticks out of it. Where both are near, case 1 needs one of two conditions. Either x is nearer
-//!    to q than to the round end (`distance_to_overhanging_cap`), or x is behind the face: then the
-//!    segment from x to the ball is also behind it.
+//!    sticks out of it. Where both are near, case 1 needs one of two conditions:
+//!    - x is nearer to q than to the round end (`distance_to_overhanging_cap`);
+//!    - x is behind the face: then the segment from x to the ball is behind it, too.
 //! 5. **Part of a section**, cut anywhere. Let some place between q and a cut be farther from x
 //!    than q. Then the nearest place of the part up to there is not that cut, and cases 1 to 4
 //!    apply to it.
@@ -167,7 +167,7 @@ impl PlacedTube<'_> {
     }
 
     /// Returns the distance of `x` from a round end whose ball may stick out of the face at the
-    /// other end of the section; infinity if there is no such ball.
+    /// section's other end. Returns infinity if there is no such ball.
     fn distance_to_overhanging_cap(&self, section: &Section, end: usize, x: Vector) -> Real {
         if section.faces[end].is_some()
             || section.end - section.start > section.room(1 - end) * section.stretch

@@ -44,17 +44,17 @@
 //!    So y - x has at least (2 / k) f(u / 2) along m, where f(v) = sin v + (pi / 2 - v) cos v. f
 //!    decreases up to v = pi / 2, where f = 1. So the surfaces are at least 2 / k - r1 - r2 apart.
 //! 2. **A face that the curve leads away from** (the base, the tip, the wider side of a step).
-//!    - For u <= pi / 2 nothing is ahead of it: y is at least sin(u) / k behind the face, and its
-//!      disc reaches only r2 sin u ahead.
-//!    - For u <= pi let p = y + w be a point of the disc ahead of the face, and c the centre of the
-//!      face. y - c has at least (2 / k) sin(u / 2) along m. w has at most r2 sin(u / 2) against m,
-//!      since w is perpendicular to a direction within u / 2 of m. So p - c has at least (2 / k -
-//!      r2) sin(u / 2) along m. It has no component along the direction of the curve at c, which is
-//!      within u / 2 of m. So |p - c| >= 2 / k - r2, and p is at least 2 / k - r1 - r2 away from
-//!      the face.
-//! 3. **The step from which the thinner tube comes.** For u <= pi / 2 (a curve of length pi / (2
-//!    k), counted from c on as in case 1) y is at least f(u) / k >= 1 / k ahead, and its disc at
-//!    least 1 / k - r2.
+//!    - Let u <= pi / 2. The centre y is at least sin(u) / k behind the face. Its disc reaches only
+//!      r2 sin u ahead, so nothing is ahead of the face.
+//!    - Let u <= pi. Let p = y + w be a point of the disc ahead of the face, and c the centre of
+//!      the face. The vector y - c has at least (2 / k) sin(u / 2) along m. The vector w has at
+//!      most r2 sin(u / 2) against m, since it is perpendicular to a direction within u / 2 of m.
+//!      So p - c has at least (2 / k - r2) sin(u / 2) along m. It has no component along the
+//!      direction of the curve at c, which is within u / 2 of m. So |p - c| >= 2 / k - r2, and p is
+//!      at least 2 / k - r1 - r2 away from the face.
+//! 3. **The step from which the thinner tube comes.** Let u <= pi / 2: the curve is pi / (2 k)
+//!    long, counted from c on as in case 1. Then y is at least f(u) / k >= 1 / k ahead, and its
+//!    disc at least 1 / k - r2.
 //!
 //! **Consequence.** These pairs matter only for margins as wide as a bend. Pairs that turn by more
 //! than required count as soon as the samples show the turn. Undecided pairs that turn by less than
@@ -66,9 +66,9 @@
 //! excluded if the other body is entirely behind the plane of the face; the test allows for the
 //! uncertainty of the normal.
 //!
-//! A place counts if it is known to be ahead. So slightly more than the local minima is queried:
-//! also places beside the rim, at the distance of a bend, or beside the wider part of a step that
-//! the tube passes there.
+//! A place counts if it is known to be ahead. So the query contains slightly more than the local
+//! minima. It includes places beside the rim, at the distance of a bend, and places beside the
+//! wider part of a step that the tube passes there.
 //!
 //! The body of a face is flat and goes a little into the tube, so that rounding does not turn it
 //! (`bounding_body`).
@@ -95,7 +95,7 @@
 //! the same pairs count as at rest.
 //!
 //! **Sharing the turn.** If two places turn by more than required, the excess is split between both
-//! sides: all places up to the first arc length and from the second one on still turn enough
+//! sides. All places up to the first arc length and from the second one on still turn enough
 //! (`TubeTurns::room`). Each point between these two parts bounds the distance of both
 //! (`tube_point`).
 
@@ -479,16 +479,18 @@ impl<'a> TubeWithItself<'a> {
 
     /// Whether the robot leads nearer to a face from all places of the other piece, at all times.
     ///
-    /// **Definitions.** c, r, n: centre, radius and normal of the face. y: a place of the piece, t:
-    /// the direction there. m: the direction of the piece's chord. e: the largest angle between t
-    /// and m. p: a point of the face, so |p - c| <= r and p - c is perpendicular to n.
+    /// **Definitions.**
+    /// - c, r, n: centre, radius and normal of the face. p: a point of the face, so |p - c| <= r
+    ///   and p - c is perpendicular to n.
+    /// - y: a place of the piece. t: the direction there. m: the direction of the piece's chord. e:
+    ///   the largest angle between t and m.
     ///
     /// **Claim.** (y - p) . t >= (y - c) . m - |y - c| e - r (|n x m| + e), and (y - p) . t is at
     /// most the same with opposite signs.
     ///
     /// If the lower bound is above 0, the robot leads nearer backwards. If the upper bound is below
-    /// 0, it leads nearer forwards. Excepted is a piece at whose end the robot ends or becomes
-    /// thinner. Errors, displacements and turns are added.
+    /// 0, it leads nearer forwards. A piece is excepted if the robot ends or becomes thinner there.
+    /// Errors, displacements and turns are added.
     fn leads_on(&self, pair: &SelfPair, k: usize) -> bool {
         let (tube, piece) = (self.tube(), &pair.pieces[1 - k]);
         let Some(end) = pair.faces[k] else { return false };
@@ -571,8 +573,8 @@ impl<'a> TubeWithItself<'a> {
         face.is_none_or(|face| self.ahead_of_face(pair, k, &face, 1.0, self.moved(pair, k)) >= 0.0)
     }
 
-    /// Returns an upper bound on how far any place of the other body is ahead of a face (`sign` =
-    /// 1) or behind it (`sign` = -1), after the displacement `moved`.
+    /// Returns an upper bound on how far the other body is ahead of a face (`sign` = 1) or behind
+    /// it (`sign` = -1), after the displacement `moved`.
     fn ahead_of_face(
         &self,
         pair: &SelfPair,
@@ -843,7 +845,7 @@ impl<'a> TubeWithItself<'a> {
     }
 
     /// Returns an upper bound on the distance of a place ahead of a face, and the point of the
-    /// face; infinity if the place may not be ahead.
+    /// face. The bound is infinite if the place may not be ahead.
     fn near_face(&self, face: &EndFace, radius: Real, place: Vector) -> (Real, Vector) {
         let offset = place - face.centre;
         let ahead = offset.dot(face.outward);

@@ -11,9 +11,9 @@
 //! # Algorithm
 //! A body beyond margin + approach + slack is cleared. Otherwise:
 //! 1. **Contact** if upper <= margin.
-//! 2. **Unresolved** if the piece is not fine and time is to blame: upper <= margin + approach +
-//!    slack, or the body exceeds the piece by at most approach / 4. Shorter intervals test the
-//!    piece again.
+//! 2. **Unresolved** if the piece is not fine and the motion prevents the decision: `upper <=
+//!    margin + approach + slack`, or the body's excess is at most approach / 4. Shorter intervals
+//!    test the piece again.
 //! 3. **Undecided** if the piece is fine and its bounds are at most resolution / 2 apart, beside
 //!    stated uncertainty.
 //! 4. **Halve** otherwise.

@@ -43,8 +43,9 @@ pub(crate) struct SelfMotionMemory {
 /// Decides whether a moving robot keeps the margin to itself at all times.
 ///
 /// # Errors
-/// The motion has no shape at some time, or one that bends too sharply, or changes its sections; a
-/// stated speed is not finite or too large; or the samples allow no decision at that resolution.
+/// - The motion has no shape at some time, or one that bends too sharply, or changes its sections.
+/// - A stated speed is not finite or too large.
+/// - The samples allow no decision at that resolution.
 pub(crate) fn self_clears_motion<M: Motion>(
     motion: &M,
     memory: &mut SelfMotionMemory,

@@ -3,22 +3,23 @@
 //! # Definitions
 //! - **Face**: the robot's base or tip, if it is flat, or the wider side of a step
 //!   ([`JoinedLink`]).
-//! - **In the band**: a pair of links `i < j` that share no joint and whose turn is at least pi /
-//!   2, and less than pi unless all turns are queried. Their faces count by the rule of
-//!   [`JoinedLink::face_counts`].
+//! - **In the band**: a pair of links `i < j` that share no joint and turn by at least pi / 2.
+//!   Unless all turns are queried, the turn is also less than pi. The faces of such links count by
+//!   the rule of [`JoinedLink::face_counts`].
 //! - Two faces **look at one another** if the earlier one is the end of its link and the later one
 //!   the start of its link. They are queried at any turn.
 //! - **Node**: a run of links. It stores a ball around their axes, their largest radius, and a cone
 //!   that contains the directions of these links and of one more on either side.
 //!
 //! # Pruning
-//! A pair of nodes is skipped in each of these cases:
+//! A pair of nodes is skipped in three cases:
 //! 1. Neither node has a face; or no pair is in the band and no two faces look at one another.
 //! 2. The balls, each wider by its largest radius, are farther apart than the bound.
 //! 3. The robot leads nearer everywhere. Let `w` be the segment from a face of one node to a place
 //!    of the other, and `t` any direction of the latter's cone.
 //!    - If all `w . t > 0`, the robot leads nearer backwards from every place, unless it stops
-//!      there: no link of the node may be the robot's first one, or have a thinner one before it.
+//!      there. So no link of the node may be the robot's first one, or have a thinner one before
+//!      it.
 //!    - If all `w . t < 0`, it leads nearer forwards in the same way.
 //!
 //! **Claim.** If case 3 holds for the faces of either node beside the other, no pair of the two
@@ -28,8 +29,8 @@
 //! [`JoinedLink`] fails. □
 //!
 //! **All turns.** If all turns are queried, links count without a face too. They are skipped only
-//! if all places are at shoulders for which case 3 holds: all links of one node have a shoulder at
-//! the end that the segment reaches.
+//! if all places are at shoulders for which case 3 holds. That is, all links of one node have a
+//! shoulder at the end that the segment reaches.
 //!
 //! **Facing.** If all `w . t > 0`, the faces at ends of links face away; if all `w . t < 0`, the
 //! faces at starts do.
@@ -37,11 +38,11 @@
 //! **Covered shoulders.** A shoulder that the segment reaches does not count if the adjoining link
 //! contains its point (`least_covered`). The same holds for two faces that look at one another.
 //!
-//! **Bounds.** Let `C` and `D` be the centres of the balls, `a` and `b` their radii, `m` the axis
-//! of the cone, `e` the largest distance of a direction from `m`, and `n` any normal of the face. A
-//! point of a flat face is at most `f` from its centre and perpendicular to `n`. So `w . t >= (D -
-//! C) . m - a - b - |D - C| e - f |t x n|`, and `w . t` is at most the same with opposite signs.
-//! `|t x n|` is at most `|m x m'|` plus the two largest distances from the axes.
+//! **Bounds.** Let `C` and `D` be the centres of the balls, and `a` and `b` their radii. Let `m` be
+//! the axis of the cone, `e` the largest distance of a direction from `m`, and `n` any normal of
+//! the face. A point of a flat face is at most `f` from its centre and perpendicular to `n`. So `w
+//! . t >= (D - C) . m - a - b - |D - C| e - f |t x n|`, and `w . t` is at most the same with
+//! opposite signs. `|t x n|` is at most `|m x m'|` plus the two largest distances from the axes.
 //!
 //! **Rounding.** Unit vectors err by 4 u, and sums of few lengths by few u of the reach: 64 u of
 //! the largest coordinate covers all. Pairs that [`JoinedLink`] accepts as local minima within the
@@ -407,9 +408,9 @@ impl Node {
     }
 }
 
-/// Returns the least cosine between the adjoining axis and the outward direction v at a round
-/// shoulder from which the adjoining link contains the shoulder's point; more than 1 if there is
-/// none. Larger cosines are contained as well.
+/// Returns the least cosine at which the adjoining link contains the point of a round shoulder;
+/// more than 1 if it never does. The cosine is taken between the adjoining axis and the outward
+/// direction v at the shoulder. The link contains the points of larger cosines, too.
 ///
 /// **Derivation.** Let r be the shoulder's radius, a the radius of the adjoining link, l its
 /// length, and c the cosine. The distance of the point r v from the link's axis is r sqrt(1 - c^2),

@@ -56,8 +56,8 @@
 //! another face. It also decides two links with a turn of pi if they are nearest at a face of one.
 //!
 //! # Restrictions
-//! Links that share a joint are never queried. This rule is for thin tubes. If a joint is so sharp
-//! that its links overlap over more than half of the shorter one, r tan(angle / 2) > length / 2,
+//! Links that share a joint are never queried. This rule is for thin tubes. A joint is too sharp if
+//! its links overlap over more than half of the shorter one: r tan(angle / 2) > length / 2. Then
 //! neighbours cannot be identified, and the robot is refused.
 //!
 //! # Algorithm
@@ -68,8 +68,8 @@
 //!
 //! # Rounding
 //! **Distances.** A measured distance within a bound is truly within [`JoinedLink::tolerance`] of
-//! it. The ball around a face is tested first with that tolerance: the ball is smaller than the
-//! face's link, so it is known more precisely than the measurement.
+//! it. The ball around a face is tested first, with that tolerance. It is smaller than the face's
+//! link, so it is known more precisely than the measurement.
 //!
 //! **Turns without angles.** The cosine of half a turn falls from 1 to -1 as the turn grows from 0
 //! to 2 pi. So cosines are compared instead of turns. Let a and b be the unit axes of two links.
@@ -120,8 +120,8 @@ pub(super) struct TurnSums {
     /// The cosine and the sine of half of the total turn of the joints before each link.
     before: Vec<[Real; 2]>,
     slack: Real,
-    /// For each link, the first later link with a turn of at least pi that shares no joint with it;
-    /// the number of links (or more) if there is none.
+    /// For each link, the first later link with a turn of at least pi that shares no joint with it.
+    /// If there is none, at least the number of links.
     pub queried_from: Vec<usize>,
     /// The same for a turn of at least pi / 2.
     pub quarter_from: Vec<usize>,
