@@ -11,9 +11,9 @@
 //! apart.
 //! 1. Compare the balls of all pairs of up to [`SWEPT`] links of each robot.
 //! 2. For the remaining pairs, let n be the shortest segment between the axes, in single precision.
-//!    The axes lie behind planes on either side. So the distance of the links is at least `(<d, n>
-//!    - |<h1, n>| - |<h2, n>|) / |n| - r1 - r2`. Almost no pair beyond the limit remains, unless
-//!    long thin links nearly meet.
+//!    The axes lie behind planes on either side. So the distance of the links is at least
+//!    `(<d, n> - |<h1, n>| - |<h2, n>|) / |n| - r1 - r2`. Almost no pair beyond the limit remains,
+//!    unless long thin links nearly meet.
 //! 3. The caller measures the remaining pairs.
 //!
 //! # Rounding
