@@ -2,10 +2,10 @@
 //!
 //! # Definitions
 //! - **Face**: the robot's base or tip, if it is flat, or the wider side of a step
-//!   ([`JoinedLink`]).
+//!   (`pair::JoinedLink`).
 //! - **In the band**: a pair of links `i < j` that share no joint and turn by at least pi / 2.
 //!   Unless all turns are queried, the turn is also less than pi. The faces of such links count by
-//!   the rule of [`JoinedLink::face_counts`].
+//!   the rule of `JoinedLink::face_counts`.
 //! - Two faces **look at one another** if the earlier one is the end of its link and the later one
 //!   the start of its link. They are queried at any turn.
 //! - **Node**: a run of links. It stores a ball around their axes, their largest radius, and a cone
@@ -26,7 +26,7 @@
 //! nodes counts whose faces are queried.
 //!
 //! **Proof.** If the nearest place is inside a link, `w . t` is 0 there. At an end, rule 2 of
-//! [`JoinedLink`] fails. □
+//! `JoinedLink` fails. □
 //!
 //! **All turns.** If all turns are queried, links count without a face too. They are skipped only
 //! if all places are at shoulders for which case 3 holds. That is, all links of one node have a
@@ -45,7 +45,7 @@
 //! opposite signs. `|t x n|` is at most `|m x m'|` plus the two largest distances from the axes.
 //!
 //! **Rounding.** Unit vectors err by 4 u, and sums of few lengths by few u of the reach: 64 u of
-//! the largest coordinate covers all. Pairs that [`JoinedLink`] accepts as local minima within the
+//! the largest coordinate covers all. Pairs that `JoinedLink` accepts as local minima within the
 //! error of the segment are visited, too.
 
 use super::robot_with_itself::Turns;
