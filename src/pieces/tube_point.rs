@@ -22,8 +22,8 @@
 //!    to x than the face's centre, the centre is not c(s), and case 1 applies.
 //! 3. **The centreline returns to x.** The discs around q may be nearer than the face even if the
 //!    face's centre is nearer than q. Then some place m between the two is farther from x than q
-//!    (`recedes_between`). The rest of the section, from m on, has no such face, so case 1 applies
-//!    to it.
+//!    (`recedes_between`). The part of the section on q's side of m has no such face, so case 1
+//!    applies to it.
 //! 4. **Overhanging cap.** The section's own face cuts off the ball at its round end if the ball
 //!    sticks out of it. Where both are near, case 1 needs one of two conditions:
 //!    - x is nearer to q than to the round end (`distance_to_overhanging_cap`);
@@ -114,8 +114,8 @@ impl PlacedTube<'_> {
             let size = across.length();
             let rim = length(Vector::new(ahead, (size - section.radius).max(0.0), 0.0))
                 + section.radius * face.tilt;
-            // The face's centre and `place` belong to the tube whatever the normal is. (The tilt
-            // may be infinite; infinity times 0 is NaN.)
+            // The face's centre and `place` belong to the tube for every normal. (The tilt may be
+            // infinite; infinity times 0 is NaN.)
             let beside = away + foot.off;
             let least = if rim <= from_centre { rim } else { from_centre }.min(beside);
             let upper = least + rounding;

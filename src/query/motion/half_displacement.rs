@@ -11,9 +11,9 @@
 //!   discs, whose points move by radius x turn more. A moving mesh comes nearer by its speed.
 //!
 //! # Claim
-//! At all times of that half of the interval body and triangle are separated along n by at least
+//! At all times of that half of the interval, body and triangle are separated along n by at least
 //!
-//! gap - (max(0, -n a, -n b) + off + beside).
+//! `gap - (max(0, -n . a, -n . b) + off + beside)`.
 //!
 //! So motion along the wall or away from it needs no gap. Every n is valid, and each triangle may
 //! have its own.
@@ -52,8 +52,8 @@ impl HalfDisplacement {
     /// Returns a body that contains the body at every displacement, up to `off`.
     ///
     /// All displacements lie in the triangle (0, a, b). Along the axis the body becomes longer by
-    /// their range. Across the axis it moves to the middle of the triangle and becomes wider by the
-    /// largest distance of a corner from there.
+    /// their range. Let a' and b' be the components across the axis. The body moves by (a' + b') /
+    /// 4 and becomes wider by the largest distance of 0, a' and b' from there.
     pub(super) fn swept_body(&self, body: &PlacedLink) -> PlacedLink {
         let axis = Vector::from(body.axis());
         let along = self.ways.map(|way| way.dot(axis));

@@ -19,8 +19,7 @@ pub(crate) trait RelativeMotion<D: Refinable, P> {
         divided: &D,
     ) -> Result<Real, ProximityError>;
 
-    /// Returns how much more a part may turn than its middle shape shows, if turns decide whether
-    /// it is queried.
+    /// Returns how much more a part may turn than its middle shape shows; 0 if turns do not matter.
     fn extra_turn(&self, _: &P, _: &D) -> Real {
         0.0
     }
