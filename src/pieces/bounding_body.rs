@@ -56,7 +56,7 @@
 //! ## Errors
 //! The points of the discs are known to `error`, so everything is wider by `error`. It has two
 //! parts:
-//! - What is stated for the given curve (its own error, the deviation of a fit) moves discs whose
+//! - The errors stated for the given curve (its own error, the deviation of a fit) move discs whose
 //!   chord is known.
 //! - The rest, `loose`, bounds the distance of the ticks from the curve, and of merged samples. It
 //!   may turn the chord by up to 2 loose / |chord|. The wall of a flat body is then off by `loose`

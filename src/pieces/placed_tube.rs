@@ -112,7 +112,7 @@ impl<'a> PlacedTube<'a> {
         self.turn.unwrap_or(0.0)
     }
 
-    /// Returns the flat ends of a section, with what is known of their directions.
+    /// Returns the flat ends of a section, with bounds on their directions.
     pub(super) fn all_faces(&self, section: &Section) -> [Option<EndFace>; 2] {
         self.tube.faces(section, self.turn)
     }

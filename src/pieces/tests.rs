@@ -93,7 +93,7 @@ fn bodies_hold_their_pieces() {
                     let (radius, caps) = (outer.body.radius(), outer.body.flat());
                     let between =
                         [from, from + size].map(|tick| true_arc(&arcs, &tube, number, tick));
-                    // The curve ends exactly here, whatever the rounding of the arc length.
+                    // The curve ends exactly here; the arc length is rounded.
                     let section = Section { start: between[0], end: between[1], ..*section };
                     let section = Section {
                         start: if from == section.first { section.start } else { -1.0 },

@@ -204,8 +204,8 @@ impl<'a, 'b, M: Motion> MinimumPolicy<'a, 'b, M> {
         self.known.lower = self.known.lower.min(lower);
     }
 
-    /// Tests the displacements of the unresolved pieces against `wanted`, and settles at `wanted`
-    /// those that pass. `wanted` may have fallen since a piece was recorded.
+    /// Tests the displacements of the unresolved pieces against `wanted`, and settles the pieces
+    /// that pass at `wanted`. `wanted` may have fallen since a piece was recorded.
     fn clear_by_displacement(&mut self, tube: &mut TubeInMesh) -> [bool; 2] {
         let wanted = self.wanted();
         let Left { sides, is_any_settled } = self.moving.clear_by_displacement(tube, wanted);
