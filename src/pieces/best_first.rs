@@ -1,32 +1,31 @@
-//! The pieces of a tube that a query has not settled, best first.
+//! The pending pieces of a query, in a priority queue: best first.
 //!
 //! # Definitions
-//! - `lower` of a piece: a lower bound on its clearance. It is the distance of its body, or the
-//!   `lower` of the piece that it is a half of, whichever is larger.
-//! - `doubt` of a piece: how far apart its bounds stay because a face's direction is not known
+//! - `lower` of a piece: a lower bound on its clearance: max(distance of its body, `lower` of its
+//!   parent).
+//! - `doubt` of a piece: the gap between its bounds that the unknown direction of a face causes
 //!   ([`Refinable::direction_uncertainty`]).
-//! - `found` of a piece: the upper bound on the clearance that shows from it.
+//! - `found` of a piece: the upper bound on the clearance that the piece yields.
 //! - A **measured** piece has its distance and its `found`. An **open** piece has the `lower` of
-//!   its parent. A **distant** piece is one within whose `lower` nothing was found: its distance is
-//!   larger.
+//!   its parent. A **distant** piece was searched within its `lower`, without a result: its
+//!   distance is larger.
 //! - The **rank** of a measured piece: (`lower` + `doubt`, upper bound of `found`, place along the
-//!   tube). The others rank by their `lower`: open pieces as if their upper bound was 0, distant
-//!   ones after all others with the same `lower`.
+//!   tube). An open piece ranks by (`lower`, 0, place), a distant piece by (`lower`, infinity,
+//!   place).
 //!
 //! # Claim
-//! Let a query only ever divide the measured piece of least rank, and only if it is the first of
-//! all pieces. Then the sequence of its divisions depends on the tube and on what it is beside. It
-//! depends neither on the bounds within which pieces were searched for, nor on where a search
-//! started, nor on a tolerance.
+//! Let a query divide only the measured piece of least rank, and only if it is first among all
+//! pieces. Then the sequence of divisions depends only on the tube and on the obstacle. It is
+//! independent of search bounds, of start triangles and of the tolerance.
 //!
-//! **Proof.** Distance, `found`, `doubt` and place are functions of the piece, and so is the
-//! `lower` of a measured piece, by induction over its parents. No piece ranks lower once it is
-//! measured. So if a measured piece is the first of all, it would be the first if all pieces were
-//! measured.
+//! **Proof.** Distance, `found`, `doubt` and place are functions of the piece. By induction over
+//! its parents, so is the `lower` of a measured piece. Measuring a piece never lowers its rank. So
+//! if a measured piece is the first of all, it would also be the first if all pieces were measured.
 //!
-//! So an upper bound that an earlier query left can spare searches, and never enters a result. And
-//! a finer tolerance only goes on with the same sequence: since no `lower` falls and no upper bound
-//! rises, its bounds are never looser.
+//! Two consequences:
+//! - An upper bound of an earlier query may save searches. It never enters a result.
+//! - A finer tolerance continues the same sequence. No `lower` falls and no upper bound rises, so
+//!   its bounds are never looser.
 
 use super::refinable::{Body, Refinable, UpperBound};
 use crate::answer::ProximityError;
@@ -34,43 +33,42 @@ use parry3d_f64::math::Real;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-/// The part at a face is as short as a body needs that exceeds the tube by this part of what its
-/// parent's does.
+/// The body of a half at a face exceeds the tube by at most this share of its parent's excess.
 const AIM_OF_HALVES: Real = 1.0 / 8.0;
 
-/// How often a piece may be divided before it is measured. Each time its body becomes narrower by a
+/// How often a piece may be halved before it is measured. Each halving makes its body narrower by a
 /// factor of four.
 pub(crate) const MOST_LEVELS: u8 = 2;
 
-/// How a piece has been examined.
+/// The state of a pending piece.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum PieceState<B, F> {
-    /// Not at all.
+    /// Not examined.
     Open,
-    /// Nothing is as near as its `lower`.
+    /// Its distance is larger than its `lower`.
     Distant,
-    /// It is measured: its body, and what was found from it.
+    /// Measured: its body and its upper bound.
     Measured(B, F),
 }
 
-/// A piece and what is known of it.
+/// A piece with its lower bound and its state.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PendingPiece<P, B, F> {
     pub piece: P,
     pub lower: Real,
     pub state: PieceState<B, F>,
-    /// If its body is wider than this, it is divided before it is measured.
+    /// A body wider than this is halved before it is measured.
     pub narrow: Real,
-    /// How often that may still be.
+    /// How many such halvings are left.
     pub levels: u8,
 }
 
-/// When a piece comes, and where it is kept.
+/// The position of a piece in the queue, and its slot.
 #[derive(Clone, Copy, Debug)]
 struct Rank {
-    /// Its lower bound, the doubt of a measured piece included.
+    /// `lower` + `doubt`; the `doubt` of an unmeasured piece is 0.
     least: Real,
-    /// Infinity if the piece is distant, 0 if it is open: no bound is less.
+    /// The upper bound of a measured piece; infinity for a distant piece, 0 for an open one.
     upper: Real,
     is_measured: bool,
     place: [u32; 4],
@@ -78,7 +76,7 @@ struct Rank {
 }
 
 impl Ord for Rank {
-    /// The first one is the greatest, as the heap has it.
+    /// Reversed: the piece of least rank is the greatest element of the heap.
     fn cmp(&self, other: &Self) -> Ordering {
         let bounds = other.least.total_cmp(&self.least).then(other.upper.total_cmp(&self.upper));
         bounds.then(other.place.cmp(&self.place)).then(other.slot.cmp(&self.slot))
@@ -99,33 +97,33 @@ impl PartialEq for Rank {
 
 impl Eq for Rank {}
 
-/// The first piece in the order of ranks.
+/// The first piece of the queue.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct First {
-    /// Its lower bound, the doubt of a measured piece included.
+    /// `lower` + `doubt`; the `doubt` of an unmeasured piece is 0.
     pub least: Real,
     pub is_measured: bool,
 }
 
-/// What an open piece has become.
+/// The result of [`PendingPieces::examine`].
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Examined<F> {
-    /// Nothing is within the bound of its body.
+    /// The body is farther away than the bound.
     Away,
-    /// It was divided, since its body is too wide.
+    /// The piece was halved because its body is too wide.
     Divided,
-    /// It is measured.
+    /// The piece was measured; its upper bound.
     Measured(F),
 }
 
-/// The pieces of a query that are not divided, in memory that is used again.
+/// The undivided pieces of a query. A later query reuses the memory.
 #[derive(Clone, Debug)]
 pub(crate) struct PendingPieces<P, B, F> {
     pieces: Vec<PendingPiece<P, B, F>>,
-    /// Places in `pieces` that are free.
+    /// Free slots of `pieces`.
     free: Vec<u32>,
     queue: BinaryHeap<Rank>,
-    /// Measured pieces that cannot be divided.
+    /// Measured pieces that have no halves.
     whole: Vec<PendingPiece<P, B, F>>,
 }
 
@@ -164,7 +162,7 @@ impl<P: Copy, B: Body, F: UpperBound> PendingPieces<P, B, F> {
         }
     }
 
-    /// Keeps a measured piece that cannot be divided.
+    /// Keeps a measured piece that has no halves, outside the queue.
     pub(crate) fn push_whole(&mut self, piece: PendingPiece<P, B, F>) {
         self.whole.push(piece);
     }
@@ -174,24 +172,27 @@ impl<P: Copy, B: Body, F: UpperBound> PendingPieces<P, B, F> {
         Some(First { least: rank.least, is_measured: rank.is_measured })
     }
 
-    /// Takes the first piece.
+    /// Removes the first piece.
     pub(crate) fn pop(&mut self) -> Option<PendingPiece<P, B, F>> {
         let rank = self.queue.pop()?;
         self.free.push(rank.slot);
         Some(self.pieces[rank.slot as usize])
     }
 
-    /// All pieces: together they are the whole tube, but for those that the query dropped.
+    /// Returns all pieces. They cover the tube except for the pieces that the query dropped.
     pub(crate) fn all(&self) -> impl Iterator<Item = &PendingPiece<P, B, F>> {
         let queued = self.queue.iter().map(|rank| &self.pieces[rank.slot as usize]);
         queued.chain(&self.whole)
     }
 
-    /// Looks at a piece that was taken and is not measured: divides it if `width` of its body is
-    /// too much, or measures it. Its parts are pushed.
+    /// Examines a popped piece that is not measured.
+    ///
+    /// Halves the piece if `width` of its body exceeds its `narrow` and halvings are left;
+    /// otherwise measures it within `bound`. Pushes the halves or the measured piece. `start`: a
+    /// triangle that is probably near.
     ///
     /// # Errors
-    /// The curve is not finite there.
+    /// The curve of the piece is not finite.
     pub(crate) fn examine<T>(
         &mut self,
         tube: &mut T,
@@ -224,8 +225,8 @@ impl<P: Copy, B: Body, F: UpperBound> PendingPieces<P, B, F> {
         Ok(Examined::Measured(found))
     }
 
-    /// Divides a measured piece that was taken, and pushes its halves, which are open. False if it
-    /// has none. A body of a half that is wider than `narrow` is divided before it is measured.
+    /// Halves a popped measured piece and pushes the open halves; false if it has no halves. Halves
+    /// with bodies wider than `narrow` are halved again before they are measured.
     pub(crate) fn divide<T>(
         &mut self,
         tube: &T,

@@ -1,47 +1,68 @@
-//! A convex body that holds a piece of the tube.
+//! A convex body that contains a piece of the tube.
 //!
-//! The piece is the union of the discs of radius r across the centreline c, and of a ball at a
-//! round end of the section. Let c be given by arc length with |c''| <= k, the piece have the
-//! length l, and x = c(s) + w be a point of a disc: w is perpendicular to the tangent t(s), and at
-//! most r long.
+//! # Definitions
+//! - c: the centreline by arc length, |c''| <= k. t(s): its tangent. l: the length of the piece. r:
+//!   its radius.
+//! - **Piece**: the union of the discs of radius r perpendicular to c, and of a ball at a round end
+//!   of the section.
+//! - x = c(s) + w: a point of a disc; w is perpendicular to t(s) and |w| <= r.
+//! - d: the direction of the chord between the ends of the piece.
 //!
-//! **Chord, round ends.** c(s) differs from the linear interpolation of the ends by at most k l^2 /
-//! 8, so the capsule of radius r + k l^2 / 8 holds all balls, and so all discs. A point c(m) of the
-//! curve between makes it narrower. Let e lead from the chord to it, perpendicular to the chord,
-//! with its foot within the chord, and let D = k h^2 / 2 with h the longer of the two parts. In a
-//! part, at the share q of the way to c(m), the curve differs from q e by at most D q (1 - q), so
-//! it is at most |q - 1/2| |e| + D q (1 - q) from the chord moved by e / 2. With u = |q - 1/2| that
-//! is u |e| + D (1/4 - u^2), whose maximum is D / 4 + |e|^2 / (4 D) if |e| <= D, and |e| / 2
-//! otherwise.
+//! # Claim
+//! Each of the following bodies contains the piece.
 //!
-//! **Chord, flat ends.** Let d be the direction of the chord. t(s) is within k l / 2 of it (as an
-//! angle, for k l <= pi / 2: seen from t(s), the two parts p + q = l of the curve add up to at most
-//! (2 - cos kp - cos kq) / k across and at least (sin kp + sin kq) / k along, and the quotient is
-//! at most tan(k l / 2)). So <c(s), d> grows with s, and w reaches at most r sin(k l / 2) along d:
-//! x is behind the plane that far beyond the end. A flat end there keeps all of x, since x is
-//! within the capsule's radius of the longer axis too.
+//! ## Case 1: along the chord, round ends
+//! c(s) deviates from the linear interpolation of the ends by at most k l^2 / 8. So the capsule of
+//! radius r + k l^2 / 8 contains all balls, and so all discs.
 //!
-//! **At a face.** With the tangent T at the face and a distance s from there, t is within k s of T,
-//! so c(s) is at least sin(k s) / k behind the face's plane and at most (1 - cos ks) / k <= k l^2 /
-//! 2 beside its normal, and w reaches at most r sin ks ahead: as k r < 1, x is behind the plane,
-//! and within r + k l^2 / 2 of the normal through the face's centre, which is taken l long. If the
-//! normal is known to an angle a alone, t is within ks + a of it: x is at most r sin a ahead of the
-//! plane and r + k l^2 / 2 + a l beside the normal. Where the other end must be flat too, x is at
-//! most l + r sin(k l + a) behind.
+//! **Shifted chord.** A point c(m) of the curve in between makes the capsule narrower. Let e be the
+//! perpendicular from the chord to c(m), with its foot within the chord. Let D = k h^2 / 2, where h
+//! is the longer of the two parts that c(m) separates.
+//! 1. In a part, at the share q of the way to c(m), the curve deviates from q e by at most D q (1 -
+//!    q).
+//! 2. Let u = |q - 1/2|. The distance of the curve from the chord moved by e / 2 is at most `|q -
+//!    1/2| |e| + D q (1 - q) = u |e| + D (1/4 - u^2)`.
+//! 3. The maximum over u is D / 4 + |e|^2 / (4 D) if |e| <= D, and |e| / 2 otherwise.
 //!
-//! Such a body is led from the face to its back, A = ahead + behind long. Rounding moves its two
-//! ends against one another by at most 2 u (reach + A) in each coordinate, so it turns the axis by
-//! up to 4 u (reach / A + 1), and the flat ends dip by r times that where they should hold all. 4 u
-//! r is within `slack`, of which 4 u reach is less than a sixteenth. For the rest both ends lie
-//! farther out by x = min(e / A, sqrt(e)) with e = r slack / 16: the body is then longer than
-//! A + x, and e / (A + x) is at most x. The back moves aside by less than a slack.
+//! ## Case 2: along the chord, flat ends
+//! 1. For k l <= pi / 2, the angle between t(s) and d is at most k l / 2. Seen from t(s), the two
+//!    parts p + q = l of the curve add up to at most (2 - cos kp - cos kq) / k across and at least
+//!    (sin kp + sin kq) / k along. Their quotient is at most tan(k l / 2).
+//! 2. So the component of c(s) along d increases with s, and w reaches at most r sin(k l / 2) along
+//!    d. So x is behind the plane that is this far beyond the end.
+//! 3. A flat end in that plane cuts off no x, since x is also within the capsule's radius of the
+//!    longer axis.
 //!
-//! Points of the discs are known to `error`: everything is `error` wider. Of that, what is stated
-//! for the curve that was given (its own error, the deviation of a fit) moves discs whose chord is
-//! known. The rest, `loose`, is how far the ticks may be from the curve, and what was taken for
-//! one; it may turn the chord by up to 2 loose / |chord|, which puts the wall of a flat body off by
-//! `loose` once more. Where directions may be off by a stated turn, w reaches as much farther along
-//! d.
+//! ## Case 3: at a face
+//! Let T be the tangent at the face and s the arc length from the face.
+//! 1. The angle between t(s) and T is at most k s. So c(s) is at least sin(k s) / k behind the
+//!    face's plane, and at most (1 - cos ks) / k <= k l^2 / 2 beside its normal.
+//! 2. The vector w reaches at most r sin ks ahead. Since k r < 1, x is behind the plane. It is
+//!    within `r + k l^2 / 2` of the normal through the face's centre. The body's axis follows that
+//!    normal for the length l.
+//! 3. If the normal is known only to an angle a, the angle between t(s) and it is at most ks + a.
+//!    Then x is at most r sin a ahead of the plane and r + k l^2 / 2 + a l beside the normal.
+//! 4. If the other end must be flat too, x is at most l + r sin(k l + a) behind the plane.
+//!
+//! **Rounding.** The axis leads from the face to the back and has the length A = ahead + behind.
+//! 1. Rounding moves its two ends relative to one another by at most 2 u (reach + A) per
+//!    coordinate. So it turns the axis by up to 4 u (reach / A + 1), and the flat ends dip by r
+//!    times that.
+//! 2. `slack` covers 4 u r, and 4 u reach < slack / 16.
+//! 3. For the rest, both ends are moved outwards by x = min(e / A, sqrt(e)) with e = r slack / 16.
+//!    The body is then longer than A + x, and e / (A + x) <= x. The back moves sideways by less
+//!    than a slack.
+//!
+//! ## Errors
+//! The points of the discs are known to `error`, so everything is wider by `error`. It has two
+//! parts:
+//! - The errors stated for the given curve (its own error, the deviation of a fit) move discs whose
+//!   chord is known.
+//! - The rest, `loose`, bounds the distance of the ticks from the curve, and of merged samples. It
+//!   may turn the chord by up to 2 loose / |chord|. The wall of a flat body is then off by `loose`
+//!   once more.
+//!
+//! If directions may be off by a stated turn, w reaches farther along d by r times that turn.
 
 use super::piece::Piece;
 use super::placed_tube::PlacedTube;
@@ -56,10 +77,10 @@ use std::f64::consts::FRAC_PI_2;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BoundingBody {
     pub body: PlacedLink,
-    /// By how much, about, it is larger than the piece. Only for the choice of what to do next, as
-    /// all below.
+    /// By about how much the body is larger than the piece. A heuristic: correctness does not
+    /// depend on it.
     pub excess: Real,
-    /// How much smaller, about, the bodies of its halves are.
+    /// By about how much the bodies of the halves are narrower. A heuristic, too.
     pub narrows: Real,
 }
 
@@ -76,18 +97,20 @@ impl Body for BoundingBody {
 }
 
 impl PlacedTube<'_> {
-    /// A piece with its finite body, which is at least `lower` away from the mesh.
+    /// Returns a piece with its finite body, which is at least `lower` away from the mesh.
     pub(crate) fn report(&self, piece: &Piece, outer: &BoundingBody, lower: Real) -> TubePiece {
         let body = &outer.body;
         let caps = body.flat().map(|flat| if flat { Cap::Flat } else { Cap::Round });
-        // Flat bodies are longer than rounding, and nothing is farther out than a few times what
-        // tube and pose were checked for.
+        // Flat bodies are longer than rounding, and all coordinates stay within a few times the
+        // limit that tube and pose were checked for.
         let body = ModifiedCylinder::unchecked(body.start(), body.end(), body.radius(), caps);
         TubePiece { section: piece.section, arc_lengths: self.arcs(piece), body, lower }
     }
 
+    /// Checks the body of a piece.
+    ///
     /// # Errors
-    /// The curve is not finite there, and so the body around the piece.
+    /// The curve of the piece, and so its body, is not finite.
     pub(crate) fn check_finite(
         &self,
         piece: &Piece,
@@ -100,8 +123,10 @@ impl PlacedTube<'_> {
         }
     }
 
-    /// The body of a piece without its outermost layer: `depth` times twice what the body is larger
-    /// than the piece, and than what rounding can do. Nothing where no more is left of it.
+    /// Returns the body of a piece without its outermost layer; `None` if too little remains.
+    ///
+    /// The layer is 2 `depth` (max(radius of the body - radius of the piece, `excess`) + slack)
+    /// thick.
     pub(super) fn core(
         &self,
         piece: &Piece,
@@ -121,7 +146,8 @@ impl PlacedTube<'_> {
         is_left.then(|| PlacedLink::between(ends[0], ends[1], radius - layer, body.flat()))
     }
 
-    /// A body that holds the piece.
+    /// Returns a body that contains the piece: case 3 at a face if it is tighter, otherwise case 1
+    /// or 2.
     pub(crate) fn outer(&self, piece: &Piece) -> BoundingBody {
         let section = self.section(piece.section);
         let arcs = self.arcs(piece);
@@ -129,6 +155,7 @@ impl PlacedTube<'_> {
         let length = (arcs[1] - arcs[0]) * section.stretch;
         let known = self.tube.bound(section, [piece.from, piece.to]);
         let bend = known.curvature * length;
+        // Case 1.
         if exposed == [false; 2] || bend > FRAC_PI_2 || known.curvature * section.radius >= 1.0 {
             return self.along_chord(section, piece, &known, length, [false; 2]);
         }
@@ -141,9 +168,11 @@ impl PlacedTube<'_> {
         ];
         let flat_ends = Real::from(u8::from(exposed[0])) + Real::from(u8::from(exposed[1]));
         let by_chord = 0.25 * sideways + 0.5 * section.radius * bend * flat_ends;
+        // Case 3.
         for (end, face) in ends.into_iter().enumerate() {
             let Some(face) = face else { continue };
-            // Elsewhere the flat end behind is inside the tube, and does no harm there.
+            // Without a face at the other end, the body's flat back ends inside the tube, which is
+            // harmless.
             let other =
                 if ends[1 - end].is_some() { section.radius * (bend + face.tilt) } else { 0.0 };
             let excess = sideways + face.tilt * (length + section.radius) + other;
@@ -169,11 +198,12 @@ impl PlacedTube<'_> {
                 return BoundingBody {
                     body: PlacedLink::between(ends[0], ends[1], section.radius + wider, flat),
                     excess,
-                    // What the face's direction leaves open stays.
+                    // Halving does not reduce the tilt of the face.
                     narrows: excess - face.tilt * section.radius,
                 };
             }
         }
+        // Case 1 or 2.
         self.along_chord(section, piece, &known, length, exposed)
     }
 
@@ -191,6 +221,7 @@ impl PlacedTube<'_> {
         let along = end - start;
         let mut excess = 0.125 * curvature * length * length;
         let mut shift = Vector::ZERO;
+        // Case 1, shifted chord.
         if excess > self.slack && piece.to - piece.from >= 2 {
             let arcs = self.arcs(piece);
             let tick = self
@@ -217,13 +248,14 @@ impl PlacedTube<'_> {
         end += shift;
         let (mut wider, mut narrows) = (excess, 0.75 * excess);
         let chord = along.length();
-        // A chord that is mere rounding has no direction.
+        // A chord within rounding has no direction.
         let flat = if chord > 4.0 * (loose + self.slack) { flat } else { [false; 2] };
+        // Case 2.
         if flat != [false; 2] {
             let unit = along / chord;
             let bend = 0.5 * curvature * length;
             let tilt = bend + 2.0 * (loose + self.slack) / chord + self.turn();
-            // The halves bend half as much, and rounding turns their chords twice as far.
+            // The halves bend half as much; rounding turns their chords twice as far.
             narrows += section.radius * (0.5 * bend - 2.0 * self.slack / chord);
             let beyond = section.radius * tilt + error + self.slack;
             wider += section.radius * tilt;

@@ -1,5 +1,5 @@
-//! A tube in pieces: convex bodies around them, points that are in them, and the two loops that
-//! divide them.
+//! A tube divided into pieces: bounding volumes, points inside the tube, and the two loops that
+//! divide it (`refine` and `best_first`).
 
 mod best_first;
 mod bounding_body;

@@ -1,9 +1,8 @@
-//! Which pairs of bodies are near, the nearest ones first.
+//! The nearest pairs of bodies.
 
 use parry3d_f64::math::Real;
 
-/// Pairs of bodies by their numbers, and how far they are apart at least; no more than so many,
-/// unless all are wanted.
+/// Pairs of body indices with lower bounds on their distances. Keeps the nearest `most` pairs.
 #[derive(Clone, Debug, Default)]
 pub(super) struct NearestPairs {
     order: Vec<(Real, [u32; 2])>,
@@ -24,7 +23,7 @@ impl NearestPairs {
         }
     }
 
-    /// The farthest first, and whether none was left out.
+    /// Returns the pairs, the farthest first, and whether all pairs were kept.
     pub(super) fn farthest_first(&mut self) -> (impl Iterator<Item = [usize; 2]>, bool) {
         self.keep_nearest();
         self.order.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(b.1.cmp(&a.1)));

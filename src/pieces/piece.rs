@@ -1,4 +1,4 @@
-//! Pieces of the centreline, and how a query divides them.
+//! Pieces of the centreline, and how they are halved.
 
 use super::bounding_body::BoundingBody;
 use super::placed_tube::PlacedTube;
@@ -14,35 +14,34 @@ pub(crate) struct Piece {
     pub to: u32,
 }
 
-/// Which ends of a piece are so near to a flat face that a round end would stick out of it. An
-/// eighth more than the room that a ball needs, because the body around a piece is wider than the
-/// tube.
+/// A piece end closer to a flat face than `ROOM` times [`Section::room`] must end flat: a round end
+/// would stick out of the face. 1/8 more than a ball needs, because a body is wider than the tube.
 const ROOM: Real = 1.125;
 
-/// More pieces of a section are never begun with: what is near the wall is halved, and thin wires
-/// would begin with millions.
+/// The most pieces that a section starts with. Pieces near the wall are halved later; without the
+/// limit thin wires would start with millions.
 const MAX_PIECES: u32 = 1024;
 
 impl PlacedTube<'_> {
-    /// The arc lengths of a piece's ends.
+    /// Returns the arc lengths of a piece's ends.
     pub(crate) fn arcs(&self, piece: &Piece) -> [Real; 2] {
         let section = self.section(piece.section);
         [piece.from, piece.to].map(|tick| self.tube.arc(section, tick))
     }
 
-    /// The least piece that holds all between two shares of a section.
+    /// Returns the smallest piece that contains the range between two shares of a section.
     pub(crate) fn between(&self, section: u32, shares: [Real; 2]) -> Piece {
         let [from, to] = self.tube.ticks_around(self.section(section), shares);
         Piece { section, from, to }
     }
 
-    /// The shares of a section between which a piece lies.
+    /// Returns the range of shares of its section that a piece covers.
     pub(crate) fn shares(&self, piece: &Piece) -> [Real; 2] {
         let section = self.section(piece.section);
         [piece.from, piece.to].map(|tick| self.tube.share(section, tick))
     }
 
-    /// A piece whatever the shape of the tube, and the body that holds it in this one.
+    /// Returns a piece as a range of its section, which is the same in every shape, with its body.
     pub(super) fn section_range<'o>(
         &self,
         piece: &Piece,
@@ -56,7 +55,7 @@ impl PlacedTube<'_> {
         }
     }
 
-    /// Which ends of a piece must be flat if its body is not to stick out of a face nearby.
+    /// Which ends of a piece must end flat so that its body does not stick out of a nearby face.
     pub(crate) fn exposed(&self, section: &Section, arcs: [Real; 2]) -> [bool; 2] {
         let faces = self.faces(section);
         [
@@ -65,9 +64,12 @@ impl PlacedTube<'_> {
         ]
     }
 
-    /// The pieces to begin with, those near faces first, so that they come last from a stack: they
-    /// cost most, and a bound from the others spares most of them. The others leave their chord
-    /// by about `coarse`, unless that would make too many.
+    /// Fills `pieces` with the initial pieces. A stack takes the last one first.
+    ///
+    /// 1. The pieces near faces come first, so they are processed last. They cost most, and an
+    ///    upper bound from the other pieces prunes most of them.
+    /// 2. The other pieces deviate from their chords by about `coarse`, at most [`MAX_PIECES`] per
+    ///    section.
     pub(crate) fn begin(&self, coarse: Real, pieces: &mut Vec<Piece>) {
         pieces.clear();
         for number in (0..self.sections().len() as u32).rev() {
@@ -86,10 +88,10 @@ impl PlacedTube<'_> {
             }
             let arcs = [from, to].map(|tick| self.tube.arc(section, tick));
             let length = arcs[1] - arcs[0];
-            // By k l^2 / 8, and never turning by more than 1 rad.
+            // The deviation is k l^2 / 8, and no piece turns by more than 1 rad: l <= 1 / k.
             let curvature = section.mean_curvature;
             let longest = (8.0 * coarse / curvature).sqrt().min(1.0 / curvature);
-            // A number out of range becomes the nearest that is in it, and NaN becomes 0.
+            // The cast saturates, and NaN becomes 0.
             let count = ((length / longest).ceil() as u32).clamp(1, MAX_PIECES).min(to - from);
             let tick = |k: u32| {
                 (u64::from(from) + u64::from(to - from) * u64::from(k) / u64::from(count)) as u32
@@ -102,8 +104,8 @@ impl PlacedTube<'_> {
         }
     }
 
-    /// The ticks between which a section is free of its faces. The first is the second where it is
-    /// not.
+    /// Returns the ticks of the range of a section that is clear of its faces. The ticks are equal
+    /// if no range is clear.
     pub(crate) fn between_faces(&self, number: u32) -> [u32; 2] {
         let section = self.section(number);
         let [first, last] = self.faces(section).map(|face| face.is_some());
@@ -114,7 +116,7 @@ impl PlacedTube<'_> {
         }
         let from =
             if first { self.tube.tick(section, section.start + room[0]) } else { section.first };
-        // One before the first tick within the room.
+        // One tick before the first tick within the room.
         let to = if last {
             self.tube.tick(section, section.end - room[1]).saturating_sub(1).max(section.first)
         } else {
@@ -123,8 +125,10 @@ impl PlacedTube<'_> {
         if from < to { [from, to] } else { [to.max(section.first); 2] }
     }
 
-    /// The two halves of a piece; none of one tick. At a face the part at the face is as short as a
-    /// body within `aim` of the tube needs: `k l^2`.
+    /// Returns the two halves of a piece; `None` for a piece of one tick.
+    ///
+    /// At a face the part at the face has the length l with `k l^2 = aim`, if that is shorter than
+    /// half.
     pub(crate) fn halves(&self, piece: &Piece, aim: Real) -> Option<[Piece; 2]> {
         if piece.to - piece.from < 2 {
             return None;

@@ -1,4 +1,4 @@
-//! The tube in the mesh's frame.
+//! A tube at a pose, in the mesh's frame.
 
 use super::piece::Piece;
 use crate::answer::ProximityError;
@@ -7,47 +7,49 @@ use crate::pair::{PlacedLink, rigid_pose};
 use crate::robot::{COORDINATE_LIMIT, EndFace, Section, Tube};
 use parry3d_f64::math::{Pose, Real, Vector};
 
-/// Lengths below this, 2^-500, are taken for rounding. A square errs by up to 2^-1074 where it
-/// falls below the range of numbers, so a length by 2^-536; and no centreline adds up as many as
-/// would make 2^-500 of it.
+/// Lengths below this value, 2^-500, count as rounding. A square below the range of numbers errs by
+/// up to 2^-1074, so a length errs by up to 2^-536. No centreline adds enough such lengths to reach
+/// 2^-500.
 const MIN_LENGTH: Real = Real::from_bits((1023 - 500) << 52);
 
 /// A tube at a pose in the frame of a mesh.
 #[derive(Clone, Copy)]
 pub(crate) struct PlacedTube<'a> {
     pub(crate) tube: &'a Tube,
-    /// Its rotation is of unit length.
+    /// Its rotation has unit length.
     pub(crate) pose: Pose,
-    /// What rounding can do to any length that is computed here or measured.
+    /// A bound on the rounding error of any length that is computed or measured.
     ///
-    /// Every coordinate of the problem is at most `reach` = the tube's reach after the pose and
-    /// the mesh's. A measured distance errs by 16 u for each unit of extent, which is at most
-    /// 2 reach; a placed point by less than 16 u reach; and no bound here adds up more than a
-    /// few such terms. 128 u reach is more than all of them. Beside it stands what
-    /// lengths lose whose squares vanish.
+    /// **Claim.** slack = 128 u reach + [`MIN_LENGTH`] suffices, where `reach` is the tube's
+    /// largest coordinate after the pose plus that of the mesh.
     ///
-    /// In the place of the mesh's reach, that of a triangle will do that is at most some distance
-    /// away from the tube: the tube's, the distance, and the triangle's longest edge. For one
-    /// that is farther away in truth can seem nearer by no more than the error that it would
-    /// have at that distance.
+    /// **Proof.** A measured distance errs by 16 u extent, and extent <= 2 reach. A placed point
+    /// errs by less than 16 u reach. A bound adds only a few such terms. [`MIN_LENGTH`] covers
+    /// lengths whose squares vanish.
+    ///
+    /// **Near triangles only.** If only triangles within a distance matter, the mesh's reach may be
+    /// replaced by the tube's reach + the distance + the longest edge. A farther triangle may
+    /// appear nearer only by the error that it would have at that distance.
     pub(crate) slack: Real,
-    /// The largest coordinate of the tube after the pose, or more.
+    /// An upper bound on the largest coordinate of the tube after the pose.
     reach: Real,
-    /// Whether bodies have to hold what the tube may soon be: flat ends that need not last are
-    /// then round.
+    /// Whether flat ends that may become round count as round in bodies.
     is_moving: bool,
-    /// How far directions near flat ends may be off from the tube's, if that is known.
+    /// A bound on the angle (rad) between assumed and true directions near flat ends, if known.
     turn: Option<Real>,
 }
 
-/// What rounding can do where no coordinate is larger than `reach`.
+/// Returns the rounding bound for coordinates up to `reach`.
 fn slack_for(reach: Real) -> Real {
     128.0 * Real::UNIT_ROUNDOFF * reach + MIN_LENGTH
 }
 
 impl<'a> PlacedTube<'a> {
+    /// Places a tube at a pose; `mesh_reach` is the largest coordinate of the mesh.
+    ///
     /// # Errors
-    /// The tube has no section, or the pose is not finite or not rigid, or moves it out of range.
+    /// The tube has no section, or the pose is not finite, not rigid, or moves the tube out of
+    /// range.
     pub(crate) fn new(
         tube: &'a Tube,
         pose: &Pose,
@@ -75,48 +77,47 @@ impl<'a> PlacedTube<'a> {
         })
     }
 
-    /// Whether rounding may be less where the mesh is near.
+    /// Whether a near mesh allows a smaller `slack`.
     pub(super) fn gains_from_sharpening(&self) -> bool {
         slack_for(2.0 * self.reach) < 0.5 * self.slack
     }
 
-    /// Takes less for rounding where no triangle matters that is farther than `away`, if that is
-    /// less.
+    /// Reduces `slack`, given that only triangles within `away` matter.
     pub(super) fn tighten_slack(&mut self, away: Real, longest_edge: impl FnOnce() -> Real) {
         let least = slack_for(2.0 * self.reach + away);
-        // What is less by a little is not worth looking at all edges for.
+        // The gain must be a factor of two: `longest_edge` visits all edges.
         if least < 0.5 * self.slack {
             self.slack = self.slack.min(slack_for(2.0 * self.reach + away + longest_edge()));
         }
     }
 
-    /// Counts another tube as what it is near to.
+    /// Uses another tube as the obstacle, in place of the mesh.
     pub(super) fn beside(&mut self, other: &Self) {
         self.slack = slack_for(self.reach + other.reach);
     }
 
-    /// The same shape as a moment of a motion, to which bodies at flat ends have to be prepared.
+    /// The same shape as one instant of a motion: flat ends that may become round count as round.
     pub(crate) fn moving(self) -> Self {
         Self { is_moving: true, ..self }
     }
 
-    /// The same tube as if its turn had not been stated, if that is another tube of which less is
-    /// known. All bounds of that one hold for this one.
+    /// The same tube without its stated turn, if that leaves less known of it. All bounds of that
+    /// tube hold for this one.
     pub(crate) fn without_turn(self) -> Option<Self> {
         self.tube.is_turn_all_that_is_known().then_some(Self { turn: None, ..self })
     }
 
-    /// How far directions near flat ends may be off from the tube's, as far as that is known.
+    /// Returns the bound on the direction error near flat ends, 0 if unknown.
     pub(super) fn turn(&self) -> Real {
         self.turn.unwrap_or(0.0)
     }
 
-    /// The flat ends of a section, with what is known of their directions.
+    /// Returns the flat ends of a section, with bounds on their directions.
     pub(super) fn all_faces(&self, section: &Section) -> [Option<EndFace>; 2] {
         self.tube.faces(section, self.turn)
     }
 
-    /// The flat ends of a section that bodies may end with.
+    /// Returns the flat ends of a section at which bodies may end flat.
     pub(crate) fn faces(&self, section: &Section) -> [Option<EndFace>; 2] {
         let lasts =
             |face: &EndFace| !self.is_moving || face.persistence.is_safe() && !section.fades;
@@ -124,12 +125,12 @@ impl<'a> PlacedTube<'a> {
         self.all_faces(section).map(|face| face.filter(is_sure))
     }
 
-    /// How far apart the bounds of a piece have to be because of what was stated of the direction
-    /// of a face nearby, or was not.
+    /// Returns the gap between the bounds of a piece that the unknown or uncertain direction of a
+    /// nearby face causes.
     pub(crate) fn direction_uncertainty(&self, piece: &Piece) -> Real {
         let (section, arcs) = (self.section(piece.section), self.arcs(piece));
         if self.tube.is_loose() {
-            // A face at the end of the run of links may be what is near.
+            // The nearest place may be a face at the end of the run of links.
             return section.radius;
         }
         let near = 2.0 * (section.radius + self.tube.error());
@@ -144,7 +145,7 @@ impl<'a> PlacedTube<'a> {
         of(0).max(of(1))
     }
 
-    /// Whether a piece has a flat end that bodies take for round.
+    /// Whether bodies treat a flat end of the piece as round.
     pub(crate) fn may_become_round(&self, piece: &Piece) -> bool {
         let section = self.section(piece.section);
         let count = |faces: [Option<EndFace>; 2]| {
@@ -165,7 +166,7 @@ impl<'a> PlacedTube<'a> {
         &self.tube.sections()[number as usize]
     }
 
-    /// A point of the centreline in the mesh's frame.
+    /// Returns a point of the centreline in the mesh's frame.
     pub(crate) fn point(&self, section: &Section, tick: u32) -> Vector {
         self.pose * self.tube.point(section, tick)
     }
@@ -174,22 +175,23 @@ impl<'a> PlacedTube<'a> {
         self.slack
     }
 
-    /// What the error that the tube states for itself costs a clearance: it counts in both bounds.
+    /// Returns the gap between the bounds that the tube's stated error causes: it counts in both
+    /// bounds.
     pub(crate) fn position_uncertainty(&self) -> Real {
         2.0 * self.tube.error()
     }
 
-    /// The segment of the input at an arc length of a section.
+    /// Returns the input segment at an arc length of a section.
     pub(crate) fn segment(&self, number: u32, arc: Real) -> u32 {
         self.tube.segment(number, arc)
     }
 
-    /// The radius of a piece.
+    /// Returns the radius of a piece.
     pub(crate) fn radius(&self, piece: &Piece) -> Real {
         self.section(piece.section).radius
     }
 
-    /// A point of the centreline, or one between two samples nearby.
+    /// Returns a point of the centreline, or a point between two neighbouring samples.
     pub(crate) fn place_at(&self, section: u32, arc: Real) -> Vector {
         let section = self.section(section);
         self.point(section, self.tube.tick(section, arc))
@@ -205,19 +207,20 @@ impl<'a> PlacedTube<'a> {
             .unwrap_or(0)
     }
 
-    /// The largest radius of its sections.
+    /// Returns the largest radius of all sections.
     pub(super) fn widest(&self) -> Real {
         self.sections().iter().fold(0.0, |most: Real, section| most.max(section.radius))
     }
 
-    /// The line between the ends of a section, and their arc lengths.
+    /// Returns the line between the ends of a section as a link of radius 0, and the arc lengths of
+    /// the ends.
     pub(crate) fn chord(&self, section: u32) -> (PlacedLink, [Real; 2]) {
         let section = self.section(section);
         let ends = [section.first, section.last].map(|tick| self.point(section, tick));
         (PlacedLink::between(ends[0], ends[1], 0.0, [false; 2]), [section.start, section.end])
     }
 
-    /// A flat end in the mesh's frame.
+    /// Returns a flat end in the mesh's frame.
     pub(crate) fn face(&self, face: &EndFace) -> EndFace {
         EndFace {
             centre: self.pose * face.centre,

@@ -1,42 +1,45 @@
-//! What a question divides: a tube on its way through a mesh, or two tubes beside one another.
+//! The trait of what a query refines: a tube in a mesh, two tubes, or a tube beside itself.
 
 use crate::answer::ProximityError;
 use parry3d_f64::math::Real;
 
-/// What can be divided into pieces, each in a convex body, and is the nearer to something else the
-/// better it is known.
+/// A shape that is divided into pieces, each with a convex body.
+///
+/// The distance of a body is a lower bound on the clearance of its piece. The bound improves as
+/// pieces become shorter.
 pub(crate) trait Refinable {
-    /// A piece: of one tube, or one of each.
+    /// One piece of one tube, or one piece of each of two tubes.
     type Piece: Copy;
-    /// What holds a piece.
+    /// The bounding volume of a piece.
     type Body: Body;
-    /// What is nearest to a body.
+    /// The nearest triangle or link to a body.
     type Nearest;
-    /// An upper bound on the clearance, and what realises it.
+    /// An upper bound on the clearance, with the place that realises it.
     type Upper: UpperBound;
 
     fn body(&self, piece: &Self::Piece) -> Self::Body;
 
-    /// Where a piece is: an order of pieces that do not overlap.
+    /// The place of a piece along the tube: an order of pieces that do not overlap.
     fn place(&self, piece: &Self::Piece) -> [u32; 4];
 
-    /// (Apart from [`body`](Self::body), whose answer is large: a `Result` of it would be copied
-    /// once more for each piece.)
+    /// Checks the body of a piece. ([`body`](Self::body) returns no `Result`: the body is large,
+    /// and the `Result` would copy it once more per piece.)
     ///
     /// # Errors
-    /// The curve is not finite there, and so the body.
+    /// The curve of the piece, and so its body, is not finite.
     fn check_finite(&self, piece: &Self::Piece, body: &Self::Body) -> Result<(), ProximityError>;
 
-    /// The halves of a piece whose body can become narrower, and at a face as near to the tube as
-    /// `aim`.
+    /// Returns the halves of a piece; `None` if halving does not make its body narrower.
+    ///
+    /// At a face the short half is chosen so that its body exceeds the tube by at most about `aim`.
     fn halves(&self, piece: &Self::Piece, body: &Self::Body, aim: Real)
     -> Option<[Self::Piece; 2]>;
 
-    /// Whether anything may be at most `bound` away from a body.
+    /// Whether the obstacle may be at most `bound` away from a body (conservative).
     fn may_meet(&mut self, body: &Self::Body, bound: Real) -> bool;
 
-    /// What is nearest to a body, if it is at most `bound` away; `start` is a triangle that is
-    /// likely to be near, where there are triangles.
+    /// Returns what is nearest to a body, if it is at most `bound` away. `start`: a triangle that
+    /// is probably near; ignored without triangles.
     fn nearest(
         &mut self,
         body: &Self::Body,
@@ -44,50 +47,51 @@ pub(crate) trait Refinable {
         start: Option<u32>,
     ) -> Option<Self::Nearest>;
 
-    /// How far away that is, which bounds the clearance of the piece from below.
+    /// Returns the distance of `nearest`: a lower bound on the clearance of the piece.
     fn distance(nearest: &Self::Nearest) -> Real;
 
-    /// What bounds the clearance from above, as seen from there.
+    /// Returns the upper bound on the clearance that `nearest` yields.
     fn found(&self, piece: &Self::Piece, body: &Self::Body, nearest: &Self::Nearest)
     -> Self::Upper;
 
-    /// Whether that is in the first of two halves.
+    /// Whether the place of the upper bound lies in the first of two halves.
     fn is_in_first_half(&self, found: &Self::Upper, halves: &[Self::Piece; 2]) -> bool;
 
-    /// The larger radius of a piece.
+    /// Returns the larger radius of a piece.
     fn radius(&self, piece: &Self::Piece) -> Real;
 
-    /// How far apart the bounds of a piece have to be because of what was stated of the direction
-    /// of a face nearby, or was not.
+    /// Returns the gap between the bounds of a piece that unknown or uncertain directions of nearby
+    /// faces cause.
     fn direction_uncertainty(&self, piece: &Self::Piece) -> Real;
 
-    /// Whether all of a piece is known to be what is asked about, of which something was found.
+    /// Whether the whole piece belongs to the queried set, given its upper bound.
     fn is_entirely_queried(&self, _: &Self::Piece, _: &Self::Upper) -> bool {
         true
     }
 
-    /// Whether a piece has a flat end that bodies take for round, since it may become so while it
-    /// moves.
+    /// Whether bodies treat a flat end of the piece as round because it may become round in the
+    /// motion.
     fn may_become_round(&self, _: &Self::Piece) -> bool {
         false
     }
 
-    /// What stated errors cost a clearance: they count in both bounds.
+    /// Returns the gap between the bounds that the stated position errors cause.
     fn position_uncertainty(&self) -> Real;
 
-    /// What rounding can do to any length.
+    /// A bound on the rounding error of any length.
     fn slack(&self) -> Real;
 
-    /// How far apart the bounds of a piece have to be because of all that was stated, or was not.
+    /// Returns the gap between the bounds of a piece that all stated or missing information causes.
     fn uncertainty(&self, piece: &Self::Piece) -> Real {
         self.position_uncertainty() + self.direction_uncertainty(piece)
     }
 
+    /// Checks that bounds that are `possible` apart meet the resolution, up to rounding.
+    ///
     /// # Errors
-    /// The bounds are farther apart than the resolution, but for rounding: the samples allow no
-    /// more.
+    /// `possible > resolution`: the samples allow no finer resolution.
     fn check_resolved(&self, possible: Real, resolution: Real) -> Result<(), ProximityError> {
-        // Written so that NaN is an error.
+        // This form makes NaN an error.
         if possible <= resolution + 16.0 * self.slack() {
             Ok(())
         } else {
@@ -100,9 +104,9 @@ pub(crate) trait Refinable {
     }
 }
 
-/// What holds a piece, seen as what it holds too much.
+/// The bounding volume of a piece, or of a pair of pieces.
 pub(crate) trait Body: Copy {
-    /// By how much, about, it is larger than the piece.
+    /// By about how much the body is larger than the piece.
     fn excess(&self) -> Real;
 }
 
@@ -110,10 +114,10 @@ pub(crate) trait Body: Copy {
 pub(crate) trait UpperBound: Copy {
     fn upper(&self) -> Real;
 
-    /// The triangle that realises it, if one does.
+    /// The triangle that realises the bound, if there is one.
     fn triangle(&self) -> Option<u32>;
 
-    /// Of equal bounds the one with the least of these is the answer: triangle and section, or two
-    /// sections.
+    /// The tie order: of equal bounds the least `tie` is the answer (triangle and section, or two
+    /// sections).
     fn tie(&self) -> [u32; 2];
 }

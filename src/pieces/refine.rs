@@ -1,71 +1,85 @@
-//! The loop that divides a tube in the shape of one moment, no finer than a question about a motion
-//! needs.
+//! The refinement loop: it divides a tube only as finely as a policy needs.
 //!
-//! The centreline is taken in pieces, each in a convex body that is searched like a link. A body
-//! that keeps away settles its piece; one that does not gives a triangle, whose nearest point
-//! bounds the clearance from above, and the piece is halved where the two bounds are too far apart.
-//! So far from the wall one capsule stands for a whole section, and near it the curve is resolved
-//! as finely as the answer needs. A chain is a tube whose pieces are straight: their bodies are the
-//! links themselves.
+//! # Definitions
+//! - **Tube**: any [`Refinable`]; one tube in a mesh, two tubes, or one tube beside itself, in the
+//!   shape at one instant of a motion.
+//! - **Part**: a work item. It is a piece of the tube, or it identifies one in the shape at that
+//!   instant.
+//! - **Body**: a convex bounding volume of a piece ([`Refinable::body`]). The pieces of a chain are
+//!   straight: their bodies are the links.
+//! - **Bound**: the distance beyond which a body does not matter to the policy.
+//!
+//! # Algorithm
+//! [`refine`] takes parts from a stack until it is empty or the policy is done.
+//! 1. **Query.** Compute the body of the part. The policy gives the bound.
+//! 2. **Halve early.** If the body is wide and can be halved, push its halves. A body farther than
+//!    the bound is cleared instead.
+//! 3. **Measure.** Find the nearest triangle or link. A body farther than the bound is cleared.
+//! 4. **Bound from above.** The point nearest to the body yields an upper bound on the clearance of
+//!    the part. The distance of the body is a lower bound.
+//! 5. **Decide.** The policy settles the part, halves it, or ends the loop.
+//!
+//! Far from the wall one capsule clears a whole section. Near the wall the curve is divided as
+//! finely as the answer needs.
 
 use super::refinable::Refinable;
 use crate::answer::ProximityError;
 use parry3d_f64::math::Real;
 
-/// What waits for its turn: a piece, or what is one in the present shape of a tube that moves.
+/// A work item: a piece, or an item that has a piece in the current shape of a moving tube.
 pub(crate) trait WorkItem<T: Refinable>: Copy {
-    /// The piece that holds it.
+    /// Returns the piece of this item in the current shape.
     fn piece(&self, tube: &T) -> T::Piece;
 
-    /// Its halves, as the piece that holds it is halved.
+    /// Splits the item as its piece is split.
     fn halves(self, tube: &T, halves: [T::Piece; 2]) -> [Self; 2];
 }
 
-/// How a question looks at a body.
+/// The policy's query for one body.
 pub(crate) struct BodyQuery {
-    /// What is farther away than this does not matter.
+    /// Bodies farther away than this are cleared.
     pub bound: Real,
-    /// Whether the body is so wide that its halves are better looked at, if anything is near it at
-    /// all.
+    /// Whether the body is wide enough to halve it before it is measured.
     pub is_wide: bool,
-    /// How near to the tube the bodies of halves are to come at a face.
+    /// The bodies of the halves at a face exceed the tube by about this length.
     pub aim: Real,
-    /// A triangle that is likely to be near.
+    /// A triangle that is probably near: it starts the search.
     pub start: Option<u32>,
 }
 
-/// A part with its body, and what was found near it.
+/// A part with its body, and the bounds on its clearance.
 pub(crate) struct BoundedPiece<'a, T: Refinable, P> {
     pub part: &'a P,
     pub piece: &'a T::Piece,
     pub outer: &'a T::Body,
-    /// What is nearest to the body, at a distance that bounds the clearance of the part from
-    /// below.
+    /// What is nearest to the body. Its distance is a lower bound on the clearance of the part.
     pub nearest: &'a T::Nearest,
-    /// What bounds it from above.
+    /// The upper bound on the clearance.
     pub found: &'a T::Upper,
 }
 
-/// What becomes of a part that something is near to.
+/// What happens to a part whose body is within the bound.
 pub(crate) enum RefineAction {
-    /// It is settled.
+    /// The part needs no more work.
     Settled,
-    /// Its halves have to be looked at, which come as near to the tube as this at a face.
+    /// Process the halves. Their bodies at a face exceed the tube by about this length.
     Halve(Real),
-    /// The question is answered.
+    /// Stop: the answer is known.
     Answered,
 }
 
-/// What is asked of a tube.
+/// Decides how far [`refine`] divides the parts, and collects the answer.
 pub(crate) trait RefinePolicy<T: Refinable, P> {
-    /// Whether the half that is nearer to what was found comes first.
+    /// Whether the half that contains the place of the upper bound is processed first.
     const NEARER_HALF_FIRST: bool;
 
-    /// Whether the parts that are left cannot change the answer.
+    /// Whether the remaining parts cannot change the answer.
     fn is_done(&self) -> bool;
 
+    /// Returns the query for the body of a part.
+    ///
     /// # Errors
-    /// The part cannot be judged.
+    /// The part cannot be tested.
     fn body_query(
         &mut self,
         tube: &T,
@@ -74,21 +88,23 @@ pub(crate) trait RefinePolicy<T: Refinable, P> {
         outer: &T::Body,
     ) -> Result<BodyQuery, ProximityError>;
 
-    /// The body of a part is farther away than the bound of its look.
+    /// Called for a body that is farther away than its `bound`.
     fn on_cleared(&mut self, piece: &T::Piece, outer: &T::Body, bound: Real);
 
+    /// Decides what happens to a part whose body is within the bound.
+    ///
     /// # Errors
-    /// The part cannot be judged.
+    /// The part cannot be tested.
     fn decide(
         &mut self,
         tube: &T,
         near: &BoundedPiece<T, P>,
     ) -> Result<RefineAction, ProximityError>;
 
-    /// A part whose halves were wanted has none.
+    /// Called for a part that should be halved and has no halves.
     ///
     /// # Errors
-    /// It cannot be judged without.
+    /// The part cannot be decided without its halves.
     fn decide_indivisible(
         &mut self,
         tube: &T,
@@ -96,11 +112,10 @@ pub(crate) trait RefinePolicy<T: Refinable, P> {
     ) -> Result<(), ProximityError>;
 }
 
-/// Asks a question of all parts, the last one first. Those that were not needed for the answer are
-/// left in `parts`.
+/// Refines all parts, the last one first. Parts that the answer did not need stay in `parts`.
 ///
 /// # Errors
-/// The curve of the tube is not finite, or a part cannot be judged.
+/// The curve of the tube is not finite, or a part cannot be tested.
 pub(crate) fn refine<T: Refinable, P: WorkItem<T>, Q: RefinePolicy<T, P>>(
     tube: &mut T,
     parts: &mut Vec<P>,
@@ -114,8 +129,10 @@ pub(crate) fn refine<T: Refinable, P: WorkItem<T>, Q: RefinePolicy<T, P>>(
         let piece = part.piece(tube);
         let outer = tube.body(&piece);
         tube.check_finite(&piece, &outer)?;
+        // Step 1.
         let BodyQuery { bound, is_wide, aim, start } =
             question.body_query(tube, &part, &piece, &outer)?;
+        // Step 2.
         if is_wide && let Some(halves) = tube.halves(&piece, &outer, aim) {
             if tube.may_meet(&outer, bound) {
                 parts.extend(part.halves(tube, halves));
@@ -124,10 +141,12 @@ pub(crate) fn refine<T: Refinable, P: WorkItem<T>, Q: RefinePolicy<T, P>>(
             }
             continue;
         }
+        // Step 3.
         let Some(nearest) = tube.nearest(&outer, bound, start) else {
             question.on_cleared(&piece, &outer, bound);
             continue;
         };
+        // Step 4.
         let found = tube.found(&piece, &outer, &nearest);
         let near = BoundedPiece {
             part: &part,
@@ -136,6 +155,7 @@ pub(crate) fn refine<T: Refinable, P: WorkItem<T>, Q: RefinePolicy<T, P>>(
             nearest: &nearest,
             found: &found,
         };
+        // Step 5.
         match question.decide(tube, &near)? {
             RefineAction::Settled => {}
             RefineAction::Answered => return Ok(()),

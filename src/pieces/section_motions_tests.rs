@@ -1,4 +1,4 @@
-//! What is asked about at one time is kept at another, as far as it may be a local minimum then.
+//! Tests that a pair queried at one time is kept at another if it may be a local minimum then.
 
 use super::section_motions::{SectionMotion, SectionMotions};
 use super::tube_with_itself::{SelfPairQueue, TubeWithItself};
@@ -8,10 +8,10 @@ use parry3d_f64::math::{Real, Rotation, Vector};
 use std::collections::BTreeSet;
 use std::f64::consts::PI;
 
-/// Two sections and which of their ends are faces.
+/// Two sections, and which of their ends are faces.
 type Pair = ([u32; 2], [Option<usize>; 2]);
 
-/// The pairs of sections that are asked about, or kept while the tube moves.
+/// Returns the queried pairs of sections, or the kept pairs of a moving tube.
 fn pairs(tube: &Tube, moves: Option<&SectionMotions>) -> BTreeSet<Pair> {
     let (mut turns, mut beginning, mut pairs) =
         (TubeTurns::default(), SelfPairQueue::default(), Vec::new());
@@ -24,14 +24,14 @@ fn pairs(tube: &Tube, moves: Option<&SectionMotions>) -> BTreeSet<Pair> {
     pairs.iter().map(|pair| (pair.pieces.map(|piece| piece.section), pair.faces)).collect()
 }
 
-/// Links that turn as they like, with directions and lengths.
+/// A random row of links, by directions and lengths.
 struct Links {
     directions: Vec<Vector>,
     lengths: Vec<Real>,
 }
 
 impl Links {
-    /// Each joint bends by at most so much.
+    /// Each joint bends by at most `bend`.
     fn random(random: &mut Random, count: usize, bend: Real) -> Self {
         let mut direction = Vector::Z;
         let mut links = Self { directions: Vec::new(), lengths: Vec::new() };
@@ -39,15 +39,15 @@ impl Links {
         for _ in 0..count {
             links.directions.push(direction);
             links.lengths.push(random.between(2.0, 6.0));
-            // In a plane as often as not.
+            // Half of the joints bend in one common plane.
             let axis = if random.below(2) == 0 { axis } else { random.direction() };
             direction = Rotation::from_axis_angle(axis, bend * random.unit()) * direction;
         }
         links
     }
 
-    /// Each direction turned by at most `turn` towards a place of its own, each length by a share
-    /// at most.
+    /// Turns each direction by at most `turn`, towards a common direction or its own, and scales
+    /// each length by up to 1 ± `share`.
     fn moved(&self, random: &mut Random, turn: Real, share: Real) -> Self {
         let common = random.direction();
         let towards = |random: &mut Random, direction: Vector| {
@@ -74,8 +74,8 @@ impl Links {
         }
     }
 
-    /// An arc of links of which the first and the last are so long that they decide where the chord
-    /// leads.
+    /// Returns an arc of links whose long first and last links determine the direction of the
+    /// chord.
     fn arc(random: &mut Random, count: usize) -> Self {
         let (turn, last) = (random.between(2.0, PI), (count - 1) as Real);
         let direction = |k: usize| {
@@ -90,7 +90,7 @@ impl Links {
         }
     }
 
-    /// The first and the last link turned away from one another.
+    /// Turns the first and the last link away from one another.
     fn opened(&self, turn: Real) -> Self {
         let (mut directions, last) = (self.directions.clone(), self.directions.len() - 1);
         for (place, turn) in [(0, -turn), (last, turn)] {
@@ -107,7 +107,7 @@ impl Links {
         points
     }
 
-    /// How far it is from here to there.
+    /// Returns the displacements and turns from `self` to `to`.
     fn moves(&self, to: &Self, radii: &[Real], [here, there]: [&[Vector]; 2]) -> SectionMotions {
         let mut moves = SectionMotions::default();
         for (number, radius) in radii.iter().enumerate() {
@@ -126,8 +126,7 @@ impl Links {
 #[test]
 fn what_is_asked_about_later_is_kept_now() {
     let mut random = Random::new(5);
-    // How often a pair of two links, a face and a link, and two faces is asked about then, and not
-    // now.
+    // How often a pair is queried later and not now: two links, a face and a link, two faces.
     let mut only_later = [0; 3];
     for _ in 0..20_000 {
         let links = Links::random(&mut random, 5, 1.3);
@@ -151,8 +150,8 @@ fn what_is_asked_about_later_is_kept_now() {
         let (kept, at_rest) = (pairs(&now, Some(&moves)), pairs(&now, None));
         for pair @ (sections, faces) in pairs(&then, None) {
             let joints = sections[1] - sections[0];
-            // Of three joints, six directions: the angles grow by no more than 6 times the turn of
-            // each. Of more it is the local minima that are kept.
+            // Three joints have six directions: the angles grow by at most 6 times the turn of
+            // each. With more joints only local minima are kept.
             if joints > 3 && faces != [Some(1), Some(0)] {
                 continue;
             }
@@ -194,8 +193,8 @@ fn what_is_not_kept_is_no_local_minimum_later() {
                 }
                 left_out += 1;
                 let [one, two] = [later.directions[i], later.directions[j]];
-                // A local minimum comes no nearer if either place goes on towards the other one
-                // along the robot.
+                // At a local minimum the distance does not decrease if either place moves along the
+                // robot towards the other.
                 for x in [places[i], places[i + 1]] {
                     for y in [places[j], places[j + 1]] {
                         let way = (y - x).normalize();

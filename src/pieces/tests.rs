@@ -1,4 +1,4 @@
-//! Each bound against dense sampling of curves whose curvature is known.
+//! Tests each bound against dense sampling of curves of known curvature.
 
 use super::piece::Piece;
 use super::placed_tube::PlacedTube;
@@ -13,7 +13,7 @@ fn random_arcs(random: &mut Random) -> Arcs {
     Arcs::random(random, frame, 1.0)
 }
 
-/// The tube as a function, and from samples where these show the curvature of every arc.
+/// Returns the tube as a function, and from samples where these show the curvature of every arc.
 fn tubes(random: &mut Random, arcs: &Arc<Arcs>) -> Vec<Tube> {
     let curve = Arc::clone(arcs);
     let sections = arcs
@@ -27,8 +27,8 @@ fn tubes(random: &mut Random, arcs: &Arc<Arcs>) -> Vec<Tube> {
     [function, given, measured].into_iter().flatten().collect()
 }
 
-/// Points of the tube between two arc lengths: on the rims of discs, and on the ball at a round
-/// end.
+/// Visits points of the tube between two arc lengths: on the rims of discs, and on the ball at a
+/// round end.
 fn points_between(
     random: &mut Random,
     arcs: &Arcs,
@@ -60,7 +60,7 @@ fn points_between(
     }
 }
 
-/// The arc length of the curve at a length along the polyline of a tube: they share ends of
+/// Returns the arc length of the curve at a tick of the tube. Curve and tube share the ends of
 /// sections.
 fn true_arc(arcs: &Arcs, tube: &Tube, number: usize, tick: u32) -> Real {
     let section = &tube.sections()[number];
@@ -93,7 +93,7 @@ fn bodies_hold_their_pieces() {
                     let (radius, caps) = (outer.body.radius(), outer.body.flat());
                     let between =
                         [from, from + size].map(|tick| true_arc(&arcs, &tube, number, tick));
-                    // Where the curve ends, whatever rounding makes of the arc length.
+                    // The curve ends exactly here; the arc length is rounded.
                     let section = Section { start: between[0], end: between[1], ..*section };
                     let section = Section {
                         start: if from == section.first { section.start } else { -1.0 },
@@ -123,9 +123,9 @@ fn bodies_hold_their_pieces() {
     );
 }
 
-/// The distance of a point from the discs of the tube, by ever finer sampling; and from the half
-/// balls beyond the discs at round ends. The other half of such a ball may stick out of the
-/// section's own face, and is no part of the tube.
+/// Returns the distance of a point from a section: from its discs, and from the half balls beyond
+/// the discs at round ends. The other half of such a ball may stick out of the section's own face:
+/// it is no part of the tube.
 fn distance(arcs: &Arcs, tube: &Tube, number: usize, x: Vector) -> Real {
     let section = &tube.sections()[number];
     let start: Real = arcs.stretches[..number].iter().map(|stretch| stretch.length).sum();
@@ -134,7 +134,7 @@ fn distance(arcs: &Arcs, tube: &Tube, number: usize, x: Vector) -> Real {
     for (end, s) in [start, end].into_iter().enumerate() {
         let (centre, tangent) = arcs.at(s);
         let ahead = (x - centre).dot(tangent) * if end == 0 { -1.0 } else { 1.0 };
-        // Of what is not ahead of a half ball its disc is nearest.
+        // If x is not ahead of a half ball, the disc is nearest.
         if section.faces[end].is_none() && ahead > 0.0 {
             least = least.min(((x - centre).length() - section.radius).max(0.0));
         }
@@ -142,7 +142,8 @@ fn distance(arcs: &Arcs, tube: &Tube, number: usize, x: Vector) -> Real {
     least
 }
 
-/// The distance of a point from the discs across the centreline between two arc lengths.
+/// Returns the distance of a point from the discs between two arc lengths, by successively finer
+/// sampling.
 fn distance_from_discs(arcs: &Arcs, [start, end]: [Real; 2], radius: Real, x: Vector) -> Real {
     let from_disc = |s: Real| {
         let (centre, tangent) = arcs.at(s);
@@ -151,7 +152,7 @@ fn distance_from_discs(arcs: &Arcs, [start, end]: [Real; 2], radius: Real, x: Ve
         ahead.hypot((across - radius).max(0.0))
     };
     let mut least = Real::INFINITY;
-    // Every local minimum of the first sampling, and around it closer and closer.
+    // Refine around each local minimum of the first sampling.
     let first = |k: i32| start + (end - start) * Real::from(k.clamp(0, 800)) / 800.0;
     for k in 0..=800 {
         let here = from_disc(first(k));
@@ -208,9 +209,9 @@ fn witnesses_are_no_nearer_than_the_tube() {
     println!("{loose}");
 }
 
-/// Sections with one flat and one round end that are shorter than their radius, straight as a
-/// chain's links and bent. A point ahead of the face is as far away as the face, though the whole
-/// ball at the other end would hold it.
+/// Sections with one flat and one round end that are shorter than their radius: straight, as links
+/// of a chain, and bent. The distance of a point ahead of the face is its distance from the face,
+/// even inside the ball at the other end.
 #[test]
 fn witnesses_know_that_a_short_section_ends_at_its_face() {
     let mut random = Random::new(4);
@@ -281,8 +282,9 @@ fn witnesses_know_that_a_short_section_ends_at_its_face() {
     assert!(links > 300 && bent > 300 && tight > 300, "{links} {bent} {tight}");
 }
 
-/// What a ball adds to its own section is in the discs of others: the tube is its discs. The joint
-/// is about one radius behind the base, or in front of the tip, and the centreline bends.
+/// The part of a ball that sticks out of its own section lies in the discs of other sections: the
+/// tube is its discs. The joint is about one radius behind the base, or ahead of the tip, and the
+/// centreline bends.
 #[test]
 fn balls_at_round_ends_lie_in_discs() {
     let mut random = Random::new(3);
@@ -333,7 +335,7 @@ fn balls_at_round_ends_lie_in_discs() {
     assert!(checked > 1_200 && beyond > 120, "{checked} {beyond}");
 }
 
-/// A thin wire is begun with as many pieces as its bends need, not with millions.
+/// A thin wire starts with as many pieces as its bends need, not with millions.
 #[test]
 fn thin_wires_begin_with_few_pieces() {
     let arc = |s: Real| {
@@ -354,7 +356,7 @@ fn thin_wires_begin_with_few_pieces() {
     }
 }
 
-/// Lengths along a tube are rounded, too, where it winds to and fro in little room.
+/// Lengths along the tube are rounded, too: this tube winds to and fro in a small space.
 #[test]
 fn bodies_hold_links_of_a_long_chain() {
     let mut random = Random::new(9);

@@ -1,4 +1,4 @@
-//! A tube on its way through a mesh: bodies around its pieces, and what is found near them.
+//! A tube in a mesh: bounding bodies of its pieces, their nearest triangles, and upper bounds.
 
 use super::bounding_body::BoundingBody;
 use super::piece::Piece;
@@ -11,13 +11,13 @@ use crate::pair::{Best, Nearest, PlacedLink};
 use crate::search::hierarchy::MeshSearch;
 use parry3d_f64::math::{Real, Vector};
 
-/// A tube and the mesh through which it goes.
+/// A tube and the mesh around it.
 pub(crate) struct TubeInMesh<'a> {
     pub search: MeshSearch<'a>,
     pub tube: PlacedTube<'a>,
 }
 
-/// An upper bound on the clearance, and what realises it.
+/// An upper bound on the clearance, and the witness that realises it.
 #[derive(Clone, Copy)]
 pub(crate) struct MeshUpperBound {
     pub upper: Real,
@@ -88,7 +88,7 @@ impl Refinable for TubeInMesh<'_> {
         nearest.distance
     }
 
-    /// The upper bound that the triangle nearest to a piece's body gives.
+    /// Returns the upper bound that the triangle nearest to a piece's body yields.
     fn found(&self, piece: &Piece, outer: &BoundingBody, nearest: &Nearest) -> MeshUpperBound {
         let arcs = self.tube.arcs(piece);
         let arc = outer.body.share_of(nearest.on_mesh) * (arcs[1] - arcs[0]) + arcs[0];
@@ -96,9 +96,9 @@ impl Refinable for TubeInMesh<'_> {
         if nearest.distance > 0.0 || found.upper <= 0.0 {
             return found;
         }
-        // The body's common point with a triangle that crosses it may lie on its boundary, from
-        // where nobody sees that the tube is crossed too: one nearer to its middle shows
-        // it.
+        // A triangle that crosses the body may touch it at a boundary point that is outside the
+        // tube. A point 1/8 of the way to the body's middle shows whether the triangle also crosses
+        // the tube.
         let middle = outer.body.start() + outer.body.along() * 0.5;
         let deeper = nearest.on_mesh + (middle - nearest.on_mesh) * 0.125;
         let deeper = self.found_at(piece.section, arc, &self.nearest_to(deeper, nearest.triangle));
@@ -131,28 +131,28 @@ impl Refinable for TubeInMesh<'_> {
 }
 
 impl TubeInMesh<'_> {
-    /// The pieces to begin with: those that leave their chord by no more than what is to be
-    /// decided, or than a part of the radius where that is less.
+    /// Fills `pieces` with initial pieces. They deviate from their chords by about max(`scale`,
+    /// widest radius / 4).
     pub(crate) fn begin(&self, scale: Real, pieces: &mut Vec<Piece>) {
         self.tube.begin(scale.max(0.25 * self.tube.widest()), pieces);
     }
 
-    /// The pieces to begin with, none of which turns by more than 1 rad.
+    /// Fills `pieces` with initial pieces that turn by at most 1 rad.
     pub(crate) fn begin_coarse(&self, pieces: &mut Vec<Piece>) {
         self.tube.begin(Real::INFINITY, pieces);
     }
 
-    /// Whether rounding may be less if the mesh is near.
+    /// Whether a near mesh allows a smaller `slack`.
     pub(crate) fn gains_from_sharpening(&self) -> bool {
         self.tube.gains_from_sharpening()
     }
 
-    /// Takes less for rounding if only triangles matter that are at most so far away.
+    /// Reduces `slack`, given that only triangles within `away` matter.
     pub(crate) fn tighten_slack(&mut self, away: Real) {
         self.tube.tighten_slack(away, || self.search.hierarchy.longest());
     }
 
-    /// A first upper bound: from the triangle nearest to the longest section's chord.
+    /// Returns a first upper bound: from the triangle nearest to the chord of the longest section.
     pub(crate) fn first_bound(&mut self) -> MeshUpperBound {
         let longest = self.tube.longest_section();
         let (chord, arcs) = self.tube.chord(longest);
@@ -163,13 +163,13 @@ impl TubeInMesh<'_> {
         self.found_at(longest, arc, &nearest)
     }
 
-    /// The upper bound that a triangle gives at a place of the tube.
+    /// Returns the upper bound that a triangle yields at a place of the tube.
     pub(crate) fn bound_at(&self, section: u32, arc: Real, triangle: u32) -> MeshUpperBound {
         let place = self.tube.place_at(section, arc);
         self.found_at(section, arc, &self.nearest_to(place, triangle))
     }
 
-    /// The point of a triangle nearest to a point.
+    /// Returns the point of a triangle nearest to a point.
     fn nearest_to(&self, point: Vector, triangle: u32) -> Nearest {
         let corners = self.search.corners(triangle);
         PlacedLink::between(point, point, 0.0, [false; 2]).measure(triangle, corners)

@@ -1,16 +1,22 @@
-//! Two tubes beside one another: a piece of each, and what is found between them.
+//! Two tubes beside one another: pairs of pieces, and bounds on their distance.
 //!
-//! The bodies around two pieces are as far apart as two links, which bounds the clearance of the
-//! pieces from below. From above any point y of space does: the way from one tube to y and on to
-//! the other is no shorter than the clearance, and how far y is from a tube at most is known from
-//! any place of its centreline nearby ([`PlacedTube::near`]). It is the less the nearer y is to the
-//! shortest way between the tubes; where they overlap, a y that is in both shows it. So y begins
-//! between the bodies, and moves to the middle between the two points of the tubes that are found
-//! from there.
+//! # Definitions
+//! - **Pair**: one piece of each tube, each in a bounding body.
+//! - y: any point of space. d1(y), d2(y): upper bounds on its distance from the two tubes
+//!   ([`PlacedTube::near`]).
 //!
-//! Of a pair the piece is halved whose body gains more. A pair that is farther apart than the first
-//! upper bound, or than the margin that is asked about, is none to begin with, since it cannot
-//! change the answer.
+//! # Bounds
+//! - **Lower bound**: the distance of the two bodies, measured as two links.
+//! - **Upper bound**: d1(y) + d2(y). The path from one tube by way of y to the other is at least as
+//!   long as the clearance. If both are 0, y is a common point and the tubes overlap.
+//!
+//! # Algorithm
+//! 1. **Begin** with the pairs that are at most `upper` apart. `upper` is the first upper bound or
+//!    the margin: farther pairs cannot change the answer.
+//! 2. **Upper bound of a pair** (`found_from`). Start with y between the bodies. Move y to the
+//!    middle of the two tube points found from it; repeat up to [`MAX_MOVES`] times while the sum
+//!    decreases.
+//! 3. **Halve** the piece whose body becomes narrower by more.
 
 use super::bounding_body::BoundingBody;
 use super::nearest_pairs::NearestPairs;
@@ -23,13 +29,14 @@ use crate::answer::ProximityError;
 use crate::pair::{NearestOfLinks, PlacedLink};
 use parry3d_f64::math::{Real, Vector};
 
-/// How often y moves at most.
+/// How often y is moved.
 const MAX_MOVES: u32 = 4;
 
-/// By how much farther than to its surface y moves into a tube.
+/// How far y moves towards a tube, as a share of the way to its surface: more than 1, to end
+/// inside.
 const INTO: Real = 1.125;
 
-/// How many cores are tried of two bodies that overlap.
+/// How many cores are tried for two overlapping bodies.
 const MOST_CORES: u32 = 4;
 
 /// Two tubes in one frame.
@@ -51,7 +58,7 @@ impl Body for [BoundingBody; 2] {
     }
 }
 
-/// An upper bound on how far two tubes are apart, and what realises it.
+/// An upper bound on the distance of two tubes, and the points that realise it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PairUpperBound {
     pub upper: Real,
@@ -61,7 +68,7 @@ pub(crate) struct PairUpperBound {
 }
 
 impl PairUpperBound {
-    /// Which of the two sections is faster, and how fast, of these speeds.
+    /// Returns the section whose `speeds` entry is larger, and that speed; ties return the first.
     pub(crate) fn faster(&self, speeds: [Real; 2]) -> (usize, Real) {
         let k = usize::from(speeds[1] > speeds[0]);
         (self.sections[k] as usize, speeds[k])
@@ -69,7 +76,7 @@ impl PairUpperBound {
 }
 
 impl PairUpperBound {
-    /// The lesser of two bounds, the first of equals.
+    /// Returns the smaller bound; ties return `self`.
     fn nearer(self, other: Self) -> Self {
         if other.upper < self.upper { other } else { self }
     }
@@ -99,18 +106,18 @@ impl WorkItem<TubePair<'_>> for PiecePair {
     }
 }
 
-/// A piece, whatever the shape of its tube.
+/// A piece as a range of its section, which is the same in every shape.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SectionRange<'a> {
     pub section: u32,
-    /// Where along the section.
+    /// The range along the section, as shares of its length.
     pub shares: [Real; 2],
-    /// What holds it in the present shape.
+    /// Its body in the current shape.
     pub outer: &'a BoundingBody,
     pub radius: Real,
 }
 
-/// What two tubes are divided into to begin with, in memory that is used again.
+/// The initial pieces and pairs of a query. A later query reuses the memory.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PairQueue {
     pieces: Vec<Piece>,
@@ -126,8 +133,8 @@ impl<'a> TubePair<'a> {
         Self { tubes }
     }
 
-    /// The same tubes as if the turn of one of them, or of both, had not been stated, where that is
-    /// other tubes. All bounds of those hold for these.
+    /// Returns the pairs in which the stated turn of one tube, or of both, is ignored, where that
+    /// leaves less known. All bounds of those pairs hold for this one.
     pub(crate) fn less_known(&self) -> impl Iterator<Item = Self> + use<'a> {
         let [first, second] = self.tubes;
         let less = [first.without_turn(), second.without_turn()];
@@ -136,13 +143,12 @@ impl<'a> TubePair<'a> {
         both.into_iter().chain(one.into_iter().flatten()).map(|tubes| Self { tubes })
     }
 
-    /// The sections of a pair and the shares of them between which its pieces lie, with their
-    /// bodies and radii.
+    /// Returns both pieces of a pair as ranges of their sections, with their bodies and radii.
     pub(crate) fn section_ranges<'p>(&self, pair: &'p PiecePair) -> [SectionRange<'p>; 2] {
         [0, 1].map(|k: usize| self.tubes[k].section_range(&pair.pieces[k], &pair.outers[k]))
     }
 
-    /// Whether both have the sections.
+    /// Whether these section numbers exist in the two tubes.
     pub(crate) fn have(&self, sections: [u32; 2]) -> bool {
         sections
             .iter()
@@ -150,7 +156,7 @@ impl<'a> TubePair<'a> {
             .all(|(&section, tube)| (section as usize) < tube.sections().len())
     }
 
-    /// A first upper bound: from where the chords of the longest sections are nearest.
+    /// Returns a first upper bound: from the nearest points of the chords of the longest sections.
     pub(crate) fn first_bound(&self) -> PairUpperBound {
         let sections = self.tubes.map(|tube| tube.longest_section());
         let [first, second] = [0, 1].map(|k: usize| self.tubes[k].chord(sections[k]));
@@ -161,15 +167,17 @@ impl<'a> TubePair<'a> {
         self.bound_at(sections, [arc(first, feet[0]), arc(second, feet[1])])
     }
 
-    /// The upper bound as seen from two places of the tubes.
+    /// Returns the upper bound found from two places of the tubes.
     pub(crate) fn bound_at(&self, sections: [u32; 2], arcs: [Real; 2]) -> PairUpperBound {
         let places = [0, 1].map(|k: usize| self.tubes[k].place_at(sections[k], arcs[k]));
         let radii = [0, 1].map(|k: usize| self.tubes[k].section(sections[k]).radius);
         self.found_from(sections, arcs, half_way(places, radii))
     }
 
-    /// The pairs of pieces to begin with, the nearest one last: all that are not farther apart than
-    /// `upper`. Where these are more than `most` the nearest ones, and false.
+    /// Fills `pairs` with the initial pairs, the nearest one last: all pairs whose bodies are at
+    /// most `upper` apart.
+    ///
+    /// Returns false if there are more than `most`: then only the nearest are kept.
     ///
     /// # Errors
     /// A curve is not finite.
@@ -210,14 +218,14 @@ impl<'a> TubePair<'a> {
         Ok(is_all)
     }
 
-    /// How far two bodies are apart at least: as far as the capsules around them, less what
-    /// rounding does to that.
+    /// Returns a lower bound on the distance of two bodies: the distance of the capsules around
+    /// them, minus rounding.
     pub(super) fn at_least(&self, [one, two]: &[BoundingBody; 2]) -> Real {
         let (_, apart) = one.body.nearest_on_axes(&two.body);
         apart - one.body.radius() - two.body.radius() - self.slack()
     }
 
-    /// The upper bound as seen from a point, and from where it moves to.
+    /// Returns the upper bound found from the point `from` (step 2 of the module).
     fn found_from(&self, sections: [u32; 2], arcs: [Real; 2], from: Vector) -> PairUpperBound {
         found_from(sections, arcs, from, |arcs, from| {
             [0, 1].map(|k: usize| self.tubes[k].near(sections[k], arcs[k], from))
@@ -225,8 +233,8 @@ impl<'a> TubePair<'a> {
     }
 }
 
-/// The upper bound as seen from a point, and from where it moves to. `seen` is how near the two are
-/// to a point, as seen from two arc lengths.
+/// Returns the upper bound found from the point `from` (step 2 of the module). `seen` returns both
+/// tubes' bounds on the distance of a point, searching near two arc lengths.
 pub(super) fn found_from(
     sections: [u32; 2],
     arcs: [Real; 2],
@@ -238,13 +246,13 @@ pub(super) fn found_from(
         let [one, two] = best;
         place = match [one.upper > 0.0, two.upper > 0.0] {
             [true, true] => (one.point + two.point) * 0.5,
-            // From within one tube to the other, and a little into it.
+            // Move from inside one tube into the other.
             [true, false] => place + (one.point - place) * INTO,
             [false, true] => place + (two.point - place) * INTO,
             [false, false] => break,
         };
         let next = seen([one.arc, two.arc], place);
-        // Written so that NaN ends it.
+        // This form makes NaN end the loop.
         if next[0].upper + next[1].upper >= one.upper + two.upper || !place.is_finite() {
             break;
         }
@@ -339,16 +347,16 @@ impl Refinable for TubePair<'_> {
         if nearest.distance > 0.0 || found.upper <= 0.0 {
             return found;
         }
-        // A common point of the bodies may be outside of both tubes; half way between the axes it
-        // is not.
+        // A common point of the bodies may be outside both tubes. A point half way between the axes
+        // is inside.
         let (feet, _) = links[0].nearest_on_axes(links[1]);
         let mut found = found.nearer(self.found_from(
             sections,
             arcs_at(feet),
             half_way(feet, links.map(PlacedLink::radius)),
         ));
-        // At flat ends either may be in the plane of a face, which rounding cannot tell from what
-        // is before it.
+        // At flat ends either point may lie in the plane of a face, where rounding decides on which
+        // side. The bodies without an outer layer give points farther inside.
         let mut depth = 1.0;
         for _ in 0..MOST_CORES {
             if found.upper <= 0.0 {
@@ -395,12 +403,13 @@ impl Refinable for TubePair<'_> {
     }
 }
 
-/// Where balls of two radii around two points have the same way to go, or overlap by as much.
+/// Returns the point on the segment between two balls that is equally far from both surfaces
+/// (equally deep if they overlap).
 pub(super) fn half_way(places: [Vector; 2], radii: [Real; 2]) -> Vector {
     let way = places[1] - places[0];
     let away = way.length();
     let share = 0.5 + 0.5 * (radii[0] - radii[1]) / away;
-    // Written so that NaN, where both are one, is the first.
+    // This form maps NaN (both places coincide) to the first place.
     let share = if share > 0.0 { share.min(1.0) } else { 0.0 };
     places[0] + way * share
 }

@@ -1,52 +1,59 @@
-//! How near a point of the mesh is to the tube at most.
+//! An upper bound on the distance of a point of the mesh from the tube.
 //!
-//! Let s be where a section's centreline is nearest to x. Inside the section x - c(s) is
-//! perpendicular to the tangent, so x is in the plane of the disc at s and |x - c(s)| - r away from
-//! it, or in it. The same holds at a round end, for its ball, and at a flat end of whose plane x is
-//! not ahead: there s is an end only if x is in its plane. And as s is the nearest place, any point
-//! q of the centreline will do as a bound: x is at most |x - q| - r away.
+//! # Definitions
+//! - x: the point. c: the centreline of a section. r: its radius.
+//! - c(s): the point of c nearest to x.
+//! - q: a point of c near x (`place`).
+//! - h, p: the height of x above the plane of a flat face, and the distance of x from the face's
+//!   axis.
 //!
-//! What remains is an x ahead of a flat face whose centre is the nearest place. Then, and whenever
-//! it is nearer, the face itself decides: x is h ahead and p across of its centre, and hypot(h,
-//! max(0, p - r)) away. If q is nearer to x than the face's centre, that centre is not the nearest
-//! place.
+//! # Claim
+//! The distance of x from the tube is at most max(0, |x - q| - r), unless x lies ahead of a flat
+//! face (case 2).
 //!
-//! Where the centreline leads back to x, though, the discs around q may be nearer than the face,
-//! even if the face's centre is nearer than q. Then some place between the two is farther from x
-//! than q. From that place on, the rest of the section has no such face, and all of the above holds
-//! for it.
+//! **Proof.**
+//! 1. **Disc or ball.** Let c(s) be inside the section. Then x - c(s) is perpendicular to the
+//!    tangent, so x lies in the plane of the disc at s. Its distance from the disc is max(0, |x -
+//!    c(s)| - r). The same holds at a round end, for its ball. It also holds at a flat end whose
+//!    plane x is not ahead of: there c(s) is the end only if x lies in its plane. Since c(s) is
+//!    nearest, |x - c(s)| <= |x - q|.
+//! 2. **Flat face.** Let x be ahead of a flat face whose centre is c(s). The distance of x from the
+//!    face is hypot(h, max(0, p - r)). This value is an upper bound in every case. If q is nearer
+//!    to x than the face's centre, the centre is not c(s), and case 1 applies.
+//! 3. **The centreline returns to x.** The discs around q may be nearer than the face even if the
+//!    face's centre is nearer than q. Then some place m between the two is farther from x than q
+//!    (`recedes_between`). The part of the section on q's side of m has no such face, so case 1
+//!    applies to it.
+//! 4. **Overhanging cap.** The section's own face cuts off the ball at its round end if the ball
+//!    sticks out of it. Where both are near, case 1 needs one of two conditions:
+//!    - x is nearer to q than to the round end (`distance_to_overhanging_cap`);
+//!    - x is behind the face: then the segment from x to the ball is behind it, too.
+//! 5. **Part of a section**, cut anywhere. Let some place between q and a cut be farther from x
+//!    than q. Then the nearest place of the part up to there is not that cut, and cases 1 to 4
+//!    apply to it.
 //!
-//! A ball at a round end is cut off by the section's own face, should it stick out of that. So
-//! where both are near, x must also be nearer to q than to the round end, or else behind the face:
-//! then the way from x to the ball is, too.
-//!
-//! **Of a part of a section**, whose ends are anywhere in it, the nearest place is not one of these
-//! ends if on the way to it some place is farther from x than q. Of the part up to there, all of
-//! the above holds.
-//!
-//! q is known to the deviation of the curve from its samples, and a face's normal to its tilt,
-//! which moves a rim by r times that. Of a face whose normal is not known the centre is in the
-//! tube, at least.
+//! **Rounding and errors.** q is known to the deviation of the curve from its samples (`foot.off`).
+//! The normal of a face is known to its tilt, which moves the rim by at most r tilt. If the normal
+//! of a face is unknown, its centre still lies in the tube.
 
 use super::placed_tube::PlacedTube;
 use crate::robot::{Section, length};
 use parry3d_f64::math::{Real, Vector};
 
-/// How many places between a face and a place are tried, each half as far from the latter as the
-/// one before.
+/// How many places between q and a face are tried. Each is half as far from q as the one before.
 const MAX_TRIALS: u32 = 6;
 
 /// A point of the tube near a point of the mesh.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TubePoint {
-    /// The tube is at most this far from the point of the mesh.
+    /// An upper bound on the distance of the tube from the point of the mesh.
     pub upper: Real,
     pub arc: Real,
     pub point: Vector,
 }
 
 impl PlacedTube<'_> {
-    /// How near `x` is to a section at most, looking from an arc length nearby.
+    /// Returns an upper bound on the distance of `x` from a section, searching near `arc`.
     pub(crate) fn near(&self, number: u32, arc: Real, x: Vector) -> TubePoint {
         if self.tube.is_loose() {
             return self.near_links(number, arc, x);
@@ -54,8 +61,10 @@ impl PlacedTube<'_> {
         self.near_between(number, arc, x, [None; 2])
     }
 
-    /// The same of the part of a section between two arc lengths, where it does not go to an end.
-    /// Infinity is the answer if the nearest place may be one of these two.
+    /// As [`near`](Self::near), for the part of the section between two arc lengths; `None` means
+    /// the end of the section.
+    ///
+    /// Returns infinity if the nearest place may be one of the two cuts.
     pub(super) fn near_between(
         &self,
         number: u32,
@@ -73,6 +82,7 @@ impl PlacedTube<'_> {
         let reach = away + foot.off + rounding;
         let mut best = TubePoint { upper: Real::INFINITY, arc: foot.arc, point: x };
         let mut is_beside = true;
+        // Case 5.
         for (end, limit) in limits.into_iter().enumerate() {
             let Some(limit) = limit else { continue };
             let is_within = if end == 0 { limit <= foot.arc } else { foot.arc <= limit };
@@ -82,6 +92,7 @@ impl PlacedTube<'_> {
             }
         }
         for (end, face) in self.all_faces(section).iter().enumerate() {
+            // Cases 2 to 4.
             let Some(face) = face.as_ref().filter(|_| limits[end].is_none()) else { continue };
             let face = self.face(face);
             let offset = x - face.centre;
@@ -103,8 +114,8 @@ impl PlacedTube<'_> {
             let size = across.length();
             let rim = length(Vector::new(ahead, (size - section.radius).max(0.0), 0.0))
                 + section.radius * face.tilt;
-            // However the face is turned, its centre is there, and the place. (The tilt may be
-            // infinite, and times 0 NaN.)
+            // The face's centre and `place` belong to the tube for every normal. (The tilt may be
+            // infinite; infinity times 0 is NaN.)
             let beside = away + foot.off;
             let least = if rim <= from_centre { rim } else { from_centre }.min(beside);
             let upper = least + rounding;
@@ -118,8 +129,9 @@ impl PlacedTube<'_> {
                 }
             }
         }
+        // Case 1.
         if is_beside {
-            // What is not known is no touch.
+            // NaN means unknown, not contact.
             let upper =
                 if reach.is_nan() { Real::INFINITY } else { (reach - section.radius).max(0.0) };
             let point = if upper > 0.0 { x + way * (upper / away).min(1.0) } else { x };
@@ -128,8 +140,8 @@ impl PlacedTube<'_> {
         best
     }
 
-    /// Whether the centreline is seen to be farther from `x` than `least` somewhere between two arc
-    /// lengths, near the first if not farther on.
+    /// Whether some sampled place between two arc lengths is farther from `x` than `least`. Tries
+    /// places closer and closer to `from`.
     fn recedes_between(
         &self,
         section: &Section,
@@ -143,7 +155,7 @@ impl PlacedTube<'_> {
             let arc = self.tube.arc(section, tick);
             let is_between = from.min(to) < arc && arc < from.max(to);
             if is_between {
-                // The curve may be so far from the tick.
+                // The curve may be this far from its tick.
                 let off = self.tube.bound(section, [tick - 1, tick + 1]).off;
                 if (self.point(section, tick) - x).length() > least + off {
                     return true;
@@ -154,8 +166,8 @@ impl PlacedTube<'_> {
         false
     }
 
-    /// How far a round end is from `x`, if its ball may stick out of the face at the section's
-    /// other end.
+    /// Returns the distance of `x` from a round end whose ball may stick out of the face at the
+    /// section's other end. Returns infinity if there is no such ball.
     fn distance_to_overhanging_cap(&self, section: &Section, end: usize, x: Vector) -> Real {
         if section.faces[end].is_some()
             || section.end - section.start > section.room(1 - end) * section.stretch

@@ -1,23 +1,32 @@
-//! How near a point of the mesh is at most to a tube of which only the places are known.
+//! An upper bound on the distance of a point of the mesh from a loose tube.
 //!
-//! The tube's centreline is smooth and within the deviation e of links, place by place. Its discs
-//! stand across it, whichever way that is. Let q be a point of a link, and x be |x - q| = d away.
-//! The tube's own place is within e of q, and the centre of a disc: the tube is at most d + e away
-//! from x.
+//! # Definitions
+//! - **Loose** tube: only its places are known. Its centreline is smooth and follows links to
+//!   within the deviation e, place by place. Its discs are perpendicular to the centreline, in an
+//!   unknown direction.
+//! - x: the point of the mesh. q: a point of a link. d = |x - q|.
+//! - **Run**: the links around q that share one radius r.
 //!
-//! Often it is nearer by its radius. Take the run of links with one radius to which q belongs.
-//! Where the run's centreline is nearest to x inside, x is in the plane of the disc there, and d +
-//! e - r away or in it. At an end of the run it is nearest only if that end is no farther from x
-//! than q's own place, so not if the end of the links is more than d + 2 e away. Nor does an end
-//! matter if some place of the run between q and it is farther from x than that: of the part of the
-//! run up to there, the nearest place is inside or at the other end.
+//! # Claim
+//! The distance of x from the tube is at most
+//! - d + e, always: the tube's place that belongs to q is within e of q and is the centre of a
+//!   disc;
+//! - max(0, d + e - r), if at both ends of the run some link end, from q on, is farther than d + 2
+//!   e from x.
+//!
+//! **Proof** of the second bound. Take the place of the run nearest to x. Inside the run, x lies in
+//! the plane of the disc there, so its distance is at most d + e - r, or 0. An end of the run is
+//! nearest only if it is not farther from x than the tube's own place of q. So it is not nearest if
+//! the link's end is farther than d + 2 e. The end is also excluded if some place of the run
+//! between q and the end is farther than that: the nearest place of the part up to there is inside,
+//! or at the other end.
 
 use super::placed_tube::PlacedTube;
 use super::tube_point::TubePoint;
 use parry3d_f64::math::{Real, Vector};
 
 impl PlacedTube<'_> {
-    /// The same as [`PlacedTube::near`] for a loose tube.
+    /// As [`PlacedTube::near`], for a loose tube.
     pub(super) fn near_links(&self, number: u32, arc: Real, x: Vector) -> TubePoint {
         let section = self.section(number);
         let rounding = self.tube.error() + self.slack;
@@ -28,7 +37,7 @@ impl PlacedTube<'_> {
         let away = way.length();
         let reach = away + rounding;
         if [0, 1].into_iter().all(|end| self.is_before_end(number, end, x, reach + rounding)) {
-            // What is not known is no touch.
+            // NaN means unknown, not contact.
             let upper =
                 if reach.is_nan() { Real::INFINITY } else { (reach - section.radius).max(0.0) };
             let point = if upper > 0.0 { x + way * (upper / away).min(1.0) } else { x };
@@ -37,8 +46,8 @@ impl PlacedTube<'_> {
         TubePoint { upper: reach, arc: foot.arc, point: place }
     }
 
-    /// Whether a run of links with one radius is farther than `least` from `x` somewhere from a
-    /// link on to that end.
+    /// Whether some link end between a link and that end of its run is farther than `least` from
+    /// `x`.
     fn is_before_end(&self, number: u32, end: usize, x: Vector, least: Real) -> bool {
         let mut at = number;
         loop {

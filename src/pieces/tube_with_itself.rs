@@ -1,78 +1,102 @@
-//! A tube beside itself: which of its parts are asked about, and what is found between two of them.
+//! A tube beside itself: which pairs of its parts are queried, and bounds on their distance.
 //!
-//! The rule is that of a chain (`query::robots::robot_with_itself`, whose proofs hold for any
-//! centreline with a direction: the angles of the joints are the integral of the curvature).
-//! Neighbours are near for no other reason than that they are neighbours; places that are a local
-//! minimum of the distance have a turn of at least pi between them, or pi / 2 where one of them is
-//! a face (the base, the tip, the wider side of a step) that the other is in front of. Two faces
-//! that look at one another, the end of a section and the start of a later one, are asked about at
-//! any turn. From a place beside a face the robot must lead nowhere nearer: a piece is left out if
-//! it does so from all of its places ([`TubeWithItself::leads_on`]). Of links `pair::JoinedLink`
-//! decides, as of a chain. A place of the tube is the ball of its radius around its centreline,
-//! which the tube holds as it
-//! bends by less than 1 / radius; where that would stick out of a face nearby, it is the disc.
+//! # Definitions
+//! - **Place**: the ball of the tube's radius around a point of the centreline. The tube contains
+//!   it, since it bends by less than 1 / radius. Where the ball would stick out of a nearby face,
+//!   the place is the disc.
+//! - **Face**: the base, the tip, or the wider side of a step. The wider side of a chain's step may
+//!   be a round cap: a ball around its centre.
+//! - **Turn** of two places: the integral of the curvature between them; for a chain, the sum of
+//!   the angles of the joints. Bounds on it: `robot::tube::turns`.
+//! - **Queried** pair: places that may be a local minimum of the distance (section "Rule").
+//! - **Counts**: the pair is known to be queried, so its distance is an upper bound.
+//! - k: the largest curvature between two places. r1, r2: the radii of the places.
 //!
-//! So the least distance of all such pairs is what is bounded here. How far a curve turns is known
-//! between two bounds (`robot::tube::turns`), and each is taken where it is safe:
+//! # Rule
+//! The rule is the one of a chain. Its proofs (`query::robots::robot_with_itself`) hold for every
+//! centreline that has a direction.
+//! 1. Two places need a turn of at least pi. Neighbours are near only because they are neighbours.
+//! 2. A face and a place ahead of it need a turn of at least pi / 2.
+//! 3. Two faces that look at one another, the end of a section and the start of a later one, need
+//!    no turn.
+//! 4. From a place beside a face the robot must not lead nearer to the face. A piece is excluded if
+//!    the robot leads nearer from all of its places ([`TubeWithItself::leads_on`]).
 //!
-//! - **From below.** A pair of pieces is kept if the turn from the start of the first to the end of
-//!   the second may be enough. That leaves out no pair of places that is asked about, so the bodies
-//!   of what is kept bound the distance from below.
-//! - **From above.** A pair of places counts if the turn between them is known to be enough.
+//! For links of a chain `pair::JoinedLink` decides, as for a chain.
 //!
-//! **Between the two** are pairs of which nobody knows whether they are asked about. They are kept,
-//! but do not count. Let all radii between the two places be less than 1 / k, where k is the
-//! largest curvature there.
+//! # Bounds
+//! The bounds enclose the least distance of all queried pairs. Each uses the bound on the turn that
+//! is safe for it:
+//! - **Lower bound.** A pair of pieces is kept if the turn from the start of the first to the end
+//!   of the second may be enough. This excludes no queried pair of places. So the distances of the
+//!   bodies of the kept pairs bound the answer from below.
+//! - **Upper bound.** A pair of places counts if its turn is known to be enough.
 //!
-//! - *Those that are not asked about are not near.* Let the curve turn by u <= pi in truth, while
-//!   the bound k allows pi: it is at least pi / k long. Let m be its direction where half of u is
-//!   behind it. All directions are within u / 2 of m, and at the arc length s from there within k
-//!   s. So the way y - x has at least (2 / k) f(u / 2) along m, where f(v) = sin v + (pi / 2 - v)
-//!   cos v is 1 at v = pi / 2, and falls up to there. That is 2 / k - r1 - r2 between the surfaces,
-//!   as wide as the tightest bend.
-//! - *In front of a face that the curve leads away from* (the base, the tip, a step on its wider
-//!   side) is nothing at u <= pi / 2: y is sin(u) / k behind the face or more, and its disc reaches
-//!   less far ahead, r2 sin u. At u <= pi let p = y + w be a point of the disc in front of the
-//!   face, c the face's centre. The way y - c has (2 / k) sin(u / 2) along m at least, and w at
-//!   most r2 sin(u / 2) against it, as it is across a direction within u / 2 of m. So p - c has (2
-//!   / k - r2) sin(u / 2) along m, and nothing along the direction of the curve at c, which is
-//!   within u / 2 of m: it is 2 / k - r2 long or more. So p is 2 / k - r1 - r2 away from the face
-//!   at least, as wide as the tightest bend again.
-//! - *In front of a step*, where the thinner tube comes out of it, y is at least f(u) / k ahead at
-//!   u <= pi / 2 (a curve pi / (2 k) long, by the same count from c on), so 1 / k or more, and its
-//!   disc 1 / k - r2.
+//! # Pairs between the two bounds
+//! Some pairs are kept and do not count: it is unknown whether they are queried.
 //!
-//! So only of a margin as wide as a bend it matters whether parts are asked about that turn by no
-//! more than is asked for. Of those that turn by more, a contact counts as soon as samples show the
-//! turn. Pairs in question that turn by less than [`MIN_TURN`] are halved no more.
+//! **Claim.** If all radii between the two places are less than 1 / k, such a pair is as far apart
+//! as the tightest bend is wide: 2 / k - r1 - r2, or at least 1 / k - r2 in case 3.
 //!
-//! **In front of a face.** Nothing is missed: a local minimum leaves the face on its outer side
-//! (`one_robot`), so that its place is in front. A pair with a face is left out if the whole body
-//! of the other piece is behind the plane of the face, as far as the normal is known. A place
-//! counts if it is known to be in front: rather more is asked about than local minima, but
-//! places beside the rim, at a distance as wide as a bend, or beside the wider part of a step,
-//! which the tube is passing there. The face is held by a flat body that goes a little into the
-//! tube, so that rounding does not turn it (`bounding_body`). A round cap at the wider side of a
-//! chain's step is a ball around its centre.
+//! **Proof.** Let the curve turn by u, and let m be its direction where half of u is behind it. All
+//! directions are within u / 2 of m, and within k s of m at the arc length s from there.
+//! 1. **Two places.** Let u <= pi, while the bound k allows pi: the curve is at least pi / k long.
+//!    So y - x has at least (2 / k) f(u / 2) along m, where f(v) = sin v + (pi / 2 - v) cos v. f
+//!    decreases up to v = pi / 2, where f = 1. So the surfaces are at least 2 / k - r1 - r2 apart.
+//! 2. **A face that the curve leads away from** (the base, the tip, the wider side of a step).
+//!    - Let u <= pi / 2. The centre y is at least sin(u) / k behind the face. Its disc reaches only
+//!      r2 sin u ahead, so nothing is ahead of the face.
+//!    - Let u <= pi. Let p = y + w be a point of the disc ahead of the face, and c the centre of
+//!      the face. The vector y - c has at least (2 / k) sin(u / 2) along m. The vector w has at
+//!      most r2 sin(u / 2) against m, since it is perpendicular to a direction within u / 2 of m.
+//!      So p - c has at least (2 / k - r2) sin(u / 2) along m. It has no component along the
+//!      direction of the curve at c, which is within u / 2 of m. So |p - c| >= 2 / k - r2, and p is
+//!      at least 2 / k - r1 - r2 away from the face.
+//! 3. **The step from which the thinner tube comes.** Let u <= pi / 2: the curve is pi / (2 k)
+//!    long, counted from c on as in case 1. Then y is at least f(u) / k >= 1 / k ahead, and its
+//!    disc at least 1 / k - r2.
 //!
-//! **Ways between two convex parts** (two faces, a chain's face and a link) are asked which side
-//! they leave. The bodies measured are within D of the parts, both together. So the way w that is
-//! measured, d long, is within D of one between the parts, w', of at most d + D; the shortest one,
-//! w*, has at least d - D. As differences of convex sets are convex, |w' - w*|^2 <= |w'|^2 - |w*|^2
-//! <= 4 D (d + D). So w* leaves w by D + 2 sqrt(D (d + D)) at most, and a normal that is off by a
-//! tilt counts (d + D) tilt more. What leaves within rounding of the face's plane counts as what
-//! leaves, as for a chain; all else that is in doubt is kept, but counts not.
+//! **Consequence.** These pairs matter only for margins as wide as a bend. Pairs that turn by more
+//! than required count as soon as the samples show the turn. Undecided pairs that turn by less than
+//! [`MIN_TURN`] are not halved further.
 //!
-//! **Errors that are stated** say where the curve may be, not how it turns. So what is asked about
-//! is decided by the curve as it is given, and errors count in every distance.
+//! # Faces
+//! **No local minimum is missed**: the shortest segment leaves the face outwards
+//! (`query::robots::robot_with_itself`), so the place is ahead of it. A pair with a face is
+//! excluded if the other body is entirely behind the plane of the face; the test allows for the
+//! uncertainty of the normal.
 //!
-//! **While it moves** places may be asked about that are not in the shape that is looked at:
-//! `section_motions` has by how much more turn, and how much farther ahead. Of what is found in
-//! that shape counts what counts at rest.
+//! A place counts if it is known to be ahead. So the query contains slightly more than the local
+//! minima. It includes places beside the rim, at the distance of a bend, and places beside the
+//! wider part of a step that the tube passes there.
 //!
-//! **What counts on either side.** If two places turn by more than is asked for, what is left is
-//! shared out: all places up to the first arc length and from the second on have enough between
-//! them (`TubeTurns::room`). Within these two parts each point between them shows how near both are
+//! The body of a face is flat and goes a little into the tube, so that rounding does not turn it
+//! (`bounding_body`).
+//!
+//! # Shortest segments between two convex parts
+//! For two faces, or a face and a link of a chain, the direction of the shortest segment decides
+//! whether it leaves the face.
+//!
+//! **Claim.** Let the measured bodies be within D of the parts, both together. Let w, of length d,
+//! be the measured segment and w* the true one. Then |w - w*| <= D + 2 sqrt(D (d + D)).
+//!
+//! **Proof.** w is within D of a segment w' between the parts, and |w'| <= d + D, |w*| >= d - D.
+//! Differences of convex sets are convex, so |w' - w*|^2 <= |w'|^2 - |w*|^2 <= 4 D (d + D).
+//!
+//! A normal that is off by a tilt adds (d + D) tilt. A segment within rounding of the plane of the
+//! face leaves it, as for a chain. All other uncertain pairs are kept and do not count.
+//!
+//! # Further rules
+//! **Stated errors** say where the curve may be, not how it turns. So the given curve decides which
+//! pairs are queried, and errors count in every distance.
+//!
+//! **While the tube moves**, pairs that are not queried in the tested shape may be queried at other
+//! times. `section_motions` bounds the extra turn and the extra distance ahead. In the tested shape
+//! the same pairs count as at rest.
+//!
+//! **Sharing the turn.** If two places turn by more than required, the excess is split between both
+//! sides. All places up to the first arc length and from the second one on still turn enough
+//! (`TubeTurns::room`). Each point between these two parts bounds the distance of both
 //! (`tube_point`).
 
 use super::bounding_body::BoundingBody;
@@ -91,40 +115,40 @@ use crate::robot::{EndFace, Section, Tube, TubeTurns, is_step};
 use parry3d_f64::math::{Pose, Real, Vector};
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// Pairs of which nobody knows whether they are asked about are not halved any more where both turn
-/// by less.
+/// Pairs that may or may not be queried are not halved if their turn is uncertain by less than this
+/// (rad).
 const MIN_TURN: Real = 1.0 / 1024.0;
 
-/// Nor are they where they turn by less than this part of what they may turn more while they move.
+/// While the tube moves, they are not halved if their turn is uncertain by less than this share of
+/// their extra turn.
 const MAX_SHARE_OF_EXTRA_TURN: Real = 1.0 / 16.0;
 
 /// How far the body of a face goes into the tube, in radii.
 const INTO_TUBE: Real = 1.0 / 1024.0;
 
-/// What the bodies of two faces are off by rounding alone, in slacks: `off_of_bodies` without a
-/// tilt and an error.
+/// The rounding error of the bodies of two faces, in slacks: `off_of_bodies` without tilt and
+/// stated error.
 const ROUNDING_OF_FACES: Real = 140.0;
 
-/// How often a place of two parts is moved to the other's.
+/// How often a place of one part is moved to the nearest place of the other.
 const MAX_MOVES: u32 = 3;
 
 /// A tube beside itself, in its own frame.
 #[derive(Clone, Copy)]
 pub(crate) struct TubeWithItself<'a> {
-    /// Twice the same.
+    /// The same tube twice.
     both: TubePair<'a>,
     turns: &'a TubeTurns,
-    /// What may change of it; none at rest.
+    /// How far it moves in the interval; `None` at rest.
     moves: Option<&'a SectionMotions>,
 }
 
-/// Two pieces, the first of which comes first along the tube. Either may be a face: a piece without
-/// length.
+/// Two pieces in their order along the tube. A piece without length is a face.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SelfPair {
     pub(super) pieces: [Piece; 2],
     outers: [BoundingBody; 2],
-    /// The end of its section at which a piece is a face.
+    /// For a face, the end of its section at which it is.
     pub(super) faces: [Option<usize>; 2],
     is_asked: bool,
 }
@@ -145,10 +169,10 @@ impl WorkItem<TubeWithItself<'_>> for SelfPair {
     }
 }
 
-/// A piece, what holds it, and of which end it is the face.
+/// A piece, its body, and the end at which it is a face.
 type SelfBody = (Piece, BoundingBody, Option<usize>);
 
-/// What a tube is divided into to begin with, in memory that is used again.
+/// The initial pieces and pairs of a query. A later query reuses the memory.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SelfPairQueue {
     pieces: Vec<Piece>,
@@ -157,6 +181,8 @@ pub(crate) struct SelfPairQueue {
 }
 
 impl<'a> TubeWithItself<'a> {
+    /// Places a tube beside itself, at rest.
+    ///
     /// # Errors
     /// The tube has no section or is out of range.
     pub(crate) fn new(tube: &'a Tube, turns: &'a TubeTurns) -> Result<Self, ProximityError> {
@@ -164,14 +190,14 @@ impl<'a> TubeWithItself<'a> {
         Ok(Self { both: TubePair::new([placed; 2]), turns, moves: None })
     }
 
-    /// The same tube as if its turn had not been stated, if that is another one. All bounds of that
-    /// one hold for this one.
+    /// Returns the tube with its stated turn ignored, if that leaves less known. All bounds of that
+    /// tube hold for this one.
     pub(crate) fn less_known(&self) -> Option<Self> {
         let less = self.tube().without_turn()?;
         Some(Self { both: TubePair { tubes: [less; 2] }, ..*self })
     }
 
-    /// A tube that moves, in the shape at the middle of an interval of time.
+    /// Places the shape at the middle of an interval of time beside itself.
     ///
     /// # Errors
     /// As [`new`](Self::new).
@@ -184,18 +210,18 @@ impl<'a> TubeWithItself<'a> {
         Ok(Self { both: TubePair::new([placed; 2]), turns, moves: Some(moves) })
     }
 
-    /// The sections of a pair and the shares of them between which its pieces lie, with their
-    /// bodies and radii.
+    /// Returns both pieces of a pair as ranges of their sections, with their bodies and radii.
     pub(crate) fn section_ranges<'p>(&self, pair: &'p SelfPair) -> [SectionRange<'p>; 2] {
         [0, 1].map(|k: usize| self.tube().section_range(&pair.pieces[k], &pair.outers[k]))
     }
 
-    /// By how much more a pair may turn, as far as it matters, while the tube moves.
+    /// Returns how much more a pair may turn at other times of the interval.
     pub(crate) fn extra_turn(&self, pair: &SelfPair) -> Real {
         self.moves.map_or(0.0, |moves| moves.extra_turn(pair.pieces[1].section))
     }
 
-    /// By how much both pieces of a pair may move, and the first or the second turn.
+    /// Returns how far both pieces of a pair may move together, and how far the piece `turning` may
+    /// turn.
     fn moved(&self, pair: &SelfPair, turning: usize) -> SectionMotion {
         let Some(moves) = self.moves else { return SectionMotion::default() };
         let [one, two] = pair.pieces.map(|piece| moves.of(piece.section));
@@ -206,9 +232,10 @@ impl<'a> TubeWithItself<'a> {
         &self.both.tubes[0]
     }
 
-    /// The pairs of pieces to begin with, the nearest one last: all that are asked about and not
-    /// farther apart than `upper`. Where these are more than `most` the nearest ones, and
-    /// false.
+    /// Fills `pairs` with the initial pairs, the nearest one last: all queried pairs whose bodies
+    /// are at most `upper` apart.
+    ///
+    /// Returns false if there are more than `most`: then only the nearest are kept.
     ///
     /// # Errors
     /// A curve is not finite.
@@ -250,8 +277,7 @@ impl<'a> TubeWithItself<'a> {
         Ok(is_all)
     }
 
-    /// Adds all faces to the pieces: the tube's ends, where they are flat, and the wider sides of
-    /// its steps.
+    /// Adds all faces to the pieces: the tube's flat ends and the wider sides of its steps.
     fn push_faces(&self, bodies: &mut Vec<SelfBody>) {
         let sections = self.tube().sections();
         for (number, section) in sections.iter().enumerate() {
@@ -273,15 +299,16 @@ impl<'a> TubeWithItself<'a> {
         }
     }
 
-    /// The flat face at an end of a section; none of a round cap, and of one whose direction nobody
-    /// knows.
+    /// Returns the flat face at an end of a section; `None` for a round cap, and for a face of
+    /// unknown direction.
     fn face(&self, piece: &Piece, end: usize) -> Option<EndFace> {
         let tube = self.tube();
         let face = tube.faces(tube.section(piece.section))[end]?;
         (face.tilt < Real::INFINITY).then(|| tube.face(&face))
     }
 
-    /// The way out of a link's round cap at a step, or that of a face; none if nobody knows.
+    /// Returns the outward direction of a face or of a link's round cap at a step; `None` if
+    /// unknown.
     fn outward(&self, piece: &Piece, end: usize) -> Option<Vector> {
         let tube = self.tube();
         let section = tube.section(piece.section);
@@ -292,12 +319,12 @@ impl<'a> TubeWithItself<'a> {
         Some((stop - start).normalize_or_zero() * if end == 0 { -1.0 } else { 1.0 })
     }
 
-    /// How far a face may be from where it is said to be.
+    /// Returns a bound on the error of the place of a face.
     fn off(&self, face: &EndFace, radius: Real) -> Real {
         radius * face.tilt + self.tube().tube.error() + self.tube().slack()
     }
 
-    /// How far the body of a face reaches ahead of it, and into the tube.
+    /// Returns how far the body of a face reaches ahead of the face, and into the tube.
     fn reach_of_face(&self, face: &EndFace, radius: Real) -> [Real; 2] {
         let off = self.off(face, radius);
         let into = INTO_TUBE * radius + off;
@@ -321,8 +348,8 @@ impl<'a> TubeWithItself<'a> {
         }
     }
 
-    /// By how much a pair may turn between places that are as near along the tube as they can be,
-    /// and as far.
+    /// Returns upper bounds on the turn of a pair: between its places nearest along the tube, and
+    /// between the farthest.
     fn turns(&self, pair: &SelfPair) -> [Real; 2] {
         let [one, two] = &pair.pieces;
         let turned = |piece: &Piece, tick: u32| {
@@ -331,7 +358,7 @@ impl<'a> TubeWithItself<'a> {
         [turned(two, two.from) - turned(one, one.to), turned(two, two.to) - turned(one, one.from)]
     }
 
-    /// The turn that is asked for: none of two faces that look at one another.
+    /// Returns the required turn.
     fn angle(pair: &SelfPair) -> Real {
         match pair.faces {
             [None, None] => PI,
@@ -344,12 +371,11 @@ impl<'a> TubeWithItself<'a> {
         self.turns_enough(pair) && self.may_count(pair)
     }
 
-    /// Whether the turn between two parts that share no joint may be one that is asked for.
+    /// Whether two parts may turn as required; false for parts that share a joint.
     fn turns_enough(&self, pair: &SelfPair) -> bool {
         let [_, most] = self.turns(pair);
         let [one, two] = pair.pieces;
-        // Neighbours of a chain share a joint; and of a piece and itself nothing is asked but what
-        // turns.
+        // Neighbours of a chain share a joint. A face and itself are no pair.
         let apart = two.section - one.section;
         let is_same = pair.faces == [Some(0), Some(0)] || pair.faces == [Some(1), Some(1)];
         let share_joint = self.turns.has_joints() && apart < 2;
@@ -371,18 +397,18 @@ impl<'a> TubeWithItself<'a> {
             && (!self.is_exact() || self.may_count_while_moving(pair))
     }
 
-    /// Whether two links, a face and a link, or two faces may count at some time.
+    /// Whether two links, a face and a link, or two faces may count at some time of the interval.
     fn may_count_while_moving(&self, pair: &SelfPair) -> bool {
         let Some(moves) = self.moves else { return true };
         let [one, two] = pair.pieces.map(|piece| self.joined(piece.section));
         let sections = self.tube().sections();
-        // Of the links and of their neighbours.
+        // Over the link and its neighbours.
         let of = |number: u32| {
             let around = number.saturating_sub(1)..=(number + 1).min(sections.len() as u32 - 1);
             around.fold(MovedLinks::default(), |most, number| {
                 let SectionMotion { points, turn } = moves.of(number);
                 let axes = (points - sections[number as usize].radius * turn).max(0.0);
-                // The difference errs by 2 u of the points.
+                // The rounding error of the difference is at most 2 u points.
                 let axes = axes + 4.0 * Real::UNIT_ROUNDOFF * points;
                 MovedLinks {
                     points: most.points.max(points),
@@ -408,13 +434,12 @@ impl<'a> TubeWithItself<'a> {
         }
     }
 
-    /// Whether all parts are links whose places are known but for rounding.
+    /// Whether all parts are links whose places are exact up to rounding.
     fn is_exact(&self) -> bool {
         self.turns.has_joints() && self.tube().tube.error() == 0.0
     }
 
-    /// Whether two links of a chain, or their faces, count in this shape: the same decision as of a
-    /// chain.
+    /// Whether two links of a chain, or their faces, count in this shape: decided as for a chain.
     fn counts_exactly(&self, pair: &SelfPair) -> bool {
         let [one, two] = pair.pieces.map(|piece| self.joined(piece.section));
         let tolerance = one.tolerance(&two);
@@ -433,7 +458,7 @@ impl<'a> TubeWithItself<'a> {
         }
     }
 
-    /// A link of a chain and its neighbours.
+    /// Returns a link of a chain with its neighbours.
     fn joined(&self, section: u32) -> JoinedLink {
         let sections = self.tube().sections();
         let number = section as usize;
@@ -454,13 +479,18 @@ impl<'a> TubeWithItself<'a> {
 
     /// Whether the robot leads nearer to a face from all places of the other piece, at all times.
     ///
-    /// Let c be the face's centre, r its radius and n its normal, y a place of the piece, t the
-    /// direction there, m that of the piece's chord, and e the largest angle between t and m. A
-    /// point p of the face is at most r from c and perpendicular to n. So (y - p) . t >= (y - c) .
-    /// m - |y - c| e - r (|n x m| + e), and it is no more than the same with the other signs. If
-    /// that is above 0 the robot leads nearer backwards, and if it is below 0, forwards, unless it
-    /// ends there or is thinner beyond. Errors, and what may move and turn, are counted in
-    /// addition.
+    /// **Definitions.**
+    /// - c, r, n: centre, radius and normal of the face. p: a point of the face, so |p - c| <= r
+    ///   and p - c is perpendicular to n.
+    /// - y: a place of the piece. t: the direction there. m: the direction of the piece's chord. e:
+    ///   the largest angle between t and m.
+    ///
+    /// **Claim.** (y - p) . t >= (y - c) . m - |y - c| e - r (|n x m| + e), and (y - p) . t is at
+    /// most the same with opposite signs.
+    ///
+    /// If the lower bound is above 0, the robot leads nearer backwards. If the upper bound is below
+    /// 0, it leads nearer forwards. A piece is excepted if the robot ends or becomes thinner there.
+    /// Errors, displacements and turns are added.
     fn leads_on(&self, pair: &SelfPair, k: usize) -> bool {
         let (tube, piece) = (self.tube(), &pair.pieces[1 - k]);
         let Some(end) = pair.faces[k] else { return false };
@@ -489,8 +519,8 @@ impl<'a> TubeWithItself<'a> {
                 let sine = face.outward.cross(chord_direction).length() + face.tilt + tilt + turn;
                 at_face.radius * sine.min(1.0)
             }
-            // The ball around a round shoulder is seen as its centre is. It may become flat while
-            // it moves.
+            // The direction from the ball around a round shoulder is exact: the ball has its centre
+            // at c. The shoulder may become flat while it moves.
             (false, _) if self.moves.is_none() => 0.0,
             _ => at_face.radius,
         };
@@ -509,8 +539,8 @@ impl<'a> TubeWithItself<'a> {
         }
     }
 
-    /// Whether the robot goes on beyond an end of a section, no thinner, and in a direction that
-    /// leads on too.
+    /// Whether the robot continues beyond an end of a section, no thinner, in a direction for which
+    /// `leads_on` holds too.
     fn goes_on(&self, section: u32, end: usize, leads_on: impl Fn(Vector) -> bool) -> bool {
         let sections = self.tube().sections();
         let here = &sections[section as usize];
@@ -526,24 +556,25 @@ impl<'a> TubeWithItself<'a> {
         leads_on((ends[1] - ends[0]).normalize_or_zero())
     }
 
-    /// Whether a pair that turns by `most` at most may turn by what is asked for.
+    /// Whether a pair with the upper bound `most` on its turn may turn as required.
     fn may_turn_enough(&self, pair: &SelfPair, most: Real) -> bool {
         self.turns.may_reach(most + self.extra_turn(pair), Self::angle(pair))
     }
 
-    /// Whether a pair turns by what is asked for in this shape, anywhere on its pieces.
+    /// Whether a pair turns as required in this shape everywhere on its pieces, by the upper bound
+    /// on its turn.
     fn surely_turns(&self, pair: &SelfPair) -> bool {
         self.turns.may_reach(self.turns(pair)[0], Self::angle(pair))
     }
 
-    /// Whether the one body of a pair may be in front of the other, a face, somewhere.
+    /// Whether the other body may be partly ahead of part k, if that is a face.
     fn may_be_before(&self, pair: &SelfPair, k: usize) -> bool {
         let face = pair.faces[k].and_then(|end| self.face(&pair.pieces[k], end));
         face.is_none_or(|face| self.ahead_of_face(pair, k, &face, 1.0, self.moved(pair, k)) >= 0.0)
     }
 
-    /// How far ahead of a face some place of the other body is at most (`sign` 1), or how far
-    /// behind it at most (-1), after both have moved so much.
+    /// Returns an upper bound on how far the other body is ahead of a face (`sign` = 1) or behind
+    /// it (`sign` = -1), after the displacement `moved`.
     fn ahead_of_face(
         &self,
         pair: &SelfPair,
@@ -561,7 +592,7 @@ impl<'a> TubeWithItself<'a> {
         ahead + moved.points + away * (face.tilt + moved.turn) + 2.0 * off
     }
 
-    /// Whether all of a pair is in front of its faces.
+    /// Whether the whole pair is ahead of its faces.
     fn is_before(&self, pair: &SelfPair) -> bool {
         (0..2).all(|k| {
             let face = pair.faces[k].and_then(|end| self.face(&pair.pieces[k], end));
@@ -571,15 +602,14 @@ impl<'a> TubeWithItself<'a> {
         })
     }
 
-    /// Whether both pieces are convex bodies, all of which are asked about: two faces, or links of
-    /// a chain.
+    /// Whether both parts are convex bodies that are queried as a whole: two faces, or links of a
+    /// chain.
     fn is_whole(&self, pair: &SelfPair) -> bool {
         let count = pair.faces.iter().flatten().count();
         count == 2 || self.turns.has_joints()
     }
 
-    /// Whether the shortest way between a face and another, or a link, may leave it outwards, and
-    /// the other too.
+    /// Whether the shortest segment between a face and a face or link may leave all faces outwards.
     fn ways_leave(&self, pair: &SelfPair) -> bool {
         pair.faces == [None; 2] || !self.is_whole(pair) || {
             let nearest = self.between_faces(pair);
@@ -589,15 +619,15 @@ impl<'a> TubeWithItself<'a> {
         }
     }
 
-    /// Whether it certainly does, but for rounding.
+    /// Whether the shortest segment certainly leaves all faces outwards, up to rounding.
     fn ways_surely_leave(&self, pair: &SelfPair, nearest: &NearestOfLinks) -> bool {
         let rounding = doubt_of_way(ROUNDING_OF_FACES * self.tube().slack(), nearest.distance, 0.0);
         let doubt = |k| self.doubt_of_way(pair, k, nearest.distance, SectionMotion::default());
         self.leave(pair, nearest, |k| doubt(k) - 2.0 * rounding)
     }
 
-    /// Whether a way leaves all faces of a pair by at least so much along their normals, as far as
-    /// these are known.
+    /// Whether a segment leaves all faces of a pair by at least `least(k)` along their normals, as
+    /// far as these are known.
     fn leave(
         &self,
         pair: &SelfPair,
@@ -611,8 +641,8 @@ impl<'a> TubeWithItself<'a> {
         })
     }
 
-    /// How near a face and another, or a link, are by their bodies: of the faces themselves, since
-    /// bodies go into the tube.
+    /// Returns the nearest points of a face and a face or link. It measures the face of the body,
+    /// since the body goes into the tube.
     fn between_faces(&self, pair: &SelfPair) -> NearestOfLinks {
         let [one, two] = &pair.outers;
         match pair.faces {
@@ -622,8 +652,8 @@ impl<'a> TubeWithItself<'a> {
         }
     }
 
-    /// By how much a way of the length `distance` may err along the normal of a face, after both
-    /// bodies have moved so much.
+    /// Returns a bound on the error of a segment of length `distance` along the normal of face k,
+    /// after the displacement `moved`.
     fn doubt_of_way(
         &self,
         pair: &SelfPair,
@@ -636,13 +666,13 @@ impl<'a> TubeWithItself<'a> {
         doubt_of_way(self.off_of_bodies(pair) + moved.points, distance, tilt)
     }
 
-    /// How far the bodies of faces and links may be from what they stand for, together.
+    /// Returns a bound on the distance of both bodies from the faces and links that they contain.
     fn off_of_bodies(&self, pair: &SelfPair) -> Real {
         let (error, slack) = (self.tube().tube.error(), self.tube().slack());
         let off = |k: usize| {
             let (piece, radius) = (&pair.pieces[k], self.tube().radius(&pair.pieces[k]));
             match pair.faces[k].and_then(|end| self.face(piece, end)).filter(|_| radius > 0.0) {
-                // Ahead, and aside; and where the face is.
+                // Ahead, sideways, and the place of the face.
                 Some(face) => {
                     self.reach_of_face(&face, radius)[0] + 2.0 * self.off(&face, radius) + slack
                 }
@@ -652,7 +682,7 @@ impl<'a> TubeWithItself<'a> {
         off(0) + off(1) + 4.0 * slack
     }
 
-    /// How near two faces are, or a face and a link, or two links.
+    /// Returns the upper bound for two faces, a face and a link, or two links.
     fn found_whole(&self, pair: &SelfPair, nearest: &NearestOfLinks) -> PairUpperBound {
         let nearest = if pair.faces == [None; 2] { *nearest } else { self.between_faces(pair) };
         let points = [nearest.on_first, nearest.on_second];
@@ -665,7 +695,7 @@ impl<'a> TubeWithItself<'a> {
             let has_face = |end: usize| self.tube().section(piece.section).faces[end].is_some();
             pair.faces[k].is_none_or(|end| !has_face(end) || self.face(piece, end).is_some())
         });
-        // What may be asked about at another time does not count in this shape.
+        // Only the tested shape counts: pairs that are queried at other times do not.
         let counts = self.surely_turns(pair)
             && if self.is_exact() {
                 self.counts_exactly(pair)
@@ -677,8 +707,8 @@ impl<'a> TubeWithItself<'a> {
         PairUpperBound { upper, sections: pair.pieces.map(|piece| piece.section), arcs, points }
     }
 
-    /// Up to where, or from where on, a part of a section counts beside the other of a pair; none
-    /// where it goes to the end.
+    /// Returns the range of arc lengths of a section that counts beside the other part of a pair;
+    /// `None` means the end of the section.
     fn limit(&self, k: usize, section: u32, arc: Real) -> [Option<Real>; 2] {
         let inner = 1 - k;
         let section = self.tube().section(section);
@@ -687,7 +717,7 @@ impl<'a> TubeWithItself<'a> {
         } else {
             (arc <= section.start, section.start)
         };
-        // The discs of a curve's other section are as near as the ball at a round end.
+        // At a round end of a curve the discs of the next section are as near as the ball.
         let is_own = self.turns.has_joints() || section.faces[inner].is_some();
         let limit = if !reaches {
             Some(arc)
@@ -699,7 +729,8 @@ impl<'a> TubeWithItself<'a> {
         if inner == 1 { [None, limit] } else { [limit, None] }
     }
 
-    /// How near two places are, which have a turn of `pi` between them, as seen from a point first.
+    /// Returns the upper bound for two places with a turn of at least `pi`, found first from the
+    /// point `from`.
     fn seen_at(&self, sections: [u32; 2], mut arcs: [Real; 2], mut from: Vector) -> PairUpperBound {
         let tube = self.tube();
         let mut best = self.nothing(sections, arcs);
@@ -722,7 +753,7 @@ impl<'a> TubeWithItself<'a> {
         best
     }
 
-    /// A point half way between the surfaces at two places.
+    /// Returns the point half way between the surfaces at two places.
     fn between(&self, sections: [u32; 2], arcs: [Real; 2]) -> Vector {
         let places = [0, 1].map(|k: usize| self.tube().place_at(sections[k], arcs[k]));
         half_way(places, sections.map(|section| self.tube().section(section).radius))
@@ -733,7 +764,8 @@ impl<'a> TubeWithItself<'a> {
         PairUpperBound { upper: Real::INFINITY, sections, arcs, points }
     }
 
-    /// How near the balls around two places are, where these are in the tube.
+    /// Returns the upper bound from the balls around two places; infinity if a ball may stick out
+    /// of a face.
     fn chord_at(&self, sections: [u32; 2], arcs: [Real; 2]) -> PairUpperBound {
         let tube = self.tube();
         let both = sections.map(|section| tube.section(section));
@@ -757,7 +789,7 @@ impl<'a> TubeWithItself<'a> {
         PairUpperBound { upper, sections, arcs, points }
     }
 
-    /// How near a piece is to a face that it is in front of.
+    /// Returns the upper bound for a face and a piece ahead of it.
     fn seen_from_face(
         &self,
         pair: &SelfPair,
@@ -775,15 +807,15 @@ impl<'a> TubeWithItself<'a> {
         let mut arc = start + (stop - start) * body.share_of(place);
         let in_order = |arc: Real| if k == 0 { [at_face, arc] } else { [arc, at_face] };
         let mut best = self.nothing(sections, in_order(arc));
-        // In front of a face whose direction nobody knows is nothing for certain.
+        // No place is certainly ahead of a face of unknown direction.
         let Some(face) = self.face(piece, end) else { return best };
         let Some(room) = self.turns.room(in_order(arc), FRAC_PI_2) else { return best };
         let limits = self.limit(1 - k, other.section, room[1 - k]);
         let radius = tube.section(piece.section).radius;
         let rounding = 4.0 * tube.slack();
         for _ in 0..=MAX_MOVES {
-            // Into what is in front of the face for certain, with all that is found within rounding
-            // of it.
+            // Move the place far enough ahead that everything found within rounding of it is ahead,
+            // too.
             let offset = place - face.centre;
             let ahead = offset.dot(face.outward);
             let at_least = 4.0 * rounding + offset.length() * face.tilt;
@@ -812,7 +844,8 @@ impl<'a> TubeWithItself<'a> {
         best
     }
 
-    /// How near a place is to a face at most if it is in front of it, and where.
+    /// Returns an upper bound on the distance of a place ahead of a face, and the point of the
+    /// face. The bound is infinite if the place may not be ahead.
     fn near_face(&self, face: &EndFace, radius: Real, place: Vector) -> (Real, Vector) {
         let offset = place - face.centre;
         let ahead = offset.dot(face.outward);
@@ -853,7 +886,7 @@ impl Refinable for TubeWithItself<'_> {
 
     fn halves(&self, pair: &SelfPair, _: &SelfPair, aim: Real) -> Option<[SelfPair; 2]> {
         let (tube, [least, most]) = (self.tube(), self.turns(pair));
-        // Where time is to blame for the doubt, a shorter interval is better than shorter pieces.
+        // If the extra turn causes the doubt, a shorter interval helps more than shorter pieces.
         let open = MIN_TURN.max(MAX_SHARE_OF_EXTRA_TURN * self.extra_turn(pair));
         if least < Self::angle(pair) && most - least < open && most > least {
             return None;
@@ -914,7 +947,8 @@ impl Refinable for TubeWithItself<'_> {
                 if nearest.distance > 0.0 && found.upper < Real::INFINITY || found.upper <= 0.0 {
                     return found;
                 }
-                // Where the axes are nearest, and where most of the turn is between the two.
+                // Try the nearest points of the axes, and the two ends with the most turn in
+                // between.
                 let (feet, _) = links[0].nearest_on_axes(links[1]);
                 [arcs_at(feet), [ends[0][0], ends[1][1]]]
                     .into_iter()
@@ -946,7 +980,7 @@ impl Refinable for TubeWithItself<'_> {
     }
 
     fn is_entirely_queried(&self, pair: &SelfPair, found: &PairUpperBound) -> bool {
-        // Of a body that is partly behind a face, that part may be nearer.
+        // If a body is partly behind a face, that part may be nearer.
         let is_before = self.is_whole(pair) || self.is_before(pair);
         is_before && self.surely_turns(pair) && found.upper < Real::INFINITY
     }
@@ -960,7 +994,7 @@ impl Refinable for TubeWithItself<'_> {
     }
 }
 
-/// Two pieces as one that is asked about, in the order in which they come along the tube.
+/// Returns two pieces as a queried pair, in their order along the tube.
 fn pair(one: &SelfBody, other: &SelfBody) -> SelfPair {
     let place = |piece: &Piece| (piece.section, piece.from, piece.to);
     let [one, other] = if place(&one.0) <= place(&other.0) { [one, other] } else { [other, one] };
@@ -972,9 +1006,9 @@ fn pair(one: &SelfBody, other: &SelfBody) -> SelfPair {
     }
 }
 
-/// By how much a way may err along a normal that is off by `tilt`, between bodies that are so far
-/// off together.
+/// Returns a bound on the error of a segment along a normal that is off by `tilt`, between bodies
+/// that are off by `off` together (module head).
 fn doubt_of_way(off: Real, distance: Real, tilt: Real) -> Real {
-    // Two roots, so that no product leaves the range of numbers.
+    // Two roots keep the product within the range of numbers.
     off + 2.0 * off.sqrt() * (distance + off).sqrt() + (distance + off) * tilt
 }

@@ -1,27 +1,31 @@
-//! The clearance of a tube, between bounds: best first.
+//! Bounds on the clearance of a tube: best first.
+//!
+//! # Definitions
+//! - `lower`, `doubt`, `found` and rank of a piece: see `pieces::best_first`.
+//! - `upper`: the least `found` of all pieces that step 2 took.
+//! - `aim`: the permitted gap between the bounds.
+//! - `hint`: an upper bound on the clearance, from a place of an earlier query or from any measured
+//!   piece.
 //!
 //! # Algorithm
-//! 1. Begin with pieces that turn by 1 rad at most, and measure them.
-//! 2. Take the measured piece of least rank (`pieces::best_first`). What was found from it improves
-//!    the upper bound.
-//! 3. Stop if its `lower` + `doubt` is not below the upper bound by more than `aim`. Otherwise
-//!    divide it, and measure its halves. Repeat from 2.
-//! 4. The lower bound is the least `lower` of all pieces.
+//! 1. **Begin** with pieces that turn by at most 1 rad, and measure them.
+//! 2. **Take** the measured piece of least rank. Its `found` may improve `upper`.
+//! 3. **Stop** if its `lower` + `doubt` is at least `upper - aim`. Otherwise divide it and measure
+//!    its halves. Repeat from 2.
+//! 4. **Answer.** The lower bound is the least `lower` of all pieces.
 //!
-//! # What an earlier query leaves
-//! A place that was near bounds the clearance from above, which is the `hint`. Bodies are searched
-//! for within the hint. What was not found there is searched for again, farther away, before its
-//! rank is reached. So the hint only spares searches. The upper bound of the answer comes from step
-//! 2 alone.
+//! **Warm start.** Bodies are first searched within `hint`. A body without a result is searched
+//! again, farther away, before its rank is reached. So the hint only saves work: the upper bound of
+//! the answer comes from step 2 alone.
 //!
 //! # Claim
-//! The answer depends neither on the hint nor on where searches start. The bounds of a finer
-//! tolerance are never looser.
+//! The answer depends neither on the hint nor on start triangles. A finer tolerance never gives
+//! looser bounds.
 //!
-//! **Proof.** Steps 2 to 4 depend on the sequence of divisions, the same whatever is hinted
-//! (`pieces::best_first`). A tolerance only decides when step 3 stops. A piece that cannot be
-//! divided keeps its `lower`, and never stops the sequence. Along the sequence no `lower` falls and
-//! the upper bound never rises.
+//! **Proof.** Steps 2 to 4 depend only on the sequence of divisions, which is the same for every
+//! hint (`pieces::best_first`). The tolerance decides only when step 3 stops. A piece that cannot
+//! be divided keeps its `lower` and never stops the sequence. Along the sequence no `lower` falls
+//! and `upper` never rises.
 
 use super::memory::TubeMemory;
 use crate::answer::{Clearance, ProximityError};
@@ -31,13 +35,13 @@ use crate::pieces::{
 };
 use parry3d_f64::math::Real;
 
-/// After so many divisions the bounds are what they are: a limit on the time that a query takes,
-/// far above what any tolerance needs that the samples allow. Each makes two pieces.
+/// The most divisions of a query; each makes two pieces. After it the query returns the bounds
+/// found so far. Limits the time, far above the need of any tolerance that the samples allow.
 pub(super) const MOST_DIVISIONS: u32 = 1 << 15;
 
-/// The clearance, with bounds no farther apart than the tolerance where the tube allows that.
+/// Returns bounds on the clearance that are at most `tolerance` apart if the tube allows it.
 ///
-/// Its pieces are left in the memory, each with a lower bound on its clearance.
+/// The pieces, each with a lower bound on its clearance, remain in `memory`.
 ///
 /// # Errors
 /// The curve of the tube is not finite.
@@ -47,8 +51,8 @@ pub(crate) fn clearance(
     tolerance: Real,
 ) -> Result<Clearance, ProximityError> {
     let mut hint = Hint { upper: Real::INFINITY, triangle: memory.last.map(|last| last.triangle) };
-    // Where the mesh is much larger than the tube, rounding is the less the nearer the mesh is
-    // known to be. The bound for that must not depend on earlier queries.
+    // If the mesh is much larger than the tube, a near mesh allows a smaller `slack`. The bound for
+    // it must not depend on earlier queries.
     if tube.gains_from_sharpening() {
         let first = tube.first_bound();
         tube.tighten_slack(first.upper);
@@ -74,8 +78,7 @@ pub(crate) fn clearance(
     Ok(Clearance { lower, upper, resolved, uncertainty, section, witness })
 }
 
-/// What bounds the clearance from above, wherever it comes from, and a triangle that is likely to
-/// be near.
+/// An upper bound on the clearance from any source, and a triangle that is probably near.
 #[derive(Clone, Copy)]
 pub(crate) struct Hint {
     pub upper: Real,
@@ -90,22 +93,22 @@ impl Hint {
     }
 }
 
-/// A clearance between bounds.
+/// The bounds of the answer, without its place.
 pub(crate) struct BoundedClearance {
     pub lower: Real,
     pub resolved: bool,
     pub uncertainty: Real,
 }
 
-/// How near the tube is at the least and at the most, as far as its pieces have been looked at.
+/// The search for bounds on the clearance (module head).
 pub(crate) struct BoundsSearch<'a, T: Refinable> {
     pub tube: &'a mut T,
     pieces: &'a mut PendingPieces<T::Piece, T::Body, T::Upper>,
     hint: Hint,
     tolerance: Real,
-    /// How far apart the bounds may stay.
+    /// The permitted gap between the bounds.
     aim: Real,
-    /// What bounds the clearance from above: of the pieces that had their turn.
+    /// The upper bound of step 2.
     pub best: Option<T::Upper>,
     /// How many pieces may still be divided.
     left: u32,
@@ -118,13 +121,12 @@ impl<'a, T: Refinable> BoundsSearch<'a, T> {
         hint: Hint,
         tolerance: Real,
     ) -> Self {
-        // So that the bounds of the answer are no farther apart than asked for after they are
-        // rounded.
+        // The bounds of the answer must meet the tolerance after rounding.
         let aim = (tolerance + tube.position_uncertainty() - 4.0 * tube.slack()).max(0.0);
         Self { tube, pieces, hint, tolerance, aim, best: None, left: MOST_DIVISIONS }
     }
 
-    /// Adds a piece of the tube.
+    /// Adds an initial piece.
     pub(crate) fn begin(&mut self, piece: T::Piece) {
         let (state, narrow) = (PieceState::Open, Real::INFINITY);
         self.pieces.push(self.tube, PendingPiece { piece, lower: 0.0, state, narrow, levels: 0 });
@@ -134,15 +136,16 @@ impl<'a, T: Refinable> BoundsSearch<'a, T> {
         self.best.as_ref().map_or(Real::INFINITY, UpperBound::upper)
     }
 
-    /// Divides pieces until the bounds are as near one another as wanted. False if that needs
-    /// pieces whose lower bound is larger than `limit`.
+    /// Divides pieces until the gap between the bounds is at most `aim`.
+    ///
+    /// Returns false if that needs pieces whose lower bound exceeds `limit`.
     ///
     /// # Errors
     /// The curve is not finite.
     pub(crate) fn run(&mut self, limit: Real) -> Result<bool, ProximityError> {
         while let Some(first) = self.pieces.first() {
             let upper = self.upper();
-            // A piece that is not measured may still have the least lower bound.
+            // An unmeasured piece may still have the least lower bound.
             let can_wait = first.is_measured || first.least >= upper;
             if can_wait && first.least >= upper - self.aim {
                 return Ok(true);
@@ -155,9 +158,11 @@ impl<'a, T: Refinable> BoundsSearch<'a, T> {
                 self.measure(piece)?;
                 continue;
             };
+            // Step 2.
             if self.improves(found) {
                 self.best = Some(*found);
             }
+            // Step 3.
             if first.least >= self.upper() - self.aim || self.left == 0 {
                 self.pieces.push(self.tube, piece);
                 return Ok(true);
@@ -177,8 +182,7 @@ impl<'a, T: Refinable> BoundsSearch<'a, T> {
         })
     }
 
-    /// Measures a piece within the hint; or, if it is known to be farther away, within the upper
-    /// bound.
+    /// Measures a piece within the hint; a piece known to be farther, within the upper bound.
     fn measure(
         &mut self,
         piece: PendingPiece<T::Piece, T::Body, T::Upper>,
@@ -197,7 +201,7 @@ impl<'a, T: Refinable> BoundsSearch<'a, T> {
         Ok(())
     }
 
-    /// The answer, with this upper bound.
+    /// Returns the answer, given the upper bound.
     pub(crate) fn answer(&self, upper: Real) -> BoundedClearance {
         let mut lower = upper;
         let mut doubt: Real = 0.0;
@@ -209,7 +213,7 @@ impl<'a, T: Refinable> BoundsSearch<'a, T> {
             doubt = if piece.lower < lower { of_piece } else { doubt.max(of_piece) };
             lower = piece.lower;
         }
-        // Doubt matters only where it keeps the bounds apart.
+        // `doubt` matters only if it causes the gap.
         let doubt = if lower < upper - self.aim { doubt } else { 0.0 };
         let uncertainty = self.tube.position_uncertainty() + doubt;
         BoundedClearance {

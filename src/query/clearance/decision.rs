@@ -1,17 +1,20 @@
-//! Whether a tube keeps a margin: best first, as for its clearance (`bounds`).
+//! Whether a tube keeps a margin: best first, as `bounds`.
 //!
-//! Bodies that are farther away than the margin are settled. The bounds of all that is left decide:
+//! # Algorithm
+//! A body farther away than the margin is dropped. The bounds of the remaining pieces decide:
+//! - **Contact**: the upper bound is at most the margin.
+//! - **Clear**: no piece remains.
+//! - **Undecided**: the gap between the bounds is at most the resolution, apart from stated
+//!   uncertainty. So the clearance is within the resolution of the margin.
 //!
-//! - **Contact**: the upper bound is not above the margin.
-//! - **Clear**: nothing is left.
-//! - **Undecided**: the bounds are no farther apart than the resolution, beside what was stated. So
-//!   the clearance is within that of the margin.
+//! A piece is **stuck** if it cannot be divided and its `lower` is below the upper bound by more
+//! than the resolution. A stuck piece is an error. Before the error is reported, all other pieces
+//! are searched for a contact.
 //!
-//! A piece that cannot be divided, and whose `lower` is below the upper bound by more than the
-//! resolution, is an error. Before it is reported, all other pieces are looked at for a contact.
+//! # Claim
+//! A finer resolution never revokes a decision.
 //!
-//! The order of the divisions does not depend on the resolution. So a finer resolution never takes
-//! back a decision.
+//! **Proof.** The sequence of divisions does not depend on the resolution (`pieces::best_first`).
 
 use super::bounds::MOST_DIVISIONS;
 use super::memory::TubeMemory;
@@ -22,17 +25,17 @@ use crate::pieces::{
 };
 use parry3d_f64::math::Real;
 
-/// Whether the tube keeps more than the margin away.
+/// Decides whether the tube stays farther away than `margin`.
 ///
 /// # Errors
-/// The curve of the tube is not finite, or its samples do not allow a decision at that resolution.
+/// The curve of the tube is not finite, or its samples allow no decision at that resolution.
 pub(crate) fn tube_clears(
     tube: &mut TubeInMesh,
     memory: &mut TubeMemory,
     margin: Real,
     resolution: Real,
 ) -> Result<Decision, ProximityError> {
-    // Nothing matters that is farther away than the margin.
+    // Farther triangles do not matter.
     tube.tighten_slack(margin);
     let TubeMemory { pieces, begun, last } = memory;
     tube.begin_coarse(begun);
@@ -45,20 +48,20 @@ pub(crate) fn tube_clears(
     Ok(decision)
 }
 
-/// What a tube is asked.
+/// The margin and resolution of a query.
 #[derive(Clone, Copy)]
 pub(crate) struct Wanted {
     pub margin: Real,
     pub resolution: Real,
-    /// A triangle that is likely to be near.
+    /// A triangle that is probably near.
     pub start: Option<u32>,
 }
 
-/// Whether all pieces keep more than the margin away; and where they do not. `best` is an upper
-/// bound that is known.
+/// Decides whether all pieces stay farther away than the margin; a contact comes with its place.
+/// `best`: a known upper bound.
 ///
 /// # Errors
-/// The curve is not finite, or its samples do not allow a decision at that resolution.
+/// The curve is not finite, or its samples allow no decision at that resolution.
 pub(crate) fn clears_pieces<T: Refinable>(
     tube: &mut T,
     pieces: &mut PendingPieces<T::Piece, T::Body, T::Upper>,
@@ -89,9 +92,9 @@ struct DecisionSearch<'a, T: Refinable> {
     pieces: &'a mut PendingPieces<T::Piece, T::Body, T::Upper>,
     wanted: Wanted,
     best: Option<T::Upper>,
-    /// The least lower bound of a piece that cannot be divided, beside what was stated of it.
+    /// The least `lower` of a stuck piece, plus its stated uncertainty.
     stuck: Real,
-    /// Whether a piece stays undecided of which it is not known whether it is asked about.
+    /// Whether some piece stays undecided, because its bounds are close or it may not be queried.
     is_undecided: bool,
     /// How many pieces may still be divided.
     left: u32,
@@ -116,7 +119,7 @@ impl<T: Refinable> DecisionSearch<'_, T> {
             if is_near
                 && found.upper() - piece.lower <= resolution + self.tube.uncertainty(&piece.piece)
             {
-                // A contact could not be told from the margin here.
+                // Within the resolution: contact and margin are indistinguishable here.
                 continue;
             }
             if self.left == 0 {
@@ -144,14 +147,14 @@ impl<T: Refinable> DecisionSearch<'_, T> {
         self.best.as_ref().map_or(Real::INFINITY, UpperBound::upper)
     }
 
-    /// Whether a piece that cannot be divided keeps the bounds apart.
+    /// Whether a stuck piece keeps the bounds apart.
     fn is_stuck(&self) -> bool {
         let Self { tube, stuck, wanted, .. } = self;
         *stuck < Real::INFINITY
             && tube.check_resolved(self.upper() - stuck, wanted.resolution).is_err()
     }
 
-    /// What an open piece shows; if it is farther away than the margin, it is dropped.
+    /// Examines an open piece. A piece farther away than the margin is dropped.
     fn examine(
         &mut self,
         open: &PendingPiece<T::Piece, T::Body, T::Upper>,

@@ -1,9 +1,9 @@
-//! What a query about a tube leaves for the next.
+//! The state that warm-starts the next query about a tube.
 
 use crate::pieces::{BoundingBody, MeshUpperBound, PendingPieces, Piece};
 use parry3d_f64::math::Real;
 
-/// Where a query ended, for the next to begin.
+/// The place that realised the last answer.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LastPlace {
     pub triangle: u32,
@@ -18,11 +18,11 @@ impl From<&MeshUpperBound> for LastPlace {
     }
 }
 
-/// What a query about a tube leaves for the next.
+/// The state that warm-starts the next query about a tube.
 #[derive(Clone, Default)]
 pub(crate) struct TubeMemory {
     pub pieces: PendingPieces<Piece, BoundingBody, MeshUpperBound>,
-    /// The pieces that a query begins with.
+    /// The initial pieces of a query.
     pub begun: Vec<Piece>,
     pub last: Option<LastPlace>,
 }

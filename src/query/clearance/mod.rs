@@ -1,4 +1,4 @@
-//! How near a tube is, between bounds, and whether it keeps a margin.
+//! Bounds on the clearance of a tube, and whether it keeps a margin.
 
 mod bounds;
 mod decision;

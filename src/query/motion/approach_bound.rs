@@ -1,33 +1,34 @@
-//! How fast pieces approach in an interval of time, and for how long its middle shape decides.
+//! How much nearer pieces may come in an interval of time, and how long its middle shape decides.
 
 use crate::answer::ProximityError;
 use crate::distance::Scalar;
 use parry3d_f64::math::Real;
 
-/// Into how many intervals time may be divided: in each a point moves by the resolution. Each
-/// rounding of a time is 2^-53, far less; and more shapes than this nobody waits for.
+/// The most intervals into which time is divided; in each a point moves by the resolution. The
+/// rounding of a time, 2^-53, is far smaller, and more shapes would take too long.
 const MAX_INTERVALS: Real = (1_u64 << 24) as Real;
 
-/// What moves in an interval of time, seen from its middle.
+/// The motion of a piece in an interval of time, relative to its midpoint.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ApproachBound {
-    /// Half of its length, or a little more.
+    /// Half of the length of the interval, rounded up.
     half_length: Real,
-    /// By how much those flat ends that may become round move in that time.
+    /// How far the flat ends that may become round move in that time.
     pub cap_change: Real,
-    /// How fast what is looked at approaches at most.
+    /// An upper bound on the speed of approach of the current piece.
     pub speed: Real,
-    /// By how much more it may turn than the middle shape shows, where that matters.
+    /// How much more the current piece may turn than the middle shape shows; 0 where turns do not
+    /// matter.
     pub growth: Real,
-    /// For how long before and after the middle shape what failed is decided.
+    /// How long before and after the middle shape the unresolved pieces are decided.
     pub hold: Real,
 }
 
-/// Whether time can be divided into intervals in which something so fast moves by the resolution.
-/// `fastest` names the fastest section of it, and its speed.
+/// Checks that time can be divided into intervals in which a point of this speed moves by the
+/// resolution. `fastest` returns the fastest section and its speed.
 ///
 /// # Errors
-/// It cannot.
+/// The speed exceeds [`MAX_INTERVALS`] times the resolution.
 pub(super) fn check_subdivision(
     speed: Real,
     resolution: Real,
@@ -40,18 +41,19 @@ pub(super) fn check_subdivision(
     Ok(())
 }
 
-/// The middle of an interval.
+/// Returns the midpoint of an interval.
 pub(super) fn midpoint(times: [Real; 2]) -> Real {
     0.5 * times[0] + 0.5 * times[1]
 }
 
-/// Half of an interval. The middle is rounded, and so is a motion's own time in a path: by less
-/// than 4 u, however short the interval.
+/// Returns half of an interval, rounded up. The midpoint is rounded, and so is a motion's own time
+/// in a path: by less than 4 u, however short the interval.
 pub(super) fn half_length(times: [Real; 2]) -> Real {
     0.5 * (times[1] - times[0]) * (1.0 + 4.0 * Real::UNIT_ROUNDOFF) + 4.0 * Real::UNIT_ROUNDOFF
 }
 
-/// What is left of an interval before and after its middle, which decides for a while.
+/// Returns the parts of an interval that remain if the middle shape decides for the time `hold`
+/// before and after the midpoint.
 pub(super) fn remaining_parts(times: [Real; 2], hold: Real) -> [Option<[Real; 2]>; 2] {
     let t = midpoint(times);
     [[times[0], t - hold], [t + hold, times[1]]].map(|rest| (rest[0] < rest[1]).then_some(rest))
@@ -68,18 +70,18 @@ impl ApproachBound {
         }
     }
 
-    /// How much nearer it may come than in the middle shape.
+    /// Returns how much nearer a piece may come than in the middle shape: tau V.
     pub(super) fn max_approach(&self) -> Real {
         self.half_length * self.speed
     }
 
-    /// Whether flat ends that may become round are so fast that no interval is short enough to tell
+    /// Whether flat ends that may become round are so fast that no interval is short enough to show
     /// whether they do.
     pub(super) fn caps_change_too_fast(&self, resolution: Real) -> bool {
         self.cap_change > MAX_INTERVALS * resolution * self.half_length
     }
 
-    /// Takes note of something that is decided for as long as it has not come nearer by `room`.
+    /// Limits `hold` to the time in which a piece comes nearer by at most `room`.
     pub(super) fn limit_hold(&mut self, room: Real) {
         // The quotient is rounded, and so are times, which are at most 1.
         let time = room.max(0.0) / self.speed * (1.0 - 8.0 * Real::UNIT_ROUNDOFF)

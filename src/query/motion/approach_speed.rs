@@ -1,30 +1,35 @@
-//! How fast a stretch of a robot moves.
+//! An upper bound on the speed of a range of a section.
 //!
-//! **How fast.** A body with two round ends holds the balls around all points of its piece of the
-//! centreline, and so whatever the discs become when they turn: V is the speed of the centreline.
-//! One with a flat end holds discs, whose points move by the radius times the turn more. The ball
-//! at a round end of a section counts with its front half alone: the other half is in the discs
-//! behind it, or beyond a face, where it is no part of the tube. That half turns like a disc.
+//! V bounds the speed of all points that the body must contain at other times of the interval.
+//!
+//! # Claim
+//! 1. **Round ends.** A body with two round ends contains the balls around all points of its piece
+//!    of the centreline, and so the discs in every direction. V is the speed of the centreline.
+//! 2. **Flat ends.** A body with a flat end contains discs. Their points are faster by at most
+//!    radius x turn.
+//! 3. **Round end of a section.** Only the front half of its ball counts. The other half lies in
+//!    the discs behind it, or beyond a face, where it is no part of the tube. The front half turns
+//!    like a disc.
 
 use crate::distance::Scalar;
 use crate::pieces::SectionRange;
 use crate::robot::{Motion, RobotError, check_speed};
 use parry3d_f64::math::Real;
 
-/// How fast the points of a stretch move at most.
+/// Upper bounds on the speed of the points of a range of a section.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ApproachSpeed {
-    /// Those of its centreline.
+    /// The speed of the centreline.
     pub centreline: Real,
-    /// By how much faster those of its discs are, as far as its body needs them.
+    /// How much faster the points of the discs are; 0 if the body contains their balls.
     pub rim: Real,
 }
 
 impl ApproachSpeed {
-    /// What a motion states of a section between two shares, whose body is known.
+    /// Returns the speed that a motion states for a range of a section whose body is known.
     ///
     /// # Errors
-    /// A stated speed is not finite and at least 0.
+    /// A stated speed is negative or not finite.
     pub(super) fn of<M: Motion>(
         motion: &M,
         times: [Real; 2],
@@ -32,7 +37,7 @@ impl ApproachSpeed {
     ) -> Result<Self, RobotError> {
         let section = section as usize;
         let stated = motion.speed(section, shares, times);
-        // A wire has no rim.
+        // A section of radius 0 has no rim.
         let turn = if outer.is_flat() && radius > 0.0 { stated.turn } else { 0.0 };
         let centreline = check_speed(section, stated.point)?;
         let turn = check_speed(section, turn)?;

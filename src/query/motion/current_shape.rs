@@ -1,10 +1,10 @@
-//! The shape in which a robot is looked at.
+//! The shape of a moving robot at the current time.
 
 use super::approach_bound::{half_length, midpoint};
 use crate::robot::{Motion, MotionDrift, RobotError, SectionSignature, Tube};
 use parry3d_f64::math::{Pose, Real};
 
-/// The present shape of a robot that moves, in memory that is used again.
+/// The current shape of a moving robot; its memory is reused.
 #[derive(Clone, Debug)]
 pub(super) struct CurrentShape {
     pub tube: Tube,
@@ -23,20 +23,20 @@ impl CurrentShape {
         self.sections.clear();
     }
 
-    /// Turns to the shape at `t`.
+    /// Sets the shape to time `t` and returns its pose.
     ///
     /// # Errors
-    /// There is none, or its sections are others than before.
+    /// The motion has no shape at `t`, or its sections differ from earlier ones.
     pub(super) fn set_time<M: Motion>(&mut self, motion: &M, t: Real) -> Result<Pose, RobotError> {
-        // Only what this shape states counts.
+        // Only an error stated by this shape counts.
         self.tube.forget_error();
         let pose = motion.shape(t, &mut self.tube)?;
         self.sections.check(t, &self.tube)?;
         Ok(pose)
     }
 
-    /// Tells which flat ends stay flat between two times, of which this is the middle shape. By how
-    /// much those move that may not is returned.
+    /// Marks the flat ends that stay flat between two times, whose middle shape this is. Returns
+    /// how far the other flat ends move.
     pub(super) fn mark_lasting_faces_between<M: Motion>(
         &mut self,
         motion: &M,

@@ -1,39 +1,47 @@
-//! Where a piece goes before or after the middle shape of an interval, and what that takes of a
-//! gap.
+//! The displacement of a piece before or after the middle shape of an interval, and the gap that
+//! remains.
 //!
-//! A motion may know the course of a piece (`robot::motion::course`): seen from the middle, every
-//! point of it goes a part of a way between two known ones, and is `off` that at most. The body of
-//! the moment holds balls around the points, or discs, whose points move by the radius times the
-//! turn more; and a mesh that moves comes nearer by its speed times the time. So where a plane with
-//! the normal n parts the body from a triangle by a gap, the two are at all times parted by that
-//! gap, less
+//! # Definitions
+//! - A motion may bound the displacement of a piece (`robot::motion::course`). Relative to the
+//!   middle shape, every point moves by a vector in the triangle (0, a, b), up to an error of
+//!   `off`.
+//! - n: the normal of a plane that separates the body in the middle shape from a triangle. gap: the
+//!   width of the separation along n.
+//! - **beside**: (radius x turn + mesh speed) x time. The body contains balls around the points, or
+//!   discs, whose points move by radius x turn more. A moving mesh comes nearer by its speed.
 //!
-//! max(0, -n a, -n b) + off + (radius x turn + mesh speed) x time,
+//! # Claim
+//! At all times of that half of the interval, body and triangle are separated along n by at least
 //!
-//! a and b being the two ways. What moves along a wall, or away from it, needs no gap for it. Any n
-//! will do, for each triangle another: the gap is computed along the very n, and the sum above with
-//! it. Of both all coordinates and lengths are at most `reach`; less than 32 u reach is lost in
-//! either, which the slack of a placed tube is more than twice of (128 u reach).
+//! `gap - (max(0, -n . a, -n . b) + off + beside)`.
+//!
+//! So motion along the wall or away from it needs no gap. Every n is valid, and each triangle may
+//! have its own.
+//!
+//! **Rounding.** The gap and the sum use the same n. All coordinates and lengths are at most
+//! `reach`. Each loses less than 32 u reach; the slack of a placed tube is 128 u reach, more than
+//! twice that.
 
 use crate::distance::Scalar;
 use crate::pair::PlacedLink;
 use crate::robot::Course;
 use parry3d_f64::math::{Real, Vector};
 
-/// Where a piece goes on one side of the middle shape.
+/// The displacement of a piece on one side of the middle shape.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct HalfDisplacement {
-    /// The ways of its two ends, seen from the middle.
+    /// The displacements a and b relative to the middle shape.
     pub ways: [Vector; 2],
-    /// How much nearer it may come besides, in any direction.
+    /// How much nearer it may come in addition, in any direction: off + beside.
     pub off: Real,
 }
 
-/// Fewer than 16 roundings.
+/// Covers fewer than 16 roundings.
 const UP: Real = 1.0 + 16.0 * Real::UNIT_ROUNDOFF;
 
 impl HalfDisplacement {
-    /// Side 0 is before the middle shape, 1 after it. None if the course is not known.
+    /// Returns the displacement before the middle shape (`side` 0) or after it (1); `None` if it is
+    /// not bounded.
     pub(super) fn of(course: &Course, side: usize, beside: Real) -> Option<Self> {
         let is_known = course.ways.iter().all(|way| way.is_finite())
             && (0.0..Real::INFINITY).contains(&course.off);
@@ -41,11 +49,11 @@ impl HalfDisplacement {
         is_known.then(|| Self { ways: course.ways.map(|way| way * sign), off: course.off + beside })
     }
 
-    /// A body that holds a body wherever it goes, but for `off`.
+    /// Returns a body that contains the body at every displacement, up to `off`.
     ///
-    /// Some vectors lead from a body to where its points are: they are in the triangle of 0 and the
-    /// two ways. Along the axis they make it longer; across, it is moved to the middle of them,
-    /// and wider by how far they are from there at most.
+    /// All displacements lie in the triangle (0, a, b). Along the axis the body becomes longer by
+    /// their range. Let a' and b' be the components across the axis. The body moves by (a' + b') /
+    /// 4 and becomes wider by the largest distance of 0, a' and b' from there.
     pub(super) fn swept_body(&self, body: &PlacedLink) -> PlacedLink {
         let axis = Vector::from(body.axis());
         let along = self.ways.map(|way| way.dot(axis));
@@ -60,20 +68,20 @@ impl HalfDisplacement {
         PlacedLink::between(start, end, radius, body.flat())
     }
 
-    /// How much of a gap along a normal it takes, which leads from a triangle to the piece.
+    /// Returns the gap that the displacement uses up along a normal from the triangle to the piece.
     pub(super) fn gap_loss(&self, normal: Vector) -> Real {
         let against = (-normal.dot(self.ways[0])).max(-normal.dot(self.ways[1])).max(0.0);
         (against + self.off) * UP
     }
 }
 
-/// By how much a plane with this normal, which is of unit length or about, parts a body from a
-/// triangle.
+/// Returns the gap between a body and a triangle along `normal`, which has unit length up to
+/// rounding; negative if they overlap.
 pub(super) fn gap(body: &PlacedLink, corners: [Vector; 3], normal: Vector) -> Real {
     let start = body.start();
     let axis = Vector::from(body.axis());
     let size = normal.length();
-    // What is behind a flat end reaches across the axis alone.
+    // A flat end extends along the normal only by its disc.
     let across = normal.cross(axis).length();
     let [first, last] = body.flat().map(|flat| body.radius() * if flat { across } else { size });
     let least = (-first).min(normal.dot(body.along()) - last);
@@ -86,7 +94,8 @@ mod tests {
     use super::*;
     use continuum_testing::Random;
 
-    /// Points of a body: on the edges of flat ends, on the spheres of round ones and on its side.
+    /// Returns points of a body: on the edges of flat ends, on the spheres of round ends and on its
+    /// side.
     fn points(random: &mut Random, body: &PlacedLink) -> Vec<Vector> {
         let axis = Vector::from(body.axis());
         let mut points = Vec::new();
@@ -133,7 +142,7 @@ mod tests {
             flat += usize::from(body.flat() != [false; 2] && left - stated < 0.01);
             away += usize::from(side.ways.iter().all(|way| normal.dot(*way) > 0.0));
         }
-        // Nothing is taken that a sample does not come near to needing.
+        // The bound is tight: some sample comes close to it.
         assert!(least < 1e-3 && flat > 100 && away > 50, "{least} {flat} {away}");
     }
 

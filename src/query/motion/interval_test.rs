@@ -1,5 +1,22 @@
-//! Whether a piece of the robot keeps a margin during an interval of time, judged by the shape at
-//! its middle.
+//! The policy that tests whether pieces keep a margin during an interval of time, from the middle
+//! shape.
+//!
+//! # Definitions
+//! - d, upper: the lower and the upper bound on the clearance of a piece in the middle shape.
+//! - approach: tau V, how much nearer the piece may come in the interval
+//!   ([`ApproachBound::max_approach`]).
+//! - **Fine**: approach <= resolution / 2, and the extra turn is at most [`MIN_EXTRA_TURN`]. The
+//!   middle shape then decides.
+//!
+//! # Algorithm
+//! A body beyond margin + approach + slack is cleared. Otherwise:
+//! 1. **Contact** if upper <= margin.
+//! 2. **Unresolved** if the piece is not fine and the motion prevents the decision: `upper <=
+//!    margin + approach + slack`, or the body's excess is at most approach / 4. Shorter intervals
+//!    test the piece again.
+//! 3. **Undecided** if the piece is fine and its bounds are at most resolution / 2 apart, beside
+//!    stated uncertainty.
+//! 4. **Halve** otherwise.
 
 use super::approach_bound::{ApproachBound, check_subdivision};
 use super::relative_motion::RelativeMotion;
@@ -9,41 +26,41 @@ use crate::pieces::{
 };
 use parry3d_f64::math::Real;
 
-/// What may turn by no more than this beyond what a shape shows, in rad, is decided by the shape.
+/// The extra turn (rad) beyond the middle shape up to which that shape decides.
 const MIN_EXTRA_TURN: Real = 1.0 / 64.0;
 
-/// The margin that is to be kept, and how near to it an answer may stay open.
+/// The margin to be kept, and the resolution of the answer.
 #[derive(Clone, Copy)]
 pub(crate) struct MarginQuery {
     pub margin: Real,
     pub resolution: Real,
 }
 
-/// What the middle shape of an interval shows.
+/// The result of testing the middle shape of an interval.
 pub(crate) struct IntervalResult<F> {
-    /// A place where it is at most the margin away.
+    /// A place whose distance is at most the margin.
     pub contact: Option<F>,
-    /// Whether that place moves by no more than half of the resolution.
+    /// Whether the place moves by at most half of the resolution in the interval.
     pub is_fine: bool,
-    /// Whether a piece is too near to the margin for the resolution.
+    /// Whether some piece is within the resolution of the margin.
     pub is_undecided: bool,
-    /// Whether the shape is above the margin by no more than the resolution.
+    /// Whether the clearance of the shape exceeds the margin by at most the resolution.
     pub is_near: bool,
-    /// Whether it was not looked at to the end, nor is any other shape to be.
+    /// Whether a limit of work stopped the test, and with it the query.
     pub gives_up: bool,
-    /// Why samples do not allow a decision for a piece. A contact elsewhere counts more.
+    /// Why the samples allow no decision for a piece. A contact elsewhere takes precedence.
     pub too_fine: Option<ProximityError>,
 }
 
 impl<F> IntervalResult<F> {
-    /// Nothing, before anything is looked at.
+    /// The result before any test.
     pub(super) fn empty() -> Self {
         let (is_fine, is_undecided, is_near, gives_up) = (false, false, false, false);
         Self { contact: None, is_fine, is_undecided, is_near, gives_up, too_fine: None }
     }
 }
 
-/// What moves during an interval, and what its middle shape shows.
+/// What moves during an interval, and the result of its middle shape.
 pub(crate) struct IntervalTest<V, F> {
     pub moving: V,
     pub approach_bound: ApproachBound,
@@ -89,6 +106,7 @@ impl<D: Refinable, P, V: RelativeMotion<D, P>> RefinePolicy<D, P> for IntervalTe
     ) -> Result<RefineAction, ProximityError> {
         self.moving.record(near);
         let upper = near.found.upper();
+        // Step 1.
         if upper <= self.wanted.margin {
             self.result.contact = Some(*near.found);
             self.result.is_fine = self.is_fine();
@@ -96,6 +114,7 @@ impl<D: Refinable, P, V: RelativeMotion<D, P>> RefinePolicy<D, P> for IntervalTe
             self.moving.record_unresolved(near, &self.approach_bound);
             return Ok(RefineAction::Answered);
         }
+        // Step 2.
         let is_time_to_blame = !self.is_fine()
             && (upper <= self.bound(tube.slack())
                 || near.outer.excess() <= 0.25 * self.approach_bound.max_approach());
@@ -103,11 +122,13 @@ impl<D: Refinable, P, V: RelativeMotion<D, P>> RefinePolicy<D, P> for IntervalTe
             self.record_unresolved(tube, near)?;
             return Ok(RefineAction::Settled);
         }
+        // Step 3.
         let apart = upper - D::distance(near.nearest) - tube.uncertainty(near.piece);
         if self.is_fine() && apart <= 0.5 * self.wanted.resolution {
             self.result.is_undecided = true;
             return Ok(RefineAction::Settled);
         }
+        // Step 4.
         Ok(RefineAction::Halve(0.25 * near.outer.excess()))
     }
 
@@ -138,19 +159,21 @@ impl<D: Refinable, P, V: RelativeMotion<D, P>> RefinePolicy<D, P> for IntervalTe
 }
 
 impl<V, F> IntervalTest<V, F> {
-    /// What the body of a piece must be farther away than for it to keep the margin all the time.
+    /// Returns the distance beyond which a body keeps the margin during the whole interval.
     fn bound(&self, slack: Real) -> Real {
         self.wanted.margin + self.approach_bound.max_approach() + slack
     }
 
-    /// Whether it moves so little that the shape decides.
+    /// Whether the middle shape decides: the motion is smaller than the resolution allows.
     fn is_fine(&self) -> bool {
         self.approach_bound.max_approach() <= 0.5 * self.wanted.resolution
             && self.approach_bound.growth <= MIN_EXTRA_TURN
     }
 
-    /// Takes note of a piece that keeps the margin only for a while before and after the middle
-    /// shape.
+    /// Records a piece that keeps the margin only for some time before and after the middle shape.
+    ///
+    /// # Errors
+    /// The piece is too fast for the resolution.
     fn record_unresolved<D: Refinable, P>(
         &mut self,
         tube: &D,

@@ -1,4 +1,4 @@
-//! The loop over intervals of time, for robots beside robots.
+//! The loop over intervals of time, for pairs of robots and for self contact.
 
 use super::approach_bound::{midpoint, remaining_parts};
 use super::interval_test::{IntervalResult, MarginQuery};
@@ -8,9 +8,11 @@ use crate::pieces::PairUpperBound;
 use parry3d_f64::math::Real;
 use std::collections::VecDeque;
 
-/// Whether a margin is kept in all intervals. `test_interval` looks at the middle of one, and says
-/// for how long before and after it what failed there is decided: for ever where nothing did.
-/// Breadth first: contacts that last show early.
+/// Decides whether a margin is kept in all intervals.
+///
+/// `test_interval` tests the middle shape of an interval. It returns the result and how long before
+/// and after the midpoint the unresolved pairs are decided; infinity if there are none. Breadth
+/// first: long contacts are found early.
 ///
 /// # Errors
 /// As `test_interval`.
@@ -46,13 +48,13 @@ pub(super) fn clear(
     Ok(progress.undecided().map_or_else(RobotMotionAnswer::clear, RobotMotionAnswer::undecided))
 }
 
-/// So many pairs of pieces are looked at in an interval, the nearest ones, unless it is not for the
-/// motion that there are more: 2^16. A shorter interval has fewer.
+/// Returns the most pairs of pieces that are tested per interval, the nearest ones. If the motion
+/// exceeds margin and resolution it is 2^16, since a shorter interval has fewer pairs.
 pub(super) fn most_pairs(reach: Real, MarginQuery { margin, resolution }: MarginQuery) -> usize {
     if reach > margin.max(resolution) { 1 << 16 } else { usize::MAX }
 }
 
-/// Begins with each part of the time of all motions, which have so many.
+/// Starts with the common parts of all motions' times; `legs` counts the parts of each motion.
 pub(super) fn begin(intervals: &mut VecDeque<[Real; 2]>, legs: impl IntoIterator<Item = usize>) {
     let legs = legs.into_iter().map(|legs| legs.max(1));
     let ends = legs.flat_map(|legs| (0..=legs).map(move |leg| leg as Real / legs as Real));

@@ -1,4 +1,4 @@
-//! Whether a motion keeps a margin, until when, and how near it comes.
+//! Queries about motions: whether a margin is kept, until when, and bounds on the least clearance.
 
 mod approach_bound;
 mod approach_speed;

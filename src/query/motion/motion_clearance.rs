@@ -1,17 +1,27 @@
-//! How near a motion comes, between bounds.
+//! Bounds on the least clearance of a motion.
 //!
-//! Every shape that is looked at bounds the least clearance from above. A piece whose body is d
-//! away in the middle shape of an interval, and moves at V or slower, is at least d - tau V away in
-//! all of it, tau being half of the interval: where that is not below the least upper bound so far
-//! by more than the tolerance, nothing that matters is there. What is left is halved, in
-//! time or along the curve, as for a margin (`motion_search`); the margin is what would still
-//! matter, and falls as nearer shapes are found. The interval that may come nearest is looked at
-//! first. So a path of many motions costs little more than its nearest parts, and those that stay
-//! farther away one shape each, or a few.
+//! # Definitions
+//! - `upper`: the least upper bound of all tested shapes. aim: the permitted gap between the bounds
+//!   of the answer.
+//! - wanted = upper - aim: pieces whose lower bound is at least this are **settled**.
+//! - d: the distance of a piece's body in the middle shape. reach = tau V: how much nearer the
+//!   piece may come in the interval (`motion_search`).
+//! - doubt: the gap between the bounds that the unknown direction of a face causes.
 //!
-//! **When it ends.** A piece that moves by no more than half of the tolerance in its interval is
-//! settled as soon as its body fits it as closely. Where samples or stated errors leave more open
-//! than that, no interval is worth dividing in which the piece moves less than they leave open.
+//! # Algorithm
+//! 1. **Take** the interval with the least lower bound. Stop if it is settled, or after
+//!    [`MAX_SHAPES`] shapes. So a path of many motions costs little more than its nearest parts;
+//!    the parts farther away cost one shape each, or a few.
+//! 2. **Seed** `upper` at the place of the nearest shape so far.
+//! 3. **Refine** the middle shape. A piece is at least d - reach away in the whole interval. Unless
+//!    that settles it, it is tested at other times or halved along the curve.
+//! 4. **Displacements** settle pieces on one side of the middle shape, as for a margin.
+//! 5. **Divide** the interval as for a margin. The margin is `wanted`, which falls as nearer shapes
+//!    are found.
+//!
+//! **Termination.** A piece with reach <= aim / 4 is settled as soon as its body fits as closely.
+//! If samples or stated errors leave a larger gap, intervals in which the piece moves less than
+//! that gap are not divided.
 
 use super::approach_bound::ApproachBound;
 use super::motion_search::{Interval, MotionSearch};
@@ -27,12 +37,11 @@ use crate::pieces::{
 use crate::robot::Motion;
 use parry3d_f64::math::Real;
 
-/// After so many pieces none is halved any more in a shape.
+/// The most pieces processed per shape; after them no piece is halved.
 const MAX_PIECES: u32 = 1 << 16;
 
 impl<M: Motion> MotionSearch<'_, M> {
-    /// How near the motion comes, with bounds no farther apart than the tolerance where that can
-    /// be.
+    /// Returns bounds on the least clearance that are at most `tolerance` apart if possible.
     pub(crate) fn clearance(&mut self, tolerance: Real) -> Result<MotionClearance, ProximityError> {
         let nothing = UnresolvedGap { lower: Real::INFINITY, doubt: 0.0 };
         let mut known = MinimumBounds {
@@ -44,15 +53,18 @@ impl<M: Motion> MotionSearch<'_, M> {
         };
         self.begin();
         while let Some(interval) = self.pop_nearest() {
+            // Step 1.
             if known.is_settled(interval.lower) || self.shapes >= MAX_SHAPES {
-                // The others come no nearer.
+                // All other intervals have larger lower bounds.
                 known.lower = known.lower.min(interval.lower);
                 break;
             }
             let t = interval.midpoint();
             let ((nearest, hold, is_left), pieces) =
                 self.with_middle_shape(&interval, |tube, turn, moving, approach_bound| {
+                    // Step 2.
                     known.seed(tube, t);
+                    // Step 3.
                     turn.begin(tube, known.upper().max(tolerance));
                     let mut approach =
                         MinimumPolicy::new(moving, approach_bound, &mut known, t, tube);
@@ -60,6 +72,7 @@ impl<M: Motion> MotionSearch<'_, M> {
                     if approach.is_done() {
                         approach.settle(0.0);
                     }
+                    // Step 4.
                     let is_left = if approach.is_done() {
                         [true; 2]
                     } else {
@@ -67,6 +80,7 @@ impl<M: Motion> MotionSearch<'_, M> {
                     };
                     Ok((approach.nearest, approach.approach_bound.hold, is_left))
                 })?;
+            // Step 5.
             let interval = interval.with_lower_bound(nearest);
             self.memory
                 .intervals
@@ -75,7 +89,7 @@ impl<M: Motion> MotionSearch<'_, M> {
         known.answer()
     }
 
-    /// Takes the interval that may come nearest.
+    /// Removes the interval with the least lower bound.
     fn pop_nearest(&mut self) -> Option<Interval> {
         let intervals = &mut self.memory.intervals;
         let all = intervals.iter().enumerate();
@@ -84,23 +98,23 @@ impl<M: Motion> MotionSearch<'_, M> {
     }
 }
 
-/// What is known of the least clearance.
+/// The bounds on the least clearance so far.
 struct MinimumBounds {
     tolerance: Real,
-    /// What stated errors cost in the shapes so far.
+    /// The gap that stated errors cause in the shapes so far.
     uncertainty: Real,
-    /// What bounds it from above, and when.
+    /// The upper bound, with its place and time.
     best: Option<(MeshUpperBound, Real)>,
-    /// Whatever is settled comes no nearer.
+    /// The least lower bound of all settled pieces.
     lower: Real,
-    /// The part of that where it is not known which way a face stands.
+    /// The settled pieces with an unknown direction of a face.
     doubtful: UnresolvedGap,
 }
 
-/// What is settled although its bounds are farther apart, because more is not known.
+/// Pieces settled with a larger gap because no more is known.
 struct UnresolvedGap {
     lower: Real,
-    /// How much farther.
+    /// The additional gap.
     doubt: Real,
 }
 
@@ -109,20 +123,20 @@ impl MinimumBounds {
         self.best.map_or(Real::INFINITY, |(found, _)| found.upper)
     }
 
-    /// Whether what comes no nearer than this does not matter.
+    /// Whether pieces with this lower bound do not matter.
     fn is_settled(&self, lower: Real) -> bool {
         let wanted = self.upper() - (self.tolerance + self.uncertainty);
         wanted <= 0.0 || lower >= wanted
     }
 
-    /// Takes note of a place of the shape at `t`.
+    /// Keeps a place of the shape at `t` if it is nearer.
     fn offer(&mut self, found: MeshUpperBound, t: Real) {
         if found.upper < self.upper() {
             self.best = Some((found, t));
         }
     }
 
-    /// A first look at a shape: where the nearest one so far is nearest.
+    /// Tests the shape at the place where the nearest shape so far is nearest.
     fn seed(&mut self, tube: &mut TubeInMesh, t: Real) {
         self.uncertainty = self.uncertainty.max(tube.tube.position_uncertainty());
         let found = match self.best {
@@ -140,7 +154,7 @@ impl MinimumBounds {
             return Err(ProximityError::EmptyTube);
         };
         let lower = self.lower.min(upper).max(0.0);
-        // It matters if nothing else is as near.
+        // The gap matters only if nothing else is as near.
         let matters = self.doubtful.lower < upper - (self.tolerance + self.uncertainty);
         let uncertainty = self.uncertainty + if matters { self.doubtful.doubt } else { 0.0 };
         let resolved = upper - lower <= self.tolerance + uncertainty;
@@ -148,15 +162,15 @@ impl MinimumBounds {
     }
 }
 
-/// The pieces of the shape at the middle of an interval.
+/// The policy for the middle shape of an interval.
 struct MinimumPolicy<'a, 'b, M> {
     moving: MovingTube<'a, M>,
     approach_bound: ApproachBound,
     known: &'b mut MinimumBounds,
     t: Real,
-    /// How far apart the bounds of the answer may stay.
+    /// The permitted gap between the bounds of the answer.
     aim: Real,
-    /// How near the pieces that failed come at least.
+    /// The least lower bound of the unresolved pieces.
     nearest: Real,
     /// How many pieces may still be halved.
     left: u32,
@@ -170,18 +184,18 @@ impl<'a, 'b, M: Motion> MinimumPolicy<'a, 'b, M> {
         t: Real,
         tube: &TubeInMesh,
     ) -> Self {
-        // So that the bounds of the answer are no farther apart than asked for after they are
-        // rounded.
+        // The bounds of the answer must meet the tolerance after rounding.
         let aim = (known.tolerance + known.uncertainty - 4.0 * tube.tube.slack()).max(0.0);
         Self { moving, approach_bound, known, t, aim, nearest: Real::INFINITY, left: MAX_PIECES }
     }
 
-    /// What comes nearer than this still matters.
+    /// Pieces that may come nearer than this matter.
     fn wanted(&self) -> Real {
         self.known.upper() - self.aim
     }
 
-    /// How near a piece comes at least whose body is so far away now.
+    /// Returns a lower bound on the clearance of a piece in the interval, from the distance of its
+    /// body.
     fn at_least(&self, distance: Real, tube: &PlacedTube) -> Real {
         distance - self.approach_bound.max_approach() - tube.slack()
     }
@@ -190,9 +204,8 @@ impl<'a, 'b, M: Motion> MinimumPolicy<'a, 'b, M> {
         self.known.lower = self.known.lower.min(lower);
     }
 
-    /// Asks by courses which of the failed pieces come no nearer than `wanted`, and settles these
-    /// at that. A piece failed beside a `wanted` of its own, which has fallen since if a nearer
-    /// shape was found.
+    /// Tests the displacements of the unresolved pieces against `wanted`, and settles the pieces
+    /// that pass at `wanted`. `wanted` may have fallen since a piece was recorded.
     fn clear_by_displacement(&mut self, tube: &mut TubeInMesh) -> [bool; 2] {
         let wanted = self.wanted();
         let Left { sides, is_any_settled } = self.moving.clear_by_displacement(tube, wanted);
@@ -202,7 +215,7 @@ impl<'a, 'b, M: Motion> MinimumPolicy<'a, 'b, M> {
         sides
     }
 
-    /// Takes note of a piece that has to be looked at at other times.
+    /// Records a piece that must be tested at other times.
     fn record_unresolved(
         &mut self,
         near: &BoundedPiece<TubeInMesh, PendingPiece>,
@@ -210,7 +223,7 @@ impl<'a, 'b, M: Motion> MinimumPolicy<'a, 'b, M> {
     ) {
         let wanted = self.wanted();
         self.nearest = self.nearest.min(self.at_least(near.nearest.distance, tube));
-        // As long as it is still, it comes no nearer than that.
+        // During `hold` the piece stays at least this far away.
         self.settle(wanted);
         self.approach_bound.limit_hold(near.nearest.distance - wanted - tube.slack());
         self.moving.record_unresolved(near, &self.approach_bound);
@@ -220,7 +233,7 @@ impl<'a, 'b, M: Motion> MinimumPolicy<'a, 'b, M> {
 impl<'m, M: Motion> RefinePolicy<TubeInMesh<'m>, PendingPiece> for MinimumPolicy<'_, '_, M> {
     const NEARER_HALF_FIRST: bool = true;
 
-    /// Nothing below 0 is left to be found.
+    /// A clearance below 0 does not exist.
     fn is_done(&self) -> bool {
         self.wanted() < 0.0
     }

@@ -1,12 +1,13 @@
 //! Whether two robots that move at the same time keep a margin between them.
 //!
-//! An interval of time is judged by the two shapes at its middle, as for one motion
-//! (`motion_search`): a point of a piece that moves at V or slower is within tau V of where it is
-//! then, tau being half of the interval, so two pieces come nearer by no more than tau times the
-//! sum of their speeds. Pairs for which that is too much are looked at again in what is left of the
-//! interval on either side. These are few, and which pieces of one robot are near which of the
-//! other is seen at once from their bodies: so each shape begins with all pairs that may
-//! come as near as the margin in its interval, instead of a list that the one before left.
+//! # Algorithm
+//! 1. Test an interval by the two shapes at its middle, as for one motion (`motion_search`). Let
+//!    tau be half of the interval and V1, V2 the speeds of two pieces. Then the pieces come nearer
+//!    by at most tau (V1 + V2).
+//! 2. Pairs for which that is too much are tested again in the remaining parts of the interval.
+//! 3. Each shape starts with all pairs that may reach the margin in its interval, not with a list
+//!    of unresolved pairs. Such pairs are few, and their bodies show at once which pieces are near
+//!    each other.
 
 use super::approach_bound::{ApproachBound, check_subdivision, half_length, midpoint};
 use super::current_shape::CurrentShape;
@@ -23,10 +24,10 @@ use crate::robot::{Motion, check_speed};
 use parry3d_f64::math::Real;
 use std::collections::VecDeque;
 
-/// So many pairs of pieces are looked at in all shapes together, 2^20.
+/// The most pairs of pieces tested in all shapes together.
 const MAX_PAIRS: u32 = 1 << 20;
 
-/// Memory of a query, used again by the next.
+/// State and memory that the next query reuses.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct MotionsMemory {
     current: [CurrentShape; 2],
@@ -39,12 +40,12 @@ pub(crate) struct MotionsMemory {
 pub(crate) struct MotionPair<'a, A, B> {
     pub memory: &'a mut MotionsMemory,
     pub motions: (&'a A, &'a B),
-    /// What the motions are called.
+    /// The names of the motions in error messages.
     pub names: [&'static str; 2],
 }
 
 impl<A: Motion, B: Motion> MotionPair<'_, A, B> {
-    /// Whether the margin is kept at all times.
+    /// Decides whether the margin is kept at all times.
     pub(crate) fn clear(
         &mut self,
         wanted: MarginQuery,
@@ -61,8 +62,8 @@ impl<A: Motion, B: Motion> MotionPair<'_, A, B> {
         answer
     }
 
-    /// Whether the margin is kept in an interval, as far as its middle shapes show; and for how
-    /// long before and after these all pairs keep it, which is for ever where none failed.
+    /// Tests the middle shapes of an interval. Returns the result, and how long before and after
+    /// the midpoint all pairs are decided; infinity if none is unresolved.
     fn test_interval(
         &mut self,
         times: [Real; 2],
@@ -75,7 +76,7 @@ impl<A: Motion, B: Motion> MotionPair<'_, A, B> {
         let first = first.map_err(|error| error.of_robot(names[0]))?;
         let second = second.map_err(|error| error.of_robot(names[1]))?;
         let mut tubes = TubePair::new([first.tube, second.tube]);
-        // Below that, rounding decides.
+        // A finer resolution is below rounding.
         tubes.check_resolved(32.0 * tubes.slack(), wanted.resolution)?;
         let reach =
             half_length(times) * (first.speed + second.speed) * (1.0 + 4.0 * Real::UNIT_ROUNDOFF);
@@ -101,11 +102,11 @@ impl<A: Motion, B: Motion> MotionPair<'_, A, B> {
     }
 }
 
-/// A robot at the middle of an interval.
+/// A robot in its middle shape.
 struct PlacedShape<'a> {
     tube: PlacedTube<'a>,
     cap_change: Real,
-    /// How fast any of its points moves at most, and the section of that one.
+    /// An upper bound on the speed of its points, and the section where it occurs.
     speed: Real,
     fastest: usize,
 }
@@ -122,8 +123,7 @@ fn shape<'p, M: Motion>(
     for (number, section) in tube.sections().iter().enumerate() {
         let stated = motion.speed(number, [0.0, 1.0], times);
         check_speed(number, stated.point)?;
-        // Where no body has a flat end, nobody needs a turn: that of a link without a length is
-        // infinite.
+        // A body without a flat end needs no turn. The turn of a link of length 0 is infinite.
         let has_rim = section.radius > 0.0 && tube.faces(section).iter().any(Option::is_some);
         let turn = if has_rim { stated.turn } else { 0.0 };
         check_speed(number, turn)?;

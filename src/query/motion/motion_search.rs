@@ -1,34 +1,43 @@
-//! The queries of a motion: whether a margin is kept all the way, or until when.
+//! The queries of a motion in a mesh: whether it keeps a margin, or until when.
 //!
-//! An interval of time is judged by its middle shape. Points of a piece that move at V or slower
-//! are within tau V of where they are at the middle, tau being half of the interval; so if a body
-//! around the piece, as it is then, keeps more than margin + tau V away, the piece keeps the margin
-//! during the whole interval. Its points then are those of the same shares of its section: what
-//! bodies hold of them, besides the discs and the balls of the moment, is derived in
-//! `pieces::bounding_body` and in `test`. Pieces that fail are looked at again in what is left of
-//! the interval on either side: a piece d away keeps the margin for (d - margin) / V before and
-//! after the middle. Where it is the width of the body that fails, and not the motion, the piece is
-//! halved instead, in the same shape.
+//! # Definitions
+//! - **Middle shape** of an interval of time: the robot's shape at its midpoint t. tau: half of the
+//!   interval.
+//! - **Piece**: a range of shares of a section, the same points of the robot at all times.
+//! - V: an upper bound on the speed of a piece relative to the mesh (`approach_speed`).
+//! - d: the distance of the piece's body in the middle shape.
+//! - **Unresolved** piece: the middle shape does not clear it for the whole interval.
 //!
-//! **Courses.** A speed leads anywhere. If the pieces that failed are few and the motion knows
-//! their courses, each is asked about both sides of the middle by where it goes
-//! (`half_displacement`), against all triangles that are near enough, each in a direction of its
-//! own (`separating_planes`). What keeps the margin on one side is not looked at there again; where
-//! all do, that side is settled.
+//! # Claim
+//! If d > margin + tau V, the piece keeps the margin during the whole interval. Otherwise it keeps
+//! the margin for (d - margin) / V before and after t.
 //!
-//! What has little room seldom goes so much along the wall, so it is asked seldom, unless it was
-//! not in vain.
+//! **Proof.** Points of the piece are within tau V of where they are at t. Which points of the
+//! piece a body contains is derived in `pieces::bounding_body` and `approach_speed`.
 //!
-//! **A limit.** A question ends after `MAX_SHAPES` shapes: `progress`.
+//! # Algorithm
+//! 1. **Start** with one interval per part of the motion's time, with all pieces.
+//! 2. **Test** the pieces of an interval in its middle shape (`interval_test`). If the width of a
+//!    body prevents the decision, and not the motion, the piece is halved in the same shape.
+//! 3. **Displacements.** A speed bounds how far a piece moves, not in which direction. If few
+//!    pieces are unresolved and the motion bounds their displacements, each is tested on both sides
+//!    of t. The test separates it from every triangle that is near enough (`half_displacement`,
+//!    `separating_planes`). A cleared piece is dropped on that side. If all are cleared, the side
+//!    is done. A piece with little room rarely passes this test, so it is tested rarely, unless it
+//!    passes.
+//! 4. **Divide.** The remaining parts of the interval, before and after t, become intervals with
+//!    the unresolved pieces.
+//! 5. **Stop** when no interval is left, at a contact, or after [`MAX_SHAPES`] shapes (`progress`).
 //!
-//! **A mesh that moves** has a place for each time too (`search::hierarchy::moving_mesh`), and V is
-//! the piece's speed and that of the fastest vertex: no point of a triangle is faster than its
-//! vertices, and the two approach each other by no more.
+//! **Moving mesh.** The mesh has a place at each time (`search::hierarchy::moving_mesh`). V is then
+//! the speed of the piece plus the speed of the fastest vertex, since no point of a triangle is
+//! faster than its vertices.
 //!
-//! **Flat ends.** Those that may become round during the interval (`robot::tube::cap_persistence`)
-//! are round here: a ball holds the disc, now and later. So are those of a link that may lose its
-//! direction. The intervals become shorter until the end lasts, or the moment is found at which it
-//! becomes round; there the shape itself jumps, and if that is what comes near, nobody can decide.
+//! **Flat ends** that may become round during the interval count as round
+//! (`robot::tube::cap_persistence`): the ball contains the disc at all times. The same holds for a
+//! link that may lose its direction. The intervals become shorter until the end stays flat, or
+//! until they isolate the instant at which it becomes round. The shape itself jumps there; if that
+//! is what comes near, the answer is undecided.
 
 use super::approach_bound::{ApproachBound, midpoint, remaining_parts};
 use super::current_shape::CurrentShape;
@@ -46,35 +55,35 @@ use parry3d_f64::math::{Real, Vector};
 use std::collections::VecDeque;
 use std::ops::Range;
 
-/// Memory of a query, used again by the next.
+/// State and memory that the next query reuses.
 #[derive(Clone, Default)]
 pub(crate) struct MotionMemory {
     current: CurrentShape,
-    /// Pieces that wait for their turn in the present shape, the next one last.
+    /// The pending pieces of the current shape, the next one last.
     pieces: Vec<PendingPiece>,
-    /// Those that the first shape begins with.
+    /// The initial pieces of the first shape.
     initial_pieces: Vec<Piece>,
-    /// Those that failed, one interval's after another's.
+    /// The unresolved pieces of all intervals, one interval after another.
     unresolved: Vec<PendingPiece>,
-    /// More about those of the present interval.
+    /// The bodies of the unresolved pieces of the current interval.
     unresolved_bodies: Vec<UnresolvedPiece>,
     pub(super) intervals: VecDeque<Interval>,
-    /// Where the vertices go, if the mesh moves.
+    /// The displacements of the vertices, if the mesh moves.
     mesh: MovingMesh,
     planes: SeparatingPlanes,
-    /// Forgotten with each question: answers do not depend on earlier ones.
+    /// Reset by each query, so that answers do not depend on earlier ones.
     small_rooms: SmallRooms,
 }
 
-/// An interval of time and what has to be looked at in it.
+/// An interval of time and its unresolved pieces.
 #[derive(Clone, Debug)]
 pub(super) struct Interval {
     times: [Real; 2],
-    /// Which of the failed pieces; none if it is the whole robot.
+    /// A range of `MotionMemory::unresolved`; `None` for the whole robot.
     pieces: Option<Range<usize>>,
-    /// Whether it is before the middle shape in which they failed or after it.
+    /// Whether the interval lies after the middle shape in which its pieces were unresolved.
     is_after: bool,
-    /// How near these come in it at least.
+    /// A lower bound on the clearance of its pieces.
     pub lower: Real,
 }
 
@@ -83,13 +92,13 @@ impl Interval {
         midpoint(self.times)
     }
 
-    /// The same, in which the pieces are known to come no nearer than this.
+    /// Returns the interval with the larger of both lower bounds.
     pub(super) fn with_lower_bound(self, lower: Real) -> Self {
         Self { lower: self.lower.max(lower), ..self }
     }
 
-    /// What is left of it before and after its middle shape, which decides for a while what becomes
-    /// of the pieces.
+    /// Returns the remaining parts before and after the middle shape, which decides the pieces for
+    /// the time `hold` on both sides.
     pub(super) fn halves(
         &self,
         hold: Real,
@@ -111,7 +120,7 @@ impl Interval {
     }
 }
 
-/// The pieces that have their turn in a shape.
+/// The pending pieces of a shape.
 pub(super) struct PendingPieces<'a> {
     pub pieces: &'a mut Vec<PendingPiece>,
     initial_pieces: &'a mut Vec<Piece>,
@@ -119,8 +128,8 @@ pub(super) struct PendingPieces<'a> {
 }
 
 impl PendingPieces<'_> {
-    /// Begins with the pieces of the whole robot, unless some have failed before. `scale` is what
-    /// is to be decided.
+    /// Fills in the pieces of the whole robot, unless the interval has unresolved pieces. `scale`:
+    /// the clearance at which the decision falls.
     pub(super) fn begin(&mut self, tube: &TubeInMesh, scale: Real) {
         if self.is_whole {
             tube.begin(scale, self.initial_pieces);
@@ -131,32 +140,33 @@ impl PendingPieces<'_> {
     }
 }
 
-/// What the middle shape of an interval shows, and for how long.
+/// The result of an interval, and how long it holds.
 struct IntervalOutcome {
     result: IntervalResult<MeshUpperBound>,
-    /// For how long before and after it the pieces keep the margin that failed.
+    /// How long before and after the middle shape the unresolved pieces keep the margin.
     hold: Real,
-    /// Whether any of these is left before the shape, and after it.
+    /// Whether unresolved pieces are left before the shape, and after it.
     is_left: [bool; 2],
-    /// Which of the failed pieces these are.
+    /// The unresolved pieces, as a range of `MotionMemory::unresolved`.
     unresolved: Range<usize>,
 }
 
-/// A motion on its way through a mesh.
+/// A motion in a mesh.
 pub(crate) struct MotionSearch<'a, M> {
     pub search: MeshSearch<'a>,
     pub memory: &'a mut MotionMemory,
     pub motion: &'a M,
-    /// How many shapes were looked at.
+    /// How many shapes were tested.
     pub shapes: u64,
-    /// The triangle that was found last.
+    /// The last triangle found: it starts the next search.
     pub last: Option<u32>,
-    /// Whether the mesh moves as well, as the memory says.
+    /// Whether the mesh moves too, as stored in the memory.
     pub does_mesh_move: bool,
 }
 
 impl<M: Motion> MotionSearch<'_, M> {
-    /// Whether the margin is kept at all times. Breadth first: contacts that last show early.
+    /// Decides whether the margin is kept at all times. Breadth first: long contacts are found
+    /// early.
     pub(crate) fn clears(&mut self, wanted: MarginQuery) -> Result<MotionAnswer, ProximityError> {
         let (mut progress, mut too_fine) = (Progress::default(), None);
         self.begin();
@@ -170,7 +180,7 @@ impl<M: Motion> MotionSearch<'_, M> {
                 self.test_interval(&interval, wanted)?;
             progress.record(interval.times, &result, self.shapes);
             if let Some(found) = result.contact {
-                // Of the shapes before it nothing is proven yet but what was asked first.
+                // Times before t are not proven clear, so `clear_until` is 0.
                 return Ok(MotionAnswer::contact(
                     0.0,
                     self.shape_in_contact(interval.midpoint(), &found),
@@ -187,10 +197,12 @@ impl<M: Motion> MotionSearch<'_, M> {
         Ok(progress.undecided().map_or_else(MotionAnswer::clear, MotionAnswer::undecided))
     }
 
-    /// Until when the margin is kept. Earlier intervals first; what comes after a contact does not
-    /// matter. Where an interval stays undecided, the answer cannot begin any later. What is
-    /// left then is a shape that does not keep the margin: the larger intervals first, and with
-    /// patience. After [`MAX_SHAPES`] shapes the answer begins where the rest does.
+    /// Returns until when the margin is kept. Earlier intervals first: nothing after a contact
+    /// matters.
+    ///
+    /// An undecided interval limits the answer to its start. The search then looks for a shape
+    /// in contact: larger intervals first, for at most [`PATIENCE`] more shapes. After
+    /// [`MAX_SHAPES`] shapes the answer ends where the first remaining interval begins.
     pub(crate) fn first_contact(
         &mut self,
         wanted: MarginQuery,
@@ -198,7 +210,7 @@ impl<M: Motion> MotionSearch<'_, M> {
         let (mut undecided, mut contact) = (None::<[Real; 2]>, None::<(Real, MeshUpperBound)>);
         let (mut clear_until, mut most, mut too_fine) = (1.0, MAX_SHAPES, None);
         self.begin();
-        // The last one comes first.
+        // `pop_back` takes the earliest interval.
         self.memory.intervals.make_contiguous().reverse();
         while self.shapes < most {
             let intervals = &mut self.memory.intervals;
@@ -246,19 +258,20 @@ impl<M: Motion> MotionSearch<'_, M> {
         Ok(MotionAnswer::contact(clear_until, self.shape_in_contact(t, &found)))
     }
 
-    /// A place that was found on the shape at `t`, which the tube is.
+    /// Returns a contact found in the shape at `t`.
     fn shape_in_contact(&self, t: Real, found: &MeshUpperBound) -> ShapeInContact {
         ShapeInContact { t, upper: found.upper, section: found.section, witness: found.witness }
     }
 
-    /// Moves the mesh during the motion, each vertex to its place here; these were checked.
+    /// Sets the displacements of the mesh during the motion: each vertex moves to its place in
+    /// `to`, which was checked.
     pub(crate) fn move_mesh(&mut self, to: &[Vector]) {
         let hierarchy = self.search.hierarchy;
         self.memory.mesh.set(&hierarchy.mesh, hierarchy.single(), to);
         self.does_mesh_move = true;
     }
 
-    /// Begins with each part of the motion's time.
+    /// Starts with one interval per part of the motion's time.
     pub(super) fn begin(&mut self) {
         let MotionMemory { current, intervals, unresolved, small_rooms, .. } = &mut *self.memory;
         current.forget();
@@ -275,7 +288,7 @@ impl<M: Motion> MotionSearch<'_, M> {
         }));
     }
 
-    /// Whether the margin is kept in an interval, as far as its middle shape shows.
+    /// Tests the middle shape of an interval.
     fn test_interval(
         &mut self,
         interval: &Interval,
@@ -283,7 +296,7 @@ impl<M: Motion> MotionSearch<'_, M> {
     ) -> Result<IntervalOutcome, ProximityError> {
         let ((result, hold, is_left), unresolved) =
             self.with_middle_shape(interval, |tube, turn, moving, approach_bound| {
-                // Below that, rounding decides.
+                // A finer resolution is below rounding.
                 tube.check_resolved(32.0 * tube.tube.slack(), wanted.resolution)?;
                 turn.begin(tube, wanted.margin.max(wanted.resolution));
                 let mut test = IntervalTest {
@@ -305,8 +318,8 @@ impl<M: Motion> MotionSearch<'_, M> {
         Ok(IntervalOutcome { result, hold, is_left, unresolved })
     }
 
-    /// Asks a question of the middle shape of an interval; and which of the failed pieces are those
-    /// that failed there.
+    /// Calls `ask` with the middle shape of an interval. Returns its result and the range of newly
+    /// unresolved pieces.
     pub(super) fn with_middle_shape<T>(
         &mut self,
         interval: &Interval,
@@ -345,7 +358,7 @@ impl<M: Motion> MotionSearch<'_, M> {
         pieces.clear();
         let failing = interval.pieces.clone().map_or(&[][..], |failing| &unresolved[failing]);
         let failing = failing.iter().filter(|piece| piece.is_left[usize::from(interval.is_after)]);
-        // Of this interval nothing is known.
+        // They are unresolved on both sides of the new middle shape.
         pieces.extend(failing.map(|piece| PendingPiece { is_left: [true; 2], ..*piece }));
         let first = unresolved.len();
         unresolved_bodies.clear();
@@ -365,7 +378,7 @@ impl<M: Motion> MotionSearch<'_, M> {
         let mut turn =
             PendingPieces { pieces, initial_pieces, is_whole: interval.pieces.is_none() };
         let result = ask(&mut tube, &mut turn, moving, approach_bound)?;
-        // What a contact left unasked.
+        // A contact leaves pieces untested.
         unresolved.append(pieces);
         Ok((result, first..unresolved.len()))
     }

@@ -1,4 +1,4 @@
-//! Two robots during an interval of time, whose shapes are those at its middle.
+//! Two moving robots in an interval of time, in their middle shapes.
 
 use super::approach_speed::ApproachSpeed;
 use super::relative_motion::RelativeMotion;
@@ -8,20 +8,20 @@ use crate::pieces::{BoundedPiece, BoundingBody, PiecePair, TubePair};
 use crate::robot::{Motion, RobotError};
 use parry3d_f64::math::Real;
 
-/// The pieces of two robots that move, in an interval of time.
+/// Pairs of pieces of two moving robots in an interval of time.
 pub(super) struct MovingPair<'a, A, B> {
     pub motions: (&'a A, &'a B),
-    /// What the motions are called.
+    /// The names of the motions in error messages.
     pub names: [&'static str; 2],
     pub times: [Real; 2],
-    /// How fast the two pieces are that are looked at.
+    /// The speeds of the two pieces of the current pair.
     pub speeds: [Real; 2],
-    /// How many pairs of pieces may still be looked at, in these shapes and all others.
+    /// How many pairs of pieces may still be tested in this query.
     pub left: &'a mut u32,
 }
 
 impl<'t, A: Motion, B: Motion> RelativeMotion<TubePair<'t>, PiecePair> for MovingPair<'_, A, B> {
-    /// Each may come straight towards the other.
+    /// Returns the sum of both speeds: the pieces may move straight towards each other.
     fn speed(
         &mut self,
         pair: &PiecePair,

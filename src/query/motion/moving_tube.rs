@@ -1,5 +1,5 @@
-//! The pieces of a robot during an interval of time, whose shape is the one at its middle: how far
-//! they move from there.
+//! The pieces of one moving robot in an interval of time: their speeds and displacements, relative
+//! to the middle shape.
 
 use super::approach_bound::{ApproachBound, half_length};
 use super::approach_speed::ApproachSpeed;
@@ -15,32 +15,33 @@ use crate::pieces::{BoundedPiece, BoundingBody, Piece, Refinable, SectionRange, 
 use crate::robot::Motion;
 use parry3d_f64::math::Real;
 
-/// Of more pieces that failed in an interval, courses are not asked: that would take longer than
-/// another shape.
+/// With more unresolved pieces in an interval, displacements are not tested: another shape is
+/// cheaper.
 const MAX_PIECES: usize = 8;
 
-/// A piece with less room than this part of its reach seldom goes so much along the wall: one that
-/// slides along it does.
+/// A piece whose room is at most this share of its approach rarely passes the displacement test,
+/// unless it slides along the wall.
 const MIN_ROOM: Real = 0.1;
 
-/// The pieces of a robot that moves, in an interval of time.
+/// The pieces of a moving robot in an interval of time.
 pub(crate) struct MovingTube<'a, M> {
     pub motion: &'a M,
     pub times: [Real; 2],
-    /// When the shape is.
+    /// The time of the shape.
     pub t: Real,
-    /// How fast the mesh moves at most.
+    /// An upper bound on the speed of the mesh.
     pub mesh_speed: Real,
-    /// Pieces about which the shape decides nothing for the whole interval.
+    /// The pieces that the shape does not decide for the whole interval, after those of earlier
+    /// intervals.
     pub unresolved: &'a mut Vec<PendingPiece>,
-    /// Those before this one failed in earlier intervals.
+    /// The index of the first unresolved piece of this interval.
     pub first: usize,
-    /// The others, but for those that are too many.
+    /// The bodies of the unresolved pieces of this interval, at most [`MAX_PIECES`] + 1.
     pub unresolved_bodies: &'a mut Vec<UnresolvedPiece>,
-    /// The triangle that was found last.
+    /// The last triangle found.
     pub last: &'a mut Option<u32>,
-    /// By how much faster a point of its body may be than the centreline, the mesh's speed
-    /// included.
+    /// How much faster a point of the current body may be than the centreline, plus the speed of
+    /// the mesh.
     pub beside: Real,
     pub planes: &'a mut SeparatingPlanes,
     pub small_rooms: &'a mut SmallRooms,
@@ -99,18 +100,20 @@ impl<'m, M: Motion> RelativeMotion<TubeInMesh<'m>, PendingPiece> for MovingTube<
     }
 }
 
-/// On which sides of the middle shape failed pieces are left.
+/// On which sides of the middle shape unresolved pieces are left.
 pub(crate) struct Left {
     /// Before the shape, and after it.
     pub sides: [bool; 2],
-    /// Whether a piece was settled on some side.
+    /// Whether a piece was cleared on some side.
     pub is_any_settled: bool,
 }
 
 impl<M: Motion> MovingTube<'_, M> {
-    /// Which of the pieces that failed keep the margin before the middle shape all the same, or
-    /// after it, by where they go. The nearest one is asked first, and none after one that does
-    /// not: that side has to be looked at anyway.
+    /// Tests the displacements of the unresolved pieces on both sides of the middle shape, and
+    /// drops the pieces that keep the margin there.
+    ///
+    /// The nearest piece is tested first. After the first failure on a side the other pieces are
+    /// skipped: that side must be searched anyway.
     pub(crate) fn clear_by_displacement(&mut self, tube: &mut TubeInMesh, margin: Real) -> Left {
         let nearest =
             self.unresolved_bodies.iter().enumerate().min_by(|a, b| a.1.away.total_cmp(&b.1.away));
@@ -162,28 +165,28 @@ impl<M: Motion> MovingTube<'_, M> {
     }
 }
 
-/// How often pieces with little room are asked about their courses: seldom where it was in vain.
+/// Decides when pieces with little room are tested: rarely after failures.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct SmallRooms {
-    /// How many shapes are passed over after the last one that was asked.
+    /// How many shapes are skipped after the last test.
     pause: u32,
-    /// How many of these are still to come.
+    /// How many skipped shapes are left.
     left: u32,
 }
 
-/// The longest pause. A course costs up to as much as a shape: so it costs an eighth more at most
-/// where it is always in vain.
+/// The longest pause, in shapes. A displacement test costs up to as much as a shape, so it adds at
+/// most 1/8 of the time if it always fails.
 const LONGEST_PAUSE: u32 = 15;
 
 impl SmallRooms {
-    /// Whether the next shape is asked.
+    /// Whether the next shape is tested.
     fn is_due(&mut self) -> bool {
         let is_due = self.left == 0;
         self.left = self.left.saturating_sub(1);
         is_due
     }
 
-    /// Takes note of what one that was asked has shown.
+    /// Records the result of a test.
     fn note(&mut self, is_settled: bool) {
         self.pause = if is_settled { 0 } else { (2 * self.pause + 1).min(LONGEST_PAUSE) };
         self.left = self.pause;

@@ -1,4 +1,4 @@
-//! A robot beside itself during an interval of time, whose shape is the one at its middle.
+//! A moving robot beside itself in an interval of time, in its middle shape.
 
 use super::approach_speed::ApproachSpeed;
 use super::relative_motion::RelativeMotion;
@@ -8,18 +8,18 @@ use crate::pieces::{BoundedPiece, SelfPair, TubeWithItself};
 use crate::robot::Motion;
 use parry3d_f64::math::Real;
 
-/// The pieces of a robot that moves, two and two, in an interval of time.
+/// Pairs of pieces of a moving robot in an interval of time.
 pub(super) struct MovingTubeWithItself<'a, M> {
     pub motion: &'a M,
     pub times: [Real; 2],
-    /// How fast the two pieces are that are looked at.
+    /// The speeds of the two pieces of the current pair.
     pub speeds: [Real; 2],
-    /// How many pairs of pieces may still be looked at, in this shape and all others.
+    /// How many pairs of pieces may still be tested in this query.
     pub left: &'a mut u32,
 }
 
 impl<'t, M: Motion> RelativeMotion<TubeWithItself<'t>, SelfPair> for MovingTubeWithItself<'_, M> {
-    /// Each may come straight towards the other.
+    /// Returns the sum of both speeds: the pieces may move straight towards each other.
     fn speed(
         &mut self,
         pair: &SelfPair,

@@ -1,19 +1,19 @@
-//! What waits for its turn: a piece of the robot, whatever its shape.
+//! A pending piece of a moving robot, independent of the shape.
 
 use crate::pieces::{Piece, PlacedTube, TubeInMesh, WorkItem};
 use parry3d_f64::math::Real;
 
-/// What is between two shares of a section.
+/// A range of shares of a section.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PendingPiece {
     pub section: u32,
     pub shares: [Real; 2],
-    /// Whether it is left before and after the middle shape in which it failed.
+    /// Whether the piece is left before and after the middle shape in which it was unresolved.
     pub is_left: [bool; 2],
 }
 
 impl PendingPiece {
-    /// What a piece of a shape is in any shape.
+    /// Returns a piece of a shape as a range of shares.
     pub(crate) fn of(piece: &Piece, tube: &PlacedTube) -> Self {
         Self { section: piece.section, shares: tube.shares(piece), is_left: [true; 2] }
     }

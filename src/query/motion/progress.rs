@@ -1,31 +1,30 @@
-//! What is known of a margin while intervals of time are judged one after another.
+//! The state of a margin query over intervals of time, and its limits of work.
 
 use super::interval_test::IntervalResult;
 use crate::answer::UndecidedReason;
 use parry3d_f64::math::Real;
 
-/// How many shapes are looked at after one that is above the margin by no more than the resolution,
-/// or that leaves an interval undecided. A contact that is deeper than that, or a proof, shows
-/// sooner as a rule; and what stays that near for long would be divided into as many intervals as
-/// the resolution has room for, a million and more.
+/// How many more shapes are tested after a shape within the resolution of the margin, or an
+/// undecided interval. Deeper contacts and proofs are usually found sooner. A longer near passage
+/// would be divided into as many intervals as the resolution allows: a million and more.
 pub(super) const PATIENCE: u64 = 256;
 
-/// A question about a motion ends after so many shapes.
+/// The most shapes of a query.
 pub(super) const MAX_SHAPES: u64 = 1 << 16;
 
-/// What the intervals so far have shown.
+/// The results of the intervals so far.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Progress {
-    /// The first interval that stays undecided.
+    /// The first undecided interval.
     undecided: Option<[Real; 2]>,
-    /// An interval with a shape near the margin, and how many shapes there may be in all then.
+    /// An interval with a shape near the margin, and the number of shapes at which the query stops.
     near: Option<([Real; 2], u64)>,
     /// Whether a limit of work other than the number of shapes is reached.
     is_exhausted: bool,
 }
 
 impl Progress {
-    /// Takes note of what an interval shows; so many shapes were looked at.
+    /// Records the result of an interval; `shapes` counts all tested shapes.
     pub(super) fn record<F>(&mut self, times: [Real; 2], result: &IntervalResult<F>, shapes: u64) {
         if result.is_near && self.near.is_none() {
             self.near = Some((times, shapes + PATIENCE));
@@ -39,8 +38,8 @@ impl Progress {
         }
     }
 
-    /// The first interval of which nothing is known, and why, if no more shapes are to be looked
-    /// at; these intervals were not.
+    /// Returns the first undecided interval and the reason, if a limit of work is reached. `left`:
+    /// the untested intervals.
     pub(super) fn is_exhausted(
         &self,
         shapes: u64,
@@ -62,7 +61,7 @@ impl Progress {
         Some((first, UndecidedReason::Work))
     }
 
-    /// The first interval that stays undecided, and why, after all were looked at.
+    /// Returns the first undecided interval and the reason, after all intervals were tested.
     pub(super) fn undecided(&self) -> Option<([Real; 2], UndecidedReason)> {
         self.undecided.map(|first| (first, UndecidedReason::Near))
     }

@@ -1,4 +1,4 @@
-//! What moves, whatever it moves beside.
+//! The trait of moving parts beside an obstacle or each other.
 
 use super::approach_bound::ApproachBound;
 use crate::answer::ProximityError;
@@ -7,10 +7,10 @@ use parry3d_f64::math::Real;
 
 /// Parts that move in an interval of time.
 pub(crate) trait RelativeMotion<D: Refinable, P> {
-    /// How fast a part and what it is beside move towards each other at most.
+    /// Returns an upper bound on the speed at which a part and its obstacle approach each other.
     ///
     /// # Errors
-    /// A stated speed is not finite and at least 0.
+    /// A stated speed is negative or not finite.
     fn speed(
         &mut self,
         part: &P,
@@ -19,29 +19,29 @@ pub(crate) trait RelativeMotion<D: Refinable, P> {
         divided: &D,
     ) -> Result<Real, ProximityError>;
 
-    /// By how much more a part may turn than its middle shape shows, where that decides whether it
-    /// is asked about.
+    /// Returns how much more a part may turn than its middle shape shows; 0 if turns do not matter.
     fn extra_turn(&self, _: &P, _: &D) -> Real {
         0.0
     }
 
-    /// Whether no more parts are to be looked at, for want of an end.
+    /// Whether a limit of work is reached.
     fn is_exhausted(&self) -> bool {
         false
     }
 
-    /// A triangle that is likely to be near, where there are triangles.
+    /// A triangle that is probably near, if there are triangles.
     fn seed_triangle(&self) -> Option<u32> {
         None
     }
 
-    /// Takes note of what was found.
+    /// Records what was found.
     fn record(&mut self, _: &BoundedPiece<D, P>) {}
 
-    /// Takes note of a part about which the middle shape decides nothing for the whole interval; if
-    /// the pace, which knows for how long all the others keep the margin, is not enough.
+    /// Records a part that the middle shape does not decide for the whole interval, unless the
+    /// common `hold` of the approach bound is enough.
     fn record_unresolved(&mut self, _: &BoundedPiece<D, P>, _: &ApproachBound) {}
 
-    /// The section that is the fastest of a part which approaches so fast, and how fast it is.
+    /// Returns the fastest section of a part that approaches at `speed`, and the speed of that
+    /// section.
     fn fastest_section(&self, near: &BoundedPiece<D, P>, speed: Real) -> (usize, Real);
 }

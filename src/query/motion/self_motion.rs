@@ -1,9 +1,9 @@
-//! Whether a robot that moves keeps a margin to itself.
+//! Whether a moving robot keeps a margin to itself.
 //!
-//! An interval of time is judged by the shape at its middle, as for two motions (`motion_pair`).
-//! Which of its parts are asked about changes with time as well: what may be asked about at any
-//! time of the interval is kept (`pieces::section_motions`), and a contact counts if it is one of
-//! the shape. The shorter the interval, the less there is between the two.
+//! An interval of time is tested by its middle shape, as for two motions (`motion_pair`). The set
+//! of queried pairs depends on time, too. All pairs that may be queried at some time of the
+//! interval are kept (`pieces::section_motions`). A contact counts if the middle shape queries it.
+//! The difference between both sets vanishes as the interval becomes shorter.
 
 use super::approach_bound::{ApproachBound, check_subdivision, half_length, midpoint};
 use super::current_shape::CurrentShape;
@@ -21,16 +21,15 @@ use crate::robot::{Motion, Section, TubeTurns, check_speed};
 use parry3d_f64::math::Real;
 use std::collections::VecDeque;
 
-/// A direction that turns faster than this, in rad, would have time divided into a million
-/// intervals at once.
+/// The fastest turn of a direction, in rad per unit of time. A faster one would divide time into a
+/// million intervals at once.
 const FASTEST_TURN: Real = (1_u64 << 18) as Real;
 
-/// So many pairs of pieces are looked at in all shapes together, 2^18: about a second. Where the
-/// margin is as wide as a bend, there may be no end of pairs of which nobody knows whether they are
-/// asked about.
+/// The most pairs of pieces tested in all shapes together: about a second. If the margin is as wide
+/// as a bend, arbitrarily many pairs may stay that may or may not be queried.
 const MAX_PAIRS: u32 = 1 << 18;
 
-/// Memory of a query, used again by the next.
+/// State and memory that the next query reuses.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SelfMotionMemory {
     current: CurrentShape,
@@ -41,11 +40,12 @@ pub(crate) struct SelfMotionMemory {
     intervals: VecDeque<[Real; 2]>,
 }
 
-/// Whether a robot that moves keeps the margin to itself at all times.
+/// Decides whether a moving robot keeps the margin to itself at all times.
 ///
 /// # Errors
-/// The motion has no shape at some time, or one that bends too sharply, or changes its sections; a
-/// stated speed is not finite or too large; or samples do not allow a decision at that resolution.
+/// - The motion has no shape at some time, or one that bends too sharply, or changes its sections.
+/// - A stated speed is not finite or too large.
+/// - The samples allow no decision at that resolution.
 pub(crate) fn self_clears_motion<M: Motion>(
     motion: &M,
     memory: &mut SelfMotionMemory,
@@ -62,8 +62,8 @@ pub(crate) fn self_clears_motion<M: Motion>(
     answer
 }
 
-/// Whether the margin is kept in an interval, as far as its middle shape shows; and for how long
-/// before and after it all pairs keep it.
+/// Tests the middle shape of an interval. Returns the result, and how long before and after the
+/// midpoint all pairs are decided.
 fn test_interval<M: Motion>(
     motion: &M,
     memory: &mut SelfMotionMemory,
@@ -80,7 +80,7 @@ fn test_interval<M: Motion>(
     }
     current.tube.measure_turns(turns)?;
     let mut own = TubeWithItself::moving(&current.tube, turns, moves)?;
-    // Below that, rounding decides.
+    // A finer resolution is below rounding.
     own.check_resolved(32.0 * own.slack(), resolution)?;
     let (fastest, points) = moves.farthest();
     let reach = 2.0 * points * (1.0 + 4.0 * Real::UNIT_ROUNDOFF);
@@ -108,7 +108,7 @@ fn test_interval<M: Motion>(
     Ok((result, if is_all { approach_bound.hold } else { 0.0 }))
 }
 
-/// How far all sections move from the middle of an interval on.
+/// Computes how far all sections move and turn from the midpoint of an interval.
 fn measure_moves<M: Motion>(
     motion: &M,
     sections: &[Section],

@@ -1,13 +1,13 @@
-//! Whether a piece keeps a margin from every triangle by itself, each in a direction of its own.
+//! Whether a piece keeps a margin on one side of the middle shape, by one separating plane per
+//! triangle.
 //!
-//! The speed of a piece says how far it may move, and not where to. Where its course is known
-//! (`half_displacement`), every triangle that is near enough to matter is parted from the body of
-//! the moment by a plane, and the gap must be enough for what the piece goes towards that plane.
-//! The nearest wall's direction alone would not do: what moves away from it moves into another one.
+//! The speed of a piece bounds how far it moves, not in which direction. If its displacement is
+//! bounded (`half_displacement`), a plane separates the body in the middle shape from each triangle
+//! that is near enough. Each gap must exceed what the displacement uses up. The normal of the
+//! nearest triangle alone is not enough: a piece that leaves one wall may approach another.
 //!
-//! A plane's normal leads from the triangle's nearest point to the body's. The normals found before
-//! are tried first, the last one before the others: they part most of the triangles of the same
-//! wall.
+//! A plane's normal leads from the nearest point of the triangle to that of the body. Normals found
+//! before are tried first, the latest one first: one normal separates most triangles of a wall.
 
 use super::half_displacement::{HalfDisplacement, gap};
 use super::unresolved_piece::UnresolvedPiece;
@@ -15,45 +15,46 @@ use crate::pair::PlacedLink;
 use crate::search::hierarchy::MeshSearch;
 use parry3d_f64::math::{Real, Vector};
 
-/// More triangles than this are not looked at: that would take longer than another shape.
+/// With more triangles the test fails: another shape is cheaper.
 const MAX_TRIANGLES: usize = 32;
 
-/// So many normals are tried again.
+/// How many normals are kept and tried again.
 const NORMALS: usize = 4;
 
-/// What is asked of a body.
+/// The displacement test of a body.
 pub(super) struct PlaneTest<'a> {
     pub body: &'a PlacedLink,
     pub side: &'a HalfDisplacement,
     pub margin: Real,
-    /// What rounding can do to any length.
+    /// A bound on the rounding error of any length.
     pub slack: Real,
 }
 
 impl PlaneTest<'_> {
-    /// Whether a plane with this normal parts the body from a triangle by enough.
+    /// Whether the plane with this normal separates body and triangle by more than the displacement
+    /// uses up.
     fn separates(&self, corners: [Vector; 3], normal: Vector) -> bool {
-        // Written so that NaN is not enough.
+        // This form makes NaN false.
         gap(self.body, corners, normal) - self.margin - 2.0 * self.slack
             > self.side.gap_loss(normal)
     }
 
-    /// The direction from a triangle to the body; nearer than rounding there may be none.
+    /// Returns the direction from a triangle to the body; zero within rounding.
     fn normal(&self, triangle: u32, corners: [Vector; 3]) -> Vector {
         let nearest = self.body.measure(triangle, corners);
         (nearest.on_robot - nearest.on_mesh).normalize_or_zero()
     }
 }
 
-/// Memory that is used again.
+/// Memory that is reused.
 #[derive(Clone, Default)]
 pub(crate) struct SeparatingPlanes {
     triangles: Vec<u32>,
 }
 
 impl SeparatingPlanes {
-    /// Whether the body keeps the margin all the time on that side of the middle shape; false if
-    /// too many triangles are near it.
+    /// Whether the body keeps the margin at all times of that side; false if too many triangles are
+    /// near.
     pub(super) fn clears(
         &mut self,
         search: &mut MeshSearch,

@@ -1,18 +1,18 @@
-//! A piece about which the middle shape of an interval decides nothing by its speed.
+//! A piece that the middle shape of an interval does not decide by its speed.
 
 use crate::pair::PlacedLink;
 use parry3d_f64::math::{Real, Vector};
 
-/// What is known of it while that interval is looked at.
+/// The body of such a piece, while its interval is tested.
 #[derive(Clone)]
 pub(crate) struct UnresolvedPiece {
     pub body: PlacedLink,
-    /// How far the body is away from the nearest triangle.
+    /// The distance of the body from the nearest triangle.
     pub away: Real,
-    /// The direction from there to the body; none where they touch.
+    /// The direction from that triangle to the body; zero if they touch.
     pub normal: Vector,
-    /// How much nearer it may come in the interval.
+    /// How much nearer the piece may come in the interval.
     pub reach: Real,
-    /// How much of that is not the centreline's.
+    /// The part of `reach` that is not the centreline's: rim and mesh.
     pub beside: Real,
 }

@@ -1,5 +1,5 @@
-//! Directions along which a plane may part a group of triangles from a run of bodies. They need not
-//! be right: a plane counts only once it is seen to part the two.
+//! Candidate normals for a plane between a group of triangles and a run of bodies. A candidate may
+//! be wrong: the plane counts only after it is shown to separate both.
 
 use super::body::ProofBody;
 use super::groups::Group;
@@ -11,7 +11,7 @@ use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::query::gjk::{CsoPoint, GJKResult, VoronoiSimplex, closest_points};
 use parry3d_f64::shape::SupportMap;
 
-/// Points, moved and scaled to near one.
+/// Points, translated and scaled to near 1.
 struct PointSet<'a> {
     points: Vec<&'a Vector>,
     centre: Vector,
@@ -29,8 +29,8 @@ impl SupportMap for PointSet<'_> {
     }
 }
 
-/// The way from the nearest point of the bodies' axes to that of the group's hull, if the two are
-/// apart (parry's GJK).
+/// Returns the vector from the bodies' axes to the group's hull along their shortest distance
+/// (parry's GJK); `None` if they touch.
 pub(super) fn between_hulls(group: &Group, bodies: &[ProofBody]) -> Option<Vector> {
     let ends = bodies.iter().flat_map(|body| &body.ends);
     let [low, high] =
@@ -48,7 +48,7 @@ pub(super) fn between_hulls(group: &Group, bodies: &[ProofBody]) -> Option<Vecto
     }
 }
 
-/// The ways from a body to one triangle along which the two may be parted.
+/// Returns candidate normals between a body and one triangle.
 pub(super) fn between_pair(
     level: Level,
     mesh: &Mesh,

@@ -1,24 +1,25 @@
-//! Groups of triangles, made by a rule that whoever checks a proof follows too: all of them are the
-//! first group, and one is halved in the order of the triangles' least coordinates along the axis
-//! along which these are spread most.
+//! Groups of triangles, formed by a rule that the checker of a proof repeats.
+//!
+//! The first group contains all triangles. A group is halved in the order of its triangles' least
+//! coordinates, along the axis on which these coordinates spread most.
 
 use crate::mesh::Mesh;
 use parry3d_f64::math::{Real, Vector};
 
-/// The groups of a mesh that were asked for.
+/// The groups of a mesh that the search has used.
 pub(crate) struct Groups<'a> {
     pub(super) mesh: &'a Mesh,
-    /// The least coordinates of each triangle's corners.
+    /// The least coordinates of each triangle.
     low: Vec<[Real; 3]>,
     groups: Vec<Group>,
 }
 
-/// Some triangles.
+/// A set of triangles.
 pub(super) struct Group {
     pub triangles: Vec<u32>,
-    /// Their corners, each once.
+    /// Their vertices without duplicates.
     pub vertices: Vec<Vector>,
-    /// The corners of the box around them.
+    /// The corners of their bounding box.
     pub bounds: [Vector; 2],
     halves: Option<[usize; 2]>,
 }
@@ -30,7 +31,7 @@ impl<'a> Groups<'a> {
     pub(crate) fn new(mesh: &'a Mesh) -> Self {
         let low = |triangle: u32| {
             let [a, b, c] = mesh.corners(triangle);
-            // 0 and -0 are one number.
+            // Maps -0 to 0.
             (a.min(b).min(c) + Vector::ZERO).to_array()
         };
         let all = 0..mesh.len() as u32;
@@ -57,7 +58,7 @@ impl<'a> Groups<'a> {
         self.groups.len() - 1
     }
 
-    /// The two halves of a group of several triangles.
+    /// Returns the two halves of a group of more than one triangle.
     pub(super) fn halves(&mut self, group: usize) -> [usize; 2] {
         if let Some(halves) = self.groups[group].halves {
             return halves;
@@ -70,7 +71,7 @@ impl<'a> Groups<'a> {
             most - least
         };
         let spreads = [spread(0), spread(1), spread(2)];
-        // The first of equals.
+        // Ties take the first axis.
         let axis =
             (1..3).fold(0, |axis, other| if spreads[other] > spreads[axis] { other } else { axis });
         let key = |triangle: &u32| self.low[*triangle as usize][axis];
@@ -83,12 +84,12 @@ impl<'a> Groups<'a> {
 }
 
 impl Group {
-    /// The largest coordinate.
+    /// Returns the largest magnitude of a coordinate.
     pub(super) fn reach(&self) -> Real {
         self.bounds[0].abs().max(self.bounds[1].abs()).max_element()
     }
 
-    /// The least q . v of its corners.
+    /// Returns the least q . v over the vertices.
     pub(super) fn level(&self, q: Vector) -> Real {
         self.vertices.iter().fold(Real::INFINITY, |level, vertex| level.min(q.dot(*vertex)))
     }

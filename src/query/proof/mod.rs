@@ -1,5 +1,7 @@
-//! Proofs that travel: planes that part a robot from a mesh, found here and checked elsewhere, by
-//! `docs/book/check_proof.py`. The book's page on proofs has the reasoning.
+//! Proofs that others can check: planes that separate a robot from a mesh.
+//!
+//! The planes are found here and checked by `docs/book/check_proof.py`. The book's page on proofs
+//! has the reasoning.
 
 mod body;
 mod direction;

@@ -1,5 +1,5 @@
-//! The proof of a motion: intervals of time, each proven by the shape at its middle, with room for
-//! what the robot may move until the interval ends.
+//! The proof of a motion: intervals of time, each proven by its middle shape with free space for
+//! the motion until the interval ends.
 
 use super::plane_search::PlaneSearch;
 use super::text::{Kind, ProvenShape, size_of};
@@ -10,15 +10,21 @@ use crate::pieces::PlacedTube;
 use crate::robot::{Motion, MotionDrift, SectionSignature, Tube, check_speed};
 use parry3d_f64::math::Real;
 
-/// More shapes are in no proof.
+/// The most shapes tested for a proof.
 const MAX_SHAPES: usize = 1 << 16;
 
-/// A longer text is no proof, in bytes: 16 MiB.
+/// The longest text of a proof, in bytes: 16 MiB.
 const MOST_BYTES: usize = 1 << 24;
 
-/// Shapes, each with the steps that part it from the mesh while its interval lasts, in the order of
-/// time; none where a shape comes as near as the margin, or so near that moving by `resolution`
-/// matters, or where they are more than a proof holds. `reach` is the mesh's largest coordinate.
+/// Returns shapes in the order of time, each with the steps that separate it from the mesh during
+/// its interval. `reach` is the mesh's largest coordinate.
+///
+/// Returns `None` if a shape is within the margin, or so near that a motion of `resolution`
+/// matters, or if the proof would be too large.
+///
+/// # Errors
+/// The motion has no shape at some time, or its sections change; a shape is out of range; or a
+/// stated speed is negative or not finite.
 pub(crate) fn motion_proof(
     plane_search: &mut PlaneSearch,
     reach: Real,
@@ -44,7 +50,7 @@ pub(crate) fn motion_proof(
         });
         let fastest = fastest.collect::<Result<Vec<_>, _>>()?.into_iter().fold(0.0, Real::max);
         let mut moves = half * fastest;
-        // What bends takes less of the room than what moves.
+        // The bodies' excess takes less of the free space than the motion.
         let over = (0.25 * moves).max(0.25 * resolution).max(placed.slack());
         let (mut shape, places) = tube_shape(&placed, over, true);
         shape.times = times;
@@ -53,12 +59,12 @@ pub(crate) fn motion_proof(
             let speed = motion.speed(section, placed.shares(place), times);
             let rounded = 1.0 + 8.0 * Real::UNIT_ROUNDOFF;
             piece.speed = check_speed(section, speed.point)? * rounded;
-            // Balls need no turn: that of a link that loses its length is infinite.
+            // Balls need no turn. The turn of a link that loses its length is infinite.
             let is_unbounded = piece.flat == [false; 2] && speed.turn == Real::INFINITY;
             let turn = if is_unbounded { Real::MAX } else { speed.turn };
             piece.turn = (check_speed(section, turn)? * rounded).min(Real::MAX);
             if piece.flat != [false; 2] {
-                // The rims move as they turn, also where the centreline rests.
+                // The rims move with the turn, even if the centreline rests.
                 moves = moves.max(half * (piece.speed + piece.radius * piece.turn));
             }
         }

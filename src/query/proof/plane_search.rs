@@ -1,5 +1,7 @@
-//! The search for planes: a group of triangles and a run of bodies are parted by one plane, or the
-//! larger of the two is halved and each half is tried.
+//! The search for separating planes.
+//!
+//! One plane separates a group of triangles from a run of bodies, or the larger of both is halved
+//! and each half is tried.
 
 use super::body::ProofBody;
 use super::direction::{between_hulls, between_pair};
@@ -9,21 +11,22 @@ use fearless_simd::Level;
 use parry3d_f64::math::{Real, Vector};
 use std::ops::Range;
 
-/// How many bits the numbers of a plane have: few where that is enough, as they are written out.
+/// The bits of a plane's coordinates, tried in order: planes are written out, so few bits are
+/// preferred.
 const BITS: [u32; 4] = [7, 12, 22, 50];
 
-/// What whoever checks a proof does next.
+/// A step of the proof, for its checker.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Step {
-    /// Halves the triangles.
+    /// Halve the triangles.
     Triangles,
-    /// Halves the pieces.
+    /// Halve the pieces.
     Pieces,
-    /// Sees that a plane parts the two: the robot is where q . x is less.
+    /// Check that the plane separates both: q . x is less on the robot's side.
     Plane([i64; 3]),
 }
 
-/// A search for planes in one mesh.
+/// A search for separating planes in one mesh.
 pub(crate) struct PlaneSearch<'a> {
     level: Level,
     groups: Groups<'a>,
@@ -38,8 +41,8 @@ impl<'a> PlaneSearch<'a> {
         self.groups.mesh
     }
 
-    /// The steps that part all triangles from all bodies; none if a body is too near to a triangle,
-    /// or too near to tell.
+    /// Returns the steps that separate all triangles from all bodies; `None` if a body is too near
+    /// a triangle, or within rounding of that.
     pub(crate) fn steps(&mut self, bodies: &[ProofBody]) -> Option<Vec<Step>> {
         let mut steps = Vec::new();
         self.part(ALL, bodies, 0..bodies.len(), &mut steps).then_some(steps)
@@ -73,7 +76,7 @@ impl<'a> PlaneSearch<'a> {
         false
     }
 
-    /// A plane that parts a group from a run of bodies.
+    /// Returns a plane that separates a group from a run of bodies.
     fn plane(&self, group: usize, bodies: &[ProofBody]) -> Option<[i64; 3]> {
         let wall = self.groups.get(group);
         let most = bodies.iter().flat_map(|body| body.ends).map(|end| end.abs().max_element());
@@ -93,14 +96,14 @@ impl<'a> PlaneSearch<'a> {
     }
 }
 
-/// A direction in whole numbers of so many bits at most.
+/// Returns a direction in whole numbers of at most `bits` bits.
 fn in_bits(way: Vector, bits: u32) -> Option<Vector> {
     let largest = way.abs().max_element();
     let q = (way / largest * 2.0_f64.powi(bits as i32)).round();
     (largest > 0.0 && q.is_finite()).then_some(q)
 }
 
-/// The square of the diagonal of the box around the ends of some bodies.
+/// Returns the squared diagonal of the bounding box of the bodies' ends.
 fn size_of(bodies: &[ProofBody]) -> Real {
     let nothing = [Vector::INFINITY, Vector::NEG_INFINITY];
     let ends = bodies.iter().flat_map(|body| body.ends);

@@ -1,4 +1,4 @@
-//! What a proof takes for granted of one shape of the robot.
+//! The premises of a proof about one shape of the robot.
 
 use super::body::ProofBody;
 use crate::pair::PlacedRobot;
@@ -7,33 +7,34 @@ use parry3d_f64::math::{Real, Vector};
 /// The robot at rest, or at the middle of an interval of time.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Shape {
-    /// The interval, if it moves.
+    /// The interval of time, for a motion.
     pub times: [Real; 2],
     /// Points of the centreline, in the mesh's frame.
     pub points: Vec<Vector>,
-    /// The pieces between them.
+    /// The pieces between consecutive points.
     pub pieces: Vec<PiecePremises>,
 }
 
-/// What is known of a piece between two points.
+/// The premises about a piece between two points.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct PiecePremises {
     pub radius: Real,
-    /// Which of its ends are flat.
+    /// Which ends are flat.
     pub flat: [bool; 2],
-    /// The curvature is at most this.
+    /// An upper bound on the curvature.
     pub curvature: Real,
-    /// The arc length is at most this.
+    /// An upper bound on the arc length.
     pub length: Real,
-    /// How far the ends of the piece may be from the two points.
+    /// An upper bound on the distance of the piece's ends from the two points.
     pub off: Real,
-    /// How fast points of the centreline move, and how fast its direction turns.
+    /// Upper bounds on the speed of points of the centreline, and on the turn of its direction per
+    /// unit of time.
     pub speed: Real,
     pub turn: Real,
 }
 
 impl Shape {
-    /// A chain at rest; none if its links do not follow one another.
+    /// Returns a chain at rest; `None` if its links are not consecutive.
     pub(crate) fn of_chain(robot: PlacedRobot) -> Option<Self> {
         let mut shape = Self { points: vec![robot.link(0).start()], ..Self::default() };
         for link in robot.placed_links() {
@@ -50,9 +51,10 @@ impl Shape {
         Some(shape)
     }
 
-    /// The bodies that hold the pieces, each with what must be free around it: the margin, and what
-    /// the robot may move until the interval ends. The book's page on proofs derives them;
-    /// `docs/book/check_proof.py` computes them again.
+    /// Returns the bodies of the pieces, each with the free space required around it: the margin,
+    /// and the displacement of the robot until the interval ends.
+    ///
+    /// The book's page on proofs derives them; `docs/book/check_proof.py` recomputes them.
     pub(crate) fn bodies(&self, margin: Real) -> Vec<ProofBody> {
         let half = 0.5 * (self.times[1] - self.times[0]);
         let between = self.points.windows(2).zip(&self.pieces);

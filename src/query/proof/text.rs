@@ -1,4 +1,4 @@
-//! A proof as a text, in the format of the book's page on proofs.
+//! A proof as text, in the format of the book's page on proofs.
 
 use super::plane_search::Step;
 use super::shape::{PiecePremises, Shape};
@@ -8,10 +8,10 @@ use parry3d_f64::math::{Real, Vector};
 use sha2::{Digest, Sha256};
 use std::fmt::{self, Write};
 
-/// A shape, and the steps that part it from the mesh.
+/// A shape, and the steps that separate it from the mesh.
 pub(crate) type ProvenShape = (Shape, Vec<Step>);
 
-/// What a proof is about.
+/// The subject of a proof.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
     Chain,
@@ -19,10 +19,10 @@ pub(crate) enum Kind {
     Motion,
 }
 
-/// Steps on one line of the text.
+/// How many steps are written on one line.
 const ON_A_LINE: usize = 16;
 
-/// The proof that shapes, each with its steps, keep a margin.
+/// Writes the proof that shapes, each with its steps, keep a margin.
 pub(crate) fn write_proof(mesh: &Mesh, margin: Real, kind: Kind, shapes: &[ProvenShape]) -> Proof {
     let (mut text, mut planes) = (String::new(), 0);
     let name = match kind {
@@ -41,14 +41,14 @@ pub(crate) fn write_proof(mesh: &Mesh, margin: Real, kind: Kind, shapes: &[Prove
     Proof::new(text, planes, shapes.len())
 }
 
-/// How long the text of a shape is, in bytes.
+/// Returns the length of the text of a shape, in bytes.
 pub(crate) fn size_of(kind: Kind, parted: &ProvenShape) -> usize {
     let mut size = Size(0);
     write_shape(kind, parted, &mut size).unwrap_or_default();
     size.0
 }
 
-/// Counts what is written.
+/// Counts the bytes that are written.
 struct Size(usize);
 
 impl Write for Size {
@@ -58,7 +58,7 @@ impl Write for Size {
     }
 }
 
-/// A shape and its steps, of which so many are planes.
+/// Writes a shape and its steps. Returns the number of planes.
 fn write_shape(
     kind: Kind,
     (shape, steps): &ProvenShape,
@@ -102,11 +102,11 @@ fn write_shape(
     Ok(planes)
 }
 
-/// SHA-256 over all coordinates, then the corners of all triangles, little-endian.
+/// Returns the SHA-256 of all coordinates, then the vertex indices of all triangles, little-endian.
 fn digest(mesh: &Mesh) -> String {
     let mut sha = Sha256::new();
     for vertex in mesh.vertices() {
-        // 0 and -0 are one place.
+        // Maps -0 to 0.
         (*vertex + Vector::ZERO).to_array().iter().for_each(|x| sha.update(x.to_le_bytes()));
     }
     mesh.indices().as_flattened().iter().for_each(|corner| sha.update(corner.to_le_bytes()));

@@ -1,4 +1,4 @@
-//! A tube as a proof takes it: pieces whose bodies are little wider than they are.
+//! The pieces of a tube for a proof: their bodies are only slightly wider than the pieces.
 
 use super::shape::{PiecePremises, Shape};
 use crate::distance::Scalar;
@@ -6,8 +6,8 @@ use crate::pieces::{self, PlacedTube};
 use crate::robot::{CapPersistence, Section};
 use parry3d_f64::math::Real;
 
-/// A tube in pieces whose bodies reach at most about `most` beyond them, and where in the tube each
-/// of them is. Where it `is_moving`, only faces that last are flat.
+/// Returns a tube in pieces whose bodies exceed them by about `most`, and the place of each piece
+/// in the tube. If `is_moving`, only faces that stay flat are flat.
 pub(crate) fn tube_shape(
     tube: &PlacedTube,
     most: Real,
@@ -27,7 +27,7 @@ pub(crate) fn tube_shape(
             if piece.flat != [false; 2] {
                 over += 0.5 * piece.radius * piece.curvature * piece.length;
             }
-            // NaN is left as it is, and parted from nothing.
+            // A NaN piece is kept: no plane separates it.
             if over > most && place.to - place.from > 1 {
                 let arcs = tube.arcs(&place);
                 let tick = tube.tube.tick(section, 0.5 * (arcs[0] + arcs[1]));
@@ -58,7 +58,7 @@ fn piece(
     let arcs = tube.arcs(place);
     let known = tube.tube.bound(section, [place.from, place.to]);
     let length = (arcs[1] - arcs[0]) * section.stretch * (1.0 + 8.0 * Real::UNIT_ROUNDOFF);
-    // What rounding does to the points is in the slack.
+    // The slack covers the rounding of the points.
     let off = tube.tube.error() + known.off + tube.slack();
     let ends = [place.from, place.to].map(|tick| tube.point(section, tick));
     let is_straight = known.curvature * length <= 1.0 && 4.0 * off < (ends[1] - ends[0]).length();
@@ -66,7 +66,7 @@ fn piece(
         section.faces[end]
             .is_some_and(|face| !is_moving || face.persistence == CapPersistence::Always)
     };
-    // What was stated in place alone says nothing of directions.
+    // A stated error of place gives no bound on directions.
     let is_certain = tube.tube.error() == 0.0 && tube.tube.turn().unwrap_or(0.0) == 0.0;
     // Near a face a round end would stick out of it.
     let exposed = tube.exposed(section, arcs);

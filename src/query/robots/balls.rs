@@ -1,25 +1,37 @@
-//! The balls around a robot's links, and the halves of their axes, each number in a row of its own:
-//! a pack of them is compared at once, in single precision.
+//! Balls around a robot's links and half axes, in structure-of-arrays form: compared in SIMD packs,
+//! in single precision.
 //!
-//! A ball costs a tenth of a capsule to compare, and of two robots most links are far apart. So all
-//! links of up to [`SWEPT`] of each robot are compared by their balls. With d the way between two
-//! centres, h1 and h2 the halves of the axes, and any normal n, the axes lie behind planes on
-//! either side, so that the links are at least (<d, n> - |<h1, n>| - |<h2, n>|) / |n| - r1 - r2 apart. What the balls leave is asked for that with the shortest way between the axes, as far
-//! as single precision knows it: next to nothing is left that is farther, unless long thin links
-//! nearly meet. What is left then is measured.
+//! # Definitions
+//! - r1, r2: the radii of two links. h1, h2: the vectors from their centres to their ends (half
+//!   axes).
+//! - d: the vector between their centres. n: any normal.
 //!
-//! **Rounding.** All coordinates are below 2, and u is 2^-24. A centre errs by 7 u and half of an
-//! axis by 4 u, as vectors, and d by 21 u; the product of n with d (shorter than 7) by 21 u more of
-//! |n|, those with h by 15 u each, the sums and squares that are compared by as much as 50 u of a
-//! length, both radii by u. Of two balls the half lengths err by 8 u each, and the rest by less
-//! than that. The limit errs by u of itself; where that is more than 8 u, the limit is farther than
-//! anything. Together that is 140 u, and [`SLACK`] is 256 u. What doubles add to it, and by how
-//! much the measured limit may err, is next to nothing. Of robots that are much farther apart than
-//! 2^16 times their size this tells no links apart: [`heights`](super::heights) does.
+//! # Algorithm
+//! Comparing a ball costs a tenth of comparing a capsule, and most links of two robots are far
+//! apart.
+//! 1. Compare the balls of all pairs of up to [`SWEPT`] links of each robot.
+//! 2. For the remaining pairs, let n be the shortest segment between the axes, in single precision.
+//!    The axes lie behind planes on either side. So the distance of the links is at least
+//!    `(<d, n> - |<h1, n>| - |<h2, n>|) / |n| - r1 - r2`. Almost no pair beyond the limit remains,
+//!    unless long thin links nearly meet.
+//! 3. The caller measures the remaining pairs.
 //!
-//! A normal may vanish, or its square leave the range of numbers. So one that is shorter than 2^-30
-//! is counted as if it were as long as that, which asks for more than is needed. The limit is never
-//! negative, so with the slack of 2^-16 no square that is compared with is below 2^-92.
+//! # Rounding
+//! All coordinates are below 2, and u is 2^-24.
+//! - **Inputs.** As vectors, a centre errs by 7 u, a half axis by 4 u, and d by 21 u. Both radii
+//!   err by u.
+//! - **Step 2.** The product of n with d (|d| < 7) errs by 21 u |n| more, those with h by 15 u |n|
+//!   each. The sums and squares that are compared err by up to 50 u of a length.
+//! - **Step 1.** The half lengths of two balls err by 8 u each, the rest by less than step 2.
+//! - **Limit.** It errs by u of itself. If that exceeds 8 u, the limit is larger than any distance.
+//!
+//! The sum is 140 u, and [`SLACK`] is 256 u. The roundings of double precision and of the measured
+//! limit are negligible. For robots that are much farther apart than 2^16 times their size this
+//! test separates no links: [`heights`](super::heights) does.
+//!
+//! **Small normals.** A normal may vanish, or its square leave the range of numbers. A normal
+//! shorter than 2^-30 counts as that long, which is conservative. The limit is never negative. With
+//! the slack of 2^-16, no square in the comparison is below 2^-92.
 
 use super::pair_frame::PairFrame;
 use crate::distance::lanes::{Lane, Pack, set_bits};
@@ -30,33 +42,32 @@ use fearless_simd::Level;
 use parry3d_f64::math::Real;
 use std::ops::Range;
 
-/// How many links of either robot are compared at once: a bit for each.
+/// How many links of each robot are compared at once: one bit per link.
 pub(super) const SWEPT: usize = 64;
 
-/// The widest pack.
+/// The number of lanes of the widest pack.
 const WIDEST: usize = 16;
 
-/// How many numbers there are for each link.
+/// How many numbers are stored per link.
 const ROWS: usize = 8;
 
-/// What rounding can hide of a distance.
+/// The bound on the rounding error of a distance in the frame.
 const SLACK: f32 = 256.0 * f32::EPSILON / 2.0;
 
-/// What the square of a normal counts for at least.
+/// The least value used for the square of a normal.
 const MIN_NORMAL_SQUARED: f64 = 1.0 / (1_u64 << 60) as f64;
 
-/// The links of a robot where they are placed, and the balls around them in the frame of the
-/// search.
+/// The placed links of a robot, and the balls around them in the frame of the search.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Balls {
     links: Vec<Option<PlacedEnds>>,
-    /// Centres, halves of axes, half lengths and radii, one row behind the other.
+    /// Centres, half axes, half lengths and radii: one row after another.
     rows: Vec<f32>,
-    /// How long each is.
+    /// The length of a row.
     length: usize,
 }
 
-/// The centre of a link, from it to the end, and the length of that; and its radius.
+/// The centre, half axis, half length and radius of a link.
 #[derive(Clone, Copy)]
 struct Ball<L> {
     centre: Vec3<L>,
@@ -66,7 +77,7 @@ struct Ball<L> {
 }
 
 impl Balls {
-    /// Forgets the last robot's.
+    /// Forgets the links of the last robot.
     pub fn start(&mut self, links: usize) {
         self.links.clear();
         self.links.resize(links, None);
@@ -76,7 +87,7 @@ impl Balls {
         }
     }
 
-    /// Places what has not been placed of some links.
+    /// Places the links of a range that are not placed yet.
     pub fn place(&mut self, robot: &PlacedRobot, frame: &PairFrame, links: Range<usize>) {
         for link in links {
             if self.links[link].is_some() {
@@ -96,12 +107,12 @@ impl Balls {
         }
     }
 
-    /// A link that has been placed.
+    /// Returns a link, if it is placed.
     pub fn link(&self, link: usize) -> Option<&PlacedEnds> {
         self.links.get(link)?.as_ref()
     }
 
-    /// The rows, each from a link on.
+    /// Returns the rows, each from `link` on.
     #[inline(always)]
     fn from(&self, link: usize) -> [&[f32]; ROWS] {
         let mut rows = [&self.rows[..]; ROWS];
@@ -113,7 +124,7 @@ impl Balls {
 }
 
 impl<L> Ball<L> {
-    /// What `take` makes of the rows.
+    /// Builds a ball; `take` loads a number from a row.
     #[inline(always)]
     fn of(rows: &[&[f32]; ROWS], take: impl Fn(&[f32]) -> L) -> Self {
         let [x, y, z, u, v, w, half_length, radius] = rows;
@@ -127,7 +138,7 @@ impl<L> Ball<L> {
 }
 
 impl<L: Pack<Element = f32>> Ball<L> {
-    /// The ball around one link, in every lane.
+    /// Loads one link into every lane.
     #[inline(always)]
     fn splat(token: L::Token, rows: &[&[f32]; ROWS]) -> Self {
         Self::of(
@@ -137,7 +148,7 @@ impl<L: Pack<Element = f32>> Ball<L> {
         )
     }
 
-    /// Those around a pack of links.
+    /// Loads one link per lane.
     #[inline(always)]
     fn load(token: L::Token, rows: &[&[f32]; ROWS], lane: usize) -> Self {
         Self::of(
@@ -147,8 +158,8 @@ impl<L: Pack<Element = f32>> Ball<L> {
         )
     }
 
-    /// Whether planes part the axes of two links by more than a distance, which includes [`SLACK`].
-    /// The `way` is from this one's centre to the other's.
+    /// Whether planes separate the axes of two links by more than `distance`, which includes
+    /// [`SLACK`]. `way` leads from this centre to the other's.
     #[inline(always)]
     fn is_beyond(&self, other: &Self, way: Vec3<L>, distance: L) -> L::Mask {
         let [along, along_other] = [self.half, other.half].map(|half| half + half);
@@ -161,18 +172,18 @@ impl<L: Pack<Element = f32>> Ball<L> {
     }
 }
 
-/// Up to [`SWEPT`] links of one robot and as many of another.
+/// The comparison of up to [`SWEPT`] links of one robot with as many of another.
 pub(super) struct Sweep<'a> {
     pub balls: [&'a Balls; 2],
     pub links: [Range<usize>; 2],
-    /// Of each of the first robot's links here, from which of the second's on it is asked for, by
-    /// their numbers in the robots.
+    /// For each of the first robot's links, the first of the second's that is queried with it (link
+    /// numbers of the robots).
     pub queried_from: &'a [usize],
 }
 
 impl Sweep<'_> {
-    /// Which pairs may be no farther apart than a limit in the frame: of each link of the first
-    /// robot a bit for each of the second's. Returns how many there are.
+    /// Sets a bit in `near` for each pair that may be within `limit` (in the frame): one row per
+    /// link of the first robot. Returns the number of bits.
     #[inline(never)] // compiled for each instruction set, not for each use as well
     pub fn near(&self, level: Level, limit: Real, near: &mut [u64; SWEPT]) -> u32 {
         dispatch!(level, simd => self.fill::<<f32 as Lane>::Pack<_>>(simd, limit as f32, near))
@@ -210,7 +221,7 @@ impl Sweep<'_> {
         count
     }
 
-    /// The two links that are asked for whose centres are nearest.
+    /// Returns the queried pair with the nearest centres.
     #[inline(never)] // compiled for each instruction set, not for each use as well
     pub fn nearest(&self, level: Level) -> Option<[usize; 2]> {
         dispatch!(level, simd => self.find::<<f32 as Lane>::Pack<_>>(simd))
@@ -242,8 +253,8 @@ impl Sweep<'_> {
         found
     }
 
-    /// Two links, and those pairs of one of them and a neighbour of the other that are asked for:
-    /// no more than a pack.
+    /// Returns a pair and the queried pairs of one of its links with a neighbour of the other: at
+    /// most one pack.
     pub fn beside(&self, [one, other]: [usize; 2]) -> impl Iterator<Item = [usize; 2]> {
         let [first, second] = &self.links;
         let ones = one.saturating_sub(1).max(first.start)..(one + 2).min(first.end);
@@ -254,14 +265,14 @@ impl Sweep<'_> {
         with_one.chain(with_other).filter(is_asked)
     }
 
-    /// Where among the second robot's links those are that are asked for with one of the first's.
+    /// Returns the range of the second robot's links queried with one of the first's.
     #[inline(always)]
     fn lanes(&self, row: usize) -> Range<usize> {
         let second = &self.links[1];
         self.queried_from[row].saturating_sub(second.start)..second.len()
     }
 
-    /// Which lanes of a pack stand for links.
+    /// Returns the lanes of a pack that hold links.
     #[inline(always)]
     fn are_there(&self, lane: usize, lanes: usize) -> u64 {
         u64::MAX >> (64 - (self.links[1].len() - lane).min(lanes))
@@ -276,8 +287,8 @@ mod tests {
     use continuum_testing::Random;
     use parry3d_f64::math::{Pose, Vector};
 
-    /// A robot of up to so many links: with links of one size, or on a lattice, where they are
-    /// parallel, aligned, crossing and equal, or of all sizes, the smallest near the origin.
+    /// Returns a robot of up to `links` links: of one size; on a lattice, where links are parallel,
+    /// aligned, crossing and equal; or of all sizes, the smallest near the origin.
     fn robot(random: &mut Random, links: u32, size: f64) -> Option<Chain> {
         let kind = random.below(3);
         let mut at = if kind == 2 { Vector::ZERO } else { random.point() * 2.0 };
@@ -296,8 +307,8 @@ mod tests {
         }
     }
 
-    /// Nothing that is measured to be within a limit is left out, the limit itself included, and
-    /// nothing that is farther by much more than the slack is kept.
+    /// Pairs measured within a limit are never skipped, the limit included. Pairs farther by much
+    /// more than the slack are not kept.
     #[test]
     fn what_is_near_is_never_left_out() {
         let mut random = Random::new(8);
@@ -329,7 +340,7 @@ mod tests {
                 let (one, two) = (a.link(one), b.link(two));
                 one.nearest_on_axes(&two).1 - one.radius() - two.radius()
             };
-            // From any link on, as of a robot beside itself.
+            // Queried from any link on, as for self contact.
             let queried_from: Vec<_> =
                 (0..counts[0]).map(|link| if round % 2 == 0 { 0 } else { link }).collect();
             let links = [0..counts[0], 0..counts[1]];

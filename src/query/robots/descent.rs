@@ -1,14 +1,19 @@
-//! Two trees of links at once, the nearer pair of nodes first.
+//! Branch and bound over two link trees at once, the nearer pair of nodes first.
 //!
-//! A pair of nodes is left out when its capsules are farther apart than a limit; of the others the
-//! node with more links is divided, until both have so few links that the balls around them are
-//! compared at once ([`Sweep`]): a robot of some dozen links has no use for its tree. What is left
-//! is measured a pack at a time. Where much is left, or there is no limit yet, the pair whose
-//! centres are nearest is measured first, in one pack with those [beside](Sweep::beside) it: one of
-//! them is often the nearest of all, which leaves least to be measured. Where the limit is a
-//! distance that has been found, a pair that is as far may still hold lower links, so it is looked
-//! at, unless that distance is 0 and its lowest links come after those that were found. Links of
-//! nodes that are tiny in the frame are told apart by [`Heights`] in double precision.
+//! # Algorithm
+//! 1. **Prune** a pair of nodes whose capsules are farther apart than the limit.
+//! 2. **Divide** the node with more links, until both have at most [`SWEPT`] links. A robot of some
+//!    dozen links does not need its tree.
+//! 3. **Sweep** such a pair of nodes: compare the balls around all their links at once ([`Sweep`]).
+//!    If the nodes are tiny in the frame, [`Heights`] separates their links in double precision.
+//! 4. **Seed.** If more than [`MANY`] pairs are left, or there is no limit yet, first measure the
+//!    pair with the nearest centres. Its [neighbours](Sweep::beside) are measured in the same
+//!    batch. One of them is often the closest of all, which lowers the limit most.
+//! 5. **Measure** the remaining pairs in batches of [`AT_ONCE`].
+//!
+//! **Ties.** If the limit is a distance already found, an equally distant pair may have lower
+//! links, so it is searched. The exception is a distance of 0 if the lowest links of the pair
+//! follow the links found.
 
 use super::balls::{Balls, SWEPT, Sweep};
 use super::heights::Heights;
@@ -21,14 +26,14 @@ use fearless_simd::Level;
 use parry3d_f64::math::Real;
 use std::ops::Range;
 
-/// Of more pairs than these the nearest is looked for first, which takes about as long as it takes
-/// to measure so many.
+/// With more pairs than this, step 4 pays: seeding costs about as much as measuring this many
+/// pairs.
 const MANY: u32 = 16 * BATCH as u32;
 
-/// So many pairs are measured before the limit is lowered.
+/// How many pairs are measured before the limit is lowered.
 const AT_ONCE: usize = 4 * BATCH;
 
-/// A node of a tree, and the first of its links.
+/// A node of a tree, and its first link.
 #[derive(Clone, Copy, Debug)]
 struct TreePlace {
     node: usize,
@@ -45,54 +50,55 @@ struct QueuedPair {
     at_least: Real,
 }
 
-/// What a pair of links must not exceed to be looked at.
+/// The limit up to which pairs of links are searched.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PairLimit {
     distance: Real,
-    /// The links that are that far, if some are.
+    /// The links found at that distance, if any.
     links: Option<[usize; 2]>,
 }
 
 impl PairLimit {
-    /// Nothing is looked at any more.
+    /// Ends the search.
     pub const NOTHING: Self = Self { distance: Real::NEG_INFINITY, links: None };
 
     pub fn of(distance: Real) -> Self {
         Self { distance, links: None }
     }
 
-    /// That of what has been found.
+    /// Returns the limit at a pair that was found.
     pub fn at(found: &RobotProximity) -> Self {
         Self { distance: found.distance, links: Some(found.links.map(|link| link as usize)) }
     }
 
-    /// That of what has been found, if anything has.
+    /// Returns the limit at the best pair so far, or no limit.
     pub fn at_best(found: &Option<RobotProximity>) -> Self {
         found.as_ref().map_or(Self::of(Real::INFINITY), Self::at)
     }
 
-    /// Whether what is at least so far apart needs no look, if these are its lowest links.
+    /// Whether all pairs can be skipped that are at least `at_least` apart and whose lowest links
+    /// are `firsts`.
     fn excludes(&self, at_least: Real, firsts: [usize; 2]) -> bool {
         at_least > self.distance
             || (self.distance <= 0.0 && self.links.is_some_and(|links| firsts >= links))
     }
 
-    /// Whether links that are so far apart come before what has been found.
+    /// Whether a pair is better than the best so far: nearer, or equally near with lower links.
     pub fn admits(&self, distance: Real, links: [usize; 2]) -> bool {
         distance < self.distance
             || (distance == self.distance && self.links.is_none_or(|found| links < found))
     }
 }
 
-/// What a descent keeps from one to the next.
+/// State of a descent; its memory is reused.
 #[derive(Clone, Debug)]
 pub(super) struct Descent {
     level: Level,
     stack: Vec<QueuedPair>,
-    /// Nodes of the first robot whose links are asked about group by group.
+    /// Nodes of the first robot that [`run_in_groups`](Self::run_in_groups) has not visited.
     waiting: Vec<TreePlace>,
     frame: PairFrame,
-    /// Those of both robots; of a robot and itself the first.
+    /// The balls of both robots; for self contact only the first are used.
     balls: [Balls; 2],
     queried_from: Vec<usize>,
     together: LinkPairBatch,
@@ -113,9 +119,10 @@ impl Default for Descent {
 }
 
 impl Descent {
-    /// Shows `visit` all pairs of links that are within the limit, which it returns anew each time.
-    /// `queried_from` tells from which of the second robot's links on one of the first robot's
-    /// is asked for; it never falls from one link to the next.
+    /// Calls `visit` with all pairs of links within the limit; each call returns the next limit.
+    ///
+    /// `queried_from` returns, for a link of the first robot, the first link of the second that is
+    /// queried with it. It must be monotone.
     pub fn run(
         &mut self,
         robots: [&PlacedRobot; 2],
@@ -127,10 +134,11 @@ impl Descent {
         self.run_from(TreePlace::ROOT, robots, limit, queried_from, |found| visit(found.answer()));
     }
 
-    /// Shows `visit` all pairs of links that are at most `limit` apart, with their distances: the
-    /// links of the first robot in groups that follow one another, the pairs of a group in any
-    /// order. `end_group` follows each group that may have some; a group has at most `most`
-    /// pairs, or one link.
+    /// Calls `visit` with all pairs of links that are at most `limit` apart, and their distances.
+    ///
+    /// The links of the first robot come in consecutive groups; the pairs of a group come in any
+    /// order. `end_group` is called after each group that may have pairs. A group has at most
+    /// `most` pairs, or one link.
     pub fn run_in_groups<V>(
         &mut self,
         robots: [&PlacedRobot; 2],
@@ -169,7 +177,7 @@ impl Descent {
         }
     }
 
-    /// Makes ready for two robots: all that is asked of them until the next time.
+    /// Prepares for two robots. Valid for all following queries until the next call.
     pub fn begin(&mut self, robots: [&PlacedRobot; 2]) {
         // A robot beside itself is placed once.
         let apart = if std::ptr::eq(robots[0], robots[1]) { 1 } else { 2 };
@@ -179,7 +187,7 @@ impl Descent {
         self.frame = PairFrame::around(robots);
     }
 
-    /// Shows `visit` the pairs of a link of the first robot, as [`run`](Self::run) does with all.
+    /// Calls `visit` with the pairs of one link of the first robot, as [`run`](Self::run).
     pub fn run_of_link(
         &mut self,
         robots: [&PlacedRobot; 2],
@@ -196,7 +204,7 @@ impl Descent {
         );
     }
 
-    /// From a place in the first robot's tree, and all of the second's.
+    /// Searches a node of the first tree against the whole second tree.
     fn run_from(
         &mut self,
         place: TreePlace,
@@ -213,9 +221,11 @@ impl Descent {
                 let TreePlace { node, first, .. } = entry.places[robot];
                 first..first + robots[robot].link_tree()[node].links()
             });
+            // Step 1.
             if limit.excludes(entry.at_least, firsts) || queried_from(firsts[0]) >= links[1].end {
                 continue;
             }
+            // Steps 3 to 5.
             if links.iter().all(|links| links.len() <= SWEPT) {
                 self.queried_from.clear();
                 self.queried_from.extend(links[0].clone().map(&queried_from));
@@ -225,6 +235,7 @@ impl Descent {
                 limit = self.sweep(robots, links, &outlines, limit, &mut visit);
                 continue;
             }
+            // Step 2.
             let divided = usize::from(links[1].len() > links[0].len());
             let frame = &self.frame;
             let kept = frame.outline(robots[1 - divided], entry.places[1 - divided].node);
@@ -234,15 +245,15 @@ impl Descent {
                 let outline = frame.outline(robots[divided], half.node);
                 QueuedPair { places, at_least: frame.outside(outline.at_least(&kept)) }
             });
-            // The nearer one is taken first, and of equals that with the lower links.
+            // The nearer half is popped first; ties pop the lower links first.
             let [low, high] = halves;
             let nearer_last = if high.at_least < low.at_least { [low, high] } else { [high, low] };
             self.stack.extend(nearer_last);
         }
     }
 
-    /// Shows `visit` the pairs of so few links that are asked for and within the limit. Returns the
-    /// last limit.
+    /// Calls `visit` with the queried pairs of two small nodes within the limit (steps 3 to 5).
+    /// Returns the last limit.
     fn sweep(
         &mut self,
         robots: [&PlacedRobot; 2],
@@ -276,6 +287,7 @@ impl Descent {
         };
         let is_bounded = limit.distance < Real::INFINITY;
         let mut looked_at = None;
+        // Step 4.
         if !is_bounded || find_near(frame.length(limit.distance), &mut near) > MANY {
             let before = limit.distance;
             looked_at = match &heights {
@@ -295,6 +307,7 @@ impl Descent {
         for [link, other] in looked_at.into_iter().flat_map(|pair| sweep.beside(pair)) {
             near[link - first.start] &= !(1 << (other - second.start));
         }
+        // Step 5.
         let pairs = near[..first.len()].iter().zip(first.clone());
         let pairs = pairs
             .flat_map(|(&row, link)| set_bits(row).map(move |lane| [link, second.start + lane]));
@@ -302,8 +315,7 @@ impl Descent {
     }
 }
 
-/// Measures pairs, some packs at a time, and shows `visit` what is within the limit. Returns the
-/// last limit.
+/// Measures pairs in batches and calls `visit` with those within the limit. Returns the last limit.
 fn measure(
     level: Level,
     robots: [&PlacedRobot; 2],
@@ -342,7 +354,7 @@ fn measure(
     }
 }
 
-/// Two links that are within the limit.
+/// A pair of links within the limit.
 struct Measured<'a, 'r> {
     robots: [&'a PlacedRobot<'r>; 2],
     links: [usize; 2],
@@ -358,13 +370,13 @@ impl Measured<'_, '_> {
     }
 }
 
-/// The nearest points of two links, one of each robot.
+/// Returns the closest points of two links, one of each robot.
 pub(super) fn measure_pair(robots: [&PlacedRobot; 2], links: [usize; 2]) -> RobotProximity {
     let [first, second] = [robots[0].link(links[0]), robots[1].link(links[1])];
     first.measure_link(&second).answer(links, [&first, &second])
 }
 
-/// The two children of a node.
+/// Returns the two children of a node.
 fn halves(tree: &[LinkNode], TreePlace { node, first }: TreePlace) -> [TreePlace; 2] {
     let low = TreePlace { node: node + 1, first };
     let below = match tree[low.node] {

@@ -1,4 +1,4 @@
-//! Links of two nodes that are tiny beside the way between them, told apart in double precision.
+//! Separates links of two nodes that are tiny compared to their distance, in double precision.
 //!
 //! # Definitions
 //! - `n`: the unit vector along the way between the axes of the nodes' capsules, from the first
@@ -7,45 +7,46 @@
 //! - `top2[j]`: an upper bound on `<-n, x>` over link `j` of the second robot.
 //!
 //! # Why
-//! Single precision errs by up to 2^-16 of the frame ([`balls`](super::balls)). Of two robots that
-//! are 10^7 times their size apart, that is more than either is long: no two links differ, and all
+//! Single precision errs by up to 2^-16 of the frame ([`balls`](super::balls)). If two robots are
+//! 10^7 times their size apart, the error exceeds their length: no two links differ, and all pairs
 //! would be measured.
 //!
 //! # Claim
-//! Two links are at least `-(top1[i] + top2[j])` apart, whatever `n` is. So a pair is left out if
-//! that exceeds the limit. The bound misses the distance of links at most `s` across the way and
-//! `D` apart by about `s^2 / D`: little for tiny nodes.
+//! Two links are at least `-(top1[i] + top2[j])` apart, for every unit vector `n`. A pair is
+//! skipped if this bound exceeds the limit. For links at most `s` across the segment and `D` apart
+//! the bound is too small by about `s^2 / D`, which is little for tiny nodes.
 //!
 //! # Rounding
-//! All coordinates are at most 2. Those of an end err by 2 u each, `n` by 4 u of its length, and
-//! the sum of three products by 6 u more. Both heights together err by less than 64 u, and a
-//! distance at a flat cap may be measured too short by 64 u: the [`SLACK`] of capsules.
+//! All coordinates are at most 2. The coordinates of an end err by 2 u each, `n` by 4 u of its
+//! length, and the sum of three products by 6 u more. Both heights together err by less than 64 u.
+//! A distance at a flat cap may be measured too small by 64 u. The sum is the [`SLACK`] of
+//! capsules.
 
 use super::balls::{SWEPT, Sweep};
 use super::pair_frame::{NodeCapsule, PairFrame, SLACK};
 use crate::distance::lanes::set_bits;
 use parry3d_f64::math::Real;
 
-/// Nodes are tiny if single precision errs by more than about 1 / 256 of both.
+/// A node is tiny if single precision errs by more than about 1 / 256 of its size.
 const TINY: Real = 1.0 / 256.0;
 
-/// How far links reach along the way between two nodes.
+/// The extents of links along the segment between two nodes.
 pub(super) struct Heights {
-    /// Of the first robot's links along `n`, and of the second's along `-n`.
+    /// `top1` of the first robot's links, and `top2` of the second's.
     tops: [[Real; SWEPT]; 2],
     /// The largest of each.
     highest: [Real; 2],
 }
 
 impl Heights {
-    /// Those of two nodes, if both are tiny and a way leads from one to the other.
+    /// Returns the heights of two nodes; `None` if a node is not tiny or the axes meet.
     pub fn of_tiny(sweep: &Sweep, outlines: &[NodeCapsule; 2], frame: &PairFrame) -> Option<Self> {
         if outlines.iter().any(|outline| outline.size() > TINY) {
             return None;
         }
         let n = outlines[0].way_to(&outlines[1])?;
         let tops = [(0, n), (1, -n)].map(|(robot, way): (usize, _)| {
-            // A link that has not been placed is never left out.
+            // A link that is not placed is never skipped.
             let mut tops = [Real::INFINITY; SWEPT];
             for (top, link) in tops.iter_mut().zip(sweep.links[robot].clone()) {
                 if let Some(([start, end], radius, _)) = sweep.balls[robot].link(link) {
@@ -62,13 +63,13 @@ impl Heights {
         Some(Self { tops, highest })
     }
 
-    /// How far any two of the links are apart at least, in the frame.
+    /// Returns a lower bound on the distance of any two of the links, in the frame.
     pub fn at_least(&self) -> Real {
         -(self.highest[0] + self.highest[1]) - SLACK
     }
 
-    /// Leaves of the pairs those that may be no farther apart than a limit in the frame. Returns
-    /// how many there are.
+    /// Drops the pairs in `near` whose lower bound exceeds `limit` (in the frame). Returns how many
+    /// are left.
     pub fn keep_near(&self, limit: Real, near: &mut [u64]) -> u32 {
         let [tops, others] = &self.tops;
         let mut count = 0;
@@ -84,7 +85,7 @@ impl Heights {
         count
     }
 
-    /// The two links that are asked for and whose heights are nearest: the first of equals.
+    /// Returns the queried pair with the least lower bound; ties return the first.
     pub fn nearest(&self, sweep: &Sweep) -> Option<[usize; 2]> {
         let [tops, others] = &self.tops;
         let [first, second] = &sweep.links;
@@ -111,7 +112,7 @@ mod tests {
     use fearless_simd::Level;
     use parry3d_f64::math::{Pose, Vector};
 
-    /// Of robots 10^5 to 10^9 times their size apart no pair within the limit is left out, and few
+    /// For robots 10^5 to 10^9 times their size apart: no pair within the limit is skipped, and few
     /// others are kept. Single precision alone keeps nearly all.
     #[test]
     fn links_of_far_robots_are_told_apart() {

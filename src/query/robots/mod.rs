@@ -1,4 +1,4 @@
-//! Robots beside robots: how near the links of one are to those of another.
+//! Queries about two robots, and about one robot with itself.
 
 mod balls;
 mod descent;

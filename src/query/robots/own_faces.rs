@@ -1,49 +1,52 @@
-//! Which links a robot's faces are near: two runs of links at once, the nearer two first.
+//! Branch and bound over the pairs of links of one robot that its faces may be near.
 //!
 //! # Definitions
-//! - A **face** is the robot's base or tip, where it is flat, or the wider side of a step
-//!   ([`JoinedLink`]).
-//! - A pair of links `i < j` that share no joint is **in the band** if the turn between them is at
-//!   least pi / 2, and less than pi unless all turns are asked for. Their faces count by the rule
-//!   of [`JoinedLink::face_counts`].
+//! - **Face**: the robot's base or tip, if it is flat, or the wider side of a step
+//!   (`pair::JoinedLink`).
+//! - **In the band**: a pair of links `i < j` that share no joint and turn by at least pi / 2.
+//!   Unless all turns are queried, the turn is also less than pi. The faces of such links count by
+//!   the rule of `JoinedLink::face_counts`.
 //! - Two faces **look at one another** if the earlier one is the end of its link and the later one
-//!   the start of its link. They are asked for at any turn.
-//! - A **node** holds a run of links: a ball around their axes, their largest radius, and a cone
-//!   that holds the directions of these links and of one more on either side.
+//!   the start of its link. They are queried at any turn.
+//! - **Node**: a run of links. It stores a ball around their axes, their largest radius, and a cone
+//!   that contains the directions of its links and of one more on either side.
 //!
-//! # Which pairs of nodes are skipped
-//! 1. Neither node has a face; or no pair is in the band, and no two faces look at one another.
+//! # Pruning
+//! A pair of nodes is skipped in three cases:
+//! 1. Neither node has a face; or no pair is in the band and no two faces look at one another.
 //! 2. The balls, each wider by its largest radius, are farther apart than the bound.
-//! 3. The robot leads on everywhere. Let `w` be the way from a face of one node to a place of the
-//!    other, and `t` any direction of the latter's cone. If all `w . t > 0`, the robot leads nearer
-//!    backwards from every place, unless it stops there: no link of the node may be the robot's
-//!    first one, or have a thinner one before it. If all `w . t < 0`, it leads nearer forwards in
-//!    the same way.
+//! 3. The robot leads nearer everywhere. Let `w` be the segment from a face of one node to a place
+//!    of the other, and `t` any direction of the latter's cone.
+//!    - If all `w . t > 0`, the robot leads nearer backwards from every place, unless it stops
+//!      there. So no link of the node may be the robot's first one, or have a thinner one before
+//!      it.
+//!    - If all `w . t < 0`, it leads nearer forwards in the same way.
 //!
-//! **Claim.** If 3 holds for the faces of either node beside the other, no pair of the two nodes
-//! counts whose faces are asked for.
-//! **Proof.** At a place inside of a link `w . t` is 0 if it is nearest, and rule 2 of
-//! [`JoinedLink`] fails at an end. □
+//! **Claim.** If case 3 holds for the faces of either node beside the other, no pair of the two
+//! nodes counts whose faces are queried.
 //!
-//! If all turns are asked for, links count without a face too. They are skipped only if all places
-//! are at shoulders of which 3 holds: all links of one node have a shoulder at the end towards
-//! which the way leads.
+//! **Proof.** If the nearest place is inside a link, `w . t` is 0 there. At an end, rule 2 of
+//! `JoinedLink` fails. □
 //!
-//! If all `w . t > 0`, the faces at ends of links look away, and if all `w . t < 0`, those at
-//! starts.
+//! **All turns.** If all turns are queried, links count without a face too. They are skipped only
+//! if all places are at shoulders for which case 3 holds. That is, all links of one node have a
+//! shoulder at the end that the segment reaches.
 //!
-//! A shoulder that the way comes to counts neither if the adjoining link holds its point
-//! (`least_covered`). The same tells of two faces that look at one another.
+//! **Facing.** If all `w . t > 0`, the faces at ends of links face away; if all `w . t < 0`, the
+//! faces at starts do.
 //!
-//! **Bounds.** Let `C` and `D` be the centres of the balls, `a` and `b` their radii, `m` the axis
-//! of the cone, `e` the largest distance of a direction from `m`, `n` any normal of the face. A
-//! point of a flat face is `f` from its centre and perpendicular to `n`. So `w . t >= (D - C) . m -
-//! a - b - |D - C| e - f |t x n|`, and the same from above with the other signs. `|t x n|` is at
-//! most `|m x m'|` and the two largest distances from the axes.
+//! **Covered shoulders.** A shoulder that the segment reaches does not count if the adjoining link
+//! contains its point (`least_covered`). The same holds for two faces that look at one another.
 //!
-//! **Rounding.** Unit vectors err by 4 u, sums of few lengths by few u of the reach: 64 u of the
-//! largest coordinate cover all. What [`JoinedLink`] takes for a local minimum, since the way may
-//! err, is shown too.
+//! **Bounds.** Let `C` and `D` be the centres of the balls, and `a` and `b` their radii. Let `m` be
+//! the axis of the cone, `e` the largest distance of a direction from `m`, and `n` any normal of
+//! the face. A point of a flat face is at most `f` from its centre and perpendicular to `n`. So `w
+//! . t >= (D - C) . m - a - b - |D - C| e - f |t x n|`, and `w . t` is at most the same with
+//! opposite signs. `|t x n|` is at most `|m x m'|` plus the two largest distances from the axes.
+//!
+//! **Rounding.** Unit vectors err by 4 u, and sums of few lengths by few u of the reach: 64 u of
+//! the largest coordinate covers all. Pairs that `JoinedLink` accepts as local minima within the
+//! error of the segment are visited, too.
 
 use super::robot_with_itself::TurnSums;
 use crate::distance::Scalar;
@@ -51,57 +54,57 @@ use crate::pair::{PlacedRobot, Tolerance};
 use crate::robot::{ModifiedCylinder, is_step};
 use parry3d_f64::math::{Real, Vector};
 
-/// Links one after another.
+/// A run of links.
 #[derive(Clone, Copy, Debug, Default)]
 struct Node {
     first: usize,
     count: usize,
     centre: Vector,
-    /// All points of the axes are so far from the centre at most.
+    /// The largest distance of a point of the axes from the centre.
     reach: Real,
     /// The largest radius.
     radius: Real,
     /// The largest radius of a flat face.
     flat: Real,
     direction: Vector,
-    /// All directions are so far from that one at most.
+    /// The largest distance of a direction from `direction`.
     spread: Real,
     /// Whether some link has a face at its start, and at its end.
     some: [bool; 2],
-    /// Whether the robot is thinner, or no more, before some link, and behind some.
+    /// Whether the robot ends or is thinner before some link, and behind some link.
     stops: [bool; 2],
-    /// Whether all links are wider than the next one at their start, and at their end.
+    /// Whether all links are wider than the neighbour at their start, and at their end.
     all: [bool; 2],
-    /// The largest cosine that a way out at a start, and at an end, may have with the adjoining
-    /// axis, and the adjoining link not hold the point of the shoulder there (`least_covered`).
+    /// The cosine from which the adjoining links contain the shoulder points at starts, and at ends
+    /// (`least_covered`): the largest over all links.
     covered: [Real; 2],
     /// The least radius of those adjoining links.
     adjoining: Real,
 }
 
-/// How a node lies as seen from another.
+/// The result of [`Node::seen_from`].
 struct Seen {
-    /// Whether places of it may be local minima.
+    /// Whether places of the node may be local minima.
     may_be_local: bool,
-    /// Whether the way to all of its places leads forwards, or backwards; none if that is not
-    /// known.
+    /// Whether the segment to all places of the node leads forwards, or backwards; `None` if
+    /// unknown.
     forwards: Option<bool>,
-    /// Whether all shoulders that the way comes to are in the adjoining links.
+    /// Whether the adjoining links contain all shoulder points that the segment reaches.
     is_covered: bool,
 }
 
-/// By this share adjoining links are taken for thinner, so that the way may err by as much.
+/// Adjoining links count as thinner by this share, which covers the error of the segment.
 const THINNER: Real = 1.0 / 256.0;
 
-/// Beside no more links with a face than these, each link is looked at alone: that costs less than
+/// With at most this many links with a face, each is compared with all other links: cheaper than
 /// the nodes of some dozen links.
 const FEW: usize = 4;
 
-/// What a search keeps from one to the next.
+/// State of a search; a later search reuses the memory.
 #[derive(Clone, Debug, Default)]
 pub(super) struct OwnFaces {
     with_faces: Vec<usize>,
-    /// Each node before those that it holds, the first half's first.
+    /// The nodes in preorder, the first half's before the second's.
     nodes: Vec<Node>,
     stack: Vec<[usize; 2]>,
     rounding: Tolerance,
@@ -109,17 +112,17 @@ pub(super) struct OwnFaces {
     looked_at: usize,
 }
 
-/// Which pairs are shown.
+/// Which pairs are visited.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Band {
-    /// Those with a face, of which the turn is less than pi.
+    /// Pairs with a face and a turn between pi / 2 and pi.
     Faces,
-    /// All whose turn is at least pi / 2.
+    /// All pairs with a turn of at least pi / 2.
     All,
 }
 
 impl OwnFaces {
-    /// Makes ready for a robot. Returns whether there is any pair to look at.
+    /// Prepares for a robot. Returns whether any pair may be queried.
     pub fn begin(&mut self, robot: &PlacedRobot, turns: &TurnSums) -> bool {
         self.nodes.clear();
         #[cfg(test)]
@@ -140,7 +143,7 @@ impl OwnFaces {
         !self.with_faces.is_empty() && (look || turns.quarter_from[0] < count)
     }
 
-    /// As [`run`](Self::run), of a robot with few faces: each link with one beside all others.
+    /// As [`run`](Self::run), for few faces: compares each link that has one with all other links.
     fn run_of_few(
         &self,
         robot: &PlacedRobot,
@@ -194,9 +197,11 @@ impl OwnFaces {
         self.nodes[place] = Node::around(&self.nodes[place + 1], &self.nodes[second]);
     }
 
-    /// Shows `visit` pairs of links, the lower first, with whether they are in the band and whether
-    /// faces look at one another, as long as it returns a bound: pairs that are farther apart may
-    /// be left out. Returns whether it always did.
+    /// Calls `visit` with pairs of links, the lower first, and two flags: whether the pair is in
+    /// the band, and whether faces look at one another.
+    ///
+    /// Each call returns the next bound, beyond which pairs may be skipped, or `None` to stop.
+    /// Returns false if it was stopped.
     pub fn run(
         &mut self,
         robot: &PlacedRobot,
@@ -253,13 +258,14 @@ impl OwnFaces {
         [place + 1, place + 2 * (self.nodes[place].count / 2)]
     }
 
-    /// Whether pairs of two nodes may count that are in the band, and faces that look at one
-    /// another.
+    /// Whether pairs of two nodes that are in the band may count, and whether faces that look at
+    /// one another may.
     fn asks(&self, turns: &TurnSums, band: Band, bound: Real, one: &Node, two: &Node) -> [bool; 2] {
         let last = two.first + two.count - 1;
         if last < one.first + 2 {
             return [false; 2];
         }
+        // Case 1.
         let mut in_band = last >= turns.quarter_from[one.first];
         if band == Band::Faces {
             let has_face = one.has_face() || two.has_face();
@@ -271,12 +277,14 @@ impl OwnFaces {
         }
         let way = two.centre - one.centre;
         let away = way.length();
+        // Case 2.
         if away - one.reach - two.reach - one.radius - two.radius - self.rounding.0 > bound {
             return [false; 2];
         }
         if one.first == two.first {
             return [in_band, look];
         }
+        // Case 3.
         let from_one = two.seen_from(one, way, away, self.rounding);
         let from_two = one.seen_from(two, -way, away, self.rounding);
         let may_count = one.may_see(&from_two) && from_one.may_be_local
@@ -371,7 +379,7 @@ impl Node {
         self.some != [false; 2]
     }
 
-    /// Whether some face of the node may look back to where the node is seen from.
+    /// Whether some face of the node may look towards the node that was seen.
     fn may_see(&self, seen: &Seen) -> bool {
         match seen.forwards {
             Some(true) => self.some[0],
@@ -380,8 +388,8 @@ impl Node {
         }
     }
 
-    /// How the node lies as seen from the faces of another, from whose centre `way` leads to this
-    /// one's.
+    /// Returns how the node lies as seen from the faces of another. `way` leads from the other's
+    /// centre to this one's.
     fn seen_from(&self, other: &Self, way: Vector, away: Real, rounding: Tolerance) -> Seen {
         let sine = self.direction.cross(other.direction).length() + self.spread + other.spread;
         let aside = other.flat * sine.min(1.0);
@@ -400,15 +408,16 @@ impl Node {
     }
 }
 
-/// The least cosine between the adjoining axis and a way out of a round shoulder with which the
-/// adjoining link holds the point of the shoulder; more than 1 if there is none. The link holds the
-/// points with larger cosines as well.
+/// Returns the least cosine at which the adjoining link contains the point of a round shoulder;
+/// more than 1 if it never does. The cosine is taken between the adjoining axis and the outward
+/// direction v at the shoulder. The link contains the points of larger cosines, too.
 ///
-/// Let r be the shoulder's radius, a that of the adjoining link and l its length. The point r v is
-/// r sqrt(1 - c^2) from its axis, where c is the cosine: that is at most a. If r > l, it may be
-/// beyond the axis: there it is r^2 - 2 r l c + l^2 <= a^2 from its end, squared.
+/// **Derivation.** Let r be the shoulder's radius, a the radius of the adjoining link, l its
+/// length, and c the cosine. The distance of the point r v from the link's axis is r sqrt(1 - c^2),
+/// which must be at most a. If r > l, the point may be beyond the axis. There its squared distance
+/// from the axis's end is r^2 - 2 r l c + l^2, which must be at most a^2.
 fn least_covered(radius: Real, next: &ModifiedCylinder, far_end: usize) -> Real {
-    // In radii of the shoulder.
+    // In units of the shoulder's radius.
     let (thin, length) = ((1.0 - THINNER) * next.radius() / radius, next.length() / radius);
     let aside = (1.0 - thin * thin).max(0.0).sqrt();
     if length >= 1.0 {
@@ -438,7 +447,7 @@ mod tests {
     use crate::robot::Chain;
     use parry3d_f64::math::{Real, Vector};
 
-    /// Directions of links, of which `share` is behind.
+    /// Returns the direction of a link; `share` is the part of the robot behind it.
     type Shape = fn(share: Real, link: usize) -> Vector;
 
     const SHAPES: [(&str, Shape); 5] = [
@@ -466,7 +475,7 @@ mod tests {
             at += shape(link as Real / count as Real, link).normalize() * (100.0 / count as Real);
             points.push(at);
         }
-        // Narrower than what the joints of the zigzags allow.
+        // Thin enough for the joints of the zigzags.
         let radii: Vec<_> = (0..count)
             .map(|link| radius(link as Real / count as Real, link) * 50.0 / count as Real)
             .collect();
@@ -482,8 +491,8 @@ mod tests {
         (memory.faces().looked_at, found.is_some())
     }
 
-    /// Twice as many steps are looked at in little more than twice as many pairs of nodes, whatever
-    /// the shape.
+    /// With four times as many steps the number of visited node pairs grows as n log n, for every
+    /// shape.
     #[test]
     fn the_work_grows_as_n_log_n() {
         for (name, shape) in SHAPES {

@@ -1,21 +1,21 @@
-//! The capsules around many links, in the coordinates of a search.
+//! The coordinates of a search over two robots, and capsules around runs of links.
 //!
-//! A search over two robots takes place in coordinates from the first robot's base, multiplied by
-//! the power of two that brings the largest of both robots near one, so that nothing overflows.
+//! The origin is the first robot's base. The scale is the power of two that brings the largest
+//! extent of both robots near 1, so that nothing overflows.
 
 use crate::distance::{Scalar, Vec3, segment_parameters};
 use crate::pair::PlacedRobot;
 use parry3d_f64::math::{Real, Vector};
 
-/// What rounding can add to the distance between two capsules, where all coordinates are below 2.
+/// A bound on the rounding error of the distance between two capsules, for coordinates below 2.
 ///
-/// Each coordinate of an end errs by u of it, by as much again where it was moved, and the
-/// difference of two by 4 u more; the foot on either axis and the length of the way between them by
-/// less than 16 u. Both radii are exact but for u. A distance at a flat cap may be measured too
-/// short by 16 u of an extent below 4: another 64 u.
+/// Each coordinate of an end errs by u, by u more if it was moved, and the difference of two by 4 u
+/// more. The feet on the axes and the distance between them err by less than 16 u. The radii are
+/// exact up to u. A distance at a flat cap may be measured too small by 16 u of an extent below 4:
+/// another 64 u.
 pub(super) const SLACK: Real = 128.0 * f64::UNIT_ROUNDOFF;
 
-/// A capsule around links.
+/// A capsule around a run of links.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct NodeCapsule {
     start: Vec3<Real>,
@@ -24,7 +24,7 @@ pub(super) struct NodeCapsule {
 }
 
 impl NodeCapsule {
-    /// A lower bound on the distance between what two capsules hold.
+    /// Returns a lower bound on the distance between the contents of two capsules.
     pub fn at_least(&self, other: &Self) -> Real {
         let axes = segment_parameters(self.start - other.start, self.along, other.along);
         axes.gap.norm() - self.radius - other.radius - SLACK
@@ -32,12 +32,13 @@ impl NodeCapsule {
 }
 
 impl NodeCapsule {
-    /// How long it is.
+    /// Returns the length of the capsule.
     pub fn size(&self) -> Real {
         self.along.norm() + 2.0 * self.radius
     }
 
-    /// The unit vector along the way from its axis to another's, unless they meet.
+    /// Returns the unit vector along the shortest segment from this axis to another; `None` if the
+    /// axes meet.
     pub fn way_to(&self, other: &Self) -> Option<Vector> {
         let axes = segment_parameters(self.start - other.start, self.along, other.along);
         let way = -Vector::from(axes.gap.normalised());
@@ -45,7 +46,7 @@ impl NodeCapsule {
     }
 }
 
-/// Where a search over robots takes place.
+/// The frame of a search over two robots.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct PairFrame {
     origin: Vector,
@@ -53,7 +54,7 @@ pub(super) struct PairFrame {
 }
 
 impl PairFrame {
-    /// The frame of a search over these robots.
+    /// Returns the frame for two robots.
     pub fn around(robots: [&PlacedRobot; 2]) -> Self {
         let origin = robots[0].ends()[0];
         let reach = |robot: &PlacedRobot| {
@@ -66,13 +67,12 @@ impl PairFrame {
         Self { origin, scale }
     }
 
-    /// A length in this frame.
+    /// Converts a length to this frame.
     pub fn length(&self, outside: Real) -> Real {
         outside * self.scale
     }
 
-    /// The length outside of one in this frame: the scale is a power of two, so that nothing is
-    /// lost.
+    /// Converts a length from this frame. The scale is a power of two, so this is exact.
     pub fn outside(&self, length: Real) -> Real {
         length * (1.0 / self.scale)
     }

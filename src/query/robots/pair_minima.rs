@@ -1,20 +1,19 @@
-//! Which pairs of links are places where two robots are near: one for each pair of approaching
-//! stretches.
+//! The local minima of the distance over pairs of links: one place per pair of approaching parts.
 //!
 //! # Definitions
-//! The pairs within the margin are cells of a grid: a row for each link of the first robot, and in
-//! it a cell for each link of the second. A cell's neighbours are one link on along either robot or
-//! both. A group is a set of cells that are as near and connected by neighbours, such as those that
-//! overlap.
+//! - **Cell**: a pair of links within the margin. The cells form a grid: one row per link of the
+//!   first robot, one column per link of the second.
+//! - **Neighbours** of a cell: one link further along either robot, or along both.
+//! - **Group**: connected cells of equal distance, such as cells that overlap.
 //!
 //! # Rule
 //! A group is one place, at its lowest links, if no neighbour of any of its cells is nearer.
 //!
 //! # Algorithm
-//! The rows come in order, some at a time ([`end_rows`](PairMinima::end_rows)). A cell is compared
-//! with the cell before it in its row and with its three neighbours in the row before, so each pair
-//! of neighbours is compared once. Of all rows that have been only the last is kept, and the groups
-//! with a cell in it: no other group can change.
+//! 1. The rows come in order, some at a time ([`end_rows`](PairMinima::end_rows)).
+//! 2. A cell is compared with the cell before it in its row and with its three neighbours in the
+//!    row before. So each pair of neighbours is compared once.
+//! 3. Only the last row and the groups with a cell in it are kept: no other group can change.
 
 use parry3d_f64::math::Real;
 
@@ -23,29 +22,29 @@ use parry3d_f64::math::Real;
 struct Cell {
     links: [usize; 2],
     distance: Real,
-    /// A group by its number; it may have been joined to another since.
+    /// The number of its group, which may have been joined to another since.
     group: usize,
 }
 
-/// Cells that are as near and connected.
+/// Connected cells of equal distance.
 #[derive(Clone, Copy, Debug)]
 struct Group {
-    /// The group that it has been joined to, or itself.
+    /// The group that it was joined to, or itself.
     leader: usize,
-    /// The lowest links.
+    /// Its lowest links.
     links: [usize; 2],
-    /// Whether a neighbour is nearer.
+    /// Whether some neighbour is nearer.
     descends: bool,
-    /// Its number among the groups that are kept, if it is one.
+    /// Its number among the kept groups, if it is kept.
     kept: Option<usize>,
 }
 
-/// What a search for local minima keeps from one to the next.
+/// The state of a search for local minima; a later search reuses the memory.
 #[derive(Clone, Debug, Default)]
 pub(super) struct PairMinima {
     /// The cells of the rows since the last [`end_rows`](Self::end_rows), in any order.
     cells: Vec<Cell>,
-    /// The last row, and the one before it, in order.
+    /// The last row and the row before it, in order.
     row: Vec<Cell>,
     row_before: Vec<Cell>,
     groups: Vec<Group>,
@@ -65,7 +64,7 @@ impl PairMinima {
         self.cells.push(Cell { links, distance, group: 0 });
     }
 
-    /// Takes the rows that are complete now: those that follow are higher ones.
+    /// Processes the complete rows. All later cells belong to higher rows.
     pub fn end_rows(&mut self) {
         let mut cells = std::mem::take(&mut self.cells);
         cells.sort_unstable_by_key(|cell| cell.links);
@@ -77,7 +76,7 @@ impl PairMinima {
         self.close_groups();
     }
 
-    /// The links of all places, in order.
+    /// Returns the links of all places, in order.
     pub fn finish(&mut self) -> &[[usize; 2]] {
         self.end_rows();
         self.row.clear();
@@ -89,7 +88,7 @@ impl PairMinima {
     fn add_row(&mut self, cells: &[Cell]) {
         std::mem::swap(&mut self.row, &mut self.row_before);
         self.row.clear();
-        // Where a row without cells is between, no cell of the row before is a neighbour.
+        // A row without cells in between separates both rows.
         let follows =
             self.row_before.first().is_some_and(|cell| cell.links[0] + 1 == cells[0].links[0]);
         if !follows {
@@ -114,7 +113,7 @@ impl PairMinima {
         }
     }
 
-    /// Decides the groups without a cell in the last row.
+    /// Decides the groups that have no cell in the last row.
     fn close_groups(&mut self) {
         let Self { row, groups, kept, places, .. } = self;
         kept.clear();
@@ -133,7 +132,7 @@ impl PairMinima {
     }
 }
 
-/// Notes which of two neighbours is nearer, or joins their groups.
+/// Records which of two neighbours is nearer, or joins their groups.
 fn compare(groups: &mut [Group], cell: &Cell, other: &Cell) {
     let [one, two] = [cell, other].map(|cell| root(groups, cell.group));
     if cell.distance < other.distance {
@@ -161,7 +160,7 @@ mod tests {
     use super::*;
     use continuum_testing::Random;
 
-    /// The places of a grid by the rule: groups are flooded, one by one.
+    /// Returns the places of a grid by the rule: flood fill, one group at a time.
     fn flooded(grid: &[Vec<Option<u32>>]) -> Vec<[usize; 2]> {
         let (rows, columns) = (grid.len(), grid[0].len());
         let mut seen = vec![vec![false; columns]; rows];
@@ -195,8 +194,8 @@ mod tests {
         let (mut minima, mut places, mut wide) = (PairMinima::default(), 0, 0);
         for _ in 0..2000 {
             let [rows, columns] = [0; 2].map(|_| 1 + random.below(9) as usize);
-            // Few distances, so that groups are large; and cells that are not there, at times whole
-            // rows.
+            // Few distinct distances make groups large. Cells, and sometimes whole rows, are
+            // missing.
             let (kinds, gaps) = (1 + random.below(5), random.below(4));
             let mut cell = || (random.below(4) >= gaps).then(|| random.below(kinds));
             let grid: Vec<Vec<_>> =
@@ -204,7 +203,7 @@ mod tests {
             minima.start();
             let most = 1 + random.below(3);
             for (i, row) in grid.iter().enumerate() {
-                // In no order.
+                // Cells of a row come in reverse order.
                 for j in (0..columns).rev() {
                     if let Some(distance) = row[j] {
                         minima.push([i, j], f64::from(distance));
@@ -212,7 +211,7 @@ mod tests {
                 }
                 if random.below(most) == 0 {
                     minima.end_rows();
-                    // No more is kept than the last row has.
+                    // At most one group per cell of the last row is kept.
                     assert!(minima.groups.len() <= columns && minima.cells.is_empty());
                 }
             }

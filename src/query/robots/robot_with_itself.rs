@@ -1,66 +1,85 @@
-//! A robot and itself: which of its parts can come to be near one another, and how near they are.
+//! Self contact of a chain: which pairs of its parts may come near each other, and how near they
+//! are.
 //!
-//! Neighbouring links touch, and those around a bend are near for no other reason. So the question
-//! is about pairs of places that are a local minimum of the distance: two places that come no
-//! nearer when either moves along the robot. Three kinds of pairs are asked for, and no margin
-//! decides which.
+//! # Definitions
+//! - **Queried** pair: two places at a local minimum of the distance: it does not decrease if
+//!   either place moves along the robot. No margin enters this definition.
+//! - **Turn** of two places: the sum of the joint angles between them.
+//! - **Face**: the base, the tip, or the wider side of a step in radius. c: its centre. n: its
+//!   normal, out of the robot.
+//! - **Shoulder**: a round cap at the wider side of a step: a ball around c.
 //!
-//! **Two links with a turn of at least pi between them.** Let x and y be places on the axes of two
-//! links, at which the distance of the axes is a local minimum, and v the unit vector from x to y.
-//! The part of the centreline from x to y and the way back along the chord are a closed polygon.
-//! Its exterior angles sum up to at least 2 pi (Fenchel; equality for plane convex polygons). At x
-//! the polygon turns from -v to the direction t of the centreline. Moving x on by t changes
-//! the distance at the rate -v . t, which is not below 0 at a minimum; so the angle between -v and
-//! t is at most pi / 2. The same holds at y, at a joint, where it holds of the direction on the way
-//! to y, and at the robot's ends. So the joints between x and y turn by at least 2 pi - pi / 2 - pi
-//! / 2 = pi. Where the axes meet there is one corner, of at most pi, and the same is left. The
-//! distance of two barrels is that of their axes less both radii.
+//! Neighbouring links touch, and links around a bend are near only because they are neighbours.
+//! Such pairs are no local minima.
 //!
-//! **A flat face and a link, with a turn of at least pi / 2.** A face is the robot's base, its tip,
-//! or the wider side of a step in radius; c is its centre, n its normal, out of the robot. The
-//! shortest way leaves it at a point c + a e along v, where e is perpendicular to n, a >= 0, and v
-//! lies between n and e: at the angle alpha from n. It ends, prolonged by the other link's radius,
-//! at a place y of an axis, which it meets at a right angle as above. Close the polygon by the
-//! chord from c to y instead. That is a e plus a multiple of v, so at an angle beta from n with
-//! alpha <= beta <= pi / 2. At y it has turned by beta - alpha, which adds so much to pi / 2. At c
-//! the centreline goes on along n, or comes from where n points away from: the polygon turns by pi
-//! - beta at most in the first case, by beta in the second. Together that is no more than 3/2 pi,
-//! which leaves pi / 2 for the joints.
+//! # Claims: the turn of a queried pair
+//! **Claim 1.** Two links need a turn of at least pi.
 //!
-//! **A round cap at the wider side of a step**, a shoulder, is a ball around c, and asked for like
-//! a face. Of a link alone the place nearest to y may be its end for no other reason than that the
-//! robot is thinner beyond: going on along the centreline is no descent then, so that the corner at
-//! c is bounded by pi instead of pi / 2. The rest is as above: pi / 2 is left for
-//! the joints. At a round base or tip the centreline does not go on, and the first rule has it.
+//! **Proof.** Let x and y be places on the axes of two links where the distance of the axes is a
+//! local minimum, and v the unit vector from x to y. The centreline from x to y and the way back
+//! along the chord form a closed polygon. Its exterior angles sum to at least 2 pi (Fenchel;
+//! equality for plane convex polygons).
+//! 1. At x the polygon turns from -v to the direction t of the centreline. Moving x by t changes
+//!    the distance at the rate -v . t, which is at least 0 at a minimum. So the angle between -v
+//!    and t is at most pi / 2.
+//! 2. The same holds at y, at a joint (for the direction of the centreline between x and y), and at
+//!    the robot's ends.
+//! 3. So the joints between x and y turn by at least 2 pi - pi / 2 - pi / 2 = pi.
+//! 4. If the axes meet there is one corner, of at most pi, and the same remains.
 //!
-//! **Two faces that look at one another**, at any turn: the end of a link and the start of a later
-//! one. (Of other faces one is at the end of its link towards which the other's way leads anyway,
-//! so that the turn of pi / 2 is left.)
+//! The distance of two barrels is the distance of their axes minus both radii.
 //!
-//! The turn only spares work. Whether a face counts beside a link, or another face,
-//! `pair::JoinedLink` decides. It decides of two links with a turn of pi as well, if they are
-//! nearest at a face of one.
+//! **Claim 2.** A flat face and a link need a turn of at least pi / 2.
 //!
-//! Links that share a joint are never asked for. The rule is one for thin tubes: where a joint is
-//! so sharp that its two links overlap over more than half of the shorter one, r tan(angle / 2) >
-//! length / 2, there is no saying what is near whom, and the robot is refused.
+//! **Proof.** The shortest segment leaves the face at c + a e along v, where e is perpendicular to
+//! n, a >= 0, and v lies between n and e at the angle alpha from n. Prolonged by the other link's
+//! radius, it ends at a place y of an axis, which it meets at a right angle, as above.
+//! 1. Close the polygon by the chord from c to y instead. The chord is a e plus a multiple of v:
+//!    its angle beta from n satisfies alpha <= beta <= pi / 2.
+//! 2. At y the chord has turned by beta - alpha, which adds that much to pi / 2.
+//! 3. At c the centreline continues along n, or comes from the direction opposite to n. The polygon
+//!    turns by at most pi - beta in the first case, by beta in the second.
+//! 4. The sum is at most 3/2 pi, which leaves pi / 2 for the joints.
 //!
-//! **Errors.** What is measured to be within a bound is in truth within [`JoinedLink::tolerance`]
-//! of it, which is what the ball around a face is asked for first: it is smaller than the face's
-//! link, and so known better than what is measured.
+//! **Claim 3.** A shoulder and a link need a turn of at least pi / 2.
 //!
-//! **Work.** [`Descent`] looks at the pairs with a turn of pi, [`OwnFaces`] at all others. If faces
-//! refuse [`MOST_REFUSED`] pairs of the former, nothing bounds the search, and [`OwnFaces`] looks
-//! at all pairs: it knows where the robot leads.
+//! **Proof.** The place of the link nearest to y may be its end only because the robot is thinner
+//! beyond. Moving along the centreline is then no descent, so the corner at c is bounded by pi
+//! instead of pi / 2. The rest is as in claim 1: pi / 2 is left for the joints. At a round base or
+//! tip the centreline ends, and claim 1 holds.
+//!
+//! **Two faces that look at one another**, the end of a link and the start of a later one, are
+//! queried at any turn. Of two other faces, one is at the end of its link that the way to the other
+//! reaches anyway. So the turn of pi / 2 remains.
+//!
+//! The turn only saves work. `pair::JoinedLink` decides whether a face counts beside a link or
+//! another face. It also decides two links with a turn of pi if they are nearest at a face of one.
+//!
+//! # Restrictions
+//! Links that share a joint are never queried. This rule is for thin tubes. A joint is too sharp if
+//! its links overlap over more than half of the shorter one: r tan(angle / 2) > length / 2. Then
+//! neighbours cannot be identified, and the robot is refused.
+//!
+//! # Algorithm
+//! 1. [`Descent`] searches the pairs with a turn of pi.
+//! 2. [`OwnFaces`] searches all others. If faces reject [`MOST_REFUSED`] pairs in step 1, nothing
+//!    bounds that search. Then [`OwnFaces`] searches all pairs, since it knows where the robot
+//!    leads nearer.
+//!
+//! # Rounding
+//! **Distances.** A measured distance within a bound is truly within [`JoinedLink::tolerance`] of
+//! it. The ball around a face is tested first, with that tolerance. It is smaller than the face's
+//! link, so it is known more precisely than the measurement.
 //!
 //! **Turns without angles.** The cosine of half a turn falls from 1 to -1 as the turn grows from 0
-//! to 2 pi, so it is compared instead of the turn. With the unit axes a and b of two links, half of
-//! their angle has the cosine |a + b| / 2 and the sine |a - b| / 2; half of the turn up to a link
-//! is the product of as many complex numbers, and half of that between two links the quotient of
-//! two products. The axes are unit vectors to 4 u, so both numbers err by 8 u, and their
-//! products over n joints by less than 20 n u of length, with the roundings of the products; a
-//! cosine of a quotient errs by twice that and 3 u. [`TurnSums`] asks for cosines up to 128 n u
-//! above the one that counts.
+//! to 2 pi. So cosines are compared instead of turns. Let a and b be the unit axes of two links.
+//! 1. Half of their angle has the cosine |a + b| / 2 and the sine |a - b| / 2.
+//! 2. Half of the turn up to a link is the product of the complex numbers of its joints. Half of
+//!    the turn between two links is the quotient of two such products.
+//! 3. The axes are unit vectors to 4 u, so both numbers err by 8 u. Their products over n joints
+//!    err by less than 20 n u of length, roundings included. A cosine of a quotient errs by twice
+//!    that and 3 u.
+//! 4. [`TurnSums`] therefore accepts cosines up to 128 n u above the required one.
 
 use super::descent::{Descent, PairLimit, measure_pair};
 use super::own_faces::{Band, OwnFaces, faces};
@@ -71,16 +90,16 @@ use crate::robot::{Chain, ModifiedCylinder};
 use parry3d_f64::math::{Pose, Real, Vector};
 use std::f64::consts::FRAC_1_SQRT_2;
 
-/// Beyond so many pairs that were measured for nothing, the nodes of [`OwnFaces`] are cheaper.
+/// With more rejected pairs the nodes of [`OwnFaces`] are cheaper.
 const MOST_REFUSED: usize = 64;
 
-/// What one query leaves for the next.
+/// State and memory that the next query reuses.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SelfMemory {
     descent: Descent,
     turns: TurnSums,
     faces: OwnFaces,
-    /// The links that were nearest.
+    /// The closest links of the last query.
     nearest: Option<[usize; 2]>,
 }
 
@@ -95,22 +114,24 @@ impl SelfMemory {
     }
 }
 
-/// How far a chain's centreline turns.
+/// The turns of a chain's centreline.
 #[derive(Clone, Debug, Default)]
 pub(super) struct TurnSums {
-    /// Half of what the joints up to each link turn by, together: its cosine and its sine.
+    /// The cosine and the sine of half of the total turn of the joints before each link.
     before: Vec<[Real; 2]>,
     slack: Real,
-    /// Of each link the first one behind a turn of at least pi that shares no joint with it;
-    /// beyond the last if none is.
+    /// For each link, the first later link with a turn of at least pi that shares no joint with it.
+    /// If there is none, at least the number of links.
     pub queried_from: Vec<usize>,
-    /// The same of a turn of at least pi / 2.
+    /// The same for a turn of at least pi / 2.
     pub quarter_from: Vec<usize>,
     /// The direction of each link.
     pub directions: Vec<Vector>,
 }
 
 impl TurnSums {
+    /// Measures the turns of a chain.
+    ///
     /// # Errors
     /// A joint is too sharp.
     fn measure(&mut self, links: &[ModifiedCylinder]) -> Result<(), ProximityError> {
@@ -125,11 +146,11 @@ impl TurnSums {
         self.directions.push(last.0);
         for (joint, link) in links[1..].iter().enumerate() {
             let next = of_link(link);
-            // Of half of the joint's angle.
+            // The cosine and the sine of half of the joint's angle.
             let (cosine, sine) =
                 (0.5 * (next.0 + last.0).length(), 0.5 * (next.0 - last.0).length());
             let (length, radius) = (next.1.min(last.1), next.2.max(last.2));
-            // Of a link that comes back along the one before, rounding leaves no cosine.
+            // If a link folds back along the one before, rounding leaves no valid cosine.
             let is_folded = cosine * cosine <= 8.0 * Real::UNIT_ROUNDOFF;
             if 2.0 * radius * sine > length * cosine || is_folded {
                 let angle = 2.0 * libm::atan2(sine, cosine);
@@ -155,12 +176,13 @@ impl TurnSums {
         Ok(())
     }
 
-    /// Finds from which link on each is asked for, at a turn of which half has this cosine: no
-    /// earlier than for the link before.
+    /// Fills `queried_from`, which is monotone: for each link, the first link whose turn is large
+    /// enough. `half_cosine`: the cosine of half of the required turn.
     ///
-    /// No turn that is looked at is as large as 2 pi. It is one to a link that is reached by less
-    /// than pi, from here or from the link before, and one joint more; or that of two joints. A
-    /// joint turns by less than pi.
+    /// **Claim.** Every tested turn is below 2 pi, so its half has a unique cosine.
+    ///
+    /// **Proof.** A tested turn spans two joints. Or it adds one joint to a turn below pi, from
+    /// this link or from the link before. A joint turns by less than pi.
     fn find_queried(&self, half_cosine: Real, queried_from: &mut Vec<usize>) {
         queried_from.clear();
         let mut from = 0;
@@ -173,21 +195,22 @@ impl TurnSums {
         }
     }
 
-    /// Whether two links, the second after the first, have a turn of at least an angle between
-    /// them, as far as rounding tells: one whose half has this cosine. They have no more than 2
-    /// pi between them.
+    /// Whether the turn between two links, the second after the first, is at least the angle whose
+    /// half has this cosine, up to rounding. The turn must be below 2 pi.
     fn reach(&self, half_cosine: Real, first: usize, second: usize) -> bool {
         let ([c1, s1], [c2, s2]) = (self.before[first], self.before[second]);
         c1 * c2 + s1 * s2 <= half_cosine + self.slack
     }
 }
 
-/// A robot in its own frame, and what can come to be near within it.
+/// A robot beside itself, in its own frame.
 pub(crate) struct RobotWithItself<'a> {
     robot: PlacedRobot<'a>,
 }
 
 impl<'a> RobotWithItself<'a> {
+    /// Places a robot beside itself.
+    ///
     /// # Errors
     /// A joint is too sharp.
     pub fn new(robot: &'a Chain, memory: &mut SelfMemory) -> Result<Self, ProximityError> {
@@ -196,7 +219,7 @@ impl<'a> RobotWithItself<'a> {
         Ok(Self { robot })
     }
 
-    /// The nearest of all pairs that count.
+    /// Returns the nearest pair that counts; `None` if no pair counts.
     pub fn minimum(&self, memory: &mut SelfMemory) -> Option<RobotProximity> {
         let SelfMemory { descent, turns, faces, nearest } = memory;
         let remembered = nearest.filter(|links| links[1] < self.robot.links().len());
@@ -211,7 +234,7 @@ impl<'a> RobotWithItself<'a> {
             refused += 1;
             if refused < MOST_REFUSED { PairLimit::at_best(&best) } else { PairLimit::NOTHING }
         });
-        // Last, since faces cost most: what is near already spares most of them.
+        // Faces come last because they cost most: the bound so far prunes most of them.
         let band = if refused < MOST_REFUSED { Band::Faces } else { Band::All };
         let bound = best.map_or(Real::INFINITY, |best| best.distance);
         self.beside_faces(turns, faces, band, bound, |found| {
@@ -253,7 +276,7 @@ impl<'a> RobotWithItself<'a> {
         one.counts_beside(&two, one.tolerance(&two))
     }
 
-    /// A link and its neighbours.
+    /// Returns a link with its neighbours.
     fn joined(&self, link: usize) -> JoinedLink {
         let last = self.robot.links().len() - 1;
         let before = link.checked_sub(1).map(|before| self.robot.link(before));
@@ -261,9 +284,8 @@ impl<'a> RobotWithItself<'a> {
         JoinedLink { link: self.robot.link(link), beyond: [before, behind] }
     }
 
-    /// Shows `keep` what counts beside faces, at most `bound` away, as long as it returns what is
-    /// the bound from then on.
-    /// Returns whether it always did.
+    /// Calls `keep` with the pairs beside faces that count and are at most `bound` apart. Each call
+    /// returns the next bound, or `None` to stop. Returns false if it was stopped.
     fn beside_faces(
         &self,
         turns: &TurnSums,
@@ -305,7 +327,7 @@ impl<'a> RobotWithItself<'a> {
             for (on_face, other) in [(0, 1), (1, 0)] {
                 let [face, beside] = [&joined[on_face], &joined[other]];
                 for end in [0, 1] {
-                    // The ball around a face holds it, and spares most others.
+                    // The ball around a face contains it: the test excludes most links.
                     if !face.is_face(end)
                         || !face.ball(end).may_be_within(now + tolerance.0, &beside.link)
                     {
@@ -323,12 +345,12 @@ impl<'a> RobotWithItself<'a> {
     }
 }
 
-/// From which link on each is asked for.
+/// Returns, per link, the first link queried with it.
 fn queried_from(turns: &TurnSums) -> impl Fn(usize) -> usize {
     |link| turns.queried_from[link]
 }
 
-/// The answer with the lower link first.
+/// Returns the answer with the lower link first.
 fn in_order(
     links: [usize; 2],
     placed: [&PlacedLink; 2],
@@ -353,8 +375,8 @@ mod tests {
         turns
     }
 
-    /// What an even polygon reaches at half a turn, rounded to either side, is asked for; and what
-    /// it does not reach is not.
+    /// In a regular polygon, a link at half a turn is queried, however rounding falls. Links before
+    /// it are not.
     #[test]
     fn half_a_turn_of_a_polygon_is_asked_for() {
         for (corners, scale) in [(4, 1.0), (6, 1e-150), (20, 3.0), (360, 1e150), (2000, 0.1)] {

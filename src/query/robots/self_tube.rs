@@ -1,4 +1,4 @@
-//! The questions about a tube beside itself: whether it keeps a margin to itself.
+//! The query whether a tube keeps a margin to itself.
 
 use crate::answer::{Decision, ProximityError};
 use crate::pieces::{PairUpperBound, PendingPieces, SelfPair, SelfPairQueue, TubeWithItself};
@@ -6,7 +6,7 @@ use crate::query::clearance::{Wanted, clears_pieces};
 use crate::robot::{Tube, TubeTurns};
 use parry3d_f64::math::Real;
 
-/// What one query leaves for the next.
+/// Memory that the next query reuses.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SelfTubeMemory {
     turns: TubeTurns,
@@ -15,11 +15,11 @@ pub(crate) struct SelfTubeMemory {
     pending: PendingPieces<SelfPair, SelfPair, PairUpperBound>,
 }
 
-/// Whether the parts of a tube that can meet keep more than the margin. A stated turn makes no
-/// answer worse.
+/// Decides whether all queried pairs of a tube stay farther apart than `margin`. A stated turn
+/// makes no answer worse.
 ///
 /// # Errors
-/// The tube bends too sharply, its curve is not finite, or samples do not allow a decision at that
+/// The tube bends too sharply, its curve is not finite, or the samples allow no decision at that
 /// resolution.
 pub(crate) fn self_clears_tube(
     tube: &Tube,

@@ -1,5 +1,4 @@
-//! The questions about two tubes: how near they are, between bounds, and whether they keep a
-//! margin.
+//! Queries about two tubes: bounds on their clearance, and whether they keep a margin.
 
 use crate::answer::{Decision, ProximityError, RobotClearance};
 use crate::pieces::{
@@ -10,13 +9,13 @@ use crate::query::clearance::{BoundedClearance, BoundsSearch, Hint, Wanted, clea
 use crate::robot::Tube;
 use parry3d_f64::math::{Pose, Real};
 
-/// What one query leaves for the next.
+/// State and memory that the next query reuses.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct TubesMemory {
     beginning: PairQueue,
     pairs: Vec<PiecePair>,
     pending: PendingPieces<PiecePair, [BoundingBody; 2], PairUpperBound>,
-    /// The sections and arc lengths where a query ended.
+    /// The sections and arc lengths of the last answer.
     last: Option<([u32; 2], [Real; 2])>,
 }
 
@@ -25,7 +24,7 @@ impl TubesMemory {
         self.last = None;
     }
 
-    /// A first upper bound: where the last query ended, if that is a place of these tubes.
+    /// Returns a first upper bound: at the place of the last answer, if these tubes have it.
     fn first_bound(&self, tubes: &TubePair) -> PairUpperBound {
         match self.last.filter(|(sections, _)| tubes.have(*sections)) {
             Some((sections, arcs)) => tubes.bound_at(sections, arcs),
@@ -34,11 +33,11 @@ impl TubesMemory {
     }
 }
 
-/// Both tubes in one frame.
+/// Places both tubes in one frame.
 ///
 /// # Errors
-/// A tube has no section, or its pose is not finite or not rigid or moves it out of range; the
-/// poses are called `names`.
+/// A tube has no section, or its pose is not finite, not rigid, or moves the tube out of range.
+/// Errors call the poses `names`.
 pub(crate) fn place_tubes<'a>(
     tubes: [&'a Tube; 2],
     poses: [&Pose; 2],
@@ -50,8 +49,8 @@ pub(crate) fn place_tubes<'a>(
     Ok(TubePair::new([placed(0)?, placed(1)?]))
 }
 
-/// How near two tubes are, with bounds no farther apart than the tolerance where the tubes allow
-/// that. A stated turn makes no bound worse.
+/// Returns bounds on the clearance of two tubes that are at most `tolerance` apart if the tubes
+/// allow it. A stated turn makes no bound worse.
 ///
 /// # Errors
 /// A curve is not finite.
@@ -78,7 +77,7 @@ fn clearance_as_stated(
     hint.take(&memory.first_bound(tubes));
     let TubesMemory { beginning, pairs, pending, last } = memory;
     let best = loop {
-        // So that rounding of the bounds does not ask for more pairs.
+        // The margin keeps rounding of the bounds from requiring farther pairs.
         let limit = hint.upper + 4.0 * tubes.slack();
         tubes.begin(Real::INFINITY, limit, usize::MAX, beginning, pairs)?;
         pending.clear();
@@ -94,7 +93,7 @@ fn clearance_as_stated(
         if limit == Real::INFINITY {
             return Err(ProximityError::EmptyTube);
         }
-        // Pairs that are farther apart than the hint are needed too.
+        // The answer needs pairs that are farther apart than the hint.
         hint.upper = Real::INFINITY;
     };
     let (best, BoundedClearance { lower, resolved, uncertainty }) = best;
@@ -112,10 +111,10 @@ fn clearance_as_stated(
     })
 }
 
-/// Whether two tubes keep more than the margin. A stated turn makes no answer worse.
+/// Decides whether two tubes stay farther apart than `margin`. A stated turn makes no answer worse.
 ///
 /// # Errors
-/// A curve is not finite, or samples do not allow a decision at that resolution.
+/// A curve is not finite, or the samples allow no decision at that resolution.
 pub(crate) fn tubes_clear(
     tubes: &mut TubePair,
     memory: &mut TubesMemory,
@@ -143,7 +142,7 @@ fn clear_as_stated(
     margin: Real,
     resolution: Real,
 ) -> Result<Decision, ProximityError> {
-    // The decision must not depend on where an earlier query ended.
+    // The decision must not depend on the place of an earlier answer.
     let best = tubes.first_bound();
     let TubesMemory { beginning, pairs, pending, last } = memory;
     tubes.begin(Real::INFINITY, margin, usize::MAX, beginning, pairs)?;

@@ -1,4 +1,4 @@
-//! The questions about two robots at their poses.
+//! Queries about two robots at their poses.
 
 use super::descent::{Descent, PairLimit, measure_pair};
 use super::pair_minima::PairMinima;
@@ -7,18 +7,17 @@ use crate::pair::{PlacedLink, PlacedRobot};
 use crate::robot::Chain;
 use parry3d_f64::math::{Pose, Real};
 
-/// So many pairs of links are kept at once where all places within a margin are asked for: some
-/// megabytes.
+/// The most pairs of links that `within` keeps at once: some megabytes.
 const MAX_PAIRS: usize = 1 << 16;
 
-/// What one query leaves for the next.
+/// State and memory that the next query reuses.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PairMemory {
     descent: Descent,
     minima: PairMinima,
-    /// The links that were nearest, which are the first to be looked at again.
+    /// The closest links of the last query: the first candidate of the next.
     nearest: Option<[usize; 2]>,
-    /// The links that did not keep a margin.
+    /// The links that violated the last margin.
     met: Option<[usize; 2]>,
 }
 
@@ -28,7 +27,7 @@ impl PairMemory {
     }
 }
 
-/// Of two robots all pairs of links are asked for.
+/// All pairs of links of two robots are queried.
 fn all(_: usize) -> usize {
     0
 }
@@ -40,8 +39,10 @@ pub(crate) struct TwoRobots<'a> {
 }
 
 impl<'a> TwoRobots<'a> {
+    /// Places two robots in one frame.
+    ///
     /// # Errors
-    /// A pose is not finite or not rigid, or moves a link out of range; the poses are called
+    /// A pose is not finite, not rigid, or moves a link out of range. Errors call the poses
     /// `names`.
     pub fn new(
         robots: [&'a Chain; 2],
@@ -63,20 +64,20 @@ impl<'a> TwoRobots<'a> {
         [self.robots[0].link(links[0]), self.robots[1].link(links[1])]
     }
 
-    /// The two links that are nearest.
+    /// Returns the closest pair of links.
     pub fn minimum(&self, memory: &mut PairMemory) -> RobotProximity {
         let last = memory.nearest.filter(|links| self.have(*links));
         let mut best = last.map(|links| measure_pair(self.both(), links));
         memory.descent.run(self.both(), PairLimit::at_best(&best), all, |found| {
             PairLimit::at(best.insert(found))
         });
-        // Without a limit the first pair that is looked at is within it.
+        // Without a limit the first pair searched is within it.
         let best = best.unwrap_or_else(|| measure_pair(self.both(), [0, 0]));
         memory.nearest = Some(best.links.map(|link| link as usize));
         best
     }
 
-    /// Of each link of the first robot, the nearest link of the second.
+    /// Appends to `out` the closest link of the second robot for each link of the first.
     pub fn per_link(&self, memory: &mut PairMemory, out: &mut Vec<RobotProximity>) {
         let descent = &mut memory.descent;
         descent.begin(self.both());
@@ -87,7 +88,7 @@ impl<'a> TwoRobots<'a> {
         }
     }
 
-    /// Whether all links are farther apart than `margin`.
+    /// Whether all pairs of links are farther apart than `margin`.
     pub fn clears(&self, margin: Real, memory: &mut PairMemory) -> bool {
         let meets = |links| {
             let [first, second] = self.links(links);
@@ -105,7 +106,7 @@ impl<'a> TwoRobots<'a> {
         memory.met.is_none()
     }
 
-    /// The places where the robots are at most `margin` apart.
+    /// Appends to `out` the places where the robots are at most `margin` apart.
     pub fn within(&self, margin: Real, memory: &mut PairMemory, out: &mut Vec<RobotProximity>) {
         let PairMemory { descent, minima, .. } = memory;
         minima.start();
@@ -114,7 +115,7 @@ impl<'a> TwoRobots<'a> {
         out.extend(minima.finish().iter().map(|&links| measure_pair(self.both(), links)));
     }
 
-    /// Whether the robots have the links that others had.
+    /// Whether the robots have these link numbers, which come from an earlier query.
     fn have(&self, links: [usize; 2]) -> bool {
         links.iter().zip(&self.robots).all(|(&link, robot)| link < robot.links().len())
     }
