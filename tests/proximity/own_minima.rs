@@ -577,11 +577,11 @@ fn robots_that_touch_themselves_are_found() {
     let mut random = Random::new(52);
     let mut all = Counts::default();
     for shape in [Shape::Helix, Shape::Hairpin, Shape::Random] {
-        let counts = judge(&mut random, Some(shape), None, None, FREE);
+        let counts = judge(&mut random, Some(shape), None, None, 4 * FREE);
         println!("{shape:?}: {counts:?}");
         all.touching += counts.touching;
         all.apart += counts.apart;
         all.passes += counts.passes;
     }
-    assert!(all.touching > 5 && all.apart > 20 && all.passes > 3, "{all:?}");
+    assert!(all.touching > 4 && all.apart > 50 && all.passes > 8, "{all:?}");
 }

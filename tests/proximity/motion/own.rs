@@ -378,7 +378,7 @@ fn steps_in_radius_do_not_meet_their_own_neighbourhood_while_they_bend() {
     let (mut random, mut pair, mut overlapping) = (Random::new(72), RobotPair::new(), 0);
     for round in 0..60 {
         let count = 4 + random.below(6) as usize;
-        let turns = [0.0, random.between(0.1, 2.6)].map(|turn| turn / count as Real);
+        let turns = [0.0, random.between(0.1, 1.2)].map(|turn| turn / count as Real);
         let radius = random.between(0.2, 0.7) * 0.5 / (0.5 * turns[1]).tan();
         let thinner = [1e-12, 0.01, 0.1][random.below(3) as usize];
         let is_ribbed = round % 3 == 0;

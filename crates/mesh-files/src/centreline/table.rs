@@ -240,9 +240,6 @@ fn bare(line: &str) -> &str {
 
 /// The words between semicolons, or tabs, or commas, empty ones too; without any of these, the
 /// words between spaces. Between quotes no word ends.
-///
-/// Of several marks the first one counts that leaves only numbers, since a comma may stand for a
-/// decimal point and a tab may follow a comma.
 fn columns(line: &str) -> Vec<String> {
     let marks = [';', '\t', ','];
     let mut is_quoted = false;
@@ -251,12 +248,14 @@ fn columns(line: &str) -> Vec<String> {
         !is_quoted
     };
     let outside: String = line.chars().filter(is_outside).collect();
-    let mut found = marks.into_iter().filter(|&mark| outside.contains(mark));
-    let is_split = |mark: &char| split(line, Some(*mark)).iter().all(|word| number(word).is_some());
-    split(line, found.clone().find(is_split).or_else(|| found.next()))
-}
-
-fn split(line: &str, mark: Option<char>) -> Vec<String> {
+    // With both tabs and commas, commas are those of decimals only if the words between tabs are
+    // numbers.
+    let is_decimal =
+        |line: &str| line.split('\t').all(|word| number(word.trim().trim_matches('"')).is_some());
+    let is_mark = |mark: char| {
+        outside.contains(mark) && (mark != '\t' || !outside.contains(',') || is_decimal(line))
+    };
+    let mark = marks.into_iter().find(|&mark| is_mark(mark));
     let mut is_quoted = false;
     let ends = |c: char| {
         is_quoted ^= c == '"';
