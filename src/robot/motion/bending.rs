@@ -28,7 +28,8 @@
 //! dW'/dq = W x R w' + R w'',   c'' = integral 2 l' W x R e + l (W' x R e + W x (W x R e)) dq
 //!
 //! where l changes at a constant rate. So with T the integral of |w'| from the base, and F that of
-//! T |w'| + |w''|, which bound |W| and |W'|, the acceleration is at most the integral of 2 |l'| T + l (F + T^2). In a section |w'| <= |l'| k + l |u'| and
+//! T |w'| + |w''|, which bound |W| and |W'|, the acceleration is at most the integral of 2 |l'| T +
+//! l (F + T^2). In a section |w'| <= |l'| k + l |u'| and
 //! |w''| <= 2 |l'| |u'| + l |u''|; between constants, T is linear in the share and F quadratic, and nothing falls along it.
 //!
 //! Along a section, d^2 c / dq^2 = l R (w x e) changes in time at most at the rate l (2 |l'| k + T
