@@ -40,15 +40,15 @@ pub struct BendingSection {
 /// ```
 /// use parry_continuum::{BendingSection, Chain, ConstantCurvature, stations};
 ///
-/// // A tendon robot of two sections, in mm: the second bends by 0.05 / mm towards 30 degrees from x.
+/// // A tendon robot in mm. Its second section bends by 0.05 / mm, 30 degrees from x.
 /// let (sin, cos) = 30_f64.to_radians().sin_cos();
 /// let first = BendingSection { length: 40.0, radius: 1.5, bend: [0.0, 0.02] };
 /// let second = BendingSection { length: 30.0, radius: 1.0, bend: [0.05 * cos, 0.05 * sin] };
 /// let robot = ConstantCurvature::new(&[first, second])?;
 ///
 /// let tube = robot.tube()?; // the curve itself
-/// let (points, radii) = robot.points(100); // or as many points as one likes,
-/// let (few, radii) = stations(&points, &radii, 0.05)?; // of which few are needed for 0.05 mm
+/// let (points, radii) = robot.points(100); // or points along it,
+/// let (few, radii) = stations(&points, &radii, 0.05)?; // few suffice for 0.05 mm
 /// let chain = Chain::from_centreline(&few, &radii)?;
 /// # assert!(few.len() < points.len() / 2 && chain.links().len() + 1 == few.len());
 /// # assert!((chain.links().last().map(|link| link.end()).unwrap_or_default() - robot.frame(70.0).translation).length() < 1e-12);

@@ -46,8 +46,8 @@ use parry3d_f64::math::{Real, Vector};
 
 /// Finds stations that follow a centreline within a tolerance, spread evenly by its curvature.
 ///
-/// Returns points and segment radii, ready for any constructor of a [`Chain`](crate::Chain). As
-/// [`simplify`](crate::simplify), but for a control loop: for every shape the time is at most
+/// Returns points and segment radii, ready for any constructor of a [`Chain`](crate::Chain). For a
+/// control loop, unlike [`simplify`](crate::simplify): for every shape the time is at most
 /// proportional to the number of points. The points are a subset of the input's, in order. Both
 /// ends stay, and so does every point at which the radius changes. Each new segment and the part
 /// of the input that it replaces are within `tolerance` of each other (Hausdorff distance); this is

@@ -37,11 +37,11 @@
 //! - `dW'/dq = W x R w' + R w''`;
 //! - `c'' = integral of 2 l' W x R e + l (W' x R e + W x (W x R e)) dq`, if l' is constant.
 //!
-//! Let T be the integral of `|w'|` from the base, and F the integral of `T |w'| + |w''|`; they
-//! bound
-//! |W| and |W'|. So the acceleration is at most the integral of `2 |l'| T + l (F + T^2)`. In a
-//! section, `|w'| <= |l'| k + l |u'|` and `|w''| <= 2 |l'| |u'| + l |u''|`. With constant bounds, T
-//! is linear in the share and F quadratic; both are monotone along it.
+//! Let T be the integral of `|w'|` from the base, and F the integral of `T |w'| + |w''|`. They
+//! are upper bounds on `|W|` and `|W'|`. So the acceleration is at most the integral of
+//! `2 |l'| T + l (F + T^2)`. In a section, `|w'| <= |l'| k + l |u'|` and
+//! `|w''| <= 2 |l'| |u'| + l |u''|`. With constant bounds, T is linear in the share and F
+//! quadratic; both are monotone along it.
 //!
 //! # Displacement along a piece
 //! Along a section, `d^2 c / dq^2 = l R (w x e)` changes in time at most at the rate
@@ -90,7 +90,7 @@ pub struct BendingRates {
 /// let second = BendingRates { length: 10.0, growth: 0.0, curvature: 0.05, bending: 0.005, step: 0.0 };
 /// assert!((bending_speed(&[first, second], 0, [0.0, 0.5]).point - 1.0).abs() < 1e-9);
 /// let tip = bending_speed(&[first, second], 1, [1.0, 1.0]);
-/// // Its plane moves the tip by 0.005 x 10^2 / 2, the growth by 2, and the step that moves on by 2 x 0.05 x 10.
+/// // Plane: 0.005 x 10^2 / 2. Growth: 2. Moving step: 2 x 0.05 x 10.
 /// assert!((tip.point - (0.25 + 2.0 + 1.0)).abs() < 1e-9);
 /// ```
 pub fn bending_speed(sections: &[BendingRates], section: usize, shares: [Real; 2]) -> Speed {

@@ -65,7 +65,8 @@ use parry3d_f64::math::{Pose, Real};
 ///     }
 ///
 ///     fn speed(&self, _section: usize, shares: [Real; 2], _times: [Real; 2]) -> Speed {
-///         // The curvature changes by 0.02 in all: s from the base that turns the needle by 0.02 s, and moves it by half of that times s.
+///         // The curvature grows by 0.02. At s from the base this turns the needle by 0.02 s
+///         // and moves it by half of that times s.
 ///         let s = 30.0 * shares[1];
 ///         Speed { point: 0.01 * s * s, turn: 0.02 * s }
 ///     }
@@ -105,7 +106,7 @@ pub trait Motion {
     /// sections of constant curvature. A wrong bound makes answers wrong. A bound that is not
     /// finite, or whose `off` is negative, is ignored.
     ///
-    /// A motion that wraps another may pass its bound on if it changes neither time nor place.
+    /// A motion that wraps another may pass its bound on if it keeps time and place.
     fn course(&self, section: usize, shares: [Real; 2], times: [Real; 2]) -> Option<Course> {
         let _ = (section, shares, times);
         None

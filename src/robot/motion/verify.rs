@@ -92,7 +92,7 @@ pub fn verify_motion(motion: &impl Motion, steps: u32) -> Result<(), RobotError>
             let times = [Real::from(step - 1) / Real::from(steps), t];
             ranges.ways_and_angles(motion, &all, times, &mut stated);
             kept.iter_mut().for_each(|before| before.add(&stated));
-            // The first shape, and those of every 2^k steps that end here.
+            // The first shape, and one for each power of two that divides the step.
             let met = 2 + step.trailing_zeros() as usize;
             for before in kept.iter().take(met) {
                 ranges.ways_and_angles(motion, &all, [before.t, t], &mut stated);
@@ -203,7 +203,7 @@ fn holds(range: [Real; 2], shares: [Real; 2]) -> bool {
 /// Compares an earlier shape with a later one (step 2).
 ///
 /// # Errors
-/// Something moved faster than stated on the way from an earlier shape to a later one.
+/// A place moved or turned faster than stated from the earlier shape to the later one.
 fn check(
     before: &SampledShape,
     here: &SampledShape,
@@ -241,7 +241,7 @@ fn check(
 /// Compares stated displacements with the shapes at the end and in the middle (step 4).
 ///
 /// # Errors
-/// A place is farther off its course between two shapes than stated, at the last one or at the one
+/// A place is farther from its stated displacement than stated, at the last shape or at the one
 /// in the middle.
 fn check_courses(
     [before, here]: [&SampledShape; 2],

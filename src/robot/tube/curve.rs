@@ -18,15 +18,15 @@ pub(super) struct Samples {
     pub points: Vec<Vector>,
     /// The length of the polyline up to each point.
     pub arcs: Vec<Real>,
-    /// For each point the segment of the input that begins there.
+    /// For each point the input segment that begins there.
     pub segments: Vec<u32>,
-    /// For each point what is known of the curve from there to the next; none if all sections are
+    /// For each point the bounds on the curve from there to the next; empty if all sections are
     /// even.
     pub bounds: Vec<CurveBound>,
 }
 
 impl Samples {
-    /// No points are left; the memory is.
+    /// Removes all points and keeps the memory.
     pub(super) fn clear(&mut self) {
         self.points.clear();
         self.arcs.clear();

@@ -13,7 +13,7 @@
 //! - `x`: a point of the ball behind the plane across the curve at e.
 //!
 //! # Claim
-//! The ball lies in the tube if one of these holds:
+//! The ball lies in the tube if one of two conditions holds:
 //!
 //! 1. e is at least r behind the plane of the face at p. With a normal known up to the angle a, e
 //!    is certainly behind it by the computed depth minus `|e - p| a`.

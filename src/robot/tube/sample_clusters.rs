@@ -10,7 +10,8 @@
 //!
 //! # When samples form a cluster
 //! A cluster is formed only if a sample shows a bend for which the tube would be refused, or which
-//! is sharper by a quarter than every bend shown by samples farther apart. All of these must hold:
+//! is sharper by a quarter than every bend shown by samples farther apart. All conditions must
+//! hold:
 //!
 //! 1. The samples are as close as that sample and its nearer neighbour, or up to
 //!    2^[`MAX_DOUBLINGS`] times as far if there are more than two.

@@ -31,7 +31,6 @@
 //! from within the gap between them: directions on either side are uncertain by gap over length,
 //! every point by the gap. `sample_clusters` treats a sample that was taken twice, a little apart.
 //! `direction_at_end` determines the directions of faces.
-//! everywhere. Which way a face stands is told in `direction_at_end`.
 
 use super::Tube;
 use super::cap_persistence::CapPersistence;

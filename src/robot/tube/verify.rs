@@ -13,7 +13,7 @@ impl Tube {
     /// the step h, each test allows for rounding and for the stated error:
     ///
     /// 1. The curve is finite.
-    /// 2. It bends no more than stated: `|c(s + h) - 2 c(s) + c(s - h)| <= k h^2`.
+    /// 2. It bends at most as stated: `|c(s + h) - 2 c(s) + c(s - h)| <= k h^2`.
     /// 3. Its argument is the arc length:
     ///    `h (1 - (k h)^2 / 24) <= |c(s + h) - c(s)| <= h`.
     /// 4. Its direction is that of the points:
