@@ -28,9 +28,9 @@ use parry3d_f64::math::{Real, Vector};
 use parry3d_f64::query::{ContactManifold, PointQuery};
 
 /// The cosine between normal and axis above which a point leans out over an end. A normal that
-/// leans less cannot catch. It exceeds the vibration of a chain at rest, so the points do not change
-/// with each change of sign. (Measured: with 1e-9 a straight chain in a corner changes its points in
-/// 62 of 200 steps.)
+/// leans less cannot catch. It exceeds the vibration of a chain at rest, so the points do not
+/// change with each change of sign. (Measured: with 1e-9 a straight chain in a corner changes its
+/// points in 62 of 200 steps.)
 const LEANS: Real = 1e-4;
 
 /// Which of the two shapes of a pair is the chain.
