@@ -6,9 +6,9 @@
 //!
 //! 1. Coordinates are differences from the link's start point, so a link far from the origin loses
 //!    no digits.
-//! 2. Coordinates are halved, subtracted, and scaled by a power of two so that the largest is about
-//!    1. Nothing overflows, no significant square underflows, and a problem multiplied by 2^k gives
-//!    the same bits.
+//! 2. Coordinates are halved, subtracted, and scaled by a power of two so that the largest is near
+//!    one. Nothing overflows, no significant square underflows, and a problem multiplied by 2^k
+//!    gives the same bits.
 //! 3. The axis is normalised by its own power of two, so a short link seen from far away keeps its
 //!    direction.
 

@@ -5,8 +5,8 @@
 //!
 //! 1. the normals of the shape's faces, the link's axis, and the directions perpendicular to the
 //!    axis and an edge;
-//! 2. for the foremost corner along the best of these, and its edges: the directions to the axis,
-//!    to the centres of round caps and to rims.
+//! 2. for the foremost corner along the best candidate of 1, and its edges: the directions to the
+//!    axis, to the centres of round caps and to rims.
 //!
 //! Two support points measure each candidate, so the resulting translation always separates. A
 //! shape with round parts of its own has a continuum of faces. For such a shape only EPA's answer
@@ -240,7 +240,7 @@ impl PlacedConvex<'_> {
 const MAX_EDGES: usize = 16;
 
 /// Returns whether a normal or its opposite belongs to the edge between two faces with the normals
-/// a and b. All vectors are perpendicular to `edge`, except possibly the normals.
+/// a and b. Both are perpendicular to `edge`.
 fn is_between(n: Vector, [a, b]: [Vector; 2], edge: Vector) -> bool {
     let turn = |from: Vector, to: Vector| from.cross(to).dot(edge);
     let whole = turn(a, b);

@@ -104,7 +104,7 @@ fn pair<'a>(g1: &'a dyn Shape, g2: &'a dyn Shape) -> Result<Option<RobotAndWall<
 
 enum MovingWall<'a> {
     Triangle(&'a Triangle),
-    /// Its unit normal.
+    /// The half-space's unit normal.
     HalfSpace(Vector),
     Link(ModifiedCylinder),
     Convex(&'a dyn Shape, &'a dyn SupportMap),

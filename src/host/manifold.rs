@@ -1,16 +1,15 @@
 //! Contact manifolds: how a pair is split into parts, and which file answers for each pair of
 //! parts.
 //!
-//! [`robot_surface_manifold`] splits a robot and a mesh or a height
-//! field. parry's routines split all other composites, because they keep the manifolds of a pair
-//! from step to step. The pairs of parts are answered by
+//! [`robot_surface_manifold`] splits a robot and a mesh or a height field. parry's routines split
+//! all other composites, because they keep the manifolds of a pair from step to step. The pairs of
+//! parts are answered by
 //!
 //! - [`link_triangle_manifold`]: a link and a triangle, exactly;
 //! - [`link_halfspace_manifold`]: a link and a half-space, exactly;
-//! - [`link_link_manifold`]: two links, or a link and a ball, a capsule
-//!   or a cylinder, exactly;
-//! - [`link_convex_manifold`]: a link and another convex shape, along
-//!   the contact's normal with polygons that approximate the surfaces;
+//! - [`link_link_manifold`]: two links, or a link and a ball, a capsule or a cylinder, exactly;
+//! - [`link_convex_manifold`]: a link and another convex shape, along the contact's normal with
+//!   polygons that approximate the surfaces;
 //! - `L`: a link and a shape without polygons. parry keeps a manifold while it has drifted by less
 //!   than 1e-3, in any unit of length. So that a small link never rests on a stale manifold, `L` is
 //!   told at each step that the shapes have changed.

@@ -88,7 +88,7 @@ impl LinkMass {
         let [start, end] = link.caps();
         let pieces = [cylinder, half_ball(start, -1.0), half_ball(end, 1.0)];
 
-        // Weights are shares of the mass, so that products stay in range.
+        // Weights are shares of the mass, which keeps the products small.
         let column: Real = pieces.iter().map(|piece| piece.mass).sum();
         let mean = |of: &dyn Fn(&MassOfPiece) -> Real| -> Real {
             pieces.iter().map(|piece| product(piece.mass / column, of(piece))).sum()

@@ -81,8 +81,8 @@ pub(crate) fn place_of_leaf(mut link: usize, mut links: usize) -> usize {
 impl BoundingCapsule {
     /// Returns a capsule with the axis from `start` to `end` that contains `links`.
     ///
-    /// **Claim.** It is enough to contain the balls around each link's two ends.
-    /// **Proof.** A link lies in the convex hull of these balls, and a capsule is convex.
+    /// **Claim.** Containing the balls around each link's two ends is enough.
+    /// **Proof.** A link lies in the convex hull of the balls, and a capsule is convex.
     /// **Rounding.** The radius is enlarged by `16 EPSILON (reach + radius)`, an upper bound on the
     /// rounding errors of the distances.
     fn around(start: Vector, end: Vector, links: &[ModifiedCylinder]) -> Self {

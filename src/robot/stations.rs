@@ -16,8 +16,8 @@
 //!    density.
 //! 2. **Spread.** Place the same number of chords, each with the same share.
 //! 3. **Verify.** Compare every vertex with its chord, as in `simplify`. If a chord fails, verify
-//!    the walk's own stations instead. Divide those that fail: a chord grows from each station,
-//!    doubling its segments while it holds.
+//!    the walk's own stations instead. Divide each chord that fails: a chord grows from each
+//!    station, doubling its segments while it holds.
 //!
 //! # Faces
 //! A flat face is perpendicular to the chord that ends in it. Let u be the direction of the input's

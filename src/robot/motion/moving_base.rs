@@ -61,7 +61,7 @@ pub struct MovingBase<M> {
     known: Vec<(Real, Tube, Pose)>,
 }
 
-/// The times of these shapes.
+/// The times of the known shapes.
 const KNOWN_AT: [Real; 3] = [0.0, 0.5, 1.0];
 
 impl<M: Motion> MovingBase<M> {

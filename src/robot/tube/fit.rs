@@ -2,7 +2,7 @@
 //!
 //! # Algorithm
 //! 1. **Parameter.** The length of the polyline. Noise makes it far too long if points are dense,
-//!    so steps 2 and 1 repeat with the lengths of the last spline ([`PASSES`] splines in all).
+//!    so steps 2 and 1 repeat with the lengths of the last spline ([`PASSES`] parameters in all).
 //! 2. **Smooth.** A smoothing spline near the points; cross-validation chooses the weight (`best`).
 //! 3. **Draw near.** If the spline is farther from a point than the stated deviation, forces draw
 //!    it near (`within`).
@@ -41,7 +41,7 @@ use parry3d_f64::math::{Real, Vector};
 /// Least distance of knots, as a share of their mean distance.
 const CLOSEST: Real = 1.0 / (1 << 20) as Real;
 
-/// Number of splines, each with the lengths of the previous one as parameter.
+/// Number of parameters, each from the lengths of the previous spline.
 const PASSES: u32 = 3;
 
 /// Most steps of the search for forces per weight, and most weights.

@@ -107,7 +107,7 @@ use std::f64::consts::TAU;
 /// Most parts into which a segment is laid.
 pub(super) const MAX_PARTS: u32 = 16;
 
-/// Nodes and weights of the Gauss rule with four points on [-1, 1].
+/// Nodes and weights of the Gauss rule with four points from -1 to 1.
 const GAUSS: [[Real; 2]; 4] = [
     [-0.861_136_311_594_052_6, 0.347_854_845_137_453_85],
     [-0.339_981_043_584_856_3, 0.652_145_154_862_546_2],
