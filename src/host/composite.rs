@@ -2,7 +2,7 @@
 //! for rounding.
 //!
 //! parry's own routines compare boxes without a margin. The boxes of two shapes that touch may miss
-//! each other by a unit in the last place, and a ray that grazes a box may be rounded past it. Here
+//! each other by a unit in the last place. A ray that grazes a box may be rounded past it. Here
 //! every part that is skipped is proven to be farther away than the rounding error. So the best
 //! answer of the parts is the answer of the whole.
 

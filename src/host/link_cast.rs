@@ -175,7 +175,7 @@ impl<D: QueryDispatcher> Cast<'_, D> {
         if radius > 2.0 * touching { capsule(radius).map(Some) } else { Ok(None) }
     }
 
-    /// Returns the first hit from `start` on.
+    /// Steps 1 to 3: returns the first hit from `start` on.
     fn advance(
         &self,
         link: &ModifiedCylinder,
@@ -252,7 +252,7 @@ impl<D: QueryDispatcher> Cast<'_, D> {
         Ok(CastMoment { time, poses, distance, touching, on_link, on_wall, normal })
     }
 
-    /// Returns a time during which the link stays before the wall's plane, at most `span`.
+    /// Step 2: returns a time during which the link stays before the wall's plane, at most `span`.
     fn clear_for(&self, link: &ModifiedCylinder, now: &CastMoment, span: Real) -> Real {
         let [robot_pose, wall_pose] = now.poses;
         let normal = robot_pose.rotation * now.normal;

@@ -3,9 +3,9 @@
 //!
 //! Each link searches the triangles within its own box in the surface's frame. (parry's routine for
 //! two composites visits all triangles within the box of the whole chain; most of a bent robot's
-//! box is far from it.) The manifold of a link and a triangle keeps the host's data and is found
-//! again by their ids, so nothing is lost when the robot changes its shape. Pairs without contact
-//! leave no manifold.
+//! box is far from it.) The manifold of a link and a triangle keeps the host's data. Their ids
+//! identify it in the next step, so a change of the robot's shape loses nothing. Pairs without
+//! contact leave no manifold.
 //!
 //! # Flags of the surface
 //! The flags `FIX_INTERNAL_EDGES`, one-sided or two-sided, may turn normals. They never remove a

@@ -270,6 +270,7 @@ impl<'a> WallPath<'a> {
         Self { link, link_is_first, pose, velocity: -(pose.rotation * local_vel12) }
     }
 
+    /// Steps 1 to 3: returns the first hit.
     fn cast<W: CastWall>(
         &self,
         wall: &W,

@@ -12,10 +12,10 @@
 //! # Proof
 //! 1. **From the run to the chord.** The distance to the chord is convex along each segment, so it
 //!    is largest at a vertex.
-//! 2. **From the chord to the run.** Let c be a point of the chord. The run leads from one end of
-//!    the chord to the other without a gap, so a point q of the run lies in the plane through c
-//!    perpendicular to the chord. Then c is the point of the chord nearest to q, and `|q - c|` is
-//!    within the tolerance by 1.
+//! 2. **From the chord to the run.** Let c be a point of the chord. The run connects the ends of
+//!    the chord without a gap. So a point q of the run lies in the plane through c perpendicular to
+//!    the chord. Then c is the point of the chord nearest to q, and `|q - c|` is within the
+//!    tolerance by 1.
 //!
 //! So hooks and parts that run backwards need no test of their own. The distance is to the chord,
 //! not to its line: a hook that overshoots the end must fail.
@@ -62,11 +62,11 @@ use parry3d_f64::math::{Real, Vector};
 ///   removed. Rounded points of an oblique straight line are seldom exactly on it: use the rounding
 ///   error as tolerance for such lines.
 ///
-/// On a smooth curve the time is proportional to the number of points if links replace few of them,
-/// and grows with its square if they replace hundreds. At worst, with noise about as large as the
-/// tolerance or with loops, it grows with the cube of the points between two changes of radius. For
-/// bounded time use [`stations`](crate::stations): it takes a few more links and time proportional
-/// to the points.
+/// On a smooth curve the time is proportional to the number of points if links replace few points.
+/// It grows with the square of that number if links replace hundreds. At worst, with noise about as
+/// large as the tolerance or with loops, it grows with the cube of the points between two changes
+/// of radius. For bounded time use [`stations`](crate::stations): it takes a few more links and
+/// time proportional to the points.
 ///
 /// Repeated points are removed first, with the radius of the segment between them. (If that radius
 /// differs from a neighbour's, the point counts as a change of radius.) A new segment always has a

@@ -35,7 +35,8 @@ use parry3d_f64::math::Real;
 /// bounds counts, and the error names it.
 ///
 /// A stated displacement ([`Motion::course`]) is compared with the shapes at the ends of its time
-/// and at its middle, for the same ranges and for shapes that are 1, 2, 4, 8 and more steps apart.
+/// and at its middle. The ranges are the same as for speeds; the shapes are 1, 2, 4, 8 and more
+/// steps apart.
 ///
 /// Part of a measured displacement may be an error of the shapes. It does not count against the
 /// motion:

@@ -30,8 +30,8 @@
 //!   whole ball is behind that plane. Condition 2 excludes it, because x is within r of e and so
 //!   nearer to e than to p.
 //!
-//! The rest of the ball lies in the section's own discs, in the ball at its other end, or ahead of
-//! its other face, which cuts the ball off.
+//! The rest of the ball lies in the section's own discs, or in the ball at its other end. A face at
+//! the other end cuts the ball off.
 //!
 //! Otherwise the end is flat. That is right at any joint, since the tube is its discs.
 //!

@@ -24,8 +24,8 @@
 //! 3. **Flat faces.** Only here is the direction missed: the bounds are a radius apart. This is the
 //!    cost of an unstated direction.
 //!
-//! With a stated `turn`, every direction near a face is within it of the fitted direction, and the
-//! derivation of bodies at a face holds with the tilt `turn` (`pieces::bounding_body`).
+//! With a stated `turn`, every direction near a face is within it of the fitted direction. The
+//! derivation of bodies at a face then holds with the tilt `turn` (`pieces::bounding_body`).
 
 use super::Tube;
 use super::curve::{CurveBound, NextPoint};
@@ -65,8 +65,8 @@ impl Tube {
     ///
     /// Flat faces also depend on the centreline's direction. Unless it is stated by
     /// [`with_turn`](Self::with_turn), the lower bound takes a face for a ball and the upper bound
-    /// for its centre, so the two stay a radius apart there. Deviation and unknown direction are
-    /// part of an answer's `uncertainty`, not of the tolerance.
+    /// takes it for its centre. So the two stay a radius apart there. Deviation and unknown
+    /// direction are part of an answer's `uncertainty`, not of the tolerance.
     ///
     /// The curve is a cubic smoothing spline whose smoothness cross-validation chooses (see the
     /// source for references). [`residual`](Self::residual) is its distance from the points.

@@ -14,9 +14,9 @@
 //!    **Proof.** m is off by at most `(p + q) / l`, and so is `(T + U) / l`.
 //! 2. The true cubic leaves the laid one by at most `4/27 (p + q) l`. **Proof.** This is the
 //!    maximum of its factors `x (1 - x)^2 l` and `x^2 (1 - x) l`.
-//! 3. X is off by `tan f l` times the larger of p and q in addition. **Proof.** The slopes of the
-//!    two cubics differ by at most the larger of p and q, since the factors of T and U add up to at
-//!    most 1. Here f must bound the angles of the cubic too: `sin f + q <= sin(f + 1.2 q)`, as
+//! 3. X is off by `tan f l` times the larger of p and q in addition. **Proof.** The factors of T
+//!    and U add up to at most 1. So the slopes of the two cubics differ by at most the larger of p
+//!    and q. Here f must bound the angles of the cubic too: `sin f + q <= sin(f + 1.2 q)`, as
 //!    `f + 1.2 q < 0.58`, whose cosine exceeds 1 / 1.2.
 //! 4. The cubic is longer than c by at most `c (k c + 2 q)^2 / 20`. **Proof.** Its slopes are at
 //!    most `k l / 2 + q`, so `k c + 2 q` replaces `k c` in the bound of `hermite_segment`.

@@ -9,9 +9,8 @@
 //!   first.
 //!
 //! # When samples form a cluster
-//! A cluster is formed only if a sample shows a bend for which the tube would be refused, or which
-//! is sharper by a quarter than every bend shown by samples farther apart. All conditions must
-//! hold:
+//! A cluster is formed only around a sample that shows a sharp bend: the tube would be refused for
+//! it, or it exceeds every bend of samples farther apart by a quarter. All conditions must hold:
 //!
 //! 1. The samples are as close as that sample and its nearer neighbour, or up to
 //!    2^[`MAX_DOUBLINGS`] times as far if there are more than two.
@@ -33,9 +32,9 @@
 //! # Bounds
 //! The sample that stays is off by g, and so is every chord to it. All bodies and witnesses include
 //! g. Consider a chord of length l between clusters with the gaps g1 and g2, and `g = g1 + g2`. For
-//! two vectors v and w with `|v - w| <= g`, the unit vectors differ by at most
-//! `2 g / (|v| + |w|) <= g / (l - g)` (Dunkl and Williams, American Mathematical Monthly 71, 1964),
-//! and the lengths by at most g. Hence
+//! two vectors v and w with `|v - w| <= g`, the lengths differ by at most g and the unit vectors by
+//! at most `2 g / (|v| + |w|) <= g / (l - g)`. (Dunkl and Williams, American Mathematical Monthly
+//! 71, 1964.) Hence
 //!
 //! - a turn grows by at most `g / (l - g)` for each of its two segments;
 //! - half of the sum of the two lengths shrinks by at most half of the sum of their g;

@@ -362,7 +362,7 @@ impl SectionSamples<'_> {
     /// Appends the bounds of all segments; `least` is a lower limit for each curvature.
     ///
     /// Returns the first segment in which the curve may turn by more than 1 rad, and the first
-    /// sample that shows more than the others because another one is very near. `hats` is memory.
+    /// sample that shows a sharper bend because a neighbour is very near. `hats` is memory.
     pub(super) fn bound_unevenly(
         self,
         least: Real,
