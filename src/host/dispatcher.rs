@@ -10,6 +10,9 @@
 //! 4. **Links.** Two links, or a link and one of parry's shapes that is a link ([`LinkPair`]).
 //! 5. **Iterations.** Scale the pair ([`IteratedPair`]) and ask the inner dispatcher, with
 //!    fallbacks for a link ([`ConvexPair`]).
+//!
+//! Casts use [`straight_cast`] and [`link_cast`] instead of distances for links against triangles,
+//! links and convex shapes. Contact manifolds have a file of their own (`manifold.rs`).
 
 use super::composite::CompositePair;
 use super::convex::ConvexPair;

@@ -14,7 +14,7 @@
 //!
 //! **Proof.** Let c be the point of the chord nearest to v. Since `|v - a| > tolerance`, c is not
 //! a, so `c - a` has the direction of `t - a`. As `|v - c| <= tolerance`, the angle between `c - a`
-//! and `v - a` is at most `asin(tolerance / |v - a|)`. This holds for every course of the run in
+//! and `v - a` is at most `asin(tolerance / |v - a|)`. This holds for every shape of the run in
 //! between and for every distance of t.
 //!
 //! # Slopes
