@@ -1,38 +1,38 @@
-//! A link in its own axial frame: where a point lies along the axis and how far from it.
+//! A link in its own axial frame: coordinates along the axis and away from it.
 //!
-//! Every closed form of this folder is written in two coordinates: `z` along the unit axis from the
-//! start point and `rho` away from it. Two choices keep them accurate to the rounding of the
+//! All closed forms of this folder use two coordinates: `z` along the unit axis from the start
+//! point, and `rho` away from the axis. Three choices keep them accurate to the rounding of the
 //! problem's extent:
 //!
-//! 1. Coordinates are differences from the link's start point, so that a link far from the origin
-//!    loses nothing.
-//! 2. They are halved before they are subtracted and then scaled by a power of two, so that the
-//!    largest is about 1: nothing overflows, no square underflows that matters, and a problem
-//!    multiplied by 2^k gives the same bits.
-//! 3. The axis is normalised by its own power of two, so that a short link seen from far away keeps
-//!    its direction.
+//! 1. Coordinates are differences from the link's start point, so a link far from the origin loses
+//!    no digits.
+//! 2. Coordinates are halved, subtracted, and scaled by a power of two so that the largest is near
+//!    one. Nothing overflows, no significant square underflows, and a problem multiplied by 2^k
+//!    gives the same bits.
+//! 3. The axis is normalised by its own power of two, so a short link seen from far away keeps its
+//!    direction.
 
 use crate::distance::Scalar;
 pub(super) use crate::distance::depth::{perpendicular, unit, unit_across};
 use crate::robot::ModifiedCylinder;
 use parry3d_f64::math::{Real, Vector};
 
-/// The power of two that brings `x` near one, and its inverse.
+/// Returns the power of two that scales `x` near one, and its inverse.
 pub(super) fn power_of_two(x: Real) -> (Real, Real) {
     let down = x.power_of_two_to_unity();
     (down, 1.0 / down)
 }
 
-/// The unit axis of `link`; any unit vector for a ball.
+/// Returns the unit axis of `link`; any unit vector for a ball.
 pub(super) fn axis_or_x(link: &ModifiedCylinder) -> Vector {
     let axis = link.axis();
     if axis == Vector::ZERO { Vector::X } else { axis }
 }
 
-/// A link, scaled and seen from its start point.
+/// A link, scaled, relative to its start point.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct AxialFrame {
-    /// Unit axis; any unit vector when the length is zero.
+    /// Unit axis; any unit vector if the length is zero.
     pub axis: Vector,
     /// End point minus start point, in scaled units.
     pub span: Vector,
@@ -44,8 +44,8 @@ pub(super) struct AxialFrame {
 }
 
 impl AxialFrame {
-    /// The frame of `link` in a unit that suits it and `point`, and `point` in that frame; nothing
-    /// when `point` is not finite.
+    /// Returns the frame of `link` in a unit that suits it and `point`, and `point` in that frame;
+    /// `None` if `point` is not finite.
     pub fn around(link: &ModifiedCylinder, point: Vector) -> Option<(Self, Vector)> {
         if !point.is_finite() {
             return None;
@@ -61,7 +61,7 @@ impl AxialFrame {
         Some((frame, from_start * down))
     }
 
-    /// A length or an offset of the frame in the caller's unit.
+    /// Converts a length or an offset of the frame to the caller's unit.
     pub fn restore<T: std::ops::Mul<Real, Output = T>>(&self, scaled: T) -> T {
         scaled * self.up * 2.0
     }

@@ -1,15 +1,17 @@
-//! The chain as one of parry's composite shapes: its parts are its links.
+//! The chain as one of parry's composite shapes. Its parts are its links.
 //!
-//! Neighbouring links overlap, and what a query means then depends on the side it comes from.
-//! **From outside** the chain is the union of its links: the closest point and the first hit of the
-//! union are the best over the links, so they are exact. **From inside** queries see the links one
-//! by one, like those of parry's `Compound`: a hollow ray stops at the next surface of any link, a
-//! point is projected to the nearest surface of any link, also where that surface lies within
-//! another link. So the depth of a point inside is never overstated. Whether a point is inside is
-//! exact everywhere.
+//! Neighbouring links overlap, so the meaning of a query depends on its side:
 //!
-//! Contact manifolds see one surface: a cap makes no contacts where a neighbour covers it and makes
-//! them (see [`inner_points`](super::inner_points)).
+//! - **From outside** the chain is the union of its links. The closest point and the first hit of
+//!   the union are the best over the links, so they are exact.
+//! - **From inside** queries see the links one by one, like queries on parry's `Compound`. A hollow
+//!   ray stops at the next surface of any link. A point is projected to the nearest surface of any
+//!   link, even if that surface lies within another link. So the depth of a point inside is never
+//!   overestimated.
+//!
+//! Whether a point is inside is exact everywhere. Contact manifolds treat the chain as one surface:
+//! a cap makes no contacts where a neighbour covers it and makes them (see
+//! [`inner_points`](super::inner_points)).
 
 use super::mass;
 use crate::robot::length;
@@ -32,8 +34,7 @@ impl Shape for Chain {
         self.local_aabb()
     }
 
-    /// Around the middle of the chain's box, reaching to the farthest of the balls around its
-    /// links.
+    /// Returns a ball around the centre of the chain's box that contains the links' balls.
     fn compute_local_bounding_sphere(&self) -> BoundingSphere {
         let center = self.local_aabb().center();
         let reach = |link: &ModifiedCylinder| {
@@ -47,7 +48,8 @@ impl Shape for Chain {
         Box::new(self.clone())
     }
 
-    /// The chain of the scaled links, if every link has one: see the link's `scale_dyn`.
+    /// Returns the chain of the scaled links, if each has a scaled link; see the link's
+    /// `scale_dyn`.
     fn scale_dyn(&self, scale: Vector, num_subdivisions: u32) -> Option<Box<dyn Shape>> {
         let image =
             self.try_map(|link| link.scale_dyn(scale, num_subdivisions)?.as_shape().copied())?;
@@ -59,8 +61,8 @@ impl Shape for Chain {
         boxes.reduce(|all, one| all.merged(&one)).unwrap_or_else(Aabb::new_invalid)
     }
 
-    /// The sum over the links, so that what two links share counts twice: for a tube, about the
-    /// half balls and wedges at its joints.
+    /// Returns the sum over the links. Overlaps of two links count twice: for a tube, approximately
+    /// the half balls and wedges at its joints.
     fn mass_properties(&self, density: Real) -> MassProperties {
         mass::mass_properties_of_all(self.links(), density)
     }
@@ -134,13 +136,13 @@ impl TypedCompositeShape for Chain {
 /// The link whose surface, or whose solid, is nearest to a point.
 struct NearestLink {
     link: usize,
-    /// Not negative.
+    /// At least 0.
     distance: Real,
-    /// Whether any link holds the point.
+    /// Whether any link contains the point.
     is_inside: bool,
 }
 
-/// Nothing when `point` is not finite.
+/// Returns `None` if `point` is not finite.
 fn nearest_link(chain: &Chain, point: Vector, solid: bool) -> Option<NearestLink> {
     let (mut nearest, mut is_inside) = (None, false);
     for (link, shape) in chain.links().iter().enumerate() {
@@ -199,7 +201,7 @@ impl RayCast for Chain {
         max_time_of_impact: Real,
         solid: bool,
     ) -> Option<RayIntersection> {
-        // The search wants hits strictly before its bound.
+        // The search returns hits strictly before its bound.
         let bound = max_time_of_impact.next_up();
         let hit = CompositeShapeRef(self).cast_local_ray_and_get_normal(ray, bound, solid);
         hit.map(|(link, hit)| hit.with_subshape(link))

@@ -1,10 +1,10 @@
-//! Shapes that consist of others, part by part: the boxes of parts choose which are asked, loosened
-//! by what rounding can have taken from them.
+//! Composite shapes, part by part. The boxes of the parts select candidates, loosened by a margin
+//! for rounding.
 //!
-//! parry's own routines compare the boxes as they are. Of two shapes that touch, the boxes may miss
-//! each other by a unit in the last place, and a ray that grazes a box may be rounded past it. All
-//! that is left out here is proven to be further away than rounding can be wrong; so what the parts
-//! say is what the whole says.
+//! parry's own routines compare boxes without a margin. The boxes of two shapes that touch may miss
+//! each other by a unit in the last place. A ray that grazes a box may be rounded past it. Here
+//! every part that is skipped is proven to be farther away than the rounding error. So the best
+//! answer of the parts is the answer of the whole.
 
 use super::height_field::rounding;
 use parry3d_f64::bounding_volume::{Aabb, BoundingVolume};
@@ -17,7 +17,7 @@ use parry3d_f64::query::{
 use parry3d_f64::shape::{CompositeShape, Shape};
 use std::cell::Cell;
 
-/// A shape that consists of parts and another shape, whose pose is in the first's frame.
+/// A composite shape and another shape, whose pose is in the composite's frame.
 pub(super) struct CompositePair<'a, D> {
     pub dispatcher: &'a D,
     pub parts: &'a dyn CompositeShape,
@@ -26,7 +26,7 @@ pub(super) struct CompositePair<'a, D> {
 }
 
 impl<D: QueryDispatcher> CompositePair<'_, D> {
-    /// The first part that is found to meet the other shape.
+    /// Returns the first part that meets the other shape.
     pub fn intersection_test(&self) -> Result<ShapeIntersection, Unsupported> {
         for id in self.parts.bvh().intersect_aabb(&self.around(0.0)) {
             let found = self.ask(id, |_, pos12, part| {
@@ -39,7 +39,7 @@ impl<D: QueryDispatcher> CompositePair<'_, D> {
         Ok(ShapeIntersection::new(false))
     }
 
-    /// The deepest contact, or the nearest.
+    /// Returns the deepest contact, or the nearest one.
     pub fn contact(&self, prediction: Real) -> Result<Option<Contact>, Unsupported> {
         let mut best: Option<Contact> = None;
         for id in self.parts.bvh().intersect_aabb(&self.around(prediction.max(0.0))) {
@@ -57,10 +57,10 @@ impl<D: QueryDispatcher> CompositePair<'_, D> {
         Ok(best)
     }
 
-    /// The closest points of the nearest part.
+    /// Returns the closest points of the nearest part.
     pub fn closest_points(&self, max_dist: Real) -> Result<ClosestPoints, Unsupported> {
         let (refused, around) = (Cell::new(false), self.around(0.0));
-        // The search wants parts strictly nearer than its bound.
+        // The search returns parts strictly nearer than its bound.
         let bound = max_dist.max(0.0).next_up().min(Real::MAX);
         let best = self.parts.bvh().find_best(
             bound,
@@ -79,9 +79,9 @@ impl<D: QueryDispatcher> CompositePair<'_, D> {
                             ClosestPoints::Disjoint => None,
                             ClosestPoints::Intersecting => Some((0.0, points)),
                             ClosestPoints::WithinMargin(point1, point2) => {
-                                // It is within the margin, however its length is rounded, and of
-                                // points that coincide another part
-                                // may still say that it is met.
+                                // The points are within the margin, even if their length rounds
+                                // beyond it. A positive cost lets a part that overlaps win over
+                                // points that coincide.
                                 let length =
                                     (point1 - pos12 * point2).length().max(Real::MIN_POSITIVE);
                                 Some((length.min(bound.next_down()), points))
@@ -105,7 +105,7 @@ impl<D: QueryDispatcher> CompositePair<'_, D> {
         Ok(best.map_or(ClosestPoints::Disjoint, |(_, (_, points))| points))
     }
 
-    /// The first hit of the other shape, which moves at `vel12`.
+    /// Returns the first hit of the other shape, which moves at `vel12`.
     pub fn cast_shapes(
         &self,
         vel12: Vector,
@@ -114,13 +114,13 @@ impl<D: QueryDispatcher> CompositePair<'_, D> {
         let (refused, latest) = (Cell::new(false), options.max_time_of_impact);
         let around = self.around(options.target_distance.max(0.0));
         let ray = Ray::new(Vector::ZERO, vel12);
-        // The search wants hits strictly earlier than its bound, and goes through all that is never
-        // met for a bound above the largest number.
+        // The search returns hits strictly earlier than its bound. A bound above the largest number
+        // would make it visit parts that are never hit.
         let bound = latest.next_up().min(Real::MAX);
         let first = self.parts.bvh().find_best(
             bound,
             |node: &BvhNode, so_far| {
-                // Where the other shape's box, shrunk to a point, meets the part's, grown by it.
+                // The other shape's box shrinks to a point, and the part's box grows by it.
                 let grown =
                     Aabb { mins: node.mins() - around.maxs, maxs: node.maxs() - around.mins };
                 grown.cast_local_ray(&ray, so_far, true).unwrap_or(Real::MAX)
@@ -143,8 +143,8 @@ impl<D: QueryDispatcher> CompositePair<'_, D> {
         Ok(first.filter(|hit| hit.time_of_impact <= latest))
     }
 
-    /// What `query` says of a part, whose place it is told with the other shape's pose in the
-    /// part's frame; and that place.
+    /// Runs `query` on a part, with the part's pose and the other shape's pose in the part's frame.
+    /// Returns the part's pose and the result.
     fn ask<T>(
         &self,
         id: u32,
@@ -158,7 +158,7 @@ impl<D: QueryDispatcher> CompositePair<'_, D> {
         answer
     }
 
-    /// The other shape's box, loosened by `margin` and by rounding.
+    /// Returns the other shape's box, loosened by `margin` and by rounding.
     fn around(&self, margin: Real) -> Aabb {
         let bounds = self.other.compute_aabb(self.pos12);
         let rounding = rounding(&bounds, &self.parts.bvh().root_aabb());

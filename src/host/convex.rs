@@ -1,14 +1,23 @@
-//! A link and another convex shape, by iterations of the inner dispatcher, and what is done where
-//! these fail.
+//! A link and another convex shape, by iterations of the inner dispatcher, with fallbacks.
 //!
-//! parry's GJK and EPA give up on some pairs that touch: from a distance of 1e-14 to an overlap of
-//! 1e-2 they may say that there is no contact however far one looks, or that GJK has not converged.
-//! For any unit vector `n` the gap between the two shapes' supports along `n` is at most their
-//! distance, and where it is below 0 a translation by it along `n` separates them. So all that is
-//! missing is a good `n`, and the link without its outermost [layer](super::shrunk_links) gives
-//! one; where it is off, by about the layer's depth, that costs the gap about its square. The
-//! layers are tried from thin to thick; what still meets the innermost is parted along the best of
-//! a few directions that both shapes have.
+//! parry's GJK and EPA fail on some pairs that touch. From a distance of 1e-14 to an overlap of
+//! 1e-2 they may report no contact for any prediction, or that GJK has not converged.
+//!
+//! # Definitions
+//! - `gap(n)`, for a unit vector n: the distance along n from the first shape's support to the
+//!   second's.
+//! - Layer: the outermost part of the link (`layers.rs`). Core: the link without it.
+//!
+//! # Bounds
+//! For every n, `gap(n)` is at most the distance of the shapes. If `gap(n) < 0`, a translation by
+//! it along n separates them. So a good n is enough.
+//!
+//! # Algorithm
+//! 1. **Iterate.** Accept the inner dispatcher's normal if its gap confirms it (`is_plain`).
+//! 2. **Layers.** Otherwise try the direction from a core to the other shape, from thin layers to
+//!    thick ones. If it is off by about the layer's depth, the gap loses about the square of that.
+//! 3. **Axes.** If even the innermost core overlaps, take the best of a few directions of both
+//!    shapes.
 
 use super::axial::{perpendicular, unit};
 use super::layers::shrunk_links;
@@ -18,10 +27,10 @@ use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::query::{ClosestPoints, Contact, QueryDispatcher, Unsupported};
 use parry3d_f64::shape::{Shape, SupportMap};
 
-/// What rounding leaves of the largest coordinate.
+/// Rounding error relative to the largest coordinate.
 const ROUNDING: Real = 64.0 * Real::EPSILON;
 
-/// By how much two iterations for the same pair may differ, as a share of the largest coordinate.
+/// Largest difference of two iterations for the same pair, relative to the largest coordinate.
 const ITERATED: Real = 1e-4;
 
 /// A link and another convex shape, in either order.
@@ -35,7 +44,7 @@ pub(super) struct ConvexPair<'a, L> {
 }
 
 impl<'a, L: QueryDispatcher> ConvexPair<'a, L> {
-    /// The pair, if the shapes are one. `inner` answers for it first.
+    /// Returns the pair, if the shapes are one. `inner` answers first.
     pub fn of(inner: &'a L, pos12: &'a Pose, g1: &'a dyn Shape, g2: &'a dyn Shape) -> Option<Self> {
         let (link, link_is_first) =
             g1.as_shape().map(|link| (link, true)).or(g2.as_shape().map(|link| (link, false)))?;
@@ -43,8 +52,10 @@ impl<'a, L: QueryDispatcher> ConvexPair<'a, L> {
         Some(Self { inner, pos12, shapes: [g1, g2], supports, link, link_is_first })
     }
 
+    /// Returns the distance.
+    ///
     /// # Errors
-    /// [`Unsupported`] for what the inner dispatcher refuses.
+    /// [`Unsupported`] if the inner dispatcher refuses the pair.
     pub fn distance(&self) -> Result<Real, Unsupported> {
         Ok(match self.closest_points(Real::MAX)? {
             ClosestPoints::WithinMargin(point1, point2) => (point1 - self.pos12 * point2).length(),
@@ -52,8 +63,10 @@ impl<'a, L: QueryDispatcher> ConvexPair<'a, L> {
         })
     }
 
+    /// Returns the closest points, if they are at most `max_dist` apart.
+    ///
     /// # Errors
-    /// [`Unsupported`] for what the inner dispatcher refuses.
+    /// [`Unsupported`] if the inner dispatcher refuses the pair.
     pub fn closest_points(&self, max_dist: Real) -> Result<ClosestPoints, Unsupported> {
         let [g1, g2] = self.shapes;
         let within = max_dist.max(0.0);
@@ -79,11 +92,13 @@ impl<'a, L: QueryDispatcher> ConvexPair<'a, L> {
         }
     }
 
+    /// Returns the contact, if its `dist` is at most `prediction`.
+    ///
     /// # Errors
-    /// [`Unsupported`] for what the inner dispatcher refuses.
+    /// [`Unsupported`] if the inner dispatcher refuses the pair.
     pub fn contact(&self, prediction: Real) -> Result<Option<Contact>, Unsupported> {
         let [g1, g2] = self.shapes;
-        // An overlap is found first, then measured.
+        // Find an overlap first, then measure it.
         let within = prediction.max(0.0);
         let mut found = self.inner.contact(self.pos12, g1, g2, within)?;
         if found.is_none() {
@@ -98,7 +113,8 @@ impl<'a, L: QueryDispatcher> ConvexPair<'a, L> {
             Some(contact) => self.least(contact)?,
             None => self.contact_of_closest()?,
         };
-        // What is within the prediction is what the distance says, which other iterations find.
+        // The distance, which other iterations compute, decides whether it is within the
+        // prediction.
         Ok(match found {
             Some(contact) if contact.dist <= prediction => Some(contact),
             Some(contact) if prediction >= 0.0 => {
@@ -111,16 +127,16 @@ impl<'a, L: QueryDispatcher> ConvexPair<'a, L> {
         })
     }
 
-    /// The contact of an overlap, or of what is not plain, or a better one. Of shapes that all but
-    /// touch EPA may say that they overlap by as much as their size, and of others less than
-    /// separates them.
+    /// Returns the contact of an overlap, or of a pair whose normal is not confirmed, or a better
+    /// one. EPA may report an overlap as large as the shapes for shapes that almost touch, and an
+    /// overlap too small to separate others.
     fn least(&self, contact: Contact) -> Result<Option<Contact>, Unsupported> {
         let [g1, g2] = self.shapes;
         let points = self.inner.closest_points(self.pos12, g1, g2, Real::MAX)?;
         let is_apart = matches!(points, ClosestPoints::WithinMargin(..));
         let other = if is_apart { self.contact_of_closest() } else { self.contact_of_layers() }?;
         let rounding = ROUNDING * largest(self.pos12, g1, g2);
-        // By how much they have to be moved along this normal, and what that makes of its points.
+        // The translation needed along this normal, and the points that it implies.
         let dist = contact.dist.min(self.gap(contact.normal1));
         if let Some(less) = other.filter(|other| other.dist > dist + rounding) {
             return Ok(Some(less));
@@ -135,7 +151,7 @@ impl<'a, L: QueryDispatcher> ConvexPair<'a, L> {
         Ok(Some(Contact { dist, point2, ..contact }))
     }
 
-    /// The contact by the closest points, if these give a direction, or by the layers.
+    /// Returns the contact by the closest points, if these give a direction, or by the layers.
     fn contact_of_closest(&self) -> Result<Option<Contact>, Unsupported> {
         let [g1, g2] = self.shapes;
         if let ClosestPoints::WithinMargin(point1, point2) =
@@ -151,13 +167,13 @@ impl<'a, L: QueryDispatcher> ConvexPair<'a, L> {
         self.contact_of_layers()
     }
 
-    /// The contact along the normal that the link without a layer gives. It separates the two.
+    /// Returns the contact along the normal of step 2 or 3. It separates the two.
     fn contact_of_layers(&self) -> Result<Option<Contact>, Unsupported> {
         let Some((gap, normal, near)) = self.widest_of_layers()?.or_else(|| self.widest_of_axes())
         else {
             return Ok(None);
         };
-        // On the planes between which the gap is.
+        // The points lie on the planes that bound the gap.
         let [begin, end] =
             [self.support(0, normal), self.support(1, -normal)].map(|point| point.dot(normal));
         let onto = |height: Real| near + normal * (height - near.dot(normal));
@@ -166,8 +182,7 @@ impl<'a, L: QueryDispatcher> ConvexPair<'a, L> {
         Ok(Some(Contact::new(point1, point2, normal, normal2, gap)))
     }
 
-    /// The widest gap along a way from the link without a layer to the other shape, and the point
-    /// of the link's core.
+    /// Step 2: returns the widest gap, its normal, and the point of the link's core.
     fn widest_of_layers(&self) -> Result<Option<(Real, Vector, Vector)>, Unsupported> {
         let mut best: Option<(Real, Vector, Vector)> = None;
         let rounding = ROUNDING * largest(self.pos12, self.shapes[0], self.shapes[1]);
@@ -182,7 +197,7 @@ impl<'a, L: QueryDispatcher> ConvexPair<'a, L> {
             if best.is_none_or(|(most, ..)| gap > most) {
                 best = Some((gap, normal, ends[usize::from(!self.link_is_first)]));
             }
-            // Thicker layers show no more.
+            // Thicker layers cannot improve it.
             if (ends[1] - ends[0]).dot(normal) > 0.5 * depth && depth > rounding {
                 break;
             }
@@ -190,8 +205,8 @@ impl<'a, L: QueryDispatcher> ConvexPair<'a, L> {
         Ok(best)
     }
 
-    /// The widest gap along the way between the shapes' boxes, the link's axis and across it, and
-    /// the coordinate axes.
+    /// Step 3: returns the widest gap among the direction between the boxes' centres, the link's
+    /// axis, directions across the axis, and the coordinate axes.
     fn widest_of_axes(&self) -> Option<(Real, Vector, Vector)> {
         let boxes = [self.shapes[0].compute_local_aabb(), self.shapes[1].compute_aabb(self.pos12)];
         let axis = self.placed(self.link.axis());
@@ -210,16 +225,17 @@ impl<'a, L: QueryDispatcher> ConvexPair<'a, L> {
         widest.map(|(gap, normal)| (gap, normal, middle))
     }
 
-    /// Whether the two are apart and a plane across the unit vector from one to the other keeps
-    /// them so by what GJK says, but for half of it. Of shapes that touch GJK may say that they
-    /// are as far apart as they are large, and of those that overlap that they all but touch.
-    /// Where it is right rounding may still have turned the way between points that are
-    /// close to each other: what is not plain is asked about further.
+    /// Returns whether the two are apart and the gap along `normal` confirms at least half of the
+    /// distance reported by GJK.
+    ///
+    /// For shapes that touch, GJK may report a distance as large as the shapes. For shapes that
+    /// overlap, it may report that they almost touch. Even if it is right, rounding may turn the
+    /// direction between close points. An unconfirmed pair is examined further.
     fn is_plain(&self, normal: Vector, distance: Real) -> bool {
         distance > 0.0 && self.gap(normal) > 0.5 * distance
     }
 
-    /// Whether some simple direction proves that the two are further apart.
+    /// Returns whether a simple direction proves that the two are farther apart than `margin`.
     fn are_apart_by(&self, margin: Real) -> bool {
         let boxes = [self.shapes[0].compute_local_aabb(), self.shapes[1].compute_aabb(self.pos12)];
         let between = boxes[1].center() - boxes[0].center();
@@ -228,12 +244,12 @@ impl<'a, L: QueryDispatcher> ConvexPair<'a, L> {
         [unit(between), radial].into_iter().flatten().any(|normal| self.gap(normal) > margin)
     }
 
-    /// How far the second shape begins beyond the end of the first along a unit vector.
+    /// Returns `gap(normal)`.
     pub(super) fn gap(&self, normal: Vector) -> Real {
         (self.support(1, -normal) - self.support(0, normal)).dot(normal)
     }
 
-    /// The point of one of the shapes that is furthest along a unit vector, in the first's frame.
+    /// Returns the support point of one shape along a unit vector, in the first shape's frame.
     pub(super) fn support(&self, which: usize, normal: Vector) -> Vector {
         if which == 0 {
             self.supports[0].local_support_point_toward(normal)
@@ -242,13 +258,13 @@ impl<'a, L: QueryDispatcher> ConvexPair<'a, L> {
         }
     }
 
-    /// A direction of the link's in the first's frame.
+    /// Returns a direction of the link in the first shape's frame.
     fn placed(&self, direction: Vector) -> Vector {
         if self.link_is_first { direction } else { self.pos12.rotation * direction }
     }
 }
 
-/// The closest points of a contact within `max_dist`.
+/// Returns the closest points of a contact within `max_dist`.
 fn closest_points_of(contact: &Contact, max_dist: Real) -> ClosestPoints {
     if contact.dist <= 0.0 {
         ClosestPoints::Intersecting

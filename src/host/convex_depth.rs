@@ -1,13 +1,16 @@
-//! The least translation that separates a link from another convex shape of parry's that it
-//! overlaps.
+//! The least translation that separates a link from another convex shape of parry that it overlaps.
 //!
-//! What parry's EPA finds is one candidate. The others are the normals in which the least
-//! translation can be by the shapes' features, as for a [link and a
-//! triangle](crate::distance::depth): the shape's faces, the link's axis, what is perpendicular to
-//! the axis and an edge; and, of the corner that lies foremost along the best of these, with its
-//! edges, the ways to the axis, to the centres of round caps and to rims. Each is measured by the
-//! two supports, whatever it is, so that the translation separates. A shape with round parts of its
-//! own has a continuum of faces: of it EPA's answer and the axes are all there is.
+//! parry's EPA gives one candidate. The other candidates are the normals at which the features of
+//! the shapes allow a least translation, as for a [link and a triangle](crate::distance::depth):
+//!
+//! 1. the normals of the shape's faces, the link's axis, and the directions perpendicular to the
+//!    axis and an edge;
+//! 2. for the foremost corner along the best candidate of 1, and its edges: the directions to the
+//!    axis, to the centres of round caps and to rims.
+//!
+//! Two support points measure each candidate, so the resulting translation always separates. A
+//! shape with round parts of its own has a continuum of faces. For such a shape only EPA's answer
+//! and the axes are tried.
 
 use super::axial::{perpendicular, unit, unit_across};
 use super::convex::ConvexPair;
@@ -17,18 +20,18 @@ use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::query::{Contact, PointQuery, QueryDispatcher};
 use parry3d_f64::shape::{ConvexPolyhedron, Shape, SupportMap, TypedShape};
 
-/// How often the corner that lies foremost is looked for again.
+/// Most searches for the foremost corner.
 const ROUNDS: usize = 3;
-/// How often a point is taken from one shape to the other to find where they touch.
+/// Most projections from one shape to the other when searching the touching point.
 const PROJECTIONS: usize = 8;
-/// It has settled where it moves by less than this share of the link's size.
+/// The search ends if the point moves by less than this share of the link's size.
 const SETTLED: Real = 1e-9;
-/// Normals as near as this to each other, as a cosine, touch at one place.
+/// Normals whose angle has at least this cosine touch at one place.
 const SAME_NORMAL: Real = 1.0 - 1e-10;
-/// By how much rounding can put a normal outside of those that an edge has.
+/// Rounding margin for the range of normals of an edge.
 const ROUNDING: Real = 64.0 * Real::EPSILON;
 
-/// The link and the other shape's place, in the frame of the pair.
+/// The link and the other shape, in the frame of the pair.
 struct PlacedConvex<'a> {
     link: ModifiedCylinder,
     axis: Option<Vector>,
@@ -36,12 +39,11 @@ struct PlacedConvex<'a> {
     pose: Pose,
 }
 
-/// A gap and the normal out of the first shape that has it.
+/// A gap and its normal, out of the first shape.
 type Gap = (Real, Vector);
 
 impl<L: QueryDispatcher> ConvexPair<'_, L> {
-    /// The contact with the least of the translations that separate the two, if it is one of an
-    /// overlap.
+    /// Returns the contact with the least separating translation, if `contact` is an overlap.
     pub(super) fn shallowest(&self, contact: Contact) -> Contact {
         if contact.dist > 0.0 {
             return contact;
@@ -78,10 +80,10 @@ impl<L: QueryDispatcher> ConvexPair<'_, L> {
         if gap > best.0 { (gap, normal) } else { best }
     }
 
-    /// Where the link touches the other shape once they are moved apart, by going from the one to
-    /// the other and back.
+    /// Returns the point of the link that touches the other shape once they are moved apart, by
+    /// alternating projections.
     fn touching(&self, placed: &PlacedConvex, (gap, normal): Gap) -> Vector {
-        // The other is moved away from the link.
+        // The other shape is moved away from the link.
         let (out, toward_second) =
             if self.link_is_first { (normal, Vector::ZERO) } else { (-normal, normal * gap) };
         let apart = Pose::from_translation(-out * gap) * placed.pose;
@@ -99,7 +101,7 @@ impl<L: QueryDispatcher> ConvexPair<'_, L> {
         on_link - toward_second
     }
 
-    /// The contact near a point, its own points on the planes between which the gap is.
+    /// Returns the contact near a point. Its points lie on the planes that bound the gap.
     fn report(&self, (gap, normal): Gap, near: Vector) -> Contact {
         let begin = self.support(0, normal).dot(normal);
         let onto = |height: Real| near + normal * (height - near.dot(normal));
@@ -110,8 +112,8 @@ impl<L: QueryDispatcher> ConvexPair<'_, L> {
 }
 
 impl PlacedConvex<'_> {
-    /// The normals of the other shape's faces, the link's axis, and what is perpendicular to it and
-    /// to an edge.
+    /// Candidates 1: the normals of the other shape's faces, the link's axis, and the directions
+    /// perpendicular to the axis and an edge.
     fn faces_and_products(&self, consider: &mut impl FnMut(Vector)) {
         let rotation = self.pose.rotation;
         let axis = self.axis;
@@ -146,7 +148,7 @@ impl PlacedConvex<'_> {
                 }
             }
             _ => {
-                // Shapes of parry's that are round have the y axis.
+                // parry's round shapes have the y axis.
                 let own = rotation * Vector::Y;
                 both_ways(unit(own));
                 both_ways(product(own));
@@ -157,7 +159,8 @@ impl PlacedConvex<'_> {
         }
     }
 
-    /// The normals that the corner has that lies foremost against `out`, which is out of the link.
+    /// Candidates 2: the normals of the foremost corner against `out`, which points out of the
+    /// link.
     fn around_corner(&self, out: Vector, consider: &mut impl FnMut(Vector)) {
         let Some(corner) = self.corner_toward(-out) else { return };
         let mut both_ways = |n: Option<Vector>| {
@@ -188,7 +191,7 @@ impl PlacedConvex<'_> {
         }
     }
 
-    /// The corner that lies foremost along a unit vector, borders left out.
+    /// Returns the foremost corner along a unit vector, without the border of a round shape.
     fn corner_toward(&self, way: Vector) -> Option<Vector> {
         Some(match self.core() {
             TypedShape::Cuboid(cuboid) => cuboid.support_point_toward(&self.pose, way),
@@ -197,7 +200,7 @@ impl PlacedConvex<'_> {
         })
     }
 
-    /// The unit directions of the edges at a corner.
+    /// Writes the unit directions of the edges at a corner and returns their number.
     fn edges_at(&self, corner: Vector, edges: &mut [Vector; MAX_EDGES]) -> usize {
         let rotation = self.pose.rotation;
         let mut count = 0;
@@ -221,8 +224,7 @@ impl PlacedConvex<'_> {
         count
     }
 
-    /// The other shape without its border: what is round around a shape leaves its normals as they
-    /// are.
+    /// Returns the other shape without its round border, which does not change its normals.
     fn core(&self) -> TypedShape<'_> {
         match self.other.as_typed_shape() {
             TypedShape::RoundCuboid(round) => TypedShape::Cuboid(&round.inner_shape),
@@ -234,11 +236,11 @@ impl PlacedConvex<'_> {
     }
 }
 
-/// Of a corner with more edges only so many are looked at.
+/// Most edges that are tried at a corner.
 const MAX_EDGES: usize = 16;
 
-/// Whether a normal or its opposite is one that an edge between two faces has. All but the normal
-/// lie across the edge.
+/// Returns whether a normal or its opposite belongs to the edge between two faces with the normals
+/// a and b. Both are perpendicular to `edge`.
 fn is_between(n: Vector, [a, b]: [Vector; 2], edge: Vector) -> bool {
     let turn = |from: Vector, to: Vector| from.cross(to).dot(edge);
     let whole = turn(a, b);

@@ -1,14 +1,15 @@
 //! The crest of a link: its outline in the plane of its axis and a contact's normal, on the
 //! triangle's side.
 //!
-//! It is the line of the barrel that lies furthest along the normal, and at a round end it goes on
-//! around the cap to the cap's point furthest along the normal. A surface that is only touched by
-//! the crest cannot be touched by anything else of barrel or cap. Its ends are what the link stands
-//! on (see [`support_points`](super::support_points)); these count as well:
+//! The crest is the barrel's line farthest along the normal. At a round end it continues on the cap
+//! to the cap's point farthest along the normal. A surface that the crest touches cannot touch any
+//! other part of barrel or cap. [`support_points`](super::support_points) covers the ends of the
+//! crest. This file adds:
 //!
 //! 1. **Edges across it**, where they cross its plane. Near a round cap's own lowest point an edge
-//!    is left out: that point speaks for it, and one beside it would hinder the cap from rolling.
-//! 2. **An edge along it**, with the two ends of what is beside the barrel.
+//!    is skipped: that point represents the contact, and a second one would hinder the cap from
+//!    rolling.
+//! 2. **An edge along it**: the two ends of its part beside the barrel.
 
 use super::feature::{self, SAME_POINT};
 use super::link_triangle_points::Meeting;
@@ -17,12 +18,12 @@ use crate::robot::ModifiedCylinder;
 use parry3d_f64::math::{Real, Vector};
 use parry3d_f64::shape::PackedFeatureId;
 
-/// An edge that stays within this share of the radius from the crest lies along it.
+/// An edge within this share of the radius from the crest lies along it.
 const ALONG_CREST: Real = 0.01;
-/// What is within this share of the radius from the crest is near it: the surface leans by 30
-/// degrees at most.
+/// A point within this share of the radius from the crest is near it: the surface leans by at most
+/// 30 degrees.
 const NEAR_CREST: Real = 0.5;
-/// The share of its radius around a round cap's lowest point in which no edge counts.
+/// No edge counts within this share of the radius around a round cap's lowest point.
 const LOWEST: Real = 0.25;
 
 /// Adds the points where edges meet the crest.
@@ -34,8 +35,8 @@ pub(super) fn collect(meeting: &mut Meeting) {
             for (q, id) in ends.into_iter().zip([feature::ALONG_EDGE, feature::ALONG_EDGE + 1]) {
                 let dist = crest.drop(q);
                 let on_link = q - meeting.normal * dist;
-                // Beside the crest the way back is a little longer, and can lead past the barrel's
-                // end.
+                // Beside the crest the distance along the normal is slightly longer and may lead
+                // past the barrel's end.
                 let slack = SAME_POINT * meeting.size;
                 if (-slack..=crest.length + slack).contains(&on_link.dot(crest.axis)) {
                     meeting.add(on_link, dist, PackedFeatureId::edge(id), edge);
@@ -50,15 +51,15 @@ pub(super) fn collect(meeting: &mut Meeting) {
     }
 }
 
-/// The plane of axis and normal, from the link's start. All directions are unit vectors.
+/// The plane of axis and normal, relative to the link's start. All directions are unit vectors.
 pub(super) struct Crest {
     axis: Vector,
     normal: Vector,
     /// From the axis to the crest.
     lateral: Vector,
-    /// Across the plane.
+    /// Perpendicular to the plane.
     side: Vector,
-    /// The normal's parts along `lateral` and along the axis.
+    /// The components of the normal along `lateral` and along the axis.
     across: Real,
     slope: Real,
     radius: Real,
@@ -66,7 +67,7 @@ pub(super) struct Crest {
 }
 
 impl Crest {
-    /// The crest of a link that starts at the origin, if it has one.
+    /// Returns the crest of a link that starts at the origin, if it has one.
     pub fn of(link: &ModifiedCylinder, normal: Vector) -> Option<Self> {
         let axis = link.axis();
         let lateral = support_points::lateral(link, normal)?;
@@ -76,28 +77,29 @@ impl Crest {
         Some(Self { axis, normal, lateral, side, across, slope, radius, length })
     }
 
-    /// How far the barrel is from a point, back along the normal, if that leads to the barrel near
-    /// the crest.
+    /// Returns the distance from the barrel to a point along the normal, if the normal line through
+    /// the point meets the barrel near the crest.
     pub fn near(&self, q: Vector) -> Option<Real> {
         let dist = self.drop(q);
         let is_over = (0.0..=self.length).contains(&(q - self.normal * dist).dot(self.axis));
         (is_over && q.dot(self.side).abs() <= NEAR_CREST * self.radius).then_some(dist)
     }
 
-    /// How far the barrel is from a point of the triangle, back along the normal.
+    /// Returns the distance from the barrel to a point of the triangle, along the normal.
     fn drop(&self, q: Vector) -> Real {
         let aside = q.dot(self.side);
         let height = ((self.radius - aside) * (self.radius + aside)).max(0.0).sqrt();
         (q.dot(self.lateral) - height) / self.across
     }
 
-    /// Where along the axis a point of the triangle, taken back along the normal, meets the crest's
-    /// line.
+    /// Returns the coordinate along the axis at which the normal line through a point meets the
+    /// crest's line.
     fn along(&self, q: Vector) -> Real {
         q.dot(self.axis) - (q.dot(self.lateral) - self.radius) / self.across * self.slope
     }
 
-    /// Case 2: the ends of an edge along the crest, as far as it is beside the barrel.
+    /// Case 2: returns the ends of an edge's part beside the barrel, if the edge is along the
+    /// crest.
     fn along_barrel(&self, v: Vector, w: Vector) -> Option<[Vector; 2]> {
         let (at_v, at_w) = (self.along(v), self.along(w));
         let share = |z: Real| (z - at_v) / (at_w - at_v);
@@ -115,14 +117,14 @@ impl Crest {
         (from <= to && ends.iter().all(is_near)).then_some(ends)
     }
 
-    /// Case 1: where an edge crosses the plane.
+    /// Case 1: returns the place where an edge crosses the plane.
     fn across(&self, v: Vector, w: Vector) -> Option<Vector> {
         let (y0, y1) = (v.dot(self.side), w.dot(self.side));
         ((y0 <= 0.0) != (y1 <= 0.0)).then(|| v.lerp(w, y0 / (y0 - y1)))
     }
 
-    /// Case 1: how far the crest is from a point of its plane, back along the normal, if it is
-    /// there.
+    /// Case 1: returns the distance from the crest to a point of its plane, along the normal, if
+    /// the crest extends there.
     fn below(&self, meeting: &Meeting, q: Vector) -> Option<Real> {
         let z = self.along(q);
         if (0.0..=self.length).contains(&z) {
@@ -135,7 +137,7 @@ impl Crest {
         let is_on_cap = leans_round(meeting.link, self.normal, end)
             && (LOWEST * self.radius..self.radius).contains(&aside);
         let on_cap = height - ((self.radius - aside) * (self.radius + aside)).max(0.0).sqrt();
-        // From where the barrel begins to the cap's lowest point.
+        // Between the end of the barrel and the cap's lowest point.
         let outward = outward(meeting.link, end);
         let beyond = (offset - self.normal * on_cap).dot(outward);
         let is_between = (0.0..=self.radius * self.normal.dot(outward)).contains(&beyond);

@@ -1,9 +1,9 @@
-//! How a pair of shapes is taken apart.
+//! How a pair of shapes is split into parts.
 
 use parry3d_f64::query::Unsupported;
 use parry3d_f64::shape::{CompositeShape, HeightField, Shape, Voxels};
 
-/// The shape of a pair that consists of others.
+/// Which shape of a pair is split.
 pub(super) enum Decomposition<'a> {
     /// The first shape is a composite: a chain, a mesh, a polyline, a compound.
     Composite(&'a (dyn CompositeShape + Sync)),
@@ -11,14 +11,14 @@ pub(super) enum Decomposition<'a> {
     Field(&'a HeightField),
     /// The first shape is made of voxels.
     Voxels(&'a Voxels),
-    /// Only the second shape consists of others.
+    /// Only the second shape has parts.
     OfSecond,
-    /// Neither does.
+    /// Neither shape has parts.
     None,
 }
 
 impl<'a> Decomposition<'a> {
-    /// The first shape is taken apart first.
+    /// Splits the first shape first.
     ///
     /// # Errors
     /// As [`check_scale`].
@@ -39,11 +39,11 @@ impl<'a> Decomposition<'a> {
     }
 }
 
-/// Whether parry finds the cells of a shape.
+/// Checks that parry finds the cells of a shape.
 ///
 /// # Errors
-/// [`Unsupported`] for height fields and voxels that a negative scale mirrors: of these parry looks
-/// for cells between a box's upper corner and its lower one, where there are none.
+/// [`Unsupported`] for height fields and voxels that a negative scale mirrors. parry searches their
+/// cells from a box's upper corner to its lower one, where there are none.
 pub(super) fn check_scale(shape: &dyn Shape) -> Result<(), Unsupported> {
     let scale = shape
         .as_heightfield()
@@ -52,7 +52,7 @@ pub(super) fn check_scale(shape: &dyn Shape) -> Result<(), Unsupported> {
     if scale.is_some_and(|scale| scale.min_element() < 0.0) { Err(Unsupported) } else { Ok(()) }
 }
 
-/// Whether `shape` consists of others.
+/// Returns whether `shape` has parts.
 pub(super) fn has_parts(shape: &dyn Shape) -> bool {
     shape.as_composite_shape().is_some()
         || shape.as_heightfield().is_some()

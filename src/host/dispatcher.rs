@@ -1,4 +1,18 @@
-//! The dispatcher to hand to parry and rapier, so that their queries know this crate's shapes.
+//! The query dispatcher for parry and rapier.
+//!
+//! # Algorithm
+//! Each query tries, in this order:
+//!
+//! 1. **Thin shapes.** Replace the other shape by a triangle if it is one ([`ThinShape`]).
+//! 2. **Surfaces.** A robot and a triangle or a mesh ([`RobotSurface`]), or a half-space
+//!    ([`RobotHalfSpace`]).
+//! 3. **Composites.** Split a composite shape ([`Decomposition`]) and query its parts.
+//! 4. **Links.** Two links, or a link and one of parry's shapes that is a link ([`LinkPair`]).
+//! 5. **Iterations.** Scale the pair ([`IteratedPair`]) and ask the inner dispatcher, with
+//!    fallbacks for a link ([`ConvexPair`]).
+//!
+//! Casts use [`straight_cast`] and [`link_cast`] instead of distances for links against triangles,
+//! links and convex shapes. Contact manifolds have a file of their own (`manifold.rs`).
 
 use super::composite::CompositePair;
 use super::convex::ConvexPair;
@@ -26,63 +40,63 @@ use parry3d_f64::shape::Shape;
 ///
 /// It is a *root* dispatcher: give it to parry or rapier as it is, and put a dispatcher of your own
 /// inside, as `L`. It must not stand at the end of a chain of dispatchers, because parry's own
-/// never asks the others about the parts of a composite shape.
+/// dispatcher never passes the parts of a composite shape on to the others.
 ///
-/// What is answered for a link or a chain against another shape, in either order:
+/// Answers for a link or a chain against another shape, in either order:
 ///
 /// | | `Triangle`, `Segment`, `TriMesh`, `Polyline`, `HeightField` | `HalfSpace` | link, chain, `Ball`, `Capsule`, `Cylinder` | other convex shape |
 /// |---|---|---|---|---|
 /// | `distance`, `closest_points` | exact | exact | exact | parry's GJK: within 1e-5 |
 /// | `intersection_test` | exact | exact | exact | parry's GJK |
 /// | `contact`, apart | exact | exact | exact | parry's GJK: within 1e-5 |
-/// | `contact`, overlapping | exact: the shortest translation that separates link and triangle | exact | separates, to rounding; round links and balls exact; the shortest translation but for what stands below | separates, to rounding; the shortest translation but for what stands below |
-/// | `cast_shapes` | never late; early by 1e-9 of the link's size at most | exact | never late; early by 1e-9 of the smaller link's size at most | never late but for GJK; early by 1e-5 |
-/// | `cast_shapes_nonlinear` | never late | never late | never late | never late but for GJK |
-/// | contact manifolds | exact points along the contact's normal, which obeys a mesh's normal constraints | exact points | exact points along the contact's normal | the contact's own, and those of polygons that stand for the surfaces along its normal |
+/// | `contact`, overlapping | exact: the shortest translation that separates link and triangle | exact | separates, up to rounding; exact for round links and balls; otherwise nearly the shortest translation, see below | separates, up to rounding; nearly the shortest translation, see below |
+/// | `cast_shapes` | never late; early by at most 1e-9 of the link's size | exact | never late; early by at most 1e-9 of the smaller link's size | never late, except for errors of GJK; early by 1e-5 |
+/// | `cast_shapes_nonlinear` | never late | never late | never late | never late, except for errors of GJK |
+/// | contact manifolds | exact points along the contact's normal, which obeys a mesh's normal constraints | exact points | exact points along the contact's normal | the contact's own points, and points of polygons that approximate the surfaces along its normal |
 ///
-/// Numbers are for shapes of size one, and for others as shares of the size: a pair of the last
-/// column is scaled by a power of two before `L` is asked about it, because parry's tolerances are
-/// absolute. `tests/host/pairs.rs` and `tests/host/depths.rs` enforce these numbers. In the last
-/// column, what is smaller than 2^-40 of the other shape or of the way between them is refused.
+/// Errors are for shapes of size one, and relative to the size for others: a pair of the last
+/// column is scaled by a power of two before `L` answers, because parry's tolerances are absolute.
+/// `tests/host/pairs.rs` and `tests/host/depths.rs` enforce these numbers. In the last column, a
+/// shape smaller than 2^-40 of the other shape, or of the distance between them, is refused.
 ///
-/// **The shortest translation.** The one that separates a link from another convex shape may be
-/// longer than the shortest that a search of all directions finds. It is longer by at most
+/// **Shortest translation.** The translation that separates a link from another convex shape may
+/// exceed the shortest one that a search of all directions finds, by at most
 ///
 /// - 1e-12 for a round link against a round link or a `Capsule`;
 /// - 1e-6 for other links, and for a `Cylinder`, a `Cuboid`, a `ConvexPolyhedron` and a
 ///   `RoundCuboid`;
 /// - 0.01 for a `Cone` and a `RoundCylinder`.
 ///
-/// A `Ball`, a `Capsule` and a `Cylinder` are links: one without length, one with two round caps,
-/// one with two flat caps. A `Cylinder` without height is not, and stays in the last column.
-/// Another shape that is no more than a line, such as a cone of radius 0, counts as a segment.
+/// **Links among parry's shapes.** A `Ball` is a link of length 0, a `Capsule` a link with two
+/// round caps, a `Cylinder` a link with two flat caps. A `Cylinder` without height is not a link
+/// and stays in the last column. Another shape that is only a line, such as a cone of radius 0,
+/// counts as a segment.
 ///
 /// **Distances** are to the triangles themselves and unsigned: 0 for a link that touches or crosses
-/// one. Touching is `Intersecting`, and a margin is kept only by what is farther away than it.
+/// a triangle. Touching is `Intersecting`. A distance equal to a margin is within the margin.
 ///
-/// **Predictions.** Nothing that is farther away than the prediction is returned. A negative
-/// prediction asks for an overlap at least as deep. Of a manifold it is the nearest point that
-/// counts.
+/// **Predictions.** Nothing farther away than the prediction is returned. A negative prediction
+/// asks for an overlap at least that deep. For a manifold, its nearest point counts.
 ///
-/// **Manifolds.** The least `dist` of a pair's manifolds is that of `contact`. The flags of a mesh
-/// or a height field that fix internal edges may turn a normal, and remove no contact: an edge
-/// without a neighbour constrains nothing, and a one-sided surface holds from behind as well, where
-/// nothing touches its front as deep.
+/// **Manifolds.** The least `dist` of a pair's manifolds is the `dist` of `contact`. The flags of a
+/// mesh or a height field that fix internal edges may turn a normal, but remove no contact. An edge
+/// without a neighbour constrains nothing. A one-sided surface holds from behind as well, unless
+/// its front is touched at least as deep.
 ///
-/// **Nonlinear casts** that do not stop at the start ignore what touches there until the link's
-/// core would meet the other shape. At that time half of what keeps the link from passing through
-/// is left.
+/// **Nonlinear casts** that do not stop at the start ignore contacts at the start until the link's
+/// core would meet the other shape. At that time half of the depth that keeps the link from passing
+/// through is left.
 ///
 /// **Composite shapes** (`Compound`, `TriMesh`, `Polyline`, `HeightField`, `Voxels`,
-/// [`Chain`](crate::Chain)) are taken apart by this dispatcher at each level. `L` is asked only
-/// about pairs that cannot be taken apart. The sub-shape ids of an answer name the link, the
-/// triangle or the part of each side.
+/// [`Chain`](crate::Chain)) are split by this dispatcher at each level. `L` sees only pairs that
+/// cannot be split. The sub-shape ids of an answer name the link, the triangle or the part of each
+/// side.
 ///
 /// # Errors
-/// [`Unsupported`] if any pair within the query is, so that a pair that cannot be answered never
-/// looks like a free one. Also if
+/// [`Unsupported`] if any pair within the query is unsupported, so that such a pair never looks
+/// free. Also if
 ///
-/// - a pose, a velocity or a triangle that is visited is not finite or beyond 1e150;
+/// - a pose, a velocity or a visited triangle is not finite or beyond 1e150;
 /// - a rotation is not of unit length, or a margin is NaN;
 /// - a height field or voxels have a negative scale;
 /// - parry has no such query for voxels.
@@ -100,7 +114,7 @@ use parry3d_f64::shape::Shape;
 #[derive(Clone, Debug)]
 pub struct ContinuumDispatcher<L = DefaultQueryDispatcher>(pub L);
 
-/// With parry's own dispatcher inside, which has no `Default` of its own.
+/// Has parry's own dispatcher inside.
 impl Default for ContinuumDispatcher {
     fn default() -> Self {
         Self(DefaultQueryDispatcher)
@@ -124,7 +138,7 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
             return pair.intersection_test();
         }
         let parts = Decomposition::of(g1, g2)?;
-        // A ball asks for the point query, as in parry: an oriented mesh is solid to it.
+        // A ball uses the point query, as in parry: an oriented mesh is solid to it.
         if let (Some(ball), true) = (g1.as_ball(), has_parts(g2)) {
             return Ok(details::intersection_test_ball_point_query(pos12, ball, g2));
         }
@@ -173,7 +187,7 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
                 let answer = StrictDispatcher::ask(self, |watched| {
                     details::distance_composite_shape_shape(watched, pos12, parts, g2)
                 })?;
-                // What parry says where no part was near enough to be looked at.
+                // parry returns `Real::MAX` if no part was near enough.
                 if answer.distance < Real::MAX { Ok(answer) } else { Err(Unsupported) }
             }
             Decomposition::Field(field) => {
@@ -348,8 +362,7 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
             check_pose(&motion.position_at_time(start_time))?;
             check_pose(&motion.position_at_time(end_time))?;
         }
-        // parry's tolerances are absolute in time too: late times would leave it no way to meet
-        // them.
+        // parry's tolerances are absolute in time too, and late times could never meet them.
         if (start_time, end_time) != (0.0, 1.0) {
             let duration = end_time - start_time;
             if duration < 0.0 {
@@ -423,7 +436,7 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
 }
 
 impl<L: QueryDispatcher> ContinuumDispatcher<L> {
-    /// The contact of two shapes that cannot be taken apart; it may be beyond the prediction.
+    /// Returns the contact of two shapes that cannot be split; it may exceed the prediction.
     fn contact_of_simple(
         &self,
         pos12: &Pose,
@@ -439,7 +452,7 @@ impl<L: QueryDispatcher> ContinuumDispatcher<L> {
         Ok(contact.map(|contact| pair.restore(contact)))
     }
 
-    /// The contact of a pair that the inner dispatcher is asked about, in the pair's unit.
+    /// Returns the contact of a pair for the inner dispatcher, in the pair's unit.
     pub(super) fn contact_of_iterated(
         &self,
         pair: &IteratedPair,
@@ -456,11 +469,11 @@ impl<L: QueryDispatcher> ContinuumDispatcher<L> {
 }
 
 impl<L> ContinuumDispatcher<L> {
-    /// The dispatcher for a pair that cannot be taken apart, nor is answered here.
+    /// Returns the inner dispatcher for a pair that is neither split nor answered here.
     ///
     /// # Errors
-    /// [`Unsupported`] for a link out of the range of parry's iterations, where they panic or
-    /// answer NaN.
+    /// [`Unsupported`] for a link beyond the range of parry's iterations, where they panic or
+    /// return NaN.
     pub(super) fn inner(
         &self,
         pos12: &Pose,

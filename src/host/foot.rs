@@ -1,5 +1,5 @@
-//! The foot of a contact on a link's axis, and whether the link answers there as its capsule does:
-//! see `distance/depth/foot.rs`.
+//! The foot of a contact on a link's axis. It decides whether the contact of the link equals the
+//! contact of its capsule: see `distance/depth/foot.rs`.
 
 use super::axial::axis_or_x;
 use crate::distance::depth::to_flat;
@@ -9,7 +9,7 @@ use parry3d_f64::math::{Real, Vector};
 /// A point of a link's axis.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct AxisFoot {
-    /// How far it is along the axis from the nearest flat end; infinite if both are round.
+    /// Distance along the axis to the nearest flat end; infinite if both ends are round.
     pub to_flat: Real,
 }
 

@@ -1,11 +1,13 @@
-//! Height fields and moving composites, element by element: what parry has no version of that
-//! serves here.
+//! Height fields and moving composites, element by element, where parry's queries do not suffice.
 //!
-//! parry's cast against a height field looks at the starting cells only when the motion has no
-//! height component, and its nonlinear cast against a composite bisects for the balls around the
-//! parts, without end where a number is large. None of its queries on fields names the element that
-//! answered. So the elements are visited here: those whose boxes meet the box that the other shape
-//! occupies, reaches or sweeps, loosened by what rounding can have taken from it.
+//! - parry's cast against a height field examines the starting cells only if the motion has no
+//!   height component.
+//! - parry's nonlinear cast against a composite bisects for the balls around the parts, without end
+//!   if a number is large.
+//! - None of parry's queries on fields returns the element that answered.
+//!
+//! So this file visits the elements itself: those whose boxes meet the box that the other shape
+//! occupies, reaches or sweeps, loosened by a margin for rounding.
 
 use parry3d_f64::bounding_volume::{Aabb, BoundingVolume};
 use parry3d_f64::math::{Pose, Real, Vector};
@@ -78,14 +80,14 @@ impl<D: QueryDispatcher> HeightFieldPair<'_, D> {
         self.dispatcher.distance(self.pos12, element, self.other)
     }
 
-    /// The other shape's box, loosened by `margin` and by rounding.
+    /// Returns the other shape's box, loosened by `margin` and by rounding.
     fn around(&self, margin: Real) -> Aabb {
         let bounds = self.other.compute_aabb(self.pos12);
         let rounding = rounding(&bounds, self.field.root_aabb());
         bounds.loosened(margin + rounding + 16.0 * Real::EPSILON * margin)
     }
 
-    /// An element below or above the other shape, or any.
+    /// Returns an element below or above the other shape, or any element.
     fn some_element(&self) -> Option<Triangle> {
         let centre = self.other.compute_aabb(self.pos12).center();
         let (i, j) = self.field.closest_cell_at_point(centre);
@@ -94,7 +96,7 @@ impl<D: QueryDispatcher> HeightFieldPair<'_, D> {
     }
 }
 
-/// The first hit of a moving shape on a moving height field.
+/// Returns the first hit of a moving shape on a moving height field.
 pub(super) fn cast_nonlinear(
     dispatcher: &impl QueryDispatcher,
     (motion1, field): (&NonlinearRigidMotion, &HeightField),
@@ -118,15 +120,14 @@ pub(super) fn cast_nonlinear(
     Ok(first.map(|(id, hit)| ShapeCastHit { subshape1: id, ..hit }))
 }
 
-/// What rounding can have taken from the meeting of two boxes.
+/// Returns the margin for rounding when two boxes are tested for overlap.
 pub(super) fn rounding(bounds: &Aabb, root: &Aabb) -> Real {
     let size =
         [bounds.mins, bounds.maxs, root.mins, root.maxs].map(|corner| corner.abs().max_element());
     16.0 * Real::EPSILON * size.into_iter().fold(0.0, Real::max)
 }
 
-/// What a box sweeps along `path`, as far as there is something in `root`: the path may be
-/// infinite.
+/// Returns the box swept by a box along `path`, clipped to `root` because the path may be infinite.
 pub(super) fn swept(start: &Aabb, root: &Aabb, path: Vector) -> Aabb {
     let mut swept = *start;
     for i in 0..3 {
@@ -139,8 +140,9 @@ pub(super) fn swept(start: &Aabb, root: &Aabb, path: Vector) -> Aabb {
     swept
 }
 
-/// A box in the first shape's frame that the second does not leave: in that frame the centre of the
-/// ball around it travels no further than both move and turn it together.
+/// Returns a box in the first shape's frame that contains the second shape at all times. In that
+/// frame the centre of the second shape's bounding ball travels at most as far as both motions move
+/// and turn it in sum.
 pub(super) fn reached(
     motion1: &NonlinearRigidMotion,
     (motion2, other): (&NonlinearRigidMotion, &dyn Shape),
@@ -163,7 +165,7 @@ pub(super) fn reached(
     Ok(bounds)
 }
 
-/// The first hit of a moving shape on the moving parts of a composite.
+/// Returns the first hit of a moving shape on the moving parts of a composite.
 pub(super) fn cast_parts_nonlinear(
     dispatcher: &impl QueryDispatcher,
     (motion1, parts): (&NonlinearRigidMotion, &dyn CompositeShape),
@@ -171,7 +173,7 @@ pub(super) fn cast_parts_nonlinear(
     (start_time, end_time): (Real, Real),
     stop_at_penetration: bool,
 ) -> Result<Option<ShapeCastHit>, Unsupported> {
-    // What has no bounds, as a half-space, meets any part.
+    // A shape without bounds, such as a half-space, may meet any part.
     let bounds = reached(motion1, (motion2, other), (start_time, end_time))
         .unwrap_or(parts.bvh().root_aabb());
     let mut first: Result<Option<ShapeCastHit>, Unsupported> = Ok(None);
@@ -203,7 +205,7 @@ pub(super) fn cast_parts_nonlinear(
     first
 }
 
-/// The element in `bounds` that costs least, its id and what else `cost` says of it.
+/// Returns the element in `bounds` of least cost, its id, and the rest of the result of `cost`.
 fn least_element<T>(
     field: &HeightField,
     bounds: &Aabb,

@@ -1,37 +1,39 @@
-//! Which contacts of a chain's links are those of its joints.
+//! Removes the contact points of a chain that lie inside its joints.
 //!
-//! At a joint the ends of two links lie inside each other. What a wall touches there is the
-//! neighbour, and the normal of a cap inside it would catch on the wall that the chain slides
-//! along. So such a point makes no contact, but *only while the neighbour makes one at least as
-//! deep*. Of all links that touch the same part of the wall, the points are visited from the
-//! deepest. A point is hidden where
+//! At a joint the ends of two links overlap. A wall touches the neighbour there, and the normal of
+//! a cap inside the neighbour would catch on a wall along which the chain slides. So such a point
+//! is removed, but *only while the neighbour makes a contact at least as deep*.
 //!
-//! 1. its normal leans out over the end of the link that it is at: sideways contacts stay, also
-//!    where two links lie on the same floor;
-//! 2. it lies inside another link, or on its surface;
-//! 3. that link has kept a point against the same part, which is at least as deep.
+//! # Algorithm
+//! For all links that touch the same part of the wall, visit the points from the deepest. A point
+//! is removed if
 //!
-//! So the deepest point is never hidden, whatever the joint looks like: a bend, a step in the
-//! radius, links shorter than their caps. What is left of a link's points counts if the nearest of
-//! them is within the prediction.
+//! 1. its normal leans out over the end of the link at which it lies. (Sideways contacts stay, even
+//!    if two links lie on the same floor.)
+//! 2. it lies inside another link or on its surface;
+//! 3. that link has kept a point against the same part that is at least as deep.
 //!
-//! **Equal depths.** At a joint both links often touch equally deep, and rounding decides which
-//! point is deeper. Points that are at most `rounding` less deep than the deepest one left count as
-//! equally deep, and among them the lowest link goes first. The same points are kept while the
-//! placement changes by rounding.
+//! So the deepest point is never removed, for any joint: a bend, a step in radius, links shorter
+//! than their caps. The remaining points of a link count if the nearest of them is within the
+//! prediction.
+//!
+//! # Equal depths
+//! At a joint both links often touch equally deep, and rounding decides the order. Points at most
+//! `rounding` less deep than the deepest remaining one count as equally deep; the lowest link goes
+//! first. So the same points stay while the placement changes by rounding.
 
 use super::feature::SAME_POINT;
 use crate::robot::ModifiedCylinder;
 use parry3d_f64::math::{Real, Vector};
 use parry3d_f64::query::{ContactManifold, PointQuery};
 
-/// The cosine between normal and axis from which a point leans out over an end. A normal that leans
-/// less catches on nothing. A chain at rest trembles by less, and does not change its points with
-/// every change of the sign. (Measured: with 1e-9 a straight chain in a corner changes them in 62
-/// of 200 steps.)
+/// The cosine between normal and axis above which a point leans out over an end. A normal that
+/// leans less cannot catch. It exceeds the vibration of a chain at rest, so the points do not
+/// change with each change of sign. (Measured: with 1e-9 a straight chain in a corner changes its
+/// points in 62 of 200 steps.)
 const LEANS: Real = 1e-4;
 
-/// Which of the two shapes of a pair the chain is.
+/// Which of the two shapes of a pair is the chain.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum WhichShape {
     First,
@@ -39,7 +41,7 @@ pub(super) enum WhichShape {
 }
 
 impl WhichShape {
-    /// The link and the part of the other shape that a manifold is between.
+    /// Returns the link of a manifold and the part of the other shape.
     fn names<M, C>(self, manifold: &ContactManifold<M, C>) -> (usize, u32) {
         let (link, other) = match self {
             Self::First => (manifold.subshape1, manifold.subshape2),
@@ -53,8 +55,8 @@ impl WhichShape {
     }
 }
 
-/// Takes the points that joints hide out of the manifolds of the chain of these `links`. Depths
-/// that differ by at most `rounding` are equal.
+/// Removes the points inside joints from the manifolds of a chain with these `links`. Depths that
+/// differ by at most `rounding` are equal.
 pub(super) fn remove_inner_points<M, C>(
     links: &[ModifiedCylinder],
     side: WhichShape,
@@ -107,7 +109,7 @@ pub(super) fn remove_inner_points<M, C>(
             }
         }
     }
-    // From the last of each manifold, so that the others keep their places.
+    // From the last point of each manifold, so that the indices of the others stay valid.
     hidden.sort_unstable_by(|a, b| b.cmp(a));
     for of_one in hidden.chunk_by(|a, b| a.0 == b.0) {
         let points = &mut manifolds[of_one[0].0].points;

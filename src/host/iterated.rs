@@ -1,9 +1,9 @@
-//! A pair that parry's iterations answer, in the unit that suits them.
+//! A pair that parry's iterations answer, in a unit that suits them.
 //!
 //! GJK and EPA stop at absolute tolerances: a squared length, area or height of 2e-15. In metres
-//! these are a large share of a thin link. So the pair is scaled by the power of two that brings
-//! its largest coordinate to [`SIZE`], and the answers are scaled back. Powers of two round
-//! nothing, so a pair that is 2^k times as large has answers 2^k times as large, bit for bit.
+//! this is a large share of a thin link. So the pair is scaled by a power of two that brings its
+//! largest coordinate to [`SIZE`], and the answers are scaled back. Powers of two are exact: a pair
+//! that is 2^k times as large has answers that are 2^k times as large, bit for bit.
 
 use super::range::{self, largest};
 use super::robot_surface::links_of;
@@ -13,28 +13,28 @@ use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::query::{ClosestPoints, Contact, Unsupported};
 use parry3d_f64::shape::{Cone, Cylinder, RoundShape, Shape, TypedShape};
 
-/// Where the largest coordinate of a pair is brought: from here to twice as much. (Measured with
-/// `tests/host/parrys.rs`: at 1 errors are up to 2e-4 of a link's radius, from 64 to 2^24 up to
+/// The largest coordinate of a scaled pair, up to a factor of two. (Measured with
+/// `tests/host/parrys.rs`: at 1, errors are up to 2e-4 of a link's radius; from 64 to 2^24, up to
 /// 2e-6.)
 const SIZE: Real = 4096.0;
 
-/// Two shapes of which the inner dispatcher is asked.
+/// A pair of shapes for the inner dispatcher.
 pub(super) struct IteratedPair<'a> {
-    /// In the pair's unit.
+    /// The second shape's pose in the first's frame, in the pair's unit.
     pub pos12: Pose,
     shapes: [&'a dyn Shape; 2],
     images: Option<[Box<dyn Shape>; 2]>,
-    /// What 1 is in the shapes' unit: a power of two.
+    /// The pair's unit in the shapes' unit: a power of two.
     pub unit: Real,
 }
 
 impl<'a> IteratedPair<'a> {
-    /// The pair. Only a pair with a link is scaled, and only if its other shape has an image: each
-    /// of parry's has one.
+    /// Returns the pair. Only a pair with a link is scaled, and only if its other shape has a
+    /// scaled image, as all of parry's shapes have.
     ///
     /// # Errors
-    /// [`Unsupported`] for a link out of the range of parry's iterations, where they panic or
-    /// answer NaN.
+    /// [`Unsupported`] for a link beyond the range of parry's iterations, where they panic or
+    /// return NaN.
     pub fn of(pos12: &Pose, g1: &'a dyn Shape, g2: &'a dyn Shape) -> Result<Self, Unsupported> {
         let as_it_is = Self { pos12: *pos12, shapes: [g1, g2], images: None, unit: 1.0 };
         if links_of(g1).or(links_of(g2)).is_none() {
@@ -58,12 +58,12 @@ impl<'a> IteratedPair<'a> {
         }
     }
 
-    /// A length in the pair's unit.
+    /// Converts a length to the pair's unit.
     pub fn length(&self, length: Real) -> Real {
         (length / self.unit).clamp(-Real::MAX, Real::MAX)
     }
 
-    /// A contact in the shapes' unit.
+    /// Converts a contact to the shapes' unit.
     pub fn restore(&self, contact: Contact) -> Contact {
         Contact {
             point1: contact.point1 * self.unit,
@@ -73,7 +73,7 @@ impl<'a> IteratedPair<'a> {
         }
     }
 
-    /// Closest points in the shapes' unit.
+    /// Converts closest points to the shapes' unit.
     pub fn restore_points(&self, points: ClosestPoints) -> ClosestPoints {
         match points {
             ClosestPoints::WithinMargin(point1, point2) => {
@@ -84,7 +84,7 @@ impl<'a> IteratedPair<'a> {
     }
 }
 
-/// The scaled shape. (parry's `scale_dyn` leaves the border of a round shape as it is.)
+/// Returns the scaled shape. (parry's `scale_dyn` does not scale the border of a round shape.)
 fn image(shape: &dyn Shape, scale: Real) -> Option<Box<dyn Shape>> {
     if let Some(link) = shape.as_shape::<ModifiedCylinder>() {
         let (start, end) = (link.start() * scale, link.end() * scale);

@@ -1,23 +1,25 @@
-//! Points around what two flat caps that face one another have in common, seen along the contact's
+//! Points around the common region of two flat caps that face each other, seen along the contact's
 //! normal.
 //!
-//! Along the normal `n` both discs cast ellipses onto the plane across it, and what these have in
-//! common is convex. Let `x` be a place in that plane, seen from the first centre, and `c` the
-//! second. Above it lie a point of each cap's plane,
+//! # Definitions
+//! - `n`: the normal. `a1`, `a2`: the unit axes. `r1`, `r2`: the radii.
+//! - `x`: a place in the plane across n, relative to the first centre. `c`: the second centre.
+//!
+//! Along n both discs project to ellipses in this plane; the intersection of the ellipses is
+//! convex. On the normal line through x lies a point of each cap's plane:
 //!
 //! ```text
 //! p = x - n (x . a1) / (n . a1),   q = x + n ((c - x) . a2) / (n . a2),
 //! ```
 //!
-//! with the unit axes `a1` and `a2`, and `x` is in both ellipses where `|p| <= r1` and `|q - c| <=
-//! r2`. Along a ray in the plane either is a quadratic equation. So every point here is on both
-//! caps, and where a ray ends, on a rim:
+//! and x is in both ellipses if `|p| <= r1` and `|q - c| <= r2`. Along a ray in the plane each
+//! condition is a quadratic inequality. So every point here lies on both caps, and the end of a ray
+//! lies on a rim:
 //!
-//! 1. **Four rays** from the middle of what the line between the centres has in common with both,
-//!    in directions that stay where they are on the first link, so that a link at rest keeps its
-//!    points.
-//! 2. **Two rays along the rims' common chord**, where it is longer than what is left between them:
-//!    the tips of a narrow lens.
+//! 1. **Four rays** from the middle of the part of the line of centres that lies in both ellipses.
+//!    Their directions are fixed on the first link, so a link at rest keeps its points.
+//! 2. **Two rays along the rims' common chord**, if it is longer than the rest of the region: the
+//!    tips of a narrow lens.
 
 use super::axial::{perpendicular, unit};
 use super::feature;
@@ -26,12 +28,11 @@ use crate::robot::ModifiedCylinder;
 use parry3d_f64::math::{Real, Vector};
 use parry3d_f64::shape::PackedFeatureId;
 
-/// Of two discs that have more of the narrower one's width in common than this share, the four rays
-/// show enough.
+/// If the discs share more than this part of the narrower one's width, the four rays suffice.
 const NARROW: Real = 0.9;
 
-/// Hands the points to `add`: on the first link, how far it is from there to the second along the
-/// unit normal, and the names.
+/// Passes each point to `add`: the point on the first link, the distance to the second link along
+/// the unit normal, and the names.
 pub(super) fn collect(
     first: &ModifiedCylinder,
     second: &ModifiedCylinder,
@@ -64,7 +65,7 @@ fn collect_between(
     add: &mut impl FnMut(Vector, Real, [PackedFeatureId; 2]),
 ) {
     let [first, second] = discs;
-    // Seen along the normal, from the first centre.
+    // Projected along the normal, relative to the first centre.
     let flattened = |v: Vector| v - normal * v.dot(normal);
     let apart = flattened(second.centre - first.centre);
     let directions = {
@@ -111,18 +112,18 @@ struct Disc {
 }
 
 impl Disc {
-    /// How far the cap's plane is from a place along the normal.
+    /// Returns the distance of the cap's plane from a place, along the normal.
     fn height(&self, at: Vector, normal: Vector) -> Real {
         (self.centre - at).dot(self.axis) / normal.dot(self.axis)
     }
 
-    /// The way in the cap's plane that is seen along the normal as `way`.
+    /// Returns the vector in the cap's plane whose projection along the normal is `way`.
     fn along_normal(&self, way: Vector, normal: Vector) -> Vector {
         way - normal * (way.dot(self.axis) / normal.dot(self.axis))
     }
 
-    /// How far a ray from a place leads until it leaves the disc as it is seen along the normal, if
-    /// it starts within.
+    /// Returns the length of a ray until it leaves the disc's projection along the normal, if it
+    /// starts inside.
     fn ray(&self, from: Vector, way: Vector, normal: Vector) -> Option<Real> {
         let (start, way) = (
             from + normal * self.height(from, normal) - self.centre,
@@ -134,7 +135,7 @@ impl Disc {
             return None;
         }
         let root = (half * half + squared * within).sqrt();
-        // Without a difference of what is about as large.
+        // Avoids the difference of two numbers of about equal size.
         Some(if half > 0.0 { within / (root + half) } else { (root - half) / squared })
     }
 }

@@ -1,21 +1,25 @@
-//! When a moving link meets a moving convex shape: conservative advancement, never late.
+//! The first hit of a moving link and a moving convex shape: conservative advancement, never late.
 //!
-//! Both travel and turn at constant speeds. While they are apart there is a plane between them that
-//! touches the other shape, the *wall*: that of their contact. It moves and turns with the wall,
-//! which stays behind it whatever happens. So the link is clear for as long as
-//! [`plane_gap`](super::plane_gap) proves that its two ends stay on their side. Then the two are
-//! measured again. Close to each other the steps are Newton's, from the safe side. They end
-//! where the two are as close as [`TOUCHING`] of their size or rounding.
+//! # Algorithm
+//! Both shapes move and turn at constant speeds. The other shape is called the *wall*.
 //!
-//! (parry's cast bisects for a root along a direction, which need not be the first, within
-//! tolerances of its own that late times cannot resolve: there it does not come back.)
+//! 1. **Plane.** While the two are apart, their contact gives a plane between them that touches the
+//!    wall. It moves and turns with the wall, which always stays behind it.
+//! 2. **Advance.** [`plane_gap`](super::plane_gap) proves for how long both ends of the link stay
+//!    on their side of the plane. For that time the link is clear.
+//! 3. **Repeat** from the new placement. Close to each other the steps are Newton's, from the safe
+//!    side. Stop if the distance is at most [`TOUCHING`] of the size, or rounding.
 //!
-//! **What touches at the start.** A host that does not stop there wants to know when the link would
-//! go through: rapier does, for fast bodies, and takes a hit at the very start for none. So what is
-//! cast is the link's *core*: the inside of its axis, swollen by half of the room that it has. A
-//! core is clear at the start unless the link is through already, and where it meets the wall half
-//! of the room is left. (parry's cast says that the link is held at the start, which frees it: it
-//! then passes a mesh with the end that did not touch.)
+//! (parry's cast bisects for a root along a direction, which need not be the first root. Its
+//! tolerances cannot be met at late times, where it does not return.)
+//!
+//! # Contacts at the start
+//! A host that does not stop at the start needs the time at which the link would pass through the
+//! wall: rapier does this for fast bodies, and ignores a hit at the very start. So the link's
+//! *core* is cast: the inside of its axis, enlarged by half of its distance to the wall. The core
+//! is clear at the start, unless the link has passed through already. When the core meets the wall,
+//! half of that distance is left. (parry's cast reports that the link is held at the start, which
+//! frees it: it then passes a mesh with the end that did not touch.)
 
 use super::axial::unit;
 use super::link_pair::{LinkPair, links_of_pair};
@@ -37,18 +41,19 @@ use parry3d_f64::shape::{Shape, SupportMap, Triangle};
 const TOUCHING: Real = 1e-9;
 /// The same for other shapes, whose contacts come from iterations.
 const ITERATED: Real = 1e-5;
-/// What rounding leaves of the largest coordinate.
+/// Rounding error relative to the largest coordinate.
 const ROUNDING: Real = 64.0 * Real::EPSILON;
-/// More than any motion takes that is not a grazing one. After that the moment reached is the
-/// answer: early, not late.
+/// Most steps: more than any motion needs, except a grazing one. Then the current time is the
+/// answer, which is early and not late.
 const MAX_STEPS: usize = 200;
 
-/// The first hit of two shapes, if one is a link and the other convex, or the one a robot and the
-/// other a half-space, in either order. `dispatcher` gives the contacts with walls other than
-/// triangles and half-spaces.
+/// Returns the first hit of a link and a convex shape, or of a robot and a half-space, in either
+/// order; `None` for other pairs.
+///
+/// `dispatcher` computes the contacts with walls other than triangles and half-spaces.
 ///
 /// # Errors
-/// [`Unsupported`] for what is not finite, out of range, or refused by the dispatcher.
+/// [`Unsupported`] for numbers that are not finite or out of range, or if the dispatcher refuses.
 pub(super) fn cast(
     dispatcher: &impl QueryDispatcher,
     (motion1, g1): (&NonlinearRigidMotion, &dyn Shape),
@@ -99,13 +104,13 @@ fn pair<'a>(g1: &'a dyn Shape, g2: &'a dyn Shape) -> Result<Option<RobotAndWall<
 
 enum MovingWall<'a> {
     Triangle(&'a Triangle),
-    /// Its unit normal.
+    /// The half-space's unit normal.
     HalfSpace(Vector),
     Link(ModifiedCylinder),
     Convex(&'a dyn Shape, &'a dyn SupportMap),
 }
 
-/// A robot and a wall on their ways.
+/// A moving robot and a moving wall.
 struct Cast<'a, D> {
     dispatcher: &'a D,
     robot: &'a NonlinearRigidMotion,
@@ -115,15 +120,15 @@ struct Cast<'a, D> {
     end_time: Real,
 }
 
-/// A link and the plane that holds the wall, at one moment.
+/// A link and the plane that bounds the wall, at one time.
 struct CastMoment {
     time: Real,
-    /// Of the robot and of the wall, in the world.
+    /// The poses of the robot and of the wall in the world.
     poses: [Pose; 2],
     distance: Real,
-    /// What the distance must exceed to count.
+    /// The distance at which the two count as touching.
     touching: Real,
-    /// In the link's frame, and where the wall's own plane is, there too.
+    /// Points of the link and of the wall's plane, in the link's frame.
     on_link: Vector,
     on_wall: Vector,
     /// From the link to the wall, in the link's frame.
@@ -131,7 +136,7 @@ struct CastMoment {
 }
 
 impl<D: QueryDispatcher> Cast<'_, D> {
-    /// The first hit, the link's side first.
+    /// Returns the first hit, the link's side first.
     fn of(
         &self,
         link: &ModifiedCylinder,
@@ -149,9 +154,9 @@ impl<D: QueryDispatcher> Cast<'_, D> {
         self.advance(&core, start)
     }
 
-    /// What must not touch the wall if the link does at the start: nothing if it is through
-    /// already. Room counts that the whole link can tell from a touch: a core thinner than that
-    /// would be nothing to the iterations.
+    /// Returns the core of a link that touches the wall at the start; `None` if the link has passed
+    /// through. The room must exceed what counts as touching for the whole link, because the
+    /// iterations cannot resolve a thinner core.
     fn core(
         &self,
         link: &ModifiedCylinder,
@@ -170,7 +175,7 @@ impl<D: QueryDispatcher> Cast<'_, D> {
         if radius > 2.0 * touching { capsule(radius).map(Some) } else { Ok(None) }
     }
 
-    /// The first moment from this on at which the two touch.
+    /// Steps 1 to 3: returns the first hit from `start` on.
     fn advance(
         &self,
         link: &ModifiedCylinder,
@@ -247,14 +252,14 @@ impl<D: QueryDispatcher> Cast<'_, D> {
         Ok(CastMoment { time, poses, distance, touching, on_link, on_wall, normal })
     }
 
-    /// A time until which the link stays before the wall's plane, at most `span`.
+    /// Step 2: returns a time during which the link stays before the wall's plane, at most `span`.
     fn clear_for(&self, link: &ModifiedCylinder, now: &CastMoment, span: Real) -> Real {
         let [robot_pose, wall_pose] = now.poses;
         let normal = robot_pose.rotation * now.normal;
         let axis = robot_pose.rotation * link.axis();
         let (spin, turn) = (self.robot.angvel, self.motion.angvel);
         let drift = self.motion.linvel - self.robot.linvel;
-        // How the axis turns.
+        // The angular velocity of the axis itself.
         let tilt = spin - axis * spin.dot(axis);
         let (tilts, turns) = (tilt.length(), turn.length());
         let mut clear = span;
@@ -269,7 +274,7 @@ impl<D: QueryDispatcher> Cast<'_, D> {
                 let bend = (tilts + turns) * (tilts + turns) + tilts * (spin.length() + turns);
                 (Reach::Support(support), 0.5 * link.radius() * bend)
             };
-            // Seen from the wall's centre of rotation, from which its plane is as far at all times.
+            // Relative to the wall's centre of rotation, whose distance from the plane is constant.
             let place = robot_pose * centre(link, end) - wall_pose * self.motion.local_center;
             let swing =
                 spin.cross(robot_pose.rotation * (centre(link, end) - self.robot.local_center));
@@ -291,8 +296,8 @@ impl<D: QueryDispatcher> Cast<'_, D> {
     }
 }
 
-/// A point of the plane across a contact's normal that the wall touches, and how far the link is
-/// from that plane: the two themselves say so. 0 where they overlap.
+/// Returns a point of the plane across a contact's normal that touches the wall, and the link's
+/// distance from that plane, both from support points. 0 for an overlap.
 fn touched_plane(
     link: &ModifiedCylinder,
     contact: &LinkContact,

@@ -1,20 +1,20 @@
-//! The contact manifold of a link and another convex shape that has no closed form: parry's
-//! clipping of the polygons that stand for the two surfaces, along the normal of the contact that
-//! the dispatcher names for the pair.
+//! The contact manifold of a link and a convex shape without a closed form.
 //!
-//! The contact's own points are among the manifold's, and none is deeper: the polygons only stand
-//! for what is round. (parry's routine asks GJK and EPA anew, from where the last step left them,
-//! and need not come to the same contact.)
+//! The points come from parry's clipping of the polygons that approximate the two surfaces, along
+//! the normal of the dispatcher's contact for the pair. The contact's own points are included, and
+//! no point is deeper: the polygons only approximate round surfaces. (parry's routine runs GJK and
+//! EPA again from the state of the last step, and may find a different contact.)
 
 use super::iterated::IteratedPair;
 use parry3d_f64::query::{Contact, ContactManifold, TrackedContact, Unsupported};
 use parry3d_f64::shape::{PackedFeatureId, PolygonalFeature};
 
-/// Brings the manifold up to date, if both shapes have polygons to stand for them. Returns whether
-/// they have. `contact` gives their contact, in the pair's unit.
+/// Updates the manifold, if both shapes have polygonal features. Returns whether they have.
+///
+/// `contact` computes their contact, in the pair's unit.
 ///
 /// # Errors
-/// [`Unsupported`] for what `contact` refuses.
+/// [`Unsupported`] if `contact` refuses.
 pub(super) fn update<M, C: Default + Copy>(
     pair: &IteratedPair,
     contact: impl FnOnce() -> Result<Option<Contact>, Unsupported>,

@@ -1,10 +1,10 @@
-//! The contact manifold of a link and a half-space: what the link stands on (see
-//! [`support_points`](super::support_points)), and how high each of these points is over the plane.
-//! The lowest has the height of the link's lowest point: where a flat cap all but lies on the
-//! plane, rounding alone decides which of its rim's points that is.
+//! The contact manifold of a link and a half-space: the link's
+//! [`support_points`](super::support_points) and their heights over the plane.
 //!
-//! Where the nearest is within the prediction, all count, so that the host sees what a fast link is
-//! about to reach.
+//! The lowest point gets the height of the link's true lowest point: if a flat cap almost lies on
+//! the plane, rounding alone decides which point of its rim is lowest. If the nearest point is
+//! within the prediction, all points count, so that the host sees what a fast link is about to
+//! reach.
 
 use super::axial::unit;
 use super::feature::{self, SAME_POINT};
@@ -14,8 +14,8 @@ use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::query::{ContactManifold, TrackedContact, Unsupported};
 use parry3d_f64::shape::{PackedFeatureId, Shape, SupportMap};
 
-/// Brings the manifold up to date, if the shapes are a link and a half-space, in either order.
-/// Returns whether they are.
+/// Updates the manifold, if the shapes are a link and a half-space, in either order. Returns
+/// whether they are.
 ///
 /// # Errors
 /// [`Unsupported`] if the half-space's normal has no direction, or for numbers out of range.
@@ -32,7 +32,7 @@ pub(super) fn update<M, C: Default + Copy>(
         _ => return Ok(false),
     };
     let plane = unit(half_space.normal).ok_or(Unsupported)?;
-    // Of the link in the half-space's frame.
+    // The link's pose in the half-space's frame.
     let pose = if link_is_first { pos12.inverse() } else { *pos12 };
     let down = pose.rotation.inverse() * -plane;
     let before = std::mem::take(&mut manifold.points);
@@ -53,7 +53,7 @@ pub(super) fn update<M, C: Default + Copy>(
         manifold.points.push(point_at(on_link, name))
     });
     let lowest = link.local_support_point_toward(down);
-    // Rounded as `contact` rounds it.
+    // Rounded as in `contact`.
     let nearest = plane.dot(link.transformed(&pose).local_support_point_toward(-plane));
     let stands_for_it = manifold.points.iter_mut().min_by(|a, b| a.dist.total_cmp(&b.dist));
     let share = SAME_POINT * (link.length() + link.radius());

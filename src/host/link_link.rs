@@ -1,15 +1,15 @@
-//! The contact of two links of which at most one meets the other with a flat cap, in closed form.
+//! The contact of two links in closed form, if at most one of them meets the other with a flat cap.
 //!
-//! 1. **Barrels and round caps** meet as capsules do: the axes' nearest points give the normal, and
-//!    the distance less the two radii.
-//! 2. **A flat cap, and a barrel or a round cap**: the nearest points of the one link and the
-//!    other's axis, which is a triangle without a height to the narrow phase, less the other's
-//!    radius.
+//! 1. **Barrels and round caps** meet as capsules do. The axes' nearest points give the normal, and
+//!    their distance minus the two radii is the distance.
+//! 2. **A flat cap against a barrel or a round cap.** Take the nearest points of the first link and
+//!    the other's axis, which the distance kernel treats as a triangle without area. Subtract the
+//!    other's radius.
 //!
-//! [`foot`](super::foot) derives where that is exact. Where the axes of two round links come so
-//! close that the way between them gives no direction, the normal is that of
-//! [`depth`](crate::distance::depth). Two flat caps, and a flat cap deep in the other link, have no
-//! closed form here: [`LinkPair`](super::link_pair::LinkPair) measures them.
+//! [`foot`](super::foot) derives where this is exact. If the axes of two round links are so close
+//! that their nearest points give no direction, [`depth`](crate::distance::depth) gives the normal.
+//! Two flat caps, and a flat cap deep in the other link, have no closed form here;
+//! [`LinkPair`](super::link_pair::LinkPair) measures them.
 
 use super::axial::unit;
 use super::foot::AxisFoot;
@@ -19,34 +19,35 @@ use crate::distance::{Vec3, segment_segment};
 use crate::robot::ModifiedCylinder;
 use parry3d_f64::math::{Real, Vector};
 
-/// What rounding can do to a distance, as a share of the largest coordinate.
+/// Rounding error of a distance, relative to the largest coordinate.
 const ROUNDING: Real = 8.0 * Real::EPSILON;
 /// Axes closer than this share of the largest coordinate give no direction: half of its digits
 /// would be rounding.
 pub(super) const DIRECTION: Real = 1.5e-8;
-/// Axes closer than this share of the largest coordinate give a direction that has lost digits;
-/// features have them all.
+/// Axes closer than this share of the largest coordinate give a direction that has lost digits. The
+/// directions of features have all digits.
 pub(super) const FINE_DIRECTION: Real = 1e-2;
 
-/// Where two links meet.
+/// The contact of two links.
 pub(super) struct TouchPoint {
     /// Distance, or minus the length of the least separating translation.
     pub dist: Real,
-    /// Unit vector out of the first.
+    /// Unit vector out of the first link.
     pub normal: Vector,
     pub on_first: Vector,
 }
 
 pub(super) enum Answer {
-    /// Further apart than the margin.
+    /// Farther apart than the margin.
     Apart,
     TouchPoint(TouchPoint),
     /// No closed form.
     Unknown,
 }
 
-/// Cases 1 and 2, for links whose coordinates are at most `extent`, and a margin of at least 0:
-/// where an axis lies in the other link, no distance says how deep they overlap.
+/// Cases 1 and 2, for links with coordinates at most `extent` and a margin of at least 0.
+///
+/// If an axis lies in the other link, no distance gives the depth of the overlap.
 pub(super) fn touch(
     first: &ModifiedCylinder,
     second: &ModifiedCylinder,
@@ -58,7 +59,7 @@ pub(super) fn touch(
     let axes = segment_segment(axis(first), axis(second));
     let feet = [Vector::from(axes.point1), Vector::from(axes.point2)];
     let dist = axes.distance - first.radius() - second.radius();
-    // Each link is within its capsule.
+    // A link is contained in its capsule.
     if dist > margin + rounding {
         return Answer::Apart;
     }
@@ -109,7 +110,7 @@ pub(super) fn touch(
     Answer::Unknown
 }
 
-/// The two links as the narrow phase knows them.
+/// Returns the two links in the form of the distance kernels.
 pub(super) fn pair(first: &ModifiedCylinder, second: &ModifiedCylinder) -> LinkLink {
     let [first, second] = [first, second]
         .map(|link| SolidLink::new(link.start(), link.end(), link.radius(), link.flat()));

@@ -1,18 +1,17 @@
 //! The contact manifold of two links.
 //!
-//! Every point is a pair, one on each link's surface, `dist` apart along the contact's normal,
-//! exactly:
+//! Every point is a pair, one on each link's surface, exactly `dist` apart along the contact's
+//! normal:
 //!
-//! 1. **Of barrels along each other**, the ends of either crest that lie over the other's barrel,
-//!    near its own crest.
-//! 2. **Where the other's crest comes over a flat cap's rim** and leaves it, as in
-//!    [`rim`](super::rim).
-//! 3. **Of two flat caps**, points around what they have in common, by [`lens`](super::lens).
-//! 4. **The closest points themselves**, if none of the others are as close: barrels that cross, a
-//!    round cap.
+//! 1. **Barrels along each other**: the ends of either crest that lie over the other's barrel, near
+//!    its crest.
+//! 2. **A crest over a flat cap**: where the other link's crest comes over the cap's rim and where
+//!    it leaves it, as in [`rim`](super::rim).
+//! 3. **Two flat caps**: points around their common region, by [`lens`](super::lens).
+//! 4. **The closest points**, if no other point is as close: barrels that cross, a round cap.
 //!
-//! No pair of points is closer along the normal than the contact says: it is the gap between the
-//! two links along it.
+//! No pair of points is closer along the normal than the contact's distance, which is the gap
+//! between the two links along it.
 
 use super::crest::Crest;
 use super::feature::{self, SAME_POINT};
@@ -25,12 +24,12 @@ use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::query::{ContactManifold, TrackedContact, Unsupported};
 use parry3d_f64::shape::{PackedFeatureId, Shape};
 
-/// The cosine between axes from which barrels lie along each other: 22.5 degrees, as for the edges
-/// of parry's polygons. Where they cross at a larger angle they roll on one point, and a second
-/// would come and go.
+/// The cosine between axes above which barrels lie along each other: 22.5 degrees, as for the edges
+/// of parry's polygons. At larger angles they roll on one point, and a second one would come and
+/// go.
 const ALONG: Real = 0.924;
 
-/// Brings the manifold up to date, if the shapes are two links. Returns whether they are.
+/// Updates the manifold, if the shapes are two links. Returns whether they are.
 ///
 /// # Errors
 /// [`Unsupported`] for numbers out of range.
@@ -67,15 +66,16 @@ pub(super) fn update<M, C: Default + Copy>(
     Ok(true)
 }
 
-/// The link as it is seen from `origin`.
+/// Returns the link relative to `origin`.
 fn from(link: &ModifiedCylinder, origin: Vector) -> ModifiedCylinder {
     link.transformed(&Pose::from_translation(-origin))
 }
 
-/// The name on the other link of what lies over a cap: a corner or an edge of the triangle that
-/// stands for its crest, which goes there and back. Both ends may lie over one cap, and where one
-/// is on the rim, to rounding, the way there may have one crossing and the way back the other: each
-/// has a name of its own.
+/// Returns the name on the other link of a point over a cap: a corner or an edge of the triangle
+/// that represents the other's crest.
+///
+/// The triangle goes along the crest and back. Both ends may lie over one cap. If one end is on the
+/// rim, within rounding, each direction may have one of the crossings, so each has its own name.
 fn of_crest(of_triangle: PackedFeatureId) -> PackedFeatureId {
     let is = |corner| of_triangle == PackedFeatureId::vertex(corner);
     if is(0) {
@@ -98,13 +98,14 @@ struct LinkLinkPoint {
 /// The contact points of two links so far.
 struct LinkLinkMeeting {
     points: Vec<LinkLinkPoint>,
-    /// The largest coordinate. Points that are closer together than [`SAME_POINT`] of it are one:
-    /// the nearest.
+    /// The largest coordinate. Points closer together than [`SAME_POINT`] of it count as one: the
+    /// nearest.
     extent: Real,
 }
 
 impl LinkLinkMeeting {
-    /// Case 1: the ends of one link's crest over the other's barrel, `normal` out of the one.
+    /// Case 1: adds the ends of `link`'s crest over the other's barrel. `normal` points out of
+    /// `link`.
     fn add_ends(
         &mut self,
         link: &ModifiedCylinder,
@@ -124,7 +125,8 @@ impl LinkLinkMeeting {
         });
     }
 
-    /// Case 2: what of the other's crest lies over a flat cap of one link, `normal` out of the one.
+    /// Case 2: adds the crossings of the other's crest and a flat cap of `link`. `normal` points
+    /// out of `link`.
     fn add_across_cap(
         &mut self,
         link: &ModifiedCylinder,
@@ -150,8 +152,8 @@ impl LinkLinkMeeting {
         }
     }
 
-    /// Case 4. Of others that are all but as close the nearest stands for them, with their
-    /// distance; the rest keep theirs.
+    /// Case 4. If other points are almost as close, the nearest of them gets the contact's distance
+    /// instead. The rest keep their distances.
     fn add_closest(&mut self, on_first: Vector, dist: Real) {
         let least = self.points.iter().map(|point| point.dist).fold(Real::INFINITY, Real::min);
         if least > dist + SAME_POINT * self.extent {

@@ -1,17 +1,18 @@
-//! Two links, or a link and one of parry's shapes that is a link too: a ball, a capsule or a
-//! cylinder.
+//! Two links, or a link and a shape of parry that is a link too: a ball, a capsule or a cylinder.
 //!
-//! How far they are apart, and where, is what the narrow phase says, exact for all caps.
+//! # Distance
+//! The distance and the nearest points come from the distance kernels, which are exact for all
+//! caps.
 //!
-//! Their contact is that of the [closed forms](super::link_link) where there is one. Otherwise two
-//! flat caps meet, or a flat cap is deep in the other link. While the two are apart, the contact is
-//! at their nearest points. Where they overlap it is the widest gap of
-//! [`depth`](crate::distance::depth).
-//!
-//! **The direction between points that are close to one another**, or one, is rounding. Then the
-//! directions of the features are tried, and those from the one link without its outermost
-//! [layers](super::shrunk_links) to the other, which the narrow phase measures as well: whatever
-//! the rims do, the thinnest layer whose loss parts the two shows a way out.
+//! # Contact
+//! 1. A [closed form](super::link_link), if there is one.
+//! 2. Otherwise two flat caps meet, or a flat cap is deep in the other link. While the links are
+//!    apart, the contact is at their nearest points. If they overlap, it is the widest gap of
+//!    [`depth`](crate::distance::depth).
+//! 3. If the nearest points are close together, or equal, their direction is rounding. Then the
+//!    directions of the features are tried, and the directions from a link without its outermost
+//!    [layers](super::shrunk_links) to the other link. The thinnest layer whose removal separates
+//!    the two gives a direction, for all positions of the rims.
 
 use super::axial::unit;
 use super::layers::{shrunk_links, thickest_layer};
@@ -25,25 +26,26 @@ use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::query::{ClosestPoints, Contact, Unsupported};
 use parry3d_f64::shape::{Shape, TypedShape};
 
-/// By how much a closed form and the narrow phase can differ, as a share of the largest coordinate.
+/// Largest difference of a closed form and the distance kernels, relative to the largest
+/// coordinate.
 const ROUNDING: Real = 16.0 * Real::EPSILON;
 
 /// Two links in one frame.
 pub(super) struct LinkPair {
-    /// Both in the frame of the first shape: what is moved to another origin is rounded once more.
+    /// Both in the frame of the first shape, before the rounding of another origin.
     placed: [ModifiedCylinder; 2],
-    /// Both as seen from the first link's start, with numbers near one.
+    /// Both relative to the first link's start, scaled near one.
     pub links: [ModifiedCylinder; 2],
-    /// The largest coordinate or radius of these.
+    /// The largest coordinate or radius of `links`.
     pub extent: Real,
     /// The first link's start.
     origin: Vector,
-    /// What 1 is in the shapes' unit: a power of two.
+    /// The unit of `links` in the shapes' unit: a power of two.
     unit: Real,
 }
 
 impl LinkPair {
-    /// The pair, if the shapes are one and one of them is a link of this crate.
+    /// Returns the pair, if both shapes are links and one of them is a link of this crate.
     ///
     /// # Errors
     /// [`Unsupported`] for numbers out of range.
@@ -52,7 +54,7 @@ impl LinkPair {
         Self::between(&first, &second.transformed(pos12)).map(Some)
     }
 
-    /// Two links where they are.
+    /// Returns the pair of two links in one frame.
     ///
     /// # Errors
     /// [`Unsupported`] for numbers out of range.
@@ -95,9 +97,9 @@ impl LinkPair {
         }
     }
 
-    /// Their contact, if they are at most `prediction` apart.
+    /// Returns their contact, if its `dist` is at most `prediction`.
     pub fn contact(&self, pos12: &Pose, prediction: Real) -> Option<Contact> {
-        // An overlap is found first, then measured.
+        // Find an overlap first, then measure it.
         let touch = self.touch_within(prediction.max(0.0))?;
         let (point1, dist) = (self.place(touch.on_first), self.length(touch.dist));
         let point2 = self.place(touch.on_first + touch.normal * touch.dist);
@@ -112,7 +114,7 @@ impl LinkPair {
         (dist <= prediction).then_some(contact)
     }
 
-    /// Their contact however far they are apart, in the first shape's frame.
+    /// Returns their contact at any distance, in the first shape's frame.
     pub fn link_contact(&self) -> Option<LinkContact> {
         let touch = self.touch(Real::INFINITY)?;
         let [on_link, on_other] = [touch.on_first, touch.on_first + touch.normal * touch.dist]
@@ -125,9 +127,11 @@ impl LinkPair {
         })
     }
 
-    /// Where [`links`](Self::links) meet, if they are no further apart than `margin`, which is in
-    /// the shapes' unit and 0 at least. Of what is about as far the [distance](Self::distance)
-    /// decides: the closed forms are rounded in other ways.
+    /// Returns the contact of [`links`](Self::links), if they are at most `margin` apart. `margin`
+    /// is in the shapes' unit and at least 0.
+    ///
+    /// Near the margin the [distance](Self::distance) decides, because the closed forms round
+    /// differently.
     pub fn touch_within(&self, margin: Real) -> Option<TouchPoint> {
         let rounding = self.rounding();
         let mut touch = self.touch(margin + self.length(rounding))?;
@@ -141,17 +145,17 @@ impl LinkPair {
         Some(touch)
     }
 
-    /// By how much [`links`](Self::links) can be farther apart than the links that the distance is
-    /// measured of. Another origin rounds their ends, which turns a flat cap by the rounding over
-    /// the length.
+    /// Returns how much farther apart [`links`](Self::links) can be than the links whose distance
+    /// is measured. Another origin rounds their ends, which turns a flat cap by rounding over
+    /// length.
     fn rounding(&self) -> Real {
         let flat = self.links.iter().filter(|link| link.caps().contains(&Cap::Flat));
         let turn = flat.map(|link| link.radius() / link.length()).fold(0.0, Real::max);
         ROUNDING * self.extent * (1.0 + turn)
     }
 
-    /// Where they meet, if they are no further apart than `margin`. What is about as far may be
-    /// found or not.
+    /// Returns the contact, if they are at most `margin` apart. Near the margin either result is
+    /// possible.
     fn touch(&self, margin: Real) -> Option<TouchPoint> {
         let [first, second] = &self.links;
         let margin = margin / self.unit;
@@ -162,12 +166,12 @@ impl LinkPair {
         }
     }
 
-    /// A point of the links' in the first shape's frame.
+    /// Converts a point of `links` to the first shape's frame.
     pub fn place(&self, point: Vector) -> Vector {
         self.origin + point * self.unit
     }
 
-    /// A length of the links' in the shapes' unit.
+    /// Converts a length of `links` to the shapes' unit.
     pub fn length(&self, length: Real) -> Real {
         length * self.unit
     }
@@ -187,7 +191,7 @@ impl LinkPair {
             way => {
                 let gap = pair.widest([way, self.way_of_layers()].into_iter().flatten());
                 if dist <= 0.0 {
-                    // Rounding may say of what touches that it does not.
+                    // Rounding may report that touching links do not touch.
                     let dist = gap.width.min(0.0);
                     return Some(TouchPoint {
                         dist,
@@ -201,7 +205,7 @@ impl LinkPair {
         Some(TouchPoint { dist, normal, on_first })
     }
 
-    /// The way out of the first link that a layer's loss shows.
+    /// Returns the direction out of the first link that the removal of a layer gives.
     fn way_of_layers(&self) -> Option<Vector> {
         let [first, second] = &self.links;
         let is_swapped = thickest_layer(first) < thickest_layer(second);
@@ -221,13 +225,13 @@ impl LinkPair {
     }
 }
 
-/// Both shapes as links, if they are some and one of them is a link of this crate.
+/// Returns both shapes as links, if they are links and one of them is a link of this crate.
 pub(super) fn links_of_pair(g1: &dyn Shape, g2: &dyn Shape) -> Option<[ModifiedCylinder; 2]> {
     let is_own = |shape: &dyn Shape| shape.as_shape::<ModifiedCylinder>().is_some();
     if is_own(g1) || is_own(g2) { Some([link_of(g1)?, link_of(g2)?]) } else { None }
 }
 
-/// The link that a shape is.
+/// Returns the link that a shape is equal to.
 fn link_of(shape: &dyn Shape) -> Option<ModifiedCylinder> {
     match shape.as_typed_shape() {
         TypedShape::Ball(ball) => {

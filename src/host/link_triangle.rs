@@ -1,23 +1,23 @@
-//! The contact of a link and a triangle: how far apart they are, or by how much to move them apart,
-//! and along what.
+//! The contact of a link and a triangle: the distance or the least separating translation, and the
+//! normal.
 //!
-//! The directions and the gaps along them are those of `distance/depth`: there `gap(n)` is how far
-//! the triangle begins beyond the end of the link in the direction `n`.
+//! Directions and gaps are defined in `distance/depth`: `gap(n)` is the distance along n from the
+//! end of the link to the beginning of the triangle.
 //!
-//! 1. **Apart.** Points and distance are the narrow phase's. Their difference makes a poor normal
-//!    where they are close, since rounding turns it by the extent over the distance. The normals of
-//!    the features don't suffer from that: the face's, the axis, the products of axis and edges,
-//!    and the direction from the axis to the triangle made perpendicular to either. The one with
-//!    the largest gap is the contact's normal. Where none of them keeps the two apart, as with a
-//!    rim that all but touches an edge aslant, those of case 3 are tried too.
-//! 2. **The triangle enters, the axis is outside by more than rounding, and no flat cap is near.**
-//!    A capsule is its axis swollen by a ball, so the least translation is along the way from the
-//!    axis to the triangle, and `radius - F` long for their distance `F`. What a flat cap cuts away
-//!    makes no shorter way out as long as it is at least as far along the axis as the overlap is
-//!    deep: see `distance/depth/foot.rs`.
-//! 3. **Otherwise**, the direction with the largest gap among those of case 1 and those of
-//!    `distance/depth/separation.rs`, where the least translation must be. Moved apart by it the
-//!    two touch, and the touching points are the contact's.
+//! 1. **Apart.** Points and distance come from the distance kernel. Rounding turns their difference
+//!    by the extent over the distance, so it is a poor normal at small distances. The normals of
+//!    features have no such error: the face's normal, the axis, the products of axis and edges, and
+//!    the direction from the axis to the triangle made perpendicular to either. The one with the
+//!    largest gap is the contact's normal. If none of them separates the two, for example if a rim
+//!    almost touches an edge obliquely, the candidates of case 3 are tried too.
+//! 2. **Overlapping; the axis is outside by more than rounding, and no flat cap is near.** A
+//!    capsule is its axis enlarged by a ball. So the least translation is along the direction from
+//!    the axis to the triangle, and its length is `radius - F` for their distance F. The part cut
+//!    off by a flat cap gives no shorter translation, if the cap is at least as far along the axis
+//!    as the overlap is deep: see `distance/depth/foot.rs`.
+//! 3. **Otherwise**, the direction with the largest gap among the candidates of case 1 and of
+//!    `distance/depth/separation.rs`, which contain the least translation. Moved apart by it, the
+//!    two touch; the touching points are the contact's points.
 
 use super::axial::{power_of_two, unit};
 use super::foot::AxisFoot;
@@ -37,7 +37,7 @@ pub(super) struct LinkTrianglePair<'a> {
 }
 
 impl<'a> LinkTrianglePair<'a> {
-    /// The pair, if the shapes are one.
+    /// Returns the pair, if the shapes are one.
     ///
     /// # Errors
     /// [`Unsupported`] if the triangle is not finite.
@@ -52,6 +52,8 @@ impl<'a> LinkTrianglePair<'a> {
         triangle.map(|triangle| Self::new(link, triangle, link_is_first)).transpose()
     }
 
+    /// Returns the pair of a link and a triangle.
+    ///
     /// # Errors
     /// [`Unsupported`] if the triangle is not finite.
     pub fn new(
@@ -64,21 +66,21 @@ impl<'a> LinkTrianglePair<'a> {
     }
 }
 
-/// Where a link and what it is beside meet, a triangle, another link or a convex shape, in the
-/// frame of both.
+/// The contact of a link and a triangle, another link or a convex shape, in the frame of both.
 #[derive(Clone, Copy)]
 pub(super) struct LinkContact {
     /// Distance, or minus the length of the least separating translation.
     pub distance: Real,
-    /// A point of the link; beyond the other if they overlap.
+    /// A point of the link. In an overlap it lies beyond the other shape's surface.
     pub on_link: Vector,
-    /// A point of the other, `distance` from that of the link along the normal.
+    /// A point of the other shape, `distance` from the link's point along the normal.
     pub on_other: Vector,
-    /// Unit vector from the link to the other.
+    /// Unit vector from the link to the other shape.
     pub normal: Vector,
 }
 
-/// Distance and closest points of a link and a triangle in one frame, the link's first.
+/// Returns distance and closest points of a link and a triangle in one frame, the link's point
+/// first.
 pub(super) fn closest(link: &ModifiedCylinder, triangle: [Vector; 3]) -> (Real, Vector, Vector) {
     let flat = link.flat();
     let (start, end) = (Vec3::from(link.start()), Vec3::from(link.end()));
@@ -87,8 +89,8 @@ pub(super) fn closest(link: &ModifiedCylinder, triangle: [Vector; 3]) -> (Real, 
     (closest.distance, Vector::from(closest.point2), Vector::from(closest.point1))
 }
 
-/// The contact of `link` and a finite `triangle` at whatever distance. Nothing if the numbers leave
-/// the range of f64.
+/// Returns the contact of `link` and a finite `triangle` at any distance; `None` if the numbers
+/// leave the range of f64.
 pub(super) fn contact(link: &ModifiedCylinder, triangle: [Vector; 3]) -> Option<LinkContact> {
     let local = Local::new(link, triangle)?;
     let found = local.contact_within(Real::INFINITY)?;
@@ -100,18 +102,18 @@ pub(super) fn contact(link: &ModifiedCylinder, triangle: [Vector; 3]) -> Option<
     })
 }
 
-/// The problem from the link's start, in a unit that brings its numbers near one.
+/// The pair relative to the link's start, scaled near one.
 pub(super) struct Local {
     /// The link's start in the caller's frame.
     pub origin: Vector,
-    /// How long a local unit is to the caller.
+    /// The local unit in the caller's unit.
     pub unit: Real,
     pub link: ModifiedCylinder,
     pub triangle: [Vector; 3],
 }
 
 impl Local {
-    /// Nothing if the numbers leave the range of f64.
+    /// Returns `None` if the numbers leave the range of f64.
     pub fn new(link: &ModifiedCylinder, triangle: [Vector; 3]) -> Option<Self> {
         let origin = link.start();
         let span = link.end() - origin;
@@ -120,7 +122,7 @@ impl Local {
             offsets.iter().fold(span.abs(), |most, offset| most.max(offset.abs())).max_element();
         let (down, unit) = power_of_two(extent.max(link.radius()));
         let end = span * down;
-        // A link too short for the scene is as good as a ball.
+        // A link too short for the extent of the pair counts as a ball.
         let caps = if end == Vector::ZERO { [Cap::Round; 2] } else { link.caps() };
         let link = ModifiedCylinder::new(Vector::ZERO, end, link.radius() * down, caps).ok()?;
         let triangle = offsets.map(|offset| offset * down);
@@ -132,12 +134,12 @@ impl Local {
         })
     }
 
-    /// The contact, in local units, if the two are at most `margin` apart.
+    /// Returns the contact in local units, if the two are at most `margin` apart.
     pub fn contact_within(&self, margin: Real) -> Option<LinkContact> {
         let (link, radius) = (&self.link, self.link.radius());
         let axis = [Vec3::from(link.start()), Vec3::from(link.end())];
         let to_axis = segment_triangle(axis, self.triangle.map(Vec3::from));
-        // The link is within its capsule.
+        // A link is contained in its capsule.
         if to_axis.distance - radius > margin + ROUNDING {
             return None;
         }

@@ -1,33 +1,31 @@
 //! The contact manifold of a link and a triangle: points that share the contact's normal.
 //!
-//! The normal is the contact's own (see [`link_triangle`](super::link_triangle)), led through the
-//! constraints that a mesh puts on it. Every point is a pair, one on the link's surface and one on
-//! the triangle, `dist` apart along the normal, exactly:
+//! The normal is the contact's own (see [`link_triangle`](super::link_triangle)), passed through
+//! the constraints of a mesh. Every point is a pair, one on the link's surface and one on the
+//! triangle, exactly `dist` apart along the normal:
 //!
-//! 1. **What the link stands on**, where the triangle is below it: see
-//!    [`support_points`](super::support_points).
-//! 2. **What of the triangle's outline** is below a flat cap or across or along the barrel's crest:
-//!    see [`rim`](super::rim) and [`crest`](super::crest).
-//! 3. **The closest points themselves**, if none of the others are as close: a corner against the
-//!    barrel, an edge across a cap.
+//! 1. **The link's [`support_points`](super::support_points)** with the triangle below them.
+//! 2. **The triangle's outline** below a flat cap ([`rim`](super::rim)), or across or along the
+//!    barrel's crest ([`crest`](super::crest)).
+//! 3. **The closest points**, if no other point is as close: a corner against the barrel, an edge
+//!    across a cap.
 //!
-//! Points that coincide are one, the nearest of them, so that the least `dist` is the contact's
-//! own. Where it is within the prediction, all count, so that the host sees what a fast link is
-//! about to reach. Tolerances are relative to the link, so the unit of length does not matter.
-//! Nothing is kept from one call to the next but what the host stores with its points, which are
-//! matched by feature.
+//! Coincident points count as one, the nearest of them, so the least `dist` is the contact's. If it
+//! is within the prediction, all points count, so that the host sees what a fast link is about to
+//! reach. Tolerances are relative to the link, so the unit of length does not matter. Between calls
+//! nothing is stored except the host's data of the points, which are matched by feature.
 //!
-//! **Constraints turn the normal and never remove the contact:**
+//! # Constraints
+//! Constraints may turn the normal. They never remove the contact:
 //!
 //! 1. At a *free edge*, which no other triangle shares, there is nothing to constrain. parry gives
-//!    such an edge the face's own normal, as if a coplanar neighbour continued it. The contact
-//!    keeps its normal.
-//! 2. A normal that the constraints refuse comes *from behind* a one-sided surface. It is led
-//!    through the mirrored constraints, as parry does for a two-sided one.
-//! 3. Where a constraint has turned the normal, the points along it may all lie beyond the contact,
-//!    or there may be none. Then the closest points stand at the end of the list, with the
-//!    contact's distance. The caller, who knows the contacts with other triangles, decides whether
-//!    they count ([`Met`]).
+//!    such an edge the face's normal, as if a coplanar neighbour continued it. The contact keeps
+//!    its normal.
+//! 2. If the constraints reject a normal, it comes *from behind* a one-sided surface. It is passed
+//!    through the mirrored constraints, as parry does for a two-sided surface.
+//! 3. If a constraint has turned the normal, all points along it may lie beyond the contact, or
+//!    there may be none. Then the closest points are appended with the contact's distance. The
+//!    caller knows the contacts with other triangles and decides whether they count ([`Met`]).
 
 use super::axial::unit;
 use super::link_triangle::{LinkTrianglePair, Local};
@@ -39,44 +37,43 @@ use parry3d_f64::query::details::{NormalConstraints, NormalConstraintsPair};
 use parry3d_f64::query::{ContactManifold, TrackedContact, Unsupported};
 use parry3d_f64::shape::PackedFeatureId;
 
-/// How much deeper than the overlap a point may be where a constraint has turned the normal; as in
-/// parry.
+/// How many times deeper than the overlap a point may be if a constraint has turned the normal; as
+/// in parry.
 const DEEPER: Real = 5.0;
 /// A normal turned by more than this was turned by a constraint, not by rounding.
 const TURNED: Real = 1e-9;
 
-/// By how much rounding can put a contact beyond the prediction that `contact` finds it within, as
-/// a share of the largest coordinate.
+/// Largest rounding error by which a contact may exceed the prediction within which `contact` finds
+/// it, relative to the largest coordinate.
 const BEYOND: Real = 16.0 * Real::EPSILON;
 
-/// What a surface says of one of its triangles.
+/// The constraints of a surface on one of its triangles.
 pub(super) struct TriangleRules<'a> {
     pub constraints: (Option<&'a dyn NormalConstraints>, Option<&'a dyn NormalConstraints>),
-    /// Whether no other triangle shares the edge from this corner to the next.
+    /// Returns whether no other triangle shares the edge from this corner to the next.
     pub is_free: &'a dyn Fn(usize) -> bool,
 }
 
 /// A contact within the prediction.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Met {
-    /// What `contact` says of the pair.
+    /// The `dist` that `contact` reports for the pair.
     pub dist: Real,
-    /// Whether the constraints refuse the contact's own normal.
+    /// Whether the constraints reject the contact's own normal.
     pub is_from_behind: bool,
-    /// Whether the constraints have turned it; the last point of the manifold is the closest then.
+    /// Whether the constraints have turned it; then the last point of the manifold is the closest.
     pub is_turned: bool,
 }
 
 impl Met {
-    /// Keeps the closest points of a contact with a turned normal. Nothing is deeper than
-    /// `deepest`.
+    /// Keeps the closest points of a contact with a turned normal. Limits all depths to `deepest`.
     pub fn keep_closest<M, C>(&self, deepest: Real, manifold: &mut ContactManifold<M, C>) {
         for point in manifold.points.iter_mut().filter(|_| self.is_turned) {
             point.dist = point.dist.max(deepest);
         }
     }
 
-    /// Takes the closest points of a contact with a turned normal away. Nothing is deeper than
+    /// Removes the closest points of a contact with a turned normal. Limits all depths to
     /// `deepest`.
     pub fn drop_closest<M, C>(&self, deepest: Real, manifold: &mut ContactManifold<M, C>) {
         if self.is_turned {
@@ -86,8 +83,7 @@ impl Met {
     }
 }
 
-/// Brings the manifold of the pair up to date. Returns what they meet in, if it is within the
-/// prediction.
+/// Updates the manifold of the pair. Returns the contact, if it is within the prediction.
 ///
 /// # Errors
 /// [`Unsupported`] for numbers out of range.
@@ -105,7 +101,7 @@ pub(super) fn update<M, C: Default + Copy>(
 
     let before = std::mem::take(&mut manifold.points);
     let margin = prediction / local.unit;
-    // An overlap is found first, then measured. Coordinates of the local problem are at most 1.
+    // Find an overlap first, then measure it. Coordinates of the local problem are at most 1.
     let found = local.contact_within(margin.max(0.0) + BEYOND);
     let Some(mut found) = found.filter(|found| found.distance <= margin + BEYOND) else {
         return Ok(None);
@@ -123,7 +119,7 @@ pub(super) fn update<M, C: Default + Copy>(
     let mut constrained = constrained(pos12, rules.constraints, own);
     let of_link = |(n1, n2): (Vector, Vector)| {
         let normal = if link_is_first { n1 } else { n2 };
-        // A rotation that is not quite of unit length is not to be taken for a turn.
+        // A rotation not quite of unit length must not count as a turn.
         unit(normal).unwrap_or(normal)
     };
     let has_turned = |normals| (of_link(normals) - found.normal).length() > TURNED;
@@ -174,7 +170,7 @@ pub(super) fn update<M, C: Default + Copy>(
     Ok(Some(Met { dist, is_from_behind, is_turned }))
 }
 
-/// What constraints make of a normal.
+/// A normal after constraints.
 struct Constrained {
     /// Out of the first shape and out of the second, each in its frame.
     normals: (Vector, Vector),
@@ -196,7 +192,7 @@ fn constrained(
     Constrained { normals: mirrored.unwrap_or(normals), is_from_behind: true }
 }
 
-/// The edges that a point of a triangle is on, to rounding, for coordinates up to 1.
+/// Yields the edges that contain a point of a triangle, within rounding, for coordinates up to 1.
 fn edges_at(triangle: [Vector; 3], point: Vector) -> impl Iterator<Item = usize> {
     let is_on = move |edge: &usize| {
         let ends = [triangle[*edge], triangle[(edge + 1) % 3]].map(Vec3::from);

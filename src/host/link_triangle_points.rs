@@ -1,9 +1,8 @@
-//! A link and a triangle that meet, seen along a normal from the one to the other, and their
-//! contact points so far.
+//! The contact points of a link and a triangle, seen along a normal from the link to the triangle.
 //!
 //! Every point is a pair, one of the link and one of the triangle, `dist` apart along the normal.
-//! Points of the link that coincide are one: the nearest, and of equals the first. (Where the
-//! triangle is parallel to the normal its near and its far edge lie over the same point of the
+//! Coincident points of the link count as one: the nearest, and among equals the first. (If the
+//! triangle is parallel to the normal, its near and its far edge lie over the same point of the
 //! link.)
 
 use super::feature::{self, SAME_POINT};
@@ -12,15 +11,15 @@ use crate::robot::ModifiedCylinder;
 use parry3d_f64::math::{Real, Vector};
 use parry3d_f64::shape::PackedFeatureId;
 
-/// How far outside a triangle a point may be to count as above it, in barycentric coordinates:
-/// enough for rounding, so that no point is lost between two triangles.
+/// How far outside a triangle a point may be to count as above it, in barycentric coordinates.
+/// Covers rounding, so that no point is lost between two triangles.
 const ON_EDGE: Real = 1e-9;
 
-/// What rounding can do to the distance of a pair, as a share of the largest coordinate.
+/// Rounding error of the distance of a pair, relative to the largest coordinate.
 pub(super) const ROUNDING: Real = 64.0 * Real::EPSILON;
 
 /// A point of the link, the distance of the triangle's point from it along the normal, and the
-/// features that they belong to.
+/// features of both.
 pub(super) struct MeetingPoint {
     pub on_link: Vector,
     pub dist: Real,
@@ -28,22 +27,22 @@ pub(super) struct MeetingPoint {
     pub of_triangle: PackedFeatureId,
 }
 
-/// A link and a triangle, seen along the normal from one to the other.
+/// A link and a triangle, seen along the normal from the link to the triangle.
 pub(super) struct Meeting<'a> {
     pub link: &'a ModifiedCylinder,
     pub triangle: [Vector; 3],
     pub normal: Vector,
-    /// The triangle's unit normal, if it has an area.
+    /// The triangle's unit normal; `None` without an area.
     face: Option<Vector>,
     /// Length and radius of the link.
     pub size: Real,
-    /// Distances that differ by no more are equal.
+    /// Distances that differ by at most this are equal.
     pub rounding: Real,
     pub points: Vec<MeetingPoint>,
 }
 
 impl<'a> Meeting<'a> {
-    /// For coordinates and a radius that are at most `extent`.
+    /// For coordinates and a radius of at most `extent`.
     pub fn new(
         link: &'a ModifiedCylinder,
         triangle: [Vector; 3],
@@ -62,7 +61,7 @@ impl<'a> Meeting<'a> {
         }
     }
 
-    /// Adds a point of the link if the triangle's inside lies along the normal from it.
+    /// Adds a point of the link if the normal line through it meets the triangle's inside.
     pub fn add_above_face(&mut self, on_link: Vector, of_link: PackedFeatureId) {
         let Some(face) = self.face else { return };
         let [a, b, c] = self.triangle;
@@ -96,14 +95,14 @@ impl<'a> Meeting<'a> {
         }
     }
 
-    /// Adds the closest points, unless one of the others is all but as close: then the nearest of
-    /// these stands for them, with their distance, so that a link at rest which trembles a
-    /// little keeps its points and their names. No point is closer than they are, which one may
-    /// seem to be that lies beside the triangle's edge.
+    /// Adds the closest points, unless another point is almost as close. In that case the nearest
+    /// such point gets their distance, so that a link at rest that vibrates slightly keeps its
+    /// points and their names. No point is closer than the closest points; a point beside the
+    /// triangle's edge may appear to be.
     ///
-    /// The others keep their distances, to the last bit. Hosts choose by distance which points to
-    /// hold a body with: made equal, the first would be chosen at every step, and what lies
-    /// would be held on one side.
+    /// The other points keep their distances bit for bit. Hosts select supporting points by
+    /// distance: with equal distances they would select the first at every step and hold a lying
+    /// body on one side.
     pub fn add_closest(&mut self, distance: Real, on_link: Vector) {
         let least = self.points.iter().map(|point| point.dist).fold(Real::INFINITY, Real::min);
         if least > distance + SAME_POINT * self.size {

@@ -1,18 +1,18 @@
-//! Contact manifolds: which pairs of parts meet, and who answers for each.
+//! Contact manifolds: how a pair is split into parts, and which file answers for each pair of
+//! parts.
 //!
-//! A robot and a mesh or a height field are taken apart [here](super::robot_surface_manifold).
-//! Other pairs are taken apart as everywhere in this folder, by parry's routines for the shapes
-//! that it knows, because they keep the manifolds of a pair from one step to the next. What is left
-//! is
-//! - a link against a triangle, answered [here](super::link_triangle_manifold), exactly;
-//! - a link against a half-space, answered [here](super::link_halfspace_manifold), exactly;
-//! - two links, or a link and a ball, a capsule or a cylinder, answered
-//!   [here](super::link_link_manifold), exactly;
-//! - a link against another convex shape, answered [here](super::link_convex_manifold), along the
-//!   contact's normal with the polygons that stand for the surfaces;
-//! - a link against what has no polygons, answered by `L`. parry keeps a manifold while it has
-//!   drifted by less than 1e-3, whatever the unit; so that a small link does not rest on a stale
-//!   one, it is told each time that the shapes have changed.
+//! [`robot_surface_manifold`] splits a robot and a mesh or a height field. parry's routines split
+//! all other composites, because they keep the manifolds of a pair from step to step. The pairs of
+//! parts are answered by
+//!
+//! - [`link_triangle_manifold`]: a link and a triangle, exactly;
+//! - [`link_halfspace_manifold`]: a link and a half-space, exactly;
+//! - [`link_link_manifold`]: two links, or a link and a ball, a capsule or a cylinder, exactly;
+//! - [`link_convex_manifold`]: a link and another convex shape, along the contact's normal with
+//!   polygons that approximate the surfaces;
+//! - `L`: a link and a shape without polygons. parry keeps a manifold while it has drifted by less
+//!   than 1e-3, in any unit of length. So that a small link never rests on a stale manifold, `L` is
+//!   told at each step that the shapes have changed.
 
 use super::decomposition::{check_scale, has_parts};
 use super::dispatcher::ContinuumDispatcher;
@@ -56,8 +56,8 @@ where
         check_scale(g1)?;
         check_scale(g2)?;
         let is_robot = [g1, g2].into_iter().any(|shape| links_of(shape).is_some());
-        // Boxes are loosened by the prediction, which parry wants positive, and by what rounding
-        // can have taken from the meeting of two that touch.
+        // Boxes are loosened by the prediction, which parry expects to be positive, and by the
+        // rounding error of a test of two boxes that touch.
         let has_boxes = is_robot && (has_parts(g1) || has_parts(g2));
         let rounding = if has_boxes { range::rounding_of_boxes(pos12, g1, g2) } else { 0.0 };
         let loose = prediction.max(0.0) + rounding;
@@ -104,7 +104,7 @@ where
         let constraints = (normal_constraints1, normal_constraints2);
         let is_free = normal_constraints1.is_none() && normal_constraints2.is_none();
         if let Some(pair) = LinkTrianglePair::of(g1, g2)? {
-            // Nobody knows what is beside the triangle.
+            // The neighbours of the triangle are unknown.
             let rules = TriangleRules { constraints, is_free: &|_| false };
             let met = link_triangle_manifold::update(pos12, &pair, &rules, prediction, manifold)?;
             if let Some(met) = met {
@@ -115,7 +115,7 @@ where
         if link_halfspace_manifold::update(pos12, (g1, g2), prediction, manifold)? {
             return Ok(());
         }
-        // An overlap is found first, then measured.
+        // Find an overlap first, then measure it.
         let within = prediction.max(0.0);
         let is_link = links_of(g1).or(links_of(g2)).is_some();
         let is_answered = is_free
@@ -148,7 +148,7 @@ where
     }
 }
 
-/// Takes the points out of the manifolds whose nearest point is beyond the prediction.
+/// Clears the manifolds whose nearest point is beyond the prediction.
 fn drop_beyond<M, C>(prediction: Real, manifolds: &mut [ContactManifold<M, C>]) {
     for manifold in manifolds {
         if manifold.points.iter().all(|point| point.dist > prediction) {
@@ -158,7 +158,7 @@ fn drop_beyond<M, C>(prediction: Real, manifolds: &mut [ContactManifold<M, C>]) 
 }
 
 impl<L> ContinuumDispatcher<L> {
-    /// Takes the shapes apart by parry's routines.
+    /// Splits the shapes by parry's routines.
     fn update_by_parts<M, C>(
         &self,
         pos12: &Pose,
@@ -229,7 +229,7 @@ impl<L> ContinuumDispatcher<L> {
     }
 }
 
-/// The routines that parry has for voxels.
+/// Calls parry's routines for voxels.
 fn voxels<M, C>(
     dispatcher: &dyn PersistentQueryDispatcher<M, C>,
     pos12: &Pose,

@@ -1,8 +1,8 @@
-//! Mass properties of a link and of several, exactly.
+//! Exact mass properties of a link and of several links.
 //!
 //! # One link
-//! A link of radius `r` and length `l` is a cylinder and, at each round end, half a ball. With the
-//! unit of mass chosen so that a volume of `pi r^2` per length weighs 1 per length, about the
+//! A link of radius `r` and length `l` is a cylinder and, at each round end, half a ball. The unit
+//! of mass is chosen so that a volume of `pi r^2` per length weighs 1 per length. Relative to the
 //! middle of the axis:
 //!
 //! | piece | mass | centre on the axis | axial `k^2` | transverse `k^2` about its own centre |
@@ -10,15 +10,15 @@
 //! | cylinder | `l` | 0 | `r^2 / 2` | `r^2 / 4 + l^2 / 12` |
 //! | half ball | `2 r / 3` | `+-(l / 2 + 3 r / 8)` | `2 r^2 / 5` | `2 r^2 / 5 - (3 r / 8)^2 = 83 r^2 / 320` |
 //!
-//! `k` is the radius of gyration. The half ball's row: the second moment of half a ball about any
-//! line through the ball's centre is half the ball's, and the parallel axis theorem takes it to its
-//! own centre of mass, `3 r / 8` outwards. The whole link follows by adding masses, moments and,
-//! again by the parallel axis theorem, second moments. Every term is positive, so nothing cancels;
-//! the centre of mass leaves the middle only when one end is round and the other flat.
+//! `k` is the radius of gyration. For the half ball: its second moment about any line through the
+//! ball's centre is half of the ball's. The parallel axis theorem moves it to its own centre of
+//! mass, `3 r / 8` outwards. The whole link is the sum of masses, moments and, again by the
+//! parallel axis theorem, second moments. Every term is positive, so nothing cancels. The centre of
+//! mass leaves the middle only if one end is round and the other flat.
 //!
-//! The link is a body of revolution, so any frame with one axis along it is principal; here, as for
-//! parry's cylinder and capsule, that is the frame's y axis. Turning the axis round changes no
-//! inertia, so the shorter of the two turns is taken.
+//! The link is a body of revolution, so every frame with one axis along it is principal. As for
+//! parry's cylinder and capsule, this is the frame's y axis. Reversing the axis leaves the inertia
+//! unchanged, so the smaller of the two rotations is used.
 //!
 //! # Several links
 //! Masses and inertia tensors add up. The tensor of a link about the common centre of mass is
@@ -28,10 +28,10 @@
 //! ```
 //!
 //! with its axial and transverse moments `s` and `t`, axis `a`, mass `m`, and `d` from the common
-//! centre to its own. The principal axes follow by Jacobi's rotations, which need ratios of entries
-//! only: masses and lengths multiplied by powers of two turn the same frame bit for bit. (parry's
-//! `MassProperties::with_inertia_matrix` ends at absolute tolerances. It exchanges the axes of
-//! small bodies, and of those whose two least moments are equal.)
+//! centre to its own. Jacobi's rotations give the principal axes. They use ratios of entries only,
+//! so masses and lengths scaled by powers of two give the same frame bit for bit. (parry's
+//! `MassProperties::with_inertia_matrix` stops at absolute tolerances. It exchanges the axes of
+//! small bodies, and of bodies whose two least moments are equal.)
 
 use super::axial::axis_or_x;
 use crate::robot::{Cap, ModifiedCylinder};
@@ -39,7 +39,7 @@ use parry3d_f64::mass_properties::MassProperties;
 use parry3d_f64::math::{Matrix, Real, Rotation, Vector};
 use std::f64::consts::PI;
 
-/// One row of the table: mass, centre along the axis from its middle, squared radii of gyration.
+/// A row of the table: mass, centre along the axis from its middle, squared radii of gyration.
 struct MassOfPiece {
     mass: Real,
     centre: Real,
@@ -47,7 +47,7 @@ struct MassOfPiece {
     transverse: Real,
 }
 
-/// Mass properties at uniform `density`. A wire (radius 0) has no mass.
+/// Returns the mass properties at uniform `density`. A wire (radius 0) has no mass.
 pub(super) fn mass_properties(link: &ModifiedCylinder, density: Real) -> MassProperties {
     let LinkMass { mass, centre, axis, axial, transverse } = LinkMass::of(link, density);
     MassProperties::with_principal_inertia_frame(
@@ -66,7 +66,7 @@ struct LinkMass {
     axis: Vector,
     /// Moment of inertia about the axis.
     axial: Real,
-    /// Moment of inertia about a line across the axis, through the centre.
+    /// Moment of inertia about a line through the centre, perpendicular to the axis.
     transverse: Real,
 }
 
@@ -88,7 +88,7 @@ impl LinkMass {
         let [start, end] = link.caps();
         let pieces = [cylinder, half_ball(start, -1.0), half_ball(end, 1.0)];
 
-        // Weighted by shares of the mass rather than masses, which keeps the products shorter.
+        // Weights are shares of the mass, which keeps the products small.
         let column: Real = pieces.iter().map(|piece| piece.mass).sum();
         let mean = |of: &dyn Fn(&MassOfPiece) -> Real| -> Real {
             pieces.iter().map(|piece| product(piece.mass / column, of(piece))).sum()
@@ -109,15 +109,15 @@ impl LinkMass {
     }
 }
 
-/// Mass properties of all `links` at uniform `density`: what two of them share counts twice. Links
-/// without mass have their centre in the middle of the first one's axis.
+/// Returns the mass properties of all `links` at uniform `density`. Overlaps of two links count
+/// twice. Links without mass have their centre in the middle of the first link's axis.
 pub(super) fn mass_properties_of_all(links: &[ModifiedCylinder], density: Real) -> MassProperties {
     if let [link] = links {
         return mass_properties(link, density);
     }
     let of_links: Vec<LinkMass> = links.iter().map(|link| LinkMass::of(link, density)).collect();
     let total: Real = of_links.iter().map(|link| link.mass).sum();
-    // Seen from the first link, so that a robot far from the origin loses no digits.
+    // Relative to the first link, so that a robot far from the origin loses no digits.
     let Some(origin) = of_links.first().map(|link| link.centre) else {
         return MassProperties::default();
     };
@@ -142,18 +142,18 @@ pub(super) fn mass_properties_of_all(links: &[ModifiedCylinder], density: Real) 
     MassProperties::with_principal_inertia_frame(origin + centre, total, moments, frame)
 }
 
-/// More sweeps than Jacobi's rotations take for a matrix of three rows: four to six.
+/// Most sweeps. Jacobi's rotations take four to six for a matrix of three rows.
 const MOST_SWEEPS: usize = 16;
 
-/// The principal moments of a symmetric tensor, and the rotation from their frame.
+/// Returns the principal moments of a symmetric tensor and the rotation from their frame.
 fn principal_axes(mut a: [[Real; 3]; 3]) -> (Vector, Rotation) {
     let mut axes = [Vector::X, Vector::Y, Vector::Z];
     for _ in 0..MOST_SWEEPS {
         let mut is_diagonal = true;
         for (p, q) in [(0, 1), (0, 2), (1, 2)] {
-            // An entry that adds nothing to a moment is rounding.
+            // An entry that changes no moment is rounding.
             let small = 0.25 * Real::EPSILON * a[p][p].abs().min(a[q][q].abs());
-            // Nor does NaN, of masses out of range, turn anything.
+            // NaN, from masses out of range, rotates nothing either.
             if a[p][q].is_nan() || a[p][q].abs() <= small {
                 continue;
             }
@@ -175,21 +175,21 @@ fn principal_axes(mut a: [[Real; 3]; 3]) -> (Vector, Rotation) {
             break;
         }
     }
-    // Rotations keep the frame right-handed. No moment of a body is negative, but by rounding.
+    // Rotations keep the frame right-handed. Only rounding can make a moment negative.
     let moments = Vector::new(a[0][0].max(0.0), a[1][1].max(0.0), a[2][2].max(0.0));
     let frame = Matrix::from_cols(axes[0], axes[1], axes[2]);
     (moments, Rotation::from_mat3(&frame).normalize())
 }
 
-/// The product, where nothing times a number that left the range of f64 is still nothing.
+/// The product, with 0 times an infinite number defined as 0.
 fn product(a: Real, b: Real) -> Real {
     if a == 0.0 || b == 0.0 { 0.0 } else { a * b }
 }
 
-/// A rotation that takes the y axis to `axis` or to its opposite, whichever is nearer.
+/// Returns a rotation that takes the y axis to `axis` or to its opposite, whichever is nearer.
 ///
-/// The quaternion `(y x axis, 1 + y . axis)`, normalised, loses digits only when the two are nearly
-/// opposite, which the choice of the nearer one excludes.
+/// The quaternion `(y x axis, 1 + y . axis)`, normalised, loses digits only if the two are nearly
+/// opposite. The choice of the nearer one excludes this.
 fn rotation_from_y(axis: Vector) -> Rotation {
     let axis = if axis.y < 0.0 { -axis } else { axis };
     let turn = Vector::Y.cross(axis);

@@ -6,22 +6,25 @@ use parry3d_f64::partitioning::BvhLeafCost;
 use parry3d_f64::shape::TriMesh;
 use std::cell::Cell;
 
-/// A triangle that the search visited has a vertex that is NaN or infinite.
+/// The error for a visited triangle with a vertex that is NaN or infinite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct TriangleNotFinite;
 
-/// How far a search goes.
+/// When a search ends.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum SearchGoal {
-    /// The nearest triangle is known.
+    /// When the nearest triangle is known.
     Nearest,
-    /// Some triangle is nearer than the bound.
+    /// When some triangle is nearer than the bound.
     FirstWithinBound,
 }
 
-/// The triangle nearest to the link among those strictly nearer than `bound`.
+/// Returns the triangle nearest to the link among those strictly nearer than `bound`.
 ///
-/// Nearer boxes go first, and boxes no nearer than the best triangle so far are left out.
+/// Visits nearer boxes first and prunes boxes at least as far as the best triangle so far.
+///
+/// # Errors
+/// A visited triangle is not finite.
 pub(super) fn search(
     mesh: &TriMesh,
     link: &PlacedLink,
@@ -41,7 +44,7 @@ pub(super) fn search(
             let mut best = Best::within(bound);
             best.measure(link, triangle, vertices);
             let nearest = best.nearest()?;
-            // A cost of 0 makes the hierarchy leave out everything else.
+            // A cost of 0 prunes everything else.
             let cost = if until == SearchGoal::FirstWithinBound { 0.0 } else { nearest.distance };
             Some(LeafCost { cost, nearest })
         },

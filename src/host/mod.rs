@@ -1,4 +1,4 @@
-//! What parry and rapier see: links and chains as shapes with exact point and ray queries, and the
+//! Links and chains for parry and rapier: shapes with exact point and ray queries, and the
 //! dispatcher that answers for pairs of shapes.
 
 mod axial;

@@ -1,29 +1,35 @@
-//! For how long a plane stays between an end of a moving link and a point of what it moves towards.
+//! The time for which a plane stays between an end of a moving link and a point of the other shape.
 //!
-//! Of the two it is known how far they are apart along the plane's normal `n` (`gap`), how fast
-//! they part (`rate`) and how much of that is lost to turning (`bend`). Then after the time `s`
-//! they are at least
+//! # Definitions
+//! - `n`: the plane's normal. `gap`: the distance of the two along n.
+//! - `rate`: the speed at which they part. `bend`: an upper bound on the loss by turning.
+//! - `reach(s)`: the extent of the end's cap along n after the time s.
+//! - `r`: the radius. `a`: the axis. `m`: the velocity of n as seen from the link.
+//!
+//! # Bound
+//! After the time s they are at least this far apart:
 //!
 //! ```text
 //! gap + rate s - bend s^2 - reach(s)
 //! ```
 //!
-//! apart, where `reach` is the end's cap. While the normal leans out over a round cap, that is its
-//! radius. Otherwise it is the support function of the half ball or the disc along the normal, as
-//! it turns seen from the link. With the axis `a` and `m` the way in which `n` turns,
+//! While the normal leans out over a round cap, `reach` is the radius. Otherwise it is the support
+//! function of the half ball or the disc along the turning normal:
 //!
 //! ```text
 //! reach(s) = r |p - a (p . a)|,   p = n + s m,      and r |p| once p leans out over a round cap.
 //! ```
 //!
-//! A support function is convex: over any span of time it lies below its chord. So within the span
-//! nothing meets before the first root of a parabola. The bound is exact to second order but for
-//! the chord, and the span can be shortened. (A cap does not change when it is turned about its
-//! axis, so only the turning of the axis itself counts: a cylinder may roll as fast as it likes.)
+//! **Claim.** Within a span of time there is no contact before the first root of a parabola.
+//! **Proof.** A support function is convex, so over the span it lies below its chord.
+//!
+//! The bound is exact to second order except for the chord, and a shorter span improves the chord.
+//! A cap does not change when it turns about its axis. So only the turning of the axis itself
+//! counts: a cylinder may roll at any speed.
 
 use parry3d_f64::math::{Real, Vector};
 
-/// What an end and a point along a normal do, at one moment (see the head of this file).
+/// The motion of an end and a point along a normal, at one time (see the head of this file).
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PlaneGap {
     pub gap: Real,
@@ -32,15 +38,15 @@ pub(super) struct PlaneGap {
     pub reach: Reach,
 }
 
-/// How far a cap reaches along the normal from its centre.
+/// The extent of a cap along the normal from its centre.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Reach {
-    /// A round cap that the normal leans out over.
+    /// The normal leans out over a round cap.
     Radius(Real),
     Support(Support),
 }
 
-/// A disc, or a half ball, and a direction that turns.
+/// A disc or a half ball, and a turning direction.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Support {
     pub radius: Real,
@@ -61,7 +67,7 @@ impl Support {
 }
 
 impl PlaneGap {
-    /// A time until which the plane stays between the two, at most `span`.
+    /// Returns a time for which the plane stays between the two, at most `span`.
     pub fn time_open(&self, span: Real) -> Real {
         let support = match &self.reach {
             Reach::Radius(radius) => {
@@ -77,7 +83,7 @@ impl PlaneGap {
             if open >= span {
                 return span;
             }
-            // A shorter chord is worth drawing where it is much shorter. NaN is not.
+            // A much shorter span improves the chord. NaN ends the loop.
             if open <= 0.0 || open.is_nan() || open >= 0.25 * span {
                 return open.max(0.0);
             }
@@ -86,8 +92,8 @@ impl PlaneGap {
     }
 }
 
-/// The first `s > 0` with `gap + rate s - bend s^2 = 0`; infinite if there is none, 0 without a
-/// gap.
+/// Returns the first `s > 0` with `gap + rate s - bend s^2 = 0`; infinite if there is none, 0
+/// without a gap.
 fn first_root(gap: Real, rate: Real, bend: Real) -> Real {
     if gap.is_nan() || gap <= 0.0 {
         return 0.0;

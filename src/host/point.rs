@@ -1,20 +1,20 @@
-//! Closest points of a link to a point, exactly.
+//! Exact closest points of a link to a point.
 //!
 //! # Derivation
-//! Let `k` be the distance from the point to the axis segment, `z` its coordinate along the axis.
+//! Let `k` be the distance from the point to the axis segment and `z` its coordinate along the
+//! axis.
 //!
 //! 1. **Beyond a flat end** (`z < 0` at a flat start, `z > length` at a flat end): the closest
-//!    point lies on the disc, at the lateral offset cut to the radius; the distance is the
-//!    hypotenuse of the height above the disc and of what was cut off.
-//! 2. **Elsewhere, `k > radius`**: the closest point of the capsule belongs to the link too,
+//!    point lies on the disc, at the lateral offset clamped to the radius. The distance is the
+//!    hypotenuse of the height above the disc and the clamped part.
+//! 2. **Otherwise, `k > radius`**: the closest point of the capsule belongs to the link too,
 //!    because a round end is a half ball and the rest a barrel. The distance is `k - radius`.
-//! 3. **Elsewhere, `k <= radius`**: the point is inside. The link is the intersection of a capsule
-//!    and one half-space per flat end, and the distance from inside to the boundary of an
-//!    intersection of convex sets is the least of the distances to their boundaries: `radius - k`,
-//!    `z` for a flat start, `length - z` for a flat end. No case needs a length that exceeds the
-//!    radius.
+//! 3. **Otherwise, `k <= radius`**: the point is inside. The link is the intersection of a capsule
+//!    and one half-space per flat end. From inside, the distance to the boundary of an intersection
+//!    of convex sets is the least distance to their boundaries: `radius - k`, `z` for a flat start,
+//!    `length - z` for a flat end. No case needs a length greater than the radius.
 //!
-//! On the axis every direction away from it is equally close; one of them is taken.
+//! On the axis all directions away from it are equally close; one of them is used.
 
 use super::axial::{AxialFrame, perpendicular, unit, unit_across};
 use super::feature;
@@ -23,7 +23,7 @@ use parry3d_f64::math::{Real, Vector};
 use parry3d_f64::query::{PointProjection, PointQuery};
 use parry3d_f64::shape::FeatureId;
 
-/// The point of a link's surface that is closest to a query point.
+/// The closest point of a link's surface to a query point.
 pub(super) struct NearestOnSurface {
     /// Distance to the surface, negative inside.
     pub signed_distance: Real,
@@ -32,7 +32,7 @@ pub(super) struct NearestOnSurface {
     pub feature: FeatureId,
 }
 
-/// The closest point of the surface; nothing when `point` is not finite.
+/// Returns the closest point of the surface; `None` if `point` is not finite.
 pub(super) fn nearest(link: &ModifiedCylinder, point: Vector) -> Option<NearestOnSurface> {
     let (frame, from_start) = AxialFrame::around(link, point)?;
     let from_end = from_start - frame.span;

@@ -1,14 +1,13 @@
 //! Links and chains in a [rapier](https://rapier.rs) world (feature `rapier`).
 //!
-//! [`install`] does what such a world needs. Where links and chains go from there is up to the
-//! scene:
-//! - **One collider for the whole robot**, a [`Chain`](crate::Chain) on one body, when something
-//!   else moves the robot and only its contacts matter.
-//! - **One body per link**, held together by joints, when contacts shall bend the robot.
-//!   Neighbouring links overlap at round joints, so build each joint with
-//!   `contacts_enabled(false)`; links closer than a radius to their next but one need an
-//!   `InteractionGroups` that leaves the robot out of itself.
+//! Call [`install`] once per world. Then choose how the robot takes part:
 //!
+//! - **One collider for the whole robot**, a [`Chain`](crate::Chain) on one body, if something else
+//!   moves the robot and only its contacts matter.
+//! - **One body per link**, connected by joints, if contacts shall bend the robot. Neighbouring
+//!   links overlap at round joints, so build each joint with `contacts_enabled(false)`. If a link
+//!   is closer than a radius to its next but one, exclude the robot from itself by
+//!   `InteractionGroups`.
 //! ```
 //! use parry_continuum::{Chain, parry::math::Vector, rapier};
 //! use rapier3d_f64::prelude::*;
@@ -29,20 +28,20 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! # What rapier cannot do with custom shapes
-//! | | why | the way round |
+//! # Limits of rapier with custom shapes
+//! | limit | reason | remedy |
 //! |---|---|---|
-//! | save a `ColliderSet` or `PhysicsWorld` | parry's serialiser knows no custom shapes: it returns an error | save links and chains on their own (feature `serde-serialize`), with balls in their place in the world, and give them back to their colliders after loading: [below](#saving-a-world-with-robots) |
-//! | load a `NarrowPhase` | it comes back with parry's dispatcher, whose answers for links are near and not exact, and wrong beside a half-space | call [`install`] after loading |
-//! | `KinematicCharacterController` | it always asks parry's dispatcher | move a kinematic body and ask [`ContinuumDispatcher`] for the way that is free |
-//! | draw in the debug renderer | it draws boxes and contacts, and nothing for a custom shape itself | draw [`to_trimesh`](crate::ModifiedCylinder::to_trimesh) of each link through the same backend: `tests/rapier/drawn.rs` |
+//! | save a `ColliderSet` or `PhysicsWorld` | parry's serialiser returns an error for custom shapes | save links and chains on their own (feature `serde-serialize`), with balls in their place in the world, and restore them to their colliders after loading: [below](#saving-a-world-with-robots) |
+//! | load a `NarrowPhase` | it is loaded with parry's dispatcher, whose answers for links are approximate, and wrong for a half-space | call [`install`] after loading |
+//! | `KinematicCharacterController` | it always uses parry's dispatcher | move a kinematic body and query the free path with [`ContinuumDispatcher`] |
+//! | draw in the debug renderer | it draws boxes and contacts, but no custom shape | draw [`to_trimesh`](crate::ModifiedCylinder::to_trimesh) of each link through the same backend: `tests/rapier/drawn.rs` |
 //!
-//! A query pipeline takes its dispatcher when it is made:
+//! A query pipeline takes its dispatcher when it is built:
 //! `broad_phase.as_query_pipeline(&dispatcher, ..)`, or `narrow_phase.query_dispatcher()` for the
 //! installed one. A kinematic robot and a fixed wall are compared only if one of their colliders
-//! has `ActiveCollisionTypes::KINEMATIC_FIXED`. For a robot inside a closed mesh take
-//! `TriMeshFlags::FIX_INTERNAL_EDGES_TWO_SIDED`: under the one-sided flag a contact from within
-//! yields to one from without that is as deep.
+//! has `ActiveCollisionTypes::KINEMATIC_FIXED`. For a robot inside a closed mesh use
+//! `TriMeshFlags::FIX_INTERNAL_EDGES_TWO_SIDED`. Under the one-sided flag, a contact from outside
+//! replaces a contact from inside that is equally deep.
 #![cfg_attr(feature = "serde-serialize", doc = "")]
 #![cfg_attr(feature = "serde-serialize", doc = include_str!("../../docs/book/saving.md"))]
 
@@ -52,22 +51,24 @@ use rapier3d_f64::dynamics::IntegrationParameters;
 use rapier3d_f64::geometry::NarrowPhase;
 use thiserror::Error;
 
-/// Makes a rapier world fit for links and chains. `size` is the thickness of a link in the world's
-/// unit of length: 1e-3 for a robot of a millimetre in metres, 1 for the same in millimetres.
+/// Prepares a rapier world for links and chains.
+///
+/// `size` is the thickness of a link in the world's unit of length: for a robot of one millimetre,
+/// 1e-3 in metres and 1 in millimetres.
 ///
 /// - The narrow phase gets a [`ContinuumDispatcher`].
-/// - `length_unit` becomes `size`. rapier is tuned for things of size 1: prediction, slop, the
-///   speed at which overlaps are resolved and the speed below which bodies fall asleep are all
-///   multiples of it.
-/// - Contact recycling is switched off: it would keep a contact while the link moves by up to `size
-///   / 20`.
-/// - The largest speed is lifted. It would be 400 `size` per second, which a link of a millimetre
-///   reaches by falling 8 mm.
+/// - `length_unit` becomes `size`. rapier is tuned for bodies of size 1: prediction, slop, the
+///   speed at which overlaps are resolved and the speed below which bodies fall asleep are
+///   multiples of `length_unit`.
+/// - Contact recycling is switched off. It would keep a contact while the link moves by up to
+///   `size / 20`.
+/// - The largest speed is unlimited. It would be 400 `size` per second, which a link of one
+///   millimetre reaches after falling 8 mm.
 ///
-/// Gravity, the time step and damping remain as they are. They are in the world's own units.
+/// Gravity, time step and damping are unchanged. They are in the world's own units.
 ///
 /// # Errors
-/// `size` is not a finite number above 0. Nothing is changed then.
+/// `size` is not finite or not above 0. Then nothing is changed.
 pub fn install(
     narrow_phase: &mut NarrowPhase,
     parameters: &mut IntegrationParameters,
@@ -83,11 +84,11 @@ pub fn install(
     Ok(())
 }
 
-/// The size given to [`install`] is no size.
+/// The error for an invalid `size` in [`install`].
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[error("the size of a link is {size}; it must be finite and above 0")]
 #[non_exhaustive]
 pub struct BadSize {
-    /// The offending size.
+    /// The wrong size.
     pub size: Real,
 }

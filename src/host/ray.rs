@@ -1,25 +1,28 @@
-//! Rays against a link, exactly.
+//! Exact ray casts against a link.
 //!
 //! # Derivation
-//! The link is convex, so a line meets it in one interval `[entry, exit]`. It lies in the infinite
-//! cylinder around the axis, so the line's interval `[c0, c1]` in that cylinder decides which piece
-//! each bound belongs to. Let `z` be the coordinate along the axis of the line's point at `c0`:
+//! The link is convex, so a line meets it in one interval `[entry, exit]`. The link lies in the
+//! infinite cylinder around the axis. The line's interval `[c0, c1]` in that cylinder decides to
+//! which part of the surface each bound belongs. Let `z` be the coordinate along the axis of the
+//! line's point at `c0`:
 //!
 //! 1. `0 <= z <= length`: the line enters through the barrel, at `c0`.
-//! 2. `z < 0`, flat start: it can only enter through the disc, where it crosses the plane `z = 0`,
-//!    and does so exactly when that is between `c0` and `c1`.
-//! 3. `z < 0`, round start: it enters where it enters the ball around the start point. (Below the
-//!    plane it is in the half ball; above, it would have crossed the plane inside the cylinder,
-//!    hence inside the ball, before.) A line that misses that ball misses the link.
+//! 2. `z < 0`, flat start: the line can enter only through the disc. It crosses the plane `z = 0`
+//!    there, and does so exactly if that time is between `c0` and `c1`.
+//! 3. `z < 0`, round start: the line enters where it enters the ball around the start point. Proof:
+//!    below the plane `z = 0` the point is in the half ball. Above it, the line would have crossed
+//!    the plane before, inside the cylinder and hence inside the ball. A line that misses the ball
+//!    misses the link.
 //! 4. `z > length`: 2 and 3 mirrored.
 //!
-//! The exit is the same with `c1` and the directions reversed. A line parallel to the axis has `c0
-//! = -inf` and `c1 = inf`, so that cases 2 to 4 hold for it as they stand.
+//! The exit follows with `c1` and the directions reversed. A line parallel to the axis has
+//! `c0 = -inf` and `c1 = inf`; cases 2 to 4 hold for it unchanged.
 //!
-//! Both quadratics are solved about the point of the line closest to the centre of what they cut
-//! (the axis, the ball): the half chord is `sqrt((radius - gap)(radius + gap))` for the line's
-//! distance `gap`, so that the radius never has to be told apart from the square of a far origin's
-//! distance. The direction need not have length 1; time is in units of it.
+//! # Rounding
+//! Both quadratics are solved about the point of the line closest to the centre of the cylinder or
+//! ball. The half chord is `sqrt((radius - gap)(radius + gap))` for the line's distance `gap`. So
+//! the radius is never subtracted from the square of a distant origin's distance. The direction may
+//! have any length; time is in units of it.
 
 use super::axial::{AxialFrame, perpendicular, power_of_two, unit, unit_across};
 use super::feature;
@@ -28,28 +31,28 @@ use parry3d_f64::math::{Real, Vector};
 use parry3d_f64::query::{PointQuery, Ray, RayCast, RayIntersection};
 use parry3d_f64::shape::FeatureId;
 
-/// Where the line passes through the surface.
+/// A crossing of the line and the surface.
 #[derive(Clone, Copy)]
 struct Crossing {
-    /// In units of the line's direction, from the point of the line that is closest to the link's
-    /// middle.
+    /// In units of the line's direction, from the line's point closest to the link's middle.
     time: Real,
     /// Outward unit normal.
     normal: Vector,
     feature: FeatureId,
 }
 
-/// A line, seen from the middle of the link, in the units of `frame`.
+/// A line relative to the middle of the link, in the units of `frame`.
 struct Line<'a> {
     frame: &'a AxialFrame,
     caps: [Cap; 2],
-    /// The point of the line closest to the middle of the axis, relative to that middle.
+    /// The line's point closest to the middle of the axis, relative to that middle.
     point: Vector,
     direction: Vector,
-    /// Parts of `point` and `direction` perpendicular to the axis.
+    /// The components of `point` and `direction` perpendicular to the axis.
     lateral: Vector,
     lateral_direction: Vector,
-    /// Coordinate of `point` along the axis from the start, and of `direction`.
+    /// The coordinate of `point` along the axis from the start, and the axial component of
+    /// `direction`.
     z: Real,
     rise: Real,
 }
@@ -70,7 +73,7 @@ impl<'a> Line<'a> {
         }
     }
 
-    /// The interval of the line inside the link.
+    /// Returns the interval of the line inside the link.
     fn interval(&self) -> Option<(Crossing, Crossing)> {
         let (enters, leaves) = self.within_cylinder()?;
         let entry = self.crossing(enters, -1.0, enters, leaves)?;
@@ -78,7 +81,7 @@ impl<'a> Line<'a> {
         Some((entry, exit))
     }
 
-    /// The interval of the line inside the infinite cylinder.
+    /// Returns the interval of the line inside the infinite cylinder.
     fn within_cylinder(&self) -> Option<(Real, Real)> {
         let speed_squared = self.lateral_direction.length_squared();
         if speed_squared == 0.0 {
@@ -88,8 +91,8 @@ impl<'a> Line<'a> {
         chord(self.lateral, self.lateral_direction, self.frame.radius)
     }
 
-    /// The crossing at one bound of the interval, `side` being -1 at the entry and 1 at the exit,
-    /// given where that bound leaves the infinite cylinder.
+    /// Returns the crossing at one bound of the interval. `side` is -1 at the entry and 1 at the
+    /// exit; `bound` is the bound in the infinite cylinder.
     fn crossing(&self, bound: Real, side: Real, enters: Real, leaves: Real) -> Option<Crossing> {
         let z = self.z + bound * self.rise;
         let (end, outward, from_end) = if z < 0.0 {
@@ -118,15 +121,15 @@ impl<'a> Line<'a> {
         Crossing { time, normal: normal.unwrap_or_else(|| self.facing()), feature: feature::BARREL }
     }
 
-    /// The normal where a wire has none: the one that faces the ray.
+    /// Returns the normal for a wire, which has none: the direction that faces the ray.
     fn facing(&self) -> Vector {
         unit_across(-self.direction, self.frame.axis)
             .unwrap_or_else(|| perpendicular(self.frame.axis))
     }
 }
 
-/// The times at which `point + t direction` enters and leaves the ball (or, for vectors
-/// perpendicular to the axis, the cylinder) of `radius` around the origin.
+/// Returns the times at which `point + t direction` enters and leaves the ball of `radius` around
+/// the origin (or, for vectors perpendicular to the axis, the cylinder).
 fn chord(point: Vector, direction: Vector, radius: Real) -> Option<(Real, Real)> {
     let speed_squared = direction.length_squared();
     let middle = -point.dot(direction) / speed_squared;
@@ -138,8 +141,7 @@ fn chord(point: Vector, direction: Vector, radius: Real) -> Option<(Real, Real)>
     Some((middle - half, middle + half))
 }
 
-/// The ray's first contact with the link: with the solid, or with its surface when `solid` is
-/// false.
+/// Returns the ray's first hit of the link: of the solid, or of its surface if `solid` is false.
 fn cast(link: &ModifiedCylinder, ray: &Ray, solid: bool) -> Option<RayIntersection> {
     if !ray.dir.is_finite() {
         return None;
@@ -163,15 +165,14 @@ fn cast(link: &ModifiedCylinder, ray: &Ray, solid: bool) -> Option<RayIntersecti
 
     let (time, normal, feature) = match (inside, line.interval()) {
         (true, Some((_, exit))) => (time_of(exit).max(0.0), -exit.normal, exit.feature),
-        // The origin is on the surface and the line grazes it: out at once.
+        // The origin is on the surface and the line grazes it: it exits at once.
         (true, None) => {
             let normal = feature::normal(link, feature, ray.origin).unwrap_or(Vector::ZERO);
             (0.0, -normal, feature)
         }
         (false, Some((entry, exit))) => {
             let (start, end) = (time_of(entry), time_of(exit));
-            // Outside, yet between the bounds: on the surface but for rounding, at the nearer of
-            // the two.
+            // Outside, yet between the bounds: on the surface within rounding, at the nearer bound.
             if start < 0.0 && end < -start {
                 return None;
             }
@@ -184,9 +185,10 @@ fn cast(link: &ModifiedCylinder, ray: &Ray, solid: bool) -> Option<RayIntersecti
 
 /// Exact times of impact (see the head of this file), in units of the ray's direction.
 ///
-/// From inside, a solid is hit at time 0 with a zero normal, as for parry's capsule; a hollow link
-/// where the ray leaves, with the normal pointing inwards. A direction of length zero hits only the
-/// solid it starts in. A ray that is not finite hits nothing.
+/// - From inside a solid: time 0 with a zero normal, as for parry's capsule.
+/// - From inside a hollow link: the exit, with the normal pointing inwards.
+/// - A direction of length zero hits only the solid that contains the origin.
+/// - A ray that is not finite hits nothing.
 impl RayCast for ModifiedCylinder {
     fn cast_local_ray_and_get_normal(
         &self,

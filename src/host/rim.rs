@@ -1,8 +1,7 @@
-//! A flat cap that faces a triangle: what of the triangle's outline lies below its disc.
+//! A flat cap that faces a triangle: the points of the triangle's outline below the cap's disc.
 //!
-//! Points of the triangle are taken back along the normal onto the disc's plane. A corner that
-//! lands on the disc counts, and so do the two points where an edge comes below the rim and leaves
-//! it.
+//! Points of the triangle are projected along the normal onto the disc's plane. A corner that lands
+//! on the disc counts. So do the two points at which an edge comes below the rim and leaves it.
 
 use super::feature;
 use super::link_triangle_points::Meeting;
@@ -35,7 +34,7 @@ fn collect_below(meeting: &mut Meeting, end: usize) {
         let squared = way.length_squared();
         let middle = -from.dot(way) / squared;
         let gap = (from + way * middle).length();
-        // Not for an edge that the normal runs along.
+        // Excludes an edge parallel to the normal.
         if squared > 0.0 && gap < radius {
             let half = ((radius - gap) * (radius + gap) / squared).sqrt();
             for (share, name) in

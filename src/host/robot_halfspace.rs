@@ -1,10 +1,10 @@
 //! A link or a chain against a half-space, exactly.
 //!
-//! The half-space ends at the plane through its origin, and its normal points out of it. What of a
-//! link is lowest over the plane is its support point against the normal (see
-//! [`support_map`](super::support_map)). Its height is the distance where it is positive, and minus
-//! the least translation that separates the two where it is not. (parry's `contact` takes the pose
-//! the wrong way round where the half-space comes second, and it has no nonlinear cast.)
+//! The half-space is bounded by the plane through its origin; its normal points out of it. The
+//! lowest point of a link over the plane is its support point against the normal (see
+//! [`support_map`](super::support_map)). Its height, if positive, is the distance. Otherwise it is
+//! minus the length of the least separating translation. (parry's `contact` inverts the pose if the
+//! half-space comes second, and parry has no nonlinear cast for the pair.)
 
 use super::axial::unit;
 use super::range::in_range;
@@ -35,7 +35,7 @@ struct LowestPoint {
 }
 
 impl<'a> RobotHalfSpace<'a> {
-    /// The pair, if the shapes are one.
+    /// Returns the pair, if the shapes are one.
     ///
     /// # Errors
     /// [`Unsupported`] if the half-space's normal has no direction.
@@ -94,14 +94,15 @@ impl<'a> RobotHalfSpace<'a> {
         Ok(Some(contact.with_subshapes(subshape1, subshape2)))
     }
 
-    /// The time until the lowest point is at the target distance: the others come later.
+    /// Returns the time at which the lowest point reaches the target distance. All other points
+    /// reach it later.
     pub fn cast_shapes(
         &self,
         local_vel12: Vector,
         options: ShapeCastOptions,
     ) -> Result<Option<ShapeCastHit>, Unsupported> {
         let lowest = self.lowest()?;
-        // Of the robot, in the half-space's frame.
+        // The robot's velocity in the half-space's frame.
         let velocity =
             if self.robot_is_first { -(self.pose.rotation * local_vel12) } else { local_vel12 };
         let speed = -velocity.dot(self.normal);
@@ -119,7 +120,7 @@ impl<'a> RobotHalfSpace<'a> {
         if time_of_impact.is_nan() || time_of_impact > options.max_time_of_impact {
             return Ok(None);
         }
-        // Where it will be then on the plane, and where it is now on the robot.
+        // The point on the plane at the time of impact, and the point on the robot now.
         let below = lowest.point - self.normal * lowest.height;
         let along = velocity + self.normal * speed;
         let (witness1, witness2) = self.in_order(
@@ -155,12 +156,12 @@ impl<'a> RobotHalfSpace<'a> {
         lowest.filter(|lowest| lowest.height.is_finite()).ok_or(Unsupported)
     }
 
-    /// A point of the robot and the one below or above it on the plane, each in its shape's frame.
+    /// Returns a point of the robot and its projection onto the plane, each in its shape's frame.
     fn points(&self, on_robot: Vector, height: Real) -> (Vector, Vector) {
         self.in_order(self.pose.inverse_transform_point(on_robot), on_robot - self.normal * height)
     }
 
-    /// The normals out of the first and the second shape, each in its shape's frame.
+    /// Returns the normals out of the first and the second shape, each in its shape's frame.
     fn normals(&self) -> (Vector, Vector) {
         self.in_order(self.pose.rotation.inverse() * -self.normal, self.normal)
     }

@@ -1,9 +1,8 @@
-//! A link or a chain against a triangle or a triangle mesh: the pairs that this crate answers
-//! exactly.
+//! A link or a chain against a triangle or a triangle mesh, exactly.
 //!
-//! A triangle is measured in the frame of the first shape, so that only the second is moved. A mesh
-//! stays where it is and the robot is moved into its frame. Answers go back to the frames of the
-//! two shapes at the end.
+//! A triangle is measured in the frame of the first shape, so that only the second is moved. For a
+//! mesh, the robot is moved into the mesh's frame. Answers are transformed back to the frames of
+//! the two shapes at the end.
 
 use super::link_triangle::{self, LinkContact};
 use super::mesh_search::{SearchGoal, search};
@@ -14,7 +13,7 @@ use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::query::{ClosestPoints, Contact, ShapeDistance, ShapeIntersection, Unsupported};
 use parry3d_f64::shape::{Shape, TriMesh, Triangle};
 
-/// The links of a robot, be it a chain or a single link.
+/// Returns the links of a robot: a chain or a single link.
 pub(super) fn links_of(shape: &dyn Shape) -> Option<&[ModifiedCylinder]> {
     let link = shape.as_shape::<ModifiedCylinder>().map(std::slice::from_ref);
     link.or_else(|| shape.as_shape::<Chain>().map(Chain::links))
@@ -40,7 +39,7 @@ pub(super) struct RobotSurface<'a> {
     robot_is_first: bool,
 }
 
-/// The closest points of a robot and a surface, in the frame that the pair is measured in.
+/// The closest points of a robot and a surface, in the frame of measurement.
 struct NearestPair {
     link: usize,
     triangle: u32,
@@ -50,7 +49,7 @@ struct NearestPair {
 }
 
 impl<'a> RobotSurface<'a> {
-    /// The pair, if the shapes are one.
+    /// Returns the pair, if the shapes are one.
     pub fn of(pos12: &'a Pose, g1: &'a dyn Shape, g2: &'a dyn Shape) -> Option<Self> {
         let pair = |robot, surface, robot_is_first| {
             Some(Self {
@@ -96,12 +95,12 @@ impl<'a> RobotSurface<'a> {
         };
         let mut best =
             (self.contact_of(nearest.link, nearest.triangle)?, nearest.link, nearest.triangle);
-        // What is within the prediction is what the distance says.
+        // The distance decides whether it is within the prediction.
         if nearest.distance > 0.0 {
             best.0.distance = nearest.distance;
         } else {
             best.0.distance = best.0.distance.min(0.0);
-            // They overlap in more places than the search has to look at; the deepest counts.
+            // In an overlap the search may skip places that overlap; the deepest counts.
             for link in 0..self.links.len() {
                 for triangle in self.triangles_near(link) {
                     let contact = self.contact_of(link, triangle)?;
@@ -117,7 +116,7 @@ impl<'a> RobotSurface<'a> {
         Ok((contact.distance <= prediction).then(report))
     }
 
-    /// The closest link and triangle at most `margin` apart.
+    /// Returns the closest link and triangle at most `margin` apart.
     fn nearest(&self, margin: Real, until: SearchGoal) -> Result<Option<NearestPair>, Unsupported> {
         match self.surface {
             Surface::Triangle(_) => self.nearest_to_triangle(margin),
@@ -151,7 +150,7 @@ impl<'a> RobotSurface<'a> {
         let mut best: Option<(usize, Nearest)> = None;
         for (number, link) in self.links.iter().enumerate() {
             self.placed(link)?;
-            // The search wants triangles strictly nearer than its bound.
+            // The search returns triangles strictly nearer than its bound.
             let bound = best.map_or(margin.next_up(), |(_, nearest)| nearest.distance);
             let placed = PlacedLink::new(link, &pose);
             if let Some(nearest) = search(mesh, &placed, bound, until).map_err(|_| Unsupported)? {
@@ -175,7 +174,7 @@ impl<'a> RobotSurface<'a> {
             .ok_or(Unsupported)
     }
 
-    /// The triangles whose boxes meet the link's.
+    /// Returns the triangles whose boxes meet the link's box.
     fn triangles_near(&self, link: usize) -> Vec<u32> {
         match self.surface {
             Surface::Triangle(_) => vec![0],
@@ -185,7 +184,7 @@ impl<'a> RobotSurface<'a> {
         }
     }
 
-    /// The robot's pose in the frame that the pair is measured in.
+    /// Returns the robot's pose in the frame of measurement.
     fn robot_pose(&self) -> Pose {
         match (self.surface, self.robot_is_first) {
             (_, false) => *self.pos12,
@@ -194,13 +193,13 @@ impl<'a> RobotSurface<'a> {
         }
     }
 
-    /// A link in the frame that the pair is measured in.
+    /// Returns a link in the frame of measurement.
     fn placed(&self, link: &ModifiedCylinder) -> Result<ModifiedCylinder, Unsupported> {
         let placed = link.transformed(&self.robot_pose());
         in_range(placed.start()).and(in_range(placed.end())).map(|_| placed)
     }
 
-    /// A triangle in the frame that the pair is measured in.
+    /// Returns a triangle in the frame of measurement.
     fn triangle(&self, index: u32) -> Result<[Vector; 3], Unsupported> {
         let vertices = match self.surface {
             Surface::Triangle(triangle) if self.robot_is_first => triangle.transformed(self.pos12),
@@ -211,13 +210,14 @@ impl<'a> RobotSurface<'a> {
         in_range(a).and(in_range(b)).and(in_range(c)).map(|_| [a, b, c])
     }
 
-    /// The sub-shapes of the first and the second shape. A lone link or triangle is sub-shape 0.
+    /// Returns the sub-shapes of the first and the second shape. A single link or triangle is
+    /// sub-shape 0.
     fn subshapes(&self, link: usize, triangle: u32) -> (u32, u32) {
         let link = link as u32;
         if self.robot_is_first { (link, triangle) } else { (triangle, link) }
     }
 
-    /// A point of each in the frame of the shape that it belongs to, the first shape's first.
+    /// Returns each point in the frame of its shape, the first shape's point first.
     fn points(&self, on_robot: Vector, on_surface: Vector) -> (Vector, Vector) {
         match (self.surface, self.robot_is_first) {
             (Surface::Triangle(_), true) => {
@@ -230,7 +230,7 @@ impl<'a> RobotSurface<'a> {
 
     fn report(&self, contact: &LinkContact) -> Contact {
         let (point1, point2) = self.points(contact.on_link, contact.on_other);
-        // Out of the first shape, in the frame that the pair is measured in.
+        // Out of the first shape, in the frame of measurement.
         let outward = if self.robot_is_first { contact.normal } else { -contact.normal };
         let rotation = self.pos12.rotation;
         let (normal1, normal2) = match (self.surface, self.robot_is_first) {
@@ -241,7 +241,7 @@ impl<'a> RobotSurface<'a> {
     }
 }
 
-/// How far to look for something at most `margin` away, a negative margin asking for overlap.
+/// Returns the search bound for a margin. A negative margin asks for overlap, so its bound is 0.
 fn within(margin: Real) -> Result<Real, Unsupported> {
     if margin.is_nan() { Err(Unsupported) } else { Ok(margin.max(0.0)) }
 }

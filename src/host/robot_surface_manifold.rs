@@ -1,19 +1,20 @@
-//! The contact manifolds of a robot and a mesh or a height field: one for each link and triangle
-//! that meet.
+//! The contact manifolds of a robot and a mesh or a height field: one per link and triangle in
+//! contact.
 //!
-//! Each link looks for triangles within its own box in the surface's frame. (parry's routine for
-//! two composites goes through all triangles within the box of the whole chain: most of a bent
-//! robot's box is far from it.) The manifold of a link and a triangle keeps what the host has
-//! stored with it, and is found again by their ids; so nothing is lost when the robot changes its
-//! shape. Pairs that do not meet leave no manifold behind.
+//! Each link searches the triangles within its own box in the surface's frame. (parry's routine for
+//! two composites visits all triangles within the box of the whole chain; most of a bent robot's
+//! box is far from it.) The manifold of a link and a triangle keeps the host's data. Their ids
+//! identify it in the next step, so a change of the robot's shape loses nothing. Pairs without
+//! contact leave no manifold.
 //!
-//! **A flag of the surface turns normals and never removes a contact** (`FIX_INTERNAL_EDGES`, of
-//! one side or of both). Of the contacts of one link with all triangles:
+//! # Flags of the surface
+//! The flags `FIX_INTERNAL_EDGES`, one-sided or two-sided, may turn normals. They never remove a
+//! contact. For the contacts of one link with all triangles:
 //!
 //! 1. A contact from behind a one-sided surface counts, unless the link has a contact from the
-//!    front that is at least as deep: the near side of a solid speaks for the far one.
-//! 2. The deepest contact is in the manifolds. Where its normal has been turned and none of the
-//!    points is as deep, its closest points are added. Nothing is deeper than this contact.
+//!    front that is at least as deep. Then the near side of a solid represents the far side.
+//! 2. The deepest contact is in the manifolds. If its normal has been turned and none of the points
+//!    is as deep, its closest points are added. Nothing is deeper than this contact.
 
 use super::link_triangle::LinkTrianglePair;
 use super::link_triangle_manifold::{self, Met, TriangleRules};
@@ -27,13 +28,14 @@ use parry3d_f64::query::{ContactManifold, ContactManifoldsWorkspace, Unsupported
 use parry3d_f64::shape::{HeightField, Shape, TriMesh, Triangle, TrianglePseudoNormals};
 use std::collections::HashMap;
 
-/// Brings the manifolds up to date, if the shapes are a link or a chain and a mesh or a height
-/// field, in either order. Returns whether they are. Boxes are loosened by `loose`: by the
-/// prediction, if it is positive, and by rounding.
+/// Updates the manifolds, if the shapes are a link or a chain and a mesh or a height field, in
+/// either order. Returns whether they are.
+///
+/// Boxes are loosened by `loose`: the prediction, if it is positive, plus rounding.
 ///
 /// # Errors
-/// [`Unsupported`] for a triangle within reach that is not finite or out of range. There are no
-/// manifolds then.
+/// [`Unsupported`] for a triangle within reach that is not finite or out of range. Then there are
+/// no manifolds.
 pub(super) fn update<M, C>(
     pos12: &Pose,
     (g1, g2): (&dyn Shape, &dyn Shape),
@@ -51,9 +53,8 @@ where
         (_, _, Some(surface), Some(links)) => (links, surface, false),
         _ => return Ok(false),
     };
-    // rapier takes a workspace for the sign that manifolds come and go. The manifolds hold all
-    // there is to keep, and an empty one of parry's own can be saved and loaded, which one of ours
-    // could not.
+    // rapier takes a workspace as the sign that manifolds come and go. The manifolds hold the whole
+    // state, and an empty workspace of parry can be saved and loaded, unlike one of this crate.
     workspace.get_or_insert_with(|| VoxelsShapeContactManifoldsWorkspace::<2>::new().into());
     let robot_pose = if robot_is_first { pos12.inverse() } else { *pos12 };
     let rounding = rounding_of_depths(pos12, g1, g2);
@@ -99,7 +100,8 @@ where
     Ok(true)
 }
 
-/// Rules 1 and 2 for the manifolds of one link. Depths that differ by at most `rounding` are equal.
+/// Applies rules 1 and 2 to the manifolds of one link. Depths that differ by at most `rounding` are
+/// equal.
 fn agree<M, C: Copy>(manifolds: &mut [ContactManifold<M, C>], met: &[Met], rounding: Real) {
     let least = |dists: &mut dyn Iterator<Item = Real>| dists.fold(Real::INFINITY, Real::min);
     let deepest = least(&mut met.iter().map(|met| met.dist));
@@ -134,7 +136,7 @@ impl<'a> TriangleSurface<'a> {
         shape.as_trimesh().map(Self::Mesh).or_else(|| shape.as_heightfield().map(Self::Field))
     }
 
-    /// Adds the triangles whose boxes meet `bounds`, and their ids.
+    /// Appends the triangles whose boxes meet `bounds`, and their ids.
     fn collect_near(self, bounds: &Aabb, near: &mut Vec<(u32, Triangle)>) {
         match self {
             Self::Mesh(mesh) => {
@@ -152,12 +154,13 @@ impl<'a> TriangleSurface<'a> {
         }
     }
 
-    /// Whether the middle of an edge lies on no other triangle that has an area, rounding aside.
+    /// Returns whether the middle of an edge lies on no other triangle with an area, within
+    /// rounding.
     fn is_free(self, id: u32, triangle: &Triangle, edge: usize) -> bool {
         let corners = triangle.vertices();
         let (from, to) = (corners[edge], corners[(edge + 1) % 3]);
         let middle = 0.5 * from + 0.5 * to;
-        // A height field computes a corner anew for each cell, from places that are shares of its
+        // A height field recomputes a corner for each cell, from places that are shares of its
         // size.
         let size = match self {
             Self::Mesh(_) => from.abs().max(to.abs()),

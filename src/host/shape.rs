@@ -1,10 +1,12 @@
 //! The link as one of parry's shapes.
 //!
-//! Bounds are the smallest of their kind. For the ball around a link with one flat and one round
-//! end: a ball centred on the axis `c` from the flat end's centre must reach the rim, `sqrt(c^2 +
-//! r^2)`, and the pole of the half ball, `l - c + r`. The first grows with `c`, the second falls,
-//! so the smallest ball has both equal: `c = l (l + 2 r) / (2 (l + r))`, which lies between the
-//! ends.
+//! Bounds are the smallest of their kind.
+//!
+//! # Bounding ball with one flat and one round end
+//! Let c be the distance of the ball's centre from the flat end's centre, along the axis; l the
+//! length, r the radius. The ball must reach the rim, at `sqrt(c^2 + r^2)`, and the pole of the
+//! half ball, at `l - c + r`. The first grows with c, the second falls. So the smallest ball has
+//! both equal: `c = l (l + 2 r) / (2 (l + r))`, which lies between the ends.
 
 use super::{feature, mass};
 use crate::robot::{Cap, ModifiedCylinder};
@@ -16,8 +18,8 @@ use parry3d_f64::shape::{
 };
 use std::f64::consts::FRAC_PI_2;
 
-/// A convex custom shape. Its faces are 0, the barrel, 1 and 2, the start and end cap; its edges 0
-/// and 1, the rims of the flat caps.
+/// A convex custom shape. Faces: 0 is the barrel, 1 and 2 are the start and the end cap. Edges: 0
+/// and 1 are the rims of flat caps.
 impl Shape for ModifiedCylinder {
     fn compute_local_aabb(&self) -> Aabb {
         self.local_aabb()
@@ -29,7 +31,7 @@ impl Shape for ModifiedCylinder {
         let reach = match (start, end) {
             (Cap::Round, Cap::Round) => 0.5 * l + r,
             (Cap::Flat, Cap::Flat) => (0.5 * l).hypot(r),
-            // l + r - c, with the middle of the axis at l / 2 and the pole at l + r.
+            // l + r - c: the distance from the centre to the pole.
             _ => l + r - from_flat_end(l, r),
         };
         let share = match (start, end) {
@@ -44,10 +46,14 @@ impl Shape for ModifiedCylinder {
         Box::new(*self)
     }
 
-    /// The scaled link, where it is a link again: under a scale whose three factors have the same
-    /// magnitude; for a wire, under every scale; and for a cylinder along a coordinate axis,
-    /// under one whose other two factors have the same magnitude. Otherwise nothing, because
-    /// the true image has elliptic sections. The number of subdivisions plays no part.
+    /// Returns the scaled link, if the image is a link; otherwise `None`, because the image has
+    /// elliptic sections. The image is a link
+    ///
+    /// - if all three factors have the same magnitude;
+    /// - for a wire;
+    /// - for a cylinder along a coordinate axis, if the other two factors have the same magnitude.
+    ///
+    /// The number of subdivisions is ignored.
     fn scale_dyn(&self, scale: Vector, _num_subdivisions: u32) -> Option<Box<dyn Shape>> {
         let radius = self.radius() * radial_factor(self, scale.abs())?;
         let scaled = Self::new(self.start() * scale, self.end() * scale, radius, self.caps());
@@ -70,7 +76,7 @@ impl Shape for ModifiedCylinder {
         TypedShape::Custom(self)
     }
 
-    /// The radius of the largest ball that fits into the link.
+    /// Returns the radius of the largest ball that fits into the link.
     fn ccd_thickness(&self) -> Real {
         let (l, r) = (self.length(), self.radius());
         match self.caps() {
@@ -106,14 +112,14 @@ impl Shape for ModifiedCylinder {
     }
 }
 
-/// Where the smallest ball around a link with one flat end has its centre, from that end (see the
-/// head of this file).
+/// Returns c, the distance of the smallest bounding ball's centre from the flat end (see the head
+/// of this file).
 fn from_flat_end(l: Real, r: Real) -> Real {
-    // l (l + 2 r) / (2 (l + r)) without the product of two lengths.
+    // l (l + 2 r) / (2 (l + r)), without the product of two lengths.
     0.5 * l * (1.0 + r / (l + r))
 }
 
-/// What the radius is multiplied by under a scale with these magnitudes, if the image is a link.
+/// Returns the factor of the radius under a scale with these magnitudes, if the image is a link.
 fn radial_factor(link: &ModifiedCylinder, scale: Vector) -> Option<Real> {
     let [x, y, z] = scale.to_array();
     if (x == y && y == z) || link.radius() == 0.0 {

@@ -1,24 +1,31 @@
-//! When a link that moves straight meets a triangle, another link or another convex shape: Newton's
-//! steps, never late.
+//! The first hit of a link in straight motion and a triangle, another link or another convex shape:
+//! Newton's steps, never late.
 //!
-//! Neither of the two turns. In the link's frame the other, the *wall*, moves at v; n is a unit
-//! vector from the link to the wall that separates them, and g the gap between them along it. After
-//! a time s the gap along the same n is g + s <n, v>, and the distance at least that, whatever n
-//! is. So where g > e nothing is within the target distance e before s = (g - e) / -<n, v>, and
-//! nothing ever is if <n, v> >= 0. There the two are measured again. Both are convex, hence so is
-//! their distance as a function of time, of which these steps are Newton's: they come from the safe
-//! side and do not pass the first root.
+//! # Definitions
+//! - Neither shape turns. In the link's frame the other shape, the *wall*, moves at v.
+//! - `n`: a unit vector from the link to the wall that separates them. `g`: the gap along n.
+//! - `e`: the target distance. `s`: time.
 //!
-//! Where g is not above e, n says nothing: the two touch. At the start, and if the host does not
-//! stop there, they are let go when they part along n; but only if n is known. Points that are
-//! close to one another have no direction between them, and two that may part or not are held.
+//! # Bound
+//! After the time s the gap along the same n is `g + s <n, v>`, and the distance is at least that,
+//! for every n. So if `g > e`, nothing is within e before `s = (g - e) / -<n, v>`; if
+//! `<n, v> >= 0`, nothing ever is.
 //!
-//! They end where the distance is above the target by no more than the wall's
-//! [`CastWall::TOUCHING`] of the link's size, or by rounding: the hit is that much early at most,
-//! measured along n.
+//! # Algorithm
+//! 1. **Measure** the two and take n.
+//! 2. **Step** to the bound and repeat. Both shapes are convex, so their distance is a convex
+//!    function of time, and these steps are Newton's. They approach from the safe side and never
+//!    pass the first root.
+//! 3. **Stop** if the distance exceeds the target by at most [`CastWall::TOUCHING`] of the link's
+//!    size, or by rounding. The hit is early by at most that much, measured along n.
 //!
-//! (parry's cast follows a ray through the difference of the two shapes by tetrahedra. Where these
-//! have no volume, as with a link beside the flat side of a box, it may panic.)
+//! # Contact at the start
+//! If g is not above e, n gives no bound: the two touch. If the host does not stop at the start,
+//! the contact is ignored if the two part along n, but only if n is known. Close points have no
+//! direction between them; a pair that may part or not is held.
+//!
+//! (parry's cast follows a ray through the difference of the two shapes by tetrahedra. If these
+//! have no volume, as for a link beside the flat side of a box, it may panic.)
 
 use super::axial::unit;
 use super::link_pair::{LinkPair, links_of_pair};
@@ -32,36 +39,37 @@ use parry3d_f64::query::{
 };
 use parry3d_f64::shape::{Shape, SupportMap};
 
-/// What rounding leaves of the largest coordinate.
+/// Rounding error relative to the largest coordinate.
 const ROUNDING: Real = 64.0 * Real::EPSILON;
-/// More than any cast takes: a grazing one halves its error with each step, others square it.
+/// Most steps: more than any cast needs. A grazing cast halves its error with each step, others
+/// square it.
 const MAX_STEPS: usize = 200;
 
-/// What a link may meet, in the link's frame.
+/// A wall that a link may meet, in the link's frame.
 trait CastWall {
-    /// The share of the smaller link's size at which it counts as touching.
+    /// The share of the smaller shape's size at which the two count as touching.
     const TOUCHING: Real;
 
-    /// The contact with the wall after it has moved.
+    /// Returns the contact with the wall after it has moved by `shift`.
     fn contact(&self, shift: Vector) -> Result<LinkContact, Unsupported>;
 
-    /// Where the wall begins along a unit vector before it has moved.
+    /// Returns where the wall begins along a unit vector, before it has moved.
     fn begins(&self, normal: Vector) -> Real;
 
-    /// The largest coordinate before it has moved.
+    /// Returns the largest coordinate before it has moved.
     fn largest(&self) -> Result<Real, Unsupported>;
 
-    /// Its length and radius where it is a link, of which the smaller of both counts.
+    /// Returns length plus radius if the wall is a link; the smaller size of the two counts.
     fn size(&self) -> Real {
         Real::INFINITY
     }
 }
 
-/// The first hit of a link and a triangle, of which the second of the pair moves at `local_vel12`
-/// in the frame of the first.
+/// Returns the first hit of a link and a triangle. The second of the pair moves at `local_vel12` in
+/// the frame of the first.
 ///
 /// # Errors
-/// [`Unsupported`] for what is out of range.
+/// [`Unsupported`] for numbers out of range.
 pub(super) fn cast_triangle(
     pair: &LinkTrianglePair,
     pos12: &Pose,
@@ -73,11 +81,11 @@ pub(super) fn cast_triangle(
     way.cast(&TriangleWall { link: pair.link, corners }, options)
 }
 
-/// The same of two links, or a link and a shape of parry's that is a link. Nothing if the shapes
-/// are no such pair.
+/// As [`cast_triangle`], for two links, or a link and a shape of parry that is a link; `None` for
+/// other pairs.
 ///
 /// # Errors
-/// [`Unsupported`] for what is out of range.
+/// [`Unsupported`] for numbers out of range.
 pub(super) fn cast_link(
     pos12: &Pose,
     local_vel12: Vector,
@@ -89,11 +97,11 @@ pub(super) fn cast_link(
     way.cast(&LinkWall { link: &first, wall: second.transformed(pos12) }, options).map(Some)
 }
 
-/// The same of a link and a convex shape of any kind, in either order. Nothing if the shapes are no
-/// such pair. `dispatcher` gives their contacts.
+/// As [`cast_triangle`], for a link and any convex shape, in either order; `None` for other pairs.
+/// `dispatcher` computes their contacts.
 ///
 /// # Errors
-/// [`Unsupported`] for what is out of range or refused by the dispatcher.
+/// [`Unsupported`] for numbers out of range, or if the dispatcher refuses.
 pub(super) fn cast_convex(
     dispatcher: &impl QueryDispatcher,
     pos12: &Pose,
@@ -191,11 +199,11 @@ impl<D: QueryDispatcher> CastWall for ConvexWall<'_, D> {
     }
 }
 
-/// The contact of a link and a convex shape at a pose in the link's frame. Where they overlap the
-/// distance is 0 or less.
+/// Returns the contact of a link and a convex shape at a pose in the link's frame. In an overlap
+/// the distance is at most 0.
 ///
 /// # Errors
-/// [`Unsupported`] for what the dispatcher refuses.
+/// [`Unsupported`] if the dispatcher refuses.
 pub(super) fn iterated_contact(
     dispatcher: &impl QueryDispatcher,
     link: &ModifiedCylinder,
@@ -222,7 +230,7 @@ pub(super) fn iterated_contact(
     {
         return Ok(*apart);
     }
-    // They overlap, or are so close that rounding has turned the way between their points.
+    // They overlap, or rounding has turned the direction between their close points.
     let contact = dispatcher.contact(pose, link, shape, Real::MAX)?.map(|contact| LinkContact {
         distance: if apart.is_some() { contact.dist } else { contact.dist.min(0.0) },
         on_link: contact.point1,
@@ -230,8 +238,7 @@ pub(super) fn iterated_contact(
         normal: contact.normal1,
     });
     let start = link.start();
-    // Where the one says that they meet and the other does not, they touch; nobody knows along
-    // what.
+    // If the two queries disagree on whether the shapes meet, they touch; the direction is unknown.
     let touch = LinkContact { distance: 0.0, on_link: start, on_other: start, normal: Vector::X };
     Ok(match (contact, apart) {
         (Some(contact), Some(apart)) if gap(contact.normal) < gap(apart.normal) => apart,
@@ -240,11 +247,11 @@ pub(super) fn iterated_contact(
     })
 }
 
-/// A link and the way of a wall, in the link's frame.
+/// A link and the path of a wall, in the link's frame.
 struct WallPath<'a> {
     link: &'a ModifiedCylinder,
     link_is_first: bool,
-    /// The wall's.
+    /// The wall's pose.
     pose: Pose,
     velocity: Vector,
 }
@@ -263,12 +270,13 @@ impl<'a> WallPath<'a> {
         Self { link, link_is_first, pose, velocity: -(pose.rotation * local_vel12) }
     }
 
+    /// Steps 1 to 3: returns the first hit.
     fn cast<W: CastWall>(
         &self,
         wall: &W,
         options: ShapeCastOptions,
     ) -> Result<Option<ShapeCastHit>, Unsupported> {
-        // Not even what touches at once comes in a time that has passed.
+        // A negative time admits no hit, not even an immediate one.
         if options.max_time_of_impact < 0.0 {
             return Ok(None);
         }
@@ -297,7 +305,7 @@ impl<'a> WallPath<'a> {
                 if may_go && closing <= 0.0 {
                     return Ok(None);
                 }
-                // As parry has it, what just touches is not within.
+                // As in parry, a pair that just touches is not within the distance.
                 status = if excess < 0.0 {
                     ShapeCastStatus::PenetratingOrWithinTargetDist
                 } else {
@@ -310,8 +318,8 @@ impl<'a> WallPath<'a> {
                 break;
             }
             let next = time + ahead / closing;
-            // Written so that NaN, which only comes of what does not move, is never. Nor is
-            // anything met that would have to come from beyond the range of both.
+            // Written so that NaN, which arises only without motion, is never. A wall that would
+            // have to come from beyond the range of both shapes never arrives either.
             let may_meet = closing > 0.0
                 && next <= options.max_time_of_impact
                 && is_within_reach(velocity * next);
@@ -329,9 +337,9 @@ impl<'a> WallPath<'a> {
         Ok(Some(self.hit(contact, time, status)))
     }
 
-    /// Whether the wall, moved so far, has the link behind it for good. Until then it was clear. (A
-    /// velocity that is all but along the plane between the two leads far away, where
-    /// iterations tell nothing any more.)
+    /// Returns whether the wall, moved by `shift`, has passed the link for good; until then the
+    /// link was clear. (A velocity almost parallel to the plane between the two leads far away,
+    /// where iterations are meaningless.)
     fn has_passed<W: CastWall>(
         &self,
         wall: &W,
@@ -347,8 +355,8 @@ impl<'a> WallPath<'a> {
         passed > target.max(0.0) + ROUNDING * largest
     }
 
-    /// What rounding can do to a distance after the wall, whose largest coordinate is given, has
-    /// moved.
+    /// Returns the rounding error of a distance after the wall has moved. `largest` is the wall's
+    /// largest coordinate.
     fn rounding(&self, mut largest: Real, shift: Vector) -> Result<Real, Unsupported> {
         for place in [shift, self.link.start(), self.link.end()] {
             largest = largest.max(in_range(place)?);
@@ -357,7 +365,7 @@ impl<'a> WallPath<'a> {
     }
 
     fn hit(&self, contact: LinkContact, time: Real, status: ShapeCastStatus) -> ShapeCastHit {
-        // The wall's own frame does not turn.
+        // The wall does not turn.
         let to_wall = self.pose.rotation.inverse();
         let shift = self.velocity * time;
         let hit = ShapeCastHit {
@@ -374,8 +382,8 @@ impl<'a> WallPath<'a> {
     }
 }
 
-/// Whether a wall that is moved so far can meet a link at all: the wall's coordinates are within
-/// the limit, and a link reaches to twice the limit.
+/// Returns whether a wall moved by `shift` can meet a link at all. The wall's coordinates are
+/// within the limit, and a link extends to at most twice the limit.
 fn is_within_reach(shift: Vector) -> bool {
     shift.abs().max_element() <= 4.0 * COORDINATE_LIMIT
 }

@@ -1,8 +1,8 @@
-//! A dispatcher that remembers whether a pair was refused.
+//! A dispatcher that records whether a pair was refused.
 //!
-//! parry's queries on composite shapes skip the parts whose pair the dispatcher does not support: a
-//! refused pair reads as infinitely far away. They are handed a [`StrictDispatcher`] instead, and
-//! once one of its pairs was refused, so is the whole answer.
+//! parry's queries on composite shapes skip parts whose pair the dispatcher does not support: a
+//! refused pair counts as infinitely far away. They get a [`StrictDispatcher`] instead. If one of
+//! its pairs is refused, the whole query is refused.
 
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::query::details::NormalConstraints;
@@ -14,15 +14,17 @@ use parry3d_f64::query::{
 use parry3d_f64::shape::Shape;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Passes every query on and takes note of refusals.
+/// Forwards every query and records refusals.
 pub(super) struct StrictDispatcher<'a, D> {
     dispatcher: &'a D,
     refused: AtomicBool,
 }
 
 impl<'a, D> StrictDispatcher<'a, D> {
-    /// The answer that `query` gets from `dispatcher`, unless one of the pairs that it consists of
-    /// was refused.
+    /// Returns the result of `query` on `dispatcher`.
+    ///
+    /// # Errors
+    /// [`Unsupported`] if one of the query's pairs was refused.
     pub fn ask<T>(dispatcher: &'a D, query: impl FnOnce(&Self) -> T) -> Result<T, Unsupported> {
         let watched = Self { dispatcher, refused: AtomicBool::new(false) };
         let answer = query(&watched);

@@ -1,15 +1,16 @@
 //! The support map of a link, and its polygonal features for parry's generic algorithms.
 //!
-//! The support point of a direction that leans towards one end belongs to that end: on a half ball,
-//! one radius along the direction; on a disc, one radius along the part of the direction
-//! perpendicular to the axis. (The other end's best point along that direction is at most the first
-//! end's rim, shifted back along the axis.)
+//! # Support map
+//! The support point of a direction belongs to the end towards which the direction leans. On a half
+//! ball it is one radius along the direction. On a disc it is one radius along the direction's
+//! component perpendicular to the axis. (The other end's best point is at most the first end's rim,
+//! shifted back along the axis.)
 //!
-//! The **features** are approximations, because parry's clipping knows polygons of at most four
-//! vertices: a flat cap is a square inscribed in its disc with one corner at the azimuth asked for,
-//! everything else a segment along the barrel whose ends are support points of the two ends. They
-//! serve contact manifolds against shapes that this crate has no closed form for; no distance,
-//! contact or ray uses them.
+//! # Polygonal features
+//! They are approximations, because parry's clipping supports polygons of at most four vertices. A
+//! flat cap is a square inscribed in its disc, with one corner at the requested azimuth. Everything
+//! else is a segment along the barrel between support points of the two ends. Only contact
+//! manifolds against shapes without a closed form use them; no distance, contact or ray does.
 
 use super::axial::{axis_or_x, perpendicular, unit, unit_across};
 use super::feature::{self, crest_end};
@@ -18,8 +19,8 @@ use crate::robot::{Cap, ModifiedCylinder};
 use parry3d_f64::math::Vector;
 use parry3d_f64::shape::{PackedFeatureId, PolygonalFeature, PolygonalFeatureMap, SupportMap};
 
-/// Exact support points (see the head of this file); the start point for a direction of length
-/// zero.
+/// Exact support points (see the head of this file). A direction of length zero gives the start
+/// point.
 impl SupportMap for ModifiedCylinder {
     fn local_support_point(&self, dir: Vector) -> Vector {
         unit(dir).map_or(self.start(), |dir| self.local_support_point_toward(dir))
@@ -58,7 +59,7 @@ impl PolygonalFeatureMap for ModifiedCylinder {
     }
 }
 
-/// The polygon of unit direction `dir` with a corner at `azimuth`.
+/// Returns the polygon for the unit direction `dir` with a corner at `azimuth`.
 fn feature_at(
     link: &ModifiedCylinder,
     axis: Vector,
@@ -69,7 +70,7 @@ fn feature_at(
     let end = usize::from(lean > 0.0);
     let radius = link.radius();
     let mut polygon = PolygonalFeature::default();
-    // A direction within 60 degrees of a disc's normal sees the disc, as for parry's cylinder.
+    // A direction within 60 degrees of a disc's normal gives the disc, as for parry's cylinder.
     if link.caps()[end] == Cap::Flat && lean.abs() >= 0.5 {
         let across = axis.cross(azimuth);
         for (corner, offset) in [azimuth, across, -azimuth, -across].into_iter().enumerate() {

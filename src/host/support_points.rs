@@ -1,12 +1,11 @@
-//! What a link stands on: the points of its surface that a plane beyond it, across a unit normal,
-//! would carry.
+//! The support points of a link: points of its surface that a plane across a unit normal would
+//! carry.
 //!
-//! 1. **A round cap** that leans along the normal: its one point furthest along it.
-//! 2. **A flat cap** that faces along it: four points of its rim that stay where they are on the
-//!    link, so that they are the same from step to step. The rim's lowest point is an end of the
-//!    crest.
-//! 3. **The crest** of the barrel, its line furthest along the normal: its two ends. At a round cap
-//!    that leans along the normal it ends in the cap's own lowest point.
+//! 1. **A round cap** that leans along the normal: its point farthest along it.
+//! 2. **A flat cap** that faces along it: four points of its rim, fixed on the link, so that they
+//!    are the same from step to step. The rim's lowest point is an end of the crest.
+//! 3. **The crest** of the barrel, its line farthest along the normal: its two ends. At a round cap
+//!    that leans along the normal the crest ends in the cap's own lowest point.
 
 use super::axial::{perpendicular, unit_across};
 use super::feature::{self, crest_end};
@@ -14,17 +13,17 @@ use crate::robot::{Cap, ModifiedCylinder};
 use parry3d_f64::math::{Real, Vector};
 use parry3d_f64::shape::PackedFeatureId;
 
-/// The cosine between the normal and the axis from which a flat cap counts as facing along it.
+/// The cosine between normal and axis above which a flat cap faces along the normal.
 const FACING: Real = 0.5;
 /// The sine of the lean below which an upright link has no crest: its azimuth would be rounding.
 const UPRIGHT: Real = 1e-6;
 
-/// The end points of the axis.
+/// Returns an end point of the axis.
 pub(super) fn centre(link: &ModifiedCylinder, end: usize) -> Vector {
     if end == 0 { link.start() } else { link.end() }
 }
 
-/// The unit vectors along the axis out of the link; zero for a ball.
+/// Returns the unit vector along the axis out of an end; zero for a ball.
 pub(super) fn outward(link: &ModifiedCylinder, end: usize) -> Vector {
     if end == 0 { -link.axis() } else { link.axis() }
 }
@@ -39,9 +38,9 @@ pub(super) fn faces_flat(link: &ModifiedCylinder, normal: Vector, end: usize) ->
     link.caps()[end] == Cap::Flat && normal.dot(outward(link, end)) >= FACING
 }
 
-/// The points and their names, handed one by one to `consider`: those of flat caps first, then one
-/// for each end, in the order of the ends. A link that rocks keeps the order. (A host that has to
-/// choose among points as good as each other takes the first.)
+/// Passes the points and their names to `consider`: first the points of flat caps, then one point
+/// per end, in the order of the ends. The order stays when a link rocks. (A host that selects among
+/// equally good points takes the first.)
 pub(super) fn points(
     link: &ModifiedCylinder,
     normal: Vector,
@@ -64,7 +63,7 @@ pub(super) fn points(
     }
 }
 
-/// The unit vector from the axis to the crest, if the link has one.
+/// Returns the unit vector from the axis to the crest, if the link has one.
 pub(super) fn lateral(link: &ModifiedCylinder, normal: Vector) -> Option<Vector> {
     let axis = link.axis();
     let lateral = unit_across(normal, axis).filter(|_| axis != Vector::ZERO)?;

@@ -1,17 +1,17 @@
-//! Segments, and shapes that are no more than a segment or a triangle, as triangles.
+//! Segments, and shapes that degenerate to a segment or a triangle, as triangles.
 //!
-//! Such shapes are a rounded triangle with a border of 0, or a box or a cone that is a line.
-//! parry's iterations build tetrahedra from the difference of two shapes. With these the tetrahedra
-//! have no volume, and parry may panic. To this crate they are triangles, most of them without an
-//! area, and triangles are answered exactly. A thickness of up to [`MIN_SHARE`] of the shape's size
-//! is left out, and the answers are off by that much.
+//! Examples are a rounded triangle with border 0, and a box or a cone that is a line. parry's
+//! iterations build tetrahedra from the difference of two shapes. For degenerate shapes the
+//! tetrahedra have no volume, and parry may panic. This crate treats them as triangles, most of
+//! them without area, and answers exactly. A thickness of up to [`MIN_SHARE`] of the shape's size
+//! is ignored; the answers are off by that much.
 
 use super::range::MIN_SHARE;
 use super::robot_surface::links_of;
 use parry3d_f64::math::{Real, Vector};
 use parry3d_f64::shape::{Shape, Triangle, TypedShape};
 
-/// What stands for the other shape of a pair with a robot.
+/// The replacement of the other shape of a pair with a robot.
 pub(super) struct ThinShape {
     stand_ins: [Option<Triangle>; 2],
 }
@@ -26,7 +26,7 @@ impl ThinShape {
         Self { stand_ins }
     }
 
-    /// The pair, with a triangle in the place of the other shape, if it is one.
+    /// Returns the pair, with a triangle in place of the other shape if it is one.
     pub fn pair<'a>(&'a self, g1: &'a dyn Shape, g2: &'a dyn Shape) -> [&'a dyn Shape; 2] {
         let [first, second] = &self.stand_ins;
         let or = |stand_in: &'a Option<Triangle>, shape| {
@@ -36,14 +36,14 @@ impl ThinShape {
     }
 }
 
-/// The triangle that a shape of another kind is, if it is one.
+/// Returns the triangle to which a shape degenerates, if it does.
 fn triangle_of(shape: &dyn Shape) -> Option<Triangle> {
     let line = |a, b| Some(Triangle::new(a, b, b));
     let upright = |half_height: Real| line(Vector::Y * half_height, -Vector::Y * half_height);
-    // Only for the kinds that may be thin: every pair of parts comes by here.
+    // Only for kinds that may be thin: this code runs for every pair of parts.
     let is_thin = |radius: Real| {
         let size = shape.compute_local_aabb().extents().max_element();
-        // Of a size that is not finite, nothing is a small share.
+        // No thickness is a small share of an infinite size.
         let least = if size.is_finite() { 0.5 * MIN_SHARE * size } else { 0.0 };
         (0.0..=least).contains(&radius)
     };
@@ -70,7 +70,7 @@ fn triangle_of(shape: &dyn Shape) -> Option<Triangle> {
     }
 }
 
-/// The line that a box is, if two of its half extents are thin.
+/// Returns the line to which a box degenerates, if two of its half extents are thin.
 fn line_of_box(half_extents: Vector, is_thin: impl Fn(Real) -> bool) -> Option<Triangle> {
     let half = match half_extents.to_array().map(is_thin) {
         [_, true, true] => Vector::X * half_extents.x,

@@ -1,8 +1,8 @@
 //! Voxels, one by one.
 //!
-//! parry's cast against voxels goes through all the empty cells on the way, however many, and none
-//! of its queries names the voxel that answered. So the voxels are visited here as
-//! [`height_field`](super::height_field) are.
+//! parry's cast against voxels visits all the empty cells on the way, and none of its queries
+//! returns the voxel that answered. So this file visits the voxels itself, as
+//! [`height_field`](super::height_field) visits elements.
 
 use super::height_field::{reached, rounding, swept};
 use parry3d_f64::bounding_volume::{Aabb, BoundingVolume};
@@ -13,7 +13,7 @@ use parry3d_f64::query::{
 };
 use parry3d_f64::shape::{Cuboid, Shape, Voxels};
 
-/// Whether a shape, whose pose is in the voxels' frame, meets one of them.
+/// Returns whether a shape, whose pose is in the voxels' frame, meets a voxel.
 pub(super) fn intersection_test(
     dispatcher: &impl QueryDispatcher,
     pos12: &Pose,
@@ -36,7 +36,7 @@ pub(super) fn intersection_test(
     Ok(ShapeIntersection::new(false))
 }
 
-/// The first hit of a shape that moves past voxels: as for a height field.
+/// Returns the first hit of a shape that moves past voxels, as for a height field.
 pub(super) fn cast(
     dispatcher: &impl QueryDispatcher,
     (pos12, vel12): (&Pose, Vector),
@@ -54,7 +54,7 @@ pub(super) fn cast(
     })
 }
 
-/// The first hit of a moving shape on moving voxels.
+/// Returns the first hit of a moving shape on moving voxels.
 pub(super) fn cast_nonlinear(
     dispatcher: &impl QueryDispatcher,
     (motion1, voxels): (&NonlinearRigidMotion, &Voxels),
@@ -77,7 +77,8 @@ pub(super) fn cast_nonlinear(
     })
 }
 
-/// The first hit among the voxels in `bounds`; `cast` is told the voxel's shape and its centre.
+/// Returns the first hit among the voxels in `bounds`. `cast` takes the voxel's shape and its
+/// centre.
 fn first_voxel(
     voxels: &Voxels,
     bounds: &Aabb,

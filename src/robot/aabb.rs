@@ -1,9 +1,14 @@
-//! The tight box around a link.
+//! The tight bounding box of a link.
 //!
-//! A link is convex: the hull of what its two ends hold, a disc each, and on round ends the outward
-//! half ball. So the box is that of the two ends. With n the end's outward unit axis and e a unit
-//! vector along a coordinate axis, the disc reaches r |n x e| from its centre along e, and the half
-//! ball reaches r if n . e >= 0 and no further than the disc otherwise.
+//! # Definitions
+//! - `n`: the outward unit axis at an end. `e`: a unit vector along a coordinate axis.
+//!
+//! # Formula
+//! A link is the convex hull of its two ends: a disc each, plus the outward half ball at a round
+//! end. So its box is the box of the two ends. From the end's centre along e,
+//!
+//! - the disc reaches `r |n x e|`;
+//! - the half ball reaches `r` if `n . e >= 0`, and otherwise no further than the disc.
 
 use super::scale::direction;
 use super::{Cap, ModifiedCylinder};
@@ -11,7 +16,7 @@ use parry3d_f64::bounding_volume::Aabb;
 use parry3d_f64::math::{Pose, Vector};
 
 impl ModifiedCylinder {
-    /// The smallest box along the coordinate axes of the link's own frame that holds the link.
+    /// Returns the smallest axis-aligned box that contains the link, in the link's own frame.
     ///
     /// Each side is right within a few units in the last place of its coordinate and the radius.
     pub fn local_aabb(&self) -> Aabb {
@@ -28,14 +33,12 @@ impl ModifiedCylinder {
         )
     }
 
-    /// The smallest box along the coordinate axes of the frame that `pose` leads to, for the link
-    /// moved there.
+    /// Returns the smallest axis-aligned box of the link moved by `pose`.
     pub fn aabb(&self, pose: &Pose) -> Aabb {
         self.transformed(pose).local_aabb()
     }
 
-    /// How far an end with the outward axis `outward` reaches downwards and upwards along each
-    /// coordinate axis.
+    /// Returns how far an end reaches along each negative and each positive coordinate axis.
     fn reach(&self, disc: Vector, outward: Vector, cap: Cap) -> (Vector, Vector) {
         let r = self.radius();
         let side = |outward: f64, disc: f64| {

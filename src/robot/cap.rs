@@ -4,6 +4,6 @@
 pub enum Cap {
     /// A disc perpendicular to the axis: the link ends at its end point.
     Flat,
-    /// An outward half ball of the link's radius around its end point.
+    /// An outward half ball of the link's radius, centred at the end point.
     Round,
 }

@@ -1,4 +1,11 @@
 //! A robot as a chain of links.
+//!
+//! # Algorithm
+//! 1. Check the points and radii.
+//! 2. Decide the caps of every segment: Algorithm 1 of the paper (`algorithm_1`), or one cap for
+//!    all.
+//! 3. Make a link of each segment that has a length (`Chain::assemble`).
+//! 4. Derive the link tree and the arc lengths from the links (`Chain::follow_links`).
 
 use super::link_tree::{self, LinkNode};
 use super::modified_cylinder::{check_points, check_radii, has_direction};
@@ -11,28 +18,31 @@ use std::sync::OnceLock;
 
 /// A continuum robot: links joined end to end along a centreline (paper, section III.F).
 ///
-/// A chain is the union of its links, and neighbouring links overlap where a round cap reaches into
-/// the next link. Seen from outside the union is exact. What depends on the inside, such as the
-/// volume or the way out of it, is known only link by link.
+/// A chain is the union of its links. Neighbouring links overlap where a round cap reaches into the
+/// next link. The outer surface of the union is exact. Quantities of the interior, such as volume
+/// or depth, are known per link only.
 ///
 /// The constructors differ in the caps alone:
 ///
-/// | constructor | caps | the tube is |
+/// | constructor | caps | shape |
 /// |---|---|---|
-/// | [`from_centreline`](Self::from_centreline) | those that fit (Algorithm 1 of the paper), from one radius per segment | followed: flat ends, filled bends |
-/// | [`from_vertex_radii`](Self::from_vertex_radii) | the same by the letter of the paper, from one radius per point | followed |
-/// | [`capsules`](Self::capsules) | all round | covered, but reaches one radius too far at its ends |
-/// | [`cylinders`](Self::cylinders) | all flat | never exceeded at its ends, but open at the bends |
+/// | [`from_centreline`](Self::from_centreline) | fitted (Algorithm 1 of the paper), one radius per segment | flat ends, filled bends |
+/// | [`from_vertex_radii`](Self::from_vertex_radii) | fitted, exactly as printed in the paper, one radius per point | flat ends, filled bends |
+/// | [`capsules`](Self::capsules) | all round | covers the tube; reaches one radius too far at its ends |
+/// | [`cylinders`](Self::cylinders) | all flat | exact at its ends; open wedges at the bends |
 ///
-/// Points and radii are in one unit of length and in the robot's frame; all constructors accept
+/// Points and radii are in one unit of length and in the robot's frame. All constructors accept
 /// magnitudes up to 1e150.
 ///
 /// # Repeated points
-/// Planners repeat centreline points. A segment without length has no direction and adds nothing to
-/// the robot, so it becomes no link. It is left out only after Algorithm 1 has walked over it:
-/// repeating a point changes no link, and a segment without length but with a radius of its own
-/// counts as a step there and back. The robot's own two ends stay flat whatever is repeated there.
-/// [`segments_of`](Self::segments_of) gives such a segment to the link before it, or to the first
+/// Planners repeat centreline points. A segment without length has no direction and makes no link.
+/// Algorithm 1 still walks over it before it is removed:
+///
+/// - Repeating a point changes no link.
+/// - A segment without length but with its own radius counts as a step up and a step down.
+/// - The two ends of the robot stay flat.
+///
+/// [`segments_of`](Self::segments_of) counts such a segment to the link before it, or to the first
 /// link.
 ///
 /// ```
@@ -53,43 +63,49 @@ use std::sync::OnceLock;
 pub struct Chain {
     links: Vec<ModifiedCylinder>,
     segments: Vec<Range<usize>>,
-    /// The segment that is the first link: those before it have no length.
+    /// The segment of the first link. Segments before it have no length.
     first_segment: usize,
-    /// Capsules around halves, quarters ... of the links.
+    /// Bounding capsules of halves, quarters, ... of the links, in preorder.
     link_tree: Vec<LinkNode>,
-    /// How long the links before each one are, together.
+    /// Arc length from the base to the start of each link.
     lengths_before: Vec<Real>,
-    /// Over the links' boxes, for parry's composite queries; leaf i is link i. Built when first
-    /// asked for.
+    /// The links' boxes for parry's composite queries; leaf i is link i. Built on first use.
     bvh: OnceLock<Bvh>,
-    /// The caps of the input's segments: memory for the next centreline.
+    /// The caps of the input's segments. Kept to reuse the memory.
     caps: Vec<[Cap; 2]>,
 }
 
 impl Chain {
-    /// The robot with this centreline, its tubes' radii given segment by segment, with the caps
-    /// that fit (Algorithm 1 of the paper).
+    /// Builds the robot with fitted caps (Algorithm 1 of the paper) from one radius per segment.
     ///
-    /// The two ends of the robot and the wider side of each step in radius are flat, the joints in
-    /// between round where a round cap does not stick out of such a face. Radii that differ by
-    /// less than 2^-32 of the first of them are no step, so that a constant may be rounded. A
-    /// joint exactly one radius from a face is round.
+    /// - Both ends of the robot and the wider side of each step in radius are flat.
+    /// - A joint between them is round if its round cap does not stick out of such a face. A joint
+    ///   exactly one radius from a face is round.
+    /// - Radii that differ by less than 2^-32 of the first of them are equal, so that a constant
+    ///   radius may carry rounding errors.
+    ///
+    /// `points` and `segment_radii` are in one unit of length and in the robot's frame, from base
+    /// to tip; `segment_radii.len() == points.len() - 1`.
     ///
     /// # Errors
-    /// Fewer than two points, not one radius fewer than points, a coordinate or radius that is not
-    /// finite or beyond 1e150, a negative radius, or points that are all equal.
+    /// - fewer than two points, or a wrong number of radii;
+    /// - a coordinate or radius that is not finite or beyond 1e150, or a negative radius;
+    /// - all points equal, or every segment too short beside its radius.
     pub fn from_centreline(points: &[Vector], segment_radii: &[Real]) -> Result<Self, RobotError> {
         let mut chain = Self::empty();
         chain.set_centreline(points, segment_radii)?;
         Ok(chain)
     }
 
-    /// The robot with this centreline whose tube has the same radius everywhere:
-    /// [`from_centreline`](Self::from_centreline) with one radius for all segments.
+    /// Builds the robot with the same radius everywhere.
+    ///
+    /// As [`from_centreline`](Self::from_centreline) with `radius` for all segments.
     ///
     /// # Errors
-    /// Fewer than two points, a coordinate that is not finite or beyond 1e150, a radius that is
-    /// negative or not finite, or points that are all equal.
+    /// - fewer than two points;
+    /// - a coordinate that is not finite or beyond 1e150;
+    /// - a radius that is negative, not finite or beyond 1e150;
+    /// - all points equal, or every segment too short beside the radius.
     ///
     /// ```
     /// use parry_continuum::{Chain, parry::math::Vector};
@@ -102,12 +118,12 @@ impl Chain {
         Self::from_centreline(points, &radius_for_all(points, radius)?)
     }
 
-    /// Makes this chain what [`from_centreline`](Self::from_centreline) makes of the arguments, in
-    /// the memory that it has: a control loop whose robot keeps its number of points allocates
-    /// nothing.
+    /// Replaces the centreline, as [`from_centreline`](Self::from_centreline), in the same memory.
+    ///
+    /// A control loop whose robot keeps its number of points allocates nothing.
     ///
     /// # Errors
-    /// As [`from_centreline`](Self::from_centreline). The chain is then what it was before.
+    /// As [`from_centreline`](Self::from_centreline). The chain is then unchanged.
     ///
     /// ```
     /// use parry_continuum::{Chain, parry::math::Vector};
@@ -127,14 +143,13 @@ impl Chain {
         self.assemble(points, segment_radii, "segment_radii")
     }
 
-    /// The robot with this centreline and one radius per point, capped by Algorithm 1 as the paper
-    /// prints it.
+    /// Builds the robot from one radius per point, with caps by Algorithm 1 as the paper prints it.
     ///
-    /// A segment takes the smaller radius of its two points; a start is round where the paper's lB
-    /// says so for that point, an end where lF does. Prefer
-    /// [`from_centreline`](Self::from_centreline), where a radius belongs to a tube: here the
-    /// first joint after a thick tube shorter than its radius is left open, and so are both
-    /// sides of a single thick point.
+    /// A segment takes the smaller radius of its two points. Its start is round if the paper's lB
+    /// is true for its first point, its end if lF is true for its second point. Prefer
+    /// [`from_centreline`](Self::from_centreline), where a radius belongs to a tube. The printed
+    /// rule leaves two kinds of joint open: the first joint after a thick tube shorter than its
+    /// radius, and both sides of a single thick point.
     ///
     /// ```
     /// use parry_continuum::{Cap, Chain, parry::math::Vector};
@@ -167,7 +182,9 @@ impl Chain {
         Ok(chain)
     }
 
-    /// The same centreline and radii with a round cap at both ends of each segment.
+    /// Builds the robot with a round cap at both ends of each segment.
+    ///
+    /// Arguments as for [`from_centreline`](Self::from_centreline).
     ///
     /// # Errors
     /// As [`from_centreline`](Self::from_centreline).
@@ -175,7 +192,9 @@ impl Chain {
         Self::uniform(points, segment_radii, Cap::Round)
     }
 
-    /// The same centreline and radii with a flat cap at both ends of each segment.
+    /// Builds the robot with a flat cap at both ends of each segment.
+    ///
+    /// Arguments as for [`from_centreline`](Self::from_centreline).
     ///
     /// # Errors
     /// As [`from_centreline`](Self::from_centreline).
@@ -183,16 +202,15 @@ impl Chain {
         Self::uniform(points, segment_radii, Cap::Flat)
     }
 
-    /// The links, from the base to the tip. There is at least one.
+    /// Returns the links from base to tip. There is at least one.
     pub fn links(&self) -> &[ModifiedCylinder] {
         &self.links
     }
 
-    /// The input segments that link number `link` stands for, or an empty range if there is no such
-    /// link.
+    /// Returns the range of input segments that a link stands for; empty if there is no such link.
     ///
     /// Segment k joins points k and k + 1. The ranges of all links, in order, cover every segment
-    /// once; exactly one segment in each has a length.
+    /// once. Exactly one segment of each range has a length.
     ///
     /// ```
     /// use parry_continuum::{Chain, parry::math::Vector};
@@ -206,19 +224,18 @@ impl Chain {
         self.segments.get(link).cloned().unwrap_or_default()
     }
 
-    /// The input segment that link number `link` is: the one of [`segments_of`](Self::segments_of)
-    /// that has a length.
+    /// Returns the one segment of [`segments_of`](Self::segments_of) that has a length.
     pub(crate) fn segment_of(&self, link: usize) -> usize {
         if link == 0 { self.first_segment } else { self.segments_of(link).start }
     }
 
-    /// The smallest box, with sides along the axes of the robot's frame, that holds all links.
+    /// Returns the smallest axis-aligned box, in the robot's frame, that contains all links.
     pub fn local_aabb(&self) -> Aabb {
         let boxes = self.links.iter().map(ModifiedCylinder::local_aabb);
         boxes.reduce(|a, b| a.merged(&b)).unwrap_or_else(Aabb::new_invalid)
     }
 
-    /// The links' bounding volume hierarchy; leaf i is link i.
+    /// Returns parry's bounding volume hierarchy of the links; leaf i is link i.
     pub(crate) fn bvh(&self) -> &Bvh {
         self.bvh.get_or_init(|| {
             let boxes: Vec<_> = self.links.iter().map(ModifiedCylinder::local_aabb).collect();
@@ -226,12 +243,12 @@ impl Chain {
         })
     }
 
-    /// The links' tree of capsules, in depth-first order.
+    /// Returns the tree of bounding capsules over the links, in preorder.
     pub(crate) fn link_tree(&self) -> &[LinkNode] {
         &self.link_tree
     }
 
-    /// No coordinate of its links is larger.
+    /// Returns an upper bound on the absolute coordinates of all links.
     pub(crate) fn reach(&self) -> Real {
         let within =
             |ends: [Vector; 2], radius| ends[0].abs().max(ends[1].abs()).max_element() + radius;
@@ -244,12 +261,12 @@ impl Chain {
         }
     }
 
-    /// How long the links before a link are, together.
+    /// Returns the arc length from the base to the start of a link.
     pub(crate) fn length_before(&self, link: usize) -> Real {
         self.lengths_before.get(link).copied().unwrap_or_default()
     }
 
-    /// The chain whose links are the images of this one's, or nothing if a link has none.
+    /// Returns the chain of the links' images, or `None` if a link has no image.
     pub(crate) fn try_map(
         &self,
         image: impl Fn(&ModifiedCylinder) -> Option<ModifiedCylinder>,
@@ -268,7 +285,7 @@ impl Chain {
         chain
     }
 
-    /// What the constructors fill.
+    /// A chain without links, to be filled by a constructor.
     fn empty() -> Self {
         Self {
             links: Vec::new(),
@@ -288,8 +305,9 @@ impl Chain {
         Ok(chain)
     }
 
-    /// Makes links of the segments that have a length; radii and `self.caps` are per segment, and
-    /// `parameter` is what the radii came from.
+    /// Makes a link of each segment that has a length.
+    ///
+    /// `radii` and `self.caps` are per segment; `parameter` names the radii in errors.
     fn assemble(
         &mut self,
         points: &[Vector],
@@ -303,8 +321,8 @@ impl Chain {
         self.links.clear();
         self.segments.clear();
         for k in (0..radii.len()).filter(has_length) {
-            // The walk leaves every end at the same place as a limit flat on its own, except at
-            // radius 0.
+            // The robot's two ends take the caps of the first and the last segment, which may have
+            // no length: at radius 0, Algorithm 1 may make a repeated end point round.
             let caps = [
                 self.caps[if self.links.is_empty() { 0 } else { k }][0],
                 self.caps[if k == last { radii.len() - 1 } else { k }][1],
@@ -321,7 +339,7 @@ impl Chain {
         Ok(())
     }
 
-    /// Computes anew what follows from the links.
+    /// Recomputes everything derived from the links.
     fn follow_links(&mut self) {
         link_tree::build(&self.links, &mut self.link_tree);
         self.lengths_before.clear();
@@ -335,7 +353,7 @@ impl Chain {
     }
 }
 
-/// Equal links for equal segments. The hierarchy follows from them.
+/// Compares links and segments. All other fields follow from them.
 impl PartialEq for Chain {
     fn eq(&self, other: &Self) -> bool {
         self.links == other.links
@@ -344,7 +362,7 @@ impl PartialEq for Chain {
     }
 }
 
-/// Why none of the segments has a length.
+/// The error for a centreline in which no segment has a length.
 pub(super) fn without_length(
     points: &[Vector],
     radii: &[Real],
@@ -359,7 +377,7 @@ pub(super) fn without_length(
     }
 }
 
-/// One radius for each segment.
+/// Returns one radius per segment.
 pub(super) fn radius_for_all(points: &[Vector], radius: Real) -> Result<Vec<Real>, RobotError> {
     check_radii("radius", &[radius])?;
     Ok(vec![radius; points.len().saturating_sub(1)])
@@ -370,8 +388,7 @@ pub(super) fn check_segments(points: &[Vector], segment_radii: &[Real]) -> Resul
     check(["points", "segment_radii"], points, segment_radii, points.len().saturating_sub(1))
 }
 
-/// Enough points, as many radii as they need, and nothing out of range. `names` are those of the
-/// two parameters.
+/// Checks the number of points and radii, and the range of both. `names` are the two parameters.
 pub(super) fn check(
     names: [&'static str; 2],
     points: &[Vector],

@@ -1,4 +1,4 @@
-//! parry's vectors as the narrow phase's, and back.
+//! Conversions between parry's vectors and the distance kernels' vectors.
 
 use crate::distance::Vec3;
 use parry3d_f64::math::Vector;

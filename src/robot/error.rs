@@ -2,7 +2,7 @@ use parry3d_f64::math::{Real, Vector};
 use strum::IntoStaticStr;
 use thiserror::Error;
 
-/// Why a link or a chain could not be built. Each message names the value at fault and what to
+/// Why a robot, a tube or a motion is refused. Each message names the wrong value and what to
 /// change.
 #[derive(Clone, Copy, Debug, PartialEq, Error, IntoStaticStr)]
 #[strum(serialize_all = "snake_case")]
@@ -13,84 +13,84 @@ pub enum RobotError {
         "point {index} has a coordinate that is not finite ({value}); remove or repair it in `{parameter}`"
     )]
     PointNotFinite {
-        /// The parameter, as the function that was called names it.
+        /// The parameter's name in the function that was called.
         parameter: &'static str,
-        /// Position of the point in the input.
+        /// Index of the point in the input.
         index: usize,
-        /// The offending coordinate.
+        /// The wrong coordinate.
         value: Real,
     },
-    /// A point lies so far out that differences of coordinates could overflow.
+    /// A coordinate is so large that differences of coordinates could overflow.
     #[error(
         "point {index} in `{parameter}` has the coordinate {value}, beyond +-{limit:e}; choose a larger unit of length"
     )]
     PointOutOfRange {
-        /// The parameter, as the function that was called names it.
+        /// The parameter's name in the function that was called.
         parameter: &'static str,
-        /// Position of the point in the input.
+        /// Index of the point in the input.
         index: usize,
-        /// The offending coordinate.
+        /// The wrong coordinate.
         value: Real,
         /// The largest magnitude accepted.
         limit: Real,
     },
-    /// A radius is NaN, infinite, negative or beyond the accepted range.
+    /// A radius is NaN, infinite, negative or too large.
     #[error(
         "radius {index} is {value}; `{parameter}` must be finite, at least 0 and at most {limit:e}"
     )]
     BadRadius {
-        /// The parameter, as the function that was called names it.
+        /// The parameter's name in the function that was called.
         parameter: &'static str,
-        /// Position of the radius in the input.
+        /// Index of the radius in the input.
         index: usize,
-        /// The offending radius.
+        /// The wrong radius.
         value: Real,
         /// The largest radius accepted.
         limit: Real,
     },
-    /// A flat cap has no direction on a link without length.
+    /// A flat cap needs a direction; a link without length has none.
     #[error(
         "the link from point {index} has length 0 or nearly so, and the direction of its flat cap is undefined; \
          use two round caps (a ball) or move one end point"
     )]
     FlatCapWithoutAxis {
-        /// Position of the link's start point in the input.
+        /// Index of the link's start point in the input.
         index: usize,
     },
     /// A centreline needs at least two points.
     #[error("a centreline needs at least 2 points, got {count} in `{parameter}`")]
     TooFewPoints {
-        /// The parameter, as the function that was called names it.
+        /// The parameter's name in the function that was called.
         parameter: &'static str,
-        /// How many points were given.
+        /// The number of points given.
         count: usize,
     },
     /// The number of radii does not fit the number of points.
     #[error("{points} points need {expected} radii, got {radii} in `{parameter}`")]
     LengthsDiffer {
-        /// The parameter, as the function that was called names it.
+        /// The parameter's name in the function that was called.
         parameter: &'static str,
-        /// How many points were given.
+        /// The number of points given.
         points: usize,
-        /// How many radii they need.
+        /// The number of radii that these points need.
         expected: usize,
-        /// How many radii were given.
+        /// The number of radii given.
         radii: usize,
     },
     /// Each point needs a tangent.
     #[error("{points} points need as many `tangents`, got {tangents}")]
     TangentsDiffer {
-        /// How many points were given.
+        /// The number of points given.
         points: usize,
-        /// How many tangents were given.
+        /// The number of tangents given.
         tangents: usize,
     },
     /// A motion needs as many points at its end as at its start.
     #[error("`from` has {from} points and `to` has {to}; give both the same number")]
     PointsDiffer {
-        /// How many points it starts with.
+        /// The number of points at the start.
         from: usize,
-        /// How many points it ends with.
+        /// The number of points at the end.
         to: usize,
     },
     /// A motion needs the same sections at its end as at its start, with the same radii.
@@ -101,23 +101,23 @@ pub enum RobotError {
         /// The first section that is missing or has another radius.
         index: usize,
     },
-    /// A pose has a component that is NaN or infinite, or lies out of range.
+    /// A pose has a component that is NaN, infinite or too large.
     #[error(
         "the pose `{parameter}` has the component {value}; it must be finite and within +-{limit:e}"
     )]
     BadPose {
-        /// The parameter, as the function that was called names it.
+        /// The parameter's name in the function that was called.
         parameter: &'static str,
-        /// The offending component.
+        /// The wrong component.
         value: Real,
         /// The largest magnitude accepted.
         limit: Real,
     },
-    /// The rotation of a pose scales: the length of its quaternion is not 1, even for single
-    /// precision.
+    /// The rotation of a pose scales: its quaternion's length differs from 1 by more than
+    /// single-precision rounding.
     #[error("the pose `{parameter}` has a quaternion of length {length}; normalise its rotation")]
     PoseNotRigid {
-        /// The parameter, as the function that was called names it.
+        /// The parameter's name in the function that was called.
         parameter: &'static str,
         /// The length of the quaternion.
         length: Real,
@@ -128,13 +128,13 @@ pub enum RobotError {
          stated; state more"
     )]
     FasterThanStated {
-        /// When.
+        /// The time.
         t: Real,
         /// The section, counted from the base.
         section: usize,
-        /// Where in the section, from 0 to 1.
+        /// The place in the section, from 0 to 1.
         share: Real,
-        /// Its speed, at least.
+        /// A lower bound on the speed of the place.
         found: Real,
         /// The speed that the motion states.
         stated: Real,
@@ -145,89 +145,89 @@ pub enum RobotError {
          {stated} stated; state more"
     )]
     TurnsFasterThanStated {
-        /// When.
+        /// The time.
         t: Real,
         /// The section, counted from the base.
         section: usize,
-        /// Where in the section, from 0 to 1.
+        /// The place in the section, from 0 to 1.
         share: Real,
-        /// Its angular speed, at least.
+        /// A lower bound on the angular speed of the place, rad per unit of time.
         found: Real,
-        /// The angular speed that the motion states.
+        /// The angular speed that the motion states, rad per unit of time.
         stated: Real,
     },
-    /// A motion's centreline is farther off its stated course than the motion states.
+    /// A motion's centreline is farther from its stated displacement than the motion states.
     #[error(
         "around t = {t} the centreline at share {share} of section {section} is {found} off its stated course, more \
          than the {stated} stated; state more"
     )]
     FartherOffThanStated {
-        /// When.
+        /// The time.
         t: Real,
         /// The section, counted from the base.
         section: usize,
-        /// Where in the section, from 0 to 1.
+        /// The place in the section, from 0 to 1.
         share: Real,
-        /// How far off it is, at least.
+        /// A lower bound on the deviation.
         found: Real,
-        /// How far off the motion states it to be.
+        /// The deviation that the motion states.
         stated: Real,
     },
-    /// A motion's sections must be the same at all times, with the same radii and faces.
+    /// A motion must keep its sections, with the same radii and faces, at all times.
     #[error(
         "at t = {t} the motion has other sections, radii or faces than before; keep them the same"
     )]
     SectionsChange {
-        /// When.
+        /// The time.
         t: Real,
     },
-    /// The shapes of a path must have the same links: the same segments must have a length, with
-    /// the same radii.
+    /// The shapes of a path must have the same links: the same segments with a length and the same
+    /// radii.
     #[error(
         "shape {index} of `shapes` has other links than the first: other segments without length, or other radii; make all shapes of \
          the same segments, each with a length"
     )]
     ShapesDiffer {
-        /// The shape, counted from 0.
+        /// Index of the shape.
         index: usize,
     },
     /// The kinematics behind a motion has no shape: return it from
     /// [`Motion::shape`](crate::Motion::shape).
     #[error("the kinematics has no shape at t = {t}: {reason}")]
     NoShape {
-        /// When.
+        /// The time.
         t: Real,
-        /// Why, in the words of the kinematics.
+        /// The reason, in the words of the kinematics.
         reason: &'static str,
     },
     /// A path needs at least one motion.
     #[error("there are no motions in `{parameter}`; a path needs at least one motion")]
     NoMotions {
-        /// The parameter, as the function that was called names it.
+        /// The parameter's name in the function that was called.
         parameter: &'static str,
     },
-    /// A stated speed is not a number that is at least 0.
+    /// A stated speed is NaN, infinite or negative.
     #[error(
         "the motion states the speed {value} for section {section}; it must be finite and at least 0"
     )]
     BadSpeed {
         /// The section, counted from the base.
         section: usize,
-        /// The offending speed.
+        /// The wrong speed.
         value: Real,
     },
     /// Every point of the centreline is the same.
     #[error("all points of the centreline are the same; a chain needs two distinct points")]
     AllPointsEqual,
-    /// A radius beside which the length of its segment is nothing to compute with.
+    /// A segment is so short beside its radius that its length underflows in computations.
     #[error(
         "radius {index} is {value}, beside which the length {length} of its segment is lost; check the unit of \
          `{parameter}`"
     )]
     HidesLength {
-        /// The parameter, as the function that was called names it.
+        /// The parameter's name in the function that was called.
         parameter: &'static str,
-        /// Position of the radius in the input.
+        /// Index of the radius in the input.
         index: usize,
         /// The radius.
         value: Real,
@@ -237,15 +237,15 @@ pub enum RobotError {
     /// A number is NaN, infinite or negative.
     #[error("`{parameter}` is {value}; it must be finite and at least 0")]
     Negative {
-        /// The parameter, as the function that was called names it.
+        /// The parameter's name in the function that was called.
         parameter: &'static str,
-        /// The offending number.
+        /// The wrong number.
         value: Real,
     },
     /// A tube needs at least one section.
     #[error("there are no sections in `{parameter}`; a tube needs at least one section")]
     NoSections {
-        /// The parameter, as the function that was called names it.
+        /// The parameter's name in the function that was called.
         parameter: &'static str,
     },
     /// A section's length is not a positive number.
@@ -253,11 +253,11 @@ pub enum RobotError {
         "section {index} in `{parameter}` has the length {value}; it must be finite and more than 0"
     )]
     BadLength {
-        /// The parameter, as the function that was called names it.
+        /// The parameter's name in the function that was called.
         parameter: &'static str,
-        /// Position of the section in the input.
+        /// Index of the section in the input.
         index: usize,
-        /// The offending length.
+        /// The wrong length.
         value: Real,
     },
     /// A section's curvature is NaN, infinite or negative.
@@ -265,11 +265,11 @@ pub enum RobotError {
         "section {index} in `{parameter}` has the curvature {value}; it must be finite and at least 0"
     )]
     BadCurvature {
-        /// The parameter, as the function that was called names it.
+        /// The parameter's name in the function that was called.
         parameter: &'static str,
-        /// Position of the section in the input.
+        /// Index of the section in the input.
         index: usize,
-        /// The offending curvature.
+        /// The wrong curvature.
         value: Real,
     },
     /// A direction of the centreline is zero or not finite.
@@ -277,14 +277,14 @@ pub enum RobotError {
         "tangent {index} in `{parameter}` is {value}; give the direction of the centreline there"
     )]
     BadTangent {
-        /// The parameter, as the function that was called names it.
+        /// The parameter's name in the function that was called.
         parameter: &'static str,
-        /// Position of the tangent among those given; of a function, the section.
+        /// Index of the tangent in the input; for a function, index of the section.
         index: usize,
-        /// The offending direction.
+        /// The wrong direction.
         value: Vector,
     },
-    /// Samples turn more sharply than what is known of a curve between them.
+    /// The samples turn more sharply than the assumed curvature between samples allows.
     #[error(
         "the centreline turns so sharply at point {index} that it may turn by {turn} rad between point {after} and the next; if the \
          robot bends so, give more points there; if the points are measured, fit them with a `deviation` as large as their noise \
@@ -292,21 +292,21 @@ pub enum RobotError {
          links use a Chain"
     )]
     TurnsTooSharply {
-        /// Position in the input of the point where it turns most.
+        /// Index in the input of the point at which the curve turns most.
         index: usize,
-        /// Position in the input of the point before the segment in which it may turn so much.
+        /// Index in the input of the point before the segment that may turn by `turn`.
         after: usize,
-        /// The largest curvature times a distance between two points next to it, rad.
+        /// The largest curvature times distance between two neighbouring points, rad.
         turn: Real,
     },
-    /// The discs of a section would stick out of its flat end.
+    /// A section with a flat end bends within its radius, so its discs would stick out of that end.
     #[error(
         "the section from {index} has a flat end, the curvature {curvature} and the radius {radius}; their product must \
          be below 1, so check the unit of length; if the points are measured, fit them with a `deviation` as large as their noise \
          (`Tube::fit`)"
     )]
     BendsWithinRadius {
-        /// Position of the section's first point; of a function, of the section.
+        /// Index of the section's first point; for a function, index of the section.
         index: usize,
         /// The largest curvature of the section.
         curvature: Real,
@@ -316,7 +316,7 @@ pub enum RobotError {
     /// The curve of a function has a coordinate that is NaN or infinite.
     #[error("the curve is not finite near the arc length {arc_length}; repair the function")]
     CurveNotFinite {
-        /// Where it is not.
+        /// The arc length of the place.
         arc_length: Real,
     },
     /// The argument of a function is not its arc length.
@@ -324,29 +324,29 @@ pub enum RobotError {
         "at {arc_length} the curve advances by {speed} for each unit of its argument; give it by arc length"
     )]
     NotByArcLength {
-        /// Where it is not.
+        /// The arc length of the place.
         arc_length: Real,
-        /// The speed, which should be 1.
+        /// The speed found there, which should be 1.
         speed: Real,
     },
-    /// A function bends more than its section states.
+    /// A function bends more than the curvature stated for its section.
     #[error(
         "at {arc_length} the curve has the curvature {found}, more than the {stated} stated; state more"
     )]
     BendsMoreThanStated {
-        /// Where it does.
+        /// The arc length of the place.
         arc_length: Real,
         /// The curvature found there.
         found: Real,
-        /// The section's.
+        /// The curvature stated for the section.
         stated: Real,
     },
-    /// A function's direction is not that of its points.
+    /// A function's tangent differs from the direction in which its points advance.
     #[error(
         "at {arc_length} the tangent differs by {off} from the direction in which the points go; repair it"
     )]
     TangentOff {
-        /// Where it does.
+        /// The arc length of the place.
         arc_length: Real,
         /// The length of the difference of the unit vectors.
         off: Real,
@@ -354,7 +354,7 @@ pub enum RobotError {
 }
 
 impl RobotError {
-    /// What went wrong in one word, the same in Rust and Python: the variant in snake case.
+    /// Returns the variant's name in snake case, the same in Rust and Python.
     pub fn kind(&self) -> &'static str {
         self.into()
     }

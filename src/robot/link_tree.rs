@@ -1,8 +1,9 @@
-//! A binary tree over a chain's links with a capsule around each node, so that a query can leave
-//! out many links at once.
+//! A binary tree over a chain's links with a bounding capsule per node. Queries prune subtrees.
 //!
-//! The tree halves the chain again and again and stands in depth-first order: behind a node come
-//! its children, and each node knows how many entries to skip to leave its subtree.
+//! # Layout
+//! The chain is halved recursively; the nodes stand in preorder. A subtree over n links has
+//! 2 n - 1 nodes. Its root is followed by the subtree of the first half, then of the second half.
+//! `below` is the number of nodes to skip to leave a subtree.
 
 use super::ModifiedCylinder;
 use crate::distance::Scalar;
@@ -13,9 +14,9 @@ use parry3d_f64::math::{Real, Vector};
 pub(crate) enum LinkNode {
     /// Two or more links.
     Inner {
-        /// Holds them all.
+        /// Contains all links of the subtree.
         bound: BoundingCapsule,
-        /// How many nodes follow that belong to the subtree.
+        /// The number of nodes that follow and belong to the subtree.
         below: usize,
     },
     /// One link, by its number.
@@ -23,17 +24,17 @@ pub(crate) enum LinkNode {
 }
 
 impl LinkNode {
-    /// How many links it stands for.
+    /// Returns the number of links of the subtree.
     pub(crate) fn links(&self) -> usize {
         match self {
-            // A binary tree has one more leaf than it has nodes with children.
+            // `below + 1` nodes = 2 n - 1 for n links.
             Self::Inner { below, .. } => below / 2 + 1,
             Self::Leaf(_) => 1,
         }
     }
 }
 
-/// A capsule around links.
+/// A capsule that contains links.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BoundingCapsule {
     pub start: Vector,
@@ -41,12 +42,13 @@ pub(crate) struct BoundingCapsule {
     pub radius: Real,
 }
 
-/// Writes the tree over `links` to `nodes`, whose memory is used again.
+/// Writes the tree over `links` to `nodes`, whose memory is reused.
 pub(super) fn build(links: &[ModifiedCylinder], nodes: &mut Vec<LinkNode>) {
     nodes.clear();
     append(links, 0, nodes);
 }
 
+/// Appends the subtree over `links`, the first of which has the index `first`.
 fn append(links: &[ModifiedCylinder], first: usize, nodes: &mut Vec<LinkNode>) {
     let [start, .., end] = links else {
         nodes.extend((!links.is_empty()).then_some(LinkNode::Leaf(first)));
@@ -62,7 +64,7 @@ fn append(links: &[ModifiedCylinder], first: usize, nodes: &mut Vec<LinkNode>) {
     nodes[place] = LinkNode::Inner { bound, below };
 }
 
-/// Where the leaf of a link stands in the tree over so many links.
+/// Returns the index of a link's leaf in the tree over `links` links.
 pub(crate) fn place_of_leaf(mut link: usize, mut links: usize) -> usize {
     let mut place = 0;
     while links > 1 {
@@ -70,7 +72,7 @@ pub(crate) fn place_of_leaf(mut link: usize, mut links: usize) -> usize {
         if link < low {
             (place, links) = (place + 1, low);
         } else {
-            // Over the node and the 2 low - 1 nodes of its first half.
+            // Skip the node and the 2 low - 1 nodes of its first half.
             (place, link, links) = (place + 2 * low, link - low, links - low);
         }
     }
@@ -78,8 +80,12 @@ pub(crate) fn place_of_leaf(mut link: usize, mut links: usize) -> usize {
 }
 
 impl BoundingCapsule {
-    /// With the axis from `start` to `end`. A capsule is convex, so it holds a link if it holds the
-    /// balls around the link's ends.
+    /// Returns a capsule with the axis from `start` to `end` that contains `links`.
+    ///
+    /// **Claim.** Containing the balls around each link's two ends is enough.
+    /// **Proof.** A link lies in the convex hull of the balls, and a capsule is convex.
+    /// **Rounding.** The radius is enlarged by `16 EPSILON (reach + radius)`, an upper bound on the
+    /// rounding errors of the distances.
     fn around(start: Vector, end: Vector, links: &[ModifiedCylinder]) -> Self {
         let balls = || {
             links
@@ -89,13 +95,13 @@ impl BoundingCapsule {
         let reach = balls().fold(0.0, |reach: Real, (point, radius)| {
             reach.max(point.abs().max_element()).max(radius)
         });
-        // Near one, because the squares of tiny lengths vanish.
+        // Brings lengths near one: the squares of tiny lengths underflow.
         let scale = reach.power_of_two_to_unity();
         let (from, to) = (start * scale, end * scale);
         let radius = balls().fold(0.0, |largest: Real, (point, radius)| {
             largest.max(distance_to_segment(point * scale, from, to) + radius * scale)
         });
-        // What the roundings may have taken away.
+        // See **Rounding**.
         Self {
             start,
             end,
@@ -104,11 +110,11 @@ impl BoundingCapsule {
     }
 }
 
-/// The distance of a point from a segment, but for rounding.
+/// Returns the distance of a point from a segment, without a rounding margin.
 pub(crate) fn distance_to_segment(point: Vector, start: Vector, end: Vector) -> Real {
     let axis = end - start;
     let along = (point - start).dot(axis) / axis.length_squared();
-    // 0 / 0 where the segment is a point: the comparisons turn it into 0.
+    // 0 / 0 = NaN if the segment is a point: the comparison turns NaN into 0.
     let along = if along > 0.0 { along.min(1.0) } else { 0.0 };
     (point - start - axis * along).length()
 }

@@ -1,5 +1,4 @@
-//! What the robot is: links with a flat or round cap at each end, and the chain that Algorithm 1
-//! makes of them.
+//! The robot: links with a flat or round cap at each end, chains of links, tubes and motions.
 
 mod aabb;
 mod algorithm_1;

@@ -1,19 +1,18 @@
-//! The one shape of this crate: a cylinder whose two ends are each flat or round.
+//! The link: a cylinder whose two ends are each flat or round.
 
 use super::scale;
 use super::{Cap, RobotError};
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::shape::Capsule;
 
-/// Largest coordinate or radius accepted. Squares of differences of such numbers are finite, and so
-/// are the results of every query.
+/// Largest coordinate or radius accepted. Squares of differences of such numbers stay finite, and
+/// so do the results of every query.
 pub(crate) const COORDINATE_LIMIT: Real = 1.0e150;
 
 /// A cylinder of finite length whose ends are each flat or round (paper, section III.E).
 ///
-/// Two round caps make a capsule, two flat caps a cylinder. With radius 0 it is a wire; with length
-/// 0 and two round caps it is a ball. Coordinates are in the unit and frame of whoever builds it.
-///
+/// Special cases: two round caps make a capsule, two flat caps a cylinder; radius 0 makes a wire;
+/// length 0 with two round caps makes a ball. Coordinates are in the caller's unit and frame.
 /// ```
 /// use parry_continuum::{Cap, ModifiedCylinder, parry::math::Vector};
 ///
@@ -35,11 +34,13 @@ pub struct ModifiedCylinder {
 }
 
 impl ModifiedCylinder {
-    /// A link from `start` to `end` with the given `radius` and the caps at start and end.
+    /// Builds a link from `start` to `end`; `caps` are the caps at the start and at the end.
+    ///
+    /// All lengths are in one unit; `start` and `end` are in the link's frame.
     ///
     /// # Errors
-    /// A coordinate or the radius is not finite or out of range, the radius is negative, or a cap
-    /// is flat although the length is 0, or vanishes beside the radius (2^-400 of it).
+    /// - a coordinate or the radius is not finite or beyond 1e150, or the radius is negative;
+    /// - a cap is flat although the length is 0, or at most 2^-400 of the radius.
     pub fn new(
         start: Vector,
         end: Vector,
@@ -60,12 +61,12 @@ impl ModifiedCylinder {
         Ok(Self::unchecked(start, end, radius, caps))
     }
 
-    /// As [`ModifiedCylinder::new`], for arguments that are known to be good.
+    /// As [`ModifiedCylinder::new`], for arguments that are known to be valid.
     pub(crate) fn unchecked(start: Vector, end: Vector, radius: Real, caps: [Cap; 2]) -> Self {
         Self { start, end, radius, caps }
     }
 
-    /// A link with two round caps (the paper's K).
+    /// Builds a link with two round caps (the paper's K).
     ///
     /// # Errors
     /// As [`ModifiedCylinder::new`].
@@ -73,7 +74,7 @@ impl ModifiedCylinder {
         Self::new(start, end, radius, [Cap::Round; 2])
     }
 
-    /// A link with two flat caps (the paper's Z).
+    /// Builds a link with two flat caps (the paper's Z).
     ///
     /// # Errors
     /// As [`ModifiedCylinder::new`].
@@ -81,37 +82,37 @@ impl ModifiedCylinder {
         Self::new(start, end, radius, [Cap::Flat; 2])
     }
 
-    /// The start point of the axis.
+    /// Returns the start point of the axis.
     pub fn start(&self) -> Vector {
         self.start
     }
 
-    /// The end point of the axis.
+    /// Returns the end point of the axis.
     pub fn end(&self) -> Vector {
         self.end
     }
 
-    /// The radius.
+    /// Returns the radius.
     pub fn radius(&self) -> Real {
         self.radius
     }
 
-    /// The caps at the start and at the end.
+    /// Returns the caps at the start and at the end.
     pub fn caps(&self) -> [Cap; 2] {
         self.caps
     }
 
-    /// Which caps are flat, as the narrow phase wants it.
+    /// Returns which caps are flat, in the form that the distance kernels take.
     pub(crate) fn flat(&self) -> [bool; 2] {
         self.caps.map(|cap| cap == Cap::Flat)
     }
 
-    /// The length of the axis; a round cap reaches one radius further.
+    /// Returns the length of the axis, without the radius that a round cap adds.
     pub fn length(&self) -> Real {
         scale::length(self.end - self.start)
     }
 
-    /// The unit vector from start to end, or zero for a ball.
+    /// Returns the unit vector from start to end, or zero for a ball.
     ///
     /// ```
     /// # use parry_continuum::{ModifiedCylinder, parry::math::Vector};
@@ -123,15 +124,15 @@ impl ModifiedCylinder {
         scale::direction(self.end - self.start)
     }
 
-    /// The [`length`](Self::length) and the [`axis`](Self::axis).
+    /// Returns the [`length`](Self::length) and the [`axis`](Self::axis).
     pub(crate) fn length_and_axis(&self) -> (Real, Vector) {
         scale::length_and_direction(self.end - self.start)
     }
 
-    /// The same link moved by `pose`.
+    /// Returns the link moved by `pose`.
     ///
-    /// If a short link is moved so far out that rounding makes its two ends one, its caps become
-    /// round: the ball holds the link whichever way its lost axis pointed.
+    /// If rounding makes both ends of a short link equal, far from the origin, both caps become
+    /// round. The ball contains the link for every direction of the lost axis.
     #[inline]
     pub fn transformed(&self, pose: &Pose) -> Self {
         let (start, end) = (pose * self.start, pose * self.end);
@@ -140,8 +141,8 @@ impl ModifiedCylinder {
     }
 }
 
-/// Whether a link is long enough for flat caps. Where its length is 2^-400 of its radius, its
-/// square would vanish in the narrow phase.
+/// Returns whether a link is long enough for flat caps: its longest component exceeds 2^-400 of the
+/// radius. For shorter links the squared length would underflow in the distance kernels.
 pub(crate) fn has_direction(start: Vector, end: Vector, radius: Real) -> bool {
     const LEAST: Real = Real::from_bits((1023 - 400) << 52);
     (end - start).abs().max_element() > radius * LEAST
@@ -155,12 +156,12 @@ impl TryFrom<&Capsule> for ModifiedCylinder {
     }
 }
 
-/// Every coordinate is finite and within [`COORDINATE_LIMIT`].
+/// Checks that every coordinate is finite and within [`COORDINATE_LIMIT`].
 pub(crate) fn check_points(parameter: &'static str, points: &[Vector]) -> Result<(), RobotError> {
     points.iter().enumerate().try_for_each(|(index, &point)| check_place(parameter, index, point))
 }
 
-/// The same of one point.
+/// As [`check_points`], for one point.
 pub(crate) fn check_place(
     parameter: &'static str,
     index: usize,
@@ -182,7 +183,7 @@ pub(crate) fn check_place(
     Ok(())
 }
 
-/// Every radius is finite, not negative and within [`COORDINATE_LIMIT`].
+/// Checks that every radius is finite, at least 0 and within [`COORDINATE_LIMIT`].
 pub(crate) fn check_radii(parameter: &'static str, radii: &[Real]) -> Result<(), RobotError> {
     match radii.iter().position(|radius| !(0.0..=COORDINATE_LIMIT).contains(radius)) {
         Some(index) => Err(RobotError::BadRadius {

@@ -1,33 +1,33 @@
-//! A sampled centreline as stretches of one radius, for whoever thins it out.
+//! A sampled centreline as runs of one radius, for functions that remove points.
 
 use super::RobotError;
 use super::chain::check_segments;
 use parry3d_f64::math::{Real, Vector};
 use std::borrow::Cow;
 
-/// A centreline without repeated points, and which of its points must stay.
+/// A centreline without repeated points, with the indices of the points that must stay.
 pub(super) struct RadiusRuns<'a> {
     points: Cow<'a, [Vector]>,
-    /// The ends, and where the radius changes, ascending.
+    /// The two ends and each change of radius, ascending.
     must_stay: Vec<usize>,
-    /// Of each stretch between two points that must stay.
+    /// The radius of each run between two points that must stay.
     radii: Vec<Real>,
 }
 
-/// Points of one radius; both ends must stay, and each differs from the one before.
+/// The points of one run. Both ends must stay, and no two consecutive points are equal.
 pub(super) struct RadiusRun<'a> {
     pub(super) points: &'a [Vector],
     pub(super) radius: Real,
 }
 
 impl<'a> RadiusRuns<'a> {
-    /// The stretches of a centreline that is to be thinned out within a tolerance.
+    /// Splits a centreline, to be simplified within a tolerance, into runs.
     ///
-    /// A segment without length goes, together with its radius. If that differs from a neighbour's
-    /// the point counts as a change of radius.
+    /// A segment without length is removed with its radius. If that radius differs from a
+    /// neighbour's, the point counts as a change of radius.
     ///
     /// # Errors
-    /// What neither a chain nor a tolerance can be.
+    /// As [`check_segments`]; a tolerance that is negative or not finite; all points equal.
     pub(super) fn of(
         points: &'a [Vector],
         segment_radii: &'a [Real],
@@ -41,8 +41,8 @@ impl<'a> RadiusRuns<'a> {
         let mut distinct = Vec::with_capacity(if has_repeats { points.len() } else { 0 });
         distinct.extend_from_slice(if has_repeats { &points[..1] } else { &[] });
         let (mut must_stay, mut radii) = (vec![0], vec![]);
-        // The number of distinct points so far, less one; the radius of the last segment, and of
-        // the last with a length.
+        // `here`: index of the last distinct point. `last_radius`: radius of the last segment.
+        // `radius_before`: radius of the last segment that has a length.
         let (mut here, mut last_radius, mut radius_before) =
             (0, segment_radii[0], segment_radii[0]);
         for (ends, &radius) in points.windows(2).zip(segment_radii) {

@@ -2,19 +2,20 @@
 
 use parry3d_f64::math::Real;
 
-/// Radii that differ by no more than this share, 2^-32, are one: what a simulator's many steps
-/// leave of a constant. What is meant to be a step is larger by far.
+/// Radii that differ by at most this relative difference, 2^-32, are equal. It exceeds the rounding
+/// that many steps of a simulator add to a constant radius; intended steps are far larger.
 const SAME: Real = 1.0 / (1_u64 << 32) as Real;
 
-/// A walk along a robot's radii.
+/// Finds the steps up while walking along a robot's radii.
 #[derive(Default)]
 pub(super) struct RadiusSteps {
-    /// The first of the radii that are one. (Not the last, so that a slow taper is a taper.)
+    /// The first of the current equal radii. (Comparing with the last would hide a slow taper.)
     first: Option<Real>,
 }
 
 impl RadiusSteps {
-    /// Whether the next radius begins a wider tube than the one before. The first does.
+    /// Returns whether the next radius begins a wider tube than the one before. The first always
+    /// does.
     pub(super) fn is_up(&mut self, radius: Real) -> bool {
         match self.first {
             Some(first) if radius <= first * (1.0 + SAME) => {
@@ -31,12 +32,12 @@ impl RadiusSteps {
     }
 }
 
-/// Whether a radius is that of a tube whose first is given, but for rounding.
+/// Returns whether `radius` equals the radius `first` of a tube, up to rounding.
 pub(super) fn is_same(first: Real, radius: Real) -> bool {
     (radius - first).abs() <= SAME * first
 }
 
-/// Whether a tube of the one radius goes on in a wider one of the other.
+/// Returns whether a tube of radius `from` meets a wider one of radius `to`.
 pub(crate) fn is_step(from: Real, to: Real) -> bool {
     to > from && !is_same(to, from)
 }
@@ -58,7 +59,7 @@ mod tests {
         );
         assert_eq!(ups(&[r, 0.9 * r, r]), [true, false, true]);
         assert_eq!(ups(&[r, r * (1.0 + 1e-9)]), [true, true]);
-        // Each is the last one but for rounding, and the sum is not.
+        // Neighbours are equal up to rounding; their accumulated difference is a step.
         let taper: Vec<_> = (0..200).map(|k| r * (1.0 + 1e-11 * Real::from(k))).collect();
         let found = ups(&taper);
         assert!((5..=10).contains(&found.iter().filter(|up| **up).count()), "{found:?}");

@@ -1,15 +1,14 @@
-//! From the 4x4 matrix of a registration or of a kinematic model to a pose, checked.
+//! Converts the 4x4 matrix of a registration or of a kinematic model to a pose, with checks.
 
 use parry3d_f64::math::{Mat3, Pose, Real, Rot3, Vector};
 use strum::IntoStaticStr;
 use thiserror::Error;
 
-/// The entries of R^T R may be off those of the identity by so much. A matrix whose numbers have
-/// six digits after the point passes; a rotation that is off by this much moves a point at 100 mm
-/// by 0.001 mm.
+/// Largest accepted deviation of an entry of R^T R from the identity. It accepts matrices written
+/// with six decimals. A rotation that is off by 1e-5 moves a point at 100 mm by 0.001 mm.
 const ROUNDED: Real = 1e-5;
 
-/// Why a 4x4 matrix is no pose. The text says what to change.
+/// Why a 4x4 matrix is not a pose. Each message says what to change.
 #[derive(Clone, Copy, Debug, Error, IntoStaticStr, PartialEq)]
 #[strum(serialize_all = "snake_case")]
 #[non_exhaustive]
@@ -58,20 +57,19 @@ pub enum MatrixError {
 }
 
 impl MatrixError {
-    /// What went wrong in one word, the same in Rust and Python: the variant in snake case.
+    /// Returns the variant's name in snake case, the same in Rust and Python.
     pub fn kind(&self) -> &'static str {
         self.into()
     }
 }
 
-/// The pose that a 4x4 matrix of rows stands for: a rotation, a shift in the last column, and 0 0 0
-/// 1.
+/// Returns the pose of a 4x4 matrix: a rotation and a translation (last column).
 ///
-/// Numbers rounded to six digits after the point will do; a rotation as near to them is taken.
+/// `rows` is in row-major order; the translation is in the caller's unit. Entries rounded to six
+/// decimals are accepted: the result is the nearby rotation.
 ///
 /// # Errors
-/// The matrix is not finite, its last row is not 0 0 0 1, or its rotation scales, shears or
-/// mirrors.
+/// An entry is not finite, the last row is not 0 0 0 1, or the 3x3 part scales, shears or mirrors.
 ///
 /// ```
 /// use parry_continuum::{parry::math::Vector, pose_from_matrix};

@@ -1,33 +1,34 @@
-//! Poses that keep lengths, and rotations that are the same on every machine.
+//! Poses that keep lengths, and rotations that are equal on every machine.
 //!
-//! A rotation by the quaternion q multiplies lengths by |q|^2. So a pose with another length of q
-//! is no rigid motion. What rounding leaves is made good: a unit quaternion in single precision
-//! whose four numbers are rounded is off by 2^-24 of its length at most, and one that comes out of
-//! a few products in single precision by some times that. Up to 2^-20 counts as rounding, and q is
-//! made a unit; beyond that nobody knows what was meant, and the pose is refused. Chains, tubes and
-//! motions are placed by the same rule.
+//! A rotation by the quaternion q multiplies lengths by `|q|^2`, so it is rigid only if `|q| = 1`.
+//!
+//! # Rounding
+//! A unit quaternion rounded to single precision is off unit length by at most 2^-24. A product of
+//! a few such quaternions is off by a small multiple. So a deviation up to 2^-20 counts as rounding
+//! and q is normalised. A larger deviation has no clear meaning and is refused. Chains, tubes and
+//! motions all use this rule.
 
 use crate::distance::Scalar;
 use crate::robot::scale::length;
 use parry3d_f64::math::{Pose, Real, Rotation, Vector};
 
-/// Rounding of single precision: 2^-20.
+/// Largest deviation of `|q|` from 1 that counts as rounding of single precision: 2^-20.
 const MAX_OFF: Real = Real::from_bits((1023 - 20) << 52);
 
-/// A rotation whose quaternion has another length than 1.
+/// The error for a quaternion whose length is not 1.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct NotRigid {
     pub length: Real,
 }
 
-/// The pose with a rotation of unit length; as it is, if it has that but for the rounding of a few
-/// operations.
+/// Returns the pose with a unit quaternion. A pose that is rigid up to the rounding of a few
+/// operations is returned unchanged.
 ///
 /// # Errors
-/// The length of its quaternion is not 1 even in single precision, or NaN.
+/// The quaternion's length differs from 1 by more than 2^-20, or is NaN.
 #[inline]
 pub(crate) fn rigid(pose: &Pose) -> Result<Pose, NotRigid> {
-    // The square of a length near 1; one that leaves the range of numbers is not near 1 either.
+    // If the square overflows or underflows, the length is not near 1 either.
     let off = (pose.rotation.length_squared() - 1.0).abs();
     if off <= 8.0 * Real::UNIT_ROUNDOFF {
         return Ok(*pose);
@@ -39,17 +40,18 @@ pub(crate) fn rigid(pose: &Pose) -> Result<Pose, NotRigid> {
     Err(NotRigid { length: quaternion_length(pose.rotation) })
 }
 
-/// Without overflow and underflow.
+/// The length of a quaternion, without overflow or underflow.
 fn quaternion_length(q: Rotation) -> Real {
     let across = length(Vector::new(q.x, q.y, q.z));
     length(Vector::new(across, q.w, 0.0))
 }
 
-/// The rotation about an axis by its length. The same to the last bit on every machine, as sines of
-/// the standard library are not.
+/// Returns the rotation by a rotation vector: about its direction, by its length in rad.
+///
+/// `libm` makes the result bit-identical on every machine; the standard library's sine does not.
 pub(crate) fn rotation_by(turn: Vector) -> Rotation {
     let half = 0.5 * length(turn);
-    // Half of the sine's argument, where the sine's square vanishes.
+    // `sin(half) / |turn|`; its limit is 1/2 at 0.
     let share = if half > 0.0 { 0.5 * (libm::sin(half) / half) } else { 0.5 };
     let axis = turn * share;
     Rotation::from_xyzw(axis.x, axis.y, axis.z, libm::cos(half))

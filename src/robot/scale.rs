@@ -1,16 +1,16 @@
 //! Lengths and directions that neither overflow nor underflow.
 //!
-//! The square of a length leaves the range of f64 beyond about 1e154 and below 1e-154, while
-//! coordinates up to 1e150 are accepted. Multiplying by a power of two is exact, so a square that
-//! comes near either end is taken at a size near 1 instead.
+//! The square of a length leaves the range of f64 beyond about 1e154 and below 1e-154; coordinates
+//! up to 1e150 are accepted. If a square comes near either end of the range, the vector is first
+//! scaled near 1 by a power of two, which is exact.
 
 use crate::distance::Scalar;
 use parry3d_f64::math::{Real, Vector};
 
-/// Between these no square of a length loses a bit that counts.
+/// Squares of lengths in this range lose no significant bit.
 const PLAIN_SQUARES: std::ops::Range<Real> = 1.0e-270..1.0e270;
 
-/// The length of `v`.
+/// Returns the length of `v`.
 pub(crate) fn length(v: Vector) -> Real {
     let squared = v.length_squared();
     if PLAIN_SQUARES.contains(&squared) {
@@ -20,12 +20,12 @@ pub(crate) fn length(v: Vector) -> Real {
     (v * scale).length() / scale
 }
 
-/// The direction of `v`, or zero for the zero vector.
+/// Returns the direction of `v`, or zero for the zero vector.
 pub(crate) fn direction(v: Vector) -> Vector {
     length_and_direction(v).1
 }
 
-/// The length and the [`direction`] of `v`.
+/// Returns the length and the [`direction`] of `v`.
 pub(crate) fn length_and_direction(v: Vector) -> (Real, Vector) {
     let squared = v.length_squared();
     if PLAIN_SQUARES.contains(&squared) {

@@ -1,7 +1,7 @@
 //! Links and chains as data (feature `serde-serialize`).
 //!
-//! What is written is what the constructors take, and what is read goes through them: a link or
-//! chain that they would refuse is an error, with their message.
+//! The data are the arguments of the constructors. Reading calls the constructors, so an invalid
+//! link or chain is an error with their message.
 
 use super::chain::check;
 use super::{Cap, Chain, ModifiedCylinder};
@@ -33,15 +33,15 @@ impl TryFrom<Link> for ModifiedCylinder {
     }
 }
 
-/// A chain: the points of its joints, and per link its radius, its caps and how many segments of
-/// the input it stands for.
+/// A chain: the points of its joints; per link the radius, the caps and the number of input
+/// segments.
 #[derive(Serialize, Deserialize)]
 pub(super) struct Links {
     points: Vec<[Real; 3]>,
     radii: Vec<Real>,
     caps: Vec<[Cap; 2]>,
     segments: Vec<usize>,
-    /// How many of the first link's segments come before the one that has a length.
+    /// The number of the first link's segments before the one that has a length.
     #[serde(default)]
     leading: usize,
 }

@@ -1,80 +1,92 @@
-//! How far a chord may go: what a vertex sees of the stretch ahead through its vertices' gates.
+//! How far chords from a vertex may reach: gates and walls.
 //!
-//! Let a chord from a vertex a to a later one t be admissible, and v a vertex in between that is
-//! farther than the tolerance from a. Then the point c of the chord nearest to v is not a, and c,
-//! being on the chord, lies in the direction of t. The angle between c - a and v - a is at most
-//! asin(tolerance / |v - a|). So **t lies in a cone around v - a**, the *gate* of v, whatever the
-//! stretch does in between, and however far away t is. Where the gates of two vertices have no
-//! direction in common, no later vertex at all can be the end of a chord from a: these two are a
-//! *wall*.
+//! # Definitions
+//! - `a`: the vertex where the chord starts. `t`: a later vertex where it ends. `v`: a vertex
+//!   between them. Admissible: as in `simplify`.
+//! - *Gate* of v, if v is farther than the tolerance from a: the cone of directions from a within
+//!   the angle `asin(tolerance / |v - a|)` of `v - a`.
+//! - *Wall*: two vertices whose gates have no direction in common.
+//! - `tau`: the tolerance plus a margin for rounding.
 //!
-//! The gates are narrowed down in coordinates: x along an axis, y in one of four directions across
-//! it, 45 degrees apart. Let tau be the tolerance with room for rounding. The axis goes through the
-//! first vertex at least 4 tau away. Its own gate keeps all slopes y / x of later targets within
-//! tan(asin(1/4)), so that sqrt(1 + slope^2) <= 4 / sqrt(15). And for a vertex (x, y) with x > tau
-//! and its nearest point (x', y') of the chord, x' > 0, and with s = y' / x' the chord's slope
+//! # Gates and walls
+//! **Claim.** If the chord from a to t is admissible, `t - a` lies in the gate of every v. So no
+//! chord from a ends behind a wall.
 //!
-//! > |y - s x| = |(y - y') - s (x - x')| <= tau sqrt(1 + s^2), so that |s - y / x| <= (tau 4 /
-//! > sqrt(15)) / x.
+//! **Proof.** Let c be the point of the chord nearest to v. Since `|v - a| > tolerance`, c is not
+//! a, so `c - a` has the direction of `t - a`. As `|v - c| <= tolerance`, the angle between `c - a`
+//! and `v - a` is at most `asin(tolerance / |v - a|)`. This holds for every shape of the run in
+//! between and for every distance of t.
 //!
-//! Each direction keeps the interval of the slopes that are left. An empty one is a wall.
+//! # Slopes
+//! Gates are intersected in coordinates: x along an axis, y in one of four directions across it, 45
+//! degrees apart. The axis leads from a through the first vertex at least `4 tau` away. The gate of
+//! that vertex keeps every slope `s = y / x` of a later target within `tan(asin(1/4))`, so
+//! `sqrt(1 + s^2) <= 4 / sqrt(15)`.
 //!
-//! Conversely, a chord passes a vertex (x, y, z) at the plane through it across the axis, if 0 < x
-//! <= the target's x. It is within the tolerance there if its four slopes are within cos(22.5
-//! degrees) tolerance / x of the vertex's: these make an octagon inside the disc. Vertices within
-//! the tolerance of a are so of every chord. A target that all of these hold for needs no look at
-//! the vertices, and one outside the first intervals neither. The two radii differ by 12 %, and for
-//! an arc, whose chords deviate with the square of their length, the lengths that remain in
-//! question by 6 %.
+//! **Claim.** For a vertex (x, y) with `x > tau`, `|s - y / x| <= tau (4 / sqrt(15)) / x`.
+//!
+//! **Proof.** Let (x', y') be the point of the chord nearest to the vertex; `x' > 0`,
+//! `s = y' / x'`. Then `|y - s x| = |(y - y') - s (x - x')| <= tau sqrt(1 + s^2)`.
+//!
+//! Each direction keeps the interval of the remaining slopes. An empty interval is a wall.
+//!
+//! # Certain targets
+//! Conversely, consider the plane across the axis at a vertex (x, y, z) with `0 < x <=` the
+//! target's x. The chord is within the tolerance there if its four slopes are within
+//! `cos(22.5 degrees) tolerance / x` of the vertex's slopes: the four strips form an octagon inside
+//! the disc. A vertex within the tolerance of a is within the tolerance of every chord from a.
+//!
+//! A target that meets these conditions for all vertices is admissible. A target outside the
+//! intervals of the first kind is not. Only the others are compared with the vertices. The two
+//! radii differ by 12 %. On an arc, where the deviation grows with the square of a chord's length,
+//! 6 % of the lengths remain open.
 //!
 //! # Rounding
-//! Everything is scaled by the power of two that brings the extent of the stretch near one.
-//! Coordinates, slopes times x and the comparisons of [`ChordTarget`](super::compare::ChordTarget)
-//! are then all off by less than 2^-45. 2^-40 is added to the tolerance where it rules out and
-//! taken from it where it admits.
+//! A power of two scales the extent of the run near one. Coordinates, slopes times x and the
+//! comparisons of `ToleranceSegment` are then off by less than 2^-45. The tolerance is increased by
+//! 2^-40 where it excludes, and reduced by 2^-40 where it admits.
 
 use crate::distance::Scalar;
 use parry3d_f64::math::{Real, Vector};
 
-/// Room for rounding, where the extent of the stretch is less than two.
+/// Margin for rounding, if the extent of the run is less than two.
 const SLACK: Real = Real::from_bits((1023 - 40) << 52);
 
-/// Room for rounding of [`Sight::is_wall`]: the mean of two squares is no less than their roots'
-/// product.
+/// Margin for rounding in [`Sight::is_wall`], times the sum of the two squared distances, which is
+/// at least twice their product.
 const ANGLE_SLACK: Real = Real::from_bits((1023 - 47) << 52);
 
-/// 4 / sqrt(15), rounded up, and cos(22.5 degrees), rounded down.
+/// `4 / sqrt(15)`, rounded up, and `cos(22.5 degrees)`, rounded down.
 const STEEPEST: Real = 1.032_795_559;
 const OCTAGON: Real = 0.923_879_532;
 
-/// A stretch, as it is looked at.
+/// A run, scaled for queries.
 pub(super) struct Sight<'a> {
     stretch: &'a [Vector],
     scale: Real,
-    /// The tolerance with room for rounding, either way; scaled.
+    /// The scaled tolerance, plus and minus the margin for rounding.
     widened: Real,
     narrowed: Real,
 }
 
-/// A vertex that a chord from where we stand may reach.
+/// A vertex that a chord may reach.
 pub(super) struct ChordTarget {
     pub(super) vertex: usize,
-    /// Whether the chord is admissible; otherwise it is in question.
+    /// Whether the chord is certainly admissible; otherwise it must be compared.
     pub(super) is_sure: bool,
 }
 
-/// Two vertices beyond which no chord goes that starts from where they are a wall, the farther one
-/// last.
+/// A wall as seen from some vertex: the nearer vertex first, the farther one last.
 #[derive(Clone, Copy)]
 pub(super) struct SightLimit(usize, usize);
 
 impl SightLimit {
-    /// Two vertices, the nearer one first, that are a wall if [`Sight::is_wall`] says so.
+    /// Two vertices, the nearer one first. [`Sight::is_wall`] decides whether they are a wall.
     pub(super) fn new(near: usize, far: usize) -> Self {
         Self(near, far)
     }
 
-    /// The last vertex that a chord may reach.
+    /// Returns the last vertex that a chord may reach.
     pub(super) fn vertex(self) -> usize {
         self.1
     }
@@ -91,8 +103,9 @@ impl<'a> Sight<'a> {
         Self { stretch, scale, widened: tolerance + SLACK, narrowed: tolerance - SLACK }
     }
 
-    /// Fills `targets` with the open vertices that a chord from a vertex may reach, in order, and
-    /// returns the wall behind the last, if there is one.
+    /// Fills `targets` with the open vertices that a chord from `from` may reach, in order.
+    ///
+    /// Returns the wall that ended the walk, if there is one.
     pub(super) fn look(
         &self,
         from: usize,
@@ -132,13 +145,13 @@ impl<'a> Sight<'a> {
         None
     }
 
-    /// Whether two vertices that are a wall to some vertex are one to this vertex too: whether the
-    /// angle between them exceeds the sum of half their gates' angles a and b, or cos(angle) <
-    /// cos(a + b), times both distances.
+    /// Returns whether the gates of two vertices are a wall as seen from `from`.
     ///
-    /// Differences of coordinates are exact up to a share of 2^-53 of themselves, so that with
-    /// distances of at least sqrt(2) tau either side is off by less than 2^-47 of the product
-    /// of the distances.
+    /// Let p and q lead to the vertices, and let a and b be the half angles of their gates. The
+    /// test is `angle(p, q) > a + b`, that is `p . q < |p| |q| cos(a + b)`.
+    ///
+    /// **Rounding.** Differences of coordinates are exact up to 2^-53 of themselves. With distances
+    /// of at least `sqrt(2) tau` either side is off by less than 2^-47 of `|p| |q|`.
     pub(super) fn is_wall(&self, from: usize, SightLimit(near, far): SightLimit) -> bool {
         let room = self.widened * self.widened;
         let (p, q) = (self.between(from, near), self.between(from, far));
@@ -154,22 +167,22 @@ impl<'a> Sight<'a> {
     }
 }
 
-/// A vertex seen from the origin: how far along the axis, and how far across it in four directions.
+/// A vertex relative to the start: x along the axis, y in the four directions across it.
 struct SeenVertex {
     along: Real,
     across: [Real; 4],
     distance_squared: Real,
 }
 
-/// The slopes that are left.
+/// The intervals of slopes that remain.
 struct Gates {
     axes: [Vector; 3],
     low: [Real; 4],
     high: [Real; 4],
-    /// The vertices whose gates end there.
+    /// The vertices whose gates bound the intervals.
     low_by: [usize; 4],
     high_by: [usize; 4],
-    /// The slopes that are sure to pass, by a chord that reaches so far along the axis.
+    /// The slopes that certainly pass, for a target at least `sure_from` along the axis.
     sure_low: [Real; 4],
     sure_high: [Real; 4],
     sure_from: Real,
@@ -201,9 +214,9 @@ impl Gates {
         }
     }
 
-    /// Whether a chord to this place passes all gates for sure, or nothing if it does not.
+    /// Returns whether a chord to `place` certainly passes all gates; `None` if it certainly fails.
     fn view(&self, place: &SeenVertex, widened: Real) -> Option<bool> {
-        // The axis is at least 4 tau along, and its nearest point of the chord at least 3 tau.
+        // The axis vertex is at least 4 tau along; its nearest point of the chord at least 3 tau.
         if place.along <= widened {
             return None;
         }
@@ -215,7 +228,7 @@ impl Gates {
         within(&self.low, &self.high).then(is_sure)
     }
 
-    /// Takes away what does not pass the gate of a vertex; a wall, if nothing is left.
+    /// Narrows the intervals by the gate of a vertex. Returns a wall if an interval is empty.
     fn narrow(&mut self, vertex: usize, place: &SeenVertex, sight: &Sight) -> Option<SightLimit> {
         let shares = 1.0 / place.along;
         if place.along > sight.widened {
@@ -236,7 +249,7 @@ impl Gates {
         }
         let narrowed = sight.narrowed.max(0.0);
         if place.distance_squared <= narrowed * narrowed {
-            // Within the tolerance of every chord.
+            // Within the tolerance of every chord from here.
         } else if narrowed > 0.0 && place.along > SLACK {
             let margin = narrowed * OCTAGON * shares;
             for k in 0..4 {
@@ -256,7 +269,7 @@ impl Gates {
 mod tests {
     use super::*;
 
-    /// Two gates that just touch are no wall, and two that just do not are one.
+    /// Two gates that barely touch are no wall; two that barely miss each other are.
     #[test]
     fn a_wall_is_where_two_gates_part() {
         for (near, far) in [(0.2, 0.9), (0.5, 0.51), (0.9, 0.3)] {

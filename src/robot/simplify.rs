@@ -1,41 +1,47 @@
-//! The fewest links that stand for a finely sampled centreline.
+//! The fewest links that replace a finely sampled centreline.
 //!
-//! A chord may replace a stretch of the centreline if the two are within the tolerance of each
-//! other, in both directions (Hausdorff distance). One direction says it all:
+//! # Definitions
+//! - Run: the vertices between two vertices that must stay. Chord: a segment between two vertices
+//!   of a run; it replaces the part of the run between them.
+//! - A chord is *admissible* if it and the part that it replaces are within the tolerance of each
+//!   other (Hausdorff distance), and its length is not 0.
 //!
-//! 1. From the stretch to the chord: the distance to the chord is convex along each segment, so it
-//!    is greatest at a vertex. The direction holds if every vertex is within the tolerance of the
-//!    chord.
-//! 2. From the chord to the stretch: the stretch runs from the chord's one end to its other without
-//!    a gap, so for every point c of the chord some point q of the stretch lies in the plane
-//!    through c perpendicular to the chord. Then c is the point of the chord nearest to q, and |q -
-//!    c| is within the tolerance by 1.
+//! # Claim
+//! A chord is admissible if every vertex between its ends is within the tolerance of the chord.
 //!
-//! So hooks and stretches that run back on themselves need no test of their own. The distance must
-//! be to the chord, not to its line: a hook that overshoots the end must not pass.
+//! # Proof
+//! 1. **From the run to the chord.** The distance to the chord is convex along each segment, so it
+//!    is largest at a vertex.
+//! 2. **From the chord to the run.** Let c be a point of the chord. The run connects the ends of
+//!    the chord without a gap. So a point q of the run lies in the plane through c perpendicular to
+//!    the chord. Then c is the point of the chord nearest to q, and `|q - c|` is within the
+//!    tolerance by 1.
 //!
-//! If a long chord fails a shorter one may fail too, and the reverse, so no greedy choice is safe.
-//! The fewest links are a shortest path over admissible chords, found breadth first between each
-//! two vertices that must stay. A vertex is settled by the first chord that reaches it.
+//! So hooks and parts that run backwards need no test of their own. The distance is to the chord,
+//! not to its line: a hook that overshoots the end must fail.
 //!
-//! # What it costs
-//! From most vertices there is nothing left to settle within reach, and that must be seen at once:
+//! # Algorithm
+//! If a long chord fails, a shorter one may hold, and the reverse. So no greedy choice is safe. The
+//! fewest links are a shortest path over admissible chords, found breadth first in each run. The
+//! first chord that reaches a vertex settles it. From most vertices no unsettled vertex can be
+//! reached; three tests find that out, cheapest first:
 //!
-//! 1. The wall (`sight.rs`) that ended the search from the vertex before mostly stands here too:
-//!    nothing behind it can be reached. That is one comparison.
-//! 2. Before the wall, the vertex that ruled out the last chord mostly rules out the next. One
-//!    comparison a target.
-//! 3. Only if that fails does a search walk to the wall, vertex by vertex, and it decides nearly
-//!    all chords on the way. Those that it leaves in question are compared with vertex after
-//!    vertex.
+//! 1. **Wall.** The wall (`sight.rs`) that ended the last walk usually holds for the next vertex
+//!    too: nothing behind it can be reached. Cost: one comparison.
+//! 2. **Obstacle.** Before the wall, the vertex that ruled out the last chord usually rules out the
+//!    next one. Cost: one comparison per target.
+//! 3. **Walk.** Otherwise a walk goes vertex by vertex to the wall and decides nearly all chords.
+//!    Chords left open are compared with each vertex in between.
 //!
-//! On a smooth curve there are a few walks a link, and a comparison or two from every other vertex.
-//! To that comes, for each link, a part of the square of the number of points that it replaces: for
-//! chords that a walk leaves in question, and for targets before a wall. Where links replace
-//! hundreds of points it is the larger part. Where the chords that hold and those that do not
-//! alternate, as with noise about as large as the tolerance, every vertex costs a walk: as many
-//! steps as vertices times those that a chord spans. At worst every chord of a stretch is compared
-//! with all its vertices, the cube of their number.
+//! # Cost
+//! Let n be the number of vertices of a run and m the number that a link replaces.
+//!
+//! - On a smooth curve: a few walks per link, and one or two comparisons per other vertex. Each
+//!   link adds a part of `m^2`, for chords that a walk leaves open and for targets before a wall.
+//!   This part dominates if m is in the hundreds.
+//! - With noise about as large as the tolerance, admissible and other chords alternate. Every
+//!   vertex then costs a walk: `n m` steps.
+//! - At worst every chord is compared with all its vertices: `n^3`.
 
 use super::RobotError;
 use super::compare::ToleranceSegment;
@@ -43,27 +49,28 @@ use super::radius_runs::RadiusRuns;
 use super::sight::{Sight, SightLimit};
 use parry3d_f64::math::{Real, Vector};
 
-/// The fewest links that follow a centreline within a tolerance: their points and segment radii,
-/// ready for any constructor of a [`Chain`](crate::Chain).
+/// Finds the fewest links that follow a centreline within a tolerance.
 ///
-/// The points are a subset of the input's, in order. Both ends stay, and so does every point where
-/// the radius changes. Each new segment and the stretch of the input that it replaces are within
-/// `tolerance` of each other: no point of either is further than that from the other (Hausdorff
-/// distance). No other choice of points with these properties has fewer links. `tolerance` is in
-/// the unit of the points. With 0, only points exactly on the new segments go, and the centreline
-/// keeps its shape; points meant to be on an oblique straight line seldom are after rounding, so
-/// give those the rounding error as tolerance.
+/// Returns points and segment radii, ready for any constructor of a [`Chain`](crate::Chain). The
+/// points are a subset of the input's, in order. Both ends stay, and so does every point at which
+/// the radius changes. Each new segment and the part of the input that it replaces are within
+/// `tolerance` of each other (Hausdorff distance). No other choice of points with these properties
+/// has fewer links.
 ///
-/// On a smooth curve the time grows with the number of points, while links replace few of them, and
-/// with its square where they replace hundreds. At worst, with noise about as large as the
-/// tolerance or with loops, it can grow with the cube of the points between two changes of radius;
-/// where time must be bounded, [`stations`](crate::stations) needs a few more links and time in
-/// proportion to the points.
+/// - `points`, `segment_radii`: as for [`Chain::from_centreline`](crate::Chain::from_centreline).
+/// - `tolerance`: in the unit of the points. With 0, only points exactly on the new segments are
+///   removed. Rounded points of an oblique straight line are seldom exactly on it: use the rounding
+///   error as tolerance for such lines.
 ///
-/// Repeated points are dropped first, together with the radius of the segment without length
-/// between them. (If that radius differs from a neighbour's the point counts as a change of
-/// radius.) A new segment always has a length: a loop is not replaced by the point where it closes,
-/// however large the tolerance.
+/// On a smooth curve the time is proportional to the number of points if links replace few points.
+/// It grows with the square of that number if links replace hundreds. At worst, with noise about as
+/// large as the tolerance or with loops, it grows with the cube of the points between two changes
+/// of radius. For bounded time use [`stations`](crate::stations): it takes a few more links and
+/// time proportional to the points.
+///
+/// Repeated points are removed first, with the radius of the segment between them. (If that radius
+/// differs from a neighbour's, the point counts as a change of radius.) A new segment always has a
+/// length: a loop is never replaced by the point where it closes.
 ///
 /// ```
 /// use parry_continuum::{parry::math::Vector, simplify};
@@ -77,8 +84,8 @@ use parry3d_f64::math::{Real, Vector};
 /// ```
 ///
 /// # Errors
-/// As [`Chain::from_centreline`](crate::Chain::from_centreline), and a tolerance that is not finite
-/// or negative.
+/// As [`Chain::from_centreline`](crate::Chain::from_centreline); a tolerance that is negative or
+/// not finite.
 pub fn simplify(
     points: &[Vector],
     segment_radii: &[Real],
@@ -94,22 +101,21 @@ pub fn simplify(
     Ok((kept, radii))
 }
 
-/// The search for the fewest chords of a stretch.
+/// Breadth-first search for the fewest chords of a run.
 struct Search<'a> {
     stretch: &'a [Vector],
     tolerance: Real,
-    /// Where the path to each vertex that is settled comes from. The first vertex has no need of
-    /// it.
+    /// The predecessor of each settled vertex. The first vertex has none.
     previous: Vec<Option<usize>>,
     /// The first vertex that is not settled.
     first_open: usize,
-    /// The settled vertices in the order in which they were.
+    /// The settled vertices, in the order of settling.
     queue: Vec<usize>,
-    /// What last ruled out a chord.
+    /// The vertex that last ruled out a chord (test 2).
     obstacle: usize,
-    /// What last ended a walk.
+    /// The wall that ended the last walk (test 1).
     wall: Option<SightLimit>,
-    /// Comparisons of a vertex with a chord or a gate.
+    /// Number of comparisons of a vertex with a chord or a gate.
     #[cfg(test)]
     steps: std::cell::Cell<usize>,
 }
@@ -129,8 +135,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The vertices after the first that a shortest path of admissible chords from the first to the
-    /// last visits.
+    /// Returns the vertices of a shortest path of admissible chords, without the first vertex.
     fn fewest_chords(mut self) -> Vec<usize> {
         let last = self.stretch.len() - 1;
         self.settle(last);
@@ -141,15 +146,14 @@ impl<'a> Search<'a> {
         path
     }
 
-    /// Settles vertices, those nearest in links first and of these the farthest first, until the
-    /// last one is.
+    /// Settles vertices in order of their number of links, and farthest first among equals, until
+    /// `last` is settled.
     fn settle(&mut self, last: usize) {
         let sight = Sight::new(self.stretch, self.tolerance);
         let mut targets = Vec::new();
         let mut next = 0;
         while self.previous[last].is_none() {
-            // The queue never runs dry before the last vertex is reached: each vertex reaches the
-            // one after it.
+            // The queue cannot run dry: each vertex reaches the next one.
             let from = self.queue[next];
             next += 1;
             while self.previous[self.first_open].is_some() {
@@ -174,13 +178,12 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Whether walls that are known or likely, and the last obstacle, rule out every open vertex,
-    /// without a walk.
+    /// Returns whether tests 1 and 2 rule out every unsettled vertex without a walk.
     fn sees_nothing_new(&self, from: usize, sight: &Sight) -> bool {
         let first = self.first_open.max(from + 1);
-        // On an arc, a wall is nearest if its distances are as 1 to 1 + sqrt(2).
+        // On an arc, the nearest wall has distances in the ratio 1 : 1 + sqrt(2) (12 / 29).
         let likely = SightLimit::new(from + (first - from) * 12 / 29, first);
-        // The one that is known first, if it leaves no more vertices in question.
+        // The known wall first, if it leaves no more vertices open.
         let known = self.wall;
         let order = match known {
             Some(wall) if wall.vertex() <= first => [known, Some(likely)],
@@ -191,7 +194,7 @@ impl<'a> Search<'a> {
             sight.is_wall(from, wall)
         });
         let end = wall.map_or(self.stretch.len() - 1, SightLimit::vertex) + 1;
-        // No more comparisons than a walk would cost.
+        // At most as many comparisons as a walk.
         end < first + (first - from)
             && (first..end).filter(|&to| self.previous[to].is_none()).all(|to| {
                 self.count(1);
@@ -207,7 +210,7 @@ impl<'a> Search<'a> {
             })
     }
 
-    /// Whether every vertex of the stretch in between is within the tolerance of a chord.
+    /// Returns whether a chord is admissible (see the claim above).
     fn is_admissible(&mut self, from: usize, to: usize) -> bool {
         if self.stretch[from] == self.stretch[to] {
             return false;
@@ -236,7 +239,7 @@ impl<'a> Search<'a> {
 mod tests {
     use super::*;
 
-    /// Comparisons for a sine of so many points within 1e-3, and its links.
+    /// Returns the comparisons and the links for a sine of `count` points within 1e-3.
     fn steps(count: u32) -> (usize, usize) {
         let point = |k| {
             let x = 10.0 * Real::from(k) / Real::from(count);
@@ -249,15 +252,14 @@ mod tests {
         (steps, search.fewest_chords().len())
     }
 
-    /// The same curve with ever more points: far fewer comparisons than there are pairs of
-    /// vertices.
+    /// With ever more points on one curve, the comparisons stay far below the pairs of vertices.
     #[test]
     fn most_pairs_are_never_compared() {
         for count in [500, 1000, 2000, 4000, 8000] {
             let (steps, links) = steps(count);
             let count = count as usize;
             assert!(links < 90, "{links}");
-            // Linear, but for a part of the square of what a link replaces, for every link.
+            // Linear, plus a part of m^2 per link.
             let limit = 12 * count + count * count / links / 3;
             assert!(steps < limit, "{count}: {steps}, {limit}");
         }

@@ -1,32 +1,40 @@
-//! Stations along a finely sampled centreline, as close together as its bends ask for.
+//! Stations along a finely sampled centreline, as close together as its bends require.
 //!
-//! A chord of length l leaves a curve of curvature kappa by kappa l^2 / 8, so that all chords
-//! deviate alike if their lengths go with 1 / sqrt(kappa). Curvature from neighbouring samples
-//! would be mostly noise. It is measured where it matters, over chords: a *probe* compares three
-//! vertices of a stretch with its chord. The root of their largest deviation over the tolerance is
-//! the chord's *share*, which grows with its length.
+//! # Definitions
+//! - Run: the vertices between two changes of radius. Station: a vertex that stays.
+//! - *Probe*: the largest distance of three vertices of the part that a chord replaces from the
+//!   chord's line.
+//! - *Share* of a chord: `sqrt(probe / tolerance)`. It grows in proportion to the chord's length,
+//!   since a chord of length l deviates by `kappa l^2 / 8` from a curve of curvature kappa.
 //!
-//! 1. **Walk.** From each station the next is foreseen from the last share, probed, and corrected
-//!    until no sample farther on has a share within one. That gives the number of chords, and the
-//!    density along the way.
-//! 2. **Spread.** As many chords, each with the same share.
-//! 3. **Verify.** Every vertex is compared with its chord, as in `simplify`. If a chord fails, the
-//!    walk's own stations are verified instead. Of these, those that fail are divided: a chord
-//!    grows from each station to twice as many segments as before while it holds.
+//! All chords deviate equally if their lengths are proportional to `1 / sqrt(kappa)`. Curvature
+//! from neighbouring samples would be mostly noise, so it is measured over chords.
+//!
+//! # Algorithm
+//! 1. **Walk.** From each station, predict the next one from the last share, probe it and correct
+//!    it, until no later sample has a share within one. This gives the number of chords and their
+//!    density.
+//! 2. **Spread.** Place the same number of chords, each with the same share.
+//! 3. **Verify.** Compare every vertex with its chord, as in `simplify`. If a chord fails, verify
+//!    the walk's own stations instead. Divide each chord that fails: a chord grows from each
+//!    station, doubling its segments while it holds.
 //!
 //! # Faces
-//! A flat face is perpendicular to the chord that ends in it. A chord of the direction v where the
-//! first segment has u moves the rim, at the radius r, by no more than r |u - v|, which must be
-//! within the tolerance. The chord after it is flat too where Algorithm 1 has no room for a ball.
-//! The rim at its beginning reaches r |u x v| ahead of its centre, which must be no more than the
-//! centre's depth behind the face and the tolerance. So stations come nearer together
-//! towards a face, as long as that asks for more than the deviation does, and at most to the depth
-//! r. A single segment of the input is let pass; at the face itself it has the face's direction
-//! anyway.
+//! A flat face is perpendicular to the chord that ends in it. Let u be the direction of the input's
+//! first segment, v the chord's direction and r the radius.
 //!
-//! # What it costs
-//! A probe looks at three vertices, a station takes at most eight probes, and there are no more
-//! stations than samples. Every vertex is verified at most twice, and four times more where chords
+//! 1. **At the face.** The rim moves by at most `r |u - v|`, which must be within the tolerance.
+//! 2. **Chords behind it.** These too are flat where Algorithm 1 has no room for a ball. The rim at
+//!    a chord's start reaches `r |u x v|` ahead of its centre. This must be at most the tolerance
+//!    plus the depth of the centre behind the face.
+//!
+//! So stations come closer together towards a face, while the rim requires more than the deviation
+//! does, and at most to the depth r. A single segment of the input is always accepted; at the face
+//! itself it has the face's direction.
+//!
+//! # Cost
+//! A probe reads three vertices, a station takes at most [`PROBES`] probes, and there are no more
+//! stations than samples. Every vertex is verified at most twice, and four more times where chords
 //! are divided. So the cost is at most proportional to the number of points.
 
 use super::RobotError;
@@ -36,23 +44,23 @@ use super::scale::direction;
 use crate::distance::Scalar;
 use parry3d_f64::math::{Real, Vector};
 
-/// Stations that follow a centreline within a tolerance, spread evenly by its curvature: their
-/// points and segment radii, ready for any constructor of a [`Chain`](crate::Chain).
+/// Finds stations that follow a centreline within a tolerance, spread evenly by its curvature.
 ///
-/// As [`simplify`](crate::simplify), but for a control loop: the time grows with the number of
-/// points at most, whatever the shape. The points are a subset of the input's, in order. Both ends
-/// stay, and so does every point where the radius changes. Each new segment and the stretch of the
-/// input that it replaces are within `tolerance` of each other (Hausdorff distance); that is
+/// Returns points and segment radii, ready for any constructor of a [`Chain`](crate::Chain). For a
+/// control loop, unlike [`simplify`](crate::simplify): for every shape the time is at most
+/// proportional to the number of points. The points are a subset of the input's, in order. Both
+/// ends stay, and so does every point at which the radius changes. Each new segment and the part
+/// of the input that it replaces are within `tolerance` of each other (Hausdorff distance); this is
 /// verified. `tolerance` is in the unit of the points.
 ///
-/// **Faces** are followed too, which `simplify` leaves to chance: at both ends of the robot and on
-/// the wider side of each step, where a [`Chain`](crate::Chain) ends flat, the first segment is so
-/// short that no point of the face moves by more than `tolerance`. The face of the input is
-/// perpendicular to its own last segment, so sample as closely there as the face matters. That
-/// takes up to a link or two a face more than the fewest. It is not forgone: on a bent tube a
-/// tilted face is the largest error of a fine chain.
+/// **Faces** are followed too, unlike in `simplify`: both ends of the robot and the wider side of
+/// each step, where a [`Chain`](crate::Chain) ends flat. The first segment there is so short that
+/// no point of the face moves by more than `tolerance`. The input's face is perpendicular to its
+/// own last segment, so sample as closely there as the face matters. This takes up to one or two
+/// links per face more than the fewest. It is worth it: on a bent tube, a tilted face is the
+/// largest error of a fine chain.
 ///
-/// Repeated points are dropped first, as by `simplify`.
+/// Repeated points are removed first, as in `simplify`.
 ///
 /// ```
 /// use parry_continuum::{parry::math::Vector, stations};
@@ -91,22 +99,20 @@ pub fn stations(
     Ok((kept, radii))
 }
 
-/// Stations for which there is memory from the start.
+/// Initial capacity for stations.
 const ROOM: usize = 64;
 
-/// How often the next station is foreseen and probed at most.
+/// Most probes per station.
 const PROBES: usize = 8;
 
-/// A stretch on which stations are set.
+/// A run of one radius in which stations are placed.
 struct StationRun<'a> {
     points: &'a [Vector],
     radius: Real,
     tolerance: Real,
-    /// The power of two that brings the stretch near one, so that squares neither overflow nor
-    /// vanish where it matters.
+    /// A power of two that scales the run near one, so that squares neither overflow nor underflow.
     scale: Real,
-    /// The directions of the input at the start and at the end, where these are faces whose rim
-    /// can move too far.
+    /// The input's directions at start and end, if a face there has a rim that can move too far.
     faces: [Option<Vector>; 2],
 }
 
@@ -116,7 +122,7 @@ impl<'a> StationRun<'a> {
         let start = points[0];
         let extent = points.iter().fold(Vector::ZERO, |extent, &p| extent.max((p - start).abs()));
         let scale = extent.max_element().power_of_two_to_unity();
-        // Whatever the direction, a rim moves by no more than the diameter.
+        // In every direction, a rim moves by at most the diameter.
         let matters = 2.0 * radius > tolerance;
         let last = points.len() - 1;
         let faces = [
@@ -126,7 +132,7 @@ impl<'a> StationRun<'a> {
         Self { points, radius, tolerance, scale, faces }
     }
 
-    /// Adds the stations after the first vertex to `found`.
+    /// Appends the stations after the first vertex to `found`.
     fn divide(&self, found: &mut Vec<usize>) {
         let last = self.points.len() - 1;
         let graded = |face: Option<Vector>, vertex: usize, end: usize| {
@@ -144,8 +150,8 @@ impl<'a> StationRun<'a> {
         ends.clone().zip(ends.skip(1)).for_each(|(from, to)| self.verify_and_add(from, to, found));
     }
 
-    /// The stations next to a face, from its vertex towards another, as long as its rim asks for
-    /// nearer ones than the deviation. They end before the other vertex.
+    /// Returns the stations next to a face while its rim requires closer ones than the deviation
+    /// (see **Faces**). They run from the face's vertex and stop before `end`.
     fn grade(&self, face: usize, end: usize, direction: Vector) -> Vec<usize> {
         let mut stations = vec![];
         let vertex = |at: usize, steps: usize| if face < end { at + steps } else { at - steps };
@@ -171,7 +177,7 @@ impl<'a> StationRun<'a> {
         }
     }
 
-    /// Adds stations after `from`, up to `to`.
+    /// Appends stations after `from`, up to `to` (steps 1 to 3).
     fn spread(&self, from: usize, to: usize, found: &mut Vec<usize>) {
         let mut chords: Vec<(usize, Real)> = Vec::with_capacity(ROOM);
         let (mut at, mut guess) = (from, to - from);
@@ -192,8 +198,9 @@ impl<'a> StationRun<'a> {
         }
     }
 
-    /// Adds as many stations as there are chords, each with the same part of all shares, unless one
-    /// of them fails.
+    /// Appends one station per chord, each with an equal part of the sum of shares (step 2).
+    ///
+    /// Returns false if a chord fails.
     fn spread_evenly(&self, from: usize, chords: &[(usize, Real)], found: &mut Vec<usize>) -> bool {
         let whole: Real = chords.iter().map(|(_, share)| share).sum();
         let part = whole / chords.len() as Real;
@@ -227,8 +234,7 @@ impl<'a> StationRun<'a> {
         true
     }
 
-    /// The first vertex after `start` that is past a fraction of the chord, and `end` at the
-    /// latest.
+    /// Returns the first vertex after `start` beyond a fraction of the chord, at most `end`.
     fn vertex_at(&self, fraction: Real, start: usize, end: usize) -> usize {
         let chord = (self.points[end] - self.points[start]) * self.scale;
         let length = fraction * chord.length_squared();
@@ -236,7 +242,7 @@ impl<'a> StationRun<'a> {
         start + 1 + self.points[start + 1..end].partition_point(is_before)
     }
 
-    /// The root of a chord's deviation over the tolerance, from three of the vertices between.
+    /// Returns the share of a chord, from three of the vertices between its ends.
     fn share(&self, from: usize, to: usize) -> Real {
         let start = self.points[from];
         let chord = (self.points[to] - start) * self.scale;
@@ -246,7 +252,7 @@ impl<'a> StationRun<'a> {
         });
         let largest = cross_squared.into_iter().fold(0.0, Real::max);
         let tolerance = self.tolerance * self.scale;
-        // A loop that closes has no chord.
+        // A closed loop has no chord.
         if chord == Vector::ZERO {
             Real::INFINITY
         } else if largest == 0.0 {
@@ -256,17 +262,17 @@ impl<'a> StationRun<'a> {
         }
     }
 
-    /// By how much the rim of a face moves if a chord stands for the input there.
+    /// Returns an upper bound on how far a face's rim moves if a chord replaces the input (case 1).
     fn rim_moves(&self, from: usize, to: usize, face: Vector) -> Real {
         self.radius * (direction(self.points[to] - self.points[from]) - face).length()
     }
 
-    /// How far ahead of its centre the rim at the end of a chord reaches, as a face looks.
+    /// Returns how far the rim at a chord's end reaches ahead of its centre (case 2).
     fn rim_reaches(&self, from: usize, to: usize, face: Vector) -> Real {
         self.radius * direction(self.points[to] - self.points[from]).cross(face).length()
     }
 
-    /// Adds a station, and as many before it as it takes.
+    /// Appends the station `to`, preceded by as many others as needed (step 3).
     fn verify_and_add(&self, from: usize, to: usize, found: &mut Vec<usize>) {
         let mut at = from;
         if self.is_admissible(from, to) {
@@ -287,8 +293,7 @@ impl<'a> StationRun<'a> {
         }
     }
 
-    /// Whether a chord is within the tolerance of what it replaces, and so is the rim of a face at
-    /// its end.
+    /// Returns whether a chord, and the rim of a face at its end, are within the tolerance.
     fn is_admissible(&self, from: usize, to: usize) -> bool {
         let ends = [(0, from), (self.points.len() - 1, to)];
         let is_face_fine = |(face, (vertex, end)): (&Option<Vector>, (usize, usize))| {
@@ -296,7 +301,7 @@ impl<'a> StationRun<'a> {
                 || face.is_none_or(|face| self.rim_moves(from, to, face) <= self.tolerance)
         };
         let (start, end) = (self.points[from], self.points[to]);
-        // A single segment is what it replaces.
+        // A single segment replaces itself.
         from + 1 == to
             || start != end && self.faces.iter().zip(ends).all(is_face_fine) && {
                 let chord = ToleranceSegment::new(start, end, self.tolerance);
@@ -305,12 +310,11 @@ impl<'a> StationRun<'a> {
     }
 }
 
-/// How many steps can be taken, at least one and at most `most`, while their share is at most one:
-/// the most, where the share is proportional to the steps, and mostly near it elsewhere. Also their
-/// share.
+/// Returns the largest number of steps, from 1 to `most`, whose share is at most one, and that
+/// share. Exact if the share is proportional to the steps, and usually close otherwise.
 fn foresee(guess: usize, most: usize, share: impl Fn(usize) -> Real) -> (usize, Real) {
     let (mut good, mut bad) = ((1, 0.0), (most + 1, 0.0));
-    // One step is always good, and its share of 0 says nothing.
+    // One step is always accepted, and its share of 0 carries no information.
     let mut steps = guess.max(2).min(most);
     for _ in 0..PROBES {
         let probed = share(steps);
@@ -319,7 +323,7 @@ fn foresee(guess: usize, most: usize, share: impl Fn(usize) -> Real) -> (usize, 
         } else {
             bad = (steps, probed);
         }
-        // Without tolerance a share is infinite or 0, and proportional to nothing.
+        // With tolerance 0 a share is infinite or 0: bisect.
         let ideal = if probed < Real::INFINITY {
             (steps as Real / probed) as usize
         } else {

@@ -1,22 +1,22 @@
-//! A link's outline as triangles, for drawing and export.
+//! A link's surface as triangles, for drawing and export.
 //!
-//! Every link is a surface of revolution. Its profile starts on the axis at the one end, climbs to
-//! the radius, by one step for a flat cap and along a quarter circle for a round one, and comes
-//! down at the other end. Turned about the axis it gives a fan of triangles at each end and rings
-//! of quadrilaterals between.
+//! Every link is a surface of revolution. Its profile starts on the axis at one end and climbs to
+//! the radius: in one step for a flat cap, along a quarter circle for a round cap. It descends in
+//! the same way at the other end. The revolved profile is a fan of triangles at each end, with
+//! rings of quadrilaterals between them.
 
 use super::{Cap, ModifiedCylinder};
 use parry3d_f64::math::{Real, Vector};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 impl ModifiedCylinder {
-    /// The link's surface as a closed mesh: vertices, and triangles that are counter-clockwise seen
-    /// from outside.
+    /// Returns the link's surface as a closed mesh: vertices, and triangles that are
+    /// counter-clockwise seen from outside.
     ///
-    /// `nsubdiv` is the number of vertices around the axis, as for parry's `Cylinder::to_trimesh`,
-    /// held within 3 and 4096; a round cap has a quarter as many rings. Vertices lie on the
-    /// link's surface, so the mesh is inscribed. A link of radius 0 has no surface: it gives
-    /// its two end points and no triangle.
+    /// `nsubdiv` is the number of vertices around the axis, as in parry's `Cylinder::to_trimesh`,
+    /// clamped to 3..=4096. A round cap has a quarter as many rings. All vertices lie on the link's
+    /// surface, so the mesh is inscribed. A link of radius 0 has no surface: the result is its two
+    /// end points and no triangle.
     pub fn to_trimesh(&self, nsubdiv: u32) -> (Vec<Vector>, Vec<[u32; 3]>) {
         if self.radius() == 0.0 {
             return (vec![self.start(), self.end()], vec![]);
@@ -40,8 +40,8 @@ impl ModifiedCylinder {
         (vertices, triangles(around, last_ring))
     }
 
-    /// Centre and radius of each ring, from start to end; a round cap climbs over `radius_steps` of
-    /// them.
+    /// Returns centre and radius of each ring, from start to end. A round cap has `steps` rings,
+    /// its rim included.
     fn rings(&self, steps: u32) -> Vec<(Vector, Real)> {
         let axis = self.axis_or_z();
         let cap_ring = |pole: Vector, outward: Vector, step: u32| {
@@ -61,14 +61,13 @@ impl ModifiedCylinder {
         rings
     }
 
-    /// A ball has no axis; any serves.
+    /// The link's axis. A ball has none; z serves.
     fn axis_or_z(&self) -> Vector {
         if self.start() == self.end() { Vector::Z } else { self.axis() }
     }
 }
 
-/// Vertex 0, rings 0 to `last_ring` of `around` vertices each, and one vertex after them, joined
-/// up.
+/// Joins vertex 0, then `last_ring + 1` rings of `around` vertices each, then one last vertex.
 fn triangles(around: u32, last_ring: u32) -> Vec<[u32; 3]> {
     let vertex = |ring: u32, i: u32| 1 + ring * around + i % around;
     let tip = 1 + (last_ring + 1) * around;

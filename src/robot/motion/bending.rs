@@ -1,39 +1,53 @@
-//! How fast sections of constant curvature move while their curvature, its direction and their
-//! length change.
+//! Speeds and displacements of sections of constant curvature while their curvature, its direction
+//! and their length change.
 //!
-//! Let u(s, t) be the curvature vector at arc length s and time t in the frame R(s, t) that is
-//! carried along the curve without twist: dR/ds = R [u]. With the frame's angular velocity W, the
-//! mixed derivatives of R agree only if dW/ds = R du/dt, and the base stands still, so |W(s)| <=
-//! integral from 0 to s of |du/dt|. The point c(s) at a fixed arc length has the velocity integral
-//! W x c', by parts integral R du/dt x (c(s) - c(q)) dq, and c(s) is at most s - q away from c(q):
+//! # Definitions
+//! - `u(s, t)`: the curvature vector at arc length s and time t, in the frame `R(s, t)` carried
+//!   along the curve without twist: `dR/ds = R [u]`. u is constant in each section.
+//! - `W`: the frame's angular velocity. `c(s)`: the curve.
+//! - `b_j`: the arc length of the end of section j. `J_j`: the step of u there. `l_j`: its length.
+//! - `k`: the curvature of the section that contains the point. `s'`: the rate of its arc length.
 //!
-//! |dc/dt| <= integral from 0 to s of |du/dt| (s - q) dq.
+//! # Speed
+//! **Claim.** For a point at a fixed share of a section,
 //!
-//! u is constant in each section. Where section j ends, at the arc length b_j, it steps by J_j; as
-//! b_j moves, so does the step, which adds |b_j'| J_j to the integral of |du/dt| there. A point at
-//! a fixed share of a section moves along the curve besides, at the rate of its arc length s', and
-//! its direction turns by the section's curvature times that:
+//! - `point <= sum of |u_j'| l_j (s - middle of j) + sum of |b_j'| J_j (s - b_j) + |s'|`;
+//! - `turn  <= sum of |u_j'| l_j + sum of |b_j'| J_j + k |s'|`;
 //!
-//! point <= sum over sections |u_j'| l_j (s - middle of j) + sum over steps |b_j'| J_j (s - b_j) +
-//! |s'| turn  <= sum over sections |u_j'| l_j + sum over steps |b_j'| J_j + k |s'|
+//! with sums over sections and over steps. The last section counts up to s.
 //!
-//! where the last section counts as far as s. All terms grow with the lengths, so the longest
-//! during the motion count. With lengths that change at constant rates, s' is linear in the share
-//! and largest at an end of the piece.
+//! **Proof.**
+//! 1. The mixed derivatives of R agree only if `dW/ds = R du/dt`. The base is at rest, so
+//!    `|W(s)| <= integral from 0 to s of |du/dt|`.
+//! 2. The point c(s) at a fixed arc length has the velocity `integral of W x c'`. By parts this is
+//!    `integral of R du/dt x (c(s) - c(q)) dq`, and `|c(s) - c(q)| <= s - q`. So
+//!    `|dc/dt| <= integral from 0 to s of |du/dt| (s - q) dq`.
+//! 3. As b_j moves, so does the step J_j. It adds `|b_j'| J_j` to the integral of |du/dt| there.
+//! 4. A point at a fixed share also moves along the curve at the rate s', and its direction turns
+//!    by k times that.
 //!
-//! **Courses.** Of a point at a fixed share, it is simpler to count along the shares q of the
-//! sections, from 0 to 1 in each: dR/dq = R [w] with w = l u, and dc/dq = l R e for the unit vector
-//! e along the axis. Then dW/dq = R w', with no step anywhere, and as R' = [W] R,
+//! All terms grow with the lengths, so the longest lengths during the motion count. If lengths
+//! change at constant rates, s' is linear in the share and largest at an end of the piece.
 //!
-//! dW'/dq = W x R w' + R w'',   c'' = integral 2 l' W x R e + l (W' x R e + W x (W x R e)) dq
+//! # Acceleration
+//! For a point at a fixed share, use the shares q of the sections, from 0 to 1 in each. Let
+//! `w = l u`, and e be the unit vector along the axis: `dR/dq = R [w]`, `dc/dq = l R e`. Then
+//! `dW/dq = R w'` without a step anywhere. As `R' = [W] R`,
 //!
-//! where l changes at a constant rate. So with T the integral of |w'| from the base, and F that of
-//! T |w'| + |w''|, which bound |W| and |W'|, the acceleration is at most the integral of 2 |l'| T + l (F + T^2). In a section |w'| <= |l'| k + l |u'| and
-//! |w''| <= 2 |l'| |u'| + l |u''|; between constants, T is linear in the share and F quadratic, and nothing falls along it.
+//! - `dW'/dq = W x R w' + R w''`;
+//! - `c'' = integral of 2 l' W x R e + l (W' x R e + W x (W x R e)) dq`, if l' is constant.
 //!
-//! Along a section, d^2 c / dq^2 = l R (w x e) changes in time at most at the rate l (2 |l'| k + T
-//! l k + l |u'|). So from one time to another, D apart, the way of a point differs from that in
-//! proportion between two shares, d apart, by at most D d^2 / 8 times that.
+//! Let T be the integral of `|w'|` from the base, and F the integral of `T |w'| + |w''|`. They
+//! are upper bounds on `|W|` and `|W'|`. So the acceleration is at most the integral of
+//! `2 |l'| T + l (F + T^2)`. In a section, `|w'| <= |l'| k + l |u'|` and
+//! `|w''| <= 2 |l'| |u'| + l |u''|`. With constant bounds, T is linear in the share and F
+//! quadratic; both are monotone along it.
+//!
+//! # Displacement along a piece
+//! Along a section, `d^2 c / dq^2 = l R (w x e)` changes in time at most at the rate
+//! `l (2 |l'| k + T l k + l |u'|)`. From one time to another, D apart, the displacement of a point
+//! between two shares, d apart, differs from the interpolated one by at most `D d^2 / 8` times
+//! that.
 
 use super::{Course, Motion, Speed, rigid_pose};
 use crate::distance::Scalar;
@@ -44,25 +58,29 @@ use parry3d_f64::math::{Pose, Real, Vector};
 /// How a section of constant curvature changes during a motion, for [`bending_speed`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BendingRates {
-    /// Its length where it is longest.
+    /// Its largest length.
     pub length: Real,
-    /// By how much its length grows from t = 0 to t = 1, at a constant rate; less than 0 if it
-    /// becomes shorter.
+    /// Its change of length from t = 0 to t = 1, at a constant rate; negative if it becomes
+    /// shorter.
     pub growth: Real,
     /// Its largest curvature, 1 / length.
     pub curvature: Real,
-    /// How fast its curvature vector changes at most, in the frame that is carried along the curve
-    /// without twist: of curvature k in the direction of the angle a, |k'| + k |a'| at most.
+    /// Upper bound on the rate of its curvature vector, in the frame carried along the curve
+    /// without twist. For curvature k in the direction of the angle a it is at most
+    /// `|k'| + k |a'|`.
     pub bending: Real,
-    /// The largest difference between its curvature vector and that of the next section.
+    /// The largest difference between its curvature vector and the next section's.
     pub step: Real,
 }
 
-/// A bound on the speed of a robot of sections of constant curvature whose base stands still,
-/// between two shares of a section: what [`Motion::speed`] asks for.
+/// Returns the speed bound of a robot of constant-curvature sections whose base is at rest: the
+/// value for [`Motion::speed`].
 ///
-/// What counts of the other sections is what lies before; so a motion of the tip alone leaves the
-/// rest at rest, and a section that grows without a change of curvature moves along itself.
+/// - `sections`: how each section changes, base to tip.
+/// - `section`, `shares`: the piece, as for [`Motion::speed`].
+///
+/// Only sections before the piece contribute. So a motion of the tip alone leaves the rest at rest,
+/// and a section that grows without a change of curvature moves along itself.
 ///
 /// ```
 /// use parry_continuum::{BendingRates, bending_speed};
@@ -72,16 +90,16 @@ pub struct BendingRates {
 /// let second = BendingRates { length: 10.0, growth: 0.0, curvature: 0.05, bending: 0.005, step: 0.0 };
 /// assert!((bending_speed(&[first, second], 0, [0.0, 0.5]).point - 1.0).abs() < 1e-9);
 /// let tip = bending_speed(&[first, second], 1, [1.0, 1.0]);
-/// // Its plane moves the tip by 0.005 x 10^2 / 2, the growth by 2, and the step that moves on by 2 x 0.05 x 10.
+/// // Plane: 0.005 x 10^2 / 2. Growth: 2. Moving step: 2 x 0.05 x 10.
 /// assert!((tip.point - (0.25 + 2.0 + 1.0)).abs() < 1e-9);
 /// ```
 pub fn bending_speed(sections: &[BendingRates], section: usize, shares: [Real; 2]) -> Speed {
     let (mut turn, mut point) = (0.0, 0.0);
-    // How fast the arc length changes where the section begins and where it ends.
+    // The rates of the arc length at the section's start and end.
     let (mut start, mut end) = (0.0, 0.0);
     for (number, rates) in sections.iter().enumerate().take(section + 1) {
         let length = if number == section { rates.length * shares[1] } else { rates.length };
-        // What has turned so far carries the rest with it.
+        // The turn up to here moves the rest.
         point += turn * length + 0.5 * rates.bending * length * length;
         turn += rates.bending * length;
         start = end;
@@ -93,8 +111,8 @@ pub fn bending_speed(sections: &[BendingRates], section: usize, shares: [Real; 2
     let along = |share: Real| (start + (end - start) * share).abs();
     let along = along(shares[0]).max(along(shares[1]));
     let curvature = sections.get(section).map_or(0.0, |rates| rates.curvature);
-    // Sums of positive terms, each of few roundings; rates of either sign may cancel, so theirs are
-    // added.
+    // Covers the rounding of sums of positive terms. Rates of either sign may cancel, so their
+    // rounding is added separately.
     let growth: Real = sections.iter().take(section + 1).map(|rates| rates.growth.abs()).sum();
     let rounding = 8.0 * (section as Real + 2.0) * Real::UNIT_ROUNDOFF;
     let along = along + growth * rounding;
@@ -102,13 +120,16 @@ pub fn bending_speed(sections: &[BendingRates], section: usize, shares: [Real; 2
     Speed { point: (point + along) * up, turn: (turn + curvature * along) * up }
 }
 
-/// Where a piece of a robot of sections of constant curvature goes whose base stands still and
-/// whose lengths change at constant rates: what [`Motion::course`] asks for.
+/// Returns the displacement bound of a robot of constant-curvature sections whose base is at rest
+/// and whose lengths change at constant rates: the value for [`Motion::course`].
 ///
-/// `bends` are, for each section, bounds on the second derivative of its curvature vector in the
-/// frame that is carried along the curve without twist: 0 where that changes evenly, and k |a'|^2
-/// if it is k long and turns evenly at the rate a'. What is not given counts as infinite. `point`
-/// is the point at a share of this section at a time, in the mesh's frame.
+/// - `sections`: how each section changes, base to tip.
+/// - `bends`: for each section a bound on the second derivative of its curvature vector, in the
+///   frame carried along the curve without twist: 0 if the vector changes at a constant rate,
+///   `k |a'|^2` if it has the length k and turns at the constant rate a'. Missing values count as
+///   infinite.
+/// - `section`, `shares`, `times`: the piece, as for [`Motion::course`].
+/// - `point`: the point at a share of this section and a time, in the mesh's frame.
 ///
 /// ```
 /// use parry_continuum::{BendingRates, bending_course, parry::math::Vector};
@@ -144,8 +165,7 @@ fn course(
     times: [Real; 2],
     point: impl Fn(Real, Real) -> Vector,
 ) -> Course {
-    // Bounds on how fast the frame turns, and on how fast that changes; and what `d^2 c / dq^2`
-    // changes by.
+    // `turn` is T, `change` is F; `bow` is the rate of `d^2 c / dq^2`.
     let (mut turn, mut change, mut acceleration, mut bow) = (0.0, 0.0, 0.0, 0.0);
     let mut reach = 0.0;
     for (number, rates) in sections.iter().enumerate().take(section + 1) {
@@ -154,7 +174,7 @@ fn course(
         let growth = growth.abs();
         let first = growth * curvature + length * bending;
         let second = 2.0 * growth * bending + length * bend(number);
-        // The integrals of T, T^2 and F, where T is `turn` at first and F is `change`.
+        // The integrals of T, T^2 and F from their values at the section's start.
         let turns = q * (turn + 0.5 * first * q);
         let squares = q * (turn * turn + turn * first * q + first * first * q * q / 3.0);
         let changes =
@@ -169,18 +189,17 @@ fn course(
     let (apart, between) = (times[1] - times[0], shares[1] - shares[0]);
     let reach =
         here.into_iter().chain(there).fold(reach, |most: Real, p| most.max(p.abs().max_element()));
-    // Sums and products of terms above 0; places are off by some roundings for each section.
+    // Covers the rounding of sums and products of positive terms, and of places.
     let roundings = 64.0 * (section as Real + 2.0) * Real::UNIT_ROUNDOFF;
     let off = 0.125 * (acceleration * apart * apart + bow * apart * between * between);
     Course::between(here, there, off * (1.0 + roundings) + reach * roundings)
 }
 
-/// The motion of a robot of sections of constant curvature, from one shape to another: lengths and
-/// curvatures, in both directions, change evenly.
+/// The motion of a robot of constant-curvature sections from one shape to another.
 ///
-/// The base stands still at `pose` in the mesh's frame. A concentric tube robot or a tendon robot
-/// is such one, if its actuators are driven so that curvatures change evenly; for other courses,
-/// [`bending_speed`] gives the bounds.
+/// Lengths and both components of curvature change at constant rates. The base is at rest at `pose`
+/// in the mesh's frame. Concentric tube robots and tendon robots move like this if their actuators
+/// change the curvatures at constant rates. For other motions [`bending_speed`] gives the bounds.
 ///
 /// ```
 /// use parry_continuum::{BendingMotion, BendingSection, parry::math::Pose, verify_motion};
@@ -200,18 +219,20 @@ pub struct BendingMotion {
 }
 
 impl BendingMotion {
-    /// The motion from the sections `from` to the sections `to`.
+    /// Builds the motion from the sections `from` to the sections `to`; `pose` is the base's pose
+    /// in the mesh's frame.
     ///
     /// # Errors
-    /// The two differ in number or in radii; a length that is not positive, or a number that is not
-    /// finite; a pose whose rotation is not of unit length; or a section with a flat end whose
-    /// curvature times its radius may be 1 or more.
+    /// - different numbers of sections, or different radii;
+    /// - a length that is not positive, or a number that is not finite;
+    /// - a pose whose quaternion is not of unit length;
+    /// - a section with a flat end whose curvature times radius may be 1 or more.
     pub fn new(
         from: &[BendingSection],
         to: &[BendingSection],
         pose: Pose,
     ) -> Result<Self, RobotError> {
-        // Radii that are not numbers are refused below.
+        // A NaN radius is refused below.
         let same = |a: Real, b: Real| a == b || a.is_nan() && b.is_nan();
         let differs = |k: &usize| match (from.get(*k), to.get(*k)) {
             (Some(from), Some(to)) => !same(from.radius, to.radius),
@@ -229,7 +250,7 @@ impl BendingMotion {
             growth: to[k].length - from[k].length,
             curvature: bend(&from[k]).length().max(bend(&to[k]).length()),
             bending: (bend(&to[k]) - bend(&from[k])).length(),
-            // Norms of vectors that change evenly are convex in time.
+            // The norm of a vector that changes at a constant rate is convex in time.
             step: [from, to]
                 .map(|all| all.get(k + 1).map_or(0.0, |next| (bend(next) - bend(&all[k])).length()))
                 .into_iter()
@@ -242,7 +263,7 @@ impl BendingMotion {
         Ok(motion)
     }
 
-    /// The first sections at a time.
+    /// Returns the first `count` sections at a time.
     fn sections(&self, t: Real, count: usize) -> Vec<BendingSection> {
         let between = |from: Real, to: Real| from + (to - from) * t;
         let sections =
@@ -275,7 +296,7 @@ impl Motion for BendingMotion {
             let robot = if t == times[0] { &first } else { &last };
             self.pose * robot.at_share(section, share)
         };
-        // Curvatures change evenly.
+        // Curvature vectors change at constant rates.
         Some(course(&self.rates, |_| 0.0, section, shares, times, point))
     }
 }

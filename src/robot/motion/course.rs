@@ -1,32 +1,35 @@
-//! Where a piece of the centreline goes between two times.
+//! The displacement of a piece of the centreline between two times.
 
 use parry3d_f64::math::{Real, Vector};
 
-/// Where a piece of the centreline goes from one time to another, as nearly as its motion knows.
+/// A bound on the displacement of a piece of the centreline from one time to another.
 ///
-/// Straight and evenly, but for `off`: at the share q of the time, a point is within `off` of where
-/// it was plus q times its way, and also within `off` of where it will be less 1 - q times its way.
-/// The way of a point between the two ends of the piece is between theirs, in proportion to its
-/// share of the section's length.
+/// # Definitions
+/// - The displacement of a point at a share of the piece is interpolated linearly between the
+///   displacements `ways` of the piece's two ends.
+/// - Let a point be at `p0` at the first time and at `p1` at the last, and let `d` be its
+///   displacement. At the fraction q of the time it is within `off` of `p0 + q d`, and also within
+///   `off` of `p1 - (1 - q) d`.
 ///
-/// If a point's acceleration is at most a, it leaves the straight and even way between its places
-/// at two times, T apart, by at most a T^2 / 8. So where a motion knows the places, that is `off`,
-/// and what ways in between differ by from those of the ends.
+/// # How to state it
+/// A point with acceleration at most a leaves the straight motion at constant speed between its
+/// places at two times, T apart, by at most `a T^2 / 8`. If a motion knows these places, `off` is
+/// this, plus the difference between inner displacements and the interpolated ones.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Course {
-    /// The ways of the two ends of the piece, in the mesh's frame.
+    /// The displacements of the two ends of the piece, in the mesh's frame.
     pub ways: [Vector; 2],
-    /// How far any point of the piece may be from where its way leads, in units of length.
+    /// Largest distance of a point of the piece from its straight motion, in units of length.
     pub off: Real,
 }
 
 impl Course {
-    /// That of a piece whose ends are here at first, and there at last.
+    /// Builds the bound for a piece whose ends are at `here` first and at `there` last.
     pub(super) fn between(here: [Vector; 2], there: [Vector; 2], off: Real) -> Self {
         Self { ways: [there[0] - here[0], there[1] - here[1]], off }
     }
 
-    /// The way at a share of the piece, from 0 to 1.
+    /// Returns the displacement at a share of the piece, from 0 to 1.
     pub(super) fn way(&self, share: Real) -> Vector {
         self.ways[0] + (self.ways[1] - self.ways[0]) * share
     }

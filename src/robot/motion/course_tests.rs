@@ -1,4 +1,4 @@
-//! Stated courses against dense sampling, and each of their terms alone.
+//! Stated displacements against dense sampling, and each of their terms alone.
 
 use super::tests::{at, sections};
 use super::{
@@ -10,8 +10,8 @@ use continuum_testing::Random;
 use parry3d_f64::math::{Pose, Real, Vector};
 use std::f64::consts::FRAC_PI_3;
 
-/// A piece of a course as it is used at the most: how far a point is from where its way leads, from
-/// both ends of the time, as a part of what is stated.
+/// The largest used share of `off`: the distance of a point from its stated displacement, seen from
+/// both ends of the time.
 fn used_of_course(
     motion: &dyn Motion,
     section: usize,
@@ -66,7 +66,7 @@ fn stated_courses_hold_between_any_shares_and_times() {
                 [a.min(b), a.max(b)]
             };
             let (shares, times) = (pair(), pair());
-            // Those of one motion of the path.
+            // Times within one motion of the path.
             let times = if kind == 4 { times.map(|t| (1.0 + t) / 3.0) } else { times };
             let most = used_of_course(motion, section, shares, times);
             used[kind] = used[kind].max(most);
@@ -74,14 +74,15 @@ fn stated_courses_hold_between_any_shares_and_times() {
         }
     }
     assert!(used.iter().all(|used| *used <= 1.0), "{used:?}");
-    // None is so loose that nothing could leave it; links have only rounding to be off by.
+    // No bound is so loose that it could never fail; links deviate by rounding only.
     assert!(
         off[0] < 1e-12 && used[1] > 0.8 && used[2] > 0.3 && used[3] > 0.2 && used[4] > 0.2,
         "{used:?} {off:?}"
     );
 }
 
-/// Each term of a course is as large as differences: left out, it would be found.
+/// Each term of a displacement bound is as large as measured differences: without it the test
+/// fails.
 #[test]
 fn each_term_of_a_course_is_as_large_as_differences() {
     let section = |length, bend| BendingSection { length, radius: 0.1, bend: [bend, 0.0] };
@@ -91,9 +92,9 @@ fn each_term_of_a_course_is_as_large_as_differences() {
     let turned = Pose::rotation(Vector::X * 0.5);
     let on_base =
         |motion: &BendingMotion| MovingBase::new(motion.clone(), [Pose::IDENTITY, turned]).unwrap();
-    // At first straight, so that all of the turn is across what turns.
+    // Straight at first, so that the whole turn is across the part that turns.
     let alone = bending(&[section(10.0, 0.0)], &[section(10.0, 0.05)]);
-    // The end of the first section turns all of the second.
+    // The end of the first section turns the whole second section.
     let carried =
         bending(&[section(0.5, 0.0), section(10.0, 0.0)], &[section(0.5, 1.0), section(10.0, 0.0)]);
     let pushed =
@@ -127,7 +128,7 @@ fn each_term_of_a_course_is_as_large_as_differences() {
     }
 }
 
-/// A curvature that turns, and does not change evenly.
+/// A curvature vector that turns, and so changes at a varying rate.
 #[test]
 fn what_a_curvature_changes_by_unevenly_counts_in_a_course() {
     const RATE: Real = 10.0;
@@ -153,7 +154,7 @@ fn what_a_curvature_changes_by_unevenly_counts_in_a_course() {
     assert_eq!(used(&[]), 0.0);
 }
 
-/// In a time in which nothing moves by more than places are rounded by, far from the origin.
+/// An interval in which nothing moves by more than the rounding of places, far from the origin.
 #[test]
 fn courses_allow_for_rounding() {
     let mut random = Random::new(14);
@@ -196,7 +197,7 @@ fn courses_allow_for_rounding() {
     assert!(used.iter().all(|used| *used <= 1.0 && *used > 0.002), "{used:?}");
 }
 
-/// What wanders about one place, up to 1 off, until a time; then it rests.
+/// A point that moves about one place, up to 1 from it, until a time; then it rests.
 struct Wandering {
     until: Real,
 }
@@ -204,8 +205,8 @@ struct Wandering {
 impl Motion for Wandering {
     fn shape(&self, t: Real, tube: &mut Tube) -> Result<Pose, RobotError> {
         tube.set_chain(&Chain::capsules(&[Vector::ZERO, Vector::Z], &[0.1])?);
-        // From the place to where it is 1 off, about that and the place, and to where it is 1 off
-        // and 1 away from the former.
+        // From the place to a distance of 1, around it and back, and to a place that is 1 from it
+        // and 1 from the former.
         let third = FRAC_PI_3;
         let at = |angle: Real| Vector::new(angle.cos(), angle.sin(), 0.0);
         let t = (t / self.until).min(1.0);
@@ -224,7 +225,7 @@ impl Motion for Wandering {
     }
 }
 
-/// A base that turns carries what is off its course elsewhere.
+/// A base that turns also turns the error of the displacement.
 #[test]
 fn what_is_off_its_course_on_a_base_that_turns_counts() {
     let turned = Pose::rotation(Vector::Z);
@@ -234,10 +235,10 @@ fn what_is_off_its_course_on_a_base_that_turns_counts() {
         let used = used_of_course(&motion, 0, [0.0; 2], times);
         assert!((0.1..=1.0).contains(&used), "{times:?}: {used}");
     }
-    // At the middle and at the end 1 off, 60 degrees apart; then half of the turn comes to that.
+    // 1 off at the middle and at the end, 60 degrees apart; then half of the turn gives that.
     let [middle, end] = [0.5, 1.0].map(|t| at(&motion, t, 0, 0.0).0);
     assert!((middle - end).length() > 1.39);
-    // It rests 1 off the place where it is supposed to be, and is turned by 0.8.
+    // It rests 1 from its supposed place and is turned by 0.8.
     let used = used_of_course(&on_base(0.2), 0, [0.0; 2], [0.2, 1.0]);
     assert!((0.5..=1.0).contains(&used), "{used}");
 }

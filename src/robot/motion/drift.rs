@@ -1,31 +1,31 @@
-//! How far a motion goes from the middle of an interval of time, by what it states.
+//! Bounds on how far a motion goes from the middle of an interval of time, from its stated speeds.
 
 use super::Motion;
 use crate::robot::Drift;
 use parry3d_f64::math::Real;
 
-/// A direction that turns faster than this, in rad, changes at one instant: no interval is short
-/// enough to follow it.
+/// A direction that turns faster than this, in rad, is taken to change at one instant: no shorter
+/// interval can follow it.
 const FASTEST_TURN: Real = (1_u64 << 24) as Real;
 
-/// An interval of time, seen from its middle.
+/// An interval of time around a shape.
 pub(crate) struct MotionDrift<'a, M> {
     pub motion: &'a M,
     pub times: [Real; 2],
     /// The time of the shape.
     pub t: Real,
-    /// Half of the interval, or a little more.
+    /// Half of the interval's length, rounded up.
     pub half_length: Real,
 }
 
 impl<M: Motion> Drift for MotionDrift<'_, M> {
     fn moves(&self, section: usize, end: usize) -> Real {
-        // A speed that is none holds nothing; it is refused where it is asked for.
+        // An invalid speed bounds nothing here; `check_speed` refuses it elsewhere.
         let speed = self.motion.speed(section, [end as Real; 2], self.times).point;
         self.half_length * if speed >= 0.0 { speed } else { Real::INFINITY }
     }
 
-    /// The displacements of both ends if these are known, and else how far the two ends move.
+    /// Uses the displacements of both ends if they are known, otherwise their speeds.
     fn stretches(&self, section: usize) -> Real {
         let [from, to] = self.times;
         let sides = [[from, self.t], [self.t, to]].map(|times| {

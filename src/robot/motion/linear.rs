@@ -1,32 +1,33 @@
-//! Every vertex of a chain moves on a straight line at a speed of its own.
+//! Every vertex of a chain moves straight at a constant speed of its own.
 //!
-//! The point at the share u of a link from a(t) to b(t) has the velocity (1 - u) a' + u b', whose
-//! length is a convex function of u: between two shares it is at most the larger of that at the
-//! two.
+//! # Speed of a point
+//! The point at the share u of a link from a(t) to b(t) has the velocity `(1 - u) a' + u b'`. Its
+//! length is a convex function of u. So between two shares it is at most the larger of the values
+//! at these shares.
 //!
-//! # The turn of a link
-//! **Definitions.** d(t) leads from the link's start to its end, d0 and d1 at the times 0 and 1, w
-//! = d1 - d0 and n = d / |d|. L is a lower bound on |d(t)| during the interval.
+//! # Turn of a link
+//! **Definitions.** d(t) leads from the link's start to its end; d0 and d1 are its values at t = 0
+//! and 1; `w = d1 - d0`; `n = d / |d|`. L is a lower bound on |d(t)| in the interval.
 //!
-//! **Claim.** n turns no faster than |d0 x d1| / L^2. **Proof.** |n'| = |d x w| / |d|^2, and
-//! d x w = d0 x w = d0 x d1 at all times.
+//! **Claim 1.** n turns at most at the rate `|d0 x d1| / L^2`. **Proof.** `|n'| = |d x w| / |d|^2`,
+//! and `d x w = d0 x w = d0 x d1` at all times.
 //!
-//! **Claim.** |d(t)| >= min(m . d(t0), m . d(t1)) in the interval from t0 to t1, for any unit
-//! vector m. **Proof.**
-//! |d| >= m . d, which is linear in t. For m we take the direction of d where |d| is least, at t = -<d0, w> / |w|^2 or at the
-//! nearer end of the interval.
+//! **Claim 2.** In the interval from t0 to t1, `|d(t)| >= min(m . d(t0), m . d(t1))` for any unit
+//! vector m. **Proof.** `|d| >= m . d`, which is linear in t. We take m along d where |d| is least:
+//! at `t = -<d0, w> / |w|^2`, or at the nearer end of the interval.
 //!
-//! **Rounding.** A difference of two points is off by u for each of its coordinates, so d0, d1 and
-//! d(t) are off by u relative to |d0| and |d1|, wherever the link is, and d0 x d1 by less than 8 u
-//! |d0| |d1|. The vertices of a shape are off by e = 9 u reach each, where no coordinate is larger
-//! than reach. So the direction of a computed link is off by 2 e / |d| and less than 32 u reach /
-//! |d|. A link that is at least as long as its radius moves its rims by less than 32 u reach for
-//! it, which the slack of a placed tube includes. The faces of a shorter one are tilted by it
-//! (`tilt_faces`).
+//! # Rounding
+//! - A difference of two points is off by u in each coordinate. So d0, d1 and d(t) are off by u
+//!   relative to |d0| and |d1|, wherever the link is, and `d0 x d1` by less than `8 u |d0| |d1|`.
+//! - The vertices of a shape are off by `e = 9 u reach` each, where reach bounds all coordinates.
+//!   So the direction of a computed link is off by `2 e / |d|`, less than `32 u reach / |d|`.
+//! - A link at least as long as its radius therefore moves its rims by less than `32 u reach`; the
+//!   slack of a placed tube includes this. The faces of a shorter link are tilted by it
+//!   (`tilt_faces`).
 //!
 //! # A link that loses its length
-//! It is marked: during an interval in which its length may vanish, queries take its flat ends for
-//! round, which holds both (`persistence`).
+//! It is marked. In an interval in which its length may vanish, queries treat its flat ends as
+//! round. A round end contains both (`cap_persistence`).
 
 use super::{Course, Motion, Speed};
 use crate::distance::Scalar;
@@ -35,17 +36,15 @@ use crate::robot::modified_cylinder::has_direction;
 use crate::robot::{RobotError, Tube, direction};
 use parry3d_f64::math::{Pose, Real, Vector};
 
-/// The motion of a chain each of whose vertices moves straight and evenly from one place to
-/// another.
+/// The motion of a chain whose vertices move straight at constant speed.
 ///
-/// It is what a planner means by "interpolate the two centrelines". In between, links become
-/// shorter or longer. Points are in the mesh's frame.
+/// This is linear interpolation of two centrelines, as planners use it. Links become shorter or
+/// longer in between. Points are in the mesh's frame.
 ///
-/// The motion's sections are its links. A segment without length at the start and at the end of the
-/// motion is no link, as in a [`Chain`](crate::Chain), and is not counted among the sections; its
-/// radius is no step. The same holds for a segment that is too short for its radius. A link that
-/// loses its length for a moment is a ball at that moment.
-///
+/// The sections of the motion are its links. A segment without length both at the start and at the
+/// end of the motion is not a link, as in a [`Chain`](crate::Chain): it is not counted among the
+/// sections, and its radius is no step. The same holds for a segment that is too short for its
+/// radius. A link that loses its length for an instant is a ball at that instant.
 /// ```
 /// use parry_continuum::{LinearMotion, parry::math::Vector, verify_motion};
 ///
@@ -60,17 +59,19 @@ pub struct LinearMotion {
     from: Vec<Vector>,
     to: Vec<Vector>,
     radii: Vec<Real>,
-    /// The segments of the input that the links stand for.
+    /// The input segments of the links.
     segments: Vec<u32>,
-    /// None for capsules; else the links whose direction may get lost.
+    /// `None` for capsules; otherwise the links that may lose their direction.
     fading: Option<Vec<usize>>,
-    /// The largest coordinate.
+    /// The largest absolute coordinate.
     reach: Real,
 }
 
 impl LinearMotion {
-    /// All links with two round caps, as [`Chain::capsules`](crate::Chain::capsules), one radius
-    /// for each segment.
+    /// Builds the motion with two round caps per link, as
+    /// [`Chain::capsules`](crate::Chain::capsules).
+    ///
+    /// `from` and `to` are the points at t = 0 and 1, `segment_radii` one radius per segment.
     ///
     /// ```
     /// use parry_continuum::{LinearMotion, parry::{math::Vector, shape::Ball}, proximity::BvhSearch};
@@ -85,8 +86,7 @@ impl LinearMotion {
     /// ```
     ///
     /// # Errors
-    /// As [`Chain::capsules`](crate::Chain::capsules) for either end, or not as many points at the
-    /// one as at the other.
+    /// As [`Chain::capsules`](crate::Chain::capsules) for either end; different numbers of points.
     pub fn capsules(
         from: &[Vector],
         to: &[Vector],
@@ -95,23 +95,25 @@ impl LinearMotion {
         Self::new(from, to, segment_radii)
     }
 
-    /// Links with the caps of [`Chain::from_centreline`](crate::Chain::from_centreline) at each
-    /// time, one radius for each segment.
+    /// Builds the motion with the caps of
+    /// [`Chain::from_centreline`](crate::Chain::from_centreline) at each time.
     ///
-    /// Caps may change on the way. Flat for good are the robot's two ends and the wider side of
-    /// each step in radius. Another link's end is flat while it is less than a radius behind
-    /// such a face, and round when it is farther away. At that moment the shape jumps; where
-    /// that decides whether the margin is kept, the answer is `Undecided`.
+    /// Arguments as for [`capsules`](Self::capsules). Caps may change during the motion:
     ///
-    /// A chain by vertex radii ([`Chain::from_vertex_radii`](crate::Chain::from_vertex_radii)) with
-    /// the smaller radius of each segment's two points has the same caps, but for a single
-    /// thick point and the first joint after a thick tube that is shorter than its radius. For
-    /// these caps implement [`Motion`] and fill the tube with
-    /// [`Tube::set_chain`](crate::Tube::set_chain), which takes chains of either kind.
+    /// - The robot's two ends and the wider side of each step in radius are always flat.
+    /// - Another link's end is flat while it is less than a radius behind such a face, and round
+    ///   otherwise. At the change the shape jumps. If the jump decides the margin, the answer is
+    ///   `Undecided`.
+    ///
+    /// A chain by vertex radii ([`Chain::from_vertex_radii`](crate::Chain::from_vertex_radii)),
+    /// with the smaller radius of each segment's two points, has the same caps with two exceptions:
+    /// a single thick point, and the first joint after a thick tube that is shorter than its
+    /// radius. For these caps implement [`Motion`] and call
+    /// [`Tube::set_chain`](crate::Tube::set_chain), which accepts both kinds of chain.
     ///
     /// # Errors
-    /// As [`Chain::from_centreline`](crate::Chain::from_centreline) for either end, or not as many
-    /// points at the one as at the other.
+    /// As [`Chain::from_centreline`](crate::Chain::from_centreline) for either end; different
+    /// numbers of points.
     pub fn chain(
         from: &[Vector],
         to: &[Vector],
@@ -129,7 +131,7 @@ impl LinearMotion {
         for (name, points) in [("from", from), ("to", to)] {
             check([name, "segment_radii"], points, radii, points.len().saturating_sub(1))?;
         }
-        // By the rule of chains. What is too short at both ends is no longer in between.
+        // As in chains. A segment that is too short at both ends is too short in between.
         let has_length =
             |k: &usize| [from, to].iter().any(|p| has_direction(p[*k], p[*k + 1], radii[*k]));
         let segments: Vec<_> = (0..radii.len()).filter(has_length).collect();
@@ -150,22 +152,22 @@ impl LinearMotion {
         })
     }
 
-    /// From the start of a link to its end, at t = 0 and at t = 1.
+    /// Returns d0 and d1 of a link.
     fn link(&self, link: usize) -> [Vector; 2] {
         [&self.from, &self.to].map(|points| points[link + 1] - points[link])
     }
 
-    /// How fast a vertex moves.
+    /// Returns the velocity of a vertex.
     fn velocity(&self, vertex: usize) -> Vector {
         self.to[vertex] - self.from[vertex]
     }
 
-    /// What rounding can do to a coordinate of a vertex on its way, and to a few such.
+    /// Returns an upper bound on the rounding error of a few coordinates.
     fn rounding(&self) -> Real {
         16.0 * Real::UNIT_ROUNDOFF * self.reach
     }
 
-    /// The links whose direction may get lost.
+    /// Returns the links that may lose their direction.
     fn fading_links(&self) -> Vec<usize> {
         let has_direction = |&link: &usize| {
             least_length(self.link(link), [0.0, 1.0]) > 2.0 * self.rounding() + self.needed(link)
@@ -173,15 +175,15 @@ impl LinearMotion {
         (0..self.radii.len()).filter(|link| !has_direction(link)).collect()
     }
 
-    /// A link has a direction if it is longer than this. (`has_direction` asks for far less.)
+    /// The length above which a link has a direction. (`has_direction` accepts far less.)
     fn needed(&self, link: usize) -> Real {
         1e-100 * self.radii[link]
     }
 
-    /// How fast a link turns at most.
+    /// Returns an upper bound on the angular speed of a link (claim 1).
     fn turn(&self, link: usize, times: [Real; 2]) -> Real {
         let [first, last] = self.link(link);
-        // Less than 32 roundings each.
+        // Covers fewer than 32 roundings.
         let up = 1.0 + 32.0 * Real::UNIT_ROUNDOFF;
         let sizes = first.length() * last.length();
         let cross = first.cross(last).length() + 8.0 * Real::UNIT_ROUNDOFF * sizes;
@@ -213,7 +215,7 @@ impl Motion for LinearMotion {
         if section >= self.radii.len() {
             return Speed { point: 0.0, turn: 0.0 };
         }
-        // Differences, squares and quotients of rounded numbers: less than 32 roundings each.
+        // Covers fewer than 32 roundings each of differences, squares and quotients.
         let up = 1.0 + 32.0 * Real::UNIT_ROUNDOFF;
         let [start, end] = [self.velocity(section), self.velocity(section + 1)];
         let speed = |share: Real| (start + (end - start) * share).length();
@@ -221,7 +223,7 @@ impl Motion for LinearMotion {
         Speed { point, turn: self.turn(section, times) }
     }
 
-    /// A point at a share of a link moves straight and evenly, as the ends of the link do.
+    /// A point at a share of a link moves straight at constant speed, as the link's ends do.
     fn course(&self, section: usize, shares: [Real; 2], times: [Real; 2]) -> Option<Course> {
         if section >= self.radii.len() {
             return None;
@@ -229,22 +231,21 @@ impl Motion for LinearMotion {
         let [start, end] = [self.velocity(section), self.velocity(section + 1)];
         let apart = times[1] - times[0];
         let ways = shares.map(|share| (start + (end - start) * share) * apart);
-        // Two places and a way, each off by a few roundings.
+        // Two places and a displacement, each off by a few roundings.
         Some(Course { ways, off: 8.0 * self.rounding() })
     }
 }
 
-/// A lower bound on the length of a vector between two times, which changes evenly from the first
-/// to the last one.
+/// Returns a lower bound on |d(t)| between two times (claim 2).
 fn least_length([first, last]: [Vector; 2], times: [Real; 2]) -> Real {
     let at = |t: Real| first * (1.0 - t) + last * t;
     let change = last - first;
     let fastest = -first.dot(change) / change.length_squared();
-    // Without a change the quotient is NaN, and any time will do.
+    // Without a change the quotient is NaN, and any time is right.
     let time = if fastest > times[0] { fastest.min(times[1]) } else { times[0] };
     let direction = direction(at(time));
-    // Both vectors are off by u, and so are weights, products, sums and the direction: less than 16
-    // u in all.
+    // Both vectors are off by u, as are weights, products, sums and the direction: less than 16 u
+    // in total.
     let rounding =
         |t: Real| 16.0 * Real::UNIT_ROUNDOFF * (first.length() * (1.0 - t) + last.length() * t);
     let least = times.map(|t| direction.dot(at(t)) - rounding(t));

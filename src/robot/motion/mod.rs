@@ -1,4 +1,4 @@
-//! A robot that changes with time: its shapes, and bounds on how fast its points move.
+//! Motions: a robot whose shape depends on time, with bounds on how fast its points move.
 
 mod bending;
 mod course;
@@ -31,23 +31,22 @@ pub use verify::verify_motion;
 use super::{COORDINATE_LIMIT, NotRigid, RobotError, Tube, rigid};
 use parry3d_f64::math::{Pose, Real};
 
-/// A motion: the robot's shape and pose at each time t from 0 to 1, and an upper bound on how fast
-/// it moves.
+/// A motion: the robot's shape and pose at each time t from 0 to 1, with an upper bound on its
+/// speed.
 ///
-/// [`LinearMotion`], [`RigidMotion`] and [`BendingMotion`] are ready to use; [`MovingBase`] moves
-/// the base of any of them, and [`MotionPath`] puts them one after another. For a motion of your
-/// own, implement the first two methods. What is proven of a motion relies on the bounds that it
-/// states, so let your tests check them by [`verify_motion`].
+/// Ready to use: [`LinearMotion`], [`RigidMotion`] and [`BendingMotion`]. [`MovingBase`] moves the
+/// base of any motion, and [`MotionPath`] joins motions in sequence. For a motion of your own,
+/// implement `shape` and `speed`. Proofs about a motion rely on the bounds that it states, so let
+/// your tests check them with [`verify_motion`].
 ///
 /// Two shapes of a motion must be comparable:
 ///
-/// - They have the same number of sections, with the same radii. A section that is not extended yet
+/// - They have the same number of sections with the same radii. A section that is not extended yet
 ///   has a tiny length.
-/// - A point of the centreline is the same point at all times if it is in the same section, at the
-///   same share of the section's length.
-/// - The flat ends stay flat: the robot's two ends, and the wider side of each step in radius. So
-///   the model may not change on the way, from capsules to fitted caps for example.
-///
+/// - A point of the centreline is identified at all times by its section and its share of the
+///   section's length.
+/// - Flat ends stay flat: the robot's two ends, and the wider side of each step in radius. So the
+///   cap model must stay the same; a change from capsules to fitted caps, for example, is refused.
 /// ```
 /// use parry_continuum::{Motion, RobotError, Speed, Tube, parry::math::{Pose, Real, Vector}, verify_motion};
 ///
@@ -66,7 +65,8 @@ use parry3d_f64::math::{Pose, Real};
 ///     }
 ///
 ///     fn speed(&self, _section: usize, shares: [Real; 2], _times: [Real; 2]) -> Speed {
-///         // The curvature changes by 0.02 in all: s from the base that turns the needle by 0.02 s, and moves it by half of that times s.
+///         // The curvature grows by 0.02. At s from the base this turns the needle by 0.02 s
+///         // and moves it by half of that times s.
 ///         let s = 30.0 * shares[1];
 ///         Speed { point: 0.01 * s * s, turn: 0.02 * s }
 ///     }
@@ -76,63 +76,64 @@ use parry3d_f64::math::{Pose, Real};
 /// # Ok::<(), RobotError>(())
 /// ```
 pub trait Motion {
-    /// Makes `tube` the robot's shape at time `t`, and gives its pose in the mesh's frame.
+    /// Writes the robot's shape at time `t` to `tube` and returns its pose in the mesh's frame.
     ///
     /// `tube` holds an earlier shape. [`Tube::set_samples`] and [`Tube::set_chain`] reuse its
-    /// memory. An error that was stated by [`Tube::with_error`] is dropped before the call:
-    /// each shape states its own.
+    /// memory. Errors stated by [`Tube::with_error`] are removed before the call: each shape states
+    /// its own.
     ///
     /// # Errors
-    /// There is no such shape. [`RobotError::NoShape`] is for kinematics that fail. Queries pass
+    /// The shape does not exist. Kinematics that fail return [`RobotError::NoShape`]. Queries pass
     /// the error on.
     fn shape(&self, t: Real, tube: &mut Tube) -> Result<Pose, RobotError>;
 
-    /// Upper bounds on how fast the centreline moves and turns, in the mesh's frame: between two
-    /// shares of a section's length, and between two times.
+    /// Returns upper bounds on the linear and angular speed of the centreline in the mesh's frame.
     ///
-    /// Shares and times are from 0 to 1, the lower one first, and the two may be equal. A bound
-    /// that is too large costs time. One that is too small makes answers wrong.
+    /// The bounds hold for every place between two shares of a section's length, at every time
+    /// between two times. Shares and times are from 0 to 1, the lower one first; they may be equal.
+    /// A bound that is too large costs time. A bound that is too small makes answers wrong.
     fn speed(&self, section: usize, shares: [Real; 2], times: [Real; 2]) -> Speed;
 
-    /// Where the centreline goes, in the mesh's frame, between two shares of a section's length and
-    /// between two times: if more is known of it than its speed.
+    /// Returns a bound on the displacement of the centreline in the mesh's frame, if more is known
+    /// than its speed.
     ///
-    /// None by default. With it, [`clears_motion`](crate::proximity::BvhSearch::clears_motion) and
-    /// the questions like it need fewer shapes: a piece that moves along the wall does not
-    /// count as if it moved towards it, nor one that moves away. All ready motions know their
-    /// courses; [`bending_course`] helps where sections have a constant curvature. A course that is
-    /// wrong makes answers wrong. One that is not finite, or whose `off` is below 0, counts as
-    /// none.
+    /// The bound covers the places between two shares of a section's length, from one time to
+    /// another; arguments as for [`speed`](Self::speed). The default is `None`.
     ///
-    /// Shares and times are as for [`speed`](Self::speed). What wraps a motion may pass its courses
-    /// on if it does not change time or place.
+    /// With it, [`clears_motion`](crate::proximity::BvhSearch::clears_motion) and similar queries
+    /// need fewer shapes: a piece that moves along the wall, or away from it, does not count as
+    /// moving towards it. All ready motions know their displacements. [`bending_course`] helps for
+    /// sections of constant curvature. A wrong bound makes answers wrong. A bound that is not
+    /// finite, or whose `off` is negative, is ignored.
+    ///
+    /// A motion that wraps another may pass its bound on if it keeps time and place.
     fn course(&self, section: usize, shares: [Real; 2], times: [Real; 2]) -> Option<Course> {
         let _ = (section, shares, times);
         None
     }
 
-    /// Into how many parts of the same length queries divide time from the beginning: 1, but for a
-    /// path of many motions. What wraps a motion passes its `legs` on.
+    /// Returns the number of equal parts into which queries divide time first: 1, except for a path
+    /// of several motions. A motion that wraps another passes its value on.
     fn legs(&self) -> usize {
         1
     }
 }
 
-/// How fast a centreline moves, per unit of the motion's time. At a steady speed this is how far it
-/// moves from t = 0 to 1.
+/// Linear and angular speed of a centreline per unit of the motion's time. A constant speed equals
+/// the distance moved from t = 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Speed {
-    /// The speed of its points, in units of length.
+    /// The linear speed of its points, in units of length.
     pub point: Real,
-    /// The speed at which its direction turns, in rad. Times the radius, this is how fast the rim
-    /// of a disc moves relative to the disc's centre.
+    /// The angular speed of its direction, in rad. Times the radius it is the speed of a disc's rim
+    /// relative to the disc's centre.
     pub turn: Real,
 }
 
-/// A speed or a turn that a motion states of a section.
+/// Checks a speed or an angular speed that a motion states for a section.
 ///
 /// # Errors
-/// It is negative, infinite or NaN.
+/// The value is negative, infinite or NaN.
 pub(crate) fn check_speed(section: usize, value: Real) -> Result<Real, RobotError> {
     // Written so that NaN is an error.
     if (0.0..Real::INFINITY).contains(&value) {
@@ -142,9 +143,9 @@ pub(crate) fn check_speed(section: usize, value: Real) -> Result<Real, RobotErro
     }
 }
 
-/// The pose of a motion with a rotation of unit length, if it is finite, within range and rigid.
+/// Returns a motion's pose with a rotation of unit length, if it is finite, in range and rigid.
 fn rigid_pose(parameter: &'static str, pose: &Pose) -> Result<Pose, RobotError> {
-    // A rotation that is finite may still be too long: that is another error.
+    // A finite rotation may still be too long; `rigid` reports that.
     let is_out = |place: &Real| !place.is_finite() || place.abs() > COORDINATE_LIMIT;
     let places = pose.translation.to_array().into_iter().filter(is_out);
     let parts = pose.rotation.to_array().into_iter().filter(|part| !part.is_finite());

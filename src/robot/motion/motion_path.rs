@@ -1,15 +1,15 @@
-//! Motions one after another, as one.
+//! Motions in sequence, as one motion.
 
 use super::{Course, Motion, Speed};
 use crate::distance::Scalar;
 use crate::robot::{RobotError, Tube};
 use parry3d_f64::math::{Pose, Real};
 
-/// A path: motions one after another, each of which takes the same share of the time.
+/// A path: motions in sequence, each over an equal part of the time.
 ///
-/// Of n motions the first one is from t = 0 to 1 / n, the next to 2 / n, and so on;
-/// [`leg`](Self::leg) tells which one it is at a time. All have the same sections. One should begin
-/// where the one before ends, and [`verify_motion`](crate::verify_motion) finds out if not.
+/// Of n motions the first runs from t = 0 to 1 / n, the second to 2 / n, and so on.
+/// [`leg`](Self::leg) returns the motion at a given time. All have the same sections. Each should
+/// begin where the previous one ends; [`verify_motion`](crate::verify_motion) detects a gap.
 ///
 /// ```
 /// use parry_continuum::{LinearMotion, MotionPath, parry::{math::Vector, shape::Ball}, proximity::BvhSearch};
@@ -29,6 +29,8 @@ pub struct MotionPath<M> {
 }
 
 impl<M: Motion> MotionPath<M> {
+    /// Joins motions in order of time.
+    ///
     /// # Errors
     /// There are no motions.
     pub fn new(motions: Vec<M>) -> Result<Self, RobotError> {
@@ -39,15 +41,15 @@ impl<M: Motion> MotionPath<M> {
         }
     }
 
-    /// Which motion it is at a time from 0 to 1, and that motion's own time.
+    /// Returns the index of the motion at a time from 0 to 1, and that motion's own time.
     pub fn leg(&self, t: Real) -> (usize, Real) {
         let along = t * self.motions.len() as Real;
-        // A number out of range becomes the nearest that is in it.
+        // The conversion saturates.
         let leg = (along as usize).min(self.motions.len() - 1);
         (leg, self.time_in(leg, t))
     }
 
-    /// The time of a motion, however far before or behind it `t` is.
+    /// Converts `t` to the time of one motion, clamped to 0..=1.
     fn time_in(&self, leg: usize, t: Real) -> Real {
         let within = (t * self.motions.len() as Real - leg as Real).max(0.0);
         within.min(1.0)
@@ -61,7 +63,7 @@ impl<M: Motion> Motion for MotionPath<M> {
     }
 
     fn speed(&self, section: usize, shares: [Real; 2], times: [Real; 2]) -> Speed {
-        // Times are rounded: those of one motion may seem to be another's.
+        // Rounding may assign the time of one motion to its neighbour.
         let rounding = 4.0 * Real::UNIT_ROUNDOFF;
         let [first, last] = [times[0] + rounding, times[1] - rounding].map(|t| self.leg(t).0);
         let up = self.motions.len() as Real * (1.0 + 4.0 * Real::UNIT_ROUNDOFF);
@@ -76,7 +78,7 @@ impl<M: Motion> Motion for MotionPath<M> {
         })
     }
 
-    /// From one motion to the next the velocity may jump.
+    /// `None` across a joint of two motions, where the velocity may jump.
     fn course(&self, section: usize, shares: [Real; 2], times: [Real; 2]) -> Option<Course> {
         let rounding = 4.0 * Real::UNIT_ROUNDOFF;
         let [first, last] = [times[0] + rounding, times[1] - rounding].map(|t| self.leg(t).0);
@@ -85,9 +87,8 @@ impl<M: Motion> Motion for MotionPath<M> {
         }
         let inner = times.map(|t| self.time_in(last, t));
         let Course { ways, off } = self.motions[last].course(section, shares, inner)?;
-        // A time of a motion is rounded by less than `rounding` times the number of motions, and so
-        // are two others beside it; and times that are another motion's count as this one's
-        // end.
+        // A motion's time errs by less than `rounding` times the number of motions, and so do the
+        // two ends of the interval. A time of a neighbouring motion counts as this motion's end.
         let unsure = 8.0 * rounding * self.motions.len() as Real;
         let around = [(inner[0] - unsure).max(0.0), (inner[1] + unsure).min(1.0)];
         let speed = self.motions[last].speed(section, shares, around);
@@ -99,7 +100,7 @@ impl<M: Motion> Motion for MotionPath<M> {
     }
 }
 
-/// The larger one; NaN if either is.
+/// Returns the larger number; NaN if either is NaN.
 fn larger(a: Real, b: Real) -> Real {
     if a >= b || a.is_nan() { a } else { b }
 }

@@ -1,22 +1,32 @@
-//! Any motion whose base moves as well.
+//! A motion whose base moves as well.
 //!
-//! In the frame of its base a point moves by p(t), at most at the speed that the motion states
-//! there; the frame itself goes along a path (`rigid_path`): it turns about an axis a by the angle
-//! w in all and moves by v. In the mesh's frame the point then moves at v + R (w a x p + p'), which
-//! is at most |v| + w |a x p| + |p'|, and a direction turns at w and what the motion states.
+//! # Definitions
+//! - `p(t)`: a point in the frame of the base; `p'`: its velocity there, bounded by the motion.
+//! - The frame moves along a path (`rigid_path`): it turns about the axis a by the angle w in total
+//!   and moves by v. R is its rotation.
 //!
-//! How far p is from the axis is known of the motion's shapes at three times. Until another time it
-//! moves away by no more than the motion moves it in between: by its stated speed between the two
-//! times, times how far they are apart. Two distances from a line differ by no more than the points
-//! are apart. Of the three bounds the least counts.
+//! # Speed
+//! In the mesh's frame the point has the velocity `v + R (w a x p + p')`, at most
+//! `|v| + w |a x p| + |p'|`. A direction turns at most at the rate w plus the motion's own.
 //!
-//! **Courses.** Let the motion know that from one time to another, T apart, p goes from p0 by m but
-//! for e, which is at most `off`. With p1 = p0 + m the point goes by the way b1 - b0 + R1 p1 - R0
-//! p0, linear in p0 and m. What moves at p0 + q m evenly in the frame has the acceleration R (w a x
-//! (w a x p) + 2 w a x m), so it is at most (s^2 |a x p| + 2 s |m|) / 8 off that way, for the turn
-//! s = w T; p is off by e besides, which counts once, and s times where it is turned. From the end
-//! it is the same, but p1 may be off by e, whose turn counts once more. Where p0 is, is known from
-//! the nearest of the three shapes and the course since; what that is off counts s times.
+//! The distance `|a x p|` from the axis is known from the motion's shapes at three times. Until
+//! another time it changes by at most the motion's speed bound between the two times, times the
+//! difference of the times: two distances from a line differ by at most the distance of the points.
+//! The least of the three bounds counts.
+//!
+//! # Displacement
+//! Let the motion move p from p0 by m, up to an error e with `|e| <= off`, from one time to
+//! another, T apart. Let `s = w T` and `p1 = p0 + m`.
+//!
+//! 1. The point moves by `b1 - b0 + R1 p1 - R0 p0`, where b0 and b1 are the origins of the base.
+//!    This is linear in p0 and m.
+//! 2. A point at `p0 + q m` at the fraction q of the time has the acceleration
+//!    `R (w a x (w a x p) + 2 w a x m)`. So it leaves the straight motion by at most
+//!    `(s^2 |a x p| + 2 s |m|) / 8`.
+//! 3. p is off by e in addition. This counts once, and s times because it is turned.
+//! 4. From the end the same holds, but p1 may be off by e, whose turn counts once more.
+//! 5. p0 is known from the nearest of the three shapes and the displacement since then. The error
+//!    of p0 counts s times.
 
 use super::rigid_path::RigidPath;
 use super::{Course, Motion, Speed, rigid_pose};
@@ -24,12 +34,12 @@ use crate::distance::Scalar;
 use crate::robot::{RobotError, Tube};
 use parry3d_f64::math::{Pose, Real, Vector};
 
-/// A motion whose base is moved at the same time, evenly from one pose to another: what a robot
-/// does that is pushed or turned while its sections bend and grow.
+/// A motion whose base moves at the same time from one pose to another: a robot that is pushed or
+/// turned while its sections bend and grow.
 ///
-/// The motion is any one without a jump, and its poses are in the frame of the base. The base's
-/// origin moves straight and evenly while the base turns evenly about one axis by the lesser angle,
-/// as in a [`RigidMotion`](crate::RigidMotion).
+/// The inner motion must be continuous; its poses are in the frame of the base. The base's origin
+/// moves straight at constant speed. The base turns at constant speed about one axis, by the
+/// smaller angle, as in a [`RigidMotion`](crate::RigidMotion).
 ///
 /// ```
 /// use parry_continuum::{BendingMotion, BendingSection, MovingBase, parry::math::{Pose, Vector}, verify_motion};
@@ -47,21 +57,21 @@ use parry3d_f64::math::{Pose, Real, Vector};
 pub struct MovingBase<M> {
     motion: M,
     path: RigidPath,
-    /// Shapes of the motion in the frame of the base, at some times.
+    /// Shapes of the inner motion at some times, in the frame of the base.
     known: Vec<(Real, Tube, Pose)>,
 }
 
-/// When shapes are known.
+/// The times of the known shapes.
 const KNOWN_AT: [Real; 3] = [0.0, 0.5, 1.0];
 
 impl<M: Motion> MovingBase<M> {
-    /// The motion of a robot whose base goes from the first pose to the second, in the mesh's
-    /// frame.
+    /// Builds the motion of a robot whose base moves from the first pose to the second, in the
+    /// mesh's frame.
     ///
     /// # Errors
-    /// A pose, of the base or of the motion, is not finite or out of range, or its rotation is not
-    /// of unit length; or the motion has no shape at its beginning, in its middle or at its
-    /// end.
+    /// - a pose of the base or of the motion is not finite or out of range, or its quaternion is
+    ///   not of unit length;
+    /// - the motion has no shape at t = 0, 1/2 or 1.
     pub fn new(motion: M, [from, to]: [Pose; 2]) -> Result<Self, RobotError> {
         let path = RigidPath::new([from, to])?;
         let shape = |t: Real| {
@@ -73,11 +83,11 @@ impl<M: Motion> MovingBase<M> {
         Ok(Self { motion, path, known })
     }
 
-    /// How fast the base carries a piece of the robot.
+    /// Returns the speed bound of a piece due to the base alone.
     fn carried(&self, section: usize, shares: [Real; 2], times: [Real; 2]) -> Speed {
         let bounds = self.known.iter().map(|(at, tube, pose)| {
             let Speed { point, turn } = self.path.speed(tube, pose, section, shares);
-            // Until the time that is farthest from it.
+            // Up to the farther end of the interval.
             let apart = (at - times[0]).max(times[1] - at).max(0.0);
             let since = self.motion.speed(section, shares, [times[0].min(*at), times[1].max(*at)]);
             Speed { point: point + self.path.angle() * since.point * apart, turn }
@@ -86,8 +96,8 @@ impl<M: Motion> MovingBase<M> {
         bounds.fold(none, |least, bound| if bound.point < least.point { bound } else { least })
     }
 
-    /// Where the ends of a piece are in the frame of the base at a time, and how far any point of
-    /// it may be off what is between.
+    /// Returns the ends of a piece in the frame of the base at a time, and the largest distance of
+    /// its points from the interpolation between them.
     fn place(&self, section: usize, shares: [Real; 2], t: Real) -> Option<([Vector; 2], Real)> {
         let nearest = self.known.iter().min_by(|a, b| (a.0 - t).abs().total_cmp(&(b.0 - t).abs()));
         let (at, tube, pose) = nearest?;
@@ -114,7 +124,7 @@ impl<M: Motion> Motion for MovingBase<M> {
     fn speed(&self, section: usize, shares: [Real; 2], times: [Real; 2]) -> Speed {
         let (carried, own) =
             (self.carried(section, shares, times), self.motion.speed(section, shares, times));
-        // A few roundings of numbers that are added up here.
+        // Covers a few roundings of the terms added here.
         let up = 1.0 + 16.0 * Real::UNIT_ROUNDOFF;
         Speed { point: (carried.point + own.point) * up, turn: (carried.turn + own.turn) * up }
     }

@@ -1,14 +1,14 @@
-//! A tube that keeps its shape and moves.
+//! A tube of constant shape that moves.
 
 use super::rigid_path::RigidPath;
 use super::{Course, Motion, Speed};
 use crate::robot::{RobotError, Tube};
 use parry3d_f64::math::{Pose, Real};
 
-/// The motion of a tube that does not change its shape, evenly from one pose to another.
+/// The motion of a tube of constant shape from one pose to another.
 ///
-/// The robot's origin moves straight and evenly while the robot turns evenly about one axis by the
-/// lesser angle. Poses are the tube's in the mesh's frame.
+/// The robot's origin moves straight at constant speed. The robot turns at constant speed about one
+/// axis, by the smaller angle. Poses are the tube's poses in the mesh's frame.
 ///
 /// ```
 /// use parry_continuum::{Chain, RigidMotion, Tube, verify_motion};
@@ -26,10 +26,10 @@ pub struct RigidMotion {
 }
 
 impl RigidMotion {
-    /// The motion of `tube` from the first pose to the second.
+    /// Builds the motion of `tube` from the first pose to the second.
     ///
     /// # Errors
-    /// A pose is not finite or out of range, or its rotation is not of unit length.
+    /// A pose is not finite or out of range, or its quaternion is not of unit length.
     pub fn new(tube: Tube, poses: [Pose; 2]) -> Result<Self, RobotError> {
         Ok(Self { tube, path: RigidPath::new(poses)? })
     }

@@ -1,13 +1,19 @@
-//! A frame that goes evenly from one pose to another, and how fast it carries a curve.
+//! A frame that moves from one pose to another, and how fast it carries a curve.
 //!
-//! The frame turns evenly about an axis a that is fixed in it, by the angle w in all, while its
-//! origin moves evenly by v. The point p of the frame then moves at v + w R(a x p), at most |v| + w
-//! |a x p| fast, and no direction turns faster than w. |a x p|, the distance from the axis, is a convex function of p; a piece of the centreline is within k l^2 / 8 of its chord,
-//! where the larger of the chord's two ends counts.
+//! # Definitions
+//! The frame turns at constant speed about an axis a that is fixed in it, by the angle w in total.
+//! Its origin moves straight by v.
 //!
-//! Its acceleration is w^2 times that distance. From one time to another, T apart, the point moves
-//! by v T + (R' - R) p, which is linear in p, and R' - R turns by at most w T: so what p is beside
-//! the chord moves otherwise by at most w T times as much.
+//! # Speed
+//! A point p of the frame has the velocity `v + w R (a x p)`, at most `|v| + w |a x p|`. No
+//! direction turns faster than w. `|a x p|`, the distance from the axis, is a convex function of p.
+//! A piece of the centreline is within `k l^2 / 8` of its chord, and on the chord the larger of the
+//! two ends' distances counts.
+//!
+//! # Displacement
+//! The acceleration is `w^2` times the distance from the axis. From one time to another, T apart,
+//! the point moves by `v T + (R' - R) p`, which is linear in p, and `R' - R` turns by at most
+//! `w T`. So the distance of p from the chord adds at most `w T` times itself.
 
 use super::{Course, Speed, rigid_pose};
 use crate::distance::Scalar;
@@ -15,19 +21,21 @@ use crate::robot::rigid_pose::rotation_by;
 use crate::robot::{RobotError, Section, Tube};
 use parry3d_f64::math::{Pose, Real, Rotation, Vector};
 
-/// A frame on its way.
+/// A moving frame.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RigidPath {
     from: Pose,
-    /// By how much the origin moves.
+    /// v: the displacement of the origin.
     shift: Vector,
-    /// The axis in the frame, times the angle.
+    /// The axis a, in the frame, times the angle w.
     turn: Vector,
 }
 
 impl RigidPath {
+    /// Builds the path from one pose to another.
+    ///
     /// # Errors
-    /// A pose is not finite or out of range, or its rotation is not of unit length.
+    /// A pose is not finite or out of range, or its quaternion is not of unit length.
     pub(super) fn new([from, to]: [Pose; 2]) -> Result<Self, RobotError> {
         let (from, to) = (rigid_pose("from", &from)?, rigid_pose("to", &to)?);
         let way = (from.rotation.inverse() * to.rotation).normalize();
@@ -35,23 +43,23 @@ impl RigidPath {
         Ok(Self { from, shift: to.translation - from.translation, turn: scaled_axis(way) })
     }
 
-    /// What of a bound on a speed is left for the turn alone.
+    /// Returns the part of a speed bound that is due to turning.
     pub(super) fn of_turning(&self, point: Real) -> Real {
         (point * UP - self.shift.length()).max(0.0)
     }
 
-    /// Where the frame is.
+    /// Returns the pose at a time.
     pub(super) fn pose(&self, t: Real) -> Pose {
         let rotation = self.from.rotation * rotation_by(self.turn * t);
         Pose::from_parts(self.from.translation + self.shift * t, rotation.normalize())
     }
 
-    /// By how much the frame turns in all, or a little more.
+    /// Returns an upper bound on w.
     pub(super) fn angle(&self) -> Real {
         self.turn.length() * UP
     }
 
-    /// Where a piece of a tube goes that is at rest in the frame.
+    /// Returns the displacement bound of a piece of a tube at rest in the frame.
     pub(super) fn course(
         &self,
         tube: &Tube,
@@ -78,20 +86,20 @@ impl RigidPath {
         Some(Course::between(here, there, off))
     }
 
-    /// How far a point of a piece is at the most from the place between its two ends at the same
-    /// share.
+    /// Returns the largest distance of a point of a piece from the interpolation between the
+    /// piece's ends at the same share.
     pub(super) fn beside(tube: &Tube, section: &Section, shares: [Real; 2]) -> Real {
         let off = shares.map(|share| tube.at_share(section, share).off);
         let known = tube.bound(section, tube.ticks_around(section, shares));
         let length = (section.end - section.start) * section.stretch * (shares[1] - shares[0]);
-        // The ends are between samples, and the curve beside them.
+        // The errors of the ends between samples, and of the curve.
         let beside = off[0].max(off[1]).max(known.off);
-        // Samples may divide a stretch otherwise than by its length.
+        // Samples may divide a section differently from its arc length.
         let uneven = 2.0 * (section.stretch - 1.0) * length;
         0.125 * known.curvature * length * length + beside + uneven + tube.error()
     }
 
-    /// How fast a piece of a tube moves that is at rest in the frame, at a pose there.
+    /// Returns the speed bound of a piece of a tube at rest in the frame, at a pose there.
     pub(super) fn speed(
         &self,
         tube: &Tube,
@@ -115,14 +123,15 @@ impl RigidPath {
     }
 }
 
-/// Fewer than 32 roundings, each of a number no larger than those that are added up here.
+/// Covers fewer than 32 roundings, each of a number no larger than the terms that are added.
 const UP: Real = 1.0 + 32.0 * Real::UNIT_ROUNDOFF;
 
-/// The axis of a rotation by half a turn or less, times its angle. (`to_scaled_axis` takes angles
-/// below 2e-8 for none.)
+/// Returns the axis of a rotation times its angle, for angles up to pi. (`to_scaled_axis` treats
+/// angles below 2e-8 as zero.)
 fn scaled_axis(rotation: Rotation) -> Vector {
     let half = Vector::new(rotation.x, rotation.y, rotation.z);
     let sine = half.length();
-    // The sine of half of the angle, which is as long as the angle where its square vanishes.
+    // `half` is the sine of half the angle. For tiny angles, whose sine's square underflows, twice
+    // the sine is the angle.
     half * if sine > 0.0 { 2.0 * libm::atan2(sine, rotation.w) / sine } else { 2.0 }
 }

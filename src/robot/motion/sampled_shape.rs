@@ -1,23 +1,22 @@
-//! Some places of a shape: where they are, which way the curve leads there, and how well both are
-//! known.
+//! Sampled places of a shape: their points and directions, with the errors of both.
 
 use crate::distance::Scalar;
 use crate::robot::Tube;
 use crate::robot::scale::{direction, length};
 use parry3d_f64::math::{Pose, Real, Vector};
 
-/// The least distance between two numbers, 2^-1074.
+/// The least positive number, 2^-1074.
 const MIN_STEP: Real = Real::from_bits(1);
 
-/// A share of a section; or, from one share to another, the chord between the two.
+/// A place at a share of a section, or the chord between two shares.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SampledPlace {
     pub section: usize,
     pub shares: [Real; 2],
 }
 
-/// The places to try: nine even shares of each section; and where a shape is given by samples,
-/// eight of its samples and the chords from them to the next, which are known best.
+/// Returns the places to test: nine even shares of each section. For a shape by samples also eight
+/// samples and the chords from them to the next sample, which are known best.
 pub(super) fn places(tube: &Tube) -> Vec<SampledPlace> {
     const PARTS: u32 = 8;
     let mut places = Vec::new();
@@ -46,28 +45,27 @@ pub(super) fn places(tube: &Tube) -> Vec<SampledPlace> {
 #[derive(Clone, Copy, Debug)]
 struct Sample {
     point: Vector,
-    /// How far off the point may be.
+    /// Upper bound on the error of the point.
     error: Real,
     direction: Vector,
-    /// How far off the direction may be.
+    /// Upper bound on the error of the direction.
     tilt: Real,
-    /// By how much less than the curve's directions the chord's may turn, as a factor.
+    /// Factor from the turn of the chord to a lower bound on the turn of the curve's directions.
     shrink: Real,
 }
 
-/// A shape at some places, and how far these may go from there by what a motion states.
+/// A shape at some places, with the stated displacements since then.
 #[derive(Clone, Debug, Default)]
 pub(super) struct SampledShape {
     pub t: Real,
     samples: Vec<Sample>,
-    /// What rounding can do to a point.
+    /// Upper bound on the rounding error of a point.
     rounding: Real,
-    /// The stated ways, and angles, of the steps since then, added up.
+    /// The sums of the stated displacements and turns of the steps since then.
     stated: Vec<[Real; 2]>,
 }
 
-/// How far a place went from one shape to another, at the least, and how far by what was stated;
-/// and how far it turned.
+/// Lower bounds on the displacement and the turn of a place from one shape to another.
 pub(super) struct PlaceMotion {
     pub way: Real,
     pub angle: Real,
@@ -77,10 +75,10 @@ impl SampledShape {
     /// Samples a shape.
     pub(super) fn take(&mut self, t: Real, tube: &Tube, pose: &Pose, places: &[SampledPlace]) {
         self.t = t;
-        // As in queries: a placed point is off by less than 16 roundings of the largest coordinate;
-        // a place along the curve by less than one of its length.
+        // As in queries: a placed point is off by less than 16 roundings of the largest coordinate,
+        // a place along the curve by less than one rounding of its length.
         let reach = pose.translation.abs().max_element() + 2.0 * tube.reach() + tube.length();
-        // Where a rounding of that vanishes, the steps between numbers do not.
+        // If these roundings underflow, the spacing of numbers remains.
         self.rounding = 64.0 * Real::UNIT_ROUNDOFF * reach + 64.0 * MIN_STEP;
         self.samples.clear();
         self.stated.clear();
@@ -89,7 +87,7 @@ impl SampledShape {
             let Some(section) = tube.sections().get(place.section) else { continue };
             let [from, to] = place.shares;
             let here = tube.at_share(section, from);
-            // The direction of a link is that between its two ends, which are rounded.
+            // The direction of a link is computed from its two ends, which are rounded.
             let is_link = section.last - section.first == 1;
             let turned = if is_link { self.rounding / (section.end - section.start) } else { 0.0 };
             let mut sample = Sample {
@@ -103,11 +101,11 @@ impl SampledShape {
                 let there = tube.at_share(section, to);
                 let chord = *pose * there.point - sample.point;
                 let size = length(chord);
-                // The mean of the directions between two shares turns by no more than they do. The
-                // chord is that mean times the length, if shares of the curve are
-                // as long as those of the samples' lines: they are to `stretch`. And
-                // where the mean is 1 - b^2 / 24 long or longer, for the turn b in between, its
-                // direction turns by as much more.
+                // The mean of the directions between two shares turns by at most as much as the
+                // directions. The chord is that mean times the length, if shares of the curve are
+                // as long as shares of the polyline, which holds up to `stretch`. For a turn b in
+                // between, the mean has at least the length `1 - b^2 / 24`, so its direction may
+                // turn by more by that factor.
                 let known = tube.bound(section, tube.ticks_around(section, [from, to]));
                 let bend =
                     known.curvature * (section.end - section.start) * (to - from) * section.stretch;
@@ -121,25 +119,25 @@ impl SampledShape {
         }
     }
 
-    /// Adds what is stated for another step.
+    /// Adds the stated displacements and turns of another step.
     pub(super) fn add(&mut self, stated: &[[Real; 2]]) {
         for (sum, [way, angle]) in self.stated.iter_mut().zip(stated) {
             *sum = [sum[0] + way, sum[1] + angle];
         }
     }
 
-    /// What was stated since, for a place.
+    /// Returns the sums of a place's stated displacement and turn.
     pub(super) fn stated(&self, place: usize) -> [Real; 2] {
         self.stated.get(place).copied().unwrap_or_default()
     }
 
-    /// Where a place went from here to another shape, and how far off that may be.
+    /// Returns the displacement of a place to another shape, and an upper bound on its error.
     pub(super) fn way(&self, to: &Self, place: usize) -> Option<(Vector, Real)> {
         let (from, there) = (self.samples.get(place)?, to.samples.get(place)?);
         Some((there.point - from.point, self.rounding + to.rounding + from.error + there.error))
     }
 
-    /// How far a place went at least, from here to another shape.
+    /// Returns lower bounds on the displacement and the turn of a place to another shape.
     pub(super) fn moved(&self, to: &Self, place: usize) -> Option<PlaceMotion> {
         let (from, there) = (self.samples.get(place)?, to.samples.get(place)?);
         let (way, off) = self.way(to, place)?;

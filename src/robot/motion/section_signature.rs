@@ -1,10 +1,10 @@
-//! What must stay the same during a motion.
+//! The properties of a robot that must stay constant during a motion.
 
 use crate::robot::{CapPersistence, RobotError, Tube};
 use parry3d_f64::math::Real;
 
-/// The sections of the shapes so far: their radii, and which of their ends are always flat, as far
-/// as that matters.
+/// The sections of the shapes so far: their radii, and which of their ends are always flat. `None`
+/// for an end whose cap is not yet known or does not matter.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SectionSignature(Vec<(Real, [Option<bool>; 2])>);
 
@@ -13,14 +13,14 @@ impl SectionSignature {
         self.0.clear();
     }
 
-    /// Takes note of the first shape, and compares the others with it.
+    /// Records the first shape and compares every later shape with it.
     ///
     /// # Errors
-    /// The shape at `t` has other sections.
+    /// The shape at `t` has different sections.
     pub(crate) fn check(&mut self, t: Real, tube: &Tube) -> Result<(), RobotError> {
         let found = tube.sections().iter().map(|section| {
-            // A face whose direction gets lost may be round in other shapes; without a length it
-            // has none.
+            // Two kinds of end are not compared: a face that may lose its direction may be round in
+            // other shapes, and a section without length has no face.
             let lasts = |end: usize| match section.faces[end].map(|face| face.persistence) {
                 Some(CapPersistence::Never) => None,
                 _ if section.fades => None,

@@ -1,20 +1,22 @@
-//! A planner's own shapes, linear between them, and what a stated deviation leaves open.
+//! A planner's own shapes with linear interpolation, and a stated deviation from it.
 //!
-//! From one shape to the next each vertex moves straight and evenly, and so does each point of a
-//! link: at the share u of a link whose ends move at a and b it moves at (1 - u) a + u b, no faster
-//! than the larger of what it does at the two ends of a piece, since a length is a convex function.
+//! # Speed
+//! Between two shapes each vertex moves straight at constant speed, and so does each point of a
+//! link. At the share u of a link whose ends move at a and b, the velocity is `(1 - u) a + u b`.
+//! Its length is convex in u, so between two shares it is at most the larger of the values there.
 //!
-//! The robot is any tube whose centreline is smooth and within the deviation of that, place by
-//! place. Its discs are in the balls around their centres, wherever they are turned, so round
-//! bodies hold it; the speed of its own centreline does not matter, since at each moment it is
-//! within the deviation of the links of that moment.
+//! # What the bounds cover
+//! Every tube with a smooth centreline that is within the deviation of the links, place by place.
+//! For every direction its discs lie in balls around their centres, so round bodies contain it. The
+//! speed of its own centreline does not matter: at each instant it is within the deviation of the
+//! links.
 
 use super::{Course, Motion, Speed};
 use crate::distance::Scalar;
 use crate::robot::{Chain, RobotError, Tube};
 use parry3d_f64::math::{Pose, Real, Vector};
 
-/// Shapes one after another.
+/// Shapes in sequence.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ShapePath<'a> {
     shapes: &'a [Chain],
@@ -22,9 +24,11 @@ pub(crate) struct ShapePath<'a> {
 }
 
 impl<'a> ShapePath<'a> {
+    /// Builds the path from shapes in order of time.
+    ///
     /// # Errors
-    /// There are no shapes, or not all have links of the same segments with the same radii; or the
-    /// deviation is not finite or negative.
+    /// No shape; shapes whose links differ in segments or radii; a deviation that is negative or
+    /// not finite.
     pub(crate) fn new(shapes: &'a [Chain], deviation: Real) -> Result<Self, RobotError> {
         let Some(first) = shapes.first() else {
             return Err(RobotError::NoMotions { parameter: "shapes" });
@@ -32,8 +36,8 @@ impl<'a> ShapePath<'a> {
         if !(0.0..Real::INFINITY).contains(&deviation) {
             return Err(RobotError::Negative { parameter: "deviation", value: deviation });
         }
-        // A chain leaves out segments without length. Were others left out in another shape, links
-        // would stand for other stretches.
+        // A chain omits segments without length. If another shape omitted other segments, its links
+        // would represent other parts of the robot.
         let links = |chain: &'a Chain| {
             chain
                 .links()
@@ -47,18 +51,18 @@ impl<'a> ShapePath<'a> {
         }
     }
 
-    /// The shapes before and behind a time, and where it is between them.
+    /// Returns the shapes before and behind a time, and its position between them from 0 to 1.
     fn around(&self, t: Real) -> ([&'a Chain; 2], Real) {
         let (legs, last) = (self.legs(), self.shapes.len() - 1);
         let along = t * legs as Real;
-        // A number out of range becomes the nearest that is in it.
+        // The conversion saturates.
         let leg = (along as usize).min(legs - 1);
         let share = (along - leg as Real).max(0.0);
         ([leg, leg + 1].map(|shape| &self.shapes[shape.min(last)]), share.min(1.0))
     }
 }
 
-/// The two ends of a link.
+/// Returns the two ends of a link.
 fn ends(chain: &Chain, link: usize) -> Option<[Vector; 2]> {
     chain.links().get(link).map(|link| [link.start(), link.end()])
 }
@@ -78,7 +82,7 @@ impl Motion for ShapePath<'_> {
 
     fn speed(&self, section: usize, shares: [Real; 2], times: [Real; 2]) -> Speed {
         let legs = self.legs();
-        // Times are rounded: those of one leg may seem to be another's too.
+        // Rounding may assign the time of one part to its neighbour.
         let [first, last] = times.map(|t| ((t * legs as Real) as usize).min(legs - 1));
         let mut point: Real = 0.0;
         for leg in first..=last {
@@ -91,7 +95,7 @@ impl Motion for ShapePath<'_> {
                 .into_iter()
                 .chain(to)
                 .fold(0.0, |most: Real, p| most.max(p.abs().max_element()));
-            // Differences and a length; a vertex on its way is rounded as well.
+            // Covers differences, a length, and the rounding of a moving vertex.
             let rounding = 16.0 * Real::UNIT_ROUNDOFF * reach;
             let up = legs as Real * (1.0 + 32.0 * Real::UNIT_ROUNDOFF);
             point = point.max((speed(shares[0]).max(speed(shares[1])) + rounding) * up);
@@ -99,11 +103,11 @@ impl Motion for ShapePath<'_> {
         Speed { point, turn: 0.0 }
     }
 
-    /// In one leg everything moves straight and evenly.
+    /// Within one part every point moves straight at constant speed.
     fn course(&self, section: usize, shares: [Real; 2], times: [Real; 2]) -> Option<Course> {
         let legs = self.legs() as Real;
         let leg = ((0.5 * (times[0] + times[1]) * legs) as usize).min(self.legs() - 1);
-        // Times that are another leg's by more than rounding.
+        // Times beyond the part by more than rounding belong to another part.
         let unsure = 8.0 * Real::UNIT_ROUNDOFF * legs;
         let is_in =
             |t: Real| (leg as Real - unsure..=leg as Real + 1.0 + unsure).contains(&(t * legs));
@@ -117,8 +121,8 @@ impl Motion for ShapePath<'_> {
         let ways = shares.map(|share| (start + (end - start) * share) * apart);
         let reach =
             from.into_iter().chain(to).fold(0.0, |most: Real, p| most.max(p.abs().max_element()));
-        // Places, differences and ways; and times off by `unsure`, to a leg that begins where this
-        // one ends.
+        // Covers places, differences and displacements, and times that are off by `unsure`, into a
+        // part that begins where this one ends.
         let off =
             64.0 * Real::UNIT_ROUNDOFF * reach + 4.0 * unsure * start.length().max(end.length());
         Some(Course { ways, off })

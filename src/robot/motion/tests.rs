@@ -1,4 +1,4 @@
-//! Stated speeds against dense sampling, between any two shares and any two times.
+//! Stated speeds against dense sampling, for any two shares and any two times.
 
 use super::{BendingMotion, LinearMotion, Motion, MotionPath, MovingBase, RigidMotion, Speed};
 use crate::robot::BendingSection;
@@ -26,7 +26,7 @@ pub(super) fn sections(random: &mut Random, radii: &[Real]) -> Vec<BendingSectio
 #[test]
 fn stated_speeds_hold_between_any_shares_and_times() {
     let mut random = Random::new(1);
-    // How much of the stated speed is used at most, by kind of motion: points and turns.
+    // The largest used share of the stated speed, by kind of motion: points and turns.
     let mut used = [[0.0_f64; 2]; 4];
     for _ in 0..300 {
         let count = 1 + random.below(4) as usize;
@@ -36,7 +36,7 @@ fn stated_speeds_hold_between_any_shares_and_times() {
         let to: Vec<_> = from.iter().map(|&point| point + random.point() * 3.0).collect();
         let mut bent = [sections(&mut random, &radii), sections(&mut random, &radii)];
         if random.below(2) == 0 {
-            // Lengths alone change.
+            // Only lengths change.
             let bends = bent[0].clone();
             bent[1].iter_mut().zip(&bends).for_each(|(to, from)| to.bend = from.bend);
         }
@@ -85,13 +85,12 @@ fn stated_speeds_hold_between_any_shares_and_times() {
             }
         }
     }
-    // No bound is so loose that nothing could break it; that of a moving base adds up others.
+    // No bound is so loose that it could never fail; a moving base's bound is a sum of others.
     assert!(used.iter().take(3).flatten().all(|used| *used > 0.8), "{used:?}");
     assert!(used[3].iter().all(|used| *used > 0.5), "{used:?}");
 }
 
-/// The largest share of a stated speed that is used at the tip, in fine steps of a part of the
-/// time.
+/// The largest used share of a stated speed at the tip, in fine steps of a part of the time.
 fn used_at_tip(motion: &dyn Motion, times: [Real; 2]) -> [Real; 2] {
     let Speed { point, turn } = motion.speed(0, [1.0; 2], times);
     let step = (times[1] - times[0]) / 256.0;
@@ -105,9 +104,8 @@ fn used_at_tip(motion: &dyn Motion, times: [Real; 2]) -> [Real; 2] {
     used
 }
 
-/// Each term of a moving base alone is what differences find: its push, its turn, what bends on it,
-/// and that a point may be farther from the axis at other times than at those whose shapes are
-/// known.
+/// Each term of a moving base's bound equals the measured differences: its push, its turn, the
+/// bending on it, and the growing distance from the axis at times other than the known shapes'.
 #[test]
 fn each_term_of_a_moving_base_is_as_large_as_differences() {
     let section = |length, bend| BendingSection { length, radius: 0.5, bend: [bend, 0.0] };
@@ -119,9 +117,9 @@ fn each_term_of_a_moving_base_is_as_large_as_differences() {
     let pushed = moving(&still, Pose::from_translation(Vector::new(1.0, 2.0, -3.0)));
     let turned = moving(&still, Pose::rotation(Vector::X * 0.5));
     let bent = moving(&inner(section(10.0, 0.0), section(10.0, 0.02)), Pose::IDENTITY);
-    // Pushed along the tip's way as the base turns it.
+    // Pushed along the tip's velocity as the base turns it.
     let both = moving(&still, Pose::new(Vector::Y * -3.0, Vector::X * 0.5));
-    // Grows to twice the length; away from the axis, not only along itself.
+    // Grows to twice the length: away from the axis, not only along itself.
     let growing =
         moving(&inner(section(1.0, 0.0), section(41.0, 0.0)), Pose::rotation(Vector::X * 3.0));
     for (name, motion, times, least) in [
@@ -129,7 +127,7 @@ fn each_term_of_a_moving_base_is_as_large_as_differences() {
         ("turn", &turned, [0.0, 1.0], [0.999, 0.999]),
         ("bend", &bent, [0.0, 1.0], [0.95, 0.95]),
         ("push and turn", &both, [0.0, 1.0], [0.95, 0.999]),
-        // 3 x 41 across and 40 along: without the way since t = 1/2 it would be 3 x 21.
+        // 3 x 41 across and 40 along. Without the movement since t = 1/2 it would be 3 x 21.
         ("turn of what grows", &growing, [0.9, 1.0], [0.75, 0.999]),
         ("turn of what is short", &growing, [0.0, 0.1], [0.7, 0.999]),
         ("turn of what is half out", &growing, [0.6, 0.75], [0.7, 0.999]),
@@ -140,7 +138,7 @@ fn each_term_of_a_moving_base_is_as_large_as_differences() {
     }
 }
 
-/// Motions one after another are as fast as each of them, on its share of the time.
+/// In a sequence of motions, each is as fast as stated in its own part of the time.
 #[test]
 fn a_path_is_as_fast_as_its_motions() {
     let way = |from: Real, to: Real| {

@@ -1,19 +1,17 @@
-//! Whether a motion keeps to the speeds that it states, and to the courses.
+//! Tests whether a motion fulfils the speeds and displacements that it states.
 //!
-//! A single fine step shows little. A point between samples is known only to their deviation, and
-//! every point only to the stated error; in a short time a motion of any speed stays within that.
-//! So shapes far apart in time are compared too: 1, 2, 4 and more steps apart, and with the first
-//! shape. The ways that were stated for the steps between them add up, and what is unknown of the
-//! two shapes counts once.
-//!
-//! **Ranges of shares.** A bound holds for every place of the range that it is stated for. So each
-//! place is compared with the bounds of many ranges that hold it, and the least of them counts: the
-//! place alone, from the base to it, from it to the tip, the dyadic ranges at three levels, the
-//! whole section, and one range that is drawn for each step. A bound that looks at one end of its
-//! range only is too low for some of these.
-//!
-//! A course is compared with three shapes: those at both ends of its time, and the one at its
-//! middle, where what moves at a constant acceleration is farthest off.
+//! # Algorithm
+//! 1. **Sample** the shapes at even steps of time.
+//! 2. **Compare** each shape with the previous one, with the shapes 2, 4, 8, ... steps earlier, and
+//!    with the first. A single fine step shows little: points are known up to the stated error and
+//!    the samples' deviation, and in a short time every motion stays within that. Over many steps
+//!    the stated displacements add up, while the uncertainty of the two shapes counts once.
+//! 3. **Ranges.** A bound holds for every place of the range for which it is stated. So each place
+//!    is compared with the least bound over many ranges that contain it: the place alone, `[0, s]`,
+//!    `[s, 1]`, the dyadic ranges at [`LEVELS`] levels, and one drawn range per step. A bound that
+//!    considers one end of its range only is too low for some of them.
+//! 4. **Displacements.** A stated displacement is compared with three shapes: at both ends of its
+//!    time, and at the middle, where a point of constant acceleration is farthest from it.
 
 use super::sampled_shape::{PlaceMotion, SampledPlace, SampledShape, places};
 use super::{Motion, SectionSignature, rigid_pose};
@@ -21,38 +19,41 @@ use crate::distance::Scalar;
 use crate::robot::{RobotError, Tube};
 use parry3d_f64::math::Real;
 
-/// Checks the speeds and the courses that a motion states, by its shapes at `steps` even steps of
-/// its time. Call it in your tests.
+/// Tests the speeds and displacements that a motion states, at `steps` even steps of its time.
+///
+/// Call it in your tests. Finer steps are never harmful.
 ///
 /// Points are compared at nine places in each section, and at its samples. From one shape to the
-/// next no point may move farther than the stated speed allows, and no direction may turn more. The
-/// same holds for shapes that are 2, 4, 8 and more steps apart, and for each shape and the first. A
-/// bound that is too low only for a moment, or only between two places, shows if the steps are fine
-/// enough. Steps cannot be too fine.
+/// next, no point may move farther than the stated speed allows, and no direction may turn more.
+/// The same holds for shapes that are 2, 4, 8 and more steps apart, and for each shape and the
+/// first. A bound that is too low only for a moment, or only between two places, shows if the steps
+/// are fine enough.
 ///
-/// A speed is asked for ranges of shares, and holds for every place of its range. So the motion is
-/// asked for several ranges that hold a place s: s alone, \[0, s\], \[s, 1\], \[0, 1\], the halves,
-/// quarters and eighths of the section, and one range that is drawn for each step, always the same
-/// ones. The least of these bounds counts, and is what the error names.
+/// A stated speed holds for every place of its range of shares. So each place s is tested with
+/// several ranges that contain it: s alone, \[0, s\], \[s, 1\], \[0, 1\], the halves, quarters and
+/// eighths of the section, and one drawn range per step, the same in every run. The least of these
+/// bounds counts, and the error names it.
 ///
-/// A stated course ([`Motion::course`]) is compared with the shapes at the ends of its time and at
-/// its middle, between steps and between shapes that are 2, 4, 8 and more steps apart, for the same
-/// ranges.
+/// A stated displacement ([`Motion::course`]) is compared with the shapes at the ends of its time
+/// and at its middle. The ranges are the same as for speeds; the shapes are 1, 2, 4, 8 and more
+/// steps apart.
 ///
-/// Some of what moves may be an error of the shapes, which does not count against the motion:
+/// Part of a measured displacement may be an error of the shapes. It does not count against the
+/// motion:
 ///
 /// - the error that the tube states for itself ([`Tube::with_error`](crate::Tube::with_error)),
 ///   twice;
-/// - between samples, how far the curve may be from the lines between them. This is 0 at samples
-///   that keep their shares of the section, and where the curve is a function.
+/// - between samples, the distance of the curve from its chords. It is 0 at samples that keep their
+///   shares of the section, and for a function.
 ///
-/// A speed that is too low is found if it makes a larger difference than these, at some place, from
-/// some shape to a later one.
+/// A speed that is too low is found if it exceeds these errors at some place, from some shape to a
+/// later one.
 ///
 /// # Errors
-/// The first time and place at which the motion is faster than stated, with both speeds, or farther
-/// off its course; a shape that cannot be made; or sections that change.
-///
+/// - the first time and place at which the motion is faster than stated, with both speeds, or
+///   farther from its stated displacement;
+/// - a shape that cannot be made;
+/// - sections that change.
 /// ```
 /// use parry_continuum::{Motion, RobotError, Speed, Tube, parry::math::{Pose, Real, Vector}, verify_motion};
 ///
@@ -76,8 +77,7 @@ pub fn verify_motion(motion: &impl Motion, steps: u32) -> Result<(), RobotError>
         (Tube::empty(), SectionSignature::default(), SampledShape::default());
     let (mut all, mut stated) = (Vec::new(), Vec::new());
     let mut ranges = Ranges::default();
-    // The first shape; then the last one of every step, of every second one, of every fourth and so
-    // on.
+    // The first shape, then the last shape of every step, every second, every fourth, and so on.
     let mut kept = Vec::<SampledShape>::new();
     for step in 0..=steps {
         let t = Real::from(step) / Real::from(steps);
@@ -93,7 +93,7 @@ pub fn verify_motion(motion: &impl Motion, steps: u32) -> Result<(), RobotError>
             let times = [Real::from(step - 1) / Real::from(steps), t];
             ranges.ways_and_angles(motion, &all, times, &mut stated);
             kept.iter_mut().for_each(|before| before.add(&stated));
-            // Those of every 2^k steps, if this is one, and the first.
+            // The first shape, and one for each power of two that divides the step.
             let met = 2 + step.trailing_zeros() as usize;
             for before in kept.iter().take(met) {
                 ranges.ways_and_angles(motion, &all, [before.t, t], &mut stated);
@@ -115,20 +115,20 @@ pub fn verify_motion(motion: &impl Motion, steps: u32) -> Result<(), RobotError>
     Ok(())
 }
 
-/// The ranges of shares that a motion is asked for.
+/// The ranges of shares for which bounds are requested.
 #[derive(Default)]
 struct Ranges {
-    /// How many steps were drawn for.
+    /// The number of draws.
     drawn: u32,
-    /// A drawn range reaches this part of the way from a place to either end of the section.
+    /// A drawn range reaches these fractions of the way from a place to either end of the section.
     parts: [Real; 2],
 }
 
-/// The section in 1, 2, 4 and 8 parts.
+/// Dyadic levels: the section in 1, 2, 4 and 8 parts.
 const LEVELS: u32 = 4;
 
 impl Ranges {
-    /// Draws the range of the next step: the same one for the same step.
+    /// Draws the range of the next step. The sequence is the same in every run.
     fn draw(&mut self) {
         self.drawn = self.drawn.wrapping_add(1);
         self.parts = [0, 1].map(|end| {
@@ -140,8 +140,8 @@ impl Ranges {
         });
     }
 
-    /// Those that belong to a place: it alone, all before it, all behind it, and what was drawn. Of
-    /// a chord, which lies between two such places, it alone.
+    /// Returns the ranges of a place: the place alone, all before it, all behind it, and the drawn
+    /// range. For a chord between two places: the chord alone.
     fn of_place(&self, [from, to]: [Real; 2]) -> impl Iterator<Item = [Real; 2]> + use<> {
         let [before, behind] = self.parts;
         let drawn = [(from * (1.0 - before)).min(from), (to + (1.0 - to) * behind).clamp(to, 1.0)];
@@ -149,8 +149,8 @@ impl Ranges {
         std::iter::once([from, to]).chain(around)
     }
 
-    /// How far each place may move, and by how much it may turn, between two times: the least that
-    /// is stated for a range of shares that holds it.
+    /// Writes for each place the least stated displacement and turn between two times, over all
+    /// ranges that contain it.
     fn ways_and_angles(
         &self,
         motion: &impl Motion,
@@ -183,12 +183,12 @@ impl Ranges {
     }
 }
 
-/// The smaller one; NaN if either is.
+/// Returns the smaller number; NaN if either is NaN.
 fn smaller(a: Real, b: Real) -> Real {
     if a <= b || a.is_nan() { a } else { b }
 }
 
-/// The parts of a section, level by level.
+/// Returns the dyadic ranges of a section, level by level.
 fn dyadic_ranges() -> impl Iterator<Item = [Real; 2]> {
     (0..LEVELS).flat_map(|level| {
         let count = 1_u32 << level;
@@ -196,13 +196,15 @@ fn dyadic_ranges() -> impl Iterator<Item = [Real; 2]> {
     })
 }
 
-/// Whether a range holds another one.
+/// Returns whether a range contains another one.
 fn holds(range: [Real; 2], shares: [Real; 2]) -> bool {
     range[0] <= shares[0] && shares[1] <= range[1]
 }
 
+/// Compares an earlier shape with a later one (step 2).
+///
 /// # Errors
-/// Something moved faster than stated on the way from an earlier shape to a later one.
+/// A place moved or turned faster than stated from the earlier shape to the later one.
 fn check(
     before: &SampledShape,
     here: &SampledShape,
@@ -214,7 +216,7 @@ fn check(
     for (number, (place, &whole)) in places.iter().zip(stated).enumerate() {
         let Some(PlaceMotion { way, angle }) = before.moved(here, number) else { continue };
         let steps = before.stated(number);
-        // Sums of fewer than 2^32 terms above 0, each of which has a few roundings.
+        // Covers the rounding of sums of fewer than 2^32 positive terms.
         let up = 1.0 + 2.0_f64.powi(34) * Real::UNIT_ROUNDOFF;
         let &SampledPlace { section, shares: [share, _] } = place;
         for (moved, [whole, steps], is_turn) in
@@ -237,8 +239,10 @@ fn check(
     Ok(())
 }
 
+/// Compares stated displacements with the shapes at the end and in the middle (step 4).
+///
 /// # Errors
-/// A place is farther off its course between two shapes than stated, at the last one or at the one
+/// A place is farther from its stated displacement than stated, at the last shape or at the one
 /// in the middle.
 fn check_courses(
     [before, here]: [&SampledShape; 2],
@@ -253,7 +257,7 @@ fn check_courses(
     for (number, place) in places.iter().enumerate() {
         let &SampledPlace { section, shares: [share, end] } = place;
         if share < end {
-            // A chord begins at a place that is asked about itself.
+            // The chord's start is a place of its own.
             continue;
         }
         if present != Some(section) {
@@ -276,7 +280,7 @@ fn check_courses(
             };
             let parts = middle.map(|middle| [left(before, middle), left(middle, here)]);
             for found in parts.into_iter().flatten().chain([left(before, here)]).flatten() {
-                // A few roundings of what is stated. Written so that NaN is too far off.
+                // Covers a few roundings. Written so that NaN is too far.
                 let stated = course.off;
                 let is_kept = found <= stated * (1.0 + 16.0 * Real::UNIT_ROUNDOFF);
                 if !is_kept {

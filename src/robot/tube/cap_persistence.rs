@@ -1,30 +1,35 @@
 //! Which flat ends stay flat while the robot moves.
 //!
-//! An end is flat by the radii alone, at the limits of the walks of Algorithm 1, or because it is
-//! less than a radius away from the last limit (`algorithm_1`, `faces`). Radii do not change during
-//! a motion. A distance between two points changes by no more than the points move: if it is D at
-//! one time and the points are v and w fast, then it is below the radius for a time tau before and
-//! after as long as D + tau (v + w) is.
+//! An end is flat for one of two reasons (`algorithm_1`, `faces`):
 //!
-//! At the joints of a curve none of that matters: round or flat, the tube is its discs (`faces`).
+//! 1. The radii: it is a limit of the walks of Algorithm 1. Radii are constant during a motion.
+//! 2. Its distance to the last limit is less than a radius.
 //!
-//! A chain may be capped by vertex radii instead. A link's radius r_k is then the smaller of its
-//! two vertices' R_k and R_k+1, and where r_k > r_k-1, R_k > R_k-1 too: every limit by the links'
-//! radii is one by the vertices'. Not the other way round: a single thick vertex is a limit that
-//! the links' radii don't show. So the true limit is the one that they show or a vertex between
-//! that and the end, and an end that is less than r_k <= R_k away from all of these is flat by
-//! either rule.
+//! # Reason 2 over time
+//! A distance changes by at most the movement of its two points. Let D be the distance at one time
+//! and v and w the speeds of the points. The distance stays below the radius for a time tau before
+//! and after if `D + tau (v + w)` does.
+//!
+//! At the joints of a curve this does not matter: round or flat, the tube is its discs (`faces`).
+//!
+//! # Chains by vertex radii
+//! The radius r_k of a link is then the smaller of its two vertices' R_k and R_k+1. If
+//! `r_k > r_k-1`, also `R_k > R_k-1`: every limit by links' radii is a limit by vertices' radii.
+//! The converse fails: a single thick vertex is a limit that the links' radii do not show. So the
+//! true limit is the shown one or a vertex between it and the end. An end that is less than
+//! `r_k <= R_k` away from all of these is flat by either rule.
 //!
 //! # Directions
-//! The flat ends of a section count as round in an interval of time in two cases. A ball around the
-//! end holds the disc then, whichever way the disc stands, so only the centreline's speed counts.
-//! 1. The section is marked (`fades`), and the way from its one end to the other changes by as much
-//!    as it is long. It may lose its length in the interval, and with it its direction.
+//! In two cases the flat ends of a section count as round in an interval of time. A ball around the
+//! end contains the disc for every direction, so only the centreline's speed matters.
+//!
+//! 1. The section is marked (`fades`), and the vector from its one end to the other changes by its
+//!    own length or more. The section may lose its length in the interval, and so its direction.
 //! 2. The section turns by more than [`MAX_TURN`] = 1 rad.
 //!
 //! **Claim.** In case 2 the ball is the closer bound. **Proof.** Let r be the radius and a > 1 the
-//! turn. A flat end counts r a in all directions. Every point of the ball is within r of the disc's
-//! centre, and r < r a.
+//! turn. A flat end costs `r a` in all directions. Every point of the ball is within r of the
+//! disc's centre, and `r < r a`.
 
 use super::Tube;
 use crate::distance::Scalar;
@@ -33,51 +38,50 @@ use parry3d_f64::math::Real;
 /// Whether a flat end is flat in other shapes of the robot, too.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum CapPersistence {
-    /// The robot's own two ends, and the wider side of a step in radius.
+    /// Flat by the radii: the robot's two ends, and the wider side of each step in radius.
     Always,
-    /// At a joint of a curve, whose tube is the same where it is round.
+    /// At a joint of a curve, where flat and round describe the same tube.
     Either,
-    /// For want of room behind such a face.
+    /// Flat while it is too near the limit (reason 2).
     WhileNear,
-    /// The same in a chain that may be capped by vertex radii: behind such a face, or any vertex
-    /// from there on.
+    /// As `WhileNear` in a chain that may be capped by vertex radii: too near the limit and every
+    /// vertex between the limit and the end.
     WhileAllNear,
-    /// Its direction is not known.
+    /// The direction is unknown.
     Never,
 }
 
-/// What turns farther than this, in rad, is held by a ball more closely than by discs.
+/// Beyond this turn, in rad, a ball is a closer bound than the discs (case 2).
 const MAX_TURN: Real = 1.0;
 
-/// A marked section has a direction if it is longer than this many times the rounding of a point.
+/// A marked section keeps its direction if it is longer than this many times the rounding error of
+/// a point.
 const MIN_LENGTH: Real = 8.0;
 
-/// How far sections move and turn from a shape until an interval of time ends, before it and after
-/// it.
+/// Bounds on how far sections move and turn from a shape to either end of an interval of time.
 pub(crate) trait Drift {
-    /// By how much an end of a section moves at most.
+    /// Upper bound on the movement of an end of a section.
     fn moves(&self, section: usize, end: usize) -> Real;
 
-    /// By how much the way from one end of a section to its other end changes at most.
+    /// Upper bound on the change of the vector from one end of a section to the other.
     fn stretches(&self, section: usize) -> Real;
 
-    /// By how much a section turns at most, in rad.
+    /// Upper bound on the turn of a section, rad.
     fn turns(&self, section: usize) -> Real;
 
-    /// Whether intervals can be so short that what turns so far in this one turns by less than 1
-    /// rad.
+    /// Returns whether shorter intervals can reduce this turn below 1 rad.
     fn can_follow(&self, turn: Real) -> bool;
 }
 
 impl CapPersistence {
-    /// Whether a body with this flat end holds the tube at other times, too.
+    /// Returns whether a bounding body with this flat end contains the tube at other times, too.
     pub(crate) fn is_safe(self) -> bool {
         matches!(self, Self::Always | Self::Either)
     }
 }
 
 impl Tube {
-    /// Marks the flat ends that are so by the radii alone.
+    /// Marks the ends that are flat by the radii alone (reason 1).
     pub(crate) fn mark_persistent_faces(&mut self) {
         for end in [0, 1] {
             self.walk(end, |tube, number, limit| {
@@ -95,20 +99,23 @@ impl Tube {
         self.sections[number].fades = true;
     }
 
-    /// How long a section is.
+    /// Returns the length of a section.
     pub(crate) fn length_of(&self, number: usize) -> Real {
         self.sections[number].end - self.sections[number].start
     }
 
-    /// States how far the direction of a link may be off whose ends are rounded.
+    /// States the uncertainty of a link's direction, due to rounding of its ends.
     pub(crate) fn tilt_faces(&mut self, number: usize, tilt: Real) {
         for face in self.sections[number].faces.iter_mut().flatten() {
             face.tilt = tilt;
         }
     }
 
-    /// Marks the flat ends that stay so for a time, and the sections whose direction may get lost
-    /// in it. By how much those that may not stay so move, with their limits, is returned.
+    /// Marks the ends that stay flat in an interval, and the sections that may lose their
+    /// direction.
+    ///
+    /// Returns an upper bound on the movement, relative to their limits, of the ends that may not
+    /// stay flat.
     pub(crate) fn mark_lasting_faces_between(&mut self, drift: &impl Drift) -> Real {
         let rounding = 16.0 * Real::UNIT_ROUNDOFF * self.reach;
         let mut opening = self.mark_lost_directions(drift, rounding);
@@ -143,15 +150,16 @@ impl Tube {
         opening
     }
 
-    /// Marks the sections whose flat ends count as round in the interval (cases 1 and 2). By how
-    /// much the rims of the latter move is returned, if a shorter interval helps.
+    /// Marks the sections whose flat ends count as round in the interval (cases 1 and 2).
+    ///
+    /// Returns the movement of the rims in case 2, if a shorter interval helps.
     fn mark_lost_directions(&mut self, drift: &impl Drift, rounding: Real) -> Real {
         let mut opening: Real = 0.0;
         for (number, section) in self.sections.iter_mut().enumerate() {
             if section.radius <= 0.0 || section.faces.iter().all(Option::is_none) {
                 continue;
             }
-            // Both written so that NaN loses the direction.
+            // Both are written so that NaN loses the direction.
             let length = section.end - section.start;
             let keeps_length =
                 !section.fades || length > drift.stretches(number) + MIN_LENGTH * rounding;

@@ -6,11 +6,10 @@ use crate::robot::scale::direction;
 use parry3d_f64::math::{Real, Vector};
 use std::sync::Arc;
 
-/// A point and the direction of the curve there, by arc length.
+/// Maps an arc length to the curve's point and direction.
 type Function = dyn Fn(Real) -> (Vector, Vector) + Send + Sync;
 
-/// How many ticks a section of a function has: more than any tolerance asks for that double
-/// precision can tell.
+/// Ticks per section of a function: finer than any tolerance that double precision resolves.
 pub(super) const TICKS: u32 = 1 << 20;
 
 /// Points on a centreline.
@@ -19,15 +18,15 @@ pub(super) struct Samples {
     pub points: Vec<Vector>,
     /// The length of the polyline up to each point.
     pub arcs: Vec<Real>,
-    /// For each point the segment of the input that begins there.
+    /// For each point the input segment that begins there.
     pub segments: Vec<u32>,
-    /// For each point what is known of the curve from there to the next; none if all sections are
+    /// For each point the bounds on the curve from there to the next; empty if all sections are
     /// even.
     pub bounds: Vec<CurveBound>,
 }
 
 impl Samples {
-    /// No points are left; the memory is.
+    /// Removes all points and keeps the memory.
     pub(super) fn clear(&mut self) {
         self.points.clear();
         self.arcs.clear();
@@ -35,7 +34,7 @@ impl Samples {
         self.bounds.clear();
     }
 
-    /// Makes room for so many points in all.
+    /// Reserves capacity for `points` points in total.
     pub(super) fn reserve(&mut self, points: usize) {
         self.points.reserve(points.saturating_sub(self.points.len()));
         self.arcs.reserve(points.saturating_sub(self.arcs.len()));
@@ -43,12 +42,12 @@ impl Samples {
         self.bounds.reserve(points.saturating_sub(self.bounds.len()));
     }
 
-    /// The length of the polyline.
+    /// Returns the length of the polyline.
     pub(super) fn length(&self) -> Real {
         self.arcs.last().copied().unwrap_or(0.0)
     }
 
-    /// Adds a point of a segment of the input.
+    /// Appends a point; `segment` is the input segment that leads to it.
     pub(super) fn push(&mut self, segment: u32, NextPoint { point, length, bound }: NextPoint) {
         self.arcs.push(self.length() + length);
         self.points.push(point);
@@ -57,21 +56,21 @@ impl Samples {
     }
 }
 
-/// A point of a curve behind another.
+/// A point to append to a curve.
 pub(super) struct NextPoint {
     pub point: Vector,
-    /// The length of the curve from the point before.
+    /// The arc length from the previous point.
     pub length: Real,
-    /// What is known of the curve between the two.
+    /// The bounds on the curve between the two points.
     pub bound: CurveBound,
 }
 
-/// What is known of a stretch of a curve.
+/// Bounds on a part of a curve.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct CurveBound {
-    /// Its curvature is at most this.
+    /// Upper bound on the curvature.
     pub curvature: Real,
-    /// How far its points may be from where they are said to be.
+    /// Upper bound on the distance of the curve's points from their nominal places.
     pub off: Real,
 }
 
@@ -87,15 +86,14 @@ pub(super) enum Curve {
     Function(Arc<Function>),
 }
 
-/// Where a section is near a point: on the line between two points of its polyline, or at a point
-/// of its curve.
+/// The place of a section near a point: on a segment of its polyline, or a point of its function.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Foot {
     pub between: [Vector; 2],
-    /// From the one to the other.
+    /// The position between the two points, from 0 to 1.
     pub share: Real,
     pub arc: Real,
-    /// How far the curve may be from the place.
+    /// Upper bound on the distance of the curve from the place.
     pub off: Real,
 }
 
@@ -103,11 +101,11 @@ pub(crate) struct Foot {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PlaceOnCurve {
     pub point: Vector,
-    /// How far off the point may be.
+    /// Upper bound on the error of the point.
     pub off: Real,
-    /// The unit direction.
+    /// The unit tangent.
     pub direction: Vector,
-    /// How far off that may be.
+    /// Upper bound on the error of the direction, rad.
     pub tilt: Real,
 }
 
@@ -119,7 +117,7 @@ impl Clone for Curve {
         }
     }
 
-    /// In the memory that it has.
+    /// Reuses the memory.
     fn clone_from(&mut self, source: &Self) {
         match (&mut *self, source) {
             (Self::Samples(samples), Self::Samples(source)) => {
@@ -140,7 +138,7 @@ impl Default for Curve {
 }
 
 impl Curve {
-    /// The memory of samples.
+    /// Returns the memory of the samples.
     pub(super) fn into_samples(self) -> Samples {
         match self {
             Self::Samples(samples) => samples,
@@ -148,7 +146,7 @@ impl Curve {
         }
     }
 
-    /// What is known of the curve between two ticks of a section.
+    /// Returns the bounds on the curve between two ticks of a section.
     pub(super) fn bound(&self, section: &Section, [from, to]: [u32; 2]) -> CurveBound {
         match self {
             Self::Samples(Samples { bounds, .. }) if !section.is_even => {
@@ -159,7 +157,7 @@ impl Curve {
         }
     }
 
-    /// The segment of the input at an arc length of a section; none where the curve is a function.
+    /// Returns the input segment at an arc length of a section; `None` if the curve is a function.
     pub(super) fn segment(&self, section: &Section, arc: Real) -> Option<u32> {
         let Self::Samples(Samples { segments, .. }) = self else { return None };
         let from = self.tick(section, arc).saturating_sub(1).max(section.first);
@@ -180,7 +178,7 @@ impl Curve {
         }
     }
 
-    /// The first tick at an arc length or behind it.
+    /// Returns the first tick at an arc length or behind it.
     pub(super) fn tick(&self, section: &Section, arc: Real) -> u32 {
         match self {
             Self::Samples(Samples { arcs, .. }) => {
@@ -190,13 +188,13 @@ impl Curve {
             }
             Self::Function(_) => {
                 let share = (arc - section.start) / (section.end - section.start);
-                // A number out of range becomes the nearest that is in it.
+                // The conversion saturates.
                 ((share * Real::from(TICKS)).ceil() as u32).min(TICKS)
             }
         }
     }
 
-    /// The place of a tick as a share of the section's length; 0 and 1 at its ends.
+    /// Returns a tick's place as a share of the section's length: 0 and 1 at its ends.
     pub(super) fn share(&self, section: &Section, tick: u32) -> Real {
         match self {
             _ if tick <= section.first => 0.0,
@@ -208,11 +206,12 @@ impl Curve {
         }
     }
 
-    /// The last tick at a share or before it, and the first tick at another or behind that.
+    /// Returns the last tick at or before the first share, and the first tick at or behind the
+    /// second share.
     pub(super) fn ticks_around(&self, section: &Section, shares: [Real; 2]) -> [u32; 2] {
         match self {
             Self::Samples(_) => {
-                // The search through samples by their shares; those before `tick` come first.
+                // Binary search by share. Ticks that satisfy `is_before` come first.
                 let count = |is_before: &dyn Fn(Real) -> bool| {
                     let (mut low, mut high) = (section.first, section.last);
                     while low < high {
@@ -235,33 +234,31 @@ impl Curve {
                 [from.min(section.last - 1), to.max(section.first + 1)]
             }
             Self::Function(_) => {
-                // Numbers out of range become the nearest that are in it.
+                // The conversion saturates.
                 let [from, to] = shares.map(|share| share * Real::from(TICKS));
                 [(from.floor() as u32).min(TICKS - 1), (to.ceil() as u32).clamp(1, TICKS)]
             }
         }
     }
 
-    /// The place at a share of the section: between two samples, at the same share of the line
-    /// between them.
+    /// Returns the place at a share of the section; for samples, at that share of the segment.
     ///
-    /// There a curve of curvature k or less, l long between the two, is at most k l^2 u (1 - u) / 2
-    /// away at its share u.
+    /// A curve of curvature at most k and length l between two samples is at most
+    /// `k l^2 u (1 - u) / 2` from the segment at its share u.
     pub(super) fn at_share(&self, section: &Section, share: Real) -> PlaceOnCurve {
         match self {
             Self::Samples(Samples { points, arcs, .. }) => {
                 let [from, to] = self.ticks_around(section, [share; 2]);
-                // At a sample the segment before it or behind it.
+                // At a sample: the segment before or behind it.
                 let (from, to) = (from as usize, (to as usize).max(from as usize + 1));
                 let (a, b) = (points[from], points[to]);
                 let [before, behind] = [from, to].map(|tick| self.share(section, tick as u32));
                 let along = (share - before) / (behind - before);
-                // What the curve may turn by, and what the rounding of a few operations can turn
-                // the line by.
+                // The tilt has three parts: the turn of the curve, the rounding of the segment's
+                // ends, and their stated error.
                 let length = arcs[to] - arcs[from];
                 let rounding = 32.0 * Real::UNIT_ROUNDOFF * a.abs().max(b.abs()).max_element();
-                // A length that vanishes beside those before it, as a sum, says nothing of a
-                // direction.
+                // A length that vanishes in the sum of lengths determines no direction.
                 let rounded = if length > 0.0 { rounding / length } else { Real::INFINITY };
                 let bound = self.bound(section, [from as u32, to as u32]);
                 let apart = if length > 0.0 { 2.0 * bound.off / length } else { Real::INFINITY };
@@ -276,8 +273,8 @@ impl Curve {
         }
     }
 
-    /// A place of the section near `point`, found from an arc length nearby: not always the
-    /// nearest, but always on the section.
+    /// Returns a place of the section near `point`, searched from a nearby arc length. It is always
+    /// on the section, but not always the nearest.
     pub(super) fn foot(&self, section: &Section, arc: Real, point: Vector) -> Foot {
         match self {
             Self::Samples(Samples { points, arcs, .. }) => {
@@ -298,13 +295,13 @@ fn arc_of(section: &Section, tick: u32) -> Real {
     section.start + (section.end - section.start) * share
 }
 
-/// How far a curve may be from a share of the line between two of its points, if it is so long
-/// between them.
+/// Upper bound on the distance of a curve of length `length` from a share of its chord.
 fn beside_chord(bound: &CurveBound, length: Real, share: Real) -> Real {
     0.5 * bound.curvature * length * length * (share * (1.0 - share)).max(0.0) + bound.off
 }
 
-/// Along the samples `first..`, from sample `from`, with the sample before it.
+/// Searches the samples from index `first`, starting at index `from`. Returns the place and the
+/// sample before it.
 fn foot_on_samples(
     points: &[Vector],
     arcs: &[Real],
@@ -315,12 +312,12 @@ fn foot_on_samples(
     let last = points.len() - 1;
     let squared = |k: usize| (point - points[k]).length_squared();
     let mut nearest = from;
-    // Leaps along the tangent, then step by step.
+    // First leaps along the tangent, then single steps.
     for _ in 0..3 {
         let end = (nearest + 1).min(last);
         let step = points[end] - points[end - 1];
         let leap = (point - points[nearest]).dot(step) / step.length_squared();
-        // A number out of range becomes the nearest that is in it, and NaN becomes 0.
+        // The conversion saturates; NaN becomes 0.
         let to = ((nearest as Real + leap.round()) as usize).max(first).min(last);
         if squared(to) >= squared(nearest) {
             break;
@@ -355,7 +352,7 @@ fn foot_on_samples(
     if behind.0 < before.0 { behind.1 } else { before.1 }
 }
 
-/// By steps along the tangent, as long as they bring the curve nearer.
+/// Takes steps along the tangent while they reduce the distance.
 fn foot_on_function(curve: &Function, section: &Section, from: Real, point: Vector) -> Foot {
     let mut arc = from.max(section.start).min(section.end);
     let (mut place, mut direction) = curve(arc);

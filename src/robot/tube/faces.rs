@@ -1,27 +1,42 @@
 //! Which ends of a curve's sections are flat.
 //!
-//! The tube is its discs. Where one section goes on in the next, without a step or within a wider
-//! one, a ball at the end lies in discs of the tube, and a body with a round end is cheaper to find
-//! than one with a face. So the walks of Algorithm 1 (`algorithm_1`) decide here too, but a curve
-//! asks for more than the printed distance between limit and joint: a ball one radius away on a
-//! bent centreline sticks out of the limit's face.
+//! The tube is the union of its discs. At the end of a section that continues in the next one,
+//! without a step or within a wider one, a ball lies in the tube's discs. A bounding body with a
+//! round end is cheaper to search than one with a face, so such ends are round. The walks of
+//! Algorithm 1 (`algorithm_1`) decide it. A curve needs a stricter test than the printed distance
+//! between limit and joint: on a bent centreline, a ball one radius away may stick out of the
+//! limit's face.
 //!
-//! Let the ball have the radius r and the centre e, let p be the limit, the centre of the last
-//! face, and x a point of the ball behind the plane across the curve at e. Radii do not grow from p
-//! to e, so each disc between them is as wide as r or wider. If the centreline between p and e is
-//! nearest to x inside, x is in the plane of a disc, and no farther from its centre than from e: x
-//! is in it. If it is nearest at e, x is in the plane there. What remains is an x that is nearest
-//! to p and ahead of the face's plane. There is none
-//! - if the whole ball is behind that plane: e is at least r behind it. Of a normal known to an
-//!   angle a, |e - p| a less is certain;
-//! - if |e - p| > 2 r: x is within r of e, so it is nearer to e than to p.
+//! # Definitions
+//! - `e`: the centre of the end. `r`: its radius. The ball: radius r around e.
+//! - `p`: the limit, the centre of the last face. `a`: the tilt of that face.
+//! - `x`: a point of the ball behind the plane across the curve at e.
 //!
-//! The rest of the ball is in the section's own discs, in the ball at its other end, or ahead of
-//! its other face, which cuts the ball off.
+//! # Claim
+//! The ball lies in the tube if one of two conditions holds:
 //!
-//! Otherwise the end is flat. That is right at any joint, since discs are all that there is. If
-//! rounding takes for round what is not, the ball sticks out by that rounding, and by no more from
-//! the discs behind the plane.
+//! 1. e is at least r behind the plane of the face at p. With a normal known up to the angle a, e
+//!    is certainly behind it by the computed depth minus `|e - p| a`.
+//! 2. `|e - p| > 2 r`.
+//!
+//! # Proof
+//! Radii do not grow from p to e, so each disc between them has at least the radius r. Consider the
+//! point of the centreline between p and e that is nearest to x.
+//!
+//! - An inner point: x lies in the plane of its disc, and no farther from its centre than from e.
+//!   So x lies in the disc.
+//! - The point e: x lies in the plane of the disc at e.
+//! - The point p: x may lie ahead of the plane of the face. Condition 1 excludes this, because the
+//!   whole ball is behind that plane. Condition 2 excludes it, because x is within r of e and so
+//!   nearer to e than to p.
+//!
+//! The rest of the ball lies in the section's own discs, or in the ball at its other end. A face at
+//! the other end cuts the ball off.
+//!
+//! Otherwise the end is flat. That is right at any joint, since the tube is its discs.
+//!
+//! # Rounding
+//! If rounding makes an end round that is flat, the ball sticks out by that rounding at most.
 
 use super::Tube;
 use super::section::EndFace;
@@ -29,8 +44,8 @@ use crate::robot::radius_steps::RadiusSteps;
 use parry3d_f64::math::Vector;
 
 impl Tube {
-    /// One walk of Algorithm 1: each section with the one at whose end the last limit is, which
-    /// comes before it.
+    /// One walk of Algorithm 1. Calls `visit` with each section and the section of the last limit,
+    /// which comes before it or is the same.
     pub(super) fn walk(&mut self, end: usize, mut visit: impl FnMut(&mut Self, usize, usize)) {
         let count = self.sections.len();
         let (mut limit, mut steps) = (0, RadiusSteps::default());
@@ -43,8 +58,8 @@ impl Tube {
         }
     }
 
-    /// Whether a section of a curve is flat at an end with this centre, if the last limit is at
-    /// that end of `limit`.
+    /// Returns whether a section is flat at an end with this centre, if the last limit is at that
+    /// end of the section `limit`.
     pub(super) fn is_flat(&self, end: usize, number: usize, limit: usize, centre: Vector) -> bool {
         let radius = self.sections[number].radius;
         let is_free = |limit: EndFace| {

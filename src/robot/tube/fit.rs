@@ -1,24 +1,31 @@
 //! A tube fitted to measured points.
 //!
-//! The points are off by the noise of a sensor. A smoothing spline goes near them, as smooth as
-//! cross-validation finds best; where that is farther from a point than the stated deviation,
-//! forces draw it near (`within`). Its parameter is its own arc length: the first one is the length
-//! of the polyline, which noise makes far too long where points are dense, and two more splines are
-//! fitted by the lengths of the last one. A number of splines that does not depend on the points is
-//! tried, each in time proportional to their number.
+//! # Algorithm
+//! 1. **Parameter.** The length of the polyline. Noise makes it far too long if points are dense,
+//!    so steps 2 and 1 repeat with the lengths of the last spline ([`PASSES`] parameters in all).
+//! 2. **Smooth.** A smoothing spline near the points; cross-validation chooses the weight (`best`).
+//! 3. **Draw near.** If the spline is farther from a point than the stated deviation, forces draw
+//!    it near (`within`).
+//! 4. **Lay** the tube along the spline (`lay`).
 //!
-//! **What its bounds hold for.** All tubes whose centreline is within the deviation of the fitted
-//! one, in place: each of its points is that near to its counterpart. Nothing is known of
-//! directions. A disc of the tube lies in the ball of its radius around its centre, however it is
-//! turned; so bodies around balls, wider by the deviation, hold the tube. From the inside: let q be
-//! the centreline's point nearest to x. Unless q is an end of its section, x is in the plane of the
-//! disc there, and |x - q| - r away or less, where |x - q| is at most the deviation more than from
-//! any point of the fitted curve. If q may be an end, its centre is a point of the tube at least.
-//! So the only places where a direction is missed are flat faces: there the bounds are a radius
-//! apart, and that is what not stating a direction costs.
+//! The number of splines does not depend on the points. Each takes time proportional to their
+//! number.
 //!
-//! With a stated `turn`, every direction near a face is within it of the fitted one, and the
-//! derivation of bodies at a face holds with the tilt `turn` (`pieces::bounding_body`).
+//! # What the bounds cover
+//! All tubes whose centreline is within the deviation of the fitted one, point by point. Directions
+//! are unknown.
+//!
+//! 1. **From outside.** For every direction a disc lies in the ball of its radius around its
+//!    centre. So bodies around balls, enlarged by the deviation, contain the tube.
+//! 2. **From inside.** Let q be the centreline's point nearest to x. Unless q is an end of its
+//!    section, x lies in the plane of the disc at q, at most `|x - q| - r` away from it. And
+//!    `|x - q|` is at most the deviation more than the distance of x from any point of the fitted
+//!    curve. If q may be an end, its centre is still a point of the tube.
+//! 3. **Flat faces.** Only here is the direction missed: the bounds are a radius apart. This is the
+//!    cost of an unstated direction.
+//!
+//! With a stated `turn`, every direction near a face is within it of the fitted direction. The
+//! derivation of bodies at a face then holds with the tilt `turn` (`pieces::bounding_body`).
 
 use super::Tube;
 use super::curve::{CurveBound, NextPoint};
@@ -31,37 +38,38 @@ use crate::robot::chain::check_segments;
 use crate::robot::scale::direction;
 use parry3d_f64::math::{Real, Vector};
 
-/// Knots closer than this share of their mean distance are set so far apart.
+/// Least distance of knots, as a share of their mean distance.
 const CLOSEST: Real = 1.0 / (1 << 20) as Real;
 
-/// How often the parameter is set anew.
+/// Number of parameters, each from the lengths of the previous spline.
 const PASSES: u32 = 3;
 
-/// In how many steps forces are looked for that bring the spline within the deviation, and for how
-/// many weights.
+/// Most steps of the search for forces per weight, and most weights.
 const MAX_STEPS: u32 = 200;
 const MAX_SOFTENED: u32 = 32;
 
-/// A segment is laid in no more parts.
+/// Most parts into which a segment is laid.
 const MAX_PARTS: u32 = 64;
 
 impl Tube {
-    /// The tube around a smooth curve within `deviation` of each of the measured `points`, with one
-    /// radius for each segment between them. Steps in radius stay at their points. `deviation`
-    /// is how far a point may be from the truth: five times the standard deviation of a sensor,
-    /// say. Points may lie as densely as they like, and repeat.
+    /// Fits the tube around a smooth curve within `deviation` of each of the measured `points`.
     ///
-    /// All bounds of answers hold for every tube whose centreline is within `deviation` of the
-    /// fitted one, point by point, however it wriggles in between. So they hold for the robot
-    /// if that is within `deviation` of the curve that you see. At flat faces it matters which
-    /// way the centreline leads, too. As long as that is not stated, the lower bound takes a face
-    /// for a ball and the upper one for its centre, so they stay a radius apart there;
-    /// [`with_turn`](Self::with_turn) states it. Both are part of an answer's `uncertainty`,
-    /// and none of the tolerance.
+    /// - `points`: base to tip, in the robot's frame. They may be dense and may repeat.
+    /// - `segment_radii`: one radius per segment. Steps in radius stay at their points.
+    /// - `deviation`: the largest error of a point, for example five times the standard deviation
+    ///   of a sensor, in the unit of the points.
     ///
-    /// The curve is a cubic smoothing spline, as smooth as cross-validation finds best (see the
-    /// source for references). How far it is from the points is its
-    /// [`residual`](Self::residual).
+    /// All bounds hold for every tube whose centreline is within `deviation` of the fitted one,
+    /// point by point, with any shape in between. So they hold for the robot if it is within
+    /// `deviation` of the curve that you see.
+    ///
+    /// Flat faces also depend on the centreline's direction. Unless it is stated by
+    /// [`with_turn`](Self::with_turn), the lower bound takes a face for a ball and the upper bound
+    /// takes it for its centre. So the two stay a radius apart there. Deviation and unknown
+    /// direction are part of an answer's `uncertainty`, not of the tolerance.
+    ///
+    /// The curve is a cubic smoothing spline whose smoothness cross-validation chooses (see the
+    /// source for references). [`residual`](Self::residual) is its distance from the points.
     ///
     /// ```
     /// use parry_continuum::{Tube, parry::math::Vector};
@@ -74,9 +82,10 @@ impl Tube {
     /// ```
     ///
     /// # Errors
-    /// As [`Chain::from_centreline`](crate::Chain::from_centreline); a deviation that is negative
-    /// or not finite; points so far apart that the curve within the deviation could turn by
-    /// more than 1 rad in a 64th of the way from one to the next.
+    /// - As [`Chain::from_centreline`](crate::Chain::from_centreline);
+    /// - a deviation that is negative or not finite;
+    /// - points so far apart that the curve within the deviation could turn by more than 1 rad in a
+    ///   64th of the way from one to the next.
     pub fn fit(
         points: &[Vector],
         segment_radii: &[Real],
@@ -86,7 +95,8 @@ impl Tube {
         if !(0.0..Real::INFINITY).contains(&deviation) {
             return Err(RobotError::Negative { parameter: "deviation", value: deviation });
         }
-        // Squares of lengths neither overflow nor vanish at a size near 1, around the first point.
+        // At a size near 1 around the first point, squares of lengths neither overflow nor
+        // underflow.
         let origin = points[0];
         let reach = points
             .iter()
@@ -109,12 +119,12 @@ impl Tube {
     }
 }
 
-/// The spline near points at the size 1.
+/// Steps 1 to 3 for points scaled near 1.
 pub(super) fn smooth(points: &[Vector], deviation: Real) -> SmoothingSpline {
     let mut knots = knots_apart(points.windows(2).map(|pair| (pair[1] - pair[0]).length()));
     for _ in 1..PASSES {
         let (spline, _) = best(&knots, points);
-        // The lengths of the spline between its knots, by their chords and a point between.
+        // The lengths of the spline between its knots, from two chords each.
         knots = knots_apart((0..points.len() - 1).map(|k| {
             let middle = spline.at(k, 0.5)[0];
             (middle - spline.values[k]).length() + (spline.values[k + 1] - middle).length()
@@ -124,7 +134,7 @@ pub(super) fn smooth(points: &[Vector], deviation: Real) -> SmoothingSpline {
     within(deviation, spline, &knots, points, weight)
 }
 
-/// Ascending numbers with these distances, none of them nearly 0.
+/// Returns ascending knots with these distances, each at least [`CLOSEST`] of their mean.
 fn knots_apart(lengths: impl Iterator<Item = Real> + Clone) -> Vec<Real> {
     let (sum, count) =
         lengths.clone().fold((0.0, 0), |(sum, count), length| (sum + length, count + 1));
@@ -138,7 +148,7 @@ fn knots_apart(lengths: impl Iterator<Item = Real> + Clone) -> Vec<Real> {
     knots
 }
 
-/// The spline with the best score, and its weight.
+/// Returns the spline with the best score, and its weight (step 2).
 fn best(knots: &[Real], points: &[Vector]) -> (SmoothingSpline, Real) {
     let weights = Weights::of(knots);
     let weight =
@@ -146,15 +156,15 @@ fn best(knots: &[Real], points: &[Vector]) -> (SmoothingSpline, Real) {
     (Smoother::new(knots, weight).spline(points), weight)
 }
 
-/// The spline itself if it is within the deviation of each point; or else the smoothest one that
-/// is, about.
+/// Returns the spline if it is within the deviation of each point, otherwise approximately the
+/// smoothest spline that is (step 3).
 ///
-/// That is the least of the same sum under the condition that each residual is short enough. The
-/// condition acts like a force on each point that is too far away: the spline of points that are
-/// moved by the forces. Of what is least as it depends on the forces, a residual is the slope,
-/// which changes by no more than they do. So the forces are found by accelerated steps along it (A.
-/// Beck, M. Teboulle, SIAM Journal on Imaging Sciences 2, 2009), each shortened by what a
-/// residual may be.
+/// That spline minimises the same sum under the condition that each residual is short enough. The
+/// condition acts like a force on each point that is too far away: the result is the spline of the
+/// points moved by the forces. As a function of the forces, the minimum has the residual as its
+/// gradient, which changes by at most as much as the forces. So the forces are found by accelerated
+/// gradient steps (A. Beck, M. Teboulle, SIAM Journal on Imaging Sciences 2, 2009), each shortened
+/// by the admissible residual.
 fn within(
     deviation: Real,
     mut spline: SmoothingSpline,
@@ -170,8 +180,8 @@ fn within(
         (vec![Vector::ZERO; points.len()], vec![Vector::ZERO; points.len()]);
     for _ in 0..MAX_SOFTENED {
         let smoother = Smoother::new(knots, weight);
-        // A softer spline gives way to smaller forces; and where it is far too stiff, forces would
-        // only bend it in jerks.
+        // A softer spline yields to smaller forces. On a far too stiff spline, forces cause jerks
+        // only.
         weight /= 16.0;
         smoother.fill(points.iter().copied(), &mut spline);
         if spline.largest_residual(points) > 4.0 * deviation {
@@ -203,7 +213,7 @@ fn within(
     Smoother::new(knots, 0.0).spline(points)
 }
 
-/// The weights that are tried, from a spline that follows each point to a straight line, in even
+/// The weights that are tried: from a spline that follows each point to a straight line, in even
 /// steps of their logarithm.
 struct Weights {
     spacing: Real,
@@ -220,7 +230,8 @@ impl Weights {
         Self { spacing, shortest: 0.3 * spacing, longest: 2.0 * length }
     }
 
-    /// A spline levels what is shorter than (weight * spacing)^(1/4).
+    /// Returns the weight at a step. A spline levels features shorter than
+    /// `(weight spacing)^(1/4)`.
     fn at(&self, step: Real) -> Real {
         let Self { spacing, shortest, longest } = self;
         let over =
@@ -228,7 +239,7 @@ impl Weights {
         over * over * (over * over / spacing)
     }
 
-    /// The step with the least score, to a 16th.
+    /// Returns the step with the least score, to 1/16.
     fn best(&self, score: impl Fn(Real) -> Real) -> Real {
         let mut best = (Real::INFINITY, 0.0);
         let mut take = |step: Real| {
@@ -251,10 +262,10 @@ impl Weights {
     }
 }
 
-/// Lays the tube along the spline.
+/// Lays the tube along the spline (step 4).
 ///
 /// # Errors
-/// It turns by more than 1 rad within a part, or bends within its radius next to a face.
+/// The tube turns by more than 1 rad within a part, or bends within its radius next to a face.
 fn lay(
     tube: &mut Tube,
     spline: &SmoothingSpline,
@@ -268,7 +279,7 @@ fn lay(
     let curve = std::mem::take(&mut tube.curve);
     let mut builder =
         TubeBuilder::begin(curve, std::mem::take(&mut tube.sections), place(spline.values[0]));
-    // Chords leave the curve by little beside what is open anyway.
+    // Chords leave the curve by little compared with the deviation.
     let target = (deviation / 64.0).max(2.0_f64.powi(-24));
     let (mut stretched, mut gap): (Real, Real) = (1.0, 0.0);
     let mut last = spline.values[0];
@@ -294,7 +305,7 @@ fn lay(
                 .into_iter()
                 .fold(0.0, Real::max);
             let halfway = spline.at(k, 0.5 * (from + to))[1].length();
-            // Where it may stand still, it may turn at once.
+            // If the spline may stand still, it may turn at once.
             let slowest = (halfway - 0.5 * most * h / Real::from(parts)).max(0.0);
             let curvature =
                 if most > 0.0 { most / (slowest * slowest) * (1.0 + 1e-12) } else { 0.0 };

@@ -1,15 +1,17 @@
-//! A tube from frames: points of the centreline with the directions that it has there. What is
-//! assumed between two of them is told in `hermite_segment`.
+//! A tube from frames: points of the centreline with the directions of the curve there. The
+//! assumption about the curve between two frames is in `hermite_segment`.
 //!
-//! **A frame that is taken twice**, as where one section ends and the next begins. The curve
-//! arrives in the direction of the first and leaves in that of the last. Let q be by how much these
-//! differ. A curve that turned by q there would have a corner: the discs between the two would
-//! sweep the ball around the point, of which no arch knows and no face. So a corner is refused. But
-//! what is left of one direction by matrices in single precision, q <= 2^-16, is none. Then either
-//! direction may be the true one. Each disc is within r q of one that the tube has; and an arch of
-//! length l that left in the other direction would be off by up to 4/27 q l, the most that a cubic
-//! moves by a change of q in one of its end tangents. Both count in all bounds like the gap between
-//! the points.
+//! # Frames taken twice
+//! Two frames may be at one place, for example where one section ends and the next begins. The
+//! curve arrives in the direction of the first and leaves in the direction of the last. Let q be
+//! the difference between the two directions.
+//!
+//! 1. `q > 2^-16`: refused. The curve would have a corner. The discs between the two directions
+//!    would sweep the ball around the point, which no segment and no face accounts for.
+//! 2. `q <= 2^-16`: rounding by matrices in single precision. Either direction may be the true one.
+//!    Each disc is within `r q` of a disc of the tube, where r is the radius. A segment of length l
+//!    that left in the other direction would be off by at most `4/27 q l`, the effect of q in an
+//!    end tangent of a cubic. Both count in all bounds, like the gap between the points.
 
 use super::Tube;
 use super::hermite_segment::HermiteSegment;
@@ -21,10 +23,10 @@ use crate::robot::radius_steps::is_same;
 use crate::robot::scale::direction;
 use parry3d_f64::math::{Real, Vector};
 
-/// How far the directions of two frames at one place may be apart.
+/// Largest difference between the directions of two frames at one place.
 pub(super) const ONE_DIRECTION: Real = 1.0 / (1_u64 << 16) as Real;
 
-/// The two neighbours of an arch on either side, as far as there are any.
+/// Returns the two nearest neighbours of a segment on either side, if there are any.
 fn around<'a>(
     number: usize,
     find: impl Fn(usize) -> Option<&'a HermiteSegment>,
@@ -36,21 +38,26 @@ fn around<'a>(
 }
 
 impl Tube {
-    /// The tube around a smooth curve through `points` in the directions `tangents` (of any length,
-    /// towards the tip), with one radius for each segment between them: what a forward
-    /// kinematics computes. Directions make the curve known far better than points alone; so
-    /// few of them serve, and flat faces are known at steps in radius too.
+    /// Builds the tube around a smooth curve through `points` in the directions `tangents`.
+    ///
+    /// - `points`: places on the centreline, base to tip, in the robot's frame.
+    /// - `tangents`: one direction per point, towards the tip, of any length. A forward kinematics
+    ///   computes both.
+    /// - `segment_radii`: one radius per segment.
+    ///
+    /// Directions determine the curve far better than points alone. Fewer points are needed, and
+    /// the directions of flat faces are known at steps in radius too.
     ///
     /// Between two frames the curve may bend as the directions show there and in the neighbouring
-    /// segments of the section, and anything between; its curvature may jump from the one to
-    /// the other at any place. In a section of one segment the bend changes one way only,
-    /// evenly or in jumps. What that leaves open counts in the bounds of each answer, and is
-    /// nearly nothing in an arc. A bend that is shorter than a segment, or sharper than in its
-    /// segment and its neighbours, is not covered: give more frames there.
+    /// segments of the section, or anything in between. Its curvature may jump anywhere. In a
+    /// section of one segment the bend changes in one sense only, evenly or in jumps. The bounds of
+    /// each answer include the remaining uncertainty, which is nearly zero on an arc. A bend
+    /// shorter than a segment, or sharper than in its segment and the neighbours, is not covered:
+    /// give more frames there.
     ///
-    /// Points at one place and radii are taken as [`from_samples`](Self::from_samples) takes them.
-    /// A frame may be taken twice, its directions up to 2^-16 rad apart, which counts in all
-    /// bounds.
+    /// Repeated points and equal radii are merged as in [`from_samples`](Self::from_samples). A
+    /// frame may be repeated with directions up to 2^-16 rad apart; all bounds include the
+    /// difference.
     ///
     /// ```
     /// use parry_continuum::{Tube, parry::math::Vector};
@@ -65,9 +72,9 @@ impl Tube {
     /// ```
     ///
     /// # Errors
-    /// As [`from_samples`](Self::from_samples); not as many tangents as points, or one that is zero
-    /// or not finite; or two frames at one place with different directions, between which the
-    /// curve would have a corner.
+    /// - As [`from_samples`](Self::from_samples);
+    /// - a wrong number of tangents, or a tangent that is zero or not finite;
+    /// - two frames at one place with different directions: the curve would have a corner.
     pub fn from_frames(
         points: &[Vector],
         tangents: &[Vector],
@@ -90,7 +97,7 @@ impl Tube {
                 value: tangents[index],
             });
         }
-        // Squares of lengths neither overflow nor vanish at a size near 1.
+        // At a size near 1, squares of lengths neither overflow nor underflow.
         let reach =
             points.iter().fold(0.0, |reach: Real, point| point.abs().max_element().max(reach));
         let scale = reach.power_of_two_to_unity();
@@ -131,7 +138,7 @@ impl Tube {
         for (number, arch) in arches.iter().enumerate() {
             let own = |k: usize| arches.get(k).filter(|other| is_same(arch.radius, other.radius));
             let any = |k: usize| arches.get(k);
-            // A section of one segment has no neighbours of its own.
+            // A section of one segment uses the neighbours of other sections.
             let neighbours = around(number, own);
             let is_section = neighbours.iter().all(|side| side[0].is_none());
             let neighbours = if is_section { around(number, any) } else { neighbours };
@@ -149,7 +156,7 @@ impl Tube {
                 arch.points(known.bound, end, unscale),
             );
         }
-        // 0.15 is more than 4/27, and than an arch is longer than its chord.
+        // 0.15 covers 4/27 and the excess of a segment's length over its chord.
         let turned = most_turn * (widest + 0.15 * longest * unscale);
         builder.finish(&mut tube, 0.0, stretch, gap * unscale + turned)?;
         Ok(tube)

@@ -1,4 +1,4 @@
-//! A chain is a tube whose pieces are straight: each link is a section without curvature.
+//! A chain as a tube: each link is a section without curvature.
 
 use super::Tube;
 use super::cap_persistence::CapPersistence;
@@ -10,8 +10,8 @@ use crate::robot::scale::{direction, length};
 use crate::robot::{Cap, Chain};
 use parry3d_f64::math::{Real, Vector};
 
-/// Each link is a section of its own, with the link's caps. Queries have no error but rounding, so
-/// any tolerance will do.
+/// Makes each link a section with the link's caps. Queries err by rounding alone, so every
+/// tolerance is met.
 impl From<&Chain> for Tube {
     fn from(chain: &Chain) -> Self {
         let mut tube = Self::empty();
@@ -21,7 +21,7 @@ impl From<&Chain> for Tube {
 }
 
 impl Tube {
-    /// Makes this tube what `Tube::from(chain)` is, in the memory that it has.
+    /// Replaces this tube by `Tube::from(chain)`, in the same memory.
     ///
     /// ```
     /// use parry_continuum::{Chain, Tube, parry::math::Vector};
@@ -41,8 +41,9 @@ impl Tube {
         self.set_straight(links, CapPersistence::WhileAllNear);
     }
 
-    /// The links between points: by Algorithm 1, or capsules. A link without length keeps its
-    /// place, as a ball. `segments` are those of the input that they stand for.
+    /// Replaces this tube by the links between `points`, as capsules or with caps by Algorithm 1.
+    ///
+    /// A link without length stays a section, as a ball. `segments` are the links' input segments.
     pub(crate) fn set_links(
         &mut self,
         points: impl Iterator<Item = Vector>,
@@ -71,11 +72,12 @@ impl Tube {
         (self.ends, self.caps) = (ends, caps);
     }
 
-    /// Links of any tube whose centreline is within `deviation` of theirs, place by place; which
-    /// way its discs stand nobody knows. Flat of such a tube are its two ends and the ends of
-    /// each run of links with one radius, whichever way; a step in radius is taken for two of
-    /// them, which leaves out nothing: their centres are in the tube, and a ball around each holds
-    /// its disc.
+    /// Replaces this tube by links that represent every tube whose centreline is within `deviation`
+    /// of theirs, point by point, with discs in any direction.
+    ///
+    /// Its flat ends are the two ends of the robot and the ends of each run of links with one
+    /// radius, in any direction. A step in radius counts as two flat ends. That is conservative:
+    /// their centres are in the tube, and a ball around each contains its disc.
     pub(crate) fn set_loose_links(
         &mut self,
         links: impl Iterator<Item = ([Vector; 2], Real, u32)>,
@@ -112,7 +114,7 @@ impl Tube {
         }
     }
 
-    /// Whether only places of it are known, and no directions ([`Tube::set_loose_links`]).
+    /// Returns whether its points are known without directions ([`Tube::set_loose_links`]).
     pub(crate) fn is_loose(&self) -> bool {
         let first = self.sections.first().and_then(|section| section.faces[0]);
         first.is_some_and(|face| {
@@ -120,8 +122,10 @@ impl Tube {
         })
     }
 
-    /// Sections without curvature, in the memory that the tube has. One without length is a ball if
-    /// its caps are round. `persistence` knows flat ends that are not so by the radii alone.
+    /// Replaces this tube by sections without curvature, in the same memory.
+    ///
+    /// A section without length and with round caps is a ball. `persistence` applies to flat ends
+    /// that are not flat by the radii alone.
     fn set_straight(
         &mut self,
         sections: impl Iterator<Item = StraightSection>,
@@ -182,6 +186,6 @@ struct StraightSection {
     ends: [Vector; 2],
     radius: Real,
     caps: [Cap; 2],
-    /// The segment of the input that it stands for.
+    /// The input segment of the link.
     segment: u32,
 }

@@ -11,25 +11,26 @@ use crate::robot::scale::direction;
 use parry3d_f64::math::{Real, Vector};
 use std::sync::Arc;
 
-/// A stretch of a tube with one radius, for [`Tube::from_function`].
+/// A section of a tube with one radius, for [`Tube::from_function`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TubeSection {
-    /// Arc length of the centreline.
+    /// Arc length of the centreline, in the tube's unit.
     pub length: Real,
-    /// Radius of the tube.
+    /// Radius of the tube, in the same unit.
     pub radius: Real,
     /// An upper bound on the curvature of the centreline, 1 / length.
     pub curvature: Real,
 }
 
 impl Tube {
-    /// The tube around a curve that is computed where a query needs it: `curve` gives the point and
-    /// the direction (of any length) at an arc length from 0 to the sum of the sections'
-    /// lengths.
+    /// Builds the tube around a curve that is evaluated on demand.
     ///
-    /// Its direction must be continuous and, within each section, turn by no more than the
-    /// section's curvature per length. Answers are as good as that promise:
-    /// [`verify`](Self::verify) tries it.
+    /// - `sections`: lengths, radii and curvature bounds, base to tip.
+    /// - `curve`: maps an arc length, from 0 to the sum of the sections' lengths, to the point in
+    ///   the robot's frame and the direction (of any length).
+    ///
+    /// The direction must be continuous. Within a section it must turn by at most the section's
+    /// curvature times arc length. Answers rely on this promise; [`verify`](Self::verify) tests it.
     ///
     /// ```
     /// use parry_continuum::{Tube, TubeSection, parry::math::Vector};
@@ -44,9 +45,11 @@ impl Tube {
     /// ```
     ///
     /// # Errors
-    /// No section; a length that is not positive, a radius or a curvature that is negative, or one
-    /// that is not finite; a curve that is not finite or out of range at the end of a section;
-    /// a section with a flat end whose curvature times its radius is 1 or more.
+    /// - no section;
+    /// - a length that is not positive, a negative radius or curvature, or a number that is not
+    ///   finite;
+    /// - a curve that is not finite or out of range at the end of a section;
+    /// - a section with a flat end whose curvature times radius is 1 or more.
     pub fn from_function(
         sections: &[TubeSection],
         curve: impl Fn(Real) -> (Vector, Vector) + Send + Sync + 'static,
@@ -74,7 +77,7 @@ impl Tube {
                     persistence: CapPersistence::Either,
                 }))
             };
-            // The ends of sections are rounded.
+            // Covers the rounding of the sections' ends.
             let curvature = given.curvature * (1.0 + 8.0 * Real::UNIT_ROUNDOFF);
             tube.sections.push(Section {
                 first: 0,
@@ -88,7 +91,7 @@ impl Tube {
                 shown_at: [curvature; 2],
                 is_even: true,
                 stretch: 1.0 + 8.0 * Real::UNIT_ROUNDOFF,
-                // As if both were flat; the round ones are taken away below.
+                // Both flat at first; round ends are removed below.
                 faces: [face(0, start)?, face(1, end)?],
                 fades: false,
             });
@@ -117,6 +120,8 @@ impl Tube {
     }
 }
 
+/// Checks sections before they are used.
+///
 /// # Errors
 /// No section; a length that is not positive, a radius or a curvature that is negative, or one that
 /// is not finite.

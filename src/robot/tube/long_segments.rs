@@ -1,30 +1,34 @@
-//! Long segments between short ones: samples that lie close together tell which way the curve goes
-//! there, and so where it is in the long segment between them.
+//! Long segments between short ones. Close samples determine the direction of the curve there, and
+//! so bound the curve in the long segment between them.
 //!
-//! At a sample the curve goes in the direction of the short segment beside it, but for half of what
-//! that bends at most. So a long segment is one between two frames whose directions are known to
-//! the errors p and q. It is laid as the cubic of `hermite_segment`, whose letters are used here.
-//! What is assumed stays what it was, that the curvature is nowhere more than k. So |y''| <= k, and
-//! of the ball in `hermite_segment` the centre is 0 and the radius k.
+//! At a sample the curve has the direction of the short segment beside it, up to half of that
+//! segment's largest bend. So a long segment lies between two frames whose directions are known up
+//! to the errors p and q. It is laid as the cubic of `hermite_segment`.
 //!
-//! - With T and U off by p and q, m is off by (p + q) / l and (T + U) / l as well. So the line h''
-//!   is at least as large in the mean of squares as it seems, less 2 (p + q) / l.
-//! - The true cubic leaves the one that is laid by 4/27 (p + q) l at most, the largest that its
-//!   factors x (1 - x)^2 l and x^2 (1 - x) l are.
-//! - Its slope leaves that of the other by the larger of p and q at most, as the factors of T and U
-//!   add up to 1 or less. So X is off by tan f l times as much, where f is no angle of the curve
-//!   only, but one of the cubic too: sin f + q <= sin(f + 1.2 q), as f + 1.2 q is less than 0.58,
-//!   whose cosine is above 1 / 1.2.
+//! # Definitions
+//! As in `hermite_segment`. The assumption is still that the curvature is at most k. So
+//! `|y''| <= k`, and the ball has centre 0 and radius k.
 //!
-//! Points may be off by rounding, and where samples are one by what these are apart; that turns
-//! chords, and is in the errors of all three directions. How far points are off themselves is
-//! counted elsewhere.
+//! # Claims
+//! 1. The line h'' is in mean square at least as large as it appears, minus `2 (p + q) / l`.
+//!    **Proof.** m is off by at most `(p + q) / l`, and so is `(T + U) / l`.
+//! 2. The true cubic leaves the laid one by at most `4/27 (p + q) l`. **Proof.** This is the
+//!    maximum of its factors `x (1 - x)^2 l` and `x^2 (1 - x) l`.
+//! 3. X is off by `tan f l` times the larger of p and q in addition. **Proof.** The factors of T
+//!    and U add up to at most 1. So the slopes of the two cubics differ by at most the larger of p
+//!    and q. Here f must bound the angles of the cubic too: `sin f + q <= sin(f + 1.2 q)`, as
+//!    `f + 1.2 q < 0.58`, whose cosine exceeds 1 / 1.2.
+//! 4. The cubic is longer than c by at most `c (k c + 2 q)^2 / 20`. **Proof.** Its slopes are at
+//!    most `k l / 2 + q`, so `k c + 2 q` replaces `k c` in the bound of `hermite_segment`.
 //!
-//! The cubic's length may differ from c by more than c (k c)^2 / 20: its slopes are as large as k l
-//! / 2 + q. With k c + 2 q for k c that holds.
+//! # Rounding
+//! Points may be off by rounding, and merged samples by their distance. This turns chords and is
+//! included in the errors of all three directions. The errors of the points themselves are counted
+//! elsewhere.
 //!
-//! It is done where the cubic leaves open less than half of what the chord does. Arc lengths stay
-//! those of the chords: a share of a section is the same place whether a segment is laid so or not.
+//! # When
+//! A segment is laid as a cubic if the cubic's uncertainty is less than half of the chord's. Arc
+//! lengths stay those of the chords, so a share of a section is the same place either way.
 
 use super::Tube;
 use super::curve::{Curve, CurveBound, NextPoint, Samples};
@@ -37,20 +41,19 @@ use parry3d_f64::math::{Real, Vector};
 /// Each of the two segments beside a long one is shorter than this share of it.
 const SHORT: Real = 0.5;
 
-/// The samples of a tube, and what else is known of the curve through them.
+/// The samples of a tube and the further knowledge of the curve through them.
 struct SampledCurve<'a> {
     tube: &'a Tube,
     samples: &'a Samples,
-    /// The directions of the curve at its ends, where they are given.
+    /// The tangents of the curve at its ends, where given.
     tangents: Option<[Vector; 2]>,
-    /// How far the ends of a segment may be off, together.
+    /// Upper bound on the sum of the errors of a segment's two ends.
     off: Real,
-    /// A power of two that brings all near to 1: squares of lengths neither overflow nor vanish
-    /// then.
+    /// A power of two that scales the points near 1, where squares neither overflow nor underflow.
     scale: Real,
 }
 
-/// A long segment as an arch.
+/// A long segment as a cubic.
 struct LongSegment {
     arch: HermiteSegment,
     bound: CurveBound,
@@ -62,8 +65,8 @@ impl SampledCurve<'_> {
         Segment::between(*points.get(from)?, *points.get(from + 1)?, self.off)
     }
 
-    /// The direction at an end of the curve, or of a segment next to a sample that is shorter than
-    /// `most`; and how far off it may be.
+    /// Returns the direction at an end of a segment and its uncertainty: from the segment `beside`
+    /// it, if that is shorter than `most`, or from the tangent at an end of the curve.
     fn direction(&self, end: usize, beside: Option<usize>, most: Real) -> Option<(Vector, Real)> {
         let Some(beside) = beside.filter(|&beside| beside + 1 < self.samples.points.len()) else {
             return self.tangents.map(|tangents| (tangents[end], 4.0 * Real::UNIT_ROUNDOFF));
@@ -77,7 +80,7 @@ impl SampledCurve<'_> {
         (segment.length < most).then_some((segment.direction, tilt))
     }
 
-    /// A segment as an arch, if that tells more of it than its chord.
+    /// Returns a segment as a cubic, if the cubic is known better than the chord.
     fn long(&self, from: usize, radius: Real) -> Option<LongSegment> {
         let scale = self.scale;
         let chord = self.segment(from)?;
@@ -89,7 +92,7 @@ impl SampledCurve<'_> {
         let arch =
             HermiteSegment::between(number, radius, ends, [before.0, behind.0], self.off * scale)?;
         let curvature = self.samples.bounds[from].curvature / scale;
-        // The chord is off as well, between the two.
+        // The chord of the two points is uncertain as well.
         let tilts = [before, behind].map(|(_, tilt)| tilt + 2.0 * chord.noise);
         let found = arch.bound_bend(curvature, tilts, self.off * scale)?;
         let length = chord.length * scale;
@@ -99,15 +102,15 @@ impl SampledCurve<'_> {
 }
 
 impl Tube {
-    /// Lays the long segments of uneven sections as arches, where that tells more. The spare
-    /// samples are lost.
+    /// Lays the long segments of uneven sections as cubics where that is better. Overwrites the
+    /// spare samples.
     pub(super) fn lay_long_segments(&mut self, tangents: Option<[Vector; 2]>) {
         let Curve::Samples(samples) = &mut self.curve else { return };
         if samples.bounds.is_empty() {
             return;
         }
-        // Either of the two is laid into one day. In a loop the memory is to last, however many
-        // arches there will be.
+        // Reserve for the most parts in both buffers: later calls then allocate nothing, for any
+        // number of cubics.
         let most = 1 + MAX_PARTS as usize * (samples.points.len() - 1);
         let mut laid = std::mem::take(&mut self.spare.0).into_samples();
         samples.reserve(most);
@@ -124,7 +127,7 @@ impl Tube {
         }
     }
 
-    /// The samples and sections with long segments laid as arches; whether there is one.
+    /// Writes the samples and sections with cubics for long segments. Returns whether there is one.
     fn with_long_segments(
         &self,
         tangents: Option<[Vector; 2]>,
@@ -156,7 +159,7 @@ impl Tube {
                 } else {
                     laid.push(number, NextPoint { point, length, bound: bounds[from] });
                 }
-                // Without what rounding does to a sum of parts.
+                // Without the rounding of a sum of parts.
                 if let Some(end) = laid.arcs.last_mut() {
                     *end = arcs[from + 1];
                 }

@@ -1,4 +1,4 @@
-//! The robot as a curve: a tube of stated radii around a centreline of bounded curvature.
+//! The robot as a curve: a tube with given radii around a centreline of bounded curvature.
 
 mod cap_persistence;
 mod curve;
@@ -38,34 +38,32 @@ use parry3d_f64::math::{Real, Vector};
 use sample_clusters::SampleCluster;
 use section_samples::Hat;
 
-/// A continuum robot as the curve that it is: all discs across a smooth centreline, with a radius
-/// for each section.
+/// A continuum robot as a curve: all discs across a smooth centreline, with one radius per section.
 ///
-/// Where a [`Chain`](crate::Chain) is a model of the robot, whose links decide how far it is from
-/// the truth, a tube is the robot, and each query says what error it bears. The query divides the
-/// tube only as finely as that takes, and its answer has bounds.
+/// A [`Chain`](crate::Chain) is a model of the robot; the number of its links decides the modelling
+/// error. A tube is the robot itself. Each query names a tolerance, divides the tube only as finely
+/// as that tolerance requires, and returns a lower and an upper bound.
 ///
-/// A section is a stretch with one radius. The tube ends in a flat face at the robot's two ends and
-/// on the wider side of a step in radius. Sections that begin or end about a radius from such a
-/// face have flat ends too, where they join the next one. Lengths are in one unit, points in the
-/// robot's frame.
+/// A section is a range of the tube with one radius. The tube ends in a flat face at the robot's
+/// two ends and on the wider side of each step in radius. A section that begins or ends about one
+/// radius from such a face has flat ends too, where it joins the next one. Lengths are in one unit,
+/// points in the robot's frame.
 ///
-/// # What is known of the curve
-/// - [`from_samples`](Self::from_samples): the curve goes through the samples, and each section
-///   bends nowhere more than its samples show at most; where these lie unevenly, each segment no
-///   more than the two samples before it and the two behind it show. Within that its curvature may
-///   jump anywhere. A curve that turns more sharply between two samples than at any of them is not
-///   covered: sample more densely.
-/// - [`from_frames`](Self::from_frames): the curve goes through the points in the directions given,
-///   and bends as these show.
-/// - [`fit`](Self::fit): measured points. The curve is no farther from the fitted one than was
-///   stated, whatever it does there.
-/// - [`from_function`](Self::from_function): the curve is the function, and its curvature in each
-///   section is at most what is stated. [`verify`](Self::verify) tries that on samples.
-/// - `Tube::from(&chain)`: straight pieces with the chain's caps, whose queries have no error but
-///   rounding.
+/// # Assumptions about the curve
+/// - [`from_samples`](Self::from_samples): the curve passes through the samples. Each section bends
+///   at most as much as its samples show. If samples lie unevenly, each segment bends at most as
+///   much as the two samples before it and the two behind it show. Within that limit the curvature
+///   may jump anywhere. A curve that turns more sharply between two samples than at any sample is
+///   not covered: sample more densely.
+/// - [`from_frames`](Self::from_frames): the curve passes through the points in the given
+///   directions, and bends as these show.
+/// - [`fit`](Self::fit): measured points. The curve is within the stated deviation of the fitted
+///   curve, with any shape.
+/// - [`from_function`](Self::from_function): the curve is the function. Its curvature in each
+///   section is at most the stated one. [`verify`](Self::verify) tests this on samples.
+/// - `Tube::from(&chain)`: straight sections with the chain's caps. Queries err by rounding alone.
 ///
-/// Errors of a sensor or of the kinematics are added by [`with_error`](Self::with_error).
+/// [`with_error`](Self::with_error) adds errors of a sensor or of the kinematics.
 ///
 /// ```
 /// use parry_continuum::{Tube, parry::{math::{Pose, Vector}, shape::{Ball, TriMesh}}};
@@ -82,27 +80,25 @@ use section_samples::Hat;
 pub struct Tube {
     curve: Curve,
     sections: Vec<Section>,
-    /// Memory for the next samples: what they are measured in, so that the tube stays as it was
-    /// where they are refused.
+    /// Memory for the next samples. Measuring into it leaves the tube unchanged on an error.
     spare: (Curve, Vec<Section>),
-    /// How far the curve may be from what was given.
+    /// The stated distance of the curve from the given one.
     error: Real,
-    /// How far the directions at flat ends may be from what was given; none if nobody said.
+    /// The stated error of directions near flat ends, rad; `None` if not stated.
     turn: Option<Real>,
-    /// How far it is from the points that it was fitted to, at most; and how far the curve may be
-    /// from it.
+    /// Upper bounds on the distance of a fitted curve from its points (`residual`), and of the true
+    /// curve from the fitted one (`deviation`).
     residual: Real,
     deviation: Real,
-    /// By how much points that were taken for one lie apart, and radii that were taken for one
-    /// differ.
+    /// The distance of points treated as one, plus the difference of radii treated as equal.
     merged: Real,
-    /// The largest coordinate of the centreline, or its length, or more.
+    /// An upper bound on the coordinates of the centreline and on its length.
     reach: Real,
-    /// Memory for samples that crowd.
+    /// Memory for clusters of samples.
     crowds: [Vec<SampleCluster>; 2],
-    /// Memory for what samples show.
+    /// Memory for the bends that samples show.
     hats: Vec<Hat>,
-    /// Memory for the next links: their ends and caps.
+    /// Memory for the ends and caps of the next links.
     ends: Vec<Vector>,
     caps: Vec<[Cap; 2]>,
 }
@@ -114,7 +110,7 @@ impl Clone for Tube {
         tube
     }
 
-    /// In the memory that it has. What is kept for the next links stays.
+    /// Reuses the tube's memory; the buffers are not copied.
     fn clone_from(&mut self, source: &Self) {
         self.curve.clone_from(&source.curve);
         self.sections.clone_from(&source.sections);
@@ -131,34 +127,37 @@ impl std::fmt::Debug for Tube {
 }
 
 impl Tube {
-    /// The tube around a smooth curve through `points`, with one radius for each segment between
-    /// them.
+    /// Builds the tube around a smooth curve through `points`, with one radius per segment.
     ///
-    /// `end_tangents` are the curve's directions at the first and the last point, towards the tip,
-    /// of any length. Without them, and at steps in radius, the direction of a flat face is
-    /// known from the samples alone: to half of the section's curvature times the first
-    /// segment, or better where the section bends there as much as anywhere. What that
-    /// leaves open, times the radius, widens the bounds of every answer near the face.
+    /// - `points`: samples of the centreline, base to tip, in the robot's frame.
+    /// - `segment_radii`: one radius per segment, in the unit of the points.
+    /// - `end_tangents`: directions of the curve at the first and the last point, towards the tip,
+    ///   of any length. Without them, and at steps in radius, samples alone determine the direction
+    ///   of a flat face: up to half of the section's curvature times the first segment, or better
+    ///   if the section bends there as much as anywhere. This uncertainty times the radius widens
+    ///   the bounds of every answer near the face.
     ///
-    /// The curvature of a section is the largest that its samples show: turn / distance between
-    /// neighbouring segments. A section of one segment shows nothing of its own; the turns at
-    /// its two ends count, which its neighbours share. Where samples lie unevenly, each segment
-    /// bends no more than the two samples before it and the two behind it show. Points at one
-    /// place, but for the rounding of coordinates so large (2^-48 of the largest), are one, as
-    /// where the points of one section end and those of the next begin; the radius of the
-    /// segment between them is dropped. Radii that differ by less than 2^-32 of a section's
-    /// first are one section, with the largest of them. What that changes counts in all bounds.
+    /// **Curvature.** The curvature of a section is the largest that its samples show: turn over
+    /// distance between neighbouring segments. A section of one segment shows none; the turns at
+    /// its two ends count, which its neighbours share. If samples lie unevenly, each segment bends
+    /// at most as much as the two samples before it and the two behind it show.
     ///
-    /// Where a sample was taken twice, a little apart, the two may show a bend that no smooth curve
-    /// has. If they are 32 times nearer to each other than to the samples before and behind
-    /// them, they are one too: the curve passes the first of them as closely as the other one
-    /// does, which counts in all bounds and in the `uncertainty` of answers.
+    /// **Repeated points.** Points closer than the rounding of coordinates (2^-48 of the largest)
+    /// are one point, for example where one section ends and the next begins. The radius of the
+    /// segment between them is dropped. Radii that differ by less than 2^-32 of a section's first
+    /// one form one section with the largest of them. All bounds include these changes.
+    ///
+    /// **Samples taken twice.** Two samples a little apart may show a bend that no smooth curve
+    /// has. They count as one if they are 32 times nearer to each other than to the samples before
+    /// and behind them. The curve then passes the first sample within their distance. All bounds
+    /// and the `uncertainty` of answers include this distance.
     ///
     /// # Errors
-    /// As [`Chain::from_centreline`](crate::Chain::from_centreline); a tangent that is zero or not
-    /// finite; samples so far apart that the curve could turn by more than 1 rad from one to
-    /// the next; or a section with a flat end whose curvature times its radius is 1 or more, so
-    /// that its discs would stick out of the face.
+    /// - As [`Chain::from_centreline`](crate::Chain::from_centreline);
+    /// - a tangent that is zero or not finite;
+    /// - samples so far apart that the curve could turn by more than 1 rad from one to the next;
+    /// - a section with a flat end whose curvature times radius is 1 or more: its discs would stick
+    ///   out of the face.
     pub fn from_samples(
         points: &[Vector],
         segment_radii: &[Real],
@@ -169,8 +168,9 @@ impl Tube {
         Ok(tube)
     }
 
-    /// The tube of the same radius everywhere around a smooth curve through `points`:
-    /// [`from_samples`](Self::from_samples) with one radius for all segments.
+    /// Builds the tube of constant radius around a smooth curve through `points`.
+    ///
+    /// As [`from_samples`](Self::from_samples) with `radius` for all segments.
     ///
     /// # Errors
     /// As [`from_samples`](Self::from_samples).
@@ -182,12 +182,13 @@ impl Tube {
         Self::from_samples(points, &radius_for_all(points, radius)?, end_tangents)
     }
 
-    /// Makes this tube what [`from_samples`](Self::from_samples) makes of the arguments, in the
-    /// memory that it has: a control loop whose robot keeps its number of points allocates
-    /// nothing. An error stated by [`with_error`](Self::with_error) stays.
+    /// Replaces the samples, as [`from_samples`](Self::from_samples), in the same memory.
+    ///
+    /// A control loop whose robot keeps its number of points allocates nothing. An error stated by
+    /// [`with_error`](Self::with_error) stays.
     ///
     /// # Errors
-    /// As [`from_samples`](Self::from_samples). The tube is then what it was before.
+    /// As [`from_samples`](Self::from_samples). The tube is then unchanged.
     pub fn set_samples(
         &mut self,
         points: &[Vector],
@@ -206,7 +207,7 @@ impl Tube {
         measured
     }
 
-    /// The length of the centreline; between samples, of the lines that join them.
+    /// Returns the length of the centreline; for samples, of the polyline through them.
     pub fn length(&self) -> Real {
         self.sections.last().map_or(0.0, |section| section.end)
     }
@@ -215,7 +216,7 @@ impl Tube {
         &self.sections
     }
 
-    /// The largest coordinate of the tube in its frame, or more.
+    /// Returns an upper bound on the absolute coordinates of the centreline.
     pub(crate) fn reach(&self) -> Real {
         self.reach
     }
@@ -232,13 +233,13 @@ impl Tube {
         self.curve.tick(section, arc)
     }
 
-    /// What is known of the curve between two ticks of a section.
+    /// Returns the bounds on the curve between two ticks of a section.
     pub(crate) fn bound(&self, section: &Section, ticks: [u32; 2]) -> CurveBound {
         self.curve.bound(section, ticks)
     }
 
-    /// The segment of the input at an arc length of a section; the section's number where the curve
-    /// is a function.
+    /// Returns the input segment at an arc length of a section, or the section's number if the
+    /// curve is a function.
     pub(crate) fn segment(&self, number: u32, arc: Real) -> u32 {
         self.curve.segment(&self.sections[number as usize], arc).unwrap_or(number)
     }
@@ -247,29 +248,29 @@ impl Tube {
         self.curve.foot(section, arc, point)
     }
 
-    /// The place of a tick as a share of its section's length.
+    /// Returns the place of a tick as a share of its section's length.
     pub(crate) fn share(&self, section: &Section, tick: u32) -> Real {
         self.curve.share(section, tick)
     }
 
-    /// The ticks next to two shares of a section, outside of what is between them.
+    /// Returns the nearest ticks that enclose two shares of a section.
     pub(crate) fn ticks_around(&self, section: &Section, shares: [Real; 2]) -> [u32; 2] {
         self.curve.ticks_around(section, shares)
     }
 
-    /// The place at a share of a section.
+    /// Returns the place at a share of a section.
     pub(crate) fn at_share(&self, section: &Section, share: Real) -> PlaceOnCurve {
         self.curve.at_share(section, share)
     }
 
-    /// The shares of the two samples around a share of a section; none where the curve is a
+    /// Returns the shares of the two samples around a share of a section; `None` if the curve is a
     /// function.
     pub(crate) fn samples_around(&self, section: &Section, share: Real) -> Option<[Real; 2]> {
         let Curve::Samples(_) = self.curve else { return None };
         Some(self.ticks_around(section, [share; 2]).map(|tick| self.share(section, tick)))
     }
 
-    /// Exchanges curve and sections for the spare ones.
+    /// Swaps curve and sections with the spare ones.
     fn exchange(&mut self) {
         std::mem::swap(&mut self.curve, &mut self.spare.0);
         std::mem::swap(&mut self.sections, &mut self.spare.1);
@@ -294,8 +295,8 @@ impl Tube {
     }
 }
 
-/// Discs behind a flat face must not stick out of it, which they would where the centreline bends
-/// within a radius. Of a face whose direction nobody knows nothing is said.
+/// Checks that no disc behind a flat face sticks out of it: the centreline must not bend within a
+/// radius there. A face of unknown direction is not checked.
 fn check_faces(section: &Section, index: impl FnOnce() -> usize) -> Result<(), RobotError> {
     let Section { shown_at, radius, faces, .. } = *section;
     let is_known = |face: &Option<EndFace>| face.is_some_and(|face| face.tilt < Real::INFINITY);

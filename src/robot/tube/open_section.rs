@@ -1,4 +1,4 @@
-//! A section on its way from sample to sample.
+//! A section under construction, sample by sample.
 
 use super::curve::CurveBound;
 use super::sample_clusters::SampleCluster;
@@ -11,31 +11,31 @@ use parry3d_f64::math::{Real, Vector};
 /// All samples so far.
 pub(super) struct SamplePrefix<'a> {
     pub points: &'a [Vector],
-    /// The length of the polyline up to each of them.
+    /// The length of the polyline up to each sample.
     pub arcs: &'a [Real],
-    /// Those that crowd.
+    /// The clusters.
     pub crowds: &'a [SampleCluster],
 }
 
-/// A section on its way.
+/// A section under construction.
 pub(super) struct OpenSection {
     pub section: Section,
     longest: Real,
-    /// The sample before its longest segment.
+    /// The sample before the longest segment.
     longest_from: usize,
-    /// The sample where it turns most.
+    /// The sample at which it turns most.
     sharpest: usize,
     /// Whether one of two neighbouring segments is more than four times as long as the other.
     is_uneven: bool,
-    /// The largest share of a segment by which it may be longer.
+    /// The largest relative amount by which a segment may be longer.
     loosest: Real,
-    /// How many turns it has inside.
+    /// The number of turns at inner samples.
     turns: usize,
     /// The curvature that the turns at steps in radius show.
     pub at_ends: Real,
-    /// The directions of the curve at its ends, where they are given.
+    /// The tangents of the curve at its ends, where given.
     tangents: [Option<Vector>; 2],
-    /// The radii of its first and of its thinnest segment.
+    /// The radii of the first and of the thinnest segment.
     first_radius: Real,
     pub least_radius: Real,
 }
@@ -59,12 +59,13 @@ impl OpenSection {
         }
     }
 
-    /// Behind a step in radius, at which the samples show a curvature.
+    /// Begins behind a step in radius, at which the samples show the curvature `shown`.
     pub(super) fn behind_step(first: usize, start: Real, radius: Real, shown: Real) -> Self {
         Self { at_ends: shown, ..Self::new(first, start, radius) }
     }
 
-    /// Whether a segment with this radius belongs to it; then takes note of the radius.
+    /// Returns whether a segment with this radius belongs to the section; if so, records the
+    /// radius.
     #[inline(always)]
     pub(super) fn takes(&mut self, radius: Real) -> bool {
         if radius == self.first_radius {
@@ -78,28 +79,27 @@ impl OpenSection {
         is_same
     }
 
-    /// Takes note of the turn at a sample from one segment to the next.
+    /// Records the turn at a sample.
     #[inline(always)]
     pub(super) fn bend(&mut self, at: usize, before: &Segment, segment: &Segment) {
         self.turns += 1;
         self.is_uneven |= segment.is_uneven(before);
         let squared = (segment.direction - before.direction).length_squared();
         let noise = segment.noise + before.noise;
-        // Most turns are no larger than the largest so far, which is seen without a root and a
-        // division.
+        // Most turns do not raise the maximum. This test needs no root and no division.
         let known = self.section.curvature * (0.5 * (segment.least + before.least)) - noise;
         if known < 0.0 || squared > known * known {
             self.raise(at, curvature_between(before, segment));
         }
     }
 
-    /// Takes note of the direction at an end.
+    /// Records the tangent at an end.
     pub(super) fn bend_from(&mut self, at: usize, end: usize, tangent: Vector, segment: &Segment) {
         self.tangents[end] = Some(tangent);
         self.raise(at, curvature_from(tangent, segment));
     }
 
-    /// Takes note of a segment that leads to a sample.
+    /// Records a segment that leads to a sample.
     #[inline(always)]
     pub(super) fn extend(&mut self, to: usize, segment: &Segment) {
         if segment.length > self.longest {
@@ -107,7 +107,7 @@ impl OpenSection {
         }
         if segment.least < segment.length {
             self.loosest = self.loosest.max(segment.looseness());
-            // What those that crowd show counts only beside them.
+            // The bends of clusters count next to them only.
             self.is_uneven = true;
         }
     }
@@ -118,8 +118,12 @@ impl OpenSection {
         }
     }
 
-    /// Ends it at a sample. `bounds` are those of the segments, if any. A sample is returned as
-    /// well that shows more than others because another one is very near, if there is one.
+    /// Ends the section at a sample and appends its segments' bounds to `bounds`, if any.
+    ///
+    /// Also returns a sample that shows more than others because another one is very near.
+    ///
+    /// # Errors
+    /// The curve may turn by more than 1 rad in a segment.
     pub(super) fn close(
         mut self,
         last: usize,
@@ -147,7 +151,7 @@ impl OpenSection {
             (sharpest, crowding) = own.bound_unevenly(least, hats, bounds);
             self.section.bound_by(&bounds[first..], &arcs[first..=last]);
             if self.loosest > 0.0 {
-                // The chords are longer by that share, and what they turn by is, in the square.
+                // The true chords may be longer by this share, and their turn with them, squared.
                 let longer = 1.0 + self.loosest;
                 self.section.stretch *= longer * longer * longer;
             }

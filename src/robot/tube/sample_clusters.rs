@@ -1,71 +1,86 @@
-//! Samples that crowd: where a sample was taken twice, a little apart.
+//! Clusters of samples: a sample that was taken twice, a little apart.
 //!
 //! Two samples 0.01 mm apart, whose neighbours are a millimetre away, show a sharp bend if one of
-//! them is off by as much as they are apart. Then either the curve bends like that, or the bend is
-//! noise. Both are covered:
+//! them is off by their distance. Either the curve bends like that, or the bend is noise. The
+//! bounds cover both.
 //!
-//! - *When.* Only where the tube would be refused because of a bend that one of them shows, or
-//!   where that is sharper by a quarter than all that samples show which are farther apart. They
-//!   are as close together as that one and its nearer neighbour, or up to 2^[`MAX_DOUBLINGS`] times
-//!   as far if there are more than two; the other samples before and behind are [`APART`] times as
-//!   far from the first of them as the farthest of them is. The segments between them have the
-//!   radius of the segment before or of the one behind: a flange is no noise.
-//! - *What is taken to be.* The first of them stays. Let g be how far the others are from it at
-//!   most, the gap. The curve passes within g of the one that stays, and bends no more than the
-//!   samples show that are on the curve: those that do not crowd, and for each crowd the place
-//!   within the gap where the curve is. Or else the curve goes through all of them, and in the two
-//!   segments before and the two behind bends no more than they show (`section_samples`). A bend is
-//!   left out that would be by more than 1 rad or within the radius, for which the tube would be
-//!   refused. Where a tube that was good would be refused because of a crowd, that is none.
-//! - *What follows.* Beside a curve through samples, the one that stays is off by g. So is every
-//!   chord to it; all bodies and witnesses count g. A chord l long between samples with the gaps g1
-//!   and g2 has an end moved by g1 and another by g2. Of two vectors v and w with |v - w| <= g = g1
-//!   + g2, the unit vectors differ by at most 2 g / (|v| + |w|) <= g / (l - g) (Dunkl and Williams,
-//!   American Mathematical Monthly 71, 1964), and the lengths by g at most. So a turn is larger
-//!   than it seems by no more than that for each of its segments, half of their lengths together is
-//!   less by no more than half of their g, and the curve between them is longer by no more than the
-//!   share g / l.
+//! # Definitions
+//! - Cluster: samples that count as one. `gap`, `g`: the largest distance of the others from the
+//!   first.
+//!
+//! # When samples form a cluster
+//! A cluster is formed only around a sample that shows a sharp bend: the tube would be refused for
+//! it, or it exceeds every bend of samples farther apart by a quarter. All conditions must hold:
+//!
+//! 1. The samples are as close as that sample and its nearer neighbour, or up to
+//!    2^[`MAX_DOUBLINGS`] times as far if there are more than two.
+//! 2. The samples before and behind are at least [`APART`] times as far from the first as the
+//!    farthest of the cluster is.
+//! 3. The segments in the cluster have the radius of the segment before or behind: a flange is not
+//!    noise.
+//! 4. The cluster does not make a valid tube invalid.
+//!
+//! # Assumption
+//! The first sample stays. One of two cases holds:
+//!
+//! 1. The curve passes within g of the first sample. It bends at most as much as the samples on the
+//!    curve show: those outside of clusters, and for each cluster the true place within its gap.
+//! 2. The curve passes through all samples. In the two segments before the cluster and the two
+//!    behind it, it bends at most as much as they show (`section_samples`). Bends of more than 1
+//!    rad, or within the radius, are excluded: the tube would be refused.
+//!
+//! # Bounds
+//! The sample that stays is off by g, and so is every chord to it. All bodies and witnesses include
+//! g. Consider a chord of length l between clusters with the gaps g1 and g2, and `g = g1 + g2`. For
+//! two vectors v and w with `|v - w| <= g`, the lengths differ by at most g and the unit vectors by
+//! at most `2 g / (|v| + |w|) <= g / (l - g)`. (Dunkl and Williams, American Mathematical Monthly
+//! 71, 1964.) Hence
+//!
+//! - a turn grows by at most `g / (l - g)` for each of its two segments;
+//! - half of the sum of the two lengths shrinks by at most half of the sum of their g;
+//! - the curve between the samples is longer by at most the relative amount `g / l`.
 
 use super::segment::{Segment, curvature_between, curvature_from};
 use crate::robot::radius_steps::is_same;
 use parry3d_f64::math::{Real, Vector};
 
-/// Other samples are so many times as far away as those that crowd are from the first of them.
+/// The samples outside are at least this many times as far from the first as the cluster's radius.
 const APART: Real = 32.0;
 
-/// No more samples are taken for one.
+/// Most samples of a cluster.
 const MOST: usize = 8;
 
-/// Those that crowd are up to 2 to the power of this times as far apart as two that show a bend.
+/// A cluster is up to 2 to the power of this times as wide as two samples that show a bend.
 const MAX_DOUBLINGS: u32 = 3;
 
-/// Samples that are taken for one.
+/// Samples that count as one.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SampleCluster {
-    /// The first of them, which stays, and the last.
+    /// The indices of the first sample, which stays, and of the last.
     pub first: usize,
     pub last: usize,
-    /// The number of the point that stands for them, once it is laid.
+    /// The index of the point that represents them, once it is laid.
     pub point: usize,
-    /// How far the others are from the first at most.
+    /// The largest distance of the others from the first.
     pub gap: Real,
-    /// What the segments before them and behind them bend, if the curve goes through all of them.
+    /// The bends of the segments before and behind, if the curve passes through all samples.
     pub bends: [Through; 2],
 }
 
-/// The bends that samples which crowd show, if the curve goes through all of them, for the two
-/// segments on one side.
+/// The bends that a cluster shows for the two segments on one side, if the curve passes through all
+/// its samples.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Through {
-    /// For the segment beside them: what its turn into each segment between them shows, and what
-    /// the second sample shows.
+    /// For the adjacent segment: the largest bend from its turns into the segments of the cluster,
+    /// and the bend that the second sample shows.
     beside: [Real; 2],
-    /// For the segment beyond that one: what the first sample shows.
+    /// For the segment beyond it: the bend that the first sample shows.
     beyond: Real,
 }
 
-/// Finds the crowds that are as close together as two of the samples around `at`, or a few times as
-/// far. Whether there are more of them than before.
+/// Finds the clusters that are as close as two samples around `at`, or a few times as wide.
+///
+/// Returns whether more samples are dropped than before.
 pub(super) fn find(
     samples: &[Vector],
     radii: &[Real],
@@ -94,7 +109,7 @@ pub(super) fn find(
     false
 }
 
-/// Finds all crowds that are no farther than this from the first of them.
+/// Finds all clusters whose samples are at most `within` from their first one.
 fn find_within(
     samples: &[Vector],
     radii: &[Real],
@@ -133,7 +148,7 @@ fn find_within(
             });
             crowds.push(SampleCluster { first, last: next - 1, point, gap, bends });
         } else {
-            // Samples at one place are dropped elsewhere.
+            // Repeated samples are dropped elsewhere.
             next = first + 1;
             while next < samples.len() && apart(next) <= one_place {
                 next += 1;
@@ -144,9 +159,10 @@ fn find_within(
     }
 }
 
-/// What samples that crowd show of the segments towards an end, if the curve goes through all of
-/// them: as if they did not crowd. `near` is the next sample at that end and `far` the one at the
-/// other, where the curve ends along `tangent` if there is none.
+/// Returns the bends for the segments towards an end, if the curve passes through all samples.
+///
+/// `near`: the next sample at that end. `far`: the next sample at the other end. If there is none,
+/// the curve ends along `tangent`.
 fn through(
     end: usize,
     samples: &[Vector],
@@ -166,7 +182,7 @@ fn through(
         _ => {}
     };
     for k in 1..samples.len() {
-        // Between samples at one place there is no direction.
+        // Samples at one place determine no direction.
         let Some(segment) = Segment::between(last, sample(k), one_place) else { continue };
         if segment.length > one_place {
             most = most.max(curvature_between(&segment, &beside));
@@ -187,13 +203,13 @@ fn through(
     Through { beside: [most, second], beyond }
 }
 
-/// What a segment next to a point that stands for samples bends, if the curve goes through all of
-/// them.
+/// Returns the bends of the segment adjacent to a cluster's point, if the curve passes through all
+/// samples.
 pub(super) fn bend_at(crowds: &[SampleCluster], point: usize, end: usize) -> [Real; 2] {
     crowd_at(crowds, point).map_or([0.0; 2], |crowd| crowd.bends[end].beside)
 }
 
-/// The same of the segment beyond that one.
+/// As [`bend_at`], for the segment beyond it.
 pub(super) fn beyond_at(crowds: &[SampleCluster], point: usize, end: usize) -> Real {
     crowd_at(crowds, point).map_or(0.0, |crowd| crowd.bends[end].beyond)
 }
@@ -203,7 +219,7 @@ fn crowd_at(crowds: &[SampleCluster], point: usize) -> Option<&SampleCluster> {
     crowd.filter(|crowd| crowd.point == point)
 }
 
-/// How far the curve may be from a point that stands for samples.
+/// Returns the largest distance of the curve from a cluster's point; 0 for other points.
 pub(super) fn gap_at(crowds: &[SampleCluster], point: usize) -> Real {
     crowd_at(crowds, point).map_or(0.0, |crowd| crowd.gap)
 }

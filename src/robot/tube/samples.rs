@@ -1,28 +1,36 @@
-//! A tube from samples: its sections, and how far the curve through the samples may be from the
-//! lines between them.
+//! A tube from samples: its sections, and bounds on the curve between the samples.
 //!
-//! Nobody knows the curve between two samples. It is taken to bend no more than the samples show:
-//! its curvature in a section is at most the largest of turn / distance over the section's samples,
-//! where turn is the change of direction (as the length of the difference of the unit vectors)
-//! between the two segments that meet in a sample, and distance is half of their lengths together.
-//! For a circle that is its curvature exactly. A turn at a step in radius counts only for a section
-//! that has fewer than two of its own. What means over two segments hide of a curvature that
-//! changes evenly is added (`between_samples`). Where samples lie unevenly, what a sample shows
-//! counts for the two segments on either side of it (`section_samples`).
+//! # Definitions
+//! - Segment: the chord between two neighbouring samples; `h` is its length.
+//! - Turn at a sample: the length of the difference of the unit directions of its two segments.
+//! - `k`: the curvature bound of a section, the largest turn over distance among its samples, where
+//!   distance is half of the sum of the two segments' lengths. For a circle k is exact.
+//! - `t`: the unit tangent of the curve.
 //!
-//! With that curvature k, and h the length of a segment:
-//! - a piece of curve over a chord of length c with k c <= 1 is at most (2 / k) asin(k c / 2) <= c
-//!   (1 + (k c)^2 / 20) long (Schwarz: the chord of an arc of curvature k is the shortest; asin x
-//!   <= x (1 + x^2 / 5) up to 1/2);
-//! - it leaves the chord by at most k l^2 / 8, where l is its length.
+//! # Assumption
+//! The samples do not determine the curve between them. It is assumed to satisfy `|t'| <= k` almost
+//! everywhere, so the curvature may jump. Three rules refine k:
 //!
-//! Samples at one place, but for rounding, are one. The first of them stays, and the curve goes on
-//! from within the gap: the directions on either side are unknown by the gap over the length, and
-//! every point by the gap. Samples that are not quite at one place, where a sample was taken twice,
-//! are told of in `sample_clusters`.
+//! 1. A turn at a step in radius counts only for a section with fewer than two turns of its own.
+//! 2. The mean over two segments hides part of a curvature that changes evenly; `between_samples`
+//!    adds it.
+//! 3. If samples lie unevenly, a turn counts only for the two segments on either side of its sample
+//!    (`section_samples`).
 //!
-//! Both hold whether or not the curvature jumps: the tangent t need only have |t'| <= k almost
-//! everywhere. Which way a face stands is told in `direction_at_end`.
+//! # Claims
+//! For a piece of curve over a chord of length c with `k c <= 1`:
+//!
+//! 1. Its length is at most `(2 / k) asin(k c / 2) <= c (1 + (k c)^2 / 20)`.
+//! 2. It leaves the chord by at most `k l^2 / 8`, where l is its length.
+//!
+//! **Proof.** 1. By Schwarz, an arc of curvature k has the shortest chord; and
+//! `asin x <= x (1 + x^2 / 5)` up to 1/2. Both claims need `|t'| <= k` almost everywhere only.
+//!
+//! # Repeated samples
+//! Samples at one place, up to rounding, count as one. The first of them stays. The curve continues
+//! from within the gap between them: directions on either side are uncertain by gap over length,
+//! every point by the gap. `sample_clusters` treats a sample that was taken twice, a little apart.
+//! `direction_at_end` determines the directions of faces.
 
 use super::Tube;
 use super::cap_persistence::CapPersistence;
@@ -39,10 +47,10 @@ use crate::robot::chain::check_segments;
 use crate::robot::modified_cylinder::COORDINATE_LIMIT;
 use parry3d_f64::math::{Real, Vector};
 
-/// How often samples that crowd are looked for.
+/// Most searches for clusters of samples.
 const MAX_TRIALS: u32 = 16;
 
-/// A face's direction is told from so many samples behind it.
+/// Number of samples that determine a face's direction.
 const FACE_SAMPLES: usize = 3;
 
 impl Tube {
@@ -53,12 +61,12 @@ impl Tube {
         radii: &[Real],
         end_tangents: Option<[Vector; 2]>,
     ) -> Result<(), RobotError> {
-        // In one sweep without branches; what it does not find good is looked at closely.
+        // One branch-free pass. Only if it finds an error do the exact checks run.
         let (mut reach, mut is_good) =
             ([0.0; 3], samples.len() >= 2 && radii.len() + 1 == samples.len());
         for point in samples {
             for (reach, value) in reach.iter_mut().zip(point.abs().to_array()) {
-                // NaN is not larger, but not good either.
+                // NaN is not larger, but it clears `is_good`.
                 *reach = if value > *reach { value } else { *reach };
                 is_good &= value <= COORDINATE_LIMIT;
             }
@@ -71,7 +79,7 @@ impl Tube {
         }
         let reach = reach.into_iter().fold(0.0, Real::max);
         let tangents = end_tangents.map(super::unit_tangents).transpose()?;
-        // Coordinates that were computed in two ways may differ by so much.
+        // Coordinates of one place that were computed in two ways may differ by this.
         let one_place = 32.0 * Real::UNIT_ROUNDOFF * reach;
         let given = InputSamples { samples, radii, tangents, reach, one_place };
         let [mut crowds, mut good] = std::mem::take(&mut self.crowds);
@@ -105,15 +113,16 @@ impl Tube {
         result
     }
 
-    /// Fills the tube with good samples, of which those that crowd are one. A sample around which
-    /// there may be more that do is returned as well.
+    /// Fills the tube with checked samples; each cluster counts as one sample.
+    ///
+    /// Also returns a sample around which there may be more clusters.
     fn lay_samples(
         &mut self,
         given: &InputSamples,
         crowds: &mut [SampleCluster],
         hats: &mut Vec<Hat>,
     ) -> (Result<(), RobotError>, Option<usize>) {
-        // Nearly always nothing crowds, and a loop that need not look is faster.
+        // There are almost never clusters, and the loop without them is faster.
         if crowds.is_empty() {
             self.lay::<false>(given, crowds, hats)
         } else {
@@ -143,7 +152,7 @@ impl Tube {
         self.merged = 0.0;
         let (mut arc, mut before, mut last) = (0.0, None::<Segment>, 0);
         let mut open = OpenSection::new(0, 0.0, radii[0]);
-        // The next crowd, and how far the curve may be from the last point.
+        // The next cluster, and the uncertainty of the curve at the last point.
         let (mut number, mut off) =
             (0, crowds.first().filter(|crowd| crowd.first == 0).map_or(0.0, |crowd| crowd.gap));
         let (mut result, mut crowding) = (Ok(()), None);
@@ -156,7 +165,7 @@ impl Tube {
                 }
                 off_here = if crowd.first == k + 1 { crowd.gap } else { 0.0 };
             }
-            // What is left out of the curve before it is unknown of its direction.
+            // A part left out before the segment makes its direction uncertain.
             let Some(segment) = Segment::between(points[last], sample, rounding + gap) else {
                 continue;
             };
@@ -195,7 +204,7 @@ impl Tube {
             }
             arc += segment.length;
             segments[last] = k as u32;
-            // Where it already is, unless points are repeated.
+            // In place, unless points are repeated.
             last += 1;
             points[last] = sample;
             arcs[last] = arc;
@@ -234,7 +243,7 @@ impl Tube {
             let unknown = rounding + widest_gap;
             result = self.stand_faces(&points, &bounds, unknown, given, crowds);
         }
-        // The number of the sample in the input.
+        // Converts to the index of the sample in the input.
         let crowding = crowding
             .map(|at: usize| at.checked_sub(1).map_or(0, |before| segments[before] as usize + 1));
         self.curve = Curve::Samples(Samples { points, arcs, segments, bounds });
@@ -242,7 +251,7 @@ impl Tube {
     }
 
     /// Finds the flat ends of the sections and their directions. `points` are the samples without
-    /// those repeated.
+    /// repetitions.
     fn stand_faces(
         &mut self,
         points: &[Vector],
@@ -273,7 +282,7 @@ impl Tube {
                         let curvature = bend_at_end(section, end, bounds);
                         let from =
                             if end == 0 { section.first as usize } else { section.last as usize };
-                        // In the order of their points.
+                        // Clusters are in the order of their points.
                         let first = crowds.partition_point(|crowd| {
                             crowd.point.saturating_add(FACE_SAMPLES) < from
                         });
@@ -296,7 +305,7 @@ impl Tube {
     }
 }
 
-/// How much the first two segments at an end may bend.
+/// Returns the curvature bound of the first two segments at an end.
 fn bend_at_end(section: &Section, end: usize, bounds: &[CurveBound]) -> Real {
     if section.is_even {
         return section.curvature;
@@ -306,20 +315,20 @@ fn bend_at_end(section: &Section, end: usize, bounds: &[CurveBound]) -> Real {
     two.iter().fold(0.0, |most: Real, bound| most.max(bound.curvature))
 }
 
-/// Samples as they were given.
+/// The samples of the input.
 struct InputSamples<'a> {
     samples: &'a [Vector],
     radii: &'a [Real],
-    /// The directions of the curve at its ends, of unit length.
+    /// The unit tangents of the curve at its ends.
     tangents: Option<[Vector; 2]>,
-    /// The largest coordinate.
+    /// The largest absolute coordinate.
     reach: Real,
-    /// What is no farther apart than this is at one place.
+    /// Points at most this far apart are at one place.
     one_place: Real,
 }
 
 impl InputSamples<'_> {
-    /// Where a point stood among the samples before those at one place were dropped.
+    /// Returns the index in the input of a point, counting the samples that were dropped.
     fn position_of(&self, point: usize, crowds: &[SampleCluster]) -> usize {
         let (mut last, mut count) = (0, 0);
         for (k, &sample) in self.samples.iter().enumerate().skip(1) {

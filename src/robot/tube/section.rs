@@ -1,37 +1,37 @@
-//! A stretch of the tube with one radius, and its flat faces.
+//! A section: a range of the tube with one radius, and its flat faces.
 
 use super::cap_persistence::CapPersistence;
 use super::curve::CurveBound;
 use crate::distance::Scalar;
 use parry3d_f64::math::{Real, Vector};
 
-/// A stretch of the tube with one radius. Places along it are *ticks*: the samples, or even shares
-/// of the section where the curve is a function.
+/// A range of the tube with one radius. Places along it are *ticks*: the samples, or even shares of
+/// the section if the curve is a function.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Section {
     pub first: u32,
     pub last: u32,
-    /// Arc lengths, along the polyline through the ticks, where it begins and ends.
+    /// Arc lengths of its start and end, along the polyline through the ticks.
     pub start: Real,
     pub end: Real,
     pub radius: Real,
-    /// The curve's curvature is at most this.
+    /// Upper bound on the curvature.
     pub curvature: Real,
-    /// The mean of the bounds on its curvature along it.
+    /// The mean of the curvature bounds along it.
     pub mean_curvature: Real,
-    /// What its curvature is at most within two radii of its ends, by arc length.
+    /// Upper bounds on the curvature within two radii of each end, by arc length.
     pub curvature_at: [Real; 2],
-    /// What of that was stated or shown. A section with a flat end bends by less than 1 / radius
-    /// next to it.
+    /// The part of `curvature_at` that was stated or shown. Next to a flat end it is below
+    /// `1 / radius`.
     pub shown_at: [Real; 2],
-    /// Whether no more is known of one part than of another.
+    /// Whether one bound holds for all its parts.
     pub is_even: bool,
-    /// The curve between two ticks is at most so many times as long as the polyline.
+    /// Upper bound on the length of the curve between two ticks over the length of the polyline.
     pub stretch: Real,
-    /// The flat ends. The others are round.
+    /// The flat ends; `None` for a round end.
     pub faces: [Option<EndFace>; 2],
-    /// Whether the direction of the flat ends may get lost in other shapes: bodies take them for
-    /// round then.
+    /// Whether the flat ends may lose their direction in other shapes. Bounding bodies then treat
+    /// them as round.
     pub fades: bool,
 }
 
@@ -41,14 +41,14 @@ pub(crate) struct EndFace {
     pub centre: Vector,
     /// The unit normal, out of the section.
     pub outward: Vector,
-    /// How large the angle between `outward` and the true normal may be.
+    /// Upper bound on the angle between `outward` and the true normal.
     pub tilt: Real,
-    /// Whether it is there in other shapes of the robot, too.
+    /// Whether the end is flat in other shapes of the robot, too.
     pub persistence: CapPersistence,
 }
 
 impl Section {
-    /// A section of a known radius, so far without length.
+    /// A section of radius `radius` that still has no length.
     pub(super) fn beginning(first: usize, start: Real, radius: Real) -> Self {
         Self {
             first: first as u32,
@@ -67,7 +67,7 @@ impl Section {
         }
     }
 
-    /// Takes over what is known of its segments, which reach from one arc length to the next.
+    /// Derives its bounds from its segments. `arcs` are the arc lengths of the segments' ends.
     pub(super) fn bound_by(&mut self, bounds: &[CurveBound], arcs: &[Real]) {
         let all = || bounds.iter().zip(arcs.windows(2));
         let most = |of: &dyn Fn(&CurveBound, &[Real]) -> Real| {
@@ -87,10 +87,11 @@ impl Section {
         self.shown_at = self.curvature_at;
     }
 
-    /// How far from the flat face at an end, by arc length, a ball on the centreline stays behind
-    /// it. A disc at arc length s from the face lies at least sin(curvature s) / curvature
-    /// behind its plane, which is the radius where s is asin(curvature radius) / curvature, not
-    /// farther away than pi / 2 radii.
+    /// Returns the arc length from a flat end behind which a ball on the centreline cannot reach
+    /// the face.
+    ///
+    /// A disc at arc length s from the face lies at least `sin(k s) / k` behind its plane, for the
+    /// curvature k. This equals the radius r at `s = asin(k r) / k`, which is at most `pi / 2 r`.
     pub(crate) fn room(&self, end: usize) -> Real {
         let curvature = self.curvature_at[end];
         let bend = (curvature * self.radius).min(1.0);
@@ -98,7 +99,7 @@ impl Section {
     }
 }
 
-/// How many times as long as a polyline the curve may be that turns by so much over a segment.
+/// Upper bound on the length of a curve over its polyline, if it turns by `bend` per segment.
 pub(super) fn stretch(bend: Real) -> Real {
     1.0 + bend * bend / 20.0 + 8.0 * Real::UNIT_ROUNDOFF
 }

@@ -1,55 +1,61 @@
-//! How much a section may bend between its samples.
-//!
-//! A sample shows a bend: the turn between its two segments over half of their lengths together.
-//! That is a mean of the curvature vector t', weighted by a hat over the two segments (for l1 and
-//! l2 long ones, and directions m1 and m2 as means of t: m2 - m1 is the integral of w t', w rising
-//! to 1 at the sample and falling again, and (l1 + l2) / 2 is that of w). The centre of a hat is
-//! (l2 - l1) / 3 behind its sample.
-//!
-//! **A curvature that changes evenly** is shown exactly at the hat's centre, but for two places: at
-//! a section's ends, beyond the last centre, where the change goes on as far as the end; and at a
-//! peak, which lies up to two segments from the largest bend and above it by no more than twice
-//! what bends fall by on its flatter side. Where that would be more than a quarter of the bend at a
-//! peak, or half of it at an end, the change is not even, and no more is added.
-//!
-//! **A bend that turns about the curve**, as in a helix, by the angle q from one sample to the
-//! next: its mean over a hat is less than the curvature k by q^2 / 12 of it. The differences of
-//! bends are about q k long; q^2 / 8 is added.
-//!
-//! **Uneven samples.** The turn at samples that are close together shows the bend at one place, but
-//! is noisy, and it says little of how the bend changes farther on. So two chains of samples are
-//! looked at, and the larger curvature counts: the *wide* chain, whose samples are no closer
-//! together than a quarter of the usual distance (their geometric mean), and the *whole* chain, if
-//! that is another one.
+//! Upper bounds on the bend of a section between its samples.
 //!
 //! # Definitions
-//! - Chain: samples in order, the first and the last among them.
-//! - Hat of a sample: the stretch between its two neighbours in the chain. At an end whose tangent
-//!   is given it is the stretch to the only neighbour, and the bend is the turn from the tangent
-//!   over half of that.
-//! - b: the bend that a sample shows. e: what the rounding of the samples can do to b.
-//! - Counted bend of a sample in the whole chain: b + min(e, b).
+//! - Chain: samples in order, including the first and the last. The *whole* chain has all samples.
+//!   The *wide* chain has no two samples closer than a quarter of the usual distance (their
+//!   geometric mean).
+//! - Hat of a sample: the range between its two neighbours in the chain. At an end with a given
+//!   tangent it is the range to the only neighbour.
+//! - `b`: the bend that a sample shows, the turn between its two segments over half of the sum of
+//!   their lengths. At an end with a given tangent: the turn from the tangent over half of the
+//!   segment's length.
+//! - `e`: the error of b due to rounding of the samples.
+//! - Counted bend of a sample in the whole chain: `b + min(e, b)`.
+//! - `t`: the unit tangent. `k`: the curvature.
+//!
+//! # What a bend is
+//! A bend is a mean of the curvature vector t', weighted by a hat. Let l1 and l2 be the lengths of
+//! the two segments and m1 and m2 their directions as means of t. Then m2 - m1 is the integral of
+//! `w t'`, where w rises to 1 at the sample and falls again, and `(l1 + l2) / 2` is the integral of
+//! w. The centre of the hat is `(l2 - l1) / 3` behind its sample.
+//!
+//! # Corrections
+//! 1. **Evenly changing curvature.** A bend is then the exact curvature at the hat's centre. Two
+//!    places are not covered:
+//!    - the ends of the section beyond the last centre: the change continues up to the end;
+//!    - a peak: it lies up to two segments from the largest bend, and above it by at most twice the
+//!      decrease of bends on its flatter side.
+//!
+//!    The correction is limited to a quarter of the bend at a peak and to half of it at an end:
+//!    beyond that the change is not even.
+//! 2. **A bend that turns about the curve**, as in a helix, by q per sample. Its mean over a hat is
+//!    less than k by `q^2 / 12` of it. The differences of bends have the length `q k`; `q^2 / 8` is
+//!    added.
+//! 3. **Uneven samples.** Close samples show the bend at one place, but with noise, and they say
+//!    little about its change farther on. So both chains are evaluated, and the larger curvature
+//!    counts.
 //!
 //! # Claim
-//! Let the curvature vector jump in a segment, and be constant on either side of it over a hat of
-//! one of the two samples next to that side. Then the curvature in the segment is at most the
-//! largest counted bend of the two samples before it and the two behind it, unless rounding hides
-//! more than half of what a sample shows.
+//! Let the curvature vector jump in a segment, and be constant on either side over a hat of one of
+//! the two samples next to that side. Then the curvature in the segment is at most the largest
+//! counted bend of the two samples before it and the two behind it, unless rounding hides more than
+//! half of a bend.
 //!
 //! # Proof
-//! 1. The hat is an arc of curvature k, of two parts that turn by x and y. Their chords are (2 / k)
-//!    sin(x / 2) and (2 / k) sin(y / 2) long, and the angle between them is (x + y) / 2. So without
-//!    rounding the sample shows t = 2 k sin((x + y) / 4) / (sin(x / 2) + sin(y / 2)) = k / cos((x -
-//!    y) / 4) >= k. With a tangent, x = 0.
-//! 2. |b - t| <= e. If b >= e, b + e >= t. Otherwise 2 b >= t holds if |b - t| <= t / 2.
-//! 3. The curvature in the segment is that of one side or of the other.
+//! 1. The hat is an arc of curvature k, in two parts that turn by x and y. Their chords have the
+//!    lengths `(2 / k) sin(x / 2)` and `(2 / k) sin(y / 2)`, and enclose the angle `(x + y) / 2`.
+//!    Without rounding the sample shows
+//!    `b0 = 2 k sin((x + y) / 4) / (sin(x / 2) + sin(y / 2)) = k / cos((x - y) / 4) >= k`. With a
+//!    tangent, `x = 0`.
+//! 2. `|b - b0| <= e`. If `b >= e`, `b + e >= b0`. Otherwise `2 b >= b0` if `|b - b0| <= b0 / 2`.
+//! 3. The curvature in the segment is the curvature of one side or of the other.
 //!
-//! How bends change is looked at in the whole chain only from one hat to another whose two segments
-//! are about as long, as in a section whose samples lie evenly.
-//!
-//! A counted bend is at most 2 b, so samples that show nothing but rounding cost no more than what
-//! they show. For their own two segments b + e counts in full. In the wide chain the noise is that
-//! of the closest samples in it.
+//! # Details
+//! - In the whole chain, the change of bends is evaluated only between hats whose two segments are
+//!   about equally long, as in a section with even samples.
+//! - A counted bend is at most 2 b, so samples that show rounding only cost at most what they show.
+//!   For a sample's own two segments, b + e counts in full.
+//! - In the wide chain, the noise of its closest samples counts.
 
 use super::curve::CurveBound;
 use super::sample_clusters::{SampleCluster, bend_at, beyond_at, gap_at};
@@ -57,30 +63,30 @@ use super::segment::{Segment, curvature_between, curvature_from};
 use crate::robot::RobotError;
 use parry3d_f64::math::{Real, Vector};
 
-/// Samples closer than this share of the usual distance to the one before are not in the wide
+/// Samples closer to the previous one than this share of the usual distance are not in the wide
 /// chain.
 const CLOSE: Real = 0.25;
 
-/// What a sample shows more than others counts where it turns a segment by more than this.
+/// A sample that shows more than the others is reported if it turns a segment by more than this.
 const SHARPER: Real = 1.0 / 64.0;
 
 /// The samples of one section.
 pub(super) struct SectionSamples<'a> {
     pub points: &'a [Vector],
     pub arcs: &'a [Real],
-    /// The directions of the curve at its ends, where they are given.
+    /// The tangents of the curve at its ends, where given.
     pub tangents: [Option<Vector>; 2],
     pub radius: Real,
-    /// What rounding can do to a point.
+    /// Upper bound on the rounding error of a point.
     pub rounding: Real,
-    /// The number of the first of them among all samples, and those that crowd.
+    /// The index of the first of them among all samples, and the clusters.
     pub first: usize,
     pub crowds: &'a [SampleCluster],
 }
 
-/// A segment in which more turns than samples tell of.
+/// A segment in which the curve may turn too far.
 pub(super) struct Bend {
-    /// The sample whose turn says so.
+    /// The sample that shows it.
     pub at: usize,
     /// The sample before the segment.
     pub from: usize,
@@ -88,37 +94,37 @@ pub(super) struct Bend {
 }
 
 impl Bend {
-    /// `segments` are the segments of the input that begin at each sample.
+    /// Returns the error. `segments` are the input segments that begin at each sample.
     pub(super) fn error(&self, segments: &[u32]) -> RobotError {
         let index = if self.at > 0 { segments[self.at - 1] as usize + 1 } else { 0 };
         RobotError::TurnsTooSharply { index, after: segments[self.from] as usize, turn: self.turn }
     }
 }
 
-/// What a sample shows beside its two neighbours in a chain.
+/// The bend that a sample shows in a chain.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Hat {
     sample: usize,
-    /// The bend, as a vector; none at an end whose direction is not given.
+    /// The bend as a vector; `None` at an end without a tangent.
     bend: Option<Vector>,
-    /// By how much it may be off because samples crowd.
+    /// Upper bound on the error of the bend due to clusters.
     doubt: Real,
-    /// Whether its bend changes evenly towards its neighbours, as far as anybody knows.
+    /// Whether the bend may be compared with its neighbours' (see **Details**).
     is_even: bool,
-    /// How large it counts.
+    /// The counted bend.
     shown: Real,
-    /// The curvature around the sample, what its neighbours show included.
+    /// The curvature around the sample, with corrections 1 and 2.
     around: Real,
 }
 
-/// A chain of samples, whose hats are looked up or measured on demand.
+/// A chain of samples whose hats are looked up or measured on demand.
 struct Chain<F: Fn(usize) -> Hat> {
     count: usize,
     hat: F,
 }
 
 impl<F: Fn(usize) -> Hat> Chain<F> {
-    /// The next place in the chain towards an end.
+    /// Returns the next place in the chain towards an end.
     fn next(&self, place: usize, end: usize) -> Option<usize> {
         if end == 0 {
             place.checked_sub(1)
@@ -127,12 +133,12 @@ impl<F: Fn(usize) -> Hat> Chain<F> {
         }
     }
 
-    /// The curvature around a sample that shows `most`, but for what is beyond an end.
+    /// Returns the curvature around a sample that shows `most`: corrections 1 (peak) and 2.
     fn around(&self, place: usize, most: Real) -> Real {
         let mut curvature = most;
         let Hat { bend, doubt, is_even, .. } = (self.hat)(place);
         if let Some(here) = bend.filter(|_| is_even) {
-            // By how much bends fall towards an end, and by how much they turn.
+            // The decrease of bends towards an end, and how far they turn.
             let side = |end: usize| {
                 let next = self.next(place, end)?;
                 let Hat { bend, doubt: own, is_even, .. } = (self.hat)(next);
@@ -149,7 +155,7 @@ impl<F: Fn(usize) -> Hat> Chain<F> {
             };
             let [peak, turned] = match [side(0), side(1)] {
                 [Some(one), Some(other)] => [one[0].min(other[0]), one[1].min(other[1])],
-                // What is beyond the end is told below.
+                // `at_end` covers the part beyond the end.
                 [Some(one), None] | [None, Some(one)] => [0.0, one[1]],
                 [None, None] => [0.0; 2],
             };
@@ -162,8 +168,7 @@ impl<F: Fn(usize) -> Hat> Chain<F> {
         curvature
     }
 
-    /// The curvature at an end, if it goes on changing as it does next to it. `points` are the
-    /// samples.
+    /// Returns the curvature at an end if it continues to change: correction 1 (end).
     fn at_end(&self, end: usize, points: &[Vector]) -> Real {
         let end_of_chain = if end == 0 { 0 } else { self.count - 1 };
         let inwards = |place: usize| self.next(place, end ^ 1);
@@ -191,7 +196,7 @@ impl<F: Fn(usize) -> Hat> Chain<F> {
         };
         let between = length(Some(first), second);
         let beyond = length(second, second.and_then(inwards));
-        // Of the centres of two hats, and from the first of them to the end.
+        // The distance between the centres of two hats, and from the first centre to the end.
         let apart = (outer + between + beyond) / 3.0;
         let to_end = if outer > 0.0 { (2.0 * outer + between) / 3.0 } else { between / 3.0 };
         let fall = size - next.length() + next_doubt;
@@ -201,7 +206,7 @@ impl<F: Fn(usize) -> Hat> Chain<F> {
     }
 }
 
-/// What a chain shows of one segment after the other.
+/// Bounds from one chain, segment by segment.
 struct Sweep<'a> {
     hats: &'a [Hat],
     ends: [Real; 2],
@@ -210,7 +215,7 @@ struct Sweep<'a> {
 }
 
 impl<'a> Sweep<'a> {
-    /// Fills in what is around each sample of a chain.
+    /// Computes the curvature around each sample of a chain.
     fn over(hats: &'a mut [Hat], points: &[Vector]) -> Self {
         for place in 0..hats.len() {
             let chain = Chain { count: hats.len(), hat: |place| hats[place] };
@@ -221,8 +226,8 @@ impl<'a> Sweep<'a> {
         Self { hats, ends, behind: 0 }
     }
 
-    /// Goes on to the segment that begins at a sample: the largest curvature that the two samples
-    /// before it and the two behind it show, and the sharpest of the four.
+    /// Advances to the segment that begins at `from`. Returns the largest curvature shown by the
+    /// two samples before it and the two behind it, and the sample that shows it.
     fn at(&mut self, from: usize) -> (Real, Hat) {
         while self.hats[self.behind].sample <= from {
             self.behind += 1;
@@ -230,7 +235,7 @@ impl<'a> Sweep<'a> {
         let (hats, behind) = (self.hats, self.behind);
         let last = hats.len() - 1;
         let four = &hats[behind.saturating_sub(2)..=(behind + 1).min(last)];
-        // In this order the first of equals counts.
+        // In this order ties go to the first.
         let nearest = hats[behind - 1];
         let sharpest = four
             .iter()
@@ -252,7 +257,7 @@ impl SectionSamples<'_> {
         Some(if self.crowds.is_empty() { segment } else { segment.with_gap(gap(from) + gap(to)) })
     }
 
-    /// What a sample shows between two segments.
+    /// Returns the hat of a sample between two segments.
     fn hat(&self, sample: usize, before: Option<Segment>, behind: Option<Segment>) -> Hat {
         let bend =
             match (before, behind) {
@@ -276,7 +281,7 @@ impl SectionSamples<'_> {
         Hat { sample, bend, doubt, is_even: true, shown: 0.0, around: 0.0 }
     }
 
-    /// Adds the hats of a chain of samples.
+    /// Appends the hats of a chain of samples.
     fn collect(
         &self,
         is_in: impl Fn(usize) -> bool,
@@ -297,8 +302,7 @@ impl SectionSamples<'_> {
         take(here, before, None);
     }
 
-    /// The curvature between samples that lie evenly, if the largest bend that they show is `most`,
-    /// at the sample `at`.
+    /// Returns the curvature bound for even samples, if the largest bend is `most`, at sample `at`.
     pub(super) fn between_samples(&self, at: usize, most: Real) -> Real {
         let last = self.last();
         let hat = |sample: usize| {
@@ -311,8 +315,8 @@ impl SectionSamples<'_> {
         ends[0].max(ends[1]).max(chain.around(at, most))
     }
 
-    /// The bend that a sample shows beside the next one on either side, what rounding and crowds
-    /// can do to it included, and how much of that is rounding.
+    /// Returns the bend that a sample shows in the whole chain, including errors by rounding and
+    /// clusters, and the part due to rounding.
     fn own_bend(
         &self,
         sample: usize,
@@ -337,9 +341,9 @@ impl SectionSamples<'_> {
         }
     }
 
-    /// The largest curvature of a segment if the curve goes through the samples that crowd around
-    /// it. The tube would be refused for a curve that bends by more than 1 rad there, or within
-    /// its radius.
+    /// Returns the largest curvature of a segment if the curve passes through all samples of a
+    /// cluster beside it. Bends of more than 1 rad, or within the radius, are excluded: the tube
+    /// would be refused.
     fn through_crowds(&self, from: usize) -> Real {
         if self.crowds.is_empty() {
             return 0.0;
@@ -355,9 +359,10 @@ impl SectionSamples<'_> {
         beside.chain([before, behind]).filter(is_possible).fold(0.0, Real::max)
     }
 
-    /// Adds bounds of all segments. The sample at which the curve may turn too much between it and
-    /// a neighbour is returned, if there is one; and one that shows more than others because
-    /// another one is very near. The curve bends by `least` at least. `hats` is memory.
+    /// Appends the bounds of all segments; `least` is a lower limit for each curvature.
+    ///
+    /// Returns the first segment in which the curve may turn by more than 1 rad, and the first
+    /// sample that shows a sharper bend because a neighbour is very near. `hats` is memory.
     pub(super) fn bound_unevenly(
         self,
         least: Real,
@@ -369,7 +374,7 @@ impl SectionSamples<'_> {
         let shortest = CLOSE * libm::exp2(logarithms / last as Real);
         let noise = 2.0 * self.rounding / shortest;
         let is_close = |sample: usize| self.arcs[sample] - self.arcs[sample - 1] < shortest;
-        // The last sample is in every chain, so that the curvature at its end is known.
+        // Every chain contains the last sample, so that the curvature at its end is known.
         let is_in = |sample: usize| {
             sample == last || (!is_close(sample) && self.arcs[last] - self.arcs[sample] >= shortest)
         };

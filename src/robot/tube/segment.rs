@@ -1,8 +1,8 @@
-//! A segment between two samples, and the curvature that two of them show.
+//! A segment between two samples, and the curvature that two neighbouring segments show.
 
 use parry3d_f64::math::{Real, Vector};
 
-/// Samples lie unevenly where a segment is so many times as long as its neighbour.
+/// Samples lie unevenly if one segment is this many times as long as its neighbour.
 const UNEVEN: Real = 4.0;
 
 /// A segment between two samples.
@@ -10,14 +10,14 @@ const UNEVEN: Real = 4.0;
 pub(super) struct Segment {
     pub direction: Vector,
     pub length: Real,
-    /// The length that it has at least, if its ends may be off.
+    /// A lower bound on its length if its ends may be off.
     pub least: Real,
-    /// What the rounding of the samples, or how far they may be off, can do to the direction.
+    /// Upper bound on the error of the direction: rounding of the samples, and errors of its ends.
     pub noise: Real,
 }
 
 impl Segment {
-    /// None without a length.
+    /// Returns `None` for a segment without length.
     #[inline(always)]
     pub(super) fn between(from: Vector, to: Vector, rounding: Real) -> Option<Self> {
         let along = to - from;
@@ -35,7 +35,7 @@ impl Segment {
         }
     }
 
-    /// The same segment, whose ends may be so far off together.
+    /// Returns the segment with ends that may be off by `gap` in sum.
     pub(super) fn with_gap(self, gap: Real) -> Self {
         if gap > 0.0 {
             let least = self.length - gap;
@@ -45,25 +45,25 @@ impl Segment {
         }
     }
 
-    /// Whether it is far longer or shorter than its neighbour.
+    /// Returns whether it is far longer or shorter than its neighbour.
     #[inline(always)]
     pub(super) fn is_uneven(&self, neighbour: &Self) -> bool {
         neighbour.length > UNEVEN * self.length || self.length > UNEVEN * neighbour.length
     }
 
-    /// The share of its length by which it may be longer.
+    /// Returns the relative amount by which it may be longer or shorter.
     pub(super) fn looseness(&self) -> Real {
         (self.length - self.least) / self.length
     }
 }
 
-/// The curvature that the turn from one segment to the next shows.
+/// Returns the curvature that the turn between two segments shows, errors included.
 pub(super) fn curvature_between(before: &Segment, segment: &Segment) -> Real {
     let turn = (segment.direction - before.direction).length() + segment.noise + before.noise;
     turn / (0.5 * (segment.least + before.least))
 }
 
-/// The curvature that the turn from the direction at an end to the segment next to it shows.
+/// Returns the curvature that the turn from an end direction to the next segment shows.
 pub(super) fn curvature_from(direction: Vector, segment: &Segment) -> Real {
     let turn = (segment.direction - direction).length() + segment.noise;
     turn / (0.5 * segment.least)

@@ -1,48 +1,53 @@
-//! The natural cubic spline that goes smoothly near points: of all functions f it makes the sum of
-//! |y - f|^2 plus weight times the integral of |f''|^2 least.
+//! The natural cubic smoothing spline: of all functions f it minimises the sum of `|y - f|^2` plus
+//! `weight` times the integral of `|f''|^2`.
 //!
-//! C. H. Reinsch, "Smoothing by spline functions", Numerische Mathematik 10, 1967. With h the
-//! distances of the knots, R the tridiagonal matrix of (h_i-1 + h_i) / 3 and h_i / 6, and Q the
-//! second differences, the second derivatives g at the inner knots solve (R + weight Q^T Q) g = Q^T
-//! y, and the values are y - weight Q g. The matrix has five diagonals, so the time is proportional
-//! to the number of points.
+//! # Definitions
+//! - `y`: the points at the knots. `h_i`: the distances of the knots.
+//! - `R`: the tridiagonal matrix of `(h_i-1 + h_i) / 3` and `h_i / 6`. `Q`: the second differences.
+//! - `g`: the second derivatives at the inner knots.
 //!
-//! How smooth it should be nobody says: generalised cross-validation does (P. Craven, G. Wahba,
-//! Numerische Mathematik 31, 1979), which needs the trace of what maps y to the residuals. Of the
-//! inverse the five diagonals suffice, and the factors give them (M. F. Hutchinson, F. R. de Hoog,
-//! Numerische Mathematik 47, 1985). A parameter of the spline counts 1.4 times, as is usual against
-//! the few cases in which cross-validation follows the noise.
+//! # Algorithm
+//! 1. **Solve** `(R + weight Q^T Q) g = Q^T y`. The matrix has five diagonals, so the time is
+//!    proportional to the number of points. The values are `y - weight Q g`. (C. H. Reinsch,
+//!    "Smoothing by spline functions", Numerische Mathematik 10, 1967.)
+//! 2. **Score** a weight by generalised cross-validation (P. Craven, G. Wahba, Numerische
+//!    Mathematik 31, 1979). It needs the trace of the map from y to the residuals.
+//! 3. **Trace.** Five diagonals of the inverse suffice, and the factors yield them (M. F.
+//!    Hutchinson, F. R. de Hoog, Numerische Mathematik 47, 1985).
+//!
+//! A parameter of the spline counts [`CAUTION`] times. This is the usual remedy for the few cases
+//! in which cross-validation follows the noise.
 
 use parry3d_f64::math::{Real, Vector};
 
-/// How many times a parameter of the spline counts in the choice of its weight.
+/// The weight of a parameter of the spline in the score.
 const CAUTION: Real = 1.4;
 
 /// A parametric cubic spline.
 #[derive(Clone, Debug)]
 pub(super) struct SmoothingSpline {
-    /// Ascending.
+    /// Ascending parameters.
     pub knots: Vec<Real>,
     pub values: Vec<Vector>,
-    /// The second derivatives at the knots; none at the two ends.
+    /// The second derivatives at the knots; zero at both ends.
     pub seconds: Vec<Vector>,
 }
 
-/// The matrix with five diagonals as L D L^T.
+/// The matrix with five diagonals, factored as L D L^T.
 struct Factors {
     diagonal: Vec<Real>,
-    /// Below the diagonal, and below that.
+    /// The first and the second diagonal below the main one.
     first: Vec<Real>,
     second: Vec<Real>,
 }
 
-/// The three numbers of a column of Q.
+/// Returns the three entries of column k of Q.
 fn differences(knots: &[Real], k: usize) -> [Real; 3] {
     let [before, behind] = [knots[k + 1] - knots[k], knots[k + 2] - knots[k + 1]];
     [1.0 / before, -1.0 / before - 1.0 / behind, 1.0 / behind]
 }
 
-/// The diagonals of Q^T Q in row k.
+/// Returns the diagonals of Q^T Q in row k.
 fn squared_differences(knots: &[Real], k: usize, count: usize) -> [Real; 3] {
     let own = differences(knots, k);
     let next = if k + 1 < count { differences(knots, k + 1) } else { [0.0; 3] };
@@ -95,10 +100,10 @@ impl Factors {
         }
     }
 
-    /// The trace of its inverse times Q^T Q.
+    /// Returns the trace of the inverse times Q^T Q (step 3).
     fn trace(&self, knots: &[Real]) -> Real {
         let count = self.diagonal.len();
-        // Rows of the inverse: the diagonal, and the two to the right of it.
+        // Rows of the inverse: the diagonal and the two entries to the right.
         let (mut next, mut beyond) = ([0.0; 3], [0.0; 3]);
         let mut sum = 0.0;
         for k in (0..count).rev() {
@@ -115,7 +120,7 @@ impl Factors {
     }
 }
 
-/// What makes splines of points at some knots.
+/// Computes splines of points at fixed knots with a fixed weight.
 pub(super) struct Smoother<'a> {
     knots: &'a [Real],
     weight: Real,
@@ -132,7 +137,7 @@ impl<'a> Smoother<'a> {
         Self { knots, weight, factors, columns }
     }
 
-    /// The spline near points.
+    /// Returns the spline near `points` (step 1).
     pub(super) fn spline(&self, points: &[Vector]) -> SmoothingSpline {
         let mut spline =
             SmoothingSpline { knots: self.knots.to_vec(), values: Vec::new(), seconds: Vec::new() };
@@ -140,7 +145,7 @@ impl<'a> Smoother<'a> {
         spline
     }
 
-    /// Makes a spline at the same knots the one near points, in the memory that it has.
+    /// As [`spline`](Self::spline), in the memory of `spline`.
     pub(super) fn fill(
         &self,
         points: impl ExactSizeIterator<Item = Vector>,
@@ -167,7 +172,7 @@ impl<'a> Smoother<'a> {
         }
     }
 
-    /// How little its spline may be trusted: the score of cross-validation.
+    /// Returns the score of cross-validation; less is better (step 2).
     pub(super) fn score(&self, points: &[Vector]) -> Real {
         let Some(factors) = &self.factors else { return 0.0 };
         let values = self.spline(points).values;
@@ -175,13 +180,13 @@ impl<'a> Smoother<'a> {
             points.iter().zip(&values).map(|(a, b)| (*a - *b).length_squared()).sum();
         let (count, free) = (points.len() as Real, self.weight * factors.trace(self.knots));
         let counted = count - CAUTION * (count - free);
-        // Where more parameters are counted than there are points, nothing can be said for it.
+        // Without degrees of freedom the weight cannot be chosen.
         if counted > 0.0 { squares / (counted * counted) } else { Real::INFINITY }
     }
 }
 
 impl SmoothingSpline {
-    /// The value and the first derivative between knot k and the next, at a share of the way.
+    /// Returns value and first derivative at a share of the interval between knots k and k + 1.
     pub(super) fn at(&self, k: usize, share: Real) -> [Vector; 2] {
         let h = self.knots[k + 1] - self.knots[k];
         let (a, b) = (1.0 - share, share);
@@ -193,7 +198,7 @@ impl SmoothingSpline {
         [value, slope]
     }
 
-    /// How far it is from the points at most.
+    /// Returns the largest distance of the spline from the points.
     pub(super) fn largest_residual(&self, points: &[Vector]) -> Real {
         points.iter().zip(&self.values).fold(0.0, |most: Real, (a, b)| most.max((*a - *b).length()))
     }

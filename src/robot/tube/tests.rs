@@ -1,12 +1,12 @@
-//! How good the fitted curve is, beside a smoothing spline that is computed in another way.
+//! The quality of the fitted curve, compared with an independently computed smoothing spline.
 
 use super::fit::smooth;
 use super::smoothing_spline::SmoothingSpline;
 use nalgebra::DMatrix;
 use parry3d_f64::math::{Real, Vector};
 
-/// The integral of the squared second derivative, which is the squared curvature where the
-/// parameter is the arc length.
+/// The integral of the squared second derivative. It equals the squared curvature if the parameter
+/// is the arc length.
 fn bending(spline: &SmoothingSpline) -> Real {
     let pairs = spline.seconds.windows(2).zip(spline.knots.windows(2));
     let of = |(seconds, knots): (&[Vector], &[Real])| {
@@ -16,8 +16,8 @@ fn bending(spline: &SmoothingSpline) -> Real {
     pairs.map(of).sum()
 }
 
-/// For evenly set points: the matrix whose quadratic form is the integral of the squared second
-/// derivative of the natural spline through values.
+/// For evenly spaced points: the matrix whose quadratic form is the integral of the squared second
+/// derivative of the natural spline through the values.
 fn roughness(count: usize, spacing: Real) -> DMatrix<Real> {
     let inner = count - 2;
     let mut differences = DMatrix::zeros(count, inner);
@@ -56,7 +56,7 @@ fn a_fit_bends_little_more_than_the_smoothest_spline_that_is_as_far_from_the_poi
         let rough = roughness(count, spacing);
         for noise in [0.01, 0.03, 0.1, 0.2, 0.5] {
             for round in 0..4 {
-                // Two arcs that bend to different sides.
+                // Two arcs that bend to opposite sides.
                 let (bend, half) = (0.01 + 0.01 * Real::from(round), 0.5 * LENGTH);
                 let (sin, cos) = (bend * half).sin_cos();
                 let place = |s: Real| {

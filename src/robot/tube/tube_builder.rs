@@ -1,5 +1,5 @@
-//! A tube that is laid along a curve known between its samples: points as close together as the
-//! curve's bends ask for.
+//! Builds a tube along a curve that is known between its samples, with points as dense as its bends
+//! require.
 
 use super::Tube;
 use super::cap_persistence::CapPersistence;
@@ -10,20 +10,20 @@ use crate::robot::RobotError;
 use crate::robot::radius_steps::is_same;
 use parry3d_f64::math::{Real, Vector};
 
-/// A tube on its way.
+/// A tube under construction.
 pub(super) struct TubeBuilder {
     samples: Samples,
     sections: Vec<Section>,
-    /// The directions of the curve at the ends of each section.
+    /// The tangents of the curve at the ends of each section.
     tangents: Vec<[Vector; 2]>,
     first_radius: Real,
     least_radius: Real,
-    /// By how much radii that were taken for one differ.
+    /// The largest difference of radii that were treated as equal.
     merged: Real,
 }
 
 impl TubeBuilder {
-    /// From the first point on, in the memory of a curve and sections.
+    /// Begins at the first point, in the memory of a curve and sections.
     pub(super) fn begin(curve: Curve, mut sections: Vec<Section>, start: Vector) -> Self {
         let mut samples = curve.into_samples();
         samples.clear();
@@ -34,7 +34,7 @@ impl TubeBuilder {
         Self { samples, sections, tangents: Vec::new(), first_radius, least_radius, merged }
     }
 
-    /// Lays a segment of the input, which leaves in the first direction and arrives in the second.
+    /// Lays an input segment with the tangents at its start and its end.
     pub(super) fn lay(
         &mut self,
         segment: u32,
@@ -69,11 +69,14 @@ impl TubeBuilder {
         self.merged = self.merged.max(section.radius - self.least_radius);
     }
 
-    /// Makes it the tube, whose faces stand across the curve up to `tilt`. The curve may be so many
-    /// times as long as was said. `gap` is what was left out of it.
+    /// Completes the tube.
+    ///
+    /// - `tilt`: uncertainty of the directions of faces, rad; infinite if unknown.
+    /// - `stretch`: upper bound on the curve's true length over the laid length.
+    /// - `gap`: distance of points that were merged.
     ///
     /// # Errors
-    /// No point is behind the first, or a section bends within its radius next to a face.
+    /// All points are equal, or a section bends within its radius next to a face.
     pub(super) fn finish(
         mut self,
         tube: &mut Tube,
@@ -104,7 +107,7 @@ impl TubeBuilder {
                 let persistence = CapPersistence::Either;
                 let tilt = tilt + 32.0 * Real::UNIT_ROUNDOFF;
                 section.faces[end] = Some(EndFace { centre, outward, tilt, persistence });
-                // Where nobody knows a face's direction, nobody knows what is behind it.
+                // A face of unknown direction says nothing about the space behind it.
                 if tilt < Real::INFINITY && !tube.is_flat(end, number, limit, centre) {
                     tube.sections[number].faces[end] = None;
                 }

@@ -1,23 +1,30 @@
-//! How far a tube turns between two of its places: at most, and at least.
+//! Upper and lower bounds on the turn of a tube between two of its places.
 //!
-//! **At most.** The curvature of each stretch is at most k, so a stretch of length l turns by no
-//! more than k l. A chain is straight but for its joints, at which it turns by the angle between
-//! its links. Where two frames at one place were taken for one (`frames`), whose directions differ
-//! by q <= 2^-16, the segments on either side may have either direction: their curve is the assumed
-//! one and a cubic that changes a direction at an end by q. The second derivative of that goes
-//! evenly from 4 q / l to -2 q / l, so it adds 5/3 q, and 10/3 q from both ends. 4 q a segment is
-//! more than that with what the slope of the cubic does to it.
+//! # Upper bound
+//! A part of length l and curvature at most k turns by at most `k l`. A chain turns at its joints
+//! only, by the angles between its links.
 //!
-//! **At least.** A curve between two places turns by no less than any polygon through some of its
-//! points in order does, nor than its directions at some places in order. The former serves
-//! samples, the latter functions. Points that may be off by e leave the direction of a chord of
-//! length l open by asin(2 e / l), at most 4 e / l, so chords are the longer then; one that is open
-//! by more than 1 tells nothing. The samples outside of the two places are left out. A chain's turn
-//! is known exactly: the directions of two links hold anywhere on them.
+//! Two frames at one place may be treated as one although their directions differ by `q <= 2^-16`
+//! (`frames`). The segments on either side may then have either direction. Their curve is the
+//! assumed one plus a cubic that changes the direction at an end by q. The cubic's second
+//! derivative changes evenly from `4 q / l` to `-2 q / l`, so it adds `5/3 q` of turn, or `10/3 q`
+//! for both ends. `4 q` per segment covers this and the effect of the cubic's slope.
 //!
-//! **Rounding.** An angle between two directions errs by less than 16 u, since they are unit
-//! vectors to 4 u and a sine and a cosine of them to 8 u, and so the sum over n of them by less
-//! than 16 n u and n^2 u for its own additions.
+//! # Lower bound
+//! A curve between two places turns by at least as much as
+//!
+//! 1. any polygon through some of its points in order (used for samples);
+//! 2. its directions at some places in order (used for functions).
+//!
+//! If points may be off by e, the direction of a chord of length l is uncertain by
+//! `asin(2 e / l) <= 4 e / l`. Chords are therefore made longer, and a chord that is uncertain by
+//! more than 1 is ignored. Samples outside of the two places are ignored. The turn of a chain is
+//! exact: the direction of a link holds anywhere on it.
+//!
+//! # Rounding
+//! An angle between two directions errs by less than `16 u`: unit vectors err by at most `4 u`,
+//! their sine and cosine by `8 u`. The sum of n angles errs by less than `16 n u`, plus `n^2 u` for
+//! its additions.
 
 use super::Tube;
 use super::curve::Curve;
@@ -26,48 +33,49 @@ use crate::distance::Scalar;
 use crate::robot::scale::{direction, length};
 use parry3d_f64::math::{Real, Vector};
 
-/// What a segment between frames may turn by beyond what it shows, where directions were taken for
-/// one: 4 times as much as these may be apart.
+/// Extra turn of a segment between frames if directions were merged: four times their largest
+/// difference.
 const HIDDEN: Real = 4.0 * ONE_DIRECTION;
 
-/// A function is asked for its direction so often that it turns by 1 / 64 rad from one to the next,
-/// or a little less often where that would be more than this.
+/// Most directions per section of a function. Below this limit consecutive directions turn by at
+/// most 1 / 64 rad.
 const MAX_DIRECTIONS: u32 = 4096;
 
-/// Of samples that may be off, so many are left out that a chord's direction is open by no more
-/// than this, unless the curve turns by more than [`MAX_TURN`] along it.
+/// Chords of uncertain samples are extended until their direction is uncertain by at most this, or
+/// until the curve may turn by more than [`MAX_TURN`] along them.
 const MIN_DOUBT: Real = 1.0 / 1024.0;
 const MAX_TURN: Real = 0.25;
 
-/// What a tube's turns are measured in, which is used again.
+/// The turns of a tube. The memory is reused.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct TubeTurns {
-    /// By how much it may have turned up to the start of each section.
+    /// Upper bound on the turn up to the start of each section.
     before: Vec<Real>,
-    /// The same up to each tick, where sections are uneven.
+    /// Upper bound on the turn up to each tick, for uneven sections.
     at: Vec<Real>,
     headings: Vec<Heading>,
     has_joints: bool,
     slack: Real,
 }
 
-/// A direction that the tube has.
+/// A direction of the tube.
 #[derive(Clone, Copy, Debug)]
 struct Heading {
-    /// It is known of a part of the tube from this arc length
+    /// Start of the part of the tube that has the direction, as an arc length.
     from: Real,
-    /// to that one. Of a link it is known anywhere, so that its part ends where it begins.
+    /// End of that part. The direction of a link holds anywhere on it, so its part ends where it
+    /// begins.
     to: Real,
-    /// By how much the tube has turned up to here at least.
+    /// Lower bound on the turn up to this direction.
     turned: Real,
 }
 
-/// Where a tube bends too sharply for a thin one.
+/// A place where a tube bends too sharply for queries that assume a thin tube.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum TooSharp {
-    /// At a joint, so that its links overlap over more than half of the shorter one.
+    /// A joint whose links overlap over more than half of the shorter one.
     Joint { joint: usize, angle: Real, radius: Real, length: Real },
-    /// Within its own radius.
+    /// A bend within the tube's own radius.
     Bend { arc_length: Real, curvature: Real, radius: Real },
 }
 
@@ -75,7 +83,7 @@ impl Tube {
     /// Measures how far the tube turns.
     ///
     /// # Errors
-    /// It bends too sharply somewhere.
+    /// A joint or a bend is too sharp.
     pub(crate) fn measure_turns(&self, turns: &mut TubeTurns) -> Result<(), TooSharp> {
         turns.before.clear();
         turns.at.clear();
@@ -95,7 +103,7 @@ impl Tube {
                 let (curvature, radius) = (section.curvature, section.radius);
                 return Err(TooSharp::Bend { arc_length: section.start, curvature, radius });
             }
-            // Links have ends of their own, which no curve has.
+            // Links have their own end points; sections of a curve share them.
             let is_link = samples.is_some()
                 && section.stretch == 1.0
                 && before.is_none_or(|before| before.last != section.first);
@@ -158,7 +166,7 @@ impl Tube {
                     turns.at[from] = most;
                     let length = samples.arcs[to] - samples.arcs[from];
                     most += bound.curvature * length * section.stretch;
-                    // Once for each segment of the input, which may be laid in parts.
+                    // Once per input segment, which may be laid in parts.
                     if tick == section.first || samples.segments[from] != samples.segments[from - 1]
                     {
                         most += hidden;
@@ -167,7 +175,7 @@ impl Tube {
                 }
             } else {
                 let turn = section.curvature * (section.end - section.start);
-                // A number out of range becomes the nearest that is in it.
+                // The conversion saturates.
                 let count = ((64.0 * turn).ceil() as u32).clamp(1, MAX_DIRECTIONS);
                 for k in 0..=count {
                     let share = Real::from(k) / Real::from(count);
@@ -184,7 +192,7 @@ impl Tube {
         Ok(())
     }
 
-    /// By how much it may have turned up to a tick of a section.
+    /// Returns an upper bound on the turn up to a tick of a section.
     pub(crate) fn turned_at_most(&self, turns: &TubeTurns, number: u32, tick: u32) -> Real {
         let section = &self.sections[number as usize];
         if !section.is_even {
@@ -196,20 +204,22 @@ impl Tube {
 }
 
 impl TubeTurns {
-    /// Whether the tube is a chain of links, which turns at their joints.
+    /// Returns whether the tube is a chain of links, which turns at joints.
     pub(crate) fn has_joints(&self) -> bool {
         self.has_joints
     }
 
-    /// Whether a turn may be one of `angle`, as far as rounding tells.
+    /// Returns whether a turn may reach `angle`, within rounding.
     pub(crate) fn may_reach(&self, turn: Real, angle: Real) -> bool {
         turn >= angle - self.slack
     }
 
-    /// Two arc lengths such that all places up to the one and all from the other on have a turn of
-    /// at least `angle` between them, as far as rounding tells: on either side of what turns
-    /// between two places, which keep the same distance from it. None if it is not known that
-    /// the tube turns that far between the two.
+    /// Returns two arc lengths, one on either side of what turns between `from` and `to`. Every
+    /// place before the first and every place behind the second have a turn of at least `angle`
+    /// between them, within rounding.
+    ///
+    /// The margin is divided equally between the two sides. `None` if the tube is not known to turn
+    /// by `angle` between `from` and `to`.
     pub(crate) fn room(&self, [from, to]: [Real; 2], angle: Real) -> Option<[Real; 2]> {
         let headings = &self.headings;
         let first = headings.partition_point(|heading| heading.from < from);

@@ -1,4 +1,4 @@
-//! Whether a function keeps the promises that its tube relies on.
+//! Tests whether a function fulfils the promises that its tube relies on.
 
 use super::curve::Curve;
 use super::{Section, Tube};
@@ -7,17 +7,20 @@ use crate::robot::RobotError;
 use parry3d_f64::math::Real;
 
 impl Tube {
-    /// Tries the curve of [`from_function`](Self::from_function) at `steps` even steps in each
-    /// section: that it is finite, that its argument is the arc length, that its direction is
-    /// that of the curve, and that it bends no more than stated. A tube of samples has nothing
-    /// to try.
+    /// Tests the curve of [`from_function`](Self::from_function) at `steps` even steps per section.
     ///
-    /// With |c''| <= k, |c(s + h) - 2 c(s) + c(s - h)| is at most k h^2, and c(s + h) - c(s) is at
-    /// most h long and at least h (1 - (k h)^2 / 24); (c(s + h) - c(s - h)) / (2 h) is within k
-    /// h / 2 of c'(s).
+    /// A tube of samples passes without a test. For a function c with the stated curvature k and
+    /// the step h, each test allows for rounding and for the stated error:
+    ///
+    /// 1. The curve is finite.
+    /// 2. It bends at most as stated: `|c(s + h) - 2 c(s) + c(s - h)| <= k h^2`.
+    /// 3. Its argument is the arc length:
+    ///    `h (1 - (k h)^2 / 24) <= |c(s + h) - c(s)| <= h`.
+    /// 4. Its direction is that of the points:
+    ///    `|c'(s) - (c(s + h) - c(s - h)) / (2 h)| <= k h / 2`.
     ///
     /// # Errors
-    /// The first arc length at which the curve breaks a promise.
+    /// The first arc length at which a test fails.
     pub fn verify(&self, steps: u32) -> Result<(), RobotError> {
         let Curve::Function(curve) = &self.curve else { return Ok(()) };
         for section in &self.sections {
