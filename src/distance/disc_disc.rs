@@ -12,14 +12,15 @@
 //!
 //! # Definitions
 //! - `r1`, `r2`: the radii. The first disc's centre is the origin; `C` is the second disc's centre.
-//! - `l`: the unit vector along the line in which the planes meet, directed so that `L = <C, l> >=
-//!   0`.
+//! - `l`: the unit vector along the line in which the planes meet, directed so that
+//!   `L = <C, l> >= 0`.
 //! - `m1`, `m2`: the unit vectors across `l` in each plane.
 //! - `s`, `c`: the sine and the cosine of the angle between the planes.
-//! - The chord at the offset `a` along `m1` runs along `l` and has the half length `k = sqrt(r1^2 -
-//!   a^2)`.
-//! - All of this chord has the height `h = h0 + s a` over the second plane and the offset `b = b0 +
-//!   c a` across `C`. Its point nearest to `C` misses the foot of `C` by `e = max(0, L - k)`.
+//! - The chord at the offset `a` along `m1` runs along `l` and has the half length
+//!   `k = sqrt(r1^2 - a^2)`.
+//! - All of this chord has the height `h = h0 + s a` over the second plane and the offset
+//!   `b = b0 + c a` across `C`. Its point nearest to `C` misses the foot of `C` by
+//!   `e = max(0, L - k)`.
 //! - `rho = sqrt(b^2 + e^2)`, `o = max(0, rho - r2)`. The squared distance of the chord from the
 //!   second disc is
 //!

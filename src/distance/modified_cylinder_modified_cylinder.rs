@@ -25,9 +25,9 @@
 //!   `T`.
 //!
 //! # Algorithm
-//! 1. **Axis and axis.** `q` is not at a flat end of the second link. By S the second link is `F -
-//!    r2` from the first axis, attained at `p`. If `p` is not at a flat end either, S gives `F - r1
-//!    - r2`.
+//! 1. **Axis and axis.** `q` is not at a flat end of the second link. By S the second link is
+//!    `F - r2` from the first axis, attained at `p`. If `p` is not at a flat end either, S gives
+//!    `F - r1 - r2`.
 //! 2. **Axis and disc.** `q` is at a flat end. By D the distance of the second link from the first
 //!    axis is that of this end's disc: segment-disc. If the parameter on the first axis is not at a
 //!    flat end, S subtracts `r1`.

@@ -17,8 +17,10 @@
 
 use super::{Closest, Mask, Scalar, Vec3, frame::Frame};
 
-/// The distance between a point and a solid disc with the given centre, normal (of any length) and
-/// radius; (9) to (12). A zero normal makes the disc a ball.
+/// Returns the distance between a point and a solid disc, and the closest points; (9) to (12).
+///
+/// - `point`, `centre`, `radius`: in one frame and unit.
+/// - `normal`: of any length. A zero normal makes the disc a ball.
 #[inline(always)]
 pub fn point_disc<T: Scalar>(
     point: Vec3<T>,

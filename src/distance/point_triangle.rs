@@ -16,7 +16,10 @@
 
 use super::{Closest, Mask, Scalar, Vec3, face::Face, frame::Frame};
 
-/// The distance between a triangle and a point.
+/// Returns the distance between a point and a triangle, and the closest points.
+///
+/// `point` and the vertices share one frame and unit. A triangle without area is a segment or a
+/// point.
 #[inline(always)]
 pub fn point_triangle<T: Scalar>(point: Vec3<T>, triangle: [Vec3<T>; 3]) -> Closest<T> {
     let frame = Frame::around(point, triangle, point.x.zero());

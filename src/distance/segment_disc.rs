@@ -13,8 +13,8 @@
 //!
 //! # Definitions
 //! - `n`, `R`: the unit normal and the radius of the disc, whose centre is the origin.
-//! - `p(s) = D + s B`: the line, with `|B| = 1` and `s` measured from the foot of the centre: `<D,
-//!   B> = 0`. The algorithm depends on this choice of origin.
+//! - `p(s) = D + s B`: the line, with `|B| = 1` and `s` measured from the foot of the centre:
+//!   `<D, B> = 0`. The algorithm depends on this choice of origin.
 //! - `l = <p, n>`: the height of `p` over the disc's plane. `rho`: the distance of `p` from the
 //!   disc's axis.
 //! - `F(s) = l^2 + max(0, rho - R)^2`: the squared distance of `p(s)` from the solid disc.
@@ -45,9 +45,9 @@
 //! 3. **Start from the left**: Newton's step from `s = 0`, where `g = -R N / rho`.
 //! 4. **Start at the cusp**: a line nearly parallel to the plane and nearly tangent to the circle,
 //!    where `g` bends like a cube root. Take `w = tau x` with `x = sqrt(K^2 - 1) + cbrt(2 N / tau)`
-//!    and `K = R m^1.5 / tau`. Away from the cusp this start is too small, even below 0. But `L^2 +
-//!    m = 1` gives `g = s - R w / rho`, and `w / rho` grows with `s`. So the minimiser is at least
-//!    `R N / |q|`, and the start is raised to that value.
+//!    and `K = R m^1.5 / tau`. Away from the cusp this start is too small, even below 0. But
+//!    `L^2 + m = 1` gives `g = s - R w / rho`, and `w / rho` grows with `s`. So the minimiser is at
+//!    least `R N / |q|`, and the start is raised to that value.
 //! 5. **Along the normal**, `m = 0`: all points of the line have the same `rho`; `s = 0` lies in
 //!    the disc's plane.
 //! 6. **A point**, `B = 0`: `N = 0` and `s = 0`; `|q|` is computed from `q` itself.

@@ -13,12 +13,12 @@
 //! Minimise `|w + s e - t f|^2` over the unit square.
 //!
 //! # Algorithm
-//! 1. **Skew lines.** The minimiser over all `s`, `t` has `s = <w x f, n> / <n, n>` with `n = f x
-//!    e`. For nearly parallel lines the cross product keeps its digits; the determinant `a c - b^2`
-//!    of the normal equations loses half of them. For a given `t` the best `s` on the line is `s(t)
-//!    = (b t - <e, w>) / a`, monotone in `t`. So a minimiser with `t` in `[0, 1]` has `s` between
-//!    `s(0)` and `s(1)`. The minimum over `t` is convex in `s`, so clamping `s` first to this
-//!    interval and then to `[0, 1]` is exact.
+//! 1. **Skew lines.** The minimiser over all `s`, `t` has `s = <w x f, n> / <n, n>` with
+//!    `n = f x e`. For nearly parallel lines the cross product keeps its digits; the determinant
+//!    `a c - b^2` of the normal equations loses half of them. For a given `t` the best `s` on the
+//!    line is `s(t) = (b t - <e, w>) / a`, monotone in `t`. So a minimiser with `t` in `[0, 1]` has
+//!    `s` between `s(0)` and `s(1)`. The minimum over `t` is convex in `s`, so clamping `s` first
+//!    to this interval and then to `[0, 1]` is exact.
 //! 2. **Parallel lines.** `n = 0` leaves `s` free. All `s` between `s(0)` and `s(1)` are equally
 //!    good; the clamps bring `s` there.
 //! 3. **Degenerate segments.** If `a = 0` or `c = 0`, that parameter is 0.

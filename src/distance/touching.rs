@@ -13,8 +13,8 @@
 //!
 //! # Rule
 //! If a flat cap decides, a computed distance of at most [`ROUNDING`] `u extent` becomes 0. The
-//! witness of both bodies is the midpoint of the two points, at most half of [`ROUNDING`] `u
-//! extent` from either.
+//! witness of both bodies is the midpoint of the two points, at most half of [`ROUNDING`]
+//! `u extent` from either.
 //!
 //! # Claim
 //! If the kernel errs by at most `8 u extent`, every overlap has distance 0, and the answer errs by

@@ -25,8 +25,10 @@ use super::{Closest, Convex, DiscSolver, Scalar, Vec3, face::Face, frame::Frame,
 /// How far rounding may move a point of the triangle off it, in units of `u` and numbers near one.
 const ROUNDING: f64 = 32.0;
 
-/// The distance between a triangle and a solid disc with the given centre, normal (of any length
-/// but 0) and radius; (22) to (25).
+/// Returns the distance between a triangle and a solid disc, and the closest points; (22) to (25).
+///
+/// - `triangle`, `centre`, `radius`: in one frame and unit.
+/// - `normal`: of any length except 0.
 #[inline(always)]
 pub fn triangle_disc<T: Scalar>(
     triangle: [Vec3<T>; 3],

@@ -28,7 +28,8 @@
 //! The two cases are exact in every configuration, overlap included.
 //!
 //! # Proof
-//! Case 1. `K` contains `Z`, so `d >= max(0, F - r)`. The point of `K` nearest to `p*` belongs to `Z`.
+//! Case 1. `K` contains `Z`, so `d >= max(0, F - r)`. The point of `K` nearest to `p*` belongs to
+//! `Z`.
 //!
 //! Case 2. Place the flat end at `z = 0`, with `Z` in `z <= 0`; then `z(p*) >= 0`. Let the point
 //! `p` of `T` attain `d`.
