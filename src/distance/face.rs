@@ -5,13 +5,14 @@
 //! is `p = alpha e1 + beta e2 + r`, with `r` normal to the plane.
 //!
 //! # Rounding
-//! The textbook formula `|<n, p>|` errs by millions of units in the last place on triangles whose
-//! height is 1e-12 of their length. Three measures keep the result exact within rounding:
+//! On triangles whose height is 1e-12 of their length, the textbook formula `|<n, p>|` falls below
+//! the true distance by millions of units in the last place. Three measures keep the result exact
+//! within rounding:
 //!
 //! 1. **The apex lies opposite the longest edge.** So `e1` and `e2` are the shorter edges. The
 //!    component of their cross product along the longest edge is removed. The remaining tilt turns
-//!    the plane about the longest edge and moves the apex by no more than rounding: the normal
-//!    belongs to a triangle that cannot be distinguished from the given one.
+//!    the plane about the longest edge and moves the apex at most by rounding: the normal belongs
+//!    to a triangle that cannot be distinguished from the given one.
 //! 2. **The coordinates are refined.** `alpha` and `beta` come from the dual basis, then again from
 //!    the residual. The distance is `|r|`, the distance to an actual point of the triangle.
 //! 3. **Zero area.** The dual basis is zero, and the face is marked as having no interior. The

@@ -92,7 +92,7 @@ fn every_level_agrees_in_double_precision() {
     compare::<f64>();
 }
 
-/// Returns the larger and the smaller of two numbers, and their quotient if that is 1.
+/// Returns the larger and the smaller of two numbers, and their quotient by `Scalar::over`.
 #[inline(always)]
 fn choices<L: Pack>(token: L::Token, one: L::Element, other: L::Element) -> [L::Element; 3]
 where

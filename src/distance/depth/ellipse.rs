@@ -18,7 +18,8 @@
 //! The normal at the closest point passes through `p`, so for some number `w`
 //!
 //! ```text
-//! (X, Y) = (z0 r / (w + r - 1), z1 / w)   with   X^2 + Y^2 = 1,   r = 1 / b^2,   z0 = x,   z1 = y / b.
+//! (X, Y) = (z0 r / (w + r - 1), z1 / w)   with   X^2 + Y^2 = 1,
+//! r = 1 / b^2,   z0 = x,   z1 = y / b.
 //! ```
 //!
 //! This is the equation of Eberly, "Distance from a point to an ellipse", with `w` for his `s + 1`.
