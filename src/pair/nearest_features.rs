@@ -77,7 +77,7 @@ const OVER_EACH_OTHER: Real = 16.0 * TIE;
 pub(crate) struct NearestFeatures {
     pub link: LinkFeature,
     pub triangle: TriangleFeature,
-    /// Where on the axis, from 0 to 1.
+    /// The fraction of the axis, from 0 to 1.
     pub fraction: Real,
     /// The unit vector from triangle to link.
     pub normal: Option<Vector>,
@@ -148,7 +148,7 @@ pub(crate) struct NearestParts<T: Scalar> {
     /// The closest vertex, the first that applies; otherwise the closest edge; otherwise the face.
     pub corners: [T::Mask; 3],
     pub edges: [T::Mask; 3],
-    /// Where on the axis, from 0 to 1.
+    /// The fraction of the axis, from 0 to 1.
     pub fraction: T,
     /// The triangle's closest point.
     pub on_triangle: Vec3<T>,
