@@ -16,8 +16,8 @@ use crate::mesh::splat;
 pub(crate) struct Nearer<L> {
     /// Which triangles may be nearer than the limit, one bit per lane.
     pub nearer: u64,
-    /// A lower bound, before the link's `error`. Equal to `upper`, and to the axis distance, if no
-    /// flat cap decides.
+    /// A lower and an upper bound, before the link's `error`. Both equal the axis distance if no
+    /// flat cap decides. `upper` is at least the radius if a flat cap may decide in this precision.
     pub lower: L,
     pub upper: L,
 }
@@ -119,7 +119,7 @@ impl<L: Pack> LinkLanes<L> {
         (behind[0] | !self.link.flat[0]) & (behind[1] | !self.link.flat[1])
     }
 
-    /// Which triangles may be nearer than the bound whose axis limit is `limit`.
+    /// Returns the bounds of a pack of triangles against the bound with the axis limit `limit`.
     #[inline(always)]
     pub(crate) fn may_be_nearer(&self, face: &Face<L>, limit: L) -> Nearer<L> {
         let face = face.seen_from(self.start);

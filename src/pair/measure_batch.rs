@@ -48,7 +48,8 @@ impl Best {
     }
 }
 
-/// Measures up to [`BATCH`] triangles. Returns which are at most `bound` away, one bit for each.
+/// Measures up to [`BATCH`] triangles against a link. Returns those at most `bound` away, one bit
+/// for each.
 #[inline(always)]
 fn measure_pack(
     level: Level,

@@ -13,7 +13,7 @@ pub(crate) struct PlacedRobot<'a> {
     robot: &'a Chain,
     /// The pose; its rotation has unit length.
     pose: Pose,
-    /// Base and tip in the mesh's frame.
+    /// Base and tip, in the mesh's frame.
     ends: [Vector; 2],
     /// The factor by which a rotation that is not exactly of unit length stretches the robot.
     stretch: Real,

@@ -15,7 +15,7 @@ use parry3d_f64::math::{Real, Vector};
 pub(crate) struct Height {
     pub distance: Real,
     pub rounding: Real,
-    /// The vector to a point from the link's closest point; unspecified for a segment.
+    /// The vector to a point from the link's closest point; zero for a segment.
     pub way: Vector,
 }
 
