@@ -1,13 +1,14 @@
 //! The distance between two solid discs.
 //!
 //! ```text
-//!       l (line of the planes, towards the reader)
-//!       o--------------------------------> m1, offset a
-//!        \        ____a____
-//!         \      |  disc 1 (its chords run along l)
-//!          \  \
-//!           \  \ disc 2, centre C
-//!            v m2
+//!     Seen along the line l of the planes:
+//!
+//!                / m2
+//!               C   disc 2, radius r2
+//!              /
+//!             /   angle with sine s, cosine c
+//!     -------l--------o------|-----> m1
+//!                     0      a    disc 1, radius r1
 //! ```
 //!
 //! # Definitions

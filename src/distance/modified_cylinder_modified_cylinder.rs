@@ -1,15 +1,13 @@
 //! The distance between two modified cylinders, with any caps.
 //!
 //! ```text
-//!         case 1: axis, axis              case 2: axis, disc
-//!        ====== p ======                  ====== p ======
-//!               | F - r1 - r2                   /
-//!        ====== q ======                     q |======
-//!
-//!         case 3: disc, axis              case 4: disc, disc
-//!        =====| p                         =====| p
-//!              \                                \
-//!          ===== q =====                         q |=====
+//!   1. axis, axis      2. axis, disc      3. disc, axis      4. disc, disc
+//!    __________         __________         _____              _____
+//!   |____p_____|       |____p_____|       |____p             |____p
+//!        |                  |                   \                  \
+//!    ____|_____           __q__             _____\___              _\_____
+//!   |____q_____|         |     |           |______q__|            |q______|
+//!                        |     |
 //! ```
 //!
 //! # Definitions

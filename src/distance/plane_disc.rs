@@ -1,12 +1,16 @@
 //! The distance between a plane and a solid disc (paper, equations (20) and (21), corrected).
 //!
 //! ```text
-//!    -------------------------------- plane
-//!                     .   height
-//!           \        .
-//!            \      o centre         u: the plane's normal,
-//!             \   /                     projected to the disc
-//!               \/ disc point
+//!     ____________________________  plane
+//!        |               |
+//!        | distance      | height
+//!        |               |
+//!        p               |
+//!          `-._          |
+//!              `-._      |
+//!                  `-._  o centre
+//!                       `-._
+//!                           `-.  disc, seen edge-on
 //! ```
 //!
 //! 1. **Tilted.** The closest disc point lies along `u`, the part of the plane's normal in the

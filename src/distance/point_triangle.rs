@@ -1,11 +1,12 @@
 //! The distance between a triangle and a point.
 //!
 //! ```text
-//!         p                      p
-//!         |  case 1               \  case 2
-//!     ____|______                __\____
-//!     \   .     /                \     /
-//!      \       /                  \   /
+//!     The triangle, seen edge-on:
+//!
+//!     1. face              2. edge
+//!          p                p
+//!          |                 \
+//!     _____|_____             \__________
 //! ```
 //!
 //! 1. **Face.** If the foot of the point on the plane lies inside, the distance to the foot.

@@ -2,13 +2,14 @@
 //! iteration in place of its quartic.
 //!
 //! ```text
-//!                     n
-//!         s = 0       |           p(s) = D + s B
-//!      --- o -------- | ------___      line
-//!          .          |          ---___
-//!          . h        |                ---
-//!      ____.__________o==========+_________  plane of the disc
-//!                     <--- R ---->
+//!        n ^
+//!          |            o s = 0, the foot of the centre
+//!          |          .   `-._
+//!          |        .         `-._   p(s) = D + s B
+//!          |      . D             `-._
+//!          |    .                     `-._
+//!     =====o=====                         `-._
+//!       centre, R        plane of the disc
 //! ```
 //!
 //! # Definitions

@@ -2,11 +2,13 @@
 //! segment.
 //!
 //! ```text
-//!       case 1             case 2              case 3
-//!          |                   \                 \
-//!      ____|____            ____\               __\________
-//!      \   |   /            \    . foot         \  edge   /
-//!       \  |  /              \    /              \       /
+//!     The triangle, seen edge-on:
+//!
+//!     1. piercing          2. an end            3. an edge
+//!          |                   /                 \
+//!          |                  /                   \
+//!     _____|_____         ___._____                \ _________
+//!          |                 foot                   edge
 //! ```
 //!
 //! 1. **Piercing.** The ends lie on opposite sides of the plane and the crossing lies inside:

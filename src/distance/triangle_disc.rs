@@ -1,11 +1,13 @@
 //! The distance between a triangle and a solid disc (paper, equations (22) to (25), corrected).
 //!
 //! ```text
-//!       case 1               case 2                case 3
-//!        \  disc                \  disc              \  disc
-//!         \                      \                ____\_____
-//!       ________ edge          ___.______         \    \   /
-//!       \      /               \        /          \    \ /
+//!     Triangle and disc, both seen edge-on:
+//!
+//!     1. edge                2. face, apart        3. face, crossing
+//!     \ disc                     \ disc                \ disc
+//!      \                          \                     \
+//!       \                          \                  ___\______ triangle
+//!         ________ triangle     ____._____ triangle       \
 //! ```
 //!
 //! 1. **Edges.** If the triangle's closest point is on its boundary, segment-disc finds it.
