@@ -1,6 +1,16 @@
 //! Bounds on the distance between a triangle and a flat cap, from the closest points of the axis
 //! alone.
 //!
+//! ```text
+//!       A ^                      . p*
+//!         |                   .  |
+//!         +---> R          .     | l        normal along the dots
+//!                       .        |
+//!      _______________x..........|
+//!     |               |    b
+//!     |     link      |
+//! ```
+//!
 //! # Definitions
 //! - `F`: the distance between axis and triangle. `p*`: the triangle's closest point. `d`: the
 //!   distance between link and triangle.
@@ -21,9 +31,9 @@
 //!
 //! # Proof
 //! `K` contains the link, and `p*` lies in the triangle: this gives the first line. Both
-//! coefficients of the normal are at least 0, whatever their rounding, so the link lies behind the
-//! plane. The triangle lies ahead of the plane by at least the minimum over its vertices. This
-//! bound is far sharper than `d_K`.
+//! coefficients of the normal are at least 0, with any rounding, so the link lies behind the plane.
+//! The triangle lies ahead of the plane by at least the minimum over its vertices. This bound is
+//! far sharper than `d_K`.
 //!
 //! # Rounding
 //! - In exact arithmetic `p* - x` is the same normal. Its rounding tilts it by `u extent / U`,

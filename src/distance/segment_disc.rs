@@ -123,7 +123,7 @@ pub struct LineDisc<T: Scalar> {
     /// `N = <q, P>`, with the parts `q` of the foot and `P` of `B` in the disc's plane.
     pub n: T,
     tau: T,
-    /// |q|^2
+    /// `|q|^2`.
     pub q: T,
 }
 

@@ -21,7 +21,7 @@
 //!   direction there too.
 //!
 //! # The rule
-//! A face counts beside a link if all of these hold.
+//! A face counts beside a link if all three conditions hold.
 //!
 //! 1. **Outwards.** `w . n >= 0` with the outward normal `n`. Otherwise the link's barrel behind
 //!    the face is nearer.
@@ -504,7 +504,7 @@ impl JoinedLink {
             return !(is_level && is_flat)
                 || self.is_area_covered(end, way, way.place, other.radius());
         }
-        // Points along the other link's axis, as far as both extend.
+        // Points along the other link's axis, for the length of both.
         let ends = [other.start(), other.end()]
             .map(|to| self.on_face_towards(end, way.from, to - way.way));
         ends.into_iter().all(|point| next.holds(point, way))
@@ -569,7 +569,7 @@ impl JoinedLink {
 }
 
 impl PlacedLink {
-    /// Returns whether the link contains a point of a face for certain.
+    /// Returns whether the link certainly contains a point of a face.
     fn holds(&self, point: Vector, &Way { slack, rounding, .. }: &Way) -> bool {
         let axis = Vector::from(self.axis());
         let along = (point - self.start()).dot(axis);

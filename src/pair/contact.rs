@@ -14,7 +14,7 @@ use parry3d_f64::math::{Pose, Real, Vector};
 /// Returns the contact of an answer about this mesh.
 ///
 /// # Errors
-/// Those of [`Proximity::contact`](crate::proximity::Proximity::contact).
+/// As [`Proximity::contact`](crate::proximity::Proximity::contact).
 pub(crate) fn contact(
     mesh: &Mesh,
     robot: &Chain,
@@ -30,7 +30,7 @@ pub(crate) fn contact(
 /// Replaces `out` by the contacts of answers about this mesh.
 ///
 /// # Errors
-/// Those of [`Proximity::contacts`](crate::proximity::Proximity::contacts). Then `out` is empty.
+/// As [`Proximity::contacts`](crate::proximity::Proximity::contacts). Then `out` is empty.
 pub(crate) fn contacts(
     mesh: &Mesh,
     robot: &Chain,

@@ -12,7 +12,7 @@ use parry3d_f64::math::{Pose, Real, Vector};
 /// Returns the derivative of the distance, or of the depth, of an answer about this mesh.
 ///
 /// # Errors
-/// Those of [`Proximity::derivative`](crate::proximity::Proximity::derivative).
+/// As [`Proximity::derivative`](crate::proximity::Proximity::derivative).
 pub(crate) fn derivative(
     mesh: &Mesh,
     robot: &Chain,

@@ -74,7 +74,7 @@ impl LinkPairBatch {
         for pack in self.packs.iter_mut().take(self.count.div_ceil(BATCH)) {
             pack.near = 0;
             for lane in (0..left.min(BATCH)).step_by(L::LANES) {
-                // Unused lanes hold earlier pairs; computing them costs nothing, and the mask drops
+                // Unused lanes hold earlier pairs; they take no extra time, and the mask drops
                 // them.
                 let are_there = u64::MAX >> (64 - (left - lane).min(L::LANES));
                 pack.near |= pack.measure(token, lane, are_there, bound) << lane;

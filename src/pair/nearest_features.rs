@@ -364,7 +364,7 @@ impl<T: Scalar<Mask = bool> + PartialEq> NearPair<T> {
             }
             TriangleFeature::Face => {
                 let foot = self.face.project(point);
-                // The face's first vertex is another than the triangle's; the order is the same.
+                // The face begins at another vertex than the triangle, in the same order.
                 let first =
                     (0..3).find(|&corner| corners[corner] == self.face.vertices[0]).unwrap_or(0);
                 weights[first] = one - foot.alpha - foot.beta;
@@ -375,8 +375,10 @@ impl<T: Scalar<Mask = bool> + PartialEq> NearPair<T> {
         weights
     }
 
-    /// Whether more than one pair of points is as near, with the unit vector `normal` from triangle
-    /// to link and the axis `apart` from the triangle.
+    /// Returns whether more than one pair of points attains the distance (a kink).
+    ///
+    /// `normal` is the unit vector from triangle to link, and `apart` the distance of the axis from
+    /// the triangle.
     fn is_kink(&self, normal: Vec3<T>, apart: T, at_flat_cap: bool) -> bool {
         if !has_area(&self.face) {
             return true;

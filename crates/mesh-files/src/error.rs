@@ -67,7 +67,7 @@ pub enum MeshFileError {
     SeveralLines {
         /// The file.
         file: PathBuf,
-        /// How many lines it holds.
+        /// The number of lines in the file.
         count: usize,
     },
     /// The options choose a line that the file does not have.
@@ -76,9 +76,9 @@ pub enum MeshFileError {
     NoSuchLine {
         /// The file.
         file: PathBuf,
-        /// The line that was chosen.
+        /// The chosen line.
         line: usize,
-        /// How many lines it holds.
+        /// The number of lines in the file.
         count: usize,
     },
     /// The header and the data may be in two files.
@@ -148,7 +148,7 @@ pub enum MeshFileError {
     NoSuchLabel {
         /// The file.
         file: PathBuf,
-        /// The label that was asked for.
+        /// The requested label.
         label: u32,
         /// The labels of the voxels, 0 included, in ascending order; the lowest 1000 if there are
         /// more.
@@ -163,7 +163,7 @@ pub enum MeshFileError {
         file: PathBuf,
         /// The format that its name promises.
         format: &'static str,
-        /// The label that was asked for.
+        /// The requested label.
         label: u32,
     },
     /// All voxels of a label map are 0.
@@ -194,7 +194,7 @@ pub enum MeshFileError {
         index: usize,
         /// Its coordinates in the file.
         place: [f64; 3],
-        /// The scale that was asked for.
+        /// The requested scale.
         scale: f64,
         /// What to change.
         advice: &'static str,
@@ -205,7 +205,7 @@ pub enum MeshFileError {
     )]
     #[non_exhaustive]
     Scale {
-        /// The scale that was asked for.
+        /// The requested scale.
         scale: f64,
     },
 }

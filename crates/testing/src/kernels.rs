@@ -21,7 +21,7 @@ pub struct Input<T> {
     pub radius: T,
 }
 
-/// The names of what [`Input::answers`] returns.
+/// The names of the answers of [`Input::answers`].
 pub const KERNELS: [&str; 15] = [
     "segment-segment",
     "point-triangle",

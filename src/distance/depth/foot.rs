@@ -1,5 +1,16 @@
 //! Decides whether a link's contact is the contact of its capsule.
 //!
+//! ```text
+//!                b       closest point of the other body
+//!                |
+//!                | d     ^ n
+//!      __________|_______|____
+//!     |          |            |
+//!     |   axis   a            | flat end
+//!     |__________|____________|
+//!                <---- t ---->
+//! ```
+//!
 //! # Definitions
 //! - `a`: the axis point closest to another convex body. `b`: that body's closest point. `d`: their
 //!   distance. `n`: the unit vector from `a` to `b`.

@@ -1,8 +1,15 @@
 //! The separation of a link and a triangle along one direction.
 //!
+//! ```text
+//!      ________              /|
+//!     |  link  |<-- gap --->/ | triangle      ---> n
+//!     |________|            \ |
+//!                            \|
+//! ```
+//!
 //! # Definitions
 //! For a unit vector `n`, `gap(n)` is the distance, along `n`, from the last point of the link to
-//! the first point of the triangle.
+//! the first point of the triangle. It is negative if the two overlap along `n`.
 //!
 //! # Claim
 //! Moving the triangle by `-gap(n)` along `n` puts a plane between the two, for every `n`. So every
