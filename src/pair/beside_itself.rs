@@ -31,7 +31,7 @@
 //! 3. **Not covered.** `p` is not in the adjoining link, caps included. Otherwise the adjoining
 //!    link is at least as near, and decides. If several points are equally near, the face is
 //!    covered only if all of them are in the adjoining link. The same holds at a shoulder of the
-//!    other link that contains `q`.
+//!    other link if `q` lies there.
 //!
 //! If the other link's axis meets the face, `w = 0`. The face counts: no rule says which direction
 //! is nearer.

@@ -18,7 +18,7 @@
 //! |---|---|
 //! | a flat face, without its rim | along the axis `a` |
 //! | the barrel | perpendicular to `a` |
-//! | a flat cap's rim | perpendicular to the rim's tangent `a x (p - c)`, with the cap's centre `c` |
+//! | a flat cap's rim | perpendicular to the tangent `a x (p - c)`, with the cap's centre `c` |
 //! | a round cap | along `p - c`, with the axis' end `c` |
 //! | a wire or its end, of radius 0 | as barrel or cap, with `p` on the axis |
 //!

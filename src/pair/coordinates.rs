@@ -1,8 +1,8 @@
 //! The coordinates in which a link and a triangle are measured.
 //!
 //! Each pair of link and triangle has its own coordinates: relative to the link's start, scaled by
-//! the power of two that brings the largest of them near one. So the rounding does not depend on the
-//! position, the unit or distant parts of the scene, and nothing overflows or underflows.
+//! the power of two that brings the largest of them near one. So the rounding does not depend on
+//! the position, the unit or distant parts of the scene, and nothing overflows or underflows.
 //! Distances and bounds outside of a pair are in the mesh's unit.
 
 use super::nearest::Nearest;

@@ -1,13 +1,15 @@
 //! Shared code of the tests and measurements of `parry-continuum`.
 //!
-//! | content | modules |
-//! |---|---|
-//! | inputs | [`problems`] that break distance code; [`Arcs`], curves of known curvature; [`Case`], references to 30 digits; [`placements`] that are aligned and touch; [`LevelLinks`] side by side; [`Random`], the same on every machine |
-//! | the narrow phase | [`narrow_phase`], its functions compiled once; [`kernels`], every public one on one input; [`precision`], one text for `f32` and `f64` |
-//! | effort | [`rounds`], the number of rounds of a random test |
-//! | checks | [`certificate`], proofs in double-double arithmetic; [`rotation`]s without rounding |
-//! | the fuzzer | `fuzz`, bodies that accept any bytes (feature `fuzz`) |
-//! | environment | `programs`, run as a user runs them (feature `programs`); `gpu`, opened once (feature `gpu`) |
+//! - Inputs: [`problems`] that break distance code; [`Arcs`], curves of known curvature; [`Case`],
+//!   references to 30 digits; [`placements`] that are aligned and touch; [`LevelLinks`] side by
+//!   side; [`Random`], the same on every machine.
+//! - The narrow phase: [`narrow_phase`], its functions compiled once; [`kernels`], every public
+//!   function on one input; [`precision`], one text for `f32` and `f64`.
+//! - Effort: [`rounds`], the number of rounds of a random test.
+//! - Checks: [`certificate`], proofs in double-double arithmetic; [`rotation`]s without rounding.
+//! - The fuzzer: `fuzz`, bodies that accept any bytes (feature `fuzz`).
+//! - Environment: `programs`, run as a user runs them (feature `programs`); `gpu`, opened once
+//!   (feature `gpu`).
 
 mod arcs;
 mod cases;

@@ -15,8 +15,12 @@
 //! | barrel | half ball | from the axis to the ball's centre, perpendicular to the axis |
 //! | half ball | half ball | from centre to centre |
 //! | rim | half ball | from the rim's nearest or farthest point to the ball's centre |
-//! | rim | barrel | perpendicular to the other axis; projected along that axis, the rim is half an ellipse and the axis a point: the normal of [`ellipse`](super::ellipse); the barrel's radius lies along the same normal |
+//! | rim | barrel | perpendicular to the other axis, by [`ellipse`](super::ellipse) |
 //! | rim | rim | no closed form, see below |
+//!
+//! Rim and barrel: projected along the barrel's axis, the rim is half an ellipse and the axis a
+//! point. The normal is the normal at the ellipse's point closest to this point. The barrel's
+//! radius lies along the same normal.
 //!
 //! # Proof
 //! As for a [link and a triangle](super::separation): the least depth is the distance from the

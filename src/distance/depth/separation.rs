@@ -15,7 +15,10 @@
 //! | barrel | vertex | from the axis to the vertex, perpendicular to the axis |
 //! | half ball | edge | from the centre to the edge, perpendicular to the edge |
 //! | half ball | vertex | from the centre to the vertex |
-//! | rim | edge | perpendicular to the edge; projected along the edge, the rim is half an ellipse and the edge a point: the normal of [`ellipse`](super::ellipse) |
+//! | rim | edge | perpendicular to the edge, by [`ellipse`](super::ellipse) |
+//!
+//! Last row: projected along the edge, the rim is half an ellipse and the edge a point. The normal
+//! is the normal at the ellipse's point closest to this point.
 //!
 //! # Proof
 //! The least depth is the distance from the origin to the surface of the Minkowski difference of

@@ -8,8 +8,8 @@
 //!
 //! | the link's part | condition | the point that separates last |
 //! |---|---|---|
-//! | a line of the barrel | `m` is perpendicular to the axis | the point closest to the triangle's part |
-//! | a flat cap | `m` is along the axis | the point closest to the triangle's part |
+//! | a line of the barrel | `m` perpendicular to the axis | the point closest to the triangle's part |
+//! | a flat cap | `m` along the axis | the point closest to the triangle's part |
 //! | a point of a rim | `m` leans towards a flat cap | this point |
 //! | a point of a half ball | `m` leans towards a round cap | this point |
 //!
