@@ -39,9 +39,9 @@
 //! - In exact arithmetic `p* - x` is the same normal. Its rounding tilts it by `u extent / U`,
 //!   which makes the bound wrong by as much where the link nearly touches. So the normal is
 //!   composed of `A` and `R`.
-//! - `R` is perpendicular to `A` only within rounding. If `p*` is much nearer to the axis than to
-//!   the cap's centre, the far end of the link passes through the plane by `-<normal, A>` times its
-//!   distance from the cap. This amount is subtracted.
+//! - `R` is perpendicular to `A` only within rounding. `p*` may be much nearer to the axis than to
+//!   the cap's centre. The far end of the link then passes through the plane by `-<normal, A>`
+//!   times its distance from the cap. This amount is subtracted.
 
 use super::{Mask, Scalar, Vec3};
 

@@ -1,9 +1,10 @@
 //! Double-double numbers of about 32 digits, to run a kernel's own text at twice the precision.
 //!
-//! A number is the unevaluated sum of two `f64` (Dekker 1971; Hida, Li and Bailey 2001). Let v =
-//! 2^-53. The relative errors are at most 4 v^2 for sums, 5 v^2 for products, and below 16 v^2 for
-//! quotients and roots (Joldes, Muller and Popescu 2017), unless a result overflows or falls below
-//! 1e-290.
+//! A number is the unevaluated sum of two `f64` (Dekker 1971; Hida, Li and Bailey 2001).
+//!
+//! Relative errors, with v = 2^-53 (Joldes, Muller and Popescu 2017): at most 4 v^2 for sums, at
+//! most 5 v^2 for products, below 16 v^2 for quotients and roots. They hold unless a result
+//! overflows or falls below 1e-290.
 //!
 //! The operations are not inlined: a kernel has thousands of them, and a call costs little beside
 //! an operation.

@@ -93,9 +93,10 @@ impl RobotProximity {
     /// `lower` 0. The bounds do not depend on any engine or earlier query.
     ///
     /// - `a`, `b`, `pose_a`, `pose_b`: the robots and poses of the query.
-    /// - For an answer about one robot and itself, pass the robot twice, at the identity. If the
-    ///   answer is about a flat or round end of a link, and the whole link is nearer than this end,
-    ///   the distance is not that of the links and the answer is refused.
+    /// - For an answer about one robot and itself, pass the robot twice, at the identity.
+    ///
+    /// An answer about a flat or round end of a link is refused if the whole link is nearer than
+    /// this end: its distance is not the distance of the links.
     ///
     /// # Errors
     /// - A robot does not have the answer's link.

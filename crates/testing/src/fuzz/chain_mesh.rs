@@ -9,9 +9,11 @@ use parry_continuum::{Chain, ModifiedCylinder};
 /// The largest coordinate for which parry's own mesh is compared.
 const LARGEST: f64 = 1e150;
 
-/// Asserts that every link's distance lies within 16 units of its pair's extent of the certificate,
-/// that no triangle is nearer by more than the units of its own pair, and that minimum and
-/// clearance agree.
+/// Asserts three properties.
+///
+/// - Every link's distance lies within 16 units of its pair's extent of the certificate.
+/// - No triangle is nearer by more than 16 units of the extent of its own pair.
+/// - Minimum and clearance agree with these distances.
 pub fn chain_mesh(bytes: &[u8]) {
     let mut source = Source::new(bytes);
     let pose = source.pose();
