@@ -1,17 +1,16 @@
-//! Any kernel on packs of an instruction set of one's choice: how the accuracy of packs is
-//! measured.
+//! Runs any kernel on packs of a chosen instruction set, to measure the accuracy of packs.
 
 use super::lanes::{Lane, Pack};
 use super::{Scalar, dispatch};
 use fearless_simd::Level;
 
-/// What is run: one text for single numbers and for packs of them.
+/// A kernel: one text for single numbers and for packs.
 pub trait Kernel<const IN: usize, const OUT: usize> {
-    /// The numbers of a problem to those of its answer.
+    /// Maps the numbers of a problem to the numbers of its answer.
     fn run<T: Scalar>(problem: [T; IN]) -> [T; OUT];
 }
 
-/// The answers to all problems, computed a pack at a time.
+/// Returns the answers to all problems, computed one pack at a time.
 #[allow(private_bounds)] // f32 or f64
 pub fn at_level<K: Kernel<IN, OUT>, E: Lane, const IN: usize, const OUT: usize>(
     level: Level,
@@ -33,7 +32,7 @@ fn on_packs<K: Kernel<IN, OUT>, L: Pack, const IN: usize, const OUT: usize>(
     let mut lanes = vec![L::Element::default(); L::LANES];
     for pack in problems.chunks(L::LANES) {
         let problem = std::array::from_fn(|number| {
-            // The last pack is filled up with its last problem.
+            // The last pack is filled with its last problem.
             for (lane, value) in lanes.iter_mut().enumerate() {
                 *value = pack[lane.min(pack.len() - 1)][number];
             }

@@ -1,29 +1,57 @@
-//! Bounds on the distance to a flat cap, from the closest points of the axis alone.
-//!
-//! Let F be the distance between axis and triangle, p* the triangle's point, and U the distance of
-//! p* from the link. With K the capsule around the link, d_K = max(0, F - r) <= d <= U <= F,
-//! because the link lies in K and p* lies in the triangle. A lower bound far sharper than d_K is a
-//! separating plane. Beyond a flat end, with A the axis pointing out of it, l the height of p* over
-//! the cap and b its distance from the rim's cylinder, take the normal (l A + b R) / |(l, b)| where
-//! R points radially from the axis to p*. Both coefficients are >= 0, so whatever their rounding
-//! the link lies behind the plane through x, the rim point towards p* (or the foot of p* on the
-//! cap, where b = 0), and
+//! Bounds on the distance between a triangle and a flat cap, from the closest points of the axis
+//! alone.
 //!
 //! ```text
+//!       A ^                      . p*
+//!         |                   .  |
+//!         +---> R          .     | l        normal along the dots
+//!                       .        |
+//!      _______________x..........|
+//!     |               |    b
+//!     |     link      |
+//! ```
+//!
+//! # Definitions
+//! - `F`: the distance between axis and triangle. `p*`: the triangle's closest point. `d`: the
+//!   distance between link and triangle.
+//! - `K`: the capsule around the link, with the distance `d_K = max(0, F - r)`.
+//! - `U`: the distance of `p*` from the link.
+//! - `A`: the unit axis pointing out of the flat end. `R`: the unit vector from the axis to `p*`,
+//!   across the axis.
+//! - `l`: the height of `p*` over the cap. `b`: the distance of `p*` from the rim's cylinder.
+//! - `x`: the rim point towards `p*`, or the foot of `p*` on the cap if `b = 0`.
+//!
+//! # Claim
+//! `d_K <= d <= U <= F`, and with the separating plane through `x`,
+//!
+//! ```text
+//! normal = (l A + b R) / |(l, b)|,
 //! min over the vertices T_i of <normal, T_i - x> <= d.
 //! ```
 //!
-//! The difference p* - x would do as a normal in exact arithmetic; its rounding tilts it by u
-//! extent / U, and the bound would then be wrong by as much wherever the link nearly touches. R is
-//! at a right angle to A only to rounding too: where p* lies much nearer to the axis than to the
-//! centre of the cap, the far end of the link sticks out of the plane by -<normal, A> times its
-//! distance from the cap, which is taken off.
+//! # Proof
+//! `K` contains the link, and `p*` lies in the triangle: this gives the first line. Both
+//! coefficients of the normal are at least 0, with any rounding, so the link lies behind the plane.
+//! The triangle lies ahead of the plane by at least the minimum over its vertices. This bound is
+//! far sharper than `d_K`.
+//!
+//! # Rounding
+//! - In exact arithmetic `p* - x` is the same normal. Its rounding tilts it by `u extent / U`,
+//!   which makes the bound wrong by as much where the link nearly touches. So the normal is
+//!   composed of `A` and `R`.
+//! - `R` is perpendicular to `A` only within rounding. `p*` may be much nearer to the axis than to
+//!   the cap's centre. The far end of the link then passes through the plane by `-<normal, A>`
+//!   times its distance from the cap. This amount is subtracted.
 
 use super::{Mask, Scalar, Vec3};
 
-/// The plane's lower bound on the distance between a triangle and a link whose flat cap lies around
-/// the origin with the outward unit normal `outward` and which reaches at most `behind` behind it,
-/// less what rounding can have added to it; and U.
+/// Returns a lower bound on the distance between a triangle and a link, and the upper bound `U`.
+///
+/// - `vertices`, `on_triangle`: the triangle and `p*`, relative to the centre of the flat cap.
+/// - `outward`: the outward unit normal of the cap. `radius`: the radius of the link.
+/// - `behind`: how far the link extends behind the cap, at most.
+///
+/// The lower bound is reduced by what rounding may have added.
 #[inline(always)]
 pub(crate) fn separating_plane<T: Scalar>(
     vertices: [Vec3<T>; 3],

@@ -1,55 +1,77 @@
-//! Solid disc against solid disc.
-//!
-//! Both discs are convex, so a pair of points that is nearest among its neighbours is nearest. Let
-//! `l` be the unit vector along the line in which the planes meet, `m1` and `m2` the unit vectors
-//! across it in each plane, C the second disc's centre seen from the first's. The first disc is a
-//! row of chords along `l`: at the offset `a` across it the chord has the half length k = sqrt(r1^2
-//! - a^2). All of a chord is at one height over the second plane, h = h0 + s a, and at one
-//! offset across its centre, b = b0 + c a, where s and c are the sine and the cosine between the
-//! planes. So the chord's nearest point is the one nearest to the foot of C, which is L along `l`;
-//! it misses that by e = max(0, L - k), for the direction of `l` that makes L >= 0. With rho =
-//! sqrt(b^2 + e^2) and o = max(0, rho - r2) the squared distance is
+//! The distance between two solid discs.
 //!
 //! ```text
-//! F(a) = h^2 + o^2,
+//!     Seen along the line l of the planes:
+//!
+//!                / m2
+//!               C   disc 2, radius r2
+//!              /
+//!             /   angle with sine s, cosine c
+//!     -------l--------o------|-----> m1
+//!                     0      a    disc 1, radius r1
 //! ```
 //!
-//! the least of a convex function over the chord, and so convex in `a`. Where its minimum is there
-//! are two cases:
+//! # Definitions
+//! - `r1`, `r2`: the radii. The first disc's centre is the origin; `C` is the second disc's centre.
+//! - `l`: the unit vector along the line in which the planes meet, directed so that
+//!   `L = <C, l> >= 0`.
+//! - `m1`, `m2`: the unit vectors across `l` in each plane.
+//! - `s`, `c`: the sine and the cosine of the angle between the planes.
+//! - The chord at the offset `a` along `m1` runs along `l` and has the half length
+//!   `k = sqrt(r1^2 - a^2)`.
+//! - All of this chord has the height `h = h0 + s a` over the second plane and the offset
+//!   `b = b0 + c a` across `C`. Its point nearest to `C` misses the foot of `C` by
+//!   `e = max(0, L - k)`.
+//! - `rho = sqrt(b^2 + e^2)`, `o = max(0, rho - r2)`. The squared distance of the chord from the
+//!   second disc is
 //!
-//! 1. e = 0: the nearest point lies on the chord of the first disc through the foot of C, which
-//!    runs across `l`. What is nearest to it is on the parallel diameter of the second: segment
-//!    against segment, in one plane. Parallel and crossing discs with such a minimum are no
-//!    exception.
-//! 2. e > 0: it lies on the rim. There a = r1 sin(theta), k = r1 cos(theta), and the sign of
+//! ```text
+//! F(a) = h^2 + o^2.
+//! ```
+//!
+//! # Algorithm
+//! Both discs are convex, so a local minimum is the global one. `F` is the least of a convex
+//! function over a chord, so `F` is convex in `a`. Its minimum falls into one of two cases:
+//!
+//! 1. **`e = 0`.** The nearest point lies on the chord of the first disc that passes through the
+//!    foot of `C` and runs across `l`. Its counterpart lies on the parallel diameter of the second
+//!    disc. Both lie in one plane: segment-segment. This includes parallel and crossing discs with
+//!    such a minimum.
+//! 2. **`e > 0`.** The nearest point lies on the rim: `a = r1 sin(theta)`, `k = r1 cos(theta)`. The
+//!    side of the minimum is given by the sign of
 //!
 //!    ```text
-//!    g = w h s k + o (b c k + e a),  w / 2 times the derivative of F by theta,
+//!    g = w h s k + o (b c k + e a),      w / 2 times the derivative of F by theta,
 //!    ```
 //!
-//!    with w = rho, or 1 where o = 0 and rho is no more than a weight, which may vanish,
-//!    tells on which side the minimum lies. Halvings of t = tan(theta / 2), which runs from -1 to
-//! 1, find it: no root of a    polynomial, no division but by 1 + t^2, by which the numbers are
-//! multiplied instead. Then the arc that is left is    replaced by its tangent, and segment-disc
-//! does the rest.
+//!    with `w = rho`, or `w = 1` where `o = 0`: there `rho` is only a weight, which may vanish.
+//!    Bisect `t = tan(theta / 2)` from -1 to 1. This needs no root of a polynomial, and no
+//!    division: all lengths are multiplied by `1 + t^2`. Then replace the remaining arc by its
+//!    tangent and use segment-disc.
 //!
-//! **The number of halvings.** After H of them t is known within 2^-H, and theta = 2 atan(t) within
-//! 2^(1-H). An arc leaves its tangent by r1 (1 - cos) <= r1 2^(1-2H), which is no more than u r1 =
-//! 2^-p r1 for H = (p + 1) / 2: 13 halvings in single precision, 27 in double.
+//! # Number of halvings
+//! After `H` halvings `t` is known within `2^-H`, and `theta = 2 atan(t)` within `2^(1-H)`. An arc
+//! deviates from its tangent by `r1 (1 - cos) <= r1 2^(1-2H)`. This is at most `u r1 = 2^-p r1` for
+//! `H = (p + 1) / 2`: 13 halvings in single precision, 27 in double.
 //!
-//! **Rounding.** The numbers h, b, e and o err by a few u of the extent, so the computed g is that
-//! of a residual (h, o) off by as much. A sign is wrong only where F falls by no more than such a
-//! residual can tell, so what a wrong halving cuts off is nearer by a few u at most. The directions
-//! `l` and `m1` are made perpendicular to the first normal again: where the planes are nearly
-//! parallel the cross product is short, and its rounding large beside it. What is left of the error
-//! turns `l` within the first plane, by u / s, and lifts it out of the second by s times that: u.
-//! All candidates are distances between a point of each disc, so the lesser is right wherever
-//! either is.
+//! # Rounding
+//! - `h`, `b`, `e` and `o` err by a few `u` of the extent, so the computed `g` belongs to a
+//!   residual `(h, o)` with an error of that size. A sign can be wrong only if `F` falls by no more
+//!   than this error explains. What a wrong halving cuts off is therefore nearer by a few `u` at
+//!   most.
+//! - `l` and `m1` are made perpendicular to the first normal again. If the planes are nearly
+//!   parallel, the cross product is short and its relative error large. The remaining error turns
+//!   `l` within the first plane by `u / s`, and lifts it out of the second plane by `s` times that:
+//!   `u`.
+//! - Every candidate is a distance between a point of each disc, so the smaller is right if either
+//!   is right.
 
 use super::{Closest, Convex, DiscSolver, Mask, Scalar, Vec3, frame::Frame, segment_segment};
 
-/// The distance between two solid discs, each with its centre, normal (of any length but 0) and
-/// radius.
+/// Returns the distance between two solid discs, and the closest points.
+///
+/// - `centre1`, `centre2`, `radius1`, `radius2`: in one frame and unit; radii at least 0.
+/// - `normal1`, `normal2`: of any length except 0.
 #[inline(always)]
 pub fn disc_disc<T: Scalar>(
     centre1: Vec3<T>,
@@ -68,7 +90,8 @@ pub fn disc_disc<T: Scalar>(
     ))
 }
 
-/// How many halvings leave of an arc no more than its tangent, but for rounding.
+/// Returns the number of halvings after which an arc deviates from its tangent by less than
+/// rounding.
 const fn halvings(unit_roundoff: f64) -> usize {
     let (mut deviation, mut count) = (2.0, 0);
     while deviation > unit_roundoff {
@@ -78,8 +101,8 @@ const fn halvings(unit_roundoff: f64) -> usize {
     count
 }
 
-/// As [`disc_disc`], for a first disc around the origin, the second around `centre`, unit normals
-/// and numbers near one.
+/// Same as [`disc_disc`], for a first disc around the origin, a second disc around `centre`, unit
+/// normals and numbers near one.
 #[inline(always)]
 pub(crate) fn from_centre<T: Scalar>(
     [radius1, radius2]: [T; 2],
@@ -93,7 +116,7 @@ pub(crate) fn from_centre<T: Scalar>(
     let (sine, cosine) = (across1.dot(normal2), normal1.dot(normal2));
     let (height0, offset0, foot) = (-centre.dot(normal2), -centre.dot(across2), centre.dot(line));
 
-    // Case 1. Where the foot is beyond the disc the chord is a point of the rim.
+    // Case 1. If the foot lies beyond the first disc, the chord is a point of the rim.
     let at = foot.min(radius1);
     let half = ((radius1 - at) * (radius1 + at)).sqrt();
     let (chord, diameter) = (across1 * (half + half), across2 * (radius2 + radius2));
@@ -105,8 +128,8 @@ pub(crate) fn from_centre<T: Scalar>(
         point1: from.along(chord, found.s),
         point2: to.along(diameter, found.t),
     };
-    // Where the chord passes through the second disc, that point is common, whatever rounding says
-    // of its height.
+    // If the chord passes through the second disc, the crossing is a common point, even if rounding
+    // puts it off the plane.
     let climb = sine * half;
     let (low, high) = (height0 - climb, height0 + climb);
     let share = low.abs().over(low.abs() + high.abs());
@@ -146,16 +169,18 @@ pub(crate) fn from_centre<T: Scalar>(
     inner.nearer(rim)
 }
 
-/// A unit vector in the first plane that the second plane holds too, to rounding.
+/// Returns a unit vector of the first plane that also lies in the second plane, within rounding.
 #[inline(always)]
 fn line_of_planes<T: Scalar>(normal1: Vec3<T>, normal2: Vec3<T>, centre: Vec3<T>) -> Vec3<T> {
     let (zero, one) = (normal1.x.zero(), normal1.x.one());
     let is_none = |v: Vec3<T>| v.largest().le(zero);
     let in_plane = |v: Vec3<T>| v.along(normal1, -v.dot(normal1)).normalised();
-    // What is left of a short product may be short again, and rounding once more: twice is enough.
+    // The perpendicular part of a short product may be short again and consist of rounding: two
+    // passes are enough.
     let made_perpendicular = |v: Vec3<T>| in_plane(in_plane(v.normalised()));
     let meeting = made_perpendicular(normal1.cross(normal2));
-    // Of parallel planes any line will do; across the way between the centres case 1 is the answer.
+    // If the planes are parallel, any line is correct. The line across the offset of the centres
+    // leads to case 1.
     let lateral = made_perpendicular(normal1.cross(centre));
     let is_x_least = normal1.x.abs().le(normal1.y.abs()) & normal1.x.abs().le(normal1.z.abs());
     let is_y_less = normal1.y.abs().le(normal1.z.abs());

@@ -1,18 +1,19 @@
-//! Numbers of about 32 digits, so that a kernel's own text can be run at twice the precision.
+//! Double-double numbers of about 32 digits, to run a kernel's own text at twice the precision.
 //!
-//! A number is the unevaluated sum of two `f64` (Dekker 1971; Hida, Li and Bailey 2001). With v =
-//! 2^-53, sums err by at most 4 v^2 of their value, products by 5 v^2, quotients and roots by less
-//! than 16 v^2 (Joldes, Muller and Popescu 2017), as long as nothing overflows or falls below
-//! 1e-290.
+//! A number is the unevaluated sum of two `f64` (Dekker 1971; Hida, Li and Bailey 2001).
 //!
-//! The operations are called, not inlined: they take long enough, and a kernel has thousands of
-//! them to be compiled.
+//! Relative errors, with v = 2^-53 (Joldes, Muller and Popescu 2017): at most 4 v^2 for sums, at
+//! most 5 v^2 for products, below 16 v^2 for quotients and roots. They hold unless a result
+//! overflows or falls below 1e-290.
+//!
+//! The operations are not inlined: a kernel has thousands of them, and a call costs little beside
+//! an operation.
 
 use super::scalar::{Scalar, Sealed};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A number of about 106 bits: a reference for the kernels, and what
-/// [`certify`](crate::proximity::LinkProximity::certify) computes with.
+/// A number of about 106 bits: a reference for the kernels, and the arithmetic of
+/// [`certify`](crate::proximity::LinkProximity::certify).
 ///
 /// ```
 /// use parry_continuum::distance::DoubleDouble;
@@ -31,7 +32,7 @@ impl DoubleDouble {
     /// 0
     pub const ZERO: Self = Self { high: 0.0, low: 0.0 };
 
-    /// The nearest f64.
+    /// Returns the nearest `f64`.
     pub fn rounded(self) -> f64 {
         self.high
     }
@@ -47,14 +48,14 @@ impl From<f64> for DoubleDouble {
     }
 }
 
-/// `a + b`, and what rounding took.
+/// Returns `a + b` and its rounding error.
 fn two_sum(a: f64, b: f64) -> DoubleDouble {
     let high = a + b;
     let part = high - a;
     DoubleDouble { high, low: (a - (high - part)) + (b - part) }
 }
 
-/// As [`two_sum`], for |a| >= |b|.
+/// Same as [`two_sum`], for `|a| >= |b|`.
 fn quick_two_sum(a: f64, b: f64) -> DoubleDouble {
     let high = a + b;
     DoubleDouble { high, low: b - (high - a) }

@@ -1,27 +1,27 @@
-//! A frame in which a problem's numbers are near one.
+//! A frame in which the numbers of a problem are near one.
 //!
-//! Kernels multiply up to eight lengths, so lengths far from one would overflow or vanish. Every
+//! Kernels multiply up to eight lengths, so lengths far from one would overflow or underflow. Every
 //! public function of `distance` therefore moves its problem to an origin of its own and multiplies
-//! it by a power of two, which is exact: multiplying the input by 2^k multiplies the answer by 2^k
-//! bit for bit. The move makes the rounding depend on the problem's extent and not on where it
-//! lies.
+//! it by a power of two. The multiplication is exact: multiplying the input by 2^k multiplies the
+//! answer by 2^k bit for bit. After the move the rounding depends on the problem's extent, and not
+//! on its position.
 
 use super::{Closest, Scalar, Vec3};
 
-/// The way into and out of the coordinates near one.
+/// The transform into coordinates near one, and back.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Frame<T> {
     origin: Vec3<T>,
-    /// Brings coordinates above 1 down to 1 before they are subtracted, lest the difference
-    /// overflow.
+    /// Scales coordinates above 1 down to 1 before the subtraction, so that differences stay
+    /// finite.
     shrink: T,
-    /// Brings the differences to 1.
+    /// Scales the differences to 1.
     fit: T,
 }
 
 impl<T: Scalar> Frame<T> {
-    /// The frame at `origin` in which all `points` and `length` are at most 2, and some is at least
-    /// 1.
+    /// Returns the frame at `origin` in which all `points` and `length` are at most 2, and one is
+    /// at least 1.
     #[inline(always)]
     pub(crate) fn around<const N: usize>(origin: Vec3<T>, points: [Vec3<T>; N], length: T) -> Self {
         let mut largest = origin.largest().max(length);
@@ -37,31 +37,31 @@ impl<T: Scalar> Frame<T> {
         Self { origin, shrink, fit: extent.power_of_two_to_unity() }
     }
 
-    /// A point in this frame.
+    /// Transforms a point into this frame.
     #[inline(always)]
     pub(crate) fn point(&self, point: Vec3<T>) -> Vec3<T> {
         self.way(self.origin, point)
     }
 
-    /// The way from one point to another in this frame, as exact as their difference.
+    /// Returns the vector from one point to another in this frame, as exact as their difference.
     #[inline(always)]
     pub(crate) fn way(&self, from: Vec3<T>, to: Vec3<T>) -> Vec3<T> {
         (to * self.shrink - from * self.shrink) * self.fit
     }
 
-    /// A length in this frame.
+    /// Transforms a length into this frame.
     #[inline(always)]
     pub(crate) fn length(&self, length: T) -> T {
         length * self.shrink * self.fit
     }
 
-    /// An answer of this frame in the caller's coordinates.
+    /// Transforms an answer of this frame back into the caller's coordinates.
     #[inline(always)]
     pub(crate) fn answer(&self, local: Closest<T>) -> Closest<T> {
         let one = self.fit.one();
-        // Two exact factors: their product may be beyond the range where each is not.
+        // Two exact factors: their product may leave the range although each is inside.
         let (grow, unfit) = (one / self.shrink, one / self.fit);
-        // The way from the origin may be longer than the largest number; a quarter of it is not.
+        // The vector from the origin may exceed the largest number; a quarter of it does not.
         let origin = self.origin * self.shrink;
         Closest {
             distance: local.distance * unfit * grow,

@@ -1,6 +1,6 @@
-//! What this project's own studies and tests build on (hidden feature `laboratory`): other routes
-//! through the narrow phase, other kinds of numbers, other instruction sets. It is no part of the
-//! interface and changes at any time.
+//! The parts that this project's own studies and tests build on (hidden feature `laboratory`):
+//! other solvers, other kinds of numbers, other instruction sets. It is no part of the interface
+//! and may change at any time.
 
 pub use super::at_level::{Kernel, at_level};
 pub use super::disc_solver::{Convex, DiscSolver};

@@ -1,37 +1,36 @@
-//! Packs of `f32` or `f64` that take a [`Scalar`]'s place: the kernels run on 2 to 16 triangles at
-//! once.
+//! Packs of `f32` or `f64` as a [`Scalar`]: the kernels run on 2 to 16 triangles at once.
 //!
-//! The width is that of the instruction set chosen at run time by [`dispatch!`](super::dispatch). A
-//! constant needs the instruction set's token, which every pack carries; hence [`Scalar::lit`]
-//! takes a `self`.
+//! The width is that of the instruction set that [`dispatch!`](super::dispatch) selects at run
+//! time. A constant needs the instruction set's token, which every pack carries. This is why
+//! [`Scalar::lit`] takes a `self`.
 
 use super::scalar::{CBRT_BITS_F32, CBRT_BITS_F64, Mask, Scalar, Sealed};
 use fearless_simd::prelude::*;
 use fearless_simd::{Select, Simd};
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
-/// A pack of numbers that is loaded from memory.
+/// A pack of numbers that can be loaded from memory.
 pub(crate) trait Pack: Scalar {
-    /// One lane's number.
+    /// The number in one lane.
     type Element: Scalar<Mask = bool> + Send + Sync + 'static;
-    /// The proof that the instruction set is there.
+    /// The proof that the instruction set is present.
     type Token: Copy;
-    /// How many numbers.
+    /// The number of lanes.
     const LANES: usize;
 
-    /// The proof that this pack is made by.
+    /// Returns the token that this pack was made with.
     fn token(self) -> Self::Token;
-    /// The same number in every lane.
+    /// Returns a pack with the same number in every lane.
     fn splat(token: Self::Token, value: Self::Element) -> Self;
-    /// The first [`Pack::LANES`] numbers of a slice.
+    /// Loads the first [`Pack::LANES`] numbers of a slice.
     fn load(token: Self::Token, from: &[Self::Element]) -> Self;
     /// Writes the lanes to the front of a slice.
     fn store(self, to: &mut [Self::Element]);
-    /// One bit per lane, the first lane lowest.
+    /// Returns one bit per lane, the first lane lowest.
     fn bits(mask: Self::Mask) -> u64;
 }
 
-/// The bits that are set, such as those of [`Pack::bits`], lowest first.
+/// Returns the indices of the bits that are set, such as those of [`Pack::bits`], lowest first.
 pub(crate) fn set_bits(mut left: u64) -> impl Iterator<Item = usize> {
     std::iter::from_fn(move || {
         let bit = (left != 0).then(|| left.trailing_zeros() as usize)?;
@@ -40,9 +39,11 @@ pub(crate) fn set_bits(mut left: u64) -> impl Iterator<Item = usize> {
     })
 }
 
-/// Whether the instructions for the larger and the smaller of two numbers are those of x86, which
-/// are [`Scalar::max`] and [`Scalar::min`]: they return their second operand where one is NaN, and for two zeros. `fearless_simd` promises no
-/// such thing; a test does.
+/// Whether the target's instructions for minimum and maximum implement [`Scalar::min`] and
+/// [`Scalar::max`].
+///
+/// The instructions of x86 return their second operand if one operand is NaN, and for two zeros.
+/// `fearless_simd` does not promise this; a test checks it.
 const COMPARES_AND_SELECTS: bool = cfg!(all(target_arch = "x86_64", target_feature = "sse2"));
 
 macro_rules! lanes {
@@ -129,7 +130,8 @@ macro_rules! lanes {
             }
             #[inline(always)]
             fn over(self, divisor: Self) -> Self {
-                // What comes of a divisor that is not positive does no harm here.
+                // The quotient of a divisor that is not positive is discarded, so it does no harm
+                // here.
                 self.zero().lt(divisor).select(self / divisor, self.zero())
             }
             #[inline(always)]
@@ -137,13 +139,15 @@ macro_rules! lanes {
                 if <$element>::MANTISSA_DIGITS > f32::MANTISSA_DIGITS {
                     return self.over(whole);
                 }
-                // Of a subnormal number the inverse is infinite: any share of a length that small will do.
+                // The inverse of a subnormal number is infinite: for a length that small any share
+                // is correct.
                 (self * inverse).min(self.one())
             }
             #[inline(always)]
             fn cbrt_estimate(self) -> Self {
-                // A third of the bit pattern, taken in floating point: the leading bits become the mantissa of
-                // a number in [2^k, 2^(k+1)), k the mantissa's width, whose integer part they are.
+                // A third of the bit pattern, computed in floating point: the leading bits become
+                // the mantissa of a number in [2^k, 2^(k+1)), with k the mantissa's width, so they
+                // are its integer part.
                 const SHIFT: u32 = <$bits>::BITS - $mantissa_bits;
                 let two_to_k = self.lit((1_u64 << $mantissa_bits) as f64);
                 let leading = (self.abs().0.to_bits() >> SHIFT) | two_to_k.0.to_bits();
@@ -204,17 +208,17 @@ macro_rules! lanes {
 lanes!(F32s, F32Mask, f32, f32s, mask32s, u32, 23, 127, CBRT_BITS_F32);
 lanes!(F64s, F64Mask, f64, f64s, mask64s, u64, 52, 1023, CBRT_BITS_F64);
 
-/// A precision in which packs exist.
+/// A precision that has packs.
 pub(crate) trait Lane:
     Scalar<Mask = bool> + Default + PartialOrd + Into<f64> + Send + Sync + 'static
 {
     /// The pack of an instruction set.
     type Pack<S: Simd>: Pack<Element = Self, Token = S>;
 
-    /// Lengths up to here have finite products in the bounds and distances of a search.
+    /// The largest length whose products stay finite in the bounds and distances of a search.
     const FARTHEST: f64;
 
-    /// The nearest number of this precision.
+    /// Rounds to the nearest number of this precision.
     fn round(value: f64) -> Self;
 }
 

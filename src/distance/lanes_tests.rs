@@ -1,4 +1,4 @@
-//! Every instruction set of this machine gives the scalar's answers, lane by lane.
+//! Tests that every instruction set of this machine gives the scalar's answers, lane by lane.
 
 use super::*;
 use crate::distance::at_level::{Kernel, at_level};
@@ -44,7 +44,8 @@ fn numbers(count: usize, seed: u64) -> Vec<f64> {
         .collect()
 }
 
-/// Distances of link and triangle, and of segment and disc, for a problem of 17 numbers.
+/// Returns the distances of link and triangle, and of segment and disc, for a problem of 17
+/// numbers.
 struct Distances;
 
 impl Kernel<17, 2> for Distances {
@@ -91,7 +92,7 @@ fn every_level_agrees_in_double_precision() {
     compare::<f64>();
 }
 
-/// The larger and the smaller of two numbers, and their quotient where it is one.
+/// Returns the larger and the smaller of two numbers, and their quotient by `Scalar::over`.
 #[inline(always)]
 fn choices<L: Pack>(token: L::Token, one: L::Element, other: L::Element) -> [L::Element; 3]
 where
@@ -108,7 +109,7 @@ where
 fn compare_choices<E: Lane>() {
     let numbers =
         [0.0, -0.0, 1.0, -1.5, 3.0, f64::INFINITY, f64::NEG_INFINITY, f64::NAN].map(E::round);
-    // Numbers that are not are all alike.
+    // All NaN compare equal here.
     let bits = |number: E| Some(number.into().to_bits()).filter(|_| !number.into().is_nan());
     for one in numbers {
         for other in numbers {

@@ -1,11 +1,11 @@
 //! The narrow phase: exact distances between pairs of simple shapes (paper, section III).
 //!
-//! One public function per pair, in a file of its own with its derivation. All are branch-free and
-//! generic over [`Scalar`]: `f32`, `f64`, and [`DoubleDouble`] as a reference. Each scales its
-//! problem by an exact power of two, so finite input of any size gives a finite answer, unless the
-//! distance itself is beyond the largest number: then it is infinite. Errors stay within a few
-//! units in the last place of the problem's extent, the largest difference between two of its
-//! coordinates or its radius.
+//! Each pair has one public function, in a file of its own with its derivation. All functions are
+//! branch-free and generic over [`Scalar`]: `f32`, `f64`, and [`DoubleDouble`] as a reference. Each
+//! function scales its problem by an exact power of two. Finite input of any size therefore gives a
+//! finite answer, unless the distance itself exceeds the largest number: then it is infinite.
+//! Errors are within a few units in the last place of the problem's extent, the largest difference
+//! between two of its coordinates or its radius.
 //!
 //! ```
 //! use parry_continuum::distance::{Closest, Vec3, triangle_modified_cylinder};
@@ -58,7 +58,7 @@ pub(crate) use segment_segment::parameters as segment_parameters;
 pub(crate) use triangle_modified_cylinder::Axial;
 
 pub use disc_disc::disc_disc;
-/// For this project's own tests and studies.
+/// Double-double numbers, for this project's own tests and studies.
 #[doc(hidden)]
 pub use double_double::DoubleDouble;
 pub use modified_cylinder_modified_cylinder::modified_cylinder_modified_cylinder;
@@ -75,29 +75,28 @@ pub use triangle_modified_cylinder::{triangle_capsule, triangle_modified_cylinde
 pub(crate) use unfused::Unfused;
 pub use vec3::Vec3;
 
-/// The distance between two shapes and a pair of points that realises it.
+/// The distance between two shapes, and a pair of points that realises it.
 ///
-/// There is no more to say of a pair, and routes of one's own make such answers: it will not grow.
+/// The fields are final, so solvers outside of this crate may construct it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Closest<T> {
-    /// The distance, 0 where the shapes have a point in common.
+    /// The distance; 0 if the shapes have a point in common.
     pub distance: T,
-    /// The closest point of the first shape that the function's name mentions.
+    /// The closest point of the first shape in the function's name.
     pub point1: Vec3<T>,
     /// The closest point of the second shape.
     pub point2: Vec3<T>,
 }
 
 impl<T: Scalar> Closest<T> {
-    /// The same, with one common point where the distance is 0: rounding may have put the two
-    /// points apart.
+    /// Sets both points to one common point if the distance is 0: rounding may have separated them.
     #[inline(always)]
     pub(crate) fn met(self) -> Self {
         let meet = self.distance.le(self.distance.zero());
         Self { point2: Vec3::select(meet, self.point1, self.point2), ..self }
     }
 
-    /// `yes` where the mask is true, `no` elsewhere.
+    /// Returns `yes` where the mask is true, `no` elsewhere.
     #[inline(always)]
     pub(crate) fn select(mask: T::Mask, yes: Self, no: Self) -> Self {
         Self {
@@ -107,7 +106,7 @@ impl<T: Scalar> Closest<T> {
         }
     }
 
-    /// The nearer of two answers.
+    /// Returns the nearer of two answers.
     #[inline(always)]
     pub(crate) fn nearer(self, other: Self) -> Self {
         Self::select(other.distance.lt(self.distance), other, self)

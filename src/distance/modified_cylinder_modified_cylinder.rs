@@ -1,46 +1,69 @@
-//! Modified cylinder against modified cylinder: every pair of links, whatever their caps.
+//! The distance between two modified cylinders, with any caps.
 //!
-//! Let p and q be the closest points of the two axes and F their distance. The head of
-//! [`triangle_modified_cylinder`](super::triangle_modified_cylinder) proves two things of a link Z
-//! and any convex body T, with s the place on the axis that is closest to T, p* the point of T, and
-//! f their distance:
+//! ```text
+//!   1. axis, axis      2. axis, disc      3. disc, axis      4. disc, disc
+//!    __________         __________         _____              _____
+//!   |____p_____|       |____p_____|       |____p             |____p
+//!        |                  |                   \                  \
+//!    ____|_____           __q__             _____\___              _\_____
+//!   |____q_____|         |     |           |______q__|            |q______|
+//!                        |     |
+//! ```
 //!
-//! - **S.** s is not at a flat end: the distance is max(0, f - r).
-//! - **D.** s is at a flat end: the distance is that of the end's disc from T.
+//! # Definitions
+//! - `p`, `q`: the closest points of the first and the second axis. `F`: their distance.
+//! - For a link with radius `r` and a convex body `T`: `f` is the distance between the axis and
+//!   `T`, and `s` the parameter on the axis that attains it.
 //!
-//! It uses of the triangle that it is convex, and no more. The second link is convex too, and so
-//! are the first link's axis and discs. So the two statements, taken in turn for either link, lead
-//! to all cases:
+//! The head of [`triangle_modified_cylinder`](super::triangle_modified_cylinder) proves two
+//! statements about a link and any convex body `T`:
 //!
-//! 1. *Axis and axis.* q is not at a flat end of the second link. By S its distance from the first
-//!    axis is F - r2, at p. If p is not at a flat end either, S says F - r1 - r2.
-//! 2. *Axis and disc.* q is at a flat end. By D the second link is as far from the first axis as
-//!    that end's disc is: segment-disc. If the place on the axis is not at a flat end, S takes r1
-//!    off.
-//! 3. *Disc and axis.* In 1 or in 2 the place on the first axis is at a flat end. By D the first
-//!    link is its disc to the second link. The disc's place on the second axis tells the rest: if
-//!    it is not at a flat end, S takes r2 off.
-//! 4. *Disc and disc.* It is: D says disc-disc.
+//! - **S.** If `s` is not at a flat end, the distance is `max(0, f - r)`.
+//! - **D.** If `s` is at a flat end, the distance is the distance between the disc of that end and
+//!   `T`.
 //!
-//! S and D hold where the bodies overlap, so the cases do: then the distance is 0 and the points
-//! are common.
+//! # Algorithm
+//! 1. **Axis and axis.** `q` is not at a flat end of the second link. By S the second link is
+//!    `F - r2` from the first axis, attained at `p`. If `p` is not at a flat end either, S gives
+//!    `F - r1 - r2`.
+//! 2. **Axis and disc.** `q` is at a flat end. By D the distance of the second link from the first
+//!    axis is that of this end's disc: segment-disc. If the parameter on the first axis is not at a
+//!    flat end, S subtracts `r1`.
+//! 3. **Disc and axis.** In case 1 or 2 the parameter on the first axis is at a flat end. By D the
+//!    disc of that end replaces the first link. If the parameter on the second axis that is closest
+//!    to the disc is not at a flat end, S subtracts `r2`.
+//! 4. **Disc and disc.** As case 3, and that parameter is at a flat end. By D the answer is
+//!    disc-disc.
 //!
-//! Each case gives a point of one link, and [`Link::closest_to`] the other link's nearest point to
-//! it. So every candidate is the distance between a point of each link, and the least of them is
-//! right wherever one of them is. Rounding may take a place for a flat end that is none, which adds
-//! a candidate and loses none; or the other way round, which is off by what the place is off by.
-//! Two capsules are case 1 wherever p and q are: their points are those on the way from p to q, at
-//! the radii, or a common one where the radii are as long as the way.
+//! # Claim
+//! The cases cover every pair of links, overlap included.
+//!
+//! # Proof
+//! The second link, the first axis and the first link's discs are convex. So S and D apply to each
+//! link in turn. S and D hold in overlap; then the distance is 0 and the points are common.
+//!
+//! # Rounding
+//! - Each case gives a point of one link, and [`Link::closest_to`] gives the other link's nearest
+//!   point. So every candidate is a distance between a point of each link. The smallest is right if
+//!   any is right.
+//! - Rounding may take a parameter to be at a flat end although it is not. This adds a candidate
+//!   and drops none. In the opposite case the error is at most the error of the parameter.
+//! - Two capsules are always case 1. Their points lie on the segment from `p` to `q`, at the radii.
+//!   If `r1 + r2 >= F`, both are one common point.
 
 use super::point_modified_cylinder::Link;
 use super::segment_segment::{Parameters, parameters};
 use super::{Closest, Convex, DiscSolver, Scalar, Vec3, disc_disc, frame::Frame, touching};
 
-/// The distance between two solid modified cylinders, each with the two ends of its axis, its
-/// radius, and which of its two caps are flat. Where the two meet, both points are a common one.
+/// Returns the distance between two solid modified cylinders, and the closest points.
 ///
-/// A link of length 0, or of one whose square falls below the range beside the problem's extent,
-/// has no direction: its caps count as round.
+/// - `axis1`, `axis2`: the ends of the axes, in one frame and unit.
+/// - `radius1`, `radius2`: in the same unit, at least 0.
+/// - `flat1`, `flat2`: whether the cap at each end is flat; a cap that is not flat is round.
+///
+/// If the links meet, both points are one common point. The caps of a link without a direction
+/// count as round: its length is 0, or the square of the length falls below the range beside the
+/// problem's extent.
 #[inline(always)]
 pub fn modified_cylinder_modified_cylinder<T: Scalar>(
     axis1: [Vec3<T>; 2],
@@ -51,8 +74,8 @@ pub fn modified_cylinder_modified_cylinder<T: Scalar>(
     flat2: [T::Mask; 2],
 ) -> Closest<T> {
     let frame = Frame::around(axis1[0], [axis1[1], axis2[0], axis2[1]], radius1.max(radius2));
-    // The second axis is not the difference of two places seen from the first: a short one would
-    // lose its direction.
+    // Transform the axis vector itself: as a difference of two transformed points, a short axis
+    // would lose its direction.
     let pair = TwoLinks {
         first: Link::new(frame.point(axis1[1]), frame.length(radius1), flat1),
         second: Link::new(frame.way(axis2[0], axis2[1]), frame.length(radius2), flat2),
@@ -61,26 +84,29 @@ pub fn modified_cylinder_modified_cylinder<T: Scalar>(
     frame.answer(pair.closest(&pair.axes(), |_| true))
 }
 
-/// Two links in coordinates from the start of the first, with numbers near one.
+/// Two links in coordinates relative to the start of the first, scaled near one.
 #[derive(Clone, Copy)]
 pub(crate) struct TwoLinks<T: Scalar> {
     pub first: Link<T>,
-    /// Seen from its own start.
+    /// Relative to its own start.
     pub second: Link<T>,
-    /// Where the second link starts.
+    /// The start of the second link.
     pub second_start: Vec3<T>,
 }
 
 impl<T: Scalar> TwoLinks<T> {
-    /// Where the axes are closest. Their distance less both radii is a lower bound on that of the
-    /// links.
+    /// Returns the closest parameters of the axes.
+    ///
+    /// The distance of the axes minus both radii is a lower bound on the distance of the links.
     #[inline(always)]
     pub(crate) fn axes(&self) -> Parameters<T> {
         parameters(-self.second_start, self.first.end, self.second.end)
     }
 
-    /// The closest points. `may` is asked whether a mask is true in some lane; if it is in none a
-    /// case is left out that decides nothing, so `true` is a right answer always.
+    /// Returns the closest points of the two links.
+    ///
+    /// `may(mask)` returns whether `mask` may be true in some lane. A case whose mask is false in
+    /// all lanes is skipped, so a constant `true` is always correct.
     #[inline(always)]
     pub(crate) fn closest(
         &self,
@@ -102,22 +128,22 @@ impl<T: Scalar> TwoLinks<T> {
         Closest::select(are_flat, flat, capsules)
     }
 
-    /// Case 1 of two capsules: both points are on the way between the axes.
+    /// Case 1 for two capsules: both points lie on the segment between the axes.
     #[inline(always)]
     fn closest_of_capsules(&self, axes: &Parameters<T>) -> Closest<T> {
         let Self { first, second, second_start } = self;
         let apart = axes.gap.norm();
         let distance = (apart - first.radius - second.radius).max(apart.zero());
         let share = apart.one().over(apart);
-        // Where they meet the second point is the first, which is in the second link: its axis is
-        // no farther than what is left of the way.
+        // In overlap the first point lies in the second link too: its distance from the second axis
+        // is F - min(r1, F) <= r2.
         let point1 = (first.end * axes.s).along(axes.gap, -(first.radius.min(apart) * share));
         let outside = second_start.along(second.end, axes.t).along(axes.gap, second.radius * share);
         let point2 = Vec3::select(apart.zero().lt(distance), outside, point1);
         Closest { distance, point1, point2 }
     }
 
-    /// All cases.
+    /// All four cases.
     #[inline(always)]
     fn closest_of_flat(&self, axes: &Parameters<T>, may: impl Fn(T::Mask) -> bool) -> Closest<T> {
         let Self { first, second, second_start } = self;
@@ -141,8 +167,8 @@ impl<T: Scalar> TwoLinks<T> {
         // Cases 3 and 4.
         let closest =
             self.nearer_from_disc(first_ends.any(), first_ends.centre(first), closest, &may);
-        // Of a point in the plane of a cap rounding may say that it is beyond it; the other link's
-        // point may be within.
+        // Rounding may put a point of a cap's plane beyond the cap although the other link's point
+        // lies within: measure back from the second point too.
         let (distance, point1) = first.closest_to(closest.point2);
         let back = Closest { distance, point1, point2: closest.point2 };
         let forth = closest;
@@ -151,14 +177,14 @@ impl<T: Scalar> TwoLinks<T> {
         if !may(doubtful) {
             return closest;
         }
-        // Rounding alone may have put a point beyond a flat cap that none of the cases names.
+        // Rounding may also have put a point beyond a flat cap that no case selects.
         let measured_at_cap = first.flat_ends_facing(closest.point2).any()
             | second.flat_ends_facing(forth.point1 - *second_start).any()
             | second.flat_ends_facing(closest.point1 - *second_start).any();
         self.touching(at_flat | first_ends.any() | measured_at_cap, closest)
     }
 
-    /// The same, with distances at flat caps that rounding cannot tell from 0 as 0.
+    /// Sets a distance at a flat cap to 0 if it is within rounding of 0.
     #[inline(always)]
     fn touching(&self, at_cap: T::Mask, closest: Closest<T>) -> Closest<T> {
         let Self { first, second, second_start } = self;
@@ -166,8 +192,10 @@ impl<T: Scalar> TwoLinks<T> {
         touching::settle(closest, at_cap, touching::extent(points, first.radius.max(second.radius)))
     }
 
-    /// The closest points of the flat cap around one end of the first link, which has a length, and
-    /// the second link. `may` is as in [`closest`](Self::closest).
+    /// Returns the closest points of the flat cap around `centre`, an end of the first link, and
+    /// the second link.
+    ///
+    /// The first link must have a length. `may` is as in [`closest`](Self::closest).
     #[inline(always)]
     pub(crate) fn closest_to_cap(
         &self,
@@ -180,8 +208,8 @@ impl<T: Scalar> TwoLinks<T> {
         self.touching(everywhere, closest)
     }
 
-    /// The closest points of two flat caps, each around one end of its link. Both are seen from the
-    /// first link's start.
+    /// Returns the closest points of two flat caps, one of each link. Both centres are relative to
+    /// the first link's start.
     #[inline(always)]
     fn between_caps(&self, centres: [Vec3<T>; 2]) -> Closest<T> {
         let [centre1, centre2] = centres;
@@ -191,15 +219,15 @@ impl<T: Scalar> TwoLinks<T> {
         Closest { point1: discs.point1 + centre1, point2: discs.point2 + centre1, ..discs }
     }
 
-    /// The closest points of two flat caps, as [`closest_to_cap`](Self::closest_to_cap) has them.
+    /// Same as [`closest_to_cap`](Self::closest_to_cap), for a flat cap of each link.
     #[inline(always)]
     pub(crate) fn closest_caps(&self, centres: [Vec3<T>; 2]) -> Closest<T> {
         let everywhere = self.first.radius.le(self.first.radius);
         self.touching(everywhere, self.between_caps(centres))
     }
 
-    /// Cases 3 and 4 where the mask is true, with the disc of the first link around `centre`, if
-    /// they are nearer than what is known.
+    /// Cases 3 and 4 with the disc of the first link around `centre`. Replaces `closest` where the
+    /// mask is true and the candidate is nearer.
     #[inline(always)]
     fn nearer_from_disc(
         &self,
@@ -224,7 +252,7 @@ impl<T: Scalar> TwoLinks<T> {
         nearer_where(both, closest, discs)
     }
 
-    /// A point of the first link, and the second link's nearest to it.
+    /// Returns a candidate: `point1` of the first link, and the second link's nearest point to it.
     #[inline(always)]
     fn with_nearest_of_second(&self, point1: Vec3<T>) -> Closest<T> {
         let (distance, on_second) = self.second.closest_to(point1 - self.second_start);
@@ -232,14 +260,13 @@ impl<T: Scalar> TwoLinks<T> {
     }
 }
 
-/// The nearer of two answers; the first where the mask is false.
+/// Returns the nearer of two candidates; `closest` where the mask is false.
 #[inline(always)]
 fn nearer_where<T: Scalar>(mask: T::Mask, closest: Closest<T>, other: Closest<T>) -> Closest<T> {
     Closest::select(mask & other.distance.lt(closest.distance), other, closest)
 }
 
-/// Which flat end of a link is the place on its axis that is closest to a point, if that is at a
-/// flat end.
+/// Whether the axis point closest to a given point is at a flat end, and at which one.
 #[derive(Clone, Copy)]
 struct FlatEnds<T: Scalar> {
     at_start: T::Mask,
@@ -252,13 +279,13 @@ impl<T: Scalar> FlatEnds<T> {
         self.at_start | self.at_end
     }
 
-    /// The end's place on the link, seen from its start.
+    /// The centre of that end, relative to the link's start.
     #[inline(always)]
     fn centre(self, link: &Link<T>) -> Vec3<T> {
         Vec3::select(self.at_end, link.end, Vec3::zero(link.radius))
     }
 
-    /// The other ends where the mask is true.
+    /// Returns `other` where the mask is true, `self` elsewhere.
     #[inline(always)]
     fn unless(self, mask: T::Mask, other: Self) -> Self {
         Self {

@@ -1,15 +1,31 @@
-//! Plane against disc (paper, equations (20) and (21), corrected).
+//! The distance between a plane and a solid disc (paper, equations (20) and (21), corrected).
 //!
-//! 1. **Tilted.** The disc's point nearest to the plane lies along u, the part of the plane's
-//!    normal that lies in the disc's plane: at the rim, or where the plane cuts that diameter. The
-//!    clamp makes the difference: without it the point overshoots as soon as the disc crosses the
-//!    plane.
-//! 2. **Parallel.** u = 0: every point is as near; the centre is taken.
+//! ```text
+//!     ____________________________  plane
+//!        |               |
+//!        | distance      | height
+//!        |               |
+//!        p               |
+//!          `-._          |
+//!              `-._      |
+//!                  `-._  o centre
+//!                       `-._
+//!                           `-.  disc, seen edge-on
+//! ```
+//!
+//! 1. **Tilted.** The closest disc point lies along `u`, the part of the plane's normal in the
+//!    disc's plane: at the rim, or where the plane cuts that diameter. Without this clamp the point
+//!    overshoots when the disc crosses the plane.
+//! 2. **Parallel.** `u = 0`: all points are equally near. Return the centre.
 
 use super::{Closest, Mask, Scalar, Vec3, frame::Frame};
 
-/// The distance between the plane through `point` with the given normal and a solid disc; (20),
-/// (21). Neither normal needs unit length.
+/// Returns the distance between a plane and a solid disc, and the closest points; (20), (21).
+///
+/// - `plane_point`, `plane_normal`: a point of the plane, and its normal.
+/// - `centre`, `disc_normal`, `radius`: the disc, in the same frame and unit.
+///
+/// Neither normal needs unit length.
 #[inline(always)]
 pub fn plane_disc<T: Scalar>(
     plane_point: Vec3<T>,
@@ -26,15 +42,15 @@ pub fn plane_disc<T: Scalar>(
     frame.answer(Closest { distance: nearest.distance, point1: on_plane, point2: nearest.point })
 }
 
-/// The disc's point nearest to a plane.
+/// The disc point closest to a plane, and its distance.
 #[derive(Clone, Copy)]
 pub(crate) struct NearestOnPlane<T> {
     pub point: Vec3<T>,
     pub distance: T,
 }
 
-/// The point nearest to the plane at signed `height` along its unit normal, for the disc around the
-/// origin.
+/// Returns the closest point of the disc around the origin to the plane at the signed `height`
+/// along its unit normal.
 #[inline(always)]
 pub(crate) fn from_centre<T: Scalar>(
     height: T,
@@ -44,11 +60,12 @@ pub(crate) fn from_centre<T: Scalar>(
 ) -> NearestOnPlane<T> {
     let radial = plane_normal.along(disc_normal, -plane_normal.dot(disc_normal));
     let slope = radial.norm();
-    // How far out along the radial direction the plane is met, unless the rim comes first.
+    // The offset along the radial direction: where it meets the plane, at most the rim.
     let reach = height.abs();
     let out = (radius * slope).lt(reach).select(radius, reach.over(slope));
     let direction = radial * slope.one().over(slope);
-    // Back into the disc's plane: a remainder as short as its own rounding points anywhere.
+    // Project back into the disc's plane: a difference as short as its own rounding has a random
+    // direction.
     let direction = direction.along(disc_normal, -direction.dot(disc_normal));
     NearestOnPlane {
         point: direction * height.lt(height.zero()).select(-out, out),

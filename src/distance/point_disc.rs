@@ -1,16 +1,26 @@
-//! Point against disc (paper, equations (9) to (12)).
+//! The distance between a point and a solid disc (paper, equations (9) to (12)).
 //!
-//! With l the height above the disc's plane and rho the distance from its axis, the solid disc is
-//! at sqrt(l^2 + max(0, rho - R)^2): a form without a division.
+//! ```text
+//!         p
+//!         |  l
+//!    -----+=====o=====+------  plane of the disc
+//!         <-rho->  R
+//! ```
 //!
-//! 1. **Above the interior**, rho <= R: the disc point is the foot.
-//! 2. **Outside**, rho > R: the disc point is on the rim.
-//! 3. **On the axis**, rho = 0: the foot is the centre, also for R = 0.
+//! Let `l` be the height of the point above the disc's plane, `rho` its distance from the disc's
+//! axis, and `R` the radius. The distance is `sqrt(l^2 + max(0, rho - R)^2)`, a form without a
+//! division.
+//!
+//! 1. **Above the interior**, `rho <= R`: the disc point is the foot.
+//! 2. **Outside**, `rho > R`: the disc point lies on the rim.
+//! 3. **On the axis**, `rho = 0`: the foot is the centre, also for `R = 0`.
 
 use super::{Closest, Mask, Scalar, Vec3, frame::Frame};
 
-/// The distance between a point and a solid disc with the given centre, normal (of any length) and
-/// radius; (9) to (12). A zero normal makes the disc a ball.
+/// Returns the distance between a point and a solid disc, and the closest points; (9) to (12).
+///
+/// - `point`, `centre`, `radius`: in one frame and unit.
+/// - `normal`: of any length. A zero normal makes the disc a ball.
 #[inline(always)]
 pub fn point_disc<T: Scalar>(
     point: Vec3<T>,
@@ -24,7 +34,7 @@ pub fn point_disc<T: Scalar>(
     frame.answer(Closest { distance, point1: point, point2: on_disc })
 }
 
-/// The distance of `point` from the disc around the origin, and the disc's point.
+/// Returns the distance of `point` from the disc around the origin, and the closest disc point.
 #[inline(always)]
 pub(crate) fn from_centre<T: Scalar>(
     point: Vec3<T>,

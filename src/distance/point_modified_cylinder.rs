@@ -1,15 +1,32 @@
-//! Point against modified cylinder, in closed form.
+//! The distance between a point and a modified cylinder, in closed form.
 //!
-//! In axial coordinates, z along the axis and rho from it, with the link on 0 <= z <= L:
+//! ```text
+//!    case 3           case 1            case 2
+//!    p                  p                   p
+//!     \                 | rho - r          /
+//!      \ _______________|_________________/
+//!      /                                  |
+//!     |  o ------------ axis ------------ o   z = L
+//!      \__________________________________|
+//!    round                              flat
+//! ```
 //!
-//! 1. **Beside the barrel**, 0 <= z <= L: rho - r.
-//! 2. **Beyond a flat end**: the disc of that end, sqrt(dz^2 + max(0, rho - r)^2).
-//! 3. **Beyond a round end**: the ball of that end, |p - end| - r.
+//! In axial coordinates, with `z` along the axis, `rho` from it, and the link on `0 <= z <= L`:
+//!
+//! 1. **Beside the barrel**, `0 <= z <= L`: `rho - r`.
+//! 2. **Beyond a flat end** by `dz`: the disc of that end, `sqrt(dz^2 + max(0, rho - r)^2)`.
+//! 3. **Beyond a round end**: the ball of that end, `|p - end| - r`.
+//!
+//! All are 0 inside.
 
 use super::{Closest, Mask, Scalar, Vec3, frame::Frame, point_disc};
 
-/// The distance between a point and the solid modified cylinder from `start` to `end`; 0 inside.
-/// `flat` says which of the two caps are flat.
+/// Returns the distance between a point and a solid modified cylinder, and the closest points; 0
+/// inside.
+///
+/// - `point`, `start`, `end`, `radius`: in one frame and unit.
+/// - `flat`: whether the cap at `start` and the cap at `end` are flat; a cap that is not flat is
+///   round.
 #[inline(always)]
 pub fn point_modified_cylinder<T: Scalar>(
     point: Vec3<T>,
@@ -25,7 +42,7 @@ pub fn point_modified_cylinder<T: Scalar>(
     frame.answer(Closest { distance, point1: point, point2: on_link })
 }
 
-/// A link that starts at the origin, with what is computed once for it.
+/// A link that starts at the origin, with its unit axis.
 #[derive(Clone, Copy)]
 pub(crate) struct Link<T: Scalar> {
     /// The end point of the axis.
@@ -33,7 +50,7 @@ pub(crate) struct Link<T: Scalar> {
     /// The unit direction of the axis; zero for a ball, whose caps count as round.
     pub axis: Vec3<T>,
     pub radius: T,
-    /// Which caps are flat.
+    /// Whether the cap at the start and the cap at the end are flat.
     pub flat: [T::Mask; 2],
 }
 
@@ -45,18 +62,18 @@ impl<T: Scalar> Link<T> {
         Self { end, axis, radius, flat }
     }
 
-    /// How far the axis reaches along `v`, from the link's start and in units of 1 / |v|.
+    /// Returns the largest `<v, x>` over the axis.
     ///
-    /// A vector from the axis to a point near it is not quite at a right angle to the axis, for
-    /// rounding, and far from its foot the axis then sticks out of the plane through the foot.
-    /// So planes are set before the ends instead.
+    /// A vector from the axis to a nearby point is perpendicular to the axis only within rounding.
+    /// Far from its foot the axis then leaves the plane through the foot. So a separating plane is
+    /// placed before both ends instead.
     #[inline(always)]
     pub(crate) fn reach_along(&self, v: Vec3<T>) -> T {
         v.dot(self.end).max(self.radius.zero())
     }
 
-    /// The distance of a point from the solid link, and the link's nearest point (the point itself
-    /// inside).
+    /// Returns the distance of a point from the solid link, and the link's closest point (the point
+    /// itself inside).
     #[inline(always)]
     pub(crate) fn closest_to(&self, point: Vec3<T>) -> (T, Vec3<T>) {
         let zero = self.radius.zero();
@@ -64,8 +81,8 @@ impl<T: Scalar> Link<T> {
         let beyond_end = zero.lt(from_end.dot(self.axis));
         let before_start = !beyond_end & point.dot(self.axis).lt(zero);
 
-        // Cases 2 and 3 measure from the end that the point is beyond; case 1 from the nearest axis
-        // point.
+        // Cases 2 and 3 measure from the end that the point lies beyond. Case 1 measures from the
+        // axis.
         let centre = Vec3::select(beyond_end, self.end, Vec3::zero(zero));
         let relative = point - centre;
         let radial = relative.along(self.axis, -relative.dot(self.axis));
@@ -83,8 +100,8 @@ impl<T: Scalar> Link<T> {
     }
 }
 
-/// Whether a segment's squared length is large enough to tell its ends apart: not below the normal
-/// numbers.
+/// Returns whether a segment's squared length is large enough to distinguish its ends: not
+/// subnormal.
 #[inline(always)]
 pub(crate) fn gives_direction<T: Scalar>(squared: T) -> T::Mask {
     squared.zero().lt(squared * squared.lit(2.0 * T::UNIT_ROUNDOFF))

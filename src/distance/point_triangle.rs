@@ -1,12 +1,26 @@
-//! Point against triangle.
+//! The distance between a triangle and a point.
 //!
-//! 1. **Face.** Where the foot on the plane lies inside, the distance is that to the foot.
-//! 2. **Edges.** The nearest of the three edges. An edge is always an upper bound, and the face,
-//!    where it counts, is never farther; so the answer is the least of the four.
+//! ```text
+//!     The triangle, seen edge-on:
+//!
+//!     1. face              2. edge
+//!          p                p
+//!          |                 \
+//!     _____|_____             \__________
+//! ```
+//!
+//! 1. **Face.** If the foot of the point on the plane lies inside, the distance to the foot.
+//! 2. **Edges.** The distance to the nearest of the three edges.
+//!
+//! An edge always gives an upper bound. The face, where it applies, is never farther. So the answer
+//! is the least of the four.
 
 use super::{Closest, Mask, Scalar, Vec3, face::Face, frame::Frame};
 
-/// The distance between a triangle and a point.
+/// Returns the distance between a point and a triangle, and the closest points.
+///
+/// `point` and the vertices share one frame and unit. A triangle without area is a segment or a
+/// point.
 #[inline(always)]
 pub fn point_triangle<T: Scalar>(point: Vec3<T>, triangle: [Vec3<T>; 3]) -> Closest<T> {
     let frame = Frame::around(point, triangle, point.x.zero());
@@ -28,7 +42,7 @@ pub fn point_triangle<T: Scalar>(point: Vec3<T>, triangle: [Vec3<T>; 3]) -> Clos
     })
 }
 
-/// The point of the segment nearest to `point`.
+/// Returns the point of the segment closest to `point`.
 #[inline(always)]
 fn on_segment<T: Scalar>(point: Vec3<T>, start: Vec3<T>, end: Vec3<T>) -> Vec3<T> {
     let edge = end - start;

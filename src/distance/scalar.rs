@@ -1,31 +1,33 @@
-//! What a kernel needs of a number, so that one text serves `f64`, `f32` and lanes of either.
+//! The operations that a kernel needs of a number: one text serves `f64`, `f32` and packs of
+//! either.
 //!
-//! Kernels choose by [`Mask::select`] and never branch, because lanes of one pack may choose
+//! Kernels select with [`Mask::select`] and never branch, because the lanes of one pack may select
 //! differently. Comparisons with NaN are false, so `x.max(lo).min(hi)` turns a NaN `x` into a
-//! bound: `x` comes first.
+//! bound: `x` must come first.
 
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
-/// Keeps [`Scalar`] and [`Mask`] from being implemented elsewhere, so that they can grow. The
-/// project's own tests and studies do: their numbers count or imitate lanes.
+/// Seals [`Scalar`] and [`Mask`], so that methods can be added. The project's own tests and studies
+/// implement both, for numbers that count operations or imitate lanes.
 pub trait Sealed {}
 
 impl Sealed for bool {}
 impl Sealed for f32 {}
 impl Sealed for f64 {}
 
-/// A truth value for each lane of a [`Scalar`]. It is sealed.
+/// A truth value for each lane of a [`Scalar`]. The trait is sealed.
 pub trait Mask<T>:
     Sealed + Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self>
 {
-    /// `yes` where the mask is true, `no` elsewhere.
+    /// Returns `yes` where the mask is true, `no` elsewhere.
     fn select(self, yes: T, no: T) -> T;
 }
 
-/// A real number, or a pack of them, that the narrow phase can compute with. It is sealed.
+/// A real number, or a pack of them, for the narrow phase. The trait is sealed.
 ///
-/// Implemented for `f32` and `f64`. Only IEEE operations are used (and fused multiply-add where an
-/// implementation says so in [`Scalar::mul_add`]), so scalar answers are the same on every machine.
+/// Implemented for `f32` and `f64`. All operations are IEEE operations, so scalar answers are the
+/// same on every machine. An implementation may use fused multiply-add where [`Scalar::mul_add`]
+/// says so.
 ///
 /// ```
 /// use parry_continuum::distance::{Scalar, Vec3, segment_segment};
@@ -55,18 +57,19 @@ pub trait Scalar:
     #[doc(hidden)]
     const UNIT_ROUNDOFF: f64;
 
-    /// How many times a foot on a triangle's plane is refined: each time wins the digits that the
-    /// plane's basis has, which are few on a sliver. Two serve a height of 1e-5 of the length,
-    /// three one of 1e-12.
+    /// The number of refinement passes of a foot on a triangle's plane.
+    ///
+    /// Each pass adds the digits that the plane's basis has, which are few on a sliver. Two passes
+    /// are enough for a height of 1e-5 of the length, three for 1e-12.
     #[doc(hidden)]
     const FACE_PASSES: usize;
 
-    /// How many Halley steps bring segment-disc to rounding level: 2 in single, 3 in double
-    /// precision.
+    /// The number of Halley steps that bring segment-disc to rounding level: 2 in single, 3 in
+    /// double precision.
     #[doc(hidden)]
     const HALLEY_STEPS: usize;
 
-    /// The constant `value` in the precision and lanes of `self`.
+    /// Returns the constant `value` in the precision and lanes of `self`.
     #[doc(hidden)]
     fn lit(self, value: f64) -> Self;
     /// `self < other`
@@ -75,59 +78,59 @@ pub trait Scalar:
     /// `self <= other`
     #[doc(hidden)]
     fn le(self, other: Self) -> Self::Mask;
-    /// The magnitude, +0 for -0.
+    /// Returns the magnitude, +0 for -0.
     #[doc(hidden)]
     fn abs(self) -> Self;
-    /// The square root.
+    /// Returns the square root.
     #[doc(hidden)]
     fn sqrt(self) -> Self;
-    /// `self * factor + addend`, fused only where that is as fast as the two operations.
+    /// Returns `self * factor + addend`, fused only where that is as fast as the two operations.
     #[doc(hidden)]
     fn mul_add(self, factor: Self, addend: Self) -> Self;
-    /// The cube root of the magnitude within 5 %: a start value, never an answer.
+    /// Returns the cube root of the magnitude within 5 %: a start value, never an answer.
     #[doc(hidden)]
     fn cbrt_estimate(self) -> Self;
-    /// The power of two `p` with `1 <= self * p < 2`, or 1 for 0. Saturates at the ends of the
-    /// range.
+    /// Returns the power of two `p` with `1 <= self * p < 2`, or 1 for 0. Saturates at the ends of
+    /// the range.
     #[doc(hidden)]
     fn power_of_two_to_unity(self) -> Self;
 
-    /// 0 in the precision and lanes of `self`.
+    /// Returns 0 in the precision and lanes of `self`.
     #[doc(hidden)]
     #[inline(always)]
     fn zero(self) -> Self {
         self.lit(0.0)
     }
-    /// 1 in the precision and lanes of `self`.
+    /// Returns 1 in the precision and lanes of `self`.
     #[doc(hidden)]
     #[inline(always)]
     fn one(self) -> Self {
         self.lit(1.0)
     }
-    /// The larger of two numbers; `other` where `self` is NaN.
+    /// Returns the larger of two numbers; `other` if `self` is NaN.
     #[doc(hidden)]
     #[inline(always)]
     fn max(self, other: Self) -> Self {
         other.lt(self).select(self, other)
     }
-    /// The smaller of two numbers; `other` where `self` is NaN.
+    /// Returns the smaller of two numbers; `other` if `self` is NaN.
     #[doc(hidden)]
     #[inline(always)]
     fn min(self, other: Self) -> Self {
         self.lt(other).select(self, other)
     }
-    /// `self / divisor` for a positive divisor, 0 for any other.
+    /// Returns `self / divisor` for a positive divisor, 0 for any other.
     #[doc(hidden)]
     #[inline(always)]
     fn over(self, divisor: Self) -> Self {
         let positive = self.zero().lt(divisor);
-        // The divisor is replaced before the division: shading languages may assume that no NaN
-        // arises.
+        // Replace the divisor before the division: shading languages may assume that no NaN occurs.
         positive.select(self, self.zero()) / positive.select(divisor, self.one())
     }
-    /// `self.over(whole)` for a number between 0 and `whole`, where `inverse`, which is
-    /// `whole.one().over(whole)`, is at hand. Packs of single precision multiply by it: they
-    /// only rule out.
+    /// Returns `self.over(whole)` for a number between 0 and `whole`; `inverse` is
+    /// `whole.one().over(whole)`.
+    ///
+    /// Packs of single precision multiply by `inverse`, since their results are only bounds.
     #[doc(hidden)]
     #[inline(always)]
     fn share_of(self, whole: Self, inverse: Self) -> Self {
@@ -143,10 +146,10 @@ impl<T> Mask<T> for bool {
     }
 }
 
-/// Added to a third of a number's bits, gives the bits of its cube root within 5 %: two thirds of
-/// the exponent's bias, less what centres the error.
+/// The offset that turns a third of a number's bits into the bits of its cube root, within 5 %: two
+/// thirds of the exponent's bias, minus a term that centres the error.
 pub(super) const CBRT_BITS_F32: u32 = 0x2a51_0554;
-/// As [`CBRT_BITS_F32`].
+/// Same as [`CBRT_BITS_F32`], for `f64`.
 pub(super) const CBRT_BITS_F64: u64 = 0x2a9f_7893_782d_a1ce;
 
 macro_rules! scalar {
@@ -188,8 +191,8 @@ macro_rules! scalar {
             }
             #[inline(always)]
             fn power_of_two_to_unity(self) -> Self {
-                // The exponent mirrored at 0, and kept where a quarter of the power and its inverse
-                // are normal.
+                // The exponent mirrored at 0, limited so that a quarter of the power and its
+                // inverse are normal.
                 let exponent = (self.to_bits() >> $mantissa_bits) & (2 * $bias + 1);
                 let mirrored = (2 * $bias - exponent.min(2 * $bias - 3)).min(2 * $bias - 3);
                 if self == 0.0 { 1.0 } else { $float::from_bits(mirrored << $mantissa_bits) }

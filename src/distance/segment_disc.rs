@@ -1,17 +1,36 @@
-//! Segment against solid disc: the paper's section III.C by a convex route instead of its quartic.
+//! The distance between a segment and a solid disc: section III.C of the paper, with a convex
+//! iteration in place of its quartic.
 //!
-//! For a point p of the line, l = <p, n> is its height over the disc's plane and rho its distance
-//! from the disc's axis. F(s) = l^2 + max(0, rho - R)^2 is the squared distance to the *solid*
-//! disc: convex and once differentiable on the whole line. So minimise on the line and clamp the
-//! result to the segment. (The paper's quartic (18) belongs to the circle; squaring gives it false
-//! and double roots, which cost half of the digits or all of them.)
+//! ```text
+//!        n ^
+//!          |            o s = 0, the foot of the centre
+//!          |          .   `-._
+//!          |        .         `-._   p(s) = D + s B
+//!          |      . D             `-._
+//!          |    .                     `-._
+//!     =====o=====                         `-._
+//!       centre, R        plane of the disc
+//! ```
 //!
-//! Measure s from the foot of the disc's centre: p(s) = D + s B with <D, B> = 0. That choice is
-//! essential. Let h = |<D, n>|, L = |<B, n>|, q and P the parts of D and B in the disc's plane, m =
-//! <P, P>, and tau = |<D, n x P>|. Direct B so that N = <q, P> >= 0. Because D and B are
-//! orthogonal, N = h L; so the line comes down towards the plane as its distance from the axis
-//! grows, and the minimiser lies in `[0, top]`. There, with w = N + m s, rho^2 = |q|^2 + s (N + w)
-//! and k = 1 - R / rho:
+//! # Definitions
+//! - `n`, `R`: the unit normal and the radius of the disc, whose centre is the origin.
+//! - `p(s) = D + s B`: the line, with `|B| = 1` and `s` measured from the foot of the centre:
+//!   `<D, B> = 0`. The algorithm depends on this choice of origin.
+//! - `l = <p, n>`: the height of `p` over the disc's plane. `rho`: the distance of `p` from the
+//!   disc's axis.
+//! - `F(s) = l^2 + max(0, rho - R)^2`: the squared distance of `p(s)` from the solid disc.
+//! - `h = |<D, n>|`, `L = |<B, n>|`.
+//! - `q`, `P`: the parts of `D` and `B` in the disc's plane. `m = <P, P>`, `tau = |<D, n x P>|`.
+//! - `N = <q, P>`, with `B` directed so that `N >= 0`. Since `D` and `B` are orthogonal, `N = h L`.
+//! - `w = N + m s` and `k = 1 - R / rho`. Then `rho^2 = |q|^2 + s (N + w)`.
+//!
+//! # Algorithm
+//! `F` is convex and once differentiable on the whole line. So minimise `F` on the line and clamp
+//! the result to the segment. (The paper's quartic (18) belongs to the circle. Squaring gives it
+//! false and double roots, which cost half of the digits or all of them.)
+//!
+//! The line approaches the plane while its distance from the axis grows, so the minimiser lies in
+//! `[0, top]`. There
 //!
 //! ```text
 //! g   = F' / 2  = L (L s - h) + w k
@@ -19,29 +38,33 @@
 //! g''           = 3 R w (m rho^2 - w^2) / rho^5       >= 0
 //! ```
 //!
-//! g is convex and increasing, so Halley's method converges from any start, cubically; from the
-//! right start a fixed number of steps reaches rounding level. Cases:
+//! `g` is convex and increasing, so Halley's method converges cubically from any start. From the
+//! starts below, a fixed number of steps reaches rounding level.
 //!
-//! 1. **The line meets the plane inside the disc**, at s = h / L: F = 0 there.
-//! 2. **It does not**: top = min(R sqrt m, h / L), since g >= 0 at either.
-//! 3. **Start from the left**: Newton's step from s = 0, where g = -R N / rho.
-//! 4. **Start at the cusp**, a line nearly parallel to the plane and nearly tangent to the circle,
-//!    where g bends like a cube root: w = tau x with x = sqrt(K^2 - 1) + cbrt(2 N / tau), K = R
-//!    m^1.5 / tau. Away from the cusp that falls short, even below 0. But L^2 + m = 1 makes g = s -
-//!    R w / rho, and w / rho grows with s, so the minimiser is never left of R N / |q|: no start
-//!    is.
-//! 5. **Along the normal**, m = 0: every point of the line has the same rho; s = 0 is in the disc's
-//!    plane.
-//! 6. **A point**, |e| = 0: B = 0, N = 0 and s = 0; |q| is taken from q itself.
+//! 1. **The line meets the plane inside the disc**, at `s = h / L`: `F = 0` there.
+//! 2. **The line does not**: `top = min(R sqrt m, h / L)`, since `g >= 0` at both.
+//! 3. **Start from the left**: Newton's step from `s = 0`, where `g = -R N / rho`.
+//! 4. **Start at the cusp**: a line nearly parallel to the plane and nearly tangent to the circle,
+//!    where `g` bends like a cube root. Take `w = tau x` with `x = sqrt(K^2 - 1) + cbrt(2 N / tau)`
+//!    and `K = R m^1.5 / tau`. Away from the cusp this start is too small, even below 0. But
+//!    `L^2 + m = 1` gives `g = s - R w / rho`, and `w / rho` grows with `s`. So the minimiser is at
+//!    least `R N / |q|`, and the start is raised to that value.
+//! 5. **Along the normal**, `m = 0`: all points of the line have the same `rho`; `s = 0` lies in
+//!    the disc's plane.
+//! 6. **A point**, `B = 0`: `N = 0` and `s = 0`; `|q|` is computed from `q` itself.
 //!
-//! The least of 2, 3 and 4 is the start. The signs of g met so far bracket every step: where g' is
-//! as small as its own rounding, at the cusp, a step could otherwise leave for the far end of the
-//! interval.
+//! The start is the least of 2, 3 and 4.
+//!
+//! # Rounding
+//! The signs of `g` bracket every step. Near the cusp `g'` is as small as its own rounding; without
+//! the bracket a step could jump to the far end of the interval.
 
 use super::{Closest, Convex, DiscSolver, Mask, Scalar, Vec3, frame::Frame};
 
-/// The distance between the segment from `segment[0]` to `segment[1]` and a solid disc with the
-/// given centre, normal (of any length but 0) and radius; (13) to (19).
+/// Returns the distance between a segment and a solid disc, and the closest points; (13) to (19).
+///
+/// - `segment`, `centre`, `radius`: in one frame and unit.
+/// - `normal`: of any length except 0.
 #[inline(always)]
 pub fn segment_disc<T: Scalar>(
     segment: [Vec3<T>; 2],
@@ -52,7 +75,7 @@ pub fn segment_disc<T: Scalar>(
     segment_disc_by::<Convex, T>(segment, centre, normal, radius)
 }
 
-/// As [`segment_disc`], by the route `S`.
+/// Same as [`segment_disc`], with the solver `S`.
 #[inline(always)]
 pub fn segment_disc_by<S: DiscSolver<T>, T: Scalar>(
     segment: [Vec3<T>; 2],
@@ -74,38 +97,38 @@ impl<T: Scalar> DiscSolver<T> for Convex {
     }
 }
 
-/// A line seen from a disc around the origin, as a [`DiscSolver`] may see it.
+/// A line and a disc around the origin, in the terms of a [`DiscSolver`].
 ///
-/// The point s = 0 is the foot of the disc's centre, B the line's unit direction, turned so that N
-/// >= 0.
+/// The point `s = 0` is the foot of the disc's centre. `B` is the line's unit direction, directed
+/// so that `N >= 0`.
 #[derive(Clone, Copy, Debug)]
 pub struct LineDisc<T: Scalar> {
-    /// Unit direction of the segment.
+    /// The unit direction of the segment.
     direction: Vec3<T>,
-    /// The end nearer to the foot of the disc's centre, from which positions along the direction
-    /// count.
+    /// The end nearer to the foot of the disc's centre. Positions along the direction are measured
+    /// from this end.
     near: Vec3<T>,
     far: Vec3<T>,
     /// The positions of the foot and of the far end.
     foot: T,
     far_at: T,
-    /// -1 where s runs against the direction.
+    /// -1 if `s` runs against `direction`, otherwise 1.
     sign: T,
-    /// How far the foot is above or below the disc's plane.
+    /// The height of the foot above the disc's plane, without sign.
     pub h: T,
-    /// |<B, n>|, n being the disc's normal.
+    /// `L = |<B, n>|`, with the disc's normal `n`.
     pub lambda: T,
-    /// The squared length of B's part in the disc's plane.
+    /// `m`, the squared length of the part of `B` in the disc's plane.
     pub m: T,
-    /// N = <q, P>, q and P being the parts of the foot and of B in the disc's plane.
+    /// `N = <q, P>`, with the parts `q` of the foot and `P` of `B` in the disc's plane.
     pub n: T,
     tau: T,
-    /// |q|^2
+    /// `|q|^2`.
     pub q: T,
 }
 
 impl<T: Scalar> LineDisc<T> {
-    /// The line through `start` and `end`, and the disc with the unit vector `normal`.
+    /// The line through `start` and `end`, and a disc with the unit vector `normal`.
     #[inline(always)]
     pub fn new([start, end]: [Vec3<T>; 2], normal: Vec3<T>) -> Self {
         let edge = end - start;
@@ -124,8 +147,8 @@ impl<T: Scalar> LineDisc<T> {
         let flat = direction.along(normal, -slope);
         let m = flat.norm_squared();
         let tau = from_centre.dot(normal.cross(flat)).abs();
-        // Two expressions for N and |q|^2, equal in exact arithmetic. Each keeps its digits on its
-        // side. The first is for lines; a segment of length 0 has no direction and m = 0.
+        // Two expressions for N and |q|^2, equal in exact arithmetic. Each is accurate on its side
+        // of L^2 = 1/2. The first needs a direction: a segment of length 0 has m = 0.
         let shallow = (slope * slope).lt(slope.lit(0.5)) & slope.zero().lt(m);
         let n = shallow.select(-(height * slope), radial.dot(flat));
         let q = shallow.select(n.mul_add(n, tau * tau).over(m), radial.norm_squared());
@@ -146,14 +169,14 @@ impl<T: Scalar> LineDisc<T> {
         }
     }
 
-    /// The distance from the disc's axis at s, and w = N + m s.
+    /// Returns the distance from the disc's axis at `s`, and `w = N + m s`.
     #[inline(always)]
     pub fn radial_at(&self, s: T) -> (T, T) {
         let w = self.m.mul_add(s, self.n);
         (s.mul_add(self.n + w, self.q).max(s.zero()).sqrt(), w)
     }
 
-    /// The s at which the line is closest to the solid disc, and whether it meets the disc there.
+    /// Returns the `s` that minimises `F`, and whether the line meets the disc there.
     #[inline(always)]
     fn nearest_to_disc(&self, radius: T) -> (T, T::Mask) {
         let zero = radius.zero();
@@ -171,7 +194,7 @@ impl<T: Scalar> LineDisc<T> {
         let slope0 =
             self.lambda.mul_add(self.lambda, self.m.mul_add(one - ratio0, ratio0 * turn0 * turn0));
         let from_zero = zero.lt(slope0).select((ratio0 * self.n).over(slope0), top);
-        // Case 4, as tau x, so that tau = 0 needs no exception.
+        // Case 4, as tau x: so tau = 0 is no exception.
         let rim_m = rim * self.m;
         let tangent = ((rim_m - self.tau) * (rim_m + self.tau)).max(zero).sqrt();
         let cusp = (self.n + self.n).over(self.tau).cbrt_estimate().mul_add(self.tau, tangent);
@@ -201,9 +224,10 @@ impl<T: Scalar> LineDisc<T> {
         (pierces.select(plane, s), pierces)
     }
 
-    /// The closest points for the line's minimiser `s`, clamped to the segment. If the line meets
-    /// the disc there and the segment gets that far, that point is common, whatever rounding
-    /// says of its height.
+    /// Returns the closest points for the line's minimiser `s`, clamped to the segment.
+    ///
+    /// If the line meets the disc at `s` and `s` lies on the segment, this point is a common point,
+    /// even if rounding puts it off the plane.
     #[inline(always)]
     pub fn closest_at(&self, s: T, pierces: T::Mask, normal: Vec3<T>, radius: T) -> Closest<T> {
         let zero = radius.zero();
@@ -211,7 +235,7 @@ impl<T: Scalar> LineDisc<T> {
         let (low, high) = (self.far_at.min(zero), self.far_at.max(zero));
         let pierced = pierces & low.le(along) & along.le(high);
         let t = along.max(low).min(high);
-        // From the end nearer to it, so that the rounding of a long segment's direction counts
+        // Measure from the nearer end: the rounding of a long segment's direction then counts
         // least.
         let by_near_end = (t + t).abs().le(self.far_at.abs());
         let point = Vec3::select(

@@ -1,25 +1,41 @@
-//! Segment against segment (paper, equations (1) to (8), corrected).
+//! The distance between two segments (paper, equations (1) to (8), corrected).
 //!
-//! With S(s) = S0 + s e, U(t) = U0 + t f and w = S0 - U0, minimise |w + s e - t f|^2 over the unit
-//! square. Write a = <e,e>, b = <e,f>, c = <f,f>.
+//! ```text
+//!     S0 -------- s -------------> S0 + e
+//!                 |
+//!                 |  gap
+//!                 |
+//!           U0 -- t ------> U0 + f
+//! ```
 //!
-//! 1. **Skew lines.** The free minimiser is s = <w x f, n> / <n,n> with n = f x e. The cross
-//!    product keeps its digits where the determinant a c - b^2 of the normal equations loses half
-//!    of them: for nearly parallel lines. For every t the best s on the line is s(t) = (b t -
-//!    <e,w>) / a, monotone in t, so a minimiser with t in `[0, 1]` has s between s(0) and s(1); and
-//!    since the minimum over t is convex in s, clamping s first to that interval and then to `[0,
-//!    1]` is exact.
-//! 2. **Parallel lines.** n = 0 leaves s free: any point of the interval between s(0) and s(1) is
-//!    as good as another, and the clamps bring s there.
-//! 3. **Degenerate segments.** a = 0 or c = 0: the parameter is 0.
+//! # Definitions
+//! `S(s) = S0 + s e`, `U(t) = U0 + t f`, `w = S0 - U0`, `a = <e, e>`, `b = <e, f>`, `c = <f, f>`.
+//! Minimise `|w + s e - t f|^2` over the unit square.
 //!
-//! Then t follows from s, and s once more from t: a half step that costs little and removes the
-//! rounding of the first quotient. A parameter at an end is exactly 0 or 1; in packs of single
-//! precision that of the first segment may be a rounding below 1.
+//! # Algorithm
+//! 1. **Skew lines.** The minimiser over all `s`, `t` has `s = <w x f, n> / <n, n>` with
+//!    `n = f x e`. For nearly parallel lines the cross product keeps its digits; the determinant
+//!    `a c - b^2` of the normal equations loses half of them. For a given `t` the best `s` on the
+//!    line is `s(t) = (b t - <e, w>) / a`, monotone in `t`. So a minimiser with `t` in `[0, 1]` has
+//!    `s` between `s(0)` and `s(1)`. The minimum over `t` is convex in `s`, so clamping `s` first
+//!    to this interval and then to `[0, 1]` is exact.
+//! 2. **Parallel lines.** `n = 0` leaves `s` free. All `s` between `s(0)` and `s(1)` are equally
+//!    good; the clamps bring `s` there.
+//! 3. **Degenerate segments.** If `a = 0` or `c = 0`, that parameter is 0.
+//!
+//! Then `t` follows from `s`, and `s` once more from `t`.
+//!
+//! # Rounding
+//! The second `s` removes the rounding of the first quotient at low cost. A parameter at an end is
+//! exactly 0 or 1. Exception: in packs of single precision the first segment's parameter may be one
+//! rounding below 1.
 
 use super::{Closest, Scalar, Vec3, frame::Frame};
 
-/// The distance between the segments `s[0]`-`s[1]` and `u[0]`-`u[1]`; (1) to (8).
+/// Returns the distance between the segments from `s[0]` to `s[1]` and from `u[0]` to `u[1]`, and
+/// the closest points; (1) to (8).
+///
+/// All points share one frame and unit. A segment may have length 0.
 #[inline(always)]
 pub fn segment_segment<T: Scalar>(s: [Vec3<T>; 2], u: [Vec3<T>; 2]) -> Closest<T> {
     let frame = Frame::around(s[0], [s[1], u[0], u[1]], s[0].x.zero());
@@ -32,18 +48,18 @@ pub fn segment_segment<T: Scalar>(s: [Vec3<T>; 2], u: [Vec3<T>; 2]) -> Closest<T
     })
 }
 
-/// Where two segments are closest.
+/// The closest points of two segments, as parameters.
 #[derive(Clone, Copy)]
 pub(crate) struct Parameters<T> {
     /// On the first segment, in `[0, 1]`.
     pub s: T,
     /// On the second segment, in `[0, 1]`.
     pub t: T,
-    /// From the point of the second segment to that of the first.
+    /// The vector from the second segment's point to the first segment's point.
     pub gap: Vec3<T>,
 }
 
-/// The closest parameters of S0 + s e and U0 + t f, where `w` = S0 - U0.
+/// Returns the closest parameters of `S0 + s e` and `U0 + t f`, with `w = S0 - U0`.
 #[inline(always)]
 pub(crate) fn parameters<T: Scalar>(w: Vec3<T>, e: Vec3<T>, f: Vec3<T>) -> Parameters<T> {
     let zero = w.x.zero();

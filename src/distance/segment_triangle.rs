@@ -1,25 +1,41 @@
-//! Segment against triangle, with the parameter of the closest point on the segment.
+//! The distance between a segment and a triangle, with the parameter of the closest point on the
+//! segment.
 //!
-//! 1. **Piercing.** The segment's ends lie on either side of the plane and the crossing is inside:
-//!    0. The crossing is found as a point and then looked up in the triangle. To interpolate the
-//!    plane's coordinates of the ends would not do on a sliver, where they are as large as length /
-//!    height and as wrong. A segment with ends on either side that passes an edge as near as
-//!    rounding can tell meets it: else it might miss both triangles that have the edge, and slip
-//!    through a wall without a hole.
-//! 2. **An end above the interior.** The end's foot on the plane lies inside.
+//! ```text
+//!     The triangle, seen edge-on:
+//!
+//!     1. piercing          2. an end            3. an edge
+//!          |                   /                 \
+//!          |                  /                   \
+//!     _____|_____         ___._____                \ _________
+//!          |                 foot                   edge
+//! ```
+//!
+//! 1. **Piercing.** The ends lie on opposite sides of the plane and the crossing lies inside:
+//!    distance 0.
+//! 2. **An end above the interior.** The foot of the end on the plane lies inside.
 //! 3. **An edge.** Segment-segment with each of the three edges.
 //!
-//! The ends count only against the interior, and the edges by segment-segment, so the parameter is
-//! exact to rounding and exactly 0 or 1 at an end. The caps of a link hang on that parameter.
+//! # Rounding
+//! - The crossing is computed as a point and then located in the triangle. Interpolating the plane
+//!   coordinates of the ends would fail on a sliver: they are as large as length / height, and so
+//!   is their error.
+//! - A segment whose ends lie on opposite sides, and which passes an edge within rounding, meets
+//!   the edge. Otherwise the segment might miss both triangles of the edge and pass through a
+//!   closed wall.
+//! - The ends count only against the interior, and the edges by segment-segment. So the parameter
+//!   is exact within rounding, and exactly 0 or 1 at an end. The caps of a link depend on this.
 
 use super::face::{Face, Projection};
 use super::{Closest, Mask, Scalar, Vec3, frame::Frame, segment_segment};
 
-/// How far a segment that meets an edge may be from it for rounding, in units of u and the largest
-/// coordinate.
+/// The largest distance at which a segment counts as meeting an edge, in units of `u` and the
+/// largest coordinate.
 const AT_AN_EDGE: f64 = 4.0;
 
-/// The distance between a segment and a triangle.
+/// Returns the distance between a segment and a triangle, and the closest points.
+///
+/// All points share one frame and unit. Both shapes may be degenerate.
 #[inline(always)]
 pub fn segment_triangle<T: Scalar>(segment: [Vec3<T>; 2], triangle: [Vec3<T>; 3]) -> Closest<T> {
     let [a, b, c] = triangle;
@@ -31,16 +47,16 @@ pub fn segment_triangle<T: Scalar>(segment: [Vec3<T>; 2], triangle: [Vec3<T>; 3]
     frame.answer(Closest { distance, point1: end * found.s, point2: found.on_triangle })
 }
 
-/// The axis of a link against a triangle.
+/// The closest points of a link's axis and a triangle.
 #[derive(Clone, Copy)]
 pub(crate) struct AxisTriangle<T> {
     /// The squared distance.
     pub squared: T,
-    /// Where on the segment, in `[0, 1]`.
+    /// The parameter on the segment, in `[0, 1]`.
     pub s: T,
     /// The closest point of the triangle.
     pub on_triangle: Vec3<T>,
-    /// The squared distances of the triangle's edges, from the face's first vertex on.
+    /// The squared distances of the triangle's edges, in the order of the face's vertices.
     pub edges_squared: [T; 3],
 }
 
@@ -55,7 +71,8 @@ impl<T: Scalar> AxisTriangle<T> {
         other.select(mask & other.squared.lt(self.squared), self)
     }
 
-    /// `self` where the mask is true, `no` elsewhere, which has met the edges.
+    /// Returns `self` where the mask is true, `no` elsewhere. The distances of the edges stay those
+    /// of `no`, which has measured them.
     #[inline(always)]
     fn select(self, take: T::Mask, no: Self) -> Self {
         Self {
@@ -67,8 +84,8 @@ impl<T: Scalar> AxisTriangle<T> {
     }
 }
 
-/// As [`segment_triangle`], for the segment from the origin to `end` and numbers near one; and
-/// whether the two meet.
+/// Same as [`segment_triangle`], for the segment from the origin to `end` and numbers near one.
+/// Also returns whether the two meet.
 #[inline(always)]
 pub(crate) fn from_start<T: Scalar>(end: Vec3<T>, face: &Face<T>) -> (AxisTriangle<T>, T::Mask) {
     let (zero, one) = (end.x.zero(), end.x.one());
@@ -94,7 +111,7 @@ pub(crate) fn from_start<T: Scalar>(end: Vec3<T>, face: &Face<T>) -> (AxisTriang
     (nearest, meets)
 }
 
-/// Case 3, for the edge between two vertices. (Functions, because a closure may escape inlining.)
+/// Case 3, for one edge. (A function, because a closure may not be inlined.)
 #[inline(always)]
 fn edge<T: Scalar>(end: Vec3<T>, from: Vec3<T>, to: Vec3<T>) -> AxisTriangle<T> {
     let found = segment_segment::parameters(-from, end, to - from);

@@ -1,57 +1,63 @@
-//! When a computed distance at a flat cap counts as 0.
+//! Decides when a computed distance at a flat cap counts as 0.
 //!
 //! # Definitions
-//! - `extent`: the largest difference of two points of the pair in a coordinate, or the radius.
+//! - `extent`: the largest coordinate difference between two points of the pair, or the radius if
+//!   that is larger.
 //! - `u`: the unit roundoff of the scalar.
 //!
-//! # Why
-//! The point of one body that lies deepest in the other is often one of a flat cap's plane.
-//! Rounding puts it before or behind the plane. Then every candidate is the distance of two points
-//! that lie a few u of the extent apart, although the bodies overlap deeply: two cylinders side by
-//! side whose ends are level, for example.
+//! # Problem
+//! The deepest point of one body often lies in the plane of a flat cap of the other. Rounding puts
+//! this point before or behind the plane. Every candidate is then a distance between two points
+//! that are a few `u extent` apart, although the bodies overlap deeply. Example: two parallel
+//! cylinders side by side whose ends are level.
 //!
 //! # Rule
-//! Where a flat cap decides, a computed distance of at most [`ROUNDING`] u extent is 0. The witness
-//! of both bodies is the middle between the two points, half of [`ROUNDING`] u extent from either.
+//! If a flat cap decides, a computed distance of at most [`ROUNDING`] `u extent` becomes 0. The
+//! witness of both bodies is the midpoint of the two points, at most half of [`ROUNDING`]
+//! `u extent` from either.
 //!
 //! # Claim
-//! If the kernel errs by at most 8 u extent, bodies that overlap are never apart, and the answer
-//! errs by at most 16 u extent.
+//! If the kernel errs by at most `8 u extent`, every overlap has distance 0, and the answer errs by
+//! at most `16 u extent`.
 //!
 //! # Proof
-//! 1. Bodies that overlap are 0 apart, so the computed distance is at most 8 u extent: the rule
-//!    makes it 0.
-//! 2. The rule changes a computed distance by at most 8 u extent, which adds to the error of the
-//!    kernel.
+//! 1. The distance of bodies that overlap is 0, so the computed distance is at most `8 u extent`.
+//!    The rule makes it 0.
+//! 2. The rule changes a computed distance by at most `8 u extent`. The error of the kernel adds up
+//!    to the same amount.
 //!
 //! # Rounding
-//! The candidates at a flat cap are `hypot(l, max(0, rho - r))` of a point `x`, seen from the cap's
-//! centre: `l = <x, a>` is its height and `rho` its distance from the axis. Let all numbers be at
-//! most 1.
-//! - A coordinate of `x` errs by u, and the height of `x` by less than 2 u for that.
-//! - The unit vector `a` errs by 2 u along itself, and by less than u across.
-//! - The sum of three products errs by up to 3 u of the sum of their magnitudes.
+//! The candidates at a flat cap are `hypot(l, max(0, rho - r))` for a point `x` relative to the
+//! cap's centre: `l = <x, a>` is its height, and `rho` its distance from the axis. Let all numbers
+//! be at most 1.
+//! - A coordinate of `x` errs by `u`, which changes the height by less than `2 u`.
+//! - The unit vector `a` errs by `2 u` along itself, and by less than `u` across.
+//! - The sum of three products errs by up to `3 u` times the sum of their magnitudes.
 //!
-//! This bounds one candidate for a given `x`, not the place of `x`: the kernels' iterations have no
-//! short bound, so 8 u is measured. 60,000 pairs of links in `f32` and `f64`, level, coaxial,
-//! crossing and in general: 1.1 u if they overlap deeply, 3.9 u if they nearly touch. The worst of
-//! all references is 6.1 u. Triangles deep in a link: 0.
+//! This bounds one candidate for a given `x`, but not the error of `x`. The iterations of the
+//! kernels have no short error bound, so `8 u` is measured. 60,000 pairs of links in `f32` and
+//! `f64` (level, coaxial, crossing and general): 1.1 u in deep overlap, 3.9 u near contact. The
+//! largest error against all references is 6.1 u. Triangles deep in a link: 0.
 
 use super::{Closest, Scalar, Vec3};
 
-/// How far apart two points may be computed that are one, in units of u and the extent.
+/// The largest computed distance of one and the same point, in units of `u extent`.
+///
+/// A larger value reports contact for bodies that are apart; a smaller value misses overlaps. The
+/// measured errors are at most 6.1 (head of this file).
 const ROUNDING: f64 = 8.0;
 
-/// Of numbers at most 2 in magnitude, the largest difference.
+/// The largest `extent` in a frame where no coordinate exceeds 2 in magnitude.
 const MOST: f64 = 4.0;
 
-/// Whether a distance in numbers near one is so short that [`settle`] may have to be asked.
+/// Returns whether [`settle`] may change this distance, in a frame where no coordinate exceeds 2.
 #[inline(always)]
 pub(crate) fn is_doubtful<T: Scalar>(distance: T) -> T::Mask {
     distance.zero().lt(distance) & distance.le(distance.lit(MOST * ROUNDING * T::UNIT_ROUNDOFF))
 }
 
-/// The largest difference in a coordinate of two of these points and the origin, or the length.
+/// Returns the largest coordinate difference between two of these points and the origin, or
+/// `length` if that is larger.
 #[inline(always)]
 pub(crate) fn extent<T: Scalar, const N: usize>(points: [Vec3<T>; N], length: T) -> T {
     let (mut low, mut high) = (Vec3::zero(length), Vec3::zero(length));
@@ -62,8 +68,8 @@ pub(crate) fn extent<T: Scalar, const N: usize>(points: [Vec3<T>; N], length: T)
     (high - low).largest().max(length)
 }
 
-/// The same, but where the mask is true and the distance is no more than rounding it is 0, with one
-/// common point.
+/// Applies the rule of this file: where the mask is true and the distance is within rounding of 0,
+/// it becomes 0 with one common point.
 #[inline(always)]
 pub(crate) fn settle<T: Scalar>(closest: Closest<T>, at_cap: T::Mask, extent: T) -> Closest<T> {
     let (zero, limit) = (extent.zero(), extent * extent.lit(ROUNDING * T::UNIT_ROUNDOFF));

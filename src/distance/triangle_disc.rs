@@ -1,23 +1,36 @@
-//! Triangle against solid disc (paper, equations (22) to (25), corrected).
+//! The distance between a triangle and a solid disc (paper, equations (22) to (25), corrected).
+//!
+//! ```text
+//!     Triangle and disc, both seen edge-on:
+//!
+//!     1. edge                2. face, apart        3. face, crossing
+//!     \ disc                     \ disc                \ disc
+//!      \                          \                     \
+//!       \                          \                  ___\______ triangle
+//!         ________ triangle     ____._____ triangle       \
+//! ```
 //!
 //! 1. **Edges.** If the triangle's closest point is on its boundary, segment-disc finds it.
-//! 2. **Face, apart.** If it is in the interior, the line between the closest points is normal to
-//!    the plane, so the disc's point is its nearest to the plane: on the rim, or (parallel) the
-//!    centre serves, unless an edge passes over the disc.
+//! 2. **Face, apart.** If the closest point is in the interior, the line between the closest points
+//!    is normal to the plane. So the disc's point is its nearest to the plane: on the rim. If disc
+//!    and plane are parallel, the centre is equally good, unless an edge passes over the disc; then
+//!    case 1 finds the answer.
 //! 3. **Face, crossing.** If the disc crosses the plane, plane-disc returns the middle of the chord
-//!    that the disc cuts out of the plane. Either it lies in the triangle, or the chord leaves the
-//!    triangle through an edge, or the two are apart; the edges find the last two.
+//!    in which the disc meets the plane. Either this middle lies in the triangle, or the chord
+//!    leaves the triangle through an edge, or the two are apart. The edges cover the last two.
 //!
-//! The face's candidate is the distance between two actual points, the disc's and its foot on the
+//! The candidate of the face is a distance between two points: the disc's, and its foot on the
 //! triangle.
 
 use super::{Closest, Convex, DiscSolver, Scalar, Vec3, face::Face, frame::Frame, plane_disc};
 
-/// How far rounding may bring a point of the triangle from it, in units of u and numbers near one.
+/// How far rounding may move a point of the triangle off it, in units of `u` and numbers near one.
 const ROUNDING: f64 = 32.0;
 
-/// The distance between a triangle and a solid disc with the given centre, normal (of any length
-/// but 0) and radius; (22) to (25).
+/// Returns the distance between a triangle and a solid disc, and the closest points; (22) to (25).
+///
+/// - `triangle`, `centre`, `radius`: in one frame and unit.
+/// - `normal`: of any length except 0.
 #[inline(always)]
 pub fn triangle_disc<T: Scalar>(
     triangle: [Vec3<T>; 3],
@@ -28,7 +41,7 @@ pub fn triangle_disc<T: Scalar>(
     triangle_disc_by::<Convex, T>(triangle, centre, normal, radius)
 }
 
-/// As [`triangle_disc`], by the route `S`.
+/// Same as [`triangle_disc`], with the solver `S` for the edges.
 #[inline(always)]
 pub fn triangle_disc_by<S: DiscSolver<T>, T: Scalar>(
     triangle: [Vec3<T>; 3],
@@ -41,7 +54,7 @@ pub fn triangle_disc_by<S: DiscSolver<T>, T: Scalar>(
     frame.answer(from_centre::<S, T>(&face, normal.normalised(), frame.length(radius)))
 }
 
-/// As [`triangle_disc`], for a disc around the origin, a unit normal and numbers near one.
+/// Same as [`triangle_disc`], for a disc around the origin, a unit normal and numbers near one.
 #[inline(always)]
 pub(crate) fn from_centre<S: DiscSolver<T>, T: Scalar>(
     face: &Face<T>,
@@ -57,8 +70,8 @@ pub(crate) fn from_centre<S: DiscSolver<T>, T: Scalar>(
     let plane_normal = face.normal();
     let nearest = plane_disc::from_centre(plane_normal.dot(a), plane_normal, normal, radius);
     let projection = face.project(nearest.point);
-    // A sliver whose height is rounding may seem to hold what is far from it; but no point of a
-    // triangle is farther from its longest edge than its height.
+    // If the height of a sliver is within rounding, distant points may seem to lie inside. But no
+    // point of a triangle is farther from its longest edge than the triangle's height.
     let within_height = edges.distance.le(face.height() + radius.lit(ROUNDING * T::UNIT_ROUNDOFF));
     let crosses = nearest.distance.le(radius.zero()) & within_height;
     let apart = Closest {

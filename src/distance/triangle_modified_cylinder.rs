@@ -1,28 +1,58 @@
-//! Triangle against modified cylinder (paper, equations (26) to (33), corrected).
+//! The distance between a triangle and a modified cylinder (paper, equations (26) to (33),
+//! corrected).
 //!
-//! Let s be the parameter of the axis point closest to the triangle, p* the triangle's point and F
-//! their distance.
+//! ```text
+//!                   case 1                     p*  case 2
+//!                     p*                      /
+//!                     | F - r                /
+//!        _____________|_____________________/
+//!       /                                  |
+//!      |  s = 0 o--------- axis -----------o s = 1
+//!       \__________________________________|
+//!     round end                         flat end
+//! ```
 //!
-//! 1. **Beside the barrel or beyond a round cap**, 0 < s < 1 or that end is round: the answer is
-//!    that of the capsule, max(0, F - r).
-//! 2. **Beyond a flat cap**, s exactly 0 or 1 and that end flat: the answer is that of the end's
-//!    disc.
+//! # Definitions
+//! - `Z`: the link, with an axis segment, a radius `r` and two caps. `T`: the triangle.
+//! - `F`: the distance between the axis and `T`, attained at the axis parameter `s` in `[0, 1]` and
+//!   at the point `p*` of `T`.
+//! - `K`: the capsule, all points at most `r` from the axis. `K` contains `Z`.
+//! - `d`: the distance between `Z` and `T`.
 //!
-//! The split is exact in every configuration, penetration included. Case 1: the capsule contains
-//! the link, and the link attains F - r. Case 2: let the flat end lie at z = 0 with the link below,
-//! and let p realise the triangle's distance from the link with z(p) beyond it. On the way from p*
-//! to p the triangle crosses the plane of the cap; the distance from the axis is convex along that
-//! way with its least value at p*, so it does not shrink after the crossing, and the disc is no
-//! farther from the crossing than the link from p.
+//! # Algorithm
+//! 1. **Barrel or round cap**: `0 < s < 1`, or the end at `s` is round. Then `d = max(0, F - r)`,
+//!    the distance of the capsule.
+//! 2. **Flat cap**: `s` is exactly 0 or 1, and that end is flat. Then `d` is the distance between
+//!    `T` and the disc of that end.
 //!
-//! Rounding: `segment_triangle` makes s exact near the ends. Where a link is so short that both
-//! ends are equally near as far as rounding can tell, s may name the wrong one, so an end also
-//! counts where p* lies beyond it. In case 2 the distance between p* and the link, in closed form,
-//! is a candidate beside the disc's: both are distances to points of the link, so that the lesser
-//! is right wherever either is. A triangle that begins in the plane of a cap and reaches into the
-//! link has both as small as rounding, yet it overlaps the link deeply. So the way from p* to
-//! the triangle's deepest vertex is a third candidate: where it passes through the disc the two
-//! have a common point. What is left of rounding in case 2 counts as 0 by the rule of [`touching`].
+//! # Claim
+//! The two cases are exact in every configuration, overlap included.
+//!
+//! # Proof
+//! Case 1. `K` contains `Z`, so `d >= max(0, F - r)`. The point of `K` nearest to `p*` belongs to
+//! `Z`.
+//!
+//! Case 2. Place the flat end at `z = 0`, with `Z` in `z <= 0`; then `z(p*) >= 0`. Let the point
+//! `p` of `T` attain `d`.
+//! - If `z(p) >= 0`, the nearest point of `Z` to `p` belongs to the disc.
+//! - If `z(p) < 0`, the segment from `p*` to `p` crosses `z = 0` at a point `c` of `T`. The
+//!   distance from the axis is convex along this segment and least at `p*`, so it does not decrease
+//!   from `c` to `p`. The disc is therefore no farther from `c` than `Z` is from `p`.
+//!
+//! The proof uses only that `T` is convex.
+//!
+//! # Rounding
+//! - `segment_triangle` computes `s` exactly 0 or 1 at an end. On a very short axis both ends are
+//!   equally near within rounding, so `s` may name the wrong end. A flat end therefore also counts
+//!   if `p*` lies beyond it.
+//! - Case 2 keeps two candidates: the disc, and the closed-form distance between `p*` and `Z`. Each
+//!   is a distance between a point of `T` and a point of `Z`. The smaller is right if either is
+//!   right.
+//! - A triangle may begin in the plane of a cap and reach deep into the link. Both candidates are
+//!   then as small as rounding, although the overlap is deep. The third candidate is the segment
+//!   from `p*` to the deepest vertex of `T`: if this segment passes through the disc, the crossing
+//!   is a common point.
+//! - In case 2 a distance within rounding of 0 becomes 0, by the rule of [`touching`].
 
 use super::point_modified_cylinder::Link;
 use super::{
@@ -30,12 +60,18 @@ use super::{
     segment_triangle, touching, triangle_disc,
 };
 
-/// The distance between a triangle and the solid modified cylinder from `start` to `end`; (28) to
-/// (33). `flat` says which of the two caps are flat.
+/// Returns the distance between a triangle and a solid modified cylinder, and the closest points;
+/// equations (28) to (33).
 ///
-/// `point1` lies on the triangle and `point2` in the link. Where the two meet, both are a common
-/// point. A link of length 0, or of one whose square falls below the range beside the problem's
-/// extent (1e-19 of it in `f32`, 1e-154 in `f64`), has no direction: its caps count as round.
+/// - `triangle`: the vertices. `start`, `end`: the ends of the axis. All share one frame and unit.
+/// - `radius`: in the same unit, at least 0.
+/// - `flat`: whether the cap at `start` and the cap at `end` are flat; a cap that is not flat is
+///   round.
+///
+/// `point1` lies on the triangle and `point2` in the link. If the two meet, both are one common
+/// point. The caps of a link without a direction count as round: its length is 0, or the square of
+/// the length falls below the range beside the problem's extent (1e-19 of the extent in `f32`,
+/// 1e-154 in `f64`).
 #[inline(always)]
 pub fn triangle_modified_cylinder<T: Scalar>(
     triangle: [Vec3<T>; 3],
@@ -47,7 +83,7 @@ pub fn triangle_modified_cylinder<T: Scalar>(
     triangle_modified_cylinder_by::<Convex, T>(triangle, start, end, radius, flat)
 }
 
-/// As [`triangle_modified_cylinder`], with the discs by the route `S`.
+/// Same as [`triangle_modified_cylinder`], with the solver `S` for segments and discs.
 #[inline(always)]
 pub fn triangle_modified_cylinder_by<S: DiscSolver<T>, T: Scalar>(
     triangle: [Vec3<T>; 3],
@@ -63,7 +99,10 @@ pub fn triangle_modified_cylinder_by<S: DiscSolver<T>, T: Scalar>(
     frame.answer(Axial::new(&link, &face).with_caps_by::<S>(&link, &face))
 }
 
-/// The distance between a triangle and a capsule; (26), (27).
+/// Returns the distance between a triangle and a capsule, and the closest points; equations (26),
+/// (27).
+///
+/// The arguments are those of [`triangle_modified_cylinder`], with two round caps.
 #[inline(always)]
 pub fn triangle_capsule<T: Scalar>(
     triangle: [Vec3<T>; 3],
@@ -75,21 +114,23 @@ pub fn triangle_capsule<T: Scalar>(
     triangle_modified_cylinder(triangle, start, end, radius, [neither, neither])
 }
 
-/// What the axis alone decides of a link and a triangle, in coordinates from the link's start.
+/// The closest points of a link's axis and a triangle, and the case that they select.
+///
+/// Coordinates are relative to the link's start.
 #[derive(Clone, Copy)]
 pub(crate) struct Axial<T: Scalar> {
-    /// F^2, the squared distance between axis and triangle.
+    /// `F^2`, the squared distance between axis and triangle.
     pub axis_squared: T,
-    /// Whether the axis meets the triangle, which may be as far as rounding can tell.
+    /// Whether the axis meets the triangle, within rounding.
     pub meets: T::Mask,
-    /// s, where on the axis.
+    /// `s`, the parameter on the axis.
     pub s: T,
-    /// p*, the triangle's point.
+    /// `p*`, the closest point of the triangle.
     pub on_triangle: Vec3<T>,
-    /// The squared distances between the axis and the triangle's edges, from the face's first
-    /// vertex on.
+    /// The squared distances between the axis and the edges of the triangle, in the order of the
+    /// face's vertices.
     pub edges_squared: [T; 3],
-    /// Whether the disc at the start, or at the end, decides (case 2).
+    /// Whether the disc at the start, and the disc at the end, decides (case 2).
     pub at_flat: [T::Mask; 2],
 }
 
@@ -99,8 +140,8 @@ impl<T: Scalar> Axial<T> {
         let (axis, meets) = segment_triangle::from_start(link.end, face);
         let (zero, one) = (axis.s.zero(), axis.s.one());
         let has_axis = zero.lt(link.axis.norm_squared());
-        // Both ends of a short link may be as near as rounding can tell; then the end that p* is
-        // beyond decides.
+        // On a short axis both ends may be equally near within rounding: take the end that p* lies
+        // beyond.
         let before_start = axis.on_triangle.dot(link.axis).lt(zero);
         let beyond_end = zero.lt((axis.on_triangle - link.end).dot(link.axis));
         let at_start = before_start | (axis.s.le(zero) & !beyond_end);
@@ -121,9 +162,11 @@ impl<T: Scalar> Axial<T> {
         self.at_flat[0] | self.at_flat[1]
     }
 
-    /// Between p* and the link: an upper bound, and the answer in case 1. Where the axis itself
-    /// meets the triangle, p* is a common point, even if rounding puts it beside a link of
-    /// radius 0.
+    /// Returns the distance between `p*` and the link: the answer in case 1, an upper bound in case
+    /// 2.
+    ///
+    /// If the axis meets the triangle, `p*` is a common point, even if rounding puts it beside a
+    /// link of radius 0.
     #[inline(always)]
     pub(crate) fn without_caps(&self, link: &Link<T>) -> Closest<T> {
         let zero = self.axis_squared.zero();
@@ -135,7 +178,8 @@ impl<T: Scalar> Axial<T> {
         }
     }
 
-    /// A lower and an upper bound on the answer in case 2. The lower one stands against rounding.
+    /// Returns a lower and an upper bound on the answer in case 2. The lower bound allows for
+    /// rounding.
     #[inline(always)]
     pub(crate) fn cap_bounds(&self, link: &Link<T>, face: &Face<T>) -> (T, T) {
         let (centre, outward) = self.cap(link);
@@ -144,13 +188,13 @@ impl<T: Scalar> Axial<T> {
         bounds::separating_plane(vertices, self.on_triangle - centre, outward, link.radius, behind)
     }
 
-    /// The answer, discs included.
+    /// Returns the answer of both cases.
     #[inline(always)]
     pub(crate) fn with_caps(&self, link: &Link<T>, face: &Face<T>) -> Closest<T> {
         self.with_caps_by::<Convex>(link, face)
     }
 
-    /// The answer, discs included, by the route `S`.
+    /// Same as [`with_caps`](Self::with_caps), with the solver `S` for segments and discs.
     #[inline(always)]
     pub(crate) fn with_caps_by<S: DiscSolver<T>>(
         &self,
@@ -176,8 +220,8 @@ impl<T: Scalar> Axial<T> {
         touching::settle(closest, beyond, touching::extent([link.end, a, b, c], link.radius))
     }
 
-    /// Whether the way from p* to the vertex that lies deepest behind the cap passes through the
-    /// disc, and where.
+    /// Returns whether the segment from `p*` to the deepest vertex behind the cap passes through
+    /// the disc, and the crossing (third candidate of case 2).
     #[inline(always)]
     fn way_in(&self, link: &Link<T>, face: &Face<T>) -> (T::Mask, Vec3<T>) {
         let (centre, outward) = self.cap(link);
@@ -193,8 +237,8 @@ impl<T: Scalar> Axial<T> {
         (passes, centre + radial)
     }
 
-    /// The centre and the outward normal of the cap that p* is beyond; the start's where it is
-    /// beyond neither.
+    /// Returns the centre and the outward normal of the cap that `p*` lies beyond, or of the start
+    /// cap if `p*` lies beyond neither.
     #[inline(always)]
     pub(crate) fn cap(&self, link: &Link<T>) -> (Vec3<T>, Vec3<T>) {
         let at_end = self.at_flat[1];

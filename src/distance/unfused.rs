@@ -1,19 +1,18 @@
-//! Packs of `f64` with the bits of single numbers, on every instruction set.
+//! Packs of `f64` whose lanes have the bits of single numbers, on every instruction set.
 //!
-//! [`F64s`] rounds a product and a sum once where the instruction set can, and estimates cube roots
-//! in another way than a single number does. Here every lane computes what `f64` computes,
-//! operation by operation, so that an answer does not depend on the machine, nor on which other
-//! answers it was computed with.
+//! [`F64s`] fuses a product and a sum if the instruction set can, and estimates cube roots
+//! differently from a single number. Here every lane computes exactly the operations of `f64`. So
+//! an answer depends neither on the machine nor on the other lanes.
 
 use super::lanes::{F64Mask, F64s, Pack};
 use super::scalar::{Mask, Scalar, Sealed};
 use fearless_simd::Simd;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// The lanes of the widest pack.
+/// The number of lanes of the widest pack.
 const WIDEST: usize = 8;
 
-/// A pack of `f64`, each lane as if it were alone.
+/// A pack of `f64`; each lane has the bits of a single `f64`.
 #[derive(Clone, Copy)]
 pub(crate) struct Unfused<S: Simd>(F64s<S>);
 

@@ -1,4 +1,4 @@
-//! Vectors of three [`Scalar`]s, and the frame that keeps a problem's numbers near one.
+//! Vectors of three [`Scalar`]s.
 
 use super::scalar::{Mask, Scalar};
 use std::ops::{Add, Mul, Neg, Sub};
@@ -25,7 +25,7 @@ pub struct Vec3<T> {
 }
 
 impl<T> Vec3<T> {
-    /// The vector with these coordinates.
+    /// Returns the vector with these coordinates.
     #[inline(always)]
     pub const fn new(x: T, y: T, z: T) -> Self {
         Self { x, y, z }
@@ -79,13 +79,13 @@ impl<T: Scalar> Neg for Vec3<T> {
 }
 
 impl<T: Scalar> Vec3<T> {
-    /// The inner product.
+    /// Returns the inner product.
     #[inline(always)]
     pub fn dot(self, other: Self) -> T {
         self.z.mul_add(other.z, self.y.mul_add(other.y, self.x * other.x))
     }
 
-    /// The cross product.
+    /// Returns the cross product.
     #[inline(always)]
     pub fn cross(self, other: Self) -> Self {
         Self::new(
@@ -95,7 +95,7 @@ impl<T: Scalar> Vec3<T> {
         )
     }
 
-    /// `self + factor * direction`
+    /// Returns `self + factor * direction`.
     #[inline(always)]
     pub(crate) fn along(self, direction: Self, factor: T) -> Self {
         Self::new(
@@ -105,38 +105,39 @@ impl<T: Scalar> Vec3<T> {
         )
     }
 
-    /// The squared length.
+    /// Returns the squared length.
     #[inline(always)]
     pub fn norm_squared(self) -> T {
         self.dot(self)
     }
 
-    /// The length. Squares must not overflow: see [`Vec3::normalised`] for a vector of any length.
+    /// Returns the length. Squares must not overflow: see [`Vec3::normalised`] for vectors of any
+    /// length.
     #[inline(always)]
     pub fn norm(self) -> T {
         self.norm_squared().sqrt()
     }
 
-    /// The largest magnitude of a coordinate.
+    /// Returns the largest magnitude of a coordinate.
     #[inline(always)]
     pub(crate) fn largest(self) -> T {
         self.x.abs().max(self.y.abs()).max(self.z.abs())
     }
 
-    /// The unit vector of a vector of any finite length; zero for zero.
+    /// Returns the unit vector of a vector of any finite length; zero for zero.
     #[inline(always)]
     pub fn normalised(self) -> Self {
         let near_one = self * self.largest().power_of_two_to_unity();
         near_one * near_one.x.one().over(near_one.norm())
     }
 
-    /// `yes` where the mask is true, `no` elsewhere.
+    /// Returns `yes` where the mask is true, `no` elsewhere.
     #[inline(always)]
     pub(crate) fn select(mask: T::Mask, yes: Self, no: Self) -> Self {
         Self::new(mask.select(yes.x, no.x), mask.select(yes.y, no.y), mask.select(yes.z, no.z))
     }
 
-    /// The vector with every coordinate zero, in the lanes of `like`.
+    /// Returns the zero vector, in the lanes of `like`.
     #[inline(always)]
     pub(crate) fn zero(like: T) -> Self {
         Self::new(like.zero(), like.zero(), like.zero())

@@ -1,5 +1,5 @@
-//! Whether an answer is about a link and a triangle as they are now. The mesh may have moved since,
-//! or it may be another.
+//! Checks whether an answer belongs to a link and a triangle as they are now. The mesh may have
+//! moved since, or may be another mesh.
 
 use super::nearest::Nearest;
 use super::placed_link::PlacedLink;
@@ -7,21 +7,21 @@ use crate::answer::{LinkProximity, ProximityError};
 use crate::distance::Scalar;
 use parry3d_f64::math::{Real, Vector};
 
-/// What rounding explains, of the largest coordinate and the extent together.
+/// The tolerance, relative to the largest coordinate plus the extent.
 ///
-/// Measured in coordinates of the pair's own, a distance and its two points err by at most 16 u of
-/// the extent; 4.4 u are the most that was ever seen. Each point is then rounded to the mesh's
-/// frame, by u of its largest coordinate and so by less than 2 u of it in length. An answer that
-/// was written as text and read again may be off by as much once more.
+/// In the pair's own coordinates a distance and its two points err by at most 16 u of the extent;
+/// the largest measured error is 4.4 u. Each point is then rounded to the mesh's frame, by u of its
+/// largest coordinate, so by less than 2 u of it in length. An answer that was written as text and
+/// read again may be off by the same amount once more.
 pub(super) const ROUNDED: Real = 16.0 * f64::UNIT_ROUNDOFF;
 
 impl LinkProximity {
-    /// Whether this answer is that of the link and the triangle with these corners: `on_robot` lies
-    /// in the link, `on_mesh` on the triangle, and both the way between them and that between
-    /// the two shapes are as long as `distance`.
+    /// Checks this answer against a link and a triangle: `on_robot` lies in the link, `on_mesh`
+    /// lies on the triangle, and `distance` is the distance both of the two points and of the two
+    /// shapes.
     ///
     /// # Errors
-    /// It is not.
+    /// The answer does not fit.
     pub(crate) fn check_answer(
         &self,
         link: &PlacedLink,
@@ -30,10 +30,10 @@ impl LinkProximity {
         self.check_answer_of(&link.measure(self.triangle, corners), || *link, corners)
     }
 
-    /// The same, where the two are measured already.
+    /// Same as [`check_answer`](Self::check_answer), for a pair that is measured already.
     ///
     /// # Errors
-    /// As [`check_fit`](Self::check_answer).
+    /// As [`check_answer`](Self::check_answer).
     #[inline(always)]
     pub(crate) fn check_answer_of(
         &self,
@@ -41,7 +41,7 @@ impl LinkProximity {
         link: impl FnOnce() -> PlacedLink,
         corners: [Vector; 3],
     ) -> Result<(), ProximityError> {
-        // Every engine gives what is measured, bit for bit.
+        // Every engine returns the measured result, bit for bit.
         let is_that = self.distance == measured.distance
             && self.on_mesh == measured.on_mesh
             && self.on_robot == measured.on_robot;
@@ -52,7 +52,8 @@ impl LinkProximity {
         }
     }
 
-    /// The same for an answer that was rounded, or found in another way.
+    /// Same as [`check_answer`](Self::check_answer), for an answer that was rounded or computed in
+    /// another way.
     #[cold]
     fn check_rounded_answer(
         &self,
@@ -74,8 +75,8 @@ impl LinkProximity {
             let (link, triangle) = (self.link as usize, self.triangle as usize);
             Err(ProximityError::AnswerDoesNotFit { link, triangle, field, off, limit })
         };
-        // Neither is farther out than link and triangle reach; what is can neither overflow below,
-        // nor be measured.
+        // Points beyond the reach of link and triangle are refused here: measuring them could
+        // overflow.
         let reach = 2.0 * (largest + link.radius());
         for (field, point) in [("on_mesh", on_mesh), ("on_robot", on_robot)] {
             if !point.abs().cmple(Vector::splat(reach)).all() {

@@ -1,5 +1,5 @@
-//! Whether an answer is about two links as they are now. The robots may have moved since, or they
-//! may be others.
+//! Checks whether an answer belongs to two links as they are now. The robots may have moved since,
+//! or may be other robots.
 
 use super::answer_check::ROUNDED;
 use super::placed_link::PlacedLink;
@@ -7,15 +7,15 @@ use crate::answer::{ProximityError, RobotProximity};
 use parry3d_f64::math::{Real, Vector};
 
 impl RobotProximity {
-    /// Whether this answer is that of these two links: each point lies in its link, and both the
-    /// way between them and that between the links are as long as `distance`.
+    /// Checks this answer against two links: each point lies in its link, and `distance` is the
+    /// distance both of the two points and of the two links.
     ///
     /// # Errors
-    /// It is not.
+    /// The answer does not fit.
     pub(super) fn check_answer(&self, links: [PlacedLink; 2]) -> Result<(), ProximityError> {
         let [first, second] = &links;
         let measured = first.measure_link(second);
-        // Every query gives what is measured, bit for bit.
+        // Every query returns the measured result, bit for bit.
         if self.distance == measured.distance
             && self.on_first == measured.on_first
             && self.on_second == measured.on_second
@@ -25,7 +25,7 @@ impl RobotProximity {
         let far = links.iter().flat_map(|link| [link.start(), link.end()]);
         let far = far.fold(0.0, |most: Real, point| most.max(point.abs().max_element()));
         let reach = far + first.radius().max(second.radius());
-        // The extent is at most as far as the links reach on either side.
+        // The extent is at most the reach of the links on either side.
         let limit = ROUNDED * (far + 2.0 * reach);
         let check = |field, off: Real| {
             // Written so that NaN does not fit.
@@ -37,7 +37,7 @@ impl RobotProximity {
         let points = [self.on_first, self.on_second];
         for ((field, point), link) in ["on_first", "on_second"].into_iter().zip(points).zip(&links)
         {
-            // What is farther out than any link can neither overflow below, nor be measured.
+            // Points beyond the reach of the links are refused here: measuring them could overflow.
             if !point.abs().cmple(Vector::splat(2.0 * reach)).all() {
                 check(field, (point - link.start()).abs().max_element())?;
             }

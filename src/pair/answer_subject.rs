@@ -1,4 +1,4 @@
-//! The link and the triangle that an answer is about, as they are now.
+//! The link and the triangle of an answer, as they are now.
 
 use super::checks::{check_ends, rigid_pose};
 use super::placed_link::PlacedLink;
@@ -7,10 +7,10 @@ use crate::mesh::{check_triangle, check_vertex};
 use crate::robot::{Chain, ModifiedCylinder};
 use parry3d_f64::math::{Pose, Vector};
 
-/// The link that an answer is about.
+/// Returns the link of an answer, in the robot's frame.
 ///
 /// # Errors
-/// The robot does not have it.
+/// The robot has no such link.
 pub(super) fn link_of<'a>(
     answer: &LinkProximity,
     robot: &'a Chain,
@@ -19,10 +19,11 @@ pub(super) fn link_of<'a>(
     links.get(link).ok_or(ProximityError::NoSuchLink { link, links: links.len() })
 }
 
-/// The same in the mesh's frame.
+/// Returns the link of an answer, in the mesh's frame.
 ///
 /// # Errors
-/// The robot does not have it, or the pose is not finite or not rigid, or moves it out of range.
+/// The robot has no such link; the pose is not finite or not rigid; or the pose moves the link out
+/// of range.
 pub(crate) fn transformed_link(
     answer: &LinkProximity,
     robot: &Chain,
@@ -33,7 +34,7 @@ pub(crate) fn transformed_link(
     Ok(link)
 }
 
-/// The same, ready to be measured.
+/// Returns the link of an answer, placed in the mesh's frame.
 ///
 /// # Errors
 /// As [`transformed_link`].
@@ -45,10 +46,11 @@ pub(crate) fn placed_link(
     Ok(PlacedLink::of(&transformed_link(answer, robot, pose)?))
 }
 
-/// The corners of a triangle of a mesh that an answer is about.
+/// Returns the vertices of an answer's triangle.
 ///
 /// # Errors
-/// The mesh does not have it or one of its vertices, or one of them is not finite or out of range.
+/// The mesh has no such triangle or lacks one of its vertices, or a vertex is not finite or out of
+/// range.
 pub(crate) fn corners(
     vertices: &[Vector],
     triangles: &[[u32; 3]],

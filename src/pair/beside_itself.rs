@@ -1,56 +1,70 @@
-//! Two links of one robot that share no joint: whether the place where they are nearest is a local
-//! minimum of the distance.
+//! Decides whether the closest place of two links of one robot is a local minimum of the distance.
+//! The two links share no joint.
+//!
+//! ```text
+//!       thick link        adjoining (thinner) link
+//!      __________________
+//!                        |____________
+//!        ----- axis -----|-> n ------    p on the face, n its outward normal
+//!      __________________|
+//!             p --> w --> q              q on the other link, y on its axis
+//! ```
 //!
 //! # Definitions
-//! - An end of a link is **level** with the next link if their radii are equal up to rounding
-//!   ([`is_step`]), and otherwise the next link is **thinner** or **wider**.
+//! - An end of a link is **level** with the next link if their radii are equal within rounding
+//!   ([`is_step`]). Otherwise the next link is **thinner** or **wider**.
 //! - A **shoulder** is an end beyond which the robot is thinner. A **face** is a shoulder, or a
 //!   flat end of the robot.
-//! - The **adjoining** link is the one beyond an end.
-//! - `p` is the point of a face that is nearest to the other link, `q` that link's point, `y` its
-//!   place on the axis, and `w` the way from `p` to `q`. Where the links overlap `q` is `y`, so
-//!   that `w` has a direction there too.
+//! - The **adjoining** link is the link beyond an end.
+//! - `p`: the point of a face closest to the other link. `q`: that link's closest point. `y`: the
+//!   place of `q` on its axis. `w = q - p`. In overlap `q` is replaced by `y`, so that `w` has a
+//!   direction there too.
 //!
 //! # The rule
-//! A face counts beside a link if all of these hold.
+//! A face counts beside a link if all three conditions hold.
 //!
-//! 1. `w` leaves the face outwards: `w . n >= 0` with the outward normal `n`. Otherwise the link's
-//!    barrel behind the face is nearer.
-//! 2. The robot leads nowhere nearer from `y`. If `y` is at an end and the next link is no thinner,
-//!    its direction `t` away from `y` must not descend: `w . t >= 0`. A wider link that begins
-//!    round is nearer at once, whatever its direction.
-//! 3. `p` is not in the adjoining link, caps included. Otherwise the adjoining link is at least as
-//!    near, and decides. If several points are equally near, all of them must be in it. The same
-//!    holds at a shoulder at which the other link has `q`.
+//! 1. **Outwards.** `w . n >= 0` with the outward normal `n`. Otherwise the link's barrel behind
+//!    the face is nearer.
+//! 2. **Not descending.** The robot does not come nearer beyond `y`. If `y` is at an end and the
+//!    next link is no thinner, the next link's direction `t` away from `y` must satisfy
+//!    `w . t >= 0`. A wider link that begins round is nearer immediately, in every direction.
+//! 3. **Not covered.** `p` is not in the adjoining link, caps included. Otherwise the adjoining
+//!    link is at least as near, and decides. If several points are equally near, the face is
+//!    covered only if all of them are in the adjoining link. The same holds at a shoulder of the
+//!    other link if `q` lies there.
 //!
-//! If the other link's axis meets the face, `w` is 0. The face counts: there is no rule to say
-//! which way is nearer.
+//! If the other link's axis meets the face, `w = 0`. The face counts: no rule says which direction
+//! is nearer.
 //!
-//! Two faces that look at one another count if 1 and 3 hold for both.
+//! Two faces that face each other count if 1 and 3 hold for both.
 //!
-//! # Why nothing is missed
-//! **Claim.** A local minimum of the distance between two links, at a face of the one, satisfies
-//! the rule.
+//! # Claim
+//! A local minimum of the distance between two links, at a face of one of them, satisfies the rule.
 //!
-//! **Proof.** `p` is nearest among all points of its link, which is convex and behind the face:
-//! that gives 1. If 2 fails, moving on along the robot comes nearer at once. If 3 fails, all
-//! equally near points belong to the adjoining link as well, and the adjoining link is at least as
-//! near. Its own pair with the other link is judged by the same rule. □
+//! # Proof
+//! - `p` is the closest point of its link, which is convex and lies behind the face: this gives 1.
+//! - If 2 fails, moving on along the robot comes nearer immediately.
+//! - If 3 fails, all equally near points also belong to the adjoining link, so it is at least as
+//!   near. Its own pair with the other link is tested by the same rule. □
 //!
 //! # While the robot moves
-//! Let all points of both links move by `points` at most, together, and their directions turn by
-//! `turn`. The way `w` then errs as if the bodies were known to `points` alone, and more by `|w|
-//! turn` along a direction. If `w . t` stays above that for the link's own axis, `y` is its start
-//! at all times; if it does for the axis before as well, and the link before is no thinner, the
-//! robot leads nearer backwards at all times. The same holds forwards with the other sign. The
-//! point of a round shoulder moves by its centre's way and by `r` times what the direction of `w`
-//! turns: if the adjoining link holds it deeper than that and its own way, it always does.
+//! Let all points of both links move by at most `points` together, and let their directions turn by
+//! at most `turn`.
+//! - `w` then errs as if the bodies were known within `points`, and along a direction of the robot
+//!   by `|w| turn` more.
+//! - If `w . t` exceeds this error for the link's own axis, `y` is its start at all times. If the
+//!   same holds for the axis of the link before, and that link is no thinner, the robot leads
+//!   nearer backwards at all times. The same holds forwards with the opposite sign.
+//! - The point of a round shoulder moves by the displacement of its centre plus `r` times the turn
+//!   of `w`. If the adjoining link contains the point deeper than this plus its own displacement,
+//!   it contains the point at all times.
 //!
-//! **Rounding.** `w` errs by at most `slack` ([`Tolerance::of_way`]); `w . n` and `w . t` may be so
-//! far below 0. `p` errs as much, so the adjoining link must hold it that far within its radius.
-//! Ahead of its flat ends `p` errs by rounding alone, as both are discs of known planes: there it
-//! may be so far outside. The way between links nearer than [`NEAR`] errors is measured to the
-//! axis.
+//! # Rounding
+//! - `w` errs by at most `slack` ([`Tolerance::of_way`]), so `w . n` and `w . t` may be `-slack`.
+//! - `p` errs by as much, so the adjoining link must contain it that far inside its radius. Ahead
+//!   of flat ends `p` errs by rounding alone, since both bodies are discs in known planes: there
+//!   `p` may be outside by that rounding.
+//! - Between links nearer than [`NEAR`] errors, `w` is measured to the axis.
 
 use super::placed_link::PlacedLink;
 use super::two_links::NearestOfLinks;
@@ -65,63 +79,71 @@ pub(crate) struct JoinedLink {
     pub beyond: [Option<PlacedLink>; 2],
 }
 
-/// By how much distances may err.
+/// The largest error of a distance.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Tolerance(pub Real);
 
 impl Tolerance {
-    /// By how much the way between two convex bodies may err in any direction, if it is so long.
+    /// Returns the largest error, in any direction, of the vector between two convex bodies that
+    /// are `distance` apart.
     ///
-    /// The measured points belong to the two bodies and are at most e farther apart than the
-    /// nearest two, at the distance d. So the way w between them lies in the bodies' difference, a
-    /// convex set, whose point nearest to 0 is the shortest way w*. There w . w* >= |w*|^2, and |w
-    /// - w*|^2 <= |w|^2 - |w*|^2 <= (d + e)^2 - d^2 = e (2 d + e).
+    /// **Definitions.** `e`: the error of a distance (this value). `d`: the distance. `w`: the
+    /// vector between the measured points, which belong to the two bodies; `|w| <= d + e`. `w*`:
+    /// the shortest such vector, `|w*| = d`.
+    ///
+    /// **Proof.** `w` lies in the difference of the bodies, a convex set whose point closest to 0
+    /// is `w*`. So `w . w* >= |w*|^2`, and
+    ///
+    /// ```text
+    /// |w - w*|^2 <= |w|^2 - |w*|^2 <= (d + e)^2 - d^2 = e (2 d + e).
+    /// ```
     pub fn of_way(self, distance: Real) -> Real {
-        // Two roots, so that no product leaves the range of numbers.
+        // Two roots keep all products inside the range of numbers.
         self.0.sqrt() * (2.0 * distance + self.0).sqrt()
     }
 }
 
-/// Of links that are nearer than so many errors the way between surfaces has no direction: it errs
-/// by more than a sixth of itself.
+/// Below this many errors the vector between surfaces has no usable direction: it errs by more than
+/// a sixth of its length.
 const NEAR: Real = 64.0;
 
-/// How much two links move and turn at most, together.
+/// The largest motion of two links, added together.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct MovedLinks {
-    /// How far all points move.
+    /// The largest displacement of all points.
     pub points: Real,
-    /// How far the points of the axes do.
+    /// The largest displacement of the points of the axes.
     pub axes: Real,
     pub turn: Real,
 }
 
-/// The nearest places of a face and another link, whose way has a direction in overlap too.
+/// The closest places of a face and another link. The vector between them has a direction in
+/// overlap too.
 #[derive(Clone, Copy)]
 struct Way {
-    /// On the face.
+    /// The point on the face.
     from: Vector,
     way: Vector,
-    /// On the other link's axis.
+    /// The place on the other link's axis.
     place: Vector,
     slack: Real,
     rounding: Real,
 }
 
 impl Way {
-    /// By how much it may err, while the points that it is between move.
+    /// Returns the largest error of the vector while its end points move by `points`.
     fn doubt(&self, points: Real) -> Real {
         self.slack + points + 2.0 * Tolerance(points).of_way(self.way.length() + points)
     }
 
-    /// By how much more it may err along a direction of the robot that turns.
+    /// Returns the additional error along a direction of the robot that turns.
     fn turning(&self, moved: &MovedLinks) -> Real {
         (self.way.length() + moved.points) * moved.turn
     }
 }
 
 impl JoinedLink {
-    /// Whether the robot is thinner beyond an end.
+    /// Returns whether the robot is thinner beyond an end.
     fn is_shoulder(&self, end: usize) -> bool {
         self.beyond[end].is_some_and(|next| is_step(next.radius(), self.link.radius()))
     }
@@ -133,13 +155,15 @@ impl JoinedLink {
         }
     }
 
-    /// By how much the distance of two links of one robot may be measured wrong, and the way
-    /// between them be longer than the shortest.
+    /// Returns the largest error of the distance of two links of one robot; the vector between them
+    /// is longer than the shortest by at most as much.
     ///
-    /// Let S be the largest coordinate of both links and their radius. The narrow phase errs by 16
-    /// u of the pair's extent of at most 2 S; the links' coordinates in their pair's frame by
-    /// sqrt(3) 4 u S, the points in the robot's frame and their difference by sqrt(3) 3 u S: 64 u S
-    /// is enough.
+    /// Let `S` be the largest coordinate of both links plus their radius.
+    /// - The narrow phase errs by 16 u of the pair's extent, which is at most 2 S.
+    /// - The links' coordinates in the pair's frame err by sqrt(3) 4 u S.
+    /// - The points in the robot's frame and their difference err by sqrt(3) 3 u S.
+    ///
+    /// The sum is below 64 u S.
     pub(crate) fn tolerance(&self, other: &Self) -> Tolerance {
         let reach = |link: &PlacedLink| {
             link.start().abs().max(link.end().abs()).max_element() + link.radius()
@@ -151,19 +175,19 @@ impl JoinedLink {
         [self.link.start(), self.link.end()][end]
     }
 
-    /// The normal of a face, out of the link.
+    /// Returns the outward normal of a face.
     pub(crate) fn outward(&self, end: usize) -> Vector {
         let axis = Vector::from(self.link.axis());
         if end == 0 { -axis } else { axis }
     }
 
-    /// The ball around the centre of a face, which is all of a round one.
+    /// Returns the ball around the centre of a face; a round face is a part of it.
     pub(crate) fn ball(&self, end: usize) -> PlacedLink {
         let centre = self.centre(end);
         PlacedLink::between(centre, centre, self.link.radius(), [false; 2])
     }
 
-    /// The nearest points of a face and a link.
+    /// Returns the closest points of a face and a link.
     pub(crate) fn face_to_link(&self, end: usize, other: &PlacedLink) -> NearestOfLinks {
         if self.link.flat()[end] {
             self.link.face_to_link(end, other)
@@ -172,9 +196,11 @@ impl JoinedLink {
         }
     }
 
-    /// How far two faces are apart at least, but for rounding: as far as the second is ahead of a
-    /// flat first one's plane. Its points are its centre and what is perpendicular to its
-    /// normal, up to its radius away; of a round one, up to its radius in all directions.
+    /// Returns a lower bound on the distance of two faces, before rounding: how far the second lies
+    /// ahead of the plane of a flat first face; 0 if the first is round.
+    ///
+    /// The points of a flat second face are its centre plus vectors of at most its radius across
+    /// its normal; of a round one, plus vectors of at most its radius in all directions.
     pub(crate) fn face_gap(&self, end: usize, other: &Self, other_end: usize) -> Real {
         if !self.link.flat()[end] {
             return 0.0;
@@ -189,7 +215,7 @@ impl JoinedLink {
         ahead - other.link.radius() * sine
     }
 
-    /// The nearest points of two faces.
+    /// Returns the closest points of two faces.
     pub(crate) fn face_to_face(
         &self,
         end: usize,
@@ -203,7 +229,7 @@ impl JoinedLink {
         }
     }
 
-    /// Whether a face counts beside another link, `nearest` to it.
+    /// Returns whether a face counts beside another link. `nearest` holds their closest points.
     pub(crate) fn face_counts(
         &self,
         end: usize,
@@ -218,7 +244,7 @@ impl JoinedLink {
             && !other.is_shoulder_covered(&way)
     }
 
-    /// Whether two faces that look at one another count.
+    /// Returns whether two faces that face each other count.
     pub(crate) fn faces_count(
         &self,
         end: usize,
@@ -238,13 +264,13 @@ impl JoinedLink {
         })
     }
 
-    /// Whether a face beside another link may count at some time, while both move.
+    /// Returns whether a face beside another link may count at some time while both move.
     pub(crate) fn face_may_count(&self, end: usize, other: &Self, moved: &MovedLinks) -> bool {
         let tolerance = self.tolerance(other);
         let nearest = self.face_to_link(end, &other.link);
         let is_round = !self.link.flat()[end] && other.link.flat() == [false; 2];
-        // Which way counts depends on the distance, so neither may. Round links are nearest where
-        // axis and centre are.
+        // The choice between the two vectors depends on the distance, so test both. For round links
+        // the closest points follow from axis and centre.
         let of_axis =
             self.way(end, &other.link, &NearestOfLinks { distance: 0.0, ..nearest }, tolerance);
         let of_bodies =
@@ -260,7 +286,8 @@ impl JoinedLink {
         })
     }
 
-    /// The same of two faces. Of round ones the centres are nearest at all times.
+    /// Same as [`face_may_count`](Self::face_may_count), for two faces. The closest points of round
+    /// faces follow from their centres at all times.
     pub(crate) fn faces_may_count(
         &self,
         end: usize,
@@ -284,7 +311,7 @@ impl JoinedLink {
         })
     }
 
-    /// Whether a pair that turns by pi or more may count at some time, while both move.
+    /// Returns whether a pair that turns by pi or more may count at some time while both move.
     pub(crate) fn may_count_beside(&self, other: &Self, moved: &MovedLinks) -> bool {
         let has_face = |joined: &Self| joined.is_face(0) || joined.is_face(1);
         if !has_face(self) && !has_face(other) {
@@ -295,7 +322,7 @@ impl JoinedLink {
         let slack = tolerance.of_way(way.length());
         let way = Way { from: feet[0], way, place: feet[1], slack, rounding: tolerance.0 };
         let least = way.doubt(moved.axes) + way.turning(moved);
-        // The end at which the nearest place is at all times; none if that is not known.
+        // The end of the axis that is closest at all times; `None` if unknown.
         let end_of = |joined: &Self, way: Vector| {
             let along = way.dot(Vector::from(joined.link.axis()));
             (along.abs() > least).then_some(usize::from(along > 0.0))
@@ -314,8 +341,8 @@ impl JoinedLink {
             })
     }
 
-    /// Whether the robot leads nearer from the place that a way leads to, at all times, if the way
-    /// errs by `doubt` along any direction.
+    /// Returns whether the robot leads nearer from the place of `way` at all times, if `way` errs
+    /// by at most `doubt` along any direction.
     fn leads_nearer(&self, way: &Way, doubt: Real) -> bool {
         let along = way.way.dot(Vector::from(self.link.axis()));
         if along.abs() <= doubt {
@@ -328,20 +355,20 @@ impl JoinedLink {
         !is_step(there, here) && before > doubt
     }
 
-    /// Whether the adjoining link holds the point of a round face at all times.
+    /// Returns whether the adjoining link contains the point of a round face at all times.
     fn is_always_covered(&self, end: usize, way: &Way, doubt: Real, moved: &MovedLinks) -> bool {
         let Some(next) = &self.beyond[end] else { return false };
         if self.link.flat()[end] {
             return false;
         }
-        // The direction of the way turns by twice what it errs by, as a share of it, at most.
+        // The direction of the vector turns by at most twice its relative error.
         let turned = 2.0 * doubt / way.way.length();
         let shift = self.link.radius() * turned + 2.0 * moved.axes + way.slack;
         turned <= 1.0 && next.holds(way.from, &Way { slack: shift, rounding: -shift, ..*way })
     }
 
-    /// Whether a pair that turns by pi or more counts: where the axes are nearest at a face, by the
-    /// rule for faces.
+    /// Returns whether a pair that turns by pi or more counts. If the axes are closest at a face,
+    /// the rule for faces decides.
     pub(crate) fn counts_beside(&self, other: &Self, tolerance: Tolerance) -> bool {
         let (feet, _) = self.link.nearest_on_axes(&other.link);
         let [one, two] = [(self, feet[0]), (other, feet[1])].map(|(joined, foot)| {
@@ -360,14 +387,14 @@ impl JoinedLink {
         }
     }
 
-    /// The end that a place of the axis is at, up to so much.
+    /// Returns the end that a place of the axis lies at, within `slack`.
     fn end_at(&self, place: Vector, slack: Real) -> Option<usize> {
         let from = [0, 1].map(|end| (place - self.centre(end)).length());
         let end = usize::from(from[1] < from[0]);
         (from[end] <= slack).then_some(end)
     }
 
-    /// The way from a face to another link; none if the link's axis meets the face.
+    /// Returns the vector from a face to another link; `None` if the link's axis meets the face.
     fn way(
         &self,
         end: usize,
@@ -396,13 +423,13 @@ impl JoinedLink {
         if distance <= slack {
             return None;
         }
-        // A round face has its point on the surface.
+        // The point of a round face lies on its surface.
         let from =
             if self.link.flat()[end] { from } else { from + way * (self.link.radius() / distance) };
         Some(Way { from, way, place: to, slack, rounding: tolerance.0 })
     }
 
-    /// The way from a face to another face.
+    /// Returns the vector from a face to another face.
     fn way_to_face(
         &self,
         end: usize,
@@ -427,7 +454,7 @@ impl JoinedLink {
         Way { from, way, place, slack: tolerance.of_way(distance), rounding: tolerance.0 }
     }
 
-    /// Whether the robot leads nowhere nearer from the place that a way leads to.
+    /// Returns whether the robot does not come nearer beyond the place of `way` (rule 2).
     fn stays(&self, way: &Way) -> bool {
         let Some(end) = self.end_at(way.place, way.slack) else { return true };
         let Some(next) = &self.beyond[end] else { return true };
@@ -441,10 +468,11 @@ impl JoinedLink {
         is_step(there, here) || way.way.dot(on) >= -way.slack
     }
 
-    /// Whether the point where another face is nearest to a shoulder is in the link beyond.
+    /// Returns whether the link beyond contains the point where another face is closest to a
+    /// shoulder.
     fn is_shoulder_covered(&self, way: &Way) -> bool {
         let Some(end) = self.end_at(way.place, way.slack) else { return false };
-        // What is nearest on a flat end may be anywhere on it.
+        // The closest point of a flat end may be anywhere on it.
         if !self.is_shoulder(end) || self.link.flat()[end] {
             return false;
         }
@@ -452,7 +480,8 @@ impl JoinedLink {
         self.beyond[end].is_some_and(|next| next.holds(point, way))
     }
 
-    /// Whether all points of a face that are nearest to another link are in the adjoining link.
+    /// Returns whether the adjoining link contains all points of a face that are closest to another
+    /// link (rule 3).
     fn is_covered(&self, end: usize, way: &Way, other: &PlacedLink) -> bool {
         let Some(next) = &self.beyond[end] else { return false };
         if !next.holds(way.from, way) {
@@ -468,20 +497,21 @@ impl JoinedLink {
             return true;
         }
         if way.way.dot(axis).abs() > way.slack {
-            // Where the other link ends: one point, or all ahead of its flat end.
+            // The closest place is an end of the other link: one point, or all points ahead of its
+            // flat end.
             let is_level = axis.cross(self.outward(end)).length() * other.radius() <= way.slack;
             let is_flat = other.flat() != [false; 2];
             return !(is_level && is_flat)
                 || self.is_area_covered(end, way, way.place, other.radius());
         }
-        // Along the other's axis, as far as both reach.
+        // Points along the other link's axis, for the length of both.
         let ends = [other.start(), other.end()]
             .map(|to| self.on_face_towards(end, way.from, to - way.way));
         ends.into_iter().all(|point| next.holds(point, way))
     }
 
-    /// Whether the adjoining link holds all points of a flat face ahead of which is a parallel disc
-    /// around `middle`.
+    /// Returns whether the adjoining link contains all points of a flat face that lie ahead of a
+    /// parallel disc around `middle`.
     fn is_area_covered(&self, end: usize, way: &Way, middle: Vector, radius: Real) -> bool {
         let Some(next) = &self.beyond[end] else { return false };
         let (normal, centre) = (self.outward(end), self.centre(end));
@@ -489,16 +519,17 @@ impl JoinedLink {
         let aside = aside - normal * aside.dot(normal);
         let size = aside.length();
         let outwards = if size > 0.0 { aside / size } else { normal.any_orthonormal_vector() };
-        // The two points on the line through both centres are farthest from the adjoining axis, or
-        // farther than all.
+        // The two points on the line through both centres are at least as far from the adjoining
+        // axis as all others.
         let [far, back] = [size + radius, radius - size].map(|reach| reach.min(self.link.radius()));
         [far, -back].into_iter().all(|reach| next.holds(centre + outwards * reach, way))
     }
 
-    /// Where the line from a point of a face to another point leaves the face, or that point.
+    /// Returns where the line from a point of a face towards another point leaves the face, or that
+    /// point if it is on the face.
     fn on_face_towards(&self, end: usize, from: Vector, to: Vector) -> Vector {
         let (centre, radius) = (self.centre(end), self.link.radius());
-        // In radii, so that no product leaves the range of numbers.
+        // In units of the radius, so that all products stay in range.
         let (offset, direction) = ((from - centre) / radius, (to - from) / radius);
         let (a, b) = (direction.length_squared(), offset.dot(direction));
         let root = (b * b - a * (offset.length_squared() - 1.0)).max(0.0).sqrt();
@@ -506,7 +537,8 @@ impl JoinedLink {
         from + (to - from) * share
     }
 
-    /// Whether all points of a face that are nearest to another face are in the adjoining link.
+    /// Returns whether the adjoining link contains all points of a face that are closest to another
+    /// face (rule 3).
     fn is_face_covered(&self, end: usize, way: &Way, other: &Self, other_end: usize) -> bool {
         let Some(next) = &self.beyond[end] else { return false };
         if !next.holds(way.from, way) {
@@ -516,8 +548,7 @@ impl JoinedLink {
         if !is_flat || !other.link.flat()[other_end] {
             return true;
         }
-        // Two discs: parallel ones are as near over an area, and those that cross meet along a
-        // chord.
+        // Two parallel discs are equally near over an area; crossing discs meet along a chord.
         let [normal, facing] = [self.outward(end), other.outward(other_end)];
         let (centre, radius) = (other.centre(other_end), self.link.radius());
         let line = normal.cross(facing);
@@ -538,7 +569,7 @@ impl JoinedLink {
 }
 
 impl PlacedLink {
-    /// Whether the link holds a point of a face, as far as that is known.
+    /// Returns whether the link certainly contains a point of a face.
     fn holds(&self, point: Vector, &Way { slack, rounding, .. }: &Way) -> bool {
         let axis = Vector::from(self.axis());
         let along = (point - self.start()).dot(axis);

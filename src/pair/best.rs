@@ -1,37 +1,35 @@
-//! The nearest triangle so far.
+//! The closest triangle so far.
 
 use super::nearest::Nearest;
 use super::placed_link::PlacedLink;
 use parry3d_f64::math::{Real, Vector};
 
-/// The nearest triangle so far of those at most so far away; of two as near the one with the lower
-/// number.
+/// The closest triangle so far among those within a bound. Ties go to the lower triangle number.
 #[derive(Clone, Copy)]
 pub(crate) struct Best {
     bound: Real,
     nearest: Option<Nearest>,
-    /// Of the triangles that touch, only those with a lower number than this are wanted.
+    /// Among triangles at distance 0, only those with a lower number are candidates.
     below: u32,
 }
 
 impl Best {
-    /// Nothing yet.
+    /// Returns an empty best with this bound.
     pub(crate) fn within(bound: Real) -> Self {
         Self { bound, nearest: None, below: u32::MAX }
     }
 
-    /// The same, where of the triangles that touch only those with a lower number than `below` are
-    /// wanted.
+    /// Restricts triangles at distance 0 to those with a lower number than `below`.
     pub(crate) fn touching_below(self, below: u32) -> Self {
         Self { below, ..self }
     }
 
-    /// What was found so far, of which something at most `bound` away would be an improvement.
+    /// Returns an earlier best, to be improved by triangles at most `bound` away.
     pub(crate) fn resume(bound: Real, nearest: Option<Nearest>) -> Self {
         Self { bound, nearest, below: u32::MAX }
     }
 
-    /// What a triangle must not be farther than.
+    /// The upper bound: only triangles at most this far away are candidates.
     pub(crate) fn bound(&self) -> Real {
         self.bound
     }
@@ -40,14 +38,14 @@ impl Best {
         self.nearest
     }
 
-    /// Only triangles with a lower number than this can still be better: nothing is nearer than
-    /// what touches.
+    /// Returns a limit on the number of a triangle that can still improve the best: at distance 0
+    /// only a lower number can.
     #[inline(always)]
     pub(crate) fn triangle_limit(&self) -> u32 {
         if self.bound <= 0.0 { self.below } else { u32::MAX }
     }
 
-    /// Measures a triangle. True if it is the best so far.
+    /// Measures a triangle. Returns whether it is the best so far.
     #[inline(never)] // the same code whatever the instruction set
     pub(crate) fn measure(
         &mut self,
@@ -58,7 +56,7 @@ impl Best {
         link.measure_within(self.bound, triangle, corners).is_some_and(|nearest| self.take(nearest))
     }
 
-    /// Whether a triangle so far away would be the best so far.
+    /// Returns whether a triangle at this distance improves the best.
     #[inline(always)]
     pub(crate) fn is_worse_than(&self, distance: Real, triangle: u32) -> bool {
         distance <= self.bound
@@ -68,7 +66,7 @@ impl Best {
             && (distance > 0.0 || triangle < self.below)
     }
 
-    /// Keeps a triangle if it is the best so far.
+    /// Keeps a triangle if it improves the best. Returns whether it does.
     pub(crate) fn take(&mut self, other: Nearest) -> bool {
         let is_better = self.is_worse_than(other.distance, other.triangle);
         if is_better {

@@ -1,12 +1,18 @@
-//! Proofs of an answer, in double-double arithmetic.
+//! Certificates: proven bounds on the distance of an answer, in double-double arithmetic.
 //!
-//! A point of the link and a point of the triangle bound their distance from above. A plane between
-//! the two bounds it from below: for a direction n of unit length, the least <n, x> over the link
-//! minus the largest over the triangle. Neither needs any trust in how the points and the plane
-//! were found; a bad choice makes the bounds wide, not wrong. Found they are by the narrow phase at
-//! twice the precision, so the rounding of n, which would spoil the lower bound of links that
-//! nearly touch, is far below what `f64` can tell. Where it is not, because two answers are as
-//! near, the normals of the features (faces, edges, axis) are tried as well.
+//! # Definitions
+//! - **Upper bound**: the distance between a point of the link and a point of the triangle.
+//! - **Lower bound**: for a unit direction `n`, the least `<n, x>` over the link minus the largest
+//!   `<n, x>` over the triangle. A plane with the normal `n` separates the two by this amount.
+//!
+//! # Claim
+//! Both bounds hold for all points and all `n`. A bad choice makes them wide, never wrong.
+//!
+//! # Choice of points and direction
+//! The narrow phase at twice the precision supplies the points and `n`. The rounding of `n` would
+//! loosen the lower bound of links that nearly touch; here it is far below the precision of `f64`.
+//! Where it is not, because two candidates are equally near, the normals of the features (faces,
+//! edges, axis) are tried as well.
 
 use super::answer_subject::{corners, link_of, placed_link};
 use super::exact_link::{CertifiedLink, ExactFrame, ExactLink, ExactPoint, Number, SLACK, largest};
@@ -18,7 +24,10 @@ use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::shape::TriMesh;
 
 impl Certificate {
-    /// Bounds on the distance between a link at a pose and a triangle.
+    /// Returns proven bounds on the distance between a link at a pose and a triangle.
+    ///
+    /// - `link`: in the robot's frame. `pose`: of the robot in the mesh's frame.
+    /// - `triangle`: the vertices in the mesh's frame.
     ///
     /// # Errors
     /// The pose is not finite or moves the link out of range, or a vertex is not finite or out of
@@ -36,20 +45,24 @@ impl Certificate {
 }
 
 impl LinkProximity {
-    /// Bounds on the distance between this answer's link and triangle, which hold rigorously,
-    /// rounding included.
+    /// Returns proven bounds on the distance between this answer's link and triangle, rounding
+    /// included.
     ///
-    /// They lie within a few units in the last place of each other, or of the problem's extent
-    /// where link and triangle nearly touch; a link that penetrates has `lower` 0. Give the
-    /// same robot, pose and mesh as to the query: a mesh of your own, which need not be the
-    /// engine's. Where [`set_vertices`](crate::proximity::Proximity::set_vertices) moved that
-    /// one, make it of [`vertices`](crate::proximity::Proximity::vertices) and
+    /// The bounds lie within a few units in the last place of each other, or of the problem's
+    /// extent if link and triangle nearly touch. A link that penetrates has `lower` 0.
+    ///
+    /// Pass the same robot, pose and mesh as to the query. `mesh` may be any mesh with the same
+    /// triangles; it need not be the engine's. If
+    /// [`set_vertices`](crate::proximity::Proximity::set_vertices) moved the engine's mesh, build
+    /// `mesh` from [`vertices`](crate::proximity::Proximity::vertices) and
     /// [`triangles`](crate::proximity::Proximity::triangles).
     ///
     /// # Errors
-    /// The answer's link or triangle does not exist, the pose is not finite or moves the link out
-    /// of range, a vertex of the triangle is not finite or out of range, or the answer does not
-    /// fit the two: it is about another robot, another pose, or a mesh that has moved since.
+    /// - The answer's link or triangle does not exist.
+    /// - The pose is not finite or moves the link out of range.
+    /// - A vertex of the triangle is not finite or out of range.
+    /// - The answer does not fit the two: it is about another robot, another pose, or a mesh that
+    ///   has moved since.
     ///
     /// ```
     /// use parry_continuum::Chain;
@@ -77,11 +90,11 @@ impl LinkProximity {
         Ok(self.certified(robot, pose)?.bounds(corners))
     }
 
-    /// Bounds on the distance between this answer's link and the whole mesh, which hold rigorously:
-    /// a proof that no other triangle is nearer than `lower`.
+    /// Returns proven bounds on the distance between this answer's link and the whole mesh: no
+    /// other triangle is nearer than `lower`.
     ///
-    /// Every triangle is looked at, those near the link at twice the precision: it takes far longer
-    /// than the query.
+    /// The search visits every triangle, and measures those near the link at twice the precision.
+    /// It takes far longer than the query.
     ///
     /// # Errors
     /// As for [`LinkProximity::certify`], for any vertex in use.
@@ -111,16 +124,16 @@ impl LinkProximity {
 }
 
 impl CertifiedLink {
-    /// A lower bound by a sphere around the triangle, in plain f64.
+    /// Returns a lower bound by a sphere around the triangle, in `f64`.
     fn at_least(&self, [a, b, c]: [Vector; 3]) -> Real {
         let far = largest([self.start, self.end, a, b, c]).max(self.radius);
         let unit = far.power_of_two_to_unity();
         let [start, end, a, b, c] = [self.start, self.end, a, b, c].map(|point| point * unit);
-        // Any centre serves.
+        // Any centre is valid.
         let centre = a * 0.5 + (b * 0.25 + c * 0.25);
         let sphere = (a - centre).length().max((b - centre).length()).max((c - centre).length());
         let away = distance_to_segment(centre, start, end);
-        // All numbers are below 8, and each is the work of a few roundings.
+        // All numbers are below 8, and each results from a few roundings.
         (away - sphere - self.radius * unit - 64.0 * Real::EPSILON) / unit
     }
 
@@ -138,7 +151,7 @@ impl CertifiedLink {
     }
 }
 
-/// A link and a triangle, in coordinates up to 2 from the link's start.
+/// A link and a triangle, in coordinates up to 2 relative to the link's start.
 struct ExactLinkTriangle {
     triangle: [ExactPoint; 3],
     link: ExactLink,
@@ -150,24 +163,23 @@ impl ExactLinkTriangle {
         let closest = triangle_modified_cylinder(self.triangle, start, along, radius, flat);
         let between = (closest.point1 - closest.point2).norm();
         let off = self.triangle_to(closest.point1) + self.link.distance_to(closest.point2);
-        // Where two cases of the narrow phase tie, the direction of another candidate may be the
-        // better one.
+        // If two cases of the narrow phase tie, the direction of another candidate may be better.
         let discs = [start, along].map(|rim| triangle_disc(self.triangle, rim, axis, radius));
         let lower = [closest, discs[0], discs[1]]
             .map(|candidate| self.apart((candidate.point2 - candidate.point1).normalised()))
             .into_iter()
             .fold(Number::ZERO, Scalar::max);
         let upper = between + off;
-        // A difference of points that nearly touch is less precise than the directions of what they
-        // lie on.
+        // The difference of points that nearly touch is less precise than the directions of their
+        // features.
         let is_tight = (upper - lower).le((2.0 * f64::EPSILON).into());
         let lower =
             if is_tight { lower } else { self.apart_by_features().fold(lower, Scalar::max) };
         (lower - SLACK.into(), upper + SLACK.into())
     }
 
-    /// How far the planes keep link and triangle apart whose normals are those of features: the
-    /// face, the axis and an edge, an edge and an end, the axis and a vertex.
+    /// Returns the separations by planes whose normals come from features: the face, the axis and
+    /// an edge, an edge and an end, the axis and a vertex.
     fn apart_by_features(&self) -> impl Iterator<Item = Number> {
         let [a, b, c] = self.triangle;
         let (axis, end) = (self.link.axis, self.link.along);
@@ -184,13 +196,13 @@ impl ExactLinkTriangle {
         all.flat_map(|direction| [self.apart(direction), self.apart(-direction)])
     }
 
-    /// How far the plane with the normal `direction`, from triangle to link, keeps them apart.
+    /// Returns the separation by a plane with the normal `direction`, from triangle to link.
     fn apart(&self, direction: ExactPoint) -> Number {
         let [a, b, c] = self.triangle.map(|vertex| vertex.dot(direction));
         self.link.lowest(direction) - a.max(b).max(c)
     }
 
-    /// At most this far from a point of the triangle.
+    /// Returns an upper bound on the distance of `point` from the triangle.
     fn triangle_to(&self, point: ExactPoint) -> Number {
         let [a, b, c] = self.triangle;
         let on_edge = |from: ExactPoint, to: ExactPoint| {
@@ -200,7 +212,7 @@ impl ExactLinkTriangle {
             (point - from - edge * t).norm()
         };
         let edges = on_edge(a, b).min(on_edge(b, c)).min(on_edge(c, a));
-        // Weights that are not negative make a point of the triangle, whatever their rounding.
+        // Non-negative weights give a point of the triangle, whatever their rounding.
         let normal = (b - a).cross(c - a);
         let area = |p: ExactPoint, q: ExactPoint| {
             normal.dot((p - point).cross(q - point)).max(Number::ZERO)

@@ -1,40 +1,46 @@
-//! Proofs of an answer about two links.
+//! Certificates for an answer about two links.
 //!
-//! As for a link and a [triangle](super::certificate), a point of each bounds the distance from
-//! above, and a plane between the two from below: for a direction n of unit length, the least <n,
-//! x> over the second link minus the largest over the first. Both are true whatever the points and
-//! the plane are, so what has to be derived is only that the bounds are close.
+//! # Definitions
+//! - **Upper bound**: the distance between a point of each link.
+//! - **Lower bound**: for a unit direction `n`, the least `<n, x>` over the second link minus the
+//!   largest `<n, x>` over the first.
+//! - `w = p2 - p1`: the shortest vector between the links. `d = |w|`.
 //!
-//! **Which direction.** Let w = p2 - p1 be the shortest way and d > 0 its length: n = w / d leaves
-//! nothing between the bounds. Where the shortest way ends on a smooth part of a link, n is the
-//! normal there. The boundary of a link has five kinds of places, and each says something of n:
+//! As for a link and a [triangle](super::certificate), both bounds hold for all points and all `n`.
+//! Only their tightness needs a derivation.
 //!
-//! | place | what n is |
+//! # Choice of direction
+//! If `d > 0`, `n = w / d` makes both bounds equal. If the shortest vector ends on a smooth part of
+//! a link, `n` is the normal there. The boundary of a link has five kinds of places, and each
+//! constrains `n`:
+//!
+//! | place | constraint on `n` |
 //! |---|---|
-//! | a flat face, without its rim | along the axis a |
-//! | the barrel | perpendicular to a |
-//! | a flat cap's rim | perpendicular to the rim's tangent a x (p - c), with c the cap's centre |
-//! | a round cap | along p - c, with c the axis' end |
-//! | a wire or its end, of radius 0 | as barrel or cap, with p on the axis |
+//! | a flat face, without its rim | along the axis `a` |
+//! | the barrel | perpendicular to `a` |
+//! | a flat cap's rim | perpendicular to the tangent `a x (p - c)`, with the cap's centre `c` |
+//! | a round cap | along `p - c`, with the axis' end `c` |
+//! | a wire or its end, of radius 0 | as barrel or cap, with `p` on the axis |
 //!
-//! Two statements fix n, unless one is of a face or of two round caps, which fixes it alone:
+//! A face alone determines `n`, and so do two round caps. Otherwise two constraints do:
 //!
-//! - a barrel or a rim and a barrel or a rim: n is along the cross product of the two directions to
-//!   which it is perpendicular;
-//! - a round cap and a barrel: from the end c, across the other link's axis;
-//! - a round cap and a rim: from c to the rim's point, which is at least the cap's radius away;
-//! - parallel barrels, a rim and its own tangent's barrel, and other pairs whose cross product
+//! - a barrel or a rim and a barrel or a rim: `n` is along the cross product of the two directions
+//!   that it is perpendicular to;
+//! - a round cap and a barrel: from the end `c`, across the other link's axis;
+//! - a round cap and a rim: from `c` to the rim's point, which is at least the cap's radius away;
+//! - parallel barrels, a rim and the barrel of its own tangent, and other pairs whose cross product
 //!   vanishes: from a point of one across the axis of the other.
 //!
-//! None of these is a difference of points that nearly touch, unless the radius is small too, and
-//! none is worse than the features that it is made of: 2^-100 or so, whatever d is. The plain
-//! difference w, of numbers that err by e = 2^-100, is off by e / d in direction, which costs e / d
-//! of the extent. So it is tried first, because it serves wherever the two are apart, and the
-//! features where it leaves the bounds more than 4 u of the extent apart. The best of all is taken:
-//! one that does not apply costs time and no more.
+//! # Rounding
+//! None of these directions is a difference of points that nearly touch, unless the radius is small
+//! too. Each errs by about 2^-100, as its features do, for every `d`. The difference `w` of numbers
+//! that err by `e = 2^-100` errs by `e / d` in direction, which costs `e / d` of the extent. So `w`
+//! is tried first, and the features only if `w` leaves the bounds more than 4 u of the extent
+//! apart. The best lower bound is returned. A direction that does not apply costs only time.
 //!
-//! **Where they meet** the lower bound is 0, and the upper how far the common point is outside of
-//! both, as rounded.
+//! # Contact
+//! If the links meet, the lower bound is 0. The upper bound is how far the common point lies
+//! outside of both links, by rounding.
 
 use super::exact_link::{CertifiedLink, ExactFrame, ExactLink, ExactPoint, Number, SLACK};
 use super::placed_link::PlacedLink;
@@ -43,11 +49,14 @@ use crate::distance::{Scalar, TwoLinks, Vec3};
 use crate::robot::{Chain, ModifiedCylinder};
 use parry3d_f64::math::Pose;
 
-/// What the poses are called.
+/// The names of the poses in errors.
 const POSES: [&str; 2] = ["pose_a", "pose_b"];
 
 impl Certificate {
-    /// Bounds on the distance between two links at their poses.
+    /// Returns proven bounds on the distance between two links at their poses.
+    ///
+    /// - `a`, `b`: the links, each in its robot's frame.
+    /// - `pose_a`, `pose_b`: the poses of the robots in one common frame.
     ///
     /// ```
     /// use parry_continuum::{ModifiedCylinder, proximity::Certificate};
@@ -76,20 +85,23 @@ impl Certificate {
 }
 
 impl RobotProximity {
-    /// Bounds on the distance between this answer's links, which hold rigorously, rounding
-    /// included. `upper` holds for the two robots too, `lower` for these two links alone: for
-    /// the robots take the least of all pairs of links ([`Certificate::between_links`]).
+    /// Returns proven bounds on the distance between this answer's links, rounding included.
     ///
-    /// They lie within a few units in the last place of the problem's extent of each other; links
-    /// that overlap have `lower` 0. No engine is trusted, and nothing is remembered. Give the
-    /// same robots and poses as to the query. An answer about one robot and itself takes the
-    /// robot twice, at the identity; where it is about an end of a link, flat or round, to which
-    /// the whole link is nearer than its end, it is not that of the links and is refused.
+    /// `upper` also holds for the two robots. `lower` holds for these two links alone: for the
+    /// robots take the least over all pairs of links ([`Certificate::between_links`]). The bounds
+    /// lie within a few units in the last place of the problem's extent. Links that overlap have
+    /// `lower` 0. The bounds do not depend on any engine or earlier query.
+    ///
+    /// - `a`, `b`, `pose_a`, `pose_b`: the robots and poses of the query.
+    /// - For an answer about one robot and itself, pass the robot twice, at the identity.
+    ///
+    /// An answer about a flat or round end of a link is refused if the whole link is nearer than
+    /// this end: its distance is not the distance of the links.
     ///
     /// # Errors
-    /// A robot does not have the answer's link, a pose is not finite or not rigid or moves the link
-    /// out of range, or the answer does not fit the two links: it is about other robots or
-    /// other poses.
+    /// - A robot does not have the answer's link.
+    /// - A pose is not finite or not rigid, or moves the link out of range.
+    /// - The answer does not fit the two links: it is about other robots or other poses.
     ///
     /// ```
     /// use parry_continuum::{Chain, proximity::between};
@@ -166,11 +178,12 @@ impl ExactLinkPair {
         (lower - SLACK.into(), upper + SLACK.into())
     }
 
-    /// How far the planes keep the links apart whose normals are those of features near these
-    /// points, each of its link.
+    /// Returns the separations by planes whose normals come from features near these points, one
+    /// point of each link.
     fn apart_by_features(&self, points: [ExactPoint; 2]) -> impl Iterator<Item = Number> {
         let [first, second] = self.links;
-        // What a normal may be perpendicular to: the axis, and the tangents of both rims.
+        // The directions that a normal may be perpendicular to: the axis, and the tangents of both
+        // rims.
         let tangents = [(first, points[0]), (second, points[1])].map(|(link, point)| {
             let around = |centre: ExactPoint| link.axis.cross(point - centre).normalised();
             [link.axis, around(link.start), around(link.end())]
@@ -203,8 +216,8 @@ impl ExactLinkPair {
     }
 }
 
-/// How far the plane with the normal `direction`, from the first to the second, keeps two links
-/// apart.
+/// Returns the separation of two links by a plane with the normal `direction`, from the first to
+/// the second.
 fn apart([first, second]: [&ExactLink; 2], direction: ExactPoint) -> Number {
     second.lowest(direction) - first.highest(direction)
 }

@@ -1,4 +1,4 @@
-//! An answer with its normal and its place on the robot.
+//! The contact of an answer: its normal, features and place on the robot.
 
 use super::answer_subject::{corners, placed_link, transformed_link};
 use super::contact_batch::{PlacedPair, try_add_contacts};
@@ -11,10 +11,10 @@ use crate::robot::{Chain, length};
 use fearless_simd::Level;
 use parry3d_f64::math::{Pose, Real, Vector};
 
-/// An answer about this mesh as a contact.
+/// Returns the contact of an answer about this mesh.
 ///
 /// # Errors
-/// Those of [`Proximity::contact`](crate::proximity::Proximity::contact).
+/// As [`Proximity::contact`](crate::proximity::Proximity::contact).
 pub(crate) fn contact(
     mesh: &Mesh,
     robot: &Chain,
@@ -27,10 +27,10 @@ pub(crate) fn contact(
     Ok(contact_of(answer, length, before, &found))
 }
 
-/// Answers about this mesh as contacts.
+/// Replaces `out` by the contacts of answers about this mesh.
 ///
 /// # Errors
-/// Those of [`Proximity::contacts`](crate::proximity::Proximity::contacts).
+/// As [`Proximity::contacts`](crate::proximity::Proximity::contacts). Then `out` is empty.
 pub(crate) fn contacts(
     mesh: &Mesh,
     robot: &Chain,
@@ -52,12 +52,11 @@ pub(crate) fn contacts(
     try_add_contacts(Level::new(), answers, place, check, out).inspect_err(|_| out.clear())
 }
 
-/// The link and the corners of the triangle that an answer is about, which it fits, and both
-/// measured.
+/// Returns the link and the triangle's vertices of an answer that fits them, and both measured.
 ///
 /// # Errors
-/// They do not exist, the pose is not finite or moves the link out of range, or the answer does not
-/// fit.
+/// One of them does not exist, the pose is not finite or moves the link out of range, or the answer
+/// does not fit.
 pub(crate) fn near(
     mesh: &Mesh,
     robot: &Chain,
@@ -71,8 +70,8 @@ pub(crate) fn near(
     Ok((link, corners, measured))
 }
 
-/// The contact of an answer about a link of the given length. `before` is that of the links before
-/// it.
+/// Returns the contact of an answer about a link of this length. `before` is the length of the
+/// links before it.
 pub(crate) fn contact_of(
     answer: &LinkProximity,
     length: Real,

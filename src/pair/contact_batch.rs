@@ -1,5 +1,5 @@
-//! The contacts of many answers, a pack at a time: the bits are those of one contact alone, on
-//! every instruction set.
+//! The contacts of many answers, one pack at a time, with the bits of a single contact on every
+//! instruction set.
 
 use super::contact::contact_of;
 use super::coordinates::Pair;
@@ -16,22 +16,22 @@ use fearless_simd::Level;
 use parry3d_f64::math::{Real, Vector};
 use std::convert::Infallible;
 
-/// What a contact is made of beside its answer: the link and the triangle in the mesh's frame.
+/// The inputs of a contact beside its answer: the link and the triangle, in the mesh's frame.
 #[derive(Clone, Copy)]
 pub(crate) struct PlacedPair {
     pub ends: [Vector; 2],
     pub radius: Real,
     pub flat: [bool; 2],
     pub corners: [Vector; 3],
-    /// The length of the links before it.
+    /// The total length of the links before this one.
     pub before: Real,
 }
 
-/// What is computed of several pairs.
+/// The results of several pairs.
 struct ContactRows {
     /// The fraction, the normal, the depth and the lever.
     numbers: Rows<8>,
-    /// One bit for each pair, as [`NearestParts`] has them.
+    /// One bit for each pair, as in [`NearestParts`].
     caps: [u64; 2],
     corners: [u64; 3],
     edges: [u64; 3],
@@ -41,14 +41,14 @@ struct ContactRows {
 }
 
 impl PlacedPair {
-    /// The link, ready to be measured.
+    /// Returns the placed link.
     pub(crate) fn link(&self) -> PlacedLink {
         let [start, end] = self.ends;
         PlacedLink::between(start, end, self.radius, self.flat)
     }
 }
 
-/// Adds the contacts of `answers`, each at the place that `place` gives.
+/// Appends the contacts of `answers`, each at the place that `place` returns.
 pub(crate) fn add_contacts(
     level: Level,
     answers: &[LinkProximity],
@@ -60,11 +60,11 @@ pub(crate) fn add_contacts(
     add.unwrap_or_else(|never| match never {});
 }
 
-/// The same where `place` may have none, and `check` may refuse an answer beside what is measured
-/// there.
+/// Same as [`add_contacts`]; `place` may fail, and `check` may refuse an answer after the
+/// measurement.
 ///
 /// # Errors
-/// The first that either gives. Contacts of some answers before it stand in `out`.
+/// The first error of either. `out` then holds the contacts of some earlier answers.
 pub(crate) fn try_add_contacts<E>(
     level: Level,
     answers: &[LinkProximity],
@@ -169,7 +169,7 @@ mod tests {
     use crate::distance::lanes::tests::levels;
     use continuum_testing::Random;
 
-    /// A link and a triangle, many of them parallel, level or touching.
+    /// Returns a random link and triangle, often parallel, level or touching.
     fn place(random: &mut Random) -> PlacedPair {
         let (size, level) = (2.0_f64.powi(random.below(41) as i32 - 20), random.below(3) == 0);
         let mut point = || {
@@ -184,7 +184,8 @@ mod tests {
         PlacedPair { ends: [start, start + way], radius, flat, corners, before }
     }
 
-    /// Each contact computed with any others, on each instruction set, has the bits it has alone.
+    /// A contact computed in a batch has the bits of the contact computed alone, on each
+    /// instruction set.
     #[test]
     fn together_is_alone_bit_for_bit() {
         let (mut kinks, mut touching, mut at_cap, mut parts) = (0, 0, 0, [0; 3]);
@@ -213,7 +214,7 @@ mod tests {
             for level in levels() {
                 let mut together = Vec::new();
                 add_contacts(level, &answers, |answer| places[answer.link as usize], &mut together);
-                // Their text tells -0 from 0.
+                // The text distinguishes -0 from 0.
                 assert_eq!(format!("{together:?}"), format!("{alone:?}"), "{level:?}, {seed}");
             }
             for contact in &alone {

@@ -1,47 +1,48 @@
 //! The coordinates in which a link and a triangle are measured.
 //!
-//! Each pair of link and triangle is measured in coordinates of its own, from the link's start and
-//! multiplied by the power of two that brings the largest of them near one. So neither far parts of
-//! the scene nor its place nor its unit play a part in the rounding, and nothing overflows or
-//! vanishes. Distances and bounds outside of a pair are plain ones, in the unit of the mesh.
+//! Each pair of link and triangle has its own coordinates: relative to the link's start, scaled by
+//! the power of two that brings the largest of them near one. So the rounding does not depend on
+//! the position, the unit or distant parts of the scene, and nothing overflows or underflows.
+//! Distances and bounds outside of a pair are in the mesh's unit.
 
 use super::nearest::Nearest;
 use super::placed_link::PlacedLink;
 use crate::distance::{Closest, DoubleDouble, Link, Scalar, Vec3, gives_direction};
 use parry3d_f64::math::{Real, Vector};
 
-/// What rounding can add to a bound of a pair, in whose coordinates all numbers are below 2: 64 u,
-/// and another 64 u by which a distance at a flat cap may be measured too short, which is 16 u of
-/// an extent below 4.
+/// The largest rounding error of a bound of a pair, where all numbers are below 2.
+///
+/// It is the sum of 64 u for the bound, and 64 u by which a distance at a flat cap may be too
+/// short: 16 u of an extent below 4.
 pub(super) const SLACK: Real = 128.0 * f64::UNIT_ROUNDOFF;
 
-/// A link in the mesh's frame, or a pack of them.
+/// A link in the mesh's frame, or a pack of links.
 #[derive(Clone, Copy)]
 pub(super) struct Placed<T: Scalar> {
     pub start: Vec3<T>,
-    /// From start to end.
+    /// The vector from start to end.
     pub along: Vec3<T>,
-    /// The unit direction of the axis, or zero without one.
+    /// The unit direction of the axis, or zero if it has none.
     pub axis: Vec3<T>,
     pub radius: T,
     pub flat: [T::Mask; 2],
-    /// The largest coordinate from the start, or the radius.
+    /// The largest coordinate relative to the start, or the radius.
     pub extent: T,
 }
 
-/// A link and a triangle in coordinates of their own, or a pack of pairs.
+/// A link and a triangle in their own coordinates, or a pack of pairs.
 pub(super) struct Pair<T: Scalar> {
     pub triangle: [Vec3<T>; 3],
     pub link: Link<T>,
-    /// What 1 is in the mesh's unit.
+    /// The length of 1 in the mesh's unit.
     pub unit: T,
-    /// The largest coordinate of link and triangle from the link's start, or the radius, in the
-    /// mesh's unit.
+    /// The largest coordinate of link and triangle relative to the link's start, or the radius, in
+    /// the mesh's unit.
     pub extent: T,
 }
 
 impl<T: Scalar> Placed<T> {
-    /// The pair with a triangle in the mesh's frame.
+    /// Returns the pair with a triangle of the mesh's frame.
     #[inline(always)]
     pub(super) fn with(&self, [a, b, c]: [Vec3<T>; 3]) -> Pair<T> {
         let Self { start, along, axis, radius, flat, extent } = *self;
@@ -49,7 +50,7 @@ impl<T: Scalar> Placed<T> {
         let extent = a.largest().max(b.largest()).max(c.largest()).max(extent);
         let scale = extent.power_of_two_to_unity();
         let end = along * scale;
-        // A length whose square vanishes beside the triangle gives no direction.
+        // A length whose square underflows beside the triangle gives no direction.
         let axis =
             Vec3::select(gives_direction(end.norm_squared()), axis, Vec3::zero(extent.zero()));
         Pair {
@@ -62,7 +63,7 @@ impl<T: Scalar> Placed<T> {
 }
 
 impl Pair<Real> {
-    /// A lower bound on the distance, by the plane of [`PlacedLink::distance_to_box`].
+    /// Returns a lower bound on the distance, by the plane of [`PlacedLink::distance_to_box`].
     pub(super) fn at_least(&self) -> Real {
         let [a, b, c] = self.triangle;
         let centre = (a + b + c) * (1.0 / 3.0);
@@ -72,7 +73,8 @@ impl Pair<Real> {
         beyond.over(normal.norm()) - self.link.radius - SLACK
     }
 
-    /// An answer in the mesh's frame, in which the pair's origin is `start` and 1 is `unit`.
+    /// Returns an answer in the mesh's frame. `start` is the pair's origin and `unit` the length of
+    /// 1.
     pub(crate) fn report(
         unit: Real,
         start: Vector,
@@ -86,8 +88,8 @@ impl Pair<Real> {
     }
 }
 
-/// Link and triangle in the coordinates of [`PlacedLink::pair`], with twice the digits: nothing is
-/// rounded but the link's direction.
+/// Returns link and triangle in the coordinates of [`PlacedLink::pair`], in double-double numbers:
+/// only the link's direction is rounded.
 pub(crate) fn place_exactly(
     link: &PlacedLink,
     corners: [Vector; 3],
@@ -106,7 +108,7 @@ pub(crate) fn place_exactly(
     (corners.map(offset), placed)
 }
 
-/// From the axis point nearest to `point` to that point.
+/// Returns the vector from the closest axis point to `point`.
 pub(super) fn offset_from_axis(link: &Link<Real>, point: Vec3<Real>) -> Vec3<Real> {
     let t = point.dot(link.axis).max(0.0).min(link.end.dot(link.axis));
     point.along(link.axis, -t)

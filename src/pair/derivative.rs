@@ -1,5 +1,5 @@
-//! How a distance changes with the points that link and triangle are made of; the formulas are
-//! those of [`Derivative`].
+//! The derivative of a distance with respect to the points of link and triangle. [`Derivative`]
+//! states the formulas.
 
 use super::contact::near;
 use super::nearest_features::NearPair;
@@ -9,10 +9,10 @@ use crate::mesh::Mesh;
 use crate::robot::Chain;
 use parry3d_f64::math::{Pose, Real, Vector};
 
-/// How the distance, or depth, of an answer about this mesh changes.
+/// Returns the derivative of the distance, or of the depth, of an answer about this mesh.
 ///
 /// # Errors
-/// Those of [`Proximity::derivative`](crate::proximity::Proximity::derivative).
+/// As [`Proximity::derivative`](crate::proximity::Proximity::derivative).
 pub(crate) fn derivative(
     mesh: &Mesh,
     robot: &Chain,
@@ -27,7 +27,7 @@ pub(crate) fn derivative(
     let exact = NearPair::exactly(&link, corners);
     let found =
         if exact.parts.asks_way_out { way_out() } else { exact.derivative(DoubleDouble::rounded) };
-    // One place decides what is a kink.
+    // The same decision on kinks as in the features.
     let kink = measured.features(|| exact).kink;
     Ok(found.map(|found| Derivative { kink, ..found }))
 }

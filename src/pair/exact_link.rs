@@ -1,9 +1,8 @@
-//! A link in double-double arithmetic, for certificates: how far it reaches along a direction, and
-//! how far a point is from it.
+//! A link in double-double arithmetic, for certificates: its extent along a direction, and its
+//! distance from a point.
 //!
-//! Both hold whatever was rounded in the numbers that they are asked with: a direction that is not
-//! quite a unit vector, and a point that is not quite where it was meant to be, are as good as any
-//! other.
+//! Both hold for the numbers as given: a direction that is not exactly a unit vector, and a point
+//! that is rounded, are valid arguments.
 
 use super::checks::{check_ends, rigid_pose};
 use crate::answer::{Certificate, ProximityError};
@@ -14,16 +13,16 @@ use parry3d_f64::math::{Pose, Real, Vector};
 pub(super) type Number = DoubleDouble;
 pub(super) type ExactPoint = Vec3<DoubleDouble>;
 
-/// What rounding can do to any bound of a certificate, where no coordinate exceeds 2: a hundred
-/// operations, each wrong by 2^-102 of numbers below 16, and what falls below the range.
+/// The largest rounding error of any bound of a certificate, where no coordinate exceeds 2: a
+/// hundred operations, each wrong by 2^-102 of numbers below 16, plus underflow.
 pub(super) const SLACK: f64 = f64::from_bits((1023 - 88) << 52);
 
-/// The largest magnitude of a coordinate.
+/// Returns the largest magnitude of a coordinate.
 pub(super) fn largest<const N: usize>(points: [Vector; N]) -> Real {
     points.iter().map(|point| point.abs().max_element()).fold(0.0, Real::max)
 }
 
-/// Coordinates of a pair's own, in which differences are exact and the largest is near one.
+/// A pair's own coordinates, in which differences are exact and the largest is near one.
 #[derive(Clone, Copy)]
 pub(super) struct ExactFrame {
     origin: Vector,
@@ -32,16 +31,16 @@ pub(super) struct ExactFrame {
 }
 
 impl ExactFrame {
-    /// The frame from `origin`, in which no point and no radius exceeds 2. Nothing if all is one
-    /// point.
+    /// Returns the frame at `origin`, in which no coordinate and no radius exceeds 2; `None` if all
+    /// points coincide.
     pub(super) fn around<const N: usize>(
         origin: Vector,
         points: [Vector; N],
         radius: Real,
     ) -> Option<Self> {
-        // From the origin every coordinate is an exact double-double, and the largest is brought
-        // near one. What is small beside far coordinates must not vanish first, so these
-        // are never made smaller.
+        // Relative to the origin every coordinate is an exact double-double, and the largest is
+        // brought near one. Small numbers beside large coordinates must not underflow first, so
+        // `coarse` is at least 1.
         let far = largest(points).max(largest([origin])).max(radius);
         let coarse = far.power_of_two_to_unity().max(1.0);
         let extent =
@@ -53,7 +52,7 @@ impl ExactFrame {
         self.way(self.origin, point)
     }
 
-    /// The way from one point to another, exactly.
+    /// Returns the vector from one point to another, exactly.
     fn way(&self, from: Vector, to: Vector) -> ExactPoint {
         let (from, to) = ((from * self.coarse).to_array(), (to * self.coarse).to_array());
         let along = |axis: usize| (Number::from(to[axis]) - from[axis].into()) * self.fine.into();
@@ -64,15 +63,15 @@ impl ExactFrame {
         Number::from(length * self.coarse) * self.fine.into()
     }
 
-    /// Bounds of this frame in the caller's unit: outwards by one number, for the roundings to f64
-    /// and out of the scale.
+    /// Returns bounds of this frame in the caller's unit, widened by one number for the rounding to
+    /// `f64` and back to that unit.
     pub(super) fn certificate(&self, lower: Number, upper: Number) -> Certificate {
         let back = |bound: Number| bound.rounded() / self.fine / self.coarse;
         Certificate { lower: back(lower).next_down().max(0.0), upper: back(upper).next_up() }
     }
 }
 
-/// A link in the frame in which two shapes are compared, in `f64`.
+/// A link in `f64`, in the frame in which two shapes are compared.
 pub(super) struct CertifiedLink {
     pub start: Vector,
     pub end: Vector,
@@ -81,7 +80,7 @@ pub(super) struct CertifiedLink {
 }
 
 impl CertifiedLink {
-    /// `number` is the link's position in its chain.
+    /// Returns the link at `pose`. `number` is its position in its chain.
     pub(super) fn new(
         link: &ModifiedCylinder,
         pose: &Pose,
@@ -93,11 +92,11 @@ impl CertifiedLink {
         Ok(Self { start, end, radius: link.radius(), flat: link.flat() })
     }
 
-    /// The same in exact coordinates.
+    /// Returns the link in exact coordinates.
     pub(super) fn exact(&self, frame: &ExactFrame) -> ExactLink {
         let along = frame.way(self.start, self.end);
-        // As the narrow phase has it, a length whose square vanishes beside the other shape gives
-        // no direction.
+        // As in the narrow phase, a length whose square underflows beside the other shape gives no
+        // direction.
         let squared =
             Vec3::new(along.x.rounded(), along.y.rounded(), along.z.rounded()).norm_squared();
         let zero = Vec3::new(Number::ZERO, Number::ZERO, Number::ZERO);
@@ -111,9 +110,9 @@ impl CertifiedLink {
 #[derive(Clone, Copy)]
 pub(super) struct ExactLink {
     pub start: ExactPoint,
-    /// From start to end.
+    /// The vector from start to end.
     pub along: ExactPoint,
-    /// The unit direction, or zero without one.
+    /// The unit direction, or zero if it has none.
     pub axis: ExactPoint,
     pub radius: Number,
     pub flat: [bool; 2],
@@ -124,30 +123,30 @@ impl ExactLink {
         self.start + self.along
     }
 
-    /// As the narrow phase has it, seen from its own start.
+    /// Returns the link relative to its own start, as the narrow phase represents it.
     pub(super) fn seen_from_start(&self) -> Link<Number> {
         Link { end: self.along, axis: self.axis, radius: self.radius, flat: self.flat }
     }
 
-    /// The least of `direction` over the link, or less.
+    /// Returns a lower bound on `<direction, x>` over the link.
     pub(super) fn lowest(&self, direction: ExactPoint) -> Number {
         let along = direction.dot(self.axis);
         let across = (direction - self.axis * along).norm() * self.radius;
         let lowest = |height: Number, inward: Number, flat: bool| {
-            // A round cap shows its ball to directions that come from beyond its end, else only its
-            // rim.
+            // A round cap extends by its ball in directions from beyond its end, otherwise only by
+            // its rim.
             height - if flat || inward.lt((-SLACK).into()) { across } else { self.radius }
         };
         let start = lowest(self.start.dot(direction), along, self.flat[0]);
         start.min(lowest(self.end().dot(direction), -along, self.flat[1]))
     }
 
-    /// The largest, or more.
+    /// Returns an upper bound on `<direction, x>` over the link.
     pub(super) fn highest(&self, direction: ExactPoint) -> Number {
         -self.lowest(-direction)
     }
 
-    /// At most this far from a point of the link.
+    /// Returns an upper bound on the distance of `point` from the link.
     pub(super) fn distance_to(&self, point: ExactPoint) -> Number {
         let zero = Number::ZERO;
         let from_start = point - self.start;

@@ -1,29 +1,33 @@
 //! One link against a pack of triangles, in the precision of the search: which of them may be
 //! nearer than a bound.
+//!
+//! # Definitions
+//! All distances are measured from the axis, that is, the link's distance plus its radius. `F` is
+//! the distance between axis and triangle. `error` is the rounding error of a distance
+//! ([`SearchLink`]). The **axis limit** of a bound is the bound plus the radius, widened by
+//! `error`.
 
 use super::search_link::SearchLink;
 use crate::distance::lanes::Pack;
 use crate::distance::{Axial, Face, Link, Mask, Scalar, Vec3};
 use crate::mesh::splat;
 
-/// What a pack of triangles is to a link. All distances are counted from the axis: the link's own
-/// and the radius.
+/// The bounds of a pack of triangles.
 pub(crate) struct Nearer<L> {
-    /// Which may be nearer than a bound, one bit per lane.
+    /// Which triangles may be nearer than the limit, one bit per lane.
     pub nearer: u64,
-    /// Bounds on how near they are but for the link's `error`: twice the axis distance where no
-    /// flat cap decides. The upper one is no less than the radius wherever a flat cap may
-    /// decide as far as this precision can tell.
+    /// A lower and an upper bound, before the link's `error`. Both equal the axis distance if no
+    /// flat cap decides. `upper` is at least the radius if a flat cap may decide in this precision.
     pub lower: L,
     pub upper: L,
 }
 
-/// A link in every lane.
+/// The same link in every lane.
 #[derive(Clone, Copy)]
 pub(crate) struct LinkLanes<L: Scalar> {
     pub start: Vec3<L>,
     pub length: L,
-    /// Seen from its start.
+    /// The link relative to its start.
     pub link: Link<L>,
     has_flat_cap: bool,
     error: L,
@@ -53,7 +57,7 @@ impl<L: Pack> LinkLanes<L> {
         self.has_flat_cap
     }
 
-    /// The axis point nearest to `point`, and from it to `point`; both from the link's start.
+    /// Returns the vector from the closest axis point to `point`.
     #[inline(always)]
     pub(crate) fn offset_from_axis(&self, point: Vec3<L>) -> Vec3<L> {
         let relative = point - self.start;
@@ -61,40 +65,41 @@ impl<L: Pack> LinkLanes<L> {
         relative.along(self.link.axis, -t)
     }
 
-    /// Upper bounds on the axis limits of what is in spheres: some point of it is that near.
+    /// Returns upper bounds on the axis distances of the contents of spheres: some point of a
+    /// sphere's contents is at most this far.
     #[inline(always)]
     pub(crate) fn reach_of_spheres(&self, centre: Vec3<L>, radius: L) -> L {
-        // Any point of a triangle is an upper bound on F; beyond a flat cap that is one on the
-        // distance alone.
+        // Any point of a triangle gives an upper bound on F. Beyond a flat cap it bounds the
+        // distance itself, so the radius is added.
         let beyond = if self.has_flat_cap { self.link.radius } else { self.length.zero() };
         self.offset_from_axis(centre).norm() + radius + beyond
     }
 
-    /// Which spheres around triangles come within `limit` of the axis, as bits.
+    /// Returns which spheres around triangles come within `limit` of the axis, one bit per lane.
     #[inline(always)]
     pub(crate) fn meets_spheres(&self, centre: Vec3<L>, radius: L, limit: L) -> u64 {
         let reach = limit + radius;
         L::bits(self.offset_from_axis(centre).norm_squared().lt(reach * reach))
     }
 
-    /// Which triangles are not ruled out by the plane before the axis whose normal leads from the
-    /// axis to the triangle's centre, as bits.
+    /// Returns the triangles that one separating plane cannot exclude, one bit per lane. The
+    /// plane's normal points from the axis to the triangle's centre.
     #[inline(always)]
     pub(crate) fn not_behind_plane(&self, [a, b, c]: [Vec3<L>; 3], limit: L) -> u64 {
         let centre = (a + b + c) * self.length.lit(1.0 / 3.0);
         let v = self.offset_from_axis(centre);
         let axis = v.dot(self.start) + self.link.reach_along(v);
         let ahead = (v.dot(a).min(v.dot(b)).min(v.dot(c)) - axis).max(limit.zero());
-        // A centre on the axis rules nothing out, nor does what falls below the range.
+        // A centre on the axis excludes nothing, and neither does a square that underflows.
         L::bits(!(limit * limit * v.norm_squared()).lt(ahead * ahead))
     }
 
-    /// Whether a triangle's centre is nearer to the axis than `certain`, and not beyond a flat cap:
-    /// then the triangle is within the bound whose certain limit that is, and need not be
-    /// looked at more closely.
+    /// Returns whether the centre of some triangle is nearer to the axis than `certain`, and not
+    /// beyond a flat cap. Then that triangle is within the bound whose certain limit this is, and
+    /// needs no further test.
     ///
-    /// The centre errs by less than 4 u of the largest coordinate, and how far along the axis it is
-    /// by less than 16 u; `error` is 64 u of it.
+    /// **Rounding.** The centre errs by less than 4 u of the largest coordinate, and its position
+    /// along the axis by less than 16 u; `error` is 64 u of that coordinate.
     #[inline(always)]
     pub(crate) fn has_centre_within(&self, [a, b, c]: [Vec3<L>; 3], certain: L) -> bool {
         let centre = (a + b + c) * self.length.lit(1.0 / 3.0);
@@ -106,7 +111,7 @@ impl<L: Pack> LinkLanes<L> {
         L::bits(near & self.is_behind_flat_caps(centre - self.start)) != 0
     }
 
-    /// Which points, seen from the start, do not lie beyond a flat cap, for certain.
+    /// Returns which points, relative to the start, certainly do not lie beyond a flat cap.
     #[inline(always)]
     fn is_behind_flat_caps(&self, point: Vec3<L>) -> L::Mask {
         let along = point.dot(self.link.axis);
@@ -114,14 +119,14 @@ impl<L: Pack> LinkLanes<L> {
         (behind[0] | !self.link.flat[0]) & (behind[1] | !self.link.flat[1])
     }
 
-    /// Which triangles may be nearer than the bound whose axis limit is `limit`.
+    /// Returns the bounds of a pack of triangles against the bound with the axis limit `limit`.
     #[inline(always)]
     pub(crate) fn may_be_nearer(&self, face: &Face<L>, limit: L) -> Nearer<L> {
         let face = face.seen_from(self.start);
         self.nearer(&Axial::new(&self.link, &face), &face, limit)
     }
 
-    /// The same, for a face seen from the link's start.
+    /// Same as [`may_be_nearer`](Self::may_be_nearer), for a face relative to the link's start.
     #[inline(always)]
     pub(crate) fn nearer(&self, axial: &Axial<L>, face: &Face<L>, limit: L) -> Nearer<L> {
         let axis = axial.axis_squared.sqrt();
@@ -134,15 +139,16 @@ impl<L: Pack> LinkLanes<L> {
         let lower = beyond_cap.select(axis.max(lower + self.link.radius), axis);
         let mut upper = beyond_cap.select(upper + self.link.radius, axis);
         if L::bits(upper.lt(self.link.radius)) != 0 {
-            // Rounding alone may have put p* behind a flat cap: then there is a gap, however near
-            // the axis is.
+            // Rounding may have put p* behind a flat cap. Then there is a gap, however near the
+            // axis is.
             let behind = self.is_behind_flat_caps(axial.on_triangle);
             upper = behind.select(upper, upper.max(self.link.radius));
         }
         Nearer { nearer: L::bits(lower.lt(limit)), lower, upper }
     }
 
-    /// The distances of triangles with every disc that decides one: the paper's work for a pair.
+    /// Returns the distances of triangles, with all discs that decide one: the paper's work for a
+    /// pair.
     #[inline(always)]
     pub(crate) fn distances(&self, face: &Face<L>) -> L {
         let face = face.seen_from(self.start);

@@ -1,5 +1,5 @@
-//! Several pairs of links in double precision, a pack at a time: the bits are those of
-//! [`PlacedLink::measure_link`]( super::PlacedLink::measure_link), on every instruction set.
+//! Several pairs of links in double precision, one pack at a time, with the bits of
+//! [`PlacedLink::measure_link`](super::PlacedLink::measure_link) on every instruction set.
 
 use super::measure_batch::narrowed;
 use super::pair_lanes::{BATCH, Rows, link, put_link, store};
@@ -10,14 +10,14 @@ use crate::distance::{Unfused, dispatch};
 use fearless_simd::Level;
 use parry3d_f64::math::{Real, Vector};
 
-/// A link in the frame of both robots: the ends of its axis, its radius, and which caps are flat.
+/// A link in the common frame of both robots: the ends of its axis, its radius, and which caps are
+/// flat.
 pub(crate) type PlacedEnds = ([Vector; 2], Real, [bool; 2]);
 
-/// Pairs of links in one frame, and their nearest points.
+/// Pairs of links in one frame, and their closest points.
 ///
-/// A pack is written number by number and read as a whole, and a processor waits for what it has
-/// just written in other pieces than it reads. So all pairs are put down before the first is
-/// measured.
+/// All pairs are stored before the first is measured. A pack is written number by number and read
+/// as a whole, and a processor stalls if it reads what it has just written in smaller parts.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct LinkPairBatch {
     packs: Vec<PackOfPairs>,
@@ -29,9 +29,9 @@ pub(crate) struct LinkPairBatch {
 struct PackOfPairs {
     /// The first and the second link of each pair.
     pairs: Rows<18>,
-    /// The distances, and the points on the first and on the second link.
+    /// The distances, and the points on the first and the second link.
     found: Rows<7>,
-    /// Which pairs are within the bound, a bit for each.
+    /// Which pairs are within the bound, one bit for each.
     near: u64,
 }
 
@@ -55,11 +55,11 @@ impl LinkPairBatch {
         self.count += 1;
     }
 
-    /// Measures all pairs. What is farther apart than `bound` has no answer.
+    /// Measures all pairs. Pairs farther apart than `bound` have no result.
     #[inline(never)] // compiled for each instruction set, not for each use as well
     pub(crate) fn measure(&mut self, level: Level, bound: Real) {
         if self.count == 1 {
-            // A pack takes as long with one pair in it as with all, and longer than a pair alone.
+            // A pack takes the same time for one pair as for all, and longer than a single pair.
             self.packs[0].measure_first(bound);
             return;
         }
@@ -74,7 +74,8 @@ impl LinkPairBatch {
         for pack in self.packs.iter_mut().take(self.count.div_ceil(BATCH)) {
             pack.near = 0;
             for lane in (0..left.min(BATCH)).step_by(L::LANES) {
-                // Of those that are not there what is left from pairs before costs nothing.
+                // Unused lanes hold earlier pairs; they take no extra time, and the mask drops
+                // them.
                 let are_there = u64::MAX >> (64 - (left - lane).min(L::LANES));
                 pack.near |= pack.measure(token, lane, are_there, bound) << lane;
             }
@@ -82,7 +83,7 @@ impl LinkPairBatch {
         }
     }
 
-    /// The pairs that are within the bound, in order, and their distances.
+    /// Returns the pairs within the bound, in order, and their distances.
     pub(crate) fn near(&self) -> impl Iterator<Item = (usize, Real)> {
         let packs = self.packs[..self.count.div_ceil(BATCH)].iter().enumerate();
         packs.flat_map(|(number, pack)| {
@@ -90,7 +91,7 @@ impl LinkPairBatch {
         })
     }
 
-    /// The nearest points of a pair, one and the same where its links meet.
+    /// Returns the closest points of a pair; if its links meet, one common point.
     pub(crate) fn nearest(&self, pair: usize) -> NearestOfLinks {
         let (found, lane) = (&self.packs[pair / BATCH].found, pair % BATCH);
         let distance = found[0][lane];
@@ -133,7 +134,7 @@ impl PackOfPairs {
         }
     }
 
-    /// Measures the pairs from a lane on. Returns which of those that are there are within the
+    /// Measures the pairs from `lane` on. Returns which of the pairs in `are_there` are within the
     /// bound.
     #[inline(always)]
     fn measure<L: Pack<Element = f64>>(
@@ -145,7 +146,7 @@ impl PackOfPairs {
     ) -> u64 {
         let mut first = link::<L>(token, &self.pairs, 0, lane);
         let mut second = link::<L>(token, &self.pairs, 9, lane);
-        // Round caps have no use for the directions of the axes.
+        // Round caps do not need the directions of the axes.
         if L::bits(first.flat[0] | first.flat[1] | second.flat[0] | second.flat[1]) != 0 {
             (first, second) = (first.with_axis(), second.with_axis());
         }
@@ -179,8 +180,8 @@ mod tests {
         [nearest.distance, a.x, a.y, a.z, b.x, b.y, b.z].map(f64::to_bits)
     }
 
-    /// A link on a coarse lattice every other time, where ties, parallels and touching links are
-    /// common; sometimes a ball.
+    /// Returns a random link, every second time on a coarse lattice, where ties, parallels and
+    /// touching links are common; sometimes a ball.
     fn link(random: &mut Random, size: f64) -> PlacedEnds {
         let step = if random.below(2) == 0 { 0.5 } else { 0.0 };
         let mut point = |most: f64| {
@@ -198,7 +199,7 @@ mod tests {
         let mut random = Random::new(5);
         let (mut touching, mut flat, mut beyond) = (0, 0, 0);
         for round in 0..4000 {
-            // Now and then among the smallest numbers there are.
+            // Every seventh round uses numbers near the smallest.
             let size = 2.0_f64.powi(if round % 7 == 0 { -1060 } else { round % 61 - 30 });
             let pairs: Vec<_> = (0..1 + random.below(20))
                 .map(|_| [link(&mut random, size), link(&mut random, size)])
@@ -210,11 +211,11 @@ mod tests {
                 first.measure_link(&second)
             };
             let alone: Vec<_> = pairs.iter().map(alone).collect();
-            // Every other time the distance of one of them, which is within it.
+            // Every second round the bound is the distance of a pair, which is within it.
             let bound = if round % 2 == 0 { f64::INFINITY } else { alone[0].distance };
             for level in levels() {
                 let mut together = LinkPairBatch::default();
-                // What is left from other pairs does not count.
+                // Results of earlier pairs must not count.
                 pairs.iter().rev().for_each(|[first, second]| together.push(first, second));
                 together.measure(level, f64::INFINITY);
                 together.clear();

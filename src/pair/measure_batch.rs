@@ -1,5 +1,5 @@
-//! Several triangles against one link in double precision, a pack at a time: the bits are those of
-//! [`PlacedLink::measure`], on every instruction set.
+//! Several triangles against one link in double precision, one pack at a time, with the bits of
+//! [`PlacedLink::measure`] on every instruction set.
 
 use super::best::Best;
 use super::coordinates::Placed;
@@ -13,15 +13,14 @@ use crate::pair::pair_lanes;
 use fearless_simd::Level;
 use parry3d_f64::math::Real;
 
-/// Fewer are measured one by one: half a pack takes less time than two of them.
+/// Below this count triangles are measured one by one. From 2 on a half-filled pack is faster.
 const MIN_FOR_PACK: usize = 2;
 
-/// The corners of up to [`BATCH`] triangles in the mesh's frame, each coordinate in a row of its
-/// own.
+/// The vertices of up to [`BATCH`] triangles in the mesh's frame, each coordinate in its own row.
 type CornerRows = Rows<9>;
 
 impl Best {
-    /// Measures up to [`BATCH`] triangles. True if one of them is the best so far.
+    /// Measures up to [`BATCH`] triangles. Returns whether one of them becomes the best.
     #[inline(never)] // the same code wherever it is called from
     pub(crate) fn measure_batch(
         &mut self,
@@ -39,8 +38,8 @@ impl Best {
         let mut answers = NearestRows::new();
         let near = measure_pack(level, link, mesh, triangles, self.bound(), &mut answers);
         for lane in set_bits(near) {
-            // Most that are not farther than the bound are as far, and most of these need no
-            // report.
+            // Most triangles within the bound tie with it, and most of these do not improve the
+            // best: test before building the result.
             if self.is_worse_than(answers.distance(lane), triangles[lane]) {
                 is_best |= self.take(answers.nearest(lane, triangles[lane]));
             }
@@ -49,7 +48,8 @@ impl Best {
     }
 }
 
-/// Measures up to [`BATCH`] triangles. Returns which are at most `bound` away, one bit for each.
+/// Measures up to [`BATCH`] triangles against a link. Returns those at most `bound` away, one bit
+/// for each.
 #[inline(always)]
 fn measure_pack(
     level: Level,
@@ -66,7 +66,8 @@ fn measure_pack(
     closest_at(narrowed(level, triangles.len()), link, &corners, triangles.len(), bound, answers)
 }
 
-/// The instruction set whose packs so few pairs fill best: half a pack takes nearly half the time.
+/// Returns the instruction set whose packs `count` pairs fill best: half a pack takes nearly half
+/// the time.
 pub(super) fn narrowed(
     level: Level,
     #[cfg_attr(not(any(target_arch = "x86", target_arch = "x86_64")), expect(unused))] count: usize,
@@ -119,7 +120,8 @@ mod tests {
     use crate::robot::{Cap, ModifiedCylinder};
     use parry3d_f64::math::{Pose, Vector};
 
-    /// Numbers in [-1, 1), many of them on a coarse lattice, where ties and parallels are common.
+    /// Returns numbers in [-1, 1), many of them on a coarse lattice, where ties and parallels are
+    /// common.
     fn numbers(seed: u64) -> impl FnMut(u32) -> f64 {
         let mut state = seed;
         move |lattice| {
@@ -131,7 +133,8 @@ mod tests {
         }
     }
 
-    /// Each triangle measured with any others, on each instruction set, has the bits it has alone.
+    /// A triangle measured in a batch has the bits of the triangle measured alone, on each
+    /// instruction set.
     #[test]
     fn together_is_alone_bit_for_bit() {
         let mut next = numbers(3);
@@ -163,7 +166,8 @@ mod tests {
                 discs += usize::from(link.flat() != [false; 2]);
                 for level in levels() {
                     let mut together = Best::within(f64::INFINITY);
-                    // Of several of itself and one beyond any bound, in a lane that moves.
+                    // A batch of copies of the triangle; its length varies, so the last lane does
+                    // too.
                     let others = [triangle; BATCH];
                     let count = 1 + (round as usize + triangle as usize) % BATCH;
                     together.measure_batch(level, &link, &mesh, &others[..count]);

@@ -1,4 +1,5 @@
-//! One link in the mesh's frame and one triangle: how near they are, alone and a pack at a time.
+//! One link and one triangle, or two links: distance, features, contact, derivative and
+//! certificate, for one pair and for batches.
 
 mod answer_check;
 mod answer_check_of_links;

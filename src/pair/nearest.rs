@@ -1,8 +1,8 @@
-//! What is found of a link and a triangle.
+//! The result of a measurement of a link and a triangle.
 
 use parry3d_f64::math::{Real, Vector};
 
-/// The triangle nearest to a link, in the mesh's frame and unit.
+/// A triangle's distance from a link and the closest points, in the mesh's frame and unit.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Nearest {
     pub triangle: u32,
@@ -12,7 +12,8 @@ pub(crate) struct Nearest {
 }
 
 impl Nearest {
-    /// With one common point where the two touch: rounding may have put the two points apart.
+    /// Returns the result, with one common point if the two touch: rounding may have separated the
+    /// points.
     #[inline(always)]
     pub(crate) fn new(
         triangle: u32,

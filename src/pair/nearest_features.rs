@@ -1,42 +1,53 @@
-//! Which features of a link and a triangle are nearest, and the normal between them.
+//! The closest features of a link and a triangle, and the normal between them.
 //!
-//! Let q be the axis point nearest to the triangle, p the triangle's point there and F their
-//! distance. Beside the link and beyond a round cap the link's closest point lies on the way from q
-//! to p, one radius from q: the normal from wall to robot is (q - p) / F. It has a meaning where
-//! the two overlap as well: no way out is shorter, as long as a flat cap is no nearer along the
-//! axis than the overlap is deep (see `distance/depth/foot.rs`). Beyond a flat cap the closest
-//! points x of the link and y of the triangle are those of the cap's disc, and the normal is (x -
-//! y) / |x - y|.
+//! # Definitions
+//! - `q`: the axis point closest to the triangle. `p`: the triangle's point there. `F`: their
+//!   distance. `r`: the link's radius.
+//! - `x`, `y`: the closest points of the link and of the triangle. `u = 2^-53`.
 //!
-//! One text for `f64`, packs of it and numbers of twice its digits. The difference of two points
-//! that are g apart turns by about 4 u / g, for numbers near one; below a gap of 2^-8 that is too
-//! much, and the pair is done again with 32 digits.
+//! # Algorithm
+//! 1. **Beside the link and beyond a round cap.** The link's closest point lies on the segment from
+//!    `q` to `p`, at the distance `r` from `q`. The normal from wall to robot is `(q - p) / F`. In
+//!    overlap it remains valid: no separating translation is shorter, as long as the overlap is at
+//!    most as deep as a flat cap is away along the axis (see `distance/depth/foot.rs`).
+//! 2. **Beyond a flat cap.** `x` and `y` are the closest points of the cap's disc, and the normal
+//!    is `(x - y) / |x - y|`.
+//! 3. **Without a gap**, or in overlap near a flat cap: the features decide (see
+//!    `distance/depth/way_out.rs`).
 //!
-//! # Where there is no such gap
-//! Coordinates are below 2 here, so that each is rounded by u at most before it comes here, and
-//! once more when it is seen from the link's start: two points are 2 sqrt(3) 2 u < 7 u farther
-//! apart or nearer than they should be, and what is computed of them errs by less than 9 u more. A
-//! gap of 16 u or less ([`ROUNDING`]) is none, and its direction, with however many digits, is that
-//! of the rounding. There, and where the two overlap and a flat cap is near, the features decide:
-//! see `distance/depth/way_out.rs`.
+//! One text serves `f64`, packs of it and double-double numbers.
+//!
+//! # Rounding
+//! **Normal.** The difference of two points at the distance `g` turns by about `4 u / g`, for
+//! numbers near one. Below `g = 2^-8` this is too much, and the pair is computed again with 32
+//! digits.
+//!
+//! **Gap.** Coordinates are below 2. Each is rounded by at most `u` in the input, and once more
+//! relative to the link's start. So two points are at most `2 sqrt(3) 2 u < 7 u` farther apart or
+//! nearer than they should be, and a result errs by less than 9 u more. A gap of at most 16 u
+//! ([`ROUNDING`]) counts as none: its direction, with any number of digits, is that of the
+//! rounding.
 //!
 //! # Kinks
-//! With the normal n fixed, let the triangle's foremost part be where <n, .> is greatest, and the
-//! link's where it is least. The distance of two convex sets, and where they overlap the way out
-//! along n, has a derivative along every motion if only one pair of points realises it (Danskin's
-//! theorem), and more than one pair do only if both foremost parts are more than a point and lie,
-//! seen along n, over each other by more than a point:
+//! Fix the normal `n`. The triangle's foremost part is where `<n, .>` is greatest, the link's
+//! foremost part where it is least.
 //!
-//! - the link's is a line of its side, n being perpendicular to the axis; the triangle's its face,
-//!   or an edge parallel to the axis;
-//! - the link's is a flat cap, n being parallel to the axis; the triangle's an edge or its face.
+//! **Claim.** The distance of two convex sets, and in overlap the translation along `n`, has a
+//! derivative along every motion if exactly one pair of points attains it (Danskin's theorem). More
+//! than one pair attains it only if both foremost parts are more than a point and overlap, seen
+//! along `n`, in more than a point:
 //!
-//! Rounding cannot tell a point that is farther by less than 64 u. Over a line of length l that is
-//! tilted by an angle a against a plane the distance rises by l sin a; between two lines at an
-//! angle a, F apart, by (l sin a)^2 / (2 F). What is no longer than that is a point: a cap without
-//! a radius has nothing that could be nearer than its centre.
+//! - the link's part is a line of its side, with `n` perpendicular to the axis; the triangle's part
+//!   is its face, or an edge parallel to the axis;
+//! - the link's part is a flat cap, with `n` parallel to the axis; the triangle's part is an edge
+//!   or its face.
 //!
-//! The corners of a triangle without area can move against one another: it counts as a kink too.
+//! **Rounding.** A point that is farther by less than 64 u counts as equally near. Over a line of
+//! length `l`, tilted by the angle `a` against a plane, the distance rises by `l sin a`; between
+//! two lines at the angle `a` and the distance `F`, by `(l sin a)^2 / (2 F)`. A part no longer than
+//! that is a point: all points of a cap without a radius are as near as its centre.
+//!
+//! The vertices of a triangle without area can move against each other: it counts as a kink too.
 
 use super::coordinates::{Pair, place_exactly};
 use super::nearest::Nearest;
@@ -48,29 +59,29 @@ use crate::distance::{
 };
 use parry3d_f64::math::{Real, Vector};
 
-/// What rounding cannot tell, of numbers near one.
+/// The tolerance for ties, for numbers near one.
 const TIE: Real = 64.0 * f64::UNIT_ROUNDOFF;
 
 /// A normal from a shorter gap is computed again with more digits.
 const SHORT: Real = 1.0 / 256.0;
 
-/// Farther than any point where numbers are near one.
+/// A value larger than any distance, for numbers near one.
 const FAR: Real = 16.0;
 
-/// Parts that lie over each other by less have a point in common: the room that [`TIE`] gives each
-/// of their ends.
+/// Parts that overlap by less than this share a single point: [`TIE`] allows each of their ends
+/// this much.
 const OVER_EACH_OTHER: Real = 16.0 * TIE;
 
-/// What there is to say of a link and a triangle, directions in the mesh's frame and lengths in its
+/// The features of a link and a triangle: directions in the mesh's frame, lengths in the mesh's
 /// unit.
 pub(crate) struct NearestFeatures {
     pub link: LinkFeature,
     pub triangle: TriangleFeature,
-    /// Where on the axis, from 0 to 1.
+    /// The fraction of the axis, from 0 to 1.
     pub fraction: Real,
     /// The unit vector from triangle to link.
     pub normal: Option<Vector>,
-    /// Minus the length of the least translation that separates the two, where they overlap.
+    /// In overlap, minus the length of the least translation that separates the two.
     pub depth: Real,
     /// From the axis point to the link's closest point.
     pub lever: Vector,
@@ -78,19 +89,19 @@ pub(crate) struct NearestFeatures {
 }
 
 impl NearestFeatures {
-    /// Of a link and a triangle in the mesh's frame.
+    /// Returns the features of a link and a triangle in the mesh's frame.
     pub(crate) fn of(link: &PlacedLink, corners: [Vector; 3]) -> Self {
         Measured::new(link, corners).features(|| NearPair::exactly(link, corners))
     }
 }
 
-/// A link and a triangle in the mesh's frame, measured.
+/// A link and a triangle, measured in `f64`.
 #[derive(Clone, Copy)]
 pub(crate) struct Measured {
-    /// Of which no kink is known.
+    /// The pair; `kink` is not computed yet.
     pub pair: NearPair<Real>,
     closest: Closest<Real>,
-    /// What 1 is in the mesh's unit.
+    /// The length of 1 in the mesh's unit.
     unit: Real,
 }
 
@@ -101,13 +112,12 @@ impl Measured {
         Self { pair, closest, unit }
     }
 
-    /// What [`PlacedLink::measure`] gives of the same two.
+    /// Returns the result of [`PlacedLink::measure`] for the same pair.
     pub(crate) fn nearest(&self, link: &PlacedLink, triangle: u32) -> Nearest {
         Pair::report(self.unit, link.start(), triangle, self.closest)
     }
 
-    /// What there is to tell. `exactly` is asked for the pair with more digits where these are too
-    /// few.
+    /// Returns the features. `exactly` supplies the pair with more digits, if `f64` is not enough.
     pub(crate) fn features(
         &self,
         exactly: impl FnOnce() -> NearPair<DoubleDouble>,
@@ -128,38 +138,37 @@ impl Measured {
     }
 }
 
-/// Which parts of a link and a triangle are nearest, in coordinates from the link's start and near
+/// The closest parts of a link and a triangle, in coordinates relative to the link's start and near
 /// one.
 #[derive(Clone, Copy)]
 pub(crate) struct NearestParts<T: Scalar> {
-    /// Whether it is the cap at the start, or else the one at the end. The side where it is
+    /// Whether the closest part is the cap at the start, and the cap at the end; the side if
     /// neither.
     pub caps: [T::Mask; 2],
-    /// Which corner it is, the first of them; where it is none, which edge. The face where it is
-    /// neither.
+    /// The closest vertex, the first that applies; otherwise the closest edge; otherwise the face.
     pub corners: [T::Mask; 3],
     pub edges: [T::Mask; 3],
-    /// Where on the axis, from 0 to 1.
+    /// The fraction of the axis, from 0 to 1.
     pub fraction: T,
     /// The triangle's closest point.
     pub on_triangle: Vec3<T>,
-    /// The unit vector from triangle to link, where there is one.
+    /// The unit vector from triangle to link, if `has_normal`.
     pub normal: Vec3<T>,
     pub has_normal: T::Mask,
-    /// F - r; where there is a way out, minus its length.
+    /// `F - r`; after `parting`, minus the length of the least translation.
     pub depth: T,
     /// From the axis point to the link's closest point.
     pub lever: Vec3<T>,
-    /// What the normal spans.
+    /// The length of the difference that gives the normal.
     pub gap: T,
-    /// Whether the closest point is one of a flat cap.
+    /// Whether the link's closest point belongs to a flat cap.
     pub at_flat_cap: T::Mask,
-    /// Whether the features say more than these points (see the head of this file).
+    /// Whether case 3 of the file's head applies.
     pub asks_way_out: T::Mask,
 }
 
 impl<T: Scalar> NearestParts<T> {
-    /// `closest` are the closest points where a flat cap decides.
+    /// Returns the closest parts. `closest` holds the closest points if a flat cap decides.
     #[inline(always)]
     pub(crate) fn new(
         triangle: &[Vec3<T>; 3],
@@ -175,11 +184,11 @@ impl<T: Scalar> NearestParts<T> {
         let apart = Vec3::select(at_flat_cap, from_cap, from_axis);
         let (gap, depth) = (apart.norm(), axial.axis_squared.sqrt() - link.radius);
         let rounding = gap.lit(ROUNDING);
-        // How far a flat end is along the axis; farther than everything where there is none.
+        // The distance of a flat end along the axis; [`FAR`] if that end is round.
         let (length, far) = (link.end.dot(link.axis), gap.lit(FAR));
         let to_start = link.flat[0].select(axial.s * length, far);
         let to_end = link.flat[1].select((one - axial.s) * length, far);
-        // Rounding of the ends of a short axis turns a wide cap.
+        // The rounding of a short axis turns a wide cap.
         let turn = one.max(link.radius.over(length));
         let is_capsule =
             !at_flat_cap & (rounding * turn - depth.min(zero)).lt(to_start.min(to_end));
@@ -208,7 +217,7 @@ impl<T: Scalar> NearestParts<T> {
         }
     }
 
-    /// Whether more than these numbers is needed: the features, or more digits.
+    /// Returns whether this pair needs its features or more digits.
     #[inline(always)]
     pub(crate) fn needs_closer_look(
         &self,
@@ -219,16 +228,19 @@ impl<T: Scalar> NearestParts<T> {
         self.asks_way_out | self.needs_digits(triangle, face, link)
     }
 
-    /// Where the gap is too short for these digits, or [`NearPair::is_kink`] must be asked with
-    /// more. A kink needs two corners that are foremost, and a normal that is parallel to a
-    /// flat cap's axis or perpendicular to the link's; beside a link also the third corner or
-    /// an edge along it. Or a triangle without area.
+    /// Returns whether the gap is too short for these digits, or [`NearPair::is_kink`] needs more
+    /// digits.
     ///
-    /// Points of the triangle whose distances F differ by rounding, at most 9 u, may take each
-    /// other's place: the way to them turns by no more than sqrt(2 * 9 u / F), as the rest of
-    /// the triangle does not come nearer. So a point at most 2 sqrt(3) away rises by less than
-    /// sqrt(216 u / F), and of two points one by twice as much more than the other: sqrt(864 u
-    /// / F). That is more than the 28 u / F by which the rounding of the points turns the normal.
+    /// A kink needs two foremost vertices, and a normal that is parallel to a flat cap's axis or
+    /// perpendicular to the link's axis. Beside a link it also needs the third vertex or an edge
+    /// along the link. A triangle without area always qualifies.
+    ///
+    /// **Rounding.** Points of the triangle whose distances `F` differ by rounding, at most 9 u,
+    /// may be exchanged. The direction to them then turns by at most `sqrt(2 * 9 u / F)`, as the
+    /// rest of the triangle is no nearer. A point at most `2 sqrt(3)` away therefore rises by less
+    /// than `sqrt(216 u / F)`, and one of two points by at most twice that more than the other:
+    /// `sqrt(864 u / F)`. This exceeds the `28 u / F` by which the rounding of the points turns the
+    /// normal.
     #[inline(always)]
     fn needs_digits(&self, triangle: &[Vec3<T>; 3], face: &Face<T>, link: &Link<T>) -> T::Mask {
         let tie = (self.gap.lit(1024.0 * T::UNIT_ROUNDOFF)).over(self.gap).sqrt();
@@ -247,27 +259,28 @@ impl<T: Scalar> NearestParts<T> {
     }
 }
 
-/// Whether a point is a corner, as far as rounding can tell. (Functions, because a closure may
-/// escape inlining.)
+/// Returns whether a point is a vertex, within rounding. (A function, because a closure may not be
+/// inlined.)
 #[inline(always)]
 fn is_at<T: Scalar>(point: Vec3<T>, corner: Vec3<T>) -> T::Mask {
     (point - corner).largest().le(point.x.lit(TIE))
 }
 
-/// Whether a point lies on an edge, as far as rounding can tell.
+/// Returns whether a point lies on an edge, within rounding.
 #[inline(always)]
 fn is_on<T: Scalar>(point: Vec3<T>, start: Vec3<T>, end: Vec3<T>) -> T::Mask {
     let (edge, from) = (end - start, point - start);
     from.along(edge, -share_of(from, edge)).largest().le(point.x.lit(TIE))
 }
 
-/// Where on an edge, from 0 to 1, the foot of a point lies that is seen from the edge's start.
+/// Returns the fraction, from 0 to 1, of the foot of a point on an edge. The point is relative to
+/// the edge's start.
 #[inline(always)]
 fn share_of<T: Scalar>(from: Vec3<T>, edge: Vec3<T>) -> T {
     from.dot(edge).over(edge.norm_squared()).max(from.x.zero()).min(from.x.one())
 }
 
-/// Which corners are foremost along a normal, as far as rounding can tell.
+/// Returns the foremost vertices along a normal, within rounding.
 #[inline(always)]
 fn are_foremost<T: Scalar>([a, b, c]: &[Vec3<T>; 3], normal: Vec3<T>, tie: T) -> [T::Mask; 3] {
     let [a, b, c] = [normal.dot(*a), normal.dot(*b), normal.dot(*c)];
@@ -275,8 +288,8 @@ fn are_foremost<T: Scalar>([a, b, c]: &[Vec3<T>; 3], normal: Vec3<T>, tie: T) ->
     [top.le(a), top.le(b), top.le(c)]
 }
 
-/// By how much a cap's rim rises over a plane with this normal: less what rounding does to the ends
-/// of a short axis, which turns a wide cap.
+/// Returns how far a cap's rim rises over a plane with this normal, less the rounding of a short
+/// axis, which turns a wide cap.
 #[inline(always)]
 fn rise_over_cap<T: Scalar>(normal: Vec3<T>, link: &Link<T>) -> T {
     let across = normal.along(link.axis, -normal.dot(link.axis)).norm();
@@ -285,7 +298,7 @@ fn rise_over_cap<T: Scalar>(normal: Vec3<T>, link: &Link<T>) -> T {
     across * link.radius * one.over(turn)
 }
 
-/// A link and a triangle, and what is nearest of them.
+/// A link and a triangle with their closest parts.
 #[derive(Clone, Copy)]
 pub(crate) struct NearPair<T: Scalar> {
     pub link: Link<T>,
@@ -296,7 +309,7 @@ pub(crate) struct NearPair<T: Scalar> {
 }
 
 impl NearPair<DoubleDouble> {
-    /// With about 32 digits.
+    /// Returns the pair computed with about 32 digits.
     pub(crate) fn exactly(link: &PlacedLink, corners: [Vector; 3]) -> Self {
         let (triangle, link) = place_exactly(link, corners);
         let (pair, _, apart) = Self::new(triangle, link);
@@ -305,7 +318,7 @@ impl NearPair<DoubleDouble> {
 }
 
 impl<T: Scalar<Mask = bool> + PartialEq> NearPair<T> {
-    /// Of which no kink is known, with its closest points and how far the axis is from the
+    /// Returns the pair without its kink, its closest points, and the distance of the axis from the
     /// triangle.
     fn new(triangle: [Vec3<T>; 3], link: Link<T>) -> (Self, Closest<T>, T) {
         let face = Face::new(triangle);
@@ -320,7 +333,7 @@ impl<T: Scalar<Mask = bool> + PartialEq> NearPair<T> {
         (Self { link, parts, kink: false, face, triangle }, closest, apart)
     }
 
-    /// The same with `f64`, in the mesh's frame, where 1 is `unit`.
+    /// Returns the features in `f64`, in the mesh's frame, where 1 is `unit`.
     fn features(&self, unit: Real, rounded: impl Fn(T) -> Real) -> NearestFeatures {
         let Self { parts, kink, .. } = self;
         let vector = |v: Vec3<T>| Vec3::new(rounded(v.x), rounded(v.y), rounded(v.z));
@@ -335,7 +348,7 @@ impl<T: Scalar<Mask = bool> + PartialEq> NearPair<T> {
         }
     }
 
-    /// The triangle's closest point, as a mean of its corners.
+    /// Returns the triangle's closest point as weights of its vertices.
     pub(crate) fn weights(&self) -> [T; 3] {
         let (point, corners) = (self.parts.on_triangle, &self.triangle);
         let (zero, one) = (point.x.zero(), point.x.one());
@@ -351,7 +364,7 @@ impl<T: Scalar<Mask = bool> + PartialEq> NearPair<T> {
             }
             TriangleFeature::Face => {
                 let foot = self.face.project(point);
-                // The face's first vertex is another than the triangle's; the order is the same.
+                // The face begins at another vertex than the triangle, in the same order.
                 let first =
                     (0..3).find(|&corner| corners[corner] == self.face.vertices[0]).unwrap_or(0);
                 weights[first] = one - foot.alpha - foot.beta;
@@ -362,8 +375,10 @@ impl<T: Scalar<Mask = bool> + PartialEq> NearPair<T> {
         weights
     }
 
-    /// Whether more than one pair of points is as near, with the unit vector `normal` from triangle
-    /// to link and the axis `apart` from the triangle.
+    /// Returns whether more than one pair of points attains the distance (a kink).
+    ///
+    /// `normal` is the unit vector from triangle to link, and `apart` the distance of the axis from
+    /// the triangle.
     fn is_kink(&self, normal: Vec3<T>, apart: T, at_flat_cap: bool) -> bool {
         if !has_area(&self.face) {
             return true;
@@ -393,13 +408,13 @@ impl<T: Scalar<Mask = bool> + PartialEq> NearPair<T> {
             let shared = length.min(start.max(end)) - apart.zero().max(start.min(end));
             is_along(to - from, link, apart, tie) && apart.lit(OVER_EACH_OTHER).lt(shared)
         };
-        // One beside the face may be as near to an edge.
+        // A link beside the face may be as near to an edge.
         [[a, b], [b, c], [c, a]].into_iter().any(shares)
             || (b != c && apart.lit(OVER_EACH_OTHER).lt(self.above_face() * length))
     }
 
-    /// How much of the axis is above the face, seen along the face's normal; a tie beyond its edges
-    /// counts.
+    /// Returns the fraction of the axis above the face, seen along the face's normal. A tie beyond
+    /// its edges counts.
     fn above_face(&self) -> T {
         let (end, across) = (self.link.end, self.face.across);
         let [a, b, c] = self.face.vertices;
@@ -421,7 +436,8 @@ impl<T: Scalar<Mask = bool> + PartialEq> NearPair<T> {
 }
 
 impl NearPair<Real> {
-    /// The same on the way out of the triangle, or where a gap is none.
+    /// Returns the same pair with the features of the least translation (case 3 of the file's
+    /// head).
     pub(crate) fn parting(mut self) -> Self {
         let [a, b, c] = self.triangle;
         let way = WayOut::new(&LinkTriangle::new(self.link, [a, b, c].map(Vector::from)));
@@ -446,14 +462,15 @@ impl NearPair<Real> {
     }
 }
 
-/// Whether the triangle has an area, so that only one mean of its corners is the closest point.
+/// Returns whether the triangle has an area, so that only one mean of its vertices is the closest
+/// point.
 #[inline(always)]
 fn has_area<T: Scalar>(face: &Face<T>) -> T::Mask {
     let longest = face.vertices[2] - face.vertices[1];
     (longest.norm_squared() * longest.x.lit(TIE)).lt(face.across.norm())
 }
 
-/// The part of a link by what [`NearestParts`] has of its caps.
+/// Returns the feature of a link from the caps of [`NearestParts`].
 pub(crate) fn link_feature([start, end]: [bool; 2]) -> LinkFeature {
     match (start, end) {
         (true, _) => LinkFeature::StartCap,
@@ -462,7 +479,7 @@ pub(crate) fn link_feature([start, end]: [bool; 2]) -> LinkFeature {
     }
 }
 
-/// The part of a triangle by what [`NearestParts`] has of its corners and edges.
+/// Returns the feature of a triangle from the vertices and edges of [`NearestParts`].
 pub(crate) fn triangle_feature(corners: [bool; 3], edges: [bool; 3]) -> TriangleFeature {
     let first = |parts: [bool; 3]| {
         (0..).zip(parts).find(|(_, is_nearest)| *is_nearest).map(|(part, _)| part)
@@ -471,12 +488,12 @@ pub(crate) fn triangle_feature(corners: [bool; 3], edges: [bool; 3]) -> Triangle
     corner.or(first(edges).map(TriangleFeature::Edge)).unwrap_or(TriangleFeature::Face)
 }
 
-/// Whether an edge is as near to a link all along, `apart` from the axis, as far as rounding can
-/// tell.
+/// Returns whether all points of an edge are equally near to a link, within rounding. `apart` is
+/// the distance from the axis.
 #[inline(always)]
 fn is_along<T: Scalar>(edge: Vec3<T>, link: &Link<T>, apart: T, tie: T) -> T::Mask {
     let sine = edge.cross(link.axis).norm().over(edge.norm());
     let rise = edge.norm().min(link.end.norm()) * sine;
-    // Where nothing is between them, what the edge leads away by is what it is away.
+    // At distance 0 the distance of an edge point is its own rise.
     rise.le(tie) | (rise * rise).le(tie * apart * apart.lit(2.0))
 }

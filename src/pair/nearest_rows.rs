@@ -1,4 +1,4 @@
-//! What is found of several pairs, each number in a row of its own.
+//! The results of several pairs, each number in its own row.
 
 use super::nearest::Nearest;
 use super::pair_lanes::{BATCH, PairLanes, Rows, store};
@@ -14,7 +14,7 @@ impl NearestRows {
         Self([[0.0; BATCH]; 7])
     }
 
-    /// Takes what was found of a pack, from the lane `lane` on. Returns the distances.
+    /// Stores the results of a pack from `lane` on. Returns the distances.
     #[inline(always)]
     pub(super) fn take<L: Pack<Element = f64>>(&mut self, lane: usize, pack: &PairLanes<L>) -> L {
         let distance = pack.closest.distance * pack.pair.unit;
@@ -28,7 +28,7 @@ impl NearestRows {
         self.0[0][lane]
     }
 
-    /// What was found of the pair of a lane, which is one with `triangle`.
+    /// Returns the result of the pair in a lane, whose triangle is `triangle`.
     pub(super) fn nearest(&self, lane: usize, triangle: u32) -> Nearest {
         let point = |row: usize| {
             Vector::new(self.0[row][lane], self.0[row + 1][lane], self.0[row + 2][lane])

@@ -1,6 +1,5 @@
-//! Pairs of links with triangles or links in double precision, a pack at a time, each in
-//! coordinates of its own: those of [`coordinates`](super::coordinates), with the same bits on
-//! every instruction set.
+//! Packs of pairs of a link and a triangle or another link, in double precision. Each pair has its
+//! own [`coordinates`](super::coordinates), with the same bits on every instruction set.
 
 use super::coordinates::{Pair, Placed};
 use super::placed_link::PlacedLink;
@@ -9,17 +8,17 @@ use crate::distance::{Axial, Closest, Face, Scalar, Vec3};
 use crate::mesh::splat;
 use parry3d_f64::math::{Real, Vector};
 
-/// How many pairs are computed together: the widest pack of `f64`.
+/// The number of pairs that are computed together: the lanes of the widest pack of `f64`.
 pub(crate) const BATCH: usize = 8;
 
-/// What is known of each of several pairs, each number in a row of its own.
+/// Numbers of several pairs, each number in its own row.
 pub(crate) type Rows<const N: usize> = [[Real; BATCH]; N];
 
-/// Pairs in the mesh's frame: the corners of the triangle, the ends of the link's axis, the radius,
-/// and 1 for each flat cap.
+/// Pairs in the mesh's frame: the triangle's vertices, the ends of the link's axis, the radius, and
+/// 1 for each flat cap.
 pub(crate) type PairRows = Rows<18>;
 
-/// Writes a pair with a link between two points in the mesh's frame.
+/// Writes a pair of a triangle and a link, in the mesh's frame.
 pub(crate) fn put_pair(
     rows: &mut PairRows,
     lane: usize,
@@ -51,8 +50,8 @@ pub(super) fn put_link<const N: usize>(
     rows[row + 8][lane] = end;
 }
 
-/// The links in the rows `row` to `row + 8`, with the bits of [`PlacedLink::between`], but for the
-/// axis, which is left out.
+/// Reads the links in the rows `row` to `row + 8`, with the bits of [`PlacedLink::between`], except
+/// the axis, which is zero.
 #[inline(always)]
 pub(super) fn link<L: Pack<Element = f64>>(
     token: L::Token,
@@ -71,7 +70,7 @@ pub(super) fn link<L: Pack<Element = f64>>(
     Placed { start, along, axis: Vec3::zero(zero), radius, flat, extent }
 }
 
-/// Three coordinates from the rows `row` to `row + 2`.
+/// Reads three coordinates from the rows `row` to `row + 2`.
 #[inline(always)]
 fn point<L: Pack<Element = f64>>(
     token: L::Token,
@@ -83,7 +82,7 @@ fn point<L: Pack<Element = f64>>(
     Vec3::new(L::load(token, &x[lane..]), L::load(token, &y[lane..]), L::load(token, &z[lane..]))
 }
 
-/// The corners of triangles, in the first nine rows.
+/// Reads the vertices of triangles from the first nine rows.
 #[inline(always)]
 pub(crate) fn corners<L: Pack<Element = f64>, const N: usize>(
     token: L::Token,
@@ -97,7 +96,7 @@ pub(crate) fn corners<L: Pack<Element = f64>, const N: usize>(
     ]
 }
 
-/// Writes the corners of a triangle to the first nine rows.
+/// Writes the vertices of a triangle to the first nine rows.
 #[inline(always)]
 pub(crate) fn put_corners<const N: usize>(rows: &mut Rows<N>, lane: usize, corners: [Vector; 3]) {
     for (place, point) in corners.into_iter().enumerate() {
@@ -127,13 +126,13 @@ pub(crate) fn store<L: Pack<Element = f64>, const N: usize>(
 }
 
 impl<L: Pack<Element = f64>> Placed<L> {
-    /// The same with its axis, which all that has to do with flat caps or triangles needs.
+    /// Computes the axis, which flat caps and triangles need.
     #[inline(always)]
     pub(super) fn with_axis(self) -> Self {
         Self { axis: self.along.normalised(), ..self }
     }
 
-    /// One link in all lanes.
+    /// Returns one link in all lanes.
     #[inline(always)]
     pub(super) fn splat(token: L::Token, link: &PlacedLink) -> Self {
         let zero = L::splat(token, 0.0);
@@ -161,20 +160,20 @@ pub(super) struct PairLanes<L: Scalar> {
 }
 
 impl<L: Pack<Element = f64>> PairLanes<L> {
-    /// Those from the lane `lane` on.
+    /// Measures the pairs from `lane` on.
     #[inline(always)]
     pub(super) fn new(token: L::Token, rows: &PairRows, lane: usize) -> Self {
         let link = link(token, rows, 9, lane).with_axis();
         Self::between(&link, corners::<L, 18>(token, rows, lane))
     }
 
-    /// Those of links and triangles in the mesh's frame.
+    /// Measures pairs of links and triangles in the mesh's frame.
     #[inline(always)]
     pub(super) fn between(placed: &Placed<L>, corners: [Vec3<L>; 3]) -> Self {
         let pair = placed.with(corners);
         let face = Face::new(pair.triangle);
         let axial = Axial::new(&pair.link, &face);
-        // Where no lane is beyond a flat cap the discs decide nothing.
+        // If no lane is beyond a flat cap, the discs decide nothing.
         let closest = if L::bits(axial.beyond_flat_cap()) == 0 {
             axial.without_caps(&pair.link)
         } else {
@@ -183,7 +182,7 @@ impl<L: Pack<Element = f64>> PairLanes<L> {
         Self { pair, face, axial, closest, start: placed.start }
     }
 
-    /// A point in the mesh's frame.
+    /// Returns a point in the mesh's frame.
     #[inline(always)]
     pub(crate) fn placed(&self, point: Vec3<L>) -> Vec3<L> {
         self.start + point * self.pair.unit

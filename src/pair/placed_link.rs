@@ -1,4 +1,4 @@
-//! A link in the mesh's frame, and how near a triangle is to it.
+//! A link in the mesh's frame, and its distance from a triangle.
 
 use super::coordinates::{Pair, Placed, SLACK, offset_from_axis};
 use super::nearest::Nearest;
@@ -12,27 +12,27 @@ use parry3d_f64::math::{Pose, Real, Vector};
 pub(crate) struct PlacedLink {
     start: Vector,
     end: Vector,
-    /// From start to end.
+    /// The vector from start to end.
     along: Vector,
-    /// The unit direction of the axis, or zero without one.
+    /// The unit direction of the axis, or zero if it has none.
     axis: Vec3<Real>,
     radius: Real,
     flat: [bool; 2],
     /// The largest coordinate from the start, or the radius.
     extent: Real,
-    /// How long the links before it are, together.
+    /// The total length of the links before it.
     before: Real,
-    /// The segment of the robot's input that it stands for.
+    /// The index of the segment of the robot's input that this link represents.
     segment: u32,
 }
 
 impl PlacedLink {
-    /// The link at `pose`.
+    /// Returns the link at `pose`.
     pub(crate) fn new(link: &ModifiedCylinder, pose: &Pose) -> Self {
         Self::of(&link.transformed(pose))
     }
 
-    /// A link that is in the mesh's frame.
+    /// Returns a link that is already in the mesh's frame.
     pub(crate) fn of(link: &ModifiedCylinder) -> Self {
         Self::between(link.start(), link.end(), link.radius(), link.flat())
     }
@@ -44,13 +44,13 @@ impl PlacedLink {
         Self { start, end, along, axis, radius, flat, extent, before: 0.0, segment: 0 }
     }
 
-    /// The same link, as the one that stands for a segment of the robot's input, behind links of
-    /// the length `before`.
+    /// Returns the same link with its place on the robot: the length of the links before it, and
+    /// its segment of the robot's input.
     pub(super) fn at(self, before: Real, segment: u32) -> Self {
         Self { before, segment, ..self }
     }
 
-    /// The answer about the link with this number.
+    /// Returns the answer about this link, whose index is `number`.
     pub(crate) fn answer(&self, number: usize, nearest: &Nearest) -> LinkProximity {
         let Nearest { triangle, distance, on_robot, on_mesh } = *nearest;
         let arc_length = self.arc_length_of(on_mesh);
@@ -62,15 +62,15 @@ impl PlacedLink {
         self.start.is_finite() && self.end.is_finite() && self.radius.is_finite()
     }
 
-    /// Where along the robot its axis is nearest to a point.
+    /// Returns the arc length at which the robot's axis is closest to a point.
     pub(crate) fn arc_length_of(&self, point: Vector) -> Real {
         self.before + self.share_of(point) * self.along.dot(Vector::from(self.axis))
     }
 
-    /// The share of the axis at which it is nearest to a point.
+    /// Returns the fraction of the axis, from 0 to 1, that is closest to a point.
     pub(crate) fn share_of(&self, point: Vector) -> Real {
         let share = (point - self.start).dot(self.along) / self.along.length_squared();
-        // 0 / 0 without a length: the comparison turns it into 0.
+        // Without a length this is 0 / 0; the comparison turns NaN into 0.
         if share > 0.0 { share.min(1.0) } else { 0.0 }
     }
 
@@ -103,7 +103,7 @@ impl PlacedLink {
         self.extent
     }
 
-    /// The nearest points of the link and a triangle.
+    /// Returns the closest points of the link and a triangle.
     pub(crate) fn measure(&self, triangle: u32, corners: [Vector; 3]) -> Nearest {
         let pair = self.pair(corners);
         let face = Face::new(pair.triangle);
@@ -115,14 +115,15 @@ impl PlacedLink {
         )
     }
 
-    /// A lower bound on the distance between link and triangle.
+    /// Returns a lower bound on the distance between link and triangle.
     #[cfg(feature = "gpu")]
     pub(crate) fn at_least(&self, corners: [Vector; 3]) -> Real {
         let pair = self.pair(corners);
         pair.at_least() * pair.unit
     }
 
-    /// The same if they are at most `bound` apart. Cheaper bounds spare what they can.
+    /// Returns the closest points if they are at most `bound` apart. Cheaper bounds are tested
+    /// first.
     pub(super) fn measure_within(
         &self,
         bound: Real,
@@ -130,8 +131,8 @@ impl PlacedLink {
         corners: [Vector; 3],
     ) -> Option<Nearest> {
         let pair = self.pair(corners);
-        // Bounds are brought into the mesh's unit, and not the other way: whatever is rounded
-        // there, the distance is too.
+        // Convert the bounds to the mesh's unit, and not the reverse: the rounding there is the
+        // same for the distance.
         if pair.at_least() * pair.unit > bound {
             return None;
         }
@@ -148,9 +149,9 @@ impl PlacedLink {
         (nearest.distance <= bound).then_some(nearest)
     }
 
-    /// Whether the link is at most `bound` from the segment between two points.
+    /// Returns whether the link is at most `bound` from the segment between two points.
     pub(crate) fn comes_within(&self, bound: Real, from: Vector, to: Vector) -> bool {
-        // The capsule around the link is quick to measure, and no farther.
+        // The capsule around the link is quick to measure and no farther.
         let pair = self.pair([from, to, to]);
         let [from, to, _] = pair.triangle;
         let axis = segment_segment([Vec3::zero(0.0), pair.link.end], [from, to]).distance;
@@ -161,32 +162,36 @@ impl PlacedLink {
         Axial::new(&pair.link, &edge).with_caps(&pair.link, &edge).distance * pair.unit <= bound
     }
 
-    /// The largest coordinate of link and triangle from the link's start, or the radius.
+    /// Returns the largest coordinate of link and triangle relative to the link's start, or the
+    /// radius.
     pub(crate) fn extent_with(&self, corners: [Vector; 3]) -> Real {
         let [a, b, c] = corners.map(|corner| (corner - self.start).abs());
         a.max(b).max(c).max_element().max(self.extent)
     }
 
-    /// The pair with a triangle, in coordinates of its own.
+    /// Returns the pair with a triangle, in its own coordinates.
     #[inline(always)]
     pub(super) fn pair(&self, corners: [Vector; 3]) -> Pair<Real> {
         self.in_lanes().with(corners.map(Vec3::from))
     }
 
-    /// The same for what computes with packs as well.
+    /// Returns the link as a [`Placed`], the form that packs share.
     #[inline(always)]
     pub(super) fn in_lanes(&self) -> Placed<Real> {
         let Self { along, axis, radius, flat, extent, .. } = *self;
         Placed { start: self.start.into(), along: along.into(), axis, radius, flat, extent }
     }
 
-    /// A lower bound on the distance between the link and anything in the box.
+    /// Returns a lower bound on the distance between the link and the contents of a box.
     ///
-    /// With c the box's centre and v the way to it from the nearest axis point, the whole axis lies
-    /// behind a plane with normal v before its ends, and the box beyond the one through its
-    /// corner on that side. But for rounding the bound is |v| - <|v|, h> / |v| with h the half
-    /// extents: off by about h^2 / |v|, next to nothing for a small box. It serves better than
-    /// the distance between the boxes of link and node, which a slanted link fills badly.
+    /// **Definitions.** `c`: the box's centre. `v`: the vector to `c` from the closest axis point.
+    /// `h`: the half extents.
+    ///
+    /// **Claim.** The axis lies behind a plane with the normal `v` before both of its ends. The box
+    /// lies beyond the plane with the same normal through its corner on that side. Before rounding,
+    /// the bound is `|v| - <|v|, h> / |v|`, which is below the distance by about `h^2 / |v|`:
+    /// little for a small box. The distance between the boxes of link and node is looser, because a
+    /// slanted link fills its box badly.
     pub(crate) fn distance_to_box(&self, mins: Vector, maxs: Vector) -> Real {
         let (low, high) = (mins - self.start, maxs - self.start);
         let scale =

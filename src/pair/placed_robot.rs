@@ -1,4 +1,4 @@
-//! The robot in the mesh's frame.
+//! A robot in the mesh's frame.
 
 use super::checks::{check_range, rigid_pose};
 use super::placed_link::PlacedLink;
@@ -7,23 +7,23 @@ use crate::distance::Scalar;
 use crate::robot::{BoundingCapsule, Chain, LinkNode, ModifiedCylinder};
 use parry3d_f64::math::{Pose, Real, Vector};
 
-/// A robot at a pose in the frame of a mesh, whose links are placed when they are needed.
+/// A robot at a pose, in the frame of a mesh. Each link is placed on demand.
 #[derive(Clone, Copy)]
 pub(crate) struct PlacedRobot<'a> {
     robot: &'a Chain,
-    /// Its rotation is of unit length.
+    /// The pose; its rotation has unit length.
     pose: Pose,
-    /// Base and tip in the mesh's frame.
+    /// Base and tip, in the mesh's frame.
     ends: [Vector; 2],
-    /// By how much a rotation that is not quite of unit length stretches the robot.
+    /// The factor by which a rotation that is not exactly of unit length stretches the robot.
     stretch: Real,
-    /// What rounding can do to the place of a link in a capsule.
+    /// The rounding error of a link's position relative to a capsule around it.
     ///
-    /// A rotated point errs by less than 20 u |q|^2 |p| (glam's formula, the length of the error),
-    /// and a moved one by u more of where it comes to be. |q|^2 |p| is no longer than that
-    /// place and the translation together, and a length at most 1.74 times its largest
-    /// coordinate: 37 u of the largest coordinates of both. Twice that, for the capsule and for
-    /// the link, is less than 128 u.
+    /// - A rotated point errs by less than 20 u |q|^2 |p| (glam's formula, length of the error),
+    ///   and a translated point by u more of its final position.
+    /// - |q|^2 |p| is at most the sum of this position and the translation, and a length is at most
+    ///   1.74 times its largest coordinate: together 37 u of the largest coordinates of both.
+    /// - Twice that, for the capsule and for the link, is less than 128 u.
     slack: Real,
 }
 
@@ -45,24 +45,24 @@ impl<'a> PlacedRobot<'a> {
         Ok(Self { robot, pose, ends, stretch, slack })
     }
 
-    /// The links in the robot's frame.
+    /// Returns the links in the robot's frame.
     pub(crate) fn links(&self) -> &'a [ModifiedCylinder] {
         self.robot.links()
     }
 
-    /// A link in the mesh's frame.
+    /// Returns a link in the mesh's frame.
     pub(crate) fn link(&self, link: usize) -> PlacedLink {
         let segment = self.robot.segment_of(link) as u32;
         PlacedLink::new(&self.robot.links()[link], &self.pose)
             .at(self.robot.length_before(link), segment)
     }
 
-    /// All links in the mesh's frame.
+    /// Returns all links in the mesh's frame.
     pub(crate) fn placed_links(&self) -> impl Iterator<Item = PlacedLink> {
         (0..self.robot.links().len()).map(|link| self.link(link))
     }
 
-    /// How long the links before a link are, together.
+    /// Returns the total length of the links before a link.
     pub(crate) fn length_before(&self, link: usize) -> Real {
         self.robot.length_before(link)
     }
@@ -71,25 +71,26 @@ impl<'a> PlacedRobot<'a> {
         self.robot.link_tree()
     }
 
-    /// A capsule around links in the mesh's frame.
+    /// Returns a capsule around links, in the mesh's frame.
     pub(crate) fn bound(&self, bound: &BoundingCapsule) -> PlacedLink {
         let ([start, end], radius) = self.capsule(bound);
         PlacedLink::between(start, end, radius, [false; 2])
     }
 
-    /// The ends of its axis, and a radius that holds the links as they are placed one by one.
+    /// Returns the ends of the capsule's axis, and a radius that contains the links as they are
+    /// placed one by one.
     #[inline(always)]
     fn capsule(&self, bound: &BoundingCapsule) -> ([Vector; 2], Real) {
         ([self.pose * bound.start, self.pose * bound.end], bound.radius * self.stretch + self.slack)
     }
 
-    /// Base and tip in the mesh's frame.
+    /// Returns base and tip in the mesh's frame.
     pub(crate) fn ends(&self) -> [Vector; 2] {
         self.ends
     }
 
-    /// The ends of a link's axis, or of the axis of a capsule around links, in the mesh's frame;
-    /// the radius; which caps are flat.
+    /// Returns the outline of a node in the mesh's frame: the ends of the axis of a link, or of a
+    /// capsule around links; the radius; which caps are flat.
     #[inline(always)] // what it hands over is used at once
     pub(crate) fn outline(&self, node: &LinkNode) -> ([Vector; 2], Real, [bool; 2]) {
         match node {
@@ -104,7 +105,7 @@ impl<'a> PlacedRobot<'a> {
         }
     }
 
-    /// A point of the robot in the mesh's frame.
+    /// Transforms a point of the robot into the mesh's frame.
     pub(crate) fn placed(&self, point: Vector) -> Vector {
         self.pose * point
     }

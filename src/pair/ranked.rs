@@ -1,5 +1,6 @@
-//! The triangles near a robot's links in the order in which pieces of the wall appear: measured in
-//! double precision, a pack at a time.
+//! Ranks the triangles near a robot's links, in double precision, one pack at a time.
+//!
+//! The rank is the order in which pieces of the wall appear when the bound grows.
 
 use super::coordinates::Pair;
 use super::nearest::Nearest;
@@ -12,25 +13,25 @@ use crate::mesh::Mesh;
 use fearless_simd::Level;
 use parry3d_f64::math::Real;
 
-/// A triangle near a link.
+/// A triangle near a link, with its rank.
 #[derive(Clone, Copy)]
 pub(crate) struct Ranked {
-    /// The distance, or where it is 0 the axis distance less the radius.
+    /// The distance; if that is 0, the axis distance minus the radius, at most 0.
     pub rank: Real,
     pub nearest: Nearest,
-    /// What rounding can do to the distance.
+    /// The rounding error of the distance.
     pub rounding: Real,
 }
 
-/// What is measured of several pairs.
+/// The results of several pairs.
 struct RankRows {
     nearest: NearestRows,
-    /// The axis distances less the radii.
+    /// The axis distances minus the radii.
     to_axis: [Real; BATCH],
     extent: [Real; BATCH],
 }
 
-/// Measures triangles, each with its link.
+/// Measures triangles, each with its link, and passes each result to `take` in order.
 pub(crate) fn rank_each<'a>(
     level: Level,
     mesh: &Mesh,
@@ -63,8 +64,8 @@ fn ranked(found: &RankRows, lane: usize, triangle: u32) -> Ranked {
     Ranked { rank, nearest, rounding: rounding(found.extent[lane]) }
 }
 
-/// What rounding can do to the distance between a link and what is no farther out than `extent`,
-/// from the link's start.
+/// Returns the rounding error of the distance between a link and a shape whose coordinates relative
+/// to the link's start are at most `extent`.
 pub(crate) fn rounding(extent: Real) -> Real {
     32.0 * f64::UNIT_ROUNDOFF * extent
 }

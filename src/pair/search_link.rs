@@ -1,5 +1,5 @@
-//! A link near one, in the precision of the search: what rounding does there is told in
-//! [`search_frame`](crate::mesh::SearchFrame).
+//! A link in the precision and frame of the search, with the rounding error of its distances.
+//! [`SearchFrame`](crate::mesh::SearchFrame) derives the error.
 
 use super::placed_link::PlacedLink;
 use crate::distance::lanes::Lane;
@@ -11,28 +11,28 @@ use parry3d_f64::math::{Real, Vector};
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct SearchLink<E> {
     pub start: Vec3<E>,
-    /// From start to end.
+    /// The vector from start to end.
     pub along: Vec3<E>,
     pub axis: Vec3<E>,
     pub length: E,
     pub radius: E,
     pub flat: [bool; 2],
-    /// What rounding can do to a distance.
+    /// The rounding error of a distance.
     pub error: E,
-    /// Brings a length of the mesh's frame into the search's.
+    /// The factor from the mesh's unit to that of the search.
     scale: Real,
 }
 
 impl<E: Lane> SearchLink<E> {
-    /// A link in the frame of the search. None where it lies too far out for the precision, or its
-    /// axis is too short for its flat caps.
+    /// Returns the link in the frame of the search. Returns `None` if it lies too far out for the
+    /// precision, or if its axis is too short for its flat caps.
     pub(crate) fn new(link: &PlacedLink, frame: &SearchFrame) -> Option<Self> {
         let axis = Vector::from(link.axis());
         Self::of([link.start(), link.end()], link.along(), axis, link.radius(), link.flat(), frame)
     }
 
-    /// The same from the ends of the axis in the mesh's frame, for a link that no pair is measured
-    /// with.
+    /// Same as [`new`](Self::new), from the ends of the axis in the mesh's frame, for a link that
+    /// is only searched and never measured.
     #[inline]
     pub(crate) fn between(
         [start, end]: [Vector; 2],
@@ -57,8 +57,8 @@ impl<E: Lane> SearchLink<E> {
         flat: [bool; 2],
         frame: &SearchFrame,
     ) -> Option<Self> {
-        // Not from the ends after they are rounded: the direction of a short, thick link must not
-        // turn.
+        // Scale the axis vector itself: as a difference of rounded ends, the direction of a short,
+        // thick link would turn.
         let along = along * frame.scale;
         let [start, end] = ends.map(|point| (point - frame.centre) * frame.scale);
         let radius = radius * frame.scale;
@@ -67,7 +67,7 @@ impl<E: Lane> SearchLink<E> {
             return None;
         }
         let length = along.dot(axis);
-        // A link too short for its flat caps in this precision is one for double precision alone.
+        // Such a link is searched in double precision only.
         if flat != [false; 2] && !gives_direction(E::round(length) * E::round(length)) {
             return None;
         }
@@ -75,7 +75,7 @@ impl<E: Lane> SearchLink<E> {
         Some(Self {
             start: round(start),
             along: round(along),
-            // Without a direction the flat caps count as round, which is a bound for them too.
+            // Without a direction the flat caps count as round, which bounds them too.
             axis: round(axis),
             length: E::round(length),
             radius: E::round(radius),
@@ -85,50 +85,51 @@ impl<E: Lane> SearchLink<E> {
         })
     }
 
-    /// Whether its `error` is so small that the search rules out nearly all that is farther than
-    /// the nearest triangle.
+    /// Returns whether `error` is small enough that the search excludes nearly all triangles beyond
+    /// the closest one.
     pub(crate) fn is_resolved(&self, frame: &SearchFrame) -> bool {
         let error: Real = self.error.into();
         4.0 * error <= frame.typical
     }
 
-    /// What the bound of a node must be below for the node to hold a triangle whose axis distance
-    /// is below `limit`: the bound may be too large by three times `error`.
+    /// Returns the limit below which a node's bound must be if the node holds a triangle with an
+    /// axis distance below `limit`: the bound may be too large by `3 error`.
     #[inline(always)]
     pub(crate) fn limit_of_bounds(&self, limit: E) -> E {
         limit + self.error + self.error + self.error
     }
 
-    /// The square of [`SearchLink::limit_of_bounds`].
+    /// Returns the square of [`SearchLink::limit_of_bounds`].
     #[inline(always)]
     pub(crate) fn squared_limit_of_bounds(&self, limit: E) -> E {
         let limit = self.limit_of_bounds(limit);
         limit * limit
     }
 
-    /// What every triangle at most `limit` from the axis is nearer than: the converse of
-    /// [`SearchLink::axis_limit`].
+    /// Returns an upper bound on the distance of every triangle at most `limit` from the axis: the
+    /// converse of [`SearchLink::axis_limit`].
     pub(crate) fn bound_within(&self, limit: E) -> Real {
         let (limit, radius, error): (Real, Real, Real) =
             (limit.into(), self.radius.into(), self.error.into());
         ((limit - radius).max(0.0) + 2.0 * error) / self.scale
     }
 
-    /// What a triangle is at least from the link, if its axis distance (beyond a flat cap: its
-    /// distance and the radius) was computed as `axis_distance`.
+    /// Returns a lower bound on a triangle's distance, from its computed axis distance (beyond a
+    /// flat cap: its computed distance plus the radius).
     pub(crate) fn at_least(&self, axis_distance: Real) -> Real {
         let (radius, error): (Real, Real) = (self.radius.into(), self.error.into());
         (axis_distance - radius - error).max(0.0) / self.scale
     }
 
-    /// What the upper bound on a triangle's axis distance must stay below for it to be certainly at
-    /// most `bound` from the link: the error of [`SearchLink::axis_limit`] the other way.
+    /// Returns the limit below which the upper bound on a triangle's axis distance must be for the
+    /// triangle to be certainly at most `bound` from the link: as [`SearchLink::axis_limit`], with
+    /// the error subtracted.
     pub(crate) fn certain_limit(&self, bound: Real) -> E {
         E::round(bound * self.scale) + self.radius - self.error
     }
 
-    /// What a triangle's axis distance must stay below for it to be possibly at most `bound` from
-    /// the link.
+    /// Returns the limit below which a triangle's axis distance must be for the triangle to be
+    /// possibly at most `bound` from the link.
     pub(crate) fn axis_limit(&self, bound: Real) -> E {
         E::round(bound * self.scale) + self.radius + self.error
     }

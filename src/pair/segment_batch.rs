@@ -1,4 +1,4 @@
-//! Points and segments of the mesh against one link, a pack at a time: the bits are the same on
+//! Points and segments of the mesh against one link, one pack at a time, with the same bits on
 //! every instruction set.
 
 use super::coordinates::Placed;
@@ -10,16 +10,16 @@ use crate::distance::{Unfused, dispatch};
 use fearless_simd::Level;
 use parry3d_f64::math::{Real, Vector};
 
-/// The distance of a point or a segment from a link, and what rounding can do to it.
+/// The distance of a point or a segment from a link, and its rounding error.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Height {
     pub distance: Real,
     pub rounding: Real,
-    /// The way to a point from the nearest one of the link; for a segment it is none.
+    /// The vector to a point from the link's closest point; zero for a segment.
     pub way: Vector,
 }
 
-/// Measures points. `take` gets the height of each, in order.
+/// Measures points, and passes the height of each to `take`, in order.
 pub(crate) fn measure_points(
     level: Level,
     link: &PlacedLink,
@@ -29,7 +29,8 @@ pub(crate) fn measure_points(
     measure(level, link, points.map(|point| [point; 2]), true, take);
 }
 
-/// Measures segments, each given by its two ends. `take` gets the height of each, in order.
+/// Measures segments, each given by its two ends, and passes the height of each to `take`, in
+/// order.
 pub(crate) fn measure_segments(
     level: Level,
     link: &PlacedLink,

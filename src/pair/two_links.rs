@@ -1,7 +1,7 @@
-//! Two placed links, and how near they are.
+//! Two placed links, and their distance.
 //!
-//! As a link and a triangle they are measured in coordinates of their own: from the first link's
-//! start, multiplied by the power of two that brings the largest of them near one.
+//! As with a link and a triangle, each pair is measured in its own coordinates: relative to the
+//! first link's start, scaled by the power of two that brings the largest of them near one.
 
 use super::coordinates::{Placed, SLACK};
 use super::placed_link::PlacedLink;
@@ -9,7 +9,7 @@ use crate::answer::RobotProximity;
 use crate::distance::{Closest, Link, Scalar, TwoLinks, Vec3, gives_direction};
 use parry3d_f64::math::{Real, Vector};
 
-/// The nearest points of two links, one and the same where they meet.
+/// The distance of two links and their closest points; if they meet, one common point.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct NearestOfLinks {
     pub distance: Real,
@@ -18,12 +18,12 @@ pub(crate) struct NearestOfLinks {
 }
 
 impl NearestOfLinks {
-    /// The same of the links in the other order.
+    /// Returns the same result with the links exchanged.
     pub(crate) fn swapped(self) -> Self {
         Self { on_first: self.on_second, on_second: self.on_first, ..self }
     }
 
-    /// The answer about two links with these numbers.
+    /// Returns the answer about two links with these indices.
     pub(crate) fn answer(
         &self,
         links: [usize; 2],
@@ -42,14 +42,15 @@ impl NearestOfLinks {
 }
 
 impl PlacedLink {
-    /// The nearest points of two links.
+    /// Returns the closest points of two links.
     pub(crate) fn measure_link(&self, other: &Self) -> NearestOfLinks {
         let (pair, unit) = self.with_link(other);
         self.nearest_of_links(unit, &pair.closest(&pair.axes(), |mask| mask))
     }
 
-    /// The nearest points of the flat face at one of its ends and another link. A link whose length
-    /// vanishes beside the other has no direction: it is measured whole.
+    /// Returns the closest points of the flat face at an end of this link and another link.
+    ///
+    /// A link whose length underflows beside the other has no direction: it is measured whole.
     pub(crate) fn face_to_link(&self, end: usize, other: &Self) -> NearestOfLinks {
         let (pair, unit) = self.with_link(other);
         let has_direction = pair.first.axis.norm_squared() > 0.0;
@@ -61,8 +62,8 @@ impl PlacedLink {
         self.nearest_of_links(unit, &closest)
     }
 
-    /// The nearest points of the flat faces at one end of each link. A link without direction is
-    /// measured whole.
+    /// Returns the closest points of the flat faces at one end of each link. A link without a
+    /// direction is measured whole.
     pub(crate) fn face_to_face(&self, ends: [usize; 2], other: &Self) -> NearestOfLinks {
         let (pair, unit) = self.with_link(other);
         let [first, second] =
@@ -85,8 +86,8 @@ impl PlacedLink {
         NearestOfLinks { distance, on_first, on_second }
     }
 
-    /// The same if they are at most `bound` apart. The capsules around the links spare what they
-    /// can.
+    /// Returns the closest points of two links if they are at most `bound` apart. The capsules
+    /// around the links are tested first.
     pub(crate) fn measure_link_within(&self, bound: Real, other: &Self) -> Option<NearestOfLinks> {
         let (pair, unit) = self.with_link(other);
         let axes = pair.axes();
@@ -97,13 +98,13 @@ impl PlacedLink {
         (nearest.distance <= bound).then_some(nearest)
     }
 
-    /// Whether the capsules around two links may be at most `bound` apart.
+    /// Returns whether the capsules around two links may be at most `bound` apart.
     pub(crate) fn may_be_within(&self, bound: Real, other: &Self) -> bool {
         let (pair, unit) = self.with_link(other);
         capsules_apart(&pair, pair.axes().gap.norm()) * unit <= bound
     }
 
-    /// Where the axes of two links are nearest, and how far they are apart there.
+    /// Returns the closest points of two axes, and their distance.
     pub(crate) fn nearest_on_axes(&self, other: &Self) -> ([Vector; 2], Real) {
         let (pair, unit) = self.with_link(other);
         let axes = pair.axes();
@@ -111,14 +112,14 @@ impl PlacedLink {
         (feet, axes.gap.norm() * unit)
     }
 
-    /// Both in coordinates of their own, and what 1 is there.
+    /// Returns both links in the pair's coordinates, and the length of 1 there.
     fn with_link(&self, other: &Self) -> (TwoLinks<Real>, Real) {
         self.in_lanes().with_link(&other.in_lanes())
     }
 }
 
 impl<T: Scalar> Placed<T> {
-    /// Both in coordinates of their own, and what 1 is there.
+    /// Returns both links in the pair's coordinates, and the length of 1 there.
     #[inline(always)]
     pub(super) fn with_link(&self, other: &Self) -> (TwoLinks<T>, T) {
         let start = other.start - self.start;
@@ -129,8 +130,8 @@ impl<T: Scalar> Placed<T> {
         (TwoLinks { first, second, second_start: start * scale }, scale.one() / scale)
     }
 
-    /// The link seen from its start. A length whose square vanishes beside the pair's extent gives
-    /// no direction.
+    /// Returns the link relative to its start, scaled. A length whose square underflows beside the
+    /// pair's extent gives no direction.
     #[inline(always)]
     fn scaled(&self, scale: T) -> Link<T> {
         let end = self.along * scale;
@@ -140,13 +141,14 @@ impl<T: Scalar> Placed<T> {
     }
 }
 
-/// How far the capsules around two links are apart at least, whose axes are so far apart.
+/// Returns a lower bound on the distance of the capsules around two links. `axes` is the distance
+/// of the axes.
 #[inline(always)]
 pub(super) fn capsules_apart<T: Scalar>(pair: &TwoLinks<T>, axes: T) -> T {
     axes - pair.first.radius - pair.second.radius - axes.lit(SLACK)
 }
 
-/// An end of a link, seen from its start.
+/// Returns an end of a link, relative to its start.
 fn end_of(link: &Link<Real>, end: usize) -> Vec3<Real> {
     if end == 0 { Vec3::zero(0.0) } else { link.end }
 }
@@ -155,8 +157,8 @@ fn end_of(link: &Link<Real>, end: usize) -> Vec3<Real> {
 mod tests {
     use super::*;
 
-    /// Axes 3 √2 apart and radii of 2, in units of the smallest number there is: less than half of
-    /// it is left between them, and the nearest points round to places on both sides of it.
+    /// The axes are 3 √2 apart and the radii are 2, in units of the smallest number. Less than half
+    /// of a unit remains between them, and the closest points round to places on both sides of it.
     #[test]
     fn links_whose_distance_rounds_to_0_have_one_point_in_common() {
         let unit = Real::from_bits(1);

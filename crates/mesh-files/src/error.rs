@@ -1,43 +1,44 @@
-//! What can be wrong with a file, each in one line.
+//! The errors of reading a file, each one line long.
 
 use std::path::PathBuf;
 use thiserror::Error;
 
-/// Why a file gave no mesh, or no centreline. The text names the file and what to change.
+/// Why a file could not be read as a mesh or as a centreline. The message names the file and the
+/// remedy.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum MeshFileError {
-    /// It is not there, may not be read, or is a directory or a device.
+    /// The file does not exist, must not be read, or is a directory or a device.
     #[error("cannot read {} ({reason}); check the path", file.display())]
     #[non_exhaustive]
     Unreadable {
         /// The file.
         file: PathBuf,
-        /// What the system says.
+        /// The message of the operating system.
         reason: String,
     },
-    /// Its name does not say what it holds.
+    /// The file's name does not identify a format.
     #[error("the format of {} is unknown; give a file that ends in .stl, .obj or .ply{SURFACES}{LABEL_MAPS}", file.display())]
     #[non_exhaustive]
     UnknownFormat {
         /// The file.
         file: PathBuf,
     },
-    /// The name of a centreline's file does not say what it holds.
+    /// The name of a centreline's file does not identify a format.
     #[error("the format of {} is unknown; give a centreline that ends in .mrk.json, .vtp or .vtk, or a text with x,y,z in its lines that ends in .csv, .tsv, .txt or .dat", file.display())]
     #[non_exhaustive]
     UnknownCentreline {
         /// The file.
         file: PathBuf,
     },
-    /// A centreline's file holds no line.
+    /// A centreline's file contains no line.
     #[error("{} holds no line; export the curve, not only its points or its surface", file.display())]
     #[non_exhaustive]
     NoLine {
         /// The file.
         file: PathBuf,
     },
-    /// A line of a text file does not hold the numbers that are needed.
+    /// A line of a text file lacks the numbers that are needed.
     #[error("line {line} of {} {problem}; write {expected}", file.display())]
     #[non_exhaustive]
     Line {
@@ -47,40 +48,40 @@ pub enum MeshFileError {
         line: usize,
         /// What is wrong with it.
         problem: String,
-        /// What the columns should be.
+        /// The expected columns.
         expected: &'static str,
     },
-    /// A centreline's file holds points that are not said to be a curve.
+    /// A centreline's file contains points that are not marked as a curve.
     #[error("{} holds a markup of type {found}, which is no curve; if the order of its points is that of the line, \
              choose line 0", file.display())]
     #[non_exhaustive]
     NotACurve {
         /// The file.
         file: PathBuf,
-        /// What its program calls it.
+        /// The type that the file names.
         found: String,
     },
-    /// A centreline's file holds several lines, and none was chosen.
+    /// A centreline's file contains several lines, and the options choose none.
     #[error("{} holds {count} lines; choose one from 0 to {}", file.display(), count - 1)]
     #[non_exhaustive]
     SeveralLines {
         /// The file.
         file: PathBuf,
-        /// How many lines it holds.
+        /// The number of lines in the file.
         count: usize,
     },
-    /// A line was chosen that the file does not have.
+    /// The options choose a line that the file does not have.
     #[error("{} has no line {line}, but {count}, counted from 0; choose one of them", file.display())]
     #[non_exhaustive]
     NoSuchLine {
         /// The file.
         file: PathBuf,
-        /// The line that was chosen.
+        /// The chosen line.
         line: usize,
-        /// How many lines it holds.
+        /// The number of lines in the file.
         count: usize,
     },
-    /// Header and data are in two files.
+    /// The header and the data may be in two files.
     #[error("{} may have its data in a second file; load both from a folder, or save the segmentation as one file, \
              .nii.gz, .nrrd or .mha", file.display())]
     #[non_exhaustive]
@@ -88,7 +89,7 @@ pub enum MeshFileError {
         /// The file.
         file: PathBuf,
     },
-    /// Nothing in it says where its voxels are.
+    /// The file does not state the position of its voxels.
     #[error("{} does not say where its voxels are ({missing}); save it again with a position, or set \
              Options::allow_no_position, which puts its first voxel at the origin", file.display())]
     #[non_exhaustive]
@@ -98,7 +99,7 @@ pub enum MeshFileError {
         /// What is missing.
         missing: String,
     },
-    /// It does not hold what its format asks for.
+    /// The content is invalid in the file's format.
     #[error("{} is not a valid {format} file ({reason}); export it again", file.display())]
     #[non_exhaustive]
     Broken {
@@ -106,10 +107,10 @@ pub enum MeshFileError {
         file: PathBuf,
         /// The format that its name promises.
         format: &'static str,
-        /// What is wrong, with the line where there are lines.
+        /// What is wrong, with the line number in text files.
         reason: String,
     },
-    /// It holds another format than its name promises.
+    /// The content is of another format than the name promises.
     #[error("{} holds {found}, not {format}; give it the extension of what it holds", file.display())]
     #[non_exhaustive]
     Misnamed {
@@ -117,43 +118,43 @@ pub enum MeshFileError {
         file: PathBuf,
         /// The format that its name promises.
         format: &'static str,
-        /// What its first bytes say.
+        /// The format that its first bytes indicate.
         found: &'static str,
     },
-    /// It holds no triangle.
+    /// The file contains no triangle.
     #[error("{} holds no triangles{}; export the surface, not only its points", file.display(), without_area(*skipped_faces))]
     #[non_exhaustive]
     Empty {
         /// The file.
         file: PathBuf,
-        /// How many faces it has, all without area.
+        /// The number of faces, all of which have no area.
         skipped_faces: usize,
     },
-    /// It would take more memory than the options allow.
+    /// Reading would take more memory than the options allow.
     #[error("reading {} would take {} MiB of memory, but {} MiB are allowed; crop it or make it coarser, \
              or raise Options::memory_limit", file.display(), bytes.div_ceil(MIB), limit / MIB)]
     #[non_exhaustive]
     TooLarge {
         /// The file.
         file: PathBuf,
-        /// How many bytes it would take, at most.
+        /// An upper bound on the bytes that reading would take.
         bytes: u64,
-        /// How many are allowed.
+        /// The bytes that are allowed.
         limit: u64,
     },
-    /// A label map has no voxel with the label that was asked for.
+    /// A label map has no voxel with the requested label.
     #[error("{} has no voxel with label {label}, but with {}; choose one of them", file.display(), listed(present))]
     #[non_exhaustive]
     NoSuchLabel {
         /// The file.
         file: PathBuf,
-        /// The label that was asked for.
+        /// The requested label.
         label: u32,
-        /// The labels that voxels have, 0 among them, in ascending order; of more than 1000 the
-        /// lowest 1000.
+        /// The labels of the voxels, 0 included, in ascending order; the lowest 1000 if there are
+        /// more.
         present: Vec<u32>,
     },
-    /// A label was asked for, but a file of triangles has none.
+    /// The options request a label, but a file of triangles has none.
     #[error("{} holds triangles without labels ({format}); ask for no label instead of {label}, or give the segmentation",
             file.display())]
     #[non_exhaustive]
@@ -162,7 +163,7 @@ pub enum MeshFileError {
         file: PathBuf,
         /// The format that its name promises.
         format: &'static str,
-        /// The label that was asked for.
+        /// The requested label.
         label: u32,
     },
     /// All voxels of a label map are 0.
@@ -172,17 +173,17 @@ pub enum MeshFileError {
         /// The file.
         file: PathBuf,
     },
-    /// Its voxels are no labels, but those of an image.
+    /// The voxels are the values of an image, not labels.
     #[error("{} holds an image, in which a voxel is {number}, and not labels; give the segmentation of the image",
             file.display())]
     #[non_exhaustive]
     NotLabels {
         /// The file.
         file: PathBuf,
-        /// What a voxel holds: no whole number, a negative one, or one beyond 32 bits.
+        /// The value of a voxel: not a whole number, negative, or beyond 32 bits.
         number: f64,
     },
-    /// A vertex is not finite, in the file or after it was scaled.
+    /// A vertex is not finite, in the file or after scaling.
     #[error("vertex {index} of {} is not finite ({}, {}, {}; scale {scale}); {advice}",
             file.display(), place[0], place[1], place[2])]
     #[non_exhaustive]
@@ -191,9 +192,9 @@ pub enum MeshFileError {
         file: PathBuf,
         /// The vertex, counted from 0.
         index: usize,
-        /// Its place in the file.
+        /// Its coordinates in the file.
         place: [f64; 3],
-        /// The scale that was asked for.
+        /// The requested scale.
         scale: f64,
         /// What to change.
         advice: &'static str,
@@ -204,15 +205,15 @@ pub enum MeshFileError {
     )]
     #[non_exhaustive]
     Scale {
-        /// The scale that was asked for.
+        /// The requested scale.
         scale: f64,
     },
 }
 
-/// Bytes in a mebibyte.
+/// Bytes of a mebibyte.
 const MIB: u64 = 1 << 20;
 
-/// Why there may be no triangles in spite of faces.
+/// Explains why a file with faces has no triangles.
 fn without_area(skipped_faces: usize) -> String {
     match skipped_faces {
         0 => String::new(),
@@ -221,14 +222,14 @@ fn without_area(skipped_faces: usize) -> String {
     }
 }
 
-/// Some labels, as an error shows them.
+/// Lists the first labels, for an error message.
 fn listed(labels: &[u32]) -> String {
     const SHOWN: usize = 10;
     let more = if labels.len() > SHOWN { ", ..." } else { "" };
     labels.iter().take(SHOWN).map(u32::to_string).collect::<Vec<_>>().join(", ") + more
 }
 
-/// What else could be read.
+/// The formats that optional features add, for an error message.
 const SURFACES: &str = if cfg!(feature = "centrelines") { ", in .vtp or .vtk" } else { "" };
 const LABEL_MAPS: &str = if cfg!(feature = "label-maps") {
     ", or a label map that ends in .nii, .nii.gz, .hdr, .nrrd, .nhdr, .mha or .mhd"

@@ -1,15 +1,15 @@
-//! Triangle meshes from STL, OBJ, PLY and VTK files and from segmentations in NIfTI, NRRD and
-//! MetaImage files; centrelines from VTK's files, 3D Slicer's markups and text files.
+//! Reads triangle meshes from STL, OBJ, PLY and VTK files and from segmentations in NIfTI, NRRD and
+//! MetaImage files; reads centrelines from VTK files, 3D Slicer's markups and text files.
 //!
-//! [`load`] reads a mesh, by the file's extension. What comes back is whole: there is at least one
-//! triangle, every vertex is finite, and every triangle names three different vertices that are
-//! there. What is wrong with a file is said in one line. Faces without area are left out, and
-//! [`Mesh::skipped_faces`] counts them. How much memory reading may take is limited by
-//! [`Options::memory_limit`]. [`load_centreline`] reads points along a line in the same way.
+//! [`load`] reads a mesh; the file's extension selects the format. A mesh is complete: it has at
+//! least one triangle, every vertex is finite, and every triangle names three different existing
+//! vertices. Faces without area are left out, and [`Mesh::skipped_faces`] counts them. An error is
+//! one line. [`Options::memory_limit`] limits the memory of reading. [`load_centreline`] reads
+//! points along a line in the same way.
 //!
-//! The formats are read here: what the field's programs write differs from what the crates for them
-//! accept. XML, JSON, base64, archives, surface nets and the cutting of polygons are left to the
-//! crates that know them.
+//! This crate parses the formats itself, because the files of medical and robotics programs differ
+//! from what the formats' crates accept. XML, JSON, base64, archives, surface nets and the
+//! triangulation of polygons are left to crates.
 #![warn(missing_debug_implementations, missing_docs)]
 
 #[cfg(feature = "centrelines")]
@@ -32,32 +32,33 @@ use label_map::Fault;
 pub use mesh::{Frame, Mesh};
 use std::path::Path;
 
-/// How a file is read.
+/// The options for reading a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Options {
-    /// Multiplies every coordinate, for example 1000 for metres to millimetres. A label map has a
-    /// unit and comes in millimetres before it is multiplied.
+    /// The factor of every coordinate, for example 1000 for metres to millimetres. A label map
+    /// states its unit: it is converted to millimetres before this factor applies.
     pub scale: f64,
-    /// The label whose surface is taken from a label map; without one all voxels that are not 0
-    /// are inside. For a file of triangles it is an error.
+    /// The label whose surface is read from a label map. `None` takes all voxels that are not 0 as
+    /// inside. For a file of triangles a label is an error.
     pub label: Option<u32>,
-    /// Whether a label map is read that says how far apart its voxels are, but not where. Its
-    /// first voxel is then the origin, its axes are those of the voxels, and its frame is
+    /// Whether to read a label map that states the spacing of its voxels but not their position.
+    /// Its first voxel is then the origin, and its axes are the axes of the voxels. Its frame is
     /// unknown unless the file states it.
     pub allow_no_position: bool,
-    /// Which line of a centreline's file is read, counted from 0. A file with one line needs none.
+    /// The line to read from a centreline's file, counted from 0. A file with one line needs none.
     pub line: Option<usize>,
-    /// The most memory, in bytes, that reading may take beside the file's own bytes: 2 GiB unless
-    /// something else is said.
+    /// The most memory, in bytes, that reading may take beside the file's own bytes. The default is
+    /// 2 GiB.
     ///
-    /// What would take more is refused before the memory is taken, with
-    /// [`MeshFileError::TooLarge`]. A label map takes 5 bytes for each voxel of the smallest
-    /// box around the label, and at most 134 for each face between a voxel of the
-    /// label and another one; its voxels are never kept as a whole, however small their archive
-    /// is. A file of triangles takes memory in proportion to its size, whatever its header
-    /// counts; one that is itself larger than the limit is refused by [`load_with`] before it
-    /// is read.
+    /// A file that would take more is refused before the memory is allocated, with
+    /// [`MeshFileError::TooLarge`].
+    /// - A label map takes 5 bytes for each voxel of the smallest box around the label, and at most
+    ///   134 for each face between a voxel of the label and another voxel. Its voxels are never
+    ///   stored as a whole, even if the file is a small archive.
+    /// - A file of triangles takes memory in proportion to its size, whatever its header counts.
+    ///   [`load_with`] refuses a file that is itself larger than the limit before it reads the
+    ///   file.
     pub memory_limit: u64,
 }
 
@@ -74,28 +75,28 @@ impl Default for Options {
 }
 
 impl Options {
-    /// Every coordinate multiplied by `scale`.
+    /// Returns default options with this factor of every coordinate.
     pub fn scaled(scale: f64) -> Self {
         Self { scale, ..Self::default() }
     }
 
-    /// The same, but of a label map the surface of this label, or of all that are not 0. A file of
-    /// triangles has no labels: asked for one, it is an error.
+    /// Returns the same options with this [`label`](Self::label). A file of triangles has no
+    /// labels: a label is then an error.
     pub fn with_label(self, label: Option<u32>) -> Self {
         Self { label, ..self }
     }
 
-    /// The same, but a label map may leave open where its voxels are.
+    /// Returns the same options with this [`allow_no_position`](Self::allow_no_position).
     pub fn with_no_position_allowed(self, allow_no_position: bool) -> Self {
         Self { allow_no_position, ..self }
     }
 
-    /// The same, but of a file of several centrelines this one, counted from 0.
+    /// Returns the same options with this [`line`](Self::line), counted from 0.
     pub fn with_line(self, line: Option<usize>) -> Self {
         Self { line, ..self }
     }
 
-    /// The same, but with so many bytes of memory at most, beside those of the file.
+    /// Returns the same options with this [`memory_limit`](Self::memory_limit), in bytes.
     pub fn with_memory_limit(self, memory_limit: u64) -> Self {
         Self { memory_limit, ..self }
     }
@@ -105,10 +106,10 @@ impl Options {
         if scale > 0.0 && scale.is_finite() { Ok(()) } else { Err(MeshFileError::Scale { scale }) }
     }
 
-    /// Multiplies the coordinates.
+    /// Multiplies the coordinates by the scale.
     ///
     /// # Errors
-    /// A point is not finite, before or after that.
+    /// A point is not finite, before or after the multiplication.
     fn scale_all(&self, file: &Path, points: &mut [[f64; 3]]) -> Result<(), MeshFileError> {
         let scale = self.scale;
         for (index, point) in points.iter_mut().enumerate() {
@@ -133,7 +134,7 @@ impl Options {
     }
 }
 
-/// What a file's extension says it holds.
+/// The format that a file's extension names.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Format {
     Stl,
@@ -205,7 +206,7 @@ impl Format {
     }
 }
 
-/// The mesh in the file.
+/// Reads the mesh in a file.
 ///
 /// # Errors
 /// As [`load_with`].
@@ -213,13 +214,16 @@ pub fn load(path: impl AsRef<Path>) -> Result<Mesh, MeshFileError> {
     load_with(path, &Options::default())
 }
 
-/// The mesh in the file, read as the options say.
+/// Reads the mesh in a file with these options.
 ///
 /// # Errors
-/// The file cannot be read, is of unknown format or broken, or holds no triangle; a vertex is not
-/// finite; a triangle names a vertex that is not there; a label map has no voxel of the label, or
-/// holds an image instead; a label is asked of a file of triangles; it takes more memory than the
-/// options allow; or the scale is not a positive number.
+/// - The file cannot be read, its format is unknown, or its content is invalid.
+/// - It contains no triangle, a vertex is not finite, or a triangle names a vertex that does not
+///   exist.
+/// - A label map has no voxel of the label, or is an image.
+/// - A label is requested of a file of triangles.
+/// - Reading takes more memory than the options allow.
+/// - The scale is not a positive number.
 pub fn load_with(path: impl AsRef<Path>, options: &Options) -> Result<Mesh, MeshFileError> {
     let path = path.as_ref();
     #[cfg(feature = "label-maps")]
@@ -227,7 +231,7 @@ pub fn load_with(path: impl AsRef<Path>, options: &Options) -> Result<Mesh, Mesh
         let (format, bytes) = whole?;
         return parse(path, format, &bytes, options);
     }
-    // The name first: a device may never end.
+    // Check the name first: reading a device may never end.
     let format = Format::of(path)?;
     let bytes = read_file(path, options)?;
     #[cfg(feature = "label-maps")]
@@ -235,7 +239,7 @@ pub fn load_with(path: impl AsRef<Path>, options: &Options) -> Result<Mesh, Mesh
     parse(path, format, &bytes, options)
 }
 
-/// A label map whose header and voxels are in two files by their names, as one.
+/// Returns a label map as one file, if its name says that header and voxels are in two files.
 #[cfg(feature = "label-maps")]
 fn two_files(path: &Path, options: &Options) -> Option<Result<(Format, Vec<u8>), MeshFileError>> {
     let extension = path.extension()?.to_str()?;
@@ -263,7 +267,7 @@ fn two_files(path: &Path, options: &Options) -> Option<Result<(Format, Vec<u8>),
     None
 }
 
-/// The file with the voxels that its header says are in another one.
+/// Returns the file with the voxels that its header places in another file.
 #[cfg(feature = "label-maps")]
 fn with_voxels(
     path: &Path,
@@ -286,7 +290,7 @@ fn with_voxels(
     })
 }
 
-/// The bytes of a file that is no larger than the options allow.
+/// Returns the bytes of a file, if it is no larger than the options allow.
 fn read_file(path: &Path, options: &Options) -> Result<Vec<u8>, MeshFileError> {
     let unreadable = |reason: String| MeshFileError::Unreadable { file: path.to_owned(), reason };
     let kind = std::fs::metadata(path).map_err(|error| unreadable(error.to_string()))?;
@@ -300,7 +304,7 @@ fn read_file(path: &Path, options: &Options) -> Result<Vec<u8>, MeshFileError> {
     std::fs::read(path).map_err(|error| unreadable(error.to_string()))
 }
 
-/// As [`load_with`], for a file of this name that holds these bytes.
+/// Same as [`load_with`], for the content of a file with this name.
 ///
 /// # Errors
 /// As [`load_with`].

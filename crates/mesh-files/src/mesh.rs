@@ -1,8 +1,8 @@
-//! The mesh that comes back, and its frame.
+//! A mesh that was read, and its frame.
 
 use std::collections::HashMap;
 
-/// Which way the axes of a patient's frame point.
+/// The directions of the axes of a patient's frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Frame {
@@ -18,32 +18,33 @@ pub enum Frame {
 pub struct Mesh {
     /// The vertices.
     pub vertices: Vec<[f64; 3]>,
-    /// The triangles, each by its three vertices, in the file's order and turn. Those of a label
-    /// map are counter-clockwise seen from outside.
+    /// The triangles as indices of three vertices, in the file's order and orientation. Triangles
+    /// of a label map are counter-clockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
-    /// The frame of the coordinates, where the file states it.
+    /// The frame of the coordinates, if the file states it.
     pub frame: Option<Frame>,
-    /// Whether the file states its unit of length. Label maps do, and come in millimetres; where
-    /// one does not, its numbers are taken for millimetres. Files of triangles do not.
+    /// Whether the file states its unit of length. Label maps do, and are converted to millimetres;
+    /// one that does not is taken to be in millimetres. Files of triangles do not.
     pub states_unit: bool,
-    /// How many faces of the file are not among the triangles, because they name fewer than three
-    /// different vertices and so have no area. Each counts once, whatever its number of
-    /// corners; the others keep their order. A polygon that names a vertex twice and has area
-    /// all the same is cut as any other, and is not counted. In an STL file the corners at
-    /// exactly the same place are one vertex. Faces whose vertices differ stay, be they ever so
-    /// thin.
+    /// The number of faces that are left out because they name fewer than three different vertices
+    /// and so have no area.
+    ///
+    /// Each face counts once, for any number of vertices; the other faces keep their order. A
+    /// polygon that names a vertex twice but has area is triangulated as any other, and is not
+    /// counted. In an STL file vertices with identical coordinates are one vertex. Faces with
+    /// different vertices stay, however thin.
     pub skipped_faces: usize,
 }
 
 impl Mesh {
-    /// Vertices and triangles, the vertices as any type that three numbers make, such as glam's or
-    /// parry's vectors.
+    /// Returns vertices and triangles. The vertices are of any type that is made of three numbers,
+    /// such as the vectors of glam or parry.
     pub fn into_parts<Vertex: From<[f64; 3]>>(self) -> (Vec<Vertex>, Vec<[u32; 3]>) {
         (self.vertices.into_iter().map(Vertex::from).collect(), self.triangles)
     }
 
-    /// Adds a convex face, cut into a fan about its first corner, without the triangles that name a
-    /// vertex twice.
+    /// Adds a convex face as a fan about its first vertex, without triangles that name a vertex
+    /// twice.
     pub(crate) fn add_face(&mut self, corners: &[u32]) {
         let before = self.triangles.len();
         if let Some((&first, others)) = corners.split_first() {
@@ -55,10 +56,10 @@ impl Mesh {
         }
     }
 
-    /// The mesh in the given frame; none if its own is unknown.
+    /// Returns the mesh in the given frame; `None` if its own frame is unknown.
     pub fn in_frame(mut self, frame: Frame) -> Option<Self> {
         if self.frame? != frame {
-            // Half a turn about the third axis: triangles keep their turn.
+            // A half turn about the third axis keeps the orientation of triangles.
             for [x, y, _] in &mut self.vertices {
                 (*x, *y) = (-*x, -*y);
             }
@@ -68,7 +69,7 @@ impl Mesh {
     }
 }
 
-/// Corners to vertices: those at exactly the same place are one.
+/// Maps positions to vertices: identical positions are one vertex.
 #[derive(Default)]
 pub(crate) struct Merger {
     pub vertices: Vec<[f64; 3]>,

@@ -1,21 +1,24 @@
-//! OBJ: its vertices and faces. Polygons are cut, faces without area are left out; all objects of
-//! the file make one mesh.
+//! Reads the vertices and faces of OBJ files.
+//!
+//! Polygons are triangulated, faces without area are left out, and all objects of the file form one
+//! mesh.
 
 use crate::mesh::Mesh;
 use crate::polygon::Faces;
 use crate::text::{lines, noted_frame, number, shown};
 
-/// What has been read.
+/// The content so far.
 #[derive(Default)]
 struct Reader {
     vertices: Vec<[f64; 3]>,
     faces: Faces,
-    /// The last vertex that a face names, and in which line: it may stand further down.
+    /// The highest vertex that a face names, and the line of that face: the vertex may be defined
+    /// later.
     last: (u32, usize),
 }
 
 impl Reader {
-    /// A vertex or a face. Nothing else is needed.
+    /// Reads a vertex or a face, and ignores other statements.
     fn read_statement(&mut self, text: &str, line: usize) -> Result<(), String> {
         let mut words = text.split_whitespace();
         match words.next() {
@@ -35,8 +38,8 @@ impl Reader {
     }
 }
 
-/// Whether a backslash joins the next line to this one. Names and comments may end in a backslash,
-/// and statements that are not needed need no end.
+/// Returns whether a backslash joins the next line to this one. Names and comments may end in a
+/// backslash, and ignored statements need no continuation.
 fn goes_on(text: &str) -> bool {
     matches!(text.split_whitespace().next(), Some("v" | "f" | "fo"))
 }
@@ -70,13 +73,13 @@ pub fn read(bytes: &[u8]) -> Result<Mesh, String> {
     Ok(mesh)
 }
 
-/// The vertex that a corner such as `7/2/3` names, counted from 0. The numbers of textures and
-/// normals are not needed.
+/// Returns the vertex that a word such as `7/2/3` names, counted from 0. Textures and normals are
+/// ignored.
 fn corner(word: &str, count: usize, line: usize) -> Result<u32, String> {
     let wrong =
         || format!("line {line} has '{}' where the number of a vertex should be", shown(word));
     let number: i64 = word.split('/').next().unwrap_or_default().parse().map_err(|_| wrong())?;
-    // Negative numbers count back from the last vertex so far.
+    // Negative numbers count back from the latest vertex.
     let index = if number < 0 { (count as i64).checked_add(number) } else { number.checked_sub(1) };
     index.and_then(|index| u32::try_from(index).ok()).ok_or_else(wrong)
 }

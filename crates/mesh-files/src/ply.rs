@@ -1,7 +1,9 @@
-//! PLY, ASCII and binary. Polygons and strips are cut, faces without area are left out.
+//! Reads PLY files, ASCII and binary. Polygons and strips are triangulated, and faces without area
+//! are left out.
 //!
-//! It is read here since the crates for PLY refuse what other programs read: numbers such as `30.`,
-//! one value a line, blank lines, comments in Latin-1, lines that end by carriage returns.
+//! The crates for PLY refuse files that other programs read: numbers such as `30.`, one value a
+//! line, blank lines, comments in Latin-1, lines that end in carriage returns. So this module
+//! parses the format itself.
 
 use crate::mesh::Mesh;
 use crate::polygon::Faces;
@@ -10,7 +12,7 @@ use crate::text::{no_number, noted_frame, shown, without_mark};
 /// The names of a face's list of vertices.
 const CORNERS: [&str; 2] = ["vertex_indices", "vertex_index"];
 
-/// The corner that ends a strip, and begins the next one.
+/// The index that ends a strip and begins the next one.
 const RESTART: f64 = -1.0;
 
 /// The type of a number.
@@ -45,7 +47,7 @@ impl Kind {
 struct Property {
     name: String,
     kind: Kind,
-    /// The type of the count, if it is a list.
+    /// The type of the count, for a list.
     count: Option<Kind>,
 }
 
@@ -55,13 +57,13 @@ struct Element {
     properties: Vec<Property>,
 }
 
-/// What follows the header.
+/// The data after the header.
 enum Body<'a> {
     Text(&'a [u8]),
     Bytes { rest: &'a [u8], is_big_endian: bool },
 }
 
-/// Why there is no further number.
+/// Why the next number could not be read.
 enum Fault<'a> {
     End,
     Word(&'a [u8]),
@@ -104,7 +106,7 @@ fn next_word<'a>(rest: &mut &'a [u8]) -> Option<&'a [u8]> {
     Some(word)
 }
 
-/// The next bytes, the least one first.
+/// Returns the next bytes in little-endian order.
 fn take<'a, const SIZE: usize>(
     rest: &mut &'a [u8],
     is_big_endian: bool,
@@ -130,7 +132,7 @@ pub fn read(bytes: &[u8]) -> Result<Mesh, String> {
         {
             return Err(format!("its vertices have no property '{axis}'"));
         }
-        // Without properties they have no bytes, and there may be any number of them.
+        // An element without properties has no bytes, so its count is unlimited.
         if element.properties.is_empty() {
             continue;
         }
@@ -218,12 +220,12 @@ fn read_element(
 
 const NO_HEADER: &str = "its header does not begin with 'ply' and a format, name elements and properties, and end with 'end_header'";
 
-/// The elements, and what follows them.
+/// Returns the elements, and the data after the header.
 fn header(bytes: &[u8]) -> Result<(Vec<Element>, Body<'_>), String> {
     let rest = bytes.strip_prefix(b"ply").ok_or(NO_HEADER)?;
     let spaces = rest.iter().take_while(|byte| matches!(byte, b' ' | b'\t')).count();
     let rest = &rest[spaces..];
-    // In a binary file the byte behind a carriage return may be the first of the data.
+    // In a binary file the byte after a carriage return may belong to the data.
     let ends = [&b"\r\n"[..], b"\n", b"\r"];
     let end = ends.into_iter().find(|end| rest.starts_with(end)).ok_or(NO_HEADER)?;
     let mut rest = &rest[end.len()..];

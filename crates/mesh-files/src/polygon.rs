@@ -1,20 +1,22 @@
-//! Cuts faces into triangles: a fan about the first corner where a face is convex, ears otherwise.
+//! Triangulates faces: a fan about the first vertex if the face is convex, ear clipping otherwise.
 
 use crate::mesh::Mesh;
 use earcut::Earcut;
 
-/// The most corners of a face that is not convex. Cutting ears takes quadratic time at worst.
+/// The largest number of vertices of a face that is not convex. Ear clipping takes quadratic time
+/// at worst.
 const MOST_CORNERS: usize = 1 << 14;
 
-/// Rounding of a cross product of coordinates up to 1: two products of differences up to 2, each
-/// with three roundings, and their difference.
+/// The rounding error of a cross product of coordinates up to 1: two products of differences up to
+/// 2, each with three roundings, and their difference.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
-/// Faces before they are cut, since a face may name vertices that stand further down.
+/// Faces before the triangulation. They are collected first, because a face may name vertices that
+/// the file defines later.
 #[derive(Default)]
 pub(crate) struct Faces {
     corners: Vec<u32>,
-    /// Where the corners of each face end.
+    /// The end of each face in `corners`.
     ends: Vec<usize>,
 }
 
@@ -24,9 +26,9 @@ impl Faces {
         self.ends.push(self.corners.len());
     }
 
-    /// The triangles of a strip: each further corner makes one with the two before it, and every
-    /// other one is turned. A triangle that names a vertex twice only leads the strip on. A strip
-    /// without any triangle is a face without area.
+    /// Adds the triangles of a strip. Each further vertex forms one with the two before it, with
+    /// alternating orientation. A triangle that names a vertex twice only continues the strip. A
+    /// strip without any triangle is a face without area.
     pub fn push_strip(&mut self, strip: &[u32]) {
         let before = self.ends.len();
         for (index, corners) in strip.windows(3).enumerate() {
@@ -43,7 +45,7 @@ impl Faces {
     /// Adds the triangles of the faces to a mesh that has its vertices.
     ///
     /// # Errors
-    /// A face has too many corners.
+    /// A face that is not convex has too many vertices.
     pub fn cut(self, mesh: &mut Mesh) -> Result<(), String> {
         let mut cutter = Cutter::default();
         let mut from = 0;
@@ -59,18 +61,18 @@ impl Faces {
     }
 }
 
-/// Cuts ears. Keeps its memory from face to face.
+/// Clips ears. Keeps its buffers from face to face.
 #[derive(Default)]
 struct Cutter {
     earcut: Earcut<f64>,
-    /// The face without corners that follow themselves.
+    /// The face without consecutive repeated vertices.
     corners: Vec<u32>,
     outline: Vec<[f64; 2]>,
     ears: Vec<u32>,
 }
 
 impl Cutter {
-    /// Adds the triangles of a face, unless a fan is right.
+    /// Adds the triangles of a face. Returns false, without adding any, if a fan is right.
     fn cut_ears(&mut self, corners: &[u32], mesh: &mut Mesh) -> Result<bool, String> {
         self.corners.clear();
         self.corners.extend(corners);
@@ -99,8 +101,9 @@ impl Cutter {
         Ok(mesh.triangles.len() > before)
     }
 
-    /// The outline, counter-clockwise, in the coordinate plane that the face is most parallel to.
-    /// Coordinates count from the first corner and are scaled by a power of two to at most 1.
+    /// Computes the outline, counter-clockwise, in the coordinate plane that is most parallel to
+    /// the face. Coordinates are relative to the first vertex, scaled by a power of two to at most
+    /// 1.
     fn project(&mut self, vertices: &[[f64; 3]]) -> bool {
         let corner = |&index: &u32| vertices.get(index as usize).copied();
         let Some(places) = self.corners.iter().map(corner).collect::<Option<Vec<_>>>() else {
@@ -135,8 +138,8 @@ impl Cutter {
     }
 }
 
-/// Whether the outline turns left at every corner, and the fan about the first corner as well. The
-/// latter excludes outlines that go around twice.
+/// Returns whether the outline turns left at every vertex, and the fan about the first vertex as
+/// well. The second condition excludes outlines that wind twice.
 fn is_convex(outline: &[[f64; 2]]) -> bool {
     let count = outline.len();
     let at = |index: usize| outline[index % count];

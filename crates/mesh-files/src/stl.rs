@@ -1,18 +1,21 @@
-//! STL, binary and ASCII. It names no vertices, so corners at exactly the same place become one,
-//! and facets with fewer than three of them are left out.
+//! Reads STL files, binary and ASCII.
+//!
+//! STL names no vertices: identical positions become one vertex, and facets with fewer than three
+//! different positions are left out.
 
 use crate::mesh::{Merger, Mesh};
 use crate::text::{lines, noted_frame, number, shown, without_mark};
 
-/// A binary file: 80 free bytes, the number of triangles, and 50 bytes for each.
+/// The sizes in a binary file: 80 free bytes and the number of triangles, then 50 bytes for each
+/// triangle.
 const HEAD: usize = 84;
 const TRIANGLE: usize = 50;
 
 pub fn read(bytes: &[u8]) -> Result<Mesh, String> {
     let count = bytes.get(80..HEAD).map(|n| u32::from_le_bytes([n[0], n[1], n[2], n[3]]) as usize);
     let body = bytes.get(HEAD..).unwrap_or_default();
-    // Some binary files begin with "solid" all the same: the length decides, then the bytes that
-    // text has not.
+    // Some binary files also begin with "solid". The length decides, then bytes that text does not
+    // contain.
     let start = without_mark(bytes).trim_ascii_start();
     let is_solid = start.get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid"));
     let mut mesh = match (count, count.and_then(|count| triangles(count, body))) {
@@ -38,10 +41,12 @@ pub fn read(bytes: &[u8]) -> Result<Mesh, String> {
     Ok(mesh)
 }
 
-/// The triangles of a binary file whose length leaves no doubt: as many as its header counts, and
-/// less than one behind them; or as many as there are, where a writer never came back to count (0,
-/// or all bits set). In some files bytes follow each triangle, as many as its last two bytes say;
-/// in others these two are a colour.
+/// Returns the triangles of a binary file whose length is consistent:
+/// - as many as its header counts, and less than one triangle after them;
+/// - or all of them, if the writer never wrote the count (0, or all bits set).
+///
+/// In some files each triangle is followed by as many bytes as its last two bytes say. In others
+/// these two bytes are a colour.
 fn triangles(count: usize, body: &[u8]) -> Option<Vec<&[u8; TRIANGLE]>> {
     let (all, tail) = body.as_chunks::<TRIANGLE>();
     let is_uncounted = count == 0 || count == u32::MAX as usize;
@@ -51,7 +56,7 @@ fn triangles(count: usize, body: &[u8]) -> Option<Vec<&[u8; TRIANGLE]>> {
     with_attributes(count, body).or_else(|| (all.len() == count).then(|| all.iter().collect()))
 }
 
-/// The triangles, if the bytes behind each end where the file does.
+/// Returns the triangles, if the bytes after the triangles end exactly at the end of the file.
 fn with_attributes(count: usize, body: &[u8]) -> Option<Vec<&[u8; TRIANGLE]>> {
     let (mut found, mut rest) = (Vec::new(), body);
     while found.len() < count {
@@ -65,7 +70,7 @@ fn with_attributes(count: usize, body: &[u8]) -> Option<Vec<&[u8; TRIANGLE]>> {
 fn binary(triangles: &[&[u8; TRIANGLE]]) -> Mesh {
     let (mut mesh, mut merger) = (Mesh::default(), Merger::default());
     for triangle in triangles {
-        // The normal comes first; it follows from the corners.
+        // The normal comes first; it is ignored, because the vertices determine it.
         let at = |i: usize| {
             f32::from_le_bytes([0, 1, 2, 3].map(|byte| triangle[12 + 4 * i + byte])).into()
         };
@@ -76,7 +81,8 @@ fn binary(triangles: &[&[u8; TRIANGLE]]) -> Mesh {
     Mesh { vertices: merger.vertices, ..mesh }
 }
 
-/// The words of an ASCII file after the name of its solid, in any case.
+/// Reads an ASCII file. Words are compared without case; the rest of a line after `solid` is its
+/// name.
 fn ascii(bytes: &[u8]) -> Result<Mesh, String> {
     let (mut mesh, mut merger) = (Mesh::default(), Merger::default());
     let mut corners = Vec::new();
@@ -85,7 +91,7 @@ fn ascii(bytes: &[u8]) -> Result<Mesh, String> {
         let mut words = text.split_whitespace();
         while let Some(word) = words.next() {
             let mut word = word.to_ascii_lowercase();
-            // Some programs write the end of a solid, a facet or a loop in two words.
+            // Some programs write "end solid", "end facet" or "end loop" in two words.
             if word == "end" {
                 word += &words.next().unwrap_or_default().to_ascii_lowercase();
             }
@@ -94,7 +100,7 @@ fn ascii(bytes: &[u8]) -> Result<Mesh, String> {
                     is_open = word == "solid";
                     break;
                 }
-                // Three numbers after "normal", which follow from the corners.
+                // Skip "normal" and its three numbers: the vertices determine it.
                 "facet" => words.by_ref().take(4).for_each(drop),
                 "outer" | "loop" | "endloop" => {}
                 "vertex" => {

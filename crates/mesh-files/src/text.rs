@@ -1,41 +1,41 @@
-//! Text files line by line, and what a file's first bytes say of it.
+//! The lines of a text file, and the format that a file's first bytes indicate.
 
 use crate::Frame;
 use std::borrow::Cow;
 
-/// The bytes without a byte order mark.
+/// Returns the bytes without a byte order mark.
 pub fn without_mark(bytes: &[u8]) -> &[u8] {
     bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)
 }
 
-/// The words of the lines with the lines' numbers, counted from 1.
+/// Returns the lines with their numbers, counted from 1.
 pub fn lines(bytes: &[u8]) -> impl Iterator<Item = (usize, Cow<'_, str>)> {
-    // Old programs end lines by carriage returns alone.
+    // Old programs end lines with carriage returns only.
     let end = if bytes.contains(&b'\n') { b'\n' } else { b'\r' };
     let lines = without_mark(bytes).split(move |&byte| byte == end);
     lines.map(String::from_utf8_lossy).enumerate().map(|(index, line)| (index + 1, line))
 }
 
-/// A coordinate.
+/// Parses a coordinate.
 pub fn number(word: Option<&str>, line: usize) -> Result<f64, String> {
     let word = word.ok_or_else(|| format!("line {line} ends where a number should be"))?;
     word.parse().map_err(|_| format!("line {line} has {}", no_number(word)))
 }
 
-/// What is wrong with a word that is no number.
+/// Returns the message for a word that is not a number.
 pub fn no_number(word: &str) -> String {
     let remedy = if word.contains(',') { "; write decimals with a point" } else { "" };
     format!("'{}' where a number should be{remedy}", shown(word))
 }
 
-/// A word as a message can show it: short, and on one line.
+/// Returns a word as a message can show it: short, and on one line.
 pub fn shown(word: &str) -> String {
     let printable = |c: char| if c.is_control() { '?' } else { c };
     let short: String = word.chars().take(20).map(printable).collect();
     if short.len() < word.len() { short + "..." } else { short }
 }
 
-/// What the file holds, whatever its name says, where its first bytes tell.
+/// Returns the format that the first bytes indicate, if any; the file's name is ignored.
 pub fn looks_like(bytes: &[u8]) -> Option<&'static str> {
     let start = without_mark(bytes);
     let start = &start[..start.len().min(4096)];
@@ -66,7 +66,7 @@ pub fn looks_like(bytes: &[u8]) -> Option<&'static str> {
     }
 }
 
-/// The frame that 3D Slicer notes at the head of the files of triangles that it writes.
+/// Returns the frame that 3D Slicer writes at the head of its files of triangles.
 pub fn noted_frame(bytes: &[u8]) -> Option<Frame> {
     let head = &bytes[..bytes.len().min(1000)];
     let note = head.windows(9).find(|window| window.starts_with(b"SPACE="))?;
@@ -81,7 +81,7 @@ pub fn frame_named(name: &[u8]) -> Option<Frame> {
     }
 }
 
-/// How many millimetres a unit of length has, by its name.
+/// Returns the number of millimetres of a unit of length, by its name.
 #[cfg(any(feature = "centrelines", feature = "label-maps"))]
 pub fn unit_in_mm(name: &str) -> Option<f64> {
     Some(match name {

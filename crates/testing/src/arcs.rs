@@ -1,34 +1,35 @@
-//! Curves whose curvature is known everywhere: circular arcs that join with one tangent.
+//! Curves whose curvature is known everywhere: circular arcs that join with a common tangent.
 
 use crate::Random;
 use parry_continuum::parry::math::{Pose, Real, Rotation, Vector};
 
-/// A stretch of one radius.
+/// A part of the tube with one radius.
 #[derive(Clone, Copy, Debug)]
 pub struct Stretch {
     pub length: Real,
     pub radius: Real,
-    /// The largest curvature of its arcs, or more.
+    /// An upper bound on the curvature of its arcs.
     pub curvature: Real,
 }
 
 /// The centreline of a tube, by arc length.
 #[derive(Clone, Debug)]
 pub struct Arcs {
-    /// Where each arc ends, the frame in which it begins along z, and its curvature vector.
+    /// For each arc: the arc length at its end, the frame at its start (the arc begins along z),
+    /// and its curvature vector.
     arcs: Vec<(Real, Pose, Vector)>,
     pub stretches: Vec<Stretch>,
     frame: Pose,
 }
 
 impl Arcs {
-    /// Nothing yet; the first arc leaves `frame` along z.
+    /// Returns an empty centreline. Its first arc leaves `frame` along z.
     pub fn from_frame(frame: Pose) -> Self {
         Self { arcs: Vec::new(), stretches: Vec::new(), frame }
     }
 
-    /// Adds a stretch of arcs, each of a length and a curvature vector (of which the z coordinate
-    /// is left out).
+    /// Appends arcs of one radius, each with a length and a curvature vector, whose z coordinate is
+    /// ignored.
     pub fn push(&mut self, radius: Real, arcs: &[(Real, Vector)]) {
         let (mut length, mut curvature) = (0.0, 0.0);
         for &(part, bend) in arcs {
@@ -41,8 +42,8 @@ impl Arcs {
         self.stretches.push(Stretch { length, radius, curvature });
     }
 
-    /// Up to three stretches of up to two arcs: from shorter than the radius to 20 times as long,
-    /// and bent up to a radius of curvature little more than their own.
+    /// Returns up to three stretches of up to two arcs. Their lengths range from below the radius
+    /// to 20 radii. Their radius of curvature is as small as slightly above the tube's radius.
     pub fn random(random: &mut Random, frame: Pose, size: Real) -> Self {
         let mut all = Self::from_frame(frame);
         for _ in 0..=random.below(3) {
@@ -67,7 +68,7 @@ impl Arcs {
         self.stretches.iter().map(|stretch| stretch.length).sum()
     }
 
-    /// The point and the direction at an arc length.
+    /// Returns the point and the unit tangent at an arc length.
     pub fn at(&self, s: Real) -> (Vector, Vector) {
         let k = self.arcs.partition_point(|arc| arc.0 < s).min(self.arcs.len() - 1);
         let start = if k == 0 { 0.0 } else { self.arcs[k - 1].0 };
@@ -76,7 +77,7 @@ impl Arcs {
         (frame.translation, frame.rotation * Vector::Z)
     }
 
-    /// By how much it turns up to an arc length.
+    /// Returns the total turn up to an arc length.
     pub fn turned(&self, s: Real) -> Real {
         let (mut from, mut turned) = (0.0, 0.0);
         for &(end, _, bend) in &self.arcs {
@@ -86,12 +87,12 @@ impl Arcs {
         turned
     }
 
-    /// The directions at its ends.
+    /// Returns the unit tangents at both ends.
     pub fn end_tangents(&self) -> [Vector; 2] {
         [0.0, self.length()].map(|s| self.at(s).1)
     }
 
-    /// The length of its shortest arc.
+    /// Returns the length of the shortest arc.
     pub fn shortest(&self) -> Real {
         self.arcs
             .iter()
@@ -99,8 +100,8 @@ impl Arcs {
             .1
     }
 
-    /// Points no farther apart than `spacing`, and the radius between each two; next to the ends of
-    /// every stretch, also points `at_ends` away from it.
+    /// Returns points at most `spacing` apart, and the radius between each two. Near the ends of
+    /// every stretch it adds points at the distances `at_ends`.
     pub fn samples(&self, spacing: Real, at_ends: &[Real]) -> (Vec<Vector>, Vec<Real>) {
         let (mut points, mut radii, mut from) = (vec![self.at(0.0).0], Vec::new(), 0.0);
         for stretch in &self.stretches {
@@ -119,7 +120,7 @@ impl Arcs {
     }
 }
 
-/// From the start of an arc along z to its end.
+/// Returns the pose of an arc's end relative to its start. The arc begins along z.
 fn along(bend: Vector, length: Real) -> Pose {
     let curvature = bend.length();
     let turn = Rotation::from_scaled_axis(bend * length);
@@ -127,7 +128,7 @@ fn along(bend: Vector, length: Real) -> Pose {
         return Pose::from_parts(Vector::Z * length, turn);
     }
     let inward = bend.cross(Vector::Z) / curvature;
-    // Not 1 - cos, which loses half of the digits where the angle is small.
+    // 1 - cos would lose half of the digits at small angles.
     let (sin, cos) = (0.5 * curvature * length).sin_cos();
     Pose::from_parts((Vector::Z * cos + inward * sin) * (2.0 * sin / curvature), turn)
 }

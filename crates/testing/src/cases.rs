@@ -1,4 +1,4 @@
-//! The reference cases.
+//! The reference cases of `tests/data`.
 
 use serde::Deserialize;
 
@@ -39,17 +39,17 @@ pub struct Case {
 }
 
 impl Case {
-    /// The expected distance, rounded to f64.
+    /// Returns the expected distance, rounded to `f64`.
     pub fn distance(&self) -> f64 {
         self.d.parse().expect("a decimal number")
     }
 
-    /// Whether the pair is a triangle and a link.
+    /// Returns whether the pair is a triangle and a link.
     pub fn is_link(&self) -> bool {
         self.kind.contains("capsule") || self.kind.contains("cylinder")
     }
 
-    /// Which caps are flat, for the kinds that have caps.
+    /// Returns which caps are flat, for the kinds that have caps.
     pub fn flat(&self) -> [bool; 2] {
         match self.kind.as_str() {
             "triangle_cylinder" => [true, true],
@@ -76,23 +76,24 @@ pub struct LinkCase {
 }
 
 impl LinkCase {
-    /// The expected distance, rounded to f64.
+    /// Returns the expected distance, rounded to `f64`.
     pub fn distance(&self) -> f64 {
         self.d.parse().expect("a decimal number")
     }
 }
 
-/// Reads one JSON value a line.
+/// Reads one JSON value from each line.
 pub fn read_lines<T: for<'a> Deserialize<'a>>(text: &str) -> Vec<T> {
     text.lines().map(|line| serde_json::from_str(line).expect("a line of JSON")).collect()
 }
 
-/// The reference distances.
+/// Returns the reference distances.
 pub fn distance_cases() -> Vec<Case> {
     read_lines(include_str!("../../../tests/data/distance.jsonl"))
 }
 
-/// The reference distances between two links, written by `crates/studies/reference/link_link.py`.
+/// Returns the reference distances between two links, written by
+/// `crates/studies/reference/link_link.py`.
 pub fn link_cases() -> Vec<LinkCase> {
     read_lines(include_str!("../../../tests/data/link_link.jsonl"))
 }

@@ -1,6 +1,9 @@
-//! Proofs of a distance between convex shapes, in double-double arithmetic: two points that lie in
-//! the shapes bound it from above, a direction along which the shapes are apart bounds it from
-//! below. A proof needs no trust in whoever found the points and the direction.
+//! Certificates of a distance between convex shapes, in double-double arithmetic.
+//!
+//! - **Upper bound**: the distance of two points that lie in the shapes.
+//! - **Lower bound**: the separation of the shapes along a direction.
+//!
+//! Both hold for all points and directions, however they were computed.
 
 use crate::kernels::{Input, KERNELS};
 use parry_continuum::distance::*;
@@ -30,7 +33,7 @@ pub enum Shape {
     },
 }
 
-/// The distance lies between these two.
+/// Bounds on a distance.
 #[derive(Clone, Copy, Debug)]
 pub struct Bounds {
     pub lower: DoubleDouble,
@@ -42,7 +45,7 @@ fn zero() -> DoubleDouble {
 }
 
 impl Shape {
-    /// The largest <direction, x> over the shape, for a unit direction.
+    /// Returns the largest `<direction, x>` over the shape, for a unit direction.
     fn support(&self, direction: Exact) -> DoubleDouble {
         let across = |axis: Exact| (direction - axis * direction.dot(axis)).norm();
         match self {
@@ -57,8 +60,8 @@ impl Shape {
             Self::Link { ends, axis, radius, flat } => {
                 let forward = direction.dot(*axis);
                 let reach = |end: usize, outward: DoubleDouble| {
-                    // A round cap shows its half ball to directions that point out of it, else its
-                    // rim.
+                    // A round cap extends by its half ball in directions that point out of it,
+                    // otherwise only by its rim.
                     let round = !flat[end] && zero().le(outward);
                     direction.dot(ends[end]) + if round { *radius } else { *radius * across(*axis) }
                 };
@@ -67,7 +70,7 @@ impl Shape {
         }
     }
 
-    /// How far a point is from the shape.
+    /// Returns the distance of a point from the shape.
     pub fn distance_to(&self, point: Exact) -> DoubleDouble {
         match self {
             Self::Hull(points) => distance_to_hull(points, point),
@@ -121,7 +124,7 @@ fn distance_to_hull(points: &[Exact], point: Exact) -> DoubleDouble {
     }
 }
 
-/// The two shapes of each kernel, in the order of [`KERNELS`].
+/// Returns the two shapes of each kernel, in the order of [`KERNELS`].
 pub fn shapes(input: &Input<DoubleDouble>) -> [[Shape; 2]; KERNELS.len()] {
     let Input { triangle: [a, b, c], plane_normal, start, end, disc_normal, radius } = *input;
     let point = |p| Shape::Hull(vec![p]);
@@ -129,7 +132,7 @@ pub fn shapes(input: &Input<DoubleDouble>) -> [[Shape; 2]; KERNELS.len()] {
     let edge = || Shape::Hull(vec![a, b]);
     let triangle = || Shape::Hull(vec![a, b, c]);
     let disc = || Shape::Disc { centre: end, normal: disc_normal.normalised(), radius };
-    // A link without a length has no direction to be flat in.
+    // A link without a length has no direction, so its caps are round.
     let has_length = zero().lt((end - start).norm_squared());
     let link = |flat: [bool; 2]| Shape::Link {
         ends: [start, end],
@@ -156,8 +159,8 @@ pub fn shapes(input: &Input<DoubleDouble>) -> [[Shape; 2]; KERNELS.len()] {
     ]
 }
 
-/// Directions worth trying to separate the shapes of an input along: those of all its pairs'
-/// closest points.
+/// Returns candidate directions that may separate the shapes of an input: those between the closest
+/// points of all its pairs.
 pub fn directions(input: &Input<DoubleDouble>, answers: &[Closest<DoubleDouble>]) -> Vec<Exact> {
     let Input { triangle, start, end, radius, .. } = *input;
     let discs = [start, end].map(|centre| triangle_disc(triangle, centre, end - start, radius));
@@ -165,8 +168,8 @@ pub fn directions(input: &Input<DoubleDouble>, answers: &[Closest<DoubleDouble>]
     gaps.map(Vec3::normalised).collect()
 }
 
-/// The bounds that an answer and some directions prove. (The answer's own direction is only half as
-/// precise as its distance where two cases of a kernel tie.)
+/// Returns the bounds that an answer and some directions prove. (If two cases of a kernel tie, the
+/// answer's own direction has only half as many digits as its distance.)
 pub fn certify(
     [first, second]: &[Shape; 2],
     closest: &Closest<DoubleDouble>,

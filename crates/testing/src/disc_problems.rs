@@ -1,4 +1,4 @@
-//! Segments and discs to compare the routes of segment-disc on: plain ones, and every kind that is
+//! Segments and discs to compare the solvers of segment-disc: ordinary ones, and every kind that is
 //! known to be hard.
 
 use crate::Random;
@@ -6,7 +6,7 @@ use crate::precision::Precision;
 use parry_continuum::distance::{Closest, DoubleDouble, Scalar, Vec3};
 use parry_continuum::parry::math::{Pose, Vector};
 
-/// A way from a segment to a disc: [`segment_disc`](parry_continuum::distance::segment_disc), or
+/// A solver for a segment and a disc: [`segment_disc`](parry_continuum::distance::segment_disc), or
 /// one to compare with it.
 pub type Route<T> = fn([Vec3<T>; 2], Vec3<T>, Vec3<T>, T) -> Closest<T>;
 
@@ -19,10 +19,10 @@ pub struct DiscProblem {
     pub radius: f64,
 }
 
-/// What makes a problem hard.
+/// The kind of difficulty of a problem.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// No relation, sizes alike.
+    /// Unrelated, with similar sizes.
     Random,
     /// Small integers: parallels, ties and zeros.
     Lattice,
@@ -33,7 +33,7 @@ pub enum Kind {
     NearlyParallel,
     /// Nearly parallel and nearly tangent: the derivative bends like a cube root.
     Cusp,
-    /// The same, and the segment ends there.
+    /// Same as above, and the segment ends there.
     EndAtCusp,
     /// Tangent to the rim, at any tilt.
     GrazingRim,
@@ -47,11 +47,11 @@ pub enum Kind {
     AlongNormal,
     /// Nearly along the normal, beside the rim.
     BesideBarrel,
-    /// Sizes and angles of any ratio.
+    /// Sizes and angles of all magnitudes.
     AnySize,
     /// A disc 1e-9 to 1e7 times as large as the segment.
     AnyRadius,
-    /// 1e3 to 1e6 away from the origin.
+    /// At a distance of 1e3 to 1e6 from the origin.
     Offset,
     /// A segment 1 to 1e6 times as long as the rest.
     Long,
@@ -84,31 +84,31 @@ impl Kind {
     ];
 }
 
-/// Either sign of a number between two powers of ten.
+/// Returns a number of random sign, log-uniform between two powers of ten.
 fn small(random: &mut Random, low: f64, high: f64) -> f64 {
     let size = 10.0_f64.powf(random.between(low, high));
     if random.below(2) == 0 { size } else { -size }
 }
 
-/// Small, and now and then exactly 0.
+/// Returns a small number, sometimes exactly 0.
 fn tiny(random: &mut Random) -> f64 {
     if random.below(8) == 0 { 0.0 } else { small(random, -17.0, -0.5) }
 }
 
-/// A segment through `at`, which divides it, lies beyond it or is one of its ends.
+/// Returns a segment through `at`, which is inside it, beyond it or one of its ends.
 fn through(at: Vector, direction: Vector, random: &mut Random) -> [Vector; 2] {
     [at + direction * random.between(-3.0, 0.5), at + direction * random.between(-0.5, 3.0)]
 }
 
 impl DiscProblem {
-    /// A problem of the kind.
+    /// Returns a problem of this kind.
     pub fn new(random: &mut Random, kind: Kind) -> Self {
         let offset = if kind == Kind::Offset { small(random, 3.0, 6.0) } else { 1.0 };
         let local = Self::local(random, kind);
         if kind == Kind::Lattice {
             return local;
         }
-        // Half of them stay on the axes, where parallel is exactly parallel.
+        // Half of the problems stay on the axes, where parallel is exactly parallel.
         let pose = random.pose(1.0);
         let turn = if random.below(2) == 0 { Pose::IDENTITY.rotation } else { pose.rotation };
         let away = pose.translation * offset;
@@ -120,7 +120,7 @@ impl DiscProblem {
         }
     }
 
-    /// A problem with the disc around the origin and in the plane of x and y, but for the lattice.
+    /// Returns a problem with the disc around the origin in the xy plane, except for the lattice.
     fn local(random: &mut Random, kind: Kind) -> Self {
         let radius = random.between(0.05, 2.0);
         let height = random.between(0.0, 2.0);
@@ -228,7 +228,7 @@ impl DiscProblem {
         problem
     }
 
-    /// The problem as single precision sees it.
+    /// Returns the problem rounded to single precision.
     pub fn rounded(&self) -> Self {
         let round = |p: Vector| Vector::from_array(p.to_array().map(|x| f64::from(x as f32)));
         Self {
@@ -239,7 +239,7 @@ impl DiscProblem {
         }
     }
 
-    /// The error of a route in the precision `T`, relative to the extent.
+    /// Returns the error of a solver in the precision `T`, relative to the extent.
     pub fn error<T: Precision>(&self, route: Route<T>, distance: f64) -> f64 {
         let (centre, normal) = (T::vec3(self.centre), T::vec3(self.normal));
         let found = route(self.ends.map(T::vec3), centre, normal, T::from_f64(self.radius));
@@ -247,7 +247,7 @@ impl DiscProblem {
         if error.is_nan() { f64::INFINITY } else { error }
     }
 
-    /// The largest difference of two coordinates, or the radius.
+    /// Returns the largest coordinate difference of two points, or the radius.
     pub fn extent(&self) -> f64 {
         let points = [self.ends[0], self.ends[1], self.centre];
         let [low, high] = [Vector::min, Vector::max]
@@ -255,8 +255,8 @@ impl DiscProblem {
         (high - low).max_element().max(self.radius)
     }
 
-    /// The distance, in numbers `T`: by bisection of the derivative of the squared distance, which
-    /// is convex.
+    /// Returns the distance in numbers of type `T`, by bisection of the derivative of the squared
+    /// distance, which is convex.
     pub fn distance_in<T: Scalar<Mask = bool> + From<f64>>(&self) -> T {
         let point = |p: Vector| p.to_array().map(T::from);
         let sub = |a: [T; 3], b: [T; 3]| [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
@@ -268,7 +268,8 @@ impl DiscProblem {
         let length = dot(normal, normal).sqrt();
         let normal = normal.map(|x| x / length);
         let slope = dot(edge, normal);
-        // The height, how far beyond the rim, and the derivative times the distance from the axis.
+        // The height, the distance beyond the rim, and the derivative times the distance from the
+        // axis.
         let look = |t: f64| {
             let p = [0, 1, 2].map(|i| start[i] + edge[i] * T::from(t));
             let height = dot(p, normal);
@@ -281,7 +282,7 @@ impl DiscProblem {
                 (height, zero, height * slope)
             }
         };
-        // In steps that a double holds exactly.
+        // Steps that an `f64` represents exactly.
         let mut at = 0.0;
         if look(0.0).2.lt(zero) {
             if look(1.0).2.le(zero) {
@@ -299,13 +300,13 @@ impl DiscProblem {
         (height * height + beyond * beyond).sqrt()
     }
 
-    /// The distance, correct to the last digit.
+    /// Returns the distance, correct to the last digit.
     pub fn distance(&self) -> f64 {
         self.distance_in::<DoubleDouble>().rounded()
     }
 }
 
-/// As many problems of each kind, as the precision `T` sees them, with their distances.
+/// Returns `of_each` problems of each kind, rounded to the precision `T`, with their distances.
 pub fn problems<T: Precision>(of_each: usize) -> Vec<(Kind, DiscProblem, f64)> {
     let mut random = Random::new(7);
     let mut all = Vec::new();
@@ -324,7 +325,7 @@ pub fn problems<T: Precision>(of_each: usize) -> Vec<(Kind, DiscProblem, f64)> {
     all
 }
 
-/// The largest error of a route in units of roundoff.
+/// Returns the largest error of a solver, in units of roundoff.
 pub fn worst<T: Precision>(route: Route<T>, problems: &[(Kind, DiscProblem, f64)]) -> f64 {
     let errors = problems.iter().map(|(_, problem, distance)| problem.error(route, *distance));
     errors.fold(0.0, f64::max) / T::UNIT

@@ -1,17 +1,17 @@
-//! How much a random test does.
+//! The number of rounds of a random test.
 
 use std::env;
 
-/// The share of its rounds that a random test runs by default, so that `cargo test` stays short.
+/// The share of its rounds that a random test runs by default. It keeps `cargo test` short.
 const DEFAULT: f64 = 0.25;
 
-/// The number of rounds to run of a random test that has `full` rounds: at least one.
+/// Returns the number of rounds to run of a random test that has `full` rounds: at least one.
 ///
-/// `PARRY_CONTINUUM_EFFORT` is the share; it is 1 in `.ci/everything`. Counts that a test asserts
-/// of its sample scale alike.
+/// The environment variable `PARRY_CONTINUUM_EFFORT` sets the share; `.ci/everything` sets it to 1.
+/// Counts that a test requires of its sample scale by the same share.
 ///
 /// # Panics
-/// If the variable holds no positive number, or the result does not fit.
+/// If the variable is not a positive number, or the result does not fit.
 pub fn rounds<N: Copy + TryInto<u32> + TryFrom<u32>>(full: N) -> N {
     let share = env::var("PARRY_CONTINUUM_EFFORT").map_or(DEFAULT, |share| {
         let share = share.parse().ok().filter(|share: &f64| share.is_finite() && *share > 0.0);

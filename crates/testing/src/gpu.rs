@@ -1,16 +1,16 @@
 //! The GPU of this machine, opened once for all tests of a program.
 //!
-//! Without one these tests pass without doing anything, unless PARRY_CONTINUUM_REQUIRE_GPU is set:
-//! then they fail.
+//! On a machine without a GPU these tests pass without doing anything. They fail there if
+//! `PARRY_CONTINUUM_REQUIRE_GPU` is set.
 
 use parry_continuum::gpu::{DeviceError, Gpu, GpuError, Precision};
 use std::sync::OnceLock;
 
-/// The precisions, with names for messages.
+/// The precisions and their names in messages.
 pub const PRECISIONS: [(&str, Precision); 2] =
     [("GPU f32", Precision::F32), ("GPU f64", Precision::F64)];
 
-/// The GPU in this precision; None if there is none and none is required.
+/// Returns the GPU in this precision; `None` if there is none and none is required.
 pub fn open(precision: Precision) -> Option<&'static Gpu> {
     static SINGLE: OnceLock<Option<Gpu>> = OnceLock::new();
     static DOUBLE: OnceLock<Option<Gpu>> = OnceLock::new();

@@ -1,4 +1,4 @@
-//! Every public function of the narrow phase on one input.
+//! Applies every public function of the narrow phase to one input.
 
 use crate::Case;
 use crate::narrow_phase::{
@@ -21,7 +21,7 @@ pub struct Input<T> {
     pub radius: T,
 }
 
-/// The names of what [`Input::answers`] returns.
+/// The names of the answers of [`Input::answers`].
 pub const KERNELS: [&str; 15] = [
     "segment-segment",
     "point-triangle",
@@ -41,7 +41,7 @@ pub const KERNELS: [&str; 15] = [
 ];
 
 impl<T: Scalar> Input<T> {
-    /// The answers of every kernel.
+    /// Returns the answer of every kernel.
     pub fn answers(&self) -> [Closest<T>; KERNELS.len()] {
         let Self { triangle, plane_normal, start, end, disc_normal, radius } = *self;
         let [a, b, _] = triangle;
@@ -81,13 +81,13 @@ impl<T: Scalar> Input<T> {
 }
 
 impl<T: Precision> Input<T> {
-    /// The extent of each kernel's pair: the largest difference of two of its points in a
-    /// coordinate, or its radius.
+    /// Returns the extent of each kernel's pair: the largest coordinate difference of two of its
+    /// points, or its radius.
     pub fn extents(&self) -> [f64; KERNELS.len()] {
         self.parts().map(|(points, radius)| extent(&points, radius))
     }
 
-    /// The points of each kernel's pair, and its radius if it has one.
+    /// Returns the points of each kernel's pair, and its radius if it has one.
     pub fn parts(&self) -> [(Vec<Vector>, f64); KERNELS.len()] {
         let [a, b, c] = self.triangle.map(vector);
         let (start, end, radius) = (vector(self.start), vector(self.end), self.radius.into());
@@ -129,7 +129,7 @@ impl From<&Problem> for Input<f64> {
 }
 
 impl From<&Case> for Input<f64> {
-    /// What the case's kind has not is filled in from what it has.
+    /// Fills in the parts that the kind of the case lacks from those that it has.
     fn from(case: &Case) -> Self {
         let ([start, end], triangle) = match case.kind.as_str() {
             "segment_segment" => ([case.s0, case.s1], [case.u0, case.u1, case.s1]),

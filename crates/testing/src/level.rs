@@ -1,7 +1,7 @@
-//! Parallel links side by side whose ends are level, and which overlap deeply.
+//! Parallel links side by side whose ends are level, in deep overlap.
 //!
-//! The places where their axes are nearest lie in the planes of flat caps. Rounding puts them
-//! before or behind these.
+//! The closest places of their axes lie in the planes of flat caps. Rounding puts them before or
+//! behind these planes.
 
 use crate::Random;
 use parry_continuum::parry::math::{Pose, Vector};
@@ -11,15 +11,15 @@ use parry_continuum::{Cap, ModifiedCylinder};
 #[derive(Clone, Copy, Debug)]
 pub struct LevelLinks {
     pub links: [ModifiedCylinder; 2],
-    /// The length of the least translation that separates them, if all caps are flat. Round caps
-    /// make it no shorter.
+    /// The length of the least translation that separates them, if all caps are flat. With round
+    /// caps it is at least as long.
     pub depth: f64,
 }
 
-/// Axes of cylinders of radius 0.5, and how deep they overlap.
+/// The axes of two cylinders of radius 0.5, and the depth of their overlap.
 type FoundPair = ([[[f64; 3]; 2]; 2], f64);
 
-/// Pairs that counted as apart once.
+/// Pairs that an earlier version reported as apart.
 const FOUND: [FoundPair; 6] = [
     (
         [
@@ -83,7 +83,7 @@ const FOUND: [FoundPair; 6] = [
     ),
 ];
 
-/// The pairs that counted as apart once.
+/// Returns the pairs that an earlier version reported as apart.
 pub fn found_level_links() -> impl Iterator<Item = LevelLinks> {
     FOUND.into_iter().map(|(axes, depth)| {
         let links = axes.map(|ends| {
@@ -95,11 +95,12 @@ pub fn found_level_links() -> impl Iterator<Item = LevelLinks> {
 }
 
 impl Random {
-    /// Level at the start, at the end or at both, at any pose and in any unit between micrometres
-    /// and kilometres. Every fourth pair has round caps too.
+    /// Returns two links that are level at the start, at the end or at both, at any pose and in any
+    /// unit between micrometres and kilometres. One pair in four also has round caps.
     ///
-    /// Parallel cylinders differ by a cylinder, whose radius is the sum of both radii. From within,
-    /// the way out is across the axes or along them: so the depth is the lesser of the two.
+    /// **Depth.** The Minkowski difference of two parallel cylinders is a cylinder whose radius is
+    /// the sum of both radii. From inside, the least translation is across the axes or along them;
+    /// the depth is the smaller of the two.
     pub fn level_links(&mut self) -> LevelLinks {
         let size = if self.below(2) == 0 { 1.0 } else { self.magnitude(-6.0, 3.0) };
         let radius = self.between(0.2, 1.0);
@@ -133,7 +134,7 @@ impl Random {
 }
 
 impl LevelLinks {
-    /// Whether all caps are flat.
+    /// Returns whether all caps are flat.
     pub fn is_flat(&self) -> bool {
         self.links.iter().all(|link| link.caps() == [Cap::Flat; 2])
     }

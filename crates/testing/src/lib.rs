@@ -1,14 +1,15 @@
-//! What the tests and measurements of `parry-continuum` share, so that all of them ask and judge
-//! alike.
+//! Shared code of the tests and measurements of `parry-continuum`.
 //!
-//! | what | modules |
-//! |---|---|
-//! | questions | [`problems`] that break distance code; [`Arcs`], curves of known curvature; [`Case`], references known to 30 digits; [`placements`] aligned and touching; [`LevelLinks`] side by side; [`Random`], the same anywhere |
-//! | the narrow phase | [`narrow_phase`], its functions compiled once; [`kernels`], every public one on one input; [`precision`], one text for `f32` and `f64` |
-//! | effort | [`rounds`], how many rounds a random test runs |
-//! | judges | [`certificate`], proofs in double-double arithmetic; [`rotation`]s that round nothing |
-//! | the fuzzer | `fuzz`, bodies that take any bytes (feature `fuzz`) |
-//! | around | `programs`, run as a user does (feature `programs`); `gpu`, opened once (feature `gpu`) |
+//! - Inputs: [`problems`] that break distance code; [`Arcs`], curves of known curvature; [`Case`],
+//!   references to 30 digits; [`placements`] that are aligned and touch; [`LevelLinks`] side by
+//!   side; [`Random`], the same on every machine.
+//! - The narrow phase: [`narrow_phase`], its functions compiled once; [`kernels`], every public
+//!   function on one input; [`precision`], one text for `f32` and `f64`.
+//! - Effort: [`rounds`], the number of rounds of a random test.
+//! - Checks: [`certificate`], proofs in double-double arithmetic; [`rotation`]s without rounding.
+//! - The fuzzer: `fuzz`, bodies that accept any bytes (feature `fuzz`).
+//! - Environment: `programs`, run as a user runs them (feature `programs`); `gpu`, opened once
+//!   (feature `gpu`).
 
 mod arcs;
 mod cases;
@@ -36,7 +37,7 @@ pub use effort::rounds;
 pub use level::{LevelLinks, found_level_links};
 pub use random::Random;
 
-/// The answers of a batch, each of which there has to be.
+/// Returns the answers of a batch, all of which must be `Ok`.
 pub fn answered<T: Clone, E: std::fmt::Debug>(batch: &[Result<T, E>]) -> Vec<T> {
     batch.iter().map(|answer| answer.as_ref().expect("an answer").clone()).collect()
 }

@@ -1,5 +1,5 @@
-//! The narrow phase for whoever asks it here and there: the library's functions are inlined into
-//! each that calls them, these are compiled once for every kind of number.
+//! The functions of the narrow phase, compiled once for every kind of number. The library's own
+//! functions are inlined into each caller.
 
 use parry_continuum::distance::{self, Closest, Scalar, Vec3};
 

@@ -1,11 +1,13 @@
-//! Degenerate placements of a robot and a wall, which random poses never reach and scenes are made
-//! of: axes along edges, faces and axes, one axis for both, a wall seen edge-on, corners and rims
-//! that touch, in every order of the vertices.
+//! Degenerate placements of a robot and a wall, which are common in scenes and which random poses
+//! never reach: axes along edges, faces and axes, a common axis, a wall seen edge-on, and vertices
+//! and rims that touch, in every order of the vertices.
 //!
-//! A wall offers [`Spot`]s: places on its surface with a way out and a way along. The robot is
-//! built in the wall's own frame so that it touches there, with a barrel, a cap or a rim; then a
-//! gap is left or taken, from 0 and 1e-14 up, and it is tilted by 0 or by 1e-15 to 1e-3. So what is
-//! aligned is aligned to the last digit. Half of the pairs are moved on as a whole, by any pose.
+//! 1. A wall offers [`Spot`]s: places on its surface with an outward and a tangent direction.
+//! 2. The robot is built in the wall's own frame so that it touches there with a barrel, a cap or a
+//!    rim. So aligned parts are aligned to the last digit.
+//! 3. A gap is added or removed, from 0 and 1e-14 up, and the robot is tilted by 0 or by 1e-15 to
+//!    1e-3.
+//! 4. Half of the pairs are moved as a whole, by any pose.
 
 use crate::Random;
 use parry_continuum::parry::math::{IVector, Pose, Rot3, Vector};
@@ -15,11 +17,11 @@ use parry_continuum::parry::shape::{
 use parry_continuum::parry::utils::Array2;
 use parry_continuum::{Cap, Chain, ModifiedCylinder};
 
-/// What a robot is placed against.
+/// A shape that a robot is placed against.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Wall {
     Triangle,
-    /// Two triangles: each of its edges but one is free.
+    /// Two triangles; all edges but one are free.
     Plate,
     /// Twelve triangles around a box.
     BoxMesh,
@@ -62,16 +64,16 @@ impl Wall {
     ];
 }
 
-/// How the robot touches, before the tilt.
+/// The part of the robot that touches, before the tilt.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Touch {
-    /// With its barrel.
+    /// Its barrel.
     Lying,
-    /// With a cap.
+    /// A cap.
     Standing,
-    /// With a rim, or with the rounding of a cap.
+    /// A rim, or the rounding of a cap.
     Leaning,
-    /// It has no length.
+    /// The whole robot, which has no length.
     Ball,
 }
 
@@ -87,15 +89,15 @@ pub struct Placement {
     pub pose: Pose,
     pub kind: Wall,
     pub touch: Touch,
-    /// What was left between the two at the spot; below 0 they overlap there. Elsewhere they may
-    /// overlap more.
+    /// The gap between the two at the spot; negative in overlap. Elsewhere the overlap may be
+    /// deeper.
     pub gap: f64,
     /// The angle by which the robot is tilted.
     pub tilt: f64,
 }
 
-/// A place on a wall's surface: unit vectors out of it and along it. They need not be the only
-/// ones.
+/// A place on a wall's surface, with a unit vector out of it and one along it. Other choices of
+/// these vectors may be equally valid.
 #[derive(Clone, Copy, Debug)]
 pub struct Spot {
     pub at: Vector,
@@ -104,7 +106,7 @@ pub struct Spot {
 }
 
 impl Random {
-    /// A robot at a wall of this kind. All lengths are about 1.
+    /// Returns a robot at a wall of this kind. All lengths are about 1.
     pub fn placement(&mut self, kind: Wall) -> Placement {
         let (wall, spot) = self.wall(kind);
         let gap = self.gap();
@@ -116,7 +118,7 @@ impl Random {
             * Pose::from_rotation(turn)
             * Pose::from_translation(-spot.at);
         let link = if tilt == 0.0 { link } else { link.transformed(&tilted) };
-        // Where the wall is in the robot's frame: a shift that leaves the axes alone, or anything.
+        // The wall in the robot's frame: a translation that keeps the axes, or any pose.
         let pose = match self.below(4) {
             0 => Pose::IDENTITY,
             1 => Pose::from_translation(self.point()),
@@ -131,12 +133,12 @@ impl Random {
         Placement { link, robot, wall, pose, kind, touch, gap, tilt }
     }
 
-    /// A length: round numbers as often as others.
+    /// Returns a length: half of them are multiples of 1/8.
     fn size(&mut self) -> f64 {
         if self.below(2) == 0 { f64::from(1 + self.below(8)) / 8.0 } else { self.between(0.1, 1.0) }
     }
 
-    /// 0, or of either sign and from 1e-14 to 1e-2, or an overlap as deep as the shapes.
+    /// Returns 0, a gap of random sign from 1e-14 to 0.3, or an overlap of 0.1 to 1.5.
     fn gap(&mut self) -> f64 {
         let sign = if self.below(2) == 0 { -1.0 } else { 1.0 };
         match self.below(8) {
@@ -147,12 +149,12 @@ impl Random {
         }
     }
 
-    /// 0 as often as from 1e-15 to 1e-3.
+    /// Returns 0 in half of the cases, otherwise a number from 1e-15 to 1e-3.
     fn tilt(&mut self) -> f64 {
         if self.below(2) == 0 { 0.0 } else { 10.0_f64.powf(self.between(-15.0, -3.0)) }
     }
 
-    /// What the robot is tilted around.
+    /// Returns the axis of the tilt.
     fn way(&mut self, spot: Spot) -> Vector {
         match self.below(4) {
             0 => spot.along,
@@ -162,7 +164,7 @@ impl Random {
         }
     }
 
-    /// A share of a length: an end, the middle, a quarter, beyond, any.
+    /// Returns a fraction of a length: an end, the middle, a quarter, beyond an end, or any.
     fn share(&mut self) -> f64 {
         match self.below(6) {
             0 => 0.0,
@@ -206,7 +208,7 @@ impl Random {
                 (start, start + out * length)
             }
             Touch::Leaning => {
-                // 3, 4, 5: lengths stay round.
+                // A 3-4-5 triangle keeps the numbers short.
                 let (axis, lateral) = (out * 0.6 + along * 0.8, along * 0.6 - out * 0.8);
                 let low = if caps[0] == Cap::Flat { -lateral } else { out };
                 let start = near + low * radius;
@@ -226,7 +228,7 @@ impl Random {
         (touch, link)
     }
 
-    /// A chain whose first link lies as `link` does, straight on or bent behind it.
+    /// Returns a chain that begins with `link` and continues straight or bent.
     fn chain_of(&mut self, link: &ModifiedCylinder) -> Option<Chain> {
         let axis = (link.end() - link.start()).normalize();
         let bend = if self.below(2) == 0 { axis } else { (axis + 0.5 * self.point()).normalize() };
@@ -236,7 +238,7 @@ impl Random {
         Chain::from_centreline(&points, &radii).ok()
     }
 
-    /// A wall and a spot on it, in its own frame.
+    /// Returns a wall and a spot on it, in its own frame.
     pub fn wall(&mut self, kind: Wall) -> (SharedShape, Spot) {
         let half = Vector::new(self.size(), self.size(), self.size());
         let (radius, long) = (self.size(), self.size());
@@ -340,11 +342,11 @@ impl Random {
         }
     }
 
-    /// Triangles in any order, each from any corner and of either sense, with and without a mesh's
-    /// normal constraints.
+    /// Returns the triangles in random order, each from a random vertex and of random orientation,
+    /// with and without a mesh's normal constraints.
     fn mesh(&mut self, vertices: Vec<Vector>, triangles: &[[u32; 3]]) -> SharedShape {
         let constrained = self.below(2) == 0;
-        // Constraints want one sense.
+        // Normal constraints require one orientation.
         let mut shuffled: Vec<_> = triangles
             .iter()
             .map(|&[a, b, c]| {
@@ -365,7 +367,7 @@ impl Random {
         )
     }
 
-    /// The corners of a triangle, in a coordinate plane or anywhere.
+    /// Returns the vertices of a triangle, in a coordinate plane or anywhere.
     fn corners(&mut self) -> [Vector; 3] {
         if self.below(3) == 0 {
             return [0; 3].map(|_| self.point() * 2.0);
@@ -381,7 +383,7 @@ impl Random {
         })
     }
 
-    /// The same three in one of six orders.
+    /// Returns the three in one of six orders.
     pub fn shuffled<T: Copy>(&mut self, [a, b, c]: [T; 3]) -> [T; 3] {
         [[a, b, c], [a, c, b], [b, a, c], [b, c, a], [c, a, b], [c, b, a]][self.below(6) as usize]
     }
@@ -391,7 +393,7 @@ impl Random {
         let face = (b - a).cross(c - a).normalize();
         let face = if self.below(2) == 0 { face } else { -face };
         let along = (b - a).normalize();
-        // In the triangle's plane, away from it: it is seen edge-on.
+        // In the triangle's plane, pointing away from it: the triangle is seen edge-on.
         let within = along.cross(face);
         let beyond = if within.dot(c - a) > 0.0 { -within } else { within };
         let on_edge = a.lerp(b, [0.5, 0.25, 0.0][self.below(3) as usize]);
@@ -414,7 +416,7 @@ impl Random {
         }
     }
 
-    /// On a face, an edge or a corner of a box.
+    /// Returns a spot on a face, an edge or a vertex of a box.
     fn on_box(&mut self, half: Vector) -> Spot {
         let [i, j, k] = self.shuffled([0, 1, 2]);
         let (x, y, z) = (Vector::AXES[i], Vector::AXES[j], Vector::AXES[k]);
@@ -430,8 +432,8 @@ impl Random {
         }
     }
 
-    /// On a surface of revolution about the y axis, from `-half` to `half`: barrel, caps, rims, a
-    /// cone's tip.
+    /// Returns a spot on a surface of revolution about the y axis, from `-half` to `half`: a
+    /// barrel, cap, rim or cone's tip.
     fn on_round(&mut self, radii: [f64; 2], half: f64, caps: [Cap; 2]) -> Spot {
         let side = if self.below(2) == 0 { Vector::X } else { Vector::new(0.6, 0.0, 0.8) };
         let end = self.below(2) as usize;

@@ -1,4 +1,4 @@
-//! One text for tests in double and in single precision.
+//! One test text for double and single precision.
 
 use parry_continuum::distance::{Scalar, Vec3};
 use parry_continuum::parry::math::Vector;
@@ -29,12 +29,12 @@ impl Precision for f32 {
     }
 }
 
-/// The point in f64.
+/// Returns the point in `f64`.
 pub fn vector<T: Into<f64>>(point: Vec3<T>) -> Vector {
     Vector::new(point.x.into(), point.y.into(), point.z.into())
 }
 
-/// The largest difference of two points in a coordinate, or the length if that is more.
+/// Returns the largest coordinate difference of two points, or `length` if that is larger.
 pub fn extent(points: &[Vector], length: f64) -> f64 {
     let low = points.iter().copied().reduce(Vector::min).unwrap_or_default();
     let high = points.iter().copied().reduce(Vector::max).unwrap_or_default();

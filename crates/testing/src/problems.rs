@@ -1,11 +1,12 @@
-//! Random problems of the kinds that break distance code: a triangle and a link, from which every
-//! pair of the narrow phase takes its part (the axis as a segment, its ends as points, its caps as
-//! discs).
+//! Random problems of the kinds that break distance code.
+//!
+//! A problem is a triangle and a link. Every pair of the narrow phase uses parts of it: the axis as
+//! a segment, its ends as points, its caps as discs.
 
 use crate::Random;
 use parry_continuum::parry::math::Vector;
 
-/// A triangle and a link in f64.
+/// A triangle and a link, in `f64`.
 #[derive(Clone, Copy, Debug)]
 pub struct Problem {
     pub family: Family,
@@ -17,7 +18,7 @@ pub struct Problem {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Family {
-    /// No relation.
+    /// Unrelated shapes.
     Generic,
     /// Small integers: parallels, ties and zeros.
     Lattice,
@@ -64,13 +65,13 @@ impl Family {
 }
 
 impl Random {
-    /// Log-uniform between two powers of ten, of either sign.
+    /// Returns a number of random sign, log-uniform between two powers of ten.
     pub fn tiny(&mut self, low: f64, high: f64) -> f64 {
         let sign = if self.below(2) == 0 { 1.0 } else { -1.0 };
         sign * self.magnitude(low, high)
     }
 
-    /// Log-uniform between two powers of ten.
+    /// Returns a number log-uniform between two powers of ten.
     pub fn magnitude(&mut self, low: f64, high: f64) -> f64 {
         10.0_f64.powf(self.between(low, high))
     }
@@ -83,7 +84,7 @@ impl Random {
         f64::from(self.below(7)) - 3.0
     }
 
-    /// A unit vector perpendicular to another.
+    /// Returns a unit vector perpendicular to another.
     pub fn perpendicular_to(&mut self, unit: Vector) -> Vector {
         loop {
             let direction = self.direction();
@@ -94,8 +95,8 @@ impl Random {
         }
     }
 
-    /// A problem of the family. `finest` is the power of ten of the smallest deviations worth
-    /// making, about -17 for f64 and -8 for f32.
+    /// Returns a problem of the family. `finest` is the power of ten of the smallest useful
+    /// deviations, about -17 for `f64` and -8 for `f32`.
     pub fn problem(&mut self, family: Family, finest: f64) -> Problem {
         let mut problem = Problem {
             family,
@@ -185,7 +186,7 @@ impl Random {
                     (self.perpendicular_to(along), self.magnitude(finest.max(-13.0), -1.0));
                 let (length, at) = ((b - a).length(), self.between(0.2, 0.8));
                 problem.triangle[2] = a + (b - a) * at + across * (length * height);
-                // Above the interior, give or take.
+                // Above the interior, or near it.
                 let (inner, normal) = (self.unit(), along.cross(across));
                 let foot = (a + (b - a) * (at + self.between(-0.1, 0.1)))
                     .lerp(problem.triangle[2], inner * 0.9 + 0.05);
@@ -242,13 +243,13 @@ impl Random {
 }
 
 impl Problem {
-    /// The five points: triangle, start, end.
+    /// Returns the five points: triangle, start, end.
     pub fn points(&self) -> [Vector; 5] {
         let [a, b, c] = self.triangle;
         [a, b, c, self.start, self.end]
     }
 
-    /// The same with every number mapped.
+    /// Returns the problem with every number mapped.
     pub fn map(&self, number: impl Fn(f64) -> f64) -> Self {
         let point = |v: Vector| Vector::from_array(v.to_array().map(&number));
         Self {

@@ -1,22 +1,22 @@
-//! Running a program as a user does, and looking at what it wrote.
+//! Runs programs as a user does, and reads their output.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::Mutex;
 
-/// The directory of this build: tests are in target/debug/deps.
+/// Returns the directory of this build: tests are in target/debug/deps.
 pub fn build_directory() -> PathBuf {
     let test = std::env::current_exe().unwrap();
     test.ancestors().nth(2).unwrap().to_owned()
 }
 
-/// Where programs run, and all that they write goes.
+/// Returns a path in the directory where programs run and write.
 pub fn place(name: &str) -> PathBuf {
     build_directory().with_file_name("tmp").join(name)
 }
 
-/// A file with the given text.
+/// Writes a file with the given text.
 pub fn file(name: &str, text: &str) -> String {
     let path = place(name);
     std::fs::create_dir_all(path.parent().unwrap()).unwrap();
@@ -24,20 +24,21 @@ pub fn file(name: &str, text: &str) -> String {
     path.to_str().unwrap().into()
 }
 
-/// What a program wrote.
+/// Reads a file that a program wrote.
 pub fn read(name: &str) -> String {
     let path = place(name);
     std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
-/// A mesh file of a box with room for a robot.
+/// Writes a mesh file of a box that has space for a robot.
 pub fn room(name: &str) -> String {
     let corners = (0..8).map(|k| format!("v {} {} {}\n", 60 * (k & 1), 30 * (k & 2), 15 * (k & 4)));
     let sides = "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
     file(name, &(corners.collect::<String>() + sides))
 }
 
-/// An example program of the package in `manifest`, which is built first with these features.
+/// Builds an example program of the package in `manifest` once, with these features, and returns
+/// its path.
 pub fn example(manifest: &str, name: &str, features: &str) -> PathBuf {
     static BUILT: Mutex<BTreeSet<String>> = Mutex::new(BTreeSet::new());
     let mut built = BUILT.lock().unwrap();
@@ -49,7 +50,7 @@ pub fn example(manifest: &str, name: &str, features: &str) -> PathBuf {
     build_directory().join("examples").join(name)
 }
 
-/// Runs a program: whether it succeeds, its output and its errors.
+/// Runs a program. Returns whether it succeeds, its output and its errors.
 pub fn run(program: impl AsRef<Path>, arguments: &[&str]) -> (bool, String, String) {
     let place = place("");
     std::fs::create_dir_all(&place).unwrap();
@@ -59,7 +60,7 @@ pub fn run(program: impl AsRef<Path>, arguments: &[&str]) -> (bool, String, Stri
     (output.status.success(), text(output.stdout), text(output.stderr))
 }
 
-/// The output of a program that succeeds.
+/// Returns the output of a program that must succeed.
 pub fn succeed(program: impl AsRef<Path>, arguments: &[&str]) -> String {
     let program = program.as_ref();
     let (success, out, error) = run(program, arguments);
@@ -67,7 +68,7 @@ pub fn succeed(program: impl AsRef<Path>, arguments: &[&str]) -> String {
     out
 }
 
-/// A program must refuse these arguments with one line that says this.
+/// Asserts that a program refuses these arguments with one line that contains `expected`.
 pub fn refuse(program: impl AsRef<Path>, arguments: &[&str], expected: &str) {
     let program = program.as_ref();
     let (success, out, error) = run(program, arguments);
@@ -79,8 +80,8 @@ pub fn refuse(program: impl AsRef<Path>, arguments: &[&str], expected: &str) {
     );
 }
 
-/// The rows of the table whose head begins so, cell by cell. Every row has as many as the head, and
-/// each holds something.
+/// Returns the cells of the table whose head begins with `head`, row by row. Asserts that every row
+/// is as long as the head and has no empty cell.
 pub fn table(page: &str, head: &str) -> Vec<Vec<String>> {
     let mut lines = page.lines().skip_while(|line| !line.starts_with(head));
     let cells = |line: &str| -> Vec<String> {
@@ -95,13 +96,13 @@ pub fn table(page: &str, head: &str) -> Vec<Vec<String>> {
     rows
 }
 
-/// Every number of the text is one.
+/// Asserts that every number of the text is finite.
 pub fn assert_finite(text: &str) {
     let mut words = text.split(|c: char| !c.is_alphanumeric());
     assert!(!words.any(|word| ["NaN", "inf"].contains(&word)), "{text}");
 }
 
-/// How many colours a picture has.
+/// Returns the number of colours of a picture.
 pub fn colours(name: &str) -> usize {
     let file = std::fs::File::open(place(name)).unwrap();
     let mut reader = png::Decoder::new(std::io::BufReader::new(file)).read_info().unwrap();

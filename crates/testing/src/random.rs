@@ -1,4 +1,4 @@
-//! A small seeded generator (xorshift64*), so that every run sees the same sample, on any machine.
+//! A small seeded generator (xorshift64*): every run sees the same sample, on every machine.
 
 use parry_continuum::parry::math::{Pose, Vector};
 
@@ -17,7 +17,7 @@ impl Random {
         self.0.wrapping_mul(0x2545_f491_4f6c_dd1d)
     }
 
-    /// Uniform in `[0, 1)`.
+    /// Returns a number uniform in `[0, 1)`.
     pub fn unit(&mut self) -> f64 {
         (self.bits() >> 11) as f64 * 2.0_f64.powi(-53)
     }
@@ -30,12 +30,12 @@ impl Random {
         (self.bits() >> 32) as u32 % count
     }
 
-    /// Uniform in a cube of half width 1.
+    /// Returns a point uniform in a cube of half width 1.
     pub fn point(&mut self) -> Vector {
         Vector::new(self.between(-1.0, 1.0), self.between(-1.0, 1.0), self.between(-1.0, 1.0))
     }
 
-    /// A unit vector.
+    /// Returns a unit vector.
     pub fn direction(&mut self) -> Vector {
         loop {
             let point = self.point();
@@ -46,7 +46,7 @@ impl Random {
         }
     }
 
-    /// Any rotation, and a translation of up to `size` in each coordinate.
+    /// Returns a pose with any rotation, and a translation of up to `size` in each coordinate.
     pub fn pose(&mut self, size: f64) -> Pose {
         let angle = self.between(0.0, std::f64::consts::PI);
         Pose::new(self.point() * size, self.direction() * angle)

@@ -1,4 +1,4 @@
-//! Rotations that integers survive without rounding: R(q) of an integer quaternion q, times |q|^2.
+//! Rotations of integer points without rounding: R(q) of an integer quaternion q, times |q|^2.
 
 use crate::Random;
 use parry_continuum::parry::math::Vector;
@@ -7,7 +7,7 @@ use parry_continuum::parry::math::Vector;
 #[derive(Clone, Copy, Debug)]
 pub struct Rotation {
     rows: [Vector; 3],
-    /// By how much lengths grow.
+    /// The factor by which lengths grow.
     pub scale: f64,
 }
 
@@ -24,7 +24,8 @@ impl Rotation {
         }
     }
 
-    /// The point turned and scaled; exact while every product and sum is an integer below 2^53.
+    /// Returns the point rotated and scaled. Exact while every product and sum is an integer below
+    /// 2^53.
     pub fn apply(&self, point: Vector) -> Vector {
         let [x, y, z] = self.rows;
         Vector::new(x.dot(point), y.dot(point), z.dot(point))
@@ -32,8 +33,8 @@ impl Rotation {
 }
 
 impl Random {
-    /// A rotation by an integer quaternion with components of magnitude up to `bound`, not along an
-    /// axis.
+    /// Returns a rotation by an integer quaternion with components of magnitude up to `bound`, not
+    /// along an axis.
     pub fn rotation(&mut self, bound: i32) -> Rotation {
         loop {
             let q = [0; 4].map(|_| self.below(2 * bound as u32 + 1) as i32 - bound);
@@ -43,7 +44,7 @@ impl Random {
         }
     }
 
-    /// An integer in `low..=high`, as f64.
+    /// Returns an integer in `low..=high`, as `f64`.
     pub fn whole(&mut self, low: i64, high: i64) -> f64 {
         (low + (self.bits() % (high - low + 1) as u64) as i64) as f64
     }

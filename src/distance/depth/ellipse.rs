@@ -1,33 +1,47 @@
-//! The shadow of a flat cap: the way out of an ellipse through one of its halves.
-//!
-//! Seen along a direction that is not in its plane, a disc of radius 1 is an ellipse with half axes
-//! 1 and `b <= 1`, here along `x` and `y`. Wanted is the point of its upper half, `y >= 0`, that is
-//! closest to a given point `p`, and the outward normal there. With `p = (x, y)`, `x >= 0` without
-//! loss of generality, the normal at the closest point passes through `p`, so that for some number
-//! `w`
+//! The closest point of one half of an ellipse, which is the projection of a flat cap.
 //!
 //! ```text
-//! (X, Y) = (z0 r / (w + r - 1), z1 / w)   with   X^2 + Y^2 = 1,   r = 1 / b^2,   z0 = x,   z1 = y / b,
+//!             Y
+//!         ____|____     upper half
+//!       /     | b   \
+//!      |------+------1--- X
+//!             |   . p
 //! ```
 //!
-//! where `(X, b Y)` is the closest point and `(b X, Y)` the direction of the normal. (This is the
-//! equation of Eberly, "Distance from a point to an ellipse", with his `s + 1` as `w`.)
+//! # Definitions
+//! - A disc of radius 1, projected along a direction that is not in its plane, is an ellipse with
+//!   the half axes 1 and `b <= 1`, here along `x` and `y`.
+//! - `p = (x, y)`: a given point, with `x >= 0` without loss of generality.
+//! - `(X, b Y)`: the point of the upper half, `y >= 0`, closest to `p`. `(b X, Y)`: the direction
+//!   of its outward normal.
 //!
-//! 1. **`p` in the upper half**, `y > 0`: `w > 0`, where the left side falls from infinity to 0 and
-//!    is convex. Neither term may exceed 1, so `w >= max(z1, 1 + r (z0 - 1))`. Newton's steps from
-//!    there rise to the one root and never pass it.
+//! The normal at the closest point passes through `p`, so for some number `w`
+//!
+//! ```text
+//! (X, Y) = (z0 r / (w + r - 1), z1 / w)   with   X^2 + Y^2 = 1,
+//! r = 1 / b^2,   z0 = x,   z1 = y / b.
+//! ```
+//!
+//! This is the equation of Eberly, "Distance from a point to an ellipse", with `w` for his `s + 1`.
+//!
+//! # Algorithm
+//! 1. **`p` in the upper half**, `y > 0`: `w > 0`, where `X^2 + Y^2` decreases from infinity to 0
+//!    and is convex. Neither term may exceed 1, so `w >= max(z1, 1 + r (z0 - 1))`. Newton's steps
+//!    from this bound increase to the only root and never pass it.
 //! 2. **`p` on the long axis**, `y = 0`: the limit of case 1. Either the lower bound on `w` is
 //!    positive, or `w = 0` and `Y` follows from `X`.
 //! 3. **`p` in the lower half**, `y < 0`: the upper half has a closest point only if `p` is near
-//!    enough to it, and then `1 - r < w <= z1 < 0`. Between its two poles the left side is convex;
-//!    the largest root is the one that is a minimum. Newton's steps from `z1` fall to it and never
-//!    pass it; if there is no root, the slope changes its sign on the way, or the pole is passed.
+//!    enough to it; then `1 - r < w <= z1 < 0`. Between its two poles `X^2 + Y^2` is convex, and
+//!    its largest root is the minimum. Newton's steps from `z1` decrease to it and never pass it.
+//!    If there is no root, the slope changes its sign on the way, or a step passes the pole.
 
 use parry3d_f64::math::{Real, Vector2};
 
-/// The direction, not of unit length, of the outward normal where the upper half of the ellipse
-/// with the half axes 1 and `b` in (0, 1] is closest to `point`. Nothing if no point of the half is
-/// closest in its surroundings.
+/// Returns the direction, not of unit length, of the outward normal at the point of the upper half
+/// that is closest to `point`.
+///
+/// The ellipse has the half axes 1 and `b` in (0, 1]. Returns `None` if no point of the half is a
+/// local minimum of the distance.
 pub(super) fn way_out_above(point: Vector2, b: Real) -> Option<Vector2> {
     let r = 1.0 / (b * b);
     let (z0, z1) = (point.x.abs(), point.y / b);
@@ -40,8 +54,8 @@ pub(super) fn way_out_above(point: Vector2, b: Real) -> Option<Vector2> {
 
     // Case 2 has no step to make.
     let mut w = if z1 < 0.0 { z1 } else { z1.max(1.0 + r * (z0 - 1.0)) };
-    // Each step at least doubles the correct digits in the end; before, a term falls by more than
-    // half.
+    // Finally each step at least doubles the correct digits; before, each step more than halves a
+    // term.
     for _ in 0..MAX_STEPS {
         if z1 == 0.0 {
             break;
@@ -74,14 +88,14 @@ pub(super) fn way_out_above(point: Vector2, b: Real) -> Option<Vector2> {
     way.is_finite().then_some(way)
 }
 
-/// More than rounding leaves to do.
+/// A limit that is never reached: rounding ends the iteration earlier.
 const MAX_STEPS: usize = 100;
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// Against a fine walk along the half, and the definition of a normal.
+    /// Compares with a dense sampling of the half, and with the definition of a normal.
     #[test]
     fn no_point_of_the_half_is_closer() {
         let mut state = 1u64;

@@ -1,29 +1,52 @@
-//! The foot of a contact on a link's axis, and whether the link answers there as its capsule does.
+//! Decides whether a link's contact is the contact of its capsule.
 //!
-//! Let `a` be the axis point nearest to another convex body, `b` that body's nearest point, `d`
-//! their distance and `n` the unit vector from `a` to `b`. Let the link have the radius `r`, and a
-//! flat end, if it has one, be `t > 0` away from `a` along the axis. So `n` does not lean towards a
-//! flat end, and
+//! ```text
+//!                b       closest point of the other body
+//!                |
+//!                | d     ^ n
+//!      __________|_______|____
+//!     |          |            |
+//!     |   axis   a            | flat end
+//!     |__________|____________|
+//!                <---- t ---->
+//! ```
 //!
-//! 1. **Apart**, `d > r`, link and capsule are as far from the body: the point `a + r n` belongs to
-//!    both.
-//! 2. **Overlapping**, `0 < d <= r`, the capsule is out after the way `p = r - d` along `n`. No way
-//!    out of the link is shorter where `t >= p`. For a unit vector `m` at the cosine `c` to `n`,
-//!    the overlap along `m` is at least `h - d c`, with `h` how far the link reaches along `m` from
-//!    `a`. If `m` leans towards a flat end, at a cosine `z` to the axis and a sine `s`, ```text h
-//!    >= r s + t z,   c <= s,   so   h - d c >= p c + r (s - c) + t z >= p (s + z) >= p   for c >=
-//!    0, ``` and `h - d c >= min(r, t) >= p` otherwise. If it does not, `h >= r` and `h - d c >= r
-//!    - d`.
+//! # Definitions
+//! - `a`: the axis point closest to another convex body. `b`: that body's closest point. `d`: their
+//!   distance. `n`: the unit vector from `a` to `b`.
+//! - `r`: the link's radius. `t > 0`: the distance from `a` to the nearest flat end, along the
+//!   axis. So `n` does not lean towards a flat end.
+//! - `h`: how far the link extends along a unit vector `m`, from `a`.
 //!
-//! For two links, whose radii add up, the same holds with `p = r1 + r2 - d` where each link with a
-//! flat end also has `p <= r`: the excess of `h` over `r c` of one such link alone is at least `p
-//! (1 - c)` then, and what is left is `p c`.
+//! # Claim
+//! 1. **Apart**, `d > r`: link and capsule are equally far from the body. The point `a + r n`
+//!    belongs to both.
+//! 2. **Overlapping**, `0 < d <= r`: the capsule is separated by the translation `p = r - d` along
+//!    `n`. If `t >= p`, no translation that separates the link is shorter.
+//!
+//! # Proof of 2
+//! For a unit vector `m` with the cosine `c` to `n`, the overlap along `m` is at least `h - d c`.
+//!
+//! - `m` leans towards a flat end, with the cosine `z` and the sine `s` to the axis, and `c >= 0`.
+//!   Then
+//!
+//!   ```text
+//!   h >= r s + t z,   c <= s,   so   h - d c >= p c + r (s - c) + t z >= p (s + z) >= p.
+//!   ```
+//! - The same with `c < 0`: `h - d c >= min(r, t) >= p`.
+//! - `m` does not lean towards a flat end: `h >= r`, so `h - d c >= r - d`.
+//!
+//! For two links the radii add up, and `p = r1 + r2 - d`. The claim holds if each link with a flat
+//! end also has `p <= r`: then the excess of `h` over `r c` of this link alone is at least
+//! `p (1 - c)`, and the remainder is `p c`.
 
 use parry3d_f64::math::{Real, Vector};
 
-/// How far a point of a link's axis is along the axis from the nearest flat end; infinite if both
-/// are round. `from_start` and `to_end` are the ways from the start to the point and on to the end,
-/// and `axis` is the unit axis.
+/// Returns the distance of a point of a link's axis from the nearest flat end, along the axis;
+/// infinite if both ends are round.
+///
+/// `from_start` and `to_end` are the vectors from the start to the point and from the point to the
+/// end. `axis` is the unit axis.
 pub(crate) fn to_flat(from_start: Vector, to_end: Vector, axis: Vector, flat: [bool; 2]) -> Real {
     let along = [from_start.dot(axis), to_end.dot(axis)];
     let ends = along.into_iter().zip(flat).filter(|(_, is_flat)| *is_flat);

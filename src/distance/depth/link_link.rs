@@ -1,10 +1,12 @@
 //! The least translation that separates two links that overlap.
 //!
-//! Along the unit vector `n` the second link has to be moved by `depth(n)`, the end of the first in
-//! the direction `n` minus the beginning of the second. As for a [link and a
-//! triangle](super::separation) the least depth is the distance from the origin to the surface of
-//! the difference of the two bodies, which is that of a point inside a smooth piece. The pieces and
-//! the normals that can be so, each row both ways round:
+//! # Definitions
+//! - `depth(n)`: the translation of the second link along the unit vector `n` that separates the
+//!   two: the last point of the first link along `n` minus the first point of the second.
+//! - `gap(n) = -depth(n)`.
+//!
+//! # Claim
+//! The least depth belongs to one of these normals or its opposite, each row both ways round:
 //!
 //! | link | link | normal |
 //! |---|---|---|
@@ -13,46 +15,57 @@
 //! | barrel | half ball | from the axis to the ball's centre, perpendicular to the axis |
 //! | half ball | half ball | from centre to centre |
 //! | rim | half ball | from the rim's nearest or farthest point to the ball's centre |
-//! | rim | barrel | perpendicular to the other axis; along that, the rim's shadow is half an ellipse and the axis a point, whose way out is that of [`ellipse`](super::ellipse); the barrel's radius lies along the same normal |
+//! | rim | barrel | perpendicular to the other axis, by [`ellipse`](super::ellipse) |
 //! | rim | rim | no closed form, see below |
 //!
-//! Where both ends are round all rows are one: the difference of the axes is a parallelogram, or a
-//! segment if they are parallel, and the body is that swollen by `r1 + r2`. With the origin at `d`
-//! from it the least way out is `r1 + r2 - d`: along the way from axis to axis, and where the axes
-//! cross, `d = 0`, along the parallelogram's normal. Where it is a segment any normal perpendicular
-//! to it will do. The rows have them all: on one axis, some direction across.
+//! Rim and barrel: projected along the barrel's axis, the rim is half an ellipse and the axis a
+//! point. The normal is the normal at the ellipse's point closest to this point. The barrel's
+//! radius lies along the same normal.
 //!
-//! **Two rims** that face each other at `p` and `q`, with the unit axes `a` and `b`, are apart
-//! along `n` by
+//! # Proof
+//! As for a [link and a triangle](super::separation): the least depth is the distance from the
+//! origin to the surface of the Minkowski difference, attained inside a smooth piece. The rows are
+//! the smooth pieces.
+//!
+//! **All ends round.** The difference of the axes is a parallelogram, or a segment if they are
+//! parallel. The Minkowski difference is this shape enlarged by `r1 + r2`. If the origin is at the
+//! distance `d` from it, the least depth is `r1 + r2 - d`. Its direction is from axis to axis; if
+//! the axes cross (`d = 0`), the normal of the parallelogram; if the shape is a segment through the
+//! origin, any normal perpendicular to it. The rows contain all of these.
+//!
+//! # Two rims
+//! For rims around `p` and `q` that face each other, with the unit axes `a` and `b`,
 //!
 //! ```text
 //! gap(n) = (q - p) . n - r1 |n - a (a . n)| - r2 |n - b (b . n)|,
 //! ```
 //!
-//! which is smooth where `n` is along neither axis. With `u` the unit vector along `n - a (a . n)`,
-//! and `w` the one perpendicular to `a` and `u`, its gradient has the term `-r1 u` and its second
-//! derivative `-r1 w w^T / |n - a (a . n)|`, and the same of `b`. On the unit sphere the second
-//! derivative has `-gap` times the identity beside these. So Newton's steps climb from the
-//! best normal of the other rows, and from the bisectors of the faces that are turned to one
-//! another, each step shortened until the gap grows. A maximum that they miss costs depth and
-//! nothing else: whatever the normal, `depth` is that of the normal as it stands, so that the
-//! translation separates.
+//! which is smooth unless `n` is along an axis. Let `u` be the unit vector along `n - a (a . n)`,
+//! and `w` the unit vector perpendicular to `a` and `u`. The first rim contributes `-r1 u` to the
+//! gradient and `-r1 w w^T / |n - a (a . n)|` to the second derivative; the second rim contributes
+//! the same terms of `b`. On the unit sphere the second derivative also has `-gap` times the
+//! identity.
+//!
+//! Newton's steps climb from the best normal of the other rows, and from the bisectors of the faces
+//! turned towards one another. Each step is shortened until the gap grows. A maximum that they miss
+//! only makes the reported depth larger: `depth` is evaluated for the normal at hand, so the
+//! translation always separates.
 
 use super::direction::{perpendicular, unit, unit_across};
 use super::separation::across_rim;
 use parry3d_f64::math::{Real, Vector};
 
-/// Newton's steps a climb, and how often one is halved: it ends earlier where the gap grows no
-/// more.
+/// The maximum number of Newton's steps of a climb, and of halvings of a step. A climb ends earlier
+/// if the gap no longer grows.
 const STEPS: usize = 12;
 const HALVINGS: usize = 6;
 
-/// A link where it is.
+/// A placed link.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SolidLink {
     pub start: Vector,
     pub end: Vector,
-    /// Unit axis; nothing for a ball, whose caps count as round.
+    /// The unit axis; `None` for a ball, whose caps count as round.
     pub axis: Option<Vector>,
     pub radius: Real,
     pub flat: [bool; 2],
@@ -64,23 +77,23 @@ impl SolidLink {
         Self { start, end, axis, radius, flat: flat.map(|flat| flat && axis.is_some()) }
     }
 
-    /// The centre of an end.
+    /// Returns the centre of an end.
     pub(crate) fn centre(&self, end: usize) -> Vector {
         if end == 0 { self.start } else { self.end }
     }
 
-    /// The end that the point furthest along a unit vector belongs to.
+    /// Returns the end that the farthest point along a unit vector belongs to.
     pub(crate) fn end_toward(&self, n: Vector) -> usize {
         usize::from(self.axis.is_some_and(|axis| axis.dot(n) > 0.0))
     }
 
-    /// The way out of an end.
+    /// Returns the outward unit vector of an end.
     fn outward(&self, end: usize) -> Option<Vector> {
         self.axis.map(|axis| if end == 0 { -axis } else { axis })
     }
 
-    /// How far the end's surface is beyond its centre, in the direction `n` that leans out over it,
-    /// and the point there.
+    /// Returns how far the end's surface extends beyond its centre along `n`, which leans outwards
+    /// over this end, and the vector from the centre to the point there.
     pub(crate) fn beyond(&self, end: usize, n: Vector) -> (Real, Vector) {
         match self.axis.filter(|_| self.flat[end]) {
             None => (self.radius, n * self.radius),
@@ -92,14 +105,14 @@ impl SolidLink {
     }
 }
 
-/// Two links in one frame, near its origin and of numbers near one.
+/// Two links in one frame, near its origin and with numbers near one.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LinkLink {
     pub first: SolidLink,
     pub second: SolidLink,
 }
 
-/// A unit vector, and how far the second body begins beyond the end of the first along it.
+/// A unit vector and its gap: how far the second body begins beyond the end of the first along it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Gap {
     pub width: Real,
@@ -107,7 +120,7 @@ pub(crate) struct Gap {
 }
 
 impl LinkLink {
-    /// How far the second link begins beyond the end of the first along a unit vector.
+    /// Returns the gap along a unit vector.
     pub(crate) fn gap(&self, n: Vector) -> Real {
         let (end1, end2) = (self.first.end_toward(n), self.second.end_toward(-n));
         let between = self.second.centre(end2) - self.first.centre(end1);
@@ -122,8 +135,8 @@ impl LinkLink {
         between.dot(n) - (reach[0] + reach[1])
     }
 
-    /// The widest gap: where the links overlap, minus the least translation that separates them.
-    /// The hints, which are unit vectors, are considered too.
+    /// Returns the widest gap: if the links overlap, minus the least translation that separates
+    /// them. `hints` are further candidates, unit vectors.
     pub(crate) fn widest(&self, hints: impl IntoIterator<Item = Vector>) -> Gap {
         let some = self.first.axis.or(self.second.axis).map_or(Vector::X, perpendicular);
         let mut best = Gap { width: self.gap(some), normal: some };
@@ -147,8 +160,10 @@ impl LinkLink {
         if both_flat { self.climbed(best, best) } else { best }
     }
 
-    /// The widest of the gap along `n`, along `n` made perpendicular to either axis or both, and
-    /// along the axes: what `n` has lost to rounding, where barrels or flat caps decide.
+    /// Returns the widest gap among `n`, `n` made perpendicular to either axis or both, and the
+    /// axes.
+    ///
+    /// This restores what `n` lost to rounding where barrels or flat caps decide.
     pub(crate) fn refined(&self, n: Vector) -> Gap {
         let [a, b] = [self.first.axis, self.second.axis];
         let mut best = Gap { width: self.gap(n), normal: n };
@@ -163,13 +178,14 @@ impl LinkLink {
         best
     }
 
-    /// The best gap so far or the one along `n`, whichever is wider: the first of equals.
+    /// Returns `best` or the gap along `n`, whichever is wider: the first of equals.
     fn wider(&self, best: Gap, n: Vector) -> Gap {
         let width = self.gap(n);
         if width > best.width { Gap { width, normal: n } } else { best }
     }
 
-    /// The unit normals of the table but for its last row, and their opposites.
+    /// Passes the unit normals of the table, except its last row, and their opposites to
+    /// `consider`.
     fn directions(&self, consider: &mut impl FnMut(Vector)) {
         let mut both_ways = |n: Option<Vector>| {
             if let Some(n) = n {
@@ -183,9 +199,9 @@ impl LinkLink {
             both_ways(one.axis);
             for end in 0..2 {
                 let centre = other.centre(end);
-                // Where the centre is on the axis all ways out are as long; a flat end is no ball,
-                // but on parallel axes the way from one to the other is this one
-                // too.
+                // If the centre is on the axis, all directions across are equally good. A flat end
+                // has no half ball, but for parallel axes this is also the direction from axis to
+                // axis.
                 let lateral = one.axis.map(|axis| {
                     unit_across(centre - one.start, axis).unwrap_or_else(|| perpendicular(axis))
                 });
@@ -212,7 +228,7 @@ impl LinkLink {
         }
     }
 
-    /// The best gap so far or where Newton's steps from `from` lead, whichever is wider.
+    /// Returns `best` or the gap to which Newton's steps from `from` lead, whichever is wider.
     fn climbed(&self, best: Gap, from: Gap) -> Gap {
         let mut at = from;
         for _ in 0..STEPS {
@@ -233,7 +249,7 @@ impl LinkLink {
         if at.width > best.width { at } else { best }
     }
 
-    /// Newton's step on the unit sphere towards a wider gap, across `n`.
+    /// Returns Newton's step on the unit sphere towards a wider gap, perpendicular to `n`.
     fn step(&self, n: Vector) -> Option<Vector> {
         let (end1, end2) = (self.first.end_toward(n), self.second.end_toward(-n));
         let (t1, t2) = n.any_orthonormal_pair();
@@ -241,8 +257,8 @@ impl LinkLink {
         let (mut h11, mut h12, mut h22) = (0.0, 0.0, 0.0);
         for (body, end) in [(&self.first, end1), (&self.second, end2)] {
             match body.axis.filter(|_| body.flat[end]) {
-                // A ball bends as the sphere does: together they have no second derivative but that
-                // of `gap`.
+                // The curvature of a ball is that of the sphere: together only the second
+                // derivative of `gap` remains.
                 None => {
                     gradient -= n * body.radius;
                     (h11, h22) = (h11 - body.radius, h22 - body.radius);
@@ -263,7 +279,7 @@ impl LinkLink {
         let height = gradient.dot(n);
         (h11, h22) = (h11 - height, h22 - height);
         let (g1, g2) = (gradient.dot(t1), gradient.dot(t2));
-        // The larger eigenvalue must be below 0, by enough that the step stays on this side of the
+        // The larger eigenvalue must be negative, by enough that the step stays on this side of the
         // sphere.
         let (mean, half) = (0.5 * (h11 + h22), (0.25 * (h11 - h22).powi(2) + h12 * h12).sqrt());
         let shift = (mean + half + g1.hypot(g2)).max(0.0);

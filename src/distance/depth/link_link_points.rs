@@ -1,21 +1,24 @@
-//! Where two links touch once they are moved apart along the normal of the widest gap.
+//! The contact point of two links after they are moved apart along the normal of the widest gap.
 //!
-//! What a link has furthest along a normal is a point, or a disc where the normal is along the axis
-//! and the end is flat, or a segment of the barrel where it is perpendicular to the axis. After the
-//! move these two lie in one plane and meet. A point is the contact then; of a segment and another,
-//! or a disc, it is the nearest point, and of two discs the middle of what their centres' line has
-//! in common.
+//! The part of a link that is farthest along a normal is
+//! - a disc, if the normal is along the axis and the end is flat;
+//! - a segment of the barrel, if the normal is perpendicular to the axis;
+//! - otherwise a point.
+//!
+//! After the translation the two parts lie in one plane and meet. A point is the contact itself.
+//! For a segment and another segment or a disc, the contact is the closest point. For two discs it
+//! is the middle of the common part of the line through both centres.
 
 use super::direction::{unit, unit_across};
 use super::link_link::{Gap, LinkLink, SolidLink};
 use crate::distance::{Vec3, segment_disc, segment_segment};
 use parry3d_f64::math::{Real, Vector};
 
-/// What is no further below the plane than this share of the link's size lies in it: between what
-/// rounding leaves of a normal and what a tilt moves the contact by that is visible.
+/// A point below the plane by at most this share of the link's size lies in the plane. The value is
+/// above the rounding of a normal, and below a tilt that visibly moves the contact.
 const IN_PLANE: Real = 1e-12;
 
-/// What a link has furthest along a normal.
+/// The part of a link that is farthest along a normal.
 enum Foremost {
     Point(Vector),
     Segment([Vector; 2]),
@@ -41,8 +44,8 @@ impl Foremost {
 }
 
 impl LinkLink {
-    /// The point of the first link that touches the second once that is moved by `-gap.width` along
-    /// the normal.
+    /// Returns the point of the first link that touches the second link after its translation by
+    /// `-gap.width` along the normal.
     pub(crate) fn touching_point(&self, gap: Gap) -> Vector {
         let n = gap.normal;
         let apart = n * gap.width;
@@ -79,7 +82,7 @@ impl LinkLink {
     }
 }
 
-/// The middle of what two segments on one line have in common, if they are on one line.
+/// Returns the middle of the common part of two segments, if they lie on one line.
 fn middle_along(s: [Vector; 2], t: [Vector; 2]) -> Option<Vector> {
     let along = unit(s[1] - s[0])?;
     let near = IN_PLANE * ((s[1] - s[0]).length() + (t[1] - t[0]).length());

@@ -1,31 +1,41 @@
-//! A link and a triangle along one direction and another: by how much a plane keeps them apart, or
-//! what it takes to move them apart.
+//! The separation of a link and a triangle along one direction.
 //!
-//! For a unit vector `n` let `gap(n)` be how far the triangle begins beyond the end of the link in
-//! the direction `n`. Moving the triangle by `-gap(n)` along `n` puts a plane between the two,
-//! whatever `n` is. So every `n` gives a lower bound on the distance while they are apart (the best
-//! `n` attains it), and a translation that separates them when they overlap (the best `n` gives the
-//! least).
+//! ```text
+//!      ________              /|
+//!     |  link  |<-- gap --->/ | triangle      ---> n
+//!     |________|            \ |
+//!                            \|
+//! ```
+//!
+//! # Definitions
+//! For a unit vector `n`, `gap(n)` is the distance, along `n`, from the last point of the link to
+//! the first point of the triangle. It is negative if the two overlap along `n`.
+//!
+//! # Claim
+//! Moving the triangle by `-gap(n)` along `n` puts a plane between the two, for every `n`. So every
+//! `n` gives
+//! - a lower bound on the distance while the two are apart; the best `n` attains it;
+//! - a separating translation if they overlap; the best `n` gives the least.
 
 use super::direction::{perpendicular, unit, unit_across};
 use super::separation;
 use crate::distance::{Face, Link, Vec3};
 use parry3d_f64::math::{Real, Vector};
 
-/// What rounding can do to a distance or a gap where numbers are near one.
+/// The rounding error of a distance or a gap, for numbers near one.
 pub(crate) const ROUNDING: Real = 8.0 * Real::EPSILON;
 
-/// What is wider by less is no wider.
+/// A gap must exceed the best one by this amount to replace it in the least translation.
 const NO_GAIN: Real = 0.25 * ROUNDING;
 
-/// A link and a triangle, from the link's start and near one.
+/// A link and a triangle, relative to the link's start and near one.
 #[derive(Clone, Copy)]
 pub(crate) struct LinkTriangle {
     pub link: Link<Real>,
     pub triangle: [Vector; 3],
 }
 
-/// A direction, and how far the triangle begins beyond the end of the link along it.
+/// A direction and its gap.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Way {
     pub gap: Real,
@@ -40,19 +50,21 @@ impl LinkTriangle {
         Self { link: Link { flat: link.flat.map(|flat| flat && has_axis), ..link }, triangle }
     }
 
-    /// The largest gap and its direction, among the features' normals and `more`, as they are and
-    /// made perpendicular to the edges and the axis; or the first gap that is as large as
-    /// `enough`, but for rounding.
+    /// Returns the largest gap and its direction.
+    ///
+    /// The candidates are `more`, the normals of the features, and `more` made perpendicular to the
+    /// edges and the axis. Returns early with the first gap that is at least `enough`, within
+    /// rounding.
     pub(crate) fn widest_gap(&self, more: [Option<Vector>; 2], enough: Real) -> Way {
         let enough = enough - ROUNDING;
         let [a, b, c] = self.triangle;
         let edges = [b - a, c - b, a - c];
         let axis = Vector::from(self.link.axis);
-        // Some direction across whatever direction there is, should nothing else be left.
+        // A fallback: a direction across the axis or an edge.
         let across =
             perpendicular(unit(axis).or(edges.into_iter().find_map(unit)).unwrap_or(Vector::X));
         let mut best = Way { gap: Real::NEG_INFINITY, normal: across };
-        // The first of equals stays, so `more` goes first.
+        // The first of equal gaps is kept, so `more` goes first.
         for n in more.into_iter().flatten() {
             best = self.wider(best, n);
         }
@@ -80,19 +92,19 @@ impl LinkTriangle {
         best
     }
 
-    /// The best direction so far or one of those in which a least translation can be.
+    /// Returns `best`, or the best direction in which a least translation can lie.
     pub(crate) fn widest_of_all(&self, mut best: Way) -> Way {
         separation::directions(&self.link, self.triangle, |n| best = self.wider(best, n));
         best
     }
 
-    /// The least translation that separates the two, or the plane that keeps them apart. `outward`
-    /// leads from the axis to the triangle, if it is known.
+    /// Returns the least translation that separates the two, or the best separating plane if they
+    /// are apart. `outward` points from the axis to the triangle, if known.
     ///
-    /// Around the best direction the gap changes with the square of the angle: one that rounding
-    /// has turned by 1e-8 may seem as good or better. So those of the table count first, those
-    /// of features before those of curves, and another one only where it is better by more than
-    /// rounding.
+    /// Around the best direction the gap changes with the square of the angle: a direction that
+    /// rounding has turned by 1e-8 may seem equally good or better. So the directions of the table
+    /// go first, features before curves. Another direction replaces them only if it is better by
+    /// more than rounding.
     pub(crate) fn least_translation(&self, outward: Option<Vector>) -> Way {
         let mut best: Option<Way> = None;
         let mut consider = |normal: Vector| {
@@ -107,21 +119,21 @@ impl LinkTriangle {
         best.filter(|best| other.gap <= best.gap + NO_GAIN).unwrap_or(other)
     }
 
-    /// The best direction so far or `n`, whichever has the larger gap.
+    /// Returns `best` or `normal`, whichever has the larger gap.
     fn wider(&self, best: Way, normal: Vector) -> Way {
         let gap = self.gap(normal);
         if gap > best.gap { Way { gap, normal } } else { best }
     }
 
-    /// How far the triangle begins beyond the end of the link along a unit vector.
+    /// Returns `gap(n)`.
     pub(super) fn gap(&self, n: Vector) -> Real {
         let (centre, reach) = self.reach(n);
         let beyond = self.triangle.map(|vertex| (vertex - centre).dot(n));
         beyond[0].min(beyond[1]).min(beyond[2]) - reach
     }
 
-    /// The end of the axis that the link's point furthest along a unit vector belongs to, and how
-    /// far that point is beyond it.
+    /// Returns the end of the axis that the link's farthest point along a unit vector belongs to,
+    /// and how far this point lies beyond that end.
     fn reach(&self, n: Vector) -> (Vector, Real) {
         let Link { end, axis, radius, flat } = self.link;
         let axis = Vector::from(axis);
@@ -132,7 +144,7 @@ impl LinkTriangle {
     }
 }
 
-/// The unit normal of a triangle whose numbers are near one, if it has one.
+/// Returns the unit normal of a triangle with numbers near one, if it has one.
 pub(crate) fn face_normal(triangle: [Vector; 3]) -> Option<Vector> {
     unit(Vector::from(Face::new(triangle.map(Vec3::from)).normal()))
 }

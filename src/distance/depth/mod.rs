@@ -1,7 +1,6 @@
-//! How deep two simple shapes overlap: the least translation that separates them.
+//! The depth of an overlap: the least translation that separates two simple shapes.
 //!
-//! Numbers in and numbers out, in coordinates from the link's start and near one, in double
-//! precision.
+//! All functions use double precision, in coordinates relative to the link's start and near one.
 
 mod direction;
 mod ellipse;

@@ -1,12 +1,11 @@
-//! The least translation that separates a link from a triangle that it overlaps.
+//! The directions of the least translation that separates a link from a triangle.
 //!
-//! Along the unit vector `n` the triangle has to be moved by `depth(n)`, the end of the link in the
-//! direction `n` minus the beginning of the triangle. The least depth is the distance from the
-//! origin to the surface of the difference of the two bodies, which is convex and whose surface
-//! consists of pieces, each the difference of a piece of the link and a piece of the triangle. From
-//! within a convex body a sharp edge is never the closest point of the surface, so the least depth
-//! is that of a point inside a smooth piece, where the normal points at the origin. The pieces and
-//! the normals that can be so:
+//! # Definitions
+//! `depth(n)`: the translation of the triangle along the unit vector `n` that separates the two:
+//! the last point of the link along `n` minus the first point of the triangle.
+//!
+//! # Claim
+//! The least depth belongs to one of these normals or its opposite:
 //!
 //! | link | triangle | normal |
 //! |---|---|---|
@@ -16,18 +15,30 @@
 //! | barrel | vertex | from the axis to the vertex, perpendicular to the axis |
 //! | half ball | edge | from the centre to the edge, perpendicular to the edge |
 //! | half ball | vertex | from the centre to the vertex |
-//! | rim | edge | perpendicular to the edge; along it, the rim's shadow is half an ellipse and the edge a point, whose way out is that of [`ellipse`](super::ellipse) |
+//! | rim | edge | perpendicular to the edge, by [`ellipse`](super::ellipse) |
 //!
-//! (A rim and a vertex differ by a circle, which is sharp.) Whatever a normal's rounding, `depth`
-//! is that of the normal as it stands, so the translation separates; and as the depth is least
-//! there, a small error of the normal costs its square.
+//! Last row: projected along the edge, the rim is half an ellipse and the edge a point. The normal
+//! is the normal at the ellipse's point closest to this point.
+//!
+//! # Proof
+//! The least depth is the distance from the origin to the surface of the Minkowski difference of
+//! the two bodies. The difference is convex. Its surface consists of pieces, each the difference of
+//! a piece of the link and a piece of the triangle. From inside a convex body a sharp edge is never
+//! the closest point of the surface. So the closest point lies inside a smooth piece, where the
+//! normal points at the origin. The rows are the smooth pieces. (A rim and a vertex differ by a
+//! circle, which is sharp.)
+//!
+//! # Rounding
+//! `depth` is evaluated for the rounded normal, so the translation always separates. The depth is
+//! least there, so a small error of the normal changes it only by the square of that error.
 
 use super::direction::{perpendicular, unit, unit_across};
 use super::ellipse::way_out_above;
 use crate::distance::Link;
 use parry3d_f64::math::{Real, Vector, Vector2};
 
-/// The unit normals of the table and their opposites, handed one by one to `consider`.
+/// Passes the unit normals of the table, except the face's, and their opposites to `consider`, one
+/// by one.
 pub(super) fn directions(
     link: &Link<Real>,
     triangle: [Vector; 3],
@@ -47,7 +58,7 @@ pub(super) fn directions(
         both_ways(axis.and_then(|axis| unit_across(edge.cross(axis), edge)));
     }
     for vertex in triangle {
-        // On the axis all ways out are as long.
+        // If the vertex is on the axis, all directions across are equally good.
         let lateral =
             axis.map(|axis| unit_across(vertex, axis).unwrap_or_else(|| perpendicular(axis)));
         both_ways(lateral);
@@ -68,16 +79,16 @@ pub(super) fn directions(
     }
 }
 
-/// The last row of the table: the disc around the origin that faces `outward`, and the line along
-/// the unit vector `edge` through `point`.
+/// Returns the normal of the last row: the disc around the origin that faces `outward`, and the
+/// line along the unit vector `edge` through `point`.
 pub(crate) fn across_rim(
     outward: Vector,
     radius: Real,
     point: Vector,
     edge: Vector,
 ) -> Option<Vector> {
-    // Half axes of the shadow: `long` is in the disc's plane, `short` is the way that the disc
-    // faces.
+    // The half axes of the projection: `long` is in the disc's plane, `short` points to the side
+    // that the disc faces.
     let long = unit_across(outward.cross(edge), edge)?;
     let lean = outward.dot(edge);
     let short = unit_across(outward - edge * lean, edge)?;

@@ -1,56 +1,55 @@
-//! Where a link leaves a triangle by the least translation: the points of the two that part last.
+//! The points of a link and a triangle that separate last, along the least translation.
 //!
-//! Let m be the unit vector of the least translation, from the link to the triangle. Moved apart by
-//! it the two touch where the part of the link that is furthest along m meets the part of the
-//! triangle that is least far along m. As numbers are near one, a point of either that is behind by
-//! less than [`TIE`] cannot be told from one that is not.
+//! # Definitions
+//! - `m`: the unit vector of the least translation, from link to triangle.
+//! - The link's foremost part: its points farthest along `m`. The triangle's foremost part: its
+//!   points least far along `m`. After the translation the two parts touch. Numbers are near one,
+//!   so a point belongs to a part if it is behind by less than [`TIE`].
 //!
-//! | the link's part | where | its point that parts last |
+//! | the link's part | condition | the point that separates last |
 //! |---|---|---|
-//! | a line of the barrel | m is perpendicular to the axis | the one at the triangle's part |
-//! | a flat cap | m is along the axis | the one at the triangle's part |
-//! | a point of a rim | m leans towards a flat cap | it |
-//! | a point of a half ball | m leans towards a round cap | it |
+//! | a line of the barrel | `m` perpendicular to the axis | the point closest to the triangle's part |
+//! | a flat cap | `m` along the axis | the point closest to the triangle's part |
+//! | a point of a rim | `m` leans towards a flat cap | this point |
+//! | a point of a half ball | `m` leans towards a round cap | this point |
 //!
 //! A cap or a barrel that is no larger than rounding is a point.
 //!
-//! # Where it is not the only way
-//! The depth is the least of many: along the normals of `separation` and the face's. Where another
-//! of them, in another direction, is as short as far as rounding can tell, how the depth changes
-//! with a motion depends on the motion. And where the opposite way is as short, the link is on
-//! neither side of the triangle: its axis lies in the plane of the wall, or the wall cuts it in
-//! equal halves.
+//! # Uniqueness
+//! The depth is the least over the normals of `separation` and of the face. If another direction is
+//! equally short within rounding, the derivative of the depth depends on the motion. If the
+//! opposite direction is equally short, the link is on neither side of the triangle: its axis lies
+//! in the plane of the wall, or the wall cuts it in equal halves.
 
 use super::{LinkTriangle, Way, separation, unit_across};
 use crate::distance::{Link, Scalar, Vec3, point_triangle, segment_triangle};
 use parry3d_f64::math::{Real, Vector};
 
-/// What rounding cannot tell, of numbers near one.
+/// The tolerance for ties, for numbers near one.
 const TIE: Real = 64.0 * f64::UNIT_ROUNDOFF;
 
-/// Directions that are nearer to each other than this are one: what changes with either changes
-/// with the other alike, but for a millionth.
+/// Two directions closer than this count as one: their derivatives agree within a millionth.
 const ONE_DIRECTION: Real = 1.0 / 1_048_576.0;
 
-/// The least translation that separates a link from a triangle, in coordinates from the link's
-/// start and near one.
+/// The least translation that separates a link from a triangle, in coordinates relative to the
+/// link's start and near one.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct WayOut {
-    /// Minus the length of the translation. More than 0 where the two are apart.
+    /// Minus the length of the translation; positive if the two are apart.
     pub gap: Real,
     /// The unit vector from link to triangle.
     pub normal: Vector,
-    /// Whether the opposite way is longer.
+    /// Whether the opposite direction is longer.
     pub has_side: bool,
-    /// Whether no other way is as short.
+    /// Whether no other direction is equally short.
     pub is_alone: bool,
-    /// Where on the axis the link's point that parts last is, from 0 to 1.
+    /// The axis fraction, from 0 to 1, of the link's point that separates last.
     pub fraction: Real,
-    /// From there to that point.
+    /// The vector from the axis point to that point.
     pub lever: Vector,
-    /// The triangle's point that parts last.
+    /// The triangle's point that separates last.
     pub on_triangle: Vector,
-    /// Whether the link's point is one of a flat cap or its rim.
+    /// Whether the link's point belongs to a flat cap or its rim.
     pub at_flat_cap: bool,
 }
 
@@ -74,7 +73,7 @@ impl WayOut {
     }
 }
 
-/// The points that part last.
+/// The points that separate last.
 struct SeparatingWay {
     fraction: Real,
     lever: Vector,
@@ -83,7 +82,7 @@ struct SeparatingWay {
 }
 
 impl LinkTriangle {
-    /// Whether no way in another direction is as short.
+    /// Returns whether no other direction is equally short.
     fn is_alone(&self, way: Way) -> bool {
         let mut is_alone = true;
         let mut consider = |n: Vector| {
@@ -119,7 +118,7 @@ impl LinkTriangle {
         let at_flat_cap = flat[usize::from(at_end)];
         let lateral = unit_across(normal, axis).filter(|_| at_flat_cap);
         let across = (normal - axis * lean).length();
-        // Rounding of the ends of a short axis turns a wide cap.
+        // The rounding of a short axis turns a wide cap.
         if at_flat_cap && (lateral.is_none() || across * radius.min(length) <= TIE) {
             let on_triangle = nearest_to(centre);
             let offset = on_triangle - centre;
@@ -132,8 +131,8 @@ impl LinkTriangle {
         SeparatingWay { fraction, lever, on_triangle: nearest_to(centre + lever), at_flat_cap }
     }
 
-    /// The triangle's part that is least far along a unit vector: a corner, an edge or all of it,
-    /// with corners that count more than once.
+    /// Returns the triangle's foremost part along a unit vector: a vertex, an edge or the whole
+    /// triangle, with repeated vertices.
     fn foremost(&self, normal: Vector) -> [Vector; 3] {
         let heights = self.triangle.map(|vertex| vertex.dot(normal));
         let least = heights[0].min(heights[1]).min(heights[2]) + TIE;

@@ -1,4 +1,4 @@
-//! The numbers of a `DataArray` in one of VTK's XML files.
+//! Decodes the numbers of a `DataArray` in VTK's XML files.
 
 use super::xml::Element;
 use crate::text::{no_number, shown};
@@ -8,23 +8,23 @@ use flate2::read::ZlibDecoder;
 use std::cell::Cell;
 use std::io::Read;
 
-/// What all arrays of a file have in common.
+/// The properties that all arrays of a file share.
 pub struct Arrays<'a> {
     is_big_endian: bool,
-    /// How many bytes a length takes in front of packed bytes.
+    /// The number of bytes of a length in front of compressed bytes.
     header: usize,
     is_packed: bool,
-    /// What is appended, and whether it is base64.
+    /// The appended data, and whether it is base64.
     appended: Option<(&'a [u8], bool)>,
-    /// How many bytes all arrays together may still take, with what becomes of them.
+    /// The number of bytes that all arrays together may still take, results included.
     left: Cell<u64>,
 }
 
-/// So many bytes a number takes at most: on its own, as an index, in a line, and as the point of a
-/// line.
+/// An upper bound on the bytes for each number: by itself, as an index, in a line, and as a point
+/// of a line.
 const EACH: u64 = 48;
 
-/// Some numbers.
+/// The numbers of one array.
 pub enum DataArray {
     Floats(Vec<f64>),
     Integers(Vec<i64>),
@@ -52,7 +52,7 @@ impl DataArray {
 }
 
 impl<'a> Arrays<'a> {
-    /// `appended` begins with its own tag.
+    /// Reads the properties of the file. `appended` begins with its own tag.
     pub fn new(root: &Element, appended: Option<&'a [u8]>, limit: u64) -> Result<Self, String> {
         let is_packed = match root.attribute("compressor") {
             None | Some("") => false,
@@ -83,7 +83,7 @@ impl<'a> Arrays<'a> {
     pub fn read(&self, array: &Element) -> Result<DataArray, String> {
         let kind = array.attribute("type").unwrap_or_default();
         let (size, is_float) = match kind {
-            // The letters of a text.
+            // The characters of a string.
             "Int8" | "UInt8" | "String" => (1, false),
             "Int16" | "UInt16" => (2, false),
             "Int32" | "UInt32" => (4, false),
@@ -152,7 +152,7 @@ impl<'a> Arrays<'a> {
         usize::try_from(length).map_err(|_| SHORT.into())
     }
 
-    /// Takes note of memory before it is taken.
+    /// Subtracts memory from the limit before it is allocated.
     fn spend(&self, bytes: u64) -> Result<(), String> {
         let left = self
             .left
@@ -163,7 +163,7 @@ impl<'a> Arrays<'a> {
         Ok(())
     }
 
-    /// The bytes behind their lengths, of numbers of this size.
+    /// Returns the bytes after their lengths. `size` is the size of a number in bytes.
     fn unpack(&self, bytes: &[u8], size: usize) -> Result<Vec<u8>, String> {
         let each = 1 + EACH.div_ceil(size as u64);
         if !self.is_packed {
@@ -184,7 +184,7 @@ impl<'a> Arrays<'a> {
         for block in 0..blocks {
             let end = self.length(bytes, 3 + block)?.checked_add(at).ok_or(SHORT)?;
             let packed = bytes.get(at..end).ok_or(SHORT)?;
-            // One more than there is room for tells that there is no room.
+            // Reading one byte more than the limit allows shows that the limit is exceeded.
             let room = self.left.get() / each + 1;
             let before = out.len() as u64;
             let read = ZlibDecoder::new(packed).take(room).read_to_end(&mut out);
@@ -195,7 +195,8 @@ impl<'a> Arrays<'a> {
         Ok(out)
     }
 
-    /// The lengths of packed bytes are base64 of their own, with padding between.
+    /// Decodes base64. The lengths of compressed bytes are a base64 text of their own, with padding
+    /// in between.
     fn unpack_base64(&self, text: &[u8], size: usize) -> Result<Vec<u8>, String> {
         let lengths = if self.is_packed {
             let first = decode(text.get(..self.header.div_ceil(3) * 4).ok_or(SHORT)?)?;
@@ -208,7 +209,7 @@ impl<'a> Arrays<'a> {
         };
         let first_text = lengths.div_ceil(3).checked_mul(4).ok_or(SHORT)?;
         if !self.is_packed {
-            // One text for both.
+            // Length and data are one base64 text.
             let length = self.length(&decode(text.get(..first_text).ok_or(SHORT)?)?, 0)?;
             let whole = length
                 .checked_add(self.header)

@@ -1,4 +1,4 @@
-//! The markups of 3D Slicer: JSON with the control points of each curve.
+//! Reads the markups of 3D Slicer: JSON with the control points of each curve.
 
 use super::{Line, Lines};
 use crate::mesh::Frame;
@@ -27,7 +27,7 @@ struct ControlPoint {
     position_status: Option<String>,
 }
 
-/// A point that is not set may have an empty text instead.
+/// The position of a point; a point that is not set may have an empty text.
 #[derive(Deserialize)]
 #[serde(untagged)]
 enum Position {
@@ -72,7 +72,7 @@ pub fn read(bytes: &[u8]) -> Result<Lines, String> {
     Ok(Lines { lines, frame, states_unit: true })
 }
 
-/// LPS, unless the file says something else. Older versions number the frames.
+/// Returns the frame: LPS unless the file states another one. Older versions write it as a number.
 fn own_frame(system: Option<&Value>) -> Result<Frame, String> {
     let text = match system {
         None | Some(Value::Null) => return Ok(Frame::Lps),
@@ -86,8 +86,9 @@ fn own_frame(system: Option<&Value>) -> Result<Frame, String> {
     }
 }
 
-/// What makes millimetres of a coordinate: they are the unit unless the file says something else,
-/// by a name or by a code of three words such as `["mm", "UCUM", "millimeter"]`.
+/// Returns the conversion of a coordinate to millimetres. Millimetres are the unit unless the file
+/// states another one, by a name or by a code of three words such as
+/// `["mm", "UCUM", "millimeter"]`.
 fn own_unit(units: Option<&Value>) -> Result<impl Fn(f64) -> f64 + Copy + use<>, String> {
     let name = match units {
         None | Some(Value::Null) => "mm",
@@ -100,6 +101,6 @@ fn own_unit(units: Option<&Value>) -> Result<impl Fn(f64) -> f64 + Copy + use<>,
     let factor = unit_in_mm(name).ok_or_else(|| {
         format!("its coordinateUnits are '{}', not mm; save it in mm", shown(name))
     })?;
-    // Division by a whole number is exact where multiplication by its inverse is not.
+    // Division by a whole number is exact; multiplication by its inverse is not.
     Ok(move |x: f64| if factor < 1.0 { x / (1.0 / factor).round() } else { x * factor })
 }

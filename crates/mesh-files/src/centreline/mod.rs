@@ -1,4 +1,5 @@
-//! Centrelines: points one after the other, from the files of programs that draw and extract them.
+//! Reads centrelines, which are sequences of points, from the files of programs that draw or
+//! extract them.
 
 mod data_array;
 mod markups;
@@ -20,15 +21,15 @@ pub use table::{load_shapes, load_table};
 pub struct Centreline {
     /// The points in the file's order.
     pub points: Vec<[f64; 3]>,
-    /// The radius of the segment that begins at each point but the last, if the file is a text
-    /// with a column for it.
+    /// The radius of the segment that begins at each point but the last, if the file is a text with
+    /// a column for it.
     pub radii: Option<Vec<f64>>,
-    /// The frame of the coordinates, where the file or its format states it.
+    /// The frame of the coordinates, if the file or its format states it.
     pub frame: Option<Frame>,
-    /// Whether the unit of length is stated. Markups state it, and come in millimetres before they
-    /// are scaled.
+    /// Whether the unit of length is stated. Markups state it, and are converted to millimetres
+    /// before they are scaled.
     pub states_unit: bool,
-    /// How many points of the line are left out, because nobody has placed them yet.
+    /// The number of points that are left out because they have no position yet.
     pub skipped_points: usize,
 }
 
@@ -37,7 +38,7 @@ pub struct Centreline {
 struct Line {
     points: Vec<[f64; 3]>,
     skipped_points: usize,
-    /// What it is instead of a curve, by its program.
+    /// The type that the file names, if it is not a curve.
     other: Option<String>,
 }
 
@@ -49,7 +50,7 @@ struct Lines {
 }
 
 impl Lines {
-    /// The lines of PolyData.
+    /// Returns the lines of PolyData.
     fn of(data: PolyData) -> Result<Self, String> {
         let frame = data.frame;
         let line = |points| Line { points, ..Line::default() };
@@ -61,12 +62,12 @@ impl Lines {
     }
 }
 
-/// The surface of PolyData.
+/// Returns the surface of PolyData.
 pub fn surface(read: Result<PolyData, String>) -> Result<Mesh, String> {
     read.and_then(PolyData::into_mesh)
 }
 
-/// What a centreline's extension says it holds.
+/// The format that the extension of a centreline's file names.
 #[derive(Clone, Copy)]
 enum Format {
     Markups,
@@ -97,16 +98,19 @@ impl Format {
     }
 }
 
-/// The centreline in the file: a curve of 3D Slicer's markups (`.mrk.json`), the points of a text
-/// file (`.csv`, `.tsv`, `.txt`, `.dat`) with x, y, z and optionally the radius, or a line of VTK's
-/// PolyData (`.vtp`, `.vtk`), as VMTK, SimVascular and SOFA write. Cells whose ends meet are one
-/// line. A file with several lines needs [`Options::line`], and so does what is no curve, such as a
-/// list of fiducials. Radii in files of VTK are not read: they are those of the vessel, not of the
-/// robot.
+/// Reads the centreline in a file.
+///
+/// - 3D Slicer's markups (`.mrk.json`): a curve.
+/// - Text (`.csv`, `.tsv`, `.txt`, `.dat`): points with x, y, z and optionally the radius.
+/// - VTK's PolyData (`.vtp`, `.vtk`), as VMTK, SimVascular and SOFA write it: a line. Cells whose
+///   ends meet are one line. Radii are not read: they belong to the vessel, not to the robot.
+///
+/// A file with several lines needs [`Options::line`], and so does a markup that is not a curve,
+/// such as a list of fiducials.
 ///
 /// # Errors
 /// As [`load_with`](crate::load_with); there is no line, or several and none is chosen; or a line
-/// names a point that is not there.
+/// names a point that does not exist.
 pub fn load_centreline(
     path: impl AsRef<Path>,
     options: &Options,
@@ -116,7 +120,7 @@ pub fn load_centreline(
     centreline_from_bytes(path, &read_file(path, options)?, options)
 }
 
-/// As [`load_centreline`], for a file of this name that holds these bytes.
+/// Same as [`load_centreline`], for the content of a file with this name.
 ///
 /// # Errors
 /// As [`load_centreline`].
@@ -168,7 +172,7 @@ pub fn centreline_from_bytes(
     Ok(Centreline { points, radii: None, frame, states_unit, skipped_points })
 }
 
-/// The centreline of a file that has no more.
+/// Returns the centreline of a file that has only one.
 fn one_line(
     file: &Path,
     own: Centreline,

@@ -15,11 +15,11 @@ pub struct PolyData {
     pub frame: Option<Frame>,
 }
 
-/// How many bytes a line takes at most while lines are joined, beside its points.
+/// An upper bound on the bytes for each line while lines are joined, beside its points.
 pub const JOINING: u64 = 400;
 
 impl PolyData {
-    /// Adds what another piece of the file has.
+    /// Appends another piece of the file.
     pub fn append(&mut self, other: Self) {
         let first = self.points.len() as u64;
         let moved = |cells: Vec<Vec<u64>>| {
@@ -33,10 +33,10 @@ impl PolyData {
         self.points.extend(other.points);
     }
 
-    /// The lines by their points, joined where they meet.
+    /// Returns the lines as points, joined where they meet.
     ///
     /// # Errors
-    /// A line names a point that is not there.
+    /// A line names a point that does not exist.
     pub fn into_lines(self) -> Result<Vec<Vec<Point>>, String> {
         let count = self.points.len();
         let index = |point: u64| {
@@ -49,10 +49,10 @@ impl PolyData {
         Ok(join(&lines?, &self.points))
     }
 
-    /// The polygons and strips as triangles.
+    /// Returns the polygons and strips as triangles.
     ///
     /// # Errors
-    /// A polygon has too many corners, or names a point beyond 32 bits.
+    /// A polygon has too many vertices, or names a point beyond 32 bits.
     pub fn into_mesh(self) -> Result<Mesh, String> {
         let mut faces = Faces::default();
         let corners = |cell: Vec<u64>| -> Result<Vec<u32>, String> {
@@ -74,14 +74,16 @@ impl PolyData {
     }
 }
 
-/// The end of a line: its number, and whether it is the last point.
+/// The end of a line: its index, and whether it is the last point.
 type End = (usize, bool);
 
-/// Joins lines whose ends meet, in any order, as where each cell of a file is one segment. A joint
-/// is where two ends meet, and nothing else does. A line that begins where another one ends goes on
-/// there. Segments that share a point are joined either way around; longer lines are not, so that
-/// two branches that begin at one place stay two. Joined lines are in the order and the direction
-/// of their first ones in the file.
+/// Joins lines whose ends meet, in any order, for files in which each cell is one segment.
+///
+/// 1. A joint is a place where exactly two ends meet, and no other point lies.
+/// 2. A line that begins where another one ends continues it.
+/// 3. Two lines that share a point are joined in either direction if one of them is a segment.
+///    Longer lines are not, so that two branches from one place stay two.
+/// 4. A joined line has the order and the direction of its first line in the file.
 fn join(lines: &[Vec<usize>], points: &[Point]) -> Vec<Vec<Point>> {
     // Adding 0 makes -0 and 0 the same.
     let key = |index: usize| points[index].map(|x| (x + 0.0).to_bits());
@@ -89,7 +91,7 @@ fn join(lines: &[Vec<usize>], points: &[Point]) -> Vec<Vec<Point>> {
         let own: &[usize] = &lines[line];
         if is_last { own.last() } else { own.first() }.copied()
     };
-    // The first two ends at each place, and how many more things are there.
+    // The first two ends at each place, and the number of further ends or points there.
     let mut places: HashMap<[u64; 3], ([Option<End>; 2], usize)> = HashMap::new();
     for number in 0..lines.len() {
         let [Some(first), Some(last)] = [index((number, false)), index((number, true))] else {
@@ -125,7 +127,7 @@ fn join(lines: &[Vec<usize>], points: &[Point]) -> Vec<Vec<Point>> {
         if is_used[first] {
             continue;
         }
-        // Back to where the joined line begins, or once around.
+        // Go back to the start of the joined line, or once around a closed one.
         let mut start = (first, false);
         while let Some((line, is_last)) = meeting(start) {
             start = (line, !is_last);
@@ -140,7 +142,7 @@ fn join(lines: &[Vec<usize>], points: &[Point]) -> Vec<Vec<Point>> {
             && !is_used[line]
         {
             is_used[line] = true;
-            // The first point is the last one of the line before.
+            // The first point repeats the last point of the line before.
             let skip = usize::from(!along.is_empty());
             let own = lines[line].iter().map(|&index| points[index]);
             if is_last {

@@ -1,4 +1,4 @@
-//! Points in lines of text, as spreadsheets, numpy, ParaView and people write them.
+//! Reads points from lines of text, as spreadsheets, numpy, ParaView and people write them.
 
 use super::{Centreline, Format};
 use crate::text::{lines, shown};
@@ -6,15 +6,15 @@ use crate::{MeshFileError, Options, read_file};
 use std::ops::RangeInclusive;
 use std::path::Path;
 
-/// What the lines of a centreline hold, and those of many shapes.
+/// The columns of a centreline, and of many shapes, for error messages.
 const POINTS: &str = "x,y,z or x,y,z,radius";
 const SHAPES: &str = "shape,x,y,z or shape,x,y,z,radius";
 
-/// Numbers line by line.
+/// The numbers of a text, line by line.
 struct Table {
-    /// The names of the columns, if the file has them, in small letters and without units.
+    /// The names of the columns, if the file has them, in lower case and without units.
     heading: Option<Vec<String>>,
-    /// The numbers of each line, with the line's number.
+    /// The line number and the numbers of each line.
     rows: Vec<(usize, Vec<f64>)>,
 }
 
@@ -39,12 +39,16 @@ fn fault<T>(line: usize, problem: String) -> Result<T, Fault> {
     Err(Fault { line, problem })
 }
 
-/// The numbers of each line of a text file. Empty lines, lines that begin with # and a heading are
-/// passed over. Columns are separated by semicolons, tabs, commas or spaces, and may be quoted.
+/// Returns the numbers of each line of a text file.
+///
+/// Empty lines, lines that begin with # and a heading are skipped. Columns are separated by
+/// semicolons, tabs, commas or spaces, and may be quoted.
+///
+/// - `columns`: the allowed numbers of columns.
+/// - `expected`: the columns to write, for the error message.
 ///
 /// # Errors
-/// The file cannot be read, a line has another number of columns, or a word is no number;
-/// `expected` says what to write.
+/// The file cannot be read, a line has another number of columns, or a word is not a number.
 pub fn load_table(
     path: impl AsRef<Path>,
     columns: RangeInclusive<usize>,
@@ -62,11 +66,11 @@ pub fn load_table(
     Ok(table.rows.into_iter().map(|(_, row)| row).collect())
 }
 
-/// Many robots from a text file: lines of shape,x,y,z and optionally the radius of the segment that
-/// begins there. Lines that follow one another with the same number of a shape are one robot.
+/// Reads many robots from a text file with lines of shape,x,y,z and optionally the radius of the
+/// segment that begins there. Consecutive lines with the same shape number are one robot.
 ///
 /// # Errors
-/// As [`load_table`]; some lines have a radius and others have not.
+/// As [`load_table`]; or some lines of a robot have a radius and others have none.
 pub fn load_shapes(
     path: impl AsRef<Path>,
     options: &Options,
@@ -74,14 +78,15 @@ pub fn load_shapes(
     let path = path.as_ref();
     options.check_scale()?;
     let mut shapes = read(path, &read_file(path, options)?, 1, SHAPES, options)?;
-    // A point that is not finite is left to the robot: one bad shape does not fail the others.
+    // Points that are not finite are left to the robot's constructor: one bad shape does not fail
+    // the others.
     for (_, shape) in &mut shapes {
         shape.points.iter_mut().flatten().for_each(|x| *x *= options.scale);
     }
     Ok(shapes)
 }
 
-/// One robot.
+/// Reads one robot.
 pub fn centreline(
     path: &Path,
     bytes: &[u8],
@@ -93,8 +98,8 @@ pub fn centreline(
     Ok(robot)
 }
 
-/// The robots of a table before their points are scaled. Coordinates begin in this column unless
-/// the heading says something else.
+/// Returns the robots of a table before their points are scaled. Coordinates begin in the column
+/// `first` unless the heading states otherwise.
 fn read(
     path: &Path,
     bytes: &[u8],
@@ -124,7 +129,7 @@ fn read(
     Ok(robots)
 }
 
-/// Where the coordinates are, and the radius.
+/// The columns of the coordinates and of the radius.
 struct Columns {
     axes: [usize; 3],
     radius: Option<usize>,
@@ -150,7 +155,7 @@ impl Columns {
         Self::check(table, Self { axes, radius }, heading.len(), first)
     }
 
-    /// Every line has the coordinates, and no column without a name.
+    /// Checks that every line has the coordinates, and no column without a name.
     fn check(table: &Table, columns: Self, most: usize, first: usize) -> Result<Self, Fault> {
         let last = columns.axes.into_iter().fold(first, usize::max);
         for (line, row) in &table.rows {
@@ -167,7 +172,8 @@ impl Columns {
         Ok(columns)
     }
 
-    /// The radius of the segment that begins at each point but the last, if the file has them.
+    /// Returns the radius of the segment that begins at each point but the last, if the file has
+    /// radii.
     fn radii(&self, rows: &[(usize, Vec<f64>)]) -> Result<Option<Vec<f64>>, Fault> {
         let Some(column) = self.radius else { return Ok(None) };
         let of = |(_, row): &(usize, Vec<f64>)| row.get(column).copied();
@@ -175,7 +181,7 @@ impl Columns {
         if rows.iter().all(|row| of(row).is_none()) {
             return Ok(None);
         }
-        // No segment begins at the last point, but a radius that is none tells of a mistake.
+        // No segment begins at the last point, but an invalid radius there indicates a mistake.
         if let Some(unused) = of(last)
             && !(0.0..f64::INFINITY).contains(&unused)
         {
@@ -191,7 +197,7 @@ impl Columns {
 
 /// The names of a column of radii.
 const RADIUS: [&str; 4] = ["radius", "radii", "rad", "r"];
-/// What ParaView calls the coordinates of points. They may stand in any column.
+/// ParaView's names of the coordinates. They may be in any columns.
 const PARAVIEW: [&str; 3] = ["points:0", "points:1", "points:2"];
 
 fn parse(bytes: &[u8]) -> Result<Table, Fault> {
@@ -227,7 +233,7 @@ fn parse(bytes: &[u8]) -> Result<Table, Fault> {
     Ok(table)
 }
 
-/// The line without the brackets in which numpy prints matrices, and the comma between them.
+/// Returns the line without the brackets and the comma in which numpy prints matrices.
 fn bare(line: &str) -> &str {
     let inside = line.trim_matches([' ', '\r']);
     let inside = inside.strip_suffix("],").unwrap_or(inside);
@@ -238,8 +244,8 @@ fn bare(line: &str) -> &str {
     }
 }
 
-/// The words between semicolons, or tabs, or commas, empty ones too; without any of these, the
-/// words between spaces. Between quotes no word ends.
+/// Splits a line at semicolons if it has any, else at tabs, else at commas; empty words count.
+/// Without any of these, splits at spaces. Quoted text is not split.
 fn columns(line: &str) -> Vec<String> {
     let marks = [';', '\t', ','];
     let mut is_quoted = false;
@@ -265,20 +271,20 @@ fn columns(line: &str) -> Vec<String> {
     words.filter(|word| mark.is_some() || !word.is_empty()).collect()
 }
 
-/// A number, with a point or a comma for its decimals.
+/// Parses a number with a decimal point or comma.
 fn number(word: &str) -> Option<f64> {
     let is_comma = word.matches(',').count() == 1 && !word.contains('.');
     if is_comma { word.replace(',', ".").parse().ok() } else { word.parse().ok() }
 }
 
-/// A name in small letters, without the unit in brackets.
+/// Returns a name in lower case, without its unit.
 fn name(word: &str) -> String {
     let bare = word.split(['[', '(']).next().unwrap_or_default().trim().to_lowercase();
     ["_mm", "_m", " mm"].iter().find_map(|unit| bare.strip_suffix(unit)).unwrap_or(&bare).to_owned()
 }
 
-/// Names of columns: words without a digit, none of which can be read as a number or is missing; or
-/// ParaView's names.
+/// Returns whether a line is a heading: words without a digit, none of which is a number or
+/// missing; or ParaView's names.
 fn is_heading(columns: &[String]) -> bool {
     if PARAVIEW.iter().all(|axis| columns.iter().any(|word| name(word) == *axis)) {
         return true;
@@ -287,7 +293,7 @@ fn is_heading(columns: &[String]) -> bool {
     columns.iter().all(is_name) && !columns.iter().any(|word| name(word).contains(char::is_numeric))
 }
 
-/// The column of a heading that names x, y or z out of their order, or without a column of shapes
+/// Returns the column of a heading that names x, y or z out of order, or without a column of shapes
 /// in front.
 fn misplaced(names: &[String]) -> Option<usize> {
     let axis = |name: &str| ["x", "y", "z"].iter().position(|axis| *axis == name);

@@ -1,12 +1,12 @@
-//! VTK's legacy files with PolyData or unstructured cells, in text or binary (whose numbers are
-//! big-endian), of any version: cells are counts and points, or since 5.1 an array of offsets and
-//! one of points.
+//! Reads VTK's legacy files with PolyData or unstructured cells, in text or big-endian binary, of
+//! any version. Cells are counts and points, or since version 5.1 an array of offsets and an array
+//! of points.
 
 use super::poly_data::PolyData;
 use crate::mesh::Frame;
 use crate::text::{frame_named, no_number, noted_frame, shown};
 
-/// What is left of the file.
+/// The rest of the file.
 struct Reader<'a> {
     bytes: &'a [u8],
     is_binary: bool,
@@ -23,7 +23,7 @@ impl<'a> Reader<'a> {
         Some(std::str::from_utf8(line).unwrap_or("").trim())
     }
 
-    /// The next line that is not empty, as words.
+    /// Returns the words of the next line that is not empty.
     fn words(&mut self) -> Vec<&'a str> {
         loop {
             match self.line().map(words) {
@@ -42,7 +42,7 @@ impl<'a> Reader<'a> {
             .map_err(|_| "it has no text where a number should be".into())
     }
 
-    /// So many numbers of this type. Nothing is kept for numbers that are not there.
+    /// Returns `count` numbers of this type. Memory is allocated only for numbers that exist.
     fn numbers(&mut self, count: usize, kind: Kind) -> Result<Vec<f64>, String> {
         if !self.is_binary {
             let number =
@@ -77,7 +77,7 @@ impl<'a> Reader<'a> {
 
     fn indices(&mut self, count: usize, kind: Kind) -> Result<Vec<u64>, String> {
         let index = |number: f64| {
-            // Above 2^53 no number is the next of another.
+            // Above 2^53 consecutive integers are no longer distinct.
             let is_index = number >= 0.0 && number.fract() == 0.0 && number < 9e15;
             is_index
                 .then_some(number as u64)
@@ -86,7 +86,8 @@ impl<'a> Reader<'a> {
         self.numbers(count, kind)?.into_iter().map(index).collect()
     }
 
-    /// Of the sizes that a type has on different machines, the one that `fits` what follows so many
+    /// Returns the type with the size that this machine's file uses: of the sizes that the type has
+    /// on different machines, the first one for which `fits` accepts the bytes after `count`
     /// numbers.
     fn sized(
         &self,
@@ -104,7 +105,7 @@ impl<'a> Reader<'a> {
         Ok(Kind { class, size: size.unwrap_or(sizes[0]) })
     }
 
-    /// The cells of a section, each by its points.
+    /// Returns the cells of a section, each as its points.
     fn cells(&mut self, first: usize, second: usize) -> Result<Vec<Vec<u64>>, String> {
         let before = self.bytes;
         let ["OFFSETS", name] = self.line().map(words).unwrap_or_default()[..] else {
@@ -144,7 +145,7 @@ impl<'a> Reader<'a> {
         offsets.windows(2).map(cell).collect()
     }
 
-    /// Passes over the arrays of a field, and finds the frame that 3D Slicer notes in one.
+    /// Skips the arrays of a field. Returns the frame that 3D Slicer writes in one of them.
     fn field(&mut self, arrays: usize) -> Result<Option<Frame>, String> {
         let mut frame = None;
         for _ in 0..arrays {
@@ -188,8 +189,8 @@ impl<'a> Reader<'a> {
         Ok(frame)
     }
 
-    /// A text of an array: a line, or its length and its bytes. The first two bits say how many
-    /// bytes the length has.
+    /// Returns a text of an array: a line, or its length and its bytes. The first two bits state
+    /// the number of bytes of the length.
     fn text(&mut self) -> Result<&'a [u8], String> {
         if !self.is_binary {
             return Ok(self.line().ok_or(SHORT)?.as_bytes());
@@ -202,7 +203,7 @@ impl<'a> Reader<'a> {
         self.take(usize::try_from(length).map_err(|_| SHORT)?, 1)
     }
 
-    /// Passes over what ends at an empty line.
+    /// Skips to the next empty line.
     fn metadata(&mut self) {
         while self.line().is_some_and(|line| !line.is_empty()) {}
     }
@@ -223,7 +224,7 @@ struct Kind {
 }
 
 impl Kind {
-    /// A type by its name, with the sizes that it has on different machines.
+    /// Returns a type by its name, with the sizes that it has on different machines.
     fn named(name: &str) -> Result<(Class, &'static [usize]), String> {
         Ok(match name.to_ascii_lowercase().as_str() {
             "char" | "signed_char" | "vtktypeint8" => (Class::Signed, &[1]),
@@ -259,7 +260,7 @@ const SECTIONS: [&str; 12] = [
     "DATASET",
 ];
 
-/// Whether the head of a section or of an array follows, or nothing.
+/// Returns whether the head of a section or of an array follows, or the end of the file.
 fn is_head(after: &[u8]) -> bool {
     let line = after.split(|&byte| byte == b'\n').next().unwrap_or_default();
     let Ok(line) = std::str::from_utf8(line) else { return false };
@@ -331,7 +332,7 @@ pub fn read(bytes: &[u8]) -> Result<PolyData, String> {
             }
             Some("METADATA") => file.metadata(),
             Some("FIELD") => found.frame = found.frame.or(file.field(number(2)?)?),
-            // What follows belongs to the points and cells.
+            // The rest are data of the points and cells.
             Some("POINT_DATA" | "CELL_DATA") => break,
             Some(_) => {
                 return Err(format!("it has '{}' where a section should begin", shown(line)));
@@ -342,7 +343,7 @@ pub fn read(bytes: &[u8]) -> Result<PolyData, String> {
     Ok(found)
 }
 
-/// Cells of an unstructured grid by their types.
+/// Adds the cells of an unstructured grid by their types.
 fn sort(found: &mut PolyData, cells: Vec<Vec<u64>>, types: &[f64]) -> Result<(), String> {
     if cells.len() != types.len() {
         return Err(format!("it has {} cells, but {} types of cells", cells.len(), types.len()));

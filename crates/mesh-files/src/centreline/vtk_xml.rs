@@ -1,5 +1,5 @@
-//! VTK's XML files with PolyData: arrays as text, as base64, or appended behind the XML, packed by
-//! zlib or not.
+//! Reads VTK's XML files with PolyData. Arrays are text, base64, or appended after the XML, and may
+//! be compressed by zlib.
 
 use super::data_array::{Arrays, DataArray};
 use super::poly_data::PolyData;
@@ -8,7 +8,7 @@ use crate::mesh::Frame;
 use crate::text::{frame_named, noted_frame, shown};
 
 pub fn read(bytes: &[u8], limit: u64) -> Result<PolyData, String> {
-    // What is appended need not be XML: it is cut off, and what was open is closed.
+    // Appended data need not be XML: cut it off, and close the open elements.
     let mark = b"<AppendedData";
     let cut = bytes.windows(mark.len()).position(|window| window == mark);
     let head = &bytes[..cut.unwrap_or(bytes.len())];
@@ -31,8 +31,8 @@ pub fn read(bytes: &[u8], limit: u64) -> Result<PolyData, String> {
     Ok(all)
 }
 
-/// The frame that 3D Slicer notes as an array of text. Other programs' arrays of this name say
-/// nothing.
+/// Returns the frame that 3D Slicer writes as an array of text. Other arrays of this name are
+/// ignored.
 fn noted_space(field: &Element, arrays: &Arrays) -> Option<Frame> {
     let is_space = |array: &&Element| array.attribute("Name") == Some("SPACE");
     let array = field.children.iter().find(is_space)?;

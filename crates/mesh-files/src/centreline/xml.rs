@@ -1,16 +1,16 @@
-//! The elements of one of VTK's XML files, within limits that every program's files keep.
+//! Parses the elements of VTK's XML files, within limits that the files of all programs satisfy.
 //!
-//! Time is proportional to the length of the file: namespaces are not resolved, and nothing that is
-//! nested, repeated or attributed without bound is kept.
+//! The time is proportional to the length of the file: namespaces are not resolved, and nesting,
+//! repetition and attributes are bounded.
 
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 
-/// How deep elements may be nested. VTK's files have 7 levels.
+/// The maximum nesting of elements. VTK's files have 7 levels.
 const MOST_LEVELS: usize = 32;
-/// How many attributes an element may have. VTK writes up to 10.
+/// The maximum number of attributes of an element. VTK writes up to 10.
 const MOST_ATTRIBUTES: usize = 64;
-/// How many elements a file may have: VTK writes about 10 for each piece.
+/// The maximum number of elements of a file. VTK writes about 10 for each piece.
 const MOST_ELEMENTS: usize = 1 << 17;
 
 /// An element with its own text.
@@ -49,10 +49,11 @@ impl Element {
     }
 }
 
-/// The root of a document. What is open at its end is closed there, if it is cut.
+/// Returns the root of a document. If the document is cut off, elements that are open at its end
+/// are closed there.
 pub fn parse(text: &str, is_cut: bool) -> Result<Element, String> {
     let mut reader = Reader::from_str(text);
-    // The outermost holds the root.
+    // The outermost element contains the root.
     let mut open = vec![Element::default()];
     let mut count = 0;
     loop {

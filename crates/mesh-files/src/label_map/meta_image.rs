@@ -1,5 +1,5 @@
-//! MetaImage label maps: `.mha`, and `.mhd` with its voxels in a second file. Their frame is LPS,
-//! in millimetres, as ITK's.
+//! Reads MetaImage label maps: `.mha`, and `.mhd` with its voxels in a second file. As in ITK,
+//! their frame is LPS, in millimetres.
 
 use super::voxels::{Encoding, Kind, Voxels, last};
 use super::{Fault, Place, Volume, count, voxels_path};
@@ -8,7 +8,7 @@ use crate::text::shown;
 use std::collections::HashMap;
 use std::path::PathBuf;
 
-/// The last field of the header, which says where the voxels are.
+/// The last field of the header, which names the file of the voxels.
 const LAST: &str = "ElementDataFile";
 const HERE: &str = "LOCAL";
 
@@ -16,7 +16,7 @@ fn is_here(name: &str) -> bool {
     name.eq_ignore_ascii_case(HERE)
 }
 
-/// The fields of the header by name, and what follows it.
+/// The fields of the header by name, and the data after it.
 struct File<'a> {
     fields: HashMap<String, String>,
     data: &'a [u8],
@@ -50,7 +50,7 @@ impl<'a> File<'a> {
         self.get(&[name]).is_some_and(|value| value.eq_ignore_ascii_case("true"))
     }
 
-    /// The numbers of a field that goes by one of these names.
+    /// Returns the numbers of the field that has one of these names.
     fn numbers<const COUNT: usize>(
         &self,
         names: &[&str],
@@ -64,13 +64,13 @@ impl<'a> File<'a> {
     }
 }
 
-/// The file that holds the voxels, if it is another one.
+/// Returns the file of the voxels, if it is another one.
 pub fn voxels_file(bytes: &[u8]) -> Option<PathBuf> {
     let file = File::new(bytes).ok()?;
     file.get(&[LAST]).filter(|other| !is_here(other)).and_then(voxels_path)
 }
 
-/// Header and voxels as one file.
+/// Returns header and voxels as one file.
 pub fn in_one(header: &[u8], voxels: &[u8]) -> Vec<u8> {
     let text = String::from_utf8_lossy(header);
     let fields =
@@ -110,7 +110,7 @@ pub fn read(bytes: &[u8]) -> Result<Volume<'_>, Fault> {
         _ => Encoding::Raw,
     };
     let count = count(sizes)?;
-    // Bytes in front of the voxels; -1 means that these are the last ones.
+    // The bytes before the voxels; -1 means that the voxels are the last bytes.
     let skip: i64 = file
         .get(&["HeaderSize"])
         .unwrap_or("0")
@@ -147,8 +147,8 @@ fn kind(name: &str) -> Result<Kind, String> {
     })
 }
 
-/// The matrix holds the direction of each axis in turn, and the offset is the centre of the first
-/// voxel.
+/// Returns the map of the voxels. The matrix has the direction of each axis in turn, and the offset
+/// is the centre of the first voxel.
 fn place(file: &File) -> Result<Place, String> {
     let spacing = file.numbers(&["ElementSpacing", "ElementSize"], [1.0; 3])?;
     let origin = file.numbers(&["Offset", "Position", "Origin"], [0.0; 3])?;

@@ -1,4 +1,4 @@
-//! Segmentations: a number for each voxel of a grid, and the surface of one label.
+//! Segmentations: a label for each voxel of a grid, and the surface of one label.
 
 pub mod meta_image;
 pub mod nifti;
@@ -12,20 +12,21 @@ use std::collections::BTreeSet;
 use std::path::{Component, PathBuf};
 use voxels::Voxels;
 
-/// The most voxels that are read; their numbers, with room around, fit in 32 bits.
+/// The maximum number of voxels. Their indices, with a margin around the grid, fit in 32 bits.
 const MOST_VOXELS: u64 = 1 << 31;
 
-/// Why a label map gave no surface.
+/// Why a label map gives no surface.
 pub enum Fault {
-    /// What its format asks for is not there.
+    /// The file is invalid in its format.
     Broken(String),
-    /// Nothing says where the voxels are.
+    /// The file does not state the position of its voxels.
     NoPosition(String),
-    /// A voxel holds this, which is no label.
+    /// A voxel has this value, which is not a label.
     NotALabel(f64),
-    /// The surface would take so many bytes.
+    /// The surface would take this many bytes.
     TooLarge(u64),
-    /// No voxel is in the surface; where a label was asked for, the voxels have these.
+    /// No voxel is inside the surface. If a label was requested, these are the labels of the
+    /// voxels.
     NoneOf(BTreeSet<u32>),
 }
 
@@ -41,7 +42,7 @@ impl From<&str> for Fault {
     }
 }
 
-/// A label for each voxel, the first axis fastest, and where the voxels are.
+/// A label for each voxel, the first axis fastest, and the positions of the voxels.
 pub struct Volume<'a> {
     sizes: [usize; 3],
     voxels: Voxels<'a>,
@@ -50,7 +51,7 @@ pub struct Volume<'a> {
     states_unit: bool,
 }
 
-/// From a voxel's three numbers to its centre in millimetres: the rows of a 3x4 matrix.
+/// The map from a voxel's three indices to its centre in millimetres: the rows of a 3x4 matrix.
 #[derive(Clone, Copy)]
 struct Place([[f64; 4]; 3]);
 
@@ -72,20 +73,20 @@ impl Place {
         self.0.map(|row| row[0] * voxel[0] + row[1] * voxel[1] + row[2] * voxel[2] + row[3])
     }
 
-    /// The determinant: negative where the axes of the voxels are left-handed.
+    /// Returns the determinant: negative if the axes of the voxels are left-handed.
     fn turn(&self) -> f64 {
         let [[a, b, c, _], [d, e, f, _], [g, h, i, _]] = self.0;
         a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g)
     }
 }
 
-/// The voxels of a file that says only how far apart they are: the first one is the origin.
+/// Returns the map of a file that states only the spacing: the first voxel is the origin.
 fn without_position([x, y, z]: [f64; 3]) -> [[f64; 4]; 3] {
     [[x, 0.0, 0.0, 0.0], [0.0, y, 0.0, 0.0], [0.0, 0.0, z, 0.0]]
 }
 
-/// The path of a file of voxels relative to its header, if it is in the same folder or below it.
-/// Neither a list of files nor a pattern of their names.
+/// Returns the path of a file of voxels relative to its header, if it is in the same folder or
+/// below it. Lists of files and patterns of names are refused.
 fn voxels_path(name: &str) -> Option<PathBuf> {
     let is_list = name.split_whitespace().next() == Some("LIST") || name.contains('%');
     let path = PathBuf::from(name);
@@ -94,7 +95,7 @@ fn voxels_path(name: &str) -> Option<PathBuf> {
     (!name.is_empty() && !is_list && !name.contains('\\') && is_below).then_some(path)
 }
 
-/// The number of voxels, if it is one that can be read.
+/// Returns the number of voxels, if it is within the limit.
 fn count(sizes: [usize; 3]) -> Result<usize, String> {
     let count = sizes.iter().try_fold(1_u64, |product, &size| product.checked_mul(size as u64));
     match count {
@@ -107,7 +108,8 @@ fn count(sizes: [usize; 3]) -> Result<usize, String> {
     }
 }
 
-/// Inside or outside. Surfaces pass half-way between the two, since the label says no more.
+/// Inside or outside. The surface passes half-way between the two, since a label has no finer
+/// information.
 #[derive(Clone, Copy)]
 struct Voxel(bool);
 
@@ -124,8 +126,8 @@ impl SignedDistance for Voxel {
 }
 
 impl Volume<'_> {
-    /// The surface of the voxels with this label, or of all that are not 0, if it takes no more
-    /// bytes than the limit.
+    /// Returns the surface of the voxels with this label, or of all that are not 0, if it takes at
+    /// most `limit` bytes.
     pub fn surface(&self, label: Option<u32>, limit: u64) -> Result<Mesh, Fault> {
         let is_inside = |found: u32| label.map_or(found != 0, |label| found == label);
         let mut low = [usize::MAX; 3];
@@ -138,11 +140,10 @@ impl Volume<'_> {
             let present = if label.is_some() { self.present()? } else { BTreeSet::new() };
             return Err(Fault::NoneOf(present));
         }
-        // One voxel of outside all around closes the surface at the border; a second one at the far
-        // sides, because the faces there belong to a neighbouring block that does not
-        // exist.
+        // A margin of one outside voxel closes the surface at the border. The far sides have a
+        // second one, because the faces there belong to a neighbouring block that does not exist.
         let room = [0, 1, 2].map(|axis| high[axis] - low[axis] + 4);
-        // A byte each here, and the number of a vertex in the net.
+        // One byte for each voxel here, and the index of a vertex in the net.
         let grid = 5 * count(room)? as u64;
         let allowed =
             |bytes: u64| if bytes <= limit { Ok(()) } else { Err(Fault::TooLarge(bytes)) };
@@ -152,10 +153,11 @@ impl Volume<'_> {
             let [x, y, z] = [0, 1, 2].map(|axis| voxel[axis] - low[axis] + 1);
             voxels[(z * room[1] + y) * room[0] + x] = Voxel(true);
         })?;
-        // Each face between two unlike voxels is a quadrilateral of the net: two triangles, there
-        // and in the mesh, of 48 bytes. A vertex, of 64 bytes in both, is in a cube of
-        // eight voxels that are not all alike; such a cube has three of the faces or more,
-        // and a face is in four cubes, so that there are at most 4 / 3 vertices for a face.
+        // Memory of the surface. Each face between two unlike voxels is a quadrilateral of the net:
+        // two triangles, there and in the mesh, of 48 bytes. A vertex takes 64 bytes in both, and
+        // lies in a cube of eight voxels that are not all alike. Such a cube has at least three of
+        // the faces, and a face is in four cubes. So there are at most 4 / 3 vertices for each
+        // face.
         let faces = faces(&voxels, room);
         let vertices = faces.div_ceil(3) * 4;
         allowed(grid + 48 * faces as u64 + 64 * vertices as u64)?;
@@ -183,7 +185,7 @@ impl Volume<'_> {
         })
     }
 
-    /// Shows the voxels that are inside, in their order.
+    /// Passes the voxels that are inside, in order, to a function.
     fn each_inside(
         &self,
         is_inside: impl Fn(u32) -> bool,
@@ -199,14 +201,14 @@ impl Volume<'_> {
         })
     }
 
-    /// The labels of the voxels, the lowest if there are many.
+    /// Returns the labels of the voxels, the lowest if there are many.
     fn present(&self) -> Result<BTreeSet<u32>, Fault> {
         const MOST: usize = 1000;
         let mut present = BTreeSet::new();
         let mut before = None;
         self.voxels.each(&mut |labels| {
             for &label in labels {
-                // Neighbours are mostly alike.
+                // Neighbours are mostly alike: skip repetitions.
                 if before.replace(label) == Some(label) {
                     continue;
                 }
@@ -222,10 +224,9 @@ impl Volume<'_> {
     }
 }
 
-/// How many faces there are between a voxel inside and one outside.
+/// Returns the number of faces between a voxel inside and a voxel outside.
 fn faces(voxels: &[Voxel], [width, height, _]: [usize; 3]) -> usize {
-    // The outermost voxels are outside, so that a neighbour in the next row is as much outside as
-    // none.
+    // The outermost voxels are outside, so a neighbour across a row's end counts as outside too.
     let along =
         |step: usize| voxels.iter().zip(&voxels[step..]).filter(|(a, b)| a.0 != b.0).count();
     along(1) + along(width) + along(width * height)

@@ -1,20 +1,23 @@
-//! NIfTI label maps of versions 1 and 2, packed by gzip or not. Their frame is RAS, in millimetres.
+//! Reads NIfTI label maps of versions 1 and 2, compressed by gzip or not. Their frame is RAS, in
+//! millimetres.
 
 use super::voxels::{Encoding, Kind, Voxels, unpack};
 use super::{Fault, Place, Volume, count, without_position};
 use crate::mesh::Frame;
 use std::borrow::Cow;
 
-/// How long the header of each version is, and the four bytes that tell whether more follows.
+/// The length of the header of each version, and of the four bytes that state whether extensions
+/// follow.
 const HEADS: [usize; 2] = [348, 540];
 const MORE: usize = 4;
 
-/// A header. Places of fields are given for version 1 and for version 2, by nifti1.h and nifti2.h.
+/// A header. The offsets of fields are given for version 1 and version 2, as in nifti1.h and
+/// nifti2.h.
 struct Header<'a> {
     bytes: &'a [u8],
     is_second: bool,
     is_big_endian: bool,
-    /// Whether the voxels are in a file of their own.
+    /// Whether the voxels are in a separate file.
     is_pair: bool,
 }
 
@@ -37,7 +40,7 @@ impl<'a> Header<'a> {
         if bytes.len() < HEADS[usize::from(is_second)] {
             return Err(WRONG.into());
         }
-        // The number of dimensions tells the order of bytes.
+        // The number of dimensions determines the byte order.
         let header = Self { bytes, is_second, is_big_endian: false, is_pair };
         let other = Self { is_big_endian: true, ..header };
         let fits = |header: &Self| (1..=7).contains(&header.dimension(0));
@@ -100,21 +103,21 @@ impl<'a> Header<'a> {
         }
     }
 
-    /// The code of the unit of length.
+    /// Returns the code of the unit of length.
     fn unit(&self) -> u8 {
         (if self.is_second { self.at::<4>(500)[0] } else { self.bytes[123] }) & 7
     }
 }
 
-/// Whether the file of this name is one of a pair.
+/// Returns whether a file with this extension is one of a pair.
 pub fn is_pair(extension: &str) -> bool {
     ["hdr", "img"].iter().any(|end| extension.eq_ignore_ascii_case(end))
 }
 
-/// Header and voxels of a pair as one file.
+/// Returns header and voxels of a pair as one file.
 ///
 /// # Errors
-/// The header is broken.
+/// The header is invalid.
 pub fn in_one(header: &[u8], voxels: &[u8]) -> Result<Vec<u8>, String> {
     let read = Header::new(header)?;
     let length = HEADS[usize::from(read.is_second)];
@@ -165,7 +168,7 @@ pub fn read(bytes: &[u8], allow_no_position: bool) -> Result<Volume<'_>, Fault> 
     let sizes = [width, height, depth];
     let offset = header.offset();
     let least = HEADS[usize::from(header.is_second)] as f64;
-    // What does not fit in 32 bits is no header's length.
+    // A value beyond 32 bits is not the length of a header.
     if !(offset >= least && offset < f64::from(u32::MAX)) {
         return Err(format!(
             "its voxels begin at byte {offset}, which is in the header or past the end"
@@ -186,8 +189,8 @@ pub fn read(bytes: &[u8], allow_no_position: bool) -> Result<Volume<'_>, Fault> 
     Ok(Volume { sizes, voxels, place, frame, states_unit: header.unit() != 0 })
 }
 
-/// What is done with the numbers, as nibabel reads it: nothing where the slope is 0, infinite or
-/// not a number, whatever the intercept is; otherwise an intercept that is not finite is an error.
+/// Returns the scaling of the values, as nibabel reads it: none if the slope is 0, infinite or NaN,
+/// for every intercept; otherwise an intercept that is not finite is an error.
 fn scaling(header: &Header) -> Result<Option<[f64; 2]>, String> {
     let [slope, intercept] = [[112, 176], [116, 184]].map(|places| header.real(places, 0));
     if slope == 0.0 || !slope.is_finite() {
@@ -215,8 +218,10 @@ fn kind(header: &Header) -> Result<Kind, String> {
     })
 }
 
-/// Where the voxels are, and whether the file says so: the sform if there is one, otherwise the
-/// qform (methods 3 and 2 of nifti1.h). Method 1 knows no patient. An sform of zeros is none.
+/// Returns the map of the voxels, and whether the file states their position.
+///
+/// The sform applies if there is one, otherwise the qform (methods 3 and 2 of nifti1.h). Method 1
+/// has no patient frame. An sform of zeros counts as absent.
 fn place(header: &Header, allow_no_position: bool) -> Result<(Place, bool), Fault> {
     let unit = match header.unit() {
         0 | 2 => 1.0,
@@ -231,7 +236,7 @@ fn place(header: &Header, allow_no_position: bool) -> Result<(Place, bool), Faul
         [0, 1, 2].map(|row| [0, 1, 2, 3].map(|column| header.real([280, 400], 4 * row + column)));
     let is_zero = sform.iter().all(|row| row[..3] == [0.0; 3]);
     let spacing = [1, 2, 3].map(|index| header.spacing(index));
-    // Readers disagree: nibabel takes the form as it is, ITK mirrors the axis.
+    // Readers disagree: nibabel uses the form unchanged, ITK mirrors the axis.
     if let Some(axis) = (0..3).find(|&axis| spacing[axis] < 0.0) {
         let (name, value) = (axis + 1, spacing[axis]);
         let wrong = format!(
@@ -251,7 +256,8 @@ fn place(header: &Header, allow_no_position: bool) -> Result<(Place, bool), Faul
     Ok((scaled(without_position(spacing), "pixdim")?, false))
 }
 
-/// The quaternion's rotation times the spacings, the third one mirrored if the header says so.
+/// Returns the quaternion's rotation times the spacings, with the third axis mirrored if the header
+/// says so.
 fn qform(header: &Header, [x, y, z]: [f64; 3]) -> [[f64; 4]; 3] {
     let [b, c, d, shift @ ..] = [0, 1, 2, 3, 4, 5].map(|index| header.real([256, 352], index));
     let a = (1.0 - b * b - c * c - d * d).max(0.0).sqrt();

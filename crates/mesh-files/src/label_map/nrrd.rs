@@ -1,5 +1,5 @@
-//! NRRD label maps: raw, gzip or ASCII, in one file or with the voxels in a file beside the header.
-//! Their frame is what `space` says, RAS or LPS.
+//! Reads NRRD label maps: raw, gzip or ASCII, in one file or with the voxels in a file beside the
+//! header. The field `space` states their frame, RAS or LPS.
 
 use super::voxels::{Encoding, Kind, Voxels, last};
 use super::{Fault, Place, Volume, count, voxels_path, without_position};
@@ -8,17 +8,18 @@ use crate::text::{shown, unit_in_mm};
 use std::collections::HashMap;
 use std::path::PathBuf;
 
-/// The names of the field that says where the voxels are, if not in the same file.
+/// The names of the field that names the file of the voxels, if it is another one.
 const ELSEWHERE: [&str; 2] = ["data file", "datafile"];
 
-/// The fields of the header by name, and what follows it.
+/// The fields of the header by name, and the data after it.
 struct File<'a> {
     fields: HashMap<String, String>,
     data: &'a [u8],
 }
 
 impl<'a> File<'a> {
-    /// The header ends at the first empty line, or where the file does if the voxels are elsewhere.
+    /// Parses the header. It ends at the first empty line, or at the end of the file if the voxels
+    /// are in another one.
     fn new(bytes: &'a [u8]) -> Result<Self, String> {
         if !bytes.starts_with(b"NRRD000") {
             return Err("it does not begin with 'NRRD000' and a version".into());
@@ -31,7 +32,7 @@ impl<'a> File<'a> {
             let is_end = data.is_empty();
             data = data.get(end + 1..).unwrap_or_default();
             let line = line.trim();
-            // Keys and values of the user's own are written as `key:=value`.
+            // Users' own keys and values are written as `key:=value`.
             if let Some((name, value)) = line.split_once(':')
                 && !value.starts_with('=')
                 && !line.starts_with('#')
@@ -62,13 +63,13 @@ impl<'a> File<'a> {
     }
 }
 
-/// The file that holds the voxels, if it is another one.
+/// Returns the file of the voxels, if it is another one.
 pub fn voxels_file(bytes: &[u8]) -> Option<PathBuf> {
     let file = File::new(bytes).ok()?;
     ELSEWHERE.iter().find_map(|name| file.get(name)).and_then(voxels_path)
 }
 
-/// Header and voxels as one file.
+/// Returns header and voxels as one file.
 pub fn in_one(header: &[u8], voxels: &[u8]) -> Vec<u8> {
     let text = String::from_utf8_lossy(header);
     let is_elsewhere = |line: &str| {
@@ -81,14 +82,14 @@ pub fn in_one(header: &[u8], voxels: &[u8]) -> Vec<u8> {
     [whole.as_bytes(), b"\n", voxels].concat()
 }
 
-/// The axes of the voxels: how many there are along each, and the step from one to the next, if the
-/// file says so.
+/// The axes of the voxels: the number of voxels along each, and the step from one voxel to the
+/// next, if the file states it.
 struct Axes {
     sizes: [usize; 3],
     steps: Option<[[f64; 3]; 3]>,
 }
 
-/// A number for each of the axes.
+/// Returns a number for each axis.
 fn list<T: std::str::FromStr>(file: &File, name: &str, count: usize) -> Result<Vec<T>, String> {
     let numbers: Option<Vec<T>> =
         file.need(name)?.split_whitespace().map(|number| number.parse().ok()).collect();
@@ -97,7 +98,7 @@ fn list<T: std::str::FromStr>(file: &File, name: &str, count: usize) -> Result<V
     numbers.ok_or_else(|| format!("its '{name}' are not {count} numbers"))
 }
 
-/// A vector such as `(1,0,0)`, or `none`, for each of the axes.
+/// Returns a vector such as `(1,0,0)`, or `none`, for each axis.
 fn vectors(file: &File, name: &str, count: usize) -> Result<Vec<Option<[f64; 3]>>, String> {
     let wrong = || format!("its '{name}' is not {count} x three numbers");
     let vector = |text: &str| -> Option<[f64; 3]> {
@@ -130,7 +131,7 @@ fn axes(file: &File) -> Result<Axes, String> {
         None => None,
     };
     if count == 4 {
-        // An axis that is none of space: one layer is a label map.
+        // An axis that is not spatial: a file with one layer is a label map.
         let is_layer = |index: &usize| steps.as_ref().is_none_or(|steps| steps[*index].is_none());
         let layer = (0..4).filter(is_layer).min_by_key(|&index| sizes[index]);
         let layer = layer.ok_or_else(|| format!("it has four dimensions, not three; {LAYERS}"))?;
@@ -233,14 +234,14 @@ fn kind(name: &str) -> Result<Kind, String> {
     })
 }
 
-/// Where the voxels are, and in which frame.
+/// Returns the map of the voxels, and their frame.
 fn place(
     file: &File,
     axes: &Axes,
     allow_no_position: bool,
 ) -> Result<(Place, Option<Frame>), Fault> {
     let space = file.get("space").unwrap_or_default();
-    // The third frame of the format has no name here: mirrored, it is RAS.
+    // The third frame of the format has no counterpart here: mirrored, it is RAS.
     let (frame, mirror) = match space.to_ascii_lowercase().as_str() {
         "right-anterior-superior" | "ras" => (Some(Frame::Ras), 1.0),
         "left-posterior-superior" | "lps" => (Some(Frame::Lps), 1.0),

@@ -1,11 +1,11 @@
-//! The numbers of the voxels, of any type, as labels.
+//! Reads the values of voxels, of any type, as labels.
 
 use super::Fault;
 use crate::text::shown;
 use flate2::read::{MultiGzDecoder, ZlibDecoder};
 use std::io::{self, Read};
 
-/// The type of a voxel's number.
+/// The type of a voxel's value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kind {
     I8,
@@ -21,7 +21,7 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// How many bytes it takes.
+    /// Returns the size in bytes.
     pub fn size(self) -> usize {
         match self {
             Self::I8 | Self::U8 => 1,
@@ -32,17 +32,18 @@ impl Kind {
     }
 }
 
-/// How far a number may be from a whole one and still be a label: some writers store labels times a
-/// scale, rounded to single precision or to a few digits. An image is refused all the same, since
-/// some of its voxels are farther from whole numbers.
+/// Returns the largest difference between a value and the label that it represents.
+///
+/// Some writers store labels times a scale, rounded to single precision or to a few digits. An
+/// image is still refused, since some of its values are farther from whole numbers.
 fn tolerance(number: f64) -> f64 {
     (number * f64::from(f32::EPSILON)).clamp(1e-4, 1e-2)
 }
 
-/// A voxel's number as a label.
+/// Returns a voxel's value as a label.
 ///
 /// # Errors
-/// It is none: the file holds an image and not a segmentation.
+/// The value is not a label: the file is an image and not a segmentation.
 pub fn label(number: f64) -> Result<u32, Fault> {
     let whole = number.round();
     if (whole - number).abs() <= tolerance(number) && (0.0..=f64::from(u32::MAX)).contains(&whole) {
@@ -52,7 +53,7 @@ pub fn label(number: f64) -> Result<u32, Fault> {
     }
 }
 
-/// How the voxels are written.
+/// The encoding of the voxels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Encoding {
     Raw,
@@ -61,25 +62,25 @@ pub enum Encoding {
     Text,
 }
 
-/// The voxels of a file. They are read again whenever they are asked for and never kept, so that a
-/// small archive of a large volume takes no memory.
+/// The voxels of a file. Each pass decodes them again, so that a small archive of a large volume
+/// takes no memory.
 pub struct Voxels<'a> {
     pub data: &'a [u8],
     pub encoding: Encoding,
-    /// Of the unpacked bytes, those before the first voxel.
+    /// The number of unpacked bytes before the first voxel.
     pub skip: usize,
     pub count: usize,
     pub kind: Kind,
     pub is_big_endian: bool,
-    /// What a number is multiplied by, and what is added then.
+    /// The factor of a value, and the offset that is added then.
     pub scaling: Option<[f64; 2]>,
 }
 
 impl Voxels<'_> {
-    /// Shows the labels of all voxels in their order, some at a time.
+    /// Passes the labels of all voxels to `see`, in order, some at a time.
     ///
     /// # Errors
-    /// There are fewer than the header says, or what is there cannot be read as labels.
+    /// There are fewer voxels than the header states, or values that are not labels.
     pub fn each(&self, see: &mut dyn FnMut(&[u32])) -> Result<(), Fault> {
         let size =
             self.count.checked_mul(self.kind.size()).and_then(|size| size.checked_add(self.skip));
@@ -104,7 +105,7 @@ impl Voxels<'_> {
         }
     }
 
-    /// Numbers of [`Kind`] from a stream that may hold more.
+    /// Reads numbers of [`Kind`] from a stream that may be longer.
     fn each_of_bytes(
         &self,
         mut stream: impl Read,
@@ -165,8 +166,8 @@ impl Voxels<'_> {
         self.scaling.map_or(number, |[slope, intercept]| slope * number + intercept)
     }
 
-    /// Numbers as words. As few as two bytes are a voxel, so that no more voxels are read than the
-    /// file has bytes.
+    /// Reads numbers as words. A voxel takes at least two bytes, so no more voxels are read than
+    /// the file has bytes.
     fn each_of_text(&self, see: &mut dyn FnMut(&[u32])) -> Result<(), Fault> {
         let text = String::from_utf8_lossy(self.data.get(self.skip..).ok_or(SHORT)?);
         let mut seen = 0;
@@ -181,23 +182,23 @@ impl Voxels<'_> {
     }
 }
 
-/// How many voxels are read at once.
+/// The number of voxels that are read at once.
 const AT_ONCE: usize = 1 << 14;
 const SHORT: &str = "it is shorter than its header says";
 const DAMAGED: &str = "its packed voxels are damaged or cut short";
 
-/// The last bytes of a file, as many as the voxels take; all of them if they are too few.
+/// Returns the last bytes of a file, as many as the voxels take; all of them if there are too few.
 pub fn last(data: &[u8], count: usize, kind: Kind) -> &[u8] {
     let size = count.saturating_mul(kind.size());
     &data[data.len().saturating_sub(size)..]
 }
 
-/// Deflate packs 1032 bytes into one at most: a header that promises more is not believed.
+/// Deflate compresses at most 1032 bytes into one, so a header that promises more is wrong.
 fn could_hold(archive: &[u8], count: usize) -> bool {
     count / 1032 <= archive.len()
 }
 
-/// The first bytes of what the archive holds, fewer if it holds fewer.
+/// Returns the first bytes of an archive's content, fewer if it has fewer.
 pub fn unpack(archive: &[u8], count: usize) -> Result<Vec<u8>, String> {
     let mut bytes = Vec::new();
     let unpacked = MultiGzDecoder::new(archive).take(count as u64).read_to_end(&mut bytes);

@@ -1,4 +1,4 @@
-//! A robot and a mesh: all engines give the answer that the certificate proves.
+//! A robot and a mesh: all engines return the answer that the certificate proves.
 
 use super::source::Source;
 use parry_continuum::parry::math::{Pose, Vector};
@@ -6,11 +6,14 @@ use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{BvhSearch, Certificate, Exhaustive, LinkProximity, Proximity};
 use parry_continuum::{Chain, ModifiedCylinder};
 
-/// Beyond this parry's own mesh is not asked for.
+/// The largest coordinate for which parry's own mesh is compared.
 const LARGEST: f64 = 1e150;
 
-/// Every link's distance lies within 16 units of the extent of its pair of the certificate, and no
-/// triangle is nearer by more than those of its own pair; minimum and clearance agree with it.
+/// Asserts three properties.
+///
+/// - Every link's distance lies within 16 units of its pair's extent of the certificate.
+/// - No triangle is nearer by more than 16 units of the extent of its own pair.
+/// - Minimum and clearance agree with these distances.
 pub fn chain_mesh(bytes: &[u8]) {
     let mut source = Source::new(bytes);
     let pose = source.pose();
@@ -63,14 +66,14 @@ pub fn chain_mesh(bytes: &[u8]) {
     }
 }
 
-/// A link and a triangle: proven bounds on their distance, and what rounding may do to it.
+/// A link and a triangle: proven bounds on their distance, and its rounding error.
 struct Pair {
     bounds: Certificate,
     slack: f64,
 }
 
 impl Pair {
-    /// The link with every triangle.
+    /// Returns the pairs of the link with every triangle.
     fn all(link: &ModifiedCylinder, pose: &Pose, mesh: &TriMesh) -> Vec<Self> {
         let pair = |corners: [Vector; 3]| {
             let start = pose * link.start();

@@ -1,5 +1,5 @@
-//! One engine in a long loop beside a fresh one for each question: what was asked before changes no
-//! answer, nor do vertices that moved, and every margin means the same everywhere.
+//! One engine in a long loop, beside a fresh engine for each query. Earlier queries and moved
+//! vertices change no answer, and a margin has one meaning everywhere.
 
 use super::source::Source;
 use parry_continuum::parry::math::{Pose, Vector};
@@ -7,7 +7,7 @@ use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{BvhSearch, Decision, Exhaustive, LinkProximity, Proximity};
 use parry_continuum::{Chain, Tube};
 
-/// A mesh that moves, two robots of which one is asked for, and its pose.
+/// A mesh that moves, two robots of which one is queried, and its pose.
 struct Scene {
     vertices: Vec<Vector>,
     indices: Vec<[u32; 3]>,
@@ -27,7 +27,7 @@ impl Scene {
     }
 }
 
-/// A sequence of changes, mostly tiny, and of questions.
+/// Runs a sequence of changes, mostly tiny, and of queries.
 pub fn coherence(bytes: &[u8]) {
     let mut source = Source::new(bytes);
     let (vertices, indices) = source.wall();
@@ -54,7 +54,7 @@ fn change(source: &mut Source, scene: &mut Scene, search: &mut BvhSearch) {
                 1 => scene.vertices.iter_mut().step_by(3).for_each(|vertex| vertex.z *= 0.5),
                 _ => scene.vertices[0] = way,
             }
-            // What is refused changes nothing.
+            // A refused change has no effect.
             if search.set_vertices(&scene.vertices).is_err() {
                 scene.vertices = before;
             }
@@ -62,12 +62,12 @@ fn change(source: &mut Source, scene: &mut Scene, search: &mut BvhSearch) {
         4 => scene.robot = 1 - scene.robot,
         5 => *search = search.clone(),
         6 => search.forget(),
-        // The same again.
+        // No change: the same query again.
         _ => {}
     }
 }
 
-/// A question, and what answers it: both engines say the same.
+/// Runs a query on both engines and asserts equal answers.
 fn ask(
     source: &mut Source,
     scene: &Scene,
@@ -156,7 +156,8 @@ fn ask(
     tube(search, scene, distance, margin);
 }
 
-/// The tube of a chain where no pose rounds: its bounds hold the chain's distance, each time.
+/// Asserts that the bounds of a chain's tube contain the chain's distance, at poses without
+/// rounding.
 fn tube(search: &mut BvhSearch, scene: &Scene, distance: f64, margin: f64) {
     let tube = Tube::from(&scene.robots[scene.robot]);
     if scene.pose != Pose::IDENTITY {

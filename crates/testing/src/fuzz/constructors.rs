@@ -1,10 +1,10 @@
-//! Any numbers for robots: an error, or a robot that is sound.
+//! Any numbers as a robot: an error, or a valid robot.
 
 use super::source::Source;
 use parry_continuum::parry::math::Vector;
 use parry_continuum::{Cap, Chain, ModifiedCylinder, simplify, stations};
 
-/// No constructor panics, and what it makes is finite and complete.
+/// Asserts that no constructor panics, and that its result is finite and complete.
 pub fn constructors(bytes: &[u8]) {
     let mut source = Source::new(bytes);
     let points: Vec<_> = (0..source.below(9)).map(|_| source.point()).collect();

@@ -1,6 +1,6 @@
-//! The dispatcher between a robot and every kind of shape that parry has: an answer or a refusal,
-//! never a panic and never a NaN, whatever the pose, the margin and the options. Of aligned pairs
-//! that touch more is asked.
+//! The dispatcher between a robot and every kind of parry's shapes: an answer or an error, never a
+//! panic and never a NaN, for every pose, margin and option. Aligned pairs that touch are tested
+//! further.
 
 use super::source::Source;
 use crate::Random;
@@ -18,7 +18,7 @@ use parry_continuum::parry::shape::{
 use parry_continuum::parry::utils::Array2;
 use parry_continuum::{Cap, Chain, ContinuumDispatcher, ModifiedCylinder};
 
-/// Beyond this parry builds no hierarchy over parts, and no hull.
+/// The largest coordinate for which parry builds hierarchies over parts, and hulls.
 const LARGEST: f64 = 1e150;
 /// The kinds of [`other`].
 const KINDS: u8 = 21;
@@ -32,7 +32,7 @@ pub fn dispatcher(bytes: &[u8]) {
     }
 }
 
-/// Numbers of any kind; nothing if they make no robot or no other shape.
+/// Runs numbers of any kind, unless they make no robot or no other shape.
 fn any_pair(source: &mut Source) -> Option<()> {
     let robot = robot(source)?;
     let kind = source.below(KINDS);
@@ -45,7 +45,7 @@ fn any_pair(source: &mut Source) -> Option<()> {
     Some(())
 }
 
-/// A robot that is aligned with a wall and touches it: there what the queries say fits together.
+/// Runs a robot that is aligned with a wall and touches it: there the queries must agree.
 fn aligned_pair(source: &mut Source) {
     let wall = Wall::ALL[source.below(Wall::ALL.len() as u8)];
     let seed = (0..8).fold(0, |seed, _| seed << 8 | u64::from(source.byte()));
@@ -76,7 +76,7 @@ fn robot(source: &mut Source) -> Option<SharedShape> {
     Chain::from_centreline(&points, &vec![radius; points.len() - 1]).ok().map(SharedShape::new)
 }
 
-/// A pose that need not be one: the rotation's parts may be anything.
+/// Returns a pose that may be invalid: the parts of its rotation are arbitrary.
 fn pose(source: &mut Source) -> Pose {
     match source.below(8) {
         0..4 => Pose::from_translation(source.point()),
@@ -88,9 +88,9 @@ fn pose(source: &mut Source) -> Pose {
     }
 }
 
-/// A shape of this kind, if parry can build it from such numbers.
+/// Returns a shape of this kind, if parry can build it from such numbers.
 fn other(source: &mut Source, kind: usize) -> Option<SharedShape> {
-    // parry cannot even bound a shape whose size is not a number.
+    // parry cannot compute a box around a shape whose size is NaN.
     let size = |source: &mut Source| source.number().abs().max(0.0);
     let finite = |points: &[Vector]| {
         points
@@ -126,7 +126,7 @@ fn other(source: &mut Source, kind: usize) -> Option<SharedShape> {
             border_radius: size(source),
         }),
         12 => {
-            // A box's corners, moved: parry's hulls panic on what spans no volume.
+            // The vertices of a box, moved: parry's hulls panic on points that span no volume.
             let half = source.point().abs().max(Vector::splat(1e-3)).min(Vector::splat(1e3));
             finite(&[half])?;
             let corner = |k: u32| half * Vector::new(sign(k), sign(k >> 1), sign(k >> 2));
@@ -198,7 +198,7 @@ fn sign(bit: u32) -> f64 {
     if bit & 1 == 0 { -1.0 } else { 1.0 }
 }
 
-/// Every query, every answer of which must be a number.
+/// Runs every query, and asserts that no answer is NaN.
 fn ask(source: &mut Source, pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape, margin: f64) {
     let dispatcher = ContinuumDispatcher::default();
     let problem =
@@ -231,7 +231,7 @@ fn ask(source: &mut Source, pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape, margin
         assert!(!hit.time_of_impact.is_nan(), "{}", problem());
     }
     let (mut manifolds, mut workspace): (Vec<ContactManifold<(), ()>>, _) = (vec![], None);
-    // The second time parry goes on from what it found.
+    // The second time parry continues from its earlier result.
     for _ in 0..2 {
         let _ = dispatcher.contact_manifolds(pos12, g1, g2, margin, &mut manifolds, &mut workspace);
     }

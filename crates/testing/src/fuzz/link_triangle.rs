@@ -1,4 +1,4 @@
-//! One link and one triangle: the narrow phase keeps to its bounds in both precisions.
+//! One link and one triangle: the narrow phase satisfies its error bounds in both precisions.
 
 use super::source::Source;
 use crate::narrow_phase::triangle_modified_cylinder;
@@ -8,7 +8,8 @@ use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::proximity::Certificate;
 use parry_continuum::{Cap, ModifiedCylinder};
 
-/// The distance is within 16 units of the extent, and the closest points realise it.
+/// Asserts that the distance is within 16 units of the extent, and that the closest points realise
+/// it.
 pub fn link_triangle(bytes: &[u8]) {
     let mut source = Source::new(bytes);
     let caps = [source.flag(), source.flag()].map(|flat| if flat { Cap::Flat } else { Cap::Round });
@@ -40,13 +41,13 @@ fn check<T: Precision>(points: [Vector; 5], radius: f64, caps: [Cap; 2]) {
     } else {
         (f32::from_bits(1).into(), 1e-18)
     };
-    // A link whose squared length vanishes has no direction; its caps count as round, as
+    // A link whose squared length underflows has no direction; its caps count as round, as
     // documented.
     if flat.contains(&true) && (end - start).abs().max_element() < shortest * extent && radius > 0.0
     {
         return;
     }
-    // Answers that are subnormal have their own roundings.
+    // Subnormal answers have an absolute rounding error.
     let slack = 16.0 * T::UNIT * extent + 4.0 * least;
     let context = || {
         format!(
@@ -80,7 +81,7 @@ fn values<T: Precision>(closest: &Closest<T>) -> [Vector; 3] {
     [Vector::splat(closest.distance.into()), vector(closest.point1), vector(closest.point2)]
 }
 
-/// The length of a vector whose squares may overflow or vanish.
+/// Returns the length of a vector whose squares may overflow or underflow.
 fn length(v: Vector) -> f64 {
     let unit = v.abs().max_element();
     if unit > 0.0 { (v / unit).length() * unit } else { 0.0 }

@@ -1,5 +1,5 @@
-//! Any bytes as a file: an error of one line, or a mesh whose triangles name vertices that are
-//! there, or a centreline.
+//! Any bytes as a file: an error of one line, a mesh whose triangles name existing vertices, or a
+//! centreline.
 
 use mesh_files::{MeshFileError, Options, centreline_from_bytes, from_bytes};
 

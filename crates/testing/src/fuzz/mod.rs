@@ -1,6 +1,6 @@
-//! What is fuzzed. Each body takes any bytes and panics where a promise is broken. The fuzzer calls
-//! them through `fuzz/fuzz_targets` for hours, the test suite through `tests/proximity/fuzz.rs` for
-//! a moment.
+//! The fuzz targets. Each body accepts any bytes and panics if a promise is broken. The fuzzer
+//! calls the bodies through `fuzz/fuzz_targets` for hours, the test suite through
+//! `tests/proximity/fuzz.rs` briefly.
 
 mod chain_mesh;
 mod coherence;

@@ -1,5 +1,5 @@
-//! Motions beside the shapes that they pass: tiny turns and long ways, from starts that touch. What
-//! is proven clear is clear at every time that is looked at.
+//! Motions beside the shapes that they pass: tiny turns and large displacements, from starts that
+//! touch. A motion that is proven clear must be clear at every sampled time.
 
 use super::source::Source;
 use parry_continuum::parry::math::{Pose, Vector};
@@ -9,10 +9,10 @@ use parry_continuum::proximity::{
 };
 use parry_continuum::{Chain, LinearMotion, Motion, RigidMotion, Tube, verify_motion};
 
-/// At so many times a motion is compared with its shapes.
+/// The number of times at which a motion is compared with its shapes.
 const TIMES: u32 = 24;
 
-/// A chain that is moved as a whole, or whose points move along lines.
+/// Runs a chain that moves as a whole, or whose points move along lines.
 pub fn motions(bytes: &[u8]) {
     let mut source = Source::new(bytes);
     let (vertices, indices) = source.wall();
@@ -44,8 +44,8 @@ pub fn motions(bytes: &[u8]) {
     }
 }
 
-/// Whether the rounding of a shape between two decides which way a segment leads, or whether there
-/// is one: a motion knows where it began and ends.
+/// Returns whether rounding decides, in an intermediate shape, the direction or the existence of a
+/// segment. The motion itself knows both from its start and end.
 fn rounding_decides(from: &[Vector], to: &[Vector], between: &[Vector]) -> bool {
     let reach =
         from.iter().chain(to).fold(0.0, |most: f64, point| point.abs().max_element().max(most));
@@ -59,8 +59,8 @@ fn rounding_decides(from: &[Vector], to: &[Vector], between: &[Vector]) -> bool 
 /// The shape at a time, as a chain.
 type Shape<'a> = &'a dyn Fn(f64) -> Option<(Chain, Pose)>;
 
-/// Whether the robot keeps the margin to itself: so far as any shape shows it does where that is
-/// said, and not where a shape is named.
+/// Asserts the answer about self contact: no sampled shape contradicts a proof of clearance, and
+/// the named shape is within the margin.
 fn beside_itself<M: Motion>(
     motion: &M,
     shape: Shape<'_>,
@@ -90,7 +90,7 @@ fn beside_itself<M: Motion>(
     let clear_until = if answer.is_clear() { 2.0 } else { answer.interval[0] };
     for t in (0..=TIMES).map(|k| f64::from(k) / f64::from(TIMES)).filter(|&t| t < clear_until) {
         let Some((found, slack)) = nearest(t) else { continue };
-        // Of links with more joints between them it is the local minima that keep the margin.
+        // Links with more joints between them keep the margin by their local minima only.
         let is_few = found.links[1] - found.links[0] <= 3;
         assert!(!is_few || found.distance > margin - slack, "{found:?} at {t} {}", problem());
     }
@@ -105,7 +105,7 @@ fn check<M: Motion>(
 ) {
     let shape: Shape<'_> = &shape;
     let Ok(mut exact) = BvhSearch::new(mesh) else { return };
-    // And by how much a rim is off where rounding turns a link that is shorter than thick.
+    // The distance, and the error of a rim where rounding turns a link that is shorter than thick.
     let mut distance_and_rim = |t: f64| {
         let (chain, pose) = shape(t)?;
         let turned =
@@ -118,7 +118,7 @@ fn check<M: Motion>(
     let ends = [shape(0.0), shape(1.0)];
     let problem = || format!("\n{ends:?}\n{vertices:?} {indices:?}");
     let length = shape(0.0).map_or(1.0, |(chain, _)| Tube::from(&chain).length());
-    // Poses are rounded on the way.
+    // Intermediate poses are rounded.
     let largest = vertices.iter().map(|vertex| vertex.abs().max_element()).fold(length, f64::max);
     let slack = |rim: f64| (1e-12 + 1e-14 * rim) * largest;
     assert_eq!(verify_motion(motion, 7), Ok(()), "its own speed is refused{}", problem());
@@ -134,7 +134,7 @@ fn check<M: Motion>(
     beside_itself(motion, shape, margin, resolution, slack);
     let answer = search.clears_motion(motion, margin, resolution);
     let first = search.time_of_contact(motion, margin, resolution);
-    // As text, in which NaN is NaN.
+    // Compared as text, in which NaN equals NaN.
     let again = [
         search.clears_motion(motion, margin, resolution),
         search.time_of_contact(motion, margin, resolution),
@@ -145,7 +145,7 @@ fn check<M: Motion>(
         "asked again{}",
         problem()
     );
-    // Until when it is said to be clear.
+    // The time until which the answer claims clearance.
     let clear_until = [
         match &answer {
             Ok(MotionAnswer { decision: Decision::Clear, .. }) => Some(2.0),

@@ -1,5 +1,5 @@
-//! Two robots, and one and itself: the nearest pair of links is that of all pairs in twice the
-//! digits.
+//! Two robots, and one robot with itself: the closest pair of links is that of all pairs in
+//! double-double numbers.
 
 use super::source::Source;
 use crate::narrow_phase::modified_cylinder_modified_cylinder;
@@ -9,9 +9,9 @@ use parry_continuum::parry::math::Pose;
 use parry_continuum::proximity::{ProximityError, RobotPair, RobotProximity, between};
 use parry_continuum::{Cap, Chain, ModifiedCylinder, Tube};
 
-/// Each pair's distance is within 16 units of its extent; `minimum`, `per_link`, `clears` and
-/// `within` agree with it and with one another, in both orders; the bounds of both as tubes hold
-/// it. A robot and itself: what is found is a pair of its links.
+/// Asserts that each pair's distance is within 16 units of its extent; that `minimum`, `per_link`,
+/// `clears` and `within` agree with it and with one another, in both orders; and that the bounds of
+/// both robots as tubes contain it. For a robot with itself: the answer is a pair of its links.
 pub fn robots(bytes: &[u8]) {
     let mut source = Source::new(bytes);
     let poses = [source.pose(), source.pose()];
@@ -61,8 +61,8 @@ pub fn robots(bytes: &[u8]) {
         Ok(()) if d > margin => assert!(places.is_empty(), "{places:?} {}", problem()),
         Ok(()) => assert!(places.contains(&found), "{places:?} {}", problem()),
     }
-    // Where a pose moves a chain far, rounding turns the axes of its short links; the tube keeps
-    // its faces.
+    // If a pose moves a chain far, rounding turns the axes of its short links. The tube keeps its
+    // faces.
     let here = Pose::IDENTITY;
     if let (Ok(truth), Ok(found)) = (
         between(&a, &here, &b, &here),
@@ -84,16 +84,16 @@ fn robot(source: &mut Source) -> Option<Chain> {
     robot.ok()
 }
 
-/// A robot and itself.
+/// Checks a robot with itself.
 fn alone(pair: &mut RobotPair, robot: &Chain, margin: f64) {
     let Ok(found) = pair.self_minimum(robot) else { return };
     assert_eq!(pair.self_minimum(robot), Ok(found), "{robot:?}");
     let distance = found.map_or(f64::INFINITY, |found| found.distance);
     if let Some(RobotProximity { links: [i, j], .. }) = found {
-        // At least one link is between them.
+        // At least one link lies between them.
         assert!(i + 1 < j && (j as usize) < robot.links().len(), "{found:?} {robot:?}");
         let [one, two] = [i, j].map(|link| &robot.links()[link as usize]);
-        // A face of a link may be what counts, which is no nearer than the link.
+        // The answer may belong to a face of a link, which is no nearer than the link.
         assert!(exactly(one, two) <= distance + slack(one, two), "{found:?} {robot:?}");
     }
     if let Ok(clears) = pair.self_clears(robot, margin) {
@@ -113,13 +113,14 @@ fn exactly(one: &ModifiedCylinder, two: &ModifiedCylinder) -> f64 {
         .rounded()
 }
 
-/// What rounding may do to the distance of two links.
+/// Returns the rounding error of the distance of two links.
 fn slack(one: &ModifiedCylinder, two: &ModifiedCylinder) -> f64 {
     let points = [one.start(), one.end(), two.start(), two.end()];
     16.0 * f64::EPSILON * extent(&points, one.radius().max(two.radius())) + 8.0 * f64::from_bits(1)
 }
 
-/// Whether an answer about a link is the distance of its pair, and no other is nearer.
+/// Returns an error unless an answer about a link is the distance of its pair and no other pair is
+/// nearer.
 fn check(
     one: &ModifiedCylinder,
     others: &[ModifiedCylinder],

@@ -1,10 +1,10 @@
-//! Any polynomial: each finder gives all roots, each of which solves it, or says that it does not.
+//! Any polynomial: each finder returns all roots, each of which solves the polynomial, or an error.
 
 use super::source::Source;
 use polynomial_roots::{Bairstow, ClosedForm, Companion, JenkinsTraub, Real, RootFinder};
 
-/// A root's residual, as a share of the sum of the magnitudes of the terms, stays below the square
-/// root of rounding.
+/// Asserts that the residual of each root, relative to the sum of the magnitudes of the terms,
+/// stays below the square root of the unit roundoff.
 pub fn root_finders(bytes: &[u8]) {
     let mut source = Source::new(bytes);
     let coefficients: [f64; 10] = std::array::from_fn(|_| source.number());
@@ -31,11 +31,11 @@ fn check<F: RootFinder, T: Real + Into<f64>, const M: usize>(coefficients: [T; M
     for root in roots.as_slice() {
         let (re, im): (f64, f64) = (root.re.into(), root.im.into());
         assert!(re.is_finite() && im.is_finite());
-        // Subnormal roots have a rounding of their own.
+        // Subnormal roots have an absolute rounding error.
         if [re, im].iter().any(|part| *part != 0.0 && part.abs() < smallest) {
             continue;
         }
-        // What overflows or vanishes here is left to the tests with longer numbers.
+        // Overflow and underflow are left to the tests with longer numbers.
         let (mut sum, mut terms, mut power) = ((0.0, 0.0), 0.0, (1.0, 0.0));
         for a in coefficients {
             sum = (sum.0 + a * power.0, sum.1 + a * power.1);

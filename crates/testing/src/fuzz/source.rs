@@ -1,12 +1,12 @@
-//! Numbers from bytes, of the kinds that break geometry: equal, nearly equal, tiny, huge, and not
-//! numbers at all.
+//! Numbers from bytes, of the kinds that break geometry: equal, nearly equal, tiny, huge, infinite
+//! and NaN.
 
 use arbitrary::Unstructured;
 use parry_continuum::Chain;
 use parry_continuum::parry::math::{Pose, Rot3, Vector};
 use parry_continuum::parry::shape::Cuboid;
 
-/// Bytes on their way to numbers. When they are used up, all further numbers are 0.
+/// Bytes that are converted to numbers. When they are used up, all further numbers are 0.
 pub struct Source<'a> {
     bytes: Unstructured<'a>,
     seen: Vec<f64>,
@@ -21,7 +21,7 @@ impl<'a> Source<'a> {
         self.bytes.arbitrary().unwrap_or(0)
     }
 
-    /// A number below `count`.
+    /// Returns a number below `count`.
     pub fn below(&mut self, count: u8) -> usize {
         usize::from(self.byte() % count)
     }
@@ -30,7 +30,7 @@ impl<'a> Source<'a> {
         self.byte() & 1 == 1
     }
 
-    /// A number that came before.
+    /// Returns an earlier number.
     fn earlier(&mut self) -> f64 {
         let place = usize::from(self.byte());
         self.seen[place % self.seen.len()]
@@ -65,7 +65,7 @@ impl<'a> Source<'a> {
         Vector::new(self.number(), self.number(), self.number())
     }
 
-    /// The identity more often than not.
+    /// Returns a pose, the identity in most cases.
     pub fn pose(&mut self) -> Pose {
         if self.byte() < 160 { Pose::IDENTITY } else { Pose::new(self.point(), self.point()) }
     }
@@ -73,7 +73,7 @@ impl<'a> Source<'a> {
         self.bytes.arbitrary().unwrap_or(0)
     }
 
-    /// A step of size one or tiny, along an axis more often than not.
+    /// Returns a vector of size one or tiny, along an axis in most cases.
     pub fn way(&mut self) -> Vector {
         let size = 2.0_f64.powi(-(self.below(50) as i32));
         let way = match self.below(8) {
@@ -88,7 +88,7 @@ impl<'a> Source<'a> {
         if self.flag() { way } else { way * size }
     }
 
-    /// The pose, or one beside it: shifted, or turned about an axis.
+    /// Returns the pose, or a pose near it: shifted, or turned about an axis.
     pub fn nudged(&mut self, pose: Pose) -> Pose {
         match self.below(4) {
             0 => pose,
@@ -98,7 +98,8 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// A mesh of size one: a grid or a box, aligned with the axes, or triangles of any kind.
+    /// Returns a mesh of size one: a grid or a box, aligned with the axes, or triangles of any
+    /// kind.
     pub fn wall(&mut self) -> (Vec<Vector>, Vec<[u32; 3]>) {
         match self.below(4) {
             0 => {
@@ -136,8 +137,7 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// Points and radii of size one: along an axis and lying on what is aligned with it, or
-    /// anything.
+    /// Returns points and radii of size one: along an axis and touching aligned shapes, or any.
     pub fn centreline(&mut self) -> (Vec<Vector>, Vec<f64>) {
         let count = 1 + self.below(6);
         let radius = [0.0, 0.125, 0.25, 0.1][self.below(4)];
@@ -152,7 +152,7 @@ impl<'a> Source<'a> {
         (points, (0..count).map(|k| if k > count / 2 { radius * step } else { radius }).collect())
     }
 
-    /// The same as a chain.
+    /// Returns a [`centreline`](Self::centreline) as a chain.
     pub fn chain(&mut self) -> Option<Chain> {
         let build = [Chain::from_centreline, Chain::cylinders, Chain::capsules][self.below(3)];
         let (points, radii) = self.centreline();

@@ -1,5 +1,5 @@
-//! The dispatcher where robots and walls are aligned and touch: what scenes are made of, and random
-//! poses never reach. Whatever is asked, in either order and again, is the same answer.
+//! The dispatcher with robots and walls that are aligned and touch, as in scenes, which random
+//! poses never reach. Every query gives the same answer in either order and when repeated.
 
 use super::source::Source;
 use crate::Random;
@@ -12,24 +12,23 @@ use parry_continuum::parry::query::{
 use parry_continuum::parry::shape::Shape;
 use parry_continuum::{Chain, ContinuumDispatcher, ModifiedCylinder};
 
-/// What is asked: a wall, a robot, and how exact the answers for them must be. All lengths are
-/// about 1.
+/// A wall and a robot, and the accuracy that their answers must have. All lengths are about 1.
 struct Pair<'a> {
     g1: &'a dyn Shape,
     g2: &'a dyn Shape,
-    /// Off by this where they are apart.
+    /// The largest error if they are apart.
     apart: f64,
-    /// Off by this where they overlap.
+    /// The largest error if they overlap.
     overlapping: f64,
-    /// Casts end so far off at most.
+    /// The largest error of the place at which a cast ends.
     early: f64,
 }
 
-/// Touching and aligned placements, in both orders.
+/// Runs touching and aligned placements, in both orders.
 pub fn touching(bytes: &[u8]) {
     let mut source = Source::new(bytes);
     let kind = Wall::ALL[source.below(Wall::ALL.len() as u8)];
-    // parry knows no distance from voxels.
+    // parry computes no distance from voxels.
     if kind == Wall::Voxels {
         return;
     }
@@ -37,13 +36,13 @@ pub fn touching(bytes: &[u8]) {
     let pose = source.nudged(pose);
     let is_exact =
         !matches!(kind, Wall::Cuboid | Wall::Cone | Wall::ConvexPolyhedron | Wall::Compound);
-    // What parry's iterations answer is stated in the dispatcher's table, for shapes of size one.
+    // The errors of parry's iterations are in the dispatcher's table, for shapes of size one.
     let (apart, overlapping) = if is_exact { (1e-11, 1e-9) } else { (1e-4, 0.1) };
     let early = if is_exact { 1e-8 } else { 1e-4 };
     let pair = |g1, g2| Pair { g1, g2, apart, overlapping, early };
     let there = pair(&*robot, &*wall).ask(&mut source, &pose);
     let back = pair(&*wall, &*robot).ask(&mut source, &pose.inverse());
-    // A pose and its inverse are not the same to the last digit.
+    // A pose and its inverse differ in the last digit.
     let slack = if there.min(back) < 0.0 { overlapping } else { apart } + 1e-12;
     assert!((there - back).abs() <= slack, "{there} in one order, {back} in the other, {kind:?}");
 }
@@ -64,7 +63,7 @@ impl Pair<'_> {
         format!("\n{}\n{}\n{pose:?}", shown(self.g1), shown(self.g2))
     }
 
-    /// How far two answers for the same pair may be apart.
+    /// Returns the largest difference of two answers for the same pair.
     fn slack(&self, dist: f64) -> f64 {
         if dist < self.apart { self.overlapping } else { self.apart }
     }
@@ -76,7 +75,7 @@ impl Pair<'_> {
             .distance
     }
 
-    /// Every query at this pose; the distance, negative where the two overlap.
+    /// Runs every query at this pose. Returns the distance, negative in overlap.
     fn ask(&self, source: &mut Source, pose: &Pose) -> f64 {
         let dispatcher = ContinuumDispatcher::default();
         let problem = || self.problem(pose);
@@ -99,7 +98,7 @@ impl Pair<'_> {
             "a contact of {whole} at {apart}{}",
             problem()
         );
-        // Where they touch, rounding decides.
+        // At contact rounding decides.
         let agree = if touches { whole <= self.apart } else { whole >= -self.apart };
         assert!(agree, "touches: {touches}, {whole}{}", problem());
         for prediction in [f64::INFINITY, 0.0, 0.05, -0.05, -f64::INFINITY, whole, source.number()]
@@ -131,7 +130,8 @@ impl Pair<'_> {
         whole
     }
 
-    /// The least of a manifold is what the contact names, at first and after a small motion.
+    /// Asserts that the least distance of a manifold is that of the contact, at first and after a
+    /// small motion.
     fn manifolds(&self, source: &mut Source, pose: &Pose, whole: f64) {
         let prediction = [0.0, 0.02, 0.3][source.below(3)];
         let dispatcher = ContinuumDispatcher::default();
@@ -182,7 +182,7 @@ impl Pair<'_> {
         }
     }
 
-    /// Casts are never late, from a start that touches too.
+    /// Asserts that casts are never late, from a touching start too.
     fn casts(&self, source: &mut Source, pose: &Pose) {
         let dispatcher = ContinuumDispatcher::default();
         let way = source.way();
@@ -228,13 +228,13 @@ impl Pair<'_> {
         }
     }
 
-    /// Whether the two overlap by more than rounding.
+    /// Returns whether the two overlap by more than rounding.
     fn is_deep(&self, pose: &Pose) -> bool {
         let contact = ContinuumDispatcher::default().contact(pose, self.g1, self.g2, 0.0);
         contact.is_ok_and(|contact| contact.is_some_and(|contact| contact.dist < -self.apart))
     }
 
-    /// Before the time of a hit the two are farther apart than the target.
+    /// Asserts that before the time of a hit the two are farther apart than the target.
     fn never_late(
         &self,
         cast: &str,
@@ -247,7 +247,7 @@ impl Pair<'_> {
         for k in 0..samples {
             let before = time * f64::from(k) / f64::from(samples);
             let there = self.distance(&at(before));
-            // Poses of the samples are rounded, and so is what is measured there.
+            // The poses of the samples are rounded, and so are the distances there.
             let is_late = if target > 0.0 {
                 there < target - self.apart
             } else {

@@ -1,4 +1,4 @@
-//! A tube and a mesh: bounds that hold, and nothing that panics.
+//! A tube and a mesh: bounds that hold, and no panic.
 
 use super::source::Source;
 use crate::Arcs;
@@ -8,8 +8,9 @@ use parry_continuum::proximity::{BvhSearch, Decision, Proximity};
 use parry_continuum::{Chain, Tube, TubeSection};
 use std::sync::Arc;
 
-/// Any points are a tube or an error. The bounds of a chain's tube hold the chain's distance; those
-/// of a curve of known curvature hold that of a finely divided chain.
+/// Asserts that any points give a tube or an error; that the bounds of a chain's tube contain the
+/// chain's distance; and that the bounds of a curve of known curvature contain the distance of a
+/// finely divided chain.
 pub fn tube(bytes: &[u8]) {
     let mut source = Source::new(bytes);
     let vertices: Vec<_> = (0..3 + source.below(6)).map(|_| source.point()).collect();
@@ -24,7 +25,7 @@ pub fn tube(bytes: &[u8]) {
     if source.flag() { anything(&mut source, &mut search) } else { arcs(&mut source, &mut search) }
 }
 
-/// Points, radii and tangents of any kind.
+/// Runs points, radii and tangents of any kind.
 fn anything(source: &mut Source, search: &mut BvhSearch) {
     let pose = source.pose();
     let points: Vec<_> = (0..2 + source.below(8)).map(|_| source.point()).collect();
@@ -44,8 +45,8 @@ fn anything(source: &mut Source, search: &mut BvhSearch) {
     let Ok(chain) = Chain::from_centreline(&points, &radii) else { return };
     let tube = Tube::from(&chain);
     ask(search, &tube, &pose, margin, tolerance);
-    // Where a pose moves a chain far, rounding turns the axes of its short links; the tube keeps
-    // its faces.
+    // If a pose moves a chain far, rounding turns the axes of its short links. The tube keeps its
+    // faces.
     let pose = Pose::IDENTITY;
     let (Ok(truth), Ok(found)) =
         (search.minimum(&chain, &pose), search.clearance(&tube, &pose, tolerance))
@@ -58,9 +59,9 @@ fn anything(source: &mut Source, search: &mut BvhSearch) {
     );
 }
 
-/// Answers agree with one another.
+/// Asserts that the answers agree with one another.
 fn ask(search: &mut BvhSearch, tube: &Tube, pose: &Pose, margin: f64, tolerance: f64) {
-    // What is far finer than the scene takes its time.
+    // A tolerance far finer than the scene takes too long.
     let tolerance = tolerance.max(1e-3 * tube.length());
     let Ok(found) = search.clearance(tube, pose, tolerance) else { return };
     assert!(
@@ -74,7 +75,7 @@ fn ask(search: &mut BvhSearch, tube: &Tube, pose: &Pose, margin: f64, tolerance:
     }
 }
 
-/// Arcs whose sizes do not differ by more than a few thousand, so that a fine chain has few links.
+/// Runs arcs whose sizes differ by at most a few thousand, so that a fine chain has few links.
 fn arcs(source: &mut Source, search: &mut BvhSearch) {
     let mut size = |largest: f64| (source.number().abs() % largest).max(largest * 1e-3);
     let mut arcs = Arcs::from_frame(Pose::IDENTITY);
@@ -90,9 +91,9 @@ fn arcs(source: &mut Source, search: &mut BvhSearch) {
     }
     let sharpest = arcs.stretches.iter().fold(0.1, |most: f64, part| most.max(part.curvature));
     let spacing = (8e-5 / sharpest).sqrt();
-    // Outside of a bend, the flat ends of two cylinders leave a wedge between them, up to twice
-    // this wide. Inside of it their rims stand out by as much, where the way is short to the
-    // end of a section even beyond its face.
+    // Outside of a bend the flat ends of two cylinders leave a wedge between them, up to twice this
+    // wide. Inside of it their rims protrude by as much, even beyond the face of a section if its
+    // end is near.
     let half_wedge =
         arcs.stretches.iter().fold(0.0, |most: f64, part| most.max(part.radius * part.curvature))
             * 0.5
