@@ -379,7 +379,7 @@ impl<'a> TubeWithItself<'a> {
         let apart = two.section - one.section;
         let is_same = pair.faces == [Some(0), Some(0)] || pair.faces == [Some(1), Some(1)];
         let share_joint = self.turns.has_joints() && apart < 2;
-        !share_joint && !(is_same && apart == 0) && self.may_turn_enough(pair, most)
+        !(share_joint || is_same && apart == 0) && self.may_turn_enough(pair, most)
     }
 
     /// Whether some place of two parts that turn enough may be a local minimum.

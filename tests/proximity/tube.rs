@@ -39,13 +39,16 @@ fn concentric(robot: &Robot, random: &mut Random) -> Arcs {
 /// The model of a chain: Algorithm 1, or cylinders.
 pub(super) type Model = fn(&[Vector], &[f64]) -> Result<Chain, RobotError>;
 
-/// Within 1e-5 of the tube, at the size of these scenes. Towards flat ends its links become shorter
-/// by halves: the rim of a tilted one would stick out.
+/// Within 1e-5 of the tube, at the size of these scenes. Towards flat ends its links become
+/// shorter, since the rim of a tilted one would stick out. A link of length l at s behind a face
+/// sticks out if l k r / 2 > s (1 - k r), with the curvature k and the radius r. So l = 0.08 s will
+/// do up to k r = 0.96; halves, l = s, only up to 2 / 3.
 pub(super) fn fine(arcs: &Arcs, model: Model) -> Chain {
     let sharpest = arcs.stretches.iter().fold(1e-3, |most: f64, part| most.max(part.curvature));
     let spacing = (40e-6 / sharpest).sqrt();
-    let at_ends: Vec<_> =
-        (1..20).map(|k| spacing * 0.5_f64.powi(k)).filter(|off| *off > 1e-6).collect();
+    // From 12.5 spacings on, the spacing itself is 0.08 s or less.
+    let off = |k: i32| 12.5 * spacing * 0.925_f64.powi(k);
+    let at_ends: Vec<_> = (1..250).map(off).filter(|off| *off > 1e-6).collect();
     let (points, radii) = arcs.samples(spacing, &at_ends);
     model(&points, &radii).unwrap()
 }

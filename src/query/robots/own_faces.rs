@@ -460,8 +460,12 @@ mod tests {
             let (sin, cos) = (40.0 * share).sin_cos();
             Vector::new(sin, 0.2, cos)
         }),
-        ("zigzag", |_, link| Vector::new(if link % 2 == 0 { 0.2 } else { -0.2 }, 0.0, 1.0)),
-        ("sharp zigzag", |_, link| Vector::new(if link % 2 == 0 { 0.5 } else { -0.5 }, 0.0, 1.0)),
+        ("zigzag", |_, link| {
+            Vector::new(if link.is_multiple_of(2) { 0.2 } else { -0.2 }, 0.0, 1.0)
+        }),
+        ("sharp zigzag", |_, link| {
+            Vector::new(if link.is_multiple_of(2) { 0.5 } else { -0.5 }, 0.0, 1.0)
+        }),
     ];
 
     fn work(
@@ -499,7 +503,8 @@ mod tests {
             for is_flat in [false, true] {
                 for corrugated in [0.0, 0.01, 0.3] {
                     let radius = |share: Real, link: usize| {
-                        (1.0 - 0.3 * share) * if link % 2 == 0 { 1.0 } else { 1.0 - corrugated }
+                        (1.0 - 0.3 * share)
+                            * if link.is_multiple_of(2) { 1.0 } else { 1.0 - corrugated }
                     };
                     let [(few, _), (many, found)] =
                         [500, 2000].map(|count| work(shape, radius, is_flat, count));
