@@ -54,13 +54,10 @@
 //!    than a slack.
 //!
 //! ## Errors
-//! The points of the discs are known to `error`, so everything is wider by `error`. It has two
-//! parts:
-//! - The errors stated for the given curve (its own error, the deviation of a fit) move discs whose
-//!   chord is known.
-//! - The rest, `loose`, bounds the distance of the ticks from the curve, and of merged samples. It
-//!   may turn the chord by up to 2 loose / |chord|. The wall of a flat body is then off by `loose`
-//!   once more.
+//! The points of the discs are known to `error`, so everything is wider by `error`. The ends of a
+//! chord may be off to either side, which turns the chord by up to 2 error / |chord|. The wall of a
+//! flat body is then off by `error` once more. So a flat body can be the wider one: queries that
+//! know a turn also ask as if it were not stated, and return the better of both.
 //!
 //! If directions may be off by a stated turn, w reaches farther along d by r times that turn.
 
@@ -217,7 +214,6 @@ impl PlacedTube<'_> {
     ) -> BoundingBody {
         let [mut start, mut end] = [piece.from, piece.to].map(|tick| self.point(section, tick));
         let (error, curvature) = (self.tube.error() + known.off, known.curvature);
-        let loose = self.tube.merged() + known.off;
         let along = end - start;
         let mut excess = 0.125 * curvature * length * length;
         let mut shift = Vector::ZERO;
@@ -249,12 +245,12 @@ impl PlacedTube<'_> {
         let (mut wider, mut narrows) = (excess, 0.75 * excess);
         let chord = along.length();
         // A chord within rounding has no direction.
-        let flat = if chord > 4.0 * (loose + self.slack) { flat } else { [false; 2] };
+        let flat = if chord > 4.0 * (error + self.slack) { flat } else { [false; 2] };
         // Case 2.
         if flat != [false; 2] {
             let unit = along / chord;
             let bend = 0.5 * curvature * length;
-            let tilt = bend + 2.0 * (loose + self.slack) / chord + self.turn();
+            let tilt = bend + 2.0 * (error + self.slack) / chord + self.turn();
             // The halves bend half as much; rounding turns their chords twice as far.
             narrows += section.radius * (0.5 * bend - 2.0 * self.slack / chord);
             let beyond = section.radius * tilt + error + self.slack;
@@ -266,7 +262,7 @@ impl PlacedTube<'_> {
                 end += unit * beyond;
             }
         }
-        let errors = if flat == [false; 2] { error } else { error + loose };
+        let errors = if flat == [false; 2] { error } else { 2.0 * error };
         let radius = section.radius + excess + errors + self.slack;
         BoundingBody { body: PlacedLink::between(start, end, radius, flat), excess: wider, narrows }
     }

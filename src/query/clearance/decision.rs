@@ -104,7 +104,8 @@ impl<T: Refinable> DecisionSearch<'_, T> {
     fn run(mut self) -> Result<(Decision, Option<T::Upper>), ProximityError> {
         let Wanted { margin, resolution, .. } = self.wanted;
         let apart = resolution + self.tube.position_uncertainty();
-        while self.upper() > margin {
+        // An infinite margin is kept only if nothing is found.
+        while self.best.is_none_or(|best| best.upper() > margin) {
             let Some(first) = self.pieces.first() else { break };
             let is_near = first.is_measured && first.least >= self.upper() - apart;
             if is_near && !self.is_stuck() {

@@ -25,7 +25,7 @@ use parry3d_f64::math::Real;
 use std::collections::VecDeque;
 
 /// The most pairs of pieces tested in all shapes together.
-const MAX_PAIRS: u32 = 1 << 20;
+const MAX_PAIRS: u32 = 1 << 24;
 
 /// State and memory that the next query reuses.
 #[derive(Clone, Debug, Default)]
@@ -123,9 +123,11 @@ fn shape<'p, M: Motion>(
     for (number, section) in tube.sections().iter().enumerate() {
         let stated = motion.speed(number, [0.0, 1.0], times);
         check_speed(number, stated.point)?;
-        // A body without a flat end needs no turn. The turn of a link of length 0 is infinite.
+        // A body without a flat end needs no turn. The turn of a link of length 0 is infinite. A
+        // turn that is no speed at all is an error in every body.
         let has_rim = section.radius > 0.0 && tube.faces(section).iter().any(Option::is_some);
-        let turn = if has_rim { stated.turn } else { 0.0 };
+        let is_needed = has_rim || stated.turn.is_nan() || stated.turn < 0.0;
+        let turn = if is_needed { stated.turn } else { 0.0 };
         check_speed(number, turn)?;
         let speed = stated.point + section.radius * turn;
         if speed > most {

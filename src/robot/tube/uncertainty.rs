@@ -53,12 +53,6 @@ impl Tube {
         self.error + self.deviation + self.merged
     }
 
-    /// Returns the distance of points treated as one, plus the difference of radii treated as
-    /// equal.
-    pub(crate) fn merged(&self) -> Real {
-        self.merged
-    }
-
     /// Returns the stated error of directions near flat ends, if any.
     pub(crate) fn turn(&self) -> Option<Real> {
         self.turn
