@@ -174,7 +174,7 @@ fn faces_of_many_corners_are_cut_soon_or_refused() {
     let comb = |i: usize, count: usize| match i {
         0 => [0.0, -1e3],
         _ if i + 1 == count => [count as f64, -1e3],
-        _ => [i as f64, if i % 2 == 0 { 0.0 } else { 1e3 }],
+        _ => [i as f64, if i.is_multiple_of(2) { 0.0 } else { 1e3 }],
     };
     let mut draws = Draws(7);
     let drawn: Vec<_> =
