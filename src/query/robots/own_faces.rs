@@ -338,7 +338,7 @@ impl Node {
         }
     }
 
-    fn around(one: &Self, two: &Self, turns: &Turns) -> Self {
+    fn around(one: &Self, two: &Self, turns: &TurnSums) -> Self {
         let upwards = 1.0 + 16.0 * Real::UNIT_ROUNDOFF;
         let way = two.centre - one.centre;
         let away = way.length();
@@ -427,7 +427,7 @@ fn least_covered(radius: Real, next: &ModifiedCylinder, far_end: usize) -> Real 
 
 /// How far the directions of links, and of one more on either side, are from another at most. Over
 /// all nodes these are n log n directions: the cones of two halves would add up.
-fn spread(turns: &Turns, first: usize, count: usize, direction: Vector) -> Real {
+fn spread(turns: &TurnSums, first: usize, count: usize, direction: Vector) -> Real {
     let last = (first + count + 1).min(turns.directions.len());
     let around = &turns.directions[first.saturating_sub(1)..last];
     let farthest =
