@@ -14,12 +14,11 @@ use std::sync::Arc;
 
 /// A triangle mesh that is asked how near robots are to it.
 ///
-/// ``Mesh(vertices, faces)`` copies both. ``Mesh(other)`` takes what has ``.vertices`` and
-/// ``.faces``, such as a mesh of trimesh. Lengths are in one unit of your choice, the same for mesh
-/// and robots.
+/// ``Mesh(vertices, faces)`` copies both. ``Mesh(other)`` takes what has ``.vertices`` and ``.faces``, such as a mesh of
+/// trimesh. Lengths are in one unit of your choice, the same for mesh and robots.
 ///
-/// Any number of threads may ask one mesh at the same time: queries run without the GIL. `move`
-/// moves the vertices for all queries that begin later. A mesh can be copied and pickled.
+/// Any number of threads may ask one mesh at the same time: queries run without the GIL. `move` moves the vertices for all
+/// queries that begin later. A mesh can be copied and pickled.
 ///
 /// Parameters
 /// ----------
@@ -30,8 +29,8 @@ use std::sync::Arc;
 /// Raises
 /// ------
 /// ContinuumError
-///     A vertex is not finite or out of range, a face names a vertex that is not there (its
-/// ``index`` is the face), there is     no face, or an array has another shape.
+///     A vertex is not finite or out of range, a face names a vertex that is not there (its ``index`` is the face), there is
+///     no face, or an array has another shape.
 ///
 /// Examples
 /// --------
@@ -117,9 +116,8 @@ impl Mesh {
 
     /// Moves the vertices, in the order that they have.
     ///
-    /// Queries that begin after this returns see the new vertices. Those that run meanwhile, in
-    /// other threads, see the old ones, a whole batch alike. It costs a fraction of building a
-    /// mesh.
+    /// Queries that begin after this returns see the new vertices. Those that run meanwhile, in other threads, see the old
+    /// ones, a whole batch alike. It costs a fraction of building a mesh.
     ///
     /// Parameters
     /// ----------
@@ -129,8 +127,7 @@ impl Mesh {
     /// Raises
     /// ------
     /// ContinuumError
-    ///     There are more or fewer than before, or one is not finite or out of range. The mesh then
-    /// stays where it was.
+    ///     There are more or fewer than before, or one is not finite or out of range. The mesh then stays where it was.
     ///
     /// Examples
     /// --------
@@ -150,8 +147,7 @@ impl Mesh {
 
     /// Builds now what a first question would build, so that none has to wait.
     ///
-    /// Call it after `move` too, where the first question after it must not take longer than
-    /// others.
+    /// Call it after `move` too, where the first question after it must not take longer than others.
     fn prepare(&self, py: Python<'_>) -> PyResult<()> {
         alone(py, &self.engine(py), |session| session.search.prepare())
     }
@@ -179,23 +175,20 @@ impl Mesh {
     }
 }
 
-/// The mesh in a file: STL, OBJ or PLY, or the surface of a label map in NIfTI or NRRD, by the
-/// file's extension.
+/// The mesh in a file: STL, OBJ or PLY, or the surface of a label map in NIfTI or NRRD, by the file's extension.
 ///
 /// Parameters
 /// ----------
 /// path : str or os.PathLike
 /// scale : float
-///     Multiplies every coordinate, for example 1000 for metres to millimetres. A label map comes
-/// in millimetres. label : int, optional
-///     The label whose surface is taken from a label map; without one all voxels that are not 0 are
-/// inside.
+///     Multiplies every coordinate, for example 1000 for metres to millimetres. A label map comes in millimetres.
+/// label : int, optional
+///     The label whose surface is taken from a label map; without one all voxels that are not 0 are inside.
 ///
 /// Raises
 /// ------
 /// ContinuumError
-///     The file cannot be read or holds no mesh; ``kind`` is ``"file"``, and the text says what to
-/// change.
+///     The file cannot be read or holds no mesh; ``kind`` is ``"file"``, and the text says what to change.
 #[pyfunction]
 #[pyo3(signature = (path, *, scale = 1.0, label = None))]
 pub(crate) fn load(

@@ -10,8 +10,7 @@ use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::PyFloat;
 
-/// Numbers with a shape. They belong to Python: whoever looks at them holds the GIL, since another
-/// thread may write there.
+/// Numbers with a shape. They belong to Python: whoever looks at them holds the GIL, since another thread may write there.
 pub(crate) struct Numbers<'py>(Bound<'py, PyArrayDyn<f64>>);
 
 impl<'py> Numbers<'py> {
@@ -50,8 +49,8 @@ impl<'py> Numbers<'py> {
 
     /// All numbers, in the order of the last index first.
     pub(crate) fn values(&self) -> &[f64] {
-        // SAFETY: the array is contiguous and aligned. It is not written meanwhile: whoever calls
-        // holds the GIL, and gives the numbers up before Python's code runs again.
+        // SAFETY: the array is contiguous and aligned. It is not written meanwhile: whoever calls holds the GIL, and gives
+        // the numbers up before Python's code runs again.
         unsafe { self.0.as_slice() }.unwrap_or_default()
     }
 

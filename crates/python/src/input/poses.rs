@@ -53,8 +53,7 @@ impl<'py> Poses<'py> {
         matches!(self, Self::Shared(_))
     }
 
-    /// The matrices of some of the batch: one where one stands for all, and none where all are the
-    /// identity.
+    /// The matrices of some of the batch: one where one stands for all, and none where all are the identity.
     pub(crate) fn matrices(&self, range: Range<usize>) -> &[[f64; 16]] {
         match self {
             Self::Identity => &[],

@@ -3,11 +3,11 @@
 use super::{Motion, Moving, Size, at, together};
 use pyo3::prelude::*;
 
-/// Motions one after another, each of which takes the same share of the time: of n motions the
-/// first one is from the time 0 to 1 / n, the next one to 2 / n, and so on.
+/// Motions one after another, each of which takes the same share of the time: of n motions the first one is from the time 0 to
+/// 1 / n, the next one to 2 / n, and so on.
 ///
-/// Each should begin where the one before ends. All need the same sections with the same radii.
-/// `Mesh.clearance_of_motion` looks closely only at those that may come nearest.
+/// Each should begin where the one before ends. All need the same sections with the same radii. `Mesh.clearance_of_motion` looks
+/// closely only at those that may come nearest.
 ///
 /// Parameters
 /// ----------
@@ -26,8 +26,8 @@ use pyo3::prelude::*;
 /// >>> floor = Mesh([[-9, -9, 0], [9, -9, 0], [0, 9, 0]], [[0, 1, 2]])
 /// >>> robot = np.array([[0, 0, 4.0], [1, 0, 4]])
 /// >>> heights = [0, -2, -1]
-/// >>> steps = [LinearMotion(robot + [0, 0, a], robot + [0, 0, b], 0.5) for a, b in zip(heights,
-/// heights[1:])] >>> found = floor.clearance_of_motion(MotionPath(steps), tolerance=0.001)
+/// >>> steps = [LinearMotion(robot + [0, 0, a], robot + [0, 0, b], 0.5) for a, b in zip(heights, heights[1:])]
+/// >>> found = floor.clearance_of_motion(MotionPath(steps), tolerance=0.001)
 /// >>> bool(found.lower <= 1.5 <= found.upper), bool(abs(found.t - 0.5) < 0.001)
 /// (True, True)
 #[pyclass(frozen, extends = Motion, module = "parry_continuum")]

@@ -4,11 +4,11 @@ use super::way::Way;
 use super::{Motion, Moving, Size, at};
 use pyo3::prelude::*;
 
-/// A motion whose base is moved at the same time, evenly from one pose to another: a robot that is
-/// pushed or rolled while its sections bend and grow.
+/// A motion whose base is moved at the same time, evenly from one pose to another: a robot that is pushed or rolled while its
+/// sections bend and grow.
 ///
-/// The motion is in the frame of the base. The base's origin moves straight while the base turns
-/// evenly about one axis, by the lesser angle.
+/// The motion is in the frame of the base. The base's origin moves straight while the base turns evenly about one axis, by the
+/// lesser angle.
 ///
 /// Parameters
 /// ----------
@@ -20,23 +20,22 @@ use pyo3::prelude::*;
 /// Raises
 /// ------
 /// ContinuumError
-///     A pose is not rigid or out of range, the numbers of motions and poses differ, or the motion
-/// has no shape at some time.
+///     A pose is not rigid or out of range, the numbers of motions and poses differ, or the motion has no shape at some time.
 ///
 /// Examples
 /// --------
 /// >>> import numpy as np
 /// >>> from parry_continuum import BendingMotion, Mesh, MovingBase
 /// >>> floor = Mesh([[-90, -90, 0], [90, -90, 0], [0, 90, 0]], [[0, 1, 2]])
-/// >>> bending = BendingMotion([[30, 0, 0]], [[32, 0.03, 0.01]], 1.0)  # straight, then longer and
-/// bent >>> start = np.eye(4)
+/// >>> bending = BendingMotion([[30, 0, 0]], [[32, 0.03, 0.01]], 1.0)  # straight, then longer and bent
+/// >>> start = np.eye(4)
 /// >>> start[2, 3] = 2
 /// >>> end = start.copy()
 /// >>> end[:2, :2] = [[np.cos(1), -np.sin(1)], [np.sin(1), np.cos(1)]]  # rolled by 1 rad
 /// >>> end[2, 3] = 7                                                    # and pushed by 5
 /// >>> found = floor.clearance_of_motion(MovingBase(bending, start, end), tolerance=0.001)
-/// >>> bool(found.lower <= 2 <= found.upper), bool(found.t < 0.001)     # its base is a flat disc,
-/// 2 above the floor (True, True)
+/// >>> bool(found.lower <= 2 <= found.upper), bool(found.t < 0.001)     # its base is a flat disc, 2 above the floor
+/// (True, True)
 #[pyclass(frozen, extends = Motion, module = "parry_continuum")]
 pub(crate) struct MovingBase;
 

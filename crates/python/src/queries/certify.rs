@@ -13,10 +13,9 @@ use pyo3::prelude::*;
 impl Mesh {
     /// Bounds on the distances of a `PerLink` answer that hold whatever was rounded on the way.
     ///
-    /// Each bounds the distance between a segment's link and the triangle that the answer names, of
-    /// the mesh as it is now. They are computed in twice the digits, without trust in the code
-    /// that answered: ``lower <= answer.distance <= upper`` but for the last bits of the
-    /// distance.
+    /// Each bounds the distance between a segment's link and the triangle that the answer names, of the mesh as it is now. They
+    /// are computed in twice the digits, without trust in the code that answered: ``lower <= answer.distance <= upper`` but for
+    /// the last bits of the distance.
     ///
     /// Parameters
     /// ----------
@@ -27,8 +26,7 @@ impl Mesh {
     /// Returns
     /// -------
     /// Certificate
-    ///     ``lower`` and ``upper``, arrays of the shape of ``answer.distance``; NaN for segments
-    /// without length.
+    ///     ``lower`` and ``upper``, arrays of the shape of ``answer.distance``; NaN for segments without length.
     ///
     /// Raises
     /// ------

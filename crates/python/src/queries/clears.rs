@@ -10,8 +10,7 @@ use pyo3::prelude::*;
 
 #[pymethods]
 impl Mesh {
-    /// Whether robots keep more than a margin away: exactly ``distance(...) > margin``, for less
-    /// work.
+    /// Whether robots keep more than a margin away: exactly ``distance(...) > margin``, for less work.
     ///
     /// Parameters
     /// ----------
@@ -33,8 +32,8 @@ impl Mesh {
     /// --------
     /// >>> from parry_continuum import Mesh
     /// >>> floor = Mesh([[-9, -9, 0], [9, -9, 0], [0, 9, 0]], [[0, 1, 2]])
-    /// >>> floor.clears([[0, 0, 2], [1, 0, 2]], 0.5, 1.4), floor.clears([[0, 0, 2], [1, 0, 2]],
-    /// 0.5, 1.5) (True, False)
+    /// >>> floor.clears([[0, 0, 2], [1, 0, 2]], 0.5, 1.4), floor.clears([[0, 0, 2], [1, 0, 2]], 0.5, 1.5)
+    /// (True, False)
     #[pyo3(signature = (points, radii, margin, *, pose = None, caps = Caps::Fitted), text_signature = "($self, points, radii, margin, *, pose=None, caps=\"fitted\")")]
     fn clears<'py>(
         &self,
@@ -58,8 +57,8 @@ impl Mesh {
 
     /// Whether robots keep more than a margin away, and on which side their bases are.
     ///
-    /// A robot whose base is inside a closed mesh and which touches nothing is inside as a whole.
-    /// An open mesh has no inside: there ask for the `side` of every point that matters.
+    /// A robot whose base is inside a closed mesh and which touches nothing is inside as a whole. An open mesh has no inside:
+    /// there ask for the `side` of every point that matters.
     ///
     /// Parameters
     /// ----------

@@ -1,11 +1,9 @@
 //! How the distance changes with all that the robot is made of.
 //!
-//! The library gives the derivative with respect to the ends p and q of the link that is closest,
-//! both in the mesh's frame. With the pose x -> R x + t, p = R a + t for a point a of the robot:
-//! the derivative with respect to a is R^T times that with respect to p, that with respect to t is
-//! the sum over the two ends, and that with respect to R is the sum of g a^T, with g the derivative
-//! with respect to an end. All other points and radii do not count: only the closest link moves the
-//! distance.
+//! The library gives the derivative with respect to the ends p and q of the link that is closest, both in the mesh's frame.
+//! With the pose x -> R x + t, p = R a + t for a point a of the robot: the derivative with respect to a is R^T times that with
+//! respect to p, that with respect to t is the sum over the two ends, and that with respect to R is the sum of g a^T, with g
+//! the derivative with respect to an end. All other points and radii do not count: only the closest link moves the distance.
 
 use super::distance::set_chain;
 use crate::error::Refused;
@@ -66,14 +64,12 @@ fn ask(session: &mut Session, robot: &Given<'_>, caps: Caps) -> Result<Row, Refu
 impl Mesh {
     /// The distance with its derivative with respect to every point, radius and pose.
     ///
-    /// Where robot and mesh are apart the value is the distance; where they overlap it is minus the
-    /// length of the least translation that parts the closest link from its triangle, so that
-    /// it goes on through the wall.
+    /// Where robot and mesh are apart the value is the distance; where they overlap it is minus the length of the least
+    /// translation that parts the closest link from its triangle, so that it goes on through the wall.
     ///
-    /// Of most robots one link is closest, and one triangle. Where two are equally close the
-    /// distance has a kink, and what is given is the derivative for one of them; ``kink`` says
-    /// where the two closest points themselves could be others. The derivatives are NaN where
-    /// neither side of the triangle is the robot's.
+    /// Of most robots one link is closest, and one triangle. Where two are equally close the distance has a kink, and what is
+    /// given is the derivative for one of them; ``kink`` says where the two closest points themselves could be others. The
+    /// derivatives are NaN where neither side of the triangle is the robot's.
     ///
     /// Parameters
     /// ----------
@@ -83,10 +79,9 @@ impl Mesh {
     /// Returns
     /// -------
     /// Gradient
-    ///     ``value``; ``points`` (N, 3), in the robot's frame; ``radii`` (N - 1,), whose sum
-    /// belongs to one radius for all     segments; ``pose`` (4, 4), the derivative with respect
-    /// to the entries of the matrix, for changes that leave it rigid;     ``kink``. Of a batch,
-    /// each with B in front.
+    ///     ``value``; ``points`` (N, 3), in the robot's frame; ``radii`` (N - 1,), whose sum belongs to one radius for all
+    ///     segments; ``pose`` (4, 4), the derivative with respect to the entries of the matrix, for changes that leave it rigid;
+    ///     ``kink``. Of a batch, each with B in front.
     ///
     /// Raises
     /// ------
@@ -98,8 +93,8 @@ impl Mesh {
     /// >>> import numpy as np
     /// >>> from parry_continuum import Mesh
     /// >>> floor = Mesh([[-9, -9, 0], [9, -9, 0], [0, 9, 0]], [[0, 1, 2]])
-    /// >>> found = floor.distance_and_gradient([[0, 0, 4], [0, 0, 3], [1, 0, 2]], 0.5,
-    /// caps="capsules") >>> found.value, found.points[2], found.radii
+    /// >>> found = floor.distance_and_gradient([[0, 0, 4], [0, 0, 3], [1, 0, 2]], 0.5, caps="capsules")
+    /// >>> found.value, found.points[2], found.radii
     /// (1.5, array([0., 0., 1.]), array([ 0., -1.]))
     #[pyo3(signature = (points, radii, *, pose = None, caps = Caps::Fitted), text_signature = "($self, points, radii, *, pose=None, caps=\"fitted\")")]
     fn distance_and_gradient<'py>(

@@ -43,14 +43,11 @@ impl Question<MotionAnswer> for FirstContact {
 impl Mesh {
     /// Whether robots keep more than a margin away on all of their way.
     ///
-    /// ``clears_motion(start, end, radii, margin, resolution)``: every point of the centreline
-    /// moves straight and evenly, from `start` at the time 0 to `end` at 1, in the mesh's
-    /// frame. ``clears_motion(motion, margin=..., resolution=...)`` asks about any
-    /// other `Motion`, such as a `RigidMotion`, a `BendingMotion` or one of these on a
-    /// `MovingBase`.
+    /// ``clears_motion(start, end, radii, margin, resolution)``: every point of the centreline moves straight and evenly, from
+    /// `start` at the time 0 to `end` at 1, in the mesh's frame. ``clears_motion(motion, margin=..., resolution=...)`` asks about any
+    /// other `Motion`, such as a `RigidMotion`, a `BendingMotion` or one of these on a `MovingBase`.
     ///
-    /// ``Decision.CLEAR`` is proven for every time between, so that no robot slips through a thin
-    /// wall between two steps.
+    /// ``Decision.CLEAR`` is proven for every time between, so that no robot slips through a thin wall between two steps.
     ///
     /// Parameters
     /// ----------
@@ -61,9 +58,9 @@ impl Mesh {
     /// margin : float
     ///     A length, at least 0.
     /// resolution : float
-    ///     A length. The answer is undecided only where some shape is farther away than the margin
-    /// by no more than this, where     an end turns from flat to round there, or where 65,536
-    /// shapes do not decide it. caps : {"fitted", "capsules"}
+    ///     A length. The answer is undecided only where some shape is farther away than the margin by no more than this, where
+    ///     an end turns from flat to round there, or where 65,536 shapes do not decide it.
+    /// caps : {"fitted", "capsules"}
     ///
     /// Returns
     /// -------
@@ -73,8 +70,7 @@ impl Mesh {
     /// Raises
     /// ------
     /// ContinuumError
-    ///     Margin or resolution are negative or NaN, the resolution is finer than rounding, or one
-    /// of the shapes is no robot.
+    ///     Margin or resolution are negative or NaN, the resolution is finer than rounding, or one of the shapes is no robot.
     ///
     /// Examples
     /// --------
@@ -83,8 +79,8 @@ impl Mesh {
     /// >>> floor = Mesh([[-9, -9, 0], [9, -9, 0], [0, 9, 0]], [[0, 1, 2]])
     /// >>> above = np.array([[0, 0, 2], [1, 0, 2]])
     /// >>> below = above - [0, 0, 4]
-    /// >>> floor.clears_motion(above, below, 0.1, margin=0, resolution=1e-3).decision is
-    /// Decision.CONTACT True
+    /// >>> floor.clears_motion(above, below, 0.1, margin=0, resolution=1e-3).decision is Decision.CONTACT
+    /// True
     #[pyo3(signature = (start, end = None, radii = None, margin = None, resolution = None, *, caps = None), text_signature = "($self, start, end=None, radii=None, margin=None, resolution=None, *, caps=\"fitted\")")]
     #[allow(clippy::too_many_arguments)] // they are named in Python
     fn clears_motion<'py>(
@@ -107,8 +103,8 @@ impl Mesh {
 
     /// When robots first come as close to the mesh as a margin, on their way.
     ///
-    /// The margin is kept until ``interval[0]``, which is proven, and not kept at ``interval[1]``.
-    /// Between the two the place that touches moves by no more than the resolution.
+    /// The margin is kept until ``interval[0]``, which is proven, and not kept at ``interval[1]``. Between the two the place
+    /// that touches moves by no more than the resolution.
     ///
     /// Parameters
     /// ----------

@@ -28,15 +28,12 @@ impl Question<MotionAnswer> for While {
 
 #[pymethods]
 impl Mesh {
-    /// Whether robots keep more than a margin away from the mesh on their way, while each vertex
-    /// moves straight and evenly to another place in the same time: an organ that breathes, a
-    /// registration that is corrected, a step of a simulation of tissue.
+    /// Whether robots keep more than a margin away from the mesh on their way, while each vertex moves straight and evenly to another
+    /// place in the same time: an organ that breathes, a registration that is corrected, a step of a simulation of tissue.
     ///
-    /// ``clears_motion_while(to, start, end, radii, margin, resolution)`` asks about points that
-    /// move straight and evenly, and ``clears_motion_while(to, motion, margin=...,
-    /// resolution=...)`` about any motion. A robot at rest is a `RigidMotion` from a pose
-    /// to the same pose. The mesh stays where it was; `move` moves it. Each motion goes once
-    /// through all triangles.
+    /// ``clears_motion_while(to, start, end, radii, margin, resolution)`` asks about points that move straight and evenly, and
+    /// ``clears_motion_while(to, motion, margin=..., resolution=...)`` about any motion. A robot at rest is a `RigidMotion` from a pose
+    /// to the same pose. The mesh stays where it was; `move` moves it. Each motion goes once through all triangles.
     ///
     /// Parameters
     /// ----------
@@ -48,14 +45,12 @@ impl Mesh {
     /// Returns
     /// -------
     /// MotionAnswer
-    ///     Of one motion, or arrays with one entry for each motion. Points are those of robot and
-    /// mesh at that time.
+    ///     Of one motion, or arrays with one entry for each motion. Points are those of robot and mesh at that time.
     ///
     /// Raises
     /// ------
     /// ContinuumError
-    ///     There are more or fewer vertices than the mesh has, one is not finite or out of range,
-    /// or as for `clears_motion`.
+    ///     There are more or fewer vertices than the mesh has, one is not finite or out of range, or as for `clears_motion`.
     ///
     /// Examples
     /// --------
@@ -64,10 +59,10 @@ impl Mesh {
     /// >>> floor = Mesh([[-90, -90, 0], [90, -90, 0], [0, 90, 0]], [[0, 1, 2]])
     /// >>> at_rest = RigidMotion([[0, 0, 5], [4, 0, 5]], 0.5, np.eye(4), np.eye(4))
     /// >>> risen = floor.vertices + [0, 0, 3]
-    /// >>> floor.clears_motion_while(risen, at_rest, margin=1, resolution=1e-3).decision is
-    /// Decision.CLEAR True
-    /// >>> floor.clears_motion_while(risen, at_rest, margin=2, resolution=1e-3).decision is
-    /// Decision.CONTACT True
+    /// >>> floor.clears_motion_while(risen, at_rest, margin=1, resolution=1e-3).decision is Decision.CLEAR
+    /// True
+    /// >>> floor.clears_motion_while(risen, at_rest, margin=2, resolution=1e-3).decision is Decision.CONTACT
+    /// True
     #[pyo3(signature = (to, start, end = None, radii = None, margin = None, resolution = None, *, caps = None), text_signature = "($self, to, start, end=None, radii=None, margin=None, resolution=None, *, caps=\"fitted\")")]
     #[allow(clippy::too_many_arguments)] // they are named in Python
     fn clears_motion_while<'py>(

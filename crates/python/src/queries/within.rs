@@ -12,17 +12,14 @@ use pyo3::types::PyTuple;
 
 #[pymethods]
 impl Mesh {
-    /// Every contact at most a margin away: where the distance between a link and the mesh has a
-    /// local minimum.
+    /// Every contact at most a margin away: where the distance between a link and the mesh has a local minimum.
     ///
-    /// A wall that bends towards a link is one contact, however many triangles it has, and a link
-    /// in a narrow lumen has one on each side. Contacts come robot by robot, segment by
-    /// segment, the nearest first.
+    /// A wall that bends towards a link is one contact, however many triangles it has, and a link in a narrow lumen has one on
+    /// each side. Contacts come robot by robot, segment by segment, the nearest first.
     ///
-    /// Where the two are apart ``depth`` is the distance, and ``normal`` points from the wall to
-    /// the robot. Where they overlap ``depth`` is minus the length of the least translation,
-    /// along ``normal``, that parts the link from that triangle. The normal is NaN where
-    /// neither side of the triangle is the robot's.
+    /// Where the two are apart ``depth`` is the distance, and ``normal`` points from the wall to the robot. Where they overlap
+    /// ``depth`` is minus the length of the least translation, along ``normal``, that parts the link from that triangle. The
+    /// normal is NaN where neither side of the triangle is the robot's.
     ///
     /// Parameters
     /// ----------
@@ -31,8 +28,8 @@ impl Mesh {
     /// margin : float
     ///     A length, at least 0.
     /// prominence : float
-    ///     Leaves out local minima that are shallow: by how much farther every way on the mesh from
-    /// a contact to a nearer place     must first lead. 0 keeps all of them.
+    ///     Leaves out local minima that are shallow: by how much farther every way on the mesh from a contact to a nearer place
+    ///     must first lead. 0 keeps all of them.
     ///
     /// Returns
     /// -------
@@ -49,8 +46,8 @@ impl Mesh {
     /// --------
     /// >>> from parry_continuum import Mesh
     /// >>> floor = Mesh([[-9, -9, 0], [9, -9, 0], [0, 9, 0]], [[0, 1, 2]])
-    /// >>> contacts = floor.within([[0, 0, 4], [0, 0, 3], [0, 0, 1]], 0.5, margin=1,
-    /// caps="capsules") >>> contacts.segment, contacts.distance, contacts.normal
+    /// >>> contacts = floor.within([[0, 0, 4], [0, 0, 3], [0, 0, 1]], 0.5, margin=1, caps="capsules")
+    /// >>> contacts.segment, contacts.distance, contacts.normal
     /// (array([1]), array([0.5]), array([[0., 0., 1.]]))
     #[pyo3(signature = (points, radii, margin, prominence = 0.0, *, pose = None, caps = Caps::Fitted), text_signature = "($self, points, radii, margin, prominence=0.0, *, pose=None, caps=\"fitted\")")]
     #[allow(clippy::too_many_arguments)] // they are named in Python

@@ -18,17 +18,16 @@ use std::sync::Arc;
 
 /// Several meshes, the structures, each with a margin of its own or none, and robots among them.
 ///
-/// A structure is a `Mesh`: where that moves, the structure has moved for all queries that begin
-/// later. Robots are a list, each ``(points, radii)`` or ``(points, radii, pose)``; each is one
-/// shape or a batch of as many.
+/// A structure is a `Mesh`: where that moves, the structure has moved for all queries that begin later. Robots are a list, each
+/// ``(points, radii)`` or ``(points, radii, pose)``; each is one shape or a batch of as many.
 ///
 /// Parameters
 /// ----------
 /// robot_margin : float, optional
 ///     What robots keep from one another. Without it they are not held against one another.
 /// nested : sequence of (int, int), optional
-///     Pairs of robots one of which is inside the other, as a tube in the tube that guides it: they
-/// touch, and are not held     against one another. The numbers are places in the list of robots.
+///     Pairs of robots one of which is inside the other, as a tube in the tube that guides it: they touch, and are not held
+///     against one another. The numbers are places in the list of robots.
 ///
 /// Raises
 /// ------
@@ -245,8 +244,7 @@ impl Scene {
     /// Returns
     /// -------
     /// Tightest
-    ///     Of one set of robots, or arrays with one entry for each. Of equal slacks the lowest
-    /// structure is named.
+    ///     Of one set of robots, or arrays with one entry for each. Of equal slacks the lowest structure is named.
     ///
     /// Raises
     /// ------
@@ -311,9 +309,8 @@ impl Scene {
         per_structure(py, &robots.shape(&[snapshot.structures.len()]), &all)
     }
 
-    /// Every contact of every robot with every structure that is at most `reach` away, whether that
-    /// has a margin or not, structure by structure and robot by robot: `Mesh.within` of all of
-    /// them.
+    /// Every contact of every robot with every structure that is at most `reach` away, whether that has a margin or not, structure
+    /// by structure and robot by robot: `Mesh.within` of all of them.
     ///
     /// Parameters
     /// ----------
@@ -325,8 +322,7 @@ impl Scene {
     /// Returns
     /// -------
     /// SceneContacts
-    ///     Arrays of one length, with a row for each contact. Those of set k of the batch are
-    /// ``offsets[k]:offsets[k + 1]``.
+    ///     Arrays of one length, with a row for each contact. Those of set k of the batch are ``offsets[k]:offsets[k + 1]``.
     ///
     /// Raises
     /// ------

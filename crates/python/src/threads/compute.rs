@@ -5,8 +5,7 @@ use pyo3::prelude::*;
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// Does `work` without the GIL. A panic is a defect of the library, and Python is told so by the
-/// exception of this package.
+/// Does `work` without the GIL. A panic is a defect of the library, and Python is told so by the exception of this package.
 pub(crate) fn compute<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyResult<T> {
     let done = py.detach(|| catch_unwind(AssertUnwindSafe(work)));
     done.map_err(|panic| defect(&*panic).raise(py, None))

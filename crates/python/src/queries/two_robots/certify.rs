@@ -13,12 +13,10 @@ use pyo3::prelude::*;
 
 #[pymethods]
 impl RobotPair {
-    /// Bounds on the distances of a `RobotProximity` answer that hold whatever was rounded on the
-    /// way.
+    /// Bounds on the distances of a `RobotProximity` answer that hold whatever was rounded on the way.
     ///
-    /// Each bounds the distance between the two segments that the answer names, as `Mesh.certify`
-    /// does for a segment and a triangle: ``lower <= answer.distance <= upper`` but for the
-    /// last bits of the distance.
+    /// Each bounds the distance between the two segments that the answer names, as `Mesh.certify` does for a segment and a triangle:
+    /// ``lower <= answer.distance <= upper`` but for the last bits of the distance.
     ///
     /// Parameters
     /// ----------
@@ -30,8 +28,7 @@ impl RobotPair {
     /// Returns
     /// -------
     /// Certificate
-    ///     ``lower`` and ``upper``, in the shape of ``answer.distance``; NaN for segments without
-    /// length.
+    ///     ``lower`` and ``upper``, in the shape of ``answer.distance``; NaN for segments without length.
     ///
     /// Raises
     /// ------

@@ -138,8 +138,8 @@ impl Pairs {
 
 /// Whether a curved tube keeps more than a margin to itself.
 ///
-/// Asked for are the parts that `self_minimum` asks for, of the curve itself. The robot is taken
-/// for a smooth tube with flat ends, as `Mesh.clearance` takes it.
+/// Asked for are the parts that `self_minimum` asks for, of the curve itself. The robot is taken for a smooth tube with flat ends, as
+/// `Mesh.clearance` takes it.
 ///
 /// Parameters
 /// ----------
@@ -148,9 +148,9 @@ impl Pairs {
 /// margin : float
 ///     A length, at least 0.
 /// resolution : float
-///     The answer is undecided only where the distance of such parts is within this of the margin,
-/// where the margin is as wide as     the tightest bend, where the points are too few to show how
-/// far the curve turns, or where 65,536 pairs of pieces do     not decide it.
+///     The answer is undecided only where the distance of such parts is within this of the margin, where the margin is as wide as
+///     the tightest bend, where the points are too few to show how far the curve turns, or where 65,536 pairs of pieces do
+///     not decide it.
 /// tangents, deviation, turn
 ///     As for `Mesh.clearance`.
 ///
@@ -162,8 +162,8 @@ impl Pairs {
 /// Raises
 /// ------
 /// ContinuumError
-///     The margin or the resolution is negative or NaN, the resolution is finer than the points
-/// allow, points turn too sharply for a     tube, or it bends within its radius.
+///     The margin or the resolution is negative or NaN, the resolution is finer than the points allow, points turn too sharply for a
+///     tube, or it bends within its radius.
 ///
 /// Examples
 /// --------
@@ -172,8 +172,8 @@ impl Pairs {
 /// >>> angle = np.linspace(0, 4 * np.pi, 241)
 /// >>> coil = np.stack([10 * np.cos(angle), 10 * np.sin(angle), 4 * angle / (2 * np.pi)], axis=1)
 /// >>> ends = [[0, 10, 2 / np.pi]] * 2  # its direction as it begins and, after whole turns, ends
-/// >>> tube_self_clears(coil, 1.0, 1.9, 0.05, tangents=ends), tube_self_clears(coil, 1.0, 2.1,
-/// 0.05, tangents=ends) (<Decision.CLEAR: 1>, <Decision.CONTACT: -1>)
+/// >>> tube_self_clears(coil, 1.0, 1.9, 0.05, tangents=ends), tube_self_clears(coil, 1.0, 2.1, 0.05, tangents=ends)
+/// (<Decision.CLEAR: 1>, <Decision.CONTACT: -1>)
 #[pyfunction]
 #[pyo3(signature = (points, radii, margin, resolution, *, tangents = None, deviation = 0.0, turn = None))]
 #[allow(clippy::too_many_arguments)] // they are named in Python
@@ -219,8 +219,8 @@ impl RobotPair {
     ///
     /// Both robots are taken for smooth tubes with flat ends, as `Mesh.clearance` takes them.
     ///
-    /// Of a batch, a pair that is refused costs the others nothing: its bounds are NaN, and its
-    /// ``status`` is the ``kind`` of its error.
+    /// Of a batch, a pair that is refused costs the others nothing: its bounds are NaN, and its ``status`` is the ``kind`` of its
+    /// error.
     ///
     /// Parameters
     /// ----------
@@ -239,8 +239,7 @@ impl RobotPair {
     /// Raises
     /// ------
     /// ContinuumError
-    ///     The tolerance is negative or NaN. Of one pair: points turn too sharply for a tube, or as
-    /// for `between`.
+    ///     The tolerance is negative or NaN. Of one pair: points turn too sharply for a tube, or as for `between`.
     ///
     /// Examples
     /// --------
@@ -248,8 +247,8 @@ impl RobotPair {
     /// >>> from parry_continuum import RobotPair
     /// >>> angle = np.linspace(0, 1, 60)
     /// >>> arc = 30 * np.stack([np.cos(angle), 0 * angle, np.sin(angle)], axis=1)
-    /// >>> found = RobotPair().clearance(arc, 1.0, arc * [-1, 1, 1] + [65, 0, 0], 1.0,
-    /// tolerance=0.1) >>> bool(found.lower <= 3 <= found.upper), bool(found.resolved)
+    /// >>> found = RobotPair().clearance(arc, 1.0, arc * [-1, 1, 1] + [65, 0, 0], 1.0, tolerance=0.1)
+    /// >>> bool(found.lower <= 3 <= found.upper), bool(found.resolved)
     /// (True, True)
     #[pyo3(signature = (points_a, radii_a, points_b, radii_b, tolerance, *, tangents_a = None, tangents_b = None, deviation_a = 0.0, deviation_b = 0.0, turn_a = None, turn_b = None, pose_a = None, pose_b = None))]
     #[allow(clippy::too_many_arguments)] // they are named in Python
@@ -292,8 +291,8 @@ impl RobotPair {
     /// margin : float
     ///     A length, at least 0.
     /// resolution : float
-    ///     The answer is undecided only where the clearance is within this of the margin, or where
-    /// 65,536     pairs of pieces do not decide it.
+    ///     The answer is undecided only where the clearance is within this of the margin, or where 65,536
+    ///     pairs of pieces do not decide it.
     /// tangents_a, tangents_b, deviation_a, deviation_b, turn_a, turn_b
     ///     Of either robot as for `Mesh.clearance`.
     ///
@@ -305,8 +304,8 @@ impl RobotPair {
     /// Raises
     /// ------
     /// ContinuumError
-    ///     The margin or the resolution is negative or NaN, the resolution is finer than the points
-    /// allow, or as for `clearance`. Of     a batch, ``robot`` is the first that is refused.
+    ///     The margin or the resolution is negative or NaN, the resolution is finer than the points allow, or as for `clearance`. Of
+    ///     a batch, ``robot`` is the first that is refused.
     #[pyo3(signature = (points_a, radii_a, points_b, radii_b, margin, resolution, *, tangents_a = None, tangents_b = None, deviation_a = 0.0, deviation_b = 0.0, turn_a = None, turn_b = None, pose_a = None, pose_b = None))]
     #[allow(clippy::too_many_arguments)] // they are named in Python
     fn tubes_clear<'py>(
@@ -340,8 +339,7 @@ impl RobotPair {
         self.0.tubes_clear(py, &given.robots()?, given.stated, [margin, resolution])
     }
 
-    /// Whether a curved tube keeps more than a margin to itself: as
-    /// `parry_continuum.tube_self_clears`.
+    /// Whether a curved tube keeps more than a margin to itself: as `parry_continuum.tube_self_clears`.
     ///
     /// Parameters
     /// ----------

@@ -6,8 +6,8 @@ use pyo3::prelude::*;
 
 /// The distance between two robots, and the two points that are closest.
 ///
-/// It is 0 where they touch or overlap. Where one of the two is a batch and the other is not, that
-/// one is asked about beside each of the batch.
+/// It is 0 where they touch or overlap. Where one of the two is a batch and the other is not, that one is asked about beside
+/// each of the batch.
 ///
 /// Parameters
 /// ----------
@@ -49,8 +49,7 @@ pub(crate) fn between<'py>(
     Pairs::default().minimum(py, &robots, caps)
 }
 
-/// Whether two robots keep more than a margin from each other: exactly ``between(...).distance >
-/// margin``, for less work.
+/// Whether two robots keep more than a margin from each other: exactly ``between(...).distance > margin``, for less work.
 ///
 /// Parameters
 /// ----------
@@ -91,8 +90,7 @@ pub(crate) fn clears_between<'py>(
     Pairs::default().clears(py, &robots, margin, caps)
 }
 
-/// The least distance between parts of a robot that could meet: those between which its curve turns
-/// by at least half a turn.
+/// The least distance between parts of a robot that could meet: those between which its curve turns by at least half a turn.
 ///
 /// Parameters
 /// ----------
@@ -108,8 +106,7 @@ pub(crate) fn clears_between<'py>(
 /// Raises
 /// ------
 /// ContinuumError
-///     Points or radii are no robot, or a joint is so sharp that its links overlap over more than
-/// half of the shorter one.
+///     Points or radii are no robot, or a joint is so sharp that its links overlap over more than half of the shorter one.
 ///
 /// Examples
 /// --------
@@ -130,8 +127,7 @@ pub(crate) fn self_minimum<'py>(
     Pairs::default().self_minimum(py, &Robots::new("points", points, radii, None)?, caps)
 }
 
-/// Whether the parts of a robot that could meet keep more than a margin:
-/// ``self_minimum(...).distance > margin``.
+/// Whether the parts of a robot that could meet keep more than a margin: ``self_minimum(...).distance > margin``.
 ///
 /// Parameters
 /// ----------

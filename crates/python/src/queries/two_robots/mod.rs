@@ -47,8 +47,7 @@ impl Lender for Pairs {
     }
 }
 
-/// A pair of robots in the chains of a session: who is asked about them, their poses and points,
-/// and memory for the answers.
+/// A pair of robots in the chains of a session: who is asked about them, their poses and points, and memory for the answers.
 struct Placed<'a> {
     pair: &'a mut proximity::RobotPair,
     chains: [&'a Chain; 2],

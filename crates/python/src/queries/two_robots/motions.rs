@@ -12,8 +12,8 @@ use pyo3::prelude::*;
 impl RobotPair {
     /// Whether two robots that move at the same time keep more than a margin between them.
     ///
-    /// ``Decision.CLEAR`` is proven for every time between, from the speeds of the motions. A robot
-    /// at rest is a `RigidMotion` from a pose to the same pose.
+    /// ``Decision.CLEAR`` is proven for every time between, from the speeds of the motions. A robot at rest is a `RigidMotion` from
+    /// a pose to the same pose.
     ///
     /// Parameters
     /// ----------
@@ -22,9 +22,8 @@ impl RobotPair {
     /// margin : float
     ///     A length, at least 0.
     /// resolution : float
-    ///     A length. The answer is undecided only where the robots come within this of the margin,
-    /// where an end turns from flat to     round there, or where 65,536 shapes of each or a
-    /// million pairs of pieces do not decide it.
+    ///     A length. The answer is undecided only where the robots come within this of the margin, where an end turns from flat to
+    ///     round there, or where 65,536 shapes of each or a million pairs of pieces do not decide it.
     ///
     /// Returns
     /// -------
@@ -34,8 +33,8 @@ impl RobotPair {
     /// Raises
     /// ------
     /// ContinuumError
-    ///     Margin or resolution are negative or NaN, the resolution is finer than rounding, one of
-    /// the shapes is no robot, or batches     differ in size.
+    ///     Margin or resolution are negative or NaN, the resolution is finer than rounding, one of the shapes is no robot, or batches
+    ///     differ in size.
     ///
     /// Examples
     /// --------
@@ -45,10 +44,10 @@ impl RobotPair {
     /// >>> first = LinearMotion(left, right, 1.0)
     /// >>> second = LinearMotion(right + [0, 3, 0], left + [0, 3, 0], 1.0)
     /// >>> pair = RobotPair()
-    /// >>> pair.clears_motion(first, second, margin=0.9, resolution=1e-3).decision is
-    /// Decision.CLEAR True
-    /// >>> pair.clears_motion(first, second, margin=1.5, resolution=1e-3).decision is
-    /// Decision.CONTACT True
+    /// >>> pair.clears_motion(first, second, margin=0.9, resolution=1e-3).decision is Decision.CLEAR
+    /// True
+    /// >>> pair.clears_motion(first, second, margin=1.5, resolution=1e-3).decision is Decision.CONTACT
+    /// True
     #[pyo3(signature = (a, b, margin, resolution))]
     fn clears_motion<'py>(
         &self,
@@ -72,8 +71,7 @@ impl RobotPair {
         answers(py, &all, |further| motions.shape(further))
     }
 
-    /// Whether a robot that moves keeps more than a margin to itself: as
-    /// `parry_continuum.motion_self_clears`.
+    /// Whether a robot that moves keeps more than a margin to itself: as `parry_continuum.motion_self_clears`.
     ///
     /// Parameters
     /// ----------
@@ -102,8 +100,8 @@ impl RobotPair {
 
 /// Whether a robot that moves keeps more than a margin to itself.
 ///
-/// ``Decision.CLEAR`` is proven for every time between, from the speeds of the motion. Asked for
-/// are the parts that `tube_self_clears` asks for.
+/// ``Decision.CLEAR`` is proven for every time between, from the speeds of the motion. Asked for are the parts that
+/// `tube_self_clears` asks for.
 ///
 /// Parameters
 /// ----------
@@ -112,22 +110,20 @@ impl RobotPair {
 /// margin : float
 ///     A length, at least 0.
 /// resolution : float
-///     A length. The answer is undecided only where the robot comes within this of the margin,
-/// where the margin is as wide as the     tightest bend, where an end turns from flat to round, or
-/// where 65,536 shapes or 262,144 pairs of pieces do not decide it.
+///     A length. The answer is undecided only where the robot comes within this of the margin, where the margin is as wide as the
+///     tightest bend, where an end turns from flat to round, or where 65,536 shapes or 262,144 pairs of pieces do not decide it.
 ///
 /// Returns
 /// -------
 /// RobotMotionAnswer
-///     Of one motion, or arrays with one entry for each. Both points of a contact are on the same
-/// robot, the first one nearer to its     base.
+///     Of one motion, or arrays with one entry for each. Both points of a contact are on the same robot, the first one nearer to its
+///     base.
 ///
 /// Raises
 /// ------
 /// ContinuumError
-///     Margin or resolution are negative or NaN, the resolution is finer than rounding or than so
-/// fast a motion can be divided, one of the     shapes is no robot, or it bends within its radius
-/// or too sharply at a joint.
+///     Margin or resolution are negative or NaN, the resolution is finer than rounding or than so fast a motion can be divided, one of the
+///     shapes is no robot, or it bends within its radius or too sharply at a joint.
 ///
 /// Examples
 /// --------

@@ -6,10 +6,9 @@ use pyo3::prelude::*;
 
 /// Questions about two robots, or about one and itself.
 ///
-/// It remembers what was nearest, which bounds the next query: small motions are answered fastest,
-/// and any robots may follow. Answers do not depend on it. Any number of threads may ask one
-/// `RobotPair`. `between`, `clears_between`, `self_minimum` and `self_clears` are the same without
-/// a memory.
+/// It remembers what was nearest, which bounds the next query: small motions are answered fastest, and any robots may follow.
+/// Answers do not depend on it. Any number of threads may ask one `RobotPair`. `between`, `clears_between`, `self_minimum` and
+/// `self_clears` are the same without a memory.
 ///
 /// Examples
 /// --------
@@ -80,8 +79,8 @@ impl RobotPair {
     /// Returns
     /// -------
     /// RobotProximity
-    ///     Arrays of the shape (N - 1, ...), or (B, N - 1, ...) of a batch. Of a segment of the
-    /// first robot without length the distance     is NaN, and the segments are -1.
+    ///     Arrays of the shape (N - 1, ...), or (B, N - 1, ...) of a batch. Of a segment of the first robot without length the distance
+    ///     is NaN, and the segments are -1.
     ///
     /// Raises
     /// ------
@@ -106,9 +105,8 @@ impl RobotPair {
 
     /// Every place where the robots are at most a margin apart, in the order of the segments.
     ///
-    /// A place is a pair of segments of which no neighbours, one segment on along either robot or
-    /// both, are closer. Neighbours that are as close count as one place, at the lowest
-    /// segments.
+    /// A place is a pair of segments of which no neighbours, one segment on along either robot or both, are closer. Neighbours that are
+    /// as close count as one place, at the lowest segments.
     ///
     /// Parameters
     /// ----------
@@ -120,8 +118,7 @@ impl RobotPair {
     /// Returns
     /// -------
     /// RobotContacts
-    ///     Arrays of one length, with a row for each place. Those of pair k are
-    /// ``offsets[k]:offsets[k + 1]``.
+    ///     Arrays of one length, with a row for each place. Those of pair k are ``offsets[k]:offsets[k + 1]``.
     ///
     /// Raises
     /// ------
@@ -180,8 +177,7 @@ impl RobotPair {
         self.0.clears(py, &robots, margin, caps)
     }
 
-    /// The least distance between parts of a robot that could meet: as
-    /// `parry_continuum.self_minimum`.
+    /// The least distance between parts of a robot that could meet: as `parry_continuum.self_minimum`.
     ///
     /// Parameters
     /// ----------
@@ -208,8 +204,7 @@ impl RobotPair {
         self.0.self_minimum(py, &Robots::new("points", points, radii, None)?, caps)
     }
 
-    /// Whether the parts of a robot that could meet keep more than a margin: as
-    /// `parry_continuum.self_clears`.
+    /// Whether the parts of a robot that could meet keep more than a margin: as `parry_continuum.self_clears`.
     ///
     /// Parameters
     /// ----------
