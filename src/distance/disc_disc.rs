@@ -33,11 +33,11 @@
 //! Both discs are convex, so a local minimum is the global one. `F` is the least of a convex
 //! function over a chord, so `F` is convex in `a`. Its minimum falls into one of two cases:
 //!
-//! 1. **`e = 0`.** The nearest point lies on the chord of the first disc that passes through the
+//! 1. `e = 0`. The nearest point lies on the chord of the first disc that passes through the
 //!    foot of `C` and runs across `l`. Its counterpart lies on the parallel diameter of the second
 //!    disc. Both lie in one plane: segment-segment. This includes parallel and crossing discs with
 //!    such a minimum.
-//! 2. **`e > 0`.** The nearest point lies on the rim: `a = r1 sin(theta)`, `k = r1 cos(theta)`. The
+//! 2. `e > 0`. The nearest point lies on the rim: `a = r1 sin(theta)`, `k = r1 cos(theta)`. The
 //!    side of the minimum is given by the sign of
 //!
 //!    ```text

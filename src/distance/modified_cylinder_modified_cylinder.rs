@@ -23,16 +23,16 @@
 //!   `T`.
 //!
 //! # Algorithm
-//! 1. **Axis and axis.** `q` is not at a flat end of the second link. By S the second link is
+//! 1. *Axis and axis.* `q` is not at a flat end of the second link. By S the second link is
 //!    `F - r2` from the first axis, attained at `p`. If `p` is not at a flat end either, S gives
 //!    `F - r1 - r2`.
-//! 2. **Axis and disc.** `q` is at a flat end. By D the distance of the second link from the first
+//! 2. *Axis and disc.* `q` is at a flat end. By D the distance of the second link from the first
 //!    axis is that of this end's disc: segment-disc. If the parameter on the first axis is not at a
 //!    flat end, S subtracts `r1`.
-//! 3. **Disc and axis.** In case 1 or 2 the parameter on the first axis is at a flat end. By D the
+//! 3. *Disc and axis.* In case 1 or 2 the parameter on the first axis is at a flat end. By D the
 //!    disc of that end replaces the first link. If the parameter on the second axis that is closest
 //!    to the disc is not at a flat end, S subtracts `r2`.
-//! 4. **Disc and disc.** As case 3, and that parameter is at a flat end. By D the answer is
+//! 4. *Disc and disc.* As case 3, and that parameter is at a flat end. By D the answer is
 //!    disc-disc.
 //!
 //! # Claim

@@ -174,11 +174,11 @@ impl View {
             ((k - one) * (k + one)).max(zero).sqrt() + exact((n + n).over(tau).rounded().cbrt());
         let cusp = ((x * tau - n) / m).max((radius * n).over(rho));
         if cusp.lt(from_left) && cusp.lt(top) {
-            &["It does not", "Start at the cusp"]
+            &["The line does not", "Start at the cusp"]
         } else if from_left.lt(top) {
-            &["It does not", "Start from the left"]
+            &["The line does not", "Start from the left"]
         } else {
-            &["It does not"]
+            &["The line does not"]
         }
     }
 
@@ -281,9 +281,9 @@ impl View {
         for flat in [[true; 2], [false; 2], [true, false], [false, true]] {
             let at_flat = (0..2).any(|end| ends[end] && flat[end]);
             let case = if at_flat {
-                "Beyond a flat cap"
+                "Flat cap"
             } else {
-                "Beside the barrel or beyond a round cap"
+                "Barrel or round cap"
             };
             seen("triangle_modified_cylinder", case);
             if !at_flat && self.off(apart) {
@@ -308,14 +308,14 @@ struct Robot {
 /// The case of each link's beginning on a walk, and whether it is round.
 fn walk(points: &[Vector], radii: &[f64]) -> Vec<(&'static str, bool)> {
     let mut limit = points[0];
-    let mut cases = vec![("The first link", false)];
+    let mut cases = vec![("First link", false)];
     for k in 1..radii.len() {
         let vec3 = |point: Vector| Vec3::from(point.to_array().map(exact));
         let (apart, radius) = (vec3(points[k]) - vec3(limit), exact(radii[k]));
         let room = (radius * radius).le(apart.norm_squared());
         cases.push(if radii[k] > radii[k - 1] {
             limit = points[k];
-            ("A thicker link", false)
+            ("Link thicker than the one before", false)
         } else if room {
             ("Room for a ball", true)
         } else {

@@ -91,7 +91,7 @@ fn points_are_read_as_people_write_them() {
         "30 , 30 ,\t20,\u{a0}2\n30,30,40\n",
         // Decimal commas, quotes, lines that end by carriage returns alone, and columns as
         // ParaView names them.
-        "30,5;30,0;20,0;1,0\n30,0;30,0;40,0\n",
+        "30,0;30,0;20,0;1,0\n30,0;30,0;40,0\n",
         "30,0\t30,0\t20,0\t1,0\n30,0\t30,0\t40,0\n",
         "\"x\",\"y\",\"z\",\"radius\"\n\"30\",\"30\",\"20\",\"2\"\n\"30,0\",\"30\",\"40\"\n",
         "x,y,z,r\r30,30,20,2\r30,30,40\r",
