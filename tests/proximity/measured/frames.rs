@@ -166,7 +166,7 @@ fn sections_of_one_segment_are_known_by_their_own_frames() {
     assert!(seen.touching > rounds(500) && seen.at_faces > rounds(1_500), "{seen:?}");
     // An arc is known although its neighbours bend otherwise.
     assert!(
-        straight[0] * 100 >= straight[1] * 99 && straight[1] > rounds(3_000),
+        straight[0] * 100 >= straight[1] * 99 && straight[1] > rounds(2_500),
         "{straight:?} {seen:?}"
     );
 }
