@@ -280,11 +280,7 @@ impl View {
         let (ends, beyond) = (self.axis_ends(), self.beyond());
         for flat in [[true; 2], [false; 2], [true, false], [false, true]] {
             let at_flat = (0..2).any(|end| ends[end] && flat[end]);
-            let case = if at_flat {
-                "Flat cap"
-            } else {
-                "Barrel or round cap"
-            };
+            let case = if at_flat { "Flat cap" } else { "Barrel or round cap" };
             seen("triangle_modified_cylinder", case);
             if !at_flat && self.off(apart) {
                 seen("foot", if apart.le(exact(self.radius)) { "Overlapping" } else { "Apart" });

@@ -48,6 +48,10 @@ pub fn centreline(random: &mut Random) -> Vec<Vector> {
 /// itself.
 pub fn hairpin(random: &mut Random) -> Vec<Vector> {
     /// Cosines and sines in steps of pi / 8.
+    #[expect(
+        clippy::approx_constant,
+        reason = "points near a circle, with the same bits everywhere"
+    )]
     const QUARTER: [[f64; 2]; 4] =
         [[1.0, 0.0], [0.92388, 0.38268], [0.70711, 0.70711], [0.38268, 0.92388]];
     let [radius, rise] = [0.3 + 0.1 * random.unit(), 0.05 * random.unit()];
