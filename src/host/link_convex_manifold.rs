@@ -1,13 +1,20 @@
 //! The contact manifold of a link and a convex shape without a closed form.
 //!
 //! The points come from parry's clipping of the polygons that approximate the two surfaces, along
-//! the normal of the dispatcher's contact for the pair. The contact's own points are included, and
-//! no point is deeper: the polygons only approximate round surfaces. (parry's routine runs GJK and
+//! the normal of the dispatcher's contact for the pair. A point is as deep as the contact, and no
+//! point is deeper: the polygons only approximate round surfaces. (parry's routine runs GJK and
 //! EPA again from the state of the last step, and may find a different contact.)
 
 use super::iterated::IteratedPair;
+use parry3d_f64::math::Real;
 use parry3d_f64::query::{Contact, ContactManifold, TrackedContact, Unsupported};
 use parry3d_f64::shape::{PackedFeatureId, PolygonalFeature};
+
+/// A polygon point that is at most this much less deep than the contact stands for it. This is
+/// 2^-40 of the scaled pair's size: parry's iterations resolve depths no better. Where two faces
+/// rest on one another, the contact's own points lie anywhere on both and change with each step.
+/// The corners of the polygons stay.
+const TIE: Real = 8192.0 / (1_u64 << 40) as Real;
 
 /// Updates the manifold, if both shapes have polygonal features. Returns whether they have.
 ///
@@ -56,14 +63,14 @@ pub(super) fn update<M, C: Default + Copy>(
         point.local_p2 += normal2 * border2;
         point.dist = (point.dist - border1 - border2).max(contact.dist);
     }
-    let names = [PackedFeatureId::UNKNOWN; 2];
-    manifold.points.push(TrackedContact::new(
-        contact.point1,
-        contact.point2,
-        names[0],
-        names[1],
-        contact.dist,
-    ));
+    let is_tie = |point: &&mut TrackedContact<C>| point.dist <= contact.dist + TIE;
+    if let Some(point) = manifold.points.iter_mut().find(is_tie) {
+        point.dist = contact.dist;
+    } else {
+        let [name1, name2] = [PackedFeatureId::UNKNOWN; 2];
+        let Contact { point1, point2, dist, .. } = contact;
+        manifold.points.push(TrackedContact::new(point1, point2, name1, name2, dist));
+    }
     for point in &mut manifold.points {
         point.local_p1 *= unit;
         point.local_p2 *= unit;
