@@ -48,7 +48,7 @@
 //!   and itself. A [`Scene`](proximity::Scene) has several structures, each with its margin: see
 //!   [`book::robots`].
 //! - **Threads.** Each thread has a clone of the engine: see [`book::threads`].
-//! - **Contacts.** [`within`](proximity::Proximity::within) finds every place where the robot is
+//! - **Contacts.** [`contacts_within`](proximity::Proximity::contacts_within) finds every place where the robot is
 //!   near the wall, with its normal and its derivative by the joints. [`book::control`] is about
 //!   controllers.
 //! - **parry and rapier.** Links and chains are parry shapes with exact point and ray queries. Pass
@@ -83,29 +83,33 @@ pub use parry3d_f64 as parry;
 
 mod answer;
 pub mod book;
+mod curve;
 pub mod distance;
 mod engine;
 #[cfg(feature = "gpu")]
 pub mod gpu;
 mod host;
 mod mesh;
+mod motion;
 mod pair;
-mod pieces;
 pub mod proximity;
 mod query;
+mod refine;
 mod robot;
 mod scene;
 mod search;
 mod threads;
 
+pub use curve::{BendingSection, ConstantCurvature, Tube, TubeSection};
 pub use host::ContinuumDispatcher;
 #[cfg(feature = "rapier")]
 pub use host::rapier;
+pub use motion::{
+    BendingMotion, BendingRates, DisplacementBound, LinearMotion, Motion, MotionPath, MovingBase,
+    RigidMotion, Speed, bending_displacement, bending_speed, verify_motion,
+};
 pub use robot::{
-    BendingMotion, BendingRates, BendingSection, Cap, Chain, ConstantCurvature, Course,
-    LinearMotion, MatrixError, ModifiedCylinder, Motion, MotionPath, MovingBase, RigidMotion,
-    RobotError, Speed, Tube, TubeSection, bending_course, bending_speed, pose_from_matrix,
-    simplify, stations, verify_motion,
+    Cap, Chain, MatrixError, ModifiedCylinder, RobotError, pose_from_matrix, simplify, stations,
 };
 
 /// Runs the code of the README as doc-tests. One example needs rapier.

@@ -12,7 +12,7 @@
 //! | how far is every link? | [`per_link`] |
 //! | does the robot keep a margin? | [`clears`] |
 //! | which link is closest, if any is within a bound? | [`minimum_within`] |
-//! | every place where robot and wall are near, with normal and depth | [`within`] |
+//! | every place where robot and wall are near, with normal and depth | [`contacts_within`] |
 //! | normal and depth of one answer, or of all answers of a query | [`contact`], [`contacts`] |
 //! | how fast a distance changes with a joint | [`Contact::rate`], [`Contact::gradient`] |
 //! | the derivative by each end, the radius and each vertex | [`derivative`] |
@@ -24,7 +24,7 @@
 //! |---|---|
 //! | the clearance of a [`Tube`], between two bounds | [`clearance`] |
 //! | the same, with the pieces of the division | [`clearance_pieces`] |
-//! | does a tube keep a margin? | [`tube_clears`] |
+//! | does a tube keep a margin? | [`clears_tube`] |
 //!
 //! **A motion, proven at every instant**
 //!
@@ -56,9 +56,9 @@
 //! | which links of two robots are closest, and where? | [`between`], [`RobotPair::minimum`] |
 //! | do two robots keep a margin? | [`clears_between`], [`RobotPair::clears`] |
 //! | which link of the other robot is closest to each link? | [`RobotPair::per_link`] |
-//! | every place where two robots are near | [`RobotPair::within`] |
+//! | every place where two robots are near | [`RobotPair::contacts_within`] |
 //! | the clearance of two tubes, between two bounds | [`RobotPair::clearance`] |
-//! | do two tubes keep a margin? | [`RobotPair::tubes_clear`] |
+//! | do two tubes keep a margin? | [`RobotPair::clears_tubes`] |
 //! | a proof of the distance of two links | [`RobotProximity::certify`] |
 //! | where does a robot come closest to itself? | [`self_minimum`], [`RobotPair::self_minimum`] |
 //! | does a robot keep a margin to itself? | [`self_clears`], [`RobotPair::self_clears`] |
@@ -79,7 +79,7 @@
 //! | to do | call |
 //! |---|---|
 //! | query many robots on all cores | [`per_link_batch`], [`minimum_batch`], [`clears_batch`] |
-//! | query tubes or motions | [`clearance_batch`], [`tube_clears_batch`], [`clears_motion_batch`] |
+//! | query tubes or motions | [`clearance_batch`], [`clears_tube_batch`], [`clears_motion_batch`] |
 //! | query many sets of robots in a scene | [`Scene::clears_batch`], [`Scene::tightest_batch`] |
 //! | build beforehand every structure that a first query would build | [`prepare`] |
 //! | move the mesh | [`set_vertices`] |
@@ -112,7 +112,7 @@
 //! [`per_link`]: Proximity::per_link
 //! [`clears`]: Proximity::clears
 //! [`minimum_within`]: Proximity::minimum_within
-//! [`within`]: Proximity::within
+//! [`contacts_within`]: Proximity::contacts_within
 //! [`contact`]: Proximity::contact
 //! [`contacts`]: Proximity::contacts
 //! [`derivative`]: Proximity::derivative
@@ -120,7 +120,7 @@
 //! [`Tube`]: crate::Tube
 //! [`clearance`]: BvhSearch::clearance
 //! [`clearance_pieces`]: BvhSearch::clearance_pieces
-//! [`tube_clears`]: BvhSearch::tube_clears
+//! [`clears_tube`]: BvhSearch::clears_tube
 //! [`Motion`]: crate::Motion
 //! [`clears_motion`]: BvhSearch::clears_motion
 //! [`clears_path`]: BvhSearch::clears_path
@@ -136,7 +136,7 @@
 //! [`minimum_batch`]: Proximity::minimum_batch
 //! [`clears_batch`]: Proximity::clears_batch
 //! [`clearance_batch`]: BvhSearch::clearance_batch
-//! [`tube_clears_batch`]: BvhSearch::tube_clears_batch
+//! [`clears_tube_batch`]: BvhSearch::clears_tube_batch
 //! [`clears_motion_batch`]: BvhSearch::clears_motion_batch
 //! [`prepare`]: BvhSearch::prepare
 //! [`set_vertices`]: Proximity::set_vertices

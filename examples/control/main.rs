@@ -122,7 +122,7 @@ fn run(mut search: BvhSearch, ticks: u32, with_fixture: bool) -> Result<Run, Str
         moved = Instant::now();
         robot.set_centreline(kinematics.points(), kinematics.radii()).map_err(text)?;
         filled = Instant::now();
-        search.within(&robot, &pose, NEAR, 0.0, &mut contacts).map_err(text)?;
+        search.contacts_within(&robot, &pose, NEAR, 0.0, &mut contacts).map_err(text)?;
         let answered = Instant::now();
         for (times, time) in
             run.times.iter_mut().zip([moved - begin, filled - moved, answered - filled])

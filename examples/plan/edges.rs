@@ -128,7 +128,7 @@ impl Edges<'_> {
         for t in motion.motion.steps(step) {
             let pose = motion.shape(t, &mut tube).map_err(text)?;
             let decision =
-                self.search.tube_clears(&tube, &pose, self.margin, RESOLUTION).map_err(text)?;
+                self.search.clears_tube(&tube, &pose, self.margin, RESOLUTION).map_err(text)?;
             if decision != Decision::Clear {
                 return Ok(false);
             }
@@ -143,7 +143,7 @@ impl Edges<'_> {
         let tubes: Vec<_> = tubes.iter().map(|(tube, pose)| (tube, *pose)).collect();
         let mut decisions = Vec::new();
         self.search
-            .tube_clears_batch(&tubes, self.margin, RESOLUTION, &mut decisions)
+            .clears_tube_batch(&tubes, self.margin, RESOLUTION, &mut decisions)
             .map_err(text)?;
         let is_clear = decisions.into_iter().map(|decision| decision == Ok(Decision::Clear));
         Ok(places

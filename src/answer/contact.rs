@@ -85,7 +85,7 @@ impl Contact {
     /// let robot = |q: f64| Chain::from_centreline(&[Vector::ZERO, Vector::new(0.0, -q.sin(), q.cos())], &[0.5]);
     /// let q = 0.2;
     /// let closest = search.minimum(&robot(q)?, &Pose::IDENTITY)?;
-    /// let contact = search.contact(&robot(q)?, &Pose::IDENTITY, &closest)?;
+    /// let contact = search.contact_of(&robot(q)?, &Pose::IDENTITY, &closest)?;
     /// let tangent = Vector::new(0.0, -q.sin(), q.cos());
     /// let rate = contact.rate(Vector::X.cross(contact.arc_length * tangent), Vector::X).ok_or("no normal")?;
     /// let mut distance = |q: f64| -> Result<f64, Box<dyn std::error::Error>> {
@@ -112,7 +112,7 @@ impl Contact {
     /// # let robot = Chain::from_centreline(&[Vector::ZERO, Vector::Z], &[0.5])?;
     /// # let mut search = BvhSearch::new(&mesh)?;
     /// # let closest = search.minimum(&robot, &Pose::IDENTITY)?;
-    /// # let contact = search.contact(&robot, &Pose::IDENTITY, &closest)?;
+    /// # let contact = search.contact_of(&robot, &Pose::IDENTITY, &closest)?;
     /// // A straight robot. Joint 0 moves it along z, joint 1 turns it about x.
     /// let mut rates = Vec::new();
     /// contact.gradient(2, |arc_length, joint| match joint {

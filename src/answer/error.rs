@@ -1,6 +1,7 @@
 //! Errors of meshes and queries. Each message names the value at fault and what to change.
 
-use crate::robot::{RobotError, TooSharp};
+use crate::curve::TooSharp;
+use crate::robot::RobotError;
 #[cfg(feature = "gpu")]
 use gpu_batch::DeviceFailure;
 use parry3d_f64::math::Real;

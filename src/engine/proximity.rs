@@ -144,7 +144,7 @@ pub trait Proximity: Engine {
     /// let mut search = BvhSearch::new(&TriMesh::new(vertices.collect(), indices)?)?;
     /// let robot = Chain::from_centreline(&[-Vector::X, Vector::X], &[0.5])?;
     /// let mut contacts = Vec::new();
-    /// search.within(&robot, &Pose::IDENTITY, 2.0, 0.0, &mut contacts)?;
+    /// search.contacts_within(&robot, &Pose::IDENTITY, 2.0, 0.0, &mut contacts)?;
     /// assert_eq!(contacts.len(), 2);
     /// assert!(contacts[0].normal.is_some_and(|normal| (normal + Vector::Z).length() < 0.2));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -173,7 +173,7 @@ pub trait Proximity: Engine {
     /// # Errors
     /// The margin or the prominence is negative or NaN, the pose is not finite, or it moves a link
     /// out of range.
-    fn within(
+    fn contacts_within(
         &mut self,
         robot: &Chain,
         pose: &Pose,
@@ -270,17 +270,17 @@ pub trait Proximity: Engine {
     /// let mut search = BvhSearch::from_triangles(&floor, &[[0, 1, 2]])?;
     /// let robot = Chain::capsules(&[Vector::ZERO, Vector::X, Vector::new(2.0, 0.0, -1.0)], &[0.5, 0.5])?;
     /// let closest = search.minimum(&robot, &Pose::IDENTITY)?;
-    /// let contact = search.contact(&robot, &Pose::IDENTITY, &closest)?;
+    /// let contact = search.contact_of(&robot, &Pose::IDENTITY, &closest)?;
     /// assert_eq!((contact.link, contact.fraction, contact.normal), (1, 1.0, Some(Vector::Z)));
     /// assert_eq!(contact.feature.link, LinkFeature::EndCap);
     /// assert_eq!(contact.feature.triangle, TriangleFeature::Face);
     /// assert!((contact.arc_length - (1.0 + 2.0_f64.sqrt())).abs() < 1e-15);
     /// // The floor has moved, so the old answer no longer fits.
     /// search.set_vertices(&floor.map(|corner| corner - Vector::Z))?;
-    /// assert!(search.contact(&robot, &Pose::IDENTITY, &closest).is_err());
+    /// assert!(search.contact_of(&robot, &Pose::IDENTITY, &closest).is_err());
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    fn contact(
+    fn contact_of(
         &self,
         robot: &Chain,
         pose: &Pose,
@@ -289,7 +289,7 @@ pub trait Proximity: Engine {
         contact(self.mesh(), robot, pose, answer)
     }
 
-    /// [`contact`](Self::contact) for every answer, in order.
+    /// [`contact_of`](Self::contact_of) for every answer, in order.
     ///
     /// One call takes a fraction of the time of single calls, because it computes several contacts
     /// at once. `out` is cleared first.
@@ -307,11 +307,11 @@ pub trait Proximity: Engine {
     /// let robot = Chain::capsules(&[Vector::ZERO, Vector::X, Vector::new(2.0, 0.0, -1.0)], &[0.5, 0.5])?;
     /// let (mut answers, mut contacts) = (Vec::new(), Vec::new());
     /// search.per_link(&robot, &Pose::IDENTITY, &mut answers)?;
-    /// search.contacts(&robot, &Pose::IDENTITY, &answers, &mut contacts)?;
-    /// assert_eq!(contacts[1], search.contact(&robot, &Pose::IDENTITY, &answers[1])?);
+    /// search.contacts_of(&robot, &Pose::IDENTITY, &answers, &mut contacts)?;
+    /// assert_eq!(contacts[1], search.contact_of(&robot, &Pose::IDENTITY, &answers[1])?);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    fn contacts(
+    fn contacts_of(
         &self,
         robot: &Chain,
         pose: &Pose,
@@ -329,7 +329,7 @@ pub trait Proximity: Engine {
     /// the robot's: see [`Contact::normal`].
     ///
     /// # Errors
-    /// As [`contact`](Self::contact).
+    /// As [`contact_of`](Self::contact_of).
     ///
     /// ```
     /// use parry_continuum::Chain;
@@ -367,7 +367,7 @@ pub trait Proximity: Engine {
     /// Moves the mesh's vertices and keeps its triangles.
     ///
     /// `vertices` has one position per vertex, in the mesh's frame. Earlier answers are about the
-    /// old mesh; [`contact`](Self::contact) refuses those that no longer fit.
+    /// old mesh; [`contact_of`](Self::contact_of) refuses those that no longer fit.
     ///
     /// The next query uses the new vertices. Clones made before keep the old mesh; clones made
     /// afterwards have the new one. If a clone shares the mesh, the engine first copies the mesh
@@ -382,7 +382,7 @@ pub trait Proximity: Engine {
     ///   [`minimum_within`](Self::minimum_within), tubes and motions: nothing.
     /// - [`clears`](Self::clears): the grid of the sides of the wall, only if the bounding box has
     ///   moved by several cells of the grid.
-    /// - [`within`](Self::within): one pass over all vertices finds vertices that have met or
+    /// - [`contacts_within`](Self::contacts_within): one pass over all vertices finds vertices that have met or
     ///   parted. If there are any, the query also builds which triangles are joined. Near the robot
     ///   it builds the neighbours of triangles.
     /// - [`side`](super::BvhSearch::side), [`clears_inside`](super::BvhSearch::clears_inside): the

@@ -6,15 +6,17 @@
 //! [`RobotWithItself`] derives which pairs of parts count.
 
 use crate::answer::{Decision, ProximityError, RobotClearance, RobotMotionAnswer, RobotProximity};
+use crate::curve::Tube;
+use crate::motion::Motion;
 use crate::query::motion::{
     MarginQuery, MotionPair, MotionsMemory, SelfMotionMemory, self_clears_motion,
 };
 use crate::query::robots::{
     PairMemory, RobotWithItself, SelfMemory, SelfTubeMemory, TubesMemory, TwoRobots,
-    clearance_between, place_tubes, self_clears_tube, tubes_clear,
+    clearance_between, clears_tubes, place_tubes, self_clears_tube,
 };
 use crate::query::{check_decision, check_margin, check_not_negative};
-use crate::robot::{Chain, Motion, Tube};
+use crate::robot::Chain;
 use parry3d_f64::math::{Pose, Real};
 
 /// Exact queries about two robots: the closest links, and whether all links keep a margin.
@@ -127,7 +129,7 @@ impl RobotPair {
     ///
     /// # Errors
     /// As [`clears`](Self::clears).
-    pub fn within(
+    pub fn contacts_within(
         &mut self,
         a: &Chain,
         pose_a: &Pose,
@@ -138,7 +140,11 @@ impl RobotPair {
     ) -> Result<(), ProximityError> {
         out.clear();
         check_margin(margin)?;
-        TwoRobots::new([a, b], [pose_a, pose_b], POSES)?.within(margin, &mut self.memory, out);
+        TwoRobots::new([a, b], [pose_a, pose_b], POSES)?.contacts_within(
+            margin,
+            &mut self.memory,
+            out,
+        );
         Ok(())
     }
 
@@ -195,7 +201,7 @@ impl RobotPair {
     /// The margin or the resolution is negative or NaN, samples do not allow a decision at that
     /// resolution, or as [`clearance`](Self::clearance). A contact that is found first is reported
     /// before any error about the curves elsewhere.
-    pub fn tubes_clear(
+    pub fn clears_tubes(
         &mut self,
         a: &Tube,
         pose_a: &Pose,
@@ -206,7 +212,7 @@ impl RobotPair {
     ) -> Result<Decision, ProximityError> {
         check_decision(margin, resolution)?;
         let mut tubes = place_tubes([a, b], [pose_a, pose_b], POSES)?;
-        tubes_clear(&mut tubes, &mut self.tubes, margin, resolution)
+        clears_tubes(&mut tubes, &mut self.tubes, margin, resolution)
     }
 
     /// Decides whether two robots that move at the same time stay farther than `margin` apart, at

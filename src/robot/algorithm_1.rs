@@ -45,7 +45,7 @@ use parry3d_f64::math::{Real, Vector};
 /// Writes the caps of each link to `caps`, whose memory is reused.
 ///
 /// Takes one radius per segment: `points.len() == radii.len() + 1`.
-pub(super) fn from_segment_radii(points: &[Vector], radii: &[Real], caps: &mut Vec<[Cap; 2]>) {
+pub(crate) fn from_segment_radii(points: &[Vector], radii: &[Real], caps: &mut Vec<[Cap; 2]>) {
     reset(caps, radii.len());
     let starts = points.iter().zip(radii);
     let ends = points.iter().skip(1).zip(radii).rev();

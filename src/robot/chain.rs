@@ -165,7 +165,7 @@ impl Chain {
     /// # Errors
     /// As [`from_centreline`](Self::from_centreline), with as many radii as points.
     pub fn from_vertex_radii(points: &[Vector], vertex_radii: &[Real]) -> Result<Self, RobotError> {
-        check(["points", "vertex_radii"], points, vertex_radii, points.len())?;
+        check_chain(["points", "vertex_radii"], points, vertex_radii, points.len())?;
         let segment_radii: Vec<_> =
             vertex_radii.windows(2).map(|radii| radii[0].min(radii[1])).collect();
         let mut chain = Self::empty();
@@ -363,7 +363,7 @@ impl PartialEq for Chain {
 }
 
 /// The error for a centreline in which no segment has a length.
-pub(super) fn without_length(
+pub(crate) fn without_length(
     points: &[Vector],
     radii: &[Real],
     parameter: &'static str,
@@ -378,18 +378,18 @@ pub(super) fn without_length(
 }
 
 /// Returns one radius per segment.
-pub(super) fn radius_for_all(points: &[Vector], radius: Real) -> Result<Vec<Real>, RobotError> {
+pub(crate) fn radius_for_all(points: &[Vector], radius: Real) -> Result<Vec<Real>, RobotError> {
     check_radii("radius", &[radius])?;
     Ok(vec![radius; points.len().saturating_sub(1)])
 }
 
 /// [`check`] of the parameters `points` and `segment_radii`.
-pub(super) fn check_segments(points: &[Vector], segment_radii: &[Real]) -> Result<(), RobotError> {
-    check(["points", "segment_radii"], points, segment_radii, points.len().saturating_sub(1))
+pub(crate) fn check_segments(points: &[Vector], segment_radii: &[Real]) -> Result<(), RobotError> {
+    check_chain(["points", "segment_radii"], points, segment_radii, points.len().saturating_sub(1))
 }
 
 /// Checks the number of points and radii, and the range of both. `names` are the two parameters.
-pub(super) fn check(
+pub(crate) fn check_chain(
     names: [&'static str; 2],
     points: &[Vector],
     radii: &[Real],

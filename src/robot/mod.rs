@@ -1,16 +1,14 @@
-//! The robot: links with a flat or round cap at each end, chains of links, tubes and motions.
+//! The robot: links with a flat or round cap at each end, and chains of links.
 
 mod aabb;
 mod algorithm_1;
 mod cap;
 mod chain;
 mod compare;
-mod constant_curvature;
 mod convert;
 mod error;
 mod link_tree;
 mod modified_cylinder;
-mod motion;
 mod radius_runs;
 mod radius_steps;
 mod registration;
@@ -22,25 +20,18 @@ mod sight;
 mod simplify;
 mod stations;
 mod to_trimesh;
-mod tube;
 
+pub(crate) use algorithm_1::from_segment_radii;
 pub use cap::Cap;
 pub use chain::Chain;
-pub use constant_curvature::{BendingSection, ConstantCurvature};
+pub(crate) use chain::{check_chain, check_segments, radius_for_all, without_length};
 pub use error::RobotError;
 pub(crate) use link_tree::{BoundingCapsule, LinkNode, distance_to_segment, place_of_leaf};
-pub(crate) use modified_cylinder::COORDINATE_LIMIT;
 pub use modified_cylinder::ModifiedCylinder;
-pub use motion::{
-    BendingMotion, BendingRates, Course, LinearMotion, Motion, MotionPath, MovingBase, RigidMotion,
-    Speed, bending_course, bending_speed, verify_motion,
-};
-pub(crate) use motion::{MotionDrift, SectionSignature, ShapePath, check_speed};
-pub(crate) use radius_steps::is_step;
+pub(crate) use modified_cylinder::{COORDINATE_LIMIT, check_place, check_radii, has_direction};
+pub(crate) use radius_steps::{RadiusSteps, is_same, is_step};
 pub use registration::{MatrixError, pose_from_matrix};
-pub(crate) use rigid_pose::{NotRigid, rigid};
+pub(crate) use rigid_pose::{NotRigid, rigid, rotation_by};
 pub(crate) use scale::{direction, length};
 pub use simplify::simplify;
 pub use stations::stations;
-pub(crate) use tube::{CapPersistence, CurveBound, Drift, EndFace, Section, TooSharp, TubeTurns};
-pub use tube::{Tube, TubeSection};

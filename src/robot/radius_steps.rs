@@ -8,7 +8,7 @@ const SAME: Real = 1.0 / (1_u64 << 32) as Real;
 
 /// Finds the steps up while walking along a robot's radii.
 #[derive(Default)]
-pub(super) struct RadiusSteps {
+pub(crate) struct RadiusSteps {
     /// The first of the current equal radii. (Comparing with the last would hide a slow taper.)
     first: Option<Real>,
 }
@@ -16,7 +16,7 @@ pub(super) struct RadiusSteps {
 impl RadiusSteps {
     /// Returns whether the next radius begins a wider tube than the one before. The first always
     /// does.
-    pub(super) fn is_up(&mut self, radius: Real) -> bool {
+    pub(crate) fn is_up(&mut self, radius: Real) -> bool {
         match self.first {
             Some(first) if radius <= first * (1.0 + SAME) => {
                 if !is_same(first, radius) {
@@ -33,7 +33,7 @@ impl RadiusSteps {
 }
 
 /// Returns whether `radius` equals the radius `first` of a tube, up to rounding.
-pub(super) fn is_same(first: Real, radius: Real) -> bool {
+pub(crate) fn is_same(first: Real, radius: Real) -> bool {
     (radius - first).abs() <= SAME * first
 }
 

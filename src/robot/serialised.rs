@@ -3,7 +3,7 @@
 //! The data are the arguments of the constructors. Reading calls the constructors, so an invalid
 //! link or chain is an error with their message.
 
-use super::chain::check;
+use super::chain::check_chain;
 use super::{Cap, Chain, ModifiedCylinder};
 use parry3d_f64::math::{Real, Vector};
 use serde::{Deserialize, Serialize};
@@ -68,7 +68,7 @@ impl TryFrom<Links> for Chain {
 
     fn try_from(data: Links) -> Result<Self, String> {
         let points: Vec<_> = data.points.into_iter().map(Vector::from_array).collect();
-        check(["points", "radii"], &points, &data.radii, points.len().saturating_sub(1))
+        check_chain(["points", "radii"], &points, &data.radii, points.len().saturating_sub(1))
             .map_err(|error| error.to_string())?;
         let count = data.radii.len();
         if data.caps.len() != count || data.segments.len() != count {

@@ -357,12 +357,12 @@ impl Scene {
 
     /// Finds every contact of every robot with every structure at most `reach` away.
     ///
-    /// Each contact is one of [`Proximity::within`]; they are sorted by structure, then by robot.
+    /// Each contact is one of [`Proximity::contacts_within`]; they are sorted by structure, then by robot.
     /// `out` is cleared first.
     ///
     /// # Errors
     /// As [`clears`](Self::clears), or `reach` is negative or NaN.
-    pub fn contacts(
+    pub fn contacts_within(
         &mut self,
         robots: &[(&Chain, Pose)],
         reach: Real,
@@ -662,7 +662,7 @@ mod tests {
                     match question {
                         0 => clears = scene.clears(&robots).unwrap(),
                         1 => tightest = scene.tightest(&robots).unwrap(),
-                        _ => scene.contacts(&robots, 0.4, &mut found).unwrap(),
+                        _ => scene.contacts_within(&robots, 0.4, &mut found).unwrap(),
                     }
                     (clears, tightest, found)
                 });

@@ -43,10 +43,10 @@ fn a_control_loop_allocates_nothing() {
         search.per_link(&chain, &pose, &mut answers).unwrap();
         search.clears(&chain, &pose, 0.5).unwrap();
         search.clears_inside(&chain, &pose, 0.5).unwrap();
-        search.within(&chain, &pose, 3.0, 0.1, &mut contacts).unwrap();
+        search.contacts_within(&chain, &pose, 3.0, 0.1, &mut contacts).unwrap();
         assert!(!contacts.is_empty());
-        search.within(&chain, &pose, 3.0, 0.0, &mut contacts).unwrap();
-        assert!(contacts.len() > 1 && search.contact(&chain, &pose, &least).is_ok());
+        search.contacts_within(&chain, &pose, 3.0, 0.0, &mut contacts).unwrap();
+        assert!(contacts.len() > 1 && search.contact_of(&chain, &pose, &least).is_ok());
         if tick < 50 {
             seen.push(least.distance);
         }
@@ -93,7 +93,7 @@ fn two_robots_and_a_scene_allocate_nothing() {
         let there = Pose::from_translation(Vector::X * 4.0) * base;
         pair.minimum(&chain, &base, &other, &there).unwrap();
         pair.per_link(&chain, &base, &other, &there, &mut places).unwrap();
-        pair.within(&chain, &base, &other, &there, 5.0, &mut places).unwrap();
+        pair.contacts_within(&chain, &base, &other, &there, 5.0, &mut places).unwrap();
         pair.clears(&chain, &base, &other, &there, 0.5).unwrap();
         pair.self_minimum(&chain).unwrap();
         pair.self_clears(&chain, 0.5).unwrap();
@@ -101,7 +101,7 @@ fn two_robots_and_a_scene_allocate_nothing() {
         scene.clears(&robots).unwrap();
         assert!(scene.tightest(&robots).unwrap().is_some());
         scene.per_structure(&robots, &mut walls).unwrap();
-        scene.contacts(&robots, 1.0, &mut contacts).unwrap();
+        scene.contacts_within(&robots, 1.0, &mut contacts).unwrap();
     });
     assert_eq!(allocated, 0);
 }
@@ -151,7 +151,7 @@ fn a_control_loop_about_a_tube_allocates_nothing() {
         sway(&points, tick, &mut moved);
         tube.set_samples(&moved, &line.radii, None).unwrap();
         let found = search.clearance(&tube, &pose, 0.05).unwrap();
-        search.tube_clears(&tube, &pose, 0.5, 0.05).unwrap();
+        search.clears_tube(&tube, &pose, 0.5, 0.05).unwrap();
         if tick < 50 {
             seen.push(found.upper);
         }
@@ -319,12 +319,14 @@ fn an_exhaustive_engine_keeps_little_at_once() {
     let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
     let kept = one.install(|| {
         allocation_counter::measure(|| {
-            engine.within(&robot, &Pose::IDENTITY, f64::INFINITY, 0.0, &mut contacts).unwrap();
+            engine
+                .contacts_within(&robot, &Pose::IDENTITY, f64::INFINITY, 0.0, &mut contacts)
+                .unwrap();
         })
     });
     assert!(kept.bytes_max < 20 << 20, "{} bytes for all pairs", kept.bytes_max);
     let (mut expected, mut search) = (Vec::new(), BvhSearch::new(&mesh).unwrap());
-    search.within(&robot, &Pose::IDENTITY, f64::INFINITY, 0.0, &mut expected).unwrap();
+    search.contacts_within(&robot, &Pose::IDENTITY, f64::INFINITY, 0.0, &mut expected).unwrap();
     assert!(contacts.len() >= 120 && contacts == expected);
 }
 
@@ -342,7 +344,7 @@ fn places_of_two_robots_take_little_memory() {
     let (a, b, away) = (wave(1.0), wave(1.3), Pose::translation(9.0, 0.0, 0.0));
     let (mut pair, mut places) = (RobotPair::new(), Vec::new());
     let memory = allocation_counter::measure(|| {
-        pair.within(&a, &Pose::IDENTITY, &b, &away, 1000.0, &mut places).unwrap();
+        pair.contacts_within(&a, &Pose::IDENTITY, &b, &away, 1000.0, &mut places).unwrap();
     });
     assert!(places.len() > 10, "{}", places.len());
     // 490,000 pairs, each of 88 bytes as an answer.

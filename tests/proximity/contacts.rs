@@ -141,7 +141,7 @@ impl Passes {
 
 fn contacts(engine: &mut impl Proximity, robot: &Chain, margin: f64) -> Vec<Contact> {
     let mut out = Vec::new();
-    engine.within(robot, &Pose::IDENTITY, margin, 0.0, &mut out).unwrap();
+    engine.contacts_within(robot, &Pose::IDENTITY, margin, 0.0, &mut out).unwrap();
     out
 }
 
@@ -342,7 +342,7 @@ fn the_minimum_within_a_bound() {
                 touching += usize::from(least.distance == 0.0);
             }
             assert_eq!(engine.minimum_within(&robot, &pose, -1.0), Ok(None));
-            assert!(engine.within(&robot, &pose, f64::NAN, 0.0, &mut Vec::new()).is_err());
+            assert!(engine.contacts_within(&robot, &pose, f64::NAN, 0.0, &mut Vec::new()).is_err());
         }
     }
     assert!(within > 1000 && beyond > 300 && touching > 300, "{within} {beyond} {touching}");
@@ -359,14 +359,14 @@ fn the_contacts_of_all_answers_are_those_of_each() {
         let pose = if seed % 3 == 0 { random.pose(0.3) } else { Pose::IDENTITY };
         let mut search = BvhSearch::new(&mesh).unwrap();
         search.per_link(&robot, &pose, &mut answers).unwrap();
-        search.contacts(&robot, &pose, &answers, &mut together).unwrap();
-        let alone = answers.iter().map(|answer| search.contact(&robot, &pose, answer).unwrap());
+        search.contacts_of(&robot, &pose, &answers, &mut together).unwrap();
+        let alone = answers.iter().map(|answer| search.contact_of(&robot, &pose, answer).unwrap());
         assert_eq!(together, alone.collect::<Vec<_>>(), "{seed}");
         kinks += together.iter().filter(|contact| contact.kink).count();
         touching += together.iter().filter(|contact| contact.distance <= 0.0).count();
 
         let shorter = Chain::capsules(&[Vector::ZERO, Vector::X], &[0.1]).unwrap();
-        let result = search.contacts(&shorter, &pose, &answers, &mut together);
+        let result = search.contacts_of(&shorter, &pose, &answers, &mut together);
         assert!(result.is_err() && together.is_empty(), "{seed}");
     }
     assert!(kinks > 5 && touching > 100, "{kinks} {touching}");

@@ -164,7 +164,7 @@ impl Placed {
         let mut search = BvhSearch::new(&mesh).unwrap();
         search.per_link(&robot, &Pose::IDENTITY, &mut out).unwrap();
         let answer = out[number as usize];
-        Some((search.contact(&robot, &Pose::IDENTITY, &answer).unwrap(), answer, robot))
+        Some((search.contact_of(&robot, &Pose::IDENTITY, &answer).unwrap(), answer, robot))
     }
 
     fn extent(&self) -> f64 {

@@ -104,7 +104,7 @@ fn every_case_within_64_units() {
     for case in distance_cases().iter().filter(|case| case.is_link()) {
         let Some((found, robot, mesh)) = answer(case) else { continue };
         let engine = Exhaustive::<f64>::new(&mesh).unwrap();
-        let contact = engine.contact(&robot, &Pose::IDENTITY, &found).unwrap();
+        let contact = engine.contact_of(&robot, &Pose::IDENTITY, &found).unwrap();
         let Some(derivative) = engine.derivative(&robot, &Pose::IDENTITY, &found).unwrap() else {
             assert!(found.distance < 1e-12 * case.scale, "{}: no derivative at {found:?}", case.id);
             continue;
@@ -228,7 +228,7 @@ fn compare(seed: u64, mesh: &TriMesh, search: &mut BvhSearch, seen: &mut Seen) {
     let mut out = Vec::new();
     search.per_link(&robot, &pose, &mut out).unwrap();
     for answer in out {
-        let contact = search.contact(&robot, &pose, &answer).unwrap();
+        let contact = search.contact_of(&robot, &pose, &answer).unwrap();
         if answer.distance > 2.0 {
             continue;
         }
@@ -318,7 +318,7 @@ impl Only {
         let mut search = BvhSearch::new(&self.0).unwrap();
         search.per_link(robot, pose, &mut out).unwrap();
         let answer = out[of.link as usize];
-        let contact = search.contact(robot, pose, &answer).unwrap();
+        let contact = search.contact_of(robot, pose, &answer).unwrap();
         (contact.depth.unwrap(), contact.feature)
     }
 }

@@ -106,7 +106,7 @@ fn short_sections_are_their_discs() {
                     "way {way}: {found:?} for {}",
                     context()
                 );
-                let decision = search.tube_clears(
+                let decision = search.clears_tube(
                     tube,
                     &Pose::IDENTITY,
                     truth + OFF + 0.2 * tolerance,

@@ -145,7 +145,7 @@ fn robots_far_out_clear_exactly_what_their_distance_exceeds() {
             }
             let mut fresh = BvhSearch::new(&mesh).unwrap();
             assert_eq!(fresh.clears(&robot, &pose, margin).unwrap(), clears, "{seed}: {margin}");
-            fresh.within(&robot, &pose, margin, 0.0, &mut found).unwrap();
+            fresh.contacts_within(&robot, &pose, margin, 0.0, &mut found).unwrap();
             assert_eq!(found.is_empty(), clears, "{seed}: {margin}");
             clear += usize::from(clears);
         }

@@ -56,7 +56,7 @@ fn tubes_and_motions_at_rest_touch() {
         let [a, b] = [0, 1].map(|k| Tube::from(&robot(&pair, k)));
         for resolution in [1e-6, 1e-2].map(|share| share * size(&pair)) {
             tubes.forget();
-            let decision = tubes.tubes_clear(&a, &here, &b, &here, 0.0, resolution).unwrap();
+            let decision = tubes.clears_tubes(&a, &here, &b, &here, 0.0, resolution).unwrap();
             assert_eq!(decision, Decision::Contact, "{resolution}: {pair:?}");
             let found = tubes.clearance(&a, &here, &b, &here, resolution).unwrap();
             assert_eq!(found.lower, 0.0, "{resolution}: {pair:?}");

@@ -68,11 +68,11 @@ fn after_the_mesh_moved_an_answer_is_right_or_an_error() {
                 "{name}"
             );
             for answer in &before {
-                let contact = engine.contact(&robot, &pose, answer);
+                let contact = engine.contact_of(&robot, &pose, answer);
                 let derivative = engine.derivative(&robot, &pose, answer);
                 let proof = answer.certify(&robot, &pose, &now(&*engine));
                 let together =
-                    engine.contacts(&robot, &pose, std::slice::from_ref(answer), &mut contacts);
+                    engine.contacts_of(&robot, &pose, std::slice::from_ref(answer), &mut contacts);
                 assert_eq!(contact.is_err(), derivative.is_err(), "{name}, {seed}");
                 assert_eq!(contact.is_err(), proof.is_err(), "{name}, {seed}");
                 assert_eq!(contact.is_err(), together.is_err(), "{name}, {seed}");
@@ -92,11 +92,19 @@ fn after_the_mesh_moved_an_answer_is_right_or_an_error() {
                 }
             }
             engine.per_link(&robot, &pose, &mut after).unwrap();
-            engine.contacts(&robot, &pose, &after, &mut contacts).unwrap();
+            engine.contacts_of(&robot, &pose, &after, &mut contacts).unwrap();
             let of_moved = Exhaustive::<f64>::new(&moved_mesh).unwrap();
             for (answer, contact) in after.iter().zip(&contacts) {
-                assert_eq!(Ok(*contact), engine.contact(&robot, &pose, answer), "{name}, {seed}");
-                assert_eq!(Ok(*contact), of_moved.contact(&robot, &pose, answer), "{name}, {seed}");
+                assert_eq!(
+                    Ok(*contact),
+                    engine.contact_of(&robot, &pose, answer),
+                    "{name}, {seed}"
+                );
+                assert_eq!(
+                    Ok(*contact),
+                    of_moved.contact_of(&robot, &pose, answer),
+                    "{name}, {seed}"
+                );
                 let derivative = engine.derivative(&robot, &pose, answer);
                 assert_eq!(
                     derivative,
@@ -128,11 +136,11 @@ fn a_clone_keeps_the_mesh_that_it_has() {
     let moved: Vec<_> = mesh.vertices().iter().map(|v| v * 1.5).collect();
     let mut search = BvhSearch::new(&mesh).unwrap();
     let closest = search.minimum(&robot, &pose).unwrap();
-    let (kept, before) = (search.clone(), search.contact(&robot, &pose, &closest));
+    let (kept, before) = (search.clone(), search.contact_of(&robot, &pose, &closest));
     search.set_vertices(&moved).unwrap();
-    assert!(before.is_ok() && kept.contact(&robot, &pose, &closest) == before);
+    assert!(before.is_ok() && kept.contact_of(&robot, &pose, &closest) == before);
     assert_eq!(kept.vertices(), mesh.vertices());
-    assert!(is_unfit(&search.contact(&robot, &pose, &closest)));
+    assert!(is_unfit(&search.contact_of(&robot, &pose, &closest)));
     assert_eq!(search.clone().vertices(), moved);
     // A refused move leaves what was there.
     assert!(search.set_vertices(&moved[1..]).is_err());
@@ -141,8 +149,10 @@ fn a_clone_keeps_the_mesh_that_it_has() {
     let mut exhaustive = Exhaustive::<f32>::new(&mesh).unwrap();
     let kept = exhaustive.clone();
     exhaustive.set_vertices(&moved).unwrap();
-    assert!(kept.contact(&robot, &pose, &closest) == before && kept.vertices() == mesh.vertices());
-    assert!(is_unfit(&exhaustive.contact(&robot, &pose, &closest)));
+    assert!(
+        kept.contact_of(&robot, &pose, &closest) == before && kept.vertices() == mesh.vertices()
+    );
+    assert!(is_unfit(&exhaustive.contact_of(&robot, &pose, &closest)));
 }
 
 /// What is written as text and read again may be off by a unit in the last place in every number.
@@ -193,12 +203,12 @@ fn every_answer_fits() {
             let (mut answers, mut contacts) = (Vec::new(), Vec::new());
             engine.per_link(&robot, &pose, &mut answers).unwrap();
             answers.push(engine.minimum(&robot, &pose).unwrap());
-            engine.contacts(&robot, &pose, &answers, &mut contacts).unwrap();
+            engine.contacts_of(&robot, &pose, &answers, &mut contacts).unwrap();
             for &answer in &answers {
                 for answer in [answer, rounded(answer, random)] {
-                    let fits = engine.contact(&robot, &pose, &answer).map(|_| ());
+                    let fits = engine.contact_of(&robot, &pose, &answer).map(|_| ());
                     assert_eq!(fits, Ok(()), "{name}, {seed}: {answer:?}");
-                    let fits = engine.contacts(&robot, &pose, &[answer], &mut contacts);
+                    let fits = engine.contacts_of(&robot, &pose, &[answer], &mut contacts);
                     assert_eq!(fits, Ok(()), "{name}, {seed}: {answer:?}");
                     let proof = answer.certify(&robot, &pose, &mesh).map(|_| ());
                     assert_eq!(proof, Ok(()), "{name}, {seed}: {answer:?}");
@@ -234,10 +244,10 @@ fn what_does_not_fit_is_an_error() {
         let mut answers = Vec::new();
         search.per_link(&robot, &pose, &mut answers).unwrap();
         let refused = |answer: &LinkProximity| {
-            let contact = search.contact(&robot, &pose, answer).unwrap_err();
+            let contact = search.contact_of(&robot, &pose, answer).unwrap_err();
             // Compared as text: NaN is not itself.
             let text = contact.to_string();
-            let together = search.contacts(&robot, &pose, &[*answer], &mut Vec::new());
+            let together = search.contacts_of(&robot, &pose, &[*answer], &mut Vec::new());
             assert_eq!(search.derivative(&robot, &pose, answer).unwrap_err().to_string(), text);
             assert_eq!(answer.certify(&robot, &pose, &mesh).unwrap_err().to_string(), text);
             assert_eq!(together.unwrap_err().to_string(), text);
@@ -295,7 +305,7 @@ fn what_does_not_fit_is_an_error() {
         // Another pose, or another robot.
         let answer = search.minimum(&robot, &pose).unwrap();
         let turned = pose * Pose::translation(0.3, 0.1, 0.2);
-        let other = search.contact(&robot, &turned, &answer);
+        let other = search.contact_of(&robot, &turned, &answer);
         assert!(is_unfit(&other) || answer.distance == 0.0, "{seed}: {answer:?}");
     }
     assert!(changed > 1000 && alone > 500, "{changed} {alone}");
@@ -318,12 +328,12 @@ fn a_wall_may_move_where_the_answer_stays() {
         );
         let slid: Vec<_> = mesh.vertices().iter().map(|v| v + Vector::new(1.0, 0.5, 0.0)).collect();
         engine.set_vertices(&slid).unwrap();
-        let contact = engine.contact(&robot, &pose, &answer).unwrap();
+        let contact = engine.contact_of(&robot, &pose, &answer).unwrap();
         assert_eq!((contact.distance, contact.normal), (0.75, Some(Vector::Z)), "{name}");
         let away: Vec<_> =
             mesh.vertices().iter().map(|v| v + Vector::new(40.0, 0.0, 0.0)).collect();
         engine.set_vertices(&away).unwrap();
-        let found = engine.contact(&robot, &pose, &answer);
+        let found = engine.contact_of(&robot, &pose, &answer);
         assert!(
             matches!(found, Err(ProximityError::AnswerDoesNotFit { field: "on_mesh", off, .. }) if off > 30.0)
         );
@@ -334,7 +344,7 @@ fn a_wall_may_move_where_the_answer_stays() {
             .map(|&v| answer.on_mesh + about * (v - answer.on_mesh))
             .collect();
         engine.set_vertices(&turned).unwrap();
-        let found = engine.contact(&robot, &pose, &answer);
+        let found = engine.contact_of(&robot, &pose, &answer);
         assert!(
             matches!(found, Err(ProximityError::AnswerDoesNotFit { field: "distance", .. })),
             "{found:?}"

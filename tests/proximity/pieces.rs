@@ -258,10 +258,10 @@ fn a_margin_at_the_clearance_stays_undecided_in_time() {
     let mut search = BvhSearch::new(&wall(5.0)).unwrap();
     let higher = Pose::from_translation(Vector::Z * 6.0);
     let decide = |search: &mut BvhSearch, margin: f64, resolution: f64| {
-        let beside_wall = search.tube_clears(&tube, &Pose::IDENTITY, margin, resolution).unwrap();
+        let beside_wall = search.clears_tube(&tube, &Pose::IDENTITY, margin, resolution).unwrap();
         let mut pair = RobotPair::default();
         let beside_other =
-            pair.tubes_clear(&tube, &Pose::IDENTITY, &tube, &higher, margin, resolution).unwrap();
+            pair.clears_tubes(&tube, &Pose::IDENTITY, &tube, &higher, margin, resolution).unwrap();
         [beside_wall, beside_other]
     };
     assert_eq!(decide(&mut search, 4.0 - 3e-10, 0.0), [Decision::Undecided; 2]);

@@ -13,14 +13,14 @@ use parry_continuum::{Cap, Chain, ModifiedCylinder};
 use std::collections::HashMap;
 use std::time::{Duration, Instant};
 
-fn within(
+fn contacts_within(
     engine: &mut impl Proximity,
     robot: &Chain,
     margin: f64,
     prominence: f64,
 ) -> Vec<Contact> {
     let mut out = Vec::new();
-    engine.within(robot, &Pose::IDENTITY, margin, prominence, &mut out).unwrap();
+    engine.contacts_within(robot, &Pose::IDENTITY, margin, prominence, &mut out).unwrap();
     out
 }
 
@@ -440,7 +440,7 @@ fn a_prominence_is_a_number_of_at_least_0() {
     let mut out = within(&mut search, &robot, 1.0, 0.0);
     assert_eq!(out.len(), 1);
     for prominence in [-1.0, f64::NAN, f64::NEG_INFINITY] {
-        let error = search.within(&robot, &Pose::IDENTITY, 1.0, prominence, &mut out);
+        let error = search.contacts_within(&robot, &Pose::IDENTITY, 1.0, prominence, &mut out);
         assert!(
             matches!(error, Err(ProximityError::Negative { parameter: "prominence", .. })),
             "{prominence}: {error:?}"

@@ -32,7 +32,7 @@ fn time<E: Proximity>(
     let mut out = Vec::new();
     let start = Instant::now();
     for _ in 0..times {
-        engine(mesh).within(&robot, &Pose::IDENTITY, 3.0, 0.0, &mut out).unwrap();
+        engine(mesh).contacts_within(&robot, &Pose::IDENTITY, 3.0, 0.0, &mut out).unwrap();
     }
     let time = start.elapsed();
     assert_eq!(out.len(), 1);

@@ -206,7 +206,7 @@ fn every_place_where_two_robots_are_near_is_found_once() {
         let table: Vec<Vec<_>> = ones.iter().map(row).collect();
         for margin in [0.0, 0.3, 3.0, f64::INFINITY] {
             let mut found = Vec::new();
-            pair.within(&a, &poses[0], &b, &poses[1], margin, &mut found).unwrap();
+            pair.contacts_within(&a, &poses[0], &b, &poses[1], margin, &mut found).unwrap();
             let expected = places(&table, margin);
             assert_eq!(
                 found.iter().map(|place| place.links).collect::<Vec<_>>(),

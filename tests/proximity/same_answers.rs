@@ -107,8 +107,8 @@ fn earlier_queries_never_change_an_answer() {
                     assert_eq!(found, cold.clone().clearance(tube, &pose, tolerance).unwrap());
                     seen.take(&found);
                     let margin = [0.0, found.lower, found.upper * 1.1][random.below(3) as usize];
-                    let decided = warm.tube_clears(tube, &pose, margin, tolerance);
-                    assert_eq!(decided, cold.clone().tube_clears(tube, &pose, margin, tolerance));
+                    let decided = warm.clears_tube(tube, &pose, margin, tolerance);
+                    assert_eq!(decided, cold.clone().clears_tube(tube, &pose, margin, tolerance));
                     seen.clear += usize::from(decided == Ok(Decision::Clear));
                     seen.contact += usize::from(decided == Ok(Decision::Contact));
                 }
@@ -153,10 +153,10 @@ fn earlier_queries_never_change_an_answer_about_two_tubes() {
                     touching += 1
                 }
                 let margin = [0.0, found.lower, found.upper * 1.1][random.below(3) as usize];
-                let decided = warm.tubes_clear(a, &here, b, &pose, margin, tolerance);
+                let decided = warm.clears_tubes(a, &here, b, &pose, margin, tolerance);
                 assert_eq!(
                     decided,
-                    RobotPair::new().tubes_clear(a, &here, b, &pose, margin, tolerance)
+                    RobotPair::new().clears_tubes(a, &here, b, &pose, margin, tolerance)
                 );
             }
         }
@@ -267,7 +267,7 @@ fn a_contact_is_found_before_a_resolution_is_refused() {
         let Ok(tube) = Tube::from_samples(&points, &radii, None) else { continue };
         let pose = place(&mut random, &mesh, 1.0, false);
         let found = search.clearance(&tube, &pose, 1e-3).unwrap();
-        let decided = search.tube_clears(&tube, &pose, 0.0, 1e-4);
+        let decided = search.clears_tube(&tube, &pose, 0.0, 1e-4);
         if found.upper <= 0.0 {
             touching += 1;
             assert_eq!(decided, Ok(Decision::Contact), "{found:?}");

@@ -152,8 +152,8 @@ fn ask_both(
             _ => {
                 let reach = unit * random.between(0.0, 1.0);
                 let (mut found, mut expected) = (Vec::new(), Vec::new());
-                fresh.contacts(robots, reach, &mut expected).unwrap();
-                scene.contacts(robots, reach, &mut found).unwrap();
+                fresh.contacts_within(robots, reach, &mut expected).unwrap();
+                scene.contacts_within(robots, reach, &mut found).unwrap();
                 assert_eq!(found, expected);
                 visited.contacts += found.len();
             }

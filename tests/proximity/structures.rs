@@ -107,7 +107,7 @@ fn the_tightest_is_that_of_all_structures_in_turn() {
             }
 
             let mut contacts = Vec::new();
-            scene.contacts(&robots, 1.0, &mut contacts).unwrap();
+            scene.contacts_within(&robots, 1.0, &mut contacts).unwrap();
             for (number, near) in each.iter().enumerate() {
                 let of_it = contacts.iter().filter(|found| found.structure as usize == number);
                 let least = of_it.map(|found| found.contact.distance).fold(f64::INFINITY, f64::min);
@@ -231,7 +231,7 @@ fn who_is_at_fault_is_named() {
         assert_eq!(error.kind(), "pose_not_finite");
     }
     assert_eq!(scene.set_margin(7, None).unwrap_err().kind(), "no_such_structure");
-    assert!(scene.contacts(&robots, -1.0, &mut Vec::new()).is_err());
+    assert!(scene.contacts_within(&robots, -1.0, &mut Vec::new()).is_err());
 }
 
 /// What must be infinitely far away never is.

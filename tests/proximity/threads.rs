@@ -116,7 +116,7 @@ fn batches_of_tubes_end() {
             tubes.iter().map(|(tube, pose)| (tube, Pose::from_translation(away) * *pose)).collect();
         let (mut clearances, mut decisions) = (Vec::new(), Vec::new());
         search.clearance_batch(&asked, 0.5, &mut clearances).unwrap();
-        search.tube_clears_batch(&asked, 0.1, 0.01, &mut decisions).unwrap();
+        search.clears_tube_batch(&asked, 0.1, 0.01, &mut decisions).unwrap();
         assert!(clearances.len() == tubes.len() && decisions.len() == tubes.len());
     });
 }
@@ -139,7 +139,7 @@ fn ask_all(
             0 => assert_eq!(search.side(base), expected),
             1 => {
                 let mut contacts = Vec::new();
-                search.within(robot, pose, 1.0, 0.0, &mut contacts).unwrap();
+                search.contacts_within(robot, pose, 1.0, 0.0, &mut contacts).unwrap();
                 assert!(contacts.iter().all(|contact| contact.distance <= 1.0));
             }
             2 => {

@@ -139,7 +139,7 @@ fn judge(search: &mut BvhSearch, arcs: &Arc<Arcs>, model: Model, base: &Pose, se
                 continue;
             }
             seen.decisions += 1;
-            match search.tube_clears(tube, base, margin, 0.002) {
+            match search.clears_tube(tube, base, margin, 0.002) {
                 Ok(Decision::Undecided) => {
                     assert!(off.abs() <= 0.002 + 1e-5, "way {way}: undecided at {off} of {truth}");
                     seen.undecided += 1;
@@ -241,7 +241,7 @@ fn chains_are_tubes_of_straight_pieces() {
         {
             let right = if truth > margin { Decision::Clear } else { Decision::Contact };
             assert_eq!(
-                search.tube_clears(&tube, &base, margin, 1e-10).unwrap(),
+                search.clears_tube(&tube, &base, margin, 1e-10).unwrap(),
                 right,
                 "{truth} {margin}"
             );
@@ -290,13 +290,13 @@ fn batches_answer_as_single_queries_do() {
     let robots: Vec<_> = tubes.iter().map(|tube| (tube, base)).collect();
     let (mut clearances, mut decisions) = (Vec::new(), Vec::new());
     search.clearance_batch(&robots, 0.01, &mut clearances).unwrap();
-    search.tube_clears_batch(&robots, 0.3, 0.01, &mut decisions).unwrap();
+    search.clears_tube_batch(&robots, 0.3, 0.01, &mut decisions).unwrap();
     for ((tube, found), decision) in tubes.iter().zip(&clearances).zip(&decisions) {
         let found = found.as_ref().unwrap();
         let alone = search.clearance(tube, &base, 0.01).unwrap();
         assert!(found.lower <= alone.upper && alone.lower <= found.upper, "{found:?} {alone:?}");
         assert!(found.upper - found.lower <= 0.01);
-        assert_eq!(*decision, search.tube_clears(tube, &base, 0.3, 0.01));
+        assert_eq!(*decision, search.clears_tube(tube, &base, 0.3, 0.01));
     }
     assert!(decisions.contains(&Ok(Decision::Clear)) && decisions.contains(&Ok(Decision::Contact)));
     assert_eq!(
@@ -316,12 +316,12 @@ fn each_tube_of_a_batch_has_a_result_of_its_own() {
     let far = Pose::from_translation(Vector::X * 1e151);
     let (mut clearances, mut decisions) = (Vec::new(), Vec::new());
     let (alone, decision) =
-        (search.clearance(&good, &base, 0.01), search.tube_clears(&good, &base, 0.1, 0.01));
+        (search.clearance(&good, &base, 0.01), search.clears_tube(&good, &base, 0.1, 0.01));
     for round in 0..40 {
         let mut robots: Vec<_> = (0..64).map(|_| (&good, base)).collect();
         robots[20 + round] = (&good, far);
         search.clearance_batch(&robots, 0.01, &mut clearances).unwrap();
-        search.tube_clears_batch(&robots, 0.1, 0.01, &mut decisions).unwrap();
+        search.clears_tube_batch(&robots, 0.1, 0.01, &mut decisions).unwrap();
         for place in 0..64 {
             let (found, decided) = (&clearances[place], &decisions[place]);
             if place == 20 + round {
@@ -422,7 +422,7 @@ fn a_tube_that_cannot_be_asked_about_is_refused() {
     let base = ventricle::entry();
     let refused = search.clearance(&broken, &base, 0.01);
     assert!(matches!(refused, Err(ProximityError::CurveNotFinite { .. })), "{refused:?}");
-    let refused = search.tube_clears(&broken, &base, 0.01, 0.1);
+    let refused = search.clears_tube(&broken, &base, 0.01, 0.1);
     assert!(matches!(refused, Err(ProximityError::CurveNotFinite { .. })), "{refused:?}");
     assert!(matches!(broken.verify(10), Err(RobotError::CurveNotFinite { .. })));
 
@@ -435,7 +435,7 @@ fn a_tube_that_cannot_be_asked_about_is_refused() {
         (Pose::IDENTITY, 1.0, -0.1),
         (Pose::IDENTITY, 1.0, f64::NAN),
     ] {
-        assert!(search.tube_clears(&tube, &pose, margin, resolution).is_err());
+        assert!(search.clears_tube(&tube, &pose, margin, resolution).is_err());
     }
     // Samples that are refused leave the tube as it was.
     search.forget();
@@ -485,7 +485,7 @@ fn a_robot_that_is_off_by_the_stated_error_is_within_the_bounds() {
             found.lower <= truth.upper && truth.lower <= found.upper,
             "{found:?} {truth:?} {error}"
         );
-        let cleared = search.tube_clears(&doubtful, &Pose::IDENTITY, truth.upper, 1e-3);
+        let cleared = search.clears_tube(&doubtful, &Pose::IDENTITY, truth.upper, 1e-3);
         assert!(!matches!(cleared, Ok(Decision::Clear)), "{truth:?} {error}");
         near += usize::from(0.0 < truth.lower && truth.lower < 2.0 * error);
     }
@@ -563,7 +563,7 @@ fn rotations_that_scale_are_refused_by_all() {
             assert!(is_refused(all.minimum(&chain, &pose).unwrap_err()), "{length}");
             assert!(is_refused(search.clearance(&tube, &pose, 1.0).unwrap_err()), "{length}");
             assert!(
-                is_refused(search.tube_clears(&tube, &pose, 1.0, 1.0).unwrap_err()),
+                is_refused(search.clears_tube(&tube, &pose, 1.0, 1.0).unwrap_err()),
                 "{length}"
             );
             assert!(is_refused(found.certify(&chain, &pose, &mesh).unwrap_err()), "{length}");

@@ -37,7 +37,7 @@ fn a_joint_next_to_a_face_leaves_its_direction_open() {
         let tube = Tube::from_samples(&points, &radii, tangents).unwrap();
         let found = finest(&mut search, &tube, 1e-6);
         assert!(found.lower <= 0.02 && 0.02 - 2e-6 <= found.upper, "{found:?}");
-        let cleared = search.tube_clears(&tube, &Pose::IDENTITY, 0.0293, 0.1);
+        let cleared = search.clears_tube(&tube, &Pose::IDENTITY, 0.0293, 0.1);
         assert!(!matches!(cleared, Ok(Decision::Clear)), "{cleared:?}");
         // Directions that are given leave nothing open.
         assert_eq!(tangents.is_some(), found.upper - found.lower < 1e-5, "{found:?}");
@@ -159,7 +159,7 @@ fn judge(random: &mut Random, rounds: usize) -> Seen {
             seen.near += usize::from(found.lower > 0.5 * truth.lower);
             search.forget();
             let margin = truth.upper;
-            let decision = search.tube_clears(&tube, &Pose::IDENTITY, margin, 1e-3 * gap);
+            let decision = search.clears_tube(&tube, &Pose::IDENTITY, margin, 1e-3 * gap);
             let is_misjudged = match decision {
                 Ok(Decision::Clear) => true,
                 Ok(_) => {
@@ -171,7 +171,7 @@ fn judge(random: &mut Random, rounds: usize) -> Seen {
             };
             let below = truth.lower * (1.0 - 1e-9);
             search.forget();
-            let touches = search.tube_clears(&tube, &Pose::IDENTITY, below, 1e-3 * gap);
+            let touches = search.clears_tube(&tube, &Pose::IDENTITY, below, 1e-3 * gap);
             let is_misjudged =
                 is_misjudged || truth.lower > 0.0 && touches == Ok(Decision::Contact);
             if is_wrong || is_misjudged {

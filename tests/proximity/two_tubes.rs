@@ -107,7 +107,7 @@ fn tubes_are_as_near_as_their_discs() {
                 if margin < 0.0 {
                     continue;
                 }
-                match pair.tubes_clear(a, &here, b, &pose, margin, 0.003) {
+                match pair.clears_tubes(a, &here, b, &pose, margin, 0.003) {
                     Ok(decision) => {
                         let right = if off < 0.0 { Decision::Clear } else { Decision::Contact };
                         assert_eq!(decision, right, "{round}, way {way}: {margin} of {truth}");
@@ -222,7 +222,7 @@ fn what_is_wrong_is_named() {
     assert!(error.kind() == "pose_not_finite" && error.to_string().contains("pose_b"), "{error}");
     let error = ask(&Pose::from_translation(Vector::X * 1e151), &here, 1.0).unwrap_err();
     assert!(error.kind() == "tube_out_of_range" && error.to_string().contains("pose_a"), "{error}");
-    let margin = pair.tubes_clear(&tube, &here, &tube, &here, f64::NAN, 0.1).unwrap_err();
+    let margin = pair.clears_tubes(&tube, &here, &tube, &here, f64::NAN, 0.1).unwrap_err();
     assert!(margin.to_string().contains("margin"), "{margin}");
 }
 

@@ -5,13 +5,13 @@
 //! u(a): w is the tube's share of their stiffness times its curvature, and u(a) a unit vector that
 //! turns with the tube's angle a. So the vector changes at most at the rate b = sum of w |a'|, and
 //! never is farther than b / 2 from what it is at half time. That bounds curvatures and steps for
-//! [`bending_speed`]. Its second derivative is at most the sum of w |a'|^2, for [`bending_course`].
+//! [`bending_speed`]. Its second derivative is at most the sum of w |a'|^2, for [`bending_displacement`].
 
 use crate::ctr::{Curve, Joints, Robot};
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::{
-    BendingRates, BendingSection, Course, Motion, RobotError, Speed, Tube, TubeSection,
-    bending_course, bending_speed,
+    BendingRates, BendingSection, DisplacementBound, Motion, RobotError, Speed, Tube, TubeSection,
+    bending_displacement, bending_speed,
 };
 use std::f64::consts::TAU;
 
@@ -230,7 +230,12 @@ impl Motion for JointMotion {
         bending_speed(&self.rates, section, shares)
     }
 
-    fn course(&self, section: usize, shares: [Real; 2], times: [Real; 2]) -> Option<Course> {
+    fn displacement(
+        &self,
+        section: usize,
+        shares: [Real; 2],
+        times: [Real; 2],
+    ) -> Option<DisplacementBound> {
         if section >= self.radii.len() {
             return None;
         }
@@ -244,6 +249,6 @@ impl Motion for JointMotion {
             let start: Real = lengths[..section].iter().sum();
             self.base * curve.at(start + lengths[section] * share).0
         };
-        Some(bending_course(&self.rates, &self.bends, section, shares, times, point))
+        Some(bending_displacement(&self.rates, &self.bends, section, shares, times, point))
     }
 }

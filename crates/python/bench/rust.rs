@@ -96,7 +96,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let one = time(robots, || {
         for points in &centrelines {
             chain.set_centreline(points, &radii)?;
-            search.within(&chain, &pose, 1.0, 0.0, &mut contacts)?;
+            search.contacts_within(&chain, &pose, 1.0, 0.0, &mut contacts)?;
         }
         Ok(())
     })?;

@@ -17,7 +17,7 @@ from parry_continuum import Decision, load
 def audit(mesh, points, radius, resolution):
     """A row for each leak: the step, its kind, the segment, the place on the wall, and how deep it is."""
     rows = []
-    contacts = mesh.within(points, radius, 0.0)
+    contacts = mesh.contacts_within(points, radius, 0.0)
     for step in np.flatnonzero(np.diff(contacts.offsets)):
         of_step = slice(*contacts.offsets[step : step + 2])
         deepest = of_step.start + np.argmin(contacts.depth[of_step])

@@ -113,7 +113,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                 Side::Undecided => 0.0,
                 Side::Outside => 1.0,
             });
-            search.within(&chain, &pose, MARGIN, 0.0, &mut contacts)?;
+            search.contacts_within(&chain, &pose, MARGIN, 0.0, &mut contacts)?;
             out.push(contacts.len() as f64);
             for contact in &contacts {
                 out.extend([contact.fraction, contact.distance, contact.depth.unwrap_or(f64::NAN)]);
@@ -154,7 +154,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             [Chain::from_centreline(&points, &radii)?, Chain::from_centreline(&end, &radii)?];
         RobotPair::new().per_link(&a, &pose, &b, &Pose::IDENTITY, &mut between)?;
         add_between(&mut out, &between);
-        RobotPair::new().within(&a, &pose, &b, &Pose::IDENTITY, 4.0, &mut between)?;
+        RobotPair::new().contacts_within(&a, &pose, &b, &Pose::IDENTITY, 4.0, &mut between)?;
         out.push(between.len() as f64);
         add_between(&mut out, &between);
         for motion in [

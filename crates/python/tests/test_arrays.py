@@ -61,7 +61,7 @@ def test_no_robots() -> None:
     none = np.zeros((0, 5, 3))
     assert MESH.distance(none, 0.1).shape == (0,)
     assert MESH.per_link(none, 0.1).on_robot.shape == (0, 4, 3)
-    assert MESH.within(none, 0.1, 1.0).offsets.tolist() == [0]
+    assert MESH.contacts_within(none, 0.1, 1.0).offsets.tolist() == [0]
     assert MESH.clearance(none, 0.1, 0.1).status.shape == (0,)
     assert MESH.distance_and_gradient(none, 0.1).points.shape == (0, 5, 3)
     assert MESH.clears_motion(none, none, 0.1, 0.1, 0.1).interval.shape == (0, 2)
@@ -86,7 +86,7 @@ def test_segments_without_length() -> None:
     assert_array_equal(links.triangle >= 0, has_length)
     assert np.isnan(links.on_robot[~has_length]).all()
     assert_array_equal(links.distance[has_length], MESH.per_link(ROBOTS[0, :5], 0.1).distance)
-    assert set(MESH.within(points, 0.1, 20.0).segment) <= set(np.flatnonzero(has_length))
+    assert set(MESH.contacts_within(points, 0.1, 20.0).segment) <= set(np.flatnonzero(has_length))
 
 
 ONE, MANY = ROBOTS[0], ROBOTS
@@ -118,7 +118,7 @@ ONE, MANY = ROBOTS[0], ROBOTS
         (lambda: MESH.per_link(ONE[:1], 0.1), "too_few_points", "at least 2"),
         (lambda: MESH.per_link(MANY[:, :1], 0.1), "too_few_points", "robot 0"),
         (lambda: MESH.clears(ONE, 0.1, -1.0), "negative", "`margin`"),
-        (lambda: MESH.within(ONE, 0.1, np.nan), "negative", "`margin`"),
+        (lambda: MESH.contacts_within(ONE, 0.1, np.nan), "negative", "`margin`"),
         (lambda: MESH.clearance(ONE, 0.1, -1.0), "negative", "`tolerance`"),
         (lambda: MESH.clearance(MANY, 0.1, np.nan), "negative", "`tolerance`"),
         (lambda: MESH.clearance(ONE, 0.1, 0.1, tangents=np.ones((3, 3))), "bad_shape", "two directions"),
@@ -151,7 +151,7 @@ def test_what_is_at_fault() -> None:
         MESH.distance(points[17], 0.1)
     assert (raised.value.robot, raised.value.index) == (None, 3)
     with pytest.raises(ContinuumError) as raised:
-        MESH.tube_clears(MANY[0], 0.1, MESH.clearance(MANY[0], 0.1, 0.0).lower, 1e-300)
+        MESH.clears_tube(MANY[0], 0.1, MESH.clearance(MANY[0], 0.1, 0.0).lower, 1e-300)
     assert raised.value.kind == "tolerance_too_fine"
     assert raised.value.possible is not None and raised.value.possible > 1e-300
 

@@ -44,7 +44,7 @@ def python(mesh: Mesh, points: Array, end: Array, radii: Array, pose: Array) -> 
         links = mesh.per_link(points, radii, pose=pose, caps=caps)
         proof = mesh.certify(points, radii, links, pose=pose, caps=caps)
         inside = mesh.clears_inside(points, radii, MARGIN, pose=pose, caps=caps)
-        contacts = mesh.within(points, radii, MARGIN, pose=pose, caps=caps)
+        contacts = mesh.contacts_within(points, radii, MARGIN, pose=pose, caps=caps)
         assert_array_equal(inside.clears, mesh.clears(points, radii, MARGIN, pose=pose, caps=caps))
         assert_array_equal(closest.distance, mesh.distance(points, radii, pose=pose, caps=caps))
         for k, row in enumerate(out):
@@ -81,7 +81,7 @@ def python(mesh: Mesh, points: Array, end: Array, radii: Array, pose: Array) -> 
         segments = RobotPair().per_link(*two, pose_a=pose[k])
         has_length = segments.segments[:, 0] >= 0
         row += [np.column_stack([segments.distance, segments.on_first, segments.on_second, segments.arc_lengths])[has_length]]
-        places = RobotPair().within(*two, 4.0, pose_a=pose[k])
+        places = RobotPair().contacts_within(*two, 4.0, pose_a=pose[k])
         row += [len(places.distance)]
         row += [np.column_stack([places.distance, places.on_first, places.on_second, places.arc_lengths])]
         for motion in motions:
@@ -127,7 +127,7 @@ def test_one_is_as_many() -> None:
         # One radius and one pose for all.
         assert mesh.distance(p, 0.2, pose=t) == mesh.distance(points, 0.2, pose=t)[k]
         assert mesh.distance(p, r) == mesh.distance(points, r)[k]
-        one = mesh.within(p, r, 1.0, pose=t)
-        many = mesh.within(points, radii, 1.0, pose=pose)
+        one = mesh.contacts_within(p, r, 1.0, pose=t)
+        many = mesh.contacts_within(points, radii, 1.0, pose=pose)
         for a, b in zip(one[:9], many[:9]):
             assert_array_equal(a, b[many.offsets[k] : many.offsets[k + 1]])

@@ -99,12 +99,12 @@ def test_per_structure() -> None:
 
 def test_contacts() -> None:
     scene, back = made(), np.linalg.inv(AWAY)
-    found = scene.contacts([(A, 0.1, POSES), (B, 0.1)], 1.0)
+    found = scene.contacts_within([(A, 0.1, POSES), (B, 0.1)], 1.0)
     count = 0
     for structure, (mesh, pose) in enumerate([(WALL, np.eye(4)), (VESSEL, np.eye(4)), (VESSEL, back)]):
         for robot, (points, poses_of) in enumerate([(A, POSES), (B, np.tile(np.eye(4), (60, 1, 1)))]):
             for k in range(60):
-                own = mesh.within(points[k], 0.1, 1.0, pose=pose @ poses_of[k])
+                own = mesh.contacts_within(points[k], 0.1, 1.0, pose=pose @ poses_of[k])
                 rows = np.arange(*found.offsets[k : k + 2])
                 rows = rows[(found.structure[rows] == structure) & (found.robot[rows] == robot)]
                 assert (found.batch[rows] == k).all()
@@ -119,7 +119,7 @@ def test_contacts() -> None:
                 np.testing.assert_allclose(found.normal[rows], own.normal @ there[:3, :3].T, atol=1e-9)
                 count += len(rows)
     assert count == len(found.distance) > 50 and set(found.structure) == {0, 1, 2}
-    one = scene.contacts([(A[7], 0.1, POSES[7]), (B[7], 0.1)], 1.0)
+    one = scene.contacts_within([(A[7], 0.1, POSES[7]), (B[7], 0.1)], 1.0)
     assert_array_equal(one.distance, found.distance[slice(*found.offsets[7:9])])
 
 

@@ -60,8 +60,8 @@ def test_turns() -> None:
         assert last < found.upper - found.lower < unknown.upper - unknown.lower
         last = found.upper - found.lower
     margin = true - 0.25 * RADIUS
-    assert FLOOR.tube_clears(points, RADIUS, margin, 0.01, deviation=0.01) is Decision.UNDECIDED
-    assert FLOOR.tube_clears(points, RADIUS, margin, 0.01, deviation=0.01, turn=0.05) is Decision.CLEAR
+    assert FLOOR.clears_tube(points, RADIUS, margin, 0.01, deviation=0.01) is Decision.UNDECIDED
+    assert FLOOR.clears_tube(points, RADIUS, margin, 0.01, deviation=0.01, turn=0.05) is Decision.CLEAR
     for turn in (-0.1, np.nan):
         with pytest.raises(ContinuumError, match="`turn`"):
             FLOOR.clearance(points, RADIUS, 0.1, turn=turn)
@@ -92,13 +92,13 @@ def test_two_tubes() -> None:
     assert widths[1] < widths[2] < widths[0] and widths[1] <= 1e-3 and widths[1] < widths[3] < widths[4]
     for margin, decision in [(2 * true - 0.3, Decision.CLEAR), (2 * true + 0.3, Decision.CONTACT)]:
         ends = {"tangents_a": tangents, "tangents_b": tangents * mirror}
-        assert pair.tubes_clear(*given, margin, 0.01, **ends) is decision
+        assert pair.clears_tubes(*given, margin, 0.01, **ends) is decision
     shifts = np.eye(4) + np.zeros((30, 4, 4))
     shifts[:, 2, 3] = np.linspace(0, 5, 30)
     batch = (np.stack([points] * 30), RADIUS, points * mirror, RADIUS)
     many = pair.clearance(*batch, 0.2, pose_a=shifts)
     assert (many.lower <= 2 * true + shifts[:, 2, 3]).all() and (2 * true + shifts[:, 2, 3] <= many.upper).all()
-    decided = pair.tubes_clear(*batch, 2 * true + 2.5, 0.3, pose_a=shifts)
+    decided = pair.clears_tubes(*batch, 2 * true + 2.5, 0.3, pose_a=shifts)
     assert decided[0] == Decision.CONTACT and decided[-1] == Decision.CLEAR
     spoilt = np.stack([points] * 3)
     spoilt[1, 5] = np.nan
@@ -170,8 +170,8 @@ def test_what_was_asked_before_does_not_count() -> None:
 def test_decisions() -> None:
     points, tangents, true = arc(40)
     for margin, decision in [(true - 0.8, Decision.CLEAR), (true + 0.8, Decision.CONTACT)]:
-        assert FLOOR.tube_clears(points, RADIUS, margin, 0.01, tangents=tangents) is decision
-        assert FLOOR.tube_clears(np.stack([points] * 3), RADIUS, margin, 0.01, deviation=0.01).tolist() == [decision] * 3
+        assert FLOOR.clears_tube(points, RADIUS, margin, 0.01, tangents=tangents) is decision
+        assert FLOOR.clears_tube(np.stack([points] * 3), RADIUS, margin, 0.01, deviation=0.01).tolist() == [decision] * 3
 
 
 def test_refused() -> None:

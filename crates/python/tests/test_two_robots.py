@@ -153,7 +153,7 @@ def test_every_place() -> None:
     """Pairs of segments of which no neighbours are closer, by all pairs of segments."""
     random = np.random.default_rng(45)
     a, b = np.cumsum(random.normal(size=(2, 20, 8, 3)), axis=2)
-    found, margin, several = RobotPair().within(a, 0.1, b, 0.1, 3.0, caps="capsules"), 3.0, 0
+    found, margin, several = RobotPair().contacts_within(a, 0.1, b, 0.1, 3.0, caps="capsules"), 3.0, 0
     for k in range(20):
         distance = np.array(
             [[between(a[k, i : i + 2], 0.1, b[k, j : j + 2], 0.1, caps="capsules").distance for j in range(7)] for i in range(7)]
@@ -267,7 +267,7 @@ def test_a_robot_moves_beside_itself() -> None:
 @pytest.mark.parametrize(
     ("ask", "kind", "text"),
     [
-        (lambda r: RobotPair().within(r[0], 0.1, r[1], 0.1, -1.0), "negative", "`margin`"),
+        (lambda r: RobotPair().contacts_within(r[0], 0.1, r[1], 0.1, -1.0), "negative", "`margin`"),
         (lambda r: RobotPair().per_link(r[:3], 0.1, r[:4], 0.1), "bad_shape", "there are 3 robots beside 4"),
         (lambda r: RobotPair().minimum(r[0], -0.1, r[1], 0.1), "bad_radius", "radius 0"),
         (lambda r: between(r[:3], 0.1, r[:4], 0.1), "bad_shape", "there are 3 robots beside 4"),

@@ -14,10 +14,10 @@
 
 use super::search::{BvhSearch, Context};
 use crate::answer::{Clearance, Decision, ProximityError, TubePiece};
-use crate::pieces::{PendingPiece, PlacedTube, TubeInMesh};
-use crate::query::clearance::{TubeMemory, clearance, tube_clears};
+use crate::curve::Tube;
+use crate::query::clearance::{TubeMemory, clearance, clears_tube};
 use crate::query::{check_decision, check_not_negative};
-use crate::robot::Tube;
+use crate::refine::{PendingPiece, PlacedTube, TubeInMesh};
 use parry3d_f64::math::{Pose, Real};
 
 impl BvhSearch {
@@ -110,8 +110,8 @@ impl BvhSearch {
     /// let mut search = BvhSearch::new(&TriMesh::new(vertices, triangles)?)?;
     /// let arc: Vec<_> = (0..=60).map(|k| f64::from(k) / 60.0).map(|a| Vector::new(a.cos(), 0.0, a.sin()) * 30.0).collect();
     /// let tube = Tube::from_samples(&arc, &[1.0; 60], None)?;
-    /// assert_eq!(search.tube_clears(&tube, &Pose::IDENTITY, 15.0, 1e-3)?, Decision::Clear);
-    /// assert_eq!(search.tube_clears(&tube, &Pose::IDENTITY, 20.0, 1e-3)?, Decision::Contact);
+    /// assert_eq!(search.clears_tube(&tube, &Pose::IDENTITY, 15.0, 1e-3)?, Decision::Clear);
+    /// assert_eq!(search.clears_tube(&tube, &Pose::IDENTITY, 20.0, 1e-3)?, Decision::Contact);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///
@@ -119,7 +119,7 @@ impl BvhSearch {
     /// As [`clearance`](Self::clearance); or the margin or the resolution is negative or NaN; or
     /// samples do not allow a decision at that resolution. A contact that is found is reported
     /// before any error about samples.
-    pub fn tube_clears(
+    pub fn clears_tube(
         &mut self,
         tube: &Tube,
         pose: &Pose,
@@ -127,7 +127,7 @@ impl BvhSearch {
         resolution: Real,
     ) -> Result<Decision, ProximityError> {
         check_decision(margin, resolution)?;
-        self.context().tube_clears(tube, pose, margin, resolution)
+        self.context().clears_tube(tube, pose, margin, resolution)
     }
 
     /// [`clearance`](Self::clearance) for many tubes, on all cores.
@@ -165,13 +165,13 @@ impl BvhSearch {
         Ok(())
     }
 
-    /// [`tube_clears`](Self::tube_clears) for many tubes, on all cores.
+    /// [`clears_tube`](Self::clears_tube) for many tubes, on all cores.
     ///
     /// Writes one result per tube to `out`, in order.
     ///
     /// # Errors
     /// The margin or the resolution is negative or NaN; `out` is then empty.
-    pub fn tube_clears_batch(
+    pub fn clears_tube_batch(
         &mut self,
         tubes: &[(&Tube, Pose)],
         margin: Real,
@@ -185,7 +185,7 @@ impl BvhSearch {
             out,
             || Decision::Undecided,
             |context, (tube, pose), out| {
-                *out = context.tube_clears(tube, pose, margin, resolution);
+                *out = context.clears_tube(tube, pose, margin, resolution);
             },
         );
         Ok(())
@@ -242,7 +242,7 @@ impl<'a> Context<'a> {
         Ok(known.map_or(answer, |known| known.and(answer, tolerance)))
     }
 
-    fn tube_clears(
+    fn clears_tube(
         self,
         tube: &'a Tube,
         pose: &Pose,
@@ -252,12 +252,12 @@ impl<'a> Context<'a> {
         let (mut tube, memory) = self.tube_in_mesh(tube, pose)?;
         let placed = tube.tube;
         let Some(less_known) = placed.without_turn() else {
-            return tube_clears(&mut tube, memory, margin, resolution);
+            return clears_tube(&mut tube, memory, margin, resolution);
         };
         tube.tube = less_known;
-        let decision = tube_clears(&mut tube, memory, margin, resolution);
+        let decision = clears_tube(&mut tube, memory, margin, resolution);
         tube.tube = placed;
-        Decision::better_of(decision, || tube_clears(&mut tube, memory, margin, resolution))
+        Decision::better_of(decision, || clears_tube(&mut tube, memory, margin, resolution))
     }
 
     /// Places the tube in the mesh's frame and returns it with the warm start of tube queries.

@@ -4,9 +4,10 @@
 
 use super::search::{BvhSearch, Context, Remembered};
 use crate::answer::{MotionAnswer, MotionClearance, ProximityError};
+use crate::motion::{Motion, ShapePath};
 use crate::query::motion::{MarginQuery, MotionSearch};
 use crate::query::{check_decision, check_not_negative};
-use crate::robot::{Chain, Motion, ShapePath};
+use crate::robot::Chain;
 use parry3d_f64::math::{Real, Vector};
 
 impl BvhSearch {

@@ -9,12 +9,14 @@
 
 use super::search::BvhSearch;
 use crate::answer::{Decision, Proof, ProximityError};
+use crate::curve::Tube;
 use crate::engine::Proximity;
+use crate::motion::Motion;
 use crate::pair::PlacedRobot;
-use crate::pieces::PlacedTube;
 use crate::query::check_decision;
 use crate::query::proof::{Kind, PlaneSearch, Shape, motion_proof, tube_shape, write_proof};
-use crate::robot::{Chain, Motion, Tube};
+use crate::refine::PlacedTube;
+use crate::robot::Chain;
 use fearless_simd::Level;
 use parry3d_f64::math::{Pose, Real};
 
@@ -72,7 +74,7 @@ impl BvhSearch {
     /// most `resolution`.
     ///
     /// # Errors
-    /// As [`tube_clears`](Self::tube_clears).
+    /// As [`clears_tube`](Self::clears_tube).
     pub fn prove_tube(
         &mut self,
         tube: &Tube,
@@ -80,7 +82,7 @@ impl BvhSearch {
         margin: Real,
         resolution: Real,
     ) -> Result<Option<Proof>, ProximityError> {
-        if self.tube_clears(tube, pose, margin, resolution)? != Decision::Clear {
+        if self.clears_tube(tube, pose, margin, resolution)? != Decision::Clear {
             return Ok(None);
         }
         let placed = PlacedTube::new(tube, pose, self.prepared().hierarchy.reach)?;

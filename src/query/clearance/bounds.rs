@@ -1,7 +1,7 @@
 //! Bounds on the clearance of a tube: best first.
 //!
 //! # Definitions
-//! - `lower`, `doubt`, `found` and rank of a piece: see `pieces::best_first`.
+//! - `lower`, `doubt`, `found` and rank of a piece: see `refine::best_first`.
 //! - `upper`: the least `found` of all pieces that step 2 took.
 //! - `aim`: the permitted gap between the bounds.
 //! - `hint`: an upper bound on the clearance, from a place of an earlier query or from any measured
@@ -23,13 +23,13 @@
 //! looser bounds.
 //!
 //! **Proof.** Steps 2 to 4 depend only on the sequence of divisions, which is the same for every
-//! hint (`pieces::best_first`). The tolerance decides only when step 3 stops. A piece that cannot
+//! hint (`refine::best_first`). The tolerance decides only when step 3 stops. A piece that cannot
 //! be divided keeps its `lower` and never stops the sequence. Along the sequence no `lower` falls
 //! and `upper` never rises.
 
 use super::memory::TubeMemory;
 use crate::answer::{Clearance, ProximityError};
-use crate::pieces::{
+use crate::refine::{
     Examined, MeshUpperBound, PendingPiece, PendingPieces, PieceState, Refinable, TubeInMesh,
     UpperBound,
 };

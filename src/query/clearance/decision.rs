@@ -14,12 +14,12 @@
 //! # Claim
 //! A finer resolution never revokes a decision.
 //!
-//! **Proof.** The sequence of divisions does not depend on the resolution (`pieces::best_first`).
+//! **Proof.** The sequence of divisions does not depend on the resolution (`refine::best_first`).
 
 use super::bounds::MOST_DIVISIONS;
 use super::memory::TubeMemory;
 use crate::answer::{Decision, ProximityError};
-use crate::pieces::{
+use crate::refine::{
     Body, Examined, MOST_LEVELS, PendingPiece, PendingPieces, PieceState, Refinable, TubeInMesh,
     UpperBound,
 };
@@ -29,7 +29,7 @@ use parry3d_f64::math::Real;
 ///
 /// # Errors
 /// The curve of the tube is not finite, or its samples allow no decision at that resolution.
-pub(crate) fn tube_clears(
+pub(crate) fn clears_tube(
     tube: &mut TubeInMesh,
     memory: &mut TubeMemory,
     margin: Real,

@@ -1,6 +1,6 @@
 //! The state that warm-starts the next query about a tube.
 
-use crate::pieces::{BoundingBody, MeshUpperBound, PendingPieces, Piece};
+use crate::refine::{BoundingBody, MeshUpperBound, PendingPieces, Piece};
 use parry3d_f64::math::Real;
 
 /// The place that realised the last answer.

@@ -5,5 +5,5 @@ mod decision;
 mod memory;
 
 pub(crate) use bounds::{BoundedClearance, BoundsSearch, Hint, clearance};
-pub(crate) use decision::{Wanted, clears_pieces, tube_clears};
+pub(crate) use decision::{Wanted, clears_pieces, clears_tube};
 pub(crate) use memory::TubeMemory;

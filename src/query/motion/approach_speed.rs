@@ -12,8 +12,9 @@
 //!    like a disc.
 
 use crate::distance::Scalar;
-use crate::pieces::SectionRange;
-use crate::robot::{Motion, RobotError, check_speed};
+use crate::motion::{Motion, check_speed};
+use crate::refine::SectionRange;
+use crate::robot::RobotError;
 use parry3d_f64::math::Real;
 
 /// Upper bounds on the speed of the points of a range of a section.

@@ -1,7 +1,9 @@
 //! The shape of a moving robot at the current time.
 
 use super::approach_bound::{half_length, midpoint};
-use crate::robot::{Motion, MotionDrift, RobotError, SectionSignature, Tube};
+use crate::curve::Tube;
+use crate::motion::{Motion, MotionDrift, SectionSignature};
+use crate::robot::RobotError;
 use parry3d_f64::math::{Pose, Real};
 
 /// The current shape of a moving robot; its memory is reused.

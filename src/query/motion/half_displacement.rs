@@ -2,7 +2,7 @@
 //! remains.
 //!
 //! # Definitions
-//! - A motion may bound the displacement of a piece (`robot::motion::course`). Relative to the
+//! - A motion may bound the displacement of a piece (`motion::course`). Relative to the
 //!   middle shape, every point moves by a vector in the triangle (0, a, b), up to an error of
 //!   `off`.
 //! - n: the normal of a plane that separates the body in the middle shape from a triangle. gap: the
@@ -23,8 +23,8 @@
 //! twice that.
 
 use crate::distance::Scalar;
+use crate::motion::DisplacementBound;
 use crate::pair::PlacedLink;
-use crate::robot::Course;
 use parry3d_f64::math::{Real, Vector};
 
 /// The displacement of a piece on one side of the middle shape.
@@ -42,7 +42,7 @@ const UP: Real = 1.0 + 16.0 * Real::UNIT_ROUNDOFF;
 impl HalfDisplacement {
     /// Returns the displacement before the middle shape (`side` 0) or after it (1); `None` if it is
     /// not bounded.
-    pub(super) fn of(course: &Course, side: usize, beside: Real) -> Option<Self> {
+    pub(super) fn of(course: &DisplacementBound, side: usize, beside: Real) -> Option<Self> {
         let is_known = course.ways.iter().all(|way| way.is_finite())
             && (0.0..Real::INFINITY).contains(&course.off);
         let sign = if side == 0 { -1.0 } else { 1.0 };

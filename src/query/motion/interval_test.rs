@@ -21,7 +21,7 @@
 use super::approach_bound::{ApproachBound, check_subdivision};
 use super::relative_motion::RelativeMotion;
 use crate::answer::ProximityError;
-use crate::pieces::{
+use crate::refine::{
     Body, BodyQuery, BoundedPiece, Refinable, RefineAction, RefinePolicy, UpperBound,
 };
 use parry3d_f64::math::Real;

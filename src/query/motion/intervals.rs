@@ -4,7 +4,7 @@ use super::approach_bound::{midpoint, remaining_parts};
 use super::interval_test::{IntervalResult, MarginQuery};
 use super::progress::Progress;
 use crate::answer::{ProximityError, RobotMotionAnswer, RobotsInContact};
-use crate::pieces::PairUpperBound;
+use crate::refine::PairUpperBound;
 use parry3d_f64::math::Real;
 use std::collections::VecDeque;
 

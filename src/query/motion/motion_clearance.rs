@@ -30,11 +30,11 @@ use super::pending_piece::PendingPiece;
 use super::progress::MAX_SHAPES;
 use super::relative_motion::RelativeMotion;
 use crate::answer::{MotionClearance, ProximityError};
-use crate::pieces::{
+use crate::motion::Motion;
+use crate::refine::{
     BodyQuery, BoundedPiece, BoundingBody, MeshUpperBound, Piece, PlacedTube, RefineAction,
     RefinePolicy, TubeInMesh, refine,
 };
-use crate::robot::Motion;
 use parry3d_f64::math::Real;
 
 /// The most pieces processed per shape; after them no piece is halved.

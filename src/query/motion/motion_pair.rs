@@ -17,10 +17,10 @@ use super::moving_pair::MovingPair;
 use super::relative_motion::RelativeMotion;
 use crate::answer::{ProximityError, RobotMotionAnswer};
 use crate::distance::Scalar;
-use crate::pieces::{
+use crate::motion::{Motion, check_speed};
+use crate::refine::{
     PairQueue, PairUpperBound, PiecePair, PlacedTube, Refinable, TubePair, refine,
 };
-use crate::robot::{Motion, check_speed};
 use parry3d_f64::math::Real;
 use std::collections::VecDeque;
 
@@ -54,7 +54,10 @@ impl<A: Motion, B: Motion> MotionPair<'_, A, B> {
         for current in &mut self.memory.current {
             current.forget();
         }
-        intervals::begin(&mut intervals, [self.motions.0.legs(), self.motions.1.legs()]);
+        intervals::begin(
+            &mut intervals,
+            [self.motions.0.time_parts(), self.motions.1.time_parts()],
+        );
         let mut left = MAX_PAIRS;
         let answer =
             intervals::clear(&mut intervals, |times| self.test_interval(times, wanted, &mut left));

@@ -13,7 +13,7 @@
 //! the margin for (d - margin) / V before and after t.
 //!
 //! **Proof.** Points of the piece are within tau V of where they are at t. Which points of the
-//! piece a body contains is derived in `pieces::bounding_body` and `approach_speed`.
+//! piece a body contains is derived in `refine::bounding_body` and `approach_speed`.
 //!
 //! # Algorithm
 //! 1. **Start** with one interval per part of the motion's time, with all pieces.
@@ -34,7 +34,7 @@
 //! faster than its vertices.
 //!
 //! **Flat ends** that may become round during the interval count as round
-//! (`robot::tube::cap_persistence`): the ball contains the disc at all times. The same holds for a
+//! (`curve::cap_persistence`): the ball contains the disc at all times. The same holds for a
 //! link that may lose its direction. The intervals become shorter until the end stays flat, or
 //! until they isolate the instant at which it becomes round. The shape itself jumps there; if that
 //! is what comes near, the answer is undecided.
@@ -48,8 +48,8 @@ use super::progress::{MAX_SHAPES, PATIENCE, Progress};
 use super::separating_planes::SeparatingPlanes;
 use super::unresolved_piece::UnresolvedPiece;
 use crate::answer::{MotionAnswer, ProximityError, ShapeInContact, UndecidedReason};
-use crate::pieces::{MeshUpperBound, Piece, PlacedTube, Refinable, TubeInMesh, refine};
-use crate::robot::Motion;
+use crate::motion::Motion;
+use crate::refine::{MeshUpperBound, Piece, PlacedTube, Refinable, TubeInMesh, refine};
 use crate::search::hierarchy::{MeshAt, MeshSearch, MovingMesh};
 use parry3d_f64::math::{Real, Vector};
 use std::collections::VecDeque;
@@ -278,7 +278,7 @@ impl<M: Motion> MotionSearch<'_, M> {
         *small_rooms = SmallRooms::default();
         intervals.clear();
         unresolved.clear();
-        let legs = self.motion.legs().max(1);
+        let legs = self.motion.time_parts().max(1);
         let time = |leg: usize| leg as Real / legs as Real;
         intervals.extend((0..legs).map(|leg| Interval {
             times: [time(leg), time(leg + 1)],

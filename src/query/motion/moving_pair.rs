@@ -4,8 +4,9 @@ use super::approach_speed::ApproachSpeed;
 use super::relative_motion::RelativeMotion;
 use crate::answer::ProximityError;
 use crate::distance::Scalar;
-use crate::pieces::{BoundedPiece, BoundingBody, PiecePair, TubePair};
-use crate::robot::{Motion, RobotError};
+use crate::motion::Motion;
+use crate::refine::{BoundedPiece, BoundingBody, PiecePair, TubePair};
+use crate::robot::RobotError;
 use parry3d_f64::math::Real;
 
 /// Pairs of pieces of two moving robots in an interval of time.

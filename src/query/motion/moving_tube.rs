@@ -10,9 +10,9 @@ use super::separating_planes::{PlaneTest, SeparatingPlanes};
 use super::unresolved_piece::UnresolvedPiece;
 use crate::answer::ProximityError;
 use crate::distance::Scalar;
+use crate::motion::Motion;
 use crate::pair::Nearest;
-use crate::pieces::{BoundedPiece, BoundingBody, Piece, Refinable, SectionRange, TubeInMesh};
-use crate::robot::Motion;
+use crate::refine::{BoundedPiece, BoundingBody, Piece, Refinable, SectionRange, TubeInMesh};
 use parry3d_f64::math::Real;
 
 /// With more unresolved pieces in an interval, displacements are not tested: another shape is
@@ -143,7 +143,7 @@ impl<M: Motion> MovingTube<'_, M> {
             {
                 let times =
                     if side == 0 { [self.times[0], self.t] } else { [self.t, self.times[1]] };
-                let course = self.motion.course(part.section as usize, part.shares, times);
+                let course = self.motion.displacement(part.section as usize, part.shares, times);
                 let keeps = course
                     .and_then(|course| HalfDisplacement::of(&course, side, failure.beside))
                     .is_some_and(|side| {

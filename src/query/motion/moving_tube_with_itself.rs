@@ -4,8 +4,8 @@ use super::approach_speed::ApproachSpeed;
 use super::relative_motion::RelativeMotion;
 use crate::answer::ProximityError;
 use crate::distance::Scalar;
-use crate::pieces::{BoundedPiece, SelfPair, TubeWithItself};
-use crate::robot::Motion;
+use crate::motion::Motion;
+use crate::refine::{BoundedPiece, SelfPair, TubeWithItself};
 use parry3d_f64::math::Real;
 
 /// Pairs of pieces of a moving robot in an interval of time.

@@ -1,6 +1,6 @@
 //! A pending piece of a moving robot, independent of the shape.
 
-use crate::pieces::{Piece, PlacedTube, TubeInMesh, WorkItem};
+use crate::refine::{Piece, PlacedTube, TubeInMesh, WorkItem};
 use parry3d_f64::math::Real;
 
 /// A range of shares of a section.

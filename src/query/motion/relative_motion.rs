@@ -2,7 +2,7 @@
 
 use super::approach_bound::ApproachBound;
 use crate::answer::ProximityError;
-use crate::pieces::{BoundedPiece, Refinable};
+use crate::refine::{BoundedPiece, Refinable};
 use parry3d_f64::math::Real;
 
 /// Parts that move in an interval of time.

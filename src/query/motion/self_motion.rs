@@ -2,7 +2,7 @@
 //!
 //! An interval of time is tested by its middle shape, as for two motions (`motion_pair`). The set
 //! of queried pairs depends on time, too. All pairs that may be queried at some time of the
-//! interval are kept (`pieces::section_motions`). A contact counts if the middle shape queries it.
+//! interval are kept (`refine::section_motions`). A contact counts if the middle shape queries it.
 //! The difference between both sets vanishes as the interval becomes shorter.
 
 use super::approach_bound::{ApproachBound, check_subdivision, half_length, midpoint};
@@ -12,12 +12,13 @@ use super::intervals;
 use super::moving_tube_with_itself::MovingTubeWithItself;
 use super::relative_motion::RelativeMotion;
 use crate::answer::{ProximityError, RobotMotionAnswer};
+use crate::curve::{Section, TubeTurns};
 use crate::distance::Scalar;
-use crate::pieces::{
+use crate::motion::{Motion, check_speed};
+use crate::refine::{
     MAX_EXTRA_TURN, PairUpperBound, Refinable, SectionMotion, SectionMotions, SelfPair,
     SelfPairQueue, TubeWithItself, refine,
 };
-use crate::robot::{Motion, Section, TubeTurns, check_speed};
 use parry3d_f64::math::Real;
 use std::collections::VecDeque;
 
@@ -53,7 +54,7 @@ pub(crate) fn self_clears_motion<M: Motion>(
 ) -> Result<RobotMotionAnswer, ProximityError> {
     let mut intervals = std::mem::take(&mut memory.intervals);
     memory.current.forget();
-    intervals::begin(&mut intervals, [motion.legs()]);
+    intervals::begin(&mut intervals, [motion.time_parts()]);
     let mut left = MAX_PAIRS;
     let answer = intervals::clear(&mut intervals, |times| {
         test_interval(motion, memory, times, wanted, &mut left)

@@ -5,9 +5,10 @@ use super::plane_search::PlaneSearch;
 use super::text::{Kind, ProvenShape, size_of};
 use super::tube_shape::tube_shape;
 use crate::answer::ProximityError;
+use crate::curve::Tube;
 use crate::distance::Scalar;
-use crate::pieces::PlacedTube;
-use crate::robot::{Motion, MotionDrift, SectionSignature, Tube, check_speed};
+use crate::motion::{Motion, MotionDrift, SectionSignature, check_speed};
+use crate::refine::PlacedTube;
 use parry3d_f64::math::Real;
 
 /// The most shapes tested for a proof.

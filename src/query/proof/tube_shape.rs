@@ -1,9 +1,9 @@
 //! The pieces of a tube for a proof: their bodies are only slightly wider than the pieces.
 
 use super::shape::{PiecePremises, Shape};
+use crate::curve::{CapPersistence, Section};
 use crate::distance::Scalar;
-use crate::pieces::{self, PlacedTube};
-use crate::robot::{CapPersistence, Section};
+use crate::refine::{self, PlacedTube};
 use parry3d_f64::math::Real;
 
 /// Returns a tube in pieces whose bodies exceed them by about `most`, and the place of each piece
@@ -12,12 +12,12 @@ pub(crate) fn tube_shape(
     tube: &PlacedTube,
     most: Real,
     is_moving: bool,
-) -> (Shape, Vec<pieces::Piece>) {
+) -> (Shape, Vec<refine::Piece>) {
     let (mut shape, mut places) = (Shape::default(), Vec::new());
     for number in 0..tube.sections().len() as u32 {
         let section = tube.section(number);
         let [from, to] = tube.between_faces(number);
-        let place = |from, to| pieces::Piece { section: number, from, to };
+        let place = |from, to| refine::Piece { section: number, from, to };
         let mut waiting =
             [place(to, section.last), place(from, to), place(section.first, from)].to_vec();
         waiting.retain(|place| place.from < place.to);
@@ -33,8 +33,8 @@ pub(crate) fn tube_shape(
                 let tick = tube.tube.tick(section, 0.5 * (arcs[0] + arcs[1]));
                 let tick = tick.max(place.from + 1).min(place.to - 1);
                 waiting.extend([
-                    pieces::Piece { from: tick, ..place },
-                    pieces::Piece { to: tick, ..place },
+                    refine::Piece { from: tick, ..place },
+                    refine::Piece { to: tick, ..place },
                 ]);
                 continue;
             }
@@ -52,7 +52,7 @@ pub(crate) fn tube_shape(
 fn piece(
     tube: &PlacedTube,
     section: &Section,
-    place: &pieces::Piece,
+    place: &refine::Piece,
     is_moving: bool,
 ) -> PiecePremises {
     let arcs = tube.arcs(place);

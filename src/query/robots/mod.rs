@@ -13,5 +13,5 @@ mod two_robots;
 
 pub(crate) use robot_with_itself::{RobotWithItself, SelfMemory};
 pub(crate) use self_tube::{SelfTubeMemory, self_clears_tube};
-pub(crate) use tubes::{TubesMemory, clearance_between, place_tubes, tubes_clear};
+pub(crate) use tubes::{TubesMemory, clearance_between, clears_tubes, place_tubes};
 pub(crate) use two_robots::{PairMemory, TwoRobots};

@@ -1,9 +1,9 @@
 //! The query whether a tube keeps a margin to itself.
 
 use crate::answer::{Decision, ProximityError};
-use crate::pieces::{PairUpperBound, PendingPieces, SelfPair, SelfPairQueue, TubeWithItself};
+use crate::curve::{Tube, TubeTurns};
 use crate::query::clearance::{Wanted, clears_pieces};
-use crate::robot::{Tube, TubeTurns};
+use crate::refine::{PairUpperBound, PendingPieces, SelfPair, SelfPairQueue, TubeWithItself};
 use parry3d_f64::math::Real;
 
 /// Memory that the next query reuses.

@@ -1,12 +1,12 @@
 //! Queries about two tubes: bounds on their clearance, and whether they keep a margin.
 
 use crate::answer::{Decision, ProximityError, RobotClearance};
-use crate::pieces::{
+use crate::curve::Tube;
+use crate::query::clearance::{BoundedClearance, BoundsSearch, Hint, Wanted, clears_pieces};
+use crate::refine::{
     BoundingBody, PairQueue, PairUpperBound, PendingPieces, PiecePair, PlacedTube, Refinable,
     TubePair,
 };
-use crate::query::clearance::{BoundedClearance, BoundsSearch, Hint, Wanted, clears_pieces};
-use crate::robot::Tube;
 use parry3d_f64::math::{Pose, Real};
 
 /// State and memory that the next query reuses.
@@ -115,7 +115,7 @@ fn clearance_as_stated(
 ///
 /// # Errors
 /// A curve is not finite, or the samples allow no decision at that resolution.
-pub(crate) fn tubes_clear(
+pub(crate) fn clears_tubes(
     tubes: &mut TubePair,
     memory: &mut TubesMemory,
     margin: Real,

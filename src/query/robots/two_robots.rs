@@ -107,7 +107,12 @@ impl<'a> TwoRobots<'a> {
     }
 
     /// Appends to `out` the places where the robots are at most `margin` apart.
-    pub fn within(&self, margin: Real, memory: &mut PairMemory, out: &mut Vec<RobotProximity>) {
+    pub fn contacts_within(
+        &self,
+        margin: Real,
+        memory: &mut PairMemory,
+        out: &mut Vec<RobotProximity>,
+    ) {
         let PairMemory { descent, minima, .. } = memory;
         minima.start();
         let (push, end_rows) = (PairMinima::push, PairMinima::end_rows);

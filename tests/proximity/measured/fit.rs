@@ -222,7 +222,7 @@ fn a_stated_turn_never_makes_an_answer_worse() {
             );
             let margin = (truth + random.between(-1.0, 1.0) * (deviation + 1.0)).max(0.0) * unit;
             let decide = |tube: &Tube| {
-                super::speck(point * unit).tube_clears(tube, &Pose::IDENTITY, margin, 1e-3 * unit)
+                super::speck(point * unit).clears_tube(tube, &Pose::IDENTITY, margin, 1e-3 * unit)
             };
             let [before, known] = [decide(&tube), decide(&turned)];
             assert!(is_no_worse(&known, &before), "{before:?} {known:?}");
@@ -244,7 +244,7 @@ fn a_stated_turn_never_makes_an_answer_worse() {
             );
             let margin = before.upper * random.between(0.2, 1.2);
             let decide = |tube: &Tube| {
-                RobotPair::new().tubes_clear(
+                RobotPair::new().clears_tubes(
                     tube,
                     &Pose::IDENTITY,
                     other,

@@ -294,7 +294,7 @@ fn bends_count_however_close_the_samples_lie() {
             let size = 1e-9 * (1.0 + point.length());
             let [lower, upper] = [found.lower, found.upper].map(|bound| bound / unit);
             let margin = (truth + size + random.unit() * 1e-3) * unit;
-            let decision = wall.tube_clears(&tube, &Pose::IDENTITY, margin, 1e-4 * unit);
+            let decision = wall.clears_tube(&tube, &Pose::IDENTITY, margin, 1e-4 * unit);
             let is_right = lower <= truth + size && truth <= upper + size;
             if !is_right || matches!(decision, Ok(Decision::Clear)) {
                 wrong.push((round, close, truth, lower, upper, decision));
@@ -364,7 +364,7 @@ fn a_short_segment_at_the_tip_shows_how_the_long_one_bends() {
         let mut wall = super::speck(Vector::from(wall));
         let found = wall.clearance(&tube, &Pose::IDENTITY, 1e-6).unwrap();
         assert!(found.lower <= truth && truth <= found.upper, "{truth} {found:?}");
-        let decision = wall.tube_clears(&tube, &Pose::IDENTITY, truth * (1.0 + 1e-9), 1e-6);
+        let decision = wall.clears_tube(&tube, &Pose::IDENTITY, truth * (1.0 + 1e-9), 1e-6);
         assert_ne!(decision, Ok(Decision::Clear), "{truth}");
     }
 }

@@ -97,7 +97,7 @@ fn judge_edges(search: &mut BvhSearch, random: &mut Random, edges: usize, fine: 
             let motion = random_edge(&robot, random, distance);
             let mut is_clear = |t: &Real| {
                 search
-                    .tube_clears(&motion.tube(*t).unwrap(), &ventricle::entry(), 0.0, 1e-3)
+                    .clears_tube(&motion.tube(*t).unwrap(), &ventricle::entry(), 0.0, 1e-3)
                     .unwrap()
                     == Decision::Clear
             };

@@ -43,7 +43,7 @@ fn a_jump_through_a_wall_is_seen() {
             coarse.iter().any(|&t| {
                 let mut tube = tube.clone();
                 let pose = motion(&mut tube, t);
-                search.tube_clears(&tube, &pose, 0.0, 1e-6).unwrap() != Decision::Clear
+                search.clears_tube(&tube, &pose, 0.0, 1e-6).unwrap() != Decision::Clear
             })
         };
         let linear_seen = is_seen(&mut search, &|tube, t| linear.shape(t, tube).unwrap());

@@ -6,8 +6,8 @@ use continuum_testing::{Random, rounds};
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::proximity::{BvhSearch, Decision, MotionClearance, ProximityError};
 use parry_continuum::{
-    BendingMotion, BendingSection, Chain, Course, LinearMotion, Motion, MotionPath, MovingBase,
-    RigidMotion, RobotError, Speed, Tube,
+    BendingMotion, BendingSection, Chain, DisplacementBound, LinearMotion, Motion, MotionPath,
+    MovingBase, RigidMotion, RobotError, Speed, Tube,
 };
 use std::cell::Cell;
 
@@ -34,12 +34,17 @@ impl<M: Motion + ?Sized> Motion for Counted<'_, M> {
         self.0.speed(section, shares, times)
     }
 
-    fn course(&self, section: usize, shares: [Real; 2], times: [Real; 2]) -> Option<Course> {
-        self.0.course(section, shares, times)
+    fn displacement(
+        &self,
+        section: usize,
+        shares: [Real; 2],
+        times: [Real; 2],
+    ) -> Option<DisplacementBound> {
+        self.0.displacement(section, shares, times)
     }
 
-    fn legs(&self) -> usize {
-        self.0.legs()
+    fn time_parts(&self) -> usize {
+        self.0.time_parts()
     }
 }
 
@@ -348,7 +353,7 @@ fn a_path_looks_closely_where_it_comes_nearest() {
     );
     // One for each, and a few more where it is low.
     assert!(counted.count() < 200 + 400, "{}", counted.count());
-    let (leg, t) = path.leg(least.t);
+    let (leg, t) = path.part_at(least.t);
     let height = heights[leg] + (heights[leg + 1] - heights[leg]) * t;
     assert!((height - 0.5 - least.upper).abs() < 1e-9);
 }
@@ -393,7 +398,7 @@ fn an_insertion_costs_little_more_than_its_shapes() {
     let path = MotionPath::new((0..3).map(leg).collect()).unwrap();
     let chains: Vec<_> = (0..500)
         .map(|k| {
-            let (leg, t) = path.leg((Real::from(k) + 0.5) / 500.0);
+            let (leg, t) = path.part_at((Real::from(k) + 0.5) / 500.0);
             let joints = JointMotion::new(&robot, [&out(leg), &out(leg + 1)], ventricle::entry())
                 .unwrap()
                 .joints(t);

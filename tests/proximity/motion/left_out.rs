@@ -5,8 +5,8 @@ use super::speeds::Understated;
 use continuum_testing::Random;
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::{
-    BendingMotion, BendingSection, Course, LinearMotion, Motion, RigidMotion, RobotError, Speed,
-    Tube, verify_motion,
+    BendingMotion, BendingSection, DisplacementBound, LinearMotion, Motion, RigidMotion,
+    RobotError, Speed, Tube, verify_motion,
 };
 
 /// How a tube is given.
@@ -191,7 +191,12 @@ impl<F: Fn([Real; 2]) -> Real> Motion for Turning<F> {
         Speed { point: 30.0 * TURN * share, turn: TURN }
     }
 
-    fn course(&self, _: usize, shares: [Real; 2], times: [Real; 2]) -> Option<Course> {
+    fn displacement(
+        &self,
+        _: usize,
+        shares: [Real; 2],
+        times: [Real; 2],
+    ) -> Option<DisplacementBound> {
         if !self.is_course {
             return None;
         }
@@ -199,7 +204,7 @@ impl<F: Fn([Real; 2]) -> Real> Motion for Turning<F> {
         let turn = TURN * (times[1] - times[0]);
         // The acceleration is TURN^2 30 share.
         let off = 0.125 * 30.0 * (self.stated)(shares) * turn * turn * (1.0 + 1e-9) + 1e-12;
-        Some(Course { ways: [there[0] - here[0], there[1] - here[1]], off })
+        Some(DisplacementBound { ways: [there[0] - here[0], there[1] - here[1]], off })
     }
 }
 

@@ -1,7 +1,7 @@
 //! Motions against the truth: their shapes in steps so fine that nothing fits between.
 
 mod chains;
-mod courses;
+mod displacement_bounds;
 mod edges;
 mod fading;
 mod first_contact;

@@ -29,7 +29,7 @@ type SpeedOf = dyn Fn(usize, [Real; 2], [Real; 2]) -> Speed;
 
 impl Any {
     fn new<M: Motion + Clone + 'static>(motion: M, sections: usize, radius: Real) -> Self {
-        let (legs, fast) = (motion.legs(), motion.clone());
+        let (legs, fast) = (motion.time_parts(), motion.clone());
         let speed = move |section, shares, times| fast.speed(section, shares, times);
         Self {
             shape: Box::new(move |t, tube| motion.shape(t, tube)),
@@ -59,7 +59,7 @@ impl Motion for Any {
         (self.speed)(section, shares, times)
     }
 
-    fn legs(&self) -> usize {
+    fn time_parts(&self) -> usize {
         self.legs
     }
 }

@@ -142,7 +142,7 @@ class Mesh:
         pose: ArrayLike | None = None,
         caps: _Caps = "fitted",
     ) -> InsideAnswer: ...
-    def within(
+    def contacts_within(
         self,
         points: ArrayLike,
         radii: ArrayLike,
@@ -164,7 +164,7 @@ class Mesh:
         turn: float | None = None,
         pose: ArrayLike | None = None,
     ) -> Clearance: ...
-    def tube_clears(
+    def clears_tube(
         self,
         points: ArrayLike,
         radii: ArrayLike,
@@ -322,7 +322,7 @@ class RobotPair:
         pose_b: ArrayLike | None = None,
         caps: _Caps = "fitted",
     ) -> RobotProximity: ...
-    def within(
+    def contacts_within(
         self,
         points_a: ArrayLike,
         radii_a: ArrayLike,
@@ -363,7 +363,7 @@ class RobotPair:
         pose_a: ArrayLike | None = None,
         pose_b: ArrayLike | None = None,
     ) -> RobotClearance: ...
-    def tubes_clear(
+    def clears_tubes(
         self,
         points_a: ArrayLike,
         radii_a: ArrayLike,

@@ -2,7 +2,7 @@
 
 use parry_continuum::parry::math::Pose;
 use parry_continuum::{
-    BendingMotion, Course, LinearMotion, Motion, MotionPath, MovingBase, RigidMotion, RobotError,
+    BendingMotion, DisplacementBound, LinearMotion, Motion, MotionPath, MovingBase, RigidMotion, RobotError,
     Speed, Tube,
 };
 
@@ -37,23 +37,23 @@ impl Motion for Moving {
         }
     }
 
-    fn course(&self, section: usize, shares: [f64; 2], times: [f64; 2]) -> Option<Course> {
+    fn displacement(&self, section: usize, shares: [f64; 2], times: [f64; 2]) -> Option<DisplacementBound> {
         match self {
-            Self::Linear(motion) => motion.course(section, shares, times),
-            Self::Rigid(motion) => motion.course(section, shares, times),
-            Self::Bending(motion) => motion.course(section, shares, times),
-            Self::OnBase(motion) => motion.course(section, shares, times),
-            Self::Path(motion) => motion.course(section, shares, times),
+            Self::Linear(motion) => motion.displacement(section, shares, times),
+            Self::Rigid(motion) => motion.displacement(section, shares, times),
+            Self::Bending(motion) => motion.displacement(section, shares, times),
+            Self::OnBase(motion) => motion.displacement(section, shares, times),
+            Self::Path(motion) => motion.displacement(section, shares, times),
         }
     }
 
-    fn legs(&self) -> usize {
+    fn time_parts(&self) -> usize {
         match self {
-            Self::Linear(motion) => motion.legs(),
-            Self::Rigid(motion) => motion.legs(),
-            Self::Bending(motion) => motion.legs(),
-            Self::OnBase(motion) => motion.legs(),
-            Self::Path(motion) => motion.legs(),
+            Self::Linear(motion) => motion.time_parts(),
+            Self::Rigid(motion) => motion.time_parts(),
+            Self::Bending(motion) => motion.time_parts(),
+            Self::OnBase(motion) => motion.time_parts(),
+            Self::Path(motion) => motion.time_parts(),
         }
     }
 }

@@ -244,7 +244,7 @@ impl Mesh {
     ///     what can be had. Of a batch, ``robot`` is the first that is refused.
     #[pyo3(signature = (points, radii, margin, resolution, *, tangents = None, deviation = 0.0, turn = None, pose = None))]
     #[allow(clippy::too_many_arguments)] // they are named in Python
-    fn tube_clears<'py>(
+    fn clears_tube<'py>(
         &self,
         py: Python<'py>,
         points: &Bound<'py, PyAny>,
@@ -263,7 +263,7 @@ impl Mesh {
         let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [i8]| {
             let pose = session.set_tube(robot, stated)?;
             let tube = session.tube.as_ref().ok_or_else(no_tube)?;
-            row[0] = decision_value(session.search.tube_clears(tube, &pose, margin, resolution)?);
+            row[0] = decision_value(session.search.clears_tube(tube, &pose, margin, resolution)?);
             Ok(())
         };
         ask_each(py, &self.engine(py), &robots, (0, 1), ask, |_, found| all.extend(found))?;

@@ -39,7 +39,7 @@ fn ask(session: &mut Session, robot: &Given<'_>, caps: Caps) -> Result<Row, Refu
     let chain = set_chain(&mut session.chain, robot, caps)?;
     let pose = robot.pose()?;
     let closest = session.search.minimum(chain, &pose)?;
-    let contact = session.search.contact(chain, &pose, &closest)?;
+    let contact = session.search.contact_of(chain, &pose, &closest)?;
     let segment = closest.segment as usize;
     let mut row = Row { value: contact.depth.unwrap_or(closest.distance), segment, ..NOTHING };
     if let Some(found) = session.search.derivative(chain, &pose, &closest)? {

@@ -139,7 +139,7 @@ impl Mesh {
     /// Raises
     /// ------
     /// ContinuumError
-    ///     More than one robot is given, or as for `tube_clears`.
+    ///     More than one robot is given, or as for `clears_tube`.
     #[pyo3(signature = (points, radii, margin, resolution, *, tangents = None, deviation = 0.0, turn = None, pose = None))]
     #[allow(clippy::too_many_arguments)] // they are named in Python
     fn prove_tube<'py>(

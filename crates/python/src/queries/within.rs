@@ -46,12 +46,12 @@ impl Mesh {
     /// --------
     /// >>> from parry_continuum import Mesh
     /// >>> floor = Mesh([[-9, -9, 0], [9, -9, 0], [0, 9, 0]], [[0, 1, 2]])
-    /// >>> contacts = floor.within([[0, 0, 4], [0, 0, 3], [0, 0, 1]], 0.5, margin=1, caps="capsules")
+    /// >>> contacts = floor.contacts_within([[0, 0, 4], [0, 0, 3], [0, 0, 1]], 0.5, margin=1, caps="capsules")
     /// >>> contacts.segment, contacts.distance, contacts.normal
     /// (array([1]), array([0.5]), array([[0., 0., 1.]]))
     #[pyo3(signature = (points, radii, margin, prominence = 0.0, *, pose = None, caps = Caps::Fitted), text_signature = "($self, points, radii, margin, prominence=0.0, *, pose=None, caps=\"fitted\")")]
     #[allow(clippy::too_many_arguments)] // they are named in Python
-    fn within<'py>(
+    fn contacts_within<'py>(
         &self,
         py: Python<'py>,
         points: &Bound<'py, PyAny>,
@@ -68,7 +68,7 @@ impl Mesh {
         offsets.push(0_i64);
         let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [Vec<(Contact, i64)>]| {
             let chain = set_chain(&mut session.chain, robot, caps)?;
-            session.search.within(
+            session.search.contacts_within(
                 chain,
                 &robot.pose()?,
                 margin,

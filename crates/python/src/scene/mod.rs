@@ -342,7 +342,7 @@ impl Scene {
         let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [Vec<SceneContact>]| {
             let placed = place(&mut session.chains, robot, caps)?;
             let placed: Vec<_> = placed.into_iter().map(|(chain, pose, _)| (chain, pose)).collect();
-            Ok(session.scene.contacts(&placed, reach, &mut row[0])?)
+            Ok(session.scene.contacts_within(&placed, reach, &mut row[0])?)
         };
         ask_each(py, &self.snapshot(py), &robots, (Vec::new(), 1), ask, |_, found| {
             for found in found {

@@ -74,9 +74,9 @@ pub fn chains(offset: f64) -> Result<Vec<Record>, Box<dyn Error>> {
             }
             near.search.per_link(&chain, &place, &mut links)?;
             per_link.add(&links[..]);
-            near.search.within(&chain, &place, 1.0, 0.0, &mut found)?;
+            near.search.contacts_within(&chain, &place, 1.0, 0.0, &mut found)?;
             contacts.add(&found[..]);
-            near.search.within(&chain, &place, 1.0, 0.1, &mut found)?;
+            near.search.contacts_within(&chain, &place, 1.0, 0.1, &mut found)?;
             contacts.add(&found[..]);
             let derivative = near.search.derivative(&chain, &place, &closest)?;
             derivatives.add(&derivative.map(|found| found.rate(Vector::X, Vector::Y)));
@@ -92,7 +92,7 @@ pub fn chains(offset: f64) -> Result<Vec<Record>, Box<dyn Error>> {
 
 /// Curves, motions and proofs beside the mesh.
 pub fn curves(offset: f64) -> Result<Vec<Record>, Box<dyn Error>> {
-    let mut all = records(["clearance", "tube_clears", "sections", "motion", "least", "proofs"]);
+    let mut all = records(["clearance", "clears_tube", "sections", "motion", "least", "proofs"]);
     let [clearance, decisions, sections, motions, least, proofs] = &mut all;
     let random = &mut Random::new(8);
     let mut near = Anatomy::new(random, offset)?;
@@ -102,7 +102,7 @@ pub fn curves(offset: f64) -> Result<Vec<Record>, Box<dyn Error>> {
         let mut place = pose(random, offset);
         for _ in 0..STEPS / 4 {
             clearance.add(&near.search.clearance(&tube, &place, 0.01)?);
-            decisions.add(&near.search.tube_clears(&tube, &place, 0.2, near.resolution));
+            decisions.add(&near.search.clears_tube(&tube, &place, 0.2, near.resolution));
             place = nudged(random, &place);
         }
         let bend = [0.3 * random.unit(), random.unit()];
@@ -149,7 +149,7 @@ pub fn pairs(offset: f64) -> Result<Vec<Record>, Box<dyn Error>> {
             for margin in [0.0, 0.3, nearest.distance] {
                 clears.add(&robots.clears(&a, on_a, &b, on_b, margin)?);
             }
-            robots.within(&a, on_a, &b, on_b, 0.5, &mut found)?;
+            robots.contacts_within(&a, on_a, &b, on_b, 0.5, &mut found)?;
             within.add(&found[..]);
             robots.per_link(&a, on_a, &b, on_b, &mut found)?;
             pair.add(&found[..]);
@@ -159,7 +159,7 @@ pub fn pairs(offset: f64) -> Result<Vec<Record>, Box<dyn Error>> {
         let [first, second] = [tube(0)?, tube(1)?];
         let [on_a, on_b] = &places;
         tubes.add(&robots.clearance(&first, on_a, &second, on_b, resolution));
-        tubes.add(&robots.tubes_clear(&first, on_a, &second, on_b, 0.1, resolution));
+        tubes.add(&robots.clears_tubes(&first, on_a, &second, on_b, 0.1, resolution));
         let after = places.map(|place| nudged(random, &place));
         let moving = |tube, k: usize| RigidMotion::new(tube, [places[k], after[k]]);
         let [first, second] = [moving(first, 0)?, moving(second, 1)?];
@@ -205,7 +205,7 @@ pub fn scenes(offset: f64) -> Result<Vec<Record>, Box<dyn Error>> {
                 structures.add(&found.nearest);
                 structures.add(&found.slack);
             }
-            scene.contacts(&robots, 0.3, &mut found)?;
+            scene.contacts_within(&robots, 0.3, &mut found)?;
             found.iter().for_each(|found| contacts.add(&found.contact));
             places = places.map(|place| nudged(random, &place));
         }

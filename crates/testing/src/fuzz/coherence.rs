@@ -132,8 +132,8 @@ fn ask(
         }
     }
     let (mut contacts, mut others) = (Vec::new(), Vec::new());
-    let kept = search.within(robot, pose, margin, 0.0, &mut contacts);
-    let asked = fresh.within(robot, pose, margin, 0.0, &mut others);
+    let kept = search.contacts_within(robot, pose, margin, 0.0, &mut contacts);
+    let asked = fresh.contacts_within(robot, pose, margin, 0.0, &mut others);
     assert_eq!((kept.is_ok(), &contacts), (asked.is_ok(), &others), "within {margin}{}", problem());
     assert_eq!(kept.is_ok(), margin >= 0.0, "within {margin}{}", problem());
     assert!(
@@ -169,7 +169,7 @@ fn tube(search: &mut BvhSearch, scene: &Scene, distance: f64, margin: f64) {
             let holds = found.lower <= distance && distance <= found.upper;
             assert!(holds, "{found:?} for {distance}{}", scene.problem());
         }
-        match search.tube_clears(&tube, &scene.pose, margin, tolerance) {
+        match search.clears_tube(&tube, &scene.pose, margin, tolerance) {
             Ok(Decision::Clear) => {
                 assert!(distance > margin, "clear of {margin} at {distance}{}", scene.problem())
             }

@@ -56,7 +56,7 @@ pub fn robots(bytes: &[u8]) {
         assert_eq!(clears, d > margin, "{margin:e} {}", problem());
     }
     let mut places = Vec::new();
-    match pair.within(&a, &poses[0], &b, &poses[1], margin, &mut places) {
+    match pair.contacts_within(&a, &poses[0], &b, &poses[1], margin, &mut places) {
         Err(error) => assert!(matches!(error, ProximityError::Negative { .. }), "{error}"),
         Ok(()) if d > margin => assert!(places.is_empty(), "{places:?} {}", problem()),
         Ok(()) => assert!(places.contains(&found), "{places:?} {}", problem()),

@@ -68,7 +68,7 @@ fn ask(search: &mut BvhSearch, tube: &Tube, pose: &Pose, margin: f64, tolerance:
         0.0 <= found.lower && found.lower <= found.upper && found.upper.is_finite(),
         "{found:?}"
     );
-    match search.tube_clears(tube, pose, margin, tolerance) {
+    match search.clears_tube(tube, pose, margin, tolerance) {
         Ok(Decision::Clear) => assert!(found.upper > margin, "{found:?} {margin} {tube:?}"),
         Ok(Decision::Contact) => assert!(found.lower <= margin, "{found:?} {margin} {tube:?}"),
         _ => {}
@@ -122,7 +122,7 @@ fn arcs(source: &mut Source, search: &mut BvhSearch) {
     );
     for margin in [truth - 2.0 * off, truth + 2.0 * off].into_iter().filter(|margin| *margin >= 0.0)
     {
-        match search.tube_clears(&tube, &Pose::IDENTITY, margin, 1e-4) {
+        match search.clears_tube(&tube, &Pose::IDENTITY, margin, 1e-4) {
             Ok(Decision::Clear) => {
                 assert!(truth + half_wedge > margin, "{truth} {margin} {sections:?}")
             }

@@ -94,7 +94,7 @@ impl Pairs {
         answer!(py, "RobotClearance", values)
     }
 
-    fn tubes_clear<'py>(
+    fn clears_tubes<'py>(
         &self,
         py: Python<'py>,
         robots: &Robots<'py>,
@@ -104,7 +104,7 @@ impl Pairs {
         let mut all: Vec<i8> = Vec::with_capacity(robots.len());
         let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [i8]| {
             let found: Decision = session.about_tubes(robot, stated, |pair, [a, b]| {
-                pair.tubes_clear(a.0, a.1, b.0, b.1, margin, resolution)
+                pair.clears_tubes(a.0, a.1, b.0, b.1, margin, resolution)
             })?;
             row[0] = decision_value(found);
             Ok(())
@@ -157,7 +157,7 @@ impl Pairs {
 /// Returns
 /// -------
 /// Decision or (B,) array of int8
-///     As of `Mesh.tube_clears`.
+///     As of `Mesh.clears_tube`.
 ///
 /// Raises
 /// ------
@@ -299,7 +299,7 @@ impl RobotPair {
     /// Returns
     /// -------
     /// Decision or (B,) array of int8
-    ///     As of `Mesh.tube_clears`.
+    ///     As of `Mesh.clears_tube`.
     ///
     /// Raises
     /// ------
@@ -308,7 +308,7 @@ impl RobotPair {
     ///     a batch, ``robot`` is the first that is refused.
     #[pyo3(signature = (points_a, radii_a, points_b, radii_b, margin, resolution, *, tangents_a = None, tangents_b = None, deviation_a = 0.0, deviation_b = 0.0, turn_a = None, turn_b = None, pose_a = None, pose_b = None))]
     #[allow(clippy::too_many_arguments)] // they are named in Python
-    fn tubes_clear<'py>(
+    fn clears_tubes<'py>(
         &self,
         py: Python<'py>,
         points_a: &Bound<'py, PyAny>,
@@ -336,7 +336,7 @@ impl RobotPair {
                 Stated { deviation: deviation_b, turn: turn_b },
             ],
         };
-        self.0.tubes_clear(py, &given.robots()?, given.stated, [margin, resolution])
+        self.0.clears_tubes(py, &given.robots()?, given.stated, [margin, resolution])
     }
 
     /// Whether a curved tube keeps more than a margin to itself: as `parry_continuum.tube_self_clears`.

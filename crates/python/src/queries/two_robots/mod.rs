@@ -130,7 +130,7 @@ impl Pairs {
         proximities_of_segments(py, robots, &rows)
     }
 
-    fn within<'py>(
+    fn contacts_within<'py>(
         &self,
         py: Python<'py>,
         robots: &Robots<'py>,
@@ -140,7 +140,7 @@ impl Pairs {
         let (mut rows, mut offsets) = (Vec::new(), vec![0_i64]);
         let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [Vec<Row>]| {
             let Placed { pair, chains, poses, points, found } = session.place(robot, caps)?;
-            pair.within(chains[0], &poses[0], chains[1], &poses[1], margin, found)?;
+            pair.contacts_within(chains[0], &poses[0], chains[1], &poses[1], margin, found)?;
             row[0] = found.iter().map(|found| Row::new(*found, chains, points)).collect();
             Ok(())
         };

@@ -19,7 +19,7 @@ use pyo3::prelude::*;
 /// 2.0
 /// >>> pair.per_link(a, 0.5, b, 0.5).distance.round(3)
 /// array([2.   , 2.162])
-/// >>> pair.within(a, 0.5, b, 0.5, margin=3).segments
+/// >>> pair.contacts_within(a, 0.5, b, 0.5, margin=3).segments
 /// array([[0, 0]])
 #[pyclass(frozen, module = "parry_continuum", weakref)]
 pub(crate) struct RobotPair(pub(super) Pairs);
@@ -126,7 +126,7 @@ impl RobotPair {
     ///     The margin is negative or NaN, or as for `between`.
     #[pyo3(signature = (points_a, radii_a, points_b, radii_b, margin, *, pose_a = None, pose_b = None, caps = Caps::Fitted), text_signature = "($self, points_a, radii_a, points_b, radii_b, margin, *, pose_a=None, pose_b=None, caps=\"fitted\")")]
     #[allow(clippy::too_many_arguments)] // they are named in Python
-    fn within<'py>(
+    fn contacts_within<'py>(
         &self,
         py: Python<'py>,
         points_a: &Bound<'py, PyAny>,
@@ -139,7 +139,7 @@ impl RobotPair {
         caps: Caps,
     ) -> PyResult<Bound<'py, PyAny>> {
         let robots = pairs([points_a, radii_a, points_b, radii_b], [pose_a, pose_b])?;
-        self.0.within(py, &robots, margin, caps)
+        self.0.contacts_within(py, &robots, margin, caps)
     }
 
     /// Whether two robots keep more than a margin from each other: as `clears_between`.

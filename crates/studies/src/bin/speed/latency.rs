@@ -39,7 +39,9 @@ const QUERIES: [Query; 4] = [
         Ok(())
     }),
     ("per_link", |turn, pose| turn.search.per_link(&turn.robot, pose, &mut turn.links)),
-    ("within", |turn, pose| turn.search.within(&turn.robot, pose, MARGIN, 0.0, &mut turn.contacts)),
+    ("within", |turn, pose| {
+        turn.search.contacts_within(&turn.robot, pose, MARGIN, 0.0, &mut turn.contacts)
+    }),
 ];
 
 /// The chapter of the page, and what other work does to a query of all links, as a sentence.

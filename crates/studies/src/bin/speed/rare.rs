@@ -115,7 +115,7 @@ fn least_times(search: &mut BvhSearch, base: &Pose, shapes: usize) -> Result<Vec
                 search.minimum(&chain, base).map(|found| black_box(found).distance > 0.0)
             })?;
             timed(2, &mut |search| {
-                search.within(&chain, base, MARGIN, 0.0, &mut contacts).map(|()| true)
+                search.contacts_within(&chain, base, MARGIN, 0.0, &mut contacts).map(|()| true)
             })?;
         }
     }

@@ -139,11 +139,13 @@ fn rows(
             "`contacts` and `within`",
             [
                 Box::new(move |pose| {
-                    scene3.contacts(&[(robot, *pose)], REACH, &mut of_scene).map_err(text)?;
+                    scene3
+                        .contacts_within(&[(robot, *pose)], REACH, &mut of_scene)
+                        .map_err(text)?;
                     Ok(of_scene.len() as f64)
                 }),
                 Box::new(move |pose| {
-                    whole3.within(robot, pose, REACH, 0.0, &mut of_whole).map_err(text)?;
+                    whole3.contacts_within(robot, pose, REACH, 0.0, &mut of_whole).map_err(text)?;
                     Ok(of_whole.len() as f64)
                 }),
             ],

@@ -108,7 +108,7 @@ pub fn chapter(
          |---|---|---|---|---|---|---|---|---|---|\n",
     );
     let mut clears = format!(
-        "\nThe same for the question whether the shape keeps {MARGIN} mm: `tube_clears` with a resolution of {RESOLUTION} mm, \
+        "\nThe same for the question whether the shape keeps {MARGIN} mm: `clears_tube` with a resolution of {RESOLUTION} mm, \
          and `clears` of fixed links within 0.01 mm:\n\n\
          | triangles | shapes | tube | tube, function | fixed | building the tube alone |\n|---|---|---|---|---|---|\n"
     );
@@ -258,7 +258,7 @@ fn decisions<'a>(mesh: &TriMesh, base: &'a Pose) -> Result<Vec<Way<'a>>, String>
     let engine = || BvhSearch::new(mesh).map_err(text);
     let decide = |search: &mut BvhSearch, tube: &Tube| -> Result<Decision, String> {
         search.forget();
-        search.tube_clears(tube, base, MARGIN, RESOLUTION).map_err(text)
+        search.clears_tube(tube, base, MARGIN, RESOLUTION).map_err(text)
     };
     let (mut one, mut other, mut third) = (engine()?, engine()?, engine()?);
     let (mut tube, mut chain) = (empty_tube()?, empty_chain()?);

@@ -37,7 +37,7 @@ pub fn text(facts: &Facts) -> String {
         simplifying.fold((f64::INFINITY, 0.0_f64), |(low, high), us| (low.min(us), high.max(us)));
     let most = 100.0 * forbidden.count as f64 / forbidden.of.max(1) as f64;
     format!(
-        "**Take a `Tube`, and ask `clearance` or `tube_clears` for the error that you can bear.** The bounds hold for your \
+        "**Take a `Tube`, and ask `clearance` or `clears_tube` for the error that you can bear.** The bounds hold for your \
          curve, and the larger the error, the less the query does.\n\n\
          Measured by `{command}` on {}: a concentric tube robot of radius 1.25 to 0.5 mm in a ventricle of {} triangles. Times \
          from about 270 samples of a new shape to its clearance, on one thread:\n\n\

@@ -10,7 +10,7 @@ use continuum_studies::machine;
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{BvhSearch, Decision, Proximity};
-use parry_continuum::{Course, Motion, RobotError, Speed, Tube};
+use parry_continuum::{DisplacementBound, Motion, RobotError, Speed, Tube};
 use std::cell::Cell;
 use std::fmt::Write;
 use std::time::Instant;
@@ -55,8 +55,13 @@ impl Motion for Counted<'_> {
         self.motion.speed(section, shares, times)
     }
 
-    fn course(&self, section: usize, shares: [Real; 2], times: [Real; 2]) -> Option<Course> {
-        if self.has_courses.get() { self.motion.course(section, shares, times) } else { None }
+    fn displacement(
+        &self,
+        section: usize,
+        shares: [Real; 2],
+        times: [Real; 2],
+    ) -> Option<DisplacementBound> {
+        if self.has_courses.get() { self.motion.displacement(section, shares, times) } else { None }
     }
 }
 
@@ -149,7 +154,7 @@ fn by_steps(
     let mut tube = motion.motion.tube(0.0).map_err(text)?;
     for t in motion.motion.steps(step).filter(|t| *t < 1.0) {
         motion.shape(t, &mut tube).map_err(text)?;
-        if search.tube_clears(&tube, base, margin, RESOLUTION).map_err(text)? != Decision::Clear {
+        if search.clears_tube(&tube, base, margin, RESOLUTION).map_err(text)? != Decision::Clear {
             return Ok(Verdict::Contact);
         }
     }
@@ -226,7 +231,7 @@ fn edges(
         let mut is_clear = true;
         for t in [0.0, 1.0] {
             let tube = motion.tube(t).map_err(text)?;
-            let decision = search.tube_clears(&tube, base, margin, RESOLUTION).map_err(text)?;
+            let decision = search.clears_tube(&tube, base, margin, RESOLUTION).map_err(text)?;
             is_clear &= decision == Decision::Clear;
         }
         if is_clear {
@@ -286,7 +291,7 @@ pub fn chapter(robot: &Robot, mesh: &TriMesh, base: &Pose, count: usize) -> Resu
          the margin of {} or {} mm, half of the edges each: shapes of the robot that were looked at, and time with all that it takes to \
          make them. *Proof*: `clears_motion` with a resolution of {RESOLUTION} mm, which bounds the speed of each \
          piece and asks where it goes. *Speeds*: the same of a motion that states no courses. *One bound*: the same halving of time, but with the speed of the fastest point for all of the robot, and its \
-         clearance (`clearance`). *Steps*: shapes between which the tip moves so far, by `tube_clears`, the middle first; \
+         clearance (`clearance`). *Steps*: shapes between which the tip moves so far, by `clears_tube`, the middle first; \
          they prove nothing, and *missed* are edges that they accept and in which a contact was found. All on one thread, \
          without the last answers, in means over the edges (the median of {TURNS} turns each).\n\n\
          | tip moves | proof: shapes, median | mean | time | speeds: shapes | time | one bound: shapes | time | 0.5 mm: shapes | time | missed | \

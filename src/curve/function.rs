@@ -1,0 +1,148 @@
+//! A tube whose centreline is a function of arc length.
+
+use super::cap_persistence::CapPersistence;
+use super::curve::{Curve, TICKS};
+use super::section::{EndFace, Section};
+use super::{Tube, check_faces};
+use crate::distance::Scalar;
+use crate::robot::{RobotError, check_place, check_radii, direction};
+use parry3d_f64::math::{Real, Vector};
+use std::sync::Arc;
+
+/// A section of a tube with one radius, for [`Tube::from_function`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TubeSection {
+    /// Arc length of the centreline, in the tube's unit.
+    pub length: Real,
+    /// Radius of the tube, in the same unit.
+    pub radius: Real,
+    /// An upper bound on the curvature of the centreline, 1 / length.
+    pub curvature: Real,
+}
+
+impl Tube {
+    /// Builds the tube around a curve that is evaluated on demand.
+    ///
+    /// - `sections`: lengths, radii and curvature bounds, base to tip.
+    /// - `curve`: maps an arc length, from 0 to the sum of the sections' lengths, to the point in
+    ///   the robot's frame and the direction (of any length).
+    ///
+    /// The direction must be continuous. Within a section it must turn by at most the section's
+    /// curvature times arc length. Answers rely on this promise; [`verify`](Self::verify) tests it.
+    ///
+    /// ```
+    /// use parry_continuum::{Tube, TubeSection, parry::math::Vector};
+    ///
+    /// let section = TubeSection { length: 20.0, radius: 1.0, curvature: 0.05 };
+    /// let tube = Tube::from_function(&[section], |s| {
+    ///     let (sin, cos) = (0.05 * s).sin_cos();
+    ///     (Vector::new(1.0 - cos, 0.0, sin) * 20.0, Vector::new(sin, 0.0, cos))
+    /// })?;
+    /// tube.verify(100)?;
+    /// # Ok::<(), parry_continuum::RobotError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// - no section;
+    /// - a length that is not positive, a negative radius or curvature, or a number that is not
+    ///   finite;
+    /// - a curve that is not finite or out of range at the end of a section;
+    /// - a section with a flat end whose curvature times radius is 1 or more.
+    pub fn from_function(
+        sections: &[TubeSection],
+        curve: impl Fn(Real) -> (Vector, Vector) + Send + Sync + 'static,
+    ) -> Result<Self, RobotError> {
+        check_sections("sections", sections)?;
+        let mut tube = Self::empty();
+        let mut start = 0.0;
+        for (index, given) in sections.iter().enumerate() {
+            let end = start + given.length;
+            let face = |end: usize, arc_length: Real| {
+                let (centre, tangent) = curve(arc_length);
+                check_place("curve", index, centre)?;
+                if !(tangent.length_squared() > 0.0 && tangent.is_finite()) {
+                    return Err(RobotError::BadTangent {
+                        parameter: "curve",
+                        index,
+                        value: tangent,
+                    });
+                }
+                let outward = direction(if end == 0 { -tangent } else { tangent });
+                Ok(Some(EndFace {
+                    centre,
+                    outward,
+                    tilt: 0.0,
+                    persistence: CapPersistence::Either,
+                }))
+            };
+            // Covers the rounding of the sections' ends.
+            let curvature = given.curvature * (1.0 + 8.0 * Real::UNIT_ROUNDOFF);
+            tube.sections.push(Section {
+                first: 0,
+                last: TICKS,
+                start,
+                end,
+                radius: given.radius,
+                curvature,
+                mean_curvature: curvature,
+                curvature_at: [curvature; 2],
+                shown_at: [curvature; 2],
+                is_even: true,
+                stretch: 1.0 + 8.0 * Real::UNIT_ROUNDOFF,
+                // Both flat at first; round ends are removed below.
+                faces: [face(0, start)?, face(1, end)?],
+                fades: false,
+            });
+            start = end;
+        }
+        let ends = tube
+            .sections
+            .iter()
+            .flat_map(|section| section.faces)
+            .flatten()
+            .map(|face| face.centre);
+        tube.reach = ends.fold(0.0, |reach, point| point.abs().max_element().max(reach)) + start;
+        for end in [0, 1] {
+            tube.walk(end, |tube, number, limit| {
+                let face = tube.sections[number].faces[end];
+                let is_flat = |face: &EndFace| tube.is_flat(end, number, limit, face.centre);
+                tube.sections[number].faces[end] = face.filter(is_flat);
+            });
+        }
+        for (index, section) in tube.sections.iter().enumerate() {
+            check_faces(section, || index)?;
+        }
+        tube.mark_persistent_faces();
+        tube.curve = Curve::Function(Arc::new(curve));
+        Ok(tube)
+    }
+}
+
+/// Checks sections before they are used.
+///
+/// # Errors
+/// No section; a length that is not positive, a radius or a curvature that is negative, or one that
+/// is not finite.
+pub(super) fn check_sections(
+    parameter: &'static str,
+    sections: &[TubeSection],
+) -> Result<(), RobotError> {
+    if sections.is_empty() {
+        return Err(RobotError::NoSections { parameter });
+    }
+    for (index, section) in sections.iter().enumerate() {
+        if !(section.length > 0.0 && section.length < Real::INFINITY) {
+            return Err(RobotError::BadLength { parameter, index, value: section.length });
+        }
+        check_radii(parameter, &[section.radius]).map_err(|_| RobotError::BadRadius {
+            parameter,
+            index,
+            value: section.radius,
+            limit: crate::robot::COORDINATE_LIMIT,
+        })?;
+        if !(0.0..Real::INFINITY).contains(&section.curvature) {
+            return Err(RobotError::BadCurvature { parameter, index, value: section.curvature });
+        }
+    }
+    Ok(())
+}

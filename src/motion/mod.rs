@@ -1,0 +1,162 @@
+//! Motions: a robot whose shape depends on time, with bounds on how fast its points move.
+
+mod bending;
+mod displacement_bound;
+#[cfg(test)]
+mod displacement_bound_tests;
+mod drift;
+mod linear;
+mod motion_path;
+mod moving_base;
+mod rigid;
+mod rigid_path;
+mod sampled_shape;
+mod section_signature;
+mod shape_path;
+#[cfg(test)]
+mod tests;
+mod verify;
+
+pub use bending::{BendingMotion, BendingRates, bending_displacement, bending_speed};
+pub use displacement_bound::DisplacementBound;
+pub(crate) use drift::MotionDrift;
+pub use linear::LinearMotion;
+pub use motion_path::MotionPath;
+pub use moving_base::MovingBase;
+pub use rigid::RigidMotion;
+pub(crate) use section_signature::SectionSignature;
+pub(crate) use shape_path::ShapePath;
+pub use verify::verify_motion;
+
+use crate::curve::Tube;
+use crate::robot::{COORDINATE_LIMIT, NotRigid, RobotError, rigid};
+use parry3d_f64::math::{Pose, Real};
+
+/// A motion: the robot's shape and pose at each time t from 0 to 1, with an upper bound on its
+/// speed.
+///
+/// Ready to use: [`LinearMotion`], [`RigidMotion`] and [`BendingMotion`]. [`MovingBase`] moves the
+/// base of any motion, and [`MotionPath`] joins motions in sequence. For a motion of your own,
+/// implement `shape` and `speed`. Proofs about a motion rely on the bounds that it states, so let
+/// your tests check them with [`verify_motion`].
+///
+/// Two shapes of a motion must be comparable:
+///
+/// - They have the same number of sections with the same radii. A section that is not extended yet
+///   has a tiny length.
+/// - A point of the centreline is identified at all times by its section and its share of the
+///   section's length.
+/// - Flat ends stay flat: the robot's two ends, and the wider side of each step in radius. So the
+///   cap model must stay the same; a change from capsules to fitted caps, for example, is refused.
+/// ```
+/// use parry_continuum::{Motion, RobotError, Speed, Tube, parry::math::{Pose, Real, Vector}, verify_motion};
+///
+/// /// A straight needle of 30 mm that bends to an arc of 0.02 / mm, 40 points along it.
+/// struct Bending;
+///
+/// impl Motion for Bending {
+///     fn shape(&self, t: Real, tube: &mut Tube) -> Result<Pose, RobotError> {
+///         let curvature = 0.02 * t.max(1e-9);
+///         let point = |k: u32| {
+///             let (sin, cos) = (curvature * 30.0 * Real::from(k) / 40.0).sin_cos();
+///             Vector::new((1.0 - cos) / curvature, 0.0, sin / curvature)
+///         };
+///         tube.set_samples(&(0..=40).map(point).collect::<Vec<_>>(), &[0.5; 40], None)?;
+///         Ok(Pose::IDENTITY)
+///     }
+///
+///     fn speed(&self, _section: usize, shares: [Real; 2], _times: [Real; 2]) -> Speed {
+///         // The curvature grows by 0.02. At s from the base this turns the needle by 0.02 s
+///         // and moves it by half of that times s.
+///         let s = 30.0 * shares[1];
+///         Speed { point: 0.01 * s * s, turn: 0.02 * s }
+///     }
+/// }
+///
+/// verify_motion(&Bending, 100)?;
+/// # Ok::<(), RobotError>(())
+/// ```
+pub trait Motion {
+    /// Writes the robot's shape at time `t` to `tube` and returns its pose in the mesh's frame.
+    ///
+    /// `tube` holds an earlier shape. [`Tube::set_samples`] and [`Tube::set_chain`] reuse its
+    /// memory. Errors stated by [`Tube::with_error`] are removed before the call: each shape states
+    /// its own.
+    ///
+    /// # Errors
+    /// The shape does not exist. Kinematics that fail return [`RobotError::NoShape`]. Queries pass
+    /// the error on.
+    fn shape(&self, t: Real, tube: &mut Tube) -> Result<Pose, RobotError>;
+
+    /// Returns upper bounds on the linear and angular speed of the centreline in the mesh's frame.
+    ///
+    /// The bounds hold for every place between two shares of a section's length, at every time
+    /// between two times. Shares and times are from 0 to 1, the lower one first; they may be equal.
+    /// A bound that is too large costs time. A bound that is too small makes answers wrong.
+    fn speed(&self, section: usize, shares: [Real; 2], times: [Real; 2]) -> Speed;
+
+    /// Returns a bound on the displacement of the centreline in the mesh's frame, if more is known
+    /// than its speed.
+    ///
+    /// The bound covers the places between two shares of a section's length, from one time to
+    /// another; arguments as for [`speed`](Self::speed). The default is `None`.
+    ///
+    /// With it, [`clears_motion`](crate::proximity::BvhSearch::clears_motion) and similar queries
+    /// need fewer shapes: a piece that moves along the wall, or away from it, does not count as
+    /// moving towards it. All ready motions know their displacements. [`bending_displacement`] helps for
+    /// sections of constant curvature. A wrong bound makes answers wrong. A bound that is not
+    /// finite, or whose `off` is negative, is ignored.
+    ///
+    /// A motion that wraps another may pass its bound on if it keeps time and place.
+    fn displacement(
+        &self,
+        section: usize,
+        shares: [Real; 2],
+        times: [Real; 2],
+    ) -> Option<DisplacementBound> {
+        let _ = (section, shares, times);
+        None
+    }
+
+    /// Returns the number of equal parts into which queries divide time first: 1, except for a path
+    /// of several motions. A motion that wraps another passes its value on.
+    fn time_parts(&self) -> usize {
+        1
+    }
+}
+
+/// Linear and angular speed of a centreline per unit of the motion's time. A constant speed equals
+/// the distance moved from t = 0 to 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Speed {
+    /// The linear speed of its points, in units of length.
+    pub point: Real,
+    /// The angular speed of its direction, in rad. Times the radius it is the speed of a disc's rim
+    /// relative to the disc's centre.
+    pub turn: Real,
+}
+
+/// Checks a speed or an angular speed that a motion states for a section.
+///
+/// # Errors
+/// The value is negative, infinite or NaN.
+pub(crate) fn check_speed(section: usize, value: Real) -> Result<Real, RobotError> {
+    // Written so that NaN is an error.
+    if (0.0..Real::INFINITY).contains(&value) {
+        Ok(value)
+    } else {
+        Err(RobotError::BadSpeed { section, value })
+    }
+}
+
+/// Returns a motion's pose with a rotation of unit length, if it is finite, in range and rigid.
+fn rigid_pose(parameter: &'static str, pose: &Pose) -> Result<Pose, RobotError> {
+    // A finite rotation may still be too long; `rigid` reports that.
+    let is_out = |place: &Real| !place.is_finite() || place.abs() > COORDINATE_LIMIT;
+    let places = pose.translation.to_array().into_iter().filter(is_out);
+    let parts = pose.rotation.to_array().into_iter().filter(|part| !part.is_finite());
+    if let Some(value) = places.chain(parts).next() {
+        return Err(RobotError::BadPose { parameter, value, limit: COORDINATE_LIMIT });
+    }
+    rigid(pose).map_err(|NotRigid { length }| RobotError::PoseNotRigid { parameter, length })
+}

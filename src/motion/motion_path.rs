@@ -1,0 +1,113 @@
+//! Motions in sequence, as one motion.
+
+use super::{DisplacementBound, Motion, Speed};
+use crate::curve::Tube;
+use crate::distance::Scalar;
+use crate::robot::RobotError;
+use parry3d_f64::math::{Pose, Real};
+
+/// A path: motions in sequence, each over an equal part of the time.
+///
+/// Of n motions the first runs from t = 0 to 1 / n, the second to 2 / n, and so on.
+/// [`part_at`](Self::part_at) returns the motion at a given time. All have the same sections. Each should
+/// begin where the previous one ends; [`verify_motion`](crate::verify_motion) detects a gap.
+///
+/// ```
+/// use parry_continuum::{LinearMotion, MotionPath, parry::{math::Vector, shape::Ball}, proximity::BvhSearch};
+///
+/// let (vertices, triangles) = Ball::new(10.0).to_trimesh(64, 32);
+/// let mut search = BvhSearch::from_triangles(&vertices, &triangles)?;
+/// let shapes = [Vector::Z, Vector::Z + Vector::X * 2.0, Vector::X * 5.0].map(|tip| [Vector::ZERO, tip]);
+/// let edges = shapes.windows(2).map(|ends| LinearMotion::chain(&ends[0], &ends[1], &[1.0]));
+/// let path = MotionPath::new(edges.collect::<Result<_, _>>()?)?;
+/// let least = search.clearance_of_motion(&path, 0.01)?;
+/// assert!(least.resolved && path.part_at(least.t).0 == 1); // the second edge comes nearest
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct MotionPath<M> {
+    motions: Vec<M>,
+}
+
+impl<M: Motion> MotionPath<M> {
+    /// Joins motions in order of time.
+    ///
+    /// # Errors
+    /// There are no motions.
+    pub fn new(motions: Vec<M>) -> Result<Self, RobotError> {
+        if motions.is_empty() {
+            Err(RobotError::NoMotions { parameter: "motions" })
+        } else {
+            Ok(Self { motions })
+        }
+    }
+
+    /// Returns the index of the motion at a time from 0 to 1, and that motion's own time.
+    pub fn part_at(&self, t: Real) -> (usize, Real) {
+        let along = t * self.motions.len() as Real;
+        // The conversion saturates.
+        let leg = (along as usize).min(self.motions.len() - 1);
+        (leg, self.time_in(leg, t))
+    }
+
+    /// Converts `t` to the time of one motion, clamped to 0..=1.
+    fn time_in(&self, leg: usize, t: Real) -> Real {
+        let within = (t * self.motions.len() as Real - leg as Real).max(0.0);
+        within.min(1.0)
+    }
+}
+
+impl<M: Motion> Motion for MotionPath<M> {
+    fn shape(&self, t: Real, tube: &mut Tube) -> Result<Pose, RobotError> {
+        let (leg, t) = self.part_at(t);
+        self.motions[leg].shape(t, tube)
+    }
+
+    fn speed(&self, section: usize, shares: [Real; 2], times: [Real; 2]) -> Speed {
+        // Rounding may assign the time of one motion to its neighbour.
+        let rounding = 4.0 * Real::UNIT_ROUNDOFF;
+        let [first, last] = [times[0] + rounding, times[1] - rounding].map(|t| self.part_at(t).0);
+        let up = self.motions.len() as Real * (1.0 + 4.0 * Real::UNIT_ROUNDOFF);
+        let all = (first.min(last)..=last).map(|leg| {
+            let own = [-rounding, rounding];
+            let times = [0, 1].map(|end| self.time_in(leg, times[end] + own[end]));
+            self.motions[leg].speed(section, shares, times)
+        });
+        all.fold(Speed { point: 0.0, turn: 0.0 }, |most, speed| Speed {
+            point: larger(most.point, speed.point * up),
+            turn: larger(most.turn, speed.turn * up),
+        })
+    }
+
+    /// `None` across a joint of two motions, where the velocity may jump.
+    fn displacement(
+        &self,
+        section: usize,
+        shares: [Real; 2],
+        times: [Real; 2],
+    ) -> Option<DisplacementBound> {
+        let rounding = 4.0 * Real::UNIT_ROUNDOFF;
+        let [first, last] = [times[0] + rounding, times[1] - rounding].map(|t| self.part_at(t).0);
+        if first != last {
+            return None;
+        }
+        let inner = times.map(|t| self.time_in(last, t));
+        let DisplacementBound { ways, off } =
+            self.motions[last].displacement(section, shares, inner)?;
+        // A motion's time errs by less than `rounding` times the number of motions, and so do the
+        // two ends of the interval. A time of a neighbouring motion counts as this motion's end.
+        let unsure = 8.0 * rounding * self.motions.len() as Real;
+        let around = [(inner[0] - unsure).max(0.0), (inner[1] + unsure).min(1.0)];
+        let speed = self.motions[last].speed(section, shares, around);
+        Some(DisplacementBound { ways, off: off + unsure * speed.point })
+    }
+
+    fn time_parts(&self) -> usize {
+        self.motions.len()
+    }
+}
+
+/// Returns the larger number; NaN if either is NaN.
+fn larger(a: Real, b: Real) -> Real {
+    if a >= b || a.is_nan() { a } else { b }
+}

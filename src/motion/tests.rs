@@ -1,0 +1,173 @@
+//! Stated speeds against dense sampling, for any two shares and any two times.
+
+use super::{BendingMotion, LinearMotion, Motion, MotionPath, MovingBase, RigidMotion, Speed};
+use crate::curve::BendingSection;
+use crate::curve::Tube;
+use continuum_testing::Random;
+use parry3d_f64::math::{Pose, Real, Vector};
+
+/// The point and the direction in the mesh's frame.
+pub(super) fn at(motion: &dyn Motion, t: Real, section: usize, share: Real) -> (Vector, Vector) {
+    let mut tube = Tube::empty();
+    let pose = motion.shape(t, &mut tube).unwrap();
+    let here = tube.at_share(&tube.sections()[section], share);
+    (pose * here.point, pose.rotation * here.direction)
+}
+
+pub(super) fn sections(random: &mut Random, radii: &[Real]) -> Vec<BendingSection> {
+    let mut bend = || random.between(-0.3, 0.3);
+    let bends: Vec<_> = radii.iter().map(|_| [bend(), bend()]).collect();
+    let sections = radii.iter().zip(bends);
+    sections
+        .map(|(&radius, bend)| BendingSection { length: random.between(0.01, 8.0), radius, bend })
+        .collect()
+}
+
+#[test]
+fn stated_speeds_hold_between_any_shares_and_times() {
+    let mut random = Random::new(1);
+    // The largest used share of the stated speed, by kind of motion: points and turns.
+    let mut used = [[0.0_f64; 2]; 4];
+    for _ in 0..300 {
+        let count = 1 + random.below(4) as usize;
+        let radii: Vec<_> = (0..count).map(|_| random.between(0.1, 1.0)).collect();
+        let from: Vec<_> =
+            (0..=count).map(|k| random.point() * 2.0 + Vector::Z * k as Real).collect();
+        let to: Vec<_> = from.iter().map(|&point| point + random.point() * 3.0).collect();
+        let mut bent = [sections(&mut random, &radii), sections(&mut random, &radii)];
+        if random.below(2) == 0 {
+            // Only lengths change.
+            let bends = bent[0].clone();
+            bent[1].iter_mut().zip(&bends).for_each(|(to, from)| to.bend = from.bend);
+        }
+        let poses = [random.pose(3.0), random.pose(3.0)];
+        let bending = BendingMotion::new(&bent[0], &bent[1], poses[0]).unwrap();
+        let mut tube = Tube::empty();
+        bending.shape(random.unit(), &mut tube).unwrap();
+        let moving =
+            MovingBase::new(bending.clone(), [random.pose(3.0), random.pose(3.0)]).unwrap();
+        let motions: [&dyn Motion; 4] = [
+            &LinearMotion::chain(&from, &to, &radii).unwrap(),
+            &RigidMotion::new(tube, poses).unwrap(),
+            &bending,
+            &moving,
+        ];
+        for (motion, used) in motions.into_iter().zip(&mut used) {
+            for _ in 0..4 {
+                let section = random.below(count as u32) as usize;
+                let mut pair = || {
+                    let (a, b) = (random.unit(), random.unit());
+                    [a.min(b), a.max(b)]
+                };
+                let (shares, times) = (pair(), pair());
+                let stated = motion.speed(section, shares, times);
+                for share in 0..=4 {
+                    let share = shares[0] + (shares[1] - shares[0]) * Real::from(share) / 4.0;
+                    let step = (times[1] - times[0]) / 16.0;
+                    for k in 0..16 {
+                        let t = times[0] + step * Real::from(k);
+                        let [before, behind] = [t, t + step].map(|t| at(motion, t, section, share));
+                        let moved = (behind.0 - before.0).length() / step;
+                        let turned = (behind.1 - before.1).length() / step;
+                        let rounding = 1e-13 / step;
+                        assert!(
+                            moved <= stated.point + rounding,
+                            "{moved} {stated:?} {share} {times:?}"
+                        );
+                        assert!(
+                            turned <= stated.turn + rounding,
+                            "{turned} {stated:?} {share} {times:?}"
+                        );
+                        used[0] = used[0].max(moved / stated.point);
+                        used[1] = used[1].max(turned / stated.turn);
+                    }
+                }
+            }
+        }
+    }
+    // No bound is so loose that it could never fail; a moving base's bound is a sum of others.
+    assert!(used.iter().take(3).flatten().all(|used| *used > 0.8), "{used:?}");
+    assert!(used[3].iter().all(|used| *used > 0.5), "{used:?}");
+}
+
+/// The largest used share of a stated speed at the tip, in fine steps of a part of the time.
+fn used_at_tip(motion: &dyn Motion, times: [Real; 2]) -> [Real; 2] {
+    let Speed { point, turn } = motion.speed(0, [1.0; 2], times);
+    let step = (times[1] - times[0]) / 256.0;
+    let mut used = [0.0_f64; 2];
+    for k in 0..256 {
+        let t = times[0] + step * Real::from(k);
+        let [before, behind] = [t, t + step].map(|t| at(motion, t, 0, 1.0));
+        used[0] = used[0].max((behind.0 - before.0).length() / step / point);
+        used[1] = used[1].max((behind.1 - before.1).length() / step / turn);
+    }
+    used
+}
+
+/// Each term of a moving base's bound equals the measured differences: its push, its turn, the
+/// bending on it, and the growing distance from the axis at times other than the known shapes'.
+#[test]
+fn each_term_of_a_moving_base_is_as_large_as_differences() {
+    let section = |length, bend| BendingSection { length, radius: 0.5, bend: [bend, 0.0] };
+    let inner = |from, to| BendingMotion::new(&[from], &[to], Pose::IDENTITY).unwrap();
+    let still = inner(section(10.0, 0.0), section(10.0, 0.0));
+    let moving = |motion: &BendingMotion, to: Pose| {
+        MovingBase::new(motion.clone(), [Pose::IDENTITY, to]).unwrap()
+    };
+    let pushed = moving(&still, Pose::from_translation(Vector::new(1.0, 2.0, -3.0)));
+    let turned = moving(&still, Pose::rotation(Vector::X * 0.5));
+    let bent = moving(&inner(section(10.0, 0.0), section(10.0, 0.02)), Pose::IDENTITY);
+    // Pushed along the tip's velocity as the base turns it.
+    let both = moving(&still, Pose::new(Vector::Y * -3.0, Vector::X * 0.5));
+    // Grows to twice the length: away from the axis, not only along itself.
+    let growing =
+        moving(&inner(section(1.0, 0.0), section(41.0, 0.0)), Pose::rotation(Vector::X * 3.0));
+    for (name, motion, times, least) in [
+        ("push", &pushed, [0.0, 1.0], [0.999, 0.0]),
+        ("turn", &turned, [0.0, 1.0], [0.999, 0.999]),
+        ("bend", &bent, [0.0, 1.0], [0.95, 0.95]),
+        ("push and turn", &both, [0.0, 1.0], [0.95, 0.999]),
+        // 3 x 41 across and 40 along. Without the movement since t = 1/2 it would be 3 x 21.
+        ("turn of what grows", &growing, [0.9, 1.0], [0.75, 0.999]),
+        ("turn of what is short", &growing, [0.0, 0.1], [0.7, 0.999]),
+        ("turn of what is half out", &growing, [0.6, 0.75], [0.7, 0.999]),
+    ] {
+        let used = used_at_tip(motion, times);
+        assert!((0..2).all(|k| least[k] <= used[k] || used[k].is_nan()), "{name}: {used:?}");
+        assert!(used.iter().all(|used| *used <= 1.0 + 1e-9 || used.is_nan()), "{name}: {used:?}");
+    }
+}
+
+/// In a sequence of motions, each is as fast as stated in its own part of the time.
+#[test]
+fn a_path_is_as_fast_as_its_motions() {
+    let way = |from: Real, to: Real| {
+        LinearMotion::capsules(
+            &[Vector::X * from, Vector::X * from + Vector::Z],
+            &[Vector::X * to, Vector::X * to + Vector::Z],
+            &[0.1],
+        )
+    };
+    let motions = vec![way(0.0, 1.0).unwrap(), way(1.0, 5.0).unwrap(), way(5.0, 5.0).unwrap()];
+    let path = MotionPath::new(motions).unwrap();
+    super::verify_motion(&path, 30).unwrap();
+    let speed = |times| path.speed(0, [0.0, 1.0], times).point;
+    let third = 1.0 / 3.0;
+    for (times, expected) in [
+        ([0.0, third], 3.0),
+        ([0.1, 0.2], 3.0),
+        ([0.3, 0.4], 12.0),
+        ([third, 2.0 * third], 12.0),
+        ([2.0 * third, 1.0], 0.0),
+        ([0.7, 0.7], 0.0),
+        ([0.0, 1.0], 12.0),
+    ] {
+        assert!((speed(times) - expected).abs() < 1e-9, "{times:?}: {}", speed(times));
+    }
+    assert_eq!(path.part_at(0.0), (0, 0.0));
+    assert_eq!(path.part_at(1.0), (2, 1.0));
+    assert_eq!(path.part_at(0.5).0, 1);
+    assert!((path.part_at(0.5).1 - 0.5).abs() < 1e-15);
+    assert!((at(&path, 0.5, 0, 0.0).0 - Vector::X * 3.0).length() < 1e-12);
+    assert!(MotionPath::<LinearMotion>::new(Vec::new()).is_err());
+}

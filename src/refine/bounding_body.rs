@@ -1,0 +1,270 @@
+//! A convex body that contains a piece of the tube.
+//!
+//! # Definitions
+//! - c: the centreline by arc length, |c''| <= k. t(s): its tangent. l: the length of the piece. r:
+//!   its radius.
+//! - **Piece**: the union of the discs of radius r perpendicular to c, and of a ball at a round end
+//!   of the section.
+//! - x = c(s) + w: a point of a disc; w is perpendicular to t(s) and |w| <= r.
+//! - d: the direction of the chord between the ends of the piece.
+//!
+//! # Claim
+//! Each of the following bodies contains the piece.
+//!
+//! ## Case 1: along the chord, round ends
+//! c(s) deviates from the linear interpolation of the ends by at most k l^2 / 8. So the capsule of
+//! radius r + k l^2 / 8 contains all balls, and so all discs.
+//!
+//! **Shifted chord.** A point c(m) of the curve in between makes the capsule narrower. Let e be the
+//! perpendicular from the chord to c(m), with its foot within the chord. Let D = k h^2 / 2, where h
+//! is the longer of the two parts that c(m) separates.
+//! 1. In a part, at the share q of the way to c(m), the curve deviates from q e by at most D q (1 -
+//!    q).
+//! 2. Let u = |q - 1/2|. The distance of the curve from the chord moved by e / 2 is at most `|q -
+//!    1/2| |e| + D q (1 - q) = u |e| + D (1/4 - u^2)`.
+//! 3. The maximum over u is D / 4 + |e|^2 / (4 D) if |e| <= D, and |e| / 2 otherwise.
+//!
+//! ## Case 2: along the chord, flat ends
+//! 1. For k l <= pi / 2, the angle between t(s) and d is at most k l / 2. Seen from t(s), the two
+//!    parts p + q = l of the curve add up to at most (2 - cos kp - cos kq) / k across and at least
+//!    (sin kp + sin kq) / k along. Their quotient is at most tan(k l / 2).
+//! 2. So the component of c(s) along d increases with s, and w reaches at most r sin(k l / 2) along
+//!    d. So x is behind the plane that is this far beyond the end.
+//! 3. A flat end in that plane cuts off no x, since x is also within the capsule's radius of the
+//!    longer axis.
+//!
+//! ## Case 3: at a face
+//! Let T be the tangent at the face and s the arc length from the face.
+//! 1. The angle between t(s) and T is at most k s. So c(s) is at least sin(k s) / k behind the
+//!    face's plane, and at most (1 - cos ks) / k <= k l^2 / 2 beside its normal.
+//! 2. The vector w reaches at most r sin ks ahead. Since k r < 1, x is behind the plane. It is
+//!    within `r + k l^2 / 2` of the normal through the face's centre. The body's axis follows that
+//!    normal for the length l.
+//! 3. If the normal is known only to an angle a, the angle between t(s) and it is at most ks + a.
+//!    Then x is at most r sin a ahead of the plane and r + k l^2 / 2 + a l beside the normal.
+//! 4. If the other end must be flat too, x is at most l + r sin(k l + a) behind the plane.
+//!
+//! **Rounding.** The axis leads from the face to the back and has the length A = ahead + behind.
+//! 1. Rounding moves its two ends relative to one another by at most 2 u (reach + A) per
+//!    coordinate. So it turns the axis by up to 4 u (reach / A + 1), and the flat ends dip by r
+//!    times that.
+//! 2. `slack` covers 4 u r, and 4 u reach < slack / 16.
+//! 3. For the rest, both ends are moved outwards by x = min(e / A, sqrt(e)) with e = r slack / 16.
+//!    The body is then longer than A + x, and e / (A + x) <= x. The back moves sideways by less
+//!    than a slack.
+//!
+//! ## Errors
+//! The points of the discs are known to `error`, so everything is wider by `error`. The ends of a
+//! chord may be off to either side, which turns the chord by up to 2 error / |chord|. The wall of a
+//! flat body is then off by `error` once more. So a flat body can be the wider one: queries that
+//! know a turn also ask as if it were not stated, and return the better of both.
+//!
+//! If directions may be off by a stated turn, w reaches farther along d by r times that turn.
+
+use super::piece::Piece;
+use super::placed_tube::PlacedTube;
+use super::refinable::Body;
+use crate::answer::{ProximityError, TubePiece};
+use crate::curve::{CurveBound, Section};
+use crate::pair::PlacedLink;
+use crate::robot::{Cap, ModifiedCylinder};
+use parry3d_f64::math::{Real, Vector};
+use std::f64::consts::FRAC_PI_2;
+
+/// A convex body around a piece.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct BoundingBody {
+    pub body: PlacedLink,
+    /// By about how much the body is larger than the piece. A heuristic: correctness does not
+    /// depend on it.
+    pub excess: Real,
+    /// By about how much the bodies of the halves are narrower. A heuristic, too.
+    pub narrows: Real,
+}
+
+impl BoundingBody {
+    pub(crate) fn is_flat(&self) -> bool {
+        self.body.flat() != [false; 2]
+    }
+}
+
+impl Body for BoundingBody {
+    fn excess(&self) -> Real {
+        self.excess
+    }
+}
+
+impl PlacedTube<'_> {
+    /// Returns a piece with its finite body, which is at least `lower` away from the mesh.
+    pub(crate) fn report(&self, piece: &Piece, outer: &BoundingBody, lower: Real) -> TubePiece {
+        let body = &outer.body;
+        let caps = body.flat().map(|flat| if flat { Cap::Flat } else { Cap::Round });
+        // Flat bodies are longer than rounding, and all coordinates stay within a few times the
+        // limit that tube and pose were checked for.
+        let body = ModifiedCylinder::unchecked(body.start(), body.end(), body.radius(), caps);
+        TubePiece { section: piece.section, arc_lengths: self.arcs(piece), body, lower }
+    }
+
+    /// Checks the body of a piece.
+    ///
+    /// # Errors
+    /// The curve of the piece, and so its body, is not finite.
+    pub(crate) fn check_finite(
+        &self,
+        piece: &Piece,
+        outer: &BoundingBody,
+    ) -> Result<(), ProximityError> {
+        if outer.body.is_finite() {
+            Ok(())
+        } else {
+            Err(ProximityError::CurveNotFinite { arc_length: self.arcs(piece)[0] })
+        }
+    }
+
+    /// Returns the body of a piece without its outermost layer; `None` if too little remains.
+    ///
+    /// The layer is 2 `depth` (max(radius of the body - radius of the piece, `excess`) + slack)
+    /// thick.
+    pub(super) fn core(
+        &self,
+        piece: &Piece,
+        outer: &BoundingBody,
+        depth: Real,
+    ) -> Option<PlacedLink> {
+        let (body, radius) = (&outer.body, self.section(piece.section).radius);
+        let layer = depth * 2.0 * ((body.radius() - radius).max(outer.excess) + self.slack);
+        let inward = Vector::from(body.axis()) * (2.0 * layer);
+        let [start, end] = body.flat();
+        let ends = [
+            if start { body.start() + inward } else { body.start() },
+            if end { body.end() - inward } else { body.end() },
+        ];
+        let is_left =
+            layer < 0.5 * radius && (ends[1] - ends[0]).dot(Vector::from(body.axis())) > 0.0;
+        is_left.then(|| PlacedLink::between(ends[0], ends[1], radius - layer, body.flat()))
+    }
+
+    /// Returns a body that contains the piece: case 3 at a face if it is tighter, otherwise case 1
+    /// or 2.
+    pub(crate) fn outer(&self, piece: &Piece) -> BoundingBody {
+        let section = self.section(piece.section);
+        let arcs = self.arcs(piece);
+        let exposed = self.exposed(section, arcs);
+        let length = (arcs[1] - arcs[0]) * section.stretch;
+        let known = self.tube.bound(section, [piece.from, piece.to]);
+        let bend = known.curvature * length;
+        // Case 1.
+        if exposed == [false; 2] || bend > FRAC_PI_2 || known.curvature * section.radius >= 1.0 {
+            return self.along_chord(section, piece, &known, length, [false; 2]);
+        }
+        let error = self.tube.error() + known.off;
+        let sideways = 0.5 * bend * length;
+        let faces = self.faces(section);
+        let ends = [
+            (piece.from == section.first).then_some(faces[0]).flatten(),
+            (piece.to == section.last).then_some(faces[1]).flatten(),
+        ];
+        let flat_ends = Real::from(u8::from(exposed[0])) + Real::from(u8::from(exposed[1]));
+        let by_chord = 0.25 * sideways + 0.5 * section.radius * bend * flat_ends;
+        // Case 3.
+        for (end, face) in ends.into_iter().enumerate() {
+            let Some(face) = face else { continue };
+            // Without a face at the other end, the body's flat back ends inside the tube, which is
+            // harmless.
+            let other =
+                if ends[1 - end].is_some() { section.radius * (bend + face.tilt) } else { 0.0 };
+            let excess = sideways + face.tilt * (length + section.radius) + other;
+            if excess <= by_chord && bend + face.tilt <= FRAC_PI_2 {
+                let wider = sideways + face.tilt * length + error + 2.0 * self.slack;
+                let mut beyond = section.radius * face.tilt + error + self.slack;
+                let mut behind = length;
+                if exposed[1 - end] {
+                    behind += section.radius * (bend + face.tilt) + error + self.slack;
+                }
+                let turning = section.radius * self.slack / 16.0;
+                let turned = turning / (beyond + behind).max(turning.sqrt());
+                beyond += turned;
+                behind += turned;
+                let face = self.face(&face);
+                let tip = face.centre + face.outward * beyond;
+                let back = face.centre - face.outward * behind;
+                let (ends, flat) = if end == 0 {
+                    ([tip, back], [true, exposed[1]])
+                } else {
+                    ([back, tip], [exposed[0], true])
+                };
+                return BoundingBody {
+                    body: PlacedLink::between(ends[0], ends[1], section.radius + wider, flat),
+                    excess,
+                    // Halving does not reduce the tilt of the face.
+                    narrows: excess - face.tilt * section.radius,
+                };
+            }
+        }
+        // Case 1 or 2.
+        self.along_chord(section, piece, &known, length, exposed)
+    }
+
+    fn along_chord(
+        &self,
+        section: &Section,
+        piece: &Piece,
+        known: &CurveBound,
+        length: Real,
+        flat: [bool; 2],
+    ) -> BoundingBody {
+        let [mut start, mut end] = [piece.from, piece.to].map(|tick| self.point(section, tick));
+        let (error, curvature) = (self.tube.error() + known.off, known.curvature);
+        let along = end - start;
+        let mut excess = 0.125 * curvature * length * length;
+        let mut shift = Vector::ZERO;
+        // Case 1, shifted chord.
+        if excess > self.slack && piece.to - piece.from >= 2 {
+            let arcs = self.arcs(piece);
+            let tick = self
+                .tube
+                .tick(section, 0.5 * (arcs[0] + arcs[1]))
+                .max(piece.from + 1)
+                .min(piece.to - 1);
+            let arc = self.tube.arc(section, tick);
+            let longer = (arc - arcs[0]).max(arcs[1] - arc) * section.stretch;
+            let most = 0.5 * curvature * longer * longer;
+            let offset = self.point(section, tick) - start;
+            let share = offset.dot(along) / along.length_squared();
+            if (0.0..=1.0).contains(&share) {
+                let off = offset - along * share;
+                let size = off.length();
+                let moved =
+                    if size < most { 0.25 * (most + size * (size / most)) } else { 0.5 * size };
+                if moved < excess {
+                    (shift, excess) = (off * 0.5, moved);
+                }
+            }
+        }
+        start += shift;
+        end += shift;
+        let (mut wider, mut narrows) = (excess, 0.75 * excess);
+        let chord = along.length();
+        // A chord within rounding has no direction.
+        let flat = if chord > 4.0 * (error + self.slack) { flat } else { [false; 2] };
+        // Case 2.
+        if flat != [false; 2] {
+            let unit = along / chord;
+            let bend = 0.5 * curvature * length;
+            let tilt = bend + 2.0 * (error + self.slack) / chord + self.turn();
+            // The halves bend half as much; rounding turns their chords twice as far.
+            narrows += section.radius * (0.5 * bend - 2.0 * self.slack / chord);
+            let beyond = section.radius * tilt + error + self.slack;
+            wider += section.radius * tilt;
+            if flat[0] {
+                start -= unit * beyond;
+            }
+            if flat[1] {
+                end += unit * beyond;
+            }
+        }
+        let errors = if flat == [false; 2] { error } else { 2.0 * error };
+        let radius = section.radius + excess + errors + self.slack;
+        BoundingBody { body: PlacedLink::between(start, end, radius, flat), excess: wider, narrows }
+    }
+}
