@@ -6,7 +6,7 @@ use parry_continuum::distance::{Vec3, modified_cylinder_modified_cylinder};
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::query;
 use parry_continuum::parry::shape::{Capsule, Compound, SharedShape};
-use parry_continuum::proximity::{RobotPair, between, clears_between, self_clears, self_minimum};
+use parry_continuum::proximity::{RobotPair, SelfQuery};
 use parry_continuum::{Cap, Chain, ModifiedCylinder};
 use std::f64::consts::{PI, TAU};
 use std::hint::black_box;
@@ -67,13 +67,15 @@ fn two_robots(criterion: &mut Criterion) {
         group.bench_function(name, |bencher| bencher.iter(|| ask(black_box(&next(&poses)))));
     };
     let here = Pose::IDENTITY;
-    bench("between", &mut |pose| between(&a, &here, &b, pose).expect("an answer").distance);
+    bench("between", &mut |pose| {
+        RobotPair::new().minimum(&a, &here, &b, pose).expect("an answer").distance
+    });
     let mut pair = RobotPair::new();
     bench("RobotPair::minimum", &mut |pose| {
         pair.minimum(&a, &here, &b, pose).expect("an answer").distance
     });
     bench("clears_between", &mut |pose| {
-        f64::from(u8::from(clears_between(&a, &here, &b, pose, 1.0).expect("an answer")))
+        f64::from(u8::from(RobotPair::new().clears(&a, &here, &b, pose, 1.0).expect("an answer")))
     });
     bench("every exact pair", &mut |pose| {
         let placed: Vec<_> = b.links().iter().map(|link| link.transformed(pose)).collect();
@@ -91,15 +93,15 @@ fn one_robot(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("one robot and itself");
     for links in [60, 100] {
         let robot = coil(links);
-        let mut pair = RobotPair::new();
-        group.bench_function(format!("self_minimum, {links} links"), |bencher| {
-            bencher.iter(|| self_minimum(black_box(&robot)).expect("an answer"));
+        let mut query = SelfQuery::new();
+        group.bench_function(format!("minimum without memory, {links} links"), |bencher| {
+            bencher.iter(|| SelfQuery::new().minimum(black_box(&robot)).expect("an answer"));
         });
-        group.bench_function(format!("self_clears, {links} links"), |bencher| {
-            bencher.iter(|| self_clears(black_box(&robot), 1.0).expect("an answer"));
+        group.bench_function(format!("clears without memory, {links} links"), |bencher| {
+            bencher.iter(|| SelfQuery::new().clears(black_box(&robot), 1.0).expect("an answer"));
         });
-        group.bench_function(format!("RobotPair::self_clears, {links} links"), |bencher| {
-            bencher.iter(|| pair.self_clears(black_box(&robot), 1.0).expect("an answer"));
+        group.bench_function(format!("clears, {links} links"), |bencher| {
+            bencher.iter(|| query.clears(black_box(&robot), 1.0).expect("an answer"));
         });
         group.bench_function(format!("every exact pair, {links} links"), |bencher| {
             bencher.iter(|| {

@@ -144,7 +144,7 @@ fn told(scene: &Scene, tightest: &Tightest) -> String {
         Between::Structure(StructureProximity { structure, robot, nearest, .. }) => format!(
             "{slack:7.3} mm: link {} of robot {robot} and triangle {} of {}",
             nearest.link,
-            nearest.triangle,
+            nearest.witness.triangle,
             scene.name(*structure as usize).unwrap_or("a structure"),
         ),
         Between::Robots { robots: [a, b], nearest } => {
@@ -203,9 +203,9 @@ fn draw(
             solids.push(Solid::new(line, middle, INK, false));
         }
     };
-    join(nearest.on_first, nearest.on_second);
+    join(nearest.witness.on_first, nearest.witness.on_second);
     for wall in walls {
-        join(wall.nearest.on_robot, wall.nearest.on_mesh);
+        join(wall.nearest.witness.on_robot, wall.nearest.witness.on_mesh);
     }
     let mut picture = Picture::new(Some(mesh), solids);
     picture.skin.veil = 0.15;

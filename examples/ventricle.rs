@@ -164,7 +164,7 @@ fn steer(options: &Options) -> Result<(), String> {
                 search.clearance_pieces(&curve, &base, tolerance, &mut pieces).map_err(text)?;
             println!(
                 "\nthe curve itself keeps between {:.6} and {:.6} mm; triangle {} is nearest, {:.2} mm along the robot",
-                found.lower, found.upper, found.triangle, found.arc_length
+                found.lower, found.upper, found.witness.triangle, found.witness.arc_length
             );
             print_pieces(&pieces);
             Some(found)
@@ -223,9 +223,9 @@ fn print_table(chain: &Chain, answers: &[LinkProximity]) {
             answer.link,
             link.radius(),
             answer.distance,
-            answer.triangle,
-            place(answer.on_robot),
-            place(answer.on_mesh),
+            answer.witness.triangle,
+            place(answer.witness.on_robot),
+            place(answer.witness.on_mesh),
         );
     }
 }
@@ -306,14 +306,14 @@ fn nearest(
     pieces: &[TubePiece],
 ) -> Option<String> {
     if let Some(curve) = curve {
-        let (lower, upper, arc_length) = (curve.lower, curve.upper, curve.arc_length);
+        let (lower, upper, arc_length) = (curve.lower, curve.upper, curve.witness.arc_length);
         let count = pieces.len();
         return Some(format!(
             "the curve, in {count} pieces: {lower:.4} to {upper:.4} mm, {arc_length:.1} mm along it"
         ));
     }
     let nearest = links.iter().min_by(|a, b| a.distance.total_cmp(&b.distance))?;
-    let (link, triangle, distance) = (nearest.link, nearest.triangle, nearest.distance);
+    let (link, triangle, distance) = (nearest.link, nearest.witness.triangle, nearest.distance);
     Some(format!("closest: link {link} and triangle {triangle}, {distance:.3} mm apart"))
 }
 

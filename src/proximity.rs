@@ -13,7 +13,7 @@
 //! | does the robot keep a margin? | [`clears`] |
 //! | which link is closest, if any is within a bound? | [`minimum_within`] |
 //! | every place where robot and wall are near, with normal and depth | [`contacts_within`] |
-//! | normal and depth of one answer, or of all answers of a query | [`contact`], [`contacts`] |
+//! | normal and depth of one answer, or of all answers of a query | [`contact_of`], [`contacts_of`] |
 //! | how fast a distance changes with a joint | [`Contact::rate`], [`Contact::gradient`] |
 //! | the derivative by each end, the radius and each vertex | [`derivative`] |
 //! | a proof of an answer | [`LinkProximity::certify`], [`certify_among_all`] |
@@ -49,21 +49,27 @@
 //! | on which side of the mesh is a point? | [`side`] |
 //! | is the robot inside, and does it keep a margin? | [`clears_inside`] |
 //!
-//! **Two robots, or one and itself**
+//! **Two robots**
 //!
 //! | question | call |
 //! |---|---|
-//! | which links of two robots are closest, and where? | [`between`], [`RobotPair::minimum`] |
-//! | do two robots keep a margin? | [`clears_between`], [`RobotPair::clears`] |
+//! | which links of two robots are closest, and where? | [`RobotPair::minimum`] |
+//! | do two robots keep a margin? | [`RobotPair::clears`] |
 //! | which link of the other robot is closest to each link? | [`RobotPair::per_link`] |
 //! | every place where two robots are near | [`RobotPair::contacts_within`] |
 //! | the clearance of two tubes, between two bounds | [`RobotPair::clearance`] |
 //! | do two tubes keep a margin? | [`RobotPair::clears_tubes`] |
+//! | do two robots keep a margin while both move? | [`RobotPair::clears_motions`] |
 //! | a proof of the distance of two links | [`RobotProximity::certify`] |
-//! | where does a robot come closest to itself? | [`self_minimum`], [`RobotPair::self_minimum`] |
-//! | does a robot keep a margin to itself? | [`self_clears`], [`RobotPair::self_clears`] |
-//! | does it keep it while it moves? | [`motion_self_clears`], [`RobotPair::motion_self_clears`] |
-//! | does a tube keep a margin to itself? | [`tube_self_clears`], [`RobotPair::tube_self_clears`] |
+//!
+//! **One robot and itself**
+//!
+//! | question | call |
+//! |---|---|
+//! | where does a robot come closest to itself? | [`SelfQuery::minimum`] |
+//! | does a robot keep a margin to itself? | [`SelfQuery::clears`] |
+//! | does a tube keep a margin to itself? | [`SelfQuery::clears_tube`] |
+//! | does a robot keep it while it moves? | [`SelfQuery::clears_motion`] |
 //!
 //! **Several structures and robots**
 //!
@@ -72,7 +78,7 @@
 //! | do all robots keep all margins? | [`Scene::clears`] |
 //! | where is the least slack, and to which structure? | [`Scene::tightest`] |
 //! | how near is each structure? | [`Scene::per_structure`] |
-//! | every contact, with its structure | [`Scene::contacts`] |
+//! | every contact, with its structure | [`Scene::contacts_within`] |
 //!
 //! **Many at once, and a mesh that moves**
 //!
@@ -86,8 +92,7 @@
 //! | read the mesh as the engine has it now | [`vertices`], [`triangles`] |
 //! | drop the warm start | [`forget`] |
 //!
-//! An answer that names a place has a [`Witness`], and its fields read through: `answer.on_mesh`,
-//! `answer.arc_length`. A robot keeps a margin if its distance exceeds the margin. A yes or no
+//! An answer that names a place has a [`Witness`] or a [`PairWitness`]: `answer.witness.on_mesh`. A robot keeps a margin if its distance exceeds the margin. A yes or no
 //! about links is exact, so it is a `bool`. About tubes and motions it is a [`Decision`], which may
 //! be `Undecided`. An error says what to change; its `kind()` is one word for programs.
 //!
@@ -100,8 +105,9 @@
 //! let mut search = BvhSearch::from_triangles(&vertices, &triangles)?;
 //! let robot = Chain::from_centreline(&[Vector::ZERO, Vector::Z * 6.0], &[0.5])?;
 //! let closest = search.minimum(&robot, &Pose::IDENTITY)?;
-//! println!("{} mm, {} mm along the robot, triangle {}", closest.distance, closest.arc_length, closest.triangle);
-//! # assert!(closest.arc_length == 6.0 && 3.9 < closest.distance && closest.distance < 4.0);
+//! let at = closest.witness;
+//! println!("{} mm, {} mm along the robot, triangle {}", closest.distance, at.arc_length, at.triangle);
+//! # assert!(at.arc_length == 6.0 && 3.9 < closest.distance && closest.distance < 4.0);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
@@ -113,8 +119,8 @@
 //! [`clears`]: Proximity::clears
 //! [`minimum_within`]: Proximity::minimum_within
 //! [`contacts_within`]: Proximity::contacts_within
-//! [`contact`]: Proximity::contact
-//! [`contacts`]: Proximity::contacts
+//! [`contact_of`]: Proximity::contact_of
+//! [`contacts_of`]: Proximity::contacts_of
 //! [`derivative`]: Proximity::derivative
 //! [`certify_among_all`]: LinkProximity::certify_among_all
 //! [`Tube`]: crate::Tube
@@ -148,13 +154,10 @@
 pub use crate::answer::DeviceFailure;
 pub use crate::answer::{
     Between, Certificate, Clearance, Contact, ContactFeature, Decision, Derivative, InsideAnswer,
-    LinkFeature, LinkProximity, MeshError, MotionAnswer, MotionClearance, PlacementFault, Proof,
-    ProximityError, RobotClearance, RobotMotionAnswer, RobotProximity, RobotsInContact,
-    SceneContact, SceneError, ShapeInContact, Side, StructureProximity, Tightest, TriangleFeature,
-    TubePiece, UndecidedReason, Witness, Work,
+    LinkFeature, LinkProximity, MeshError, MotionAnswer, MotionClearance, PairWitness,
+    PlacementFault, Proof, ProximityError, RobotClearance, RobotMotionAnswer, RobotProximity,
+    RobotsInContact, SceneContact, SceneError, ShapeInContact, Side, StructureProximity, Tightest,
+    TriangleFeature, TubePiece, UndecidedReason, Witness, Work,
 };
-pub use crate::engine::{
-    BvhSearch, Exhaustive, Proximity, RobotPair, SearchPrecision, between, clears_between,
-    motion_self_clears, self_clears, self_minimum, tube_self_clears,
-};
+pub use crate::engine::{BvhSearch, Exhaustive, Proximity, RobotPair, SearchPrecision, SelfQuery};
 pub use crate::scene::Scene;

@@ -136,7 +136,7 @@ fn run(mut search: BvhSearch, ticks: u32, with_fixture: bool) -> Result<Run, Str
         if with_fixture {
             limits.extend(contacts.iter().filter_map(|contact| {
                 let rates = kinematics.rates(&robot, &pose, contact)?;
-                let room = contact.depth.unwrap_or(contact.distance) - MARGIN;
+                let room = contact.depth - MARGIN;
                 Some(barrier::Limit { rates, least: -APPROACH * room })
             }));
         }

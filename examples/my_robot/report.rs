@@ -38,7 +38,7 @@ impl Report<'_> {
             writeln!(
                 out,
                 "link {}: {:.6}, from {:.6} to {:.6}",
-                l.link, l.distance, l.on_robot, l.on_mesh
+                l.link, l.distance, l.witness.on_robot, l.witness.on_mesh
             )?;
         }
         if let Some(curve) = &self.curve {
@@ -46,7 +46,7 @@ impl Report<'_> {
             writeln!(
                 out,
                 "curve: {:.6} to {:.6}, {:.3} along it{doubt}",
-                curve.lower, curve.upper, curve.arc_length
+                curve.lower, curve.upper, curve.witness.arc_length
             )?;
         }
         writeln!(out, "minimum {:.6}", self.minimum.distance)

@@ -66,12 +66,12 @@ pub fn print(
 fn line(number: f64, answer: &Result<LinkProximity, String>) -> String {
     match answer {
         Ok(found) => {
-            let [robot, mesh] =
-                [found.on_robot, found.on_mesh].map(|p| format!("{},{},{}", p.x, p.y, p.z));
+            let [robot, mesh] = [found.witness.on_robot, found.witness.on_mesh]
+                .map(|p| format!("{},{},{}", p.x, p.y, p.z));
             let LinkProximity { distance, .. } = found;
             format!(
                 "{number},{distance},{},{},{},{robot},{mesh},",
-                found.arc_length, found.segment, found.triangle
+                found.witness.arc_length, found.witness.segment, found.witness.triangle
             )
         }
         Err(error) => format!("{number},,,,,,,,,,,\"{}\"", error.replace('"', "'")),

@@ -74,7 +74,12 @@ impl<'a> Studio<'a> {
         for (found, _) in moment.found.iter().zip(&moment.forces).filter(|(_, force)| **force > 0.0)
         {
             let dot = SharedShape::ball(4.0 * self.wire);
-            solids.push(Solid::new(dot, Pose::from_translation(found.on_mesh), CONTACT, false));
+            solids.push(Solid::new(
+                dot,
+                Pose::from_translation(found.witness.on_mesh),
+                CONTACT,
+                false,
+            ));
         }
         let mut picture = Picture::new(Some(self.mesh), solids);
         picture.skin =

@@ -89,7 +89,7 @@ impl Recorder {
         for ((found, force), deviation) in
             moment.found.iter().zip(&moment.forces).zip(&moment.deviations)
         {
-            let (link, triangle) = (found.link, found.triangle);
+            let (link, triangle) = (found.link, found.witness.triangle);
             writeln!(
                 self.links,
                 "{step},{link},{:.6},{triangle},{force:.4},{deviation:.6}",

@@ -56,3 +56,55 @@ pub(super) fn check_motion<C: std::fmt::Debug>(
     }
     Ok(())
 }
+
+/// Rejects a distance that no query returns: negative or not finite.
+#[cfg(feature = "serde-serialize")]
+pub(super) fn check_distance(distance: parry3d_f64::math::Real) -> Result<(), String> {
+    if distance.is_finite() && distance >= 0.0 {
+        Ok(())
+    } else {
+        Err(format!("the distance is {distance}; it must be finite and at least 0"))
+    }
+}
+
+/// Rejects bounds that no query returns: negative, out of order or not finite.
+#[cfg(feature = "serde-serialize")]
+pub(super) fn check_bounds(
+    [lower, upper]: [parry3d_f64::math::Real; 2],
+    uncertainty: parry3d_f64::math::Real,
+) -> Result<(), String> {
+    if !(0.0 <= lower && lower <= upper && upper.is_finite()) {
+        return Err(format!(
+            "the bounds are {lower} and {upper}; they must be finite, at least 0, and in order"
+        ));
+    }
+    if !(uncertainty.is_finite() && uncertainty >= 0.0) {
+        return Err(format!("the uncertainty is {uncertainty}; it must be finite and at least 0"));
+    }
+    Ok(())
+}
+
+/// Rejects a shape in contact that no query returns: a time outside the motion, or a clearance that
+/// is negative or not finite.
+#[cfg(feature = "serde-serialize")]
+pub(super) fn check_shape(
+    t: parry3d_f64::math::Real,
+    upper: parry3d_f64::math::Real,
+) -> Result<(), String> {
+    check_time(t)?;
+    if upper.is_finite() && upper >= 0.0 {
+        Ok(())
+    } else {
+        Err(format!("the clearance is {upper}; it must be finite and at least 0"))
+    }
+}
+
+/// Rejects a time outside the motion.
+#[cfg(feature = "serde-serialize")]
+pub(super) fn check_time(t: parry3d_f64::math::Real) -> Result<(), String> {
+    if (0.0..=1.0).contains(&t) {
+        Ok(())
+    } else {
+        Err(format!("times of a motion are from 0 to 1, not {t}"))
+    }
+}

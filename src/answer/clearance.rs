@@ -1,9 +1,10 @@
 //! The clearance of a tube, between bounds.
 
 use super::Witness;
+#[cfg(feature = "serde-serialize")]
+use super::checked_fields::check_bounds;
 use super::checked_fields::checked_fields;
 use parry3d_f64::math::Real;
-use std::ops::{Deref, DerefMut};
 
 /// The place where a tube is closest to a mesh, between bounds. All fields are in the mesh's frame
 /// and unit.
@@ -61,20 +62,6 @@ pub(super) fn resolve(apart: Real, [one, other]: [Real; 2], tolerance: Real) -> 
     if apart <= tolerance + least { (true, least) } else { (apart <= tolerance + most, most) }
 }
 
-impl Deref for Clearance {
-    type Target = Witness;
-
-    fn deref(&self) -> &Witness {
-        &self.witness
-    }
-}
-
-impl DerefMut for Clearance {
-    fn deref_mut(&mut self) -> &mut Witness {
-        &mut self.witness
-    }
-}
-
 checked_fields!(
     "Clearance",
     Clearance {
@@ -86,17 +73,5 @@ checked_fields!(
         #[serde(flatten)]
         witness: Witness,
     },
-    |&Fields { lower, upper, uncertainty, .. }| {
-        if !(0.0 <= lower && lower <= upper && upper.is_finite()) {
-            return Err(format!(
-                "the bounds are {lower} and {upper}; they must be finite, at least 0, and in order"
-            ));
-        }
-        if !(uncertainty.is_finite() && uncertainty >= 0.0) {
-            return Err(format!(
-                "the uncertainty is {uncertainty}; it must be finite and at least 0"
-            ));
-        }
-        Ok(())
-    }
+    |&Fields { lower, upper, uncertainty, .. }| check_bounds([lower, upper], uncertainty)
 );

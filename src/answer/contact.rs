@@ -3,7 +3,6 @@
 use super::Witness;
 use super::feature::ContactFeature;
 use parry3d_f64::math::{Real, Vector};
-use std::ops::{Deref, DerefMut};
 
 /// A place where a link is near a mesh. All fields are in the mesh's frame and unit.
 ///
@@ -25,12 +24,11 @@ pub struct Contact {
     /// The signed distance: `distance` if the two are apart; otherwise minus the length of the
     /// least translation that separates the link from this triangle.
     ///
-    /// It is always `Some`, and equals the `dist` of the dispatcher's `contact` for link and
-    /// triangle.
+    /// It equals the `dist` of the dispatcher's `contact` for link and triangle.
     ///
     /// Beside the link and beyond a round cap it is the distance between axis and triangle, minus
     /// the radius. The exceptions are an axis that crosses the triangle, and a nearer flat cap.
-    pub depth: Option<Real>,
+    pub depth: Real,
     /// The unit vector from the wall to the robot. If the two overlap, a translation of the link by
     /// `-depth * normal` separates them.
     ///
@@ -130,22 +128,8 @@ impl Contact {
     ) {
         out.clear();
         out.extend((0..joints).filter_map(|joint| {
-            let (velocity, angular_velocity) = jacobian(self.arc_length, joint);
+            let (velocity, angular_velocity) = jacobian(self.witness.arc_length, joint);
             self.rate(velocity, angular_velocity)
         }));
-    }
-}
-
-impl Deref for Contact {
-    type Target = Witness;
-
-    fn deref(&self) -> &Witness {
-        &self.witness
-    }
-}
-
-impl DerefMut for Contact {
-    fn deref_mut(&mut self) -> &mut Witness {
-        &mut self.witness
     }
 }

@@ -1,9 +1,10 @@
 //! The closest place of one link.
 
 use super::Witness;
+#[cfg(feature = "serde-serialize")]
+use super::checked_fields::check_distance;
 use super::checked_fields::checked_fields;
 use parry3d_f64::math::Real;
-use std::ops::{Deref, DerefMut};
 
 /// The place where one link of a robot is closest to a mesh, in the mesh's frame and unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,20 +30,6 @@ impl LinkProximity {
     }
 }
 
-impl Deref for LinkProximity {
-    type Target = Witness;
-
-    fn deref(&self) -> &Witness {
-        &self.witness
-    }
-}
-
-impl DerefMut for LinkProximity {
-    fn deref_mut(&mut self) -> &mut Witness {
-        &mut self.witness
-    }
-}
-
 checked_fields!(
     "LinkProximity",
     LinkProximity {
@@ -51,10 +38,5 @@ checked_fields!(
         #[serde(flatten)]
         witness: Witness,
     },
-    |&Fields { distance, .. }| {
-        if !(distance.is_finite() && distance >= 0.0) {
-            return Err(format!("the distance is {distance}; it must be finite and at least 0"));
-        }
-        Ok(())
-    }
+    |&Fields { distance, .. }| check_distance(distance)
 );

@@ -1,6 +1,10 @@
 //! Two shapes of moving robots that violate a margin.
 
-use parry3d_f64::math::{Real, Vector};
+use super::PairWitness;
+#[cfg(feature = "serde-serialize")]
+use super::checked_fields::check_shape;
+use super::checked_fields::checked_fields;
+use parry3d_f64::math::Real;
 
 /// Two shapes that motions take at the same time, at most the margin apart, in the frame and unit
 /// of the motions.
@@ -18,60 +22,18 @@ pub struct RobotsInContact {
     pub upper: Real,
     /// The sections of constant radius that realise `upper`, counted from each base.
     pub sections: [u32; 2],
-    /// A point of the first robot, at most `upper` from `on_second`.
-    pub on_first: Vector,
-    /// A point of the second robot; equal to `on_first` if the robots touch or overlap.
-    pub on_second: Vector,
-    /// The places along each centreline, from the base.
-    pub arc_lengths: [Real; 2],
+    /// A point of each robot, at most `upper` apart, and their places.
+    pub witness: PairWitness,
 }
 
-#[cfg(feature = "serde-serialize")]
-mod serialised {
-    use super::RobotsInContact;
-    use parry3d_f64::math::{Real, Vector};
-    use serde::{Deserialize, Serialize};
-
-    /// The fields of a [`RobotsInContact`], points as `[x, y, z]`.
-    #[derive(Serialize, Deserialize)]
-    #[serde(rename = "RobotsInContact")]
-    pub(crate) struct Fields {
+checked_fields!(
+    "RobotsInContact",
+    RobotsInContact {
         t: Real,
         upper: Real,
         sections: [u32; 2],
-        on_first: [Real; 3],
-        on_second: [Real; 3],
-        arc_lengths: [Real; 2],
-    }
-
-    impl From<RobotsInContact> for Fields {
-        fn from(found: RobotsInContact) -> Self {
-            let RobotsInContact { t, upper, sections, on_first, on_second, arc_lengths } = found;
-            let (on_first, on_second) = (on_first.to_array(), on_second.to_array());
-            Self { t, upper, sections, on_first, on_second, arc_lengths }
-        }
-    }
-
-    /// Rejects fields that no query returns: a time outside the motions, a clearance that is
-    /// negative or not finite, or a place that is not finite.
-    impl TryFrom<Fields> for RobotsInContact {
-        type Error = String;
-
-        fn try_from(fields: Fields) -> Result<Self, String> {
-            let Fields { t, upper, sections, on_first, on_second, arc_lengths } = fields;
-            let (on_first, on_second) =
-                (Vector::from_array(on_first), Vector::from_array(on_second));
-            if !(0.0..=1.0).contains(&t) {
-                return Err(format!("times of a motion are from 0 to 1, not {t}"));
-            }
-            if !(upper.is_finite() && upper >= 0.0) {
-                return Err(format!("the clearance is {upper}; it must be finite and at least 0"));
-            }
-            let is_finite = on_first.is_finite() && on_second.is_finite();
-            if !(is_finite && arc_lengths.iter().all(|length| length.is_finite())) {
-                return Err("a place is not finite; repair the answer".to_owned());
-            }
-            Ok(Self { t, upper, sections, on_first, on_second, arc_lengths })
-        }
-    }
-}
+        #[serde(flatten)]
+        witness: PairWitness,
+    },
+    |&Fields { t, upper, .. }| check_shape(t, upper)
+);

@@ -1,9 +1,10 @@
 //! A shape of a motion that violates a margin.
 
 use super::Witness;
+#[cfg(feature = "serde-serialize")]
+use super::checked_fields::check_shape;
 use super::checked_fields::checked_fields;
 use parry3d_f64::math::Real;
-use std::ops::{Deref, DerefMut};
 
 /// A shape of a motion that is at most the margin away, in the mesh's frame and unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,20 +25,6 @@ pub struct ShapeInContact {
     pub witness: Witness,
 }
 
-impl Deref for ShapeInContact {
-    type Target = Witness;
-
-    fn deref(&self) -> &Witness {
-        &self.witness
-    }
-}
-
-impl DerefMut for ShapeInContact {
-    fn deref_mut(&mut self) -> &mut Witness {
-        &mut self.witness
-    }
-}
-
 checked_fields!(
     "ShapeInContact",
     ShapeInContact {
@@ -47,13 +34,5 @@ checked_fields!(
         #[serde(flatten)]
         witness: Witness,
     },
-    |&Fields { t, upper, .. }| {
-        if !(0.0..=1.0).contains(&t) {
-            return Err(format!("times of a motion are from 0 to 1, not {t}"));
-        }
-        if !(upper.is_finite() && upper >= 0.0) {
-            return Err(format!("the clearance is {upper}; it must be finite and at least 0"));
-        }
-        Ok(())
-    }
+    |&Fields { t, upper, .. }| check_shape(t, upper)
 );

@@ -5,8 +5,7 @@ use parry3d_f64::math::{Real, Vector};
 /// Two points that realise a distance, and their places on robot and mesh, in the mesh's frame and
 /// unit.
 ///
-/// Every answer that names a place has a witness and dereferences to it: `answer.on_mesh` is
-/// `answer.witness.on_mesh`.
+/// Every answer that names a place of the mesh has one, in its field `witness`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde-serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(

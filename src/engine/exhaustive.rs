@@ -172,7 +172,7 @@ impl<T: SearchPrecision> Exhaustive<T> {
     /// The closest of a robot's links. Ties go to the lowest triangle, then to the lowest link.
     fn least(&self, number: usize) -> Option<LinkProximity> {
         let order = |a: &LinkProximity, b: &LinkProximity| {
-            a.distance.total_cmp(&b.distance).then(a.triangle.cmp(&b.triangle))
+            a.distance.total_cmp(&b.distance).then(a.witness.triangle.cmp(&b.witness.triangle))
         };
         self.pass.answers(number).min_by(order)
     }

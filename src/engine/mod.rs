@@ -4,6 +4,7 @@ pub(crate) mod bvh;
 mod exhaustive;
 mod proximity;
 mod robot_pair;
+mod self_query;
 
 pub use bvh::BvhSearch;
 pub use exhaustive::{Exhaustive, SearchPrecision};
@@ -11,7 +12,5 @@ pub use proximity::Proximity;
 #[cfg(feature = "gpu")]
 pub(crate) use proximity::placed;
 pub(crate) use proximity::{Engine, any_triangle};
-pub use robot_pair::{
-    RobotPair, between, clears_between, motion_self_clears, self_clears, self_minimum,
-    tube_self_clears,
-};
+pub use robot_pair::RobotPair;
+pub use self_query::SelfQuery;

@@ -1,19 +1,14 @@
-//! Queries about two robots, and about one robot and itself.
+//! Queries about two robots.
 //!
 //! [`RobotPair`] checks the arguments, places the robots and holds the warm starts. [`TwoRobots`],
-//! [`place_tubes`] and [`MotionPair`] answer for two robots. [`RobotWithItself`],
-//! [`self_clears_tube`] and [`self_clears_motion`] answer for one robot and itself; the module of
-//! [`RobotWithItself`] derives which pairs of parts count.
+//! [`place_tubes`] and [`MotionPair`] answer the queries.
 
 use crate::answer::{Decision, ProximityError, RobotClearance, RobotMotionAnswer, RobotProximity};
 use crate::curve::Tube;
 use crate::motion::Motion;
-use crate::query::motion::{
-    MarginQuery, MotionPair, MotionsMemory, SelfMotionMemory, self_clears_motion,
-};
+use crate::query::motion::{MarginQuery, MotionPair, MotionsMemory};
 use crate::query::robots::{
-    PairMemory, RobotWithItself, SelfMemory, SelfTubeMemory, TubesMemory, TwoRobots,
-    clearance_between, clears_tubes, place_tubes, self_clears_tube,
+    PairMemory, TubesMemory, TwoRobots, clearance_between, clears_tubes, place_tubes,
 };
 use crate::query::{check_decision, check_margin, check_not_negative};
 use crate::robot::Chain;
@@ -22,8 +17,8 @@ use parry3d_f64::math::{Pose, Real};
 /// Exact queries about two robots: the closest links, and whether all links keep a margin.
 ///
 /// The last answers warm-start the next query. Any robots and poses may follow; small motions are
-/// answered fastest. A clone copies the memory. Each thread should have its own pair. [`between`]
-/// and [`clears_between`] are the same without a memory.
+/// answered fastest. A clone copies the memory. Each thread should have its own pair. For one robot
+/// and itself see [`SelfQuery`](super::SelfQuery).
 ///
 /// Each pose places its robot in a common frame; answers are in this frame. Distances are unsigned,
 /// 0 if the robots touch or overlap, and as exact as distances to a mesh.
@@ -47,11 +42,8 @@ use parry3d_f64::math::{Pose, Real};
 #[derive(Clone, Debug, Default)]
 pub struct RobotPair {
     memory: PairMemory,
-    own: SelfMemory,
     tubes: TubesMemory,
-    own_tube: SelfTubeMemory,
     motions: MotionsMemory,
-    own_motion: SelfMotionMemory,
 }
 
 /// The names of the parameters in errors.
@@ -67,7 +59,6 @@ impl RobotPair {
     /// Forgets the last answers: the next query starts without a warm start.
     pub fn forget(&mut self) {
         self.memory.forget();
-        self.own.forget();
         self.tubes.forget();
     }
 
@@ -244,8 +235,8 @@ impl RobotPair {
     /// };
     /// let (first, second) = (needle(0.0, [-10.0, 10.0])?, needle(3.0, [10.0, -10.0])?);
     /// let mut pair = RobotPair::new();
-    /// assert!(pair.clears_motion(&first, &second, 0.9, 1e-3)?.is_clear());
-    /// let found = pair.clears_motion(&first, &second, 1.5, 1e-3)?;
+    /// assert!(pair.clears_motions(&first, &second, 0.9, 1e-3)?.is_clear());
+    /// let found = pair.clears_motions(&first, &second, 1.5, 1e-3)?;
     /// assert_eq!(found.decision, Decision::Contact);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
@@ -256,7 +247,7 @@ impl RobotPair {
     /// - A robot is out of range.
     /// - The resolution is finer than rounding or the samples of a shape allow, or a motion is too
     ///   fast to be divided that finely.
-    pub fn clears_motion(
+    pub fn clears_motions(
         &mut self,
         a: &impl Motion,
         b: &impl Motion,
@@ -267,266 +258,4 @@ impl RobotPair {
         let mut motions = MotionPair { memory: &mut self.motions, motions: (a, b), names: MOTIONS };
         motions.clear(MarginQuery { margin, resolution })
     }
-
-    /// [`self_minimum`], with a memory.
-    ///
-    /// # Errors
-    /// As [`self_minimum`].
-    pub fn self_minimum(
-        &mut self,
-        robot: &Chain,
-    ) -> Result<Option<RobotProximity>, ProximityError> {
-        Ok(RobotWithItself::new(robot, &mut self.own)?.minimum(&mut self.own))
-    }
-
-    /// [`self_clears`], with reused memory.
-    ///
-    /// # Errors
-    /// As [`self_clears`].
-    pub fn self_clears(&mut self, robot: &Chain, margin: Real) -> Result<bool, ProximityError> {
-        check_margin(margin)?;
-        Ok(RobotWithItself::new(robot, &mut self.own)?.clears(margin, &mut self.own))
-    }
-
-    /// [`tube_self_clears`], with reused memory.
-    ///
-    /// # Errors
-    /// As [`tube_self_clears`].
-    pub fn tube_self_clears(
-        &mut self,
-        tube: &Tube,
-        margin: Real,
-        resolution: Real,
-    ) -> Result<Decision, ProximityError> {
-        check_decision(margin, resolution)?;
-        self_clears_tube(tube, &mut self.own_tube, margin, resolution)
-    }
-
-    /// [`motion_self_clears`], with reused memory.
-    ///
-    /// # Errors
-    /// As [`motion_self_clears`].
-    pub fn motion_self_clears(
-        &mut self,
-        motion: &impl Motion,
-        margin: Real,
-        resolution: Real,
-    ) -> Result<RobotMotionAnswer, ProximityError> {
-        check_decision(margin, resolution)?;
-        self_clears_motion(motion, &mut self.own_motion, MarginQuery { margin, resolution })
-    }
-}
-
-/// Returns the two closest links of two robots: [`RobotPair::minimum`] without a memory.
-///
-/// # Errors
-/// As [`RobotPair::minimum`].
-///
-/// ```
-/// use parry_continuum::{Chain, proximity::between};
-/// use parry_continuum::parry::math::{Pose, Vector};
-///
-/// let robot = Chain::from_centreline(&[Vector::ZERO, Vector::Z * 40.0], &[1.0])?;
-/// // Tip to tip: the second robot comes from the other side.
-/// let facing = Pose::new(Vector::Z * 85.0, Vector::X * std::f64::consts::PI);
-/// let closest = between(&robot, &Pose::IDENTITY, &robot, &facing)?;
-/// assert!((closest.distance - 5.0).abs() < 1e-12);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub fn between(
-    a: &Chain,
-    pose_a: &Pose,
-    b: &Chain,
-    pose_b: &Pose,
-) -> Result<RobotProximity, ProximityError> {
-    RobotPair::new().minimum(a, pose_a, b, pose_b)
-}
-
-/// Returns whether two robots are farther than `margin` apart: [`RobotPair::clears`] without a
-/// memory.
-///
-/// # Errors
-/// As [`RobotPair::clears`].
-///
-/// ```
-/// use parry_continuum::{Chain, proximity::clears_between};
-/// use parry_continuum::parry::math::{Pose, Vector};
-///
-/// let robot = Chain::from_centreline(&[Vector::ZERO, Vector::Z * 40.0], &[1.0])?;
-/// let beside = Pose::translation(3.0, 0.0, 0.0);
-/// assert!(clears_between(&robot, &Pose::IDENTITY, &robot, &beside, 0.5)?);
-/// assert!(!clears_between(&robot, &Pose::IDENTITY, &robot, &beside, 1.0)?); // exactly at the margin is not clear
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub fn clears_between(
-    a: &Chain,
-    pose_a: &Pose,
-    b: &Chain,
-    pose_b: &Pose,
-    margin: Real,
-) -> Result<bool, ProximityError> {
-    RobotPair::new().clears(a, pose_a, b, pose_b, margin)
-}
-
-/// Returns the place where a robot comes closest to itself, or `None` if no two of its parts can.
-///
-/// `None` occurs for a robot that is straight or bends too little. Parts that are close only
-/// because they are neighbours do not count. The query considers these pairs of parts:
-///
-/// 1. Two links with a turn of at least pi between them. The turn is the sum of the angles of the
-///    joints.
-/// 2. A face and a link, with a turn of at least pi / 2. A face is the base or the tip, if flat, or
-///    the wider side of a step, also if round.
-/// 3. Two faces that look at one another, at any turn: the end of a link and the start of a later
-///    one.
-///
-/// A face counts if three conditions hold at the nearest place:
-///
-/// - The way to the other part leaves the face outwards.
-/// - The robot leads nowhere nearer from there.
-/// - The adjoining link does not contain the nearest point of the face.
-///
-/// So the shoulders of a taper never meet. Radii that differ by less than a share of 2^-32 are no
-/// step.
-///
-/// No other two places can be a local minimum of the distance, however the robot bends. A closed
-/// curve turns by at least 2 pi (Fenchel's theorem), and the two corners of arc and chord take at
-/// most pi of it. So a bend never collides with its own neighbourhood, and no number of neighbours
-/// has to be chosen.
-///
-/// # Errors
-/// A joint is so sharp that its links overlap over more than half of the shorter one: r tan(angle /
-/// 2) > length / 2. The rule above holds for tubes that are thinner than their bends.
-///
-/// ```
-/// use parry_continuum::{Chain, proximity::self_minimum};
-/// use parry_continuum::parry::math::Vector;
-///
-/// // A hairpin: two straight legs, and half a circle of radius 10 between them.
-/// let angles = (0..=20).map(|k| std::f64::consts::PI * f64::from(k) / 20.0);
-/// let arc = angles.map(|a| Vector::new(10.0 * (1.0 - a.cos()), 0.0, 30.0 + 10.0 * a.sin()));
-/// let points: Vec<_> = [Vector::ZERO].into_iter().chain(arc).chain([Vector::new(20.0, 0.0, 0.0)]).collect();
-/// let robot = Chain::from_centreline(&points, &[1.5; 22])?;
-/// let closest = self_minimum(&robot)?.ok_or("too straight")?;
-/// assert!((closest.distance - 17.0).abs() < 1e-9);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub fn self_minimum(robot: &Chain) -> Result<Option<RobotProximity>, ProximityError> {
-    RobotPair::new().self_minimum(robot)
-}
-
-/// Returns whether a robot keeps a margin to itself.
-///
-/// True exactly if [`self_minimum`] returns `None` or a distance of more than `margin`.
-///
-/// # Errors
-/// As [`self_minimum`], or the margin is negative or NaN.
-///
-/// ```
-/// use parry_continuum::{Chain, proximity::self_clears};
-/// use parry_continuum::parry::math::Vector;
-///
-/// let straight = Chain::from_centreline(&[Vector::ZERO, Vector::Z, 2.0 * Vector::Z], &[3.0, 3.0])?;
-/// assert!(self_clears(&straight, 100.0)?);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub fn self_clears(robot: &Chain, margin: Real) -> Result<bool, ProximityError> {
-    RobotPair::new().self_clears(robot, margin)
-}
-
-/// Decides whether a tube is farther than `margin` from itself.
-///
-/// The query considers the same parts as [`self_minimum`], on the curve itself:
-///
-/// 1. Two places with a turn of at least pi between them.
-/// 2. A flat face and a place in front of it, with a turn of at least pi / 2.
-/// 3. Two faces that look at one another.
-///
-/// It leaves out a piece if the robot leads nearer to the face from every place of the piece. So a
-/// bend never collides with its own neighbourhood.
-///
-/// `margin` and `resolution` are lengths. `Clear` and `Contact` are proven. All distances allow for
-/// the errors that the tube states of itself; the parts are selected on the curve as it was given.
-/// `Undecided` occurs only if
-///
-/// - the distance of such parts is within `resolution` of the margin, or within the stated errors;
-/// - the margin is as wide as the tightest bend: at least 1 / curvature - r beside a step, and at
-///   least 2 / curvature - r1 - r2 elsewhere. The known curve may then leave open which parts
-///   count;
-/// - the samples are too few to show how far the curve turns; or
-/// - 65,536 pairs of pieces do not decide.
-///
-/// # Errors
-/// - The margin or the resolution is negative or NaN.
-/// - The tube bends, or may bend, within its radius somewhere.
-/// - The tube is made from a chain with a joint that is too sharp for [`self_minimum`].
-/// - Samples do not allow a decision at that resolution, or the curve of the tube is not finite
-///   somewhere.
-///
-/// ```
-/// use parry_continuum::{Tube, proximity::{Decision, tube_self_clears}};
-/// use parry_continuum::parry::math::Vector;
-///
-/// // Two turns of a coil of radius 10 and pitch 4; the wire has radius 1.
-/// let angles = (0..=240).map(|k| std::f64::consts::PI * f64::from(k) / 60.0);
-/// let rise = 4.0 / (2.0 * std::f64::consts::PI);
-/// let coil: Vec<_> = angles.map(|a| Vector::new(10.0 * a.cos(), 10.0 * a.sin(), rise * a)).collect();
-/// let along = Vector::new(0.0, 10.0, rise); // at both ends, after whole turns
-/// let tube = Tube::with_constant_radius(&coil, 1.0, Some([along; 2]))?;
-/// assert_eq!(tube_self_clears(&tube, 1.9, 0.01)?, Decision::Clear);
-/// assert_eq!(tube_self_clears(&tube, 2.1, 0.01)?, Decision::Contact);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub fn tube_self_clears(
-    tube: &Tube,
-    margin: Real,
-    resolution: Real,
-) -> Result<Decision, ProximityError> {
-    RobotPair::new().tube_self_clears(tube, margin, resolution)
-}
-
-/// Decides whether a moving robot stays farther than `margin` from itself, at every time from 0 to
-/// 1.
-///
-/// - `Clear` is proven from the speeds and turns that the motion states. At no instant are two
-///   places closest to one another and at most the margin apart, unless they are neighbours.
-/// - `Contact` names a time at which the shape violates the margin in the sense of
-///   [`tube_self_clears`], and two points of that shape in the mesh's frame.
-/// - `Undecided`: the robot comes within `resolution` of the margin, beyond the errors that it
-///   states of itself. Or margin or samples are among the cases that [`tube_self_clears`] leaves
-///   undecided. Or an end that comes near turns from flat to round. Or the query ends after 65,536
-///   shapes, or after 262,144 pairs of pieces in total. The [reason](RobotMotionAnswer::reason)
-///   says which.
-///
-/// The work is one query about a tube and itself for each time that the proof needs. It needs four
-/// to eight times per rad that a part of the robot turns, and more near a contact.
-///
-/// **Premises.** The stated speeds and turns hold: see [`verify_motion`](crate::verify_motion). At
-/// all times [`tube_self_clears`] accepts the robot: it bends by less than 1 / radius. The query
-/// checks the latter only for the shapes that it visits.
-///
-/// ```
-/// use parry_continuum::{LinearMotion, parry::math::Vector, proximity::{Decision, motion_self_clears}};
-///
-/// // A hairpin of straight links. Its tip swings past its base.
-/// let hairpin = |y: f64| [[0.0, 0.0, 0.0], [0.0, 0.0, 40.0], [8.0, 0.0, 40.0], [4.0, y, 2.0]].map(Vector::from_array);
-/// let motion = LinearMotion::chain(&hairpin(-6.0), &hairpin(6.0), &[1.0; 3])?;
-/// assert!(motion_self_clears(&motion, 1.5, 1e-3)?.is_clear());
-/// assert_eq!(motion_self_clears(&motion, 2.5, 1e-3)?.decision, Decision::Contact);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-///
-/// # Errors
-/// - The margin or the resolution is negative or NaN.
-/// - The motion has no shape at some time, or one that [`tube_self_clears`] refuses, or its
-///   sections change.
-/// - A stated speed or turn is not finite, or a turn is more than 2^18 rad.
-/// - The resolution is finer than rounding or the samples of a shape allow, or the motion is too
-///   fast to be divided that finely.
-pub fn motion_self_clears(
-    motion: &impl Motion,
-    margin: Real,
-    resolution: Real,
-) -> Result<RobotMotionAnswer, ProximityError> {
-    RobotPair::new().motion_self_clears(motion, margin, resolution)
 }

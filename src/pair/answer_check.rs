@@ -27,7 +27,7 @@ impl LinkProximity {
         link: &PlacedLink,
         corners: [Vector; 3],
     ) -> Result<(), ProximityError> {
-        self.check_answer_of(&link.measure(self.triangle, corners), || *link, corners)
+        self.check_answer_of(&link.measure(self.witness.triangle, corners), || *link, corners)
     }
 
     /// Same as [`check_answer`](Self::check_answer), for a pair that is measured already.
@@ -43,8 +43,8 @@ impl LinkProximity {
     ) -> Result<(), ProximityError> {
         // Every engine returns the measured result, bit for bit.
         let is_that = self.distance == measured.distance
-            && self.on_mesh == measured.on_mesh
-            && self.on_robot == measured.on_robot;
+            && self.witness.on_mesh == measured.on_mesh
+            && self.witness.on_robot == measured.on_robot;
         if is_that {
             Ok(())
         } else {
@@ -61,7 +61,8 @@ impl LinkProximity {
         link: &PlacedLink,
         corners: [Vector; 3],
     ) -> Result<(), ProximityError> {
-        let (distance, on_robot, on_mesh) = (self.distance, self.on_robot, self.on_mesh);
+        let (distance, on_robot, on_mesh) =
+            (self.distance, self.witness.on_robot, self.witness.on_mesh);
         let [a, b, c] = corners;
         let points = [link.start(), link.end(), a, b, c];
         let largest =
@@ -72,7 +73,7 @@ impl LinkProximity {
             if off <= limit {
                 return Ok(());
             }
-            let (link, triangle) = (self.link as usize, self.triangle as usize);
+            let (link, triangle) = (self.link as usize, self.witness.triangle as usize);
             Err(ProximityError::AnswerDoesNotFit { link, triangle, field, off, limit })
         };
         // Points beyond the reach of link and triangle are refused here: measuring them could

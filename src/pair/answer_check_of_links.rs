@@ -17,8 +17,8 @@ impl RobotProximity {
         let measured = first.measure_link(second);
         // Every query returns the measured result, bit for bit.
         if self.distance == measured.distance
-            && self.on_first == measured.on_first
-            && self.on_second == measured.on_second
+            && self.witness.on_first == measured.on_first
+            && self.witness.on_second == measured.on_second
         {
             return Ok(());
         }
@@ -34,7 +34,7 @@ impl RobotProximity {
             }
             Err(ProximityError::LinksDoNotFit { links: self.links, field, off, limit })
         };
-        let points = [self.on_first, self.on_second];
+        let points = [self.witness.on_first, self.witness.on_second];
         for ((field, point), link) in ["on_first", "on_second"].into_iter().zip(points).zip(&links)
         {
             // Points beyond the reach of the links are refused here: measuring them could overflow.

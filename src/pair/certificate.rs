@@ -85,7 +85,7 @@ impl LinkProximity {
         mesh: &TriMesh,
     ) -> Result<Certificate, ProximityError> {
         let link = placed_link(self, robot, pose)?;
-        let corners = corners(mesh.vertices(), mesh.indices(), self.triangle as usize)?;
+        let corners = corners(mesh.vertices(), mesh.indices(), self.witness.triangle as usize)?;
         self.check_answer(&link, corners)?;
         Ok(self.certified(robot, pose)?.bounds(corners))
     }

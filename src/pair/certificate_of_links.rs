@@ -104,12 +104,12 @@ impl RobotProximity {
     /// - The answer does not fit the two links: it is about other robots or other poses.
     ///
     /// ```
-    /// use parry_continuum::{Chain, proximity::between};
+    /// use parry_continuum::{Chain, proximity::RobotPair};
     /// use parry_continuum::parry::math::{Pose, Vector};
     ///
     /// let robot = Chain::from_centreline(&[Vector::ZERO, Vector::Z * 40.0], &[0.7])?;
     /// let (here, crossing) = (Pose::IDENTITY, Pose::new(Vector::new(3.0, 9.0, 7.0), Vector::X * 0.9));
-    /// let closest = between(&robot, &here, &robot, &crossing)?;
+    /// let closest = RobotPair::new().minimum(&robot, &here, &robot, &crossing)?;
     /// let proof = closest.certify(&robot, &here, &robot, &crossing)?;
     /// assert!(proof.upper - proof.lower < 1e-13);
     /// assert!((closest.distance - proof.lower).abs() < 1e-13);

@@ -41,7 +41,7 @@ pub(crate) fn contacts(
     out.clear();
     let place = |answer: &LinkProximity| {
         let link = transformed_link(answer, robot, pose)?;
-        let corners = corners(mesh.vertices(), mesh.indices(), answer.triangle as usize)?;
+        let corners = corners(mesh.vertices(), mesh.indices(), answer.witness.triangle as usize)?;
         let before = robot.length_before(answer.link as usize);
         let ends = [link.start(), link.end()];
         Ok(PlacedPair { ends, radius: link.radius(), flat: link.flat(), corners, before })
@@ -64,9 +64,9 @@ pub(crate) fn near(
     answer: &LinkProximity,
 ) -> Result<(PlacedLink, [Vector; 3], Measured), ProximityError> {
     let link = placed_link(answer, robot, pose)?;
-    let corners = corners(mesh.vertices(), mesh.indices(), answer.triangle as usize)?;
+    let corners = corners(mesh.vertices(), mesh.indices(), answer.witness.triangle as usize)?;
     let measured = Measured::new(&link, corners);
-    answer.check_answer_of(&measured.nearest(&link, answer.triangle), || link, corners)?;
+    answer.check_answer_of(&measured.nearest(&link, answer.witness.triangle), || link, corners)?;
     Ok((link, corners, measured))
 }
 
@@ -84,7 +84,7 @@ pub(crate) fn contact_of(
         fraction: found.fraction,
         feature: ContactFeature { link: found.link, triangle: found.triangle },
         distance,
-        depth: Some(if distance > 0.0 { distance } else { found.depth.min(0.0) }),
+        depth: if distance > 0.0 { distance } else { found.depth.min(0.0) },
         normal: found.normal,
         witness: Witness { arc_length: before + found.fraction * length, ..witness },
         lever: found.lever,

@@ -83,7 +83,7 @@ pub(crate) fn try_add_contacts<E>(
         let parts = parts_at(level, &rows, answers.len());
         let with_places = answers.iter().zip(places.iter().flatten());
         for (lane, (answer, place)) in with_places.clone().enumerate() {
-            check(answer, place, &parts.nearest.nearest(lane, answer.triangle))?;
+            check(answer, place, &parts.nearest.nearest(lane, answer.witness.triangle))?;
         }
         out.extend(with_places.enumerate().map(|(lane, (answer, place))| {
             let [start, end] = place.ends;

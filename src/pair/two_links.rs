@@ -5,7 +5,7 @@
 
 use super::coordinates::{Placed, SLACK};
 use super::placed_link::PlacedLink;
-use crate::answer::RobotProximity;
+use crate::answer::{PairWitness, RobotProximity};
 use crate::distance::{Closest, Link, Scalar, TwoLinks, Vec3, gives_direction};
 use parry3d_f64::math::{Real, Vector};
 
@@ -34,9 +34,7 @@ impl NearestOfLinks {
         RobotProximity {
             links: links.map(|link| link as u32),
             distance,
-            on_first,
-            on_second,
-            arc_lengths,
+            witness: PairWitness { on_first, on_second, arc_lengths },
         }
     }
 }

@@ -95,8 +95,8 @@ impl Structure {
     /// Maps an answer from the mesh's frame to the scene's.
     pub fn placed(&self, mut nearest: LinkProximity) -> LinkProximity {
         if let Some(pose) = &self.pose {
-            nearest.on_robot = pose * nearest.on_robot;
-            nearest.on_mesh = pose * nearest.on_mesh;
+            nearest.witness.on_robot = pose * nearest.witness.on_robot;
+            nearest.witness.on_mesh = pose * nearest.witness.on_mesh;
         }
         nearest
     }
@@ -104,8 +104,8 @@ impl Structure {
     /// Maps a contact from the mesh's frame to the scene's.
     pub fn placed_contact(&self, mut contact: Contact) -> Contact {
         if let Some(pose) = &self.pose {
-            contact.on_robot = pose * contact.on_robot;
-            contact.on_mesh = pose * contact.on_mesh;
+            contact.witness.on_robot = pose * contact.witness.on_robot;
+            contact.witness.on_mesh = pose * contact.witness.on_mesh;
             contact.lever = pose.rotation * contact.lever;
             contact.normal = contact.normal.map(|normal| pose.rotation * normal);
         }

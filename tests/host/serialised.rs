@@ -191,7 +191,7 @@ fn answers_about_two_motions_come_back_and_no_others() {
     let clear = LinearMotion::chain(&needle(9.0), &needle(7.0), &[0.5]).unwrap();
     let mut pair = RobotPair::new();
     let [touched, free] =
-        [&passing, &clear].map(|other| pair.clears_motion(&at_rest, other, 1.0, 1e-3).unwrap());
+        [&passing, &clear].map(|other| pair.clears_motions(&at_rest, other, 1.0, 1e-3).unwrap());
     assert!(touched.contact.is_some() && free.is_clear());
     for answer in [touched, free] {
         assert_eq!(from_str::<RobotMotionAnswer>(&to_string(&answer).unwrap()).unwrap(), answer);

@@ -49,13 +49,13 @@ pub fn check_agreement(mesh: &TriMesh, robot: &Chain, pose: &Pose, magnitude: f6
                     "{name}, round {round}, link {link}: {} for {expected}",
                     answer.distance
                 );
-                let gap = (answer.on_robot - answer.on_mesh).length();
+                let gap = (answer.witness.on_robot - answer.witness.on_mesh).length();
                 assert!(
                     (gap - answer.distance).abs() <= 8.0 * unit,
                     "{name}: witnesses at {gap}, {answer:?}"
                 );
                 if answer.distance == 0.0 {
-                    assert_eq!(answer.on_robot, answer.on_mesh, "{name}");
+                    assert_eq!(answer.witness.on_robot, answer.witness.on_mesh, "{name}");
                 }
             }
         }
@@ -216,7 +216,7 @@ fn many_moved_vertices_are_seen() {
             "{name}: {} for {expected}",
             nearest.distance
         );
-        let corners = mesh.indices()[nearest.triangle as usize];
+        let corners = mesh.indices()[nearest.witness.triangle as usize];
         assert!(corners.contains(&(place as u32)), "{name}: {corners:?}");
     }
 }

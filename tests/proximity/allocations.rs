@@ -4,7 +4,7 @@ use continuum_demo::{ctr, ventricle};
 use continuum_testing::answered;
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::shape::{Ball, TriMesh};
-use parry_continuum::proximity::{BvhSearch, Exhaustive, Proximity, RobotPair, Scene};
+use parry_continuum::proximity::{BvhSearch, Exhaustive, Proximity, RobotPair, Scene, SelfQuery};
 use parry_continuum::{
     BendingMotion, BendingSection, Chain, LinearMotion, Motion, RigidMotion, RobotError, Speed,
     Tube, simplify,
@@ -85,7 +85,7 @@ fn two_robots_and_a_scene_allocate_nothing() {
         scene.add(name, BvhSearch::from_triangles(&vertices, &indices).unwrap(), margin).unwrap();
     }
     scene.set_robot_margin(Some(0.2)).unwrap();
-    let mut pair = RobotPair::new();
+    let (mut pair, mut own) = (RobotPair::new(), SelfQuery::new());
     let (mut places, mut walls, mut contacts) = (Vec::new(), Vec::new(), Vec::new());
     let allocated = steady_state(|tick| {
         sway(&line.points, tick, &mut moved);
@@ -95,8 +95,8 @@ fn two_robots_and_a_scene_allocate_nothing() {
         pair.per_link(&chain, &base, &other, &there, &mut places).unwrap();
         pair.contacts_within(&chain, &base, &other, &there, 5.0, &mut places).unwrap();
         pair.clears(&chain, &base, &other, &there, 0.5).unwrap();
-        pair.self_minimum(&chain).unwrap();
-        pair.self_clears(&chain, 0.5).unwrap();
+        own.minimum(&chain).unwrap();
+        own.clears(&chain, 0.5).unwrap();
         let robots = [(&chain, base), (&other, there)];
         scene.clears(&robots).unwrap();
         assert!(scene.tightest(&robots).unwrap().is_some());

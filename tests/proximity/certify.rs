@@ -178,13 +178,13 @@ fn wrong_answers_are_found_out() {
             assert!(upper - lower <= slack);
             right += u32::from(lower > 0.0);
             // The answer that there is about another triangle.
-            let other = (answer.triangle + 1) % mesh.num_triangles() as u32;
+            let other = (answer.witness.triangle + 1) % mesh.num_triangles() as u32;
             let corners = mesh.triangle(other).vertices().to_owned();
             let mut of_other = Vec::new();
             let alone = BvhSearch::from_triangles(&corners, &[[0, 1, 2]]);
             alone.unwrap().per_link(&robot, &pose, &mut of_other).unwrap();
             answer = of_other[answer.link as usize];
-            answer.triangle = other;
+            answer.witness.triangle = other;
             let pair = answer.certify(&robot, &pose, &mesh).unwrap();
             if pair.lower > upper {
                 let all = answer.certify_among_all(&robot, &pose, &mesh).unwrap();
@@ -237,7 +237,7 @@ fn what_does_not_exist_or_is_not_finite_is_an_error() {
     other.link = 6;
     assert_eq!(certify(&other, &Pose::IDENTITY), ProximityError::NoSuchLink { link: 6, links: 6 });
     other = answer;
-    other.triangle = 4;
+    other.witness.triangle = 4;
     let missing = ProximityError::NoSuchTriangle { triangle: 4, triangles: 4 };
     assert_eq!(certify(&other, &Pose::IDENTITY), missing);
     let bad = Certificate::between(

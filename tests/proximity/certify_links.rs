@@ -6,7 +6,7 @@ use super::robots::{beside, robot};
 use continuum_testing::precision::extent;
 use continuum_testing::{Random, link_cases};
 use parry_continuum::parry::math::{Pose, Real, Vector};
-use parry_continuum::proximity::{Certificate, ProximityError, RobotPair, between};
+use parry_continuum::proximity::{Certificate, ProximityError, RobotPair, SelfQuery};
 use parry_continuum::{Cap, ContinuumDispatcher, ModifiedCylinder};
 
 const UNIT: Real = Real::EPSILON / 2.0;
@@ -289,7 +289,7 @@ fn answers_fit_their_robots_and_no_others() {
                 Err(other) => panic!("{other}"),
             }
         }
-        if let Ok(Some(answer)) = pair.self_minimum(&a) {
+        if let Ok(Some(answer)) = SelfQuery::new().minimum(&a) {
             match answer.certify(&a, &Pose::IDENTITY, &a, &Pose::IDENTITY) {
                 Ok(bounds) => {
                     assert!((bounds.upper - answer.distance).abs() <= 16.0 * UNIT * 32.0);
@@ -308,7 +308,7 @@ fn what_does_not_exist_or_is_spoilt_is_an_error() {
     let mut random = Random::new(5);
     let (a, b) = (robot(&mut random, 6), robot(&mut random, 6));
     let (here, there) = (Pose::IDENTITY, Pose::translation(9.0, 0.0, 0.0));
-    let answer = between(&a, &here, &b, &there).unwrap();
+    let answer = RobotPair::new().minimum(&a, &here, &b, &there).unwrap();
     let lost = Pose::from_translation(Vector::NAN);
     assert_eq!(answer.certify(&a, &lost, &b, &there).unwrap_err().kind(), "pose_not_finite");
     let error = answer.certify(&a, &here, &b, &lost).unwrap_err();
@@ -321,8 +321,8 @@ fn what_does_not_exist_or_is_spoilt_is_an_error() {
     for spoil in [1e-9, 1.0, 1e300, f64::INFINITY, f64::NAN] {
         let spoilt: [fn(&mut _, f64); 3] = [
             |answer: &mut parry_continuum::proximity::RobotProximity, by| answer.distance += by,
-            |answer, by| answer.on_first.y += by,
-            |answer, by| answer.on_second.z -= by,
+            |answer, by| answer.witness.on_first.y += by,
+            |answer, by| answer.witness.on_second.z -= by,
         ];
         for spoilt in spoilt {
             let mut other = answer;

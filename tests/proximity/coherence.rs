@@ -153,8 +153,9 @@ fn turn_a_cap(size: f64) {
 
 /// All that an answer tells.
 fn bits(answer: &LinkProximity) -> (u32, u32, u64, [[u64; 3]; 2]) {
-    let points = [answer.on_robot, answer.on_mesh].map(|point| point.to_array().map(f64::to_bits));
-    (answer.link, answer.triangle, answer.distance.to_bits(), points)
+    let points = [answer.witness.on_robot, answer.witness.on_mesh]
+        .map(|point| point.to_array().map(f64::to_bits));
+    (answer.link, answer.witness.triangle, answer.distance.to_bits(), points)
 }
 
 /// What a sequence of queries for the minimum has met.

@@ -192,7 +192,7 @@ fn judge(seed: u64, census: &mut Census) {
                 // From everywhere a way leads to a contact that is no farther, hardly rising.
                 let reached = of_link.iter().filter(|contact| {
                     contact.distance <= distance + tie
-                        && height(triangle as u32, contact.triangle) <= distance + 2.0 * tie
+                        && height(triangle as u32, contact.witness.triangle) <= distance + 2.0 * tie
                 });
                 assert!(
                     reached.count() > 0,
@@ -201,18 +201,19 @@ fn judge(seed: u64, census: &mut Census) {
             }
             let at_a_contact = of_link
                 .iter()
-                .filter(|contact| contact.triangle != triangle as u32)
+                .filter(|contact| contact.witness.triangle != triangle as u32)
                 .any(|contact| {
-                    height(triangle as u32, contact.triangle) <= contact.distance + tie / 8.0
+                    height(triangle as u32, contact.witness.triangle)
+                        <= contact.distance + tie / 8.0
                 });
             census.merged += usize::from(at_a_contact);
         }
         for (place, one) in of_link.iter().enumerate() {
-            let true_distance = passes.distances[one.triangle as usize];
+            let true_distance = passes.distances[one.witness.triangle as usize];
             assert!((one.distance - true_distance).abs() <= tie, "{seed}: {one:?} {true_distance}");
             for other in &of_link[..place] {
                 let farther = one.distance.max(other.distance);
-                let pass = height(one.triangle, other.triangle);
+                let pass = height(one.witness.triangle, other.witness.triangle);
                 assert!(
                     pass > farther + tie / 64.0,
                     "{seed}: {one:?} and {other:?} are one, over {pass}"
@@ -248,15 +249,15 @@ fn sample_around(
             }
             let inside = corners[0] + (corners[1] - corners[0]) * u + (corners[2] - corners[0]) * v;
             // Joined with the contact's triangle where the contact is.
-            let own = &triangles[contact.triangle as usize];
+            let own = &triangles[contact.witness.triangle as usize];
             let shared: Vec<_> = corners.iter().filter(|corner| own.contains(corner)).collect();
             let holds = |&&from: &&Vector, &&along: &&Vector| {
-                distance_to_segment(contact.on_mesh, from, along) < 1e-15
+                distance_to_segment(contact.witness.on_mesh, from, along) < 1e-15
             };
             if !shared.iter().any(|from| shared.iter().any(|along| holds(from, along))) {
                 continue;
             }
-            let near = contact.on_mesh.lerp(inside, 1e-3);
+            let near = contact.witness.on_mesh.lerp(inside, 1e-3);
             let [start, end] = [link.start(), link.end()].map(Vec3::from);
             let away =
                 point_modified_cylinder(near.into(), start, end, link.radius(), flat).distance;
@@ -300,17 +301,17 @@ fn a_flat_wall_is_one_contact() {
             let contact = &found[0];
             assert!((contact.distance - (height - 0.5).max(0.0)).abs() < 1e-15);
             if height > 0.0 {
-                assert!(contact.kink && (contact.depth.unwrap() - (height - 0.5)).abs() < 1e-15);
+                assert!(contact.kink && (contact.depth - (height - 0.5)).abs() < 1e-15);
                 assert!((contact.normal.unwrap() + Vector::Z).length() < 1e-15);
             } else if robot.links()[0].caps() == [Cap::Round; 2] {
-                assert!((contact.depth.unwrap() + 0.5).abs() < 1e-15, "{contact:?}");
+                assert!((contact.depth + 0.5).abs() < 1e-15, "{contact:?}");
                 assert_eq!(contact.normal, None, "the axis lies in the wall");
             } else {
                 // The lowest triangle on the axis reaches from x = -4 to -3, past the flat start:
                 // out along the axis is shorter than across.
-                let corners = mesh.triangle(contact.triangle).vertices().map(|v| v.x);
+                let corners = mesh.triangle(contact.witness.triangle).vertices().map(|v| v.x);
                 assert_eq!(corners.into_iter().fold(f64::MIN, f64::max), -3.0);
-                assert!((contact.depth.unwrap() + 0.3).abs() < 1e-15, "{contact:?}");
+                assert!((contact.depth + 0.3).abs() < 1e-15, "{contact:?}");
                 assert_eq!(contact.normal, Some(Vector::X), "{contact:?}");
             }
         }

@@ -216,7 +216,7 @@ impl Placed {
     }
 
     fn depth(&self) -> Option<f64> {
-        self.contact()?.0.depth
+        Some(self.contact()?.0.depth)
     }
 }
 
@@ -245,7 +245,7 @@ fn judge(seed: u64, census: &mut Census) {
     census.overlaps[kind] += 1;
     let at = || format!("seed {seed}, {}: {placed:?} {contact:?}", KINDS[kind]);
     let rounding = 16.0 * U * placed.extent();
-    let depth = contact.depth.unwrap_or_else(|| panic!("no depth, {}", at()));
+    let depth = contact.depth;
     assert!(depth <= 0.0, "{}", at());
 
     // No direction needs less: drawn anywhere, next to the way out, and along what is special of
@@ -321,7 +321,7 @@ fn changes(
     census: &mut Census,
     at: &impl Fn() -> String,
 ) {
-    let Some(value) = contact.depth else { return };
+    let value = contact.depth;
     let along = placed.end - placed.start;
     let mut largest_jump = 0.0_f64;
     for motion in 0..8 {
@@ -411,13 +411,13 @@ const FLOOR: [Vector; 3] =
 #[test]
 fn a_flat_tip_in_a_wall_has_a_depth_and_a_way_back() {
     let (_, contact) = contact_of([Vector::new(0.0, 0.0, -0.01), Vector::Z], 0.2, [FLAT; 2], FLOOR);
-    assert!((contact.depth.unwrap() + 0.01).abs() < 1e-15, "{contact:?}");
+    assert!((contact.depth + 0.01).abs() < 1e-15, "{contact:?}");
     assert_eq!(contact.normal, Some(Vector::Z));
     assert!((contact.rate(Vector::Z, Vector::ZERO).unwrap() - 1.0).abs() < 1e-15);
     // Tilted, its rim is deepest: by 0.2 sin(0.1), seen from the end of the axis.
     let way = Vector::new(0.1_f64.sin(), 0.0, 0.1_f64.cos());
     let (_, contact) = contact_of([Vector::ZERO, way], 0.2, [FLAT; 2], FLOOR);
-    assert!((contact.depth.unwrap() + 0.2 * 0.1_f64.sin()).abs() < 1e-15, "{contact:?}");
+    assert!((contact.depth + 0.2 * 0.1_f64.sin()).abs() < 1e-15, "{contact:?}");
     assert!((contact.normal.unwrap() - Vector::Z).length() < 1e-15 && !contact.kink);
     assert!((contact.lever.length() - 0.2).abs() < 1e-15 && contact.fraction == 0.0);
 }
@@ -446,7 +446,7 @@ fn an_axis_in_the_wall_has_no_side() {
             (placed.gap(across).max(placed.gap(-across)), 64.0 * U * placed.extent());
         if contact.distance > rounding
             || plane_depth + radius < -rounding
-            || (plane_depth - contact.depth.unwrap()).abs() > rounding
+            || (plane_depth - contact.depth).abs() > rounding
         {
             beside += 1;
             continue;

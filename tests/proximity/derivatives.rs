@@ -112,8 +112,7 @@ fn every_case_within_64_units() {
         let numbers = Numbers::new(case, robot.links()[0].caps().map(|cap| cap == Cap::Flat));
         let is_depth = !is_at_flat_cap(&contact, &robot);
         let value = numbers.value(is_depth);
-        let is_capsule =
-            is_depth && (value.rounded() - contact.depth.unwrap()).abs() < 1e-9 * case.scale;
+        let is_capsule = is_depth && (value.rounded() - contact.depth).abs() < 1e-9 * case.scale;
         if found.distance <= 0.0 && !is_capsule {
             continue; // a way out at a flat cap or across the axis: the room of depths
         }
@@ -235,15 +234,11 @@ fn compare(seed: u64, mesh: &TriMesh, search: &mut BvhSearch, seen: &mut Seen) {
         let Some(derivative) = search.derivative(&robot, &pose, &answer).unwrap() else { continue };
         let radius = robot.links()[answer.link as usize].radius();
         let at_flat_cap = is_at_flat_cap(&contact, &robot);
-        let room = if at_flat_cap {
-            answer.distance - 1e-3
-        } else {
-            contact.depth.unwrap() + radius - 0.15
-        };
+        let room = if at_flat_cap { answer.distance - 1e-3 } else { contact.depth + radius - 0.15 };
         if room < 0.0 {
             continue; // a step away the cap touches, or the normal has turned
         }
-        let only = Only::new(mesh, answer.triangle);
+        let only = Only::new(mesh, answer.witness.triangle);
         for joint in 0..6 {
             let step = 1e-5;
             let at = |by: f64| {
@@ -319,7 +314,7 @@ impl Only {
         search.per_link(robot, pose, &mut out).unwrap();
         let answer = out[of.link as usize];
         let contact = search.contact_of(robot, pose, &answer).unwrap();
-        (contact.depth.unwrap(), contact.feature)
+        (contact.depth, contact.feature)
     }
 }
 

@@ -31,7 +31,7 @@ fn a_far_vertex_does_not_hide_a_near_triangle() {
             let mut answers = Vec::new();
             engine.per_link(&robot, &Pose::IDENTITY, &mut answers).unwrap();
             assert_eq!(
-                (answers[0].distance, answers[0].triangle),
+                (answers[0].distance, answers[0].witness.triangle),
                 (0.0, 0),
                 "{name}, 1e{exponent}, {is_used}"
             );

@@ -3,7 +3,7 @@
 
 use continuum_testing::{LevelLinks, Random, found_level_links};
 use parry_continuum::parry::math::Pose;
-use parry_continuum::proximity::{Decision, RobotPair, Scene, between, clears_between};
+use parry_continuum::proximity::{Decision, RobotPair, Scene};
 use parry_continuum::{Cap, Chain, RigidMotion, Tube};
 
 /// How many pairs are drawn.
@@ -35,11 +35,11 @@ fn chains_meet() {
         let [a, b] = [0, 1].map(|k| robot(&pair, k));
         flat += u32::from(pair.is_flat());
         for [a, b] in [[&a, &b], [&b, &a]] {
-            let found = between(a, &here, b, &here).unwrap();
+            let found = RobotPair::new().minimum(a, &here, b, &here).unwrap();
             assert_eq!(found.distance, 0.0, "{pair:?}");
-            assert_eq!(found.on_first, found.on_second, "{pair:?}");
+            assert_eq!(found.witness.on_first, found.witness.on_second, "{pair:?}");
             assert!(found.certify(a, &here, b, &here).unwrap().lower <= 0.0, "{pair:?}");
-            assert!(!clears_between(a, &here, b, &here, 0.0).unwrap(), "{pair:?}");
+            assert!(!RobotPair::new().clears(a, &here, b, &here, 0.0).unwrap(), "{pair:?}");
             let mut scene = Scene::new();
             scene.set_robot_margin(Some(0.0)).unwrap();
             assert!(!scene.clears(&[(a, here), (b, here)]).unwrap(), "{pair:?}");
@@ -63,7 +63,7 @@ fn tubes_and_motions_at_rest_touch() {
             assert!(found.upper <= resolution, "{resolution}: {pair:?}");
             let [one, two] =
                 [&a, &b].map(|tube| RigidMotion::new(tube.clone(), [here; 2]).unwrap());
-            let answer = tubes.clears_motion(&one, &two, 0.0, resolution).unwrap();
+            let answer = tubes.clears_motions(&one, &two, 0.0, resolution).unwrap();
             assert_eq!(answer.decision, Decision::Contact, "{resolution}: {pair:?}");
         }
     }

@@ -38,7 +38,7 @@ fn is_unfit<T>(result: &Result<T, ProximityError>) -> bool {
 /// Whether an answer is one of a mesh: its distance is the proven one of its pair. Meshes here are
 /// 10 large at most.
 fn is_of(answer: &LinkProximity, robot: &Chain, pose: &Pose, mesh: &TriMesh) -> bool {
-    let corners = *mesh.triangle(answer.triangle).vertices();
+    let corners = *mesh.triangle(answer.witness.triangle).vertices();
     let proof = Certificate::between(&robot.links()[answer.link as usize], pose, corners).unwrap();
     let slack = 1e3 * UNIT * 10.0;
     proof.lower - slack <= answer.distance && answer.distance <= proof.upper + slack
@@ -163,13 +163,14 @@ fn rounded(answer: LinkProximity, random: &mut Random) -> LinkProximity {
         _ => x,
     };
     let (mut distance, mut on_robot, mut on_mesh) =
-        (answer.distance, answer.on_robot, answer.on_mesh);
+        (answer.distance, answer.witness.on_robot, answer.witness.on_mesh);
     distance = off(distance).max(0.0);
     for point in [&mut on_robot, &mut on_mesh] {
         *point = Vector::new(off(point.x), off(point.y), off(point.z));
     }
     let mut rounded = answer;
-    (rounded.distance, rounded.on_robot, rounded.on_mesh) = (distance, on_robot, on_mesh);
+    (rounded.distance, rounded.witness.on_robot, rounded.witness.on_mesh) =
+        (distance, on_robot, on_mesh);
     rounded
 }
 
@@ -266,12 +267,12 @@ fn what_does_not_fit_is_an_error() {
                     continue;
                 }
                 // Out of the plane of its triangle, into the wall or out of it.
-                let apart = (answer.on_robot - answer.on_mesh) / answer.distance;
+                let apart = (answer.witness.on_robot - answer.witness.on_mesh) / answer.distance;
                 other = answer;
-                other.on_mesh -= apart * size;
+                other.witness.on_mesh -= apart * size;
                 assert_eq!(field(refused(&other)), "on_mesh", "{seed}, {size}");
                 other = answer;
-                other.on_robot -= apart * size;
+                other.witness.on_robot -= apart * size;
                 // Towards the wall is out of the link.
                 assert_eq!(field(refused(&other)), "on_robot", "{seed}, {size}");
                 changed += 1;
@@ -279,11 +280,11 @@ fn what_does_not_fit_is_an_error() {
             // Another place of the triangle or the link is in its shape, but not the nearest.
             // (Where the two touch at a corner, that corner is the place itself, but
             // for rounding.)
-            let corners = *mesh.triangle(answer.triangle).vertices();
+            let corners = *mesh.triangle(answer.witness.triangle).vertices();
             for corner in corners {
                 let mut other = answer;
-                other.on_mesh = corner;
-                other.distance = (corner - answer.on_robot).length();
+                other.witness.on_mesh = corner;
+                other.distance = (corner - answer.witness.on_robot).length();
                 if other.distance > answer.distance * (1.0 + 1e-9) + 1e-12 {
                     assert!(matches!(
                         refused(&other),
@@ -297,7 +298,7 @@ fn what_does_not_fit_is_an_error() {
             let links = robot.links().len();
             assert_eq!(refused(&other), ProximityError::NoSuchLink { link: 77, links });
             other = answer;
-            other.triangle = u32::MAX;
+            other.witness.triangle = u32::MAX;
             let triangle = u32::MAX as usize;
             let triangles = mesh.indices().len();
             assert_eq!(refused(&other), ProximityError::NoSuchTriangle { triangle, triangles });
@@ -322,7 +323,7 @@ fn a_wall_may_move_where_the_answer_stays() {
     for (name, mut engine) in engines(&mesh) {
         let answer = engine.minimum(&robot, &pose).unwrap();
         assert_eq!(
-            (answer.distance, answer.on_mesh),
+            (answer.distance, answer.witness.on_mesh),
             (0.75, Vector::new(0.5, -0.5, 0.0)),
             "{name}"
         );
@@ -341,7 +342,7 @@ fn a_wall_may_move_where_the_answer_stays() {
         let turned: Vec<_> = mesh
             .vertices()
             .iter()
-            .map(|&v| answer.on_mesh + about * (v - answer.on_mesh))
+            .map(|&v| answer.witness.on_mesh + about * (v - answer.witness.on_mesh))
             .collect();
         engine.set_vertices(&turned).unwrap();
         let found = engine.contact_of(&robot, &pose, &answer);

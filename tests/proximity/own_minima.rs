@@ -14,7 +14,7 @@ use continuum_testing::Random;
 use continuum_testing::narrow_phase::modified_cylinder_modified_cylinder;
 use parry_continuum::distance::{Vec3, segment_segment};
 use parry_continuum::parry::math::Vector;
-use parry_continuum::proximity::{Decision, RobotPair};
+use parry_continuum::proximity::{Decision, SelfQuery};
 use parry_continuum::{Cap, Chain, Tube};
 use std::f64::consts::{PI, TAU};
 
@@ -491,7 +491,7 @@ fn judge(
     is_flat: Option<bool>,
     free: u32,
 ) -> Counts {
-    let (mut pair, mut counts) = (RobotPair::new(), Counts::default());
+    let (mut query, mut counts) = (SelfQuery::new(), Counts::default());
     for round in 0..40 * free {
         let (shape, kind) = (
             shape.unwrap_or(SHAPES[random.below(6) as usize]),
@@ -504,7 +504,7 @@ fn judge(
             centreline(random, shape, count).iter().map(|point| point * unit).collect();
         let radii: Vec<_> = radii(random, kind, count).iter().map(|radius| radius * unit).collect();
         let chain = chain(&points, &radii, is_flat);
-        let Ok(found) = pair.self_minimum(&chain) else { continue };
+        let Ok(found) = query.minimum(&chain) else { continue };
         let distance = found.map_or(f64::INFINITY, |found| found.distance);
         let robot = Robot::new(&chain);
         let minima = robot.minima();
@@ -530,7 +530,7 @@ fn judge(
         }
         // The chain as a tube.
         let tube = Tube::from(&chain);
-        let decision = pair.tube_self_clears(&tube, 0.0, 1e-6 * unit).unwrap();
+        let decision = query.clears_tube(&tube, 0.0, 1e-6 * unit).unwrap();
         let told = || format!("{decision:?} of the tube: {}", says());
         if distance <= 0.0 && minima.sure <= 0.0 {
             assert_ne!(decision, Decision::Clear, "{}", told());

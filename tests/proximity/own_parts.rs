@@ -4,7 +4,7 @@ use continuum_testing::Random;
 use continuum_testing::narrow_phase::point_modified_cylinder;
 use parry_continuum::distance::{Vec3, segment_segment};
 use parry_continuum::parry::math::{Pose, Vector};
-use parry_continuum::proximity::{Decision, RobotPair, self_clears, self_minimum};
+use parry_continuum::proximity::{Decision, SelfQuery};
 use parry_continuum::{Cap, Chain, LinearMotion, ModifiedCylinder, Tube};
 use std::f64::consts::PI;
 
@@ -29,21 +29,21 @@ fn a_straight_robot_never_meets_itself() {
     for radii in [[0.5, 0.5, 0.5], [1.5, 1.0, 0.5]] {
         let points: Vec<_> = (0..4).map(|k| Vector::Z * f64::from(k)).collect();
         let robot = Chain::from_centreline(&points, &radii).unwrap();
-        assert_eq!(self_minimum(&robot).unwrap(), None);
-        assert!(self_clears(&robot, 1e9).unwrap());
+        assert_eq!(SelfQuery::new().minimum(&robot).unwrap(), None);
+        assert!(SelfQuery::new().clears(&robot, 1e9).unwrap());
     }
     let one = Chain::from_centreline(&[Vector::ZERO, Vector::Z], &[3.0]).unwrap();
-    assert_eq!(self_minimum(&one).unwrap(), None);
+    assert_eq!(SelfQuery::new().minimum(&one).unwrap(), None);
 }
 
 #[test]
 fn a_hairpin_is_as_wide_as_its_waist() {
     for (radius, thickness) in [(10.0, 1.5), (2.0, 0.9), (1.0, 0.99)] {
         let robot = hairpin(radius, 5.0, thickness);
-        let found = self_minimum(&robot).unwrap().unwrap();
+        let found = SelfQuery::new().minimum(&robot).unwrap().unwrap();
         assert!((found.distance - 2.0 * (radius - thickness)).abs() < 1e-12, "{found:?}");
-        assert!(self_clears(&robot, 2.0 * (radius - thickness) - 1e-9).unwrap());
-        assert!(!self_clears(&robot, 2.0 * (radius - thickness) + 1e-9).unwrap());
+        assert!(SelfQuery::new().clears(&robot, 2.0 * (radius - thickness) - 1e-9).unwrap());
+        assert!(!SelfQuery::new().clears(&robot, 2.0 * (radius - thickness) + 1e-9).unwrap());
     }
 }
 
@@ -55,13 +55,13 @@ fn a_bend_does_not_meet_its_own_neighbourhood() {
         move |s: f64| Vector::new(2.0 * (1.0 - (turn * s).cos()), 0.0, 2.0 * (turn * s).sin())
     };
     let robot = along(arc(0.48 * PI), 40, 0.9);
-    assert_eq!(self_minimum(&robot).unwrap(), None);
+    assert_eq!(SelfQuery::new().minimum(&robot).unwrap(), None);
     // Beyond a quarter of a turn base and tip are faces that something may stand on, but nothing
     // does.
     for turn in [0.55 * PI, 0.8 * PI, 0.99 * PI] {
         let robot = along(arc(turn), 60, 0.9);
-        assert_eq!(self_minimum(&robot).unwrap(), None, "{turn}");
-        assert!(self_clears(&robot, 1e9).unwrap());
+        assert_eq!(SelfQuery::new().minimum(&robot).unwrap(), None, "{turn}");
+        assert!(SelfQuery::new().clears(&robot, 1e9).unwrap());
     }
 }
 
@@ -83,7 +83,7 @@ fn a_helix_meets_itself_at_one_pitch() {
         let helix =
             |s: f64| Vector::new(radius * turn(s).cos(), radius * turn(s).sin(), rise * turn(s));
         let robot = along(helix, 600, thickness);
-        let found = self_minimum(&robot).unwrap().unwrap();
+        let found = SelfQuery::new().minimum(&robot).unwrap().unwrap();
         // A chord of 1.8 degrees leaves the circle by 4e-4, on either turn alike but for its tilt.
         let expected = (chord - 2.0 * thickness).max(0.0);
         assert!(
@@ -91,7 +91,7 @@ fn a_helix_meets_itself_at_one_pitch() {
             "{pitch}: {} for {expected}",
             found.distance
         );
-        assert_eq!(self_clears(&robot, 0.0).unwrap(), pitch > 0.8);
+        assert_eq!(SelfQuery::new().clears(&robot, 0.0).unwrap(), pitch > 0.8);
     }
 }
 
@@ -110,14 +110,14 @@ fn bent_back(turn: f64, reach: f64) -> Chain {
 fn a_thin_tube_that_bends_back_stands_on_the_face_of_its_step() {
     // All the way round, its tip stands on the face.
     let robot = bent_back(PI, 0.75);
-    let found = self_minimum(&robot).unwrap().unwrap();
+    let found = SelfQuery::new().minimum(&robot).unwrap().unwrap();
     assert!((found.distance - 0.25).abs() < 1e-9, "{found:?}");
     assert_eq!(found.links, [0, robot.links().len() as u32 - 1]);
 
     // By less than half a turn, its side comes near the rim: beside a face that is sampled densely.
     for turn in [0.6 * PI, 0.7 * PI, 0.8 * PI] {
         let robot = bent_back(turn, 2.5);
-        let found = self_minimum(&robot).unwrap().unwrap();
+        let found = SelfQuery::new().minimum(&robot).unwrap().unwrap();
         let last = robot.links()[robot.links().len() - 1];
         let mut least = f64::INFINITY;
         for ring in 0..=300 {
@@ -132,7 +132,7 @@ fn a_thin_tube_that_bends_back_stands_on_the_face_of_its_step() {
             "{} {least}",
             found.distance
         );
-        assert!(!self_clears(&robot, least).unwrap());
+        assert!(!SelfQuery::new().clears(&robot, least).unwrap());
     }
 }
 
@@ -146,7 +146,7 @@ fn distance_to(link: &ModifiedCylinder, point: Vector) -> f64 {
 fn two_steps_face_one_another() {
     let points: Vec<_> = [0.0, 3.0, 5.0, 8.0].map(|z| Vector::Z * z).to_vec();
     let robot = Chain::from_centreline(&points, &[2.0, 0.5, 2.0]).unwrap();
-    assert_eq!(self_minimum(&robot).unwrap().unwrap().distance, 2.0);
+    assert_eq!(SelfQuery::new().minimum(&robot).unwrap().unwrap().distance, 2.0);
 }
 
 /// A thick tube, and a thin one that comes back between a quarter and half a turn later and runs
@@ -169,11 +169,15 @@ fn a_tip_that_runs_into_a_face_is_never_lost() {
         let pose = if turned == 0 { Pose::IDENTITY } else { random.pose(0.0) };
         let points = points.map(|point| pose * point);
         let robot = Chain::capsules(&points, &radii).unwrap();
-        let found = self_minimum(&robot).unwrap().expect("the last link meets the first");
+        let found =
+            SelfQuery::new().minimum(&robot).unwrap().expect("the last link meets the first");
         assert_eq!(found.links, [0, 3]);
         assert!(found.distance < 1e-13, "{found:?}");
         apart += usize::from(found.distance > 0.0);
-        assert!(!self_clears(&robot, 0.5).unwrap() && !self_clears(&robot, 1e-13).unwrap());
+        assert!(
+            !SelfQuery::new().clears(&robot, 0.5).unwrap()
+                && !SelfQuery::new().clears(&robot, 1e-13).unwrap()
+        );
     }
     assert!(apart > 100, "rounding parted only {apart}");
 }
@@ -183,7 +187,7 @@ fn a_tip_that_runs_into_a_face_is_never_lost() {
 #[test]
 fn no_local_minimum_is_left_out() {
     let mut random = Random::new(1);
-    let (mut pair, mut minima, mut none) = (RobotPair::new(), 0, 0);
+    let (mut query, mut minima, mut none) = (SelfQuery::new(), 0, 0);
     for _ in 0..2000 {
         let count = 3 + random.below(10);
         let (mut at, mut way) = (Vector::ZERO, random.direction());
@@ -198,7 +202,7 @@ fn no_local_minimum_is_left_out() {
         let Ok(robot) = Chain::from_centreline(&points, &vec![radius; count as usize]) else {
             continue;
         };
-        let Ok(found) = pair.self_minimum(&robot) else { continue };
+        let Ok(found) = query.minimum(&robot) else { continue };
         for i in 0..count as usize {
             for j in i + 2..count as usize {
                 let v = |point: Vector| Vec3::from(point.to_array());
@@ -223,12 +227,13 @@ fn no_local_minimum_is_left_out() {
         }
         none += usize::from(found.is_none());
         // What is remembered changes no answer.
-        assert_eq!(self_minimum(&robot).unwrap(), found);
+        assert_eq!(SelfQuery::new().minimum(&robot).unwrap(), found);
         if let Some(found) = found {
             assert!(
-                self_clears(&robot, found.distance.next_down()).unwrap() || found.distance == 0.0
+                SelfQuery::new().clears(&robot, found.distance.next_down()).unwrap()
+                    || found.distance == 0.0
             );
-            assert!(!self_clears(&robot, found.distance).unwrap());
+            assert!(!SelfQuery::new().clears(&robot, found.distance).unwrap());
         }
     }
     assert!(minima > 80 && none > 100, "{minima} {none}");
@@ -238,7 +243,7 @@ fn no_local_minimum_is_left_out() {
 fn a_joint_that_is_too_sharp_is_named() {
     let points = [Vector::ZERO, Vector::Z, Vector::new(0.2, 0.0, 0.1)];
     let robot = Chain::from_centreline(&points, &[0.2, 0.2]).unwrap();
-    let error = self_minimum(&robot).unwrap_err();
+    let error = SelfQuery::new().minimum(&robot).unwrap_err();
     assert_eq!(error.kind(), "joint_too_sharp");
     assert!(error.to_string().contains("joint 1"), "{error}");
 }
@@ -249,13 +254,13 @@ fn a_thin_tube_that_bends_back_meets_the_round_end_of_its_step() {
     let points = [[0.0, 0.0, -10.0], [0.0, 0.0, 0.0], [0.0, 0.0, 3.0], [3.0, 0.0, -2.196_152]]
         .map(Vector::from);
     let robot = Chain::capsules(&points, &[2.0, 0.1, 0.1]).unwrap();
-    let met = self_minimum(&robot).unwrap().unwrap();
+    let met = SelfQuery::new().minimum(&robot).unwrap().unwrap();
     assert!(met.distance == 0.0 && met.links == [0, 2], "{met:?}");
-    assert!(!self_clears(&robot, 0.0).unwrap());
+    assert!(!SelfQuery::new().clears(&robot, 0.0).unwrap());
     // Thinner by so much that it stays away, as far as the point of the axis that is nearest to the
     // step is.
     let robot = Chain::capsules(&points, &[0.5, 0.1, 0.1]).unwrap();
-    let apart = self_minimum(&robot).unwrap().unwrap();
+    let apart = SelfQuery::new().minimum(&robot).unwrap().unwrap();
     let [tip, joint] = [points[3], points[2]];
     let way = (tip - joint).normalize();
     let nearest = (joint + way * (points[1] - joint).dot(way) - points[1]).length();
@@ -264,8 +269,8 @@ fn a_thin_tube_that_bends_back_meets_the_round_end_of_its_step() {
         "{apart:?} {nearest}"
     );
     assert!(
-        self_clears(&robot, 0.99 * apart.distance).unwrap()
-            && !self_clears(&robot, apart.distance).unwrap()
+        SelfQuery::new().clears(&robot, 0.99 * apart.distance).unwrap()
+            && !SelfQuery::new().clears(&robot, apart.distance).unwrap()
     );
 }
 
@@ -277,7 +282,7 @@ fn a_robot_that_is_folded_is_refused() {
         let (start, joint) = (random.point() * 50.0, random.point() * 50.0);
         for radius in [0.0, 0.1, 5.0] {
             let robot = Chain::capsules(&[start, joint, start], &[radius; 2]).unwrap();
-            assert_eq!(self_minimum(&robot).unwrap_err().kind(), "joint_too_sharp");
+            assert_eq!(SelfQuery::new().minimum(&robot).unwrap_err().kind(), "joint_too_sharp");
         }
     }
 }
@@ -294,12 +299,12 @@ fn arc(turn: f64, count: usize) -> Vec<Vector> {
 
 #[test]
 fn radii_that_are_equal_up_to_rounding_are_no_steps() {
-    let mut pair = RobotPair::new();
+    let mut query = SelfQuery::new();
     let points: Vec<_> = (0..7).map(|k| Vector::Z * (0.1 * f64::from(k))).collect();
     let radii = [0.1 + 0.2, 0.3, 0.1 + 0.2, 0.3, 0.3, 0.3];
     assert!(radii[0] != radii[1]);
     for chain in [Chain::from_centreline(&points, &radii), Chain::capsules(&points, &radii)] {
-        assert_eq!(pair.self_minimum(&chain.unwrap()).unwrap(), None);
+        assert_eq!(query.minimum(&chain.unwrap()).unwrap(), None);
     }
     let mut random = Random::new(8);
     for round in 0..200 {
@@ -319,18 +324,15 @@ fn radii_that_are_equal_up_to_rounding_are_no_steps() {
             Chain::from_vertex_radii(&points, &radii),
         ];
         for chain in chains.map(Result::unwrap) {
-            assert_eq!(pair.self_minimum(&chain).unwrap(), None, "{round}");
-            assert!(pair.self_clears(&chain, 9.0).unwrap(), "{round}");
+            assert_eq!(query.minimum(&chain).unwrap(), None, "{round}");
+            assert!(query.clears(&chain, 9.0).unwrap(), "{round}");
             let tube = Tube::from(&chain);
-            let decision = pair.tube_self_clears(&tube, 0.0, 1e-3 * unit).unwrap();
+            let decision = query.clears_tube(&tube, 0.0, 1e-3 * unit).unwrap();
             assert_eq!(decision, Decision::Clear, "{round}");
         }
         if round % 10 == 0 {
             let motion = LinearMotion::chain(&points, &points, links).unwrap();
-            assert!(
-                pair.motion_self_clears(&motion, 0.0, 1e-3 * unit).unwrap().is_clear(),
-                "{round}"
-            );
+            assert!(query.clears_motion(&motion, 0.0, 1e-3 * unit).unwrap().is_clear(), "{round}");
         }
     }
 }
@@ -338,10 +340,10 @@ fn radii_that_are_equal_up_to_rounding_are_no_steps() {
 /// Two shoulders of a taper look the same way, and what they overlap is the robot itself.
 #[test]
 fn a_tapered_robot_does_not_meet_its_own_neighbourhood() {
-    let mut pair = RobotPair::new();
+    let mut query = SelfQuery::new();
     let points: Vec<_> = (0..5).map(|k| Vector::Z * (0.5 * f64::from(k))).collect();
     let straight = Chain::capsules(&points, &[1.0, 0.99, 0.98, 0.97]).unwrap();
-    assert_eq!(pair.self_minimum(&straight).unwrap(), None);
+    assert_eq!(query.minimum(&straight).unwrap(), None);
     let mut random = Random::new(9);
     let (mut overlapping, mut bent) = (0, 0);
     for round in 0..600 {
@@ -363,8 +365,8 @@ fn a_tapered_robot_does_not_meet_its_own_neighbourhood() {
             Chain::capsules(&points, &radii)
         };
         let chain = chain.unwrap();
-        assert!(pair.self_clears(&chain, 0.0).unwrap(), "{round}: {:?}", pair.self_minimum(&chain));
-        let decision = pair.tube_self_clears(&Tube::from(&chain), 0.0, 1e-3).unwrap();
+        assert!(query.clears(&chain, 0.0).unwrap(), "{round}: {:?}", query.minimum(&chain));
+        let decision = query.clears_tube(&Tube::from(&chain), 0.0, 1e-3).unwrap();
         assert_eq!(decision, Decision::Clear, "{round}");
         if round % 20 < 4 {
             let motion = if is_flat {
@@ -372,7 +374,7 @@ fn a_tapered_robot_does_not_meet_its_own_neighbourhood() {
             } else {
                 LinearMotion::capsules(&points, &points, &radii)
             };
-            let found = pair.motion_self_clears(&motion.unwrap(), 0.0, 1e-3).unwrap();
+            let found = query.clears_motion(&motion.unwrap(), 0.0, 1e-3).unwrap();
             // In the tightest bends the rims of flat faces overlap what lies a quarter of a turn
             // on, inside of the adjoining link: a motion need not tell that.
             let may_doubt = is_flat && tight > 0.9 && found.decision == Decision::Undecided;
@@ -387,7 +389,7 @@ fn a_tapered_robot_does_not_meet_its_own_neighbourhood() {
 /// A thick link, and a thin part that leaves it, turns round and comes back to its wide end.
 #[test]
 fn a_thin_part_that_bends_back_to_a_thick_end_meets_it() {
-    let (mut random, mut pair) = (Random::new(10), RobotPair::new());
+    let (mut random, mut query) = (Random::new(10), SelfQuery::new());
     let (mut round_ends, mut corners) = (0, 0);
     for round in 0..400 {
         let (wide, thin) = (random.between(2.0, 6.0), random.between(0.05, 1.0));
@@ -420,7 +422,7 @@ fn a_thin_part_that_bends_back_to_a_thick_end_meets_it() {
         } else {
             Chain::capsules(&points, &radii)
         };
-        let Ok(found) = pair.self_minimum(&chain.unwrap()) else { continue };
+        let Ok(found) = query.minimum(&chain.unwrap()) else { continue };
         let found = found.unwrap_or_else(|| panic!("{round}: the tip meets the end"));
         assert!(found.distance <= gap + 2e-9, "{round}: {found:?} {gap}");
         if beside > 2.0 * thin + gap + 1e-3 {

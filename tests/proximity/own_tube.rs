@@ -4,9 +4,7 @@ use super::robots::robot;
 use super::tube::{all_ways, fine, from_function};
 use continuum_testing::{Arcs, Random};
 use parry_continuum::parry::math::{Pose, Vector};
-use parry_continuum::proximity::{
-    Decision, ProximityError, RobotPair, self_minimum, tube_self_clears,
-};
+use parry_continuum::proximity::{Decision, ProximityError, SelfQuery};
 use parry_continuum::{Chain, Tube, TubeSection};
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -87,14 +85,14 @@ impl Coil {
 
 #[test]
 fn neighbouring_turns_of_a_coil_are_as_far_apart_as_an_equation_says() {
-    let mut pair = RobotPair::new();
+    let mut query = SelfQuery::new();
     for pitch in [0.79, 0.81, 1.0, 2.0, 3.5] {
         let coil = Coil { radius: 3.0, rise: pitch / (2.0 * PI) };
         let (angle, thickness) = (6.0 * PI, 0.4);
         let apart = coil.chord() - 2.0 * thickness;
         let tube = coil.tube(angle, thickness);
         let mut decide =
-            |margin: f64, resolution| pair.tube_self_clears(&tube, margin, resolution).unwrap();
+            |margin: f64, resolution| query.clears_tube(&tube, margin, resolution).unwrap();
         if apart < 0.0 {
             assert_eq!(decide(0.0, 1e-9), Decision::Contact);
         } else {
@@ -112,7 +110,7 @@ fn neighbouring_turns_of_a_coil_are_as_far_apart_as_an_equation_says() {
             for off in [-0.1, -4e-3, 4e-3, 0.1] {
                 let right = if off < 0.0 { Decision::Clear } else { Decision::Contact };
                 if apart + off >= 0.0 {
-                    let decision = pair.tube_self_clears(&tube, apart + off, 2e-3).unwrap();
+                    let decision = query.clears_tube(&tube, apart + off, 2e-3).unwrap();
                     assert_eq!(decision, right, "{pitch}, {off}");
                 }
             }
@@ -128,7 +126,7 @@ fn neighbouring_turns_of_a_coil_are_as_far_apart_as_an_equation_says() {
         ] {
             if apart + off >= 0.0 {
                 assert_eq!(
-                    pair.tube_self_clears(&tube, apart + off, 0.02).unwrap(),
+                    query.clears_tube(&tube, apart + off, 0.02).unwrap(),
                     right,
                     "{pitch}, {off}"
                 );
@@ -161,16 +159,16 @@ pub(super) fn winding(random: &mut Random) -> Arcs {
 #[test]
 fn chains_are_tubes_of_straight_pieces() {
     let mut random = Random::new(2);
-    let (mut pair, mut apart, mut touching, mut none) = (RobotPair::new(), 0, 0, 0);
+    let (mut query, mut apart, mut touching, mut none) = (SelfQuery::new(), 0, 0, 0);
     for round in 0..1500 {
         let chain = robot(&mut random, 12);
         let tube = Tube::from(&chain);
-        let Ok(found) = self_minimum(&chain) else {
-            let error = pair.tube_self_clears(&tube, 0.0, 0.0).unwrap_err();
+        let Ok(found) = SelfQuery::new().minimum(&chain) else {
+            let error = query.clears_tube(&tube, 0.0, 0.0).unwrap_err();
             assert_eq!(error.kind(), "joint_too_sharp");
             continue;
         };
-        let mut ask = |margin: f64| pair.tube_self_clears(&tube, margin, 1e-9).unwrap();
+        let mut ask = |margin: f64| query.clears_tube(&tube, margin, 1e-9).unwrap();
         match found {
             None => {
                 assert_eq!(ask(1e6), Decision::Clear, "{round}");
@@ -202,7 +200,7 @@ fn hairpin(turn: f64, bend: f64, legs: [f64; 2], radius: f64) -> Arcs {
 
 #[test]
 fn a_straight_tube_never_meets_itself() {
-    let mut pair = RobotPair::new();
+    let mut query = SelfQuery::new();
     let points: Vec<_> = (0..20).map(|k| Vector::Z * f64::from(k)).collect();
     let steps: Vec<_> = (0..19).map(|k| 1.5 - 0.5 * f64::from(k / 7)).collect();
     let mut tubes = vec![along(50.0, 3.0, 0.0, |s| (Vector::X * s, Vector::X))];
@@ -211,14 +209,14 @@ fn a_straight_tube_never_meets_itself() {
     tubes.push(from_function(&Arc::new(hairpin(0.48 * PI, 2.0, [3.0, 1.0], 0.9))));
     for tube in tubes {
         for margin in [0.0, 1.0, 1e6] {
-            assert_eq!(pair.tube_self_clears(&tube, margin, 1e-6).unwrap(), Decision::Clear);
+            assert_eq!(query.clears_tube(&tube, margin, 1e-6).unwrap(), Decision::Clear);
         }
     }
 }
 
 #[test]
 fn legs_of_a_hairpin_meet_if_it_turns_by_more_than_half_a_turn() {
-    let mut pair = RobotPair::new();
+    let mut query = SelfQuery::new();
     let (bend, leg, radius) = (10.0, 60.0, 1.5);
     for beyond in [-0.2, -0.01, 0.01, 0.05, 0.2] {
         let turn = PI + beyond;
@@ -228,7 +226,7 @@ fn legs_of_a_hairpin_meet_if_it_turns_by_more_than_half_a_turn() {
         let width = 2.0 * bend * (0.5 * turn).sin() + 2.0 * leg * (0.5 * turn).cos();
         let apart = width - 2.0 * radius * (0.5 * beyond).cos();
         for margin in [0.0, 1.0, 5.0, 10.0, 16.0, 16.9] {
-            let decision = pair.tube_self_clears(&tube, margin, 1e-6).unwrap();
+            let decision = query.clears_tube(&tube, margin, 1e-6).unwrap();
             let right =
                 if beyond < 0.0 || margin < apart { Decision::Clear } else { Decision::Contact };
             assert_eq!(decision, right, "{beyond}: {margin} of {apart}");
@@ -238,7 +236,7 @@ fn legs_of_a_hairpin_meet_if_it_turns_by_more_than_half_a_turn() {
             for (off, right) in [(-1e-8, Decision::Clear), (1e-8, Decision::Contact)] {
                 if apart + off > 0.0 {
                     assert_eq!(
-                        pair.tube_self_clears(&tube, apart + off, 1e-9).unwrap(),
+                        query.clears_tube(&tube, apart + off, 1e-9).unwrap(),
                         right,
                         "{beyond}"
                     );
@@ -247,14 +245,14 @@ fn legs_of_a_hairpin_meet_if_it_turns_by_more_than_half_a_turn() {
         }
         // Of a margin wider than the bend it need not be told, but no contact is made up.
         if beyond < 0.0 {
-            assert_ne!(pair.tube_self_clears(&tube, 1e3, 1e-6).unwrap(), Decision::Contact);
+            assert_ne!(query.clears_tube(&tube, 1e3, 1e-6).unwrap(), Decision::Contact);
         }
     }
     // Exactly half a turn: as wide as its waist, anywhere along the legs.
     let tube = from_function(&Arc::new(hairpin(PI, bend, [leg, leg], radius)));
     // Nearer than pieces of a bend are told apart that may turn by as much, and may not.
-    assert_eq!(pair.tube_self_clears(&tube, 17.0 - 1e-5, 2e-6).unwrap(), Decision::Clear);
-    assert_eq!(pair.tube_self_clears(&tube, 17.0 + 1e-9, 1e-10).unwrap(), Decision::Contact);
+    assert_eq!(query.clears_tube(&tube, 17.0 - 1e-5, 2e-6).unwrap(), Decision::Clear);
+    assert_eq!(query.clears_tube(&tube, 17.0 + 1e-9, 1e-10).unwrap(), Decision::Contact);
 }
 
 /// A thick tube, a thin one out of its face that bends by `turn` and goes on straight.
@@ -267,13 +265,14 @@ fn bent_back(turn: f64, reach: f64) -> Arcs {
 
 #[test]
 fn a_thin_tube_that_bends_back_stands_on_the_face_of_its_step() {
-    let mut pair = RobotPair::new();
+    let mut query = SelfQuery::new();
     let mut above = 0;
     for (turn, reach) in
         [(PI, 0.75), (0.6 * PI, 2.5), (0.7 * PI, 2.5), (0.8 * PI, 1.4), (0.9 * PI, 0.9)]
     {
         let arcs = Arc::new(bent_back(turn, reach));
-        let chain = self_minimum(&fine(&arcs, Chain::cylinders)).unwrap().unwrap().distance;
+        let chain =
+            SelfQuery::new().minimum(&fine(&arcs, Chain::cylinders)).unwrap().unwrap().distance;
         for (way, tube) in all_ways(&arcs).iter().enumerate() {
             for (off, right) in [
                 (-0.05, Decision::Clear),
@@ -281,7 +280,7 @@ fn a_thin_tube_that_bends_back_stands_on_the_face_of_its_step() {
                 (2e-3, Decision::Contact),
                 (0.05, Decision::Contact),
             ] {
-                match pair.tube_self_clears(tube, chain + off, 1e-3) {
+                match query.clears_tube(tube, chain + off, 1e-3) {
                     Ok(decision) if way == 0 => {
                         assert_eq!(decision, right, "{turn}, way {way}, {off} of {chain}")
                     }
@@ -299,7 +298,7 @@ fn a_thin_tube_that_bends_back_stands_on_the_face_of_its_step() {
             let tube = from_function(&arcs);
             for (off, right) in [(-1e-8, Decision::Clear), (1e-8, Decision::Contact)] {
                 assert_eq!(
-                    pair.tube_self_clears(&tube, ahead + off, 1e-9).unwrap(),
+                    query.clears_tube(&tube, ahead + off, 1e-9).unwrap(),
                     right,
                     "{turn}: {ahead}"
                 );
@@ -317,29 +316,30 @@ fn two_steps_face_one_another() {
         arcs.push(radius, &[(length, Vector::ZERO)]);
     }
     let tube = from_function(&Arc::new(arcs));
-    let mut pair = RobotPair::new();
-    assert_eq!(pair.tube_self_clears(&tube, 2.0 - 1e-8, 1e-9).unwrap(), Decision::Clear);
-    assert_eq!(pair.tube_self_clears(&tube, 2.0 + 1e-8, 1e-9).unwrap(), Decision::Contact);
+    let mut query = SelfQuery::new();
+    assert_eq!(query.clears_tube(&tube, 2.0 - 1e-8, 1e-9).unwrap(), Decision::Clear);
+    assert_eq!(query.clears_tube(&tube, 2.0 + 1e-8, 1e-9).unwrap(), Decision::Contact);
 }
 
 /// Round three quarters of a turn, and straight on until the tip stands before the tube's own side.
 #[test]
 fn a_tip_stands_against_its_own_side() {
-    let mut pair = RobotPair::new();
+    let mut query = SelfQuery::new();
     let (bend, radius) = (4.0, 0.5);
     for apart in [1e-3, 0.3, 2.0] {
         // The bend ends `bend` beside the leg, beyond it, and heads for it.
         let arcs = Arc::new(hairpin(1.5 * PI, bend, [20.0, bend - radius - apart], radius));
-        let chain = self_minimum(&fine(&arcs, Chain::cylinders)).unwrap().unwrap().distance;
+        let chain =
+            SelfQuery::new().minimum(&fine(&arcs, Chain::cylinders)).unwrap().unwrap().distance;
         assert!((chain - apart).abs() < 1e-4, "{chain} {apart}");
         let tube = from_function(&arcs);
         assert_eq!(
-            pair.tube_self_clears(&tube, apart - 1e-8, 1e-9).unwrap(),
+            query.clears_tube(&tube, apart - 1e-8, 1e-9).unwrap(),
             Decision::Clear,
             "{apart}"
         );
         assert_eq!(
-            pair.tube_self_clears(&tube, apart + 1e-8, 1e-9).unwrap(),
+            query.clears_tube(&tube, apart + 1e-8, 1e-9).unwrap(),
             Decision::Contact,
             "{apart}"
         );
@@ -347,7 +347,7 @@ fn a_tip_stands_against_its_own_side() {
     // Into it.
     let tube =
         from_function(&Arc::new(hairpin(1.5 * PI, bend, [20.0, bend - 0.9 * radius], radius)));
-    assert_eq!(pair.tube_self_clears(&tube, 0.0, 1e-9).unwrap(), Decision::Contact);
+    assert_eq!(query.clears_tube(&tube, 0.0, 1e-9).unwrap(), Decision::Contact);
 }
 
 /// A trefoil, whose parts pass one another three times.
@@ -378,17 +378,13 @@ fn a_knot_is_as_thick_as_it_can_be() {
         }
     }
     let tube = Tube::with_constant_radius(&points, radius, None).unwrap();
-    let mut pair = RobotPair::new();
+    let mut query = SelfQuery::new();
     assert!(least > 1.0, "{least}");
     // Samples are 0.03 apart: next to the nearest two places are some that are 1.5e-4 farther
     // apart.
+    assert_eq!(query.clears_tube(&tube, least - 5e-4, 2.5e-4).unwrap(), Decision::Clear, "{least}");
     assert_eq!(
-        pair.tube_self_clears(&tube, least - 5e-4, 2.5e-4).unwrap(),
-        Decision::Clear,
-        "{least}"
-    );
-    assert_eq!(
-        pair.tube_self_clears(&tube, least + 5e-4, 2.5e-4).unwrap(),
+        query.clears_tube(&tube, least + 5e-4, 2.5e-4).unwrap(),
         Decision::Contact,
         "{least}"
     );
@@ -410,7 +406,10 @@ fn the_work_grows_like_the_root_of_the_resolution() {
     let apart = coil.chord() - 2.0 * thickness;
     let work = |off: f64| {
         let before = asked.load(Ordering::Relaxed);
-        assert_eq!(tube_self_clears(&tube, apart - off, 0.5 * off).unwrap(), Decision::Clear);
+        assert_eq!(
+            SelfQuery::new().clears_tube(&tube, apart - off, 0.5 * off).unwrap(),
+            Decision::Clear
+        );
         asked.load(Ordering::Relaxed) - before
     };
     let [coarse, fine] = [1e-2, 1e-4].map(work);
@@ -440,12 +439,15 @@ fn what_is_wrong_is_named() {
     };
     let (points, ways): (Vec<_>, Vec<_>) = (0..=68).map(frame).unzip();
     let bent = Tube::from_frames(&points, &ways, &[1.2; 68]).unwrap();
-    let error = tube_self_clears(&bent, 0.0, 0.1).unwrap_err();
+    let error = SelfQuery::new().clears_tube(&bent, 0.0, 0.1).unwrap_err();
     assert_eq!(error.kind(), "bends_within_radius");
     assert!(error.to_string().contains("arc length"), "{error}");
     let tube = coil.tube(9.0, 0.2);
     for (margin, resolution) in [(-1.0, 0.1), (f64::NAN, 0.1), (0.1, -1.0), (0.1, f64::NAN)] {
-        assert_eq!(tube_self_clears(&tube, margin, resolution).unwrap_err().kind(), "negative");
+        assert_eq!(
+            SelfQuery::new().clears_tube(&tube, margin, resolution).unwrap_err().kind(),
+            "negative"
+        );
     }
 }
 
@@ -462,7 +464,9 @@ fn a_scaled_problem_has_the_scaled_answer() {
             let radii: Vec<_> = radii.iter().map(|radius| radius * scale).collect();
             let tube = Tube::from_samples(&points, &radii, None).ok()?;
             Some(
-                tube_self_clears(&tube, margin * scale, 0.03 * scale).map_err(|error| error.kind()),
+                SelfQuery::new()
+                    .clears_tube(&tube, margin * scale, 0.03 * scale)
+                    .map_err(|error| error.kind()),
             )
         };
         let unit = at(1.0);

@@ -9,7 +9,7 @@ use continuum_testing::narrow_phase::disc_disc;
 use continuum_testing::{Arcs, Random};
 use parry_continuum::distance::Vec3;
 use parry_continuum::parry::math::{Pose, Vector};
-use parry_continuum::proximity::{Decision, ProximityError, RobotPair};
+use parry_continuum::proximity::{Decision, ProximityError, SelfQuery};
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::Arc;
 
@@ -274,7 +274,7 @@ struct Seen {
 
 const RESOLUTION: f64 = 1e-3;
 
-fn ask(pair: &mut RobotPair, arcs: Arcs, margins: &[f64], seen: &mut Seen, name: &str) {
+fn ask(query: &mut SelfQuery, arcs: Arcs, margins: &[f64], seen: &mut Seen, name: &str) {
     let arcs = Arc::new(arcs);
     let truth = Sampled::new(&arcs, 80).nearest();
     // As wide as the tightest bend, at a step and elsewhere.
@@ -292,7 +292,7 @@ fn ask(pair: &mut RobotPair, arcs: Arcs, margins: &[f64], seen: &mut Seen, name:
             if !(0.0..1e9).contains(&margin) {
                 continue;
             }
-            let decision = match pair.tube_self_clears(tube, margin, RESOLUTION) {
+            let decision = match query.clears_tube(tube, margin, RESOLUTION) {
                 Ok(decision) => decision,
                 Err(ProximityError::ToleranceTooFine { .. }) if way > 0 => Decision::Undecided,
                 Err(error) => panic!("{name}: {error}"),
@@ -327,9 +327,15 @@ fn ask(pair: &mut RobotPair, arcs: Arcs, margins: &[f64], seen: &mut Seen, name:
 #[test]
 fn winding_tubes_are_as_near_to_themselves_as_their_discs() {
     let mut random = Random::new(1);
-    let (mut pair, mut seen) = (RobotPair::new(), Seen::default());
+    let (mut query, mut seen) = (SelfQuery::new(), Seen::default());
     for round in 0..40 {
-        ask(&mut pair, winding(&mut random), &[0.0, 0.3, 2.0, 5.0], &mut seen, &format!("{round}"));
+        ask(
+            &mut query,
+            winding(&mut random),
+            &[0.0, 0.3, 2.0, 5.0],
+            &mut seen,
+            &format!("{round}"),
+        );
     }
     assert!(seen.touching > 5 && seen.free > 10, "{seen:?}");
 }
@@ -363,10 +369,10 @@ fn aligned(random: &mut Random) -> Arcs {
 #[test]
 fn aligned_tubes_are_as_near_to_themselves_as_their_discs() {
     let mut random = Random::new(2);
-    let (mut pair, mut seen) = (RobotPair::new(), Seen::default());
+    let (mut query, mut seen) = (SelfQuery::new(), Seen::default());
     for round in 0..120 {
         ask(
-            &mut pair,
+            &mut query,
             aligned(&mut random),
             &[0.0, 0.25, 0.5, 1.0],
             &mut seen,

@@ -120,8 +120,8 @@ fn a_triangle_just_before_a_flat_cap_neither_touches_nor_hides_what_does() {
             let mut search = BvhSearch::new(&mesh).unwrap();
             let found = search.minimum(&robot, &Pose::IDENTITY).unwrap();
             assert_eq!(
-                (found.distance, found.triangle),
-                (keeps.distance, keeps.triangle),
+                (found.distance, found.witness.triangle),
+                (keeps.distance, keeps.witness.triangle),
                 "{round}: {gap}"
             );
             let clears = search.clears(&robot, &Pose::IDENTITY, 0.0).unwrap();
@@ -165,7 +165,7 @@ fn a_triangle_from_the_plane_of_a_flat_cap_into_the_link_touches_it() {
         let mut reference = Exhaustive::<f64>::new(&mesh).unwrap();
         let found = reference.minimum(&robot, &Pose::IDENTITY).unwrap();
         assert_eq!(found.distance, 0.0, "{round}: {found:?}");
-        assert_eq!(found.on_mesh, found.on_robot, "{round}");
+        assert_eq!(found.witness.on_mesh, found.witness.on_robot, "{round}");
         let mut search = BvhSearch::new(&mesh).unwrap();
         assert!(!search.clears(&robot, &Pose::IDENTITY, 0.0).unwrap(), "{round}");
     }

@@ -101,12 +101,12 @@ fn prominent_contacts_are_those_of_the_definition() {
         let margin = [0.3, 1.0, 4.0, f64::INFINITY][random.below(4) as usize];
         let prominence = [1e-300, 0.01, 0.1, 0.5, 5.0, f64::INFINITY][random.below(6) as usize];
         let mut search = BvhSearch::new(&mesh).unwrap();
-        let all = within(&mut search, &robot, margin, 0.0);
-        let kept = within(&mut search, &robot, margin, prominence);
+        let all = contacts_within(&mut search, &robot, margin, 0.0);
+        let kept = contacts_within(&mut search, &robot, margin, prominence);
         let (mut single, mut double) =
             (Exhaustive::<f32>::new(&mesh).unwrap(), Exhaustive::<f64>::new(&mesh).unwrap());
-        assert_eq!(kept, within(&mut single, &robot, margin, prominence), "{seed}");
-        assert_eq!(kept, within(&mut double, &robot, margin, prominence), "{seed}");
+        assert_eq!(kept, contacts_within(&mut single, &robot, margin, prominence), "{seed}");
+        assert_eq!(kept, contacts_within(&mut double, &robot, margin, prominence), "{seed}");
         for (number, link) in robot.links().iter().enumerate() {
             let of_link = |contacts: &'_ [Contact]| {
                 contacts
@@ -118,7 +118,7 @@ fn prominent_contacts_are_those_of_the_definition() {
             let (all, kept) = (of_link(&all), of_link(&kept));
             let passes = Passes::new(link, &triangles);
             let pass = |one: &Contact, other: &Contact| {
-                [passes.heights[one.triangle as usize][other.triangle as usize]; 2]
+                [passes.heights[one.witness.triangle as usize][other.witness.triangle as usize]; 2]
             };
             let of_link = OfLink {
                 all: all.iter().collect(),
@@ -209,8 +209,8 @@ impl FineMesh {
     /// How high the lowest way between two contacts leads, at least and at most.
     fn pass(&self, one: &Contact, other: &Contact) -> [f64; 2] {
         let nearest = |contact: &Contact| {
-            let away = |at: &usize| (self.points[*at] - contact.on_mesh).length();
-            let corners = self.corners[contact.triangle as usize].iter().copied();
+            let away = |at: &usize| (self.points[*at] - contact.witness.on_mesh).length();
+            let corners = self.corners[contact.witness.triangle as usize].iter().copied();
             corners.min_by(|one, other| away(one).total_cmp(&away(other))).unwrap()
         };
         let ends = [one, other].map(nearest);
@@ -254,8 +254,8 @@ fn prominent_contacts_are_those_of_a_finely_divided_mesh() {
         let prominence = [0.05, 0.3, 1.0, f64::INFINITY][random.below(4) as usize];
         let mut search = BvhSearch::new(&mesh).unwrap();
         let (all, kept) = (
-            within(&mut search, &robot, margin, 0.0),
-            within(&mut search, &robot, margin, prominence),
+            contacts_within(&mut search, &robot, margin, 0.0),
+            contacts_within(&mut search, &robot, margin, prominence),
         );
         for (number, link) in robot.links().iter().enumerate() {
             let of_link = |contacts: &'_ [Contact]| {
@@ -310,9 +310,9 @@ fn keeps_both_sides(mesh: &TriMesh, radius: f64, margin: f64, rough: f64, most: 
     for robot in [Chain::capsules(&ends, &[radius]), Chain::cylinders(&ends, &[radius])] {
         let robot = robot.unwrap();
         let mut search = BvhSearch::new(mesh).unwrap();
-        let all = within(&mut search, &robot, margin, 0.0);
+        let all = contacts_within(&mut search, &robot, margin, 0.0);
         for prominence in [2.0 * rough, 1.0, f64::INFINITY] {
-            let kept = within(&mut search, &robot, margin, prominence);
+            let kept = contacts_within(&mut search, &robot, margin, prominence);
             assert!(kept.len() <= most, "{} of {} at {prominence}", kept.len(), all.len());
             for contact in &all {
                 let cosines =
@@ -398,12 +398,14 @@ fn a_label_map_gives_a_handful_a_link() {
     let robot = Chain::from_centreline(&points, &[1.2, 1.2, 0.9, 0.9]).unwrap();
     let mut search = BvhSearch::new(&mesh).unwrap();
     for margin in [5.0, 8.0, 12.0] {
-        let (all, kept) =
-            (within(&mut search, &robot, margin, 0.0), within(&mut search, &robot, margin, 1.0));
+        let (all, kept) = (
+            contacts_within(&mut search, &robot, margin, 0.0),
+            contacts_within(&mut search, &robot, margin, 1.0),
+        );
         let mut best = [Duration::MAX; 2];
         for round in 0..40 {
             let begin = Instant::now();
-            within(&mut search, &robot, margin, f64::from(round % 2));
+            contacts_within(&mut search, &robot, margin, f64::from(round % 2));
             best[round as usize % 2] = best[round as usize % 2].min(begin.elapsed());
         }
         println!(
@@ -412,7 +414,10 @@ fn a_label_map_gives_a_handful_a_link() {
             mesh.indices().len(),
             kept.len()
         );
-        assert_eq!(kept, within(&mut Exhaustive::<f32>::new(&mesh).unwrap(), &robot, margin, 1.0));
+        assert_eq!(
+            kept,
+            contacts_within(&mut Exhaustive::<f32>::new(&mesh).unwrap(), &robot, margin, 1.0)
+        );
         for link in 0..4 {
             let of_link = |contacts: &'_ [Contact]| {
                 contacts.iter().filter(|contact| contact.link == link).copied().collect::<Vec<_>>()
@@ -437,7 +442,7 @@ fn a_prominence_is_a_number_of_at_least_0() {
     let mesh = drawn(&[[-1.0, 1.0], [1.0, 1.0]], 0.0);
     let robot = Chain::capsules(&[Vector::ZERO, Vector::X], &[0.5]).unwrap();
     let mut search = BvhSearch::new(&mesh).unwrap();
-    let mut out = within(&mut search, &robot, 1.0, 0.0);
+    let mut out = contacts_within(&mut search, &robot, 1.0, 0.0);
     assert_eq!(out.len(), 1);
     for prominence in [-1.0, f64::NAN, f64::NEG_INFINITY] {
         let error = search.contacts_within(&robot, &Pose::IDENTITY, 1.0, prominence, &mut out);
@@ -480,7 +485,7 @@ fn a_pass_of_very_many_triangles_is_asked_in_time() {
                 // the axis, at least the root of 1.8.
                 for (prominence, expected) in [(1.04, 2), (1.043, 1)] {
                     assert_eq!(
-                        within(search, &robot, 3.0, prominence).len(),
+                        contacts_within(search, &robot, 3.0, prominence).len(),
                         expected,
                         "{prominence}"
                     );
@@ -551,10 +556,10 @@ fn very_many_pages_at_an_edge_are_as_prominent_as_they_are_high() {
                     [(3.0, 0.1), (3.0, 0.55), (3.0, 0.9), (3.0, 2.0), (2.44, 2.0)]
                 {
                     let expected = expected(rises, margin, prominence);
-                    let found = within(search, &robot, margin, prominence);
+                    let found = contacts_within(search, &robot, margin, prominence);
                     assert_eq!(found.len(), expected, "{margin} {prominence}");
                     if time == 0 && round == 0 {
-                        assert_eq!(found, within(exhaustive, &robot, margin, prominence));
+                        assert_eq!(found, contacts_within(exhaustive, &robot, margin, prominence));
                         let is_some = expected > 1 && expected < rises.len();
                         assert_eq!(is_some, matches!(prominence, 0.55 | 0.9), "{expected}");
                     }

@@ -39,7 +39,7 @@ fn time<E: Proximity>(
     let (distance, on_mesh) = expected;
     let near = |one: Real, other: Real| (one - other).abs() <= 64.0 * Real::EPSILON;
     assert!(near(out[0].distance, distance), "{} {distance}", out[0].distance);
-    assert!(near(out[0].on_mesh.z, on_mesh.z) && near(out[0].on_mesh.y, on_mesh.y));
+    assert!(near(out[0].witness.on_mesh.z, on_mesh.z) && near(out[0].witness.on_mesh.y, on_mesh.y));
     time
 }
 

@@ -4,9 +4,7 @@ use continuum_testing::Random;
 use continuum_testing::narrow_phase::modified_cylinder_modified_cylinder;
 use parry_continuum::distance::Vec3;
 use parry_continuum::parry::math::{Pose, Vector};
-use parry_continuum::proximity::{
-    ProximityError, RobotPair, RobotProximity, between, clears_between, self_clears,
-};
+use parry_continuum::proximity::{ProximityError, RobotPair, RobotProximity, SelfQuery};
 use parry_continuum::{Cap, Chain, ModifiedCylinder};
 
 const UNIT: f64 = f64::EPSILON / 2.0;
@@ -105,16 +103,19 @@ fn the_nearest_of_all_pairs_is_found() {
         );
         let [i, j] = found.links.map(|link| link as usize);
         assert!((table[i][j] - found.distance).abs() <= slack);
-        assert!(((found.on_first - found.on_second).length() - found.distance).abs() <= slack);
+        assert!(
+            ((found.witness.on_first - found.witness.on_second).length() - found.distance).abs()
+                <= slack
+        );
         let [before, after] =
             [a.links()[..i].iter().map(|l| l.length()).sum::<f64>(), a.links()[i].length()];
         assert!(
-            before - slack <= found.arc_lengths[0]
-                && found.arc_lengths[0] <= before + after + slack
+            before - slack <= found.witness.arc_lengths[0]
+                && found.witness.arc_lengths[0] <= before + after + slack
         );
 
         // What is remembered changes no answer.
-        assert_eq!(between(&a, &poses[0], &b, &poses[1]).unwrap(), found);
+        assert_eq!(RobotPair::new().minimum(&a, &poses[0], &b, &poses[1]).unwrap(), found);
         assert_eq!(pair.minimum(&a, &poses[0], &b, &poses[1]).unwrap(), found);
         // Of equals the lowest links.
         let mut each = Vec::new();
@@ -137,7 +138,10 @@ fn the_nearest_of_all_pairs_is_found() {
         for margin in [0.0, 0.5 * d, d, d.next_up(), 2.0 * d + 0.1] {
             let clears = pair.clears(&a, &poses[0], &b, &poses[1], margin).unwrap();
             assert_eq!(clears, d > margin, "{margin} of {d} in round {round}");
-            assert_eq!(clears_between(&a, &poses[0], &b, &poses[1], margin).unwrap(), clears);
+            assert_eq!(
+                RobotPair::new().clears(&a, &poses[0], &b, &poses[1], margin).unwrap(),
+                clears
+            );
         }
         if d == 0.0 { touching += 1 } else { apart += 1 }
     }
@@ -201,8 +205,11 @@ fn every_place_where_two_robots_are_near_is_found_once() {
         let ones: Option<Vec<_>> = (0..a.links().len()).map(|link| alone(&a, link)).collect();
         let twos: Option<Vec<_>> = (0..b.links().len()).map(|link| alone(&b, link)).collect();
         let (Some(ones), Some(twos)) = (ones, twos) else { continue };
-        let row =
-            |one| twos.iter().map(|two| between(one, &poses[0], two, &poses[1]).unwrap()).collect();
+        let row = |one| {
+            twos.iter()
+                .map(|two| RobotPair::new().minimum(one, &poses[0], two, &poses[1]).unwrap())
+                .collect()
+        };
         let table: Vec<Vec<_>> = ones.iter().map(row).collect();
         for margin in [0.0, 0.3, 3.0, f64::INFINITY] {
             let mut found = Vec::new();
@@ -227,7 +234,7 @@ fn a_scaled_scene_has_the_scaled_answer_bit_for_bit() {
     for _ in 0..200 {
         let (a, b) = (robot(&mut random, 12), robot(&mut random, 12));
         let poses = [random.pose(1.0), random.pose(2.0)];
-        let plain = between(&a, &poses[0], &b, &poses[1]).unwrap();
+        let plain = RobotPair::new().minimum(&a, &poses[0], &b, &poses[1]).unwrap();
         for power in [-300, -40, 40, 300] {
             let factor = 2.0_f64.powi(power);
             let scaled = |robot: &Chain| {
@@ -246,10 +253,12 @@ fn a_scaled_scene_has_the_scaled_answer_bit_for_bit() {
                 Chain::capsules(&points, &radii).unwrap()
             };
             let moved = poses.map(|pose| Pose { translation: pose.translation * factor, ..pose });
-            let found = between(&scaled(&a), &moved[0], &scaled(&b), &moved[1]).unwrap();
-            let expected = between(&round(&a), &poses[0], &round(&b), &poses[1]).unwrap();
+            let found =
+                RobotPair::new().minimum(&scaled(&a), &moved[0], &scaled(&b), &moved[1]).unwrap();
+            let expected =
+                RobotPair::new().minimum(&round(&a), &poses[0], &round(&b), &poses[1]).unwrap();
             assert_eq!((found.links, found.distance), (expected.links, expected.distance * factor));
-            assert_eq!(found.on_first, expected.on_first * factor);
+            assert_eq!(found.witness.on_first, expected.witness.on_first * factor);
         }
         assert!(plain.distance.is_finite());
     }
@@ -260,16 +269,17 @@ fn what_is_at_fault_is_named() {
     let robot = Chain::from_centreline(&[Vector::ZERO, Vector::Z], &[0.1]).unwrap();
     let nowhere = Pose::from_translation(Vector::splat(f64::NAN));
     let far = Pose::from_translation(Vector::splat(1e151));
-    let error = between(&robot, &Pose::IDENTITY, &robot, &nowhere).unwrap_err();
+    let error = RobotPair::new().minimum(&robot, &Pose::IDENTITY, &robot, &nowhere).unwrap_err();
     assert_eq!(error.kind(), "pose_not_finite");
     assert!(error.to_string().contains("`pose_b`"), "{error}");
-    let error = between(&robot, &far, &robot, &Pose::IDENTITY).unwrap_err();
+    let error = RobotPair::new().minimum(&robot, &far, &robot, &Pose::IDENTITY).unwrap_err();
     assert_eq!(error.kind(), "out_of_range");
     assert!(error.to_string().contains("`pose_a`"), "{error}");
     for margin in [-1.0, f64::NAN] {
-        let error =
-            clears_between(&robot, &Pose::IDENTITY, &robot, &Pose::IDENTITY, margin).unwrap_err();
+        let error = RobotPair::new()
+            .clears(&robot, &Pose::IDENTITY, &robot, &Pose::IDENTITY, margin)
+            .unwrap_err();
         assert!(matches!(error, ProximityError::Negative { parameter: "margin", .. }), "{error}");
-        assert!(self_clears(&robot, margin).is_err());
+        assert!(SelfQuery::new().clears(&robot, margin).is_err());
     }
 }

@@ -5,7 +5,7 @@ use parry_continuum::Chain;
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::shape::Ball;
 use parry_continuum::proximity::{
-    Between, BvhSearch, Proximity, ProximityError, Scene, SceneError, Tightest, between,
+    Between, BvhSearch, Proximity, ProximityError, RobotPair, Scene, SceneError, Tightest,
 };
 
 fn ball(centre: Vector, radius: f64) -> BvhSearch {
@@ -78,7 +78,7 @@ fn the_tightest_is_that_of_all_structures_in_turn() {
                     assert_eq!(slack, least, "round {round}");
                     assert_eq!([near.structure as usize, near.robot as usize], pair);
                     assert_eq!(near.slack, Some(slack));
-                    let way = near.nearest.on_robot - near.nearest.on_mesh;
+                    let way = near.nearest.witness.on_robot - near.nearest.witness.on_mesh;
                     assert!((way.length() - near.nearest.distance).abs() < 1e-12);
                 }
                 (found, expected) => {
@@ -155,7 +155,7 @@ fn robots_are_held_against_one_another_where_they_have_a_margin() {
     assert!(scene.clears(&robots).unwrap());
     scene.set_robot_margin(Some(0.5)).unwrap();
     let tightest = scene.tightest(&robots).unwrap().unwrap();
-    let apart = between(&robot, &robots[0].1, &robot, &robots[1].1).unwrap();
+    let apart = RobotPair::new().minimum(&robot, &robots[0].1, &robot, &robots[1].1).unwrap();
     assert_eq!(tightest.slack, apart.distance - 0.5);
     assert_eq!(tightest.between, Between::Robots { robots: [0, 1], nearest: apart });
     assert!(scene.clears(&robots).unwrap());

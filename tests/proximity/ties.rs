@@ -31,8 +31,8 @@ fn straight_tube(around: u32, along: u32, flat: bool) -> (TriMesh, Chain) {
 /// Whether no triangle before the named one is as near to the link: the distances in a mesh of
 /// those alone.
 fn is_lowest(mesh: &TriMesh, robot: &Chain, pose: &Pose, answers: &[LinkProximity]) {
-    for answer in answers.iter().filter(|answer| answer.triangle > 0) {
-        let before = mesh.indices()[..answer.triangle as usize].to_vec();
+    for answer in answers.iter().filter(|answer| answer.witness.triangle > 0) {
+        let before = mesh.indices()[..answer.witness.triangle as usize].to_vec();
         let before = TriMesh::new(mesh.vertices().to_vec(), before).unwrap();
         let mut out = Vec::new();
         Exhaustive::<f64>::new(&before).unwrap().per_link(robot, pose, &mut out).unwrap();
@@ -50,7 +50,8 @@ fn check(mesh: &TriMesh, robot: &Chain, pose: &Pose) -> usize {
     reference.set_culling(false);
     let pool = |threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
     pool(1).install(|| reference.per_link(robot, pose, &mut expected)).unwrap();
-    let key = |answer: &&LinkProximity| (answer.distance.to_bits(), answer.triangle, answer.link);
+    let key =
+        |answer: &&LinkProximity| (answer.distance.to_bits(), answer.witness.triangle, answer.link);
     let least = *expected.iter().min_by_key(key).unwrap();
     for threads in [1, 2, 3] {
         let engines: [(&str, Box<dyn Proximity + Send>); 3] = [

@@ -6,7 +6,9 @@ use continuum_testing::narrow_phase::disc_disc;
 use continuum_testing::{Arcs, Random};
 use parry_continuum::distance::Vec3;
 use parry_continuum::parry::math::{Pose, Rotation, Vector};
-use parry_continuum::proximity::{Decision, ProximityError, RobotClearance, RobotPair, between};
+use parry_continuum::proximity::{
+    Decision, PairWitness, ProximityError, RobotClearance, RobotPair,
+};
 use parry_continuum::{Chain, Tube};
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -83,7 +85,7 @@ fn tubes_are_as_near_as_their_discs() {
         let both = [&*arcs[0], &*arcs[1]];
         let pose = placed(&mut random, both, round % 4);
         let [a, b] = both.map(|arcs| fine(arcs, Chain::cylinders));
-        let truth = between(&a, &Pose::IDENTITY, &b, &pose).unwrap().distance;
+        let truth = RobotPair::new().minimum(&a, &Pose::IDENTITY, &b, &pose).unwrap().distance;
         let discs = sampled(both, &pose);
         let [ways, others] = [all_ways(&arcs[0]), all_ways(&arcs[1])];
         for (way, (a, b)) in ways.iter().zip(&others).enumerate() {
@@ -95,7 +97,8 @@ fn tubes_are_as_near_as_their_discs() {
                 assert!(found.resolved || way > 0, "{round}, way {way}: {found:?}");
                 assert_eq!(found.resolved, found.upper - found.lower <= tolerance);
                 coarse += u32::from(!found.resolved);
-                let RobotClearance { on_first, on_second, upper, arc_lengths, .. } = found;
+                let RobotClearance { upper, witness, .. } = found;
+                let PairWitness { on_first, on_second, arc_lengths, .. } = witness;
                 assert!((on_first - on_second).length() <= upper + 1e-9, "{found:?}");
                 assert!((0.0..=a.length() + 1e-9).contains(&arc_lengths[0]));
                 assert!((0.0..=b.length() + 1e-9).contains(&arc_lengths[1]));
@@ -136,7 +139,7 @@ fn chains_are_tubes_of_straight_pieces() {
         let (a, b) = (robot(&mut random, 12), robot(&mut random, 12));
         let pose_a = random.pose(1.0);
         let pose_b = beside(&mut random, &a, &pose_a, &b, [0.0, 1.0, 6.0][round % 3]);
-        let truth = between(&a, &pose_a, &b, &pose_b).unwrap().distance;
+        let truth = RobotPair::new().minimum(&a, &pose_a, &b, &pose_b).unwrap().distance;
         let found =
             pair.clearance(&Tube::from(&a), &pose_a, &Tube::from(&b), &pose_b, 0.0).unwrap();
         assert!(found.lower <= truth && truth <= found.upper, "{round}: {truth} in {found:?}");
@@ -170,7 +173,7 @@ fn a_scaled_problem_has_the_scaled_answer() {
             let found = at(scale, &pose);
             assert_eq!(found.lower, unit.lower * scale, "{round}, {power}");
             assert_eq!(found.upper, unit.upper * scale, "{round}, {power}");
-            assert_eq!(found.on_second, unit.on_second * scale);
+            assert_eq!(found.witness.on_second, unit.witness.on_second * scale);
         }
     }
 }

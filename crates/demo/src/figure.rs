@@ -53,7 +53,7 @@ pub fn draw(
     let thick = robot.links().iter().map(ModifiedCylinder::radius).fold(0.0, Real::max);
     let mut picture = Picture::new(Some(mesh), solids(robot, pose, answers, &colours, thick));
     for answer in answers.iter().rev() {
-        picture.tints.insert(answer.triangle, colours.colour(answer.distance));
+        picture.tints.insert(answer.witness.triangle, colours.colour(answer.distance));
     }
 
     let sky = |y: usize| mix(SKY[0], SKY[1], y as f32 / SIZE[1] as f32);
@@ -82,7 +82,7 @@ pub fn draw(
     // of them.
     let broadside = (middle - first).cross(last - first).normalize_or_zero();
     let broadside = if broadside.dot(towards) < 0.0 { -broadside } else { broadside };
-    let ends = answers.iter().map(|answer| answer.on_mesh);
+    let ends = answers.iter().map(|answer| answer.witness.on_mesh);
     let inner = seen.clone();
     seen.extend(ends.clone());
     let [left, top, width, height] = INSET;
@@ -101,7 +101,7 @@ pub fn draw(
         robot_depths.chain(ends.map(|p| depth(p) - 0.2 * thick)).fold(Real::INFINITY, Real::min);
     let centre = seen.iter().sum::<Vector>() / seen.len() as Real;
     let closest = answers.iter().min_by(|a, b| a.distance.total_cmp(&b.distance));
-    let closest = closest.map(|answer| answer.on_robot.midpoint(answer.on_mesh));
+    let closest = closest.map(|answer| answer.witness.on_robot.midpoint(answer.witness.on_mesh));
     for [x, y] in closest.iter().map(|&p| whole.place(p, size)) {
         ring(&mut canvas, [x, y + TOP as f32], 13.0);
     }
@@ -202,10 +202,10 @@ fn solids(
     for (link, answer) in robot.links().iter().zip(answers) {
         let colour = colours.colour(answer.distance);
         solids.push(Solid::new(SharedShape::new(*link), *pose, colour, true));
-        let line = answer.on_mesh - answer.on_robot;
+        let line = answer.witness.on_mesh - answer.witness.on_robot;
         if line != Vector::ZERO {
             let middle = Pose::from_parts(
-                answer.on_robot.midpoint(answer.on_mesh),
+                answer.witness.on_robot.midpoint(answer.witness.on_mesh),
                 Rot3::from_rotation_arc(Vector::Y, line.normalize()),
             );
             solids.push(Solid::new(
@@ -214,7 +214,7 @@ fn solids(
                 INK,
                 false,
             ));
-            let end = Pose::from_translation(answer.on_mesh);
+            let end = Pose::from_translation(answer.witness.on_mesh);
             solids.push(Solid::new(SharedShape::ball(0.11 * thick), end, INK, false));
         }
     }

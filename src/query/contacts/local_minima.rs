@@ -224,7 +224,7 @@ impl<'a> ContactCollector<'a> {
                 ends: [link.start(), link.end()],
                 radius: link.radius(),
                 flat: link.flat(),
-                corners: wall.mesh.corners(found.triangle),
+                corners: wall.mesh.corners(found.witness.triangle),
                 before: robot.length_before(found.link as usize),
             }
         };

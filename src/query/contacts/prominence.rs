@@ -99,7 +99,7 @@ impl Prominence {
         flood.begin(around);
         kept.clear();
         for (minimum, contact) in (0..).zip(contacts) {
-            let is_near = contact.normal.is_some() && around.holds(contact.triangle);
+            let is_near = contact.normal.is_some() && around.holds(contact.witness.triangle);
             let stands_for_it = |other: u32| {
                 let normals = contact.normal.zip(contacts[other as usize].normal);
                 normals.is_some_and(|(one, other)| MIN_COSINE <= one.dot(other))
@@ -107,9 +107,9 @@ impl Prominence {
             let below = contact.distance + prominence;
             let is_left_out = is_near
                 && is_represented(kept, stands_for_it)
-                && flood.reaches(level, around, contact.triangle, below, stands_for_it);
+                && flood.reaches(level, around, contact.witness.triangle, below, stands_for_it);
             if is_near && !is_left_out {
-                flood.keep(around, contact.triangle, minimum);
+                flood.keep(around, contact.witness.triangle, minimum);
                 kept.push(minimum);
             }
             keep.push(!is_left_out);

@@ -3,7 +3,7 @@
 use super::approach_bound::{midpoint, remaining_parts};
 use super::interval_test::{IntervalResult, MarginQuery};
 use super::progress::Progress;
-use crate::answer::{ProximityError, RobotMotionAnswer, RobotsInContact};
+use crate::answer::{PairWitness, ProximityError, RobotMotionAnswer, RobotsInContact};
 use crate::refine::PairUpperBound;
 use parry3d_f64::math::Real;
 use std::collections::VecDeque;
@@ -35,8 +35,8 @@ pub(super) fn clear(
             result.contact
         {
             let t = midpoint(times);
-            let contact =
-                RobotsInContact { t, upper, sections, on_first, on_second, arc_lengths: arcs };
+            let witness = PairWitness { on_first, on_second, arc_lengths: arcs };
+            let contact = RobotsInContact { t, upper, sections, witness };
             return Ok(RobotMotionAnswer::contact(contact));
         }
         too_fine = too_fine.or(result.too_fine);

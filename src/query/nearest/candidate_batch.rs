@@ -79,9 +79,9 @@ mod tests {
     #[test]
     fn links_that_share_a_pack_are_answered_as_if_alone() {
         let bits = |answer: &LinkProximity| {
-            let points =
-                [answer.on_robot, answer.on_mesh].map(|point| point.to_array().map(f64::to_bits));
-            (answer.link, answer.triangle, answer.distance.to_bits(), points)
+            let points = [answer.witness.on_robot, answer.witness.on_mesh]
+                .map(|point| point.to_array().map(f64::to_bits));
+            (answer.link, answer.witness.triangle, answer.distance.to_bits(), points)
         };
         let (mut touching, mut ties, mut found_at_once, mut compared) = (0, 0, 0, 0);
         for seed in 0..400 {
@@ -135,7 +135,7 @@ mod tests {
                     let expected = links[number].0.answer(number, &best.nearest().unwrap());
                     assert_eq!(bits(answer), bits(&expected), "{level:?}, seed {seed}");
                     touching += u32::from(answer.distance <= 0.0);
-                    let as_near = |triangle: &&u32| **triangle == answer.triangle + 20;
+                    let as_near = |triangle: &&u32| **triangle == answer.witness.triangle + 20;
                     ties += links[number].1.iter().filter(as_near).count();
                     compared += 1;
                 }

@@ -53,5 +53,5 @@ pub(crate) fn per_link(
     let MeshSearch { level, hierarchy, scratch, .. } = search;
     scratch.work.measured += few.answer(level, &hierarchy.mesh, out);
     last.clear();
-    last.extend(out.iter().map(|answer| answer.triangle));
+    last.extend(out.iter().map(|answer| answer.witness.triangle));
 }

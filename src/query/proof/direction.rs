@@ -64,5 +64,5 @@ pub(super) fn between_pair(
     add_contacts(level, &[answer], |_| place, &mut contacts);
     let from_features = contacts.first().and_then(|contact| contact.normal).map(|normal| -normal);
     let face = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
-    [from_features, Some(answer.on_mesh - answer.on_robot), Some(face), Some(-face)]
+    [from_features, Some(answer.witness.on_mesh - answer.witness.on_robot), Some(face), Some(-face)]
 }

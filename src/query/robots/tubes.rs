@@ -1,6 +1,6 @@
 //! Queries about two tubes: bounds on their clearance, and whether they keep a margin.
 
-use crate::answer::{Decision, ProximityError, RobotClearance};
+use crate::answer::{Decision, PairWitness, ProximityError, RobotClearance};
 use crate::curve::Tube;
 use crate::query::clearance::{BoundedClearance, BoundsSearch, Hint, Wanted, clears_pieces};
 use crate::refine::{
@@ -105,9 +105,7 @@ fn clearance_as_stated(
         resolved,
         uncertainty,
         sections,
-        on_first,
-        on_second,
-        arc_lengths: arcs,
+        witness: PairWitness { on_first, on_second, arc_lengths: arcs },
     })
 }
 

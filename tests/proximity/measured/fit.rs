@@ -4,7 +4,7 @@
 use super::{Discs, Seen, discs, judge};
 use continuum_testing::{Arcs, Random, rounds};
 use parry_continuum::parry::math::{Pose, Vector};
-use parry_continuum::proximity::{Decision, ProximityError, RobotPair};
+use parry_continuum::proximity::{Decision, ProximityError, RobotPair, SelfQuery};
 use parry_continuum::{RobotError, Tube};
 use std::f64::consts::{PI, TAU};
 
@@ -255,8 +255,7 @@ fn a_stated_turn_never_makes_an_answer_worse() {
             };
             let [before, known] = [decide(&tube), decide(&turned)];
             assert!(is_no_worse(&known, &before), "{before:?} {known:?}");
-            let decide =
-                |tube: &Tube| RobotPair::new().tube_self_clears(tube, 0.1 * unit, 0.05 * unit);
+            let decide = |tube: &Tube| SelfQuery::new().clears_tube(tube, 0.1 * unit, 0.05 * unit);
             assert!(is_no_worse(&decide(&turned), &decide(&tube)));
             beside += usize::from(before.is_ok());
         }

@@ -56,8 +56,8 @@ fn judge(
             );
         }
         (Decision::Contact, Some(shape)) => {
-            let (t, upper, arc_length) = (shape.t, shape.upper, shape.arc_length);
-            let (on_robot, on_mesh) = (shape.on_robot, shape.on_mesh);
+            let (t, upper, arc_length) = (shape.t, shape.upper, shape.witness.arc_length);
+            let (on_robot, on_mesh) = (shape.witness.on_robot, shape.witness.on_mesh);
             seen.contact += 1;
             assert!(upper <= margin && (on_robot - on_mesh).length() <= upper + 1e-9);
             let tube = motion.tube(t).unwrap();

@@ -3,7 +3,7 @@
 use super::least::Counted;
 use continuum_testing::Random;
 use parry_continuum::parry::math::{Pose, Real, Vector};
-use parry_continuum::proximity::{BvhSearch, Decision, motion_self_clears};
+use parry_continuum::proximity::{BvhSearch, Decision, SelfQuery};
 use parry_continuum::{Chain, LinearMotion, Motion, MotionPath, Tube, verify_motion};
 
 /// More shapes than this are not needed for any room here.
@@ -190,7 +190,7 @@ fn a_growing_robot_is_asked_about_itself() {
     let to = [Vector::ZERO, Vector::Z * 20.0, Vector::Z * 30.0];
     let motion = LinearMotion::chain(&from, &to, &[1.0, 0.5]).unwrap();
     verify_motion(&motion, 50).unwrap();
-    assert!(motion_self_clears(&motion, 0.5, 1e-3).unwrap().is_clear());
+    assert!(SelfQuery::new().clears_motion(&motion, 0.5, 1e-3).unwrap().is_clear());
     let pose =
         motion.shape(0.5, &mut Tube::from(&Chain::capsules(&from[..2], &[1.0]).unwrap())).unwrap();
     assert_eq!(pose, Pose::IDENTITY);

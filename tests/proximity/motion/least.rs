@@ -76,7 +76,10 @@ fn judge(
     let (tube, pose) = shape(least.t);
     let at = search.clearance(&tube, &pose, 1e-7).unwrap();
     assert!(at.lower <= least.upper + 1e-9, "{at:?}, {least:?}");
-    assert!((least.on_robot - least.on_mesh).length() <= least.upper + 1e-9, "{least:?}");
+    assert!(
+        (least.witness.on_robot - least.witness.on_mesh).length() <= least.upper + 1e-9,
+        "{least:?}"
+    );
     // No shape is nearer than the lower one.
     let truth = Steps::new(search, steps, 1e-3 * tolerance.max(1e-4), shape);
     let [lower, upper] = truth.least();

@@ -127,7 +127,7 @@ fn a_question_ends_at_its_limit_and_says_so() {
     let beside = needle(0.0, 1.0 + 2.5e-6, 2.5e-6);
     let rests = LinearMotion::chain(&beside, &beside, &[0.5]).unwrap();
     let counted = Counted::new(&slide);
-    let answer = RobotPair::new().clears_motion(&counted, &rests, 0.0, 1e-6).unwrap();
+    let answer = RobotPair::new().clears_motions(&counted, &rests, 0.0, 1e-6).unwrap();
     assert_eq!((answer.decision, answer.reason), (Decision::Undecided, limit), "{answer:?}");
     assert!(counted.count() <= MOST_SHAPES, "{}", counted.count());
     // What stays within the resolution is not what ends for want of shapes.

@@ -63,9 +63,11 @@ fn judge(
                     "contact at {}, but {found:?}, margin {margin}",
                     shape.t
                 );
-                assert!((shape.on_robot - shape.on_mesh).length() <= shape.upper + 1e-9);
+                assert!(
+                    (shape.witness.on_robot - shape.witness.on_mesh).length() <= shape.upper + 1e-9
+                );
                 // The place is on the mesh as it is then.
-                let corners = asked.triangles()[shape.triangle as usize];
+                let corners = asked.triangles()[shape.witness.triangle as usize];
                 let corners = corners.map(|corner| {
                     let (from, to) = (from[corner as usize], to[corner as usize]);
                     from + (to - from) * shape.t
@@ -73,7 +75,8 @@ fn judge(
                 let low = corners[0].min(corners[1]).min(corners[2]) - Vector::splat(1e-9);
                 let high = corners[0].max(corners[1]).max(corners[2]) + Vector::splat(1e-9);
                 assert!(
-                    shape.on_mesh.cmpge(low).all() && shape.on_mesh.cmple(high).all(),
+                    shape.witness.on_mesh.cmpge(low).all()
+                        && shape.witness.on_mesh.cmple(high).all(),
                     "{shape:?}"
                 );
                 let ends = [&truth[0], &truth[steps]];

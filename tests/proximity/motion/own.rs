@@ -6,7 +6,7 @@ use continuum_testing::Random;
 use continuum_testing::narrow_phase::disc_disc;
 use parry_continuum::distance::Vec3;
 use parry_continuum::parry::math::{Pose, Real, Rotation, Vector};
-use parry_continuum::proximity::{Decision, RobotPair};
+use parry_continuum::proximity::{Decision, RobotPair, SelfQuery};
 use parry_continuum::{
     BendingMotion, BendingSection, Chain, ConstantCurvature, LinearMotion, Motion, RigidMotion,
     RobotError, Speed, Tube, verify_motion,
@@ -44,15 +44,15 @@ impl<M: Motion> Robot<M> {
     }
 
     /// Asks about margins, and holds each answer against all steps.
-    fn check(&self, pair: &mut RobotPair, margins: &[Real], counts: &mut Counts) {
+    fn check(&self, query: &mut SelfQuery, margins: &[Real], counts: &mut Counts) {
         verify_motion(&self.motion, 30).unwrap();
         let mut tube = Tube::from(&Chain::capsules(&[Vector::ZERO, Vector::X], &[1.0]).unwrap());
         let mut steps = |margin: Real| {
             let mut decisions = [0_usize; 3];
             for step in 0..=STEPS {
                 self.motion.shape(step as Real / STEPS as Real, &mut tube).unwrap();
-                decisions
-                    [pair.tube_self_clears(&tube, margin, 0.1 * RESOLUTION).unwrap() as usize] += 1;
+                decisions[query.clears_tube(&tube, margin, 0.1 * RESOLUTION).unwrap() as usize] +=
+                    1;
             }
             decisions
         };
@@ -64,7 +64,7 @@ impl<M: Motion> Robot<M> {
             all.push((margin, contacts, clear, near + unknown));
         }
         for (margin, contacts, clear, near) in all {
-            let found = pair.motion_self_clears(&self.motion, margin, RESOLUTION).unwrap();
+            let found = query.clears_motion(&self.motion, margin, RESOLUTION).unwrap();
             counts.decisions[found.decision as usize] += 1;
             let says = || {
                 format!("margin {margin}: {contacts} steps in contact, {clear} clear; {found:?}")
@@ -82,9 +82,8 @@ impl<M: Motion> Robot<M> {
             }
             if let Some(contact) = found.contact {
                 let pose = self.motion.shape(contact.t, &mut tube).unwrap();
-                let decision = pair
-                    .tube_self_clears(&tube, contact.upper * (1.0 + 1e-9) + 1e-12, 1e-6)
-                    .unwrap();
+                let decision =
+                    query.clears_tube(&tube, contact.upper * (1.0 + 1e-9) + 1e-12, 1e-6).unwrap();
                 assert_ne!(decision, Decision::Clear, "{}", says());
                 assert!(
                     contact.upper <= margin && contact.sections[0] <= contact.sections[1],
@@ -93,15 +92,17 @@ impl<M: Motion> Robot<M> {
                 );
                 // Both points are on the robot where it is then.
                 assert!(
-                    (contact.on_first - contact.on_second).length() <= contact.upper + 1e-9,
+                    (contact.witness.on_first - contact.witness.on_second).length() <= contact.upper + 1e-9,
                     "{}",
                     says()
                 );
-                for point in [contact.on_first, contact.on_second] {
+                for point in [contact.witness.on_first, contact.witness.on_second] {
                     let dot = Tube::from(
                         &Chain::capsules(&[point, point + Vector::X * 1e-6], &[0.0]).unwrap(),
                     );
-                    let away = pair.clearance(&tube, &pose, &dot, &Pose::IDENTITY, 1e-4).unwrap();
+                    let away = RobotPair::new()
+                        .clearance(&tube, &pose, &dot, &Pose::IDENTITY, 1e-4)
+                        .unwrap();
                     assert!(away.lower <= 1e-5, "{away:?} {}", says());
                 }
             }
@@ -198,16 +199,16 @@ fn carried(random: &mut Random) -> Robot<RigidMotion> {
 
 #[test]
 fn a_robot_keeps_clear_of_itself_where_its_steps_do() {
-    let (mut random, mut pair) = (Random::new(71), RobotPair::new());
+    let (mut random, mut query) = (Random::new(71), SelfQuery::new());
     let mut counts = [Counts::default(); 4];
     for _ in 0..25 {
         let margins = [0.0, random.between(0.05, 1.0), random.between(1.0, 3.0)];
-        curling(&mut random).check(&mut pair, &margins, &mut counts[0]);
-        hairpin(&mut random).check(&mut pair, &margins, &mut counts[1]);
-        stepped(&mut random).check(&mut pair, &margins, &mut counts[2]);
+        curling(&mut random).check(&mut query, &margins, &mut counts[0]);
+        hairpin(&mut random).check(&mut query, &margins, &mut counts[1]);
+        stepped(&mut random).check(&mut query, &margins, &mut counts[2]);
         // Up to where parts are near that turn by less than pi.
         let margins = margins.map(|margin| 4.0 * margin);
-        carried(&mut random).check(&mut pair, &margins, &mut counts[3]);
+        carried(&mut random).check(&mut query, &margins, &mut counts[3]);
     }
     println!("{counts:?}");
     for kind in counts {
@@ -273,19 +274,19 @@ impl Motion for Flick {
 
 #[test]
 fn a_flick_between_two_steps_is_seen() {
-    let mut pair = RobotPair::new();
+    let mut query = SelfQuery::new();
     for (radius, lasts) in [(0.0, 0.01), (0.5, 0.01), (1.0, 0.2)] {
         let flick = Flick { length: 40.0, radius, turn: 5.5, at: 0.7, lasts };
         verify_motion(&flick, 1000).unwrap();
         let apart = flick.apart();
-        let found = pair.motion_self_clears(&flick, apart + 0.5, 1e-2).unwrap();
+        let found = query.clears_motion(&flick, apart + 0.5, 1e-2).unwrap();
         let contact = found.contact.unwrap();
         assert!((contact.t - 0.7).abs() < lasts, "{found:?}");
-        assert!(pair.motion_self_clears(&flick, apart - 0.1, 1e-2).unwrap().is_clear());
+        assert!(query.clears_motion(&flick, apart - 0.1, 1e-2).unwrap().is_clear());
         // Who states too low speeds is told what is wrong with them, and else nothing would be.
         let slow = Understated(&flick, 1e-6);
         assert!(verify_motion(&slow, 1000).is_err());
-        assert!(pair.motion_self_clears(&slow, apart - 0.1, 1e-2).unwrap().is_clear());
+        assert!(query.clears_motion(&slow, apart - 0.1, 1e-2).unwrap().is_clear());
     }
 }
 
@@ -308,16 +309,16 @@ fn passing(gap: Real) -> LinearMotion {
 
 #[test]
 fn a_pass_between_two_steps_is_seen() {
-    let mut pair = RobotPair::new();
+    let mut query = SelfQuery::new();
     // The other parts that are near one another keep 2.
     for gap in [0.25, 1.5] {
         // The tip is flat, and the base's side is round.
         let motion = passing(gap);
-        let contact = pair.motion_self_clears(&motion, gap + 0.05, 1e-3).unwrap().contact.unwrap();
+        let contact = query.clears_motion(&motion, gap + 0.05, 1e-3).unwrap().contact.unwrap();
         assert!((contact.t - 0.7).abs() < 2e-3 && contact.sections == [0, 5], "{contact:?}");
-        assert!(pair.motion_self_clears(&motion, gap - 2e-3, 1e-3).unwrap().is_clear());
+        assert!(query.clears_motion(&motion, gap - 2e-3, 1e-3).unwrap().is_clear());
         let slow = Understated(&motion, 1e-6);
-        assert!(pair.motion_self_clears(&slow, 0.9 * gap, 1e-3).unwrap().is_clear());
+        assert!(query.clears_motion(&slow, 0.9 * gap, 1e-3).unwrap().is_clear());
     }
 }
 
@@ -328,15 +329,15 @@ fn what_turns_by_nearly_half_a_turn_is_not_asked_about_for_moving() {
     // turn.
     let at = |turn: Real| [BendingSection { length: turn / 0.9, radius: 1.0, bend: [0.9, 0.0] }];
     let motion = BendingMotion::new(&at(2.2), &at(2.6), Pose::IDENTITY).unwrap();
-    let mut pair = RobotPair::new();
-    assert!(pair.motion_self_clears(&motion, 0.1, 10.0).unwrap().is_clear());
+    let mut query = SelfQuery::new();
+    assert!(query.clears_motion(&motion, 0.1, 10.0).unwrap().is_clear());
     // What turns by far more comes as near as that.
     let motion = BendingMotion::new(&at(2.6), &at(5.8), Pose::IDENTITY).unwrap();
-    assert!(pair.motion_self_clears(&motion, 0.1, 1e-3).unwrap().contact.is_some());
+    assert!(query.clears_motion(&motion, 0.1, 1e-3).unwrap().contact.is_some());
     // Beside a margin that is wider than the bend nobody knows what is asked about, and that is
     // soon said.
     let motion = BendingMotion::new(&at(2.9), &at(3.1), Pose::IDENTITY).unwrap();
-    let found = pair.motion_self_clears(&motion, 0.5, 1e-3).unwrap();
+    let found = query.clears_motion(&motion, 0.5, 1e-3).unwrap();
     assert!(found.decision == Decision::Undecided && found.reason.is_some(), "{found:?}");
 }
 
@@ -353,11 +354,11 @@ fn what_may_come_to_be_asked_about_is_no_contact() {
         points.push(points[points.len() - 1] + direction * length);
     }
     let tube = Tube::from(&Chain::from_centreline(&points, &[0.5; 3]).unwrap());
-    let mut pair = RobotPair::new();
+    let mut query = SelfQuery::new();
     for turn in [0.0, 0.2, 1.0] {
         let turned = Pose::from_parts(Vector::Y * 9.0, Rotation::from_axis_angle(Vector::X, turn));
         let motion = RigidMotion::new(tube.clone(), [Pose::IDENTITY, turned]).unwrap();
-        assert!(pair.motion_self_clears(&motion, 4.5, 1e-3).unwrap().is_clear(), "{turn}");
+        assert!(query.clears_motion(&motion, 4.5, 1e-3).unwrap().is_clear(), "{turn}");
     }
 }
 
@@ -375,7 +376,7 @@ fn arc(turn: Real, count: usize) -> Vec<Vector> {
 /// joints, and overlaps its neighbours.
 #[test]
 fn steps_in_radius_do_not_meet_their_own_neighbourhood_while_they_bend() {
-    let (mut random, mut pair, mut overlapping) = (Random::new(72), RobotPair::new(), 0);
+    let (mut random, mut query, mut overlapping) = (Random::new(72), SelfQuery::new(), 0);
     for round in 0..60 {
         let count = 4 + random.below(6) as usize;
         let turns = [0.0, random.between(0.1, 1.2)].map(|turn| turn / count as Real);
@@ -391,7 +392,7 @@ fn steps_in_radius_do_not_meet_their_own_neighbourhood_while_they_bend() {
         } else {
             LinearMotion::chain(&from, &to, &radii)
         };
-        let found = pair.motion_self_clears(&motion.unwrap(), 0.0, 1e-3).unwrap();
+        let found = query.clears_motion(&motion.unwrap(), 0.0, 1e-3).unwrap();
         assert!(found.is_clear(), "{round}: {turns:?} {radii:?} {found:?}");
         overlapping += usize::from(radius > 1.0);
     }
@@ -425,14 +426,14 @@ impl Motion for Any {
 
 #[test]
 fn what_is_wrong_is_told() {
-    let mut pair = RobotPair::new();
+    let mut query = SelfQuery::new();
     let any = |point: Real, turn: Real| {
         let speed = Speed { point, turn };
         Any { speed, joint: Vector::Z * 30.0, count: 1 }
     };
-    assert!(pair.motion_self_clears(&any(0.0, 0.0), 1.0, 1e-3).unwrap().is_clear());
+    assert!(query.clears_motion(&any(0.0, 0.0), 1.0, 1e-3).unwrap().is_clear());
     let mut kind = |motion: &Any, margin, resolution| {
-        pair.motion_self_clears(motion, margin, resolution).unwrap_err().kind().to_owned()
+        query.clears_motion(motion, margin, resolution).unwrap_err().kind().to_owned()
     };
     for wrong in [Real::NAN, Real::INFINITY, -1.0] {
         assert_eq!(kind(&any(wrong, 0.0), 1.0, 1e-3), "bad_speed");

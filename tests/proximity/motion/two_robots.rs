@@ -184,7 +184,10 @@ fn assert_true(
             ];
             let there = pair.clearance(first, &poses[0], second, &poses[1], 1e-6).unwrap();
             assert!(there.lower <= contact.upper && contact.upper <= margin);
-            assert!((contact.on_first - contact.on_second).length() <= contact.upper + 1e-12);
+            assert!(
+                (contact.witness.on_first - contact.witness.on_second).length()
+                    <= contact.upper + 1e-12
+            );
             assert_eq!(found.interval, [0.0, contact.t]);
         }
         Decision::Undecided => {
@@ -213,11 +216,11 @@ fn two_motions_are_clear_where_their_steps_are() {
             truth[1] + step,
         ];
         for margin in margins.into_iter().filter(|margin| *margin >= 0.0) {
-            let found = pair.clears_motion(&first, &second, margin, RESOLUTION).unwrap();
+            let found = pair.clears_motions(&first, &second, margin, RESOLUTION).unwrap();
             assert_true(&mut pair, both, margin, truth, &found);
             counts[kind as usize][found.decision as usize] += 1;
             // Nothing depends on which one is the first, but for what is undecided.
-            let other = pair.clears_motion(&second, &first, margin, RESOLUTION).unwrap();
+            let other = pair.clears_motions(&second, &first, margin, RESOLUTION).unwrap();
             assert_true(&mut pair, [&second, &first], margin, truth, &other);
             if margin <= truth[0] - 2.0 * RESOLUTION {
                 assert!(
@@ -249,16 +252,16 @@ fn a_pass_between_two_steps_is_seen() {
         let crossing = |x: Real| [Vector::new(x, 1.0 + gap, -3.0), Vector::new(x, 1.0 + gap, 3.0)];
         let fast = LinearMotion::chain(&crossing(-700.0), &crossing(300.0), &[0.5]).unwrap();
         // Both are round along the gap: the least distance is the gap.
-        let found = pair.clears_motion(&at_rest, &fast, gap + 1e-3, 1e-4).unwrap();
+        let found = pair.clears_motions(&at_rest, &fast, gap + 1e-3, 1e-4).unwrap();
         let contact = found.contact.unwrap();
         assert!((contact.t - 0.7).abs() < 1e-3 && contact.upper <= gap + 1e-3, "{found:?}");
         if gap > 0.0 {
-            assert!(pair.clears_motion(&at_rest, &fast, gap - 1e-3, 1e-4).unwrap().is_clear());
+            assert!(pair.clears_motions(&at_rest, &fast, gap - 1e-3, 1e-4).unwrap().is_clear());
         }
         // Who states too low a speed is told what is wrong with it, and else nothing would be.
         let slow = Understated(&fast, 1e-6);
         assert!(verify_motion(&slow, 100).is_err());
-        assert!(pair.clears_motion(&at_rest, &slow, 0.9 * gap, 1e-4).unwrap().is_clear());
+        assert!(pair.clears_motions(&at_rest, &slow, 0.9 * gap, 1e-4).unwrap().is_clear());
     }
 }
 
@@ -274,8 +277,8 @@ fn robots_of_many_links_may_be_fast() {
     let slow = LinearMotion::chain(&at(0.0, 0.0), &at(0.0, 0.0), &radii).unwrap();
     let fast = LinearMotion::chain(&at(1.0, -700.0), &at(1.0, 300.0), &radii).unwrap();
     let mut pair = RobotPair::new();
-    assert!(pair.clears_motion(&slow, &fast, 0.4, 1e-3).unwrap().is_clear());
-    let contact = pair.clears_motion(&slow, &fast, 0.6, 1e-3).unwrap().contact.unwrap();
+    assert!(pair.clears_motions(&slow, &fast, 0.4, 1e-3).unwrap().is_clear());
+    let contact = pair.clears_motions(&slow, &fast, 0.6, 1e-3).unwrap().contact.unwrap();
     assert!((contact.t - 0.7).abs() < 1e-2, "{contact:?}");
     // What is wrong with a speed is told, however many pairs there are.
     let wrong = |point: Real, turn: Real| Any {
@@ -293,7 +296,7 @@ fn robots_of_many_links_may_be_fast() {
         (wrong(0.0, -1.0), "bad_speed"),
         (wrong(1e12, 0.0), "too_fast"),
     ] {
-        assert_eq!(pair.clears_motion(&slow, &motion, 0.4, 1e-3).unwrap_err().kind(), kind);
+        assert_eq!(pair.clears_motions(&slow, &motion, 0.4, 1e-3).unwrap_err().kind(), kind);
     }
     // Robots that overlap all the time are found to do so at once.
     let short = |y: Real| -> Vec<_> {
@@ -302,8 +305,8 @@ fn robots_of_many_links_may_be_fast() {
     let thick = vec![2.0; count as usize];
     let one = LinearMotion::capsules(&short(0.0), &short(0.5), &thick).unwrap();
     let other = LinearMotion::capsules(&short(2.0), &short(30.0), &thick).unwrap();
-    assert_eq!(pair.clears_motion(&one, &one, 0.0, 1e-3).unwrap().contact.unwrap().t, 0.5);
-    assert!(pair.clears_motion(&one, &other, 0.0, 1e-3).unwrap().contact.is_some());
+    assert_eq!(pair.clears_motions(&one, &one, 0.0, 1e-3).unwrap().contact.unwrap().t, 0.5);
+    assert!(pair.clears_motions(&one, &other, 0.0, 1e-3).unwrap().contact.is_some());
 }
 
 #[test]
@@ -321,9 +324,9 @@ fn a_fast_link_far_from_many_slow_ones_is_seen() {
     let mut pair = RobotPair::new();
     for swap in [false, true] {
         let found = if swap {
-            pair.clears_motion(&fast, &slow, 0.1, 1e-3).unwrap()
+            pair.clears_motions(&fast, &slow, 0.1, 1e-3).unwrap()
         } else {
-            pair.clears_motion(&slow, &fast, 0.1, 1e-3).unwrap()
+            pair.clears_motions(&slow, &fast, 0.1, 1e-3).unwrap()
         };
         let contact = found.contact.unwrap();
         assert!((contact.t - 0.7).abs() < 1e-2 && contact.sections.contains(&401), "{contact:?}");
@@ -343,9 +346,9 @@ fn a_disc_that_turns_about_its_centre_sweeps_its_rim() {
     for swap in [false, true] {
         let mut ask = |margin: Real| {
             if swap {
-                pair.clears_motion(&at_rest, &turning, margin, 1e-3).unwrap()
+                pair.clears_motions(&at_rest, &turning, margin, 1e-3).unwrap()
             } else {
-                pair.clears_motion(&turning, &at_rest, margin, 1e-3).unwrap()
+                pair.clears_motions(&turning, &at_rest, margin, 1e-3).unwrap()
             }
         };
         // The rim is at most hypot(10, 0.1) from the disc's first centre.
@@ -367,8 +370,8 @@ fn a_link_that_loses_its_length_is_no_fault() {
     let at_rest = LinearMotion::chain(&needle, &needle, &[0.5]).unwrap();
     let mut pair = RobotPair::new();
     for fading in fading.map(Result::unwrap) {
-        assert!(pair.clears_motion(&fading, &at_rest, 0.99, 1e-3).unwrap().is_clear());
-        assert!(pair.clears_motion(&at_rest, &fading, 1.01, 1e-3).unwrap().contact.is_some());
+        assert!(pair.clears_motions(&fading, &at_rest, 0.99, 1e-3).unwrap().is_clear());
+        assert!(pair.clears_motions(&at_rest, &fading, 1.01, 1e-3).unwrap().contact.is_some());
     }
 }
 
@@ -398,7 +401,7 @@ fn an_end_of_which_no_speed_is_stated_is_undecided() {
             radius: 1.0,
         };
         let decide = |margin| {
-            RobotPair::new().clears_motion(&motion, &at_rest, margin, 1e-3).unwrap().decision
+            RobotPair::new().clears_motions(&motion, &at_rest, margin, 1e-3).unwrap().decision
         };
         assert_eq!(decide(0.2), Decision::Undecided);
         assert_eq!(decide(0.41), Decision::Contact);
@@ -420,7 +423,7 @@ fn what_is_wrong_names_the_motion() {
         Any { shape: Box::new(shape), speed, legs: 1, sections: 1, radius: 0.1 }
     };
     let good = broken(0.0, 0.0, 1);
-    assert!(pair.clears_motion(&at_rest, &good, 1.0, 1e-3).unwrap().is_clear());
+    assert!(pair.clears_motions(&at_rest, &good, 1.0, 1e-3).unwrap().is_clear());
     for (motion, kind) in [
         (broken(Real::NAN, 0.0, 1), "bad_speed"),
         (broken(-1.0, 0.0, 1), "bad_speed"),
@@ -428,8 +431,8 @@ fn what_is_wrong_names_the_motion() {
         (broken(0.0, 1e300, 1), "tube_out_of_range"),
         (broken(0.0, Real::NAN, 1), "pose_not_finite"),
     ] {
-        let first = pair.clears_motion(&motion, &at_rest, 0.1, 1e-3).unwrap_err();
-        let second = pair.clears_motion(&at_rest, &motion, 0.1, 1e-3).unwrap_err();
+        let first = pair.clears_motions(&motion, &at_rest, 0.1, 1e-3).unwrap_err();
+        let second = pair.clears_motions(&at_rest, &motion, 0.1, 1e-3).unwrap_err();
         assert_eq!([first.kind(), second.kind()], [kind; 2]);
         assert!(
             first.to_string().starts_with("`a`: ") && second.to_string().starts_with("`b`: "),
@@ -437,7 +440,7 @@ fn what_is_wrong_names_the_motion() {
         );
     }
     let negative =
-        |margin, resolution| pair.clone().clears_motion(&at_rest, &at_rest, margin, resolution);
+        |margin, resolution| pair.clone().clears_motions(&at_rest, &at_rest, margin, resolution);
     assert!(matches!(
         negative(-1.0, 1e-3),
         Err(ProximityError::Negative { parameter: "margin", .. })
@@ -453,7 +456,7 @@ fn what_is_wrong_names_the_motion() {
     // A robot that moves so fast that time runs out of numbers.
     let fast = broken(1e12, 0.0, 1);
     assert!(matches!(
-        pair.clears_motion(&at_rest, &fast, 4.0, 1e-9),
+        pair.clears_motions(&at_rest, &fast, 4.0, 1e-9),
         Err(ProximityError::TooFast { section: 0, speed: 1e12, .. })
     ));
 }

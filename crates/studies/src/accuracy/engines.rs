@@ -58,7 +58,7 @@ impl Scene {
     /// The error of an engine's answer in units of u x extent of the link and the triangle that it
     /// names.
     fn error(&self, answer: &LinkProximity) -> f64 {
-        let [a, b, c] = self.near_one[answer.triangle as usize];
+        let [a, b, c] = self.near_one[answer.witness.triangle as usize];
         let points = [a, b, c, self.link.start(), self.link.end()];
         let extent = continuum_testing::precision::extent(&points, self.link.radius());
         let unit = (extent * f64::EPSILON / 2.0).max(scaled(0.5, -1074 - self.exponent));

@@ -12,7 +12,7 @@ use continuum_studies::quote;
 use continuum_testing::Random;
 use parry_continuum::Chain;
 use parry_continuum::parry::math::{Pose, Vector};
-use parry_continuum::proximity::RobotPair;
+use parry_continuum::proximity::SelfQuery;
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -171,7 +171,7 @@ const ROBOTS: [Robot; 3] = [
 ];
 
 fn counted(my: &Options, shape: fn(&mut Random) -> Shape, margin: f64) -> Result<Counts, String> {
-    let (mut random, mut counts, mut pair) = (Random::new(7), Counts::default(), RobotPair::new());
+    let (mut random, mut counts, mut query) = (Random::new(7), Counts::default(), SelfQuery::new());
     for _ in 0..my.shapes {
         let shape = shape(&mut random);
         let samples = Samples::of(&shape);
@@ -187,7 +187,7 @@ fn counted(my: &Options, shape: fn(&mut Random) -> Shape, margin: f64) -> Result
         }
         let robot =
             Chain::capsules(&shape.points, &shape.radii).map_err(|error| error.to_string())?;
-        let ours = !pair.self_clears(&robot, margin).map_err(|error| error.to_string())?;
+        let ours = !query.clears(&robot, margin).map_err(|error| error.to_string())?;
         let [arcs, longer] = [0.0, margin].map(|more| samples.by_arc_length(more) <= margin);
         let is_near = truth <= margin;
         *(if is_near { &mut counts.near } else { &mut counts.clear }) += 1;

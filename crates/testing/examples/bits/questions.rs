@@ -8,7 +8,7 @@ use parry_continuum::parry::query::{
     ContactManifold, PersistentQueryDispatcher, QueryDispatcher, ShapeCastOptions,
 };
 use parry_continuum::parry::shape::{Capsule, Shape, TriMesh};
-use parry_continuum::proximity::{BvhSearch, Exhaustive, Proximity, RobotPair, Scene};
+use parry_continuum::proximity::{BvhSearch, Exhaustive, Proximity, RobotPair, Scene, SelfQuery};
 use parry_continuum::{
     BendingSection, Chain, ConstantCurvature, ContinuumDispatcher, LinearMotion, RigidMotion, Tube,
 };
@@ -133,7 +133,7 @@ pub fn pairs(offset: f64) -> Result<Vec<Record>, Box<dyn Error>> {
         records(["pair", "pair_clears", "pair_within", "pair_tubes", "pair_motions", "self"]);
     let [pair, clears, within, tubes, motions, own] = &mut all;
     let random = &mut Random::new(9);
-    let mut robots = RobotPair::new();
+    let (mut robots, mut itself) = (RobotPair::new(), SelfQuery::new());
     let mut found = Vec::new();
     let resolution = 0.05 + 1e-8 * offset;
     for _ in 0..COUNT {
@@ -163,19 +163,15 @@ pub fn pairs(offset: f64) -> Result<Vec<Record>, Box<dyn Error>> {
         let after = places.map(|place| nudged(random, &place));
         let moving = |tube, k: usize| RigidMotion::new(tube, [places[k], after[k]]);
         let [first, second] = [moving(first, 0)?, moving(second, 1)?];
-        motions.add(&robots.clears_motion(&first, &second, 0.1, resolution));
+        motions.add(&robots.clears_motions(&first, &second, 0.1, resolution));
         let bent = hairpin(random);
         let chain = Chain::from_centreline(&bent, &radii[0])?;
-        own.add(&robots.self_minimum(&chain));
-        own.add(&robots.self_clears(&chain, 0.2));
+        own.add(&itself.minimum(&chain));
+        own.add(&itself.clears(&chain, 0.2));
         let tube = Tube::from_samples(&bent, &radii[0], None)?;
-        own.add(&robots.tube_self_clears(&tube, 0.1, 0.05));
+        own.add(&itself.clears_tube(&tube, 0.1, 0.05));
         let to: Vec<_> = bent.iter().map(|point| *point + 0.02 * random.point()).collect();
-        own.add(&robots.motion_self_clears(
-            &LinearMotion::chain(&bent, &to, &radii[0])?,
-            0.05,
-            0.05,
-        ));
+        own.add(&itself.clears_motion(&LinearMotion::chain(&bent, &to, &radii[0])?, 0.05, 0.05));
     }
     Ok(all.into())
 }

@@ -154,8 +154,8 @@ impl Answer for RobotProximity {
     fn visit(&self, add: &mut impl FnMut(f64)) {
         self.links.map(f64::from).visit(add);
         add(self.distance);
-        self.on_first.visit(add);
-        self.on_second.visit(add);
+        self.witness.on_first.visit(add);
+        self.witness.on_second.visit(add);
     }
 }
 
@@ -163,8 +163,8 @@ impl Answer for RobotClearance {
     fn visit(&self, add: &mut impl FnMut(f64)) {
         [self.lower, self.upper].visit(add);
         self.resolved.visit(add);
-        self.on_first.visit(add);
-        self.on_second.visit(add);
+        self.witness.on_first.visit(add);
+        self.witness.on_second.visit(add);
     }
 }
 

@@ -90,7 +90,7 @@ impl Pair {
 }
 
 fn check(answer: &LinkProximity, pairs: &[Pair]) -> Result<(), String> {
-    let own = &pairs[answer.triangle as usize];
+    let own = &pairs[answer.witness.triangle as usize];
     if !(own.bounds.lower - own.slack..=own.bounds.upper + own.slack).contains(&answer.distance) {
         return Err(format!("not its triangle's distance, {:?}", own.bounds));
     }

@@ -86,7 +86,8 @@ fn ask(
         return;
     }
     let nearer = |least: LinkProximity, link: &LinkProximity| {
-        let (one, other) = ((least.distance, least.triangle), (link.distance, link.triangle));
+        let (one, other) =
+            ((least.distance, least.witness.triangle), (link.distance, link.witness.triangle));
         if other < one { *link } else { least }
     };
     let least =

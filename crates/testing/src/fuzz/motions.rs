@@ -4,9 +4,7 @@
 use super::source::Source;
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::shape::TriMesh;
-use parry_continuum::proximity::{
-    BvhSearch, Decision, MotionAnswer, Proximity, RobotPair, self_minimum,
-};
+use parry_continuum::proximity::{BvhSearch, Decision, MotionAnswer, Proximity, SelfQuery};
 use parry_continuum::{Chain, LinearMotion, Motion, RigidMotion, Tube, verify_motion};
 
 /// The number of times at which a motion is compared with its shapes.
@@ -68,15 +66,15 @@ fn beside_itself<M: Motion>(
     resolution: f64,
     slack: impl Fn(f64) -> f64,
 ) {
-    let mut pair = RobotPair::new();
-    let answer = pair.motion_self_clears(motion, margin, resolution);
-    let again = pair.motion_self_clears(motion, margin, resolution);
+    let mut query = SelfQuery::new();
+    let answer = query.clears_motion(motion, margin, resolution);
+    let again = query.clears_motion(motion, margin, resolution);
     assert_eq!(format!("{again:?}"), format!("{answer:?}"));
     let Ok(answer) = answer else { return };
     let problem = || format!("{answer:?} {margin:e}\n{:?}", [shape(0.0), shape(1.0)]);
     let nearest = |t: f64| {
         let (chain, _) = shape(t)?;
-        let found = self_minimum(&chain).ok()??;
+        let found = SelfQuery::new().minimum(&chain).ok()??;
         let turned =
             chain.links().iter().map(|link| link.radius() / link.length().max(f64::MIN_POSITIVE));
         Some((found, slack(turned.fold(0.0, f64::max))))

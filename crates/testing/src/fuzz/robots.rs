@@ -6,7 +6,7 @@ use crate::narrow_phase::modified_cylinder_modified_cylinder;
 use crate::precision::extent;
 use parry_continuum::distance::{DoubleDouble, Vec3};
 use parry_continuum::parry::math::Pose;
-use parry_continuum::proximity::{ProximityError, RobotPair, RobotProximity, between};
+use parry_continuum::proximity::{ProximityError, RobotPair, RobotProximity, SelfQuery};
 use parry_continuum::{Cap, Chain, ModifiedCylinder, Tube};
 
 /// Asserts that each pair's distance is within 16 units of its extent; that `minimum`, `per_link`,
@@ -18,7 +18,7 @@ pub fn robots(bytes: &[u8]) {
     let (Some(a), Some(b)) = (robot(&mut source), robot(&mut source)) else { return };
     let margin = source.number();
     let mut pair = RobotPair::new();
-    alone(&mut pair, &a, margin);
+    alone(&mut SelfQuery::new(), &a, margin);
     let Ok(found) = pair.minimum(&a, &poses[0], &b, &poses[1]) else {
         assert!(pair.clears(&a, &poses[0], &b, &poses[1], 1.0).is_err(), "{a:?} {b:?} {poses:?}");
         return;
@@ -40,7 +40,7 @@ pub fn robots(bytes: &[u8]) {
         check(one, &second, nearest)
             .unwrap_or_else(|why| panic!("{why}: {nearest:?} {}", problem()));
     }
-    assert_eq!(between(&a, &poses[0], &b, &poses[1]), Ok(found), "{}", problem());
+    assert_eq!(RobotPair::new().minimum(&a, &poses[0], &b, &poses[1]), Ok(found), "{}", problem());
     let turned = pair.minimum(&b, &poses[1], &a, &poses[0]).expect("poses as before").distance;
     let slack =
         first.iter().chain(&second).fold(0.0, |most: f64, link| most.max(slack(link, &first[0])));
@@ -65,7 +65,7 @@ pub fn robots(bytes: &[u8]) {
     // faces.
     let here = Pose::IDENTITY;
     if let (Ok(truth), Ok(found)) = (
-        between(&a, &here, &b, &here),
+        RobotPair::new().minimum(&a, &here, &b, &here),
         pair.clearance(&Tube::from(&a), &here, &Tube::from(&b), &here, 0.0),
     ) {
         let truth = truth.distance;
@@ -85,9 +85,9 @@ fn robot(source: &mut Source) -> Option<Chain> {
 }
 
 /// Checks a robot with itself.
-fn alone(pair: &mut RobotPair, robot: &Chain, margin: f64) {
-    let Ok(found) = pair.self_minimum(robot) else { return };
-    assert_eq!(pair.self_minimum(robot), Ok(found), "{robot:?}");
+fn alone(query: &mut SelfQuery, robot: &Chain, margin: f64) {
+    let Ok(found) = query.minimum(robot) else { return };
+    assert_eq!(query.minimum(robot), Ok(found), "{robot:?}");
     let distance = found.map_or(f64::INFINITY, |found| found.distance);
     if let Some(RobotProximity { links: [i, j], .. }) = found {
         // At least one link lies between them.
@@ -96,7 +96,7 @@ fn alone(pair: &mut RobotPair, robot: &Chain, margin: f64) {
         // The answer may belong to a face of a link, which is no nearer than the link.
         assert!(exactly(one, two) <= distance + slack(one, two), "{found:?} {robot:?}");
     }
-    if let Ok(clears) = pair.self_clears(robot, margin) {
+    if let Ok(clears) = query.clears(robot, margin) {
         assert_eq!(clears, distance > margin, "{margin:e} {found:?} {robot:?}");
     }
 }

@@ -7,7 +7,7 @@ use crate::output::{answer, array, array_or_number, decision_value, flat, member
 use crate::queries::clearance::{Stated, tube, tubes};
 use crate::threads::{Asked, ask_each};
 use parry_continuum::parry::math::{Pose, Vector};
-use parry_continuum::proximity::{Decision, ProximityError, RobotClearance};
+use parry_continuum::proximity::{Decision, ProximityError, RobotClearance, RobotPair};
 use parry_continuum::{Tube, proximity};
 use pyo3::prelude::*;
 
@@ -172,7 +172,7 @@ impl Pairs {
 /// >>> angle = np.linspace(0, 4 * np.pi, 241)
 /// >>> coil = np.stack([10 * np.cos(angle), 10 * np.sin(angle), 4 * angle / (2 * np.pi)], axis=1)
 /// >>> ends = [[0, 10, 2 / np.pi]] * 2  # its direction as it begins and, after whole turns, ends
-/// >>> tube_self_clears(coil, 1.0, 1.9, 0.05, tangents=ends), tube_self_clears(coil, 1.0, 2.1, 0.05, tangents=ends)
+/// >>> SelfQuery::new().clears_tube(coil, 1.0, 1.9, 0.05, tangents=ends), SelfQuery::new().clears_tube(coil, 1.0, 2.1, 0.05, tangents=ends)
 /// (<Decision.CLEAR: 1>, <Decision.CONTACT: -1>)
 #[pyfunction]
 #[pyo3(signature = (points, radii, margin, resolution, *, tangents = None, deviation = 0.0, turn = None))]

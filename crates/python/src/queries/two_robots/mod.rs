@@ -21,7 +21,7 @@ use crate::threads::{Asked, Held, Lender, ask_each};
 use answers::{Row, proximities, proximities_of_segments, proximities_within};
 use parry_continuum::Chain;
 use parry_continuum::parry::math::{Pose, Vector};
-use parry_continuum::proximity::{self, RobotProximity};
+use parry_continuum::proximity::{RobotProximity, self};
 use pyo3::prelude::*;
 
 /// Sessions that nobody uses. Needs no mesh.

@@ -5,7 +5,7 @@ use crate::motions::{Motion, MotionPair, Moving};
 use crate::output::{answer, array, array_or_number, decision_value, flat, members, reason_value};
 use crate::threads::{Asked, ask_each};
 use parry_continuum::parry::math::Vector;
-use parry_continuum::proximity::{RobotMotionAnswer, RobotsInContact};
+use parry_continuum::proximity::{RobotMotionAnswer, RobotPair, RobotsInContact};
 use pyo3::prelude::*;
 
 #[pymethods]
@@ -131,9 +131,9 @@ impl RobotPair {
 /// >>> from parry_continuum import Decision, LinearMotion, motion_self_clears
 /// >>> def hairpin(y): return np.array([[0, 0, 0], [0, 0, 40], [8, 0, 40], [4, y, 2]])
 /// >>> swing = LinearMotion(hairpin(-6), hairpin(6), 1.0)  # the tip passes the base
-/// >>> motion_self_clears(swing, margin=1.5, resolution=1e-3).decision is Decision.CLEAR
+/// >>> SelfQuery::new().clears_motion(swing, margin=1.5, resolution=1e-3).decision is Decision.CLEAR
 /// True
-/// >>> motion_self_clears(swing, margin=2.5, resolution=1e-3).decision is Decision.CONTACT
+/// >>> SelfQuery::new().clears_motion(swing, margin=2.5, resolution=1e-3).decision is Decision.CONTACT
 /// True
 #[pyfunction]
 #[pyo3(signature = (motion, margin, resolution))]

@@ -7,7 +7,7 @@ use parry_continuum::distance::{Vec3, modified_cylinder_modified_cylinder, segme
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::query::{self, ClosestPoints};
 use parry_continuum::parry::shape::{Capsule, Compound, SharedShape};
-use parry_continuum::proximity::{RobotPair, between, clears_between, self_clears, self_minimum};
+use parry_continuum::proximity::{RobotPair, SelfQuery};
 use parry_continuum::{Cap, Chain, ModifiedCylinder};
 use std::f64::consts::{PI, TAU};
 use std::fmt::{Display, Write};
@@ -166,8 +166,9 @@ fn two_robots(effort: Effort, name: &str, offset: f64, page: &mut String) -> Res
     let here = Pose::IDENTITY;
     let (one, two) = (capsules(&a), capsules(&b));
     let compounds = [compound(&one), compound(&two)];
-    let least =
-        |pose: &Pose| between(&a, &here, &b, pose).map(|found| found.distance).map_err(text);
+    let least = |pose: &Pose| {
+        RobotPair::new().minimum(&a, &here, &b, pose).map(|found| found.distance).map_err(text)
+    };
     let margin = 0.5
         * poses
             .iter()
@@ -212,11 +213,11 @@ fn two_robots(effort: Effort, name: &str, offset: f64, page: &mut String) -> Res
         PLACES,
         page,
     )?;
-    let mut pair = RobotPair::new();
+    let mut query = SelfQuery::new();
     let as_number = |clears: bool| f64::from(u8::from(clears));
     let jobs = vec![
         Some(at_all(&poses, |pose| {
-            clears_between(&a, &here, &b, pose, margin).map(as_number).map_err(text)
+            RobotPair::new().clears(&a, &here, &b, pose, margin).map(as_number).map_err(text)
         })),
         Some(at_all(&poses, |pose| {
             pair.clears(&a, &here, &b, pose, margin).map(as_number).map_err(text)
@@ -278,14 +279,16 @@ fn one_robot(effort: Effort, links: i32, page: &mut String) -> Result<(), String
             parry_nearer(least, &parts[i], &Pose::IDENTITY, &parts[j])
         })
     };
-    let mut pair = RobotPair::new();
+    let mut query = SelfQuery::new();
     let distance = |found: Option<parry_continuum::proximity::RobotProximity>| {
         found.map_or(f64::INFINITY, |found| found.distance)
     };
     let goal = if links == 60 { 6 } else { 10 };
     let jobs = vec![
-        Some(at_all(&once, |_| self_minimum(black_box(&robot)).map(distance).map_err(text))),
-        Some(at_all(&once, |_| pair.self_minimum(black_box(&robot)).map(distance).map_err(text))),
+        Some(at_all(&once, |_| {
+            SelfQuery::new().minimum(black_box(&robot)).map(distance).map_err(text)
+        })),
+        Some(at_all(&once, |_| query.minimum(black_box(&robot)).map(distance).map_err(text))),
         Some(at_all(&once, |_| Ok(every(f64::INFINITY)))),
         Some(at_all(&once, |_| {
             Ok(pairs().fold(f64::INFINITY, |least, (i, j)| least.min(axes_apart(&all[i], &all[j]))))
@@ -294,13 +297,13 @@ fn one_robot(effort: Effort, links: i32, page: &mut String) -> Result<(), String
         None,
     ];
     row(effort, &format!("| coil of {links} links | `self_minimum` | {goal} |"), jobs, 1, page)?;
-    let mut pair = RobotPair::new();
+    let mut query = SelfQuery::new();
     let as_number = |clears: bool| f64::from(u8::from(clears));
     let jobs = vec![
-        Some(at_all(&once, |_| self_clears(black_box(&robot), 1.0).map(as_number).map_err(text))),
         Some(at_all(&once, |_| {
-            pair.self_clears(black_box(&robot), 1.0).map(as_number).map_err(text)
+            SelfQuery::new().clears(black_box(&robot), 1.0).map(as_number).map_err(text)
         })),
+        Some(at_all(&once, |_| query.clears(black_box(&robot), 1.0).map(as_number).map_err(text))),
         Some(at_all(&once, |_| Ok(every(1.0)))),
         None,
         Some(at_all(&once, |_| parry(1.0))),

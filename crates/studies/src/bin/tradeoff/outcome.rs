@@ -87,7 +87,7 @@ fn outcome(
     let faces = faces(robot, joints);
     let mut outcome = Outcome {
         truth: nearest.distance,
-        at_base: base.inverse_transform_point(nearest.on_robot).z < 1e-3,
+        at_base: base.inverse_transform_point(nearest.witness.on_robot).z < 1e-3,
         cap_at_base: false,
         each: Default::default(),
         metres: [0.0; 2],
@@ -100,7 +100,8 @@ fn outcome(
             *clearance = if Model::OURS.contains(&model) {
                 let found = search.minimum(subject.chain(model), base).map_err(text)?;
                 if model == Model::Capsule {
-                    outcome.cap_at_base = base.inverse_transform_point(found.on_robot).z < 0.0;
+                    outcome.cap_at_base =
+                        base.inverse_transform_point(found.witness.on_robot).z < 0.0;
                 }
                 found.distance
             } else if model == Model::Tube {
