@@ -6,7 +6,10 @@
 //! radii and its pose as 16 numbers.
 
 use parry_continuum::parry::math::{Pose, Vector};
-use parry_continuum::proximity::{BvhSearch, Certificate, Decision, MotionAnswer, Proximity, RobotPair, RobotProximity, Side, Witness};
+use parry_continuum::proximity::{
+    BvhSearch, Certificate, Decision, MotionAnswer, Proximity, RobotPair, RobotProximity, Side,
+    Witness,
+};
 use parry_continuum::{
     BendingMotion, BendingSection, Chain, LinearMotion, MovingBase, RigidMotion, Tube,
     pose_from_matrix,

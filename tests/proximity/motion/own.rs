@@ -92,7 +92,8 @@ impl<M: Motion> Robot<M> {
                 );
                 // Both points are on the robot where it is then.
                 assert!(
-                    (contact.witness.on_first - contact.witness.on_second).length() <= contact.upper + 1e-9,
+                    (contact.witness.on_first - contact.witness.on_second).length()
+                        <= contact.upper + 1e-9,
                     "{}",
                     says()
                 );

@@ -22,12 +22,12 @@ impl Answers {
 
     /// The closest points on the robot.
     pub fn on_robot(&self) -> Vec<Real> {
-        flat(self.links.iter().map(|link| &link.on_robot))
+        flat(self.links.iter().map(|link| &link.witness.on_robot))
     }
 
     /// The closest points on the wall.
     pub fn on_mesh(&self) -> Vec<Real> {
-        flat(self.links.iter().map(|link| &link.on_mesh))
+        flat(self.links.iter().map(|link| &link.witness.on_mesh))
     }
 
     /// The link that is closest.
@@ -41,7 +41,7 @@ impl Answers {
 
     /// How far along the robot the closest point is.
     pub fn arc_length(&self) -> Real {
-        self.minimum.arc_length
+        self.minimum.witness.arc_length
     }
 
     /// Of the robot's base: `inside`, `outside` or `undecided`.

@@ -2,8 +2,8 @@
 
 use parry_continuum::parry::math::Pose;
 use parry_continuum::{
-    BendingMotion, DisplacementBound, LinearMotion, Motion, MotionPath, MovingBase, RigidMotion, RobotError,
-    Speed, Tube,
+    BendingMotion, DisplacementBound, LinearMotion, Motion, MotionPath, MovingBase, RigidMotion,
+    RobotError, Speed, Tube,
 };
 
 /// One motion of a batch, of whatever kind.
@@ -37,7 +37,12 @@ impl Motion for Moving {
         }
     }
 
-    fn displacement(&self, section: usize, shares: [f64; 2], times: [f64; 2]) -> Option<DisplacementBound> {
+    fn displacement(
+        &self,
+        section: usize,
+        shares: [f64; 2],
+        times: [f64; 2],
+    ) -> Option<DisplacementBound> {
         match self {
             Self::Linear(motion) => motion.displacement(section, shares, times),
             Self::Rigid(motion) => motion.displacement(section, shares, times),

@@ -210,11 +210,11 @@ impl Mesh {
             numbers(|found| found.upper)?,
             array_or_number(py, shape(), resolved)?,
             numbers(|found| found.uncertainty)?,
-            points(|found| found.on_robot)?,
-            points(|found| found.on_mesh)?,
-            places(|found| found.segment)?,
-            numbers(|found| found.arc_length)?,
-            places(|found| found.triangle)?,
+            points(|found| found.witness.on_robot)?,
+            points(|found| found.witness.on_mesh)?,
+            places(|found| found.witness.segment)?,
+            numbers(|found| found.witness.arc_length)?,
+            places(|found| found.witness.triangle)?,
             status,
         );
         answer!(py, "Clearance", values)

@@ -146,18 +146,22 @@ impl Mesh {
         };
         let values = (
             array_or_number(py, shape(), all.iter().map(|found| found.distance).collect())?,
-            points(|found| found.on_robot)?,
-            points(|found| found.on_mesh)?,
+            points(|found| found.witness.on_robot)?,
+            points(|found| found.witness.on_mesh)?,
             array_or_number(
                 py,
                 shape(),
-                all.iter().map(|found| i64::from(found.segment)).collect(),
+                all.iter().map(|found| i64::from(found.witness.segment)).collect(),
             )?,
-            array_or_number(py, shape(), all.iter().map(|found| found.arc_length).collect())?,
             array_or_number(
                 py,
                 shape(),
-                all.iter().map(|found| i64::from(found.triangle)).collect(),
+                all.iter().map(|found| found.witness.arc_length).collect(),
+            )?,
+            array_or_number(
+                py,
+                shape(),
+                all.iter().map(|found| i64::from(found.witness.triangle)).collect(),
             )?,
         );
         answer!(py, "Minimum", values)

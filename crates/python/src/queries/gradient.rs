@@ -40,8 +40,8 @@ fn ask(session: &mut Session, robot: &Given<'_>, caps: Caps) -> Result<Row, Refu
     let pose = robot.pose()?;
     let closest = session.search.minimum(chain, &pose)?;
     let contact = session.search.contact_of(chain, &pose, &closest)?;
-    let segment = closest.segment as usize;
-    let mut row = Row { value: contact.depth.unwrap_or(closest.distance), segment, ..NOTHING };
+    let segment = closest.witness.segment as usize;
+    let mut row = Row { value: contact.depth, segment, ..NOTHING };
     if let Some(found) = session.search.derivative(chain, &pose, &closest)? {
         let back = pose.rotation.inverse();
         (row.ends, row.radius, row.kink) =

@@ -32,11 +32,11 @@ pub(super) fn motion_answer<'py>(
         array(py, shape(&[2]), intervals)?,
         numbers(|shape| shape.t)?,
         numbers(|shape| shape.upper)?,
-        points(|shape| shape.on_robot)?,
-        points(|shape| shape.on_mesh)?,
-        places(|shape| shape.segment)?,
-        numbers(|shape| shape.arc_length)?,
-        places(|shape| shape.triangle)?,
+        points(|shape| shape.witness.on_robot)?,
+        points(|shape| shape.witness.on_mesh)?,
+        places(|shape| shape.witness.segment)?,
+        numbers(|shape| shape.witness.arc_length)?,
+        places(|shape| shape.witness.triangle)?,
         members(py, "UndecidedReason", shape(&[]), reasons)?,
     );
     answer!(py, "MotionAnswer", values)

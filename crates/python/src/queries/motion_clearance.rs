@@ -91,11 +91,11 @@ impl Mesh {
             array_or_number(py, shape(&[]), all.iter().map(|found| found.resolved).collect())?,
             numbers(|found| found.uncertainty)?,
             numbers(|found| found.t)?,
-            points(|found| found.on_robot)?,
-            points(|found| found.on_mesh)?,
-            places(|found| found.segment)?,
-            numbers(|found| found.arc_length)?,
-            places(|found| found.triangle)?,
+            points(|found| found.witness.on_robot)?,
+            points(|found| found.witness.on_mesh)?,
+            places(|found| found.witness.segment)?,
+            numbers(|found| found.witness.arc_length)?,
+            places(|found| found.witness.triangle)?,
         );
         answer!(py, "MotionClearance", values)
     }

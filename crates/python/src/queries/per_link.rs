@@ -75,12 +75,12 @@ impl Mesh {
             let chain = set_chain(&mut session.chain, robot, caps)?;
             session.search.per_link(chain, &robot.pose()?, &mut session.links)?;
             for found in &session.links {
-                rows[found.segment as usize] = Row {
+                rows[found.witness.segment as usize] = Row {
                     distance: found.distance,
-                    on_robot: found.on_robot,
-                    on_mesh: found.on_mesh,
-                    arc_length: found.arc_length,
-                    triangle: found.triangle.into(),
+                    on_robot: found.witness.on_robot,
+                    on_mesh: found.witness.on_mesh,
+                    arc_length: found.witness.arc_length,
+                    triangle: found.witness.triangle.into(),
                 };
             }
             Ok(())

@@ -89,15 +89,15 @@ impl Mesh {
         let points =
             |of: fn(&Contact) -> Vector| rows(py, &all, |(contact, _)| of(contact).to_array());
         let values = [
-            rows(py, &all, |(contact, _)| [i64::from(contact.segment)]),
+            rows(py, &all, |(contact, _)| [i64::from(contact.witness.segment)]),
             numbers(|contact| contact.fraction),
-            numbers(|contact| contact.arc_length),
+            numbers(|contact| contact.witness.arc_length),
             numbers(|contact| contact.distance),
-            numbers(|contact| contact.depth.unwrap_or(f64::NAN)),
+            numbers(|contact| contact.depth),
             points(|contact| contact.normal.unwrap_or(Vector::NAN)),
-            points(|contact| contact.on_robot),
-            points(|contact| contact.on_mesh),
-            rows(py, &all, |(contact, _)| [i64::from(contact.triangle)]),
+            points(|contact| contact.witness.on_robot),
+            points(|contact| contact.witness.on_mesh),
+            rows(py, &all, |(contact, _)| [i64::from(contact.witness.triangle)]),
             rows(py, &all, |(_, robot)| [*robot]),
             rows(py, &offsets, |offset| [*offset]),
         ];

@@ -43,10 +43,10 @@ impl Row {
                 distance: it.nearest.distance,
                 structure: it.structure.into(),
                 robots: [it.robot.into(), -1],
-                segments: [it.nearest.segment.into(), -1],
-                triangle: it.nearest.triangle.into(),
-                on_first: it.nearest.on_robot,
-                on_second: it.nearest.on_mesh,
+                segments: [it.nearest.witness.segment.into(), -1],
+                triangle: it.nearest.witness.triangle.into(),
+                on_first: it.nearest.witness.on_robot,
+                on_second: it.nearest.witness.on_mesh,
             },
             Between::Robots { robots, nearest } => Self {
                 slack,
@@ -56,8 +56,8 @@ impl Row {
                     let (chain, _, points) = placed[robots[k] as usize];
                     segment_of(chain, points, nearest.links[k] as usize)
                 }),
-                on_first: nearest.on_first,
-                on_second: nearest.on_second,
+                on_first: nearest.witness.on_first,
+                on_second: nearest.witness.on_second,
                 ..NOTHING
             },
             _ => Self { slack, ..NOTHING },
@@ -102,12 +102,12 @@ pub(super) fn per_structure<'py>(
     let values = (
         numbers(|it| it.nearest.distance)?,
         numbers(|it| it.slack.unwrap_or(f64::NAN))?,
-        points(|it| it.nearest.on_robot)?,
-        points(|it| it.nearest.on_mesh)?,
+        points(|it| it.nearest.witness.on_robot)?,
+        points(|it| it.nearest.witness.on_mesh)?,
         places(|it| it.robot)?,
-        places(|it| it.nearest.segment)?,
-        numbers(|it| it.nearest.arc_length)?,
-        places(|it| it.nearest.triangle)?,
+        places(|it| it.nearest.witness.segment)?,
+        numbers(|it| it.nearest.witness.arc_length)?,
+        places(|it| it.nearest.witness.triangle)?,
     );
     answer!(py, "PerStructure", values)
 }
@@ -135,15 +135,15 @@ pub(super) fn contacts<'py>(
     let values = [
         places(|it| it.structure)?.into_any(),
         places(|it| it.robot)?.into_any(),
-        places(|it| it.contact.segment)?.into_any(),
+        places(|it| it.contact.witness.segment)?.into_any(),
         numbers(|contact| contact.fraction)?.into_any(),
-        numbers(|contact| contact.arc_length)?.into_any(),
+        numbers(|contact| contact.witness.arc_length)?.into_any(),
         numbers(|contact| contact.distance)?.into_any(),
-        numbers(|contact| contact.depth.unwrap_or(f64::NAN))?.into_any(),
+        numbers(|contact| contact.depth)?.into_any(),
         points(|contact| contact.normal.unwrap_or(Vector::NAN))?.into_any(),
-        points(|contact| contact.on_robot)?.into_any(),
-        points(|contact| contact.on_mesh)?.into_any(),
-        places(|it| it.contact.triangle)?.into_any(),
+        points(|contact| contact.witness.on_robot)?.into_any(),
+        points(|contact| contact.witness.on_mesh)?.into_any(),
+        places(|it| it.contact.witness.triangle)?.into_any(),
         array(py, count(), set_of.collect())?.into_any(),
         array(py, vec![offsets.len()], offsets.clone())?.into_any(),
     ];

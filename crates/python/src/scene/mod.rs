@@ -11,7 +11,7 @@ use crate::threads::{self, Asked, Engine, Held, Lender, ask_each};
 use answers::{NOTHING, Row, contacts, per_structure, tightest};
 use parry_continuum::Chain;
 use parry_continuum::parry::math::Pose;
-use parry_continuum::proximity::{SceneContact, StructureProximity, self};
+use parry_continuum::proximity::{self, SceneContact, StructureProximity};
 use pyo3::prelude::*;
 use robots::place;
 use std::sync::Arc;

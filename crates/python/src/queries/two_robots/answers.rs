@@ -65,12 +65,12 @@ fn tuple<'py>(
     let segments = rows.iter().flat_map(|row| row.map_or([-1; 2], |row| row.segments)).collect();
     let lengths = rows
         .iter()
-        .flat_map(|row| row.map_or([f64::NAN; 2], |row| row.found.arc_lengths))
+        .flat_map(|row| row.map_or([f64::NAN; 2], |row| row.found.witness.arc_lengths))
         .collect();
     let values = (
         array_or_number(py, shape.to_vec(), distances)?,
-        points(|found| found.on_first)?,
-        points(|found| found.on_second)?,
+        points(|found| found.witness.on_first)?,
+        points(|found| found.witness.on_second)?,
         array(py, of(2), segments)?,
         array(py, of(2), lengths)?,
     );
@@ -93,10 +93,14 @@ pub(super) fn proximities_within<'py>(
         .flat_map(|(ends, pair)| (ends[0]..ends[1]).map(move |_| pair));
     let values = (
         array(py, vec![count], rows.iter().map(|row| row.found.distance).collect())?,
-        points(|found| found.on_first)?,
-        points(|found| found.on_second)?,
+        points(|found| found.witness.on_first)?,
+        points(|found| found.witness.on_second)?,
         array(py, vec![count, 2], rows.iter().flat_map(|row| row.segments).collect())?,
-        array(py, vec![count, 2], rows.iter().flat_map(|row| row.found.arc_lengths).collect())?,
+        array(
+            py,
+            vec![count, 2],
+            rows.iter().flat_map(|row| row.found.witness.arc_lengths).collect(),
+        )?,
         array(py, vec![count], pair_of.collect())?,
         array(py, vec![offsets.len()], offsets.clone())?,
     );

@@ -7,7 +7,7 @@ use crate::input::{Caps, Given, Numbers, shape_text};
 use crate::output::{answer, array_or_number};
 use crate::threads::{Asked, ask_each};
 use parry_continuum::parry::math::Vector;
-use parry_continuum::proximity::{Certificate, ProximityError, RobotPair};
+use parry_continuum::proximity::{Certificate, ProximityError};
 use parry_continuum::{Chain, ModifiedCylinder};
 use pyo3::prelude::*;
 

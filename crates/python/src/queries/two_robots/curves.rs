@@ -7,7 +7,7 @@ use crate::output::{answer, array, array_or_number, decision_value, flat, member
 use crate::queries::clearance::{Stated, tube, tubes};
 use crate::threads::{Asked, ask_each};
 use parry_continuum::parry::math::{Pose, Vector};
-use parry_continuum::proximity::{Decision, ProximityError, RobotClearance, RobotPair};
+use parry_continuum::proximity::{Decision, ProximityError, RobotClearance};
 use parry_continuum::{Tube, proximity};
 use pyo3::prelude::*;
 
@@ -75,8 +75,10 @@ impl Pairs {
                 flat(all.iter().map(|it| it.as_ref().map_or(Vector::NAN, of))),
             )
         };
-        let lengths =
-            all.iter().flat_map(|it| it.map_or([f64::NAN; 2], |it| it.arc_lengths)).collect();
+        let lengths = all
+            .iter()
+            .flat_map(|it| it.map_or([f64::NAN; 2], |it| it.witness.arc_lengths))
+            .collect();
         let values = (
             numbers(|found| found.lower)?,
             numbers(|found| found.upper)?,
@@ -86,8 +88,8 @@ impl Pairs {
                 all.iter().map(|it| it.is_some_and(|it| it.resolved)).collect(),
             )?,
             numbers(|found| found.uncertainty)?,
-            points(|found| found.on_first)?,
-            points(|found| found.on_second)?,
+            points(|found| found.witness.on_first)?,
+            points(|found| found.witness.on_second)?,
             array(py, robots.shape(&[2]), lengths)?,
             if is_batch { texts(py, status)? } else { "".into_pyobject(py)?.into_any() },
         );
@@ -124,7 +126,7 @@ impl Pairs {
     ) -> PyResult<Bound<'py, PyAny>> {
         let mut all: Vec<i8> = Vec::with_capacity(robots.len());
         let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [i8]| {
-            row[0] = decision_value(session.pair.tube_self_clears(
+            row[0] = decision_value(session.own.clears_tube(
                 &tube(robot, stated)?,
                 margin,
                 resolution,
@@ -172,7 +174,7 @@ impl Pairs {
 /// >>> angle = np.linspace(0, 4 * np.pi, 241)
 /// >>> coil = np.stack([10 * np.cos(angle), 10 * np.sin(angle), 4 * angle / (2 * np.pi)], axis=1)
 /// >>> ends = [[0, 10, 2 / np.pi]] * 2  # its direction as it begins and, after whole turns, ends
-/// >>> SelfQuery::new().clears_tube(coil, 1.0, 1.9, 0.05, tangents=ends), SelfQuery::new().clears_tube(coil, 1.0, 2.1, 0.05, tangents=ends)
+/// >>> tube_self_clears(coil, 1.0, 1.9, 0.05, tangents=ends), tube_self_clears(coil, 1.0, 2.1, 0.05, tangents=ends)
 /// (<Decision.CLEAR: 1>, <Decision.CONTACT: -1>)
 #[pyfunction]
 #[pyo3(signature = (points, radii, margin, resolution, *, tangents = None, deviation = 0.0, turn = None))]

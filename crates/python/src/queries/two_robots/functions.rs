@@ -112,9 +112,9 @@ pub(crate) fn clears_between<'py>(
 /// --------
 /// >>> from parry_continuum import self_minimum
 /// >>> hook = [[0, 0, 0], [0, 0, 9], [2, 0, 11], [4, 0, 9], [4, 0, 0]]
-/// >>> SelfQuery::new().minimum(hook, 0.5).distance
+/// >>> self_minimum(hook, 0.5).distance
 /// 3.0
-/// >>> SelfQuery::new().minimum(hook[:3], 0.5).distance
+/// >>> self_minimum(hook[:3], 0.5).distance
 /// inf
 #[pyfunction]
 #[pyo3(signature = (points, radii, *, caps = Caps::Fitted), text_signature = "(points, radii, *, caps=\"fitted\")")]

@@ -21,7 +21,7 @@ use crate::threads::{Asked, Held, Lender, ask_each};
 use answers::{Row, proximities, proximities_of_segments, proximities_within};
 use parry_continuum::Chain;
 use parry_continuum::parry::math::{Pose, Vector};
-use parry_continuum::proximity::{RobotProximity, self};
+use parry_continuum::proximity::{self, RobotProximity};
 use pyo3::prelude::*;
 
 /// Sessions that nobody uses. Needs no mesh.
@@ -31,6 +31,7 @@ struct Pairs(Held<Vec<Session>>);
 #[derive(Default)]
 struct Session {
     pair: proximity::RobotPair,
+    own: proximity::SelfQuery,
     chains: [Option<Chain>; 2],
     found: Vec<RobotProximity>,
 }
@@ -59,7 +60,7 @@ struct Placed<'a> {
 impl Session {
     fn place<'a>(&'a mut self, robot: &Given<'a>, caps: Caps) -> Result<Placed<'a>, Refused> {
         let other = second(robot)?;
-        let Self { pair, chains: [one, two], found } = self;
+        let Self { pair, chains: [one, two], found, .. } = self;
         let chains = [set_chain(one, robot, caps)?, set_chain(two, &other, caps)?];
         let (poses, points) = ([robot.pose()?, other.pose()?], [robot.points, other.points]);
         Ok(Placed { pair, chains, poses, points, found })
@@ -180,8 +181,8 @@ impl Pairs {
         let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [Option<Row>]| {
             let chain = set_chain(&mut session.chains[0], robot, caps)?;
             row[0] = session
-                .pair
-                .self_minimum(chain)?
+                .own
+                .minimum(chain)?
                 .map(|found| Row::new(found, [chain; 2], [robot.points; 2]));
             Ok(())
         };
@@ -199,7 +200,7 @@ impl Pairs {
         let mut all: Vec<bool> = Vec::with_capacity(robots.len());
         let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [bool]| {
             let chain = set_chain(&mut session.chains[0], robot, caps)?;
-            row[0] = session.pair.self_clears(chain, margin)?;
+            row[0] = session.own.clears(chain, margin)?;
             Ok(())
         };
         ask_each(py, self, robots, (false, 1), ask, |_, found| all.extend(found))?;

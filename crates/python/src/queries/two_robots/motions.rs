@@ -5,7 +5,7 @@ use crate::motions::{Motion, MotionPair, Moving};
 use crate::output::{answer, array, array_or_number, decision_value, flat, members, reason_value};
 use crate::threads::{Asked, ask_each};
 use parry_continuum::parry::math::Vector;
-use parry_continuum::proximity::{RobotMotionAnswer, RobotPair, RobotsInContact};
+use parry_continuum::proximity::{RobotMotionAnswer, RobotsInContact};
 use pyo3::prelude::*;
 
 #[pymethods]
@@ -62,7 +62,7 @@ impl RobotPair {
         let ask = |session: &mut Session,
                    [a, b]: &[&Moving; 2],
                    row: &mut [Option<RobotMotionAnswer>]| {
-            row[0] = Some(session.pair.clears_motion(*a, *b, margin, resolution)?);
+            row[0] = Some(session.pair.clears_motions(*a, *b, margin, resolution)?);
             Ok(())
         };
         ask_each(py, &self.0, &motions, (None, 1), ask, |_, found| {
@@ -131,9 +131,9 @@ impl RobotPair {
 /// >>> from parry_continuum import Decision, LinearMotion, motion_self_clears
 /// >>> def hairpin(y): return np.array([[0, 0, 0], [0, 0, 40], [8, 0, 40], [4, y, 2]])
 /// >>> swing = LinearMotion(hairpin(-6), hairpin(6), 1.0)  # the tip passes the base
-/// >>> SelfQuery::new().clears_motion(swing, margin=1.5, resolution=1e-3).decision is Decision.CLEAR
+/// >>> motion_self_clears(swing, margin=1.5, resolution=1e-3).decision is Decision.CLEAR
 /// True
-/// >>> SelfQuery::new().clears_motion(swing, margin=2.5, resolution=1e-3).decision is Decision.CONTACT
+/// >>> motion_self_clears(swing, margin=2.5, resolution=1e-3).decision is Decision.CONTACT
 /// True
 #[pyfunction]
 #[pyo3(signature = (motion, margin, resolution))]
@@ -157,7 +157,7 @@ impl Pairs {
         let mut all: Vec<RobotMotionAnswer> = Vec::with_capacity(motions.len());
         let ask =
             |session: &mut Session, motion: &&Moving, row: &mut [Option<RobotMotionAnswer>]| {
-                row[0] = Some(session.pair.motion_self_clears(*motion, margin, resolution)?);
+                row[0] = Some(session.own.clears_motion(*motion, margin, resolution)?);
                 Ok(())
             };
         ask_each(py, self, motions, (None, 1), ask, |_, found| all.extend(found.iter().flatten()))?;
@@ -182,14 +182,15 @@ fn answers<'py>(
     let decisions = all.iter().map(|it| decision_value(it.decision)).collect();
     let reasons = all.iter().map(|it| reason_value(it.reason)).collect();
     let intervals = all.iter().flat_map(|it| it.interval).collect();
-    let lengths = all.iter().flat_map(|it| it.contact.map_or([f64::NAN; 2], |it| it.arc_lengths));
+    let lengths =
+        all.iter().flat_map(|it| it.contact.map_or([f64::NAN; 2], |it| it.witness.arc_lengths));
     let values = (
         members(py, "Decision", shape(&[]), decisions)?,
         array(py, shape(&[2]), intervals)?,
         numbers(|shapes| shapes.t)?,
         numbers(|shapes| shapes.upper)?,
-        points(|shapes| shapes.on_first)?,
-        points(|shapes| shapes.on_second)?,
+        points(|shapes| shapes.witness.on_first)?,
+        points(|shapes| shapes.witness.on_second)?,
         array(py, shape(&[2]), lengths.collect())?,
         members(py, "UndecidedReason", shape(&[]), reasons)?,
     );

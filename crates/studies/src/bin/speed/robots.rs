@@ -213,7 +213,7 @@ fn two_robots(effort: Effort, name: &str, offset: f64, page: &mut String) -> Res
         PLACES,
         page,
     )?;
-    let mut query = SelfQuery::new();
+    let mut pair = RobotPair::new();
     let as_number = |clears: bool| f64::from(u8::from(clears));
     let jobs = vec![
         Some(at_all(&poses, |pose| {
