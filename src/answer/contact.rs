@@ -85,7 +85,7 @@ impl Contact {
     /// let closest = search.minimum(&robot(q)?, &Pose::IDENTITY)?;
     /// let contact = search.contact_of(&robot(q)?, &Pose::IDENTITY, &closest)?;
     /// let tangent = Vector::new(0.0, -q.sin(), q.cos());
-    /// let rate = contact.rate(Vector::X.cross(contact.arc_length * tangent), Vector::X).ok_or("no normal")?;
+    /// let rate = contact.rate(Vector::X.cross(contact.witness.arc_length * tangent), Vector::X).ok_or("no normal")?;
     /// let mut distance = |q: f64| -> Result<f64, Box<dyn std::error::Error>> {
     ///     Ok(search.minimum(&robot(q)?, &Pose::IDENTITY)?.distance)
     /// };

@@ -274,7 +274,7 @@ pub trait Proximity: Engine {
     /// assert_eq!((contact.link, contact.fraction, contact.normal), (1, 1.0, Some(Vector::Z)));
     /// assert_eq!(contact.feature.link, LinkFeature::EndCap);
     /// assert_eq!(contact.feature.triangle, TriangleFeature::Face);
-    /// assert!((contact.arc_length - (1.0 + 2.0_f64.sqrt())).abs() < 1e-15);
+    /// assert!((contact.witness.arc_length - (1.0 + 2.0_f64.sqrt())).abs() < 1e-15);
     /// // The floor has moved, so the old answer no longer fits.
     /// search.set_vertices(&floor.map(|corner| corner - Vector::Z))?;
     /// assert!(search.contact_of(&robot, &Pose::IDENTITY, &closest).is_err());

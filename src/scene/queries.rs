@@ -50,7 +50,7 @@ use std::cmp::Ordering;
 ///
 /// A structure is a mesh with a name. Its margin is the least distance that a robot must exceed;
 /// the *slack* is the distance minus the margin. A robot may touch a structure without a margin,
-/// such as a target. [`per_structure`](Self::per_structure) and [`contacts`](Self::contacts)
+/// such as a target. [`per_structure`](Self::per_structure) and [`contacts_within`](Self::contacts_within)
 /// measure such a structure; the other queries ignore it.
 ///
 /// Each query takes the robots with their poses in the scene's frame. If a [margin between

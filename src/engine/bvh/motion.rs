@@ -248,7 +248,7 @@ impl BvhSearch {
     /// )?;
     /// let least = search.clearance_of_motion(&motion, 0.001)?;
     /// assert!(least.resolved && least.upper - least.lower <= 0.001);
-    /// println!("{} mm at t = {}, at {}", least.upper, least.t, least.on_mesh);
+    /// println!("{} mm at t = {}, at {}", least.upper, least.t, least.witness.on_mesh);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///

@@ -7,7 +7,7 @@ use crate::pair::{PlacedLink, PlacedRobot};
 use crate::robot::Chain;
 use parry3d_f64::math::{Pose, Real};
 
-/// The most pairs of links that `within` keeps at once: some megabytes.
+/// The most pairs of links that `contacts_within` keeps at once: some megabytes.
 const MAX_PAIRS: usize = 1 << 16;
 
 /// State and memory that the next query reuses.
