@@ -18,6 +18,7 @@ use crate::pieces::{PendingPiece, PlacedTube, TubeInMesh};
 use crate::query::clearance::{TubeMemory, clearance, tube_clears};
 use crate::query::{check_decision, check_not_negative};
 use crate::robot::Tube;
+use crate::search::hierarchy::PlacedMeshSearch;
 use parry3d_f64::math::{Pose, Real};
 
 impl BvhSearch {
@@ -268,6 +269,6 @@ impl<'a> Context<'a> {
     ) -> Result<(TubeInMesh<'a>, &'a mut TubeMemory), ProximityError> {
         let (search, last) = self.search();
         let tube = PlacedTube::new(tube, pose, search.hierarchy.reach)?;
-        Ok((TubeInMesh { search, tube }, &mut last.tube))
+        Ok((TubeInMesh { search: PlacedMeshSearch::at_rest(search), tube }, &mut last.tube))
     }
 }

@@ -50,7 +50,7 @@ use super::unresolved_piece::UnresolvedPiece;
 use crate::answer::{MotionAnswer, ProximityError, ShapeInContact, UndecidedReason};
 use crate::pieces::{MeshUpperBound, Piece, PlacedTube, Refinable, TubeInMesh, refine};
 use crate::robot::Motion;
-use crate::search::hierarchy::{MeshAt, MeshSearch, MovingMesh};
+use crate::search::hierarchy::{MeshAt, MeshSearch, MovingMesh, PlacedMeshSearch};
 use parry3d_f64::math::{Real, Vector};
 use std::collections::VecDeque;
 use std::ops::Range;
@@ -347,12 +347,14 @@ impl<M: Motion> MotionSearch<'_, M> {
         let approach_bound =
             ApproachBound::new(times, current.mark_lasting_faces_between(motion, times));
         let MeshSearch { level, hierarchy, .. } = self.search;
-        let mut search = MeshSearch::new(level, hierarchy, &mut *self.search.scratch);
-        let (mut reach, mut mesh_speed) = (hierarchy.reach, 0.0);
-        if self.does_mesh_move {
-            (reach, mesh_speed) = (reach.max(mesh.reach()), mesh.speed());
-            search.moved = Some(MeshAt { moving: mesh, share: t });
-        }
+        let search = MeshSearch::new(level, hierarchy, &mut *self.search.scratch);
+        let (reach, mesh_speed, search) = if self.does_mesh_move {
+            let (reach, speed) = (hierarchy.reach.max(mesh.reach()), mesh.speed());
+            let moved = MeshAt { moving: mesh, share: t };
+            (reach, speed, PlacedMeshSearch::moved(search, moved))
+        } else {
+            (hierarchy.reach, 0.0, PlacedMeshSearch::at_rest(search))
+        };
         let tube = PlacedTube::new(&current.tube, &pose, reach)?.moving();
         let mut tube = TubeInMesh { search, tube };
         pieces.clear();
