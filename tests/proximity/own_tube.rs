@@ -2,7 +2,7 @@
 
 use super::robots::robot;
 use super::tube::{all_ways, fine, from_function};
-use continuum_testing::{Arcs, Random};
+use continuum_testing::{Arcs, Random, rounds};
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::proximity::{
     Decision, ProximityError, RobotPair, self_minimum, tube_self_clears,
@@ -25,7 +25,7 @@ fn along(
 }
 
 /// A circle's coil by arc length: `rise` is the pitch over 2 pi.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 struct Coil {
     radius: f64,
     rise: f64,
@@ -392,6 +392,37 @@ fn a_knot_is_as_thick_as_it_can_be() {
         Decision::Contact,
         "{least}"
     );
+}
+
+/// A finer resolution never revokes a decision.
+#[test]
+fn a_finer_resolution_decides_no_less() {
+    let (mut random, mut pair) = (Random::new(31), RobotPair::new());
+    let (mut decided, mut gained) = (0, 0);
+    for _ in 0..rounds(400) {
+        let coil = Coil { radius: random.between(1.0, 4.0), rise: random.between(0.1, 0.5) };
+        let thickness = random.between(0.1, 0.5) * coil.radius.min(2.0);
+        let tube = if random.below(2) == 0 {
+            coil.tube(random.between(4.0, 14.0), thickness)
+        } else {
+            coil.samples(random.between(4.0, 14.0), thickness, 300)
+        };
+        let apart = coil.chord() - 2.0 * thickness;
+        let margin = (apart + random.between(-0.3, 0.3) * random.unit().powi(3)).max(0.0);
+        let mut coarser = None;
+        for resolution in [3.0, 1.0, 0.3, 0.1, 0.03, 0.01] {
+            let finer = pair.tube_self_clears(&tube, margin, resolution).ok();
+            let finer = finer.filter(|decision| *decision != Decision::Undecided);
+            assert!(
+                coarser.is_none() || finer == coarser,
+                "{margin} {resolution}: {coarser:?} {finer:?} {coil:?} {thickness}"
+            );
+            gained += usize::from(finer.is_some() && coarser.is_none());
+            coarser = finer;
+        }
+        decided += usize::from(coarser.is_some());
+    }
+    assert!(decided > rounds(200) && gained > rounds(200), "{decided} {gained}");
 }
 
 /// How often a coil's curve is asked for a place, for margins a little off the truth: as the root
