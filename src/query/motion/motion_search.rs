@@ -73,6 +73,10 @@ pub(crate) struct MotionMemory {
     planes: SeparatingPlanes,
     /// Reset by each query, so that answers do not depend on earlier ones.
     small_rooms: SmallRooms,
+    /// The lower bound on the clearance of each part of the motion's time, and the bound that the
+    /// current round proves.
+    pub(super) part_bounds: Vec<Real>,
+    pub(super) settled: Vec<Real>,
 }
 
 /// An interval of time and its unresolved pieces.
@@ -90,6 +94,11 @@ pub(super) struct Interval {
 impl Interval {
     pub(super) fn midpoint(&self) -> Real {
         midpoint(self.times)
+    }
+
+    /// Returns the part of the motion's time that contains the interval.
+    pub(super) fn part(&self, parts: usize) -> usize {
+        ((self.midpoint() * parts as Real) as usize).min(parts - 1)
     }
 
     /// Returns the interval with the larger of both lower bounds.
