@@ -156,8 +156,7 @@ impl TubeInMesh<'_> {
     pub(crate) fn first_bound(&mut self) -> MeshUpperBound {
         let longest = self.tube.longest_section();
         let (chord, arcs) = self.tube.chord(longest);
-        let nearest =
-            self.search.nearest(&chord, Best::within(Real::INFINITY), None).nearest();
+        let nearest = self.search.nearest(&chord, Best::within(Real::INFINITY), None).nearest();
         let nearest = nearest.unwrap_or_else(|| self.search.any(&chord));
         let arc = chord.share_of(nearest.on_mesh) * (arcs[1] - arcs[0]) + arcs[0];
         self.found_at(longest, arc, &nearest)

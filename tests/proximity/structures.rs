@@ -373,9 +373,8 @@ fn a_margin_counts_from_when_it_is_set() {
     let robot = Chain::from_centreline(&[Vector::ZERO, Vector::Z], &[0.5]).unwrap();
     // Beside the box around both, and 27 from either.
     let robots = [(&robot, Pose::translation(20.0, 20.0, 0.0))];
-    for (margin, clears) in
-        [(Some(0.1), Ok(true)), (Some(30.0), Ok(false)), (None, Err(SceneError::NoMargin))]
-    {
+    let (clear, none) = ((Some(0.1), Ok(true)), (None, Err(SceneError::NoMargin)));
+    for (margin, clears) in [clear.clone(), (Some(30.0), Ok(false)), clear, none] {
         for structure in [0, 1] {
             scene.set_margin(structure, margin).unwrap();
             assert_eq!(scene.clears(&robots), clears);

@@ -78,9 +78,9 @@ fn for_all_stated<T>(
     let mut less_known = tubes.less_known();
     let Some(mut first) = less_known.next() else { return ask(tubes) };
     let known = ask(&mut first);
-    less_known.chain([*tubes]).fold(known, |known, mut tubes| {
-        better_of(known, &mut || ask(&mut tubes))
-    })
+    less_known
+        .chain([*tubes])
+        .fold(known, |known, mut tubes| better_of(known, &mut || ask(&mut tubes)))
 }
 
 fn clearance_as_stated(

@@ -175,7 +175,12 @@ fn search_vertex(random: &mut Random, search: &BvhSearch) -> Vector {
 }
 
 /// Counts the tolerances with narrower bounds than a coarser one, and those with a free motion.
-fn refine(search: &mut BvhSearch, motion: &impl Motion, random: &mut Random, seen: &mut [usize; 2]) {
+fn refine(
+    search: &mut BvhSearch,
+    motion: &impl Motion,
+    random: &mut Random,
+    seen: &mut [usize; 2],
+) {
     let mut tolerance = random.between(0.5, 8.0);
     let mut coarser: Option<MotionClearance> = None;
     while tolerance > 1e-3 {
