@@ -197,7 +197,8 @@ fn rounding_hides_no_voxel_that_is_touched() {
     for _ in 0..4000 {
         let size = random.between(0.1, 3.0);
         let corner = [random.below(20) as i32 - 10, 2, 5];
-        let cells = [0, 1].map(|k| IVector::new(corner[0] + k, corner[1], corner[2]));
+        let [x, y, z] = corner.map(i64::from);
+        let cells = [IVector::new(x, y, z), IVector::new(x + 1, y, z)];
         let voxels = Voxels::new(Vector::splat(size), &cells);
         // A flat end or a round side at the first or the last face along x.
         let (side, is_flat) = (random.below(2) as usize, random.below(2) == 0);
