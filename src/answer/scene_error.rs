@@ -26,6 +26,15 @@ pub enum SceneError {
     /// The margin between robots is at fault.
     #[error("between robots: {0}")]
     BetweenRobots(ProximityError),
+    /// A number of the query, such as `reach`, is at fault.
+    #[error(transparent)]
+    Query(ProximityError),
+    /// No structure has a margin, and there is none between robots, so nothing is tested.
+    #[error(
+        "no structure has a margin, and there is none between robots: set one with `set_margin` or \
+         `set_robot_margin`"
+    )]
+    NoMargin,
     /// There is no structure with this number.
     #[error(
         "there is no structure {structure} among {structures}; give the number that `add` returned"
@@ -45,7 +54,9 @@ impl SceneError {
         match self {
             Self::Structure { error, .. }
             | Self::Robot { error, .. }
-            | Self::BetweenRobots(error) => error.kind(),
+            | Self::BetweenRobots(error)
+            | Self::Query(error) => error.kind(),
+            Self::NoMargin => "no_margin",
             Self::NoSuchStructure { .. } => "no_such_structure",
         }
     }

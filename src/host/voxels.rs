@@ -20,12 +20,13 @@ pub(super) fn intersection_test(
     voxels: &Voxels,
     other: &dyn Shape,
 ) -> Result<ShapeIntersection, Unsupported> {
-    let Some(common) = voxels.local_aabb().intersection(&other.compute_aabb(pos12)) else {
+    let (bounds, root) = (other.compute_aabb(pos12), voxels.local_aabb());
+    // Loosened before they are intersected: rounding may part the boxes of shapes that touch.
+    let loose = rounding(&bounds, &root);
+    let Some(common) = root.loosened(loose).intersection(&bounds.loosened(loose)) else {
         return Ok(ShapeIntersection::new(false));
     };
     let cube = Cuboid::new(voxels.voxel_size() * 0.5);
-    let size = common.mins.abs().max(common.maxs.abs()).max_element();
-    let common = common.loosened(16.0 * Real::EPSILON * size);
     for voxel in voxels.voxels_intersecting_local_aabb(&common) {
         let pos12 = Pose::from_translation(-voxel.center) * *pos12;
         let found = dispatcher.intersection_test(&pos12, &cube, other)?;

@@ -8,12 +8,12 @@ use super::refinable::{Refinable, UpperBound};
 use super::tube_point::TubePoint;
 use crate::answer::{ProximityError, Witness};
 use crate::pair::{Best, Nearest, PlacedLink};
-use crate::search::hierarchy::MeshSearch;
+use crate::search::hierarchy::PlacedMeshSearch;
 use parry3d_f64::math::{Real, Vector};
 
 /// A tube and the mesh around it.
 pub(crate) struct TubeInMesh<'a> {
-    pub search: MeshSearch<'a>,
+    pub search: PlacedMeshSearch<'a>,
     pub tube: PlacedTube<'a>,
 }
 
@@ -81,7 +81,7 @@ impl Refinable for TubeInMesh<'_> {
         bound: Real,
         start: Option<u32>,
     ) -> Option<Nearest> {
-        self.search.nearest(&outer.body, Best::within(bound), [start, None]).nearest()
+        self.search.nearest(&outer.body, Best::within(bound), start).nearest()
     }
 
     fn distance(nearest: &Nearest) -> Real {
@@ -149,15 +149,14 @@ impl TubeInMesh<'_> {
 
     /// Reduces `slack`, given that only triangles within `away` matter.
     pub(crate) fn tighten_slack(&mut self, away: Real) {
-        self.tube.tighten_slack(away, || self.search.hierarchy.longest());
+        self.tube.tighten_slack(away, || self.search.longest_at_rest());
     }
 
     /// Returns a first upper bound: from the triangle nearest to the chord of the longest section.
     pub(crate) fn first_bound(&mut self) -> MeshUpperBound {
         let longest = self.tube.longest_section();
         let (chord, arcs) = self.tube.chord(longest);
-        let nearest =
-            self.search.nearest(&chord, Best::within(Real::INFINITY), [None; 2]).nearest();
+        let nearest = self.search.nearest(&chord, Best::within(Real::INFINITY), None).nearest();
         let nearest = nearest.unwrap_or_else(|| self.search.any(&chord));
         let arc = chord.share_of(nearest.on_mesh) * (arcs[1] - arcs[0]) + arcs[0];
         self.found_at(longest, arc, &nearest)

@@ -231,9 +231,14 @@ impl Scene {
     /// The query ends at the first violated margin.
     ///
     /// # Errors
-    /// A pose is not finite or not rigid, or moves a link out of range. The message has the robot's
-    /// number.
+    /// - A pose is not finite or not rigid, or moves a link out of range. The message has the
+    ///   robot's number.
+    /// - The scene has no margin: neither a structure's nor one between robots.
     pub fn clears(&mut self, robots: &[(&Chain, Pose)]) -> Result<bool, SceneError> {
+        let has_margin = |structure: &Structure| structure.margin.is_some();
+        if self.robot_margin.is_none() && !self.structures.iter().any(has_margin) {
+            return Err(SceneError::NoMargin);
+        }
         if self.begin(robots, None)? && !self.clears_structures(robots)? {
             return Ok(false);
         }
@@ -277,7 +282,8 @@ impl Scene {
     /// robot; pairs of robots come last.
     ///
     /// # Errors
-    /// As [`clears`](Self::clears).
+    /// A pose is not finite or not rigid, or moves a link out of range. The message has the robot's
+    /// number.
     pub fn tightest(&mut self, robots: &[(&Chain, Pose)]) -> Result<Option<Tightest>, SceneError> {
         self.begin(robots, Some(Real::INFINITY))?;
         let mut best: Best = None;
@@ -323,7 +329,7 @@ impl Scene {
     /// `out` is cleared first, and stays empty if no robot is given.
     ///
     /// # Errors
-    /// As [`clears`](Self::clears).
+    /// As [`tightest`](Self::tightest).
     pub fn per_structure(
         &mut self,
         robots: &[(&Chain, Pose)],
@@ -361,7 +367,7 @@ impl Scene {
     /// `out` is cleared first.
     ///
     /// # Errors
-    /// As [`clears`](Self::clears), or `reach` is negative or NaN.
+    /// As [`tightest`](Self::tightest), or `reach` is negative or NaN.
     pub fn contacts_within(
         &mut self,
         robots: &[(&Chain, Pose)],
@@ -369,9 +375,7 @@ impl Scene {
         out: &mut Vec<SceneContact>,
     ) -> Result<(), SceneError> {
         out.clear();
-        if let Some(first) = self.structures.first() {
-            check_not_negative("reach", reach).map_err(|error| of_structure(first, error))?;
-        }
+        check_not_negative("reach", reach).map_err(SceneError::Query)?;
         if !self.begin(robots, Some(reach))? {
             return Ok(());
         }

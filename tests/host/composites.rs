@@ -4,12 +4,13 @@ use crate::dispatcher::ROUNDING;
 use crate::scene::{floor_field, floor_mesh, heap, parts, tube, zigzag};
 use continuum_testing::Random;
 use continuum_testing::placements::{Placement, Wall};
+use parry_continuum::parry::bounding_volume::BoundingVolume;
 use parry_continuum::parry::math::{IVector, Pose, Real, Vector};
 use parry_continuum::parry::query::{
     ClosestPoints, ContactManifold, NonlinearRigidMotion, PersistentQueryDispatcher,
     QueryDispatcher, ShapeCastOptions,
 };
-use parry_continuum::parry::shape::{Ball, HeightField, Shape, SharedShape, Voxels};
+use parry_continuum::parry::shape::{Ball, Cuboid, HeightField, Shape, SharedShape, Voxels};
 use parry_continuum::parry::utils::Array2;
 use parry_continuum::{Chain, ContinuumDispatcher};
 
@@ -184,6 +185,47 @@ fn voxels_are_met_and_cast_against_but_have_no_distance() {
         .cast_shapes(&place, Vector::X, &voxels, &robot, ShapeCastOptions::default())
         .unwrap();
     assert!((hit.unwrap().time_of_impact - 1.75).abs() < 1e-4, "{hit:?}");
+}
+
+/// A shape that touches a voxel within rounding meets the voxels, although rounding parts their
+/// boxes. The expected answers are those of the voxels one by one.
+#[test]
+fn rounding_hides_no_voxel_that_is_touched() {
+    let dispatcher = ContinuumDispatcher::default();
+    let mut random = Random::new(7);
+    let mut parted = [0; 2];
+    for _ in 0..4000 {
+        let size = random.between(0.1, 3.0);
+        let corner = [random.below(20) as i32 - 10, 2, 5];
+        let [x, y, z] = corner.map(i64::from);
+        let cells = [IVector::new(x, y, z), IVector::new(x + 1, y, z)];
+        let voxels = Voxels::new(Vector::splat(size), &cells);
+        // A flat end or a round side at the first or the last face along x.
+        let (side, is_flat) = (random.below(2) as usize, random.below(2) == 0);
+        let outward = [-1.0, 1.0][side];
+        let wall = size * f64::from(corner[0] + 2 * side as i32);
+        let radius = random.between(0.1, 1.0);
+        let away = radius * outward;
+        let robot = if is_flat {
+            Chain::cylinders(&[Vector::ZERO, Vector::X * outward], &[radius])
+        } else {
+            Chain::capsules(&[Vector::X * away, Vector::new(away, 1.0, 0.0)], &[radius])
+        };
+        let robot = robot.unwrap();
+        let gap = f64::EPSILON * size * random.between(-2.0, 2.0);
+        let middle = [f64::from(corner[1]) + 0.5, f64::from(corner[2]) + 0.5].map(|x| x * size);
+        let place = Pose::translation(wall + gap, middle[0], middle[1]);
+        let cube = Cuboid::new(Vector::splat(0.5 * size));
+        let touches = voxels.voxels().any(|voxel| {
+            let place = Pose::from_translation(-voxel.center) * place;
+            dispatcher.intersection_test(&place, &cube, &robot).unwrap().intersecting
+        });
+        let found = dispatcher.intersection_test(&place, &voxels, &robot).unwrap();
+        assert_eq!(found.intersecting, touches, "{voxels:?} {robot:?} {place:?}");
+        let boxes = [voxels.compute_aabb(&Pose::IDENTITY), robot.compute_aabb(&place)];
+        parted[usize::from(touches)] += u32::from(!boxes[0].intersects(&boxes[1]));
+    }
+    assert!(parted[1] > 20, "{parted:?}");
 }
 
 /// parry finds no cell of what a negative scale mirrors.

@@ -2,7 +2,7 @@
 
 use super::robots::robot;
 use super::tube::{all_ways, fine, from_function};
-use continuum_testing::{Arcs, Random};
+use continuum_testing::{Arcs, Random, rounds};
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::proximity::{Decision, ProximityError, SelfQuery};
 use parry_continuum::{Chain, Tube, TubeSection};
@@ -23,7 +23,7 @@ fn along(
 }
 
 /// A circle's coil by arc length: `rise` is the pitch over 2 pi.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 struct Coil {
     radius: f64,
     rise: f64,
@@ -388,6 +388,39 @@ fn a_knot_is_as_thick_as_it_can_be() {
         Decision::Contact,
         "{least}"
     );
+}
+
+/// A finer resolution never revokes a decision.
+#[test]
+fn a_finer_resolution_decides_no_less() {
+    let (mut random, mut pair) = (Random::new(31), RobotPair::new());
+    let (mut decided, mut gained) = (0, 0);
+    for _ in 0..rounds(400) {
+        let coil = Coil { radius: random.between(1.0, 4.0), rise: random.between(0.1, 0.2) };
+        // Margins that are narrow beside the resolutions, at about the clearance.
+        let apart = random.between(0.0, 0.3 * coil.chord());
+        let (thickness, angle) = (0.5 * (coil.chord() - apart), random.between(7.0, 14.0));
+        let tube = match random.below(2) {
+            0 => coil.tube(angle, thickness),
+            _ => coil.samples(angle, thickness, 300),
+        };
+        let off = random.between(-0.2, 0.2);
+        let (margin, mut coarser) = ((apart + off).max(0.0), None);
+        let mut resolution = 1.0;
+        while resolution > 0.04 {
+            let finer = pair.tube_self_clears(&tube, margin, resolution).ok();
+            let finer = finer.filter(|decision| *decision != Decision::Undecided);
+            assert!(
+                coarser.is_none() || finer == coarser,
+                "{margin} {resolution}: {coarser:?} {finer:?} {coil:?} {thickness} {angle}"
+            );
+            gained += usize::from(finer.is_some() && coarser.is_none());
+            coarser = finer;
+            resolution *= 0.9;
+        }
+        decided += usize::from(coarser.is_some());
+    }
+    assert!(decided > rounds(100) && gained > rounds(100), "{decided} {gained}");
 }
 
 /// How often a coil's curve is asked for a place, for margins a little off the truth: as the root

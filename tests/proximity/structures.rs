@@ -152,7 +152,6 @@ fn robots_are_held_against_one_another_where_they_have_a_margin() {
     let robots = [(&robot, Pose::IDENTITY), (&robot, Pose::translation(3.0, 0.0, 0.0))];
     let mut scene = Scene::new();
     assert_eq!(scene.tightest(&robots).unwrap(), None);
-    assert!(scene.clears(&robots).unwrap());
     scene.set_robot_margin(Some(0.5)).unwrap();
     let tightest = scene.tightest(&robots).unwrap().unwrap();
     let apart = RobotPair::new().minimum(&robot, &robots[0].1, &robot, &robots[1].1).unwrap();
@@ -232,6 +231,52 @@ fn who_is_at_fault_is_named() {
     }
     assert_eq!(scene.set_margin(7, None).unwrap_err().kind(), "no_such_structure");
     assert!(scene.contacts_within(&robots, -1.0, &mut Vec::new()).is_err());
+}
+
+/// `reach` is checked in an empty scene too, and no structure is blamed for it.
+#[test]
+fn a_bad_reach_is_an_error_in_every_scene() {
+    let robot = Chain::from_centreline(&[Vector::ZERO, Vector::Z], &[0.5]).unwrap();
+    let robots = [(&robot, Pose::IDENTITY)];
+    let mut scene = Scene::new();
+    for structures in 0..2 {
+        for reach in [-1.0, f64::NAN, f64::NEG_INFINITY] {
+            let error = scene.contacts_within(&robots, reach, &mut Vec::new()).unwrap_err();
+            assert!(matches!(error, SceneError::Query(_)), "{structures}: {error:?}");
+            assert_eq!(error.kind(), "negative");
+            assert!(error.to_string().contains("`reach`"), "{error}");
+        }
+        assert_eq!(scene.contacts_within(&robots, 0.0, &mut Vec::new()), Ok(()));
+        scene.add("liver", ball(Vector::ZERO, 1.0), None).unwrap();
+    }
+}
+
+/// Without any margin `clears` tests nothing, so it is an error instead of "clear".
+#[test]
+fn a_scene_without_any_margin_has_nothing_to_clear() {
+    let robot = Chain::from_centreline(&[Vector::ZERO, Vector::Z], &[0.5]).unwrap();
+    let robots = [(&robot, Pose::IDENTITY)];
+    let mut scene = Scene::new();
+    let refused = |scene: &mut Scene| {
+        let error = scene.clears(&robots).unwrap_err();
+        assert_eq!(error, SceneError::NoMargin);
+        assert_eq!(error.kind(), "no_margin");
+        assert!(error.to_string().contains("`set_margin`"), "{error}");
+        let mut answers = Vec::new();
+        scene.clears_batch(&[&robots], &mut answers);
+        assert_eq!(answers, [Err(SceneError::NoMargin)]);
+        assert_eq!(scene.tightest(&robots), Ok(None));
+    };
+    refused(&mut scene);
+    let target = scene.add("target", ball(Vector::ZERO, 1.0), None).unwrap();
+    refused(&mut scene);
+    scene.set_margin(target, Some(0.0)).unwrap();
+    assert_eq!(scene.clears(&robots), Ok(false));
+    scene.set_margin(target, None).unwrap();
+    refused(&mut scene);
+    // A margin between robots is one, even with a single robot.
+    scene.set_robot_margin(Some(0.0)).unwrap();
+    assert_eq!(scene.clears(&robots), Ok(true));
 }
 
 /// What must be infinitely far away never is.
@@ -328,12 +373,11 @@ fn a_margin_counts_from_when_it_is_set() {
     let robot = Chain::from_centreline(&[Vector::ZERO, Vector::Z], &[0.5]).unwrap();
     // Beside the box around both, and 27 from either.
     let robots = [(&robot, Pose::translation(20.0, 20.0, 0.0))];
-    for (margin, clears) in
-        [(Some(0.1), true), (Some(30.0), false), (Some(0.1), true), (None, true)]
-    {
+    let (clear, none) = ((Some(0.1), Ok(true)), (None, Err(SceneError::NoMargin)));
+    for (margin, clears) in [clear.clone(), (Some(30.0), Ok(false)), clear, none] {
         for structure in [0, 1] {
             scene.set_margin(structure, margin).unwrap();
-            assert_eq!(scene.clears(&robots), Ok(clears));
+            assert_eq!(scene.clears(&robots), clears);
             scene.set_margin(structure, None).unwrap();
         }
     }

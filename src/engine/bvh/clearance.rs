@@ -18,6 +18,7 @@ use crate::curve::Tube;
 use crate::query::clearance::{TubeMemory, clearance, clears_tube};
 use crate::query::{check_decision, check_not_negative};
 use crate::refine::{PendingPiece, PlacedTube, TubeInMesh};
+use crate::search::hierarchy::PlacedMeshSearch;
 use parry3d_f64::math::{Pose, Real};
 
 impl BvhSearch {
@@ -59,10 +60,10 @@ impl BvhSearch {
     ///
     /// The pieces show where the tolerance costs work. They are sorted by arc length and cover the
     /// tube without gap or overlap: few and long far from the wall, short near it. The answer's
-    /// `lower` is the least `lower` of the pieces, or else the answer's `upper`. It may be larger
-    /// for a tube that states a turn: the answer then combines two queries, and the pieces are
-    /// those of the second. Once the query finds a common point with the mesh, it divides no
-    /// further. The `lower` of a farther piece depends on earlier queries. `out` is cleared first.
+    /// `lower` is the least `lower` of the pieces, or else the answer's `upper`. For a tube that
+    /// states a turn the answer combines two queries: the pieces are those of the query with the
+    /// larger `lower`. Once the query finds a common point with the mesh, it divides no further.
+    /// The `lower` of a farther piece depends on earlier queries. `out` is cleared first.
     ///
     /// ```
     /// use parry_continuum::{Tube, parry::{math::{Pose, Vector}, shape::{Ball, TriMesh}}};
@@ -206,6 +207,28 @@ fn clearance_without_turn(
     answer.map(Some)
 }
 
+/// Replaces `out` by the pieces of the last query about a placed tube, sorted by arc length.
+///
+/// # Errors
+/// The curve of a piece is not finite.
+fn report_pieces(
+    placed: &PlacedTube,
+    memory: &TubeMemory,
+    out: &mut Vec<TubePiece>,
+) -> Result<(), ProximityError> {
+    out.clear();
+    for PendingPiece { piece, lower, .. } in memory.pieces.all() {
+        let outer = placed.outer(piece);
+        placed.check_finite(piece, &outer)?;
+        out.push(placed.report(piece, &outer, *lower));
+    }
+    out.sort_unstable_by(|a, b| {
+        let [from, to] = [0, 1].map(|end| a.arc_lengths[end].total_cmp(&b.arc_lengths[end]));
+        a.section.cmp(&b.section).then(from).then(to)
+    });
+    Ok(())
+}
+
 impl<'a> Context<'a> {
     fn clearance(
         self,
@@ -229,16 +252,13 @@ impl<'a> Context<'a> {
         let (mut tube, memory) = self.tube_in_mesh(tube, pose)?;
         let placed = tube.tube;
         let known = clearance_without_turn(&mut tube, memory, tolerance)?;
-        let answer = clearance(&mut tube, memory, tolerance)?;
-        for PendingPiece { piece, lower, .. } in memory.pieces.all() {
-            let outer = placed.outer(piece);
-            placed.check_finite(piece, &outer)?;
-            out.push(placed.report(piece, &outer, *lower));
+        if let Some(less_known) = placed.without_turn() {
+            report_pieces(&less_known, memory, out)?;
         }
-        out.sort_unstable_by(|a, b| {
-            let [from, to] = [0, 1].map(|end| a.arc_lengths[end].total_cmp(&b.arc_lengths[end]));
-            a.section.cmp(&b.section).then(from).then(to)
-        });
+        let answer = clearance(&mut tube, memory, tolerance)?;
+        if known.is_none_or(|known| answer.lower >= known.lower) {
+            report_pieces(&placed, memory, out)?;
+        }
         Ok(known.map_or(answer, |known| known.and(answer, tolerance)))
     }
 
@@ -268,6 +288,6 @@ impl<'a> Context<'a> {
     ) -> Result<(TubeInMesh<'a>, &'a mut TubeMemory), ProximityError> {
         let (search, last) = self.search();
         let tube = PlacedTube::new(tube, pose, search.hierarchy.reach)?;
-        Ok((TubeInMesh { search, tube }, &mut last.tube))
+        Ok((TubeInMesh { search: PlacedMeshSearch::at_rest(search), tube }, &mut last.tube))
     }
 }

@@ -231,9 +231,11 @@ impl BvhSearch {
     ///
     /// The answer always has bounds; [`resolved`](MotionClearance::resolved) says whether they meet
     /// the tolerance. They may not, because samples are too coarse, because an end that comes near
-    /// turns from flat to round, or because the query ends after 65,536 shapes. A
-    /// [`MotionPath`](crate::MotionPath) bounds many motions at once: the query refines each motion
-    /// only as far as it may be the nearest.
+    /// turns from flat to round, or because the query ends after 65,536 shapes. A finer tolerance
+    /// never gives looser bounds.
+    ///
+    /// A [`MotionPath`](crate::MotionPath) bounds many motions at once: the query refines each
+    /// motion only as far as it may be the nearest.
     ///
     /// ```
     /// use parry_continuum::{LinearMotion, parry::{math::Vector, shape::Ball}, proximity::BvhSearch};

@@ -50,7 +50,7 @@ use super::unresolved_piece::UnresolvedPiece;
 use crate::answer::{MotionAnswer, ProximityError, ShapeInContact, UndecidedReason};
 use crate::motion::Motion;
 use crate::refine::{MeshUpperBound, Piece, PlacedTube, Refinable, TubeInMesh, refine};
-use crate::search::hierarchy::{MeshAt, MeshSearch, MovingMesh};
+use crate::search::hierarchy::{MeshAt, MeshSearch, MovingMesh, PlacedMeshSearch};
 use parry3d_f64::math::{Real, Vector};
 use std::collections::VecDeque;
 use std::ops::Range;
@@ -73,6 +73,10 @@ pub(crate) struct MotionMemory {
     planes: SeparatingPlanes,
     /// Reset by each query, so that answers do not depend on earlier ones.
     small_rooms: SmallRooms,
+    /// The lower bound on the clearance of each part of the motion's time, and the bound that the
+    /// current round proves.
+    pub(super) part_bounds: Vec<Real>,
+    pub(super) settled: Vec<Real>,
 }
 
 /// An interval of time and its unresolved pieces.
@@ -90,6 +94,11 @@ pub(super) struct Interval {
 impl Interval {
     pub(super) fn midpoint(&self) -> Real {
         midpoint(self.times)
+    }
+
+    /// Returns the part of the motion's time that contains the interval.
+    pub(super) fn part(&self, parts: usize) -> usize {
+        ((self.midpoint() * parts as Real) as usize).min(parts - 1)
     }
 
     /// Returns the interval with the larger of both lower bounds.
@@ -347,12 +356,14 @@ impl<M: Motion> MotionSearch<'_, M> {
         let approach_bound =
             ApproachBound::new(times, current.mark_lasting_faces_between(motion, times));
         let MeshSearch { level, hierarchy, .. } = self.search;
-        let mut search = MeshSearch::new(level, hierarchy, &mut *self.search.scratch);
-        let (mut reach, mut mesh_speed) = (hierarchy.reach, 0.0);
-        if self.does_mesh_move {
-            (reach, mesh_speed) = (reach.max(mesh.reach()), mesh.speed());
-            search.moved = Some(MeshAt { moving: mesh, share: t });
-        }
+        let search = MeshSearch::new(level, hierarchy, &mut *self.search.scratch);
+        let (reach, mesh_speed, search) = if self.does_mesh_move {
+            let (reach, speed) = (hierarchy.reach.max(mesh.reach()), mesh.speed());
+            let moved = MeshAt { moving: mesh, share: t };
+            (reach, speed, PlacedMeshSearch::moved(search, moved))
+        } else {
+            (hierarchy.reach, 0.0, PlacedMeshSearch::at_rest(search))
+        };
         let tube = PlacedTube::new(&current.tube, &pose, reach)?.moving();
         let mut tube = TubeInMesh { search, tube };
         pieces.clear();

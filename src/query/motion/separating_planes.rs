@@ -12,7 +12,7 @@
 use super::half_displacement::{HalfDisplacement, gap};
 use super::unresolved_piece::UnresolvedPiece;
 use crate::pair::PlacedLink;
-use crate::search::hierarchy::MeshSearch;
+use crate::search::hierarchy::PlacedMeshSearch;
 use parry3d_f64::math::{Real, Vector};
 
 /// With more triangles the test fails: another shape is cheaper.
@@ -57,7 +57,7 @@ impl SeparatingPlanes {
     /// near.
     pub(super) fn clears(
         &mut self,
-        search: &mut MeshSearch,
+        search: &mut PlacedMeshSearch,
         asked: &PlaneTest,
         failure: &UnresolvedPiece,
     ) -> bool {

@@ -32,7 +32,8 @@ pub(crate) fn self_clears_tube(
     let own = TubeWithItself::new(tube, turns)?;
     let wanted = Wanted { margin, resolution, start: None };
     let mut clears = |mut own: TubeWithItself| -> Result<Decision, ProximityError> {
-        own.begin(margin.max(resolution), margin, usize::MAX, beginning, pairs)?;
+        // The initial pieces must not depend on the resolution: the order of pieces would.
+        own.begin(margin, margin, usize::MAX, beginning, pairs)?;
         let (decision, _) = clears_pieces(&mut own, pending, pairs.drain(..), None, wanted)?;
         Ok(decision)
     };

@@ -59,13 +59,28 @@ pub(crate) fn clearance_between(
     memory: &mut TubesMemory,
     tolerance: Real,
 ) -> Result<RobotClearance, ProximityError> {
-    let mut known = None::<RobotClearance>;
-    for mut less_known in tubes.less_known() {
-        let answer = clearance_as_stated(&mut less_known, memory, tolerance)?;
-        known = Some(known.map_or(answer, |known| known.and(answer, tolerance)));
-    }
-    let answer = clearance_as_stated(tubes, memory, tolerance)?;
-    Ok(known.map_or(answer, |known| known.and(answer, tolerance)))
+    let ask = |tubes: &mut TubePair| clearance_as_stated(tubes, memory, tolerance);
+    for_all_stated(tubes, ask, |known, next| {
+        let known = known?;
+        Ok(known.and(next()?, tolerance))
+    })
+}
+
+/// Answers a query for both tubes as they were stated. If a stated turn can be ignored, also
+/// answers it without, first of all without both turns.
+///
+/// `better_of` combines an answer with the next one.
+fn for_all_stated<T>(
+    tubes: &mut TubePair,
+    mut ask: impl FnMut(&mut TubePair) -> T,
+    better_of: impl Fn(T, &mut dyn FnMut() -> T) -> T,
+) -> T {
+    let mut less_known = tubes.less_known();
+    let Some(mut first) = less_known.next() else { return ask(tubes) };
+    let known = ask(&mut first);
+    less_known
+        .chain([*tubes])
+        .fold(known, |known, mut tubes| better_of(known, &mut || ask(&mut tubes)))
 }
 
 fn clearance_as_stated(
@@ -119,19 +134,8 @@ pub(crate) fn clears_tubes(
     margin: Real,
     resolution: Real,
 ) -> Result<Decision, ProximityError> {
-    let mut decision = None;
-    for mut less_known in tubes.less_known() {
-        let mut clear = || clear_as_stated(&mut less_known, memory, margin, resolution);
-        decision = Some(match decision {
-            Some(known) => Decision::better_of(known, clear),
-            None => clear(),
-        });
-    }
-    let mut clear = || clear_as_stated(tubes, memory, margin, resolution);
-    match decision {
-        Some(known) => Decision::better_of(known, clear),
-        None => clear(),
-    }
+    let ask = |tubes: &mut TubePair| clear_as_stated(tubes, memory, margin, resolution);
+    for_all_stated(tubes, ask, |known, next| Decision::better_of(known, next))
 }
 
 fn clear_as_stated(

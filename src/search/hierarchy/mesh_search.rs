@@ -17,14 +17,20 @@ pub(crate) struct Scratch {
     pub work: Work,
 }
 
-/// A search through a mesh, with its scratch memory.
+/// A search through a mesh at rest, with its scratch memory.
 pub(crate) struct MeshSearch<'a> {
     pub level: Level,
     pub hierarchy: &'a Hierarchy,
     pub scratch: &'a mut Scratch,
-    /// The placement of a moving mesh. `nearest`, `may_meet` and `gather` then search the mesh
-    /// there.
-    pub moved: Option<MeshAt<'a>>,
+}
+
+/// A search through a mesh at rest, or at its placement at one instant.
+///
+/// It has only the queries that know the placement, so that no query can ignore it.
+pub(crate) struct PlacedMeshSearch<'a> {
+    search: MeshSearch<'a>,
+    /// The placement of a moving mesh.
+    moved: Option<MeshAt<'a>>,
 }
 
 /// Runs `$ask` on the traversal in the precision that resolves a link. Runs `$out_of_reach` if
@@ -46,9 +52,8 @@ macro_rules! resolved {
 }
 
 impl<'a> MeshSearch<'a> {
-    /// A search through a mesh at rest.
     pub(crate) fn new(level: Level, hierarchy: &'a Hierarchy, scratch: &'a mut Scratch) -> Self {
-        Self { level, hierarchy, scratch, moved: None }
+        Self { level, hierarchy, scratch }
     }
 }
 
@@ -61,17 +66,6 @@ impl MeshSearch<'_> {
         mut best: Best,
         start: [Option<u32>; 2],
     ) -> Best {
-        if let Some(moved) = &mut self.moved {
-            let Hierarchy { mesh, .. } = self.hierarchy;
-            return moved.nearest(
-                mesh,
-                self.hierarchy.single(),
-                link,
-                best,
-                start[0],
-                &mut self.scratch.work,
-            );
-        }
         resolved!(
             self,
             link,
@@ -141,9 +135,6 @@ impl MeshSearch<'_> {
     /// Returns true if any triangle may be at most `bound` from a capsule around links.
     /// Conservative: false is exact.
     pub(crate) fn may_meet(&mut self, capsule: &PlacedLink, bound: Real) -> bool {
-        if let Some(moved) = &mut self.moved {
-            return moved.may_meet(self.hierarchy.single(), capsule, bound);
-        }
         self.may_meet_below(capsule, bound, u32::MAX)
     }
 
@@ -159,7 +150,7 @@ impl MeshSearch<'_> {
 
     /// Writes to `found` all triangles that may be at most `bound` from a link, in no order.
     /// Returns false if there are more than `most`, or if they are unknown.
-    pub(crate) fn gather(
+    fn gather(
         &mut self,
         link: &PlacedLink,
         bound: Real,
@@ -167,16 +158,6 @@ impl MeshSearch<'_> {
         found: &mut Vec<u32>,
     ) -> bool {
         found.clear();
-        if let Some(moved) = &mut self.moved {
-            return moved.gather(
-                &self.hierarchy.mesh,
-                self.hierarchy.single(),
-                link,
-                bound,
-                most,
-                found,
-            );
-        }
         resolved!(
             self,
             link,
@@ -195,15 +176,7 @@ impl MeshSearch<'_> {
 
     /// Returns the distance of the first triangle, for a link whose search finds none.
     pub(crate) fn any(&self, link: &PlacedLink) -> Nearest {
-        link.measure(0, self.corners(0))
-    }
-
-    /// Returns the corners of a triangle, at its current placement if the mesh moves.
-    pub(crate) fn corners(&self, triangle: u32) -> [Vector; 3] {
-        let mesh = &self.hierarchy.mesh;
-        self.moved
-            .as_ref()
-            .map_or_else(|| mesh.corners(triangle), |moved| moved.corners(mesh, triangle))
+        link.measure(0, self.hierarchy.mesh.corners(0))
     }
 
     pub(crate) fn single(&mut self) -> Traversal<'_, f32> {
@@ -216,5 +189,71 @@ impl MeshSearch<'_> {
         let tree = self.hierarchy.double(self.level);
         let Scratch { double: stack, work, .. } = &mut *self.scratch;
         Traversal { level: self.level, mesh: &self.hierarchy.mesh, tree, stack, work }
+    }
+}
+
+impl<'a> PlacedMeshSearch<'a> {
+    pub(crate) fn at_rest(search: MeshSearch<'a>) -> Self {
+        Self { search, moved: None }
+    }
+
+    pub(crate) fn moved(search: MeshSearch<'a>, moved: MeshAt<'a>) -> Self {
+        Self { search, moved: Some(moved) }
+    }
+}
+
+impl PlacedMeshSearch<'_> {
+    /// Returns the nearest triangle of a link, or `best` if no triangle improves on it. The `start`
+    /// triangle is tested first.
+    pub(crate) fn nearest(&mut self, link: &PlacedLink, best: Best, start: Option<u32>) -> Best {
+        let Some(moved) = &mut self.moved else {
+            return self.search.nearest(link, best, [start, None]);
+        };
+        let MeshSearch { hierarchy, scratch, .. } = &mut self.search;
+        moved.nearest(&hierarchy.mesh, hierarchy.single(), link, best, start, &mut scratch.work)
+    }
+
+    /// Returns true if any triangle may be at most `bound` from a capsule. Conservative: false is
+    /// exact.
+    pub(crate) fn may_meet(&mut self, capsule: &PlacedLink, bound: Real) -> bool {
+        match &mut self.moved {
+            Some(moved) => moved.may_meet(self.search.hierarchy.single(), capsule, bound),
+            None => self.search.may_meet(capsule, bound),
+        }
+    }
+
+    /// Writes to `found` all triangles that may be at most `bound` from a link, in no order.
+    /// Returns false if there are more than `most`, or if they are unknown.
+    pub(crate) fn gather(
+        &mut self,
+        link: &PlacedLink,
+        bound: Real,
+        most: usize,
+        found: &mut Vec<u32>,
+    ) -> bool {
+        let Some(moved) = &mut self.moved else {
+            return self.search.gather(link, bound, most, found);
+        };
+        found.clear();
+        let hierarchy = self.search.hierarchy;
+        moved.gather(&hierarchy.mesh, hierarchy.single(), link, bound, most, found)
+    }
+
+    /// Returns the distance of the first triangle, for a link whose search finds none.
+    pub(crate) fn any(&self, link: &PlacedLink) -> Nearest {
+        link.measure(0, self.corners(0))
+    }
+
+    /// Returns the corners of a triangle at its placement.
+    pub(crate) fn corners(&self, triangle: u32) -> [Vector; 3] {
+        let mesh = &self.search.hierarchy.mesh;
+        self.moved
+            .as_ref()
+            .map_or_else(|| mesh.corners(triangle), |moved| moved.corners(mesh, triangle))
+    }
+
+    /// Returns the longest edge of the mesh at rest.
+    pub(crate) fn longest_at_rest(&self) -> Real {
+        self.search.hierarchy.longest()
     }
 }

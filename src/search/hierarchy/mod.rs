@@ -16,7 +16,7 @@ mod traverse;
 pub(crate) use build::WideBvh;
 pub(crate) use hierarchies::{Hierarchy, Searched};
 pub(crate) use leaf_visitor::LeafVisitor;
-pub(crate) use mesh_search::{MeshSearch, Scratch};
+pub(crate) use mesh_search::{MeshSearch, PlacedMeshSearch, Scratch};
 pub(crate) use moving_mesh::{MeshAt, MovingMesh};
 pub(crate) use node::{Child, WIDTH};
 pub(crate) use traverse::Traversal;

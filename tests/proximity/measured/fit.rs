@@ -216,6 +216,13 @@ fn a_stated_turn_never_makes_an_answer_worse() {
                 "{before:?} {known:?}"
             );
             assert!(known.resolved || !before.resolved, "{before:?} {known:?}");
+            // The pieces explain the lower bound, whichever of the two queries it is from.
+            let mut pieces = Vec::new();
+            let mut speck = super::speck(point * unit);
+            let again = speck.clearance_pieces(&turned, &Pose::IDENTITY, tolerance, &mut pieces);
+            assert_eq!(again, Ok(known));
+            let least = pieces.iter().map(|piece| piece.lower).fold(known.upper, f64::min);
+            assert_eq!(least, known.lower, "{known:?}");
             assert!(
                 known.lower <= truth * unit * (1.0 + 1e-9)
                     && truth * unit <= known.upper + 1e-9 * unit

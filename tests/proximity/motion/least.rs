@@ -182,6 +182,52 @@ fn search_vertex(random: &mut Random, search: &BvhSearch) -> Vector {
     search.vertices()[random.below(search.vertices().len() as u32) as usize]
 }
 
+/// Counts the tolerances with narrower bounds than a coarser one, and those with a free motion.
+fn refine(
+    search: &mut BvhSearch,
+    motion: &impl Motion,
+    random: &mut Random,
+    seen: &mut [usize; 2],
+) {
+    let mut tolerance = random.between(0.5, 8.0);
+    let mut coarser: Option<MotionClearance> = None;
+    while tolerance > 1e-3 {
+        let finer = search.clearance_of_motion(motion, tolerance).unwrap();
+        if let Some(coarser) = coarser {
+            assert!(
+                coarser.lower <= finer.lower && finer.upper <= coarser.upper,
+                "{tolerance}: {coarser:?} {finer:?}"
+            );
+            let gap = |found: &MotionClearance| found.upper - found.lower;
+            seen[0] += usize::from(gap(&finer) < gap(&coarser));
+        }
+        seen[1] += usize::from(finer.lower > 0.0);
+        coarser = Some(finer);
+        tolerance *= [0.1, 0.5, 0.9][random.below(3) as usize];
+    }
+}
+
+/// The bounds of each tolerance lie within those of every coarser one.
+#[test]
+fn a_finer_tolerance_never_gives_looser_bounds() {
+    let (mut search, robot, mut random) = (anatomy(), ctr::three_tubes(), Random::new(25));
+    let mut seen = [0; 2];
+    for round in 0..rounds(60) {
+        let edge = random_edge(&robot, &mut random, [0.5, 2.0, 8.0][round % 3]);
+        refine(&mut search, &edge, &mut random, &mut seen);
+        let near = search_vertex(&mut random, &search) + random.point() * 8.0;
+        let (from, radii) = polyline(&mut random, near);
+        let shift = random.direction() * random.between(0.0, 3.0);
+        let to: Vec<_> = from.iter().map(|&point| point + shift + random.point() * 0.5).collect();
+        let capsules = LinearMotion::capsules(&from, &to, &radii).unwrap();
+        refine(&mut search, &capsules, &mut random, &mut seen);
+        if let Ok(chain) = LinearMotion::chain(&from, &to, &radii) {
+            refine(&mut search, &chain, &mut random, &mut seen);
+        }
+    }
+    assert!(seen.iter().all(|&count| count > rounds(200)), "{seen:?}");
+}
+
 /// Capsules over a floor, whose least height is a vertex's where it begins or where it ends:
 /// scraping, and at the margin.
 #[test]

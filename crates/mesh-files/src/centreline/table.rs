@@ -214,7 +214,7 @@ fn parse(bytes: &[u8]) -> Result<Table, Fault> {
             if let Some(column) = misplaced(&names) {
                 return fault(
                     line,
-                    format!("has '{}' in column {}", shown(&columns[column]), column + 1),
+                    format!("has '{}' in column {}", shown(columns[column]), column + 1),
                 );
             }
             table.heading = Some(names);
@@ -244,31 +244,38 @@ fn bare(line: &str) -> &str {
     }
 }
 
+/// The characters that separate columns, the first that a line has.
+const MARKS: [char; 3] = [';', '\t', ','];
+
 /// Splits a line at semicolons if it has any, else at tabs, else at commas; empty words count.
 /// Without any of these, splits at spaces. Quoted text is not split.
-fn columns(line: &str) -> Vec<String> {
-    let marks = [';', '\t', ','];
+fn columns(line: &str) -> Vec<&str> {
     let mut is_quoted = false;
-    let is_outside = |&c: &char| {
+    let is_outside = |&(_, c): &(usize, char)| {
         is_quoted ^= c == '"';
-        !is_quoted
+        !is_quoted && (c.is_whitespace() || MARKS.contains(&c))
     };
-    let outside: String = line.chars().filter(is_outside).collect();
+    // The separators outside quotes.
+    let outside: Vec<_> = line.char_indices().filter(is_outside).collect();
+    let split = |is_mark: &dyn Fn(char) -> bool| -> Vec<&str> {
+        let mut from = 0;
+        let marks = outside.iter().filter(|(_, c)| is_mark(*c));
+        let ends = marks.map(|&(end, c)| [end, end + c.len_utf8()]).chain([[line.len(); 2]]);
+        ends.map(|[end, next]| {
+            let word = &line[std::mem::replace(&mut from, next)..end];
+            word.trim().trim_matches('"').trim()
+        })
+        .collect()
+    };
+    let has = |mark: char| outside.iter().any(|(_, c)| *c == mark);
     // With both tabs and commas, commas are those of decimals only if the words between tabs are
     // numbers.
-    let is_decimal =
-        |line: &str| line.split('\t').all(|word| number(word.trim().trim_matches('"')).is_some());
-    let is_mark = |mark: char| {
-        outside.contains(mark) && (mark != '\t' || !outside.contains(',') || is_decimal(line))
-    };
-    let mark = marks.into_iter().find(|&mark| is_mark(mark));
-    let mut is_quoted = false;
-    let ends = |c: char| {
-        is_quoted ^= c == '"';
-        !is_quoted && mark.map_or(c.is_whitespace(), |mark| mark == c)
-    };
-    let words = line.split(ends).map(|word| word.trim().trim_matches('"').trim().to_owned());
-    words.filter(|word| mark.is_some() || !word.is_empty()).collect()
+    let is_decimal = || split(&|c| c == '\t').into_iter().all(|word| number(word).is_some());
+    let is_mark = |mark: char| has(mark) && (mark != '\t' || !has(',') || is_decimal());
+    match MARKS.into_iter().find(|&mark| is_mark(mark)) {
+        Some(mark) => split(&|c| c == mark),
+        None => split(&char::is_whitespace).into_iter().filter(|word| !word.is_empty()).collect(),
+    }
 }
 
 /// Parses a number with a decimal point or comma.
@@ -285,11 +292,11 @@ fn name(word: &str) -> String {
 
 /// Returns whether a line is a heading: words without a digit, none of which is a number or
 /// missing; or ParaView's names.
-fn is_heading(columns: &[String]) -> bool {
+fn is_heading(columns: &[&str]) -> bool {
     if PARAVIEW.iter().all(|axis| columns.iter().any(|word| name(word) == *axis)) {
         return true;
     }
-    let is_name = |word: &String| word.contains(char::is_alphabetic) && number(word).is_none();
+    let is_name = |word: &&str| word.contains(char::is_alphabetic) && number(word).is_none();
     columns.iter().all(is_name) && !columns.iter().any(|word| name(word).contains(char::is_numeric))
 }
 
