@@ -3,7 +3,7 @@
 use crate::error::Refused;
 use crate::input::{Given, Robots};
 use crate::mesh::Mesh;
-use crate::output::{answer, array, array_or_number, decision_value, flat, members};
+use crate::output::{Enumeration, answer, array, array_or_number, decision_value, flat, members};
 use crate::threads::{Asked, Session, ask_each};
 use parry_continuum::Tube;
 use parry_continuum::parry::math::{Pose, Vector};
@@ -234,8 +234,9 @@ impl Mesh {
     ///
     /// Returns
     /// -------
-    /// Decision or (B,) array of int8
-    ///     1 clear, -1 contact (at most the margin away), both proven, and 0 undecided.
+    /// Decision or Decisions
+    ///     1 clear, -1 contact (at most the margin away), both proven, and 0 undecided. A batch returns an array of int8, (B,).
+    ///     Ask for ``is_clear``: neither has a truth value.
     ///
     /// Raises
     /// ------
@@ -267,6 +268,6 @@ impl Mesh {
             Ok(())
         };
         ask_each(py, &self.engine(py), &robots, (0, 1), ask, |_, found| all.extend(found))?;
-        members(py, "Decision", robots.shape(&[]), all)
+        members(py, Enumeration::Decision, robots.shape(&[]), all)
     }
 }

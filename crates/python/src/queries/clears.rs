@@ -3,7 +3,7 @@
 use super::distance::set_chain;
 use crate::input::{Caps, Given, Robots};
 use crate::mesh::Mesh;
-use crate::output::{answer, array_or_number, members, side_value};
+use crate::output::{Enumeration, answer, array_or_number, members, side_value};
 use crate::threads::{Asked, Session, ask_each};
 use parry_continuum::proximity::Proximity;
 use pyo3::prelude::*;
@@ -70,7 +70,8 @@ impl Mesh {
     /// Returns
     /// -------
     /// InsideAnswer
-    ///     ``clears`` and ``base``: bool and `Side`, or arrays of them.
+    ///     ``clears`` and ``base``: bool and `Side`, or arrays of them. ``holds`` says whether the base is inside and the margin
+    ///     is kept.
     ///
     /// Raises
     /// ------
@@ -99,6 +100,10 @@ impl Mesh {
             bases.extend(found.iter().map(|found| found.1));
         })?;
         let clears = array_or_number(py, robots.shape(&[]), clears)?;
-        answer!(py, "InsideAnswer", (clears, members(py, "Side", robots.shape(&[]), bases)?))
+        answer!(
+            py,
+            "InsideAnswer",
+            (clears, members(py, Enumeration::Side, robots.shape(&[]), bases)?)
+        )
     }
 }

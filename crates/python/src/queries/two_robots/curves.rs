@@ -3,7 +3,9 @@
 use super::{Pairs, RobotPair, Session, second};
 use crate::error::Refused;
 use crate::input::{Given, Robots};
-use crate::output::{answer, array, array_or_number, decision_value, flat, members, texts};
+use crate::output::{
+    Enumeration, answer, array, array_or_number, decision_value, flat, members, texts,
+};
 use crate::queries::clearance::{Stated, tube, tubes};
 use crate::threads::{Asked, ask_each};
 use parry_continuum::parry::math::{Pose, Vector};
@@ -110,7 +112,7 @@ impl Pairs {
             Ok(())
         };
         ask_each(py, self, robots, (0, 1), ask, |_, found| all.extend(found))?;
-        members(py, "Decision", robots.shape(&[]), all)
+        members(py, Enumeration::Decision, robots.shape(&[]), all)
     }
 }
 
@@ -132,7 +134,7 @@ impl Pairs {
             Ok(())
         };
         ask_each(py, self, robots, (0, 1), ask, |_, found| all.extend(found))?;
-        members(py, "Decision", robots.shape(&[]), all)
+        members(py, Enumeration::Decision, robots.shape(&[]), all)
     }
 }
 
@@ -156,7 +158,7 @@ impl Pairs {
 ///
 /// Returns
 /// -------
-/// Decision or (B,) array of int8
+/// Decision or Decisions
 ///     As of `Mesh.tube_clears`.
 ///
 /// Raises
@@ -298,7 +300,7 @@ impl RobotPair {
     ///
     /// Returns
     /// -------
-    /// Decision or (B,) array of int8
+    /// Decision or Decisions
     ///     As of `Mesh.tube_clears`.
     ///
     /// Raises
@@ -348,7 +350,7 @@ impl RobotPair {
     ///
     /// Returns
     /// -------
-    /// Decision or (B,) array of int8
+    /// Decision or Decisions
     ///
     /// Raises
     /// ------

@@ -2,7 +2,9 @@
 
 use super::{Pairs, RobotPair, Session};
 use crate::motions::{Motion, MotionPair, Moving};
-use crate::output::{answer, array, array_or_number, decision_value, flat, members, reason_value};
+use crate::output::{
+    Enumeration, answer, array, array_or_number, decision_value, flat, members, reason_value,
+};
 use crate::threads::{Asked, ask_each};
 use parry_continuum::parry::math::Vector;
 use parry_continuum::proximity::{RobotMotionAnswer, RobotsInContact};
@@ -184,14 +186,14 @@ fn answers<'py>(
     let intervals = all.iter().flat_map(|it| it.interval).collect();
     let lengths = all.iter().flat_map(|it| it.contact.map_or([f64::NAN; 2], |it| it.arc_lengths));
     let values = (
-        members(py, "Decision", shape(&[]), decisions)?,
+        members(py, Enumeration::Decision, shape(&[]), decisions)?,
         array(py, shape(&[2]), intervals)?,
         numbers(|shapes| shapes.t)?,
         numbers(|shapes| shapes.upper)?,
         points(|shapes| shapes.on_first)?,
         points(|shapes| shapes.on_second)?,
         array(py, shape(&[2]), lengths.collect())?,
-        members(py, "UndecidedReason", shape(&[]), reasons)?,
+        members(py, Enumeration::UndecidedReason, shape(&[]), reasons)?,
     );
     answer!(py, "RobotMotionAnswer", values)
 }
