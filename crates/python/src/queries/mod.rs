@@ -1,6 +1,6 @@
 //! The questions that a mesh is asked, a file for each.
 
-mod certify;
+pub(crate) mod certify;
 pub(crate) mod clearance;
 mod clears;
 pub(crate) mod distance;
