@@ -8,7 +8,7 @@ use parry_continuum::parry::math::Vector;
 use pyo3::exceptions::PyException;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
-use pyo3::types::PyFloat;
+use pyo3::types::{PyFloat, PyList, PyTuple, PyType};
 
 /// Numbers with a shape. They belong to Python: whoever looks at them holds the GIL, since another thread may write there.
 pub(crate) struct Numbers<'py>(Bound<'py, PyArrayDyn<f64>>);
@@ -16,6 +16,9 @@ pub(crate) struct Numbers<'py>(Bound<'py, PyArrayDyn<f64>>);
 impl<'py> Numbers<'py> {
     /// What is an array already is taken as it is; else numpy makes one. `name` is the parameter's.
     pub(crate) fn new(given: &Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+        if given.cast_exact::<PyUntypedArray>().is_err() {
+            refuse_masked(given, name)?;
+        }
         if let Ok(array) = given.cast::<PyArrayDyn<f64>>()
             && array.is_c_contiguous()
             && is_aligned(array)
@@ -84,6 +87,31 @@ pub(crate) fn shape_text(shape: &[usize]) -> String {
         [one] => format!("({one},)"),
         _ => format!("({})", shape.iter().map(usize::to_string).collect::<Vec<_>>().join(", ")),
     }
+}
+
+/// Refuses a masked array, or a list of them: numpy would drop the mask.
+pub(super) fn refuse_masked(given: &Bound<'_, PyAny>, name: &str) -> PyResult<()> {
+    static MASKED: PyOnceLock<Py<PyType>> = PyOnceLock::new();
+    let is_plain = |it: &Bound<'_, PyAny>| {
+        it.cast_exact::<PyUntypedArray>().is_ok() || it.cast::<PyUntypedArray>().is_err()
+    };
+    let check = |it: &Bound<'_, PyAny>| -> PyResult<()> {
+        let py = it.py();
+        if is_plain(it) || !it.is_instance(MASKED.import(py, "numpy.ma", "MaskedArray")?)? {
+            return Ok(());
+        }
+        let text = format!(
+            "`{name}` is a masked array, and its mask would be lost; leave the masked rows out, or give `{name}.data` if they count"
+        );
+        Err(Refused::other("bad_type", text).raise(py, None))
+    };
+    if let Ok(list) = given.cast_exact::<PyList>() {
+        return list.iter().try_for_each(|it| check(&it));
+    }
+    if let Ok(tuple) = given.cast_exact::<PyTuple>() {
+        return tuple.iter().try_for_each(|it| check(&it));
+    }
+    check(given)
 }
 
 /// What numpy makes of an argument, whatever its type.
