@@ -106,6 +106,7 @@ fn index_in_robot(error: &RobotError) -> Option<usize> {
         | RobotError::BadCurvature { index, .. }
         | RobotError::SectionsDiffer { index }
         | RobotError::ShapesDiffer { index }
+        | RobotError::MotionsApart { index, .. }
         | RobotError::BadTangent { index, .. }
         | RobotError::TurnsTooSharply { index, .. }
         | RobotError::BendsWithinRadius { index, .. } => Some(*index),

@@ -22,7 +22,7 @@ mod _native {
     use super::mesh::{Mesh, load};
     #[pymodule_export]
     use super::motions::{
-        BendingMotion, LinearMotion, Motion, MotionPath, MovingBase, RigidMotion,
+        BendingMotion, LinearMotion, Motion, MotionPath, MovingBase, RigidMotion, verify_motion,
     };
     #[pymodule_export]
     use super::queries::two_robots::{

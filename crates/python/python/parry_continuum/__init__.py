@@ -62,6 +62,7 @@ from ._native import (
     simplify,
     stations,
     tube_self_clears,
+    verify_motion,
 )
 
 __all__ = [
@@ -106,4 +107,5 @@ __all__ = [
     "simplify",
     "stations",
     "tube_self_clears",
+    "verify_motion",
 ]

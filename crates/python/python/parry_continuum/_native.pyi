@@ -50,6 +50,7 @@ __all__ = [
     "simplify",
     "stations",
     "tube_self_clears",
+    "verify_motion",
 ]
 
 __version__: str
@@ -448,3 +449,4 @@ def tube_self_clears(
     deviation: float = 0.0,
     turn: float | None = None,
 ) -> DecisionOrDecisions: ...
+def verify_motion(motion: Motion, steps: int) -> None: ...

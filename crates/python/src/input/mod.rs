@@ -5,9 +5,11 @@ mod faces;
 mod numbers;
 mod poses;
 mod robots;
+mod scalars;
 
 pub(crate) use caps::Caps;
 pub(crate) use faces::faces;
 pub(crate) use numbers::{Numbers, numpy, shape_text, vectors};
 pub(crate) use poses::{Poses, pose_of};
 pub(crate) use robots::{Block, Given, Robots};
+pub(crate) use scalars::Count;

@@ -7,6 +7,7 @@ mod motion_path;
 mod moving;
 mod moving_base;
 mod rigid;
+mod verify;
 mod way;
 
 pub(crate) use bending::BendingMotion;
@@ -16,6 +17,7 @@ pub(crate) use motion_path::MotionPath;
 pub(crate) use moving::Moving;
 pub(crate) use moving_base::MovingBase;
 pub(crate) use rigid::RigidMotion;
+pub(crate) use verify::verify_motion;
 
 use crate::error::Refused;
 use crate::threads::{Asked, compute};

@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 /// Motions one after another, each of which takes the same share of the time: of n motions the first one is from the time 0 to
 /// 1 / n, the next one to 2 / n, and so on.
 ///
-/// Each should begin where the one before ends. All need the same sections with the same radii. `Mesh.clearance_of_motion` looks
+/// Each begins where the one before ends, and all have the same sections with the same radii. `Mesh.clearance_of_motion` looks
 /// closely only at those that may come nearest.
 ///
 /// Parameters
@@ -17,7 +17,8 @@ use pyo3::prelude::*;
 /// Raises
 /// ------
 /// ContinuumError
-///     The list is empty, or the batches differ in how many motions they have.
+///     The list is empty, the batches differ in how many motions they have, motions have different sections, or one begins
+///     farther from the end of the one before than rounding and stated deviations explain: ``index`` is its place in the list.
 ///
 /// Examples
 /// --------
