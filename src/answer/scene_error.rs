@@ -26,6 +26,15 @@ pub enum SceneError {
     /// The margin between robots is at fault.
     #[error("between robots: {0}")]
     BetweenRobots(ProximityError),
+    /// A parameter of the query is at fault.
+    #[error(transparent)]
+    Query(ProximityError),
+    /// Neither a structure nor the robots have a margin, so there is nothing to keep.
+    #[error(
+        "nothing in the scene has a margin, so no robot could violate one; give a structure or the robots a margin, or ask for \
+         `per_structure`"
+    )]
+    NoMargin,
     /// There is no structure with this number.
     #[error(
         "there is no structure {structure} among {structures}; give the number that `add` returned"
@@ -45,7 +54,9 @@ impl SceneError {
         match self {
             Self::Structure { error, .. }
             | Self::Robot { error, .. }
-            | Self::BetweenRobots(error) => error.kind(),
+            | Self::BetweenRobots(error)
+            | Self::Query(error) => error.kind(),
+            Self::NoMargin => "no_margin",
             Self::NoSuchStructure { .. } => "no_such_structure",
         }
     }

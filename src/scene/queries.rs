@@ -227,13 +227,18 @@ impl Scene {
 
     /// Returns whether all robots keep all margins.
     ///
-    /// True exactly if the slack of [`tightest`](Self::tightest) is more than 0, or there is none.
-    /// The query ends at the first violated margin.
+    /// True exactly if the slack of [`tightest`](Self::tightest) is more than 0, or there is no
+    /// robot. The query ends at the first violated margin.
     ///
     /// # Errors
-    /// A pose is not finite or not rigid, or moves a link out of range. The message has the robot's
-    /// number.
+    /// - Neither a structure nor the robots have a margin.
+    /// - A pose is not finite or not rigid, or moves a link out of range. The message has the
+    ///   robot's number.
     pub fn clears(&mut self, robots: &[(&Chain, Pose)]) -> Result<bool, SceneError> {
+        let has_margin = |structure: &Structure| structure.margin.is_some();
+        if self.robot_margin.is_none() && !self.structures.iter().any(has_margin) {
+            return Err(SceneError::NoMargin);
+        }
         if self.begin(robots, None)? && !self.clears_structures(robots)? {
             return Ok(false);
         }
@@ -277,7 +282,8 @@ impl Scene {
     /// robot; pairs of robots come last.
     ///
     /// # Errors
-    /// As [`clears`](Self::clears).
+    /// A pose is not finite or not rigid, or moves a link out of range. The message has the robot's
+    /// number.
     pub fn tightest(&mut self, robots: &[(&Chain, Pose)]) -> Result<Option<Tightest>, SceneError> {
         self.begin(robots, Some(Real::INFINITY))?;
         let mut best: Best = None;
@@ -323,7 +329,7 @@ impl Scene {
     /// `out` is cleared first, and stays empty if no robot is given.
     ///
     /// # Errors
-    /// As [`clears`](Self::clears).
+    /// As [`tightest`](Self::tightest).
     pub fn per_structure(
         &mut self,
         robots: &[(&Chain, Pose)],
@@ -357,21 +363,21 @@ impl Scene {
 
     /// Finds every contact of every robot with every structure at most `reach` away.
     ///
-    /// Each contact is one of [`Proximity::within`]; they are sorted by structure, then by robot.
-    /// `out` is cleared first.
+    /// Each contact is one of [`Proximity::within`] at this prominence; they are sorted by
+    /// structure, then by robot. `out` is cleared first.
     ///
     /// # Errors
-    /// As [`clears`](Self::clears), or `reach` is negative or NaN.
+    /// As [`tightest`](Self::tightest), or `reach` or `prominence` is negative or NaN.
     pub fn contacts(
         &mut self,
         robots: &[(&Chain, Pose)],
         reach: Real,
+        prominence: Real,
         out: &mut Vec<SceneContact>,
     ) -> Result<(), SceneError> {
         out.clear();
-        if let Some(first) = self.structures.first() {
-            check_not_negative("reach", reach).map_err(|error| of_structure(first, error))?;
-        }
+        check_not_negative("reach", reach).map_err(SceneError::Query)?;
+        check_not_negative("prominence", prominence).map_err(SceneError::Query)?;
         if !self.begin(robots, Some(reach))? {
             return Ok(());
         }
@@ -383,7 +389,7 @@ impl Scene {
                     continue;
                 };
                 let structure = &mut self.structures[number];
-                let asked = ContactQuery { margin: reach, prominence: 0.0 };
+                let asked = ContactQuery { margin: reach, prominence };
                 structure
                     .search
                     .ask_contacts(placed, asked, &mut self.contacts)
@@ -662,7 +668,7 @@ mod tests {
                     match question {
                         0 => clears = scene.clears(&robots).unwrap(),
                         1 => tightest = scene.tightest(&robots).unwrap(),
-                        _ => scene.contacts(&robots, 0.4, &mut found).unwrap(),
+                        _ => scene.contacts(&robots, 0.4, 0.0, &mut found).unwrap(),
                     }
                     (clears, tightest, found)
                 });

@@ -15,7 +15,7 @@ ROBOT = np.array([[0, 0, 1.0], [0, 0, 2.0]])
 MANY = robots(np.random.default_rng(0), 20, points=3)
 PAIR = RobotPair()
 SCENE = Scene()
-SCENE.add("floor", MESH, 0.1)
+SCENE.add("floor", MESH, margin=0.1)
 
 
 def refused() -> None:

@@ -28,7 +28,7 @@ OTHERS: list[object] = [None, "", "tube", b"\0", {}, [], [[]], [[[]]], object(),
 
 def scene(mesh: Mesh) -> Scene:
     made = Scene()
-    made.add("wall", mesh, 0.1)
+    made.add("wall", mesh, margin=0.1)
     return made
 
 

@@ -153,8 +153,9 @@ impl Scene {
     /// name : str
     ///     For messages.
     /// mesh : Mesh
-    /// margin : float, optional
-    ///     The distance that robots keep from it. A structure without a margin is in no answer.
+    /// margin : float or None
+    ///     The distance that robots keep from it. A structure with None may be touched, such as a target: `per_structure` and
+    ///     `contacts` measure it, and the others ignore it.
     /// pose : (4, 4) array, optional
     ///     From the mesh's frame to the scene's.
     ///
@@ -162,7 +163,7 @@ impl Scene {
     /// ------
     /// ContinuumError
     ///     The margin is negative or NaN, or the pose is not rigid.
-    #[pyo3(signature = (name, mesh, margin = None, pose = None))]
+    #[pyo3(signature = (name, mesh, *, margin, pose = None))]
     fn add(
         &self,
         py: Python<'_>,
@@ -214,7 +215,7 @@ impl Scene {
     /// Raises
     /// ------
     /// ContinuumError
-    ///     The list is empty, or something in it is no robot.
+    ///     The list is empty, or something in it is no robot. Neither a structure nor the robots have a margin.
     #[pyo3(signature = (robots, *, caps = Caps::Fitted), text_signature = "($self, robots, *, caps=\"fitted\")")]
     fn clears<'py>(
         &self,
@@ -249,7 +250,7 @@ impl Scene {
     /// Raises
     /// ------
     /// ContinuumError
-    ///     As for `clears`.
+    ///     The list is empty, or something in it is no robot.
     #[pyo3(signature = (robots, *, caps = Caps::Fitted), text_signature = "($self, robots, *, caps=\"fitted\")")]
     fn tightest<'py>(
         &self,
@@ -285,7 +286,7 @@ impl Scene {
     /// Raises
     /// ------
     /// ContinuumError
-    ///     As for `clears`.
+    ///     As for `tightest`.
     #[pyo3(signature = (robots, *, caps = Caps::Fitted), text_signature = "($self, robots, *, caps=\"fitted\")")]
     fn per_structure<'py>(
         &self,
@@ -318,6 +319,8 @@ impl Scene {
     ///     As for `clears`.
     /// reach : float
     ///     A length, at least 0.
+    /// prominence : float
+    ///     As for `Mesh.within`: 0 takes every place that is closest among its neighbours.
     ///
     /// Returns
     /// -------
@@ -327,22 +330,25 @@ impl Scene {
     /// Raises
     /// ------
     /// ContinuumError
-    ///     The reach is negative or NaN, or as for `clears`.
-    #[pyo3(signature = (robots, reach, *, caps = Caps::Fitted), text_signature = "($self, robots, reach, *, caps=\"fitted\")")]
+    ///     The reach or the prominence is negative or NaN, or as for `tightest`.
+    #[pyo3(signature = (robots, reach, prominence = 0.0, *, caps = Caps::Fitted), text_signature = "($self, robots, reach, prominence=0.0, *, caps=\"fitted\")")]
     fn contacts<'py>(
         &self,
         py: Python<'py>,
         robots: Vec<Bound<'py, PyAny>>,
         reach: f64,
+        prominence: f64,
         caps: Caps,
     ) -> PyResult<Bound<'py, PyAny>> {
+        // A batch without robots asks nothing of the scene itself.
         check(py, "reach", Some(reach))?;
+        check(py, "prominence", Some(prominence))?;
         let robots = robots::robots(py, robots)?;
         let (mut all, mut offsets): (Vec<SceneContact>, _) = (Vec::new(), vec![0_i64]);
         let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [Vec<SceneContact>]| {
             let placed = place(&mut session.chains, robot, caps)?;
             let placed: Vec<_> = placed.into_iter().map(|(chain, pose, _)| (chain, pose)).collect();
-            Ok(session.scene.contacts(&placed, reach, &mut row[0])?)
+            Ok(session.scene.contacts(&placed, reach, prominence, &mut row[0])?)
         };
         ask_each(py, &self.snapshot(py), &robots, (Vec::new(), 1), ask, |_, found| {
             for found in found {

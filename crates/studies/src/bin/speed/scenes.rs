@@ -139,7 +139,7 @@ fn rows(
             "`contacts` and `within`",
             [
                 Box::new(move |pose| {
-                    scene3.contacts(&[(robot, *pose)], REACH, &mut of_scene).map_err(text)?;
+                    scene3.contacts(&[(robot, *pose)], REACH, 0.0, &mut of_scene).map_err(text)?;
                     Ok(of_scene.len() as f64)
                 }),
                 Box::new(move |pose| {
