@@ -65,6 +65,18 @@ where
     }
 }
 
+/// Points of which the frame is known.
+pub(crate) fn framed<'py>(
+    points: Bound<'py, PyArrayDyn<f64>>,
+    frame: Option<&str>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let Some(frame) = frame else { return Ok(points.into_any()) };
+    let py = points.py();
+    let points = points.call_method1("view", (answers(py)?.getattr("FramedPoints")?,))?;
+    points.setattr("frame", frame)?;
+    Ok(points)
+}
+
 /// Points one after the other.
 pub(crate) fn flat(points: impl IntoIterator<Item = Vector>) -> Vec<f64> {
     points.into_iter().map(|point| point.to_array()).collect::<Vec<_>>().into_flattened()

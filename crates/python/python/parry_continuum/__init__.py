@@ -19,6 +19,7 @@ array([0.9967, 1.9967, 2.9967])
 """
 
 from ._answers import (
+    Centreline,
     Certificate,
     Clearance,
     Contacts,
@@ -56,6 +57,7 @@ from ._native import (
     between,
     clears_between,
     load,
+    load_centreline,
     motion_self_clears,
     self_clears,
     self_minimum,
@@ -67,6 +69,7 @@ from ._native import (
 
 __all__ = [
     "BendingMotion",
+    "Centreline",
     "Certificate",
     "Clearance",
     "Contacts",
@@ -101,6 +104,7 @@ __all__ = [
     "between",
     "clears_between",
     "load",
+    "load_centreline",
     "motion_self_clears",
     "self_clears",
     "self_minimum",

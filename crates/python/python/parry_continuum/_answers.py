@@ -13,7 +13,7 @@ A type checker cannot tell one robot from many by their shape, so what is a numb
 from __future__ import annotations
 
 from enum import IntEnum
-from typing import Any, NamedTuple, NoReturn
+from typing import Any, NamedTuple, NoReturn, Optional
 
 import numpy as np
 from numpy.typing import NDArray
@@ -548,3 +548,32 @@ class Tightest(_Answer, _TightestFields):
     def is_clear(self) -> BoolOrBools:
         """Whether every margin is kept: ``slack`` is more than 0."""
         return self.slack > 0
+
+
+class FramedPoints(np.ndarray[Any, np.dtype[np.float64]]):
+    """Points as they were read from a file that states their frame. What is computed from them is a plain array."""
+
+    frame: Optional[str] = None
+    """The frame: "RAS" or "LPS"."""
+
+    def __array_finalize__(self, source: Any) -> None:
+        self.frame = getattr(source, "frame", None)
+
+    def __array_wrap__(self, array: Any, context: Any = None, return_scalar: bool = False) -> Any:
+        plain = np.asarray(array)
+        return plain[()] if plain.ndim == 0 else plain
+
+
+class Centreline(NamedTuple):
+    """A centreline that was read from a file."""
+
+    points: Floats
+    """(N, 3): the points. A mesh that states another frame warns if it is asked about them."""
+    radii: Optional[Floats]
+    """(N - 1,): the radius of each segment, or None if the file has none."""
+    frame: Optional[str]
+    """The frame, "RAS" or "LPS", or None if the file does not state it."""
+    unit: Optional[str]
+    """The unit that the file states, such as "mm", or None."""
+    skipped: int
+    """How many points were left out because they have no position yet."""

@@ -7,6 +7,7 @@ from typing_extensions import disjoint_base
 
 from ._answers import (
     BoolOrBools,
+    Centreline,
     Certificate,
     Clearance,
     Contacts,
@@ -44,6 +45,7 @@ __all__ = [
     "between",
     "clears_between",
     "load",
+    "load_centreline",
     "motion_self_clears",
     "self_clears",
     "self_minimum",
@@ -57,6 +59,7 @@ __version__: str
 
 _Caps = Literal["fitted", "capsules", "cylinders"]
 _MotionCaps = Literal["fitted", "capsules"]
+_Frame = Literal["RAS", "LPS"]
 
 @disjoint_base
 class Motion:
@@ -109,7 +112,15 @@ class MotionPath(Motion):
 @final
 class Mesh:
     # Beside an array, anything with `.vertices` and `.faces`.
-    def __new__(cls, vertices: Any, faces: ArrayLike | None = None) -> Mesh: ...
+    def __new__(
+        cls, vertices: Any, faces: ArrayLike | None = None, *, frame: _Frame | None = None, unit: str | None = None
+    ) -> Mesh: ...
+    @property
+    def frame(self) -> _Frame | None: ...
+    @property
+    def unit(self) -> str | None: ...
+    @property
+    def skipped_faces(self) -> int: ...
     @property
     def vertices(self) -> Floats: ...
     @property
@@ -154,6 +165,7 @@ class Mesh:
         caps: _Caps = "fitted",
     ) -> Contacts: ...
     def side(self, points: ArrayLike) -> SideOrSides: ...
+    def doubts(self, points: ArrayLike, radii: ArrayLike, *, pose: ArrayLike | None = None) -> list[str]: ...
     def clearance(
         self,
         points: ArrayLike,
@@ -414,7 +426,17 @@ class RobotPair:
         turn: float | None = None,
     ) -> DecisionOrDecisions: ...
 
-def load(path: str | PathLike[str], *, scale: float = 1.0, label: int | None = None) -> Mesh: ...
+def load(
+    path: str | PathLike[str],
+    *,
+    label: int | None = None,
+    frame: _Frame | None = None,
+    scale: float = 1.0,
+    allow_no_position: bool = False,
+) -> Mesh: ...
+def load_centreline(
+    path: str | PathLike[str], *, line: int | None = None, frame: _Frame | None = None, scale: float = 1.0
+) -> Centreline: ...
 def simplify(points: ArrayLike, radii: ArrayLike, tolerance: float) -> tuple[Floats, Floats]: ...
 def stations(points: ArrayLike, radii: ArrayLike, tolerance: float) -> tuple[Floats, Floats]: ...
 def between(

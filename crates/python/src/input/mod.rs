@@ -12,4 +12,4 @@ pub(crate) use faces::faces;
 pub(crate) use numbers::{Numbers, numpy, shape_text, vectors};
 pub(crate) use poses::{Poses, pose_of};
 pub(crate) use robots::{Block, Given, Robots};
-pub(crate) use scalars::Count;
+pub(crate) use scalars::{Count, FrameName, Whole};

@@ -1,5 +1,7 @@
 //! Scalars, whose errors name the parameter: Python adds the name to a TypeError alone.
 
+use crate::error::Refused;
+use mesh_files::Frame;
 use pyo3::exceptions::{PyOverflowError, PyTypeError};
 use pyo3::prelude::*;
 
@@ -15,6 +17,41 @@ impl<'a, 'py> FromPyObject<'a, 'py> for Count {
             Ok(count @ 1..) => Ok(Self(count)),
             Err(error) if !error.is_instance_of::<PyOverflowError>(given.py()) => Err(error),
             _ => Err(out_of_range(&given, "a whole number from 1 to 4294967295")?),
+        }
+    }
+}
+
+/// A whole number, at least 0.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Whole(pub u32);
+
+impl<'a, 'py> FromPyObject<'a, 'py> for Whole {
+    type Error = PyErr;
+
+    fn extract(given: Borrowed<'a, 'py, PyAny>) -> PyResult<Self> {
+        match given.extract::<u32>() {
+            Ok(number) => Ok(Self(number)),
+            Err(error) if !error.is_instance_of::<PyOverflowError>(given.py()) => Err(error),
+            Err(_) => Err(out_of_range(&given, "a whole number from 0 to 4294967295")?),
+        }
+    }
+}
+
+/// A frame, as the parameter `frame` names it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FrameName(pub Frame);
+
+impl<'a, 'py> FromPyObject<'a, 'py> for FrameName {
+    type Error = PyErr;
+
+    fn extract(given: Borrowed<'a, 'py, PyAny>) -> PyResult<Self> {
+        match given.extract::<&str>() {
+            Ok("RAS") => Ok(Self(Frame::Ras)),
+            Ok("LPS") => Ok(Self(Frame::Lps)),
+            _ => {
+                let text = format!("`frame` is {}; it must be 'RAS' or 'LPS'", given.repr()?);
+                Err(Refused::other("bad_frame", text).raise(given.py(), None))
+            }
         }
     }
 }

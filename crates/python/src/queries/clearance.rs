@@ -151,7 +151,7 @@ impl Mesh {
     ) -> PyResult<Bound<'py, PyAny>> {
         let stated = Stated { deviation, turn };
         let robots =
-            tubes(Robots::new("points", points, radii, pose)?, "tangents", tangents, stated)?;
+            tubes(self.robots("points", points, radii, pose)?, "tangents", tangents, stated)?;
         if tolerance.is_nan() || tolerance < 0.0 {
             let error = parry_continuum::proximity::ProximityError::Negative {
                 parameter: "tolerance",
@@ -259,7 +259,7 @@ impl Mesh {
     ) -> PyResult<Bound<'py, PyAny>> {
         let stated = Stated { deviation, turn };
         let robots =
-            tubes(Robots::new("points", points, radii, pose)?, "tangents", tangents, stated)?;
+            tubes(self.robots("points", points, radii, pose)?, "tangents", tangents, stated)?;
         let mut all: Vec<i8> = Vec::with_capacity(robots.len());
         let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [i8]| {
             let pose = session.set_tube(robot, stated)?;

@@ -1,7 +1,7 @@
 //! How near a robot is.
 
 use crate::error::Refused;
-use crate::input::{Caps, Given, Robots};
+use crate::input::{Caps, Given};
 use crate::mesh::Mesh;
 use crate::output::{answer, array_or_number, flat};
 use crate::threads::{Asked, Session, ask_each};
@@ -85,7 +85,7 @@ impl Mesh {
         pose: Option<&Bound<'py, PyAny>>,
         caps: Caps,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let robots = Robots::new("points", points, radii, pose)?;
+        let robots = self.robots("points", points, radii, pose)?;
         let mut distances: Vec<f64> = Vec::with_capacity(robots.len());
         let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [f64]| {
             row[0] = session.minimum(robot, caps)?.distance;
@@ -131,7 +131,7 @@ impl Mesh {
         pose: Option<&Bound<'py, PyAny>>,
         caps: Caps,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let robots = Robots::new("points", points, radii, pose)?;
+        let robots = self.robots("points", points, radii, pose)?;
         let mut all: Vec<LinkProximity> = Vec::with_capacity(robots.len());
         let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [Option<LinkProximity>]| {
             row[0] = Some(session.minimum(robot, caps)?);

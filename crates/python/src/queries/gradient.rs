@@ -7,7 +7,7 @@
 
 use super::distance::set_chain;
 use crate::error::Refused;
-use crate::input::{Caps, Given, Robots};
+use crate::input::{Caps, Given};
 use crate::mesh::Mesh;
 use crate::output::{answer, array, array_or_number};
 use crate::threads::{Asked, Session, ask_each};
@@ -105,7 +105,7 @@ impl Mesh {
         pose: Option<&Bound<'py, PyAny>>,
         caps: Caps,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let robots = Robots::new("points", points, radii, pose)?;
+        let robots = self.robots("points", points, radii, pose)?;
         let (count, each, segments) = (robots.len(), robots.points_each, robots.segments_each());
         let (mut values, mut kinks, mut poses) =
             (Vec::with_capacity(count), Vec::with_capacity(count), Vec::new());

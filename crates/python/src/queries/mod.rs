@@ -4,6 +4,7 @@ pub(crate) mod certify;
 pub(crate) mod clearance;
 mod clears;
 pub(crate) mod distance;
+mod doubts;
 mod gradient;
 mod motion;
 mod motion_answer;

@@ -1,7 +1,7 @@
 //! Whether a robot keeps a margin on all of its way, and until when.
 
 use super::motion_answer::motion_answer;
-use super::way::{Arguments, Question, Way, needed};
+use super::way::{Arguments, Question, needed};
 use crate::input::Caps;
 use crate::mesh::Mesh;
 use crate::threads::Session;
@@ -93,7 +93,7 @@ impl Mesh {
         resolution: Option<f64>,
         caps: Option<Caps>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let way = Way::new(&Arguments { start, end, radii, caps })?;
+        let way = self.way(&Arguments { start, end, radii, caps })?;
         let question = Clears {
             margin: needed(py, "margin", margin)?,
             resolution: needed(py, "resolution", resolution)?,
@@ -142,7 +142,7 @@ impl Mesh {
         resolution: Option<f64>,
         caps: Option<Caps>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let way = Way::new(&Arguments { start, end, radii, caps })?;
+        let way = self.way(&Arguments { start, end, radii, caps })?;
         let question = FirstContact {
             margin: needed(py, "margin", margin)?,
             resolution: needed(py, "resolution", resolution)?,

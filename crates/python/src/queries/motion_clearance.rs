@@ -1,6 +1,6 @@
 //! How near a robot comes on its way.
 
-use super::way::{Arguments, Question, Way, needed};
+use super::way::{Arguments, Question, needed};
 use crate::input::Caps;
 use crate::mesh::Mesh;
 use crate::output::{answer, array, array_or_number, flat};
@@ -66,7 +66,7 @@ impl Mesh {
         tolerance: Option<f64>,
         caps: Option<Caps>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let way = Way::new(&Arguments { start, end, radii, caps })?;
+        let way = self.way(&Arguments { start, end, radii, caps })?;
         let all = way.ask(
             py,
             &self.engine(py),

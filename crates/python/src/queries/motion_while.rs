@@ -1,7 +1,7 @@
 //! Whether a robot keeps a margin from a mesh that moves meanwhile.
 
 use super::motion_answer::motion_answer;
-use super::way::{Arguments, Question, Way, needed};
+use super::way::{Arguments, Question, needed};
 use crate::input::{Caps, vectors};
 use crate::mesh::{Mesh, rows};
 use crate::threads::Session;
@@ -76,7 +76,7 @@ impl Mesh {
         resolution: Option<f64>,
         caps: Option<Caps>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let way = Way::new(&Arguments { start, end, radii, caps })?;
+        let way = self.way(&Arguments { start, end, radii, caps })?;
         let question = While {
             to: vectors(rows(to, "to")?.points()),
             margin: needed(py, "margin", margin)?,

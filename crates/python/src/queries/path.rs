@@ -65,6 +65,7 @@ impl Mesh {
         resolution: f64,
     ) -> PyResult<Bound<'py, PyAny>> {
         let paths = Robots::paths("shapes", shapes, radii)?;
+        self.note_frame("shapes", shapes)?;
         let mut all: Vec<MotionAnswer> = Vec::new();
         let ask = |session: &mut Session, path: &Given<'_>, row: &mut [Option<MotionAnswer>]| {
             // How the links end does not matter.

@@ -2,7 +2,7 @@
 
 use super::clearance::{Stated, tubes};
 use super::distance::set_chain;
-use super::way::{Arguments, Question, Way, needed};
+use super::way::{Arguments, Question, needed};
 use crate::error::Refused;
 use crate::input::{Caps, Given, Robots};
 use crate::mesh::Mesh;
@@ -111,7 +111,7 @@ impl Mesh {
         pose: Option<&Bound<'py, PyAny>>,
         caps: Caps,
     ) -> PyResult<Option<String>> {
-        self.prove_one(py, &Robots::new("points", points, radii, pose)?, |session, robot| {
+        self.prove_one(py, &self.robots("points", points, radii, pose)?, |session, robot| {
             let chain = set_chain(&mut session.chain, robot, caps)?;
             Ok(session.search.prove(chain, &robot.pose()?, margin)?)
         })
@@ -156,7 +156,7 @@ impl Mesh {
     ) -> PyResult<Option<String>> {
         let stated = Stated { deviation, turn };
         let robots =
-            tubes(Robots::new("points", points, radii, pose)?, "tangents", tangents, stated)?;
+            tubes(self.robots("points", points, radii, pose)?, "tangents", tangents, stated)?;
         self.prove_one(py, &robots, |session, robot| {
             let tube = super::clearance::tube(robot, stated)?;
             Ok(session.search.prove_tube(&tube, &robot.pose()?, margin, resolution)?)
@@ -203,7 +203,7 @@ impl Mesh {
         resolution: Option<f64>,
         caps: Option<Caps>,
     ) -> PyResult<Option<String>> {
-        let way = Way::new(&Arguments { start, end, radii, caps })?;
+        let way = self.way(&Arguments { start, end, radii, caps })?;
         one(py, way.count())?;
         let question = Proves {
             margin: needed(py, "margin", margin)?,

@@ -45,6 +45,7 @@ impl Mesh {
         points: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let numbers = Numbers::new(points, "points")?;
+        self.note_frame("points", points)?;
         let Some((3, shape)) =
             numbers.shape().split_last().map(|(last, rest)| (*last, rest.to_vec()))
         else {

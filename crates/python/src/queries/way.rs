@@ -2,6 +2,7 @@
 
 use crate::error::Refused;
 use crate::input::{Caps, Given, Robots};
+use crate::mesh::Mesh;
 use crate::motions::{Maker, Motion, Moving, maker};
 use crate::threads::{Asked, Engine, Session, ask_each};
 use pyo3::prelude::*;
@@ -41,8 +42,18 @@ pub(super) fn needed<T>(py: Python<'_>, parameter: &str, given: Option<T>) -> Py
     })
 }
 
+impl Mesh {
+    /// What a question was given. Warns once if shapes state another frame than the mesh.
+    pub(super) fn way<'a, 'py>(&self, given: &Arguments<'a, 'py>) -> PyResult<Way<'a, 'py>> {
+        let way = Way::new(given)?;
+        self.note_frame("start", given.start)?;
+        given.end.map_or(Ok(()), |end| self.note_frame("end", end))?;
+        Ok(way)
+    }
+}
+
 impl<'a, 'py> Way<'a, 'py> {
-    pub(super) fn new(given: &Arguments<'a, 'py>) -> PyResult<Self> {
+    fn new(given: &Arguments<'a, 'py>) -> PyResult<Self> {
         let py = given.start.py();
         if let Ok(motion) = given.start.cast::<Motion>() {
             let besides = [

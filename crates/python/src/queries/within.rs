@@ -1,7 +1,7 @@
 //! Every contact of a robot.
 
 use super::distance::set_chain;
-use crate::input::{Caps, Given, Robots};
+use crate::input::{Caps, Given};
 use crate::mesh::Mesh;
 use crate::output::{answer, rows};
 use crate::threads::{Asked, Session, ask_each};
@@ -61,7 +61,7 @@ impl Mesh {
         pose: Option<&Bound<'py, PyAny>>,
         caps: Caps,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let robots = Robots::new("points", points, radii, pose)?;
+        let robots = self.robots("points", points, radii, pose)?;
         // Each with the number of its robot.
         let mut all: Vec<(Contact, i64)> = Vec::new();
         let mut offsets = Vec::with_capacity(robots.len() + 1);
