@@ -1,7 +1,7 @@
 //! Meshes and centrelines from files, with the frame and the unit that the files state.
 
 use crate::error::Refused;
-use crate::input::{FrameName, Whole};
+use crate::input::{FrameName, Whole, number};
 use crate::mesh::{Mesh, Origin};
 use crate::output::{answer, array};
 use crate::threads::compute;
@@ -102,7 +102,7 @@ pub(crate) fn load(
     path: PathBuf,
     label: Option<Whole>,
     frame: Option<FrameName>,
-    scale: f64,
+    #[pyo3(from_py_with = number)] scale: f64,
     allow_no_position: bool,
 ) -> PyResult<Mesh> {
     let options = Options::scaled(scale)
@@ -172,7 +172,7 @@ pub(crate) fn load_centreline<'py>(
     path: PathBuf,
     line: Option<Whole>,
     frame: Option<FrameName>,
-    scale: f64,
+    #[pyo3(from_py_with = number)] scale: f64,
 ) -> PyResult<Bound<'py, PyAny>> {
     let options = Options::scaled(scale).with_line(line.map(|Whole(line)| line as usize));
     let read = compute(py, || mesh_files::load_centreline(&path, &options))?;

@@ -2,15 +2,16 @@
 
 use crate::error::Refused;
 use crate::files::{frame_name, warn};
-use crate::input::{FrameName, Numbers, Robots, faces, shape_text, vectors};
+use crate::input::{FrameName, Names, Numbers, Robots, faces, shape_text, vectors};
 use crate::output::{array, flat};
 use crate::threads::{Engine, Held, alone};
 use mesh_files::Frame;
 use numpy::{PyArrayDyn, PyUntypedArray};
 use parry_continuum::parry::math::Vector;
 use parry_continuum::proximity::Proximity;
+use pyo3::exceptions::PyAttributeError;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyType};
+use pyo3::types::{PyBytes, PyDict, PyString, PyType};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -90,15 +91,14 @@ impl Mesh {
     /// The robots of a question. Warns once if their points state another frame than the mesh.
     pub(crate) fn robots<'py>(
         &self,
-        name: &str,
         points: &Bound<'py, PyAny>,
         radii: &Bound<'py, PyAny>,
         pose: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Robots<'py>> {
-        let robots = Robots::new(name, points, radii, pose)?;
+        let robots = Robots::new(Names::one("points"), points, radii, pose)?;
         // A pose leads into the mesh's frame.
         if pose.is_none() {
-            self.note_frame(name, points)?;
+            self.note_frame("points", points)?;
         }
         Ok(robots)
     }
@@ -133,6 +133,36 @@ pub(crate) fn frames_text(name: &str, frames: [Frame; 2]) -> String {
         "`{name}` state the frame {points}, and the mesh {mesh}: x and y have opposite signs; load both with frame='{mesh}', or \
          give `{name} * [-1, -1, 1]`"
     )
+}
+
+/// The vertices and faces of an object that has both.
+fn parts<'py>(given: &Bound<'py, PyAny>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+    let py = given.py();
+    let refuse = |text: &str| Refused::other("bad_type", text).raise(py, None);
+    if given.is_instance_of::<PyString>()
+        || given.is_instance_of::<PyBytes>()
+        || given.hasattr("__fspath__")?
+    {
+        return Err(refuse("`vertices` is a path; use load(), which reads files"));
+    }
+    match (attribute(given, "vertices")?, attribute(given, "faces")?) {
+        (Some(vertices), Some(faces)) => Ok((vertices, faces)),
+        _ => Err(refuse("`faces` is missing; give vertices and faces, or an object that has both")),
+    }
+}
+
+/// An attribute, if the object has it. An AttributeError of a property's own code is an error.
+pub(crate) fn attribute<'py>(
+    given: &Bound<'py, PyAny>,
+    name: &str,
+) -> PyResult<Option<Bound<'py, PyAny>>> {
+    match given.getattr(name) {
+        Ok(value) => Ok(Some(value)),
+        Err(error) if error.is_instance_of::<PyAttributeError>(given.py()) => {
+            if given.get_type().hasattr(name)? { Err(error) } else { Ok(None) }
+        }
+        Err(error) => Err(error),
+    }
 }
 
 /// Vertices as an array of rows; `name` is the parameter's.
@@ -171,14 +201,7 @@ impl Mesh {
         origin.unit = unit.or(origin.unit);
         let (vertices, triangles) = match faces {
             Some(faces) => (vertices.clone(), faces.clone()),
-            None => match (vertices.getattr("vertices"), vertices.getattr("faces")) {
-                (Ok(vertices), Ok(faces)) => (vertices, faces),
-                _ => {
-                    let text =
-                        "`faces` is missing; give vertices and faces, or an object that has both";
-                    return Err(Refused::other("bad_type", text).raise(py, None));
-                }
-            },
+            None => parts(vertices)?,
         };
         let vertices = vectors(rows(&vertices, "vertices")?.points());
         let triangles = self::faces(&triangles, vertices.len())?;

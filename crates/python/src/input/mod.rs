@@ -2,6 +2,7 @@
 
 mod caps;
 mod faces;
+mod names;
 mod numbers;
 mod poses;
 mod robots;
@@ -9,7 +10,8 @@ mod scalars;
 
 pub(crate) use caps::Caps;
 pub(crate) use faces::faces;
+pub(crate) use names::Names;
 pub(crate) use numbers::{Numbers, numpy, shape_text, vectors};
 pub(crate) use poses::{Poses, pose_of};
 pub(crate) use robots::{Block, Given, Robots};
-pub(crate) use scalars::{Count, FrameName, Whole};
+pub(crate) use scalars::{Count, FrameName, Whole, number, optional_number, places};

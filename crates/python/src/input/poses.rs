@@ -16,15 +16,19 @@ pub(crate) enum Poses<'py> {
 
 impl<'py> Poses<'py> {
     /// The parameter `pose`: one for all, (4, 4), or one for each of a batch.
-    pub(crate) fn new(given: &Bound<'py, PyAny>, count: Option<usize>) -> PyResult<Self> {
-        let numbers = Numbers::new(given, "pose")?;
+    pub(crate) fn new(
+        given: &Bound<'py, PyAny>,
+        count: Option<usize>,
+        name: &str,
+    ) -> PyResult<Self> {
+        let numbers = Numbers::new(given, name)?;
         match (numbers.shape(), count) {
             ([4, 4], _) => Ok(Self::Shared(numbers)),
             (&[poses, 4, 4], Some(count)) if poses == count => Ok(Self::Each(numbers)),
             (shape, _) => {
                 let fit = count.map_or(String::new(), |count| format!(" or ({count}, 4, 4)"));
                 let text = format!(
-                    "`pose` has the shape {}; give None, or the shape (4, 4){fit}",
+                    "`{name}` has the shape {}; give None, or the shape (4, 4){fit}",
                     shape_text(shape)
                 );
                 Err(Refused::other("bad_shape", text).raise(given.py(), None))
@@ -45,6 +49,14 @@ impl<'py> Poses<'py> {
                 );
                 Err(Refused::other("bad_shape", text).raise(given.py(), None))
             }
+        }
+    }
+
+    /// Refuses poses whose array has changed since it was given.
+    pub(crate) fn check_unchanged(&self, name: &str) -> Result<(), Refused> {
+        match self {
+            Self::Identity => Ok(()),
+            Self::Shared(numbers) | Self::Each(numbers) => numbers.check_unchanged(name),
         }
     }
 

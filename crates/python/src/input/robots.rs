@@ -1,5 +1,6 @@
 //! One robot or many, as arrays describe them.
 
+use super::names::Names;
 use super::numbers::{Numbers, shape_text};
 use super::poses::{Poses, pose_of};
 use crate::error::Refused;
@@ -11,6 +12,9 @@ use std::ops::Range;
 
 /// One robot, or a batch of them, as Python describes them. What is asked of it needs the GIL.
 pub(crate) struct Robots<'py> {
+    names: Names,
+    /// What the function calls `more`.
+    more_name: &'static str,
     /// How many robots the batch has; none where one robot was given, without a first index.
     pub count: Option<usize>,
     /// How many points each of them has; of a path, each of its shapes.
@@ -43,6 +47,7 @@ struct Shared {
 /// A copy of some robots, which needs no GIL. It is filled again and again.
 #[derive(Default)]
 pub(crate) struct Block {
+    names: Names,
     /// The place of its first robot in the batch.
     first: usize,
     points_each: usize,
@@ -59,6 +64,8 @@ pub(crate) struct Block {
 /// One robot of a block.
 #[derive(Clone, Copy)]
 pub(crate) struct Given<'a> {
+    /// What the function calls its parameters.
+    pub names: Names,
     /// Its place in the batch.
     pub number: usize,
     pub points: &'a [Vector],
@@ -105,17 +112,19 @@ fn points<'py>(
 }
 
 impl<'py> Robots<'py> {
-    /// Robots by their points, radii and poses. `name` is what the function calls its points.
+    /// Robots by their points, radii and poses.
     pub(crate) fn new(
-        name: &str,
+        names: Names,
         given: &Bound<'py, PyAny>,
         radii: &Bound<'py, PyAny>,
         pose: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Self> {
-        let (points, count, points_each) = points(given, name)?;
-        let radii = Radii::new(radii, count, points_each)?;
-        let poses = pose.map_or(Ok(Poses::Identity), |pose| Poses::new(pose, count))?;
+        let (points, count, points_each) = points(given, names.points)?;
+        let radii = Radii::new(radii, count, points_each, names)?;
+        let poses = pose.map_or(Ok(Poses::Identity), |pose| Poses::new(pose, count, names.pose))?;
         Ok(Self {
+            names,
+            more_name: "",
             count,
             points_each,
             points,
@@ -130,7 +139,7 @@ impl<'py> Robots<'py> {
     /// Paths, each of several shapes of one robot, (S, N, 3) or (B, S, N, 3): the points of a path are those of its shapes, one
     /// shape after the other.
     pub(crate) fn paths(
-        name: &str,
+        name: &'static str,
         given: &Bound<'py, PyAny>,
         radii: &Bound<'py, PyAny>,
     ) -> PyResult<Self> {
@@ -154,9 +163,12 @@ impl<'py> Robots<'py> {
                 return Err(refuse(given.py(), text));
             }
         };
-        let radii = Radii::new(radii, count, points_each)?;
+        let names = Names::one(name);
+        let radii = Radii::new(radii, count, points_each, names)?;
         let poses = Poses::Identity;
         Ok(Self {
+            names,
+            more_name: "",
             count,
             points_each,
             points,
@@ -171,7 +183,7 @@ impl<'py> Robots<'py> {
     /// The same with as many points more, such as those at which a motion ends.
     pub(crate) fn with_as_many(
         mut self,
-        name: &str,
+        name: &'static str,
         given: &Bound<'py, PyAny>,
         other: &str,
     ) -> PyResult<Self> {
@@ -184,14 +196,14 @@ impl<'py> Robots<'py> {
             );
             return Err(refuse(given.py(), text));
         }
-        self.more = Some(more);
+        (self.more, self.more_name) = (Some(more), name);
         Ok(self)
     }
 
     /// The same with directions of each robot's curve, at its two ends or at all of its points. `name` is the parameter's.
     pub(crate) fn with_tangents(
         mut self,
-        name: &str,
+        name: &'static str,
         given: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Self> {
         let Some(given) = given else { return Ok(self) };
@@ -205,7 +217,7 @@ impl<'py> Robots<'py> {
             );
             return Err(refuse(given.py(), text));
         }
-        self.more = Some(tangents);
+        (self.more, self.more_name) = (Some(tangents), name);
         Ok(self)
     }
 
@@ -218,8 +230,9 @@ impl<'py> Robots<'py> {
             (one, other) if one == other => {}
             (one, other) => {
                 let [one, other] = [one, other].map(Option::unwrap_or_default);
+                let [first, second] = [self.names, others.names].map(|names| names.robot());
                 let text = format!(
-                    "there are {one} robots beside {other}; give as many of both, or one of either"
+                    "`{first}` has {one} robots and `{second}` {other}; give as many of both, or one of either"
                 );
                 return Err(refuse(py, text));
             }
@@ -253,8 +266,17 @@ impl<'py> Asked for Robots<'py> {
         block.robot(place)
     }
 
-    fn copy(&self, robots: Range<usize>, block: &mut Block) {
-        block.first = robots.start;
+    fn copy(&self, robots: Range<usize>, block: &mut Block) -> Result<(), Refused> {
+        let Names { points, radii, pose, .. } = self.names;
+        self.points.check_unchanged(points)?;
+        if let Some(more) = &self.more {
+            more.check_unchanged(self.more_name)?;
+        }
+        if let Radii::Shared(numbers) | Radii::Each(numbers) = &self.radii {
+            numbers.check_unchanged(radii)?;
+        }
+        self.poses.check_unchanged(pose)?;
+        (block.first, block.names) = (robots.start, self.names);
         let copy_points = |from: &Numbers<'_>, to: &mut Vec<Vector>| {
             let each = from.points().len() / if self.is_one { 1 } else { self.len().max(1) };
             to.clear();
@@ -280,25 +302,31 @@ impl<'py> Asked for Robots<'py> {
         block.matrices.clear();
         block.matrices.extend(self.poses.matrices(robots.clone()));
         if let Some(others) = &self.others {
-            others.copy(robots, block.others.get_or_insert_default());
+            others.copy(robots, block.others.get_or_insert_default())?;
         }
         block.shared = Shared {
             points: self.is_one,
             radii: !matches!(self.radii, Radii::Each(_)),
             pose: self.poses.is_one(),
         };
+        Ok(())
     }
 }
 
 impl<'py> Radii<'py> {
-    fn new(given: &Bound<'py, PyAny>, count: Option<usize>, points: usize) -> PyResult<Self> {
+    fn new(
+        given: &Bound<'py, PyAny>,
+        count: Option<usize>,
+        points: usize,
+        names: Names,
+    ) -> PyResult<Self> {
         if let Some(radius) = Numbers::single(given) {
             return Ok(Self::Number(radius));
         }
-        let numbers = Numbers::new(given, "radii")?;
+        let numbers = Numbers::new(given, names.radii)?;
         let segments = points.saturating_sub(1);
         let lengths_differ = |radii: usize| {
-            let (parameter, expected) = ("radii", segments);
+            let (parameter, expected) = (names.radii, segments);
             let error = RobotError::LengthsDiffer { parameter, points, expected, radii };
             Refused::Robot(error).raise(given.py(), None)
         };
@@ -313,7 +341,8 @@ impl<'py> Radii<'py> {
             (shape, _) => {
                 let fit = count.map_or(String::new(), |count| format!(" or ({count}, {segments})"));
                 let text = format!(
-                    "`radii` has the shape {}; give a number, or the shape ({segments},){fit}: one radius for each segment",
+                    "`{}` has the shape {}; give a number, or the shape ({segments},){fit}: one radius for each segment",
+                    names.radii,
                     shape_text(shape)
                 );
                 Err(refuse(given.py(), text))
@@ -329,6 +358,7 @@ impl Block {
         let segments = of(self.segments_each);
         let of = |each: usize| if self.shared.points { 0..each } else { of(each) };
         Given {
+            names: self.names,
             number: self.first + place,
             points: &self.points[of(self.points_each)],
             more: &self.more[of(self.more_each)],
@@ -347,6 +377,7 @@ impl<'a> Given<'a> {
 
     /// The robot's pose in the mesh's frame.
     pub(crate) fn pose(&self) -> Result<Pose, Refused> {
-        self.matrix.map_or(Ok(Pose::IDENTITY), pose_of)
+        let pose = self.matrix.map_or(Ok(Pose::IDENTITY), pose_of);
+        pose.map_err(|refused| self.names.in_entry(refused.of(self.names.pose)))
     }
 }

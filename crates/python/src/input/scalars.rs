@@ -2,7 +2,7 @@
 
 use crate::error::Refused;
 use mesh_files::Frame;
-use pyo3::exceptions::{PyOverflowError, PyTypeError};
+use pyo3::exceptions::{PyOverflowError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
 /// A whole number, at least 1.
@@ -56,7 +56,38 @@ impl<'a, 'py> FromPyObject<'a, 'py> for FrameName {
     }
 }
 
+/// A number. An integer beyond all floats, or a text, is a TypeError too.
+pub(crate) fn number(given: &Bound<'_, PyAny>) -> PyResult<f64> {
+    let py = given.py();
+    given.extract::<f64>().map_err(|error| {
+        if error.is_instance_of::<PyOverflowError>(py) || error.is_instance_of::<PyValueError>(py) {
+            let text = format!("{error} (give a float)");
+            PyTypeError::new_err(text)
+        } else {
+            error
+        }
+    })
+}
+
+/// A number, or None.
+pub(crate) fn optional_number(given: &Bound<'_, PyAny>) -> PyResult<Option<f64>> {
+    if given.is_none() { Ok(None) } else { number(given).map(Some) }
+}
+
+/// Pairs of places in the list of robots.
+pub(crate) fn places(given: &Bound<'_, PyAny>) -> PyResult<Vec<[usize; 2]>> {
+    given.extract::<Vec<[usize; 2]>>().map_err(|error| {
+        if error.is_instance_of::<PyOverflowError>(given.py()) {
+            PyTypeError::new_err("a place in a list is negative or too large; places count from 0")
+        } else {
+            error
+        }
+    })
+}
+
 /// The error about a number that is none of `what`.
 fn out_of_range(given: &Bound<'_, PyAny>, what: &str) -> PyResult<PyErr> {
-    Ok(PyTypeError::new_err(format!("{} is not {what}", given.repr()?)))
+    // Python writes no integer of more than some thousand digits.
+    let given = given.repr().map_or_else(|_| "it".to_owned(), |text| text.to_string());
+    Ok(PyTypeError::new_err(format!("{given} is not {what}")))
 }

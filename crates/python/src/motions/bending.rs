@@ -79,9 +79,10 @@ impl BendingMotion {
         )?;
         let motion = Motion::new(py, count, |place| {
             let pose = match pose_count {
-                Some(_) => pose_of(&poses[place])?,
-                None => poses.first().map_or(Ok(Pose::IDENTITY), pose_of)?,
+                Some(_) => pose_of(&poses[place]),
+                None => poses.first().map_or(Ok(Pose::IDENTITY), pose_of),
             };
+            let pose = pose.map_err(|refused| refused.of("pose"))?;
             let [start, end] = [&start, &end].map(|sections| sections.at(place, &radii));
             Ok(Moving::Bending(parry_continuum::BendingMotion::new(&start, &end, pose)?))
         })?;

@@ -2,7 +2,7 @@
 
 use super::{Motion, Moving};
 use crate::error::Refused;
-use crate::input::{Block, Caps, Robots};
+use crate::input::{Block, Caps, Names, Robots};
 use crate::threads::Asked;
 use parry_continuum::RobotError;
 use parry_continuum::parry::math::Vector;
@@ -65,9 +65,10 @@ impl LinearMotion {
         caps: Caps,
     ) -> PyResult<PyClassInitializer<Self>> {
         let make = maker(py, caps)?;
-        let robots = Robots::new("start", start, radii, None)?.with_as_many("end", end, "start")?;
+        let robots = Robots::new(Names::one("start"), start, radii, None)?
+            .with_as_many("end", end, "start")?;
         let mut block = Block::default();
-        robots.copy(0..robots.len(), &mut block);
+        robots.copy(0..robots.len(), &mut block).map_err(|refused| refused.raise(py, None))?;
         let motion = Motion::new(py, robots.count, |place| {
             let robot = block.robot(place);
             Ok(Moving::Linear(make(robot.points, robot.more, robot.radii)?))

@@ -175,8 +175,9 @@ impl Asked for Motion {
         self.count
     }
 
-    fn copy(&self, range: Range<usize>, block: &mut SomeMotions) {
+    fn copy(&self, range: Range<usize>, block: &mut SomeMotions) -> Result<(), Refused> {
         (block.first, block.motions) = (range.start, Arc::clone(&self.motions));
+        Ok(())
     }
 
     fn one(block: &SomeMotions, place: usize) -> &Moving {

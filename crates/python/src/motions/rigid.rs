@@ -3,7 +3,7 @@
 use super::way::Way;
 use super::{Motion, Moving};
 use crate::error::Refused;
-use crate::input::{Block, Caps, Given, Robots};
+use crate::input::{Block, Caps, Given, Names, Robots, number, optional_number};
 use crate::queries::clearance::{Stated, tube, tubes};
 use crate::queries::distance::set_chain;
 use crate::threads::Asked;
@@ -55,7 +55,7 @@ impl RigidMotion {
         end_pose: &Bound<'_, PyAny>,
         caps: Caps,
     ) -> PyResult<PyClassInitializer<Self>> {
-        let robots = Robots::new("points", points, radii, None)?;
+        let robots = Robots::new(Names::one("points"), points, radii, None)?;
         let motion = rigid(points.py(), &robots, &Way::new(start_pose, end_pose)?, |robot| {
             Ok(Tube::from(set_chain(&mut None, robot, caps)?))
         })?;
@@ -83,12 +83,16 @@ impl RigidMotion {
         start_pose: &Bound<'py, PyAny>,
         end_pose: &Bound<'py, PyAny>,
         tangents: Option<&Bound<'py, PyAny>>,
-        deviation: f64,
-        turn: Option<f64>,
+        #[pyo3(from_py_with = number)] deviation: f64,
+        #[pyo3(from_py_with = optional_number)] turn: Option<f64>,
     ) -> PyResult<Py<Self>> {
         let stated = Stated { deviation, turn };
-        let robots =
-            tubes(Robots::new("points", points, radii, None)?, "tangents", tangents, stated)?;
+        let robots = tubes(
+            Robots::new(Names::one("points"), points, radii, None)?,
+            "tangents",
+            tangents,
+            stated,
+        )?;
         let way = Way::new(start_pose, end_pose)?;
         let motion = rigid(points.py(), &robots, &way, |robot| tube(robot, stated))?;
         Py::new(points.py(), motion.into_class(Self))
@@ -103,7 +107,7 @@ fn rigid(
     shape: impl Fn(&Given<'_>) -> Result<Tube, Refused> + Sync,
 ) -> PyResult<Motion> {
     let mut block = Block::default();
-    robots.copy(0..robots.len(), &mut block);
+    robots.copy(0..robots.len(), &mut block).map_err(|refused| refused.raise(py, None))?;
     let is_one = robots.count.is_none();
     Motion::new(py, way.count(py, "points", robots.count)?, |place| {
         let tube = shape(&block.robot(if is_one { 0 } else { place }))?;

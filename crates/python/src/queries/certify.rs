@@ -115,7 +115,7 @@ impl Mesh {
         pose: Option<&Bound<'py, PyAny>>,
         caps: Caps,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let robots = self.robots("points", points, radii, pose)?;
+        let robots = self.robots(points, radii, pose)?;
         let segments = robots.segments_each();
         let shape = robots.shape(&[segments]);
         let given = Answers::new(answer, &robots, segments)?;

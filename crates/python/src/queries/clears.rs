@@ -1,7 +1,7 @@
 //! Whether a robot keeps a margin.
 
 use super::distance::set_chain;
-use crate::input::{Caps, Given};
+use crate::input::{Caps, Given, number};
 use crate::mesh::Mesh;
 use crate::output::{Enumeration, answer, array_or_number, members, side_value};
 use crate::threads::{Asked, Session, ask_each};
@@ -40,11 +40,11 @@ impl Mesh {
         py: Python<'py>,
         points: &Bound<'py, PyAny>,
         radii: &Bound<'py, PyAny>,
-        margin: f64,
+        #[pyo3(from_py_with = number)] margin: f64,
         pose: Option<&Bound<'py, PyAny>>,
         caps: Caps,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let robots = self.robots("points", points, radii, pose)?;
+        let robots = self.robots(points, radii, pose)?;
         let mut all: Vec<bool> = Vec::with_capacity(robots.len());
         let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [bool]| {
             let chain = set_chain(&mut session.chain, robot, caps)?;
@@ -83,11 +83,11 @@ impl Mesh {
         py: Python<'py>,
         points: &Bound<'py, PyAny>,
         radii: &Bound<'py, PyAny>,
-        margin: f64,
+        #[pyo3(from_py_with = number)] margin: f64,
         pose: Option<&Bound<'py, PyAny>>,
         caps: Caps,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let robots = self.robots("points", points, radii, pose)?;
+        let robots = self.robots(points, radii, pose)?;
         let (mut clears, mut bases) = (Vec::new(), Vec::new());
         let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [(bool, i8)]| {
             let chain = set_chain(&mut session.chain, robot, caps)?;

@@ -5,9 +5,9 @@ use crate::input::{Caps, Given};
 use crate::mesh::Mesh;
 use crate::output::{answer, array_or_number, flat};
 use crate::threads::{Asked, Session, ask_each};
-use parry_continuum::Chain;
 use parry_continuum::parry::math::Vector;
 use parry_continuum::proximity::{LinkProximity, Proximity};
+use parry_continuum::{Chain, RobotError};
 use pyo3::prelude::*;
 
 impl Session {
@@ -28,6 +28,14 @@ pub(crate) fn set_chain<'a>(
     robot: &Given<'_>,
     caps: Caps,
 ) -> Result<&'a Chain, Refused> {
+    fill(chain, robot, caps).map_err(|error| robot.names.apply(error))
+}
+
+fn fill<'a>(
+    chain: &'a mut Option<Chain>,
+    robot: &Given<'_>,
+    caps: Caps,
+) -> Result<&'a Chain, RobotError> {
     Ok(match (chain, caps) {
         (Some(chain), Caps::Fitted) => {
             chain.set_centreline(robot.points, robot.radii)?;
@@ -85,7 +93,7 @@ impl Mesh {
         pose: Option<&Bound<'py, PyAny>>,
         caps: Caps,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let robots = self.robots("points", points, radii, pose)?;
+        let robots = self.robots(points, radii, pose)?;
         let mut distances: Vec<f64> = Vec::with_capacity(robots.len());
         let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [f64]| {
             row[0] = session.minimum(robot, caps)?.distance;
@@ -131,7 +139,7 @@ impl Mesh {
         pose: Option<&Bound<'py, PyAny>>,
         caps: Caps,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let robots = self.robots("points", points, radii, pose)?;
+        let robots = self.robots(points, radii, pose)?;
         let mut all: Vec<LinkProximity> = Vec::with_capacity(robots.len());
         let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [Option<LinkProximity>]| {
             row[0] = Some(session.minimum(robot, caps)?);

@@ -147,9 +147,10 @@ impl Mesh {
         radii: &Bound<'py, PyAny>,
         pose: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Vec<String>> {
-        let robots = crate::input::Robots::new("points", points, radii, pose)?;
+        let robots =
+            crate::input::Robots::new(crate::input::Names::one("points"), points, radii, pose)?;
         let mut block = Block::default();
-        robots.copy(0..robots.len(), &mut block);
+        robots.copy(0..robots.len(), &mut block).map_err(|refused| refused.raise(py, None))?;
         let mut balls = Vec::new();
         for place in 0..robots.len() {
             let robot: Given<'_> = block.robot(place);
@@ -163,6 +164,7 @@ impl Mesh {
             Extent::of(session.search.vertices().iter().map(|&vertex| (vertex, 0.0)))
         })?;
         let Some(mesh) = mesh else { return Ok(Vec::new()) };
-        compute(py, || doubts(&balls, &mesh, frames, pose.is_none()))
+        let may_turn = pose.is_none();
+        compute(py, || doubts(&balls, &mesh, frames, may_turn))
     }
 }

@@ -105,7 +105,7 @@ impl Mesh {
         pose: Option<&Bound<'py, PyAny>>,
         caps: Caps,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let robots = self.robots("points", points, radii, pose)?;
+        let robots = self.robots(points, radii, pose)?;
         let (count, each, segments) = (robots.len(), robots.points_each, robots.segments_each());
         let (mut values, mut kinks, mut poses) =
             (Vec::with_capacity(count), Vec::with_capacity(count), Vec::new());

@@ -65,7 +65,7 @@ impl Mesh {
         pose: Option<&Bound<'py, PyAny>>,
         caps: Caps,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let robots = self.robots("points", points, radii, pose)?;
+        let robots = self.robots(points, radii, pose)?;
         let segments = robots.segments_each();
         let count = robots.len() * segments;
         let (mut distance, mut arc_length) = (Vec::with_capacity(count), Vec::with_capacity(count));

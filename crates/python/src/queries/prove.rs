@@ -4,7 +4,7 @@ use super::clearance::{Stated, tubes};
 use super::distance::set_chain;
 use super::way::{Arguments, Question, needed};
 use crate::error::Refused;
-use crate::input::{Caps, Given, Robots};
+use crate::input::{Caps, Given, Robots, number, optional_number};
 use crate::mesh::Mesh;
 use crate::threads::{Session, ask_each};
 use parry_continuum::Motion;
@@ -107,11 +107,11 @@ impl Mesh {
         py: Python<'py>,
         points: &Bound<'py, PyAny>,
         radii: &Bound<'py, PyAny>,
-        margin: f64,
+        #[pyo3(from_py_with = number)] margin: f64,
         pose: Option<&Bound<'py, PyAny>>,
         caps: Caps,
     ) -> PyResult<Option<String>> {
-        self.prove_one(py, &self.robots("points", points, radii, pose)?, |session, robot| {
+        self.prove_one(py, &self.robots(points, radii, pose)?, |session, robot| {
             let chain = set_chain(&mut session.chain, robot, caps)?;
             Ok(session.search.prove(chain, &robot.pose()?, margin)?)
         })
@@ -147,16 +147,15 @@ impl Mesh {
         py: Python<'py>,
         points: &Bound<'py, PyAny>,
         radii: &Bound<'py, PyAny>,
-        margin: f64,
-        resolution: f64,
+        #[pyo3(from_py_with = number)] margin: f64,
+        #[pyo3(from_py_with = number)] resolution: f64,
         tangents: Option<&Bound<'py, PyAny>>,
-        deviation: f64,
-        turn: Option<f64>,
+        #[pyo3(from_py_with = number)] deviation: f64,
+        #[pyo3(from_py_with = optional_number)] turn: Option<f64>,
         pose: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Option<String>> {
         let stated = Stated { deviation, turn };
-        let robots =
-            tubes(self.robots("points", points, radii, pose)?, "tangents", tangents, stated)?;
+        let robots = tubes(self.robots(points, radii, pose)?, "tangents", tangents, stated)?;
         self.prove_one(py, &robots, |session, robot| {
             let tube = super::clearance::tube(robot, stated)?;
             Ok(session.search.prove_tube(&tube, &robot.pose()?, margin, resolution)?)
@@ -199,8 +198,8 @@ impl Mesh {
         start: &Bound<'py, PyAny>,
         end: Option<&Bound<'py, PyAny>>,
         radii: Option<&Bound<'py, PyAny>>,
-        margin: Option<f64>,
-        resolution: Option<f64>,
+        #[pyo3(from_py_with = optional_number)] margin: Option<f64>,
+        #[pyo3(from_py_with = optional_number)] resolution: Option<f64>,
         caps: Option<Caps>,
     ) -> PyResult<Option<String>> {
         let way = self.way(&Arguments { start, end, radii, caps })?;

@@ -1,7 +1,7 @@
 //! What a question about a motion was given: two shapes and radii, or a motion.
 
 use crate::error::Refused;
-use crate::input::{Caps, Given, Robots};
+use crate::input::{Caps, Given, Names, Robots};
 use crate::mesh::Mesh;
 use crate::motions::{Maker, Motion, Moving, maker};
 use crate::threads::{Asked, Engine, Session, ask_each};
@@ -74,8 +74,8 @@ impl<'a, 'py> Way<'a, 'py> {
         let end = needed(py, "end", given.end)?;
         let radii = needed(py, "radii", given.radii)?;
         let make = maker(py, given.caps.unwrap_or(Caps::Fitted))?;
-        let robots =
-            Robots::new("start", given.start, radii, None)?.with_as_many("end", end, "start")?;
+        let robots = Robots::new(Names::one("start"), given.start, radii, None)?
+            .with_as_many("end", end, "start")?;
         Ok(Self::Linear(robots, make))
     }
 

@@ -4,7 +4,7 @@ mod answers;
 mod robots;
 
 use crate::error::Refused;
-use crate::input::{Caps, Given, Numbers, pose_of, shape_text};
+use crate::input::{Caps, Given, Numbers, number, optional_number, places, pose_of, shape_text};
 use crate::mesh::Mesh;
 use crate::output::array_or_number;
 use crate::threads::{self, Asked, Engine, Held, Lender, ask_each};
@@ -141,7 +141,11 @@ fn check(py: Python<'_>, parameter: &'static str, margin: Option<f64>) -> PyResu
 impl Scene {
     #[new]
     #[pyo3(signature = (*, robot_margin = None, nested = Vec::new()), text_signature = "(*, robot_margin=None, nested=())")]
-    fn new(py: Python<'_>, robot_margin: Option<f64>, nested: Vec<[usize; 2]>) -> PyResult<Self> {
+    fn new(
+        py: Python<'_>,
+        #[pyo3(from_py_with = optional_number)] robot_margin: Option<f64>,
+        #[pyo3(from_py_with = places)] nested: Vec<[usize; 2]>,
+    ) -> PyResult<Self> {
         check(py, "robot_margin", robot_margin)?;
         Ok(Self { structures: Held::new(Vec::new()), robot_margin, nested })
     }
@@ -169,7 +173,7 @@ impl Scene {
         py: Python<'_>,
         name: String,
         mesh: Py<Mesh>,
-        margin: Option<f64>,
+        #[pyo3(from_py_with = optional_number)] margin: Option<f64>,
         pose: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<usize> {
         check(py, "margin", margin)?;
@@ -186,7 +190,7 @@ impl Scene {
                     );
                     return Err(Refused::other("bad_shape", text).raise(py, None));
                 };
-                pose_of(matrix).map_err(|refused| refused.raise(py, None))?
+                pose_of(matrix).map_err(|refused| refused.of("pose").raise(py, None))?
             }
         };
         let structure = Structure { name, mesh, margin, pose };
@@ -336,8 +340,8 @@ impl Scene {
         &self,
         py: Python<'py>,
         robots: Vec<Bound<'py, PyAny>>,
-        reach: f64,
-        prominence: f64,
+        #[pyo3(from_py_with = number)] reach: f64,
+        #[pyo3(from_py_with = number)] prominence: f64,
         caps: Caps,
     ) -> PyResult<Bound<'py, PyAny>> {
         // A batch without robots asks nothing of the scene itself.

@@ -56,8 +56,8 @@ impl RobotPair {
         py: Python<'py>,
         a: &Bound<'py, Motion>,
         b: &Bound<'py, Motion>,
-        margin: f64,
-        resolution: f64,
+        #[pyo3(from_py_with = number)] margin: f64,
+        #[pyo3(from_py_with = number)] resolution: f64,
     ) -> PyResult<Bound<'py, PyAny>> {
         let motions = MotionPair::new(a, b)?;
         let mut all: Vec<RobotMotionAnswer> = Vec::with_capacity(motions.len());
@@ -93,8 +93,8 @@ impl RobotPair {
         &self,
         py: Python<'py>,
         motion: &Bound<'py, Motion>,
-        margin: f64,
-        resolution: f64,
+        #[pyo3(from_py_with = number)] margin: f64,
+        #[pyo3(from_py_with = number)] resolution: f64,
     ) -> PyResult<Bound<'py, PyAny>> {
         self.0.motion_self_clears(py, motion.get(), margin, resolution)
     }
@@ -142,8 +142,8 @@ impl RobotPair {
 pub(crate) fn motion_self_clears<'py>(
     py: Python<'py>,
     motion: &Bound<'py, Motion>,
-    margin: f64,
-    resolution: f64,
+    #[pyo3(from_py_with = number)] margin: f64,
+    #[pyo3(from_py_with = number)] resolution: f64,
 ) -> PyResult<Bound<'py, PyAny>> {
     Pairs::default().motion_self_clears(py, motion.get(), margin, resolution)
 }

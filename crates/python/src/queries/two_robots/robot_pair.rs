@@ -1,7 +1,7 @@
 //! Two robots that are asked about again and again.
 
 use super::{Pairs, pairs};
-use crate::input::{Caps, Robots};
+use crate::input::{Caps, Names, Robots, number};
 use pyo3::prelude::*;
 
 /// Questions about two robots, or about one and itself.
@@ -133,7 +133,7 @@ impl RobotPair {
         radii_a: &Bound<'py, PyAny>,
         points_b: &Bound<'py, PyAny>,
         radii_b: &Bound<'py, PyAny>,
-        margin: f64,
+        #[pyo3(from_py_with = number)] margin: f64,
         pose_a: Option<&Bound<'py, PyAny>>,
         pose_b: Option<&Bound<'py, PyAny>>,
         caps: Caps,
@@ -168,7 +168,7 @@ impl RobotPair {
         radii_a: &Bound<'py, PyAny>,
         points_b: &Bound<'py, PyAny>,
         radii_b: &Bound<'py, PyAny>,
-        margin: f64,
+        #[pyo3(from_py_with = number)] margin: f64,
         pose_a: Option<&Bound<'py, PyAny>>,
         pose_b: Option<&Bound<'py, PyAny>>,
         caps: Caps,
@@ -201,7 +201,7 @@ impl RobotPair {
         radii: &Bound<'py, PyAny>,
         caps: Caps,
     ) -> PyResult<Bound<'py, PyAny>> {
-        self.0.self_minimum(py, &Robots::new("points", points, radii, None)?, caps)
+        self.0.self_minimum(py, &Robots::new(Names::one("points"), points, radii, None)?, caps)
     }
 
     /// Whether the parts of a robot that could meet keep more than a margin: as `parry_continuum.self_clears`.
@@ -228,9 +228,14 @@ impl RobotPair {
         py: Python<'py>,
         points: &Bound<'py, PyAny>,
         radii: &Bound<'py, PyAny>,
-        margin: f64,
+        #[pyo3(from_py_with = number)] margin: f64,
         caps: Caps,
     ) -> PyResult<Bound<'py, PyAny>> {
-        self.0.self_clears(py, &Robots::new("points", points, radii, None)?, margin, caps)
+        self.0.self_clears(
+            py,
+            &Robots::new(Names::one("points"), points, radii, None)?,
+            margin,
+            caps,
+        )
     }
 }
