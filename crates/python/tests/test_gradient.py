@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from numpy.testing import assert_allclose
 
-from parry_continuum import Mesh
+from parry_continuum import ContinuumError, Mesh
 from shapes import Array, poses, robots, sphere
 
 MESH = Mesh(*sphere())
@@ -88,3 +89,39 @@ def test_no_side() -> None:
     floor = Mesh([[-9, -9, 0], [9, -9, 0], [0, 9, 0]], [[0, 1, 2]])
     found = floor.distance_and_gradient([[-1, 0, 0], [1, 0, 0]], 0.0)
     assert np.isnan(found.points).all() and np.isnan(found.pose).all() and found.value == 0
+
+
+FLOOR = Mesh([[-90, -90, 0], [90, -90, 0], [0, 90, 0]], [[0, 1, 2]])
+BEND = np.array([[-2, 0, 2], [0, 0, 1], [2, 0, 2.0]])
+
+
+def test_a_bend_of_equal_radii_has_a_kink() -> None:
+    """The least change of one radius makes a step of the bend, whose flat side is farther away."""
+    equal = np.full(2, 0.5)
+    found = FLOOR.distance_and_gradient(BEND, equal)
+    assert found.value == 0.5 and found.kink is True
+    for place in (0, 1):
+        other = equal.copy()
+        other[place] += 1e-6
+        assert FLOOR.distance(BEND, other) - found.value > 0.04
+        assert FLOOR.distance_and_gradient(BEND, other).kink is False
+    # Radii that differ by rounding are equal.
+    assert FLOOR.distance_and_gradient(BEND, equal * [1, 1 + 2e-16]).kink is True
+    assert FLOOR.distance_and_gradient(BEND, 0.5).kink is True
+    assert FLOOR.distance_and_gradient(BEND, equal, caps="capsules").kink is False
+
+
+def test_where_there_is_no_joint_there_is_no_such_kink() -> None:
+    tilted = BEND[:2]  # its end is closest, which is flat
+    assert FLOOR.distance_and_gradient(tilted, 0.5).kink is False
+    arch = BEND * [1, 1, -1] + [0, 0, 5]  # its ends are closest
+    found = FLOOR.distance_and_gradient(np.stack([BEND, arch + [0, 0, 1], BEND + [0, 0, 1]]), 0.5)
+    assert found.kink[[0, 2]].all() and found.value.tolist() == pytest.approx([0.5, 3.553, 1.5], abs=1e-3)
+    side = np.array([[-2, 0, 2], [0, 0, 2.1], [2, 0, 1.0], [4, 0, 2.0]])
+    assert FLOOR.distance_and_gradient(side, 0.1).kink is True
+    found = FLOOR.distance_and_gradient(BEND[None], [[0.5, 0.6]])
+    assert found.kink.tolist() == [False]
+    none = FLOOR.distance_and_gradient(BEND[None][:0], 0.5)
+    assert none.kink.shape == (0,) and none.points.shape == (0, 3, 3)
+    with pytest.raises(ContinuumError, match="`radii`"):
+        FLOOR.distance_and_gradient(BEND, "wide")

@@ -348,7 +348,8 @@ class _GradientFields(NamedTuple):
     pose: Floats
     """(4, 4): the derivative with respect to the entries of the pose."""
     kink: BoolOrBools
-    """Whether other points are as close, for which the derivative is another."""
+    """Whether other points are as close, for which the derivative is another, or a joint of equal radii is closest, from
+    which the distance jumps if one of the radii changes alone."""
 
 
 class Gradient(_Answer, _GradientFields):

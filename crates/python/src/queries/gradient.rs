@@ -12,7 +12,8 @@ use crate::mesh::Mesh;
 use crate::output::{answer, array, array_or_number};
 use crate::threads::{Asked, Session, ask_each};
 use parry_continuum::parry::math::Vector;
-use parry_continuum::proximity::Proximity;
+use parry_continuum::proximity::{Contact, LinkFeature, Proximity};
+use parry_continuum::{Cap, Chain};
 use pyo3::prelude::*;
 
 /// What there is of one robot.
@@ -44,8 +45,8 @@ fn ask(session: &mut Session, robot: &Given<'_>, caps: Caps) -> Result<Row, Refu
     let mut row = Row { value: contact.depth.unwrap_or(closest.distance), segment, ..NOTHING };
     if let Some(found) = session.search.derivative(chain, &pose, &closest)? {
         let back = pose.rotation.inverse();
-        (row.ends, row.radius, row.kink) =
-            ([back * found.start, back * found.end], found.radius, found.kink);
+        (row.ends, row.radius) = ([back * found.start, back * found.end], found.radius);
+        row.kink = found.kink || (caps == Caps::Fitted && is_at_filled_bend(chain, &contact));
         row.pose = [0.0; 16];
         for (rate, point) in
             [(found.start, robot.points[segment]), (found.end, robot.points[segment + 1])]
@@ -60,6 +61,25 @@ fn ask(session: &mut Session, robot: &Given<'_>, caps: Caps) -> Result<Row, Refu
     Ok(row)
 }
 
+/// Radii that differ by at most this share are equal, as in `Chain::from_centreline`.
+const EQUAL: f64 = 1.0 / (1_u64 << 32) as f64;
+
+/// Whether the closest place is on the round cap of a joint between equal radii. If one of the two radii changes, however little,
+/// the joint is a step, its wider side is flat, and the distance jumps.
+fn is_at_filled_bend(chain: &Chain, contact: &Contact) -> bool {
+    let (links, link) = (chain.links(), contact.link as usize);
+    let (end, neighbour) = match contact.feature.link {
+        LinkFeature::Side => return false,
+        LinkFeature::StartCap => (0, link.checked_sub(1)),
+        LinkFeature::EndCap => (1, link.checked_add(1)),
+    };
+    let Some(neighbour) = neighbour.and_then(|neighbour| links.get(neighbour)) else {
+        return false;
+    };
+    let [radius, other] = [links[link].radius(), neighbour.radius()];
+    links[link].caps()[end] == Cap::Round && (radius - other).abs() <= EQUAL * radius.max(other)
+}
+
 #[pymethods]
 impl Mesh {
     /// The distance with its derivative with respect to every point, radius and pose.
@@ -68,8 +88,9 @@ impl Mesh {
     /// translation that parts the closest link from its triangle, so that it goes on through the wall.
     ///
     /// Of most robots one link is closest, and one triangle. Where two are equally close the distance has a kink, and what is
-    /// given is the derivative for one of them; ``kink`` says where the two closest points themselves could be others. The
-    /// derivatives are NaN where neither side of the triangle is the robot's.
+    /// given is the derivative for one of them; ``kink`` says where the two closest points themselves could be others. With fitted
+    /// caps, a bend between segments of equal radii is filled, and the distance from there jumps if one of the two radii changes
+    /// alone: ``kink`` says so too. The derivatives are NaN where neither side of the triangle is the robot's.
     ///
     /// Parameters
     /// ----------
