@@ -1,10 +1,10 @@
 //! Meshes and centrelines from files, with the frame and the unit that the files state.
 
 use crate::error::Refused;
-use crate::input::{FrameName, Whole, number};
+use crate::input::{FrameName, Whole, number, vectors};
 use crate::mesh::{Mesh, Origin};
 use crate::output::{answer, array};
-use crate::threads::compute;
+use crate::threads::interruptible;
 use mesh_files::{Frame, MeshFileError, Options};
 use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
@@ -108,7 +108,8 @@ pub(crate) fn load(
     let options = Options::scaled(scale)
         .with_label(label.map(|Whole(label)| label))
         .with_no_position_allowed(allow_no_position);
-    let read = compute(py, || mesh_files::load_with(&path, &options))?;
+    let file = path.clone();
+    let read = interruptible(py, move || mesh_files::load_with(&file, &options))?;
     made(py, &path, read.map_err(|error| refuse(py, &error))?, frame, scale)
 }
 
@@ -137,7 +138,7 @@ fn made(
     let origin =
         Origin { frame, unit: unit(file.states_unit, scale), skipped_faces: file.skipped_faces };
     let (vertices, triangles) = file.into_parts::<[f64; 3]>();
-    Mesh::new_from(py, &crate::input::vectors(&vertices), &triangles, origin)
+    Mesh::new_from(py, vectors(&vertices), triangles, origin)
 }
 
 /// The centreline in a file: VTK's .vtp or .vtk, 3D Slicer's .mrk.json, or a text (.csv, .tsv, .txt, .dat) with x,y,z and
@@ -175,7 +176,7 @@ pub(crate) fn load_centreline<'py>(
     #[pyo3(from_py_with = number)] scale: f64,
 ) -> PyResult<Bound<'py, PyAny>> {
     let options = Options::scaled(scale).with_line(line.map(|Whole(line)| line as usize));
-    let read = compute(py, || mesh_files::load_centreline(&path, &options))?;
+    let read = interruptible(py, move || mesh_files::load_centreline(&path, &options))?;
     let mut read = read.map_err(|error| refuse(py, &error))?;
     let frame = in_frame(&mut read.points, read.frame, frame).map(frame_name);
     let points = array(py, vec![read.points.len(), 3], read.points.into_flattened())?;

@@ -76,8 +76,8 @@ impl Mesh {
     /// A new mesh of these triangles.
     pub(crate) fn new_from(
         py: Python<'_>,
-        vertices: &[Vector],
-        triangles: &[[u32; 3]],
+        vertices: Vec<Vector>,
+        triangles: Vec<[u32; 3]>,
         origin: Origin,
     ) -> PyResult<Self> {
         Ok(Self::of(Arc::new(Engine::new(py, vertices, triangles)?), origin))
@@ -205,7 +205,7 @@ impl Mesh {
         };
         let vertices = vectors(rows(&vertices, "vertices")?.points());
         let triangles = self::faces(&triangles, vertices.len())?;
-        Self::new_from(py, &vertices, &triangles, origin)
+        Self::new_from(py, vertices, triangles, origin)
     }
 
     /// The frame of the vertices, "RAS" or "LPS": that of the file, or the one that was asked for; None if unknown.

@@ -123,6 +123,19 @@ class Sides(_Members):
     _instead = "compare it, as in `sides == Side.INSIDE`, or take `.is_clear` of an answer about a margin"
 
 
+def _short(answer: Any) -> str:
+    """The fields of a tuple with names, of arrays with many numbers the shape alone."""
+    most = 9
+
+    def text(value: Any) -> str:
+        if isinstance(value, np.ndarray) and value.size > most:
+            return f"<{value.dtype} array {value.shape}>"
+        return repr(value).replace("\n", "").replace("       ", " ")
+
+    fields = ", ".join(f"{name}={text(value)}" for name, value in zip(answer._fields, answer))
+    return f"{type(answer).__name__}({fields})"
+
+
 class _Answer:
     """What all answers are beside tuples with names."""
 
@@ -131,6 +144,9 @@ class _Answer:
 
     def __bool__(self) -> NoReturn:
         raise _no_truth(f"{type(self).__name__}", self._instead)
+
+    def __repr__(self) -> str:
+        return _short(self)
 
 
 class _MinimumFields(NamedTuple):
@@ -578,3 +594,6 @@ class Centreline(NamedTuple):
     """The unit that the file states, such as "mm", or None."""
     skipped: int
     """How many points were left out because they have no position yet."""
+
+    def __repr__(self) -> str:
+        return _short(self)
