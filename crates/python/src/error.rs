@@ -32,6 +32,12 @@ impl Refused {
         Self::Other { kind, text: format!("`{parameter}`: {}", self.text()), index }
     }
 
+    /// The same, with what to do.
+    pub(crate) fn with_advice(self, advice: &str) -> Self {
+        let (kind, index) = (self.kind(), self.index());
+        Self::Other { kind, text: format!("{}; {advice}", self.text()), index }
+    }
+
     /// The parameter that a robot's error names.
     pub(crate) fn parameter_mut(&mut self) -> Option<&mut &'static str> {
         match self {

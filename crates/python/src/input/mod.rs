@@ -1,6 +1,7 @@
 //! From what Python hands over to plain numbers, checked.
 
 mod caps;
+mod counts;
 mod faces;
 mod names;
 mod numbers;
@@ -9,6 +10,7 @@ mod robots;
 mod scalars;
 
 pub(crate) use caps::Caps;
+pub(crate) use counts::broadcast;
 pub(crate) use faces::faces;
 pub(crate) use names::Names;
 pub(crate) use numbers::{Numbers, numpy, shape_text, vectors};

@@ -1,5 +1,6 @@
 //! Poses, as matrices describe them.
 
+use super::counts::broadcast;
 use super::numbers::{Numbers, shape_text};
 use crate::error::Refused;
 use parry_continuum::parry::math::Pose;
@@ -15,18 +16,25 @@ pub(crate) enum Poses<'py> {
 }
 
 impl<'py> Poses<'py> {
-    /// The parameter `pose`: one for all, (4, 4), or one for each of a batch.
+    /// The poses of robots of which there are `count`, and how many poses there are: one for all, (4, 4), or one for each of a
+    /// batch. One robot takes any number of them.
     pub(crate) fn new(
         given: &Bound<'py, PyAny>,
         count: Option<usize>,
         name: &str,
-    ) -> PyResult<Self> {
+    ) -> PyResult<(Self, Option<usize>)> {
         let numbers = Numbers::new(given, name)?;
-        match (numbers.shape(), count) {
-            ([4, 4], _) => Ok(Self::Shared(numbers)),
-            (&[poses, 4, 4], Some(count)) if poses == count => Ok(Self::Each(numbers)),
-            (shape, _) => {
-                let fit = count.map_or(String::new(), |count| format!(" or ({count}, 4, 4)"));
+        match *numbers.shape() {
+            [4, 4] => Ok((Self::Shared(numbers), None)),
+            [1, 4, 4] => Ok((Self::Shared(numbers), Some(1))),
+            [poses, 4, 4] if broadcast(count, Some(poses)).is_some() => {
+                Ok((Self::Each(numbers), Some(poses)))
+            }
+            ref shape => {
+                let fit = match count {
+                    None | Some(1) => " or (B, 4, 4)".to_owned(),
+                    Some(count) => format!(" or ({count}, 4, 4)"),
+                };
                 let text = format!(
                     "`{name}` has the shape {}; give None, or the shape (4, 4){fit}",
                     shape_text(shape)

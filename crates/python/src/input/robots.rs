@@ -1,5 +1,6 @@
 //! One robot or many, as arrays describe them.
 
+use super::counts::broadcast;
 use super::names::Names;
 use super::numbers::{Numbers, shape_text};
 use super::poses::{Poses, pose_of};
@@ -24,7 +25,7 @@ pub(crate) struct Robots<'py> {
     more: Option<Numbers<'py>>,
     radii: Radii<'py>,
     poses: Poses<'py>,
-    /// Whether one robot stands for all of a batch.
+    /// Whether the points of one robot stand for those of all of a batch.
     is_one: bool,
     /// The other robots, of questions about several.
     others: Option<Box<Robots<'py>>>,
@@ -119,9 +120,12 @@ impl<'py> Robots<'py> {
         radii: &Bound<'py, PyAny>,
         pose: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Self> {
-        let (points, count, points_each) = points(given, names.points)?;
-        let radii = Radii::new(radii, count, points_each, names)?;
-        let poses = pose.map_or(Ok(Poses::Identity), |pose| Poses::new(pose, count, names.pose))?;
+        let (points, own, points_each) = points(given, names.points)?;
+        let (radii, radii_count) = Radii::new(radii, own, points_each, names)?;
+        let count = broadcast(own, radii_count).unwrap_or(own);
+        let (poses, poses_count) =
+            pose.map_or(Ok((Poses::Identity, None)), |pose| Poses::new(pose, count, names.pose))?;
+        let count = broadcast(count, poses_count).unwrap_or(count);
         Ok(Self {
             names,
             more_name: "",
@@ -131,7 +135,7 @@ impl<'py> Robots<'py> {
             more: None,
             radii,
             poses,
-            is_one: false,
+            is_one: own != count,
             others: None,
         })
     }
@@ -164,7 +168,8 @@ impl<'py> Robots<'py> {
             }
         };
         let names = Names::one(name);
-        let radii = Radii::new(radii, count, points_each, names)?;
+        let (radii, radii_count) = Radii::new(radii, count, points_each, names)?;
+        let (own, count) = (count, broadcast(count, radii_count).unwrap_or(count));
         let poses = Poses::Identity;
         Ok(Self {
             names,
@@ -175,7 +180,7 @@ impl<'py> Robots<'py> {
             more: None,
             radii,
             poses,
-            is_one: false,
+            is_one: own != count,
             others: None,
         })
     }
@@ -208,7 +213,8 @@ impl<'py> Robots<'py> {
     ) -> PyResult<Self> {
         let Some(given) = given else { return Ok(self) };
         let (tangents, count, each) = points(given, name)?;
-        if count != self.count || !(each == 2 || each == self.points_each) {
+        let fits = if self.is_one { matches!(count, None | Some(1)) } else { count == self.count };
+        if !fits || !(each == 2 || each == self.points_each) {
             let text = format!(
                 "`{name}` has the shape {} beside points of {}; give two directions for each robot, at its ends, or one for \
                  each point",
@@ -224,25 +230,23 @@ impl<'py> Robots<'py> {
     /// These robots, each beside one of the others. Where there is one of either, it stands for as many as there are of the
     /// others.
     pub(crate) fn with_others(mut self, py: Python<'_>, mut others: Self) -> PyResult<Self> {
-        match (self.count, others.count) {
-            (None, Some(count)) => self.stand_for(count),
-            (Some(count), None) => others.stand_for(count),
-            (one, other) if one == other => {}
-            (one, other) => {
-                let [one, other] = [one, other].map(Option::unwrap_or_default);
-                let [first, second] = [self.names, others.names].map(|names| names.robot());
-                let text = format!(
-                    "`{first}` has {one} robots and `{second}` {other}; give as many of both, or one of either"
-                );
-                return Err(refuse(py, text));
-            }
-        }
+        let Some(count) = broadcast(self.count, others.count) else {
+            let [one, other] = [self.count, others.count].map(Option::unwrap_or_default);
+            let [first, second] = [self.names, others.names].map(|names| names.robot());
+            let text = format!(
+                "`{first}` has {one} robots and `{second}` {other}; give as many of both, or one of either"
+            );
+            return Err(refuse(py, text));
+        };
+        self.stand_for(count);
+        others.stand_for(count);
         self.others = Some(Box::new(others));
         Ok(self)
     }
 
-    fn stand_for(&mut self, count: usize) {
-        (self.count, self.is_one) = (Some(count), true);
+    fn stand_for(&mut self, count: Option<usize>) {
+        self.is_one |= self.count != count;
+        self.count = count;
         if let Some(others) = &mut self.others {
             others.stand_for(count);
         }
@@ -319,35 +323,53 @@ impl<'py> Radii<'py> {
         count: Option<usize>,
         points: usize,
         names: Names,
-    ) -> PyResult<Self> {
+    ) -> PyResult<(Self, Option<usize>)> {
         if let Some(radius) = Numbers::single(given) {
-            return Ok(Self::Number(radius));
+            return Ok((Self::Number(radius), None));
         }
         let numbers = Numbers::new(given, names.radii)?;
         let segments = points.saturating_sub(1);
         let lengths_differ = |radii: usize| {
             let (parameter, expected) = (names.radii, segments);
             let error = RobotError::LengthsDiffer { parameter, points, expected, radii };
-            Refused::Robot(error).raise(given.py(), None)
+            Refused::Robot(error)
         };
-        match (numbers.shape(), count) {
-            ([], _) => Ok(Self::Number(numbers.values()[0])),
-            (&[radii], _) if radii == segments || points < 2 => Ok(Self::Shared(numbers)),
-            (&[radii], _) => Err(lengths_differ(radii)),
-            (&[robots, radii], Some(count)) if robots == count && radii == segments => {
-                Ok(Self::Each(numbers))
+        let name = names.radii;
+        let of_robots = format!(
+            "one radius for each robot is `{name}[:, None] * np.ones({segments})`, of the shape (B, {segments})"
+        );
+        let refused = match (numbers.shape(), count) {
+            ([], _) => return Ok((Self::Number(numbers.values()[0]), None)),
+            (&[radii], _) if radii == segments || points < 2 => {
+                return Ok((Self::Shared(numbers), None));
             }
-            (&[robots, radii], Some(count)) if robots == count => Err(lengths_differ(radii)),
+            (&[1, radii], _) if radii == segments => return Ok((Self::Shared(numbers), Some(1))),
+            (&[robots, radii], _)
+                if radii == segments && broadcast(count, Some(robots)).is_some() =>
+            {
+                return Ok((Self::Each(numbers), Some(robots)));
+            }
+            (&[radii], Some(count)) if radii == count && count > 1 => {
+                lengths_differ(radii).with_advice(&of_robots)
+            }
+            (&[radii], _) => lengths_differ(radii),
+            (&[robots, 1], _) if broadcast(count, Some(robots)).is_some() => {
+                lengths_differ(1).with_advice(&of_robots)
+            }
+            (&[robots, radii], Some(count)) if robots == count => lengths_differ(radii),
             (shape, _) => {
-                let fit = count.map_or(String::new(), |count| format!(" or ({count}, {segments})"));
+                let fit = match count {
+                    None | Some(1) => format!(" or (B, {segments})"),
+                    Some(count) => format!(" or ({count}, {segments})"),
+                };
                 let text = format!(
-                    "`{}` has the shape {}; give a number, or the shape ({segments},){fit}: one radius for each segment",
-                    names.radii,
+                    "`{name}` has the shape {}; give a number, or the shape ({segments},){fit}: one radius for each segment",
                     shape_text(shape)
                 );
-                Err(refuse(given.py(), text))
+                Refused::other("bad_shape", text)
             }
-        }
+        };
+        Err(refused.raise(given.py(), None))
     }
 }
 

@@ -1,6 +1,6 @@
 //! A motion of sections of constant curvature.
 
-use super::{Motion, Moving, together};
+use super::{Motion, Moving, place_in, together};
 use crate::error::Refused;
 use crate::input::{Numbers, Poses, pose_of, shape_text};
 use parry_continuum::BendingSection;
@@ -79,7 +79,7 @@ impl BendingMotion {
         )?;
         let motion = Motion::new(py, count, |place| {
             let pose = match pose_count {
-                Some(_) => pose_of(&poses[place]),
+                Some(_) => pose_of(&poses[place_in(pose_count, place)]),
                 None => poses.first().map_or(Ok(Pose::IDENTITY), pose_of),
             };
             let pose = pose.map_err(|refused| refused.of("pose"))?;
@@ -124,7 +124,7 @@ impl Sections {
 
     /// The sections at a place of the batch.
     fn at(&self, place: usize, radii: &Radii) -> Vec<BendingSection> {
-        let first = if self.count.is_none() { 0 } else { self.each * place };
+        let first = self.each * place_in(self.count, place);
         let rows = &self.rows[first..first + self.each];
         let section = |(number, &[length, x, y]): (usize, &[f64; 3])| BendingSection {
             length,
@@ -164,7 +164,7 @@ impl Radii {
     }
 
     fn at(&self, place: usize, section: usize) -> f64 {
-        let first = if self.count.is_none() { 0 } else { self.sections * place };
+        let first = self.sections * place_in(self.count, place);
         self.radii[first + section]
     }
 }

@@ -20,6 +20,7 @@ pub(crate) use rigid::RigidMotion;
 pub(crate) use verify::verify_motion;
 
 use crate::error::Refused;
+use crate::input::broadcast;
 use crate::threads::{Asked, compute};
 use pyo3::PyClass;
 use pyo3::prelude::*;
@@ -144,17 +145,25 @@ fn together(
     py: Python<'_>,
     parts: impl IntoIterator<Item = (&'static str, Option<usize>)>,
 ) -> PyResult<Option<usize>> {
-    let mut parts = parts.into_iter().filter_map(|(name, count)| Some((name, count?)));
-    let Some((first, count)) = parts.next() else { return Ok(None) };
-    match parts.find(|(_, other)| *other != count) {
-        None => Ok(Some(count)),
-        Some((name, other)) => {
+    let (mut all, mut first) = (None, "");
+    for (name, count) in parts {
+        let Some(both) = broadcast(all, count) else {
+            let [one, other] = [all, count].map(Option::unwrap_or_default);
             let text = format!(
-                "`{first}` has {count} and `{name}` {other}; give as many of both, or one of either"
+                "`{first}` has {one} and `{name}` {other}; give as many of both, or one of either"
             );
-            Err(Refused::other("bad_shape", text).raise(py, None))
+            return Err(Refused::other("bad_shape", text).raise(py, None));
+        };
+        if both != all {
+            (all, first) = (both, name);
         }
     }
+    Ok(all)
+}
+
+/// The place of one for all, or of one of as many as there are.
+fn place_in(count: Option<usize>, place: usize) -> usize {
+    if matches!(count, None | Some(1)) { 0 } else { place }
 }
 
 /// Some motions of a batch, which share its memory.

@@ -1,7 +1,7 @@
 //! A robot that keeps its shape and moves.
 
 use super::way::Way;
-use super::{Motion, Moving};
+use super::{Motion, Moving, place_in};
 use crate::error::Refused;
 use crate::input::{Block, Caps, Given, Names, Robots, number, optional_number};
 use crate::queries::clearance::{Stated, tube, tubes};
@@ -106,11 +106,10 @@ fn rigid(
     way: &Way,
     shape: impl Fn(&Given<'_>) -> Result<Tube, Refused> + Sync,
 ) -> PyResult<Motion> {
-    let mut block = Block::default();
+    let (count, mut block) = (robots.count, Block::default());
     robots.copy(0..robots.len(), &mut block).map_err(|refused| refused.raise(py, None))?;
-    let is_one = robots.count.is_none();
-    Motion::new(py, way.count(py, "points", robots.count)?, |place| {
-        let tube = shape(&block.robot(if is_one { 0 } else { place }))?;
+    Motion::new(py, way.count(py, "points", count)?, |place| {
+        let tube = shape(&block.robot(place_in(count, place)))?;
         let motion = parry_continuum::RigidMotion::new(tube, way.poses(place)?)?;
         Ok(Moving::Rigid(Box::new(motion)))
     })

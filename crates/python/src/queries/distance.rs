@@ -57,7 +57,8 @@ impl Mesh {
     /// Parameters
     /// ----------
     /// points : (N, 3) or (B, N, 3) array
-    ///     The centreline of one robot or of B robots, in the robot's frame.
+    ///     The centreline of one robot or of B robots, in the robot's frame. One robot, (N, 3) or (1, N, 3), stands for as many as
+    ///     there are poses or rows of radii.
     /// radii : float, (N - 1,) or (B, N - 1) array
     ///     One radius for each segment between two points.
     /// pose : (4, 4) or (B, 4, 4) array, optional
