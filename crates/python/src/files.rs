@@ -2,12 +2,13 @@
 
 use crate::error::Refused;
 use crate::input::{FrameName, Whole, number, vectors};
-use crate::mesh::{Mesh, Origin};
+use crate::mesh::{Mesh, Origin, parts};
 use crate::output::{answer, array};
 use crate::threads::interruptible;
 use mesh_files::{Frame, MeshFileError, Options};
 use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyInt, PyString};
 use std::ffi::CString;
 use std::path::{Path, PathBuf};
 
@@ -79,7 +80,9 @@ fn labels_text(labels: &[u32]) -> String {
 ///
 /// Parameters
 /// ----------
-/// path : str or os.PathLike
+/// path : str, bytes, os.PathLike or file object
+///     A file object, opened for reading bytes, has a ``name`` with the extension. A mesh of another package is taken too, as by
+///     `Mesh`.
 /// label : int, optional
 ///     The label whose surface is taken from a label map; without one all voxels that are not 0 are inside.
 /// frame : {"RAS", "LPS"}, optional
@@ -99,7 +102,7 @@ fn labels_text(labels: &[u32]) -> String {
 #[pyo3(signature = (path, *, label = None, frame = None, scale = 1.0, allow_no_position = false))]
 pub(crate) fn load(
     py: Python<'_>,
-    path: PathBuf,
+    path: &Bound<'_, PyAny>,
     label: Option<Whole>,
     frame: Option<FrameName>,
     #[pyo3(from_py_with = number)] scale: f64,
@@ -108,9 +111,66 @@ pub(crate) fn load(
     let options = Options::scaled(scale)
         .with_label(label.map(|Whole(label)| label))
         .with_no_position_allowed(allow_no_position);
+    let (path, bytes) = match Source::of(path)? {
+        Source::Mesh(vertices, faces) if label.is_none() => {
+            return Mesh::of_parts(&vertices, &faces, frame, scale);
+        }
+        Source::Mesh(..) => {
+            let text = "`label` is given beside a mesh, which has no labels; leave it out";
+            return Err(Refused::other("bad_type", text).raise(py, None));
+        }
+        Source::Path(path) => (path, None),
+        Source::File(path, bytes) => (path, Some(bytes)),
+    };
     let file = path.clone();
-    let read = interruptible(py, move || mesh_files::load_with(&file, &options))?;
+    let read = interruptible(py, move || match bytes {
+        Some(bytes) => mesh_files::from_bytes(&file, &bytes, &options),
+        None => mesh_files::load_with(&file, &options),
+    })?;
     made(py, &path, read.map_err(|error| refuse(py, &error))?, frame, scale)
+}
+
+/// Where a mesh or a centreline is.
+enum Source<'py> {
+    Path(PathBuf),
+    /// The content of a file object, and its name.
+    File(PathBuf, Vec<u8>),
+    /// Vertices and faces of a mesh of another package.
+    Mesh(Bound<'py, PyAny>, Bound<'py, PyAny>),
+}
+
+impl<'py> Source<'py> {
+    fn of(given: &Bound<'py, PyAny>) -> PyResult<Self> {
+        let py = given.py();
+        if given.is_instance_of::<PyString>()
+            || given.is_instance_of::<PyBytes>()
+            || given.hasattr("__fspath__")?
+        {
+            return Ok(Self::Path(decoded(given)?));
+        }
+        let Some(read) = given.getattr_opt("read")? else {
+            let (vertices, faces) = parts(given, "path")?;
+            return Ok(Self::Mesh(vertices, faces));
+        };
+        let name = given.getattr_opt("name")?.filter(|name| !name.is_instance_of::<PyInt>());
+        let name = name.filter(|name| !name.is_none()).ok_or_else(|| {
+            let text = "`path` is a file object without a name, whose extension would say its format; set its `name`, as in \
+                        file.name = 'wall.stl'";
+            Refused::other("bad_type", text).raise(py, None)
+        })?;
+        let content = read.call0()?;
+        let bytes = match content.extract::<Vec<u8>>() {
+            Ok(bytes) => bytes,
+            // A file that was opened as text.
+            Err(_) => content.extract::<String>()?.into_bytes(),
+        };
+        Ok(Self::File(decoded(&name)?, bytes))
+    }
+}
+
+/// A path of any type that Python has for paths.
+fn decoded(path: &Bound<'_, PyAny>) -> PyResult<PathBuf> {
+    path.py().import("os")?.call_method1("fsdecode", (path,))?.extract()
 }
 
 /// The mesh of a file that was read.
@@ -146,7 +206,7 @@ fn made(
 ///
 /// Parameters
 /// ----------
-/// path : str or os.PathLike
+/// path : str, bytes, os.PathLike or file object
 /// line : int, optional
 ///     The line of a file that has several, counted from 0. A list of fiducials needs it too.
 /// frame : {"RAS", "LPS"}, optional
@@ -170,13 +230,25 @@ fn made(
 #[pyo3(signature = (path, *, line = None, frame = None, scale = 1.0))]
 pub(crate) fn load_centreline<'py>(
     py: Python<'py>,
-    path: PathBuf,
+    path: &Bound<'py, PyAny>,
     line: Option<Whole>,
     frame: Option<FrameName>,
     #[pyo3(from_py_with = number)] scale: f64,
 ) -> PyResult<Bound<'py, PyAny>> {
     let options = Options::scaled(scale).with_line(line.map(|Whole(line)| line as usize));
-    let read = interruptible(py, move || mesh_files::load_centreline(&path, &options))?;
+    let source = Source::of(path)?;
+    let read = match source {
+        Source::Path(path) => {
+            interruptible(py, move || mesh_files::load_centreline(&path, &options))?
+        }
+        Source::File(path, bytes) => {
+            interruptible(py, move || mesh_files::centreline_from_bytes(&path, &bytes, &options))?
+        }
+        Source::Mesh(..) => {
+            let text = "`path` is a mesh; give a path or a file object of a centreline";
+            return Err(Refused::other("bad_type", text).raise(py, None));
+        }
+    };
     let mut read = read.map_err(|error| refuse(py, &error))?;
     let frame = in_frame(&mut read.points, read.frame, frame).map(frame_name);
     let points = array(py, vec![read.points.len(), 3], read.points.into_flattened())?;

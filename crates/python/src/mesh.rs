@@ -9,7 +9,6 @@ use mesh_files::Frame;
 use numpy::{PyArrayDyn, PyUntypedArray};
 use parry_continuum::parry::math::Vector;
 use parry_continuum::proximity::Proximity;
-use pyo3::exceptions::PyAttributeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyString, PyType};
 use std::sync::Arc;
@@ -17,15 +16,15 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 /// A triangle mesh that is asked how near robots are to it.
 ///
-/// ``Mesh(vertices, faces)`` copies both. ``Mesh(other)`` takes what has ``.vertices`` and ``.faces``, such as a mesh of
-/// trimesh. Lengths are in one unit of your choice, the same for mesh and robots. `load` reads a file.
+/// ``Mesh(vertices, faces)`` copies both. ``Mesh(other)`` takes a mesh of trimesh (or a scene), pyvista, meshio or Open3D, or what
+/// else has ``.vertices`` and ``.faces``. Lengths are in one unit of your choice, the same for mesh and robots. `load` reads a file.
 ///
 /// Any number of threads may ask one mesh at the same time: queries run without the GIL. `move` moves the vertices for all
 /// queries that begin later. A mesh can be copied and pickled.
 ///
 /// Parameters
 /// ----------
-/// vertices : (V, 3) array of any number type, or an object with ``.vertices`` and ``.faces``
+/// vertices : (V, 3) array of any number type, or a mesh of another package
 /// faces : (F, 3) array of any integer type
 ///     Three positions among the vertices for each triangle, counted from 0.
 /// frame : {"RAS", "LPS"}, optional
@@ -83,6 +82,21 @@ impl Mesh {
         Ok(Self::of(Arc::new(Engine::new(py, vertices, triangles)?), origin))
     }
 
+    /// A mesh of arrays, scaled.
+    pub(crate) fn of_parts(
+        vertices: &Bound<'_, PyAny>,
+        faces: &Bound<'_, PyAny>,
+        frame: Option<FrameName>,
+        scale: f64,
+    ) -> PyResult<Self> {
+        let py = vertices.py();
+        let mut vertices = vectors(rows(vertices, "vertices")?.points());
+        let faces = self::faces(faces, vertices.len())?;
+        vertices.iter_mut().for_each(|vertex| *vertex *= scale);
+        let frame = frame.map(|FrameName(frame)| frame);
+        Self::new_from(py, vertices, faces, Origin { frame, ..Origin::default() })
+    }
+
     /// The engine of the mesh as it is now.
     pub(crate) fn engine(&self, py: Python<'_>) -> Arc<Engine> {
         self.engine.with(py, |engine| Arc::clone(engine))
@@ -135,34 +149,35 @@ pub(crate) fn frames_text(name: &str, frames: [Frame; 2]) -> String {
     )
 }
 
-/// The vertices and faces of an object that has both.
-fn parts<'py>(given: &Bound<'py, PyAny>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+/// The vertices and faces of a mesh of another package; `name` is the parameter's.
+pub(crate) fn parts<'py>(
+    given: &Bound<'py, PyAny>,
+    name: &str,
+) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
     let py = given.py();
-    let refuse = |text: &str| Refused::other("bad_type", text).raise(py, None);
+    let found = py.import("parry_continuum._meshes")?.call_method1("parts", (given,))?;
+    found.extract::<Option<(Bound<'py, PyAny>, Bound<'py, PyAny>)>>()?.ok_or_else(|| {
+        let text = match name {
+            "vertices" => {
+                "`faces` is missing; give vertices and faces, or a mesh of trimesh, pyvista, meshio or Open3D"
+            }
+            _ => "`path` is neither a path nor a file object; give one of them",
+        };
+        Refused::other("bad_type", text).raise(py, None)
+    })
+}
+
+/// Refuses a path: `Mesh` reads no files.
+fn refuse_path(given: &Bound<'_, PyAny>) -> PyResult<()> {
     if given.is_instance_of::<PyString>()
         || given.is_instance_of::<PyBytes>()
         || given.hasattr("__fspath__")?
+        || given.hasattr("read")?
     {
-        return Err(refuse("`vertices` is a path; use load(), which reads files"));
+        let text = "`vertices` is a path or a file; use load(), which reads files";
+        return Err(Refused::other("bad_type", text).raise(given.py(), None));
     }
-    match (attribute(given, "vertices")?, attribute(given, "faces")?) {
-        (Some(vertices), Some(faces)) => Ok((vertices, faces)),
-        _ => Err(refuse("`faces` is missing; give vertices and faces, or an object that has both")),
-    }
-}
-
-/// An attribute, if the object has it. An AttributeError of a property's own code is an error.
-pub(crate) fn attribute<'py>(
-    given: &Bound<'py, PyAny>,
-    name: &str,
-) -> PyResult<Option<Bound<'py, PyAny>>> {
-    match given.getattr(name) {
-        Ok(value) => Ok(Some(value)),
-        Err(error) if error.is_instance_of::<PyAttributeError>(given.py()) => {
-            if given.get_type().hasattr(name)? { Err(error) } else { Ok(None) }
-        }
-        Err(error) => Err(error),
-    }
+    Ok(())
 }
 
 /// Vertices as an array of rows; `name` is the parameter's.
@@ -193,19 +208,25 @@ impl Mesh {
         unit: Option<String>,
     ) -> PyResult<Self> {
         let py = vertices.py();
-        let mut origin = match vertices.cast::<Self>() {
-            Ok(mesh) if faces.is_none() => mesh.get().origin.clone(),
-            _ => Origin::default(),
+        let known = |origin: Origin| Origin {
+            frame: frame.map(|FrameName(frame)| frame).or(origin.frame),
+            unit: unit.or(origin.unit),
+            ..origin
         };
-        origin.frame = frame.map(|FrameName(frame)| frame).or(origin.frame);
-        origin.unit = unit.or(origin.unit);
+        if let (Ok(mesh), None) = (vertices.cast::<Self>(), faces) {
+            let mesh = mesh.get();
+            return Ok(Self::of(mesh.engine(py), known(mesh.origin.clone())));
+        }
         let (vertices, triangles) = match faces {
             Some(faces) => (vertices.clone(), faces.clone()),
-            None => parts(vertices)?,
+            None => {
+                refuse_path(vertices)?;
+                parts(vertices, "vertices")?
+            }
         };
         let vertices = vectors(rows(&vertices, "vertices")?.points());
         let triangles = self::faces(&triangles, vertices.len())?;
-        Self::new_from(py, vertices, triangles, origin)
+        Self::new_from(py, vertices, triangles, known(Origin::default()))
     }
 
     /// The frame of the vertices, "RAS" or "LPS": that of the file, or the one that was asked for; None if unknown.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -156,9 +157,9 @@ def test_single_robots_keep_their_names() -> None:
         assert text in str(raised.value)
 
 
-@pytest.mark.parametrize("path", ["wall.stl", b"wall.stl", Path("wall.stl"), ""])
+@pytest.mark.parametrize("path", ["wall.stl", b"wall.stl", Path("wall.stl"), "", io.BytesIO()])
 def test_a_path_is_for_load(path: Any) -> None:
-    with pytest.raises(ContinuumError, match=r"`vertices` is a path; use load\(\)") as raised:
+    with pytest.raises(ContinuumError, match=r"`vertices` is a path or a file; use load\(\)") as raised:
         Mesh(path)
     assert raised.value.kind == "bad_type"
 

@@ -1,6 +1,6 @@
 from collections.abc import Sequence
 from os import PathLike
-from typing import Any, Literal, final, overload
+from typing import IO, Any, Literal, Protocol, final, overload
 
 from numpy.typing import ArrayLike
 from typing_extensions import disjoint_base
@@ -61,6 +61,12 @@ _Caps = Literal["fitted", "capsules", "cylinders"]
 _MotionCaps = Literal["fitted", "capsules"]
 _Frame = Literal["RAS", "LPS"]
 
+class _AsMatrix(Protocol):
+    def as_matrix(self) -> Any: ...
+
+# An array, or scipy's `RigidTransform` or `Rotation`.
+_Poses = ArrayLike | _AsMatrix
+
 @disjoint_base
 class Motion:
     @property
@@ -78,8 +84,8 @@ class RigidMotion(Motion):
         cls,
         points: ArrayLike,
         radii: ArrayLike,
-        start_pose: ArrayLike,
-        end_pose: ArrayLike,
+        start_pose: _Poses,
+        end_pose: _Poses,
         *,
         caps: _Caps = "fitted",
     ) -> RigidMotion: ...
@@ -87,8 +93,8 @@ class RigidMotion(Motion):
     def of_curve(
         points: ArrayLike,
         radii: ArrayLike,
-        start_pose: ArrayLike,
-        end_pose: ArrayLike,
+        start_pose: _Poses,
+        end_pose: _Poses,
         *,
         tangents: ArrayLike | None = None,
         deviation: float = 0.0,
@@ -98,12 +104,12 @@ class RigidMotion(Motion):
 @final
 class BendingMotion(Motion):
     def __new__(
-        cls, start: ArrayLike, end: ArrayLike, radii: ArrayLike, *, pose: ArrayLike | None = None
+        cls, start: ArrayLike, end: ArrayLike, radii: ArrayLike, *, pose: _Poses | None = None
     ) -> BendingMotion: ...
 
 @final
 class MovingBase(Motion):
-    def __new__(cls, motion: Motion, start_pose: ArrayLike, end_pose: ArrayLike) -> MovingBase: ...
+    def __new__(cls, motion: Motion, start_pose: _Poses, end_pose: _Poses) -> MovingBase: ...
 
 @final
 class MotionPath(Motion):
@@ -111,7 +117,7 @@ class MotionPath(Motion):
 
 @final
 class Mesh:
-    # Beside an array, anything with `.vertices` and `.faces`.
+    # Beside an array, a mesh of another package.
     def __new__(
         cls, vertices: Any, faces: ArrayLike | None = None, *, frame: _Frame | None = None, unit: str | None = None
     ) -> Mesh: ...
@@ -128,13 +134,13 @@ class Mesh:
     def move(self, vertices: ArrayLike) -> None: ...
     def prepare(self) -> None: ...
     def distance(
-        self, points: ArrayLike, radii: ArrayLike, *, pose: ArrayLike | None = None, caps: _Caps = "fitted"
+        self, points: ArrayLike, radii: ArrayLike, *, pose: _Poses | None = None, caps: _Caps = "fitted"
     ) -> FloatOrFloats: ...
     def minimum(
-        self, points: ArrayLike, radii: ArrayLike, *, pose: ArrayLike | None = None, caps: _Caps = "fitted"
+        self, points: ArrayLike, radii: ArrayLike, *, pose: _Poses | None = None, caps: _Caps = "fitted"
     ) -> Minimum: ...
     def per_link(
-        self, points: ArrayLike, radii: ArrayLike, *, pose: ArrayLike | None = None, caps: _Caps = "fitted"
+        self, points: ArrayLike, radii: ArrayLike, *, pose: _Poses | None = None, caps: _Caps = "fitted"
     ) -> PerLink: ...
     def clears(
         self,
@@ -142,7 +148,7 @@ class Mesh:
         radii: ArrayLike,
         margin: float,
         *,
-        pose: ArrayLike | None = None,
+        pose: _Poses | None = None,
         caps: _Caps = "fitted",
     ) -> BoolOrBools: ...
     def clears_inside(
@@ -151,7 +157,7 @@ class Mesh:
         radii: ArrayLike,
         margin: float,
         *,
-        pose: ArrayLike | None = None,
+        pose: _Poses | None = None,
         caps: _Caps = "fitted",
     ) -> InsideAnswer: ...
     def within(
@@ -161,11 +167,11 @@ class Mesh:
         margin: float,
         prominence: float = 0.0,
         *,
-        pose: ArrayLike | None = None,
+        pose: _Poses | None = None,
         caps: _Caps = "fitted",
     ) -> Contacts: ...
     def side(self, points: ArrayLike) -> SideOrSides: ...
-    def doubts(self, points: ArrayLike, radii: ArrayLike, *, pose: ArrayLike | None = None) -> list[str]: ...
+    def doubts(self, points: ArrayLike, radii: ArrayLike, *, pose: _Poses | None = None) -> list[str]: ...
     def clearance(
         self,
         points: ArrayLike,
@@ -175,7 +181,7 @@ class Mesh:
         tangents: ArrayLike | None = None,
         deviation: float = 0.0,
         turn: float | None = None,
-        pose: ArrayLike | None = None,
+        pose: _Poses | None = None,
     ) -> Clearance: ...
     def tube_clears(
         self,
@@ -187,7 +193,7 @@ class Mesh:
         tangents: ArrayLike | None = None,
         deviation: float = 0.0,
         turn: float | None = None,
-        pose: ArrayLike | None = None,
+        pose: _Poses | None = None,
     ) -> DecisionOrDecisions: ...
     @overload
     def clears_motion(
@@ -250,7 +256,7 @@ class Mesh:
         radii: ArrayLike,
         margin: float,
         *,
-        pose: ArrayLike | None = None,
+        pose: _Poses | None = None,
         caps: _Caps = "fitted",
     ) -> str | None: ...
     def prove_tube(
@@ -263,7 +269,7 @@ class Mesh:
         tangents: ArrayLike | None = None,
         deviation: float = 0.0,
         turn: float | None = None,
-        pose: ArrayLike | None = None,
+        pose: _Poses | None = None,
     ) -> str | None: ...
     @overload
     def prove_motion(
@@ -284,25 +290,25 @@ class Mesh:
         radii: ArrayLike,
         answer: PerLink,
         *,
-        pose: ArrayLike | None = None,
+        pose: _Poses | None = None,
         caps: _Caps = "fitted",
     ) -> Certificate: ...
     def distance_and_gradient(
-        self, points: ArrayLike, radii: ArrayLike, *, pose: ArrayLike | None = None, caps: _Caps = "fitted"
+        self, points: ArrayLike, radii: ArrayLike, *, pose: _Poses | None = None, caps: _Caps = "fitted"
     ) -> Gradient: ...
     def __copy__(self) -> Mesh: ...
     def __deepcopy__(self, _memo: Any, /) -> Mesh: ...
     def __reduce__(self) -> tuple[Any, ...]: ...
 
 # (points, radii) or (points, radii, pose)
-_Robot = tuple[ArrayLike, ArrayLike] | tuple[ArrayLike, ArrayLike, ArrayLike | None]
+_Robot = tuple[ArrayLike, ArrayLike] | tuple[ArrayLike, ArrayLike, _Poses | None]
 
 @final
 class Scene:
     def __new__(
         cls, *, robot_margin: float | None = None, nested: Sequence[tuple[int, int]] = ()
     ) -> Scene: ...
-    def add(self, name: str, mesh: Mesh, *, margin: float | None, pose: ArrayLike | None = None) -> int: ...
+    def add(self, name: str, mesh: Mesh, *, margin: float | None, pose: _Poses | None = None) -> int: ...
     def __len__(self) -> int: ...
     def clears(self, robots: Sequence[_Robot], *, caps: _Caps = "fitted") -> BoolOrBools: ...
     def tightest(self, robots: Sequence[_Robot], *, caps: _Caps = "fitted") -> Tightest: ...
@@ -322,8 +328,8 @@ class RobotPair:
         points_b: ArrayLike,
         radii_b: ArrayLike,
         *,
-        pose_a: ArrayLike | None = None,
-        pose_b: ArrayLike | None = None,
+        pose_a: _Poses | None = None,
+        pose_b: _Poses | None = None,
         caps: _Caps = "fitted",
     ) -> RobotProximity: ...
     def per_link(
@@ -333,8 +339,8 @@ class RobotPair:
         points_b: ArrayLike,
         radii_b: ArrayLike,
         *,
-        pose_a: ArrayLike | None = None,
-        pose_b: ArrayLike | None = None,
+        pose_a: _Poses | None = None,
+        pose_b: _Poses | None = None,
         caps: _Caps = "fitted",
     ) -> RobotProximity: ...
     def within(
@@ -345,8 +351,8 @@ class RobotPair:
         radii_b: ArrayLike,
         margin: float,
         *,
-        pose_a: ArrayLike | None = None,
-        pose_b: ArrayLike | None = None,
+        pose_a: _Poses | None = None,
+        pose_b: _Poses | None = None,
         caps: _Caps = "fitted",
     ) -> RobotContacts: ...
     def clears(
@@ -357,8 +363,8 @@ class RobotPair:
         radii_b: ArrayLike,
         margin: float,
         *,
-        pose_a: ArrayLike | None = None,
-        pose_b: ArrayLike | None = None,
+        pose_a: _Poses | None = None,
+        pose_b: _Poses | None = None,
         caps: _Caps = "fitted",
     ) -> BoolOrBools: ...
     def clearance(
@@ -375,8 +381,8 @@ class RobotPair:
         deviation_b: float = 0.0,
         turn_a: float | None = None,
         turn_b: float | None = None,
-        pose_a: ArrayLike | None = None,
-        pose_b: ArrayLike | None = None,
+        pose_a: _Poses | None = None,
+        pose_b: _Poses | None = None,
     ) -> RobotClearance: ...
     def tubes_clear(
         self,
@@ -393,8 +399,8 @@ class RobotPair:
         deviation_b: float = 0.0,
         turn_a: float | None = None,
         turn_b: float | None = None,
-        pose_a: ArrayLike | None = None,
-        pose_b: ArrayLike | None = None,
+        pose_a: _Poses | None = None,
+        pose_b: _Poses | None = None,
     ) -> DecisionOrDecisions: ...
     def certify(
         self,
@@ -404,8 +410,8 @@ class RobotPair:
         radii_b: ArrayLike,
         answer: RobotProximity,
         *,
-        pose_a: ArrayLike | None = None,
-        pose_b: ArrayLike | None = None,
+        pose_a: _Poses | None = None,
+        pose_b: _Poses | None = None,
         caps: _Caps = "fitted",
     ) -> Certificate: ...
     def clears_motion(self, a: Motion, b: Motion, margin: float, resolution: float) -> RobotMotionAnswer: ...
@@ -427,7 +433,7 @@ class RobotPair:
     ) -> DecisionOrDecisions: ...
 
 def load(
-    path: str | PathLike[str],
+    path: Any,
     *,
     label: int | None = None,
     frame: _Frame | None = None,
@@ -435,7 +441,7 @@ def load(
     allow_no_position: bool = False,
 ) -> Mesh: ...
 def load_centreline(
-    path: str | PathLike[str], *, line: int | None = None, frame: _Frame | None = None, scale: float = 1.0
+    path: str | bytes | PathLike[str] | PathLike[bytes] | IO[bytes] | IO[str], *, line: int | None = None, frame: _Frame | None = None, scale: float = 1.0
 ) -> Centreline: ...
 def simplify(points: ArrayLike, radii: ArrayLike, tolerance: float) -> tuple[Floats, Floats]: ...
 def stations(points: ArrayLike, radii: ArrayLike, tolerance: float) -> tuple[Floats, Floats]: ...
@@ -445,8 +451,8 @@ def between(
     points_b: ArrayLike,
     radii_b: ArrayLike,
     *,
-    pose_a: ArrayLike | None = None,
-    pose_b: ArrayLike | None = None,
+    pose_a: _Poses | None = None,
+    pose_b: _Poses | None = None,
     caps: _Caps = "fitted",
 ) -> RobotProximity: ...
 def clears_between(
@@ -456,8 +462,8 @@ def clears_between(
     radii_b: ArrayLike,
     margin: float,
     *,
-    pose_a: ArrayLike | None = None,
-    pose_b: ArrayLike | None = None,
+    pose_a: _Poses | None = None,
+    pose_b: _Poses | None = None,
     caps: _Caps = "fitted",
 ) -> BoolOrBools: ...
 def motion_self_clears(motion: Motion, margin: float, resolution: float) -> RobotMotionAnswer: ...

@@ -3,6 +3,8 @@
 use super::counts::broadcast;
 use super::numbers::{Numbers, shape_text};
 use crate::error::Refused;
+use crate::output::array;
+use numpy::PyUntypedArray;
 use parry_continuum::parry::math::Pose;
 use parry_continuum::pose_from_matrix;
 use pyo3::prelude::*;
@@ -23,7 +25,7 @@ impl<'py> Poses<'py> {
         count: Option<usize>,
         name: &str,
     ) -> PyResult<(Self, Option<usize>)> {
-        let numbers = Numbers::new(given, name)?;
+        let numbers = matrices(given, name)?;
         match *numbers.shape() {
             [4, 4] => Ok((Self::Shared(numbers), None)),
             [1, 4, 4] => Ok((Self::Shared(numbers), Some(1))),
@@ -46,7 +48,7 @@ impl<'py> Poses<'py> {
 
     /// One pose, or many, and how many of those.
     pub(crate) fn batch(given: &Bound<'py, PyAny>, name: &str) -> PyResult<(Self, Option<usize>)> {
-        let numbers = Numbers::new(given, name)?;
+        let numbers = matrices(given, name)?;
         match *numbers.shape() {
             [4, 4] => Ok((Self::Shared(numbers), None)),
             [count, 4, 4] => Ok((Self::Each(numbers), Some(count))),
@@ -81,6 +83,25 @@ impl<'py> Poses<'py> {
             Self::Each(poses) => &poses.values().as_chunks().0[range],
         }
     }
+}
+
+/// The matrices of poses: those of an array, or of scipy's `RigidTransform` or `Rotation`.
+pub(crate) fn matrices<'py>(given: &Bound<'py, PyAny>, name: &str) -> PyResult<Numbers<'py>> {
+    if given.cast_exact::<PyUntypedArray>().is_ok() {
+        return Numbers::new(given, name);
+    }
+    let Some(as_matrix) = given.getattr_opt("as_matrix")? else {
+        return Numbers::new(given, name);
+    };
+    let found = as_matrix.call0()?;
+    let numbers = Numbers::new(&found, name)?;
+    let [before @ .., 3, 3] = numbers.shape() else { return Ok(numbers) };
+    let shape: Vec<_> = before.iter().copied().chain([4, 4]).collect();
+    let whole = numbers.values().as_chunks::<9>().0.iter().flat_map(|turn| {
+        let [a, b, c, d, e, f, g, h, i] = *turn;
+        [a, b, c, 0.0, d, e, f, 0.0, g, h, i, 0.0, 0.0, 0.0, 0.0, 1.0]
+    });
+    Numbers::new(array(given.py(), shape, whole.collect())?.as_any(), name)
 }
 
 /// The pose that a matrix is.

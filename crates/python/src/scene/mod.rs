@@ -4,7 +4,7 @@ mod answers;
 mod robots;
 
 use crate::error::Refused;
-use crate::input::{Caps, Given, Numbers, number, optional_number, places, pose_of, shape_text};
+use crate::input::{Caps, Given, matrices, number, optional_number, places, pose_of, shape_text};
 use crate::mesh::Mesh;
 use crate::output::array_or_number;
 use crate::threads::{self, Asked, Engine, Held, Lender, ask_each};
@@ -180,7 +180,7 @@ impl Scene {
         let pose = match pose {
             None => Pose::IDENTITY,
             Some(pose) => {
-                let numbers = Numbers::new(pose, "pose")?;
+                let numbers = matrices(pose, "pose")?;
                 let (&[4, 4], Some(matrix)) =
                     (numbers.shape(), numbers.values().as_chunks::<16>().0.first())
                 else {
