@@ -1,6 +1,6 @@
 //! A motion of sections of constant curvature.
 
-use super::{Motion, Moving, place_in, together};
+use super::{Motion, Moving, Recipe, place_in, together};
 use crate::error::Refused;
 use crate::input::{Numbers, Poses, pose_of, shape_text};
 use parry_continuum::BendingSection;
@@ -52,6 +52,7 @@ impl BendingMotion {
         radii: &Bound<'_, PyAny>,
         pose: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<PyClassInitializer<Self>> {
+        let (given, given_pose) = ([start, end, radii], pose.cloned());
         let (start, end) = (Sections::new(start, "start")?, Sections::new(end, "end")?);
         if start.each != end.each {
             let text = format!(
@@ -86,7 +87,8 @@ impl BendingMotion {
             let [start, end] = [&start, &end].map(|sections| sections.at(place, &radii));
             Ok(Moving::Bending(parry_continuum::BendingMotion::new(&start, &end, pose)?))
         })?;
-        Ok(motion.into_class(Self))
+        let recipe = Recipe::new(py, None, &given, &[("pose", given_pose)])?;
+        Ok(motion.with_recipe(recipe).into_class(Self))
     }
 }
 

@@ -1,7 +1,8 @@
 //! Motions one after another.
 
-use super::{Motion, Moving, Size, at, together};
+use super::{Motion, Moving, Recipe, Size, at, together};
 use pyo3::prelude::*;
+use pyo3::types::PyList;
 
 /// Motions one after another, each of which takes the same share of the time: of n motions the first one is from the time 0 to
 /// 1 / n, the next one to 2 / n, and so on.
@@ -45,6 +46,8 @@ impl MotionPath {
             let legs = parts.iter().map(|(_, motions)| at(motions, place).clone());
             Ok(Moving::Path(parry_continuum::MotionPath::new(legs.collect())?))
         })?;
-        Ok(motion.of(size).into_class(Self))
+        let given = PyList::new(py, &motions)?;
+        let recipe = Recipe::new(py, None, &[given.as_any()], &[])?;
+        Ok(motion.of(size).with_recipe(recipe).into_class(Self))
     }
 }

@@ -1,13 +1,14 @@
 //! A robot that keeps its shape and moves.
 
 use super::way::Way;
-use super::{Motion, Moving, place_in};
+use super::{Motion, Moving, Recipe, place_in};
 use crate::error::Refused;
 use crate::input::{Block, Caps, Given, Names, Robots, number, optional_number};
 use crate::queries::clearance::{Stated, tube, tubes};
 use crate::queries::distance::set_chain;
 use crate::threads::Asked;
 use parry_continuum::Tube;
+use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 
 /// The motion of a robot that does not change its shape, evenly from one pose to another.
@@ -59,7 +60,11 @@ impl RigidMotion {
         let motion = rigid(points.py(), &robots, &Way::new(start_pose, end_pose)?, |robot| {
             Ok(Tube::from(set_chain(&mut None, robot, caps)?))
         })?;
-        Ok(motion.into_class(Self))
+        let py = points.py();
+        let caps = caps.name().into_bound_py_any(py)?;
+        let given = [points, radii, start_pose, end_pose];
+        let recipe = Recipe::new(py, None, &given, &[("caps", Some(caps))])?;
+        Ok(motion.with_recipe(recipe).into_class(Self))
     }
 
     /// The same of smooth tubes, as `Mesh.clearance` takes them.
@@ -95,7 +100,15 @@ impl RigidMotion {
         )?;
         let way = Way::new(start_pose, end_pose)?;
         let motion = rigid(points.py(), &robots, &way, |robot| tube(robot, stated))?;
-        Py::new(points.py(), motion.into_class(Self))
+        let py = points.py();
+        let more = [
+            ("tangents", tangents.cloned()),
+            ("deviation", Some(deviation.into_bound_py_any(py)?)),
+            ("turn", turn.map(|turn| turn.into_bound_py_any(py)).transpose()?),
+        ];
+        let given = [points, radii, start_pose, end_pose];
+        let recipe = Recipe::new(py, Some("of_curve"), &given, &more)?;
+        Py::new(py, motion.with_recipe(recipe).into_class(Self))
     }
 }
 

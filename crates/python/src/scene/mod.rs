@@ -6,13 +6,14 @@ mod robots;
 use crate::error::Refused;
 use crate::input::{Caps, Given, matrices, number, optional_number, places, pose_of, shape_text};
 use crate::mesh::Mesh;
-use crate::output::array_or_number;
+use crate::output::{array, array_or_number};
 use crate::threads::{self, Asked, Engine, Held, Lender, ask_each};
 use answers::{NOTHING, Row, contacts, per_structure, tightest};
 use parry_continuum::Chain;
 use parry_continuum::parry::math::Pose;
 use parry_continuum::proximity::{self, SceneContact, StructureProximity};
 use pyo3::prelude::*;
+use pyo3::types::PyTuple;
 use robots::place;
 use std::sync::Arc;
 
@@ -34,6 +35,8 @@ use std::sync::Arc;
 /// ContinuumError
 ///     The margin is negative or NaN.
 ///
+/// A scene can be copied, with the same meshes, and pickled.
+///
 /// Examples
 /// --------
 /// >>> from parry_continuum import Mesh, Scene
@@ -51,11 +54,14 @@ pub(crate) struct Scene {
     nested: Vec<[usize; 2]>,
 }
 
+#[derive(Clone)]
 struct Structure {
     name: String,
-    mesh: Py<Mesh>,
+    mesh: Arc<Py<Mesh>>,
     margin: Option<f64>,
     pose: Pose,
+    /// The pose as it was given.
+    matrix: Option<[f64; 16]>,
 }
 
 /// The structures at the time of a question.
@@ -110,14 +116,10 @@ impl Lender for Snapshot {
 
 impl Scene {
     fn snapshot(&self, py: Python<'_>) -> Snapshot {
-        let structures = self.structures.with(py, |structures| {
-            let copy =
-                |it: &Structure| (it.name.clone(), it.mesh.clone_ref(py), it.margin, it.pose);
-            structures.iter().map(copy).collect::<Vec<_>>()
-        });
+        let structures = self.structures.with(py, |structures| structures.clone());
         let engines = structures
             .into_iter()
-            .map(|(name, mesh, margin, pose)| (name, mesh.get().engine(py), margin, pose));
+            .map(|it| (it.name, it.mesh.get().engine(py), it.margin, it.pose));
         Snapshot {
             structures: engines.collect(),
             robot_margin: self.robot_margin,
@@ -177,8 +179,8 @@ impl Scene {
         pose: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<usize> {
         check(py, "margin", margin)?;
-        let pose = match pose {
-            None => Pose::IDENTITY,
+        let (pose, matrix) = match pose {
+            None => (Pose::IDENTITY, None),
             Some(pose) => {
                 let numbers = matrices(pose, "pose")?;
                 let (&[4, 4], Some(matrix)) =
@@ -190,14 +192,56 @@ impl Scene {
                     );
                     return Err(Refused::other("bad_shape", text).raise(py, None));
                 };
-                pose_of(matrix).map_err(|refused| refused.of("pose").raise(py, None))?
+                let pose = pose_of(matrix).map_err(|refused| refused.of("pose").raise(py, None))?;
+                (pose, Some(*matrix))
             }
         };
-        let structure = Structure { name, mesh, margin, pose };
+        let structure = Structure { name, mesh: Arc::new(mesh), margin, pose, matrix };
         Ok(self.structures.with(py, |structures| {
             structures.push(structure);
             structures.len() - 1
         }))
+    }
+
+    /// A scene with the same meshes: where one of them moves, it has moved in both.
+    fn __copy__(&self, py: Python<'_>) -> Self {
+        let structures = self.structures.with(py, |structures| structures.clone());
+        Self {
+            structures: Held::new(structures),
+            robot_margin: self.robot_margin,
+            nested: self.nested.clone(),
+        }
+    }
+
+    fn __deepcopy__<'py>(
+        &self,
+        py: Python<'py>,
+        memo: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let (make, arguments) = self.__reduce__(py)?;
+        let arguments = py.import("copy")?.call_method1("deepcopy", (arguments, memo))?;
+        make.call1(arguments.cast_into::<PyTuple>()?)
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+        let make = py.import("parry_continuum._copies")?.getattr("scene")?;
+        let structures = self.structures.with(py, |structures| structures.clone());
+        let structures = structures.into_iter().map(|it| {
+            let pose =
+                it.matrix.map(|matrix| array(py, vec![4, 4], matrix.to_vec())).transpose()?;
+            (it.name, it.mesh.clone_ref(py), it.margin, pose).into_pyobject(py)
+        });
+        let structures = structures.collect::<PyResult<Vec<_>>>()?;
+        let nested: Vec<_> = self.nested.iter().map(|&[a, b]| (a, b)).collect();
+        let arguments = (self.robot_margin, nested, structures).into_pyobject(py)?;
+        Ok((make, arguments.into_any()))
+    }
+
+    fn __repr__(&self, py: Python<'_>) -> String {
+        let names = self.structures.with(py, |structures| {
+            structures.iter().map(|it| format!("{:?}", it.name)).collect::<Vec<_>>()
+        });
+        format!("Scene({})", names.join(", "))
     }
 
     /// How many structures there are.

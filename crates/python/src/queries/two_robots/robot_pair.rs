@@ -3,6 +3,7 @@
 use super::{Pairs, pairs};
 use crate::input::{Caps, Names, Robots, number};
 use pyo3::prelude::*;
+use pyo3::types::{PyTuple, PyType};
 
 /// Questions about two robots, or about one and itself.
 ///
@@ -29,6 +30,19 @@ impl RobotPair {
     #[new]
     fn new() -> Self {
         Self(Pairs::default())
+    }
+
+    /// A new one: what it remembers only makes answers faster.
+    fn __copy__(&self) -> Self {
+        Self::new()
+    }
+
+    fn __deepcopy__(&self, _memo: &Bound<'_, PyAny>) -> Self {
+        Self::new()
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> (Bound<'py, PyType>, Bound<'py, PyTuple>) {
+        (slf.get_type(), PyTuple::empty(slf.py()))
     }
 
     /// Forgets the last answers, as if it were new.
