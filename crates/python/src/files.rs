@@ -1,7 +1,7 @@
 //! Meshes and centrelines from files, with the frame and the unit that the files state.
 
 use crate::error::Refused;
-use crate::input::{FrameName, Whole, number, vectors};
+use crate::input::{FrameName, of, vectors};
 use crate::mesh::{Mesh, Origin, parts};
 use crate::output::{answer, array};
 use crate::threads::interruptible;
@@ -103,14 +103,13 @@ fn labels_text(labels: &[u32]) -> String {
 pub(crate) fn load(
     py: Python<'_>,
     path: &Bound<'_, PyAny>,
-    label: Option<Whole>,
+    #[pyo3(from_py_with = of::optional::label)] label: Option<u32>,
     frame: Option<FrameName>,
-    #[pyo3(from_py_with = number)] scale: f64,
+    #[pyo3(from_py_with = of::scale)] scale: f64,
     allow_no_position: bool,
 ) -> PyResult<Mesh> {
-    let options = Options::scaled(scale)
-        .with_label(label.map(|Whole(label)| label))
-        .with_no_position_allowed(allow_no_position);
+    let options =
+        Options::scaled(scale).with_label(label).with_no_position_allowed(allow_no_position);
     let (path, bytes) = match Source::of(path)? {
         Source::Mesh(vertices, faces) if label.is_none() => {
             return Mesh::of_parts(&vertices, &faces, frame, scale);
@@ -231,11 +230,11 @@ fn made(
 pub(crate) fn load_centreline<'py>(
     py: Python<'py>,
     path: &Bound<'py, PyAny>,
-    line: Option<Whole>,
+    #[pyo3(from_py_with = of::optional::line)] line: Option<u32>,
     frame: Option<FrameName>,
-    #[pyo3(from_py_with = number)] scale: f64,
+    #[pyo3(from_py_with = of::scale)] scale: f64,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let options = Options::scaled(scale).with_line(line.map(|Whole(line)| line as usize));
+    let options = Options::scaled(scale).with_line(line.map(|line| line as usize));
     let source = Source::of(path)?;
     let read = match source {
         Source::Path(path) => {

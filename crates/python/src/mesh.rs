@@ -10,7 +10,7 @@ use numpy::{PyArrayDyn, PyUntypedArray};
 use parry_continuum::parry::math::Vector;
 use parry_continuum::proximity::Proximity;
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyDict, PyString, PyType};
+use pyo3::types::{PyBytes, PyString, PyTuple};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -63,9 +63,8 @@ pub(crate) struct Origin {
     pub skipped_faces: usize,
 }
 
-/// `copyreg.__newobj_ex__`, and what it is called with to make the mesh again.
-type Reduced<'py> =
-    (Bound<'py, PyAny>, (Bound<'py, PyType>, [Bound<'py, PyAny>; 2], Bound<'py, PyDict>));
+/// A function, and what it is called with to make the mesh again.
+type Reduced<'py> = (Bound<'py, PyAny>, Bound<'py, PyTuple>);
 
 impl Mesh {
     fn of(engine: Arc<Engine>, origin: Origin) -> Self {
@@ -312,12 +311,10 @@ impl Mesh {
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
-        let make = slf.py().import("copyreg")?.getattr("__newobj_ex__")?;
-        let known = PyDict::new(slf.py());
-        known.set_item("frame", slf.getattr("frame")?)?;
-        known.set_item("unit", slf.getattr("unit")?)?;
-        let arrays = [slf.getattr("vertices")?, slf.getattr("faces")?];
-        Ok((make, (slf.get_type(), arrays, known)))
+        let make = slf.py().import("parry_continuum._copies")?.getattr("mesh")?;
+        let parts = ["vertices", "faces", "frame", "unit"].map(|name| slf.getattr(name));
+        let parts = parts.into_iter().collect::<PyResult<Vec<_>>>()?;
+        Ok((make, PyTuple::new(slf.py(), parts)?))
     }
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {

@@ -1,7 +1,7 @@
 //! Fewer links for the same robot.
 
 use crate::error::Refused;
-use crate::input::{Block, Names, Robots, number};
+use crate::input::{Block, Names, Robots, of};
 use crate::output::{array, flat};
 use crate::threads::{Asked, compute};
 use numpy::PyArrayDyn;
@@ -46,7 +46,7 @@ pub(crate) fn simplify<'py>(
     py: Python<'py>,
     points: &Bound<'py, PyAny>,
     radii: &Bound<'py, PyAny>,
-    #[pyo3(from_py_with = number)] tolerance: f64,
+    #[pyo3(from_py_with = of::tolerance)] tolerance: f64,
 ) -> PyResult<Arrays<'py>> {
     fewer(py, points, radii, tolerance, parry_continuum::simplify)
 }
@@ -72,7 +72,7 @@ pub(crate) fn stations<'py>(
     py: Python<'py>,
     points: &Bound<'py, PyAny>,
     radii: &Bound<'py, PyAny>,
-    #[pyo3(from_py_with = number)] tolerance: f64,
+    #[pyo3(from_py_with = of::tolerance)] tolerance: f64,
 ) -> PyResult<Arrays<'py>> {
     fewer(py, points, radii, tolerance, parry_continuum::stations)
 }

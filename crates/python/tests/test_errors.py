@@ -205,7 +205,7 @@ SCALARS = {
 @pytest.mark.parametrize("wrong", ["far", HUGE, [0.1, 0.2], np.ones(2), np.array("x"), 1j, object(), b"1"])
 def test_wrong_scalars(name: str, wrong: Any) -> None:
     for ask in SCALARS[name]:
-        with pytest.raises((TypeError, ContinuumError), match=f"'{name}'|`{name}`"):
+        with pytest.raises(TypeError, match=f"`{name}` is .*; give a number"):
             ask(wrong)
 
 
@@ -219,7 +219,7 @@ def test_scalars_of_numpy(name: str) -> None:
 
 @pytest.mark.parametrize("nested", [[(0, -1)], [(0, 2**70)], [(0,)], [0], "ab", [("a", "b")]])
 def test_wrong_places(nested: Any) -> None:
-    with pytest.raises(TypeError, match="'nested'"):
+    with pytest.raises(TypeError, match="`nested`"):
         Scene(nested=nested)
 
 

@@ -104,11 +104,11 @@ def test_paths_of_two_robots() -> None:
         (lambda: MotionPath([LEGS[0], 3]), TypeError, "motions"),
         (lambda: MotionPath(LEGS[0]), TypeError, "motions"),
         (lambda: verify_motion(3, 8), TypeError, "motion"),
-        (lambda: verify_motion(LEGS[0], 0), TypeError, "argument 'steps': 0 is not a whole number from 1"),
-        (lambda: verify_motion(LEGS[0], -1), TypeError, "argument 'steps': -1 is not a whole number from 1"),
-        (lambda: verify_motion(LEGS[0], 10**30), TypeError, "argument 'steps'"),
-        (lambda: verify_motion(LEGS[0], 8.5), TypeError, "argument 'steps'"),
-        (lambda: verify_motion(LEGS[0], "8"), TypeError, "argument 'steps'"),
+        (lambda: verify_motion(LEGS[0], 0), TypeError, "`steps` is 0; give a whole number from 1"),
+        (lambda: verify_motion(LEGS[0], -1), TypeError, "`steps` is -1; give a whole number from 1"),
+        (lambda: verify_motion(LEGS[0], 10**30), TypeError, "`steps` is .*; give a whole number"),
+        (lambda: verify_motion(LEGS[0], 8.5), TypeError, "`steps` is .*; give a whole number"),
+        (lambda: verify_motion(LEGS[0], "8"), TypeError, "`steps` is .*; give a whole number"),
     ],
 )
 def test_wrong_types(ask: Any, error: type[Exception], text: str) -> None:

@@ -161,7 +161,7 @@ def test_a_margin_is_said() -> None:
         Scene().add("wall", WALL)  # type: ignore[call-arg]
     with pytest.raises(TypeError, match="positional"):
         Scene().add("wall", WALL, 0.5)  # type: ignore[misc]
-    with pytest.raises(TypeError, match="'margin'"):
+    with pytest.raises(TypeError, match="`margin` is 'far'; give a number"):
         Scene().add("wall", WALL, margin="far")  # type: ignore[arg-type]
     scene = Scene()
     scene.add("touches", WALL, margin=0.0)

@@ -136,17 +136,48 @@ def _short(answer: Any) -> str:
     return f"{type(answer).__name__}({fields})"
 
 
+def _columns(answer: Any, axes: tuple[str, str]) -> dict[str, NDArray[Any]]:
+    """The first field of an answer has a number for each row."""
+    rows = np.shape(answer[0])
+    columns: dict[str, NDArray[Any]] = {}
+    if len(rows) == len(axes):
+        places = np.indices(rows).reshape(len(axes), -1)
+        columns.update(zip(axes, places))
+    for name, value in zip(answer._fields, answer):
+        if name == "offsets":
+            continue
+        values = np.asarray(value)
+        further = values.shape[len(rows) :]
+        values = values.reshape(-1 if 0 not in rows else 0, *further)
+        for place in np.ndindex(*further):
+            ends = [str(number) for number in place]
+            if further and further[-1] == 3:
+                ends[-1] = "xyz"[place[-1]]
+            columns["_".join([name, *ends])] = values[(slice(None), *place)]
+    return columns
+
+
 class _Answer:
     """What all answers are beside tuples with names."""
 
     __slots__ = ()
     _instead = "use `.is_clear`"
+    _axes = ("robot", "segment")
 
     def __bool__(self) -> NoReturn:
         raise _no_truth(f"{type(self).__name__}", self._instead)
 
     def __repr__(self) -> str:
         return _short(self)
+
+    def to_dict(self) -> dict[str, NDArray[Any]]:
+        """Columns of equal length, as ``pandas.DataFrame`` takes them: a row for each robot, contact or segment.
+
+        A point has a column for each coordinate, ``on_mesh_x``, and other numbers a column for each place, ``segments_0``.
+        Segments of a batch are rows too, with columns that say of which robot and which segment. ``offsets`` is left out,
+        since each contact names its robot. ``_asdict()`` has the fields as they are.
+        """
+        return _columns(self, self._axes)
 
 
 class _MinimumFields(NamedTuple):
@@ -498,6 +529,7 @@ class PerStructure(_Answer, _PerStructureFields):
     """Where robots are closest to each of M structures of a scene, in the scene's frame."""
 
     __slots__ = ()
+    _axes = ("batch", "structure")
     _instead = "compare its `slack`"
 
 

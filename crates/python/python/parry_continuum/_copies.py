@@ -11,6 +11,11 @@ from numpy.typing import NDArray
 from ._native import Mesh, Motion, Scene
 
 
+def mesh(vertices: NDArray[np.float64], faces: NDArray[np.int64], frame: Any, unit: Optional[str]) -> Mesh:
+    """A mesh with what is known of it."""
+    return Mesh(vertices, faces, frame=frame, unit=unit)
+
+
 def motion(cls: Any, maker: Optional[str], args: tuple[Any, ...], more: dict[str, Any]) -> Motion:
     """A motion, by its class or by a function of that."""
     make = cls if maker is None else getattr(cls, maker)

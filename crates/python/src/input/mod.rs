@@ -16,4 +16,4 @@ pub(crate) use names::Names;
 pub(crate) use numbers::{Numbers, numpy, shape_text, vectors};
 pub(crate) use poses::{Poses, matrices, pose_of};
 pub(crate) use robots::{Block, Given, Robots};
-pub(crate) use scalars::{Count, FrameName, Whole, number, optional_number, places};
+pub(crate) use scalars::{FrameName, of, places};

@@ -3,7 +3,7 @@
 use super::way::Way;
 use super::{Motion, Moving, Recipe, place_in};
 use crate::error::Refused;
-use crate::input::{Block, Caps, Given, Names, Robots, number, optional_number};
+use crate::input::{Block, Caps, Given, Names, Robots, of};
 use crate::queries::clearance::{Stated, tube, tubes};
 use crate::queries::distance::set_chain;
 use crate::threads::Asked;
@@ -88,8 +88,8 @@ impl RigidMotion {
         start_pose: &Bound<'py, PyAny>,
         end_pose: &Bound<'py, PyAny>,
         tangents: Option<&Bound<'py, PyAny>>,
-        #[pyo3(from_py_with = number)] deviation: f64,
-        #[pyo3(from_py_with = optional_number)] turn: Option<f64>,
+        #[pyo3(from_py_with = of::deviation)] deviation: f64,
+        #[pyo3(from_py_with = of::optional::turn)] turn: Option<f64>,
     ) -> PyResult<Py<Self>> {
         let stated = Stated { deviation, turn };
         let robots = tubes(

@@ -2,7 +2,7 @@
 
 use super::Motion;
 use crate::error::Refused;
-use crate::input::Count;
+use crate::input::of;
 use crate::threads::compute;
 use pyo3::prelude::*;
 
@@ -33,11 +33,11 @@ use pyo3::prelude::*;
 pub(crate) fn verify_motion(
     py: Python<'_>,
     motion: &Bound<'_, Motion>,
-    steps: Count,
+    #[pyo3(from_py_with = of::steps)] steps: u32,
 ) -> PyResult<()> {
     let (count, motions) = motion.get().parts();
     for (place, motion) in motions.iter().enumerate() {
-        compute(py, || parry_continuum::verify_motion(motion, steps.0))?
+        compute(py, || parry_continuum::verify_motion(motion, steps))?
             .map_err(|error| Refused::from(error).raise(py, count.map(|_| place)))?;
         py.check_signals()?;
     }

@@ -1,7 +1,7 @@
 //! How near a curved tube is, between bounds.
 
 use crate::error::Refused;
-use crate::input::{Given, Robots, number, optional_number};
+use crate::input::{Given, Robots, of};
 use crate::mesh::Mesh;
 use crate::output::{Enumeration, answer, array, array_or_number, decision_value, flat, members};
 use crate::threads::{Asked, Session, ask_each};
@@ -148,10 +148,10 @@ impl Mesh {
         py: Python<'py>,
         points: &Bound<'py, PyAny>,
         radii: &Bound<'py, PyAny>,
-        #[pyo3(from_py_with = number)] tolerance: f64,
+        #[pyo3(from_py_with = of::tolerance)] tolerance: f64,
         tangents: Option<&Bound<'py, PyAny>>,
-        #[pyo3(from_py_with = number)] deviation: f64,
-        #[pyo3(from_py_with = optional_number)] turn: Option<f64>,
+        #[pyo3(from_py_with = of::deviation)] deviation: f64,
+        #[pyo3(from_py_with = of::optional::turn)] turn: Option<f64>,
         pose: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let stated = Stated { deviation, turn };
@@ -254,11 +254,11 @@ impl Mesh {
         py: Python<'py>,
         points: &Bound<'py, PyAny>,
         radii: &Bound<'py, PyAny>,
-        #[pyo3(from_py_with = number)] margin: f64,
-        #[pyo3(from_py_with = number)] resolution: f64,
+        #[pyo3(from_py_with = of::margin)] margin: f64,
+        #[pyo3(from_py_with = of::resolution)] resolution: f64,
         tangents: Option<&Bound<'py, PyAny>>,
-        #[pyo3(from_py_with = number)] deviation: f64,
-        #[pyo3(from_py_with = optional_number)] turn: Option<f64>,
+        #[pyo3(from_py_with = of::deviation)] deviation: f64,
+        #[pyo3(from_py_with = of::optional::turn)] turn: Option<f64>,
         pose: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let stated = Stated { deviation, turn };

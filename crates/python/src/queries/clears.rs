@@ -1,7 +1,7 @@
 //! Whether a robot keeps a margin.
 
 use super::distance::set_chain;
-use crate::input::{Caps, Given, number};
+use crate::input::{Caps, Given, of};
 use crate::mesh::Mesh;
 use crate::output::{Enumeration, answer, array_or_number, members, side_value};
 use crate::threads::{Asked, Session, ask_each};
@@ -40,7 +40,7 @@ impl Mesh {
         py: Python<'py>,
         points: &Bound<'py, PyAny>,
         radii: &Bound<'py, PyAny>,
-        #[pyo3(from_py_with = number)] margin: f64,
+        #[pyo3(from_py_with = of::margin)] margin: f64,
         pose: Option<&Bound<'py, PyAny>>,
         caps: Caps,
     ) -> PyResult<Bound<'py, PyAny>> {
@@ -83,7 +83,7 @@ impl Mesh {
         py: Python<'py>,
         points: &Bound<'py, PyAny>,
         radii: &Bound<'py, PyAny>,
-        #[pyo3(from_py_with = number)] margin: f64,
+        #[pyo3(from_py_with = of::margin)] margin: f64,
         pose: Option<&Bound<'py, PyAny>>,
         caps: Caps,
     ) -> PyResult<Bound<'py, PyAny>> {

@@ -2,7 +2,7 @@
 
 use super::motion_answer::motion_answer;
 use super::way::{Arguments, Question, needed};
-use crate::input::{Caps, optional_number};
+use crate::input::{Caps, of};
 use crate::mesh::Mesh;
 use crate::threads::Session;
 use parry_continuum::Motion;
@@ -89,8 +89,8 @@ impl Mesh {
         start: &Bound<'py, PyAny>,
         end: Option<&Bound<'py, PyAny>>,
         radii: Option<&Bound<'py, PyAny>>,
-        #[pyo3(from_py_with = optional_number)] margin: Option<f64>,
-        #[pyo3(from_py_with = optional_number)] resolution: Option<f64>,
+        #[pyo3(from_py_with = of::optional::margin)] margin: Option<f64>,
+        #[pyo3(from_py_with = of::optional::resolution)] resolution: Option<f64>,
         caps: Option<Caps>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let way = self.way(&Arguments { start, end, radii, caps })?;
@@ -138,8 +138,8 @@ impl Mesh {
         start: &Bound<'py, PyAny>,
         end: Option<&Bound<'py, PyAny>>,
         radii: Option<&Bound<'py, PyAny>>,
-        #[pyo3(from_py_with = optional_number)] margin: Option<f64>,
-        #[pyo3(from_py_with = optional_number)] resolution: Option<f64>,
+        #[pyo3(from_py_with = of::optional::margin)] margin: Option<f64>,
+        #[pyo3(from_py_with = of::optional::resolution)] resolution: Option<f64>,
         caps: Option<Caps>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let way = self.way(&Arguments { start, end, radii, caps })?;

@@ -2,7 +2,7 @@
 
 use super::motion_answer::motion_answer;
 use crate::error::Refused;
-use crate::input::{Given, Robots, number};
+use crate::input::{Given, Robots, of};
 use crate::mesh::Mesh;
 use crate::threads::{Session, ask_each};
 use parry_continuum::Chain;
@@ -60,9 +60,9 @@ impl Mesh {
         py: Python<'py>,
         shapes: &Bound<'py, PyAny>,
         radii: &Bound<'py, PyAny>,
-        #[pyo3(from_py_with = number)] deviation: f64,
-        #[pyo3(from_py_with = number)] margin: f64,
-        #[pyo3(from_py_with = number)] resolution: f64,
+        #[pyo3(from_py_with = of::deviation)] deviation: f64,
+        #[pyo3(from_py_with = of::margin)] margin: f64,
+        #[pyo3(from_py_with = of::resolution)] resolution: f64,
     ) -> PyResult<Bound<'py, PyAny>> {
         let paths = Robots::paths("shapes", shapes, radii)?;
         self.note_frame("shapes", shapes)?;

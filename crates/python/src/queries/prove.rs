@@ -4,7 +4,7 @@ use super::clearance::{Stated, tubes};
 use super::distance::set_chain;
 use super::way::{Arguments, Question, needed};
 use crate::error::Refused;
-use crate::input::{Caps, Given, Robots, number, optional_number};
+use crate::input::{Caps, Given, Robots, of};
 use crate::mesh::Mesh;
 use crate::threads::{Session, ask_each};
 use parry_continuum::Motion;
@@ -107,7 +107,7 @@ impl Mesh {
         py: Python<'py>,
         points: &Bound<'py, PyAny>,
         radii: &Bound<'py, PyAny>,
-        #[pyo3(from_py_with = number)] margin: f64,
+        #[pyo3(from_py_with = of::margin)] margin: f64,
         pose: Option<&Bound<'py, PyAny>>,
         caps: Caps,
     ) -> PyResult<Option<String>> {
@@ -147,11 +147,11 @@ impl Mesh {
         py: Python<'py>,
         points: &Bound<'py, PyAny>,
         radii: &Bound<'py, PyAny>,
-        #[pyo3(from_py_with = number)] margin: f64,
-        #[pyo3(from_py_with = number)] resolution: f64,
+        #[pyo3(from_py_with = of::margin)] margin: f64,
+        #[pyo3(from_py_with = of::resolution)] resolution: f64,
         tangents: Option<&Bound<'py, PyAny>>,
-        #[pyo3(from_py_with = number)] deviation: f64,
-        #[pyo3(from_py_with = optional_number)] turn: Option<f64>,
+        #[pyo3(from_py_with = of::deviation)] deviation: f64,
+        #[pyo3(from_py_with = of::optional::turn)] turn: Option<f64>,
         pose: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Option<String>> {
         let stated = Stated { deviation, turn };
@@ -198,8 +198,8 @@ impl Mesh {
         start: &Bound<'py, PyAny>,
         end: Option<&Bound<'py, PyAny>>,
         radii: Option<&Bound<'py, PyAny>>,
-        #[pyo3(from_py_with = optional_number)] margin: Option<f64>,
-        #[pyo3(from_py_with = optional_number)] resolution: Option<f64>,
+        #[pyo3(from_py_with = of::optional::margin)] margin: Option<f64>,
+        #[pyo3(from_py_with = of::optional::resolution)] resolution: Option<f64>,
         caps: Option<Caps>,
     ) -> PyResult<Option<String>> {
         let way = self.way(&Arguments { start, end, radii, caps })?;

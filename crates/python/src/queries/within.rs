@@ -1,7 +1,7 @@
 //! Every contact of a robot.
 
 use super::distance::set_chain;
-use crate::input::{Caps, Given, number};
+use crate::input::{Caps, Given, of};
 use crate::mesh::Mesh;
 use crate::output::{answer, rows};
 use crate::threads::{Asked, Session, ask_each};
@@ -56,8 +56,8 @@ impl Mesh {
         py: Python<'py>,
         points: &Bound<'py, PyAny>,
         radii: &Bound<'py, PyAny>,
-        #[pyo3(from_py_with = number)] margin: f64,
-        #[pyo3(from_py_with = number)] prominence: f64,
+        #[pyo3(from_py_with = of::margin)] margin: f64,
+        #[pyo3(from_py_with = of::prominence)] prominence: f64,
         pose: Option<&Bound<'py, PyAny>>,
         caps: Caps,
     ) -> PyResult<Bound<'py, PyAny>> {

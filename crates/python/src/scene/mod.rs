@@ -4,7 +4,7 @@ mod answers;
 mod robots;
 
 use crate::error::Refused;
-use crate::input::{Caps, Given, matrices, number, optional_number, places, pose_of, shape_text};
+use crate::input::{Caps, Given, matrices, of, places, pose_of, shape_text};
 use crate::mesh::Mesh;
 use crate::output::{array, array_or_number};
 use crate::threads::{self, Asked, Engine, Held, Lender, ask_each};
@@ -145,7 +145,7 @@ impl Scene {
     #[pyo3(signature = (*, robot_margin = None, nested = Vec::new()), text_signature = "(*, robot_margin=None, nested=())")]
     fn new(
         py: Python<'_>,
-        #[pyo3(from_py_with = optional_number)] robot_margin: Option<f64>,
+        #[pyo3(from_py_with = of::optional::robot_margin)] robot_margin: Option<f64>,
         #[pyo3(from_py_with = places)] nested: Vec<[usize; 2]>,
     ) -> PyResult<Self> {
         check(py, "robot_margin", robot_margin)?;
@@ -175,7 +175,7 @@ impl Scene {
         py: Python<'_>,
         name: String,
         mesh: Py<Mesh>,
-        #[pyo3(from_py_with = optional_number)] margin: Option<f64>,
+        #[pyo3(from_py_with = of::optional::margin)] margin: Option<f64>,
         pose: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<usize> {
         check(py, "margin", margin)?;
@@ -384,8 +384,8 @@ impl Scene {
         &self,
         py: Python<'py>,
         robots: Vec<Bound<'py, PyAny>>,
-        #[pyo3(from_py_with = number)] reach: f64,
-        #[pyo3(from_py_with = number)] prominence: f64,
+        #[pyo3(from_py_with = of::reach)] reach: f64,
+        #[pyo3(from_py_with = of::prominence)] prominence: f64,
         caps: Caps,
     ) -> PyResult<Bound<'py, PyAny>> {
         // A batch without robots asks nothing of the scene itself.

@@ -22,7 +22,7 @@ pub(crate) fn interruptible<T: Send + 'static>(
     py: Python<'_>,
     work: impl FnOnce() -> T + Send + 'static,
 ) -> PyResult<T> {
-    let (sender, receiver) = channel();
+    let (sender, mut receiver) = channel();
     let run = move || {
         // Nobody receives it after Ctrl-C.
         let _ = sender.send(catch_unwind(AssertUnwindSafe(work)));
@@ -33,7 +33,12 @@ pub(crate) fn interruptible<T: Send + 'static>(
         Refused::other("no_threads", text).raise(py, None)
     })?;
     loop {
-        match py.detach(|| receiver.recv_timeout(TICK)) {
+        let (waiting, received) = py.detach(move || {
+            let received = receiver.recv_timeout(TICK);
+            (receiver, received)
+        });
+        receiver = waiting;
+        match received {
             Ok(done) => return done.map_err(|panic| defect(&*panic).raise(py, None)),
             Err(RecvTimeoutError::Timeout) => py.check_signals()?,
             Err(RecvTimeoutError::Disconnected) => {

@@ -2,7 +2,7 @@
 
 use super::{Pairs, RobotPair, Session, second};
 use crate::error::Refused;
-use crate::input::{Given, Names, Robots, number, optional_number};
+use crate::input::{Given, Names, Robots, of};
 use crate::output::{
     Enumeration, answer, array, array_or_number, decision_value, flat, members, texts,
 };
@@ -183,11 +183,11 @@ pub(crate) fn tube_self_clears<'py>(
     py: Python<'py>,
     points: &Bound<'py, PyAny>,
     radii: &Bound<'py, PyAny>,
-    #[pyo3(from_py_with = number)] margin: f64,
-    #[pyo3(from_py_with = number)] resolution: f64,
+    #[pyo3(from_py_with = of::margin)] margin: f64,
+    #[pyo3(from_py_with = of::resolution)] resolution: f64,
     tangents: Option<&Bound<'py, PyAny>>,
-    #[pyo3(from_py_with = number)] deviation: f64,
-    #[pyo3(from_py_with = optional_number)] turn: Option<f64>,
+    #[pyo3(from_py_with = of::deviation)] deviation: f64,
+    #[pyo3(from_py_with = of::optional::turn)] turn: Option<f64>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let stated = Stated { deviation, turn };
     let robots = tubes(
@@ -270,13 +270,13 @@ impl RobotPair {
         radii_a: &Bound<'py, PyAny>,
         points_b: &Bound<'py, PyAny>,
         radii_b: &Bound<'py, PyAny>,
-        #[pyo3(from_py_with = number)] tolerance: f64,
+        #[pyo3(from_py_with = of::tolerance)] tolerance: f64,
         tangents_a: Option<&Bound<'py, PyAny>>,
         tangents_b: Option<&Bound<'py, PyAny>>,
-        #[pyo3(from_py_with = number)] deviation_a: f64,
-        #[pyo3(from_py_with = number)] deviation_b: f64,
-        #[pyo3(from_py_with = optional_number)] turn_a: Option<f64>,
-        #[pyo3(from_py_with = optional_number)] turn_b: Option<f64>,
+        #[pyo3(from_py_with = of::deviation_a)] deviation_a: f64,
+        #[pyo3(from_py_with = of::deviation_b)] deviation_b: f64,
+        #[pyo3(from_py_with = of::optional::turn_a)] turn_a: Option<f64>,
+        #[pyo3(from_py_with = of::optional::turn_b)] turn_b: Option<f64>,
         pose_a: Option<&Bound<'py, PyAny>>,
         pose_b: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
@@ -326,14 +326,14 @@ impl RobotPair {
         radii_a: &Bound<'py, PyAny>,
         points_b: &Bound<'py, PyAny>,
         radii_b: &Bound<'py, PyAny>,
-        #[pyo3(from_py_with = number)] margin: f64,
-        #[pyo3(from_py_with = number)] resolution: f64,
+        #[pyo3(from_py_with = of::margin)] margin: f64,
+        #[pyo3(from_py_with = of::resolution)] resolution: f64,
         tangents_a: Option<&Bound<'py, PyAny>>,
         tangents_b: Option<&Bound<'py, PyAny>>,
-        #[pyo3(from_py_with = number)] deviation_a: f64,
-        #[pyo3(from_py_with = number)] deviation_b: f64,
-        #[pyo3(from_py_with = optional_number)] turn_a: Option<f64>,
-        #[pyo3(from_py_with = optional_number)] turn_b: Option<f64>,
+        #[pyo3(from_py_with = of::deviation_a)] deviation_a: f64,
+        #[pyo3(from_py_with = of::deviation_b)] deviation_b: f64,
+        #[pyo3(from_py_with = of::optional::turn_a)] turn_a: Option<f64>,
+        #[pyo3(from_py_with = of::optional::turn_b)] turn_b: Option<f64>,
         pose_a: Option<&Bound<'py, PyAny>>,
         pose_b: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
@@ -372,11 +372,11 @@ impl RobotPair {
         py: Python<'py>,
         points: &Bound<'py, PyAny>,
         radii: &Bound<'py, PyAny>,
-        #[pyo3(from_py_with = number)] margin: f64,
-        #[pyo3(from_py_with = number)] resolution: f64,
+        #[pyo3(from_py_with = of::margin)] margin: f64,
+        #[pyo3(from_py_with = of::resolution)] resolution: f64,
         tangents: Option<&Bound<'py, PyAny>>,
-        #[pyo3(from_py_with = number)] deviation: f64,
-        #[pyo3(from_py_with = optional_number)] turn: Option<f64>,
+        #[pyo3(from_py_with = of::deviation)] deviation: f64,
+        #[pyo3(from_py_with = of::optional::turn)] turn: Option<f64>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let stated = Stated { deviation, turn };
         let robots = tubes(

@@ -1,7 +1,7 @@
 //! A robot against another, and against itself, each question by itself.
 
 use super::{Pairs, pairs};
-use crate::input::{Caps, Names, Robots, number};
+use crate::input::{Caps, Names, Robots, of};
 use pyo3::prelude::*;
 
 /// The distance between two robots, and the two points that are closest.
@@ -81,7 +81,7 @@ pub(crate) fn clears_between<'py>(
     radii_a: &Bound<'py, PyAny>,
     points_b: &Bound<'py, PyAny>,
     radii_b: &Bound<'py, PyAny>,
-    #[pyo3(from_py_with = number)] margin: f64,
+    #[pyo3(from_py_with = of::margin)] margin: f64,
     pose_a: Option<&Bound<'py, PyAny>>,
     pose_b: Option<&Bound<'py, PyAny>>,
     caps: Caps,
@@ -154,7 +154,7 @@ pub(crate) fn self_clears<'py>(
     py: Python<'py>,
     points: &Bound<'py, PyAny>,
     radii: &Bound<'py, PyAny>,
-    #[pyo3(from_py_with = number)] margin: f64,
+    #[pyo3(from_py_with = of::margin)] margin: f64,
     caps: Caps,
 ) -> PyResult<Bound<'py, PyAny>> {
     Pairs::default().self_clears(

@@ -1,6 +1,7 @@
 //! Whether two robots keep a margin between them while both move, or one keeps it to itself.
 
 use super::{Pairs, RobotPair, Session};
+use crate::input::of;
 use crate::motions::{Motion, MotionPair, Moving};
 use crate::output::{
     Enumeration, answer, array, array_or_number, decision_value, flat, members, reason_value,
@@ -56,8 +57,8 @@ impl RobotPair {
         py: Python<'py>,
         a: &Bound<'py, Motion>,
         b: &Bound<'py, Motion>,
-        #[pyo3(from_py_with = number)] margin: f64,
-        #[pyo3(from_py_with = number)] resolution: f64,
+        #[pyo3(from_py_with = of::margin)] margin: f64,
+        #[pyo3(from_py_with = of::resolution)] resolution: f64,
     ) -> PyResult<Bound<'py, PyAny>> {
         let motions = MotionPair::new(a, b)?;
         let mut all: Vec<RobotMotionAnswer> = Vec::with_capacity(motions.len());
@@ -93,8 +94,8 @@ impl RobotPair {
         &self,
         py: Python<'py>,
         motion: &Bound<'py, Motion>,
-        #[pyo3(from_py_with = number)] margin: f64,
-        #[pyo3(from_py_with = number)] resolution: f64,
+        #[pyo3(from_py_with = of::margin)] margin: f64,
+        #[pyo3(from_py_with = of::resolution)] resolution: f64,
     ) -> PyResult<Bound<'py, PyAny>> {
         self.0.motion_self_clears(py, motion.get(), margin, resolution)
     }
@@ -142,8 +143,8 @@ impl RobotPair {
 pub(crate) fn motion_self_clears<'py>(
     py: Python<'py>,
     motion: &Bound<'py, Motion>,
-    #[pyo3(from_py_with = number)] margin: f64,
-    #[pyo3(from_py_with = number)] resolution: f64,
+    #[pyo3(from_py_with = of::margin)] margin: f64,
+    #[pyo3(from_py_with = of::resolution)] resolution: f64,
 ) -> PyResult<Bound<'py, PyAny>> {
     Pairs::default().motion_self_clears(py, motion.get(), margin, resolution)
 }

@@ -1,7 +1,7 @@
 //! Two robots that are asked about again and again.
 
 use super::{Pairs, pairs};
-use crate::input::{Caps, Names, Robots, number};
+use crate::input::{Caps, Names, Robots, of};
 use pyo3::prelude::*;
 use pyo3::types::{PyTuple, PyType};
 
@@ -147,7 +147,7 @@ impl RobotPair {
         radii_a: &Bound<'py, PyAny>,
         points_b: &Bound<'py, PyAny>,
         radii_b: &Bound<'py, PyAny>,
-        #[pyo3(from_py_with = number)] margin: f64,
+        #[pyo3(from_py_with = of::margin)] margin: f64,
         pose_a: Option<&Bound<'py, PyAny>>,
         pose_b: Option<&Bound<'py, PyAny>>,
         caps: Caps,
@@ -182,7 +182,7 @@ impl RobotPair {
         radii_a: &Bound<'py, PyAny>,
         points_b: &Bound<'py, PyAny>,
         radii_b: &Bound<'py, PyAny>,
-        #[pyo3(from_py_with = number)] margin: f64,
+        #[pyo3(from_py_with = of::margin)] margin: f64,
         pose_a: Option<&Bound<'py, PyAny>>,
         pose_b: Option<&Bound<'py, PyAny>>,
         caps: Caps,
@@ -242,7 +242,7 @@ impl RobotPair {
         py: Python<'py>,
         points: &Bound<'py, PyAny>,
         radii: &Bound<'py, PyAny>,
-        #[pyo3(from_py_with = number)] margin: f64,
+        #[pyo3(from_py_with = of::margin)] margin: f64,
         caps: Caps,
     ) -> PyResult<Bound<'py, PyAny>> {
         self.0.self_clears(
