@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
-from parry_continuum import ContinuumError, Mesh, RobotPair, load, load_centreline
+from parry_continuum import ContinuumError, Mesh, RobotPair, Scene, load, load_centreline
 from shapes import Array, sphere
 
 VERTICES, FACES = sphere()
@@ -250,6 +250,21 @@ def test_a_pose_leads_to_the_mesh(tmp_path: Path) -> None:
         with pytest.raises(UserWarning, match="frame"):
             mesh.distance(lps, 0.1)
         assert RobotPair().minimum(lps, 0.1, np.asarray(lps), 0.1).distance == 0
+
+
+def test_scenes_warn_too(tmp_path: Path) -> None:
+    lps = load_centreline(markups(tmp_path)).points
+    for pose, entry, count in ((None, (lps, 0.1), 1), (None, (lps, 0.1, None), 1), (POSE, (lps, 0.1), 0), (None, (lps, 0.1, POSE), 0)):
+
+        def ask(mesh: Mesh) -> None:
+            scene = Scene()
+            scene.add("wall", mesh, margin=0.1, pose=pose)
+            for _ in range(2):
+                scene.clears([entry])
+                scene.tightest([(np.asarray(lps), 0.1), entry])
+
+        assert len(warned(Mesh(VERTICES, FACES, frame="RAS"), ask)) == count
+        assert warned(Mesh(VERTICES, FACES), ask) == []
 
 
 ROBOT = np.array([[30.0, 20, 1], [34, 20, 1], [38, 20, 1.0]])

@@ -4,7 +4,7 @@ mod answers;
 mod robots;
 
 use crate::error::Refused;
-use crate::input::{Caps, Given, matrices, of, places, pose_of, shape_text};
+use crate::input::{Caps, Given, Robots, matrices, of, places, pose_of, shape_text};
 use crate::mesh::Mesh;
 use crate::output::{array, array_or_number};
 use crate::threads::{self, Asked, Engine, Held, Lender, ask_each};
@@ -115,6 +115,21 @@ impl Lender for Snapshot {
 }
 
 impl Scene {
+    /// The robots of a question. A mesh in the scene's own frame warns once if points without a pose state another frame.
+    fn robots<'py>(&self, py: Python<'py>, given: Vec<Bound<'py, PyAny>>) -> PyResult<Robots<'py>> {
+        let made = robots::robots(py, &given)?;
+        let meshes: Vec<_> = self.structures.with(py, |structures| {
+            let in_place = structures.iter().filter(|it| it.matrix.is_none());
+            in_place.map(|it| Arc::clone(&it.mesh)).collect()
+        });
+        for points in given.iter().filter_map(robots::points_without_pose) {
+            for mesh in &meshes {
+                mesh.get().note_frame("points", &points)?;
+            }
+        }
+        Ok(made)
+    }
+
     fn snapshot(&self, py: Python<'_>) -> Snapshot {
         let structures = self.structures.with(py, |structures| structures.clone());
         let engines = structures
@@ -271,7 +286,7 @@ impl Scene {
         robots: Vec<Bound<'py, PyAny>>,
         caps: Caps,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let robots = robots::robots(py, robots)?;
+        let robots = self.robots(py, robots)?;
         let mut all: Vec<bool> = Vec::with_capacity(robots.len());
         let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [bool]| {
             let placed = place(&mut session.chains, robot, caps)?;
@@ -306,7 +321,7 @@ impl Scene {
         robots: Vec<Bound<'py, PyAny>>,
         caps: Caps,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let robots = robots::robots(py, robots)?;
+        let robots = self.robots(py, robots)?;
         let mut all: Vec<Row> = Vec::with_capacity(robots.len());
         let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [Row]| {
             let placed = place(&mut session.chains, robot, caps)?;
@@ -342,7 +357,7 @@ impl Scene {
         robots: Vec<Bound<'py, PyAny>>,
         caps: Caps,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let (robots, snapshot) = (robots::robots(py, robots)?, self.snapshot(py));
+        let (robots, snapshot) = (self.robots(py, robots)?, self.snapshot(py));
         let mut all: Vec<StructureProximity> =
             Vec::with_capacity(robots.len() * snapshot.structures.len());
         let ask = |session: &mut Session,
@@ -391,7 +406,7 @@ impl Scene {
         // A batch without robots asks nothing of the scene itself.
         check(py, "reach", Some(reach))?;
         check(py, "prominence", Some(prominence))?;
-        let robots = robots::robots(py, robots)?;
+        let robots = self.robots(py, robots)?;
         let (mut all, mut offsets): (Vec<SceneContact>, _) = (Vec::new(), vec![0_i64]);
         let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [Vec<SceneContact>]| {
             let placed = place(&mut session.chains, robot, caps)?;

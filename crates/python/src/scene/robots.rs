@@ -31,7 +31,7 @@ pub(super) fn place<'a>(
 const MOST_ROBOTS: usize = 1000;
 
 /// The list of robots that a function was given.
-pub(super) fn robots<'py>(py: Python<'py>, given: Vec<Bound<'py, PyAny>>) -> PyResult<Robots<'py>> {
+pub(super) fn robots<'py>(py: Python<'py>, given: &[Bound<'py, PyAny>]) -> PyResult<Robots<'py>> {
     let refuse = |text: &str| Refused::other("bad_type", text).raise(py, None);
     if given.len() > MOST_ROBOTS {
         let text = format!(
@@ -65,4 +65,11 @@ fn one<'py>((place, given): (usize, &Bound<'py, PyAny>)) -> PyResult<Robots<'py>
     };
     Robots::new(Names::entry(place), points, radii, pose)
         .map_err(|error| with_prefix(py, error, &format!("`robots[{place}]`: ")))
+}
+
+/// The points of an entry that has no pose.
+pub(super) fn points_without_pose<'py>(entry: &Bound<'py, PyAny>) -> Option<Bound<'py, PyAny>> {
+    let entry = entry.cast::<PyTuple>().ok()?;
+    let has_pose = entry.get_item(2).is_ok_and(|pose| !pose.is_none());
+    if has_pose { None } else { entry.get_item(0).ok() }
 }
