@@ -2,7 +2,7 @@
 
 use crate::error::Refused;
 use crate::input::{FrameName, of, vectors};
-use crate::mesh::{Mesh, Origin, parts};
+use crate::mesh::{Mesh, Origin, is_file, parts};
 use crate::output::{answer, array};
 use crate::threads::interruptible;
 use mesh_files::{Frame, MeshFileError, Options};
@@ -147,17 +147,17 @@ impl<'py> Source<'py> {
         {
             return Ok(Self::Path(decoded(given)?));
         }
-        let Some(read) = given.getattr_opt("read")? else {
+        if !is_file(given)? {
             let (vertices, faces) = parts(given, "path")?;
             return Ok(Self::Mesh(vertices, faces));
-        };
+        }
         let name = given.getattr_opt("name")?.filter(|name| !name.is_instance_of::<PyInt>());
         let name = name.filter(|name| !name.is_none()).ok_or_else(|| {
             let text = "`path` is a file object without a name, whose extension would say its format; set its `name`, as in \
                         file.name = 'wall.stl'";
             Refused::other("bad_type", text).raise(py, None)
         })?;
-        let content = read.call0()?;
+        let content = given.call_method0("read")?;
         let bytes = match content.extract::<Vec<u8>>() {
             Ok(bytes) => bytes,
             // A file that was opened as text.

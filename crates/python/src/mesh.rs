@@ -166,12 +166,17 @@ pub(crate) fn parts<'py>(
     })
 }
 
+/// Whether it is a file object. A mesh of meshio has a function `read` too.
+pub(crate) fn is_file(given: &Bound<'_, PyAny>) -> PyResult<bool> {
+    Ok(given.hasattr("read")? && !given.hasattr("points")?)
+}
+
 /// Refuses a path: `Mesh` reads no files.
 fn refuse_path(given: &Bound<'_, PyAny>) -> PyResult<()> {
     if given.is_instance_of::<PyString>()
         || given.is_instance_of::<PyBytes>()
         || given.hasattr("__fspath__")?
-        || given.hasattr("read")?
+        || is_file(given)?
     {
         let text = "`vertices` is a path or a file; use load(), which reads files";
         return Err(Refused::other("bad_type", text).raise(given.py(), None));

@@ -56,7 +56,7 @@ EQUAL = np.zeros((12, 3))
     [
         # The second robot, and the first one of two.
         (lambda a: a(ONE, 0.1, ONE.T, 0.1), "`points_b` has the shape (3, 12)"),
-        (lambda a: a(ONE, 0.1, "x", 0.1), "`points_b` is no array of numbers"),
+        (lambda a: a(ONE, 0.1, "x", 0.1), "`points_b` has the type <U1; give an array of floats"),
         (lambda a: a(ONE, 0.1, ONE, None), "`radii_b` has the type object"),
         (lambda a: a(ONE, 0.1, ONE, np.ones((2, 2))), "`radii_b` has the shape (2, 2)"),
         (lambda a: a(ONE, 0.1, ONE, np.ones(4)), "12 points need 11 radii, got 4 in `radii_b`"),

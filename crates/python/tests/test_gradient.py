@@ -96,19 +96,34 @@ BEND = np.array([[-2, 0, 2], [0, 0, 1], [2, 0, 2.0]])
 
 
 def test_a_bend_of_equal_radii_has_a_kink() -> None:
-    """The least change of one radius makes a step of the bend, whose flat side is farther away."""
+    """The wider side of a step is flat, and the narrower one decides: more of one radius changes nothing, less of it does."""
     equal = np.full(2, 0.5)
     found = FLOOR.distance_and_gradient(BEND, equal)
     assert found.value == 0.5 and found.kink is True
     for place in (0, 1):
-        other = equal.copy()
-        other[place] += 1e-6
-        assert FLOOR.distance(BEND, other) - found.value > 0.04
-        assert FLOOR.distance_and_gradient(BEND, other).kink is False
+        for off in (1e-6, -1e-6):
+            other = equal.copy()
+            other[place] += off
+            assert FLOOR.distance(BEND, other) == pytest.approx(0.5 - min(off, 0), abs=1e-12)
+            assert FLOOR.distance_and_gradient(BEND, other).kink is False
     # Radii that differ by rounding are equal.
     assert FLOOR.distance_and_gradient(BEND, equal * [1, 1 + 2e-16]).kink is True
     assert FLOOR.distance_and_gradient(BEND, 0.5).kink is True
     assert FLOOR.distance_and_gradient(BEND, equal, caps="capsules").kink is False
+
+
+@pytest.mark.parametrize("behind", [0.2, 0.3])
+def test_a_bend_turns_flat_where_one_radius_changes(behind: float) -> None:
+    """A short segment that becomes wider has a face, and the bend is too near to it to stay filled."""
+    along = (BEND[2] - BEND[1]) / np.linalg.norm(BEND[2] - BEND[1])
+    points = np.stack([BEND[0], BEND[1], BEND[1] + behind * along, BEND[2]])
+    equal = np.full(3, 0.5)
+    found = FLOOR.distance_and_gradient(points, equal)
+    assert found.value == 0.5 and found.kink is True
+    assert FLOOR.distance(points, equal + [0, 1e-6, 0]) > 0.55
+    # The radii at the bend differ, and those behind it are equal.
+    narrow = np.array([0.6, 0.5, 0.5])
+    assert FLOOR.distance_and_gradient(points, narrow).kink is (FLOOR.minimum(points, narrow).segment == 1)
 
 
 def test_where_there_is_no_joint_there_is_no_such_kink() -> None:

@@ -193,7 +193,7 @@ def test_rotations(count: int | None) -> None:
         lambda pose: MESH.per_link(ONE, 0.1, pose=pose).distance,
         lambda pose: RobotPair().minimum(ONE, 0.1, ONE + 5, 0.1, pose_b=pose).distance,
         lambda pose: MESH.clearance_of_motion(RigidMotion(ONE, 0.1, np.eye(4), pose), tolerance=0.5).lower,
-        lambda pose: MovingBase(BendingMotion([[1, 0, 0]], [[1, 0, 0]], 0.1), pose, pose).count,
+        lambda pose: MESH.clearance_of_motion(MovingBase(BendingMotion([[1, 0, 0]], [[1, 0, 0]], 0.1), pose, pose), tolerance=0.5).lower,
         lambda pose: Scene(robot_margin=0.1).tightest([(ONE, 0.1, pose), (ONE, 0.1)]).slack,
     ):
         assert_allclose(ask(rotations), ask(matrices), atol=1e-14)

@@ -112,7 +112,8 @@ class Decisions(_Members):
     @property
     def is_clear(self) -> NDArray[np.bool_]:
         """Of each, whether the margin is proven to be kept."""
-        return np.asarray(self) == Decision.CLEAR
+        is_clear: NDArray[np.bool_] = np.asarray(self) == Decision.CLEAR
+        return is_clear
 
 
 class Sides(_Members):
@@ -395,8 +396,8 @@ class _GradientFields(NamedTuple):
     pose: Floats
     """(4, 4): the derivative with respect to the entries of the pose."""
     kink: BoolOrBools
-    """Whether other points are as close, for which the derivative is another, or a joint of equal radii is closest, from
-    which the distance jumps if one of the radii changes alone."""
+    """Whether other points are as close, for which the derivative is another, or a bend between equal radii is closest,
+    which is no longer filled if one of the radii changes alone."""
 
 
 class Gradient(_Answer, _GradientFields):

@@ -64,7 +64,7 @@ def _meshio(given: Any) -> Optional[Parts]:
 def _pyvista(given: Any) -> Optional[Parts]:
     if not _has(given, "points", "n_cells"):
         return None
-    surface = given if _has(given, "triangulate", "faces") else given.extract_surface()
+    surface = given if hasattr(type(given), "verts") else given.extract_surface()
     return surface.points, np.asarray(surface.triangulate().faces).reshape(-1, 4)[:, 1:]
 
 

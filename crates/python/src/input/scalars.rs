@@ -31,7 +31,7 @@ pub(crate) fn places(given: &Bound<'_, PyAny>) -> PyResult<Vec<[usize; 2]>> {
             PyTypeError::new_err(
                 "`nested` has a place that is negative or too large; places count from 0",
             )
-        } else if error.is_instance_of::<PyTypeError>(given.py()) {
+        } else if is_of_value(given.py(), &error) {
             PyTypeError::new_err(
                 "`nested` is no list of pairs of places; give pairs of whole numbers",
             )

@@ -64,20 +64,24 @@ fn ask(session: &mut Session, robot: &Given<'_>, caps: Caps) -> Result<Row, Refu
 /// Radii that differ by at most this share are equal, as in `Chain::from_centreline`.
 const EQUAL: f64 = 1.0 / (1_u64 << 32) as f64;
 
-/// Whether the closest place is on the round cap of a joint between equal radii. If one of the two radii changes, however little,
-/// the joint is a step, its wider side is flat, and the distance jumps.
+/// Whether a change of one radius, however little, changes the cap that the closest place is on.
+///
+/// The place is on the round cap of a joint. If a joint between equal radii, this one or another within one radius of it, becomes a
+/// step, then the wider side of the step is flat, and so is every joint that is too near to that face.
 fn is_at_filled_bend(chain: &Chain, contact: &Contact) -> bool {
-    let (links, link) = (chain.links(), contact.link as usize);
-    let (end, neighbour) = match contact.feature.link {
+    let (links, place) = (chain.links(), contact.link as usize);
+    let link = &links[place];
+    let (end, joint) = match contact.feature.link {
         LinkFeature::Side => return false,
-        LinkFeature::StartCap => (0, link.checked_sub(1)),
-        LinkFeature::EndCap => (1, link.checked_add(1)),
+        LinkFeature::StartCap => (0, link.start()),
+        LinkFeature::EndCap => (1, link.end()),
     };
-    let Some(neighbour) = neighbour.and_then(|neighbour| links.get(neighbour)) else {
-        return false;
-    };
-    let [radius, other] = [links[link].radius(), neighbour.radius()];
-    links[link].caps()[end] == Cap::Round && (radius - other).abs() <= EQUAL * radius.max(other)
+    let is_equal = |one: f64, other: f64| (one - other).abs() <= EQUAL * one.max(other);
+    link.caps()[end] == Cap::Round
+        && links.windows(2).any(|pair| {
+            is_equal(pair[0].radius(), pair[1].radius())
+                && (pair[0].end() - joint).length() <= link.radius()
+        })
 }
 
 #[pymethods]
@@ -89,8 +93,9 @@ impl Mesh {
     ///
     /// Of most robots one link is closest, and one triangle. Where two are equally close the distance has a kink, and what is
     /// given is the derivative for one of them; ``kink`` says where the two closest points themselves could be others. With fitted
-    /// caps, a bend between segments of equal radii is filled, and the distance from there jumps if one of the two radii changes
-    /// alone: ``kink`` says so too. The derivatives are NaN where neither side of the triangle is the robot's.
+    /// caps, a bend between segments of equal radii is filled. If one radius there changes alone, the bend is a step whose wider side
+    /// is flat, and the distance from there has a kink or jumps: ``kink`` says so too. The derivatives are NaN where neither side of
+    /// the triangle is the robot's.
     ///
     /// Parameters
     /// ----------
