@@ -145,7 +145,7 @@ def test_without_margins() -> None:
     scene = Scene()
     for _ in range(2):
         found = scene.tightest([(A[0], 0.1)])
-        assert found.slack == np.inf and found.structure == -1
+        assert found.slack == np.inf and found.structure == -1 and found.is_clear is False
         for robots in ([(A[0], 0.1)], [(A, 0.1)], [(A, 0.1), (B[0], 0.1, POSES[0])]):
             with pytest.raises(ContinuumError, match="nothing in the scene has a margin.*give a structure or the robots a") as raised:
                 scene.clears(robots)

@@ -596,8 +596,9 @@ class Tightest(_Answer, _TightestFields):
 
     @property
     def is_clear(self) -> BoolOrBools:
-        """Whether every margin is kept: ``slack`` is more than 0."""
-        return self.slack > 0
+        """Whether every margin is kept: ``slack`` is more than 0. False where nothing has a margin."""
+        found = (np.asarray(self.slack) > 0) & (self.robots[..., 0] >= 0)
+        return bool(found) if np.ndim(found) == 0 else found
 
 
 class FramedPoints(np.ndarray[Any, np.dtype[np.float64]]):
