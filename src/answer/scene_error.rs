@@ -26,13 +26,13 @@ pub enum SceneError {
     /// The margin between robots is at fault.
     #[error("between robots: {0}")]
     BetweenRobots(ProximityError),
-    /// A number of the query, such as `reach`, is at fault.
+    /// A parameter of the query is at fault.
     #[error(transparent)]
     Query(ProximityError),
-    /// No structure has a margin, and there is none between robots, so nothing is tested.
+    /// Neither a structure nor the robots have a margin, so there is nothing to keep.
     #[error(
-        "no structure has a margin, and there is none between robots: set one with `set_margin` or \
-         `set_robot_margin`"
+        "nothing in the scene has a margin, so no robot could violate one; give a structure or the robots a margin, or ask for \
+         `per_structure`"
     )]
     NoMargin,
     /// There is no structure with this number.

@@ -45,14 +45,18 @@ fn stated_courses_hold_between_any_shares_and_times() {
         let from: Vec<_> =
             (0..=count).map(|k| random.point() * 2.0 + Vector::Z * k as Real).collect();
         let to: Vec<_> = from.iter().map(|&point| point + random.point() * 3.0).collect();
-        let bent = [sections(&mut random, &radii), sections(&mut random, &radii)];
+        let bent = [0; 4].map(|_| sections(&mut random, &radii));
         let poses = [random.pose(3.0), random.pose(3.0)];
         let bending = BendingMotion::new(&bent[0], &bent[1], poses[0]).unwrap();
         let mut tube = Tube::empty();
         bending.shape(random.unit(), &mut tube).unwrap();
-        let moving =
-            MovingBase::new(bending.clone(), [random.pose(3.0), random.pose(3.0)]).unwrap();
-        let path = MotionPath::new(vec![moving.clone(); 3]).unwrap();
+        let bases = [0; 4].map(|_| random.pose(3.0));
+        let leg = |k: usize| {
+            let bending = BendingMotion::new(&bent[k], &bent[k + 1], poses[0]).unwrap();
+            MovingBase::new(bending, [bases[k], bases[k + 1]]).unwrap()
+        };
+        let moving = leg(0);
+        let path = MotionPath::new((0..3).map(leg).collect()).unwrap();
         let motions: [&dyn Motion; 5] = [
             &LinearMotion::chain(&from, &to, &radii).unwrap(),
             &RigidMotion::new(tube, poses).unwrap(),
@@ -181,7 +185,8 @@ fn courses_allow_for_rounding() {
         let shapes = ShapePath::new(&chains, 0.0).unwrap();
         assert_eq!(shapes.displacement(0, [0.0, 1.0], [0.4, 0.6]), None, "it jumps in between");
         let linear = LinearMotion::chain(&from, &to, &radii).unwrap();
-        let path = MotionPath::new(vec![linear.clone(); 3]).unwrap();
+        let back = LinearMotion::chain(&to, &from, &radii).unwrap();
+        let path = MotionPath::new(vec![linear.clone(), back, linear.clone()]).unwrap();
         let rigid = RigidMotion::new(tube, poses).unwrap();
         let motions: [&dyn Motion; 6] = [&linear, &rigid, &bending, &moving, &path, &shapes];
         for (kind, motion) in motions.into_iter().enumerate() {

@@ -1,6 +1,7 @@
 //! Motions in sequence, as one motion.
 
-use super::{DisplacementBound, Motion, Speed};
+use super::sampled_shape::{PlaceMotion, SampledPlace, SampledShape, places};
+use super::{DisplacementBound, Motion, SectionSignature, Speed, rigid_pose};
 use crate::curve::Tube;
 use crate::distance::Scalar;
 use crate::robot::RobotError;
@@ -9,8 +10,8 @@ use parry3d_f64::math::{Pose, Real};
 /// A path: motions in sequence, each over an equal part of the time.
 ///
 /// Of n motions the first runs from t = 0 to 1 / n, the second to 2 / n, and so on.
-/// [`part_at`](Self::part_at) returns the motion at a given time. All have the same sections. Each should
-/// begin where the previous one ends; [`verify_motion`](crate::verify_motion) detects a gap.
+/// [`part_at`](Self::part_at) returns the motion at a given time. All have the same sections, and each
+/// begins where the previous one ends.
 ///
 /// ```
 /// use parry_continuum::{LinearMotion, MotionPath, parry::{math::Vector, shape::Ball}, proximity::BvhSearch};
@@ -32,14 +33,26 @@ pub struct MotionPath<M> {
 impl<M: Motion> MotionPath<M> {
     /// Joins motions in order of time.
     ///
+    /// Where two of them meet, both shapes are made and compared at nine places of each section and
+    /// at its samples.
+    ///
     /// # Errors
-    /// There are no motions.
+    /// - There are no motions.
+    /// - A motion begins farther from the end of the previous one than rounding and the errors that
+    ///   the shapes state for themselves explain, or in another direction. A robot would jump
+    ///   there, and no speed bounds a jump.
+    /// - Two motions have different sections.
+    /// - A motion has no shape at its start or its end.
     pub fn new(motions: Vec<M>) -> Result<Self, RobotError> {
         if motions.is_empty() {
-            Err(RobotError::NoMotions { parameter: "motions" })
-        } else {
-            Ok(Self { motions })
+            return Err(RobotError::NoMotions { parameter: "motions" });
         }
+        let mut joint = Joint::default();
+        for (index, pair) in (1..).zip(motions.windows(2)) {
+            let t = index as Real / motions.len() as Real;
+            joint.check(index, t, [&pair[0], &pair[1]])?;
+        }
+        Ok(Self { motions })
     }
 
     /// Returns the index of the motion at a time from 0 to 1, and that motion's own time.
@@ -104,6 +117,49 @@ impl<M: Motion> Motion for MotionPath<M> {
 
     fn time_parts(&self) -> usize {
         self.motions.len()
+    }
+}
+
+/// The end of a motion and the start of the next one.
+#[derive(Default)]
+struct Joint {
+    ends: [SampledShape; 2],
+    signature: SectionSignature,
+    places: Vec<SampledPlace>,
+}
+
+impl Joint {
+    /// # Errors
+    /// Motion `index` does not begin where the one before it ends, at the time `t` of the path.
+    fn check(
+        &mut self,
+        index: usize,
+        t: Real,
+        motions: [&impl Motion; 2],
+    ) -> Result<(), RobotError> {
+        self.signature.clear();
+        for (number, motion) in motions.into_iter().enumerate() {
+            let mut tube = Tube::empty();
+            let pose = motion.shape([1.0, 0.0][number], &mut tube)?;
+            let pose = rigid_pose("motions", &pose)?;
+            self.signature.check(t, &tube)?;
+            if number == 0 {
+                self.places = places(&tube);
+            }
+            self.ends[number].take(t, &tube, &pose, &self.places);
+        }
+        let [before, behind] = &self.ends;
+        for (number, place) in self.places.iter().enumerate() {
+            let Some(PlaceMotion { way, angle }) = before.moved(behind, number) else { continue };
+            // Written so that NaN is apart.
+            let is_joined = way <= 0.0 && !(angle > 0.0);
+            if !is_joined {
+                let (section, share) = (place.section, place.shares[0]);
+                let [off, turn] = [way, angle].map(|part| part.max(0.0));
+                return Err(RobotError::MotionsApart { index, section, share, off, turn });
+            }
+        }
+        Ok(())
     }
 }
 

@@ -141,7 +141,7 @@ impl SampledShape {
     pub(super) fn moved(&self, to: &Self, place: usize) -> Option<PlaceMotion> {
         let (from, there) = (self.samples.get(place)?, to.samples.get(place)?);
         let (way, off) = self.way(to, place)?;
-        let way = way.length() - off;
+        let way = length(way) - off;
         // Without length there is no direction.
         let has_direction = from.direction != Vector::ZERO && there.direction != Vector::ZERO;
         let turned =

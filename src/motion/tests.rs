@@ -1,8 +1,8 @@
 //! Stated speeds against dense sampling, for any two shares and any two times.
 
 use super::{BendingMotion, LinearMotion, Motion, MotionPath, MovingBase, RigidMotion, Speed};
-use crate::curve::BendingSection;
-use crate::curve::Tube;
+use crate::curve::{BendingSection, Tube};
+use crate::robot::RobotError;
 use continuum_testing::Random;
 use parry3d_f64::math::{Pose, Real, Vector};
 
@@ -170,4 +170,72 @@ fn a_path_is_as_fast_as_its_motions() {
     assert!((path.part_at(0.5).1 - 0.5).abs() < 1e-15);
     assert!((at(&path, 0.5, 0, 0.0).0 - Vector::X * 3.0).length() < 1e-12);
     assert!(MotionPath::<LinearMotion>::new(Vec::new()).is_err());
+}
+
+/// Motions that meet are joined, whatever rounds on the way; those that leave a gap are refused.
+#[test]
+fn a_path_has_no_gap() {
+    let mut random = Random::new(91);
+    for round in 0..200 {
+        let unit = [1.0, 1e-3, 1e6, 1e-200][round % 4];
+        let radii = [0.3 * unit, 0.2 * unit];
+        let mut shape =
+            || [0, 1, 2].map(|k| (random.point() + Vector::Z * (3.0 * Real::from(k))) * unit);
+        let shapes = [0; 4].map(|_| shape());
+        let leg = |k: usize| LinearMotion::chain(&shapes[k], &shapes[k + 1], &radii).unwrap();
+        MotionPath::new((0..3).map(leg).collect()).unwrap();
+        // One part in 10^12 of the size is no rounding.
+        let off = random.direction() * (1e-12 * 10.0 * unit);
+        let moved = shapes[1].map(|point| point + off);
+        let apart = vec![leg(0), LinearMotion::chain(&moved, &shapes[2], &radii).unwrap()];
+        let refused = MotionPath::new(apart).unwrap_err();
+        assert!(
+            matches!(refused, RobotError::MotionsApart { index: 1, section: 0, .. }),
+            "{refused}"
+        );
+    }
+    for round in 0..200 {
+        let bent = [0; 3].map(|_| sections(&mut random, &[0.3, 0.2]));
+        let (bases, shift) = ([0; 3].map(|_| random.pose(9.0)), random.direction() * 1e-9);
+        let leg = |k: usize, to: Pose| {
+            let bending = BendingMotion::new(&bent[k], &bent[k + 1], bases[0]).unwrap();
+            MovingBase::new(bending, [to, bases[k + 1]]).unwrap()
+        };
+        let joined = MotionPath::new(vec![leg(0, bases[0]), leg(1, bases[1])]);
+        super::verify_motion(&joined.unwrap(), 8).unwrap();
+        let there = match round % 3 {
+            0 => Pose::from_parts(bases[1].translation + shift, bases[1].rotation),
+            1 => bases[2],
+            _ => Pose::new(Vector::ZERO, Vector::X * 1e-6) * bases[1],
+        };
+        let refused = MotionPath::new(vec![leg(0, bases[0]), leg(1, there)]).unwrap_err();
+        assert_eq!(refused.kind(), "motions_apart", "{refused}");
+    }
+}
+
+/// A flat end that turns about its centre is a gap: its rim jumps.
+#[test]
+fn a_direction_that_jumps_is_a_gap() {
+    let points = [Vector::ZERO, Vector::Z, Vector::Z * 2.0];
+    let at_rest = |tilt: Real| {
+        let ends = [Vector::Z, Vector::Z + Vector::X * tilt];
+        let tube = Tube::from_samples(&points, &[0.5; 2], Some(ends)).unwrap();
+        RigidMotion::new(tube, [Pose::IDENTITY; 2]).unwrap()
+    };
+    MotionPath::new(vec![at_rest(0.1), at_rest(0.1)]).unwrap();
+    let refused = MotionPath::new(vec![at_rest(0.0), at_rest(0.1)]).unwrap_err();
+    assert!(
+        matches!(refused, RobotError::MotionsApart { off: 0.0, turn, .. } if turn > 0.05),
+        "{refused}"
+    );
+}
+
+#[test]
+fn a_path_keeps_its_sections() {
+    let way = |radius: Real| {
+        LinearMotion::capsules(&[Vector::ZERO, Vector::Z], &[Vector::ZERO, Vector::Z], &[radius])
+            .unwrap()
+    };
+    let refused = MotionPath::new(vec![way(0.1), way(0.1), way(0.2)]).unwrap_err();
+    assert_eq!(refused, RobotError::SectionsChange { t: 2.0 / 3.0 });
 }

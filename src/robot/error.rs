@@ -206,6 +206,23 @@ pub enum RobotError {
         /// The parameter's name in the function that was called.
         parameter: &'static str,
     },
+    /// A motion of a path does not begin where the previous one ends.
+    #[error(
+        "motion {index} of `motions` begins {off} away from the end of the motion before it, turned by {turn} rad, at share \
+         {share} of section {section}; let each motion begin where the previous one ends"
+    )]
+    MotionsApart {
+        /// Index of the motion that begins elsewhere.
+        index: usize,
+        /// The section, counted from the base.
+        section: usize,
+        /// The place in the section, from 0 to 1.
+        share: Real,
+        /// A lower bound on the distance of the two places.
+        off: Real,
+        /// A lower bound on the turn between the two directions, rad.
+        turn: Real,
+    },
     /// A stated speed is NaN, infinite or negative.
     #[error(
         "the motion states the speed {value} for section {section}; it must be finite and at least 0"

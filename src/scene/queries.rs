@@ -227,13 +227,13 @@ impl Scene {
 
     /// Returns whether all robots keep all margins.
     ///
-    /// True exactly if the slack of [`tightest`](Self::tightest) is more than 0, or there is none.
-    /// The query ends at the first violated margin.
+    /// True exactly if the slack of [`tightest`](Self::tightest) is more than 0, or there is no
+    /// robot. The query ends at the first violated margin.
     ///
     /// # Errors
+    /// - Neither a structure nor the robots have a margin.
     /// - A pose is not finite or not rigid, or moves a link out of range. The message has the
     ///   robot's number.
-    /// - The scene has no margin: neither a structure's nor one between robots.
     pub fn clears(&mut self, robots: &[(&Chain, Pose)]) -> Result<bool, SceneError> {
         let has_margin = |structure: &Structure| structure.margin.is_some();
         if self.robot_margin.is_none() && !self.structures.iter().any(has_margin) {
@@ -363,19 +363,21 @@ impl Scene {
 
     /// Finds every contact of every robot with every structure at most `reach` away.
     ///
-    /// Each contact is one of [`Proximity::contacts_within`]; they are sorted by structure, then by robot.
-    /// `out` is cleared first.
+    /// Each contact is one of [`Proximity::contacts_within`] at this prominence; they are sorted by
+    /// structure, then by robot. `out` is cleared first.
     ///
     /// # Errors
-    /// As [`tightest`](Self::tightest), or `reach` is negative or NaN.
+    /// As [`tightest`](Self::tightest), or `reach` or `prominence` is negative or NaN.
     pub fn contacts_within(
         &mut self,
         robots: &[(&Chain, Pose)],
         reach: Real,
+        prominence: Real,
         out: &mut Vec<SceneContact>,
     ) -> Result<(), SceneError> {
         out.clear();
         check_not_negative("reach", reach).map_err(SceneError::Query)?;
+        check_not_negative("prominence", prominence).map_err(SceneError::Query)?;
         if !self.begin(robots, Some(reach))? {
             return Ok(());
         }
@@ -387,7 +389,7 @@ impl Scene {
                     continue;
                 };
                 let structure = &mut self.structures[number];
-                let asked = ContactQuery { margin: reach, prominence: 0.0 };
+                let asked = ContactQuery { margin: reach, prominence };
                 structure
                     .search
                     .ask_contacts(placed, asked, &mut self.contacts)
@@ -666,7 +668,7 @@ mod tests {
                     match question {
                         0 => clears = scene.clears(&robots).unwrap(),
                         1 => tightest = scene.tightest(&robots).unwrap(),
-                        _ => scene.contacts_within(&robots, 0.4, &mut found).unwrap(),
+                        _ => scene.contacts_within(&robots, 0.4, 0.0, &mut found).unwrap(),
                     }
                     (clears, tightest, found)
                 });

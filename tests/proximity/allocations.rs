@@ -101,7 +101,7 @@ fn two_robots_and_a_scene_allocate_nothing() {
         scene.clears(&robots).unwrap();
         assert!(scene.tightest(&robots).unwrap().is_some());
         scene.per_structure(&robots, &mut walls).unwrap();
-        scene.contacts_within(&robots, 1.0, &mut contacts).unwrap();
+        scene.contacts_within(&robots, 1.0, 0.0, &mut contacts).unwrap();
     });
     assert_eq!(allocated, 0);
 }

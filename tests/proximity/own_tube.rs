@@ -393,7 +393,7 @@ fn a_knot_is_as_thick_as_it_can_be() {
 /// A finer resolution never revokes a decision.
 #[test]
 fn a_finer_resolution_decides_no_less() {
-    let (mut random, mut pair) = (Random::new(31), RobotPair::new());
+    let (mut random, mut query) = (Random::new(31), SelfQuery::new());
     let (mut decided, mut gained) = (0, 0);
     for _ in 0..rounds(400) {
         let coil = Coil { radius: random.between(1.0, 4.0), rise: random.between(0.1, 0.2) };

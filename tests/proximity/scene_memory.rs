@@ -5,7 +5,7 @@ use continuum_testing::Random;
 use parry_continuum::Chain;
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::shape::Ball;
-use parry_continuum::proximity::{Between, BvhSearch, Scene, Tightest};
+use parry_continuum::proximity::{Between, BvhSearch, Scene, SceneError, Tightest};
 
 /// Where a problem lies and how large its unit is.
 struct Place {
@@ -139,9 +139,13 @@ fn ask_both(
         let mut fresh = never_asked.clone();
         match random.below(3) {
             0 => {
-                let clears = fresh.clears(robots).unwrap();
-                assert_eq!(scene.clears(robots).unwrap(), clears);
-                if clears { visited.clear += 1 } else { visited.met += 1 }
+                let clears = fresh.clears(robots);
+                assert_eq!(scene.clears(robots), clears);
+                match clears {
+                    Ok(true) => visited.clear += 1,
+                    Ok(false) => visited.met += 1,
+                    Err(refused) => assert_eq!(refused, SceneError::NoMargin),
+                }
             }
             1 => {
                 tightest = fresh.tightest(robots).unwrap();
@@ -152,8 +156,8 @@ fn ask_both(
             _ => {
                 let reach = unit * random.between(0.0, 1.0);
                 let (mut found, mut expected) = (Vec::new(), Vec::new());
-                fresh.contacts_within(robots, reach, &mut expected).unwrap();
-                scene.contacts_within(robots, reach, &mut found).unwrap();
+                fresh.contacts_within(robots, reach, 0.0, &mut expected).unwrap();
+                scene.contacts_within(robots, reach, 0.0, &mut found).unwrap();
                 assert_eq!(found, expected);
                 visited.contacts += found.len();
             }

@@ -107,7 +107,7 @@ fn the_tightest_is_that_of_all_structures_in_turn() {
             }
 
             let mut contacts = Vec::new();
-            scene.contacts_within(&robots, 1.0, &mut contacts).unwrap();
+            scene.contacts_within(&robots, 1.0, 0.0, &mut contacts).unwrap();
             for (number, near) in each.iter().enumerate() {
                 let of_it = contacts.iter().filter(|found| found.structure as usize == number);
                 let least = of_it.map(|found| found.contact.distance).fold(f64::INFINITY, f64::min);
@@ -152,6 +152,7 @@ fn robots_are_held_against_one_another_where_they_have_a_margin() {
     let robots = [(&robot, Pose::IDENTITY), (&robot, Pose::translation(3.0, 0.0, 0.0))];
     let mut scene = Scene::new();
     assert_eq!(scene.tightest(&robots).unwrap(), None);
+    assert_eq!(scene.clears(&robots), Err(SceneError::NoMargin));
     scene.set_robot_margin(Some(0.5)).unwrap();
     let tightest = scene.tightest(&robots).unwrap().unwrap();
     let apart = RobotPair::new().minimum(&robot, &robots[0].1, &robot, &robots[1].1).unwrap();
@@ -230,7 +231,49 @@ fn who_is_at_fault_is_named() {
         assert_eq!(error.kind(), "pose_not_finite");
     }
     assert_eq!(scene.set_margin(7, None).unwrap_err().kind(), "no_such_structure");
-    assert!(scene.contacts_within(&robots, -1.0, &mut Vec::new()).is_err());
+}
+
+/// Parameters are checked in a scene without structures too, under their own names.
+#[test]
+fn bad_lengths_are_refused_under_their_own_names() {
+    let robot = Chain::from_centreline(&[Vector::ZERO, Vector::Z], &[0.5]).unwrap();
+    let robots = [(&robot, Pose::IDENTITY)];
+    let mut scene = Scene::new();
+    for _ in 0..2 {
+        for (reach, prominence, name) in
+            [(-1.0, 0.0, "reach"), (f64::NAN, 0.0, "reach"), (1.0, -1.0, "prominence")]
+        {
+            let refused =
+                scene.contacts_within(&robots, reach, prominence, &mut Vec::new()).unwrap_err();
+            assert_eq!(refused.kind(), "negative");
+            assert!(refused.to_string().starts_with(&format!("`{name}` is ")), "{refused}");
+        }
+        scene.contacts_within(&robots, 1.0, 0.0, &mut Vec::new()).unwrap();
+        scene.add("wall", ball(Vector::X * 5.0, 1.0), None).unwrap();
+    }
+}
+
+/// Contacts less prominent than asked for are left out, as of each mesh alone.
+#[test]
+fn contacts_have_a_prominence() {
+    let mut random = Random::new(14);
+    let robot = robot(&mut random);
+    let pose = random.pose(0.1);
+    // A mesh that is rough by 0.05.
+    let (vertices, triangles) = Ball::new(8.0).to_trimesh(48, 24);
+    let rough: Vec<_> = vertices.iter().map(|&vertex| vertex + random.point() * 0.05).collect();
+    let mut wall = BvhSearch::from_triangles(&rough, &triangles).unwrap();
+    let mut scene = Scene::new();
+    scene.add("wall", wall.clone(), None).unwrap();
+    let mut counts = Vec::new();
+    for prominence in [0.0, 0.2, f64::INFINITY] {
+        let (mut found, mut expected) = (Vec::new(), Vec::new());
+        scene.contacts_within(&[(&robot, pose)], 6.0, prominence, &mut found).unwrap();
+        wall.contacts_within(&robot, &pose, 6.0, prominence, &mut expected).unwrap();
+        assert_eq!(found.iter().map(|found| found.contact).collect::<Vec<_>>(), expected);
+        counts.push(found.len());
+    }
+    assert!(counts[0] > 2 * counts[1] && counts[2] > 0, "{counts:?}");
 }
 
 /// `reach` is checked in an empty scene too, and no structure is blamed for it.
@@ -241,12 +284,12 @@ fn a_bad_reach_is_an_error_in_every_scene() {
     let mut scene = Scene::new();
     for structures in 0..2 {
         for reach in [-1.0, f64::NAN, f64::NEG_INFINITY] {
-            let error = scene.contacts_within(&robots, reach, &mut Vec::new()).unwrap_err();
+            let error = scene.contacts_within(&robots, reach, 0.0, &mut Vec::new()).unwrap_err();
             assert!(matches!(error, SceneError::Query(_)), "{structures}: {error:?}");
             assert_eq!(error.kind(), "negative");
             assert!(error.to_string().contains("`reach`"), "{error}");
         }
-        assert_eq!(scene.contacts_within(&robots, 0.0, &mut Vec::new()), Ok(()));
+        assert_eq!(scene.contacts_within(&robots, 0.0, 0.0, &mut Vec::new()), Ok(()));
         scene.add("liver", ball(Vector::ZERO, 1.0), None).unwrap();
     }
 }
@@ -373,8 +416,12 @@ fn a_margin_counts_from_when_it_is_set() {
     let robot = Chain::from_centreline(&[Vector::ZERO, Vector::Z], &[0.5]).unwrap();
     // Beside the box around both, and 27 from either.
     let robots = [(&robot, Pose::translation(20.0, 20.0, 0.0))];
-    let (clear, none) = ((Some(0.1), Ok(true)), (None, Err(SceneError::NoMargin)));
-    for (margin, clears) in [clear.clone(), (Some(30.0), Ok(false)), clear, none] {
+    for (margin, clears) in [
+        (Some(0.1), Ok(true)),
+        (Some(30.0), Ok(false)),
+        (Some(0.1), Ok(true)),
+        (None, Err(SceneError::NoMargin)),
+    ] {
         for structure in [0, 1] {
             scene.set_margin(structure, margin).unwrap();
             assert_eq!(scene.clears(&robots), clears);

@@ -34,6 +34,9 @@ pub struct Mesh {
     /// counted. In an STL file vertices with identical coordinates are one vertex. Faces with
     /// different vertices stay, however thin.
     pub skipped_faces: usize,
+    /// The labels of a label map that was read as one surface, without a requested label: all that
+    /// are not 0, in ascending order; the lowest 1000 if there are more. Otherwise empty.
+    pub labels: Vec<u32>,
 }
 
 impl Mesh {

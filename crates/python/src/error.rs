@@ -32,6 +32,32 @@ impl Refused {
         Self::Other { kind, text: format!("`{parameter}`: {}", self.text()), index }
     }
 
+    /// The same, with what to do.
+    pub(crate) fn with_advice(self, advice: &str) -> Self {
+        let (kind, index) = (self.kind(), self.index());
+        Self::Other { kind, text: format!("{}; {advice}", self.text()), index }
+    }
+
+    /// The parameter that a robot's error names.
+    pub(crate) fn parameter_mut(&mut self) -> Option<&mut &'static str> {
+        match self {
+            Self::Robot(
+                RobotError::LengthsDiffer { parameter, .. }
+                | RobotError::BadRadius { parameter, .. }
+                | RobotError::HidesLength { parameter, .. }
+                | RobotError::PointNotFinite { parameter, .. }
+                | RobotError::PointOutOfRange { parameter, .. }
+                | RobotError::BadTangent { parameter, .. }
+                | RobotError::BadLength { parameter, .. }
+                | RobotError::BadCurvature { parameter, .. }
+                | RobotError::NoSections { parameter, .. }
+                | RobotError::TooFewPoints { parameter, .. }
+                | RobotError::Negative { parameter, .. },
+            ) => Some(parameter),
+            _ => None,
+        }
+    }
+
     pub(crate) fn kind(&self) -> &'static str {
         match self {
             Self::Robot(error) => error.kind(),
@@ -95,6 +121,21 @@ impl Refused {
     }
 }
 
+/// The exception of this package with a text before its own; another exception as it is.
+pub(crate) fn with_prefix(py: Python<'_>, error: PyErr, prefix: &str) -> PyErr {
+    let prefixed = || -> PyResult<()> {
+        let value = error.value(py);
+        if value.is_instance(class(py)?)? {
+            value.setattr("args", (format!("{prefix}{}", value.str()?),))?;
+        }
+        Ok(())
+    };
+    match prefixed() {
+        Ok(()) => error,
+        Err(other) => other,
+    }
+}
+
 fn index_in_robot(error: &RobotError) -> Option<usize> {
     match error {
         RobotError::PointNotFinite { index, .. }
@@ -106,6 +147,7 @@ fn index_in_robot(error: &RobotError) -> Option<usize> {
         | RobotError::BadCurvature { index, .. }
         | RobotError::SectionsDiffer { index }
         | RobotError::ShapesDiffer { index }
+        | RobotError::MotionsApart { index, .. }
         | RobotError::BadTangent { index, .. }
         | RobotError::TurnsTooSharply { index, .. }
         | RobotError::BendsWithinRadius { index, .. } => Some(*index),
@@ -187,9 +229,12 @@ impl From<MatrixError> for Refused {
     }
 }
 
-/// Its text names the structure or the robot.
+/// Its text names the structure, or the entry of the list of robots.
 impl From<SceneError> for Refused {
     fn from(error: SceneError) -> Self {
-        Self::other(error.kind(), error.to_string())
+        match error {
+            SceneError::Robot { robot, error } => Self::from(error).of(&format!("robots[{robot}]")),
+            error => Self::other(error.kind(), error.to_string()),
+        }
     }
 }

@@ -4,6 +4,7 @@
 //! without the GIL, `queries` has a file for each question, and `output` makes arrays of the answers.
 
 mod error;
+mod files;
 mod input;
 mod mesh;
 mod motions;
@@ -19,10 +20,12 @@ use pyo3::prelude::*;
 #[pymodule(gil_used = true)]
 mod _native {
     #[pymodule_export]
-    use super::mesh::{Mesh, load};
+    use super::files::{load, load_centreline};
+    #[pymodule_export]
+    use super::mesh::Mesh;
     #[pymodule_export]
     use super::motions::{
-        BendingMotion, LinearMotion, Motion, MotionPath, MovingBase, RigidMotion,
+        BendingMotion, LinearMotion, Motion, MotionPath, MovingBase, RigidMotion, verify_motion,
     };
     #[pymodule_export]
     use super::queries::two_robots::{

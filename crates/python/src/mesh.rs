@@ -1,30 +1,36 @@
 //! The class `Mesh`: what it is made of, and how it moves. Its questions are in `queries`.
 
 use crate::error::Refused;
-use crate::input::{Numbers, faces, shape_text, vectors};
+use crate::files::{frame_name, warn};
+use crate::input::{FrameName, Names, Numbers, Robots, faces, shape_text, vectors};
 use crate::output::{array, flat};
-use crate::threads::{Engine, Held, alone, compute};
-use mesh_files::Options;
-use numpy::PyArrayDyn;
+use crate::threads::{Engine, Held, alone};
+use mesh_files::Frame;
+use numpy::{PyArrayDyn, PyUntypedArray};
+use parry_continuum::parry::math::Vector;
 use parry_continuum::proximity::Proximity;
 use pyo3::prelude::*;
-use pyo3::types::PyType;
-use std::path::PathBuf;
+use pyo3::types::{PyBytes, PyString, PyTuple};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// A triangle mesh that is asked how near robots are to it.
 ///
-/// ``Mesh(vertices, faces)`` copies both. ``Mesh(other)`` takes what has ``.vertices`` and ``.faces``, such as a mesh of
-/// trimesh. Lengths are in one unit of your choice, the same for mesh and robots.
+/// ``Mesh(vertices, faces)`` copies both. ``Mesh(other)`` takes a mesh of trimesh (or a scene), pyvista, meshio or Open3D, or what
+/// else has ``.vertices`` and ``.faces``. Lengths are in one unit of your choice, the same for mesh and robots. `load` reads a file.
 ///
 /// Any number of threads may ask one mesh at the same time: queries run without the GIL. `move` moves the vertices for all
 /// queries that begin later. A mesh can be copied and pickled.
 ///
 /// Parameters
 /// ----------
-/// vertices : (V, 3) array of any number type, or an object with ``.vertices`` and ``.faces``
+/// vertices : (V, 3) array of any number type, or a mesh of another package
 /// faces : (F, 3) array of any integer type
 ///     Three positions among the vertices for each triangle, counted from 0.
+/// frame : {"RAS", "LPS"}, optional
+///     The frame of the vertices, for warnings about centrelines in the other one.
+/// unit : str, optional
+///     The unit of the vertices, such as "mm". Nothing is computed from it.
 ///
 /// Raises
 /// ------
@@ -42,20 +48,140 @@ use std::sync::Arc;
 /// >>> floor.distance([[0, 0, 2], [1, 0, 2]], 0.5)
 /// 1.5
 #[pyclass(frozen, module = "parry_continuum", weakref)]
-pub(crate) struct Mesh(Held<Arc<Engine>>);
+pub(crate) struct Mesh {
+    engine: Held<Arc<Engine>>,
+    origin: Origin,
+    /// Whether it has warned of points in another frame.
+    has_warned: AtomicBool,
+}
 
-/// A class, and what it is called with to make the mesh again.
-type Reduced<'py> = (Bound<'py, PyType>, (Bound<'py, PyAny>, Bound<'py, PyAny>));
+/// What is known of a mesh's coordinates, and what its file lost.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Origin {
+    pub frame: Option<Frame>,
+    pub unit: Option<String>,
+    pub skipped_faces: usize,
+}
+
+/// A function, and what it is called with to make the mesh again.
+type Reduced<'py> = (Bound<'py, PyAny>, Bound<'py, PyTuple>);
 
 impl Mesh {
-    fn of(engine: Arc<Engine>) -> Self {
-        Self(Held::new(engine))
+    fn of(engine: Arc<Engine>, origin: Origin) -> Self {
+        Self { engine: Held::new(engine), origin, has_warned: AtomicBool::new(false) }
+    }
+
+    /// A new mesh of these triangles.
+    pub(crate) fn new_from(
+        py: Python<'_>,
+        vertices: Vec<Vector>,
+        triangles: Vec<[u32; 3]>,
+        origin: Origin,
+    ) -> PyResult<Self> {
+        Ok(Self::of(Arc::new(Engine::new(py, vertices, triangles)?), origin))
+    }
+
+    /// A mesh of arrays, scaled.
+    pub(crate) fn of_parts(
+        vertices: &Bound<'_, PyAny>,
+        faces: &Bound<'_, PyAny>,
+        frame: Option<FrameName>,
+        scale: f64,
+    ) -> PyResult<Self> {
+        let py = vertices.py();
+        let mut vertices = vectors(rows(vertices, "vertices")?.points());
+        let faces = self::faces(faces, vertices.len())?;
+        vertices.iter_mut().for_each(|vertex| *vertex *= scale);
+        let frame = frame.map(|FrameName(frame)| frame);
+        Self::new_from(py, vertices, faces, Origin { frame, ..Origin::default() })
     }
 
     /// The engine of the mesh as it is now.
     pub(crate) fn engine(&self, py: Python<'_>) -> Arc<Engine> {
-        self.0.with(py, |engine| Arc::clone(engine))
+        self.engine.with(py, |engine| Arc::clone(engine))
     }
+
+    /// The robots of a question. Warns once if their points state another frame than the mesh.
+    pub(crate) fn robots<'py>(
+        &self,
+        points: &Bound<'py, PyAny>,
+        radii: &Bound<'py, PyAny>,
+        pose: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Robots<'py>> {
+        let robots = Robots::new(Names::one("points"), points, radii, pose)?;
+        // A pose leads into the mesh's frame.
+        if pose.is_none() {
+            self.note_frame("points", points)?;
+        }
+        Ok(robots)
+    }
+
+    /// Warns once if points state another frame than the mesh.
+    pub(crate) fn note_frame(&self, name: &str, points: &Bound<'_, PyAny>) -> PyResult<()> {
+        match self.frames(points)? {
+            Some(frames) if !self.has_warned.swap(true, Ordering::Relaxed) => {
+                warn(points.py(), &frames_text(name, frames))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The frame of points and that of the mesh, if both are stated and differ.
+    pub(crate) fn frames(&self, points: &Bound<'_, PyAny>) -> PyResult<Option<[Frame; 2]>> {
+        let Some(mesh) = self.origin.frame else { return Ok(None) };
+        // A plain array has no frame, and is what most queries get.
+        if points.cast_exact::<PyUntypedArray>().is_ok() {
+            return Ok(None);
+        }
+        let Some(stated) = points.getattr_opt("frame")? else { return Ok(None) };
+        let stated = stated.extract::<FrameName>().ok().map(|FrameName(frame)| frame);
+        Ok(stated.filter(|stated| *stated != mesh).map(|stated| [stated, mesh]))
+    }
+}
+
+/// That points and mesh are in different frames, and what to do.
+pub(crate) fn frames_text(name: &str, frames: [Frame; 2]) -> String {
+    let [points, mesh] = frames.map(frame_name);
+    format!(
+        "`{name}` state the frame {points}, and the mesh {mesh}: x and y have opposite signs; load both with frame='{mesh}', or \
+         give `{name} * [-1, -1, 1]`"
+    )
+}
+
+/// The vertices and faces of a mesh of another package; `name` is the parameter's.
+pub(crate) fn parts<'py>(
+    given: &Bound<'py, PyAny>,
+    name: &str,
+) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+    let py = given.py();
+    let found = py.import("parry_continuum._meshes")?.call_method1("parts", (given,))?;
+    found.extract::<Option<(Bound<'py, PyAny>, Bound<'py, PyAny>)>>()?.ok_or_else(|| {
+        let text = match name {
+            "vertices" => {
+                "`faces` is missing; give vertices and faces, or a mesh of trimesh, pyvista, meshio or Open3D"
+            }
+            _ => "`path` is neither a path nor a file object; give one of them",
+        };
+        Refused::other("bad_type", text).raise(py, None)
+    })
+}
+
+/// Whether it is a file object. A mesh of meshio has a function `read` too.
+pub(crate) fn is_file(given: &Bound<'_, PyAny>) -> PyResult<bool> {
+    Ok(given.hasattr("read")? && !given.hasattr("points")?)
+}
+
+/// Refuses a path: `Mesh` reads no files.
+fn refuse_path(given: &Bound<'_, PyAny>) -> PyResult<()> {
+    if given.is_instance_of::<PyString>()
+        || given.is_instance_of::<PyBytes>()
+        || given.hasattr("__fspath__")?
+        || is_file(given)?
+    {
+        let text = "`vertices` is a path or a file; use load(), which reads files";
+        return Err(Refused::other("bad_type", text).raise(given.py(), None));
+    }
+    Ok(())
 }
 
 /// Vertices as an array of rows; `name` is the parameter's.
@@ -78,23 +204,51 @@ pub(crate) fn rows<'py>(given: &Bound<'py, PyAny>, name: &str) -> PyResult<Numbe
 #[pymethods]
 impl Mesh {
     #[new]
-    #[pyo3(signature = (vertices, faces = None))]
-    fn new(vertices: &Bound<'_, PyAny>, faces: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
+    #[pyo3(signature = (vertices, faces = None, *, frame = None, unit = None))]
+    fn new(
+        vertices: &Bound<'_, PyAny>,
+        faces: Option<&Bound<'_, PyAny>>,
+        frame: Option<FrameName>,
+        unit: Option<String>,
+    ) -> PyResult<Self> {
         let py = vertices.py();
+        let known = |origin: Origin| Origin {
+            frame: frame.map(|FrameName(frame)| frame).or(origin.frame),
+            unit: unit.or(origin.unit),
+            ..origin
+        };
+        if let (Ok(mesh), None) = (vertices.cast::<Self>(), faces) {
+            let mesh = mesh.get();
+            return Ok(Self::of(mesh.engine(py), known(mesh.origin.clone())));
+        }
         let (vertices, triangles) = match faces {
             Some(faces) => (vertices.clone(), faces.clone()),
-            None => match (vertices.getattr("vertices"), vertices.getattr("faces")) {
-                (Ok(vertices), Ok(faces)) => (vertices, faces),
-                _ => {
-                    let text =
-                        "`faces` is missing; give vertices and faces, or an object that has both";
-                    return Err(Refused::other("bad_type", text).raise(py, None));
-                }
-            },
+            None => {
+                refuse_path(vertices)?;
+                parts(vertices, "vertices")?
+            }
         };
         let vertices = vectors(rows(&vertices, "vertices")?.points());
         let triangles = self::faces(&triangles, vertices.len())?;
-        Ok(Self::of(Arc::new(Engine::new(py, &vertices, &triangles)?)))
+        Self::new_from(py, vertices, triangles, known(Origin::default()))
+    }
+
+    /// The frame of the vertices, "RAS" or "LPS": that of the file, or the one that was asked for; None if unknown.
+    #[getter]
+    fn frame(&self) -> Option<&'static str> {
+        self.origin.frame.map(frame_name)
+    }
+
+    /// The unit of length that the file states, such as "mm"; None if unknown.
+    #[getter]
+    fn unit(&self) -> Option<&str> {
+        self.origin.unit.as_deref()
+    }
+
+    /// How many faces of the file were left out because they have no area.
+    #[getter]
+    fn skipped_faces(&self) -> usize {
+        self.origin.skipped_faces
     }
 
     /// The vertices as they are now, a (V, 3) array of your own.
@@ -140,7 +294,7 @@ impl Mesh {
         let py = vertices.py();
         let vertices = vectors(rows(vertices, "vertices")?.points());
         let moved = Arc::new(self.engine(py).moved(py, &vertices)?);
-        let before = self.0.with(py, |engine| std::mem::replace(engine, moved));
+        let before = self.engine.with(py, |engine| std::mem::replace(engine, moved));
         drop(before); // not under the lock
         Ok(())
     }
@@ -154,7 +308,7 @@ impl Mesh {
 
     fn __copy__(&self, py: Python<'_>) -> Self {
         // Engines never change, so that two meshes may have one until either moves.
-        Self::of(self.engine(py))
+        Self::of(self.engine(py), self.origin.clone())
     }
 
     fn __deepcopy__(&self, py: Python<'_>, _memo: &Bound<'_, PyAny>) -> Self {
@@ -162,7 +316,10 @@ impl Mesh {
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
-        Ok((slf.get_type(), (slf.getattr("vertices")?, slf.getattr("faces")?)))
+        let make = slf.py().import("parry_continuum._copies")?.getattr("mesh")?;
+        let parts = ["vertices", "faces", "frame", "unit"].map(|name| slf.getattr(name));
+        let parts = parts.into_iter().collect::<PyResult<Vec<_>>>()?;
+        Ok((make, PyTuple::new(slf.py(), parts)?))
     }
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
@@ -173,33 +330,4 @@ impl Mesh {
             search.triangles().len()
         ))
     }
-}
-
-/// The mesh in a file: STL, OBJ or PLY, or the surface of a label map in NIfTI or NRRD, by the file's extension.
-///
-/// Parameters
-/// ----------
-/// path : str or os.PathLike
-/// scale : float
-///     Multiplies every coordinate, for example 1000 for metres to millimetres. A label map comes in millimetres.
-/// label : int, optional
-///     The label whose surface is taken from a label map; without one all voxels that are not 0 are inside.
-///
-/// Raises
-/// ------
-/// ContinuumError
-///     The file cannot be read or holds no mesh; ``kind`` is ``"file"``, and the text says what to change.
-#[pyfunction]
-#[pyo3(signature = (path, *, scale = 1.0, label = None))]
-pub(crate) fn load(
-    py: Python<'_>,
-    path: PathBuf,
-    scale: f64,
-    label: Option<u32>,
-) -> PyResult<Mesh> {
-    let options = Options::scaled(scale).with_label(label);
-    let file = compute(py, || mesh_files::load_with(&path, &options))?;
-    let file = file.map_err(|error| Refused::other("file", error.to_string()).raise(py, None))?;
-    let (vertices, triangles) = file.into_parts::<[f64; 3]>();
-    Ok(Mesh::of(Arc::new(Engine::new(py, &vectors(&vertices), &triangles)?)))
 }

@@ -65,6 +65,18 @@ where
     }
 }
 
+/// Points of which the frame is known.
+pub(crate) fn framed<'py>(
+    points: Bound<'py, PyArrayDyn<f64>>,
+    frame: Option<&str>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let Some(frame) = frame else { return Ok(points.into_any()) };
+    let py = points.py();
+    let points = points.call_method1("view", (answers(py)?.getattr("FramedPoints")?,))?;
+    points.setattr("frame", frame)?;
+    Ok(points)
+}
+
 /// Points one after the other.
 pub(crate) fn flat(points: impl IntoIterator<Item = Vector>) -> Vec<f64> {
     points.into_iter().map(|point| point.to_array()).collect::<Vec<_>>().into_flattened()
@@ -107,16 +119,33 @@ fn answers(py: Python<'_>) -> PyResult<&Bound<'_, PyAny>> {
     Ok(ANSWERS.get_or_try_init(py, import)?.bind(py))
 }
 
-/// A member of the class `Side`, `Decision` or `UndecidedReason`, or an array of their values.
+/// An enumeration of `_answers.py`.
+#[derive(Clone, Copy)]
+pub(crate) enum Enumeration {
+    Side,
+    Decision,
+    UndecidedReason,
+}
+
+/// A member of an enumeration, or an array of the values of its members.
 pub(crate) fn members<'py>(
     py: Python<'py>,
-    class: &str,
+    of: Enumeration,
     shape: Vec<usize>,
     values: Vec<i8>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    match (&shape[..], &values[..]) {
-        ([], &[value]) => answers(py)?.getattr(class)?.call1((value,)),
-        _ => Ok(array(py, shape, values)?.into_any()),
+    let (one, many) = match of {
+        Enumeration::Side => ("Side", Some("Sides")),
+        Enumeration::Decision => ("Decision", Some("Decisions")),
+        Enumeration::UndecidedReason => ("UndecidedReason", None),
+    };
+    if let ([], &[value]) = (&shape[..], &values[..]) {
+        return answers(py)?.getattr(one)?.call1((value,));
+    }
+    let values = array(py, shape, values)?;
+    match many {
+        Some(class) => values.call_method1("view", (answers(py)?.getattr(class)?,)),
+        None => Ok(values.into_any()),
     }
 }
 

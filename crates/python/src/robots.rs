@@ -1,7 +1,7 @@
 //! Fewer links for the same robot.
 
 use crate::error::Refused;
-use crate::input::{Block, Robots};
+use crate::input::{Block, Names, Robots, of};
 use crate::output::{array, flat};
 use crate::threads::{Asked, compute};
 use numpy::PyArrayDyn;
@@ -46,7 +46,7 @@ pub(crate) fn simplify<'py>(
     py: Python<'py>,
     points: &Bound<'py, PyAny>,
     radii: &Bound<'py, PyAny>,
-    tolerance: f64,
+    #[pyo3(from_py_with = of::tolerance)] tolerance: f64,
 ) -> PyResult<Arrays<'py>> {
     fewer(py, points, radii, tolerance, parry_continuum::simplify)
 }
@@ -72,7 +72,7 @@ pub(crate) fn stations<'py>(
     py: Python<'py>,
     points: &Bound<'py, PyAny>,
     radii: &Bound<'py, PyAny>,
-    tolerance: f64,
+    #[pyo3(from_py_with = of::tolerance)] tolerance: f64,
 ) -> PyResult<Arrays<'py>> {
     fewer(py, points, radii, tolerance, parry_continuum::stations)
 }
@@ -84,13 +84,13 @@ fn fewer<'py>(
     tolerance: f64,
     fewer: Fewer,
 ) -> PyResult<Arrays<'py>> {
-    let robots = Robots::new("points", points, radii, None)?;
+    let robots = Robots::new(Names::one("points"), points, radii, None)?;
     if robots.count.is_some() {
         let text = "`points` is a batch; give one robot, of the shape (N, 3)";
         return Err(Refused::other("bad_shape", text).raise(py, None));
     }
     let mut block = Block::default();
-    robots.copy(0..1, &mut block);
+    robots.copy(0..1, &mut block).map_err(|refused| refused.raise(py, None))?;
     let robot = block.robot(0);
     let found = compute(py, || fewer(robot.points, robot.radii, tolerance))?;
     let (points, radii) = found.map_err(|error| Refused::from(error).raise(py, None))?;

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from numpy.testing import assert_allclose
 
-from parry_continuum import Mesh
+from parry_continuum import ContinuumError, Mesh
 from shapes import Array, poses, robots, sphere
 
 MESH = Mesh(*sphere())
@@ -88,3 +89,54 @@ def test_no_side() -> None:
     floor = Mesh([[-9, -9, 0], [9, -9, 0], [0, 9, 0]], [[0, 1, 2]])
     found = floor.distance_and_gradient([[-1, 0, 0], [1, 0, 0]], 0.0)
     assert np.isnan(found.points).all() and np.isnan(found.pose).all() and found.value == 0
+
+
+FLOOR = Mesh([[-90, -90, 0], [90, -90, 0], [0, 90, 0]], [[0, 1, 2]])
+BEND = np.array([[-2, 0, 2], [0, 0, 1], [2, 0, 2.0]])
+
+
+def test_a_bend_of_equal_radii_has_a_kink() -> None:
+    """The wider side of a step is flat, and the narrower one decides: more of one radius changes nothing, less of it does."""
+    equal = np.full(2, 0.5)
+    found = FLOOR.distance_and_gradient(BEND, equal)
+    assert found.value == 0.5 and found.kink is True
+    for place in (0, 1):
+        for off in (1e-6, -1e-6):
+            other = equal.copy()
+            other[place] += off
+            assert FLOOR.distance(BEND, other) == pytest.approx(0.5 - min(off, 0), abs=1e-12)
+            assert FLOOR.distance_and_gradient(BEND, other).kink is False
+    # Radii that differ by rounding are equal.
+    assert FLOOR.distance_and_gradient(BEND, equal * [1, 1 + 2e-16]).kink is True
+    assert FLOOR.distance_and_gradient(BEND, 0.5).kink is True
+    assert FLOOR.distance_and_gradient(BEND, equal, caps="capsules").kink is False
+
+
+@pytest.mark.parametrize("behind", [0.2, 0.3])
+def test_a_bend_turns_flat_where_one_radius_changes(behind: float) -> None:
+    """A short segment that becomes wider has a face, and the bend is too near to it to stay filled."""
+    along = (BEND[2] - BEND[1]) / np.linalg.norm(BEND[2] - BEND[1])
+    points = np.stack([BEND[0], BEND[1], BEND[1] + behind * along, BEND[2]])
+    equal = np.full(3, 0.5)
+    found = FLOOR.distance_and_gradient(points, equal)
+    assert found.value == 0.5 and found.kink is True
+    assert FLOOR.distance(points, equal + [0, 1e-6, 0]) > 0.55
+    # The radii at the bend differ, and those behind it are equal.
+    narrow = np.array([0.6, 0.5, 0.5])
+    assert FLOOR.distance_and_gradient(points, narrow).kink is (FLOOR.minimum(points, narrow).segment == 1)
+
+
+def test_where_there_is_no_joint_there_is_no_such_kink() -> None:
+    tilted = BEND[:2]  # its end is closest, which is flat
+    assert FLOOR.distance_and_gradient(tilted, 0.5).kink is False
+    arch = BEND * [1, 1, -1] + [0, 0, 5]  # its ends are closest
+    found = FLOOR.distance_and_gradient(np.stack([BEND, arch + [0, 0, 1], BEND + [0, 0, 1]]), 0.5)
+    assert found.kink[[0, 2]].all() and found.value.tolist() == pytest.approx([0.5, 3.553, 1.5], abs=1e-3)
+    side = np.array([[-2, 0, 2], [0, 0, 2.1], [2, 0, 1.0], [4, 0, 2.0]])
+    assert FLOOR.distance_and_gradient(side, 0.1).kink is True
+    found = FLOOR.distance_and_gradient(BEND[None], [[0.5, 0.6]])
+    assert found.kink.tolist() == [False]
+    none = FLOOR.distance_and_gradient(BEND[None][:0], 0.5)
+    assert none.kink.shape == (0,) and none.points.shape == (0, 3, 3)
+    with pytest.raises(ContinuumError, match="`radii`"):
+        FLOOR.distance_and_gradient(BEND, "wide")

@@ -15,7 +15,7 @@ ROBOT = np.array([[0, 0, 1.0], [0, 0, 2.0]])
 MANY = robots(np.random.default_rng(0), 20, points=3)
 PAIR = RobotPair()
 SCENE = Scene()
-SCENE.add("floor", MESH, 0.1)
+SCENE.add("floor", MESH, margin=0.1)
 
 
 def refused() -> None:
@@ -38,7 +38,7 @@ def refused() -> None:
         (lambda: between(ROBOT, 0.1, ROBOT + 3, 0.1), 30_000),
         (lambda: PAIR.contacts_within(ROBOT, 0.1, ROBOT + 3, 0.1, 9.0), 30_000),
         (lambda: SCENE.tightest([(ROBOT, 0.1)]), 20_000),
-        (lambda: SCENE.contacts([(ROBOT, 0.1)], 3.0), 20_000),
+        (lambda: SCENE.contacts_within([(ROBOT, 0.1)], 3.0), 20_000),
         (lambda: MESH.clears_motion(LinearMotion(MANY, MANY + 1, 0.1), margin=0.1, resolution=0.1), 3_000),
         (refused, 20_000),
     ],

@@ -28,7 +28,7 @@ OTHERS: list[object] = [None, "", "tube", b"\0", {}, [], [[]], [[[]]], object(),
 
 def scene(mesh: Mesh) -> Scene:
     made = Scene()
-    made.add("wall", mesh, 0.1)
+    made.add("wall", mesh, margin=0.1)
     return made
 
 
@@ -129,7 +129,7 @@ def test_five_thousand_inputs() -> None:
             lambda: pair.contacts_within(given["points"], given["radii"], robot, 0.1, number),
             lambda: pair.clearance(given["points"], given["radii"], robot, 0.1, max(number, 1e-2), tangents_a=tube["tangents"]),
             lambda: pair.clears_tubes(given["points"], given["radii"], robot, 0.1, number, 0.1, turn_a=number),
-            lambda: scene(mesh).contacts([(given["points"], given["radii"], given["pose"]), (robot, 0.1)], number),
+            lambda: scene(mesh).contacts_within([(given["points"], given["radii"], given["pose"]), (robot, 0.1)], number),
             lambda: scene(mesh).per_structure([(given["points"], given["radii"]), (robot, 0.1)]),
             lambda: mesh.side(given["points"]),
             lambda: Mesh(mesh.vertices, mesh.faces).move(spoilt(random, mesh.vertices)),

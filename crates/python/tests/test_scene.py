@@ -22,9 +22,9 @@ POSES = poses(RANDOM, 60)
 
 def made(robot_margin: float | None = None) -> Scene:
     scene = Scene(robot_margin=robot_margin)
-    assert scene.add("wall", WALL, 0.5) == 0
-    assert scene.add("seen", VESSEL) == 1
-    assert scene.add("vessel", VESSEL, 2.0, AWAY) == 2
+    assert scene.add("wall", WALL, margin=0.5) == 0
+    assert scene.add("seen", VESSEL, margin=None) == 1
+    assert scene.add("vessel", VESSEL, margin=2.0, pose=AWAY) == 2
     assert len(scene) == 3
     return scene
 
@@ -126,7 +126,7 @@ def test_contacts() -> None:
 def test_meshes_move() -> None:
     vertices, faces = sphere(12.0)
     mesh, scene = Mesh(vertices, faces), Scene()
-    scene.add("wall", mesh, 0.5)
+    scene.add("wall", mesh, margin=0.5)
     before = scene.tightest([(A, 0.1)]).slack
     mesh.move(vertices * 2)
     assert_array_equal(scene.tightest([(A, 0.1)]).slack, mesh.distance(A, 0.1) - 0.5)
@@ -143,25 +143,72 @@ def test_threads_share_a_scene() -> None:
 
 def test_without_margins() -> None:
     scene = Scene()
-    scene.add("seen", WALL)
-    assert scene.tightest([(A[0], 0.1)]).slack == np.inf and scene.tightest([(A[0], 0.1)]).structure == -1
-    assert scene.clears([(A[0], 0.1)]) is True
+    for _ in range(2):
+        found = scene.tightest([(A[0], 0.1)])
+        assert found.slack == np.inf and found.structure == -1 and found.is_clear is False
+        for robots in ([(A[0], 0.1)], [(A, 0.1)], [(A, 0.1), (B[0], 0.1, POSES[0])]):
+            with pytest.raises(ContinuumError, match="nothing in the scene has a margin.*give a structure or the robots a") as raised:
+                scene.clears(robots)
+            assert raised.value.kind == "no_margin"
+        scene.add("seen", WALL, margin=None)
+    between_robots = Scene(robot_margin=0.1)
+    between_robots.add("seen", WALL, margin=None)
+    assert between_robots.clears([(A[0], 0.1)]) is True
+
+
+def test_a_margin_is_said() -> None:
+    with pytest.raises(TypeError, match="margin"):
+        Scene().add("wall", WALL)  # type: ignore[call-arg]
+    with pytest.raises(TypeError, match="positional"):
+        Scene().add("wall", WALL, 0.5)  # type: ignore[misc]
+    with pytest.raises(TypeError, match="`margin` is 'far'; give a number"):
+        Scene().add("wall", WALL, margin="far")  # type: ignore[arg-type]
+    scene = Scene()
+    scene.add("touches", WALL, margin=0.0)
+    assert scene.clears([([[0, 0, 0], [0, 0, 20]], 0.1)]) is False
+
+
+def test_contacts_have_a_prominence() -> None:
+    random = np.random.default_rng(5)
+    vertices, faces = sphere(8.0, 48, 24)
+    rough = Mesh(vertices + 0.05 * random.normal(size=vertices.shape), faces)
+    scene = Scene()
+    scene.add("rough", rough, margin=None)
+    counts = []
+    for prominence in (0.0, 0.3, np.inf):
+        found = scene.contacts_within([(A, 0.1, POSES)], 5.0, prominence)
+        expected = rough.contacts_within(A, 0.1, 5.0, prominence, pose=POSES)
+        assert_array_equal(found.distance, expected.distance)
+        assert_array_equal(found.offsets, expected.offsets)
+        counts.append(len(found.distance))
+    assert counts[0] > counts[1] > 0 and counts[0] > counts[2] > 0
+    one = scene.contacts_within([(A[3], 0.1, POSES[3])], 5.0, prominence=0.3)
+    assert_array_equal(one.distance, rough.contacts_within(A[3], 0.1, 5.0, 0.3, pose=POSES[3]).distance)
+
+
+@pytest.mark.parametrize("robots", [[(A[0], 0.1)], [(A, 0.1)], [(A[:0], 0.1)], [(A[0], 0.1), (B[0], 0.1)]])
+def test_bad_lengths_have_their_own_names_without_structures_too(robots: list[object]) -> None:
+    for scene in (Scene(), made()):
+        for lengths, name in (((-1.0, 0.0), "reach"), ((np.nan, 0.0), "reach"), ((1.0, -2.0), "prominence")):
+            with pytest.raises(ContinuumError, match=f"^`{name}` is .*; it must be at least 0") as raised:
+                scene.contacts_within(robots, *lengths)  # type: ignore[arg-type]
+            assert raised.value.kind == "negative"
 
 
 @pytest.mark.parametrize(
     ("ask", "kind"),
     [
         (lambda: Scene(robot_margin=-1.0), "negative"),
-        (lambda: Scene().add("wall", WALL, np.nan), "negative"),
-        (lambda: Scene().add("wall", WALL, 1.0, np.eye(3)), "bad_shape"),
-        (lambda: Scene().add("wall", WALL, 1.0, np.diag([2, 2, 2, 1])), "scales"),
+        (lambda: Scene().add("wall", WALL, margin=np.nan), "negative"),
+        (lambda: Scene().add("wall", WALL, margin=1.0, pose=np.eye(3)), "bad_shape"),
+        (lambda: Scene().add("wall", WALL, margin=1.0, pose=np.diag([2, 2, 2, 1])), "scales"),
         (lambda: made().clears([]), "bad_type"),
         (lambda: made().clears([A]), "bad_type"),
         (lambda: made().clears([(A, 0.1), (B[:5], 0.1)]), "bad_shape"),
         (lambda: made().tightest([(A[0].T, 0.1)]), "bad_shape"),
         (lambda: made().tightest([(A[0], -0.1)]), "bad_radius"),
-        (lambda: made().contacts([(A[0], 0.1)], -1.0), "negative"),
-        (lambda: made().contacts([(A[0], -0.1)], 1.0), "bad_radius"),
+        (lambda: made().contacts_within([(A[0], 0.1)], -1.0), "negative"),
+        (lambda: made().contacts_within([(A[0], -0.1)], 1.0), "bad_radius"),
         (lambda: made().per_structure([(A[0], 0.1, np.eye(3))]), "bad_shape"),
     ],
 )

@@ -107,7 +107,7 @@ def test_two_tubes() -> None:
     for text, stated in [
         ("`tangents_b` and a deviation", {"tangents_b": tangents, "deviation_b": 0.1}),
         ("`tangents_a` has the shape", {"tangents_a": tangents[:7]}),
-        ("`turn`", {"turn_b": -1.0}),
+        ("`turn_b`", {"turn_b": -1.0}),
     ]:
         with pytest.raises(ContinuumError, match=text):
             pair.clearance(*given, 0.1, **stated)

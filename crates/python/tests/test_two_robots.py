@@ -268,9 +268,9 @@ def test_a_robot_moves_beside_itself() -> None:
     ("ask", "kind", "text"),
     [
         (lambda r: RobotPair().contacts_within(r[0], 0.1, r[1], 0.1, -1.0), "negative", "`margin`"),
-        (lambda r: RobotPair().per_link(r[:3], 0.1, r[:4], 0.1), "bad_shape", "there are 3 robots beside 4"),
+        (lambda r: RobotPair().per_link(r[:3], 0.1, r[:4], 0.1), "bad_shape", "`points_a` has 3 robots and `points_b` 4"),
         (lambda r: RobotPair().minimum(r[0], -0.1, r[1], 0.1), "bad_radius", "radius 0"),
-        (lambda r: between(r[:3], 0.1, r[:4], 0.1), "bad_shape", "there are 3 robots beside 4"),
+        (lambda r: between(r[:3], 0.1, r[:4], 0.1), "bad_shape", "`points_a` has 3 robots and `points_b` 4"),
         (lambda r: between(r[0], 0.1, r[1].T, 0.1), "bad_shape", "`points_b`"),
         (lambda r: between(r[0], 0.1, r[1], 0.1, pose_b=np.diag([2, 2, 2, 1])), "scales", "scales by 2"),
         (lambda r: clears_between(r[0], 0.1, r[1], 0.1, -1.0), "negative", "`margin`"),

@@ -132,10 +132,20 @@ impl Volume<'_> {
         let is_inside = |found: u32| label.map_or(found != 0, |label| found == label);
         let mut low = [usize::MAX; 3];
         let mut high = [0; 3];
-        self.each_inside(is_inside, &mut |voxel| {
+        let mut inside = Labels::default();
+        let is_inside_first = |found: u32| {
+            let is_inside = is_inside(found);
+            if is_inside {
+                inside.add(found);
+            }
+            is_inside
+        };
+        self.each_inside(is_inside_first, &mut |voxel| {
             low = [0, 1, 2].map(|axis| low[axis].min(voxel[axis]));
             high = [0, 1, 2].map(|axis| high[axis].max(voxel[axis]));
         })?;
+        let labels =
+            if label.is_none() { inside.present.into_iter().collect() } else { Vec::new() };
         if low[0] == usize::MAX {
             let present = if label.is_some() { self.present()? } else { BTreeSet::new() };
             return Err(Fault::NoneOf(present));
@@ -182,13 +192,14 @@ impl Volume<'_> {
             frame: self.frame,
             states_unit: self.states_unit,
             skipped_faces: 0,
+            labels,
         })
     }
 
     /// Passes the voxels that are inside, in order, to a function.
     fn each_inside(
         &self,
-        is_inside: impl Fn(u32) -> bool,
+        mut is_inside: impl FnMut(u32) -> bool,
         see: &mut dyn FnMut([usize; 3]),
     ) -> Result<(), Fault> {
         let [width, height, _] = self.sizes;
@@ -203,24 +214,33 @@ impl Volume<'_> {
 
     /// Returns the labels of the voxels, the lowest if there are many.
     fn present(&self) -> Result<BTreeSet<u32>, Fault> {
+        let mut all = Labels::default();
+        self.voxels.each(&mut |labels| labels.iter().for_each(|&label| all.add(label)))?;
+        Ok(all.present)
+    }
+}
+
+/// Labels of voxels, the lowest if there are many.
+#[derive(Default)]
+struct Labels {
+    present: BTreeSet<u32>,
+    before: Option<u32>,
+}
+
+impl Labels {
+    fn add(&mut self, label: u32) {
         const MOST: usize = 1000;
-        let mut present = BTreeSet::new();
-        let mut before = None;
-        self.voxels.each(&mut |labels| {
-            for &label in labels {
-                // Neighbours are mostly alike: skip repetitions.
-                if before.replace(label) == Some(label) {
-                    continue;
-                }
-                if present.len() < MOST || present.last().is_some_and(|&last| label < last) {
-                    present.insert(label);
-                }
-                if present.len() > MOST {
-                    present.pop_last();
-                }
-            }
-        })?;
-        Ok(present)
+        // Neighbours are mostly alike: skip repetitions.
+        if self.before.replace(label) == Some(label) {
+            return;
+        }
+        let present = &mut self.present;
+        if present.len() < MOST || present.last().is_some_and(|&last| label < last) {
+            present.insert(label);
+        }
+        if present.len() > MOST {
+            present.pop_last();
+        }
     }
 }
 

@@ -160,6 +160,13 @@ mod label_maps {
             panic!("there is no such label")
         };
         assert_eq!(present, (0..1000).collect::<Vec<_>>());
+        // Those that are read as one surface, and none if one of them is chosen.
+        let labels = |bytes: &[u8], label| {
+            from_bytes("a.nrrd", bytes, &Options::default().with_label(label)).unwrap().labels
+        };
+        assert_eq!(labels(&shades, None), (1..=117).collect::<Vec<_>>());
+        assert_eq!(labels(file.as_bytes(), None), (1..=1000).collect::<Vec<_>>());
+        assert!(labels(&shades, Some(5)).is_empty());
     }
 
     /// The bytes that a refusal names suffice, and no more than them are taken.

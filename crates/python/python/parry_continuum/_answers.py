@@ -4,6 +4,8 @@ Of one robot a field is a number or a point; of a batch of B robots it is an arr
 points are in the unit and the frame of the mesh. Segments, triangles and robots are counted from 0, and -1 stands for
 none.
 
+No answer has a truth value: a tuple with fields would be true whatever they say. An answer about a margin has ``is_clear``.
+
 A type checker cannot tell one robot from many by their shape, so what is a number of one robot and an array of many is
 `Any` to it, as in numpy.
 """
@@ -11,7 +13,7 @@ A type checker cannot tell one robot from many by their shape, so what is a numb
 from __future__ import annotations
 
 from enum import IntEnum
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, NoReturn, Optional
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,19 +31,33 @@ ReasonOrReasons = Any
 
 
 class Side(IntEnum):
-    """On which side of a mesh a point is."""
+    """On which side of a mesh a point is. It has no truth value: compare it, as in ``side is Side.INSIDE``."""
 
     INSIDE = -1
     UNDECIDED = 0
     OUTSIDE = 1
 
+    def __bool__(self) -> NoReturn:
+        raise _no_truth("a Side", "compare it, as in `side is Side.INSIDE`, or take `.is_clear` of an answer about a margin")
+
 
 class Decision(IntEnum):
-    """Whether a margin is kept. ``CLEAR`` and ``CONTACT`` are proven."""
+    """Whether a margin is kept. ``CLEAR`` and ``CONTACT`` are proven.
+
+    It has no truth value: use ``is_clear``, or compare it, as in ``decision is Decision.CLEAR``.
+    """
 
     CONTACT = -1
     UNDECIDED = 0
     CLEAR = 1
+
+    @property
+    def is_clear(self) -> bool:
+        """Whether the margin is proven to be kept."""
+        return self is Decision.CLEAR
+
+    def __bool__(self) -> NoReturn:
+        raise _no_truth("a Decision", "use `.is_clear`, or compare it, as in `decision is Decision.CLEAR`")
 
 
 class UndecidedReason(IntEnum):
@@ -55,9 +71,117 @@ class UndecidedReason(IntEnum):
     """The question has reached its limit of work: a coarser resolution helps, or a motion in several parts."""
 
 
-class Minimum(NamedTuple):
-    """Where a robot is closest to a mesh."""
+def _no_truth(what: str, instead: str) -> TypeError:
+    return TypeError(f"the truth value of {what} is ambiguous; {instead}")
 
+
+class _Members(np.ndarray[Any, np.dtype[np.int8]]):
+    """An array of int8, the values of members of an enumeration. Its items are members, and it has no truth value.
+
+    What is computed from it is a plain array or number.
+    """
+
+    _of: type[IntEnum]
+    _instead: str
+
+    def __getitem__(self, key: Any) -> Any:
+        found = super().__getitem__(key)
+        return self._of(int(found)) if isinstance(found, np.int8) else found
+
+    def __array_wrap__(self, array: Any, context: Any = None, return_scalar: bool = False) -> Any:
+        plain = np.asarray(array)
+        return plain[()] if plain.ndim == 0 else plain
+
+    def __bool__(self) -> NoReturn:
+        raise _no_truth(f"{type(self).__name__}", self._instead)
+
+    def all(self, *_: Any, **__: Any) -> NoReturn:
+        raise _no_truth(f"an item of {type(self).__name__}", self._instead)
+
+    def any(self, *_: Any, **__: Any) -> NoReturn:
+        raise _no_truth(f"an item of {type(self).__name__}", self._instead)
+
+
+class Decisions(_Members):
+    """An array of int8 whose items are ``Decision``: 1 clear, -1 contact, 0 undecided. It has no truth value: use
+    ``is_clear``."""
+
+    _of = Decision
+    _instead = "use `.is_clear`, or compare it, as in `decisions == Decision.CLEAR`"
+
+    @property
+    def is_clear(self) -> NDArray[np.bool_]:
+        """Of each, whether the margin is proven to be kept."""
+        is_clear: NDArray[np.bool_] = np.asarray(self) == Decision.CLEAR
+        return is_clear
+
+
+class Sides(_Members):
+    """An array of int8 whose items are ``Side``: -1 inside, 1 outside, 0 undecided. It has no truth value: compare it,
+    as in ``sides == Side.INSIDE``."""
+
+    _of = Side
+    _instead = "compare it, as in `sides == Side.INSIDE`, or take `.is_clear` of an answer about a margin"
+
+
+def _short(answer: Any) -> str:
+    """The fields of a tuple with names, of arrays with many numbers the shape alone."""
+    most = 9
+
+    def text(value: Any) -> str:
+        if isinstance(value, np.ndarray) and value.size > most:
+            return f"<{value.dtype} array {value.shape}>"
+        return repr(value).replace("\n", "").replace("       ", " ")
+
+    fields = ", ".join(f"{name}={text(value)}" for name, value in zip(answer._fields, answer))
+    return f"{type(answer).__name__}({fields})"
+
+
+def _columns(answer: Any, axes: tuple[str, str]) -> dict[str, NDArray[Any]]:
+    """The first field of an answer has a number for each row."""
+    rows = np.shape(answer[0])
+    columns: dict[str, NDArray[Any]] = {}
+    if len(rows) == len(axes):
+        places = np.indices(rows).reshape(len(axes), -1)
+        columns.update(zip(axes, places))
+    for name, value in zip(answer._fields, answer):
+        if name == "offsets":
+            continue
+        values = np.asarray(value)
+        further = values.shape[len(rows) :]
+        values = values.reshape(-1 if 0 not in rows else 0, *further)
+        for place in np.ndindex(*further):
+            ends = [str(number) for number in place]
+            if further and further[-1] == 3:
+                ends[-1] = "xyz"[place[-1]]
+            columns["_".join([name, *ends])] = values[(slice(None), *place)]
+    return columns
+
+
+class _Answer:
+    """What all answers are beside tuples with names."""
+
+    __slots__ = ()
+    _instead = "use `.is_clear`"
+    _axes = ("robot", "segment")
+
+    def __bool__(self) -> NoReturn:
+        raise _no_truth(f"{type(self).__name__}", self._instead)
+
+    def __repr__(self) -> str:
+        return _short(self)
+
+    def to_dict(self) -> dict[str, NDArray[Any]]:
+        """Columns of equal length, as ``pandas.DataFrame`` takes them: a row for each robot, contact or segment.
+
+        A point has a column for each coordinate, ``on_mesh_x``, and other numbers a column for each place, ``segments_0``.
+        Segments of a batch are rows too, with columns that say of which robot and which segment. ``offsets`` is left out,
+        since each contact names its robot. ``_asdict()`` has the fields as they are.
+        """
+        return _columns(self, self._axes)
+
+
+class _MinimumFields(NamedTuple):
     distance: FloatOrFloats
     """The distance, 0 where they touch or overlap."""
     on_robot: Floats
@@ -72,9 +196,14 @@ class Minimum(NamedTuple):
     """The closest triangle."""
 
 
-class PerLink(NamedTuple):
-    """Where each segment of a robot is closest to a mesh. Segments without length have NaN, and the triangle -1."""
+class Minimum(_Answer, _MinimumFields):
+    """Where a robot is closest to a mesh."""
 
+    __slots__ = ()
+    _instead = "compare its `distance`"
+
+
+class _PerLinkFields(NamedTuple):
     distance: Floats
     """(N - 1,): the distances, 0 where they touch or overlap."""
     on_robot: Floats
@@ -87,9 +216,14 @@ class PerLink(NamedTuple):
     """(N - 1,): the closest triangles."""
 
 
-class Contacts(NamedTuple):
-    """Contacts of robots with a mesh, one in each row."""
+class PerLink(_Answer, _PerLinkFields):
+    """Where each segment of a robot is closest to a mesh. Segments without length have NaN, and the triangle -1."""
 
+    __slots__ = ()
+    _instead = "compare its `distance`"
+
+
+class _ContactsFields(NamedTuple):
     segment: Ints
     """(K,): the segment of the input."""
     fraction: Floats
@@ -114,9 +248,14 @@ class Contacts(NamedTuple):
     """(B + 1,): the contacts of robot k are ``offsets[k]:offsets[k + 1]``."""
 
 
-class Clearance(NamedTuple):
-    """Bounds on the clearance of a tube."""
+class Contacts(_Answer, _ContactsFields):
+    """Contacts of robots with a mesh, one in each row."""
 
+    __slots__ = ()
+    _instead = "use len(contacts.distance)"
+
+
+class _ClearanceFields(NamedTuple):
     lower: FloatOrFloats
     """The clearance is at least this."""
     upper: FloatOrFloats
@@ -139,9 +278,14 @@ class Clearance(NamedTuple):
     """Of a batch: why there are no bounds, as the ``kind`` of the error, and the empty string where there are."""
 
 
-class MotionAnswer(NamedTuple):
-    """Whether a motion keeps a margin, until when, and which shape does not."""
+class Clearance(_Answer, _ClearanceFields):
+    """Bounds on the clearance of a tube."""
 
+    __slots__ = ()
+    _instead = "compare its `lower` and `upper`"
+
+
+class _MotionAnswerFields(NamedTuple):
     decision: DecisionOrDecisions
     """Whether the margin is kept at every time from 0 to 1."""
     interval: Floats
@@ -164,9 +308,18 @@ class MotionAnswer(NamedTuple):
     """Where the decision is undecided, why; else ``UndecidedReason.NONE``."""
 
 
-class MotionClearance(NamedTuple):
-    """How near a motion comes, between bounds, and when."""
+class MotionAnswer(_Answer, _MotionAnswerFields):
+    """Whether a motion keeps a margin, until when, and which shape does not."""
 
+    __slots__ = ()
+
+    @property
+    def is_clear(self) -> BoolOrBools:
+        """Whether the margin is proven to be kept: ``decision`` is ``CLEAR``."""
+        return self.decision == Decision.CLEAR
+
+
+class _MotionClearanceFields(NamedTuple):
     lower: FloatOrFloats
     """No shape of the motion is nearer than this."""
     upper: FloatOrFloats
@@ -189,27 +342,51 @@ class MotionClearance(NamedTuple):
     """The triangle there."""
 
 
-class InsideAnswer(NamedTuple):
-    """Whether a robot keeps a margin, and on which side its base is."""
+class MotionClearance(_Answer, _MotionClearanceFields):
+    """How near a motion comes, between bounds, and when."""
 
+    __slots__ = ()
+    _instead = "compare its `lower` and `upper`"
+
+
+class _InsideAnswerFields(NamedTuple):
     clears: BoolOrBools
     """Whether every link keeps more than the margin."""
     base: SideOrSides
     """The side of the first point of the centreline."""
 
 
-class Certificate(NamedTuple):
-    """Bounds on distances that hold whatever was rounded on the way."""
+class InsideAnswer(_Answer, _InsideAnswerFields):
+    """Whether a robot keeps a margin, and on which side its base is."""
 
+    __slots__ = ()
+
+    @property
+    def is_clear(self) -> BoolOrBools:
+        """Whether every link keeps more than the margin, on whichever side: ``clears``."""
+        return self.clears
+
+    @property
+    def holds(self) -> BoolOrBools:
+        """Whether the base is inside and every link keeps the margin; in a closed mesh the whole robot is then inside."""
+        return (self.base == Side.INSIDE) & self.clears
+
+
+class _CertificateFields(NamedTuple):
     lower: Floats
     """(N - 1,): the distance is at least this."""
     upper: Floats
     """(N - 1,): the distance is at most this."""
 
 
-class Gradient(NamedTuple):
-    """A distance, and how it changes."""
+class Certificate(_Answer, _CertificateFields):
+    """Bounds on distances that hold whatever was rounded on the way."""
 
+    __slots__ = ()
+    _instead = "compare its `lower` and `upper`"
+
+
+class _GradientFields(NamedTuple):
     value: FloatOrFloats
     """The distance, or minus the least translation where robot and mesh overlap."""
     points: Floats
@@ -219,12 +396,18 @@ class Gradient(NamedTuple):
     pose: Floats
     """(4, 4): the derivative with respect to the entries of the pose."""
     kink: BoolOrBools
-    """Whether other points are as close, for which the derivative is another."""
+    """Whether other points are as close, for which the derivative is another, or a bend between equal radii is closest,
+    which is no longer filled if one of the radii changes alone."""
 
 
-class RobotProximity(NamedTuple):
-    """Where two robots, or two parts of one, are closest to each other."""
+class Gradient(_Answer, _GradientFields):
+    """A distance, and how it changes."""
 
+    __slots__ = ()
+    _instead = "compare its `value`"
+
+
+class _RobotProximityFields(NamedTuple):
     distance: FloatOrFloats
     """The distance, 0 where they touch or overlap, and infinite where no parts of one robot could meet."""
     on_first: Floats
@@ -237,9 +420,14 @@ class RobotProximity(NamedTuple):
     """(2,): how far along the centreline of either from its base."""
 
 
-class RobotClearance(NamedTuple):
-    """Bounds on how near two tubes are."""
+class RobotProximity(_Answer, _RobotProximityFields):
+    """Where two robots, or two parts of one, are closest to each other."""
 
+    __slots__ = ()
+    _instead = "compare its `distance`"
+
+
+class _RobotClearanceFields(NamedTuple):
     lower: FloatOrFloats
     """The clearance is at least this."""
     upper: FloatOrFloats
@@ -258,9 +446,14 @@ class RobotClearance(NamedTuple):
     """Of a batch: why there are no bounds, as the ``kind`` of the error, and the empty string where there are."""
 
 
-class RobotContacts(NamedTuple):
-    """Places where two robots are near one another, one in each row."""
+class RobotClearance(_Answer, _RobotClearanceFields):
+    """Bounds on how near two tubes are."""
 
+    __slots__ = ()
+    _instead = "compare its `lower` and `upper`"
+
+
+class _RobotContactsFields(NamedTuple):
     distance: Floats
     """(K,): the distance, 0 where they touch or overlap."""
     on_first: Floats
@@ -277,9 +470,14 @@ class RobotContacts(NamedTuple):
     """(B + 1,): the places of pair k are ``offsets[k]:offsets[k + 1]``."""
 
 
-class RobotMotionAnswer(NamedTuple):
-    """Whether two robots that move keep a margin between them, and which shapes do not."""
+class RobotContacts(_Answer, _RobotContactsFields):
+    """Places where two robots are near one another, one in each row."""
 
+    __slots__ = ()
+    _instead = "use len(contacts.distance)"
+
+
+class _RobotMotionAnswerFields(NamedTuple):
     decision: DecisionOrDecisions
     """Whether the margin is kept at every time from 0 to 1."""
     interval: Floats
@@ -298,9 +496,18 @@ class RobotMotionAnswer(NamedTuple):
     """Where the decision is undecided, why; else ``UndecidedReason.NONE``."""
 
 
-class PerStructure(NamedTuple):
-    """Where robots are closest to each of M structures of a scene, in the scene's frame."""
+class RobotMotionAnswer(_Answer, _RobotMotionAnswerFields):
+    """Whether two robots that move keep a margin between them, and which shapes do not."""
 
+    __slots__ = ()
+
+    @property
+    def is_clear(self) -> BoolOrBools:
+        """Whether the margin is proven to be kept: ``decision`` is ``CLEAR``."""
+        return self.decision == Decision.CLEAR
+
+
+class _PerStructureFields(NamedTuple):
     distance: Floats
     """(M,): the distances, 0 where they touch or overlap."""
     slack: Floats
@@ -319,9 +526,15 @@ class PerStructure(NamedTuple):
     """(M,): the structure's closest triangle."""
 
 
-class SceneContacts(NamedTuple):
-    """Contacts of robots with the structures of a scene, one in each row, in the scene's frame."""
+class PerStructure(_Answer, _PerStructureFields):
+    """Where robots are closest to each of M structures of a scene, in the scene's frame."""
 
+    __slots__ = ()
+    _axes = ("batch", "structure")
+    _instead = "compare its `slack`"
+
+
+class _SceneContactsFields(NamedTuple):
     structure: Ints
     """(K,): the structure."""
     robot: Ints
@@ -350,9 +563,14 @@ class SceneContacts(NamedTuple):
     """(B + 1,): the contacts of set k are ``offsets[k]:offsets[k + 1]``."""
 
 
-class Tightest(NamedTuple):
-    """Where the room in a scene is least."""
+class SceneContacts(_Answer, _SceneContactsFields):
+    """Contacts of robots with the structures of a scene, one in each row, in the scene's frame."""
 
+    __slots__ = ()
+    _instead = "use len(contacts.distance)"
+
+
+class _TightestFields(NamedTuple):
     slack: FloatOrFloats
     """The distance less the margin; negative where a margin is not kept, and infinite where nothing has a margin."""
     distance: FloatOrFloats
@@ -369,3 +587,47 @@ class Tightest(NamedTuple):
     """(3,): the closest point of the first robot."""
     on_second: Floats
     """(3,): the closest point of the structure or the second robot."""
+
+
+class Tightest(_Answer, _TightestFields):
+    """Where the room in a scene is least."""
+
+    __slots__ = ()
+
+    @property
+    def is_clear(self) -> BoolOrBools:
+        """Whether every margin is kept: ``slack`` is more than 0. False where nothing has a margin."""
+        found = (np.asarray(self.slack) > 0) & (self.robots[..., 0] >= 0)
+        return bool(found) if np.ndim(found) == 0 else found
+
+
+class FramedPoints(np.ndarray[Any, np.dtype[np.float64]]):
+    """Points as they were read from a file that states their frame. What is computed from them is a plain array."""
+
+    frame: Optional[str] = None
+    """The frame: "RAS" or "LPS"."""
+
+    def __array_finalize__(self, source: Any) -> None:
+        self.frame = getattr(source, "frame", None)
+
+    def __array_wrap__(self, array: Any, context: Any = None, return_scalar: bool = False) -> Any:
+        plain = np.asarray(array)
+        return plain[()] if plain.ndim == 0 else plain
+
+
+class Centreline(NamedTuple):
+    """A centreline that was read from a file."""
+
+    points: Floats
+    """(N, 3): the points. A mesh that states another frame warns if it is asked about them."""
+    radii: Optional[Floats]
+    """(N - 1,): the radius of each segment, or None if the file has none."""
+    frame: Optional[str]
+    """The frame, "RAS" or "LPS", or None if the file does not state it."""
+    unit: Optional[str]
+    """The unit that the file states, such as "mm", or None."""
+    skipped: int
+    """How many points were left out because they have no position yet."""
+
+    def __repr__(self) -> str:
+        return _short(self)

@@ -1,12 +1,13 @@
 from collections.abc import Sequence
 from os import PathLike
-from typing import Any, Literal, final, overload
+from typing import IO, Any, Literal, Protocol, final, overload
 
 from numpy.typing import ArrayLike
-from typing_extensions import disjoint_base
+from typing_extensions import Self, disjoint_base
 
 from ._answers import (
     BoolOrBools,
+    Centreline,
     Certificate,
     Clearance,
     Contacts,
@@ -44,23 +45,35 @@ __all__ = [
     "between",
     "clears_between",
     "load",
+    "load_centreline",
     "motion_self_clears",
     "self_clears",
     "self_minimum",
     "simplify",
     "stations",
     "tube_self_clears",
+    "verify_motion",
 ]
 
 __version__: str
 
 _Caps = Literal["fitted", "capsules", "cylinders"]
 _MotionCaps = Literal["fitted", "capsules"]
+_Frame = Literal["RAS", "LPS"]
+
+class _AsMatrix(Protocol):
+    def as_matrix(self) -> Any: ...
+
+# An array, or scipy's `RigidTransform` or `Rotation`.
+_Poses = ArrayLike | _AsMatrix
 
 @disjoint_base
 class Motion:
     @property
     def count(self) -> int | None: ...
+    def __copy__(self) -> Self: ...
+    def __deepcopy__(self, _memo: Any, /) -> Self: ...
+    def __reduce__(self) -> tuple[Any, Any]: ...
 
 @final
 class LinearMotion(Motion):
@@ -74,8 +87,8 @@ class RigidMotion(Motion):
         cls,
         points: ArrayLike,
         radii: ArrayLike,
-        start_pose: ArrayLike,
-        end_pose: ArrayLike,
+        start_pose: _Poses,
+        end_pose: _Poses,
         *,
         caps: _Caps = "fitted",
     ) -> RigidMotion: ...
@@ -83,8 +96,8 @@ class RigidMotion(Motion):
     def of_curve(
         points: ArrayLike,
         radii: ArrayLike,
-        start_pose: ArrayLike,
-        end_pose: ArrayLike,
+        start_pose: _Poses,
+        end_pose: _Poses,
         *,
         tangents: ArrayLike | None = None,
         deviation: float = 0.0,
@@ -94,12 +107,12 @@ class RigidMotion(Motion):
 @final
 class BendingMotion(Motion):
     def __new__(
-        cls, start: ArrayLike, end: ArrayLike, radii: ArrayLike, *, pose: ArrayLike | None = None
+        cls, start: ArrayLike, end: ArrayLike, radii: ArrayLike, *, pose: _Poses | None = None
     ) -> BendingMotion: ...
 
 @final
 class MovingBase(Motion):
-    def __new__(cls, motion: Motion, start_pose: ArrayLike, end_pose: ArrayLike) -> MovingBase: ...
+    def __new__(cls, motion: Motion, start_pose: _Poses, end_pose: _Poses) -> MovingBase: ...
 
 @final
 class MotionPath(Motion):
@@ -107,8 +120,16 @@ class MotionPath(Motion):
 
 @final
 class Mesh:
-    # Beside an array, anything with `.vertices` and `.faces`.
-    def __new__(cls, vertices: Any, faces: ArrayLike | None = None) -> Mesh: ...
+    # Beside an array, a mesh of another package.
+    def __new__(
+        cls, vertices: Any, faces: ArrayLike | None = None, *, frame: _Frame | None = None, unit: str | None = None
+    ) -> Mesh: ...
+    @property
+    def frame(self) -> _Frame | None: ...
+    @property
+    def unit(self) -> str | None: ...
+    @property
+    def skipped_faces(self) -> int: ...
     @property
     def vertices(self) -> Floats: ...
     @property
@@ -116,13 +137,13 @@ class Mesh:
     def move(self, vertices: ArrayLike) -> None: ...
     def prepare(self) -> None: ...
     def distance(
-        self, points: ArrayLike, radii: ArrayLike, *, pose: ArrayLike | None = None, caps: _Caps = "fitted"
+        self, points: ArrayLike, radii: ArrayLike, *, pose: _Poses | None = None, caps: _Caps = "fitted"
     ) -> FloatOrFloats: ...
     def minimum(
-        self, points: ArrayLike, radii: ArrayLike, *, pose: ArrayLike | None = None, caps: _Caps = "fitted"
+        self, points: ArrayLike, radii: ArrayLike, *, pose: _Poses | None = None, caps: _Caps = "fitted"
     ) -> Minimum: ...
     def per_link(
-        self, points: ArrayLike, radii: ArrayLike, *, pose: ArrayLike | None = None, caps: _Caps = "fitted"
+        self, points: ArrayLike, radii: ArrayLike, *, pose: _Poses | None = None, caps: _Caps = "fitted"
     ) -> PerLink: ...
     def clears(
         self,
@@ -130,7 +151,7 @@ class Mesh:
         radii: ArrayLike,
         margin: float,
         *,
-        pose: ArrayLike | None = None,
+        pose: _Poses | None = None,
         caps: _Caps = "fitted",
     ) -> BoolOrBools: ...
     def clears_inside(
@@ -139,7 +160,7 @@ class Mesh:
         radii: ArrayLike,
         margin: float,
         *,
-        pose: ArrayLike | None = None,
+        pose: _Poses | None = None,
         caps: _Caps = "fitted",
     ) -> InsideAnswer: ...
     def contacts_within(
@@ -149,10 +170,11 @@ class Mesh:
         margin: float,
         prominence: float = 0.0,
         *,
-        pose: ArrayLike | None = None,
+        pose: _Poses | None = None,
         caps: _Caps = "fitted",
     ) -> Contacts: ...
     def side(self, points: ArrayLike) -> SideOrSides: ...
+    def doubts(self, points: ArrayLike, radii: ArrayLike, *, pose: _Poses | None = None) -> list[str]: ...
     def clearance(
         self,
         points: ArrayLike,
@@ -162,7 +184,7 @@ class Mesh:
         tangents: ArrayLike | None = None,
         deviation: float = 0.0,
         turn: float | None = None,
-        pose: ArrayLike | None = None,
+        pose: _Poses | None = None,
     ) -> Clearance: ...
     def clears_tube(
         self,
@@ -174,7 +196,7 @@ class Mesh:
         tangents: ArrayLike | None = None,
         deviation: float = 0.0,
         turn: float | None = None,
-        pose: ArrayLike | None = None,
+        pose: _Poses | None = None,
     ) -> DecisionOrDecisions: ...
     @overload
     def clears_motion(
@@ -237,7 +259,7 @@ class Mesh:
         radii: ArrayLike,
         margin: float,
         *,
-        pose: ArrayLike | None = None,
+        pose: _Poses | None = None,
         caps: _Caps = "fitted",
     ) -> str | None: ...
     def prove_tube(
@@ -250,7 +272,7 @@ class Mesh:
         tangents: ArrayLike | None = None,
         deviation: float = 0.0,
         turn: float | None = None,
-        pose: ArrayLike | None = None,
+        pose: _Poses | None = None,
     ) -> str | None: ...
     @overload
     def prove_motion(
@@ -271,35 +293,43 @@ class Mesh:
         radii: ArrayLike,
         answer: PerLink,
         *,
-        pose: ArrayLike | None = None,
+        pose: _Poses | None = None,
         caps: _Caps = "fitted",
     ) -> Certificate: ...
     def distance_and_gradient(
-        self, points: ArrayLike, radii: ArrayLike, *, pose: ArrayLike | None = None, caps: _Caps = "fitted"
+        self, points: ArrayLike, radii: ArrayLike, *, pose: _Poses | None = None, caps: _Caps = "fitted"
     ) -> Gradient: ...
     def __copy__(self) -> Mesh: ...
     def __deepcopy__(self, _memo: Any, /) -> Mesh: ...
     def __reduce__(self) -> tuple[Any, ...]: ...
 
 # (points, radii) or (points, radii, pose)
-_Robot = tuple[ArrayLike, ArrayLike] | tuple[ArrayLike, ArrayLike, ArrayLike | None]
+_Robot = tuple[ArrayLike, ArrayLike] | tuple[ArrayLike, ArrayLike, _Poses | None]
 
 @final
 class Scene:
     def __new__(
         cls, *, robot_margin: float | None = None, nested: Sequence[tuple[int, int]] = ()
     ) -> Scene: ...
-    def add(self, name: str, mesh: Mesh, margin: float | None = None, pose: ArrayLike | None = None) -> int: ...
+    def add(self, name: str, mesh: Mesh, *, margin: float | None, pose: _Poses | None = None) -> int: ...
     def __len__(self) -> int: ...
+    def __copy__(self) -> Scene: ...
+    def __deepcopy__(self, memo: Any, /) -> Scene: ...
+    def __reduce__(self) -> tuple[Any, Any]: ...
     def clears(self, robots: Sequence[_Robot], *, caps: _Caps = "fitted") -> BoolOrBools: ...
     def tightest(self, robots: Sequence[_Robot], *, caps: _Caps = "fitted") -> Tightest: ...
     def per_structure(self, robots: Sequence[_Robot], *, caps: _Caps = "fitted") -> PerStructure: ...
-    def contacts(self, robots: Sequence[_Robot], reach: float, *, caps: _Caps = "fitted") -> SceneContacts: ...
+    def contacts_within(
+        self, robots: Sequence[_Robot], reach: float, prominence: float = 0.0, *, caps: _Caps = "fitted"
+    ) -> SceneContacts: ...
 
 @final
 class RobotPair:
     def __new__(cls) -> RobotPair: ...
     def forget(self) -> None: ...
+    def __copy__(self) -> RobotPair: ...
+    def __deepcopy__(self, _memo: Any, /) -> RobotPair: ...
+    def __reduce__(self) -> tuple[Any, Any]: ...
     def minimum(
         self,
         points_a: ArrayLike,
@@ -307,8 +337,8 @@ class RobotPair:
         points_b: ArrayLike,
         radii_b: ArrayLike,
         *,
-        pose_a: ArrayLike | None = None,
-        pose_b: ArrayLike | None = None,
+        pose_a: _Poses | None = None,
+        pose_b: _Poses | None = None,
         caps: _Caps = "fitted",
     ) -> RobotProximity: ...
     def per_link(
@@ -318,8 +348,8 @@ class RobotPair:
         points_b: ArrayLike,
         radii_b: ArrayLike,
         *,
-        pose_a: ArrayLike | None = None,
-        pose_b: ArrayLike | None = None,
+        pose_a: _Poses | None = None,
+        pose_b: _Poses | None = None,
         caps: _Caps = "fitted",
     ) -> RobotProximity: ...
     def contacts_within(
@@ -330,8 +360,8 @@ class RobotPair:
         radii_b: ArrayLike,
         margin: float,
         *,
-        pose_a: ArrayLike | None = None,
-        pose_b: ArrayLike | None = None,
+        pose_a: _Poses | None = None,
+        pose_b: _Poses | None = None,
         caps: _Caps = "fitted",
     ) -> RobotContacts: ...
     def clears(
@@ -342,8 +372,8 @@ class RobotPair:
         radii_b: ArrayLike,
         margin: float,
         *,
-        pose_a: ArrayLike | None = None,
-        pose_b: ArrayLike | None = None,
+        pose_a: _Poses | None = None,
+        pose_b: _Poses | None = None,
         caps: _Caps = "fitted",
     ) -> BoolOrBools: ...
     def clearance(
@@ -360,8 +390,8 @@ class RobotPair:
         deviation_b: float = 0.0,
         turn_a: float | None = None,
         turn_b: float | None = None,
-        pose_a: ArrayLike | None = None,
-        pose_b: ArrayLike | None = None,
+        pose_a: _Poses | None = None,
+        pose_b: _Poses | None = None,
     ) -> RobotClearance: ...
     def clears_tubes(
         self,
@@ -378,8 +408,8 @@ class RobotPair:
         deviation_b: float = 0.0,
         turn_a: float | None = None,
         turn_b: float | None = None,
-        pose_a: ArrayLike | None = None,
-        pose_b: ArrayLike | None = None,
+        pose_a: _Poses | None = None,
+        pose_b: _Poses | None = None,
     ) -> DecisionOrDecisions: ...
     def certify(
         self,
@@ -389,8 +419,8 @@ class RobotPair:
         radii_b: ArrayLike,
         answer: RobotProximity,
         *,
-        pose_a: ArrayLike | None = None,
-        pose_b: ArrayLike | None = None,
+        pose_a: _Poses | None = None,
+        pose_b: _Poses | None = None,
         caps: _Caps = "fitted",
     ) -> Certificate: ...
     def clears_motion(self, a: Motion, b: Motion, margin: float, resolution: float) -> RobotMotionAnswer: ...
@@ -411,7 +441,17 @@ class RobotPair:
         turn: float | None = None,
     ) -> DecisionOrDecisions: ...
 
-def load(path: str | PathLike[str], *, scale: float = 1.0, label: int | None = None) -> Mesh: ...
+def load(
+    path: Any,
+    *,
+    label: int | None = None,
+    frame: _Frame | None = None,
+    scale: float = 1.0,
+    allow_no_position: bool = False,
+) -> Mesh: ...
+def load_centreline(
+    path: str | bytes | PathLike[str] | PathLike[bytes] | IO[bytes] | IO[str], *, line: int | None = None, frame: _Frame | None = None, scale: float = 1.0
+) -> Centreline: ...
 def simplify(points: ArrayLike, radii: ArrayLike, tolerance: float) -> tuple[Floats, Floats]: ...
 def stations(points: ArrayLike, radii: ArrayLike, tolerance: float) -> tuple[Floats, Floats]: ...
 def between(
@@ -420,8 +460,8 @@ def between(
     points_b: ArrayLike,
     radii_b: ArrayLike,
     *,
-    pose_a: ArrayLike | None = None,
-    pose_b: ArrayLike | None = None,
+    pose_a: _Poses | None = None,
+    pose_b: _Poses | None = None,
     caps: _Caps = "fitted",
 ) -> RobotProximity: ...
 def clears_between(
@@ -431,8 +471,8 @@ def clears_between(
     radii_b: ArrayLike,
     margin: float,
     *,
-    pose_a: ArrayLike | None = None,
-    pose_b: ArrayLike | None = None,
+    pose_a: _Poses | None = None,
+    pose_b: _Poses | None = None,
     caps: _Caps = "fitted",
 ) -> BoolOrBools: ...
 def motion_self_clears(motion: Motion, margin: float, resolution: float) -> RobotMotionAnswer: ...
@@ -448,3 +488,4 @@ def tube_self_clears(
     deviation: float = 0.0,
     turn: float | None = None,
 ) -> DecisionOrDecisions: ...
+def verify_motion(motion: Motion, steps: int) -> None: ...

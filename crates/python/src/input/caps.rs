@@ -11,6 +11,17 @@ pub(crate) enum Caps {
     Cylinders,
 }
 
+impl Caps {
+    /// The value of the parameter.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Fitted => "fitted",
+            Self::Capsules => "capsules",
+            Self::Cylinders => "cylinders",
+        }
+    }
+}
+
 impl<'a, 'py> FromPyObject<'a, 'py> for Caps {
     type Error = PyErr;
 

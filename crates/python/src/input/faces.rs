@@ -1,6 +1,6 @@
 //! The triangles of a mesh, from integers of any type.
 
-use super::numbers::{as_array, numpy, shape_text};
+use super::numbers::{as_array, numpy, refuse_masked, shape_text};
 use crate::error::Refused;
 use numpy::{PyArray2, PyArrayDescrMethods, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
@@ -8,6 +8,7 @@ use pyo3::prelude::*;
 /// Triangles as three positions among `count` vertices.
 pub(crate) fn faces(given: &Bound<'_, PyAny>, count: usize) -> PyResult<Vec<[u32; 3]>> {
     let py = given.py();
+    refuse_masked(given, "faces")?;
     let array = as_array(given, "faces")?;
     let shape = array.shape().to_vec();
     let is_empty = shape.contains(&0);

@@ -1,13 +1,19 @@
 //! From what Python hands over to plain numbers, checked.
 
 mod caps;
+mod counts;
 mod faces;
+mod names;
 mod numbers;
 mod poses;
 mod robots;
+mod scalars;
 
 pub(crate) use caps::Caps;
+pub(crate) use counts::broadcast;
 pub(crate) use faces::faces;
+pub(crate) use names::Names;
 pub(crate) use numbers::{Numbers, numpy, shape_text, vectors};
-pub(crate) use poses::{Poses, pose_of};
+pub(crate) use poses::{Poses, matrices, pose_of};
 pub(crate) use robots::{Block, Given, Robots};
+pub(crate) use scalars::{FrameName, of, places};

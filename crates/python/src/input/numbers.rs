@@ -5,22 +5,29 @@ use numpy::{
     PyArrayDescrMethods, PyArrayDyn, PyArrayMethods, PyUntypedArray, PyUntypedArrayMethods,
 };
 use parry_continuum::parry::math::Vector;
-use pyo3::exceptions::PyException;
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
-use pyo3::types::PyFloat;
+use pyo3::types::{PyFloat, PyList, PyTuple, PyType};
 
 /// Numbers with a shape. They belong to Python: whoever looks at them holds the GIL, since another thread may write there.
-pub(crate) struct Numbers<'py>(Bound<'py, PyArrayDyn<f64>>);
+pub(crate) struct Numbers<'py> {
+    array: Bound<'py, PyArrayDyn<f64>>,
+    /// How many there were when the array was given.
+    count: usize,
+}
 
 impl<'py> Numbers<'py> {
     /// What is an array already is taken as it is; else numpy makes one. `name` is the parameter's.
     pub(crate) fn new(given: &Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+        if given.cast_exact::<PyUntypedArray>().is_err() {
+            refuse_masked(given, name)?;
+        }
         if let Ok(array) = given.cast::<PyArrayDyn<f64>>()
             && array.is_c_contiguous()
             && is_aligned(array)
         {
-            return Ok(Self(array.clone()));
+            return Ok(Self::of(array.clone()));
         }
         let py = given.py();
         let refuse = |text: String| Refused::other("bad_type", text).raise(py, None);
@@ -31,11 +38,32 @@ impl<'py> Numbers<'py> {
         }
         let array = numpy(py)?.call_method1("require", (array, "float64", "CA"))?;
         match array.cast_into::<PyArrayDyn<f64>>() {
-            Ok(array) => Ok(Self(array)),
+            Ok(array) => Ok(Self::of(array)),
             Err(_) => {
                 Err(refuse(format!("`{name}` is no array of numbers; give an array of floats")))
             }
         }
+    }
+
+    fn of(array: Bound<'py, PyArrayDyn<f64>>) -> Self {
+        let count = array.len();
+        Self { array, count }
+    }
+
+    /// Refuses an array whose size or type has changed since it was given: by code of Python's that ran meanwhile, such as another
+    /// argument's `__array__`, or by another thread.
+    pub(crate) fn check_unchanged(&self, name: &str) -> Result<(), Refused> {
+        if self.array.len() == self.count && self.is_double() {
+            return Ok(());
+        }
+        let text = format!(
+            "`{name}` has changed its size or type while it was read; give a copy that nobody changes"
+        );
+        Err(Refused::other("changed", text))
+    }
+
+    fn is_double(&self) -> bool {
+        self.array.dtype().num() == numpy::npyffi::NPY_TYPES::NPY_DOUBLE as i32
     }
 
     /// A single number, where it is one.
@@ -44,14 +72,17 @@ impl<'py> Numbers<'py> {
     }
 
     pub(crate) fn shape(&self) -> &[usize] {
-        self.0.shape()
+        self.array.shape()
     }
 
     /// All numbers, in the order of the last index first.
     pub(crate) fn values(&self) -> &[f64] {
-        // SAFETY: the array is contiguous and aligned. It is not written meanwhile: whoever calls holds the GIL, and gives
-        // the numbers up before Python's code runs again.
-        unsafe { self.0.as_slice() }.unwrap_or_default()
+        if !self.is_double() {
+            return &[];
+        }
+        // SAFETY: the array is of doubles, contiguous and aligned. It is not written meanwhile: whoever calls holds the GIL, and
+        // gives the numbers up before Python's code runs again.
+        unsafe { self.array.as_slice() }.unwrap_or_default()
     }
 
     /// The numbers as points. Their shape must end in 3.
@@ -86,6 +117,31 @@ pub(crate) fn shape_text(shape: &[usize]) -> String {
     }
 }
 
+/// Refuses a masked array, or a list of them: numpy would drop the mask.
+pub(super) fn refuse_masked(given: &Bound<'_, PyAny>, name: &str) -> PyResult<()> {
+    static MASKED: PyOnceLock<Py<PyType>> = PyOnceLock::new();
+    let is_plain = |it: &Bound<'_, PyAny>| {
+        it.cast_exact::<PyUntypedArray>().is_ok() || it.cast::<PyUntypedArray>().is_err()
+    };
+    let check = |it: &Bound<'_, PyAny>| -> PyResult<()> {
+        let py = it.py();
+        if is_plain(it) || !it.is_instance(MASKED.import(py, "numpy.ma", "MaskedArray")?)? {
+            return Ok(());
+        }
+        let text = format!(
+            "`{name}` is a masked array, and its mask would be lost; leave the masked rows out, or give `{name}.data` if they count"
+        );
+        Err(Refused::other("bad_type", text).raise(py, None))
+    };
+    if let Ok(list) = given.cast_exact::<PyList>() {
+        return list.iter().try_for_each(|it| check(&it));
+    }
+    if let Ok(tuple) = given.cast_exact::<PyTuple>() {
+        return tuple.iter().try_for_each(|it| check(&it));
+    }
+    check(given)
+}
+
 /// What numpy makes of an argument, whatever its type.
 pub(crate) fn as_array<'py>(
     given: &Bound<'py, PyAny>,
@@ -96,9 +152,18 @@ pub(crate) fn as_array<'py>(
         let text = format!("`{name}` is no array of numbers ({why}); give a numpy array");
         Refused::other("bad_type", text).raise(py, None)
     };
-    let array = numpy(py)?.call_method1("asarray", (given,)).map_err(|error| {
-        // Ctrl-C says nothing of the argument.
-        if error.is_instance_of::<PyException>(py) { refuse(error.to_string()) } else { error }
-    })?;
+    // What an object's own code raises is its own; what numpy says of lists and the like is said of the parameter.
+    let is_numpys = |error: &PyErr| {
+        error.is_instance_of::<PyValueError>(py) || error.is_instance_of::<PyTypeError>(py)
+    };
+    let array = match numpy(py)?.call_method1("asarray", (given,)) {
+        Ok(array) => array,
+        Err(error) if is_numpys(&error) && given.getattr_opt("__array__")?.is_none() => {
+            let refused = refuse(error.to_string());
+            refused.set_cause(py, Some(error));
+            return Err(refused);
+        }
+        Err(error) => return Err(error),
+    };
     array.cast_into::<PyUntypedArray>().map_err(|error| refuse(error.to_string()))
 }

@@ -1,7 +1,10 @@
 //! Poses, as matrices describe them.
 
+use super::counts::broadcast;
 use super::numbers::{Numbers, shape_text};
 use crate::error::Refused;
+use crate::output::array;
+use numpy::PyUntypedArray;
 use parry_continuum::parry::math::Pose;
 use parry_continuum::pose_from_matrix;
 use pyo3::prelude::*;
@@ -15,16 +18,27 @@ pub(crate) enum Poses<'py> {
 }
 
 impl<'py> Poses<'py> {
-    /// The parameter `pose`: one for all, (4, 4), or one for each of a batch.
-    pub(crate) fn new(given: &Bound<'py, PyAny>, count: Option<usize>) -> PyResult<Self> {
-        let numbers = Numbers::new(given, "pose")?;
-        match (numbers.shape(), count) {
-            ([4, 4], _) => Ok(Self::Shared(numbers)),
-            (&[poses, 4, 4], Some(count)) if poses == count => Ok(Self::Each(numbers)),
-            (shape, _) => {
-                let fit = count.map_or(String::new(), |count| format!(" or ({count}, 4, 4)"));
+    /// The poses of robots of which there are `count`, and how many poses there are: one for all, (4, 4), or one for each of a
+    /// batch. One robot takes any number of them.
+    pub(crate) fn new(
+        given: &Bound<'py, PyAny>,
+        count: Option<usize>,
+        name: &str,
+    ) -> PyResult<(Self, Option<usize>)> {
+        let numbers = matrices(given, name)?;
+        match *numbers.shape() {
+            [4, 4] => Ok((Self::Shared(numbers), None)),
+            [1, 4, 4] => Ok((Self::Shared(numbers), Some(1))),
+            [poses, 4, 4] if broadcast(count, Some(poses)).is_some() => {
+                Ok((Self::Each(numbers), Some(poses)))
+            }
+            ref shape => {
+                let fit = match count {
+                    None | Some(1) => " or (B, 4, 4)".to_owned(),
+                    Some(count) => format!(" or ({count}, 4, 4)"),
+                };
                 let text = format!(
-                    "`pose` has the shape {}; give None, or the shape (4, 4){fit}",
+                    "`{name}` has the shape {}; give None, or the shape (4, 4){fit}",
                     shape_text(shape)
                 );
                 Err(Refused::other("bad_shape", text).raise(given.py(), None))
@@ -34,7 +48,7 @@ impl<'py> Poses<'py> {
 
     /// One pose, or many, and how many of those.
     pub(crate) fn batch(given: &Bound<'py, PyAny>, name: &str) -> PyResult<(Self, Option<usize>)> {
-        let numbers = Numbers::new(given, name)?;
+        let numbers = matrices(given, name)?;
         match *numbers.shape() {
             [4, 4] => Ok((Self::Shared(numbers), None)),
             [count, 4, 4] => Ok((Self::Each(numbers), Some(count))),
@@ -45,6 +59,14 @@ impl<'py> Poses<'py> {
                 );
                 Err(Refused::other("bad_shape", text).raise(given.py(), None))
             }
+        }
+    }
+
+    /// Refuses poses whose array has changed since it was given.
+    pub(crate) fn check_unchanged(&self, name: &str) -> Result<(), Refused> {
+        match self {
+            Self::Identity => Ok(()),
+            Self::Shared(numbers) | Self::Each(numbers) => numbers.check_unchanged(name),
         }
     }
 
@@ -61,6 +83,25 @@ impl<'py> Poses<'py> {
             Self::Each(poses) => &poses.values().as_chunks().0[range],
         }
     }
+}
+
+/// The matrices of poses: those of an array, or of scipy's `RigidTransform` or `Rotation`.
+pub(crate) fn matrices<'py>(given: &Bound<'py, PyAny>, name: &str) -> PyResult<Numbers<'py>> {
+    if given.cast_exact::<PyUntypedArray>().is_ok() {
+        return Numbers::new(given, name);
+    }
+    let Some(as_matrix) = given.getattr_opt("as_matrix")? else {
+        return Numbers::new(given, name);
+    };
+    let found = as_matrix.call0()?;
+    let numbers = Numbers::new(&found, name)?;
+    let [before @ .., 3, 3] = numbers.shape() else { return Ok(numbers) };
+    let shape: Vec<_> = before.iter().copied().chain([4, 4]).collect();
+    let whole = numbers.values().as_chunks::<9>().0.iter().flat_map(|turn| {
+        let [a, b, c, d, e, f, g, h, i] = *turn;
+        [a, b, c, 0.0, d, e, f, 0.0, g, h, i, 0.0, 0.0, 0.0, 0.0, 1.0]
+    });
+    Numbers::new(array(given.py(), shape, whole.collect())?.as_any(), name)
 }
 
 /// The pose that a matrix is.

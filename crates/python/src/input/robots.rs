@@ -1,5 +1,7 @@
 //! One robot or many, as arrays describe them.
 
+use super::counts::broadcast;
+use super::names::Names;
 use super::numbers::{Numbers, shape_text};
 use super::poses::{Poses, pose_of};
 use crate::error::Refused;
@@ -11,6 +13,9 @@ use std::ops::Range;
 
 /// One robot, or a batch of them, as Python describes them. What is asked of it needs the GIL.
 pub(crate) struct Robots<'py> {
+    names: Names,
+    /// What the function calls `more`.
+    more_name: &'static str,
     /// How many robots the batch has; none where one robot was given, without a first index.
     pub count: Option<usize>,
     /// How many points each of them has; of a path, each of its shapes.
@@ -20,7 +25,7 @@ pub(crate) struct Robots<'py> {
     more: Option<Numbers<'py>>,
     radii: Radii<'py>,
     poses: Poses<'py>,
-    /// Whether one robot stands for all of a batch.
+    /// Whether the points of one robot stand for those of all of a batch.
     is_one: bool,
     /// The other robots, of questions about several.
     others: Option<Box<Robots<'py>>>,
@@ -43,6 +48,7 @@ struct Shared {
 /// A copy of some robots, which needs no GIL. It is filled again and again.
 #[derive(Default)]
 pub(crate) struct Block {
+    names: Names,
     /// The place of its first robot in the batch.
     first: usize,
     points_each: usize,
@@ -59,6 +65,8 @@ pub(crate) struct Block {
 /// One robot of a block.
 #[derive(Clone, Copy)]
 pub(crate) struct Given<'a> {
+    /// What the function calls its parameters.
+    pub names: Names,
     /// Its place in the batch.
     pub number: usize,
     pub points: &'a [Vector],
@@ -105,24 +113,29 @@ fn points<'py>(
 }
 
 impl<'py> Robots<'py> {
-    /// Robots by their points, radii and poses. `name` is what the function calls its points.
+    /// Robots by their points, radii and poses.
     pub(crate) fn new(
-        name: &str,
+        names: Names,
         given: &Bound<'py, PyAny>,
         radii: &Bound<'py, PyAny>,
         pose: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Self> {
-        let (points, count, points_each) = points(given, name)?;
-        let radii = Radii::new(radii, count, points_each)?;
-        let poses = pose.map_or(Ok(Poses::Identity), |pose| Poses::new(pose, count))?;
+        let (points, own, points_each) = points(given, names.points)?;
+        let (radii, radii_count) = Radii::new(radii, own, points_each, names)?;
+        let count = broadcast(own, radii_count).unwrap_or(own);
+        let (poses, poses_count) =
+            pose.map_or(Ok((Poses::Identity, None)), |pose| Poses::new(pose, count, names.pose))?;
+        let count = broadcast(count, poses_count).unwrap_or(count);
         Ok(Self {
+            names,
+            more_name: "",
             count,
             points_each,
             points,
             more: None,
             radii,
             poses,
-            is_one: false,
+            is_one: own != count,
             others: None,
         })
     }
@@ -130,7 +143,7 @@ impl<'py> Robots<'py> {
     /// Paths, each of several shapes of one robot, (S, N, 3) or (B, S, N, 3): the points of a path are those of its shapes, one
     /// shape after the other.
     pub(crate) fn paths(
-        name: &str,
+        name: &'static str,
         given: &Bound<'py, PyAny>,
         radii: &Bound<'py, PyAny>,
     ) -> PyResult<Self> {
@@ -154,16 +167,20 @@ impl<'py> Robots<'py> {
                 return Err(refuse(given.py(), text));
             }
         };
-        let radii = Radii::new(radii, count, points_each)?;
+        let names = Names::one(name);
+        let (radii, radii_count) = Radii::new(radii, count, points_each, names)?;
+        let (own, count) = (count, broadcast(count, radii_count).unwrap_or(count));
         let poses = Poses::Identity;
         Ok(Self {
+            names,
+            more_name: "",
             count,
             points_each,
             points,
             more: None,
             radii,
             poses,
-            is_one: false,
+            is_one: own != count,
             others: None,
         })
     }
@@ -171,7 +188,7 @@ impl<'py> Robots<'py> {
     /// The same with as many points more, such as those at which a motion ends.
     pub(crate) fn with_as_many(
         mut self,
-        name: &str,
+        name: &'static str,
         given: &Bound<'py, PyAny>,
         other: &str,
     ) -> PyResult<Self> {
@@ -184,19 +201,20 @@ impl<'py> Robots<'py> {
             );
             return Err(refuse(given.py(), text));
         }
-        self.more = Some(more);
+        (self.more, self.more_name) = (Some(more), name);
         Ok(self)
     }
 
     /// The same with directions of each robot's curve, at its two ends or at all of its points. `name` is the parameter's.
     pub(crate) fn with_tangents(
         mut self,
-        name: &str,
+        name: &'static str,
         given: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Self> {
         let Some(given) = given else { return Ok(self) };
         let (tangents, count, each) = points(given, name)?;
-        if count != self.count || !(each == 2 || each == self.points_each) {
+        let fits = if self.is_one { matches!(count, None | Some(1)) } else { count == self.count };
+        if !fits || !(each == 2 || each == self.points_each) {
             let text = format!(
                 "`{name}` has the shape {} beside points of {}; give two directions for each robot, at its ends, or one for \
                  each point",
@@ -205,31 +223,30 @@ impl<'py> Robots<'py> {
             );
             return Err(refuse(given.py(), text));
         }
-        self.more = Some(tangents);
+        (self.more, self.more_name) = (Some(tangents), name);
         Ok(self)
     }
 
     /// These robots, each beside one of the others. Where there is one of either, it stands for as many as there are of the
     /// others.
     pub(crate) fn with_others(mut self, py: Python<'_>, mut others: Self) -> PyResult<Self> {
-        match (self.count, others.count) {
-            (None, Some(count)) => self.stand_for(count),
-            (Some(count), None) => others.stand_for(count),
-            (one, other) if one == other => {}
-            (one, other) => {
-                let [one, other] = [one, other].map(Option::unwrap_or_default);
-                let text = format!(
-                    "there are {one} robots beside {other}; give as many of both, or one of either"
-                );
-                return Err(refuse(py, text));
-            }
-        }
+        let Some(count) = broadcast(self.count, others.count) else {
+            let [one, other] = [self.count, others.count].map(Option::unwrap_or_default);
+            let [first, second] = [self.names, others.names].map(|names| names.robot());
+            let text = format!(
+                "`{first}` has {one} robots and `{second}` {other}; give as many of both, or one of either"
+            );
+            return Err(refuse(py, text));
+        };
+        self.stand_for(count);
+        others.stand_for(count);
         self.others = Some(Box::new(others));
         Ok(self)
     }
 
-    fn stand_for(&mut self, count: usize) {
-        (self.count, self.is_one) = (Some(count), true);
+    fn stand_for(&mut self, count: Option<usize>) {
+        self.is_one |= self.count != count;
+        self.count = count;
         if let Some(others) = &mut self.others {
             others.stand_for(count);
         }
@@ -253,8 +270,17 @@ impl<'py> Asked for Robots<'py> {
         block.robot(place)
     }
 
-    fn copy(&self, robots: Range<usize>, block: &mut Block) {
-        block.first = robots.start;
+    fn copy(&self, robots: Range<usize>, block: &mut Block) -> Result<(), Refused> {
+        let Names { points, radii, pose, .. } = self.names;
+        self.points.check_unchanged(points)?;
+        if let Some(more) = &self.more {
+            more.check_unchanged(self.more_name)?;
+        }
+        if let Radii::Shared(numbers) | Radii::Each(numbers) = &self.radii {
+            numbers.check_unchanged(radii)?;
+        }
+        self.poses.check_unchanged(pose)?;
+        (block.first, block.names) = (robots.start, self.names);
         let copy_points = |from: &Numbers<'_>, to: &mut Vec<Vector>| {
             let each = from.points().len() / if self.is_one { 1 } else { self.len().max(1) };
             to.clear();
@@ -280,45 +306,70 @@ impl<'py> Asked for Robots<'py> {
         block.matrices.clear();
         block.matrices.extend(self.poses.matrices(robots.clone()));
         if let Some(others) = &self.others {
-            others.copy(robots, block.others.get_or_insert_default());
+            others.copy(robots, block.others.get_or_insert_default())?;
         }
         block.shared = Shared {
             points: self.is_one,
             radii: !matches!(self.radii, Radii::Each(_)),
             pose: self.poses.is_one(),
         };
+        Ok(())
     }
 }
 
 impl<'py> Radii<'py> {
-    fn new(given: &Bound<'py, PyAny>, count: Option<usize>, points: usize) -> PyResult<Self> {
+    fn new(
+        given: &Bound<'py, PyAny>,
+        count: Option<usize>,
+        points: usize,
+        names: Names,
+    ) -> PyResult<(Self, Option<usize>)> {
         if let Some(radius) = Numbers::single(given) {
-            return Ok(Self::Number(radius));
+            return Ok((Self::Number(radius), None));
         }
-        let numbers = Numbers::new(given, "radii")?;
+        let numbers = Numbers::new(given, names.radii)?;
         let segments = points.saturating_sub(1);
         let lengths_differ = |radii: usize| {
-            let (parameter, expected) = ("radii", segments);
+            let (parameter, expected) = (names.radii, segments);
             let error = RobotError::LengthsDiffer { parameter, points, expected, radii };
-            Refused::Robot(error).raise(given.py(), None)
+            Refused::Robot(error)
         };
-        match (numbers.shape(), count) {
-            ([], _) => Ok(Self::Number(numbers.values()[0])),
-            (&[radii], _) if radii == segments || points < 2 => Ok(Self::Shared(numbers)),
-            (&[radii], _) => Err(lengths_differ(radii)),
-            (&[robots, radii], Some(count)) if robots == count && radii == segments => {
-                Ok(Self::Each(numbers))
+        let name = names.radii;
+        let of_robots = format!(
+            "one radius for each robot is `{name}[:, None] * np.ones({segments})`, of the shape (B, {segments})"
+        );
+        let refused = match (numbers.shape(), count) {
+            ([], _) => return Ok((Self::Number(numbers.values()[0]), None)),
+            (&[radii], _) if radii == segments || points < 2 => {
+                return Ok((Self::Shared(numbers), None));
             }
-            (&[robots, radii], Some(count)) if robots == count => Err(lengths_differ(radii)),
+            (&[1, radii], _) if radii == segments => return Ok((Self::Shared(numbers), Some(1))),
+            (&[robots, radii], _)
+                if radii == segments && broadcast(count, Some(robots)).is_some() =>
+            {
+                return Ok((Self::Each(numbers), Some(robots)));
+            }
+            (&[radii], Some(count)) if radii == count && count > 1 => {
+                lengths_differ(radii).with_advice(&of_robots)
+            }
+            (&[radii], _) => lengths_differ(radii),
+            (&[robots, 1], _) if broadcast(count, Some(robots)).is_some() => {
+                lengths_differ(1).with_advice(&of_robots)
+            }
+            (&[robots, radii], Some(count)) if robots == count => lengths_differ(radii),
             (shape, _) => {
-                let fit = count.map_or(String::new(), |count| format!(" or ({count}, {segments})"));
+                let fit = match count {
+                    None | Some(1) => format!(" or (B, {segments})"),
+                    Some(count) => format!(" or ({count}, {segments})"),
+                };
                 let text = format!(
-                    "`radii` has the shape {}; give a number, or the shape ({segments},){fit}: one radius for each segment",
+                    "`{name}` has the shape {}; give a number, or the shape ({segments},){fit}: one radius for each segment",
                     shape_text(shape)
                 );
-                Err(refuse(given.py(), text))
+                Refused::other("bad_shape", text)
             }
-        }
+        };
+        Err(refused.raise(given.py(), None))
     }
 }
 
@@ -329,6 +380,7 @@ impl Block {
         let segments = of(self.segments_each);
         let of = |each: usize| if self.shared.points { 0..each } else { of(each) };
         Given {
+            names: self.names,
             number: self.first + place,
             points: &self.points[of(self.points_each)],
             more: &self.more[of(self.more_each)],
@@ -347,6 +399,7 @@ impl<'a> Given<'a> {
 
     /// The robot's pose in the mesh's frame.
     pub(crate) fn pose(&self) -> Result<Pose, Refused> {
-        self.matrix.map_or(Ok(Pose::IDENTITY), pose_of)
+        let pose = self.matrix.map_or(Ok(Pose::IDENTITY), pose_of);
+        pose.map_err(|refused| self.names.in_entry(refused.of(self.names.pose)))
     }
 }

@@ -1,6 +1,6 @@
 //! A motion of sections of constant curvature.
 
-use super::{Motion, Moving, together};
+use super::{Motion, Moving, Recipe, place_in, together};
 use crate::error::Refused;
 use crate::input::{Numbers, Poses, pose_of, shape_text};
 use parry_continuum::BendingSection;
@@ -52,6 +52,7 @@ impl BendingMotion {
         radii: &Bound<'_, PyAny>,
         pose: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<PyClassInitializer<Self>> {
+        let (given, given_pose) = ([start, end, radii], pose.cloned());
         let (start, end) = (Sections::new(start, "start")?, Sections::new(end, "end")?);
         if start.each != end.each {
             let text = format!(
@@ -79,13 +80,15 @@ impl BendingMotion {
         )?;
         let motion = Motion::new(py, count, |place| {
             let pose = match pose_count {
-                Some(_) => pose_of(&poses[place])?,
-                None => poses.first().map_or(Ok(Pose::IDENTITY), pose_of)?,
+                Some(_) => pose_of(&poses[place_in(pose_count, place)]),
+                None => poses.first().map_or(Ok(Pose::IDENTITY), pose_of),
             };
+            let pose = pose.map_err(|refused| refused.of("pose"))?;
             let [start, end] = [&start, &end].map(|sections| sections.at(place, &radii));
             Ok(Moving::Bending(parry_continuum::BendingMotion::new(&start, &end, pose)?))
         })?;
-        Ok(motion.into_class(Self))
+        let recipe = Recipe::new(py, None, &given, &[("pose", given_pose)])?;
+        Ok(motion.with_recipe(recipe).into_class(Self))
     }
 }
 
@@ -123,7 +126,7 @@ impl Sections {
 
     /// The sections at a place of the batch.
     fn at(&self, place: usize, radii: &Radii) -> Vec<BendingSection> {
-        let first = if self.count.is_none() { 0 } else { self.each * place };
+        let first = self.each * place_in(self.count, place);
         let rows = &self.rows[first..first + self.each];
         let section = |(number, &[length, x, y]): (usize, &[f64; 3])| BendingSection {
             length,
@@ -163,7 +166,7 @@ impl Radii {
     }
 
     fn at(&self, place: usize, section: usize) -> f64 {
-        let first = if self.count.is_none() { 0 } else { self.sections * place };
+        let first = self.sections * place_in(self.count, place);
         self.radii[first + section]
     }
 }

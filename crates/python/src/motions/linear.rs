@@ -1,11 +1,12 @@
 //! A motion whose points move straight and evenly.
 
-use super::{Motion, Moving};
+use super::{Motion, Moving, Recipe};
 use crate::error::Refused;
-use crate::input::{Block, Caps, Robots};
+use crate::input::{Block, Caps, Names, Robots};
 use crate::threads::Asked;
 use parry_continuum::RobotError;
 use parry_continuum::parry::math::Vector;
+use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 
 /// What makes a motion of two shapes and radii.
@@ -65,13 +66,16 @@ impl LinearMotion {
         caps: Caps,
     ) -> PyResult<PyClassInitializer<Self>> {
         let make = maker(py, caps)?;
-        let robots = Robots::new("start", start, radii, None)?.with_as_many("end", end, "start")?;
+        let robots = Robots::new(Names::one("start"), start, radii, None)?
+            .with_as_many("end", end, "start")?;
         let mut block = Block::default();
-        robots.copy(0..robots.len(), &mut block);
+        robots.copy(0..robots.len(), &mut block).map_err(|refused| refused.raise(py, None))?;
         let motion = Motion::new(py, robots.count, |place| {
             let robot = block.robot(place);
             Ok(Moving::Linear(make(robot.points, robot.more, robot.radii)?))
         })?;
-        Ok(motion.into_class(Self))
+        let caps = caps.name().into_bound_py_any(py)?;
+        let recipe = Recipe::new(py, None, &[start, end, radii], &[("caps", Some(caps))])?;
+        Ok(motion.with_recipe(recipe).into_class(Self))
     }
 }

@@ -6,7 +6,9 @@ mod motion_pair;
 mod motion_path;
 mod moving;
 mod moving_base;
+mod recipe;
 mod rigid;
+mod verify;
 mod way;
 
 pub(crate) use bending::BendingMotion;
@@ -15,11 +17,15 @@ pub(crate) use motion_pair::MotionPair;
 pub(crate) use motion_path::MotionPath;
 pub(crate) use moving::Moving;
 pub(crate) use moving_base::MovingBase;
+use recipe::Recipe;
 pub(crate) use rigid::RigidMotion;
+pub(crate) use verify::verify_motion;
 
 use crate::error::Refused;
+use crate::input::broadcast;
 use crate::threads::{Asked, compute};
 use pyo3::PyClass;
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;
@@ -28,13 +34,15 @@ use std::sync::Arc;
 ///
 /// `LinearMotion`, `RigidMotion` and `BendingMotion` are motions. `MovingBase` moves the base of any of them, and `MotionPath` puts
 /// them one after another. `Mesh.clears_motion`, `time_of_contact`, `clearance_of_motion` and `clears_motion_while` take any of
-/// them. A motion has copied what it was made of, and never changes.
+/// them. A motion has copied what it was made of, and never changes. It can be pickled.
 #[pyclass(frozen, subclass, module = "parry_continuum")]
 pub(crate) struct Motion {
     motions: Arc<Vec<Moving>>,
     size: Size,
     /// How many there are; none where one motion was given, without a first index.
     count: Option<usize>,
+    /// What it was made of.
+    recipe: Option<Recipe>,
 }
 
 #[pymethods]
@@ -43,6 +51,21 @@ impl Motion {
     #[getter]
     fn count(&self) -> Option<usize> {
         self.count
+    }
+
+    fn __copy__(slf: Bound<'_, Self>) -> Bound<'_, Self> {
+        slf // it never changes
+    }
+
+    fn __deepcopy__<'py>(slf: Bound<'py, Self>, _memo: &Bound<'py, PyAny>) -> Bound<'py, Self> {
+        slf
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+        match &slf.get().recipe {
+            Some(recipe) => recipe.reduced(slf.get_type().into_any()),
+            None => Err(PyTypeError::new_err("this motion cannot be pickled")),
+        }
     }
 
     fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
@@ -81,12 +104,17 @@ impl Motion {
             }
             py.check_signals()?;
         }
-        Ok(Self { motions: Arc::new(motions), size: Size::ONE, count })
+        Ok(Self { motions: Arc::new(motions), size: Size::ONE, count, recipe: None })
     }
 
     /// The same, made of others.
     fn of(self, size: Size) -> Self {
         Self { size, ..self }
+    }
+
+    /// The same, with what it was made of.
+    fn with_recipe(self, recipe: Recipe) -> Self {
+        Self { recipe: Some(recipe), ..self }
     }
 
     /// An object of a class of motions.
@@ -142,17 +170,25 @@ fn together(
     py: Python<'_>,
     parts: impl IntoIterator<Item = (&'static str, Option<usize>)>,
 ) -> PyResult<Option<usize>> {
-    let mut parts = parts.into_iter().filter_map(|(name, count)| Some((name, count?)));
-    let Some((first, count)) = parts.next() else { return Ok(None) };
-    match parts.find(|(_, other)| *other != count) {
-        None => Ok(Some(count)),
-        Some((name, other)) => {
+    let (mut all, mut first) = (None, "");
+    for (name, count) in parts {
+        let Some(both) = broadcast(all, count) else {
+            let [one, other] = [all, count].map(Option::unwrap_or_default);
             let text = format!(
-                "`{first}` has {count} and `{name}` {other}; give as many of both, or one of either"
+                "`{first}` has {one} and `{name}` {other}; give as many of both, or one of either"
             );
-            Err(Refused::other("bad_shape", text).raise(py, None))
+            return Err(Refused::other("bad_shape", text).raise(py, None));
+        };
+        if both != all {
+            (all, first) = (both, name);
         }
     }
+    Ok(all)
+}
+
+/// The place of one for all, or of one of as many as there are.
+fn place_in(count: Option<usize>, place: usize) -> usize {
+    if matches!(count, None | Some(1)) { 0 } else { place }
 }
 
 /// Some motions of a batch, which share its memory.
@@ -173,8 +209,9 @@ impl Asked for Motion {
         self.count
     }
 
-    fn copy(&self, range: Range<usize>, block: &mut SomeMotions) {
+    fn copy(&self, range: Range<usize>, block: &mut SomeMotions) -> Result<(), Refused> {
         (block.first, block.motions) = (range.start, Arc::clone(&self.motions));
+        Ok(())
     }
 
     fn one(block: &SomeMotions, place: usize) -> &Moving {

@@ -1,6 +1,7 @@
 //! Two motions at once, or as many pairs of them as a batch has.
 
 use super::{Motion, Moving, at, together};
+use crate::error::Refused;
 use crate::threads::Asked;
 use pyo3::prelude::*;
 use std::ops::Range;
@@ -40,9 +41,10 @@ impl Asked for MotionPair {
         self.count
     }
 
-    fn copy(&self, range: Range<usize>, block: &mut SomePairs) {
+    fn copy(&self, range: Range<usize>, block: &mut SomePairs) -> Result<(), Refused> {
         let [first, second] = &self.motions;
         *block = SomePairs { first: range.start, motions: [Arc::clone(first), Arc::clone(second)] };
+        Ok(())
     }
 
     fn one(block: &SomePairs, place: usize) -> [&Moving; 2] {

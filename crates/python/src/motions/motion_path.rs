@@ -1,12 +1,13 @@
 //! Motions one after another.
 
-use super::{Motion, Moving, Size, at, together};
+use super::{Motion, Moving, Recipe, Size, at, together};
 use pyo3::prelude::*;
+use pyo3::types::PyList;
 
 /// Motions one after another, each of which takes the same share of the time: of n motions the first one is from the time 0 to
 /// 1 / n, the next one to 2 / n, and so on.
 ///
-/// Each should begin where the one before ends. All need the same sections with the same radii. `Mesh.clearance_of_motion` looks
+/// Each begins where the one before ends, and all have the same sections with the same radii. `Mesh.clearance_of_motion` looks
 /// closely only at those that may come nearest.
 ///
 /// Parameters
@@ -17,7 +18,8 @@ use pyo3::prelude::*;
 /// Raises
 /// ------
 /// ContinuumError
-///     The list is empty, or the batches differ in how many motions they have.
+///     The list is empty, the batches differ in how many motions they have, motions have different sections, or one begins
+///     farther from the end of the one before than rounding and stated deviations explain: ``index`` is its place in the list.
 ///
 /// Examples
 /// --------
@@ -44,6 +46,8 @@ impl MotionPath {
             let legs = parts.iter().map(|(_, motions)| at(motions, place).clone());
             Ok(Moving::Path(parry_continuum::MotionPath::new(legs.collect())?))
         })?;
-        Ok(motion.of(size).into_class(Self))
+        let given = PyList::new(py, &motions)?;
+        let recipe = Recipe::new(py, None, &[given.as_any()], &[])?;
+        Ok(motion.of(size).with_recipe(recipe).into_class(Self))
     }
 }

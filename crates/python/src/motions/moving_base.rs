@@ -1,7 +1,7 @@
 //! A motion whose base moves as well.
 
 use super::way::Way;
-use super::{Motion, Moving, Size, at};
+use super::{Motion, Moving, Recipe, Size, at};
 use pyo3::prelude::*;
 
 /// A motion whose base is moved at the same time, evenly from one pose to another: a robot that is pushed or rolled while its
@@ -57,6 +57,8 @@ impl MovingBase {
             let moved = parry_continuum::MovingBase::new(motion, way.poses(place)?)?;
             Ok(Moving::OnBase(Box::new(moved)))
         })?;
-        Ok(moved.of(size).into_class(Self))
+        let given = [motion.as_any(), start_pose, end_pose];
+        let recipe = Recipe::new(py, None, &given, &[])?;
+        Ok(moved.of(size).with_recipe(recipe).into_class(Self))
     }
 }

@@ -1,13 +1,14 @@
 //! A robot that keeps its shape and moves.
 
 use super::way::Way;
-use super::{Motion, Moving};
+use super::{Motion, Moving, Recipe, place_in};
 use crate::error::Refused;
-use crate::input::{Block, Caps, Given, Robots};
+use crate::input::{Block, Caps, Given, Names, Robots, of};
 use crate::queries::clearance::{Stated, tube, tubes};
 use crate::queries::distance::set_chain;
 use crate::threads::Asked;
 use parry_continuum::Tube;
+use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 
 /// The motion of a robot that does not change its shape, evenly from one pose to another.
@@ -55,11 +56,15 @@ impl RigidMotion {
         end_pose: &Bound<'_, PyAny>,
         caps: Caps,
     ) -> PyResult<PyClassInitializer<Self>> {
-        let robots = Robots::new("points", points, radii, None)?;
+        let robots = Robots::new(Names::one("points"), points, radii, None)?;
         let motion = rigid(points.py(), &robots, &Way::new(start_pose, end_pose)?, |robot| {
             Ok(Tube::from(set_chain(&mut None, robot, caps)?))
         })?;
-        Ok(motion.into_class(Self))
+        let py = points.py();
+        let caps = caps.name().into_bound_py_any(py)?;
+        let given = [points, radii, start_pose, end_pose];
+        let recipe = Recipe::new(py, None, &given, &[("caps", Some(caps))])?;
+        Ok(motion.with_recipe(recipe).into_class(Self))
     }
 
     /// The same of smooth tubes, as `Mesh.clearance` takes them.
@@ -83,15 +88,27 @@ impl RigidMotion {
         start_pose: &Bound<'py, PyAny>,
         end_pose: &Bound<'py, PyAny>,
         tangents: Option<&Bound<'py, PyAny>>,
-        deviation: f64,
-        turn: Option<f64>,
+        #[pyo3(from_py_with = of::deviation)] deviation: f64,
+        #[pyo3(from_py_with = of::optional::turn)] turn: Option<f64>,
     ) -> PyResult<Py<Self>> {
         let stated = Stated { deviation, turn };
-        let robots =
-            tubes(Robots::new("points", points, radii, None)?, "tangents", tangents, stated)?;
+        let robots = tubes(
+            Robots::new(Names::one("points"), points, radii, None)?,
+            "tangents",
+            tangents,
+            stated,
+        )?;
         let way = Way::new(start_pose, end_pose)?;
         let motion = rigid(points.py(), &robots, &way, |robot| tube(robot, stated))?;
-        Py::new(points.py(), motion.into_class(Self))
+        let py = points.py();
+        let more = [
+            ("tangents", tangents.cloned()),
+            ("deviation", Some(deviation.into_bound_py_any(py)?)),
+            ("turn", turn.map(|turn| turn.into_bound_py_any(py)).transpose()?),
+        ];
+        let given = [points, radii, start_pose, end_pose];
+        let recipe = Recipe::new(py, Some("of_curve"), &given, &more)?;
+        Py::new(py, motion.with_recipe(recipe).into_class(Self))
     }
 }
 
@@ -102,11 +119,10 @@ fn rigid(
     way: &Way,
     shape: impl Fn(&Given<'_>) -> Result<Tube, Refused> + Sync,
 ) -> PyResult<Motion> {
-    let mut block = Block::default();
-    robots.copy(0..robots.len(), &mut block);
-    let is_one = robots.count.is_none();
-    Motion::new(py, way.count(py, "points", robots.count)?, |place| {
-        let tube = shape(&block.robot(if is_one { 0 } else { place }))?;
+    let (count, mut block) = (robots.count, Block::default());
+    robots.copy(0..robots.len(), &mut block).map_err(|refused| refused.raise(py, None))?;
+    Motion::new(py, way.count(py, "points", count)?, |place| {
+        let tube = shape(&block.robot(place_in(count, place)))?;
         let motion = parry_continuum::RigidMotion::new(tube, way.poses(place)?)?;
         Ok(Moving::Rigid(Box::new(motion)))
     })

@@ -1,6 +1,6 @@
 //! From one pose to another, of each of a batch.
 
-use super::together;
+use super::{place_in, together};
 use crate::error::Refused;
 use crate::input::{Poses, pose_of};
 use parry_continuum::parry::math::Pose;
@@ -42,7 +42,7 @@ impl Way {
     pub(super) fn poses(&self, place: usize) -> Result<[Pose; 2], Refused> {
         let pose = |end: usize| {
             let matrices = &self.ends[end];
-            let matrix = &matrices[if self.counts[end].is_none() { 0 } else { place }];
+            let matrix = &matrices[place_in(self.counts[end], place)];
             pose_of(matrix).map_err(|refused| refused.of(NAMES[end]))
         };
         Ok([pose(0)?, pose(1)?])

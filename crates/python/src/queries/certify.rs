@@ -2,12 +2,74 @@
 
 use super::distance::set_chain;
 use crate::error::Refused;
-use crate::input::{Caps, Given, Numbers, Robots, shape_text};
+use crate::input::{Caps, Given, Numbers, Robots, shape_text, vectors};
 use crate::mesh::Mesh;
 use crate::output::array;
 use crate::threads::{Asked, Session, ask_each};
-use parry_continuum::proximity::{Certificate, Proximity, ProximityError};
+use parry_continuum::parry::math::Vector;
+use parry_continuum::proximity::{Certificate, LinkProximity, Proximity, ProximityError};
 use pyo3::prelude::*;
+
+/// The fields of a `PerLink` answer, a row for each segment of each robot.
+struct Answers {
+    distance: Vec<f64>,
+    on_robot: Vec<Vector>,
+    on_mesh: Vec<Vector>,
+    arc_length: Vec<f64>,
+    /// Positions of triangles are whole numbers far below 2^53.
+    triangle: Vec<f64>,
+}
+
+impl Answers {
+    fn new(answer: &Bound<'_, PyAny>, robots: &Robots<'_>, segments: usize) -> PyResult<Self> {
+        let field = |name: &str, last: &[usize]| {
+            let shape: Vec<_> = [segments].iter().chain(last).copied().collect();
+            answer_field(answer, "per_link", name, &[robots.shape(&shape)])
+        };
+        Ok(Self {
+            triangle: field("triangle", &[])?.0.values().to_vec(),
+            distance: field("distance", &[])?.0.values().to_vec(),
+            on_robot: vectors(field("on_robot", &[3])?.0.points()),
+            on_mesh: vectors(field("on_mesh", &[3])?.0.points()),
+            arc_length: field("arc_length", &[])?.0.values().to_vec(),
+        })
+    }
+
+    /// Writes the fields of one row into an answer of the library's.
+    fn write(&self, row: usize, found: &mut LinkProximity) {
+        found.distance = self.distance[row];
+        found.witness.on_robot = self.on_robot[row];
+        found.witness.on_mesh = self.on_mesh[row];
+        found.witness.arc_length = self.arc_length[row];
+        found.witness.triangle = self.triangle[row] as u32;
+    }
+}
+
+/// A field of an answer that `function` returned, which must have one of these shapes; and which of them it has.
+pub(crate) fn answer_field<'py>(
+    answer: &Bound<'py, PyAny>,
+    function: &str,
+    name: &str,
+    shapes: &[Vec<usize>],
+) -> PyResult<(Numbers<'py>, usize)> {
+    let py = answer.py();
+    let refuse = |text: String| Refused::other("answer_does_not_fit", text).raise(py, None);
+    let Some(values) = answer.getattr_opt(name)? else {
+        return Err(refuse(format!("`answer` has no `{name}`; give what `{function}` returned")));
+    };
+    let values = Numbers::new(&values, &format!("answer.{name}"))?;
+    match shapes.iter().position(|shape| shape == values.shape()) {
+        Some(kind) => Ok((values, kind)),
+        None => {
+            let fit: Vec<_> = shapes.iter().map(|shape| shape_text(shape)).collect();
+            Err(refuse(format!(
+                "`answer.{name}` has the shape {}, but of these robots it has {}; give the robots that were asked about",
+                shape_text(values.shape()),
+                fit.join(" or ")
+            )))
+        }
+    }
+}
 
 #[pymethods]
 impl Mesh {
@@ -15,7 +77,8 @@ impl Mesh {
     ///
     /// Each bounds the distance between a segment's link and the triangle that the answer names, of the mesh as it is now. They
     /// are computed in twice the digits, without trust in the code that answered: ``lower <= answer.distance <= upper`` but for
-    /// the last bits of the distance.
+    /// the last bits of the distance. The answer's distances and points are checked first: an answer for other points, another
+    /// radius, pose or mesh is an error.
     ///
     /// Parameters
     /// ----------
@@ -31,7 +94,8 @@ impl Mesh {
     /// Raises
     /// ------
     /// ContinuumError
-    ///     The answer does not fit robot and mesh, or as for `distance`.
+    ///     The answer does not fit robot, pose and mesh: a point is not where it says, the distance is another, or the shapes
+    ///     differ. Or as for `distance`.
     ///
     /// Examples
     /// --------
@@ -51,41 +115,32 @@ impl Mesh {
         pose: Option<&Bound<'py, PyAny>>,
         caps: Caps,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let robots = Robots::new("points", points, radii, pose)?;
+        let robots = self.robots(points, radii, pose)?;
         let segments = robots.segments_each();
-        let refuse = |text: String| Refused::other("answer_does_not_fit", text).raise(py, None);
-        let triangles = answer.getattr("triangle").map_err(|_| {
-            refuse("`answer` has no triangles; give what `per_link` returned".into())
-        })?;
-        let triangles = Numbers::new(&triangles, "answer.triangle")?;
         let shape = robots.shape(&[segments]);
-        if triangles.shape() != shape {
-            return Err(refuse(format!(
-                "`answer` has the shape {}, but the robots have {}; give the robots that were asked about",
-                shape_text(triangles.shape()),
-                shape_text(&shape)
-            )));
-        }
-        // Positions of triangles are whole numbers far below 2^53.
-        let triangles = triangles.values().to_vec();
-        let mut bounds: Vec<[f64; 2]> = Vec::with_capacity(triangles.len());
+        let given = Answers::new(answer, &robots, segments)?;
+        let mut bounds: Vec<[f64; 2]> = Vec::with_capacity(given.triangle.len());
         let ask = |session: &mut Session, robot: &Given<'_>, rows: &mut [[f64; 2]]| {
             let chain = set_chain(&mut session.chain, robot, caps)?;
             let pose = robot.pose()?;
-            let named = &triangles[segments * robot.number..segments * (robot.number + 1)];
-            let asked: Vec<_> = (0..named.len()).filter(|&segment| named[segment] >= 0.0).collect();
-            if asked.len() != chain.links().len() {
-                let (link, links) = (asked.len(), chain.links().len());
-                return Err(ProximityError::NoSuchLink { link, links }.into());
+            let first = segments * robot.number;
+            let named = (first..first + segments).filter(|&row| given.triangle[row] >= 0.0).count();
+            let links = chain.links().len();
+            if named != links {
+                return Err(ProximityError::NoSuchLink { link: named, links }.into());
             }
-            for (segment, link) in asked.into_iter().zip(chain.links()) {
-                let (triangle, all) = (named[segment] as usize, session.search.triangles());
-                let corners = all
-                    .get(triangle)
-                    .ok_or(ProximityError::NoSuchTriangle { triangle, triangles: all.len() })?;
-                let corners = corners.map(|corner| session.search.vertices()[corner as usize]);
-                let found = Certificate::between(link, &pose, corners)?;
-                rows[segment] = [found.lower, found.upper];
+            // An answer of the library's own, whose fields become those that were given.
+            session.search.per_link(chain, &pose, &mut session.links)?;
+            for found in &mut session.links {
+                let segment = found.witness.segment as usize;
+                given.write(first + segment, found);
+                // The same check as that of `LinkProximity::certify`.
+                session.search.contact_of(chain, &pose, found)?;
+                let corners = session.search.triangles()[found.witness.triangle as usize]
+                    .map(|corner| session.search.vertices()[corner as usize]);
+                let proof =
+                    Certificate::between(&chain.links()[found.link as usize], &pose, corners)?;
+                rows[segment] = [proof.lower, proof.upper];
             }
             Ok(())
         };

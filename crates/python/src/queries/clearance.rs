@@ -1,13 +1,13 @@
 //! How near a curved tube is, between bounds.
 
 use crate::error::Refused;
-use crate::input::{Given, Robots};
+use crate::input::{Given, Robots, of};
 use crate::mesh::Mesh;
-use crate::output::{answer, array, array_or_number, decision_value, flat, members};
+use crate::output::{Enumeration, answer, array, array_or_number, decision_value, flat, members};
 use crate::threads::{Asked, Session, ask_each};
-use parry_continuum::Tube;
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::proximity::Clearance;
+use parry_continuum::{RobotError, Tube};
 use pyo3::prelude::*;
 
 /// What is stated of points that are measured.
@@ -32,6 +32,10 @@ fn has_frames(robot: &Given<'_>) -> bool {
 
 /// The tube of a robot.
 pub(crate) fn tube(robot: &Given<'_>, stated: Stated) -> Result<Tube, Refused> {
+    made(robot, stated).map_err(|error| robot.names.apply(error))
+}
+
+fn made(robot: &Given<'_>, stated: Stated) -> Result<Tube, RobotError> {
     let (points, radii) = (robot.points, robot.radii);
     let tube = match stated.deviation {
         0.0 if has_frames(robot) => Tube::from_frames(points, robot.more, radii)?,
@@ -50,7 +54,8 @@ impl Session {
         let has_samples = stated.deviation == 0.0 && stated.turn.is_none() && !has_frames(robot);
         match &mut self.tube {
             Some(tube) if has_samples && self.has_samples => {
-                tube.set_samples(robot.points, robot.radii, ends(robot))?;
+                tube.set_samples(robot.points, robot.radii, ends(robot))
+                    .map_err(|error| robot.names.apply(error))?;
             }
             kept => {
                 *kept = None;
@@ -65,7 +70,7 @@ impl Session {
 /// Points that are off need no directions.
 pub(crate) fn tubes<'py>(
     robots: Robots<'py>,
-    name: &str,
+    name: &'static str,
     tangents: Option<&Bound<'py, PyAny>>,
     stated: Stated,
 ) -> PyResult<Robots<'py>> {
@@ -143,15 +148,14 @@ impl Mesh {
         py: Python<'py>,
         points: &Bound<'py, PyAny>,
         radii: &Bound<'py, PyAny>,
-        tolerance: f64,
+        #[pyo3(from_py_with = of::tolerance)] tolerance: f64,
         tangents: Option<&Bound<'py, PyAny>>,
-        deviation: f64,
-        turn: Option<f64>,
+        #[pyo3(from_py_with = of::deviation)] deviation: f64,
+        #[pyo3(from_py_with = of::optional::turn)] turn: Option<f64>,
         pose: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let stated = Stated { deviation, turn };
-        let robots =
-            tubes(Robots::new("points", points, radii, pose)?, "tangents", tangents, stated)?;
+        let robots = tubes(self.robots(points, radii, pose)?, "tangents", tangents, stated)?;
         if tolerance.is_nan() || tolerance < 0.0 {
             let error = parry_continuum::proximity::ProximityError::Negative {
                 parameter: "tolerance",
@@ -234,8 +238,9 @@ impl Mesh {
     ///
     /// Returns
     /// -------
-    /// Decision or (B,) array of int8
-    ///     1 clear, -1 contact (at most the margin away), both proven, and 0 undecided.
+    /// Decision or Decisions
+    ///     1 clear, -1 contact (at most the margin away), both proven, and 0 undecided. A batch returns an array of int8, (B,).
+    ///     Ask for ``is_clear``: neither has a truth value.
     ///
     /// Raises
     /// ------
@@ -249,16 +254,15 @@ impl Mesh {
         py: Python<'py>,
         points: &Bound<'py, PyAny>,
         radii: &Bound<'py, PyAny>,
-        margin: f64,
-        resolution: f64,
+        #[pyo3(from_py_with = of::margin)] margin: f64,
+        #[pyo3(from_py_with = of::resolution)] resolution: f64,
         tangents: Option<&Bound<'py, PyAny>>,
-        deviation: f64,
-        turn: Option<f64>,
+        #[pyo3(from_py_with = of::deviation)] deviation: f64,
+        #[pyo3(from_py_with = of::optional::turn)] turn: Option<f64>,
         pose: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let stated = Stated { deviation, turn };
-        let robots =
-            tubes(Robots::new("points", points, radii, pose)?, "tangents", tangents, stated)?;
+        let robots = tubes(self.robots(points, radii, pose)?, "tangents", tangents, stated)?;
         let mut all: Vec<i8> = Vec::with_capacity(robots.len());
         let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [i8]| {
             let pose = session.set_tube(robot, stated)?;
@@ -267,6 +271,6 @@ impl Mesh {
             Ok(())
         };
         ask_each(py, &self.engine(py), &robots, (0, 1), ask, |_, found| all.extend(found))?;
-        members(py, "Decision", robots.shape(&[]), all)
+        members(py, Enumeration::Decision, robots.shape(&[]), all)
     }
 }

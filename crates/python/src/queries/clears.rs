@@ -1,9 +1,9 @@
 //! Whether a robot keeps a margin.
 
 use super::distance::set_chain;
-use crate::input::{Caps, Given, Robots};
+use crate::input::{Caps, Given, of};
 use crate::mesh::Mesh;
-use crate::output::{answer, array_or_number, members, side_value};
+use crate::output::{Enumeration, answer, array_or_number, members, side_value};
 use crate::threads::{Asked, Session, ask_each};
 use parry_continuum::proximity::Proximity;
 use pyo3::prelude::*;
@@ -40,11 +40,11 @@ impl Mesh {
         py: Python<'py>,
         points: &Bound<'py, PyAny>,
         radii: &Bound<'py, PyAny>,
-        margin: f64,
+        #[pyo3(from_py_with = of::margin)] margin: f64,
         pose: Option<&Bound<'py, PyAny>>,
         caps: Caps,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let robots = Robots::new("points", points, radii, pose)?;
+        let robots = self.robots(points, radii, pose)?;
         let mut all: Vec<bool> = Vec::with_capacity(robots.len());
         let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [bool]| {
             let chain = set_chain(&mut session.chain, robot, caps)?;
@@ -70,7 +70,8 @@ impl Mesh {
     /// Returns
     /// -------
     /// InsideAnswer
-    ///     ``clears`` and ``base``: bool and `Side`, or arrays of them.
+    ///     ``clears`` and ``base``: bool and `Side`, or arrays of them. ``holds`` says whether the base is inside and the margin
+    ///     is kept.
     ///
     /// Raises
     /// ------
@@ -82,11 +83,11 @@ impl Mesh {
         py: Python<'py>,
         points: &Bound<'py, PyAny>,
         radii: &Bound<'py, PyAny>,
-        margin: f64,
+        #[pyo3(from_py_with = of::margin)] margin: f64,
         pose: Option<&Bound<'py, PyAny>>,
         caps: Caps,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let robots = Robots::new("points", points, radii, pose)?;
+        let robots = self.robots(points, radii, pose)?;
         let (mut clears, mut bases) = (Vec::new(), Vec::new());
         let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [(bool, i8)]| {
             let chain = set_chain(&mut session.chain, robot, caps)?;
@@ -99,6 +100,10 @@ impl Mesh {
             bases.extend(found.iter().map(|found| found.1));
         })?;
         let clears = array_or_number(py, robots.shape(&[]), clears)?;
-        answer!(py, "InsideAnswer", (clears, members(py, "Side", robots.shape(&[]), bases)?))
+        answer!(
+            py,
+            "InsideAnswer",
+            (clears, members(py, Enumeration::Side, robots.shape(&[]), bases)?)
+        )
     }
 }

@@ -1,13 +1,13 @@
 //! How near a robot is.
 
 use crate::error::Refused;
-use crate::input::{Caps, Given, Robots};
+use crate::input::{Caps, Given};
 use crate::mesh::Mesh;
 use crate::output::{answer, array_or_number, flat};
 use crate::threads::{Asked, Session, ask_each};
-use parry_continuum::Chain;
 use parry_continuum::parry::math::Vector;
 use parry_continuum::proximity::{LinkProximity, Proximity};
+use parry_continuum::{Chain, RobotError};
 use pyo3::prelude::*;
 
 impl Session {
@@ -28,6 +28,14 @@ pub(crate) fn set_chain<'a>(
     robot: &Given<'_>,
     caps: Caps,
 ) -> Result<&'a Chain, Refused> {
+    fill(chain, robot, caps).map_err(|error| robot.names.apply(error))
+}
+
+fn fill<'a>(
+    chain: &'a mut Option<Chain>,
+    robot: &Given<'_>,
+    caps: Caps,
+) -> Result<&'a Chain, RobotError> {
     Ok(match (chain, caps) {
         (Some(chain), Caps::Fitted) => {
             chain.set_centreline(robot.points, robot.radii)?;
@@ -49,11 +57,13 @@ impl Mesh {
     /// Parameters
     /// ----------
     /// points : (N, 3) or (B, N, 3) array
-    ///     The centreline of one robot or of B robots, in the robot's frame.
+    ///     The centreline of one robot or of B robots, in the robot's frame. One robot, (N, 3) or (1, N, 3), stands for as many as
+    ///     there are poses or rows of radii.
     /// radii : float, (N - 1,) or (B, N - 1) array
     ///     One radius for each segment between two points.
     /// pose : (4, 4) or (B, 4, 4) array, optional
-    ///     From the robot's frame to the mesh's: a rotation, a shift in the last column, and 0 0 0 1.
+    ///     From the robot's frame to the mesh's: a rotation, a shift in the last column, and 0 0 0 1. Or scipy's `RigidTransform`
+    ///     or `Rotation`.
     /// caps : {"fitted", "capsules", "cylinders"}
     ///     How links end: flat at the robot's ends and at steps in radius, and round at bends; all round; or all flat.
     ///
@@ -85,7 +95,7 @@ impl Mesh {
         pose: Option<&Bound<'py, PyAny>>,
         caps: Caps,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let robots = Robots::new("points", points, radii, pose)?;
+        let robots = self.robots(points, radii, pose)?;
         let mut distances: Vec<f64> = Vec::with_capacity(robots.len());
         let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [f64]| {
             row[0] = session.minimum(robot, caps)?.distance;
@@ -131,7 +141,7 @@ impl Mesh {
         pose: Option<&Bound<'py, PyAny>>,
         caps: Caps,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let robots = Robots::new("points", points, radii, pose)?;
+        let robots = self.robots(points, radii, pose)?;
         let mut all: Vec<LinkProximity> = Vec::with_capacity(robots.len());
         let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [Option<LinkProximity>]| {
             row[0] = Some(session.minimum(robot, caps)?);

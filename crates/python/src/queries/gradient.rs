@@ -7,12 +7,13 @@
 
 use super::distance::set_chain;
 use crate::error::Refused;
-use crate::input::{Caps, Given, Robots};
+use crate::input::{Caps, Given};
 use crate::mesh::Mesh;
 use crate::output::{answer, array, array_or_number};
 use crate::threads::{Asked, Session, ask_each};
 use parry_continuum::parry::math::Vector;
-use parry_continuum::proximity::Proximity;
+use parry_continuum::proximity::{Contact, LinkFeature, Proximity};
+use parry_continuum::{Cap, Chain};
 use pyo3::prelude::*;
 
 /// What there is of one robot.
@@ -44,8 +45,8 @@ fn ask(session: &mut Session, robot: &Given<'_>, caps: Caps) -> Result<Row, Refu
     let mut row = Row { value: contact.depth, segment, ..NOTHING };
     if let Some(found) = session.search.derivative(chain, &pose, &closest)? {
         let back = pose.rotation.inverse();
-        (row.ends, row.radius, row.kink) =
-            ([back * found.start, back * found.end], found.radius, found.kink);
+        (row.ends, row.radius) = ([back * found.start, back * found.end], found.radius);
+        row.kink = found.kink || (caps == Caps::Fitted && is_at_filled_bend(chain, &contact));
         row.pose = [0.0; 16];
         for (rate, point) in
             [(found.start, robot.points[segment]), (found.end, robot.points[segment + 1])]
@@ -60,6 +61,29 @@ fn ask(session: &mut Session, robot: &Given<'_>, caps: Caps) -> Result<Row, Refu
     Ok(row)
 }
 
+/// Radii that differ by at most this share are equal, as in `Chain::from_centreline`.
+const EQUAL: f64 = 1.0 / (1_u64 << 32) as f64;
+
+/// Whether a change of one radius, however little, changes the cap that the closest place is on.
+///
+/// The place is on the round cap of a joint. If a joint between equal radii, this one or another within one radius of it, becomes a
+/// step, then the wider side of the step is flat, and so is every joint that is too near to that face.
+fn is_at_filled_bend(chain: &Chain, contact: &Contact) -> bool {
+    let (links, place) = (chain.links(), contact.link as usize);
+    let link = &links[place];
+    let (end, joint) = match contact.feature.link {
+        LinkFeature::Side => return false,
+        LinkFeature::StartCap => (0, link.start()),
+        LinkFeature::EndCap => (1, link.end()),
+    };
+    let is_equal = |one: f64, other: f64| (one - other).abs() <= EQUAL * one.max(other);
+    link.caps()[end] == Cap::Round
+        && links.windows(2).any(|pair| {
+            is_equal(pair[0].radius(), pair[1].radius())
+                && (pair[0].end() - joint).length() <= link.radius()
+        })
+}
+
 #[pymethods]
 impl Mesh {
     /// The distance with its derivative with respect to every point, radius and pose.
@@ -68,8 +92,10 @@ impl Mesh {
     /// translation that parts the closest link from its triangle, so that it goes on through the wall.
     ///
     /// Of most robots one link is closest, and one triangle. Where two are equally close the distance has a kink, and what is
-    /// given is the derivative for one of them; ``kink`` says where the two closest points themselves could be others. The
-    /// derivatives are NaN where neither side of the triangle is the robot's.
+    /// given is the derivative for one of them; ``kink`` says where the two closest points themselves could be others. With fitted
+    /// caps, a bend between segments of equal radii is filled. If one radius there changes alone, the bend is a step whose wider side
+    /// is flat, and the distance from there has a kink or jumps: ``kink`` says so too. The derivatives are NaN where neither side of
+    /// the triangle is the robot's.
     ///
     /// Parameters
     /// ----------
@@ -105,7 +131,7 @@ impl Mesh {
         pose: Option<&Bound<'py, PyAny>>,
         caps: Caps,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let robots = Robots::new("points", points, radii, pose)?;
+        let robots = self.robots(points, radii, pose)?;
         let (count, each, segments) = (robots.len(), robots.points_each, robots.segments_each());
         let (mut values, mut kinks, mut poses) =
             (Vec::with_capacity(count), Vec::with_capacity(count), Vec::new());

@@ -1,9 +1,10 @@
 //! The questions that a mesh is asked, a file for each.
 
-mod certify;
+pub(crate) mod certify;
 pub(crate) mod clearance;
 mod clears;
 pub(crate) mod distance;
+mod doubts;
 mod gradient;
 mod motion;
 mod motion_answer;

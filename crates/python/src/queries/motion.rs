@@ -1,8 +1,8 @@
 //! Whether a robot keeps a margin on all of its way, and until when.
 
 use super::motion_answer::motion_answer;
-use super::way::{Arguments, Question, Way, needed};
-use crate::input::Caps;
+use super::way::{Arguments, Question, needed};
+use crate::input::{Caps, of};
 use crate::mesh::Mesh;
 use crate::threads::Session;
 use parry_continuum::Motion;
@@ -89,11 +89,11 @@ impl Mesh {
         start: &Bound<'py, PyAny>,
         end: Option<&Bound<'py, PyAny>>,
         radii: Option<&Bound<'py, PyAny>>,
-        margin: Option<f64>,
-        resolution: Option<f64>,
+        #[pyo3(from_py_with = of::optional::margin)] margin: Option<f64>,
+        #[pyo3(from_py_with = of::optional::resolution)] resolution: Option<f64>,
         caps: Option<Caps>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let way = Way::new(&Arguments { start, end, radii, caps })?;
+        let way = self.way(&Arguments { start, end, radii, caps })?;
         let question = Clears {
             margin: needed(py, "margin", margin)?,
             resolution: needed(py, "resolution", resolution)?,
@@ -138,11 +138,11 @@ impl Mesh {
         start: &Bound<'py, PyAny>,
         end: Option<&Bound<'py, PyAny>>,
         radii: Option<&Bound<'py, PyAny>>,
-        margin: Option<f64>,
-        resolution: Option<f64>,
+        #[pyo3(from_py_with = of::optional::margin)] margin: Option<f64>,
+        #[pyo3(from_py_with = of::optional::resolution)] resolution: Option<f64>,
         caps: Option<Caps>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let way = Way::new(&Arguments { start, end, radii, caps })?;
+        let way = self.way(&Arguments { start, end, radii, caps })?;
         let question = FirstContact {
             margin: needed(py, "margin", margin)?,
             resolution: needed(py, "resolution", resolution)?,

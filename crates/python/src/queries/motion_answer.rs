@@ -1,6 +1,8 @@
 //! The tuple `MotionAnswer`.
 
-use crate::output::{answer, array, array_or_number, decision_value, flat, members, reason_value};
+use crate::output::{
+    Enumeration, answer, array, array_or_number, decision_value, flat, members, reason_value,
+};
 use parry_continuum::parry::math::Vector;
 use parry_continuum::proximity::{MotionAnswer, ShapeInContact};
 use pyo3::prelude::*;
@@ -28,7 +30,7 @@ pub(super) fn motion_answer<'py>(
     let reasons = all.iter().map(|it| reason_value(it.reason)).collect();
     let intervals = all.iter().flat_map(|it| it.interval).collect();
     let values = (
-        members(py, "Decision", shape(&[]), decisions)?,
+        members(py, Enumeration::Decision, shape(&[]), decisions)?,
         array(py, shape(&[2]), intervals)?,
         numbers(|shape| shape.t)?,
         numbers(|shape| shape.upper)?,
@@ -37,7 +39,7 @@ pub(super) fn motion_answer<'py>(
         places(|shape| shape.witness.segment)?,
         numbers(|shape| shape.witness.arc_length)?,
         places(|shape| shape.witness.triangle)?,
-        members(py, "UndecidedReason", shape(&[]), reasons)?,
+        members(py, Enumeration::UndecidedReason, shape(&[]), reasons)?,
     );
     answer!(py, "MotionAnswer", values)
 }

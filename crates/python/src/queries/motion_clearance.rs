@@ -1,7 +1,7 @@
 //! How near a robot comes on its way.
 
-use super::way::{Arguments, Question, Way, needed};
-use crate::input::Caps;
+use super::way::{Arguments, Question, needed};
+use crate::input::{Caps, of};
 use crate::mesh::Mesh;
 use crate::output::{answer, array, array_or_number, flat};
 use crate::threads::Session;
@@ -63,10 +63,10 @@ impl Mesh {
         start: &Bound<'py, PyAny>,
         end: Option<&Bound<'py, PyAny>>,
         radii: Option<&Bound<'py, PyAny>>,
-        tolerance: Option<f64>,
+        #[pyo3(from_py_with = of::optional::tolerance)] tolerance: Option<f64>,
         caps: Option<Caps>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let way = Way::new(&Arguments { start, end, radii, caps })?;
+        let way = self.way(&Arguments { start, end, radii, caps })?;
         let all = way.ask(
             py,
             &self.engine(py),

@@ -1,8 +1,8 @@
 //! Whether a robot keeps a margin from a mesh that moves meanwhile.
 
 use super::motion_answer::motion_answer;
-use super::way::{Arguments, Question, Way, needed};
-use crate::input::{Caps, vectors};
+use super::way::{Arguments, Question, needed};
+use crate::input::{Caps, of, vectors};
 use crate::mesh::{Mesh, rows};
 use crate::threads::Session;
 use parry_continuum::Motion;
@@ -72,11 +72,11 @@ impl Mesh {
         start: &Bound<'py, PyAny>,
         end: Option<&Bound<'py, PyAny>>,
         radii: Option<&Bound<'py, PyAny>>,
-        margin: Option<f64>,
-        resolution: Option<f64>,
+        #[pyo3(from_py_with = of::optional::margin)] margin: Option<f64>,
+        #[pyo3(from_py_with = of::optional::resolution)] resolution: Option<f64>,
         caps: Option<Caps>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let way = Way::new(&Arguments { start, end, radii, caps })?;
+        let way = self.way(&Arguments { start, end, radii, caps })?;
         let question = While {
             to: vectors(rows(to, "to")?.points()),
             margin: needed(py, "margin", margin)?,

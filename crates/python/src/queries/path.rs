@@ -2,7 +2,7 @@
 
 use super::motion_answer::motion_answer;
 use crate::error::Refused;
-use crate::input::{Given, Robots};
+use crate::input::{Given, Robots, of};
 use crate::mesh::Mesh;
 use crate::threads::{Session, ask_each};
 use parry_continuum::Chain;
@@ -60,11 +60,12 @@ impl Mesh {
         py: Python<'py>,
         shapes: &Bound<'py, PyAny>,
         radii: &Bound<'py, PyAny>,
-        deviation: f64,
-        margin: f64,
-        resolution: f64,
+        #[pyo3(from_py_with = of::deviation)] deviation: f64,
+        #[pyo3(from_py_with = of::margin)] margin: f64,
+        #[pyo3(from_py_with = of::resolution)] resolution: f64,
     ) -> PyResult<Bound<'py, PyAny>> {
         let paths = Robots::paths("shapes", shapes, radii)?;
+        self.note_frame("shapes", shapes)?;
         let mut all: Vec<MotionAnswer> = Vec::new();
         let ask = |session: &mut Session, path: &Given<'_>, row: &mut [Option<MotionAnswer>]| {
             // How the links end does not matter.

@@ -1,7 +1,7 @@
 //! How near each link of a robot is.
 
 use super::distance::set_chain;
-use crate::input::{Caps, Given, Robots};
+use crate::input::{Caps, Given};
 use crate::mesh::Mesh;
 use crate::output::{answer, array};
 use crate::threads::{Asked, Session, ask_each};
@@ -65,7 +65,7 @@ impl Mesh {
         pose: Option<&Bound<'py, PyAny>>,
         caps: Caps,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let robots = Robots::new("points", points, radii, pose)?;
+        let robots = self.robots(points, radii, pose)?;
         let segments = robots.segments_each();
         let count = robots.len() * segments;
         let (mut distance, mut arc_length) = (Vec::with_capacity(count), Vec::with_capacity(count));

@@ -2,9 +2,9 @@
 
 use super::clearance::{Stated, tubes};
 use super::distance::set_chain;
-use super::way::{Arguments, Question, Way, needed};
+use super::way::{Arguments, Question, needed};
 use crate::error::Refused;
-use crate::input::{Caps, Given, Robots};
+use crate::input::{Caps, Given, Robots, of};
 use crate::mesh::Mesh;
 use crate::threads::{Session, ask_each};
 use parry_continuum::Motion;
@@ -107,11 +107,11 @@ impl Mesh {
         py: Python<'py>,
         points: &Bound<'py, PyAny>,
         radii: &Bound<'py, PyAny>,
-        margin: f64,
+        #[pyo3(from_py_with = of::margin)] margin: f64,
         pose: Option<&Bound<'py, PyAny>>,
         caps: Caps,
     ) -> PyResult<Option<String>> {
-        self.prove_one(py, &Robots::new("points", points, radii, pose)?, |session, robot| {
+        self.prove_one(py, &self.robots(points, radii, pose)?, |session, robot| {
             let chain = set_chain(&mut session.chain, robot, caps)?;
             Ok(session.search.prove(chain, &robot.pose()?, margin)?)
         })
@@ -147,16 +147,15 @@ impl Mesh {
         py: Python<'py>,
         points: &Bound<'py, PyAny>,
         radii: &Bound<'py, PyAny>,
-        margin: f64,
-        resolution: f64,
+        #[pyo3(from_py_with = of::margin)] margin: f64,
+        #[pyo3(from_py_with = of::resolution)] resolution: f64,
         tangents: Option<&Bound<'py, PyAny>>,
-        deviation: f64,
-        turn: Option<f64>,
+        #[pyo3(from_py_with = of::deviation)] deviation: f64,
+        #[pyo3(from_py_with = of::optional::turn)] turn: Option<f64>,
         pose: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Option<String>> {
         let stated = Stated { deviation, turn };
-        let robots =
-            tubes(Robots::new("points", points, radii, pose)?, "tangents", tangents, stated)?;
+        let robots = tubes(self.robots(points, radii, pose)?, "tangents", tangents, stated)?;
         self.prove_one(py, &robots, |session, robot| {
             let tube = super::clearance::tube(robot, stated)?;
             Ok(session.search.prove_tube(&tube, &robot.pose()?, margin, resolution)?)
@@ -199,11 +198,11 @@ impl Mesh {
         start: &Bound<'py, PyAny>,
         end: Option<&Bound<'py, PyAny>>,
         radii: Option<&Bound<'py, PyAny>>,
-        margin: Option<f64>,
-        resolution: Option<f64>,
+        #[pyo3(from_py_with = of::optional::margin)] margin: Option<f64>,
+        #[pyo3(from_py_with = of::optional::resolution)] resolution: Option<f64>,
         caps: Option<Caps>,
     ) -> PyResult<Option<String>> {
-        let way = Way::new(&Arguments { start, end, radii, caps })?;
+        let way = self.way(&Arguments { start, end, radii, caps })?;
         one(py, way.count())?;
         let question = Proves {
             margin: needed(py, "margin", margin)?,

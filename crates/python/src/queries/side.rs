@@ -3,7 +3,7 @@
 use crate::error::Refused;
 use crate::input::{Numbers, shape_text, vectors};
 use crate::mesh::Mesh;
-use crate::output::{members, side_value};
+use crate::output::{Enumeration, members, side_value};
 use crate::threads::ask_points;
 use pyo3::prelude::*;
 
@@ -21,9 +21,9 @@ impl Mesh {
     ///
     /// Returns
     /// -------
-    /// Side or array of int8
-    ///     The side of one point, or an array of the shape that `points` has without its last axis: -1 inside, 1 outside and 0
-    ///     undecided.
+    /// Side or Sides
+    ///     The side of one point, or an array of int8 of the shape of `points` without its last axis: -1 inside, 1 outside, 0
+    ///     undecided. Neither has a truth value: compare with ``Side.INSIDE``.
     ///
     /// Raises
     /// ------
@@ -38,13 +38,14 @@ impl Mesh {
     /// >>> tetrahedron.side([0.1, 0.1, 0.1]) is Side.INSIDE
     /// True
     /// >>> tetrahedron.side([[0.1, 0.1, 0.1], [2, 2, 2], [0, 0, 0]])
-    /// array([-1,  1,  0], dtype=int8)
+    /// Sides([-1,  1,  0], dtype=int8)
     fn side<'py>(
         &self,
         py: Python<'py>,
         points: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let numbers = Numbers::new(points, "points")?;
+        self.note_frame("points", points)?;
         let Some((3, shape)) =
             numbers.shape().split_last().map(|(last, rest)| (*last, rest.to_vec()))
         else {
@@ -58,6 +59,6 @@ impl Mesh {
         let sides = ask_points(py, &self.engine(py), &points, |search, point| {
             side_value(search.side(point))
         })?;
-        members(py, "Side", shape, sides)
+        members(py, Enumeration::Side, shape, sides)
     }
 }

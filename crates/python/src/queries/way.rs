@@ -1,7 +1,8 @@
 //! What a question about a motion was given: two shapes and radii, or a motion.
 
 use crate::error::Refused;
-use crate::input::{Caps, Given, Robots};
+use crate::input::{Caps, Given, Names, Robots};
+use crate::mesh::Mesh;
 use crate::motions::{Maker, Motion, Moving, maker};
 use crate::threads::{Asked, Engine, Session, ask_each};
 use pyo3::prelude::*;
@@ -41,8 +42,18 @@ pub(super) fn needed<T>(py: Python<'_>, parameter: &str, given: Option<T>) -> Py
     })
 }
 
+impl Mesh {
+    /// What a question was given. Warns once if shapes state another frame than the mesh.
+    pub(super) fn way<'a, 'py>(&self, given: &Arguments<'a, 'py>) -> PyResult<Way<'a, 'py>> {
+        let way = Way::new(given)?;
+        self.note_frame("start", given.start)?;
+        given.end.map_or(Ok(()), |end| self.note_frame("end", end))?;
+        Ok(way)
+    }
+}
+
 impl<'a, 'py> Way<'a, 'py> {
-    pub(super) fn new(given: &Arguments<'a, 'py>) -> PyResult<Self> {
+    fn new(given: &Arguments<'a, 'py>) -> PyResult<Self> {
         let py = given.start.py();
         if let Ok(motion) = given.start.cast::<Motion>() {
             let besides = [
@@ -63,8 +74,8 @@ impl<'a, 'py> Way<'a, 'py> {
         let end = needed(py, "end", given.end)?;
         let radii = needed(py, "radii", given.radii)?;
         let make = maker(py, given.caps.unwrap_or(Caps::Fitted))?;
-        let robots =
-            Robots::new("start", given.start, radii, None)?.with_as_many("end", end, "start")?;
+        let robots = Robots::new(Names::one("start"), given.start, radii, None)?
+            .with_as_many("end", end, "start")?;
         Ok(Self::Linear(robots, make))
     }
 

@@ -1,7 +1,7 @@
 //! Every contact of a robot.
 
 use super::distance::set_chain;
-use crate::input::{Caps, Given, Robots};
+use crate::input::{Caps, Given, of};
 use crate::mesh::Mesh;
 use crate::output::{answer, rows};
 use crate::threads::{Asked, Session, ask_each};
@@ -56,12 +56,12 @@ impl Mesh {
         py: Python<'py>,
         points: &Bound<'py, PyAny>,
         radii: &Bound<'py, PyAny>,
-        margin: f64,
-        prominence: f64,
+        #[pyo3(from_py_with = of::margin)] margin: f64,
+        #[pyo3(from_py_with = of::prominence)] prominence: f64,
         pose: Option<&Bound<'py, PyAny>>,
         caps: Caps,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let robots = Robots::new("points", points, radii, pose)?;
+        let robots = self.robots(points, radii, pose)?;
         // Each with the number of its robot.
         let mut all: Vec<(Contact, i64)> = Vec::new();
         let mut offsets = Vec::with_capacity(robots.len() + 1);

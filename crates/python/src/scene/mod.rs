@@ -4,15 +4,16 @@ mod answers;
 mod robots;
 
 use crate::error::Refused;
-use crate::input::{Caps, Given, Numbers, pose_of, shape_text};
+use crate::input::{Caps, Given, Robots, matrices, of, places, pose_of, shape_text};
 use crate::mesh::Mesh;
-use crate::output::array_or_number;
+use crate::output::{array, array_or_number};
 use crate::threads::{self, Asked, Engine, Held, Lender, ask_each};
 use answers::{NOTHING, Row, contacts, per_structure, tightest};
 use parry_continuum::Chain;
 use parry_continuum::parry::math::Pose;
 use parry_continuum::proximity::{self, SceneContact, StructureProximity};
 use pyo3::prelude::*;
+use pyo3::types::PyTuple;
 use robots::place;
 use std::sync::Arc;
 
@@ -34,6 +35,8 @@ use std::sync::Arc;
 /// ContinuumError
 ///     The margin is negative or NaN.
 ///
+/// A scene can be copied, with the same meshes, and pickled.
+///
 /// Examples
 /// --------
 /// >>> from parry_continuum import Mesh, Scene
@@ -51,11 +54,14 @@ pub(crate) struct Scene {
     nested: Vec<[usize; 2]>,
 }
 
+#[derive(Clone)]
 struct Structure {
     name: String,
-    mesh: Py<Mesh>,
+    mesh: Arc<Py<Mesh>>,
     margin: Option<f64>,
     pose: Pose,
+    /// The pose as it was given.
+    matrix: Option<[f64; 16]>,
 }
 
 /// The structures at the time of a question.
@@ -109,15 +115,26 @@ impl Lender for Snapshot {
 }
 
 impl Scene {
-    fn snapshot(&self, py: Python<'_>) -> Snapshot {
-        let structures = self.structures.with(py, |structures| {
-            let copy =
-                |it: &Structure| (it.name.clone(), it.mesh.clone_ref(py), it.margin, it.pose);
-            structures.iter().map(copy).collect::<Vec<_>>()
+    /// The robots of a question. A mesh in the scene's own frame warns once if points without a pose state another frame.
+    fn robots<'py>(&self, py: Python<'py>, given: Vec<Bound<'py, PyAny>>) -> PyResult<Robots<'py>> {
+        let made = robots::robots(py, &given)?;
+        let meshes: Vec<_> = self.structures.with(py, |structures| {
+            let in_place = structures.iter().filter(|it| it.matrix.is_none());
+            in_place.map(|it| Arc::clone(&it.mesh)).collect()
         });
+        for points in given.iter().filter_map(robots::points_without_pose) {
+            for mesh in &meshes {
+                mesh.get().note_frame("points", &points)?;
+            }
+        }
+        Ok(made)
+    }
+
+    fn snapshot(&self, py: Python<'_>) -> Snapshot {
+        let structures = self.structures.with(py, |structures| structures.clone());
         let engines = structures
             .into_iter()
-            .map(|(name, mesh, margin, pose)| (name, mesh.get().engine(py), margin, pose));
+            .map(|it| (it.name, it.mesh.get().engine(py), it.margin, it.pose));
         Snapshot {
             structures: engines.collect(),
             robot_margin: self.robot_margin,
@@ -141,7 +158,11 @@ fn check(py: Python<'_>, parameter: &'static str, margin: Option<f64>) -> PyResu
 impl Scene {
     #[new]
     #[pyo3(signature = (*, robot_margin = None, nested = Vec::new()), text_signature = "(*, robot_margin=None, nested=())")]
-    fn new(py: Python<'_>, robot_margin: Option<f64>, nested: Vec<[usize; 2]>) -> PyResult<Self> {
+    fn new(
+        py: Python<'_>,
+        #[pyo3(from_py_with = of::optional::robot_margin)] robot_margin: Option<f64>,
+        #[pyo3(from_py_with = places)] nested: Vec<[usize; 2]>,
+    ) -> PyResult<Self> {
         check(py, "robot_margin", robot_margin)?;
         Ok(Self { structures: Held::new(Vec::new()), robot_margin, nested })
     }
@@ -153,8 +174,9 @@ impl Scene {
     /// name : str
     ///     For messages.
     /// mesh : Mesh
-    /// margin : float, optional
-    ///     The distance that robots keep from it. A structure without a margin is in no answer.
+    /// margin : float or None
+    ///     The distance that robots keep from it. A structure with None may be touched, such as a target: `per_structure` and
+    ///     `contacts` measure it, and the others ignore it.
     /// pose : (4, 4) array, optional
     ///     From the mesh's frame to the scene's.
     ///
@@ -162,20 +184,20 @@ impl Scene {
     /// ------
     /// ContinuumError
     ///     The margin is negative or NaN, or the pose is not rigid.
-    #[pyo3(signature = (name, mesh, margin = None, pose = None))]
+    #[pyo3(signature = (name, mesh, *, margin, pose = None))]
     fn add(
         &self,
         py: Python<'_>,
         name: String,
         mesh: Py<Mesh>,
-        margin: Option<f64>,
+        #[pyo3(from_py_with = of::optional::margin)] margin: Option<f64>,
         pose: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<usize> {
         check(py, "margin", margin)?;
-        let pose = match pose {
-            None => Pose::IDENTITY,
+        let (pose, matrix) = match pose {
+            None => (Pose::IDENTITY, None),
             Some(pose) => {
-                let numbers = Numbers::new(pose, "pose")?;
+                let numbers = matrices(pose, "pose")?;
                 let (&[4, 4], Some(matrix)) =
                     (numbers.shape(), numbers.values().as_chunks::<16>().0.first())
                 else {
@@ -185,14 +207,56 @@ impl Scene {
                     );
                     return Err(Refused::other("bad_shape", text).raise(py, None));
                 };
-                pose_of(matrix).map_err(|refused| refused.raise(py, None))?
+                let pose = pose_of(matrix).map_err(|refused| refused.of("pose").raise(py, None))?;
+                (pose, Some(*matrix))
             }
         };
-        let structure = Structure { name, mesh, margin, pose };
+        let structure = Structure { name, mesh: Arc::new(mesh), margin, pose, matrix };
         Ok(self.structures.with(py, |structures| {
             structures.push(structure);
             structures.len() - 1
         }))
+    }
+
+    /// A scene with the same meshes: where one of them moves, it has moved in both.
+    fn __copy__(&self, py: Python<'_>) -> Self {
+        let structures = self.structures.with(py, |structures| structures.clone());
+        Self {
+            structures: Held::new(structures),
+            robot_margin: self.robot_margin,
+            nested: self.nested.clone(),
+        }
+    }
+
+    fn __deepcopy__<'py>(
+        &self,
+        py: Python<'py>,
+        memo: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let (make, arguments) = self.__reduce__(py)?;
+        let arguments = py.import("copy")?.call_method1("deepcopy", (arguments, memo))?;
+        make.call1(arguments.cast_into::<PyTuple>()?)
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+        let make = py.import("parry_continuum._copies")?.getattr("scene")?;
+        let structures = self.structures.with(py, |structures| structures.clone());
+        let structures = structures.into_iter().map(|it| {
+            let pose =
+                it.matrix.map(|matrix| array(py, vec![4, 4], matrix.to_vec())).transpose()?;
+            (it.name, it.mesh.clone_ref(py), it.margin, pose).into_pyobject(py)
+        });
+        let structures = structures.collect::<PyResult<Vec<_>>>()?;
+        let nested: Vec<_> = self.nested.iter().map(|&[a, b]| (a, b)).collect();
+        let arguments = (self.robot_margin, nested, structures).into_pyobject(py)?;
+        Ok((make, arguments.into_any()))
+    }
+
+    fn __repr__(&self, py: Python<'_>) -> String {
+        let names = self.structures.with(py, |structures| {
+            structures.iter().map(|it| format!("{:?}", it.name)).collect::<Vec<_>>()
+        });
+        format!("Scene({})", names.join(", "))
     }
 
     /// How many structures there are.
@@ -214,7 +278,7 @@ impl Scene {
     /// Raises
     /// ------
     /// ContinuumError
-    ///     The list is empty, or something in it is no robot.
+    ///     The list is empty, or something in it is no robot. Neither a structure nor the robots have a margin.
     #[pyo3(signature = (robots, *, caps = Caps::Fitted), text_signature = "($self, robots, *, caps=\"fitted\")")]
     fn clears<'py>(
         &self,
@@ -222,7 +286,7 @@ impl Scene {
         robots: Vec<Bound<'py, PyAny>>,
         caps: Caps,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let robots = robots::robots(py, robots)?;
+        let robots = self.robots(py, robots)?;
         let mut all: Vec<bool> = Vec::with_capacity(robots.len());
         let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [bool]| {
             let placed = place(&mut session.chains, robot, caps)?;
@@ -249,7 +313,7 @@ impl Scene {
     /// Raises
     /// ------
     /// ContinuumError
-    ///     As for `clears`.
+    ///     The list is empty, or something in it is no robot.
     #[pyo3(signature = (robots, *, caps = Caps::Fitted), text_signature = "($self, robots, *, caps=\"fitted\")")]
     fn tightest<'py>(
         &self,
@@ -257,7 +321,7 @@ impl Scene {
         robots: Vec<Bound<'py, PyAny>>,
         caps: Caps,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let robots = robots::robots(py, robots)?;
+        let robots = self.robots(py, robots)?;
         let mut all: Vec<Row> = Vec::with_capacity(robots.len());
         let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [Row]| {
             let placed = place(&mut session.chains, robot, caps)?;
@@ -285,7 +349,7 @@ impl Scene {
     /// Raises
     /// ------
     /// ContinuumError
-    ///     As for `clears`.
+    ///     As for `tightest`.
     #[pyo3(signature = (robots, *, caps = Caps::Fitted), text_signature = "($self, robots, *, caps=\"fitted\")")]
     fn per_structure<'py>(
         &self,
@@ -293,7 +357,7 @@ impl Scene {
         robots: Vec<Bound<'py, PyAny>>,
         caps: Caps,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let (robots, snapshot) = (robots::robots(py, robots)?, self.snapshot(py));
+        let (robots, snapshot) = (self.robots(py, robots)?, self.snapshot(py));
         let mut all: Vec<StructureProximity> =
             Vec::with_capacity(robots.len() * snapshot.structures.len());
         let ask = |session: &mut Session,
@@ -318,6 +382,8 @@ impl Scene {
     ///     As for `clears`.
     /// reach : float
     ///     A length, at least 0.
+    /// prominence : float
+    ///     As for `Mesh.within`: 0 takes every place that is closest among its neighbours.
     ///
     /// Returns
     /// -------
@@ -327,22 +393,25 @@ impl Scene {
     /// Raises
     /// ------
     /// ContinuumError
-    ///     The reach is negative or NaN, or as for `clears`.
-    #[pyo3(signature = (robots, reach, *, caps = Caps::Fitted), text_signature = "($self, robots, reach, *, caps=\"fitted\")")]
+    ///     The reach or the prominence is negative or NaN, or as for `tightest`.
+    #[pyo3(signature = (robots, reach, prominence = 0.0, *, caps = Caps::Fitted), text_signature = "($self, robots, reach, prominence=0.0, *, caps=\"fitted\")")]
     fn contacts<'py>(
         &self,
         py: Python<'py>,
         robots: Vec<Bound<'py, PyAny>>,
-        reach: f64,
+        #[pyo3(from_py_with = of::reach)] reach: f64,
+        #[pyo3(from_py_with = of::prominence)] prominence: f64,
         caps: Caps,
     ) -> PyResult<Bound<'py, PyAny>> {
+        // A batch without robots asks nothing of the scene itself.
         check(py, "reach", Some(reach))?;
-        let robots = robots::robots(py, robots)?;
+        check(py, "prominence", Some(prominence))?;
+        let robots = self.robots(py, robots)?;
         let (mut all, mut offsets): (Vec<SceneContact>, _) = (Vec::new(), vec![0_i64]);
         let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [Vec<SceneContact>]| {
             let placed = place(&mut session.chains, robot, caps)?;
             let placed: Vec<_> = placed.into_iter().map(|(chain, pose, _)| (chain, pose)).collect();
-            Ok(session.scene.contacts_within(&placed, reach, &mut row[0])?)
+            Ok(session.scene.contacts_within(&placed, reach, prominence, &mut row[0])?)
         };
         ask_each(py, &self.snapshot(py), &robots, (Vec::new(), 1), ask, |_, found| {
             for found in found {

@@ -31,7 +31,10 @@ pub(crate) trait Asked {
     fn count(&self) -> Option<usize>;
 
     /// Copies some of them.
-    fn copy(&self, range: Range<usize>, block: &mut Self::Block);
+    ///
+    /// # Errors
+    /// What was given has changed since.
+    fn copy(&self, range: Range<usize>, block: &mut Self::Block) -> Result<(), Refused>;
 
     /// The one at this place in a block.
     fn one(block: &Self::Block, place: usize) -> Self::One<'_>;
@@ -100,7 +103,7 @@ pub(crate) fn ask_each<T: Clone + Send, L: Lender, Q: Asked>(
         let begin = Instant::now();
         answers.clear();
         answers.resize((end - start) * width, empty.clone());
-        asked.copy(start..end, &mut block);
+        asked.copy(start..end, &mut block).map_err(|refused| refused.raise(py, None))?;
         let rows = Rows::<Q, _> { block: &block, width, answer: &answer };
         let refused = if count < Q::FEW {
             alone(py, lender, |session| rows.ask(session, 0, &mut answers))?

@@ -1,6 +1,6 @@
 //! A mesh's engine, and the clones of it that questions are asked of.
 
-use super::compute::compute;
+use super::compute::{compute, interruptible};
 use super::each::Lender;
 use super::fork::forks;
 use super::held::Held;
@@ -51,9 +51,16 @@ struct State {
 
 impl Engine {
     /// The engine of a mesh, built on all cores.
-    pub(crate) fn new(py: Python<'_>, vertices: &[Vector], faces: &[[u32; 3]]) -> PyResult<Self> {
-        let pool = pool(py)?;
-        let built = compute(py, || pool.install(|| BvhSearch::from_triangles(vertices, faces)))?;
+    pub(crate) fn new(
+        py: Python<'_>,
+        vertices: Vec<Vector>,
+        faces: Vec<[u32; 3]>,
+    ) -> PyResult<Self> {
+        /// Fewer triangles take less than it takes to press Ctrl-C.
+        const FEW: usize = 1 << 16;
+        let (pool, count) = (pool(py)?, faces.len());
+        let build = move || pool.install(|| BvhSearch::from_triangles(&vertices, &faces));
+        let built = if count < FEW { compute(py, build)? } else { interruptible(py, build)? };
         let base = built.map_err(|error| Refused::Mesh(error).raise(py, None))?;
         Ok(Self::of(base))
     }

@@ -2,6 +2,7 @@
 //!
 //! - Arrays are read with the GIL, and copied: a thread of Python's may write to them as soon as it is given up.
 //! - All that computes does so without the GIL, on copies and on sessions of its own.
+//! - What may take long by itself, such as reading a file, runs on a thread of its own, so that Ctrl-C ends it (`interruptible`).
 //! - A lock of this package is taken only with the GIL, and given back before the GIL is. So when Python forks, which takes
 //!   the GIL, no lock is taken, and the child finds all of them free.
 //! - The threads of a pool do not live on in a child, so a child has a pool of its own (`pool`). What another thread was in
@@ -15,7 +16,7 @@ mod held;
 mod points;
 mod pool;
 
-pub(crate) use compute::compute;
+pub(crate) use compute::{compute, interruptible};
 pub(crate) use each::{Asked, Lender, alone, ask_each};
 pub(crate) use engine::{Engine, Session};
 pub(crate) use fork::watch_forks;

@@ -201,7 +201,7 @@ pub fn scenes(offset: f64) -> Result<Vec<Record>, Box<dyn Error>> {
                 structures.add(&found.nearest);
                 structures.add(&found.slack);
             }
-            scene.contacts_within(&robots, 0.3, &mut found)?;
+            scene.contacts_within(&robots, 0.3, 0.0, &mut found)?;
             found.iter().for_each(|found| contacts.add(&found.contact));
             places = places.map(|place| nudged(random, &place));
         }

@@ -3,12 +3,13 @@
 use super::answers::segment_of;
 use super::{Placed, RobotPair, Session, pairs};
 use crate::error::Refused;
-use crate::input::{Caps, Given, Numbers, shape_text};
+use crate::input::{Caps, Given, vectors};
 use crate::output::{answer, array_or_number};
+use crate::queries::certify::answer_field;
 use crate::threads::{Asked, ask_each};
+use parry_continuum::Chain;
 use parry_continuum::parry::math::Vector;
 use parry_continuum::proximity::{Certificate, ProximityError};
-use parry_continuum::{Chain, ModifiedCylinder};
 use pyo3::prelude::*;
 
 #[pymethods]
@@ -16,7 +17,8 @@ impl RobotPair {
     /// Bounds on the distances of a `RobotProximity` answer that hold whatever was rounded on the way.
     ///
     /// Each bounds the distance between the two segments that the answer names, as `Mesh.certify` does for a segment and a triangle:
-    /// ``lower <= answer.distance <= upper`` but for the last bits of the distance.
+    /// ``lower <= answer.distance <= upper`` but for the last bits of the distance. The answer's distances and points are checked
+    /// first: an answer for other points, another radius or pose is an error.
     ///
     /// Parameters
     /// ----------
@@ -33,7 +35,8 @@ impl RobotPair {
     /// Raises
     /// ------
     /// ContinuumError
-    ///     The answer does not fit the robots, or as for `between`.
+    ///     The answer does not fit robots and poses: a point is not where it says, the distance is another, or the shapes differ.
+    ///     Or as for `between`.
     ///
     /// Examples
     /// --------
@@ -57,38 +60,44 @@ impl RobotPair {
         caps: Caps,
     ) -> PyResult<Bound<'py, PyAny>> {
         let robots = pairs([points_a, radii_a, points_b, radii_b], [pose_a, pose_b])?;
-        let refuse = |text: String| Refused::other("answer_does_not_fit", text).raise(py, None);
-        let segments = answer
-            .getattr("segments")
-            .map_err(|_| refuse("`answer` has no segments; give what `minimum` returned".into()))?;
-        let segments = Numbers::new(&segments, "answer.segments")?;
         // One row a pair of robots, or one for each segment of the first.
         let each = robots.segments_each();
-        let shapes = [robots.shape(&[2]), robots.shape(&[each, 2])];
-        let Some(kind) = shapes.iter().position(|shape| shape == segments.shape()) else {
-            return Err(refuse(format!(
-                "`answer.segments` has the shape {}, but of these robots it has {} or {}; give the robots that were asked about",
-                shape_text(segments.shape()),
-                shape_text(&shapes[0]),
-                shape_text(&shapes[1])
-            )));
+        let fields = |name: &str, last: &[usize]| {
+            let of_links: Vec<_> = [each].iter().chain(last).copied().collect();
+            let shapes = [robots.shape(last), robots.shape(&of_links)];
+            answer_field(answer, "minimum", name, &shapes)
         };
+        let (named, kind) = fields("segments", &[2])?;
+        let named = named.values().to_vec();
+        let distances = fields("distance", &[])?.0.values().to_vec();
+        let lengths = fields("arc_lengths", &[2])?.0.values().to_vec();
+        let on_first = vectors(fields("on_first", &[3])?.0.points());
+        let on_second = vectors(fields("on_second", &[3])?.0.points());
         let (shape, rows) = [(robots.shape(&[]), 1), (robots.shape(&[each]), each)][kind].clone();
-        let named = segments.values().to_vec();
+        if named.len() != 2 * distances.len() || on_first.len() != on_second.len() {
+            let text = "the fields of `answer` have different numbers of rows; give the answer as it was returned";
+            return Err(Refused::other("answer_does_not_fit", text).raise(py, None));
+        }
         let mut bounds: Vec<[f64; 2]> = Vec::with_capacity(robots.len() * rows);
         let ask = |session: &mut Session, robot: &Given<'_>, found: &mut [[f64; 2]]| {
-            let Placed { chains: [a, b], poses, points, .. } = session.place(robot, caps)?;
+            let Placed { pair, chains: [a, b], poses, points, .. } = session.place(robot, caps)?;
             let links = [in_order(a, points[0]), in_order(b, points[1])];
+            // An answer of the library's own, whose fields become those that were given.
+            let mut answer = pair.minimum(a, &poses[0], b, &poses[1])?;
             for (row, bounds) in found.iter_mut().enumerate().take(rows) {
-                let at = 2 * (robot.number * rows + row);
+                let row = robot.number * rows + row;
+                let at = 2 * row;
                 // Of a segment without length there is nothing to prove.
                 if named[at..at + 2].iter().all(|&segment| segment < 0.0) {
                     continue;
                 }
-                let one = link_of(a, &links[0], named[at])?;
-                let other = link_of(b, &links[1], named[at + 1])?;
+                answer.links =
+                    [link_of(a, &links[0], named[at])?, link_of(b, &links[1], named[at + 1])?];
+                answer.distance = distances[row];
+                (answer.witness.on_first, answer.witness.on_second) = (on_first[row], on_second[row]);
+                answer.witness.arc_lengths = [lengths[at], lengths[at + 1]];
                 let Certificate { lower, upper, .. } =
-                    Certificate::between_links(one, &poses[0], other, &poses[1])?;
+                    answer.certify(a, &poses[0], b, &poses[1])?;
                 *bounds = [lower, upper];
             }
             Ok(())
@@ -107,15 +116,12 @@ fn in_order(chain: &Chain, points: &[Vector]) -> Vec<i64> {
     (0..chain.links().len()).map(|link| segment_of(chain, points, link)).collect()
 }
 
-/// The link that a segment is.
-fn link_of<'a>(
-    chain: &'a Chain,
-    segments: &[i64],
-    segment: f64,
-) -> Result<&'a ModifiedCylinder, ProximityError> {
+/// The number of the link that a segment is.
+fn link_of(chain: &Chain, segments: &[i64], segment: f64) -> Result<u32, ProximityError> {
     // Positions of segments are whole numbers far below 2^53.
     let link = segments.iter().position(|&other| other as f64 == segment);
-    let links = chain.links();
-    link.and_then(|link| links.get(link))
-        .ok_or(ProximityError::NoSuchLink { link: segment.max(0.0) as usize, links: links.len() })
+    link.map(|link| link as u32).ok_or(ProximityError::NoSuchLink {
+        link: segment.max(0.0) as usize,
+        links: chain.links().len(),
+    })
 }

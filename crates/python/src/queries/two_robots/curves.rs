@@ -2,8 +2,10 @@
 
 use super::{Pairs, RobotPair, Session, second};
 use crate::error::Refused;
-use crate::input::{Given, Robots};
-use crate::output::{answer, array, array_or_number, decision_value, flat, members, texts};
+use crate::input::{Given, Names, Robots, of};
+use crate::output::{
+    Enumeration, answer, array, array_or_number, decision_value, flat, members, texts,
+};
 use crate::queries::clearance::{Stated, tube, tubes};
 use crate::threads::{Asked, ask_each};
 use parry_continuum::parry::math::{Pose, Vector};
@@ -112,7 +114,7 @@ impl Pairs {
             Ok(())
         };
         ask_each(py, self, robots, (0, 1), ask, |_, found| all.extend(found))?;
-        members(py, "Decision", robots.shape(&[]), all)
+        members(py, Enumeration::Decision, robots.shape(&[]), all)
     }
 }
 
@@ -134,7 +136,7 @@ impl Pairs {
             Ok(())
         };
         ask_each(py, self, robots, (0, 1), ask, |_, found| all.extend(found))?;
-        members(py, "Decision", robots.shape(&[]), all)
+        members(py, Enumeration::Decision, robots.shape(&[]), all)
     }
 }
 
@@ -158,7 +160,7 @@ impl Pairs {
 ///
 /// Returns
 /// -------
-/// Decision or (B,) array of int8
+/// Decision or Decisions
 ///     As of `Mesh.clears_tube`.
 ///
 /// Raises
@@ -183,14 +185,19 @@ pub(crate) fn tube_self_clears<'py>(
     py: Python<'py>,
     points: &Bound<'py, PyAny>,
     radii: &Bound<'py, PyAny>,
-    margin: f64,
-    resolution: f64,
+    #[pyo3(from_py_with = of::margin)] margin: f64,
+    #[pyo3(from_py_with = of::resolution)] resolution: f64,
     tangents: Option<&Bound<'py, PyAny>>,
-    deviation: f64,
-    turn: Option<f64>,
+    #[pyo3(from_py_with = of::deviation)] deviation: f64,
+    #[pyo3(from_py_with = of::optional::turn)] turn: Option<f64>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let stated = Stated { deviation, turn };
-    let robots = tubes(Robots::new("points", points, radii, None)?, "tangents", tangents, stated)?;
+    let robots = tubes(
+        Robots::new(Names::one("points"), points, radii, None)?,
+        "tangents",
+        tangents,
+        stated,
+    )?;
     Pairs::default().tube_self_clears(py, &robots, stated, [margin, resolution])
 }
 
@@ -205,13 +212,17 @@ struct Arguments<'a, 'py> {
 
 impl<'py> Arguments<'_, 'py> {
     fn robots(&self) -> PyResult<Robots<'py>> {
-        let robots = |which: usize, points: &str, tangents: &str| {
-            let robots =
-                Robots::new(points, self.points[which], self.radii[which], self.poses[which])?;
+        let robots = |which: usize, tangents: &'static str| {
+            let robots = Robots::new(
+                Names::PAIR[which],
+                self.points[which],
+                self.radii[which],
+                self.poses[which],
+            )?;
             tubes(robots, tangents, self.tangents[which], self.stated[which])
         };
-        let others = robots(1, "points_b", "tangents_b")?;
-        robots(0, "points_a", "tangents_a")?.with_others(self.points[0].py(), others)
+        let others = robots(1, "tangents_b")?;
+        robots(0, "tangents_a")?.with_others(self.points[0].py(), others)
     }
 }
 
@@ -261,13 +272,13 @@ impl RobotPair {
         radii_a: &Bound<'py, PyAny>,
         points_b: &Bound<'py, PyAny>,
         radii_b: &Bound<'py, PyAny>,
-        tolerance: f64,
+        #[pyo3(from_py_with = of::tolerance)] tolerance: f64,
         tangents_a: Option<&Bound<'py, PyAny>>,
         tangents_b: Option<&Bound<'py, PyAny>>,
-        deviation_a: f64,
-        deviation_b: f64,
-        turn_a: Option<f64>,
-        turn_b: Option<f64>,
+        #[pyo3(from_py_with = of::deviation_a)] deviation_a: f64,
+        #[pyo3(from_py_with = of::deviation_b)] deviation_b: f64,
+        #[pyo3(from_py_with = of::optional::turn_a)] turn_a: Option<f64>,
+        #[pyo3(from_py_with = of::optional::turn_b)] turn_b: Option<f64>,
         pose_a: Option<&Bound<'py, PyAny>>,
         pose_b: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
@@ -300,7 +311,7 @@ impl RobotPair {
     ///
     /// Returns
     /// -------
-    /// Decision or (B,) array of int8
+    /// Decision or Decisions
     ///     As of `Mesh.clears_tube`.
     ///
     /// Raises
@@ -317,14 +328,14 @@ impl RobotPair {
         radii_a: &Bound<'py, PyAny>,
         points_b: &Bound<'py, PyAny>,
         radii_b: &Bound<'py, PyAny>,
-        margin: f64,
-        resolution: f64,
+        #[pyo3(from_py_with = of::margin)] margin: f64,
+        #[pyo3(from_py_with = of::resolution)] resolution: f64,
         tangents_a: Option<&Bound<'py, PyAny>>,
         tangents_b: Option<&Bound<'py, PyAny>>,
-        deviation_a: f64,
-        deviation_b: f64,
-        turn_a: Option<f64>,
-        turn_b: Option<f64>,
+        #[pyo3(from_py_with = of::deviation_a)] deviation_a: f64,
+        #[pyo3(from_py_with = of::deviation_b)] deviation_b: f64,
+        #[pyo3(from_py_with = of::optional::turn_a)] turn_a: Option<f64>,
+        #[pyo3(from_py_with = of::optional::turn_b)] turn_b: Option<f64>,
         pose_a: Option<&Bound<'py, PyAny>>,
         pose_b: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
@@ -350,7 +361,7 @@ impl RobotPair {
     ///
     /// Returns
     /// -------
-    /// Decision or (B,) array of int8
+    /// Decision or Decisions
     ///
     /// Raises
     /// ------
@@ -363,15 +374,19 @@ impl RobotPair {
         py: Python<'py>,
         points: &Bound<'py, PyAny>,
         radii: &Bound<'py, PyAny>,
-        margin: f64,
-        resolution: f64,
+        #[pyo3(from_py_with = of::margin)] margin: f64,
+        #[pyo3(from_py_with = of::resolution)] resolution: f64,
         tangents: Option<&Bound<'py, PyAny>>,
-        deviation: f64,
-        turn: Option<f64>,
+        #[pyo3(from_py_with = of::deviation)] deviation: f64,
+        #[pyo3(from_py_with = of::optional::turn)] turn: Option<f64>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let stated = Stated { deviation, turn };
-        let robots =
-            tubes(Robots::new("points", points, radii, None)?, "tangents", tangents, stated)?;
+        let robots = tubes(
+            Robots::new(Names::one("points"), points, radii, None)?,
+            "tangents",
+            tangents,
+            stated,
+        )?;
         self.0.tube_self_clears(py, &robots, stated, [margin, resolution])
     }
 }

@@ -1,7 +1,7 @@
 //! A robot against another, and against itself, each question by itself.
 
 use super::{Pairs, pairs};
-use crate::input::{Caps, Robots};
+use crate::input::{Caps, Names, Robots, of};
 use pyo3::prelude::*;
 
 /// The distance between two robots, and the two points that are closest.
@@ -81,7 +81,7 @@ pub(crate) fn clears_between<'py>(
     radii_a: &Bound<'py, PyAny>,
     points_b: &Bound<'py, PyAny>,
     radii_b: &Bound<'py, PyAny>,
-    margin: f64,
+    #[pyo3(from_py_with = of::margin)] margin: f64,
     pose_a: Option<&Bound<'py, PyAny>>,
     pose_b: Option<&Bound<'py, PyAny>>,
     caps: Caps,
@@ -124,7 +124,11 @@ pub(crate) fn self_minimum<'py>(
     radii: &Bound<'py, PyAny>,
     caps: Caps,
 ) -> PyResult<Bound<'py, PyAny>> {
-    Pairs::default().self_minimum(py, &Robots::new("points", points, radii, None)?, caps)
+    Pairs::default().self_minimum(
+        py,
+        &Robots::new(Names::one("points"), points, radii, None)?,
+        caps,
+    )
 }
 
 /// Whether the parts of a robot that could meet keep more than a margin: ``self_minimum(...).distance > margin``.
@@ -150,8 +154,13 @@ pub(crate) fn self_clears<'py>(
     py: Python<'py>,
     points: &Bound<'py, PyAny>,
     radii: &Bound<'py, PyAny>,
-    margin: f64,
+    #[pyo3(from_py_with = of::margin)] margin: f64,
     caps: Caps,
 ) -> PyResult<Bound<'py, PyAny>> {
-    Pairs::default().self_clears(py, &Robots::new("points", points, radii, None)?, margin, caps)
+    Pairs::default().self_clears(
+        py,
+        &Robots::new(Names::one("points"), points, radii, None)?,
+        margin,
+        caps,
+    )
 }

@@ -15,7 +15,7 @@ pub(crate) use robot_pair::RobotPair;
 
 use super::distance::set_chain;
 use crate::error::Refused;
-use crate::input::{Caps, Given, Robots};
+use crate::input::{Caps, Given, Names, Robots};
 use crate::output::array_or_number;
 use crate::threads::{Asked, Held, Lender, ask_each};
 use answers::{Row, proximities, proximities_of_segments, proximities_within};
@@ -82,8 +82,8 @@ fn pairs<'py>(
     [points_a, radii_a, points_b, radii_b]: [&Bound<'py, PyAny>; 4],
     [pose_a, pose_b]: [Option<&Bound<'py, PyAny>>; 2],
 ) -> PyResult<Robots<'py>> {
-    let others = Robots::new("points_b", points_b, radii_b, pose_b)?;
-    Robots::new("points_a", points_a, radii_a, pose_a)?.with_others(points_a.py(), others)
+    let others = Robots::new(Names::PAIR[1], points_b, radii_b, pose_b)?;
+    Robots::new(Names::PAIR[0], points_a, radii_a, pose_a)?.with_others(points_a.py(), others)
 }
 
 impl Pairs {

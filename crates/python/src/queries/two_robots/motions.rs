@@ -1,8 +1,11 @@
 //! Whether two robots keep a margin between them while both move, or one keeps it to itself.
 
 use super::{Pairs, RobotPair, Session};
+use crate::input::of;
 use crate::motions::{Motion, MotionPair, Moving};
-use crate::output::{answer, array, array_or_number, decision_value, flat, members, reason_value};
+use crate::output::{
+    Enumeration, answer, array, array_or_number, decision_value, flat, members, reason_value,
+};
 use crate::threads::{Asked, ask_each};
 use parry_continuum::parry::math::Vector;
 use parry_continuum::proximity::{RobotMotionAnswer, RobotsInContact};
@@ -54,8 +57,8 @@ impl RobotPair {
         py: Python<'py>,
         a: &Bound<'py, Motion>,
         b: &Bound<'py, Motion>,
-        margin: f64,
-        resolution: f64,
+        #[pyo3(from_py_with = of::margin)] margin: f64,
+        #[pyo3(from_py_with = of::resolution)] resolution: f64,
     ) -> PyResult<Bound<'py, PyAny>> {
         let motions = MotionPair::new(a, b)?;
         let mut all: Vec<RobotMotionAnswer> = Vec::with_capacity(motions.len());
@@ -91,8 +94,8 @@ impl RobotPair {
         &self,
         py: Python<'py>,
         motion: &Bound<'py, Motion>,
-        margin: f64,
-        resolution: f64,
+        #[pyo3(from_py_with = of::margin)] margin: f64,
+        #[pyo3(from_py_with = of::resolution)] resolution: f64,
     ) -> PyResult<Bound<'py, PyAny>> {
         self.0.motion_self_clears(py, motion.get(), margin, resolution)
     }
@@ -140,8 +143,8 @@ impl RobotPair {
 pub(crate) fn motion_self_clears<'py>(
     py: Python<'py>,
     motion: &Bound<'py, Motion>,
-    margin: f64,
-    resolution: f64,
+    #[pyo3(from_py_with = of::margin)] margin: f64,
+    #[pyo3(from_py_with = of::resolution)] resolution: f64,
 ) -> PyResult<Bound<'py, PyAny>> {
     Pairs::default().motion_self_clears(py, motion.get(), margin, resolution)
 }
@@ -185,14 +188,14 @@ fn answers<'py>(
     let lengths =
         all.iter().flat_map(|it| it.contact.map_or([f64::NAN; 2], |it| it.witness.arc_lengths));
     let values = (
-        members(py, "Decision", shape(&[]), decisions)?,
+        members(py, Enumeration::Decision, shape(&[]), decisions)?,
         array(py, shape(&[2]), intervals)?,
         numbers(|shapes| shapes.t)?,
         numbers(|shapes| shapes.upper)?,
         points(|shapes| shapes.witness.on_first)?,
         points(|shapes| shapes.witness.on_second)?,
         array(py, shape(&[2]), lengths.collect())?,
-        members(py, "UndecidedReason", shape(&[]), reasons)?,
+        members(py, Enumeration::UndecidedReason, shape(&[]), reasons)?,
     );
     answer!(py, "RobotMotionAnswer", values)
 }

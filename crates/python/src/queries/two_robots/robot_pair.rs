@@ -1,8 +1,9 @@
 //! Two robots that are asked about again and again.
 
 use super::{Pairs, pairs};
-use crate::input::{Caps, Robots};
+use crate::input::{Caps, Names, Robots, of};
 use pyo3::prelude::*;
+use pyo3::types::{PyTuple, PyType};
 
 /// Questions about two robots, or about one and itself.
 ///
@@ -29,6 +30,19 @@ impl RobotPair {
     #[new]
     fn new() -> Self {
         Self(Pairs::default())
+    }
+
+    /// A new one: what it remembers only makes answers faster.
+    fn __copy__(&self) -> Self {
+        Self::new()
+    }
+
+    fn __deepcopy__(&self, _memo: &Bound<'_, PyAny>) -> Self {
+        Self::new()
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> (Bound<'py, PyType>, Bound<'py, PyTuple>) {
+        (slf.get_type(), PyTuple::empty(slf.py()))
     }
 
     /// Forgets the last answers, as if it were new.
@@ -133,7 +147,7 @@ impl RobotPair {
         radii_a: &Bound<'py, PyAny>,
         points_b: &Bound<'py, PyAny>,
         radii_b: &Bound<'py, PyAny>,
-        margin: f64,
+        #[pyo3(from_py_with = of::margin)] margin: f64,
         pose_a: Option<&Bound<'py, PyAny>>,
         pose_b: Option<&Bound<'py, PyAny>>,
         caps: Caps,
@@ -168,7 +182,7 @@ impl RobotPair {
         radii_a: &Bound<'py, PyAny>,
         points_b: &Bound<'py, PyAny>,
         radii_b: &Bound<'py, PyAny>,
-        margin: f64,
+        #[pyo3(from_py_with = of::margin)] margin: f64,
         pose_a: Option<&Bound<'py, PyAny>>,
         pose_b: Option<&Bound<'py, PyAny>>,
         caps: Caps,
@@ -201,7 +215,7 @@ impl RobotPair {
         radii: &Bound<'py, PyAny>,
         caps: Caps,
     ) -> PyResult<Bound<'py, PyAny>> {
-        self.0.self_minimum(py, &Robots::new("points", points, radii, None)?, caps)
+        self.0.self_minimum(py, &Robots::new(Names::one("points"), points, radii, None)?, caps)
     }
 
     /// Whether the parts of a robot that could meet keep more than a margin: as `parry_continuum.self_clears`.
@@ -228,9 +242,14 @@ impl RobotPair {
         py: Python<'py>,
         points: &Bound<'py, PyAny>,
         radii: &Bound<'py, PyAny>,
-        margin: f64,
+        #[pyo3(from_py_with = of::margin)] margin: f64,
         caps: Caps,
     ) -> PyResult<Bound<'py, PyAny>> {
-        self.0.self_clears(py, &Robots::new("points", points, radii, None)?, margin, caps)
+        self.0.self_clears(
+            py,
+            &Robots::new(Names::one("points"), points, radii, None)?,
+            margin,
+            caps,
+        )
     }
 }

@@ -140,7 +140,7 @@ fn rows(
             [
                 Box::new(move |pose| {
                     scene3
-                        .contacts_within(&[(robot, *pose)], REACH, &mut of_scene)
+                        .contacts_within(&[(robot, *pose)], REACH, 0.0, &mut of_scene)
                         .map_err(text)?;
                     Ok(of_scene.len() as f64)
                 }),

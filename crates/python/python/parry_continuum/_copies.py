@@ -1,0 +1,35 @@
+"""How what is pickled is made again."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, Optional
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ._native import Mesh, Motion, Scene
+
+
+def mesh(vertices: NDArray[np.float64], faces: NDArray[np.int64], frame: Any, unit: Optional[str]) -> Mesh:
+    """A mesh with what is known of it."""
+    return Mesh(vertices, faces, frame=frame, unit=unit)
+
+
+def motion(cls: Any, maker: Optional[str], args: tuple[Any, ...], more: dict[str, Any]) -> Motion:
+    """A motion, by its class or by a function of that."""
+    make = cls if maker is None else getattr(cls, maker)
+    made: Motion = make(*args, **more)
+    return made
+
+
+def scene(
+    robot_margin: Optional[float],
+    nested: Sequence[tuple[int, int]],
+    structures: Sequence[tuple[str, Mesh, Optional[float], Optional[NDArray[np.float64]]]],
+) -> Scene:
+    """A scene with its structures."""
+    made = Scene(robot_margin=robot_margin, nested=nested)
+    for name, mesh, margin, pose in structures:
+        made.add(name, mesh, margin=margin, pose=pose)
+    return made

@@ -1,0 +1,131 @@
+//! Scalars. Python's own errors do not name the parameter in their text, so that each parameter has a function here.
+
+use crate::error::Refused;
+use mesh_files::Frame;
+use pyo3::exceptions::{PyOverflowError, PyTypeError, PyValueError};
+use pyo3::prelude::*;
+
+/// A frame, as the parameter `frame` names it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FrameName(pub Frame);
+
+impl<'a, 'py> FromPyObject<'a, 'py> for FrameName {
+    type Error = PyErr;
+
+    fn extract(given: Borrowed<'a, 'py, PyAny>) -> PyResult<Self> {
+        match given.extract::<&str>() {
+            Ok("RAS") => Ok(Self(Frame::Ras)),
+            Ok("LPS") => Ok(Self(Frame::Lps)),
+            _ => {
+                let text = format!("`frame` is {}; it must be 'RAS' or 'LPS'", given.repr()?);
+                Err(Refused::other("bad_frame", text).raise(given.py(), None))
+            }
+        }
+    }
+}
+
+/// Pairs of places in the list of robots.
+pub(crate) fn places(given: &Bound<'_, PyAny>) -> PyResult<Vec<[usize; 2]>> {
+    given.extract::<Vec<[usize; 2]>>().map_err(|error| {
+        if error.is_instance_of::<PyOverflowError>(given.py()) {
+            PyTypeError::new_err(
+                "`nested` has a place that is negative or too large; places count from 0",
+            )
+        } else if is_of_value(given.py(), &error) {
+            PyTypeError::new_err(
+                "`nested` is no list of pairs of places; give pairs of whole numbers",
+            )
+        } else {
+            error
+        }
+    })
+}
+
+/// The error about a parameter that is not `what`.
+fn refuse(given: &Bound<'_, PyAny>, name: &str, what: &str) -> PyErr {
+    // Python writes no integer of more than some thousand digits.
+    let text =
+        given.repr().map_or_else(|_| "beyond all floats".to_owned(), |text| text.to_string());
+    let text =
+        if text.chars().count() > 60 { "beyond all floats or no number".to_owned() } else { text };
+    PyTypeError::new_err(format!("`{name}` is {text}; give {what}"))
+}
+
+/// Whether the error is about the value, and not one of the value's own code.
+fn is_of_value(py: Python<'_>, error: &PyErr) -> bool {
+    error.is_instance_of::<PyTypeError>(py)
+        || error.is_instance_of::<PyOverflowError>(py)
+        || error.is_instance_of::<PyValueError>(py)
+}
+
+fn number(given: &Bound<'_, PyAny>, name: &str) -> PyResult<f64> {
+    given.extract::<f64>().map_err(|error| {
+        if is_of_value(given.py(), &error) { refuse(given, name, "a number") } else { error }
+    })
+}
+
+fn whole(given: &Bound<'_, PyAny>, name: &str, least: u32) -> PyResult<u32> {
+    match given.extract::<u32>() {
+        Ok(number) if number >= least => Ok(number),
+        Err(error) if !is_of_value(given.py(), &error) => Err(error),
+        _ => Err(refuse(given, name, &format!("a whole number from {least} to {}", u32::MAX))),
+    }
+}
+
+/// A function for each parameter that is a number.
+macro_rules! numbers {
+    ($($name:ident),*) => {
+        $(pub(crate) fn $name(given: &Bound<'_, PyAny>) -> PyResult<f64> {
+            super::number(given, stringify!($name))
+        })*
+    };
+}
+
+/// A function for each parameter that is a number or None.
+macro_rules! optional_numbers {
+    ($($name:ident),*) => {
+        $(pub(crate) fn $name(given: &Bound<'_, PyAny>) -> PyResult<Option<f64>> {
+            if given.is_none() { Ok(None) } else { super::super::number(given, stringify!($name)).map(Some) }
+        })*
+    };
+}
+
+/// The values of parameters, by their names.
+pub(crate) mod of {
+    use pyo3::prelude::*;
+
+    numbers!(
+        deviation,
+        deviation_a,
+        deviation_b,
+        margin,
+        prominence,
+        reach,
+        resolution,
+        scale,
+        tolerance
+    );
+
+    pub(crate) fn steps(given: &Bound<'_, PyAny>) -> PyResult<u32> {
+        super::whole(given, "steps", 1)
+    }
+
+    /// Those that may be None.
+    pub(crate) mod optional {
+        use pyo3::prelude::*;
+
+        optional_numbers!(margin, resolution, robot_margin, tolerance, turn, turn_a, turn_b);
+
+        pub(crate) fn label(given: &Bound<'_, PyAny>) -> PyResult<Option<u32>> {
+            if given.is_none() {
+                Ok(None)
+            } else {
+                super::super::whole(given, "label", 0).map(Some)
+            }
+        }
+
+        pub(crate) fn line(given: &Bound<'_, PyAny>) -> PyResult<Option<u32>> {
+            if given.is_none() { Ok(None) } else { super::super::whole(given, "line", 0).map(Some) }
+        }
+    }
+}

@@ -1,0 +1,60 @@
+"""Ctrl-C ends what reads for long."""
+
+from __future__ import annotations
+
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from shapes import sphere
+
+TESTS = Path(__file__).parent
+PROGRAM = """
+import sys, time
+import numpy as np
+from parry_continuum import Mesh, load, load_centreline
+sys.path.insert(0, {tests!r})
+from shapes import sphere
+what, path = sys.argv[1:]
+vertices, faces = sphere(10.0, 1200, 600) if what == "Mesh" else (None, None)
+print("begins", flush=True)
+try:
+    for _ in range(1000):
+        {{"load": lambda: load(path), "load_centreline": lambda: load_centreline(path), "Mesh": lambda: Mesh(vertices, faces)}}[what]()
+except KeyboardInterrupt:
+    print("ended", flush=True)
+"""
+
+
+def large(folder: Path, what: str) -> Path:
+    if what == "load_centreline":
+        file = folder / "robot.csv"
+        file.write_text("\n".join(f"0,0,{k}" for k in range(3_000_000)))
+        return file
+    vertices, faces = sphere(10.0, 1200, 600)
+    file = folder / "wall.obj"
+    with file.open("w") as out:
+        np.savetxt(out, vertices, "v %.9g %.9g %.9g")
+        np.savetxt(out, faces + 1, "f %d %d %d")
+    return file
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="sends SIGINT")
+@pytest.mark.parametrize("what", ["load", "load_centreline", "Mesh"])
+def test_reading_ends_within_a_second(what: str, tmp_path: Path) -> None:
+    file = large(tmp_path, what)
+    program = PROGRAM.format(tests=str(TESTS))
+    with subprocess.Popen([sys.executable, "-c", program, what, str(file)], stdout=subprocess.PIPE, text=True) as child:
+        assert child.stdout is not None
+        assert child.stdout.readline() == "begins\n"
+        time.sleep(0.7)
+        begin = time.monotonic()
+        child.send_signal(signal.SIGINT)
+        assert child.stdout.readline() == "ended\n"
+        assert time.monotonic() - begin < 1
+        child.kill()

@@ -1,0 +1,223 @@
+"""What other packages call a mesh, a pose or a file is taken as it is."""
+
+from __future__ import annotations
+
+import io
+import os
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+
+from parry_continuum import (
+    BendingMotion,
+    ContinuumError,
+    Mesh,
+    MovingBase,
+    RigidMotion,
+    RobotPair,
+    Scene,
+    load,
+    load_centreline,
+)
+from shapes import robots, sphere
+
+VERTICES, FACES = sphere()
+MESH = Mesh(VERTICES, FACES)
+MANY = robots(np.random.default_rng(7), 4)
+ONE = MANY[0]
+
+
+def is_sphere(mesh: Mesh) -> None:
+    assert len(mesh.faces) == len(FACES)
+    assert_allclose(mesh.distance(MANY, 0.1), MESH.distance(MANY, 0.1), atol=1e-5)
+
+
+@pytest.mark.parametrize("take", [Mesh, load])
+def test_trimesh(take: Any) -> None:
+    trimesh = pytest.importorskip("trimesh")
+    whole = trimesh.Trimesh(VERTICES, FACES, process=False)
+    is_sphere(take(whole))
+    scene = trimesh.Scene()
+    scene.add_geometry(whole, transform=np.diag([2.0, 2, 2, 1]))
+    scene.add_geometry(trimesh.creation.box(extents=[1, 1, 1]), transform=trimesh.transformations.translation_matrix([50, 0, 0]))
+    mesh = take(scene)
+    assert len(mesh.faces) == len(FACES) + 12
+    assert_allclose(np.linalg.norm(mesh.vertices[np.linalg.norm(mesh.vertices, axis=1) < 40], axis=1), 20)
+    assert mesh.vertices[:, 0].max() == pytest.approx(50.5)
+    with pytest.raises(ContinuumError):
+        take(trimesh.Scene())
+
+
+@pytest.mark.parametrize("take", [Mesh, load])
+def test_pyvista(take: Any) -> None:
+    pyvista = pytest.importorskip("pyvista")
+    flat = np.column_stack([np.full(len(FACES), 3), FACES]).ravel()
+    surface = pyvista.PolyData(VERTICES, flat)
+    is_sphere(take(surface))
+    box = pyvista.Box()  # of quadrilaterals
+    assert len(take(box).faces) == 12
+    assert len(take(surface.cast_to_unstructured_grid()).faces) == len(FACES)
+
+
+@pytest.mark.parametrize("take", [Mesh, load])
+def test_meshio(take: Any) -> None:
+    meshio = pytest.importorskip("meshio")
+    half = len(FACES) // 2
+    is_sphere(take(meshio.Mesh(VERTICES, [("triangle", FACES[:half]), ("line", FACES[:3, :2]), ("triangle", FACES[half:])])))
+    with pytest.raises(ContinuumError, match="cells of the type tetra; give its surface, cut into triangles") as raised:
+        take(meshio.Mesh(VERTICES, [("tetra", [[0, 1, 2, 3]])]))
+    assert raised.value.kind == "bad_type"
+    with pytest.raises(ContinuumError) as raised:
+        take(meshio.Mesh(VERTICES, [("line", [[0, 1]])]))
+    assert raised.value.kind == "empty"
+
+
+@pytest.mark.parametrize("take", [Mesh, load])
+def test_open3d(take: Any) -> None:
+    """Open3D is large, so that its two classes are stood in for where it is not installed."""
+    try:
+        import open3d
+    except ImportError:
+        legacy = SimpleNamespace(vertices=[tuple(v) for v in VERTICES], triangles=[tuple(f) for f in FACES])
+        tensor = lambda array: SimpleNamespace(cpu=lambda: SimpleNamespace(numpy=lambda: array))
+        new = SimpleNamespace(vertex=SimpleNamespace(positions=tensor(VERTICES)), triangle=SimpleNamespace(indices=tensor(FACES)))
+    else:
+        legacy = open3d.geometry.TriangleMesh(open3d.utility.Vector3dVector(VERTICES), open3d.utility.Vector3iVector(FACES))
+        new = open3d.t.geometry.TriangleMesh.from_legacy(legacy)
+    is_sphere(take(legacy))
+    is_sphere(take(new))
+
+
+def obj(folder: Path) -> Path:
+    file = folder / "wall.obj"
+    lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in VERTICES.tolist()]
+    file.write_text("\n".join(lines + [f"f {a} {b} {c}" for a, b, c in (FACES + 1).tolist()]))
+    return file
+
+
+def test_paths_and_files(tmp_path: Path) -> None:
+    path = obj(tmp_path)
+    for given in (path, str(path), os.fsencode(path)):
+        assert_array_equal(load(given).vertices, VERTICES)
+    for mode in ("rb", "r"):
+        with path.open(mode) as file:
+            assert_array_equal(load(file, scale=2, frame="LPS").vertices, VERTICES * 2)
+    named = io.BytesIO(path.read_bytes())
+    with pytest.raises(ContinuumError, match="a file object without a name.*file.name = 'wall.stl'") as raised:
+        load(named)
+    assert raised.value.kind == "bad_type"
+    named.name = "wall.obj"  # type: ignore[misc]
+    assert_array_equal(load(named).vertices, VERTICES)
+    named.seek(0)
+    named.name = "wall.stl"  # type: ignore[misc]
+    with pytest.raises(ContinuumError, match="wall.stl"):
+        load(named)
+    empty = io.BytesIO()
+    empty.name = "wall.obj"  # type: ignore[misc]
+    with pytest.raises(ContinuumError, match="wall.obj holds no triangles"):
+        load(empty)
+
+
+def test_centrelines_of_files(tmp_path: Path) -> None:
+    path = tmp_path / "robot.csv"
+    path.write_text("0,0,0\n0,0,1\n0,0,2\n")
+    for given in (path, str(path), os.fsencode(path)):
+        assert load_centreline(given).points.shape == (3, 3)
+    with path.open("rb") as file:
+        assert_array_equal(load_centreline(file, scale=2).points[:, 2], [0, 2, 4])
+    with path.open() as text:
+        assert_array_equal(load_centreline(text).points[:, 2], [0, 1, 2])
+
+
+class Fails:
+    name = "wall.obj"
+
+    def read(self) -> bytes:
+        raise OSError("the tape is torn")
+
+
+@pytest.mark.parametrize(
+    ("ask", "error", "text"),
+    [
+        (lambda: load(3), ContinuumError, "`path` is neither a path nor a file object"),
+        (lambda: load(None), ContinuumError, "`path` is neither"),
+        (lambda: load_centreline(None), ContinuumError, "`path` is neither"),
+        (lambda: load_centreline(MESH), ContinuumError, "`path` is a mesh"),
+        (lambda: load(MESH, label=1), ContinuumError, "`label` is given beside a mesh"),
+        (lambda: load(Fails()), OSError, "the tape is torn"),
+        (lambda: load(SimpleNamespace(name="a.stl", read=lambda: 3)), TypeError, "str"),
+        (lambda: Mesh(SimpleNamespace(points=3)), ContinuumError, "a mesh of trimesh, pyvista, meshio or Open3D"),
+        (lambda: Mesh(VERTICES), ContinuumError, "`faces` is missing"),
+        (lambda: Mesh(None), ContinuumError, "`faces` is missing"),
+    ],
+)
+def test_wrong_types(ask: Any, error: type[Exception], text: str) -> None:
+    with pytest.raises(error, match=text):
+        ask()
+
+
+def test_a_mesh_of_this_package_is_loaded_scaled() -> None:
+    mesh = load(MESH, scale=3, frame="RAS")
+    assert_array_equal(mesh.vertices, VERTICES * 3)
+    assert mesh.frame == "RAS"
+
+
+def transforms(count: int | None) -> tuple[Any, np.ndarray]:
+    spatial = pytest.importorskip("scipy.spatial.transform")
+    rotations = spatial.Rotation.random(count, random_state=5)
+    shape = () if count is None else (count,)
+    matrices = np.zeros((*shape, 4, 4))
+    matrices[..., :3, :3] = rotations.as_matrix()
+    matrices[..., 3, 3] = 1
+    return rotations, matrices
+
+
+@pytest.mark.parametrize("count", [None, 1, 4])
+def test_rotations(count: int | None) -> None:
+    rotations, matrices = transforms(count)
+    assert_array_equal(MESH.distance(ONE, 0.1, pose=rotations), MESH.distance(ONE, 0.1, pose=matrices))
+    if hasattr(pytest.importorskip("scipy.spatial.transform"), "RigidTransform"):
+        from scipy.spatial.transform import RigidTransform
+
+        shift = np.broadcast_to([1.0, 2, 3], matrices[..., :3, 3].shape)
+        rigid = RigidTransform.from_components(shift, rotations)
+        matrices = matrices.copy()
+        matrices[..., :3, 3] = shift
+        assert_allclose(MESH.distance(ONE, 0.1, pose=rigid), MESH.distance(ONE, 0.1, pose=matrices), atol=1e-15)
+        rotations = rigid
+    for ask in (
+        lambda pose: MESH.per_link(ONE, 0.1, pose=pose).distance,
+        lambda pose: RobotPair().minimum(ONE, 0.1, ONE + 5, 0.1, pose_b=pose).distance,
+        lambda pose: MESH.clearance_of_motion(RigidMotion(ONE, 0.1, np.eye(4), pose), tolerance=0.5).lower,
+        lambda pose: MESH.clearance_of_motion(MovingBase(BendingMotion([[1, 0, 0]], [[1, 0, 0]], 0.1), pose, pose), tolerance=0.5).lower,
+        lambda pose: Scene(robot_margin=0.1).tightest([(ONE, 0.1, pose), (ONE, 0.1)]).slack,
+    ):
+        assert_allclose(ask(rotations), ask(matrices), atol=1e-14)
+    if count is None:
+        scene = Scene()
+        scene.add("wall", MESH, margin=0.1, pose=rotations)
+        assert scene.tightest([(ONE, 0.1)]).structure == 0
+
+
+def test_lists_are_poses() -> None:
+    rows = [[1, 0, 0, 2], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
+    assert MESH.distance(ONE, 0.1, pose=rows) == MESH.distance(ONE, 0.1, pose=np.array(rows, float))
+    assert MESH.distance(ONE, 0.1, pose=[rows, rows]).shape == (2,)
+    with pytest.raises(ContinuumError, match="`pose` is no array of numbers"):
+        MESH.distance(ONE, 0.1, pose=rows[:3] + [[0, 0]])
+
+
+class NoMatrix:
+    def as_matrix(self) -> np.ndarray:
+        raise RuntimeError("mine")
+
+
+def test_what_a_pose_raises_is_raised() -> None:
+    with pytest.raises(RuntimeError, match="mine"):
+        MESH.distance(ONE, 0.1, pose=NoMatrix())
+    with pytest.raises(ContinuumError, match=r"`pose_b` has the shape \(2, 2\)"):
+        RobotPair().minimum(ONE, 0.1, ONE, 0.1, pose_b=SimpleNamespace(as_matrix=lambda: np.eye(2)))

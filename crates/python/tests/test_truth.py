@@ -1,0 +1,169 @@
+"""No answer passes for yes or no by being there: ``bool()`` is an error that names what to use."""
+
+from __future__ import annotations
+
+import copy
+import pickle
+
+import numpy as np
+import pytest
+from numpy.testing import assert_array_equal
+
+from parry_continuum import (
+    Decision,
+    LinearMotion,
+    Mesh,
+    RobotPair,
+    Scene,
+    Side,
+    UndecidedReason,
+    motion_self_clears,
+    tube_self_clears,
+)
+from shapes import sphere
+
+MESH = Mesh(*sphere())
+PAIR = RobotPair()
+INSIDE = np.array([[0, 0, 0.0], [0, 0, 1.0]])
+THROUGH = np.array([[0, 0, 0.0], [0, 0, 30.0]])
+BOTH = np.stack([INSIDE, THROUGH])
+SHIFT = np.array([0.5, 0, 0])
+SCENE = Scene()
+SCENE.add("wall", MESH, margin=0.5)
+AT_REST = LinearMotion(INSIDE + [3, 0, 0], INSIDE + [3, 0, 0], 0.1)
+
+
+def motion(points: np.ndarray) -> LinearMotion:
+    return LinearMotion(points, points + SHIFT, 0.1)
+
+
+def hairpin(y: float) -> np.ndarray:
+    return np.array([[0, 0, 0], [0, 0, 40], [8, 0, 40], [4, y, 2]])
+
+
+def swing(ends: list[float]) -> LinearMotion:
+    return LinearMotion(np.stack([hairpin(-6.0) for _ in ends]), np.stack([hairpin(end) for end in ends]), 1.0)
+
+
+# Of each function: one that is clear, one that is not, and both of them as a batch.
+DECIDED = {
+    "clears_motion": [MESH.clears_motion(motion(p), margin=0.5, resolution=0.01) for p in (INSIDE, THROUGH, BOTH)],
+    "time_of_contact": [MESH.time_of_contact(motion(p), margin=0.5, resolution=0.01) for p in (INSIDE, THROUGH, BOTH)],
+    "clears_motion_while": [
+        MESH.clears_motion_while(MESH.vertices, motion(p), margin=0.5, resolution=0.01) for p in (INSIDE, THROUGH, BOTH)
+    ],
+    "clears_path": [
+        MESH.clears_path(np.stack([p, p + SHIFT], axis=-3), 0.1, 0.0, margin=0.5, resolution=0.01)
+        for p in (INSIDE, THROUGH, BOTH)
+    ],
+    "clears_tube": [MESH.clears_tube(p, 0.1, margin=0.5, resolution=0.01) for p in (INSIDE, THROUGH, BOTH)],
+    "clears_inside": [MESH.clears_inside(p, 0.1, margin=0.5) for p in (INSIDE, THROUGH, BOTH)],
+    "tightest": [SCENE.tightest([(p, 0.1)]) for p in (INSIDE, THROUGH, BOTH)],
+    "pair.clears_motion": [
+        PAIR.clears_motion(motion(p), AT_REST, margin=1.0, resolution=0.01)
+        for p in (INSIDE, INSIDE + [3, 0, 0], np.stack([INSIDE, INSIDE + [3, 0, 0]]))
+    ],
+    "pair.clears_tubes": [
+        PAIR.clears_tubes(p, 0.1, INSIDE + [3, 0, 0], 0.1, margin=1.0, resolution=0.01)
+        for p in (INSIDE, INSIDE + [3, 0, 0], np.stack([INSIDE, INSIDE + [3, 0, 0]]))
+    ],
+    "tube_self_clears": [tube_self_clears(p, 0.1, margin=1.0, resolution=0.01) for p in (INSIDE, THROUGH, BOTH)],
+    "motion_self_clears": [
+        motion_self_clears(m, margin=2.5, resolution=1e-3)
+        for m in (LinearMotion(hairpin(-6), hairpin(-5), 1.0), LinearMotion(hairpin(-6), hairpin(2), 1.0), swing([-5, 2]))
+    ],
+}
+
+
+@pytest.mark.parametrize("name", DECIDED)
+def test_is_clear(name: str) -> None:
+    clear, touches, both = DECIDED[name]
+    assert [clear.is_clear, touches.is_clear] == [True, name == "tube_self_clears"]
+    assert type(clear.is_clear) is bool
+    assert_array_equal(both.is_clear, [clear.is_clear, touches.is_clear])
+    assert both.is_clear.dtype == np.bool_ and type(both.is_clear) is np.ndarray
+
+
+@pytest.mark.parametrize("name", DECIDED)
+def test_no_truth_value(name: str) -> None:
+    for answer in DECIDED[name]:
+        with pytest.raises(TypeError, match=r"truth value .* is ambiguous; use `\.is_clear`"):
+            bool(answer)
+        with pytest.raises(TypeError, match="is_clear"):
+            assert not answer
+
+
+@pytest.mark.parametrize(
+    ("answer", "instead"),
+    [
+        (MESH.minimum(INSIDE, 0.1), "`distance`"),
+        (MESH.per_link(BOTH, 0.1), "`distance`"),
+        (MESH.contacts_within(INSIDE, 0.1, 0.5), r"len\(contacts.distance\)"),
+        (MESH.clearance(INSIDE, 0.1, 0.5), "`lower` and `upper`"),
+        (MESH.clearance_of_motion(motion(INSIDE), tolerance=0.5), "`lower` and `upper`"),
+        (MESH.certify(INSIDE, 0.1, MESH.per_link(INSIDE, 0.1)), "`lower` and `upper`"),
+        (MESH.distance_and_gradient(INSIDE, 0.1), "`value`"),
+        (PAIR.minimum(INSIDE, 0.1, THROUGH, 0.1), "`distance`"),
+        (PAIR.contacts_within(INSIDE, 0.1, THROUGH, 0.1, 9.0), r"len\(contacts.distance\)"),
+        (PAIR.clearance(INSIDE, 0.1, THROUGH, 0.1, 9.0), "`lower` and `upper`"),
+        (SCENE.per_structure([(INSIDE, 0.1)]), "`slack`"),
+        (SCENE.contacts_within([(INSIDE, 0.1)], 0.5), r"len\(contacts.distance\)"),
+        (Side.OUTSIDE, r"side is Side\.INSIDE.*\.is_clear"),
+        (Side.UNDECIDED, r"side is Side\.INSIDE.*\.is_clear"),
+        (MESH.side([0, 0, 0]), r"side is Side\.INSIDE.*\.is_clear"),
+        (MESH.side([[0, 0, 0]]), r"sides == Side\.INSIDE.*\.is_clear"),
+        (Decision.CONTACT, r"use `\.is_clear`"),
+        (Decision.UNDECIDED, r"use `\.is_clear`"),
+    ],
+)
+def test_other_answers(answer: object, instead: str) -> None:
+    with pytest.raises(TypeError, match="truth value .* is ambiguous; .*" + instead):
+        bool(answer)
+
+
+def test_inside_holds() -> None:
+    places = np.stack([INSIDE, THROUGH, INSIDE + [0, 0, 50]])
+    many = MESH.clears_inside(places, 0.1, margin=0.5)
+    assert_array_equal(many.holds, [True, False, False])
+    assert_array_equal(many.is_clear, [True, False, True])
+    for place, holds in zip(places, [True, False, False]):
+        assert MESH.clears_inside(place, 0.1, margin=0.5).holds is holds
+    none = MESH.clears_inside(places[:0], 0.1, margin=0.5)
+    assert none.holds.shape == none.is_clear.shape == (0,)
+
+
+def test_items_of_batches_have_no_truth_value_either() -> None:
+    decisions = MESH.clears_tube(BOTH, 0.1, margin=0.5, resolution=0.01)
+    assert decisions.dtype == np.int8
+    assert list(decisions) == [Decision.CLEAR, Decision.CONTACT] and decisions[1] is Decision.CONTACT
+    for ask in (lambda: bool(decisions[:1]), lambda: bool(decisions[1]), decisions.all, lambda: np.any(decisions)):
+        with pytest.raises(TypeError, match="is_clear"):
+            ask()
+    sides = MESH.side([[0, 0, 0], [0, 0, 50]])
+    assert sides[0] is Side.INSIDE and type(sides == Side.INSIDE) is np.ndarray
+    assert (sides == Side.INSIDE).tolist() == [True, False]
+    with pytest.raises(TypeError, match="sides == Side.INSIDE"):
+        sides.all()
+    none = MESH.clears_tube(BOTH[:0], 0.1, margin=0.5, resolution=0.01)
+    assert none.is_clear.shape == (0,)
+    assert not UndecidedReason.NONE and UndecidedReason.WORK  # whether there is a reason
+
+
+@pytest.mark.parametrize("name", DECIDED)
+def test_copies(name: str) -> None:
+    for answer in DECIDED[name]:
+        for again in (copy.copy(answer), copy.deepcopy(answer), pickle.loads(pickle.dumps(answer))):
+            assert type(again) is type(answer)
+            assert_array_equal(again.is_clear, answer.is_clear)
+            if isinstance(answer, tuple):
+                for one, other in zip(again, answer):
+                    assert_array_equal(one, other)
+
+
+def test_dask() -> None:
+    dask = pytest.importorskip("dask")
+    answer = MESH.clears_motion(motion(BOTH), margin=0.5, resolution=0.01)
+    same = dask.delayed(lambda given: given)(answer)
+    assert_array_equal(same.compute(scheduler="synchronous").is_clear, answer.is_clear)
+    one = dask.delayed(lambda: MESH.clears_motion(motion(INSIDE), margin=0.5, resolution=0.01))()
+    assert one.compute(scheduler="synchronous").is_clear
