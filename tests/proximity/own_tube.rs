@@ -408,7 +408,7 @@ fn a_finer_resolution_decides_no_less() {
         let (margin, mut coarser) = ((apart + off).max(0.0), None);
         let mut resolution = 1.0;
         while resolution > 0.04 {
-            let finer = pair.tube_self_clears(&tube, margin, resolution).ok();
+            let finer = query.clears_tube(&tube, margin, resolution).ok();
             let finer = finer.filter(|decision| *decision != Decision::Undecided);
             assert!(
                 coarser.is_none() || finer == coarser,

@@ -395,7 +395,7 @@ impl Scene {
     /// ContinuumError
     ///     The reach or the prominence is negative or NaN, or as for `tightest`.
     #[pyo3(signature = (robots, reach, prominence = 0.0, *, caps = Caps::Fitted), text_signature = "($self, robots, reach, prominence=0.0, *, caps=\"fitted\")")]
-    fn contacts<'py>(
+    fn contacts_within<'py>(
         &self,
         py: Python<'py>,
         robots: Vec<Bound<'py, PyAny>>,
