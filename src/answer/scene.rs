@@ -1,0 +1,105 @@
+//! Answers and errors of queries about a scene of several structures and robots.
+
+use super::{Contact, LinkProximity, ProximityError, RobotProximity};
+use parry3d_f64::math::Real;
+use thiserror::Error;
+
+/// The least slack of a scene and its place, in the scene's frame and unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Tightest {
+    /// Distance minus margin: negative if the margin is violated.
+    pub slack: Real,
+    /// The two objects with this slack.
+    pub between: Between,
+}
+
+/// Two objects that are near one another in a scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Between {
+    /// A robot and a structure.
+    Structure(StructureProximity),
+    /// Two robots.
+    Robots {
+        /// Their indices among the given robots, the lower first.
+        robots: [u32; 2],
+        /// Their closest links.
+        nearest: RobotProximity,
+    },
+}
+
+/// The place where the robots are closest to one structure of a scene, in the scene's frame and
+/// unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct StructureProximity {
+    /// The structure's number, in the order in which structures were added.
+    pub structure: u32,
+    /// The robot's index among the given robots.
+    pub robot: u32,
+    /// Its closest link, and the closest triangle of the structure.
+    pub nearest: LinkProximity,
+    /// Distance minus the structure's margin, if it has one.
+    pub slack: Option<Real>,
+}
+
+/// A contact of a robot with one structure of a scene, in the scene's frame and unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct SceneContact {
+    /// The structure's number.
+    pub structure: u32,
+    /// The robot's index among the given robots.
+    pub robot: u32,
+    /// The contact itself.
+    pub contact: Contact,
+}
+
+/// The reason why a scene has no answer, or why a structure cannot be part of it.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum SceneError {
+    /// A structure is at fault.
+    #[error("structure `{name}`: {error}")]
+    Structure {
+        /// The structure's name.
+        name: String,
+        /// What is wrong, and what to change.
+        error: ProximityError,
+    },
+    /// A robot is at fault.
+    #[error("robot {robot}: {error}")]
+    Robot {
+        /// The robot's index among the given robots.
+        robot: usize,
+        /// What is wrong, and what to change.
+        error: ProximityError,
+    },
+    /// The margin between robots is at fault.
+    #[error("between robots: {0}")]
+    BetweenRobots(ProximityError),
+    /// There is no structure with this number.
+    #[error(
+        "there is no structure {structure} among {structures}; give the number that `add` returned"
+    )]
+    NoSuchStructure {
+        /// The number that was given.
+        structure: usize,
+        /// The number of structures.
+        structures: usize,
+    },
+}
+
+impl SceneError {
+    /// The error in one word, the same in Rust and Python; for a wrapped error, the word of that
+    /// error.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::Structure { error, .. }
+            | Self::Robot { error, .. }
+            | Self::BetweenRobots(error) => error.kind(),
+            Self::NoSuchStructure { .. } => "no_such_structure",
+        }
+    }
+}
