@@ -5,7 +5,6 @@ mod engine_mesh;
 mod search_frame;
 mod shared_parts;
 mod triangle_block;
-mod union_find;
 
 pub(crate) use checks::{check_triangle, check_vertex, in_range};
 pub(crate) use engine_mesh::Mesh;
@@ -15,4 +14,3 @@ pub(crate) use triangle_block::{
     BLOCK, first_of_face, load, load_vertices, place_face, place_points, place_triangle, rotated,
     splat, store,
 };
-pub(crate) use union_find::{find_root, unite};

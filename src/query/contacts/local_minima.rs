@@ -84,23 +84,14 @@
 //! and one contact. Its representative is the triangle nearest to the axis; ties go to the lowest
 //! triangle.
 
-use super::link_neighbourhood::LinkNeighbourhood;
-use super::long_rings::{FEW, LongRings};
-use super::prominence::{ContactQuery, Prominence};
-use super::triangle_candidates::{CandidateEnd, CandidateIndex, TriangleCandidates};
-use super::wall::Wall;
-use super::wall_components::{IncidentTriangles, WallComponents};
+use super::prominence::{ContactQuery, LinkNeighbourhood, Prominence};
+use super::triangle_candidates::{CandidateEnd, CandidateIndex, TriangleCandidates, Wall};
+use super::wall_components::{CULLED, FEW, IncidentTriangles, LongRings, NONE, WallComponents};
 use crate::answer::{Contact, LinkProximity};
 use crate::pair::{PlacedLink, PlacedPair, PlacedRobot, Ranked, add_contacts, rank_each};
 use fearless_simd::Level;
 use parry3d_f64::math::Real;
 use std::ops::Range;
-
-/// The index of the piece of all culled triangles.
-pub(crate) const CULLED: u32 = 0;
-
-/// The index of no triangle.
-pub(crate) const NONE: u32 = u32::MAX;
 
 /// Links are collected until more triangles than this are to be measured. More fill the packs
 /// better; fewer need less memory.
