@@ -1,7 +1,6 @@
 //! A link in the mesh's frame, and its distance from a triangle.
 
 use super::coordinates::{Nearest, Pair, Placed, SLACK, offset_from_axis};
-use super::coordinates::{Pair, Placed, SLACK, offset_from_axis};
 use crate::answer::{LinkProximity, Witness};
 use crate::distance::{Axial, DoubleDouble, Face, Link, Scalar, Vec3, segment_segment};
 use crate::robot::ModifiedCylinder;

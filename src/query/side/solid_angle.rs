@@ -76,7 +76,7 @@
 //! - The evaluation takes at most 22 u of the first term and 38 u of the second:
 //!   `22 A + 4.74 x 38 A`.
 //!
-//! The total is less than [`ROUNDING`] `m (A + r^2)`. The sums of areas and squares have positive
+//! The total is less than [`FAR_ROUNDING`] `m (A + r^2)`. The sums of areas and squares have positive
 //! terms only. They err by less than the same share of `A + r^2`, and of `r^2` times it.
 //!
 //! All lengths are scaled by the power of two that brings the mesh to size one. So their powers
@@ -153,7 +153,7 @@ impl std::ops::AddAssign for SolidAngle {
 }
 
 /// The relative rounding for each triangle.
-const ROUNDING: Real = 256.0 * f64::UNIT_ROUNDOFF;
+const FAR_ROUNDING: Real = 256.0 * f64::UNIT_ROUNDOFF;
 
 /// The least radius, beside a mesh of size one, whose fourth power does not underflow.
 const SMALLEST: Real = 1.0 / (1_u128 << 100) as Real / (1_u128 << 100) as Real;
@@ -203,8 +203,8 @@ impl FarField {
             dipole += across;
             spread += Matrix::from_cols(middle * across.x, middle * across.y, middle * across.z);
         }
-        let radius = Real::sqrt(radius) * (1.0 + ROUNDING);
-        let rounding = ROUNDING * count * (area + radius * radius);
+        let radius = Real::sqrt(radius) * (1.0 + FAR_ROUNDING);
+        let rounding = FAR_ROUNDING * count * (area + radius * radius);
         let trace = spread.x_axis.x + spread.y_axis.y + spread.z_axis.z;
         let second_moment = if radius >= SMALLEST {
             second_moment + rounding * radius * radius
@@ -221,7 +221,7 @@ impl FarField {
     pub(crate) fn solid_angle(&self, scale: Real, point: Vector) -> SolidAngle {
         let offset = self.centre - point;
         let distance = length(offset) * scale;
-        let gap = distance * (1.0 - ROUNDING) - self.radius;
+        let gap = distance * (1.0 - FAR_ROUNDING) - self.radius;
         if gap <= 0.0 {
             return SolidAngle { value: 0.0, error: Real::INFINITY };
         }
