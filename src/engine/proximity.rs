@@ -4,7 +4,7 @@
 //! `out`. [`Engine`] holds the part that each engine implements itself.
 use crate::answer::{Contact, Derivative, LinkProximity, MeshError, ProximityError};
 use crate::mesh::Mesh;
-use crate::pair::{PlacedLink, PlacedRobot, contact, contacts};
+use crate::pair::{PlacedLink, PlacedRobot, contact, contacts, derivative};
 use crate::query::contacts::ContactQuery;
 use crate::query::{check_bound, check_margin, check_not_negative};
 use crate::robot::Chain;

@@ -14,7 +14,7 @@ use crate::engine::Proximity;
 use crate::motion::Motion;
 use crate::pair::PlacedRobot;
 use crate::query::check_decision;
-use crate::query::proof::{Kind, PlaneSearch, Shape, motion_proof, write_proof};
+use crate::query::proof::{Kind, PlaneSearch, Shape, motion_proof, tube_shape, write_proof};
 use crate::refine::PlacedTube;
 use crate::robot::Chain;
 use fearless_simd::Level;
