@@ -11,8 +11,7 @@
 //! Two flat caps, and a flat cap deep in the other link, have no closed form here;
 //! [`LinkPair`](super::link_pair::LinkPair) measures them.
 
-use super::axial::unit;
-use super::foot::AxisFoot;
+use super::axial::{AxisFoot, unit};
 use super::link_triangle::closest;
 use crate::distance::depth::{LinkLink, SolidLink};
 use crate::distance::{Vec3, segment_segment};

@@ -4,12 +4,10 @@ mod bending;
 mod displacement_bound;
 #[cfg(test)]
 mod displacement_bound_tests;
-mod drift;
 mod linear;
 mod motion_path;
 mod moving_base;
 mod rigid;
-mod rigid_path;
 mod sampled_shape;
 mod section_signature;
 mod shape_path;
@@ -17,20 +15,18 @@ mod shape_path;
 mod tests;
 mod verify;
 
+use crate::curve::Tube;
+use crate::robot::{COORDINATE_LIMIT, NotRigid, RobotError, rigid};
 pub use bending::{BendingMotion, BendingRates, bending_displacement, bending_speed};
 pub use displacement_bound::DisplacementBound;
-pub(crate) use drift::MotionDrift;
 pub use linear::LinearMotion;
 pub use motion_path::MotionPath;
 pub use moving_base::MovingBase;
+use parry3d_f64::math::{Pose, Real};
 pub use rigid::RigidMotion;
-pub(crate) use section_signature::SectionSignature;
+pub(crate) use section_signature::{MotionDrift, SectionSignature};
 pub(crate) use shape_path::ShapePath;
 pub use verify::verify_motion;
-
-use crate::curve::Tube;
-use crate::robot::{COORDINATE_LIMIT, NotRigid, RobotError, rigid};
-use parry3d_f64::math::{Pose, Real};
 
 /// A motion: the robot's shape and pose at each time t from 0 to 1, with an upper bound on its
 /// speed.

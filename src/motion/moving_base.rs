@@ -28,7 +28,7 @@
 //! 5. p0 is known from the nearest of the three shapes and the displacement since then. The error
 //!    of p0 counts s times.
 
-use super::rigid_path::RigidPath;
+use super::rigid::RigidPath;
 use super::{DisplacementBound, Motion, Speed, rigid_pose};
 use crate::curve::Tube;
 use crate::distance::Scalar;
