@@ -2,7 +2,7 @@
 //!
 //! # Definitions
 //! - `p(t)`: a point in the frame of the base; `p'`: its velocity there, bounded by the motion.
-//! - The frame moves along a path (`rigid_path`): it turns about the axis a by the angle w in total
+//! - The frame moves along a path (`rigid`): it turns about the axis a by the angle w in total
 //!   and moves by v. R is its rotation.
 //!
 //! # Speed

@@ -39,7 +39,7 @@
 //!
 //! # Cost
 //! - A minimum is kept at once if no kept minimum has a similar normal.
-//! - From any other one the wall is flooded (`flood`) over passes below `d(C) + p`, corners first.
+//! - From any other one the wall is flooded ([`Flood`]) over passes below `d(C) + p`, corners first.
 //!   The flood ends at a minimum that represents it. Mostly that minimum is a few triangles away.
 //! - Reached pieces stay joined, because the distances rise. So no triangle is flooded twice, and a
 //!   later flood continues at the rim of an earlier one.
