@@ -4,7 +4,6 @@ mod cap_persistence;
 mod constant_curvature;
 mod curve;
 mod direction_at_end;
-mod faces;
 mod fit;
 mod frames;
 mod from_chain;
@@ -23,22 +22,20 @@ mod tests;
 mod tube_builder;
 mod turns;
 mod uncertainty;
-mod verify;
 
+use crate::robot::{Cap, RobotError, direction, radius_for_all};
 pub(crate) use cap_persistence::{CapPersistence, Drift};
 pub(crate) use constant_curvature::check_bending;
 pub use constant_curvature::{BendingSection, ConstantCurvature};
-pub use function::TubeSection;
-use function::check_sections;
-pub(crate) use section::{EndFace, Section};
-pub(crate) use turns::{TooSharp, TubeTurns};
-
-use crate::robot::{Cap, RobotError, direction, radius_for_all};
 pub(crate) use curve::CurveBound;
 use curve::{Curve, Foot, PlaceOnCurve};
+pub use function::TubeSection;
+use function::check_sections;
 use parry3d_f64::math::{Real, Vector};
 use sample_clusters::SampleCluster;
+pub(crate) use section::{EndFace, Section};
 use section_samples::Hat;
+pub(crate) use turns::{TooSharp, TubeTurns};
 
 /// A continuum robot as a curve: all discs across a smooth centreline, with one radius per section.
 ///
