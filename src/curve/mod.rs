@@ -23,19 +23,20 @@ mod tube_builder;
 mod turns;
 mod uncertainty;
 
-use crate::robot::{Cap, RobotError, direction, radius_for_all};
 pub(crate) use cap_persistence::{CapPersistence, Drift};
 pub(crate) use constant_curvature::check_bending;
 pub use constant_curvature::{BendingSection, ConstantCurvature};
-pub(crate) use curve::CurveBound;
-use curve::{Curve, Foot, PlaceOnCurve};
 pub use function::TubeSection;
 use function::check_sections;
+pub(crate) use section::{EndFace, Section};
+pub(crate) use turns::{TooSharp, TubeTurns};
+
+use crate::robot::{Cap, RobotError, direction, radius_for_all};
+pub(crate) use curve::CurveBound;
+use curve::{Curve, Foot, PlaceOnCurve};
 use parry3d_f64::math::{Real, Vector};
 use sample_clusters::SampleCluster;
-pub(crate) use section::{EndFace, Section};
 use section_samples::Hat;
-pub(crate) use turns::{TooSharp, TubeTurns};
 
 /// A continuum robot as a curve: all discs across a smooth centreline, with one radius per section.
 ///

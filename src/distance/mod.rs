@@ -47,32 +47,32 @@ mod triangle_modified_cylinder;
 mod unfused;
 mod vec3;
 
-pub use disc_disc::disc_disc;
 pub(crate) use disc_solver::{Convex, DiscSolver};
 pub(crate) use dispatch::dispatch;
-#[doc(hidden)]
-pub use double_double::DoubleDouble;
 pub(crate) use face::Face;
 pub(crate) use modified_cylinder_modified_cylinder::TwoLinks;
+pub(crate) use point_modified_cylinder::{Link, gives_direction};
+pub(crate) use scalar::Mask;
+pub(crate) use segment_segment::parameters as segment_parameters;
+pub(crate) use triangle_modified_cylinder::Axial;
+
+pub use disc_disc::disc_disc;
+/// Double-double numbers, for this project's own tests and studies.
+#[doc(hidden)]
+pub use double_double::DoubleDouble;
 pub use modified_cylinder_modified_cylinder::modified_cylinder_modified_cylinder;
 pub use plane_disc::plane_disc;
 pub use point_disc::point_disc;
 pub use point_modified_cylinder::point_modified_cylinder;
-pub(crate) use point_modified_cylinder::{Link, gives_direction};
 pub use point_triangle::point_triangle;
-pub(crate) use scalar::Mask;
 pub use scalar::Scalar;
 pub use segment_disc::segment_disc;
-pub(crate) use segment_segment::parameters as segment_parameters;
 pub use segment_segment::segment_segment;
 pub use segment_triangle::segment_triangle;
 pub use triangle_disc::triangle_disc;
-pub(crate) use triangle_modified_cylinder::Axial;
 pub use triangle_modified_cylinder::{triangle_capsule, triangle_modified_cylinder};
 pub(crate) use unfused::Unfused;
 pub use vec3::Vec3;
-
-/// Double-double numbers, for this project's own tests and studies.
 
 /// The distance between two shapes, and a pair of points that realises it.
 ///

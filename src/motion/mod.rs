@@ -15,18 +15,19 @@ mod shape_path;
 mod tests;
 mod verify;
 
-use crate::curve::Tube;
-use crate::robot::{COORDINATE_LIMIT, NotRigid, RobotError, rigid};
 pub use bending::{BendingMotion, BendingRates, bending_displacement, bending_speed};
 pub use displacement_bound::DisplacementBound;
 pub use linear::LinearMotion;
 pub use motion_path::MotionPath;
 pub use moving_base::MovingBase;
-use parry3d_f64::math::{Pose, Real};
 pub use rigid::RigidMotion;
 pub(crate) use section_signature::{MotionDrift, SectionSignature};
 pub(crate) use shape_path::ShapePath;
 pub use verify::verify_motion;
+
+use crate::curve::Tube;
+use crate::robot::{COORDINATE_LIMIT, NotRigid, RobotError, rigid};
+use parry3d_f64::math::{Pose, Real};
 
 /// A motion: the robot's shape and pose at each time t from 0 to 1, with an upper bound on its
 /// speed.
