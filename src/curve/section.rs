@@ -20,8 +20,8 @@
 //!    is certainly behind it by the computed depth minus `|e - p| a`.
 //! 2. `|e - p| > 2 r`.
 //!
-//! **Proof.** Radii do not grow from p to e, so each disc between them has at least the radius r. Consider the
-//! point of the centreline between p and e that is nearest to x.
+//! **Proof.** Radii do not grow from p to e, so each disc between them has at least the radius r.
+//! Consider the point of the centreline between p and e that is nearest to x.
 //!
 //! - An inner point: x lies in the plane of its disc, and no farther from its centre than from e.
 //!   So x lies in the disc.
@@ -35,7 +35,8 @@
 //!
 //! Otherwise the end is flat. That is right at any joint, since the tube is its discs.
 //!
-//! **Rounding.** If rounding makes an end round that is flat, the ball sticks out by that rounding at most.
+//! **Rounding.** If rounding makes an end round that is flat, the ball sticks out by that rounding
+//! at most.
 
 use super::Tube;
 use super::cap_persistence::CapPersistence;

@@ -16,10 +16,10 @@
 //!
 //! # Layers
 //! A link without its outermost layer is its core. A shape that touches the link does not touch the
-//! core. Without the layer of depth `t` the link is again a link: shorter by `t` at each flat end and
-//! thinner by `t`. For a shape that meets the surface, the nearest point of the core has exactly
-//! the normal of the link's surface there. At a rim that is met obliquely, the normal is off by
-//! about `t`.
+//! core. Without the layer of depth `t` the link is again a link: shorter by `t` at each flat end
+//! and thinner by `t`. For a shape that meets the surface, the nearest point of the core has
+//! exactly the normal of the link's surface there. At a rim that is met obliquely, the normal is
+//! off by about `t`.
 
 use super::axial::unit;
 use super::link_link::{self, Answer, DIRECTION, FINE_DIRECTION, TouchPoint};

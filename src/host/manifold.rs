@@ -20,8 +20,8 @@
 //! a cap inside the neighbour would catch on a wall along which the chain slides. So such a point
 //! is removed, but *only while the neighbour makes a contact at least as deep*.
 //!
-//! **Algorithm.** For all links that touch the same part of the wall, visit the points from the deepest. A point
-//! is removed if
+//! **Algorithm.** For all links that touch the same part of the wall, visit the points from the
+//! deepest. A point is removed if
 //!
 //! 1. its normal leans out over the end of the link at which it lies. (Sideways contacts stay, even
 //!    if two links lie on the same floor.)
@@ -32,9 +32,9 @@
 //! than their caps. The remaining points of a link count if the nearest of them is within the
 //! prediction.
 //!
-//! **Equal depths.** At a joint both links often touch equally deep, and rounding decides the order. Points at most
-//! `rounding` less deep than the deepest remaining one count as equally deep; the lowest link goes
-//! first. So the same points stay while the placement changes by rounding.
+//! **Equal depths.** At a joint both links often touch equally deep, and rounding decides the
+//! order. Points at most `rounding` less deep than the deepest remaining one count as equally deep;
+//! the lowest link goes first. So the same points stay while the placement changes by rounding.
 
 use super::dispatcher::{ContinuumDispatcher, check_scale, has_parts};
 use super::feature::SAME_POINT;

@@ -1,5 +1,5 @@
-//! A tube of constant shape that moves: a frame that moves from one pose to another, and how fast it
-//! carries a curve.
+//! A tube of constant shape that moves: a frame that moves from one pose to another, and how fast
+//! it carries a curve.
 //!
 //! # Definitions
 //! The frame turns at constant speed about an axis a that is fixed in it, by the angle w in total.

@@ -43,10 +43,11 @@
 //!   vanishes: from a point of one across the axis of the other.
 //!
 //! **Rounding.** None of these directions is a difference of points that nearly touch, unless the
-//! radius is small too. Each errs by about 2^-100, as its features do, for every `d`. The difference
-//! `w` of numbers that err by `e = 2^-100` errs by `e / d` in direction, which costs `e / d` of the
-//! extent. So `w` is tried first, and the features only if `w` leaves the bounds more than 4 u of
-//! the extent apart. The best lower bound is returned. A direction that does not apply costs only time.
+//! radius is small too. Each errs by about 2^-100, as its features do, for every `d`. The
+//! difference `w` of numbers that err by `e = 2^-100` errs by `e / d` in direction, which costs `e
+//! / d` of the extent. So `w` is tried first, and the features only if `w` leaves the bounds more
+//! than 4 u of the extent apart. The best lower bound is returned. A direction that does not apply
+//! costs only time.
 //!
 //! # Two links in contact
 //! If the links meet, the lower bound is 0. The upper bound is how far the common point lies

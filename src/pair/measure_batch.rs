@@ -2,8 +2,8 @@
 //! [`PlacedLink::measure`] on every instruction set.
 //!
 //! - [`Best::measure_batch`]: several triangles against one link. Keeps the closest.
-//! - [`rank_each`]: triangles near a robot's links, each with its rank: the order in which pieces of
-//!   the wall appear when the bound grows.
+//! - [`rank_each`]: triangles near a robot's links, each with its rank: the order in which pieces
+//!   of the wall appear when the bound grows.
 
 use super::coordinates::{Nearest, Pair, Placed};
 use super::pair_lanes;

@@ -1,12 +1,13 @@
 //! Converts the 4x4 matrix of a registration or of a kinematic model to a pose, with checks.
 //!
 //! # Rigid poses
-//! Poses that keep lengths, and rotations that are equal on every machine. A rotation by the quaternion q multiplies lengths by `|q|^2`, so it is rigid only if `|q| = 1`.
+//! Poses that keep lengths, and rotations that are equal on every machine. A rotation by the
+//! quaternion q multiplies lengths by `|q|^2`, so it is rigid only if `|q| = 1`.
 //!
-//! **Rounding.** A unit quaternion rounded to single precision is off unit length by at most 2^-24. A product of
-//! a few such quaternions is off by a small multiple. So a deviation up to 2^-20 counts as rounding
-//! and q is normalised. A larger deviation has no clear meaning and is refused. Chains, tubes and
-//! motions all use this rule.
+//! **Rounding.** A unit quaternion rounded to single precision is off unit length by at most 2^-24.
+//! A product of a few such quaternions is off by a small multiple. So a deviation up to 2^-20
+//! counts as rounding and q is normalised. A larger deviation has no clear meaning and is refused.
+//! Chains, tubes and motions all use this rule.
 
 use super::scale::length;
 use crate::distance::Scalar;

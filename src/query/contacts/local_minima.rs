@@ -76,8 +76,8 @@
 //! # Cost
 //! A triangle queries all triangles that share a corner or an edge with it: whether one is nearer
 //! by far or culled, and which came first. The answers are the same for the whole ring, so a long
-//! ring is evaluated once (`wall_components`). So the cost grows linearly with the triangles near a link
-//! and around their corners.
+//! ring is evaluated once (`wall_components`). So the cost grows linearly with the triangles near a
+//! link and around their corners.
 //!
 //! # Overlap
 //! Where link and wall overlap, d = 0. A piece is then a connected piece of wall inside the link,

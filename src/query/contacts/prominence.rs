@@ -39,8 +39,9 @@
 //!
 //! # Cost
 //! - A minimum is kept at once if no kept minimum has a similar normal.
-//! - From any other one the wall is flooded ([`Flood`]) over passes below `d(C) + p`, corners first.
-//!   The flood ends at a minimum that represents it. Mostly that minimum is a few triangles away.
+//! - From any other one the wall is flooded ([`Flood`]) over passes below `d(C) + p`, corners
+//!   first. The flood ends at a minimum that represents it. Mostly that minimum is a few triangles
+//!   away.
 //! - Reached pieces stay joined, because the distances rise. So no triangle is flooded twice, and a
 //!   later flood continues at the rim of an earlier one.
 //! - A corner is measured once, when a triangle that has it is reached, in waves, so that packs are

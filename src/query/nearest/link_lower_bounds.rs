@@ -20,10 +20,11 @@
 //! `extent + m`; the factor `1 + ROUNDING` covers m.
 //!
 //! # Look-ahead
-//! [`LookAhead`] decides how much farther than its bound a query searches, so that later queries can
-//! reuse its lower bounds. A slightly wider search costs slightly more. The width follows from the robot's displacement
-//! since the last query. The controller compares the measured cost of queries with and without
-//! look-ahead. If look-ahead does not pay, it pauses; each failure doubles the pause.
+//! [`LookAhead`] decides how much farther than its bound a query searches, so that later queries
+//! can reuse its lower bounds. A slightly wider search costs slightly more. The width follows from
+//! the robot's displacement since the last query. The controller compares the measured cost of
+//! queries with and without look-ahead. If look-ahead does not pay, it pauses; each failure doubles
+//! the pause.
 //!
 //! - *baseline cost*: nodes and leaves that a query without look-ahead visits, as a running mean.
 //! - *trial*: a run of consecutive queries with look-ahead.

@@ -1,5 +1,5 @@
-//! A proof as text, in the format of the book's page on proofs; and its premises about each shape of
-//! the robot ([`Shape`]).
+//! A proof as text, in the format of the book's page on proofs; and its premises about each shape
+//! of the robot ([`Shape`]).
 
 use super::plane_search::{ProofBody, Step};
 use crate::answer::Proof;

@@ -76,8 +76,8 @@
 //! - The evaluation takes at most 22 u of the first term and 38 u of the second:
 //!   `22 A + 4.74 x 38 A`.
 //!
-//! The total is less than [`FAR_ROUNDING`] `m (A + r^2)`. The sums of areas and squares have positive
-//! terms only. They err by less than the same share of `A + r^2`, and of `r^2` times it.
+//! The total is less than [`FAR_ROUNDING`] `m (A + r^2)`. The sums of areas and squares have
+//! positive terms only. They err by less than the same share of `A + r^2`, and of `r^2` times it.
 //!
 //! All lengths are scaled by the power of two that brings the mesh to size one. So their powers
 //! stay in range.
