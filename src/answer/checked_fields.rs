@@ -1,11 +1,11 @@
 //! Serialisation of answers: fields are written as they are, and checked when they are read.
 
-/// Defines the serde form of an answer: its fields, under the written name. `$check` returns an
-/// error for fields that no query returns.
+/// Defines the serde form of an answer in the module `$module`: its fields, under the written name.
+/// `$check` returns an error for fields that no query returns.
 macro_rules! checked_fields {
-    ($written:literal, $name:ident { $($(#[$of_field:meta])* $field:ident: $type:ty),+ $(,)? }, $check:expr) => {
+    ($module:ident, $written:literal, $name:ident { $($(#[$of_field:meta])* $field:ident: $type:ty),+ $(,)? }, $check:expr) => {
         #[cfg(feature = "serde-serialize")]
-        mod serialised {
+        mod $module {
             use super::*;
 
             #[derive(serde::Serialize, serde::Deserialize)]

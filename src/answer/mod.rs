@@ -1,54 +1,24 @@
 //! Results and errors: plain data, in the mesh's frame and unit. Nothing here computes.
 
-mod certificate;
+mod chain;
 mod checked_fields;
-mod clearance;
-mod contact;
-mod decision;
-mod derivative;
+mod engine;
 mod error;
-mod feature;
-mod inside_answer;
-mod link_proximity;
-mod motion_answer;
-mod motion_clearance;
-mod pair_witness;
-mod proof;
-mod robot_clearance;
-mod robot_motion_answer;
-mod robot_proximity;
-mod robots_in_contact;
-mod scene_answers;
-mod scene_error;
-mod shape_in_contact;
-mod side;
-mod tube_piece;
+mod motion;
+mod robots;
+mod scene;
+mod tube;
 mod witness;
-mod work;
 
-pub use certificate::Certificate;
-pub use clearance::Clearance;
-pub use contact::Contact;
-pub use decision::{Decision, UndecidedReason};
-pub use derivative::Derivative;
+pub use chain::{
+    Certificate, Contact, ContactFeature, Derivative, LinkFeature, LinkProximity, TriangleFeature,
+};
+pub use engine::{InsideAnswer, Proof, Side, Work};
 pub use error::{MeshError, PlacementFault, ProximityError};
-pub use feature::{ContactFeature, LinkFeature, TriangleFeature};
 #[cfg(feature = "gpu")]
 pub use gpu_batch::DeviceFailure;
-pub use inside_answer::InsideAnswer;
-pub use link_proximity::LinkProximity;
-pub use motion_answer::MotionAnswer;
-pub use motion_clearance::MotionClearance;
-pub use pair_witness::PairWitness;
-pub use proof::Proof;
-pub use robot_clearance::RobotClearance;
-pub use robot_motion_answer::RobotMotionAnswer;
-pub use robot_proximity::RobotProximity;
-pub use robots_in_contact::RobotsInContact;
-pub use scene_answers::{Between, SceneContact, StructureProximity, Tightest};
-pub use scene_error::SceneError;
-pub use shape_in_contact::ShapeInContact;
-pub use side::Side;
-pub use tube_piece::TubePiece;
-pub use witness::Witness;
-pub use work::Work;
+pub use motion::{MotionAnswer, MotionClearance, ShapeInContact};
+pub use robots::{RobotClearance, RobotMotionAnswer, RobotProximity, RobotsInContact};
+pub use scene::{Between, SceneContact, SceneError, StructureProximity, Tightest};
+pub use tube::{Clearance, Decision, TubePiece, UndecidedReason};
+pub use witness::{PairWitness, Witness};

@@ -4,7 +4,6 @@ mod cap_persistence;
 mod constant_curvature;
 mod curve;
 mod direction_at_end;
-mod faces;
 mod fit;
 mod frames;
 mod from_chain;
@@ -23,7 +22,6 @@ mod tests;
 mod tube_builder;
 mod turns;
 mod uncertainty;
-mod verify;
 
 pub(crate) use cap_persistence::{CapPersistence, Drift};
 pub(crate) use constant_curvature::check_bending;

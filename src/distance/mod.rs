@@ -21,7 +21,6 @@
 
 #[cfg(any(test, feature = "laboratory"))]
 mod at_level;
-mod bounds;
 pub(crate) mod depth;
 mod disc_disc;
 mod disc_solver;

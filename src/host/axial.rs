@@ -11,8 +11,12 @@
 //!    gives the same bits.
 //! 3. The axis is normalised by its own power of two, so a short link seen from far away keeps its
 //!    direction.
+//!
+//! [`AxisFoot`], the foot of a contact on the axis, decides whether the contact of the link equals
+//! the contact of its capsule: see `distance/depth/foot.rs`.
 
 use crate::distance::Scalar;
+use crate::distance::depth::to_flat;
 pub(super) use crate::distance::depth::{perpendicular, unit, unit_across};
 use crate::robot::ModifiedCylinder;
 use parry3d_f64::math::{Real, Vector};
@@ -64,5 +68,19 @@ impl AxialFrame {
     /// Converts a length or an offset of the frame to the caller's unit.
     pub fn restore<T: std::ops::Mul<Real, Output = T>>(&self, scaled: T) -> T {
         scaled * self.up * 2.0
+    }
+}
+
+/// A point of a link's axis.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct AxisFoot {
+    /// Distance along the axis to the nearest flat end; infinite if both ends are round.
+    pub to_flat: Real,
+}
+
+impl AxisFoot {
+    pub fn new(link: &ModifiedCylinder, on_axis: Vector) -> Self {
+        let axis = axis_or_x(link);
+        Self { to_flat: to_flat(on_axis - link.start(), link.end() - on_axis, axis, link.flat()) }
     }
 }

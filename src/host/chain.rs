@@ -11,7 +11,7 @@
 //!
 //! Whether a point is inside is exact everywhere. Contact manifolds treat the chain as one surface:
 //! a cap makes no contacts where a neighbour covers it and makes them (see
-//! [`inner_points`](super::inner_points)).
+//! [`manifold`](super::manifold)).
 
 use super::mass;
 use crate::robot::length;

@@ -16,25 +16,22 @@
 
 use super::composite::CompositePair;
 use super::convex::ConvexPair;
-use super::decomposition::{Decomposition, has_parts};
 use super::height_field::{self, HeightFieldPair};
 use super::iterated::IteratedPair;
-use super::link_cast;
 use super::link_pair::LinkPair;
 use super::link_triangle::LinkTrianglePair;
 use super::range::{self, check_margin, check_pose, in_range};
 use super::robot_halfspace::RobotHalfSpace;
 use super::robot_surface::{RobotSurface, links_of};
-use super::straight_cast;
 use super::strict_dispatcher::StrictDispatcher;
 use super::thin_shape::ThinShape;
-use super::voxels;
+use super::{link_cast, straight_cast, voxels};
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::query::{
     ClosestPoints, Contact, DefaultQueryDispatcher, NonlinearRigidMotion, QueryDispatcher,
     ShapeCastHit, ShapeCastOptions, ShapeDistance, ShapeIntersection, Unsupported, details,
 };
-use parry3d_f64::shape::Shape;
+use parry3d_f64::shape::{CompositeShape, HeightField, Shape, Voxels};
 
 /// Answers parry's queries for links and chains, and passes all other pairs to `L`.
 ///
@@ -483,4 +480,60 @@ impl<L> ContinuumDispatcher<L> {
         let is_robot = links_of(g1).or(links_of(g2)).is_some();
         if is_robot && !range::is_iterated(pos12, g1, g2) { Err(Unsupported) } else { Ok(&self.0) }
     }
+}
+
+/// Which shape of a pair is split.
+enum Decomposition<'a> {
+    /// The first shape is a composite: a chain, a mesh, a polyline, a compound.
+    Composite(&'a (dyn CompositeShape + Sync)),
+    /// The first shape is a height field.
+    Field(&'a HeightField),
+    /// The first shape is made of voxels.
+    Voxels(&'a Voxels),
+    /// Only the second shape has parts.
+    OfSecond,
+    /// Neither shape has parts.
+    None,
+}
+
+impl<'a> Decomposition<'a> {
+    /// Splits the first shape first.
+    ///
+    /// # Errors
+    /// As [`check_scale`].
+    pub fn of(g1: &'a dyn Shape, g2: &'a dyn Shape) -> Result<Self, Unsupported> {
+        check_scale(g1)?;
+        check_scale(g2)?;
+        Ok(if let Some(composite) = g1.as_composite_shape() {
+            Self::Composite(composite)
+        } else if let Some(field) = g1.as_heightfield() {
+            Self::Field(field)
+        } else if let Some(voxels) = g1.as_voxels() {
+            Self::Voxels(voxels)
+        } else if has_parts(g2) {
+            Self::OfSecond
+        } else {
+            Self::None
+        })
+    }
+}
+
+/// Checks that parry finds the cells of a shape.
+///
+/// # Errors
+/// [`Unsupported`] for height fields and voxels that a negative scale mirrors. parry searches their
+/// cells from a box's upper corner to its lower one, where there are none.
+pub(super) fn check_scale(shape: &dyn Shape) -> Result<(), Unsupported> {
+    let scale = shape
+        .as_heightfield()
+        .map(HeightField::scale)
+        .or_else(|| shape.as_voxels().map(Voxels::voxel_size));
+    if scale.is_some_and(|scale| scale.min_element() < 0.0) { Err(Unsupported) } else { Ok(()) }
+}
+
+/// Returns whether `shape` has parts.
+pub(super) fn has_parts(shape: &dyn Shape) -> bool {
+    shape.as_composite_shape().is_some()
+        || shape.as_heightfield().is_some()
+        || shape.as_voxels().is_some()
 }

@@ -6,13 +6,12 @@
 //!    the other's axis, which the distance kernel treats as a triangle without area. Subtract the
 //!    other's radius.
 //!
-//! [`foot`](super::foot) derives where this is exact. If the axes of two round links are so close
-//! that their nearest points give no direction, [`depth`](crate::distance::depth) gives the normal.
-//! Two flat caps, and a flat cap deep in the other link, have no closed form here;
+//! `distance/depth/foot.rs` derives where this is exact. If the axes of two round links are so
+//! close that their nearest points give no direction, [`depth`](crate::distance::depth) gives the
+//! normal. Two flat caps, and a flat cap deep in the other link, have no closed form here;
 //! [`LinkPair`](super::link_pair::LinkPair) measures them.
 
-use super::axial::unit;
-use super::foot::AxisFoot;
+use super::axial::{AxisFoot, unit};
 use super::link_triangle::closest;
 use crate::distance::depth::{LinkLink, SolidLink};
 use crate::distance::{Vec3, segment_segment};

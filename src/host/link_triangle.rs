@@ -19,8 +19,7 @@
 //!    `distance/depth/separation.rs`, which contain the least translation. Moved apart by it, the
 //!    two touch; the touching points are the contact's points.
 
-use super::axial::{power_of_two, unit};
-use super::foot::AxisFoot;
+use super::axial::{AxisFoot, power_of_two, unit};
 pub(super) use crate::distance::depth::face_normal;
 use crate::distance::depth::{self, ROUNDING};
 use crate::distance::{Link, Vec3, segment_triangle, triangle_modified_cylinder};

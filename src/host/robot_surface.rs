@@ -5,13 +5,14 @@
 //! the two shapes at the end.
 
 use super::link_triangle::{self, LinkContact};
-use super::mesh_search::{SearchGoal, search};
 use super::range::in_range;
-use crate::pair::{Nearest, PlacedLink};
+use crate::pair::{Best, Nearest, PlacedLink};
 use crate::robot::{Chain, ModifiedCylinder};
 use parry3d_f64::math::{Pose, Real, Vector};
+use parry3d_f64::partitioning::BvhLeafCost;
 use parry3d_f64::query::{ClosestPoints, Contact, ShapeDistance, ShapeIntersection, Unsupported};
 use parry3d_f64::shape::{Shape, TriMesh, Triangle};
+use std::cell::Cell;
 
 /// Returns the links of a robot: a chain or a single link.
 pub(super) fn links_of(shape: &dyn Shape) -> Option<&[ModifiedCylinder]> {
@@ -244,4 +245,65 @@ impl<'a> RobotSurface<'a> {
 /// Returns the search bound for a margin. A negative margin asks for overlap, so its bound is 0.
 fn within(margin: Real) -> Result<Real, Unsupported> {
     if margin.is_nan() { Err(Unsupported) } else { Ok(margin.max(0.0)) }
+}
+
+/// The error for a visited triangle with a vertex that is NaN or infinite.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct TriangleNotFinite;
+
+/// When a search ends.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum SearchGoal {
+    /// When the nearest triangle is known.
+    Nearest,
+    /// When some triangle is nearer than the bound.
+    FirstWithinBound,
+}
+
+/// Returns the triangle nearest to the link among those strictly nearer than `bound`.
+///
+/// Visits nearer boxes first and prunes boxes at least as far as the best triangle so far.
+///
+/// # Errors
+/// A visited triangle is not finite.
+pub(super) fn search(
+    mesh: &TriMesh,
+    link: &PlacedLink,
+    bound: Real,
+    until: SearchGoal,
+) -> Result<Option<Nearest>, TriangleNotFinite> {
+    let all_finite = Cell::new(true);
+    let found = mesh.bvh().find_best(
+        bound,
+        |node, _| link.distance_to_box(node.mins(), node.maxs()),
+        |triangle, bound| {
+            let vertices = mesh.triangle(triangle).vertices().to_owned();
+            if !vertices.iter().all(|vertex| vertex.is_finite()) {
+                all_finite.set(false);
+                return None;
+            }
+            let mut best = Best::within(bound);
+            best.measure(link, triangle, vertices);
+            let nearest = best.nearest()?;
+            // A cost of 0 prunes everything else.
+            let cost = if until == SearchGoal::FirstWithinBound { 0.0 } else { nearest.distance };
+            Some(LeafCost { cost, nearest })
+        },
+    );
+    if all_finite.get() {
+        Ok(found.map(|(_, candidate)| candidate.nearest))
+    } else {
+        Err(TriangleNotFinite)
+    }
+}
+
+struct LeafCost {
+    cost: Real,
+    nearest: Nearest,
+}
+
+impl BvhLeafCost for LeafCost {
+    fn cost(&self) -> Real {
+        self.cost
+    }
 }

@@ -1,18 +1,14 @@
 //! The triangles of a mesh in the form that every engine stores.
 
-mod checks;
 mod engine_mesh;
 mod search_frame;
 mod shared_parts;
 mod triangle_block;
-mod union_find;
 
-pub(crate) use checks::{check_triangle, check_vertex, in_range};
-pub(crate) use engine_mesh::Mesh;
+pub(crate) use engine_mesh::{Mesh, check_triangle, check_vertex, in_range};
 pub(crate) use search_frame::{SearchFrame, round};
 pub(crate) use shared_parts::{PART_WITHOUT, PARTS, SharedParts, ends_of};
 pub(crate) use triangle_block::{
     BLOCK, first_of_face, load, load_vertices, place_face, place_points, place_triangle, rotated,
     splat, store,
 };
-pub(crate) use union_find::{find_root, unite};

@@ -4,12 +4,10 @@ mod bending;
 mod displacement_bound;
 #[cfg(test)]
 mod displacement_bound_tests;
-mod drift;
 mod linear;
 mod motion_path;
 mod moving_base;
 mod rigid;
-mod rigid_path;
 mod sampled_shape;
 mod section_signature;
 mod shape_path;
@@ -19,12 +17,11 @@ mod verify;
 
 pub use bending::{BendingMotion, BendingRates, bending_displacement, bending_speed};
 pub use displacement_bound::DisplacementBound;
-pub(crate) use drift::MotionDrift;
 pub use linear::LinearMotion;
 pub use motion_path::MotionPath;
 pub use moving_base::MovingBase;
 pub use rigid::RigidMotion;
-pub(crate) use section_signature::SectionSignature;
+pub(crate) use section_signature::{MotionDrift, SectionSignature};
 pub(crate) use shape_path::ShapePath;
 pub use verify::verify_motion;
 

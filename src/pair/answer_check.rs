@@ -1,11 +1,14 @@
-//! Checks whether an answer belongs to a link and a triangle as they are now. The mesh may have
-//! moved since, or may be another mesh.
+//! The checks of a robot and its pose that every engine makes; and whether an answer belongs to a
+//! link and a triangle, or to two links, as they are now. The mesh or the robots may have moved
+//! since, or may be others.
 
-use super::nearest::Nearest;
+use super::coordinates::Nearest;
 use super::placed_link::PlacedLink;
-use crate::answer::{LinkProximity, ProximityError};
+use crate::answer::{LinkProximity, ProximityError, RobotProximity};
 use crate::distance::Scalar;
-use parry3d_f64::math::{Real, Vector};
+use crate::mesh::{check_triangle, check_vertex, in_range};
+use crate::robot::{COORDINATE_LIMIT, Chain, LinkNode, ModifiedCylinder, NotRigid, rigid};
+use parry3d_f64::math::{Pose, Real, Vector};
 
 /// The tolerance, relative to the largest coordinate plus the extent.
 ///
@@ -68,26 +71,182 @@ impl LinkProximity {
         let largest =
             points.iter().fold(0.0, |most: Real, point| most.max(point.abs().max_element()));
         let limit = ROUNDED * (largest + link.extent_with(corners));
-        let check = |field, off: Real| {
-            // Written so that NaN does not fit.
-            if off <= limit {
-                return Ok(());
-            }
-            let (link, triangle) = (self.link as usize, self.witness.triangle as usize);
-            Err(ProximityError::AnswerDoesNotFit { link, triangle, field, off, limit })
-        };
-        // Points beyond the reach of link and triangle are refused here: measuring them could
-        // overflow.
+        let (link_number, triangle) = (self.link as usize, self.witness.triangle as usize);
+        let check = check_within(limit, |field, off| ProximityError::AnswerDoesNotFit {
+            link: link_number,
+            triangle,
+            field,
+            off,
+            limit,
+        });
         let reach = 2.0 * (largest + link.radius());
         for (field, point) in [("on_mesh", on_mesh), ("on_robot", on_robot)] {
-            if !point.abs().cmple(Vector::splat(reach)).all() {
-                check(field, (point - link.start()).abs().max_element())?;
-            }
+            check_reach(&check, field, point, link, reach)?;
         }
         let ball = PlacedLink::between(on_mesh, on_mesh, 0.0, [false; 2]);
         check("on_mesh", ball.measure(0, corners).distance)?;
         check("on_robot", link.measure(0, [on_robot; 3]).distance)?;
         check("distance", (ball.measure(0, [on_robot; 3]).distance - distance).abs())?;
         check("distance", (measured - distance).abs())
+    }
+}
+
+impl RobotProximity {
+    /// Checks this answer against two links: each point lies in its link, and `distance` is the
+    /// distance both of the two points and of the two links.
+    ///
+    /// # Errors
+    /// The answer does not fit.
+    pub(super) fn check_answer(&self, links: [PlacedLink; 2]) -> Result<(), ProximityError> {
+        let [first, second] = &links;
+        let measured = first.measure_link(second);
+        // Every query returns the measured result, bit for bit.
+        if self.distance == measured.distance
+            && self.witness.on_first == measured.on_first
+            && self.witness.on_second == measured.on_second
+        {
+            return Ok(());
+        }
+        let far = links.iter().flat_map(|link| [link.start(), link.end()]);
+        let far = far.fold(0.0, |most: Real, point| most.max(point.abs().max_element()));
+        let reach = far + first.radius().max(second.radius());
+        // The extent is at most the reach of the links on either side.
+        let limit = ROUNDED * (far + 2.0 * reach);
+        let links_of_answer = self.links;
+        let check = check_within(limit, |field, off| ProximityError::LinksDoNotFit {
+            links: links_of_answer,
+            field,
+            off,
+            limit,
+        });
+        let points = [self.witness.on_first, self.witness.on_second];
+        for ((field, point), link) in ["on_first", "on_second"].into_iter().zip(points).zip(&links)
+        {
+            check_reach(&check, field, point, link, 2.0 * reach)?;
+            let ball = PlacedLink::between(point, point, 0.0, [false; 2]);
+            check(field, ball.measure_link(link).distance)?;
+        }
+        let [from, to] = points.map(|point| PlacedLink::between(point, point, 0.0, [false; 2]));
+        check("distance", (from.measure_link(&to).distance - self.distance).abs())?;
+        check("distance", (measured.distance - self.distance).abs())
+    }
+}
+
+/// Returns the check of one field of an answer: `off`, by which the field is wrong, is at most
+/// `limit`. `refuse` makes the error.
+fn check_within(
+    limit: Real,
+    refuse: impl Fn(&'static str, Real) -> ProximityError,
+) -> impl Fn(&'static str, Real) -> Result<(), ProximityError> {
+    // NaN does not fit.
+    move |field, off| if off <= limit { Ok(()) } else { Err(refuse(field, off)) }
+}
+
+/// Refuses a point with a coordinate beyond `reach`, the reach of the shapes: measuring it could
+/// overflow.
+fn check_reach(
+    check: impl Fn(&'static str, Real) -> Result<(), ProximityError>,
+    field: &'static str,
+    point: Vector,
+    link: &PlacedLink,
+    reach: Real,
+) -> Result<(), ProximityError> {
+    if point.abs().cmple(Vector::splat(reach)).all() {
+        return Ok(());
+    }
+    check(field, (point - link.start()).abs().max_element())
+}
+
+/// Returns the link of an answer, in the robot's frame.
+///
+/// # Errors
+/// The robot has no such link.
+pub(super) fn link_of<'a>(
+    answer: &LinkProximity,
+    robot: &'a Chain,
+) -> Result<&'a ModifiedCylinder, ProximityError> {
+    let (link, links) = (answer.link as usize, robot.links());
+    links.get(link).ok_or(ProximityError::NoSuchLink { link, links: links.len() })
+}
+
+/// Returns the link of an answer, in the mesh's frame.
+///
+/// # Errors
+/// The robot has no such link; the pose is not finite or not rigid; or the pose moves the link out
+/// of range.
+pub(crate) fn transformed_link(
+    answer: &LinkProximity,
+    robot: &Chain,
+    pose: &Pose,
+) -> Result<ModifiedCylinder, ProximityError> {
+    let link = link_of(answer, robot)?.transformed(&rigid_pose(pose)?);
+    check_ends(answer.link as usize, [link.start(), link.end()])?;
+    Ok(link)
+}
+
+/// Returns the link of an answer, placed in the mesh's frame.
+///
+/// # Errors
+/// As [`transformed_link`].
+pub(crate) fn placed_link(
+    answer: &LinkProximity,
+    robot: &Chain,
+    pose: &Pose,
+) -> Result<PlacedLink, ProximityError> {
+    Ok(PlacedLink::of(&transformed_link(answer, robot, pose)?))
+}
+
+/// Returns the vertices of an answer's triangle.
+///
+/// # Errors
+/// The mesh has no such triangle or lacks one of its vertices, or a vertex is not finite or out of
+/// range.
+pub(crate) fn corners(
+    vertices: &[Vector],
+    triangles: &[[u32; 3]],
+    triangle: usize,
+) -> Result<[Vector; 3], ProximityError> {
+    let missing = ProximityError::NoSuchTriangle { triangle, triangles: triangles.len() };
+    let indices = triangles.get(triangle).ok_or(missing)?;
+    check_triangle(triangle, indices, vertices.len())?;
+    let corners = indices.map(|index| vertices[index as usize]);
+    for (index, point) in indices.iter().zip(corners) {
+        check_vertex(*index as usize, point)?;
+    }
+    Ok(corners)
+}
+
+/// Returns the pose with a rotation of unit length. Every query places its robot by this pose.
+pub(crate) fn rigid_pose(pose: &Pose) -> Result<Pose, ProximityError> {
+    if !pose.is_finite() {
+        return Err(ProximityError::PoseNotFinite);
+    }
+    rigid(pose).map_err(|NotRigid { length }| ProximityError::PoseNotRigid { length })
+}
+
+/// Checks that a pose keeps every link within range. `ends` are base and tip in the mesh's frame.
+pub(crate) fn check_range(
+    robot: &Chain,
+    pose: &Pose,
+    [base, tip]: [Vector; 2],
+) -> Result<(), ProximityError> {
+    // The capsule around all links may prove the range without a test of each link.
+    if let Some(LinkNode::Inner { bound, .. }) = robot.link_tree().first()
+        && base.abs().max(tip.abs()).max_element() + bound.radius <= COORDINATE_LIMIT
+    {
+        return Ok(());
+    }
+    for (link, place) in robot.links().iter().enumerate() {
+        check_ends(link, [pose * place.start(), pose * place.end()])?;
+    }
+    Ok(())
+}
+
+/// Checks that the ends of a link, in the mesh's frame, are within range.
+pub(crate) fn check_ends(link: usize, ends: [Vector; 2]) -> Result<(), ProximityError> {
+    if ends.into_iter().all(in_range) {
+        Ok(())
+    } else {
+        Err(ProximityError::OutOfRange { link, limit: COORDINATE_LIMIT })
     }
 }

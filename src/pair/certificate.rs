@@ -1,23 +1,65 @@
 //! Certificates: proven bounds on the distance of an answer, in double-double arithmetic.
 //!
 //! # Definitions
-//! - **Upper bound**: the distance between a point of the link and a point of the triangle.
-//! - **Lower bound**: for a unit direction `n`, the least `<n, x>` over the link minus the largest
-//!   `<n, x>` over the triangle. A plane with the normal `n` separates the two by this amount.
+//! - **Upper bound**: the distance between a point of one shape and a point of the other, plus the
+//!   distances of the points from their shapes.
+//! - **Lower bound**: for a unit direction `n`, the least `<n, x>` over one shape minus the largest
+//!   `<n, x>` over the other. A plane with the normal `n` separates the two by this amount.
+//! - `w = p2 - p1`: the shortest vector between two links. `d = |w|`.
 //!
 //! # Claim
 //! Both bounds hold for all points and all `n`. A bad choice makes them wide, never wrong.
 //!
-//! # Choice of points and direction
+//! **Proof.** [`ExactLink`] computes the least `<n, x>` and the distance from a point for the
+//! numbers as given: a direction that is not exactly a unit vector, and a point that is rounded,
+//! are valid arguments. [`SLACK`] covers the rounding of the bounds.
+//!
+//! # Link and triangle: choice of points and direction
 //! The narrow phase at twice the precision supplies the points and `n`. The rounding of `n` would
 //! loosen the lower bound of links that nearly touch; here it is far below the precision of `f64`.
 //! Where it is not, because two candidates are equally near, the normals of the features (faces,
 //! edges, axis) are tried as well.
+//!
+//! # Two links: choice of direction
+//! If `d > 0`, `n = w / d` makes both bounds equal. If the shortest vector ends on a smooth part of
+//! a link, `n` is the normal there. The boundary of a link has five kinds of places, and each
+//! constrains `n`:
+//!
+//! | place | constraint on `n` |
+//! |---|---|
+//! | a flat face, without its rim | along the axis `a` |
+//! | the barrel | perpendicular to `a` |
+//! | a flat cap's rim | perpendicular to the tangent `a x (p - c)`, with the cap's centre `c` |
+//! | a round cap | along `p - c`, with the axis' end `c` |
+//! | a wire or its end, of radius 0 | as barrel or cap, with `p` on the axis |
+//!
+//! A face alone determines `n`, and so do two round caps. Otherwise two constraints do:
+//!
+//! - a barrel or a rim and a barrel or a rim: `n` is along the cross product of the two directions
+//!   that it is perpendicular to;
+//! - a round cap and a barrel: from the end `c`, across the other link's axis;
+//! - a round cap and a rim: from `c` to the rim's point, which is at least the cap's radius away;
+//! - parallel barrels, a rim and the barrel of its own tangent, and other pairs whose cross product
+//!   vanishes: from a point of one across the axis of the other.
+//!
+//! **Rounding.** None of these directions is a difference of points that nearly touch, unless the
+//! radius is small too. Each errs by about 2^-100, as its features do, for every `d`. The
+//! difference `w` of numbers that err by `e = 2^-100` errs by `e / d` in direction, which costs `e
+//! / d` of the extent. So `w` is tried first, and the features only if `w` leaves the bounds more
+//! than 4 u of the extent apart. The best lower bound is returned. A direction that does not apply
+//! costs only time.
+//!
+//! # Two links in contact
+//! If the links meet, the lower bound is 0. The upper bound is how far the common point lies
+//! outside of both links, by rounding.
 
-use super::answer_subject::{corners, link_of, placed_link};
-use super::exact_link::{CertifiedLink, ExactFrame, ExactLink, ExactPoint, Number, SLACK, largest};
-use crate::answer::{Certificate, LinkProximity, ProximityError};
-use crate::distance::{Scalar, Vec3, triangle_disc, triangle_modified_cylinder};
+use super::answer_check::{check_ends, corners, link_of, placed_link, rigid_pose};
+use super::placed_link::PlacedLink;
+use crate::answer::{Certificate, LinkProximity, ProximityError, RobotProximity};
+use crate::distance::{
+    DoubleDouble, Link, Scalar, TwoLinks, Vec3, gives_direction, triangle_disc,
+    triangle_modified_cylinder,
+};
 use crate::mesh::check_vertex;
 use crate::robot::{Chain, ModifiedCylinder, distance_to_segment};
 use parry3d_f64::math::{Pose, Real, Vector};
@@ -169,13 +211,7 @@ impl ExactLinkTriangle {
             .map(|candidate| self.apart((candidate.point2 - candidate.point1).normalised()))
             .into_iter()
             .fold(Number::ZERO, Scalar::max);
-        let upper = between + off;
-        // The difference of points that nearly touch is less precise than the directions of their
-        // features.
-        let is_tight = (upper - lower).le((2.0 * f64::EPSILON).into());
-        let lower =
-            if is_tight { lower } else { self.apart_by_features().fold(lower, Scalar::max) };
-        (lower - SLACK.into(), upper + SLACK.into())
+        tightened(lower, between + off, || self.apart_by_features())
     }
 
     /// Returns the separations by planes whose normals come from features: the face, the axis and
@@ -224,5 +260,348 @@ impl ExactLinkTriangle {
         }
         let inside = a * u.over(sum) + b * v.over(sum) + c * w.over(sum);
         edges.min((point - inside).norm())
+    }
+}
+
+/// The names of the poses in errors.
+const POSES: [&str; 2] = ["pose_a", "pose_b"];
+
+impl Certificate {
+    /// Returns proven bounds on the distance between two links at their poses.
+    ///
+    /// - `a`, `b`: the links, each in its robot's frame.
+    /// - `pose_a`, `pose_b`: the poses of the robots in one common frame.
+    ///
+    /// ```
+    /// use parry_continuum::{ModifiedCylinder, proximity::Certificate};
+    /// use parry_continuum::parry::math::{Pose, Vector};
+    ///
+    /// let link = ModifiedCylinder::capsule(Vector::ZERO, Vector::Z, 0.5)?;
+    /// let proof = Certificate::between_links(&link, &Pose::IDENTITY, &link, &Pose::translation(3.0, 0.0, 0.0))?;
+    /// assert!(proof.lower <= 2.0 && 2.0 <= proof.upper && proof.upper - proof.lower < 1e-14);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// A pose is not finite or not rigid, or moves its link out of range.
+    pub fn between_links(
+        a: &ModifiedCylinder,
+        pose_a: &Pose,
+        b: &ModifiedCylinder,
+        pose_b: &Pose,
+    ) -> Result<Self, ProximityError> {
+        let placed = |k: usize| {
+            CertifiedLink::new([a, b][k], [pose_a, pose_b][k], 0)
+                .map_err(|error| error.of_robot(POSES[k]))
+        };
+        Ok(bounds(&[placed(0)?, placed(1)?]))
+    }
+}
+
+impl RobotProximity {
+    /// Returns proven bounds on the distance between this answer's links, rounding included.
+    ///
+    /// `upper` also holds for the two robots. `lower` holds for these two links alone: for the
+    /// robots take the least over all pairs of links ([`Certificate::between_links`]). The bounds
+    /// lie within a few units in the last place of the problem's extent. Links that overlap have
+    /// `lower` 0. The bounds do not depend on any engine or earlier query.
+    ///
+    /// - `a`, `b`, `pose_a`, `pose_b`: the robots and poses of the query.
+    /// - For an answer about one robot and itself, pass the robot twice, at the identity.
+    ///
+    /// An answer about a flat or round end of a link is refused if the whole link is nearer than
+    /// this end: its distance is not the distance of the links.
+    ///
+    /// # Errors
+    /// - A robot does not have the answer's link.
+    /// - A pose is not finite or not rigid, or moves the link out of range.
+    /// - The answer does not fit the two links: it is about other robots or other poses.
+    ///
+    /// ```
+    /// use parry_continuum::{Chain, proximity::RobotPair};
+    /// use parry_continuum::parry::math::{Pose, Vector};
+    ///
+    /// let robot = Chain::from_centreline(&[Vector::ZERO, Vector::Z * 40.0], &[0.7])?;
+    /// let (here, crossing) = (Pose::IDENTITY, Pose::new(Vector::new(3.0, 9.0, 7.0), Vector::X * 0.9));
+    /// let closest = RobotPair::new().minimum(&robot, &here, &robot, &crossing)?;
+    /// let proof = closest.certify(&robot, &here, &robot, &crossing)?;
+    /// assert!(proof.upper - proof.lower < 1e-13);
+    /// assert!((closest.distance - proof.lower).abs() < 1e-13);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn certify(
+        &self,
+        a: &Chain,
+        pose_a: &Pose,
+        b: &Chain,
+        pose_b: &Pose,
+    ) -> Result<Certificate, ProximityError> {
+        let placed = |k: usize| {
+            let (link, links) = (self.links[k] as usize, [a, b][k].links());
+            let place =
+                links.get(link).ok_or(ProximityError::NoSuchLink { link, links: links.len() })?;
+            CertifiedLink::new(place, [pose_a, pose_b][k], link)
+                .map_err(|error| error.of_robot(POSES[k]))
+        };
+        let links = [placed(0)?, placed(1)?];
+        self.check_answer([&links[0], &links[1]].map(CertifiedLink::placed))?;
+        Ok(bounds(&links))
+    }
+}
+
+impl CertifiedLink {
+    fn placed(&self) -> PlacedLink {
+        PlacedLink::between(self.start, self.end, self.radius, self.flat)
+    }
+}
+
+fn bounds(links: &[CertifiedLink; 2]) -> Certificate {
+    let [first, second] = links;
+    let radius = first.radius.max(second.radius);
+    let Some(frame) =
+        ExactFrame::around(first.start, [first.end, second.start, second.end], radius)
+    else {
+        return Certificate { lower: 0.0, upper: 0.0 }; // one point
+    };
+    let pair = ExactLinkPair { links: links.each_ref().map(|link| link.exact(&frame)) };
+    let (lower, upper) = pair.bounds();
+    frame.certificate(lower, upper)
+}
+
+struct ExactLinkPair {
+    links: [ExactLink; 2],
+}
+
+impl ExactLinkPair {
+    fn bounds(&self) -> (Number, Number) {
+        let [first, second] = &self.links;
+        let pair = TwoLinks {
+            first: first.seen_from_start(),
+            second: second.seen_from_start(),
+            second_start: second.start,
+        };
+        let closest = pair.closest(&pair.axes(), |mask| mask);
+        let points = [closest.point1, closest.point2];
+        let upper = (points[1] - points[0]).norm()
+            + first.distance_to(points[0])
+            + second.distance_to(points[1]);
+        let lower = self.apart((points[1] - points[0]).normalised()).max(Number::ZERO);
+        tightened(lower, upper, || self.apart_by_features(points))
+    }
+
+    /// Returns the separations by planes whose normals come from features near these points, one
+    /// point of each link.
+    fn apart_by_features(&self, points: [ExactPoint; 2]) -> impl Iterator<Item = Number> {
+        let [first, second] = self.links;
+        // The directions that a normal may be perpendicular to: the axis, and the tangents of both
+        // rims.
+        let tangents = [(first, points[0]), (second, points[1])].map(|(link, point)| {
+            let around = |centre: ExactPoint| link.axis.cross(point - centre).normalised();
+            [link.axis, around(link.start), around(link.end())]
+        });
+        let places = [(first, points[0]), (second, points[1])]
+            .map(|(link, point)| [link.start, link.end(), point]);
+        let across = move |way: ExactPoint, from: ExactPoint| way - from * from.dot(way);
+        let crossed =
+            tangents[0].into_iter().flat_map(move |one| tangents[1].map(|other| one.cross(other)));
+        let ways = places[0].into_iter().flat_map(move |from| places[1].map(|to| to - from));
+        let of_places = ways.flat_map(move |way| {
+            let [[axis1, start1, end1], [axis2, start2, end2]] = tangents;
+            [way, across(way, axis1), across(way, axis2)]
+                .into_iter()
+                .chain([start1, end1, start2, end2].map(|tangent| across(way, tangent)))
+        });
+        let all = [first.axis, second.axis]
+            .into_iter()
+            .chain(crossed)
+            .chain(of_places)
+            .map(Vec3::normalised);
+        all.flat_map(move |direction| {
+            [direction, -direction].map(|it| apart([&first, &second], it))
+        })
+    }
+
+    fn apart(&self, direction: ExactPoint) -> Number {
+        let [first, second] = &self.links;
+        apart([first, second], direction)
+    }
+}
+
+/// Returns the bounds, widened by rounding. If they are more than 4 u of the extent apart, the best
+/// separation by a feature raises `lower` first: the difference of points that nearly touch is less
+/// precise than the directions of their features.
+fn tightened<I: Iterator<Item = Number>>(
+    lower: Number,
+    upper: Number,
+    by_features: impl FnOnce() -> I,
+) -> (Number, Number) {
+    let is_tight = (upper - lower).le((2.0 * f64::EPSILON).into());
+    let lower = if is_tight { lower } else { by_features().fold(lower, Scalar::max) };
+    (lower - SLACK.into(), upper + SLACK.into())
+}
+
+/// Returns the separation of two links by a plane with the normal `direction`, from the first to
+/// the second.
+fn apart([first, second]: [&ExactLink; 2], direction: ExactPoint) -> Number {
+    second.lowest(direction) - first.highest(direction)
+}
+
+type Number = DoubleDouble;
+type ExactPoint = Vec3<DoubleDouble>;
+
+/// The largest rounding error of any bound of a certificate, where no coordinate exceeds 2: a
+/// hundred operations, each wrong by 2^-102 of numbers below 16, plus underflow.
+pub(super) const SLACK: f64 = f64::from_bits((1023 - 88) << 52);
+
+/// Returns the largest magnitude of a coordinate.
+pub(super) fn largest<const N: usize>(points: [Vector; N]) -> Real {
+    points.iter().map(|point| point.abs().max_element()).fold(0.0, Real::max)
+}
+
+/// A pair's own coordinates, in which differences are exact and the largest is near one.
+#[derive(Clone, Copy)]
+struct ExactFrame {
+    origin: Vector,
+    coarse: Real,
+    fine: Real,
+}
+
+impl ExactFrame {
+    /// Returns the frame at `origin`, in which no coordinate and no radius exceeds 2; `None` if all
+    /// points coincide.
+    pub(super) fn around<const N: usize>(
+        origin: Vector,
+        points: [Vector; N],
+        radius: Real,
+    ) -> Option<Self> {
+        // Relative to the origin every coordinate is an exact double-double, and the largest is
+        // brought near one. Small numbers beside large coordinates must not underflow first, so
+        // `coarse` is at least 1.
+        let far = largest(points).max(largest([origin])).max(radius);
+        let coarse = far.power_of_two_to_unity().max(1.0);
+        let extent =
+            largest(points.map(|point| point * coarse - origin * coarse)).max(radius * coarse);
+        (extent > 0.0).then(|| Self { origin, coarse, fine: extent.power_of_two_to_unity() })
+    }
+
+    pub(super) fn point(&self, point: Vector) -> ExactPoint {
+        self.way(self.origin, point)
+    }
+
+    /// Returns the vector from one point to another, exactly.
+    fn way(&self, from: Vector, to: Vector) -> ExactPoint {
+        let (from, to) = ((from * self.coarse).to_array(), (to * self.coarse).to_array());
+        let along = |axis: usize| (Number::from(to[axis]) - from[axis].into()) * self.fine.into();
+        Vec3::new(along(0), along(1), along(2))
+    }
+
+    fn length(&self, length: Real) -> Number {
+        Number::from(length * self.coarse) * self.fine.into()
+    }
+
+    /// Returns bounds of this frame in the caller's unit, widened by one number for the rounding to
+    /// `f64` and back to that unit.
+    pub(super) fn certificate(&self, lower: Number, upper: Number) -> Certificate {
+        let back = |bound: Number| bound.rounded() / self.fine / self.coarse;
+        Certificate { lower: back(lower).next_down().max(0.0), upper: back(upper).next_up() }
+    }
+}
+
+/// A link in `f64`, in the frame in which two shapes are compared.
+struct CertifiedLink {
+    pub start: Vector,
+    pub end: Vector,
+    pub radius: Real,
+    pub flat: [bool; 2],
+}
+
+impl CertifiedLink {
+    /// Returns the link at `pose`. `number` is its position in its chain.
+    pub(super) fn new(
+        link: &ModifiedCylinder,
+        pose: &Pose,
+        number: usize,
+    ) -> Result<Self, ProximityError> {
+        let link = link.transformed(&rigid_pose(pose)?);
+        let (start, end) = (link.start(), link.end());
+        check_ends(number, [start, end])?;
+        Ok(Self { start, end, radius: link.radius(), flat: link.flat() })
+    }
+
+    /// Returns the link in exact coordinates.
+    pub(super) fn exact(&self, frame: &ExactFrame) -> ExactLink {
+        let along = frame.way(self.start, self.end);
+        // As in the narrow phase, a length whose square underflows beside the other shape gives no
+        // direction.
+        let squared =
+            Vec3::new(along.x.rounded(), along.y.rounded(), along.z.rounded()).norm_squared();
+        let zero = Vec3::new(Number::ZERO, Number::ZERO, Number::ZERO);
+        let axis = if gives_direction(squared) { along.normalised() } else { zero };
+        let start = frame.point(self.start);
+        ExactLink { start, along, axis, radius: frame.length(self.radius), flat: self.flat }
+    }
+}
+
+/// A link in coordinates up to 2.
+#[derive(Clone, Copy)]
+struct ExactLink {
+    pub start: ExactPoint,
+    /// The vector from start to end.
+    pub along: ExactPoint,
+    /// The unit direction, or zero if it has none.
+    pub axis: ExactPoint,
+    pub radius: Number,
+    pub flat: [bool; 2],
+}
+
+impl ExactLink {
+    pub(super) fn end(&self) -> ExactPoint {
+        self.start + self.along
+    }
+
+    /// Returns the link relative to its own start, as the narrow phase represents it.
+    fn seen_from_start(&self) -> Link<Number> {
+        Link { end: self.along, axis: self.axis, radius: self.radius, flat: self.flat }
+    }
+
+    /// Returns a lower bound on `<direction, x>` over the link.
+    pub(super) fn lowest(&self, direction: ExactPoint) -> Number {
+        let along = direction.dot(self.axis);
+        let across = (direction - self.axis * along).norm() * self.radius;
+        let lowest = |height: Number, inward: Number, flat: bool| {
+            // A round cap extends by its ball in directions from beyond its end, otherwise only by
+            // its rim.
+            height - if flat || inward.lt((-SLACK).into()) { across } else { self.radius }
+        };
+        let start = lowest(self.start.dot(direction), along, self.flat[0]);
+        start.min(lowest(self.end().dot(direction), -along, self.flat[1]))
+    }
+
+    /// Returns an upper bound on `<direction, x>` over the link.
+    pub(super) fn highest(&self, direction: ExactPoint) -> Number {
+        -self.lowest(-direction)
+    }
+
+    /// Returns an upper bound on the distance of `point` from the link.
+    pub(super) fn distance_to(&self, point: ExactPoint) -> Number {
+        let zero = Number::ZERO;
+        let from_start = point - self.start;
+        let from_end = from_start - self.along;
+        let along = from_start.dot(self.axis);
+        let (above, below) = (from_end.dot(self.axis), -along);
+        let radial = (from_start - self.axis * along).norm();
+        let beside = (radial - self.radius).max(zero);
+        let (beyond, from, flat) = if zero.lt(above) {
+            (above, from_end, self.flat[1])
+        } else {
+            (below, from_start, self.flat[0])
+        };
+        if !zero.lt(beyond) {
+            beside
+        } else if flat {
+            (beyond * beyond + beside * beside).sqrt()
+        } else {
+            (from.norm() - self.radius).max(zero)
+        }
     }
 }

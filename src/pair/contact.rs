@@ -1,20 +1,30 @@
-//! The contact of an answer: its normal, features and place on the robot.
+//! The contact of an answer: its normal, features and place on the robot; and the derivative of its
+//! distance with respect to the points of link and triangle ([`Derivative`] states the formulas).
+//!
+//! The contacts of many answers are computed one pack at a time, with the bits of a single contact
+//! on every instruction set.
 
-use super::answer_subject::{corners, placed_link, transformed_link};
-use super::contact_batch::{PlacedPair, try_add_contacts};
-use super::nearest::Nearest;
-use super::nearest_features::{Measured, NearPair, NearestFeatures};
+use super::answer_check::{corners, placed_link, transformed_link};
+use super::coordinates::{Nearest, Pair};
+use super::measure_batch::NearestRows;
+use super::nearest_features::{
+    Measured, NearPair, NearestFeatures, NearestParts, link_feature, triangle_feature,
+};
+use super::pair_lanes::{BATCH, PairLanes, PairRows, Rows, put_pair, store};
 use super::placed_link::PlacedLink;
-use crate::answer::{Contact, ContactFeature, LinkProximity, ProximityError, Witness};
+use crate::answer::{Contact, ContactFeature, Derivative, LinkProximity, ProximityError, Witness};
+use crate::distance::lanes::Pack;
+use crate::distance::{DoubleDouble, Scalar, Unfused, Vec3, dispatch};
 use crate::mesh::Mesh;
 use crate::robot::{Chain, length};
 use fearless_simd::Level;
 use parry3d_f64::math::{Pose, Real, Vector};
+use std::convert::Infallible;
 
 /// Returns the contact of an answer about this mesh.
 ///
 /// # Errors
-/// As [`Proximity::contact`](crate::proximity::Proximity::contact).
+/// As [`Proximity::contact_of`](crate::proximity::Proximity::contact_of).
 pub(crate) fn contact(
     mesh: &Mesh,
     robot: &Chain,
@@ -30,7 +40,7 @@ pub(crate) fn contact(
 /// Replaces `out` by the contacts of answers about this mesh.
 ///
 /// # Errors
-/// As [`Proximity::contacts`](crate::proximity::Proximity::contacts). Then `out` is empty.
+/// As [`Proximity::contacts_of`](crate::proximity::Proximity::contacts_of). Then `out` is empty.
 pub(crate) fn contacts(
     mesh: &Mesh,
     robot: &Chain,
@@ -89,5 +99,276 @@ pub(crate) fn contact_of(
         witness: Witness { arc_length: before + found.fraction * length, ..witness },
         lever: found.lever,
         kink: found.kink,
+    }
+}
+
+/// The inputs of a contact beside its answer: the link and the triangle, in the mesh's frame.
+#[derive(Clone, Copy)]
+pub(crate) struct PlacedPair {
+    pub ends: [Vector; 2],
+    pub radius: Real,
+    pub flat: [bool; 2],
+    pub corners: [Vector; 3],
+    /// The total length of the links before this one.
+    pub before: Real,
+}
+
+/// The results of several pairs.
+struct ContactRows {
+    /// The fraction, the normal, the depth and the lever.
+    numbers: Rows<8>,
+    /// One bit for each pair, as in [`NearestParts`].
+    caps: [u64; 2],
+    corners: [u64; 3],
+    edges: [u64; 3],
+    has_normal: u64,
+    needs_closer_look: u64,
+    nearest: NearestRows,
+}
+
+impl PlacedPair {
+    /// Returns the placed link.
+    pub(crate) fn link(&self) -> PlacedLink {
+        let [start, end] = self.ends;
+        PlacedLink::between(start, end, self.radius, self.flat)
+    }
+}
+
+/// Appends the contacts of `answers`, each at the place that `place` returns.
+pub(crate) fn add_contacts(
+    level: Level,
+    answers: &[LinkProximity],
+    mut place: impl FnMut(&LinkProximity) -> PlacedPair,
+    out: &mut Vec<Contact>,
+) {
+    let place = |answer: &LinkProximity| Ok::<_, Infallible>(place(answer));
+    let add = try_add_contacts(level, answers, place, |_, _, _| Ok(()), out);
+    add.unwrap_or_else(|never| match never {});
+}
+
+/// Same as [`add_contacts`]; `place` may fail, and `check` may refuse an answer after the
+/// measurement.
+///
+/// # Errors
+/// The first error of either. `out` then holds the contacts of some earlier answers.
+fn try_add_contacts<E>(
+    level: Level,
+    answers: &[LinkProximity],
+    mut place: impl FnMut(&LinkProximity) -> Result<PlacedPair, E>,
+    check: impl Fn(&LinkProximity, &PlacedPair, &Nearest) -> Result<(), E>,
+    out: &mut Vec<Contact>,
+) -> Result<(), E> {
+    let mut rows = [[0.0; BATCH]; 18];
+    for answers in answers.chunks(BATCH) {
+        let mut places = [None; BATCH];
+        for (lane, answer) in answers.iter().enumerate() {
+            let PlacedPair { ends, radius, flat, corners, .. } =
+                *places[lane].insert(place(answer)?);
+            put_pair(&mut rows, lane, corners, ends, radius, flat);
+        }
+        let parts = parts_at(level, &rows, answers.len());
+        let with_places = answers.iter().zip(places.iter().flatten());
+        for (lane, (answer, place)) in with_places.clone().enumerate() {
+            check(answer, place, &parts.nearest.nearest(lane, answer.witness.triangle))?;
+        }
+        out.extend(with_places.enumerate().map(|(lane, (answer, place))| {
+            let [start, end] = place.ends;
+            let found = if parts.needs_closer_look >> lane & 1 == 1 {
+                NearestFeatures::of(&place.link(), place.corners)
+            } else {
+                parts.of(lane)
+            };
+            contact_of(answer, length(end - start), place.before, &found)
+        }));
+    }
+    Ok(())
+}
+
+impl ContactRows {
+    fn of(&self, lane: usize) -> NearestFeatures {
+        let number = |row: usize| self.numbers[row][lane];
+        let vector = |row: usize| Vector::new(number(row), number(row + 1), number(row + 2));
+        let is = |bits: u64| bits >> lane & 1 == 1;
+        let has_normal = is(self.has_normal);
+        NearestFeatures {
+            link: link_feature(self.caps.map(is)),
+            triangle: triangle_feature(self.corners.map(is), self.edges.map(is)),
+            fraction: number(0),
+            normal: has_normal.then(|| vector(1)),
+            depth: number(4),
+            lever: vector(5),
+            kink: false,
+        }
+    }
+}
+
+#[inline(never)] // compiled for each instruction set, not for each use as well
+fn parts_at(level: Level, pairs: &PairRows, count: usize) -> ContactRows {
+    let mut parts = ContactRows {
+        numbers: [[0.0; BATCH]; 8],
+        caps: [0; 2],
+        corners: [0; 3],
+        edges: [0; 3],
+        has_normal: 0,
+        needs_closer_look: 0,
+        nearest: NearestRows::new(),
+    };
+    dispatch!(level, simd => fill::<Unfused<_>>(simd, pairs, count, &mut parts));
+    parts
+}
+
+#[inline(always)]
+fn fill<L: Pack<Element = f64>>(
+    token: L::Token,
+    pairs: &PairRows,
+    count: usize,
+    parts: &mut ContactRows,
+) {
+    for lane in (0..count).step_by(L::LANES) {
+        let pack = PairLanes::<L>::new(token, pairs, lane);
+        parts.nearest.take(lane, &pack);
+        let PairLanes { pair: Pair { triangle, link, unit, .. }, face, axial, closest, .. } = pack;
+        let found = NearestParts::new(&triangle, &link, &axial, &closest);
+        parts.needs_closer_look |=
+            L::bits(found.needs_closer_look(&triangle, &face, &link)) << lane;
+        for (bits, masks) in parts.caps.iter_mut().zip(found.caps) {
+            *bits |= L::bits(masks) << lane;
+        }
+        for (bits, masks) in parts.corners.iter_mut().zip(found.corners) {
+            *bits |= L::bits(masks) << lane;
+        }
+        for (bits, masks) in parts.edges.iter_mut().zip(found.edges) {
+            *bits |= L::bits(masks) << lane;
+        }
+        parts.has_normal |= L::bits(found.has_normal) << lane;
+        found.fraction.store(&mut parts.numbers[0][lane..]);
+        store(&mut parts.numbers, 1, lane, found.normal);
+        (found.depth * unit).store(&mut parts.numbers[4][lane..]);
+        store(&mut parts.numbers, 5, lane, found.lever * unit);
+    }
+}
+
+/// Returns the derivative of the distance, or of the depth, of an answer about this mesh.
+///
+/// # Errors
+/// As [`Proximity::derivative`](crate::proximity::Proximity::derivative).
+pub(crate) fn derivative(
+    mesh: &Mesh,
+    robot: &Chain,
+    pose: &Pose,
+    answer: &LinkProximity,
+) -> Result<Option<Derivative>, ProximityError> {
+    let (link, corners, measured) = near(mesh, robot, pose, answer)?;
+    let way_out = || measured.pair.parting().derivative(|number| number);
+    if measured.pair.parts.asks_way_out {
+        return Ok(way_out());
+    }
+    let exact = NearPair::exactly(&link, corners);
+    let found =
+        if exact.parts.asks_way_out { way_out() } else { exact.derivative(DoubleDouble::rounded) };
+    // The same decision on kinks as in the features.
+    let kink = measured.features(|| exact).kink;
+    Ok(found.map(|found| Derivative { kink, ..found }))
+}
+
+impl<T: Scalar<Mask = bool> + PartialEq> NearPair<T> {
+    fn derivative(&self, round: impl Fn(T) -> Real) -> Option<Derivative> {
+        let (link, parts) = (&self.link, &self.parts);
+        let one = link.radius.one();
+        if !parts.has_normal {
+            return None;
+        }
+        let rounded = |v: Vec3<T>| Vector::new(round(v.x), round(v.y), round(v.z));
+        let normal = parts.normal;
+        let (mut start, mut end) = (normal * (one - parts.fraction), normal * parts.fraction);
+        let mut radius = -one;
+        if parts.at_flat_cap {
+            let turn = parts.lever * normal.dot(link.axis).over(link.end.norm());
+            (start, end) = (start + turn, end - turn);
+            radius = -normal.cross(link.axis).norm();
+        }
+        Some(Derivative {
+            start: rounded(start),
+            end: rounded(end),
+            radius: round(radius),
+            vertices: self.weights().map(|weight| rounded(-normal * weight)),
+            kink: self.kink,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::answer::{LinkFeature, TriangleFeature};
+    use crate::distance::lanes::tests::levels;
+    use continuum_testing::Random;
+
+    /// Returns a random link and triangle, often parallel, level or touching.
+    fn place(random: &mut Random) -> PlacedPair {
+        let (size, level) = (2.0_f64.powi(random.below(41) as i32 - 20), random.below(3) == 0);
+        let mut point = || {
+            let point = random.point();
+            (if level { (point * 3.0).round() / 3.0 } else { point }) * size
+        };
+        let (corners, start, way) = ([point(), point(), point()], point(), point());
+        let radius = size * [0.0, 0.1, 0.5, 2.0][random.below(4) as usize];
+        let flat =
+            [random.below(2) == 0, random.below(2) == 0].map(|flat| flat && way != Vector::ZERO);
+        let before = random.between(0.0, 9.0);
+        PlacedPair { ends: [start, start + way], radius, flat, corners, before }
+    }
+
+    /// A contact computed in a batch has the bits of the contact computed alone, on each
+    /// instruction set.
+    #[test]
+    fn together_is_alone_bit_for_bit() {
+        let (mut kinks, mut touching, mut at_cap, mut parts) = (0, 0, 0, [0; 3]);
+        for seed in 0..4000 {
+            let random = &mut Random::new(seed);
+            let places: Vec<_> = (0..1 + seed as usize % 19).map(|_| place(random)).collect();
+            let link = |place: &PlacedPair| {
+                let [start, end] = place.ends;
+                PlacedLink::between(start, end, place.radius, place.flat)
+            };
+            let measured = places.iter().enumerate();
+            let answers: Vec<_> = measured
+                .map(|(k, place)| link(place).answer(k, &link(place).measure(0, place.corners)))
+                .collect();
+            let alone = |answer: &LinkProximity| {
+                let place = &places[answer.link as usize];
+                let length = length(place.ends[1] - place.ends[0]);
+                contact_of(
+                    answer,
+                    length,
+                    place.before,
+                    &NearestFeatures::of(&link(place), place.corners),
+                )
+            };
+            let alone: Vec<_> = answers.iter().map(alone).collect();
+            for level in levels() {
+                let mut together = Vec::new();
+                add_contacts(level, &answers, |answer| places[answer.link as usize], &mut together);
+                // The text distinguishes -0 from 0.
+                assert_eq!(format!("{together:?}"), format!("{alone:?}"), "{level:?}, {seed}");
+            }
+            for contact in &alone {
+                kinks += usize::from(contact.kink);
+                touching += usize::from(contact.distance <= 0.0);
+                let at_flat = match contact.feature.link {
+                    LinkFeature::StartCap => places[contact.link as usize].flat[0],
+                    LinkFeature::EndCap => places[contact.link as usize].flat[1],
+                    LinkFeature::Side => false,
+                };
+                at_cap += usize::from(contact.distance > 0.0 && at_flat);
+                parts[match contact.feature.triangle {
+                    TriangleFeature::Face => 0,
+                    TriangleFeature::Edge(_) => 1,
+                    TriangleFeature::Vertex(_) => 2,
+                }] += 1;
+            }
+        }
+        let seen = [kinks, touching, at_cap, parts[0], parts[1], parts[2]];
+        assert!(seen.iter().all(|&count| count > 300), "{seen:?}");
     }
 }

@@ -5,9 +5,7 @@
 //! the position, the unit or distant parts of the scene, and nothing overflows or underflows.
 //! Distances and bounds outside of a pair are in the mesh's unit.
 
-use super::nearest::Nearest;
-use super::placed_link::PlacedLink;
-use crate::distance::{Closest, DoubleDouble, Link, Scalar, Vec3, gives_direction};
+use crate::distance::{Closest, Link, Scalar, Vec3, gives_direction};
 use parry3d_f64::math::{Real, Vector};
 
 /// The largest rounding error of a bound of a pair, where all numbers are below 2.
@@ -63,7 +61,7 @@ impl<T: Scalar> Placed<T> {
 }
 
 impl Pair<Real> {
-    /// Returns a lower bound on the distance, by the plane of [`PlacedLink::distance_to_box`].
+    /// Returns a lower bound on the distance, by a plane across the vector from the axis to the triangle's centre.
     pub(super) fn at_least(&self) -> Real {
         let [a, b, c] = self.triangle;
         let centre = (a + b + c) * (1.0 / 3.0);
@@ -88,28 +86,32 @@ impl Pair<Real> {
     }
 }
 
-/// Returns link and triangle in the coordinates of [`PlacedLink::pair`], in double-double numbers:
-/// only the link's direction is rounded.
-pub(crate) fn place_exactly(
-    link: &PlacedLink,
-    corners: [Vector; 3],
-) -> ([Vec3<DoubleDouble>; 3], Link<DoubleDouble>) {
-    let pair = link.pair(corners);
-    let scale = 1.0 / pair.unit;
-    let offset = |point: Vector| {
-        let coordinate =
-            |x: Real, from: Real| DoubleDouble::from(x * scale) - (from * scale).into();
-        let (to, from) = (point, link.start());
-        Vec3::new(coordinate(to.x, from.x), coordinate(to.y, from.y), coordinate(to.z, from.z))
-    };
-    let has_axis = pair.link.axis != Vec3::zero(0.0);
-    let flat = link.flat().map(|flat| flat && has_axis);
-    let placed = Link::new(offset(link.end()), pair.link.radius.into(), flat);
-    (corners.map(offset), placed)
-}
-
 /// Returns the vector from the closest axis point to `point`.
 pub(super) fn offset_from_axis(link: &Link<Real>, point: Vec3<Real>) -> Vec3<Real> {
     let t = point.dot(link.axis).max(0.0).min(link.end.dot(link.axis));
     point.along(link.axis, -t)
+}
+
+/// A triangle's distance from a link and the closest points, in the mesh's frame and unit.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Nearest {
+    pub triangle: u32,
+    pub distance: Real,
+    pub on_robot: Vector,
+    pub on_mesh: Vector,
+}
+
+impl Nearest {
+    /// Returns the result, with one common point if the two touch: rounding may have separated the
+    /// points.
+    #[inline(always)]
+    pub(crate) fn new(
+        triangle: u32,
+        distance: Real,
+        on_mesh: Vector,
+        on_robot: impl FnOnce() -> Vector,
+    ) -> Self {
+        let on_robot = if distance > 0.0 { on_robot() } else { on_mesh };
+        Self { triangle, distance, on_robot, on_mesh }
+    }
 }

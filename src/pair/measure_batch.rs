@@ -1,17 +1,19 @@
-//! Several triangles against one link in double precision, one pack at a time, with the bits of
+//! The measurement of candidate triangles in double precision, one pack at a time, with the bits of
 //! [`PlacedLink::measure`] on every instruction set.
+//!
+//! - [`Best::measure_batch`]: several triangles against one link. Keeps the closest.
+//! - [`rank_each`]: triangles near a robot's links, each with its rank: the order in which pieces
+//!   of the wall appear when the bound grows.
 
-use super::best::Best;
-use super::coordinates::Placed;
-use super::nearest_rows::NearestRows;
-use super::pair_lanes::{BATCH, PairLanes, Rows, put_corners};
+use super::coordinates::{Nearest, Pair, Placed};
+use super::pair_lanes;
+use super::pair_lanes::{BATCH, PairLanes, PairRows, Rows, put_corners, put_pair, store};
 use super::placed_link::PlacedLink;
 use crate::distance::lanes::{Pack, set_bits};
-use crate::distance::{Unfused, dispatch};
+use crate::distance::{Scalar, Unfused, dispatch};
 use crate::mesh::Mesh;
-use crate::pair::pair_lanes;
 use fearless_simd::Level;
-use parry3d_f64::math::Real;
+use parry3d_f64::math::{Real, Vector};
 
 /// Below this count triangles are measured one by one. From 2 on a half-filled pack is faster.
 const MIN_FOR_PACK: usize = 2;
@@ -111,6 +113,192 @@ fn closest<L: Pack<Element = f64>>(
         near |= L::bits(distance.le(bound)) << lane;
     }
     near & ((1 << count) - 1)
+}
+
+/// The closest triangle so far among those within a bound. Ties go to the lower triangle number.
+#[derive(Clone, Copy)]
+pub(crate) struct Best {
+    bound: Real,
+    nearest: Option<Nearest>,
+    /// Among triangles at distance 0, only those with a lower number are candidates.
+    below: u32,
+}
+
+impl Best {
+    /// Returns an empty best with this bound.
+    pub(crate) fn within(bound: Real) -> Self {
+        Self { bound, nearest: None, below: u32::MAX }
+    }
+
+    /// Restricts triangles at distance 0 to those with a lower number than `below`.
+    pub(crate) fn touching_below(self, below: u32) -> Self {
+        Self { below, ..self }
+    }
+
+    /// Returns an earlier best, to be improved by triangles at most `bound` away.
+    pub(crate) fn resume(bound: Real, nearest: Option<Nearest>) -> Self {
+        Self { bound, nearest, below: u32::MAX }
+    }
+
+    /// The upper bound: only triangles at most this far away are candidates.
+    pub(crate) fn bound(&self) -> Real {
+        self.bound
+    }
+
+    pub(crate) fn nearest(&self) -> Option<Nearest> {
+        self.nearest
+    }
+
+    /// Returns a limit on the number of a triangle that can still improve the best: at distance 0
+    /// only a lower number can.
+    #[inline(always)]
+    pub(crate) fn triangle_limit(&self) -> u32 {
+        if self.bound <= 0.0 { self.below } else { u32::MAX }
+    }
+
+    /// Measures a triangle. Returns whether it is the best so far.
+    #[inline(never)] // the same code whatever the instruction set
+    pub(crate) fn measure(
+        &mut self,
+        link: &PlacedLink,
+        triangle: u32,
+        corners: [Vector; 3],
+    ) -> bool {
+        link.measure_within(self.bound, triangle, corners).is_some_and(|nearest| self.take(nearest))
+    }
+
+    /// Returns whether a triangle at this distance improves the best.
+    #[inline(always)]
+    fn is_worse_than(&self, distance: Real, triangle: u32) -> bool {
+        distance <= self.bound
+            && self.nearest.is_none_or(|mine| {
+                distance < mine.distance || (distance <= mine.distance && triangle < mine.triangle)
+            })
+            && (distance > 0.0 || triangle < self.below)
+    }
+
+    /// Keeps a triangle if it improves the best. Returns whether it does.
+    pub(crate) fn take(&mut self, other: Nearest) -> bool {
+        let is_better = self.is_worse_than(other.distance, other.triangle);
+        if is_better {
+            let below = if other.distance > 0.0 { self.below } else { other.triangle };
+            *self = Self { bound: other.distance, nearest: Some(other), below };
+        }
+        is_better
+    }
+}
+
+/// The distances of several pairs and their closest points, on the triangle and on the link, in the
+/// mesh's frame.
+pub(super) struct NearestRows(Rows<7>);
+
+impl NearestRows {
+    pub(super) fn new() -> Self {
+        Self([[0.0; BATCH]; 7])
+    }
+
+    /// Stores the results of a pack from `lane` on. Returns the distances.
+    #[inline(always)]
+    pub(super) fn take<L: Pack<Element = f64>>(&mut self, lane: usize, pack: &PairLanes<L>) -> L {
+        let distance = pack.closest.distance * pack.pair.unit;
+        distance.store(&mut self.0[0][lane..]);
+        store(&mut self.0, 1, lane, pack.placed(pack.closest.point1));
+        store(&mut self.0, 4, lane, pack.placed(pack.closest.point2));
+        distance
+    }
+
+    pub(super) fn distance(&self, lane: usize) -> Real {
+        self.0[0][lane]
+    }
+
+    /// Returns the result of the pair in a lane, whose triangle is `triangle`.
+    pub(super) fn nearest(&self, lane: usize, triangle: u32) -> Nearest {
+        let point = |row: usize| {
+            Vector::new(self.0[row][lane], self.0[row + 1][lane], self.0[row + 2][lane])
+        };
+        Nearest::new(triangle, self.0[0][lane], point(1), || point(4))
+    }
+}
+
+/// A triangle near a link, with its rank.
+#[derive(Clone, Copy)]
+pub(crate) struct Ranked {
+    /// The distance; if that is 0, the axis distance minus the radius, at most 0.
+    pub rank: Real,
+    pub nearest: Nearest,
+    /// The rounding error of the distance.
+    pub rounding: Real,
+}
+
+/// The results of several pairs.
+struct RankRows {
+    nearest: NearestRows,
+    /// The axis distances minus the radii.
+    to_axis: [Real; BATCH],
+    extent: [Real; BATCH],
+}
+
+/// Measures triangles, each with its link, and passes each result to `take` in order.
+pub(crate) fn rank_each<'a>(
+    level: Level,
+    mesh: &Mesh,
+    mut pairs: impl Iterator<Item = (&'a PlacedLink, u32)>,
+    mut take: impl FnMut(Ranked),
+) {
+    let (mut rows, mut triangles) = ([[0.0; BATCH]; 18], [0; BATCH]);
+    loop {
+        let mut count = 0;
+        for (link, triangle) in pairs.by_ref().take(BATCH) {
+            let ends = [link.start(), link.end()];
+            put_pair(&mut rows, count, mesh.corners(triangle), ends, link.radius(), link.flat());
+            triangles[count] = triangle;
+            count += 1;
+        }
+        if count == 0 {
+            return;
+        }
+        let found = ranks_at(level, &rows, count);
+        for (lane, &triangle) in triangles.iter().enumerate().take(count) {
+            take(ranked(&found, lane, triangle));
+        }
+    }
+}
+
+fn ranked(found: &RankRows, lane: usize, triangle: u32) -> Ranked {
+    let nearest = found.nearest.nearest(lane, triangle);
+    let rank =
+        if nearest.distance <= 0.0 { found.to_axis[lane].min(0.0) } else { nearest.distance };
+    Ranked { rank, nearest, rounding: rounding(found.extent[lane]) }
+}
+
+/// Returns the rounding error of the distance between a link and a shape whose coordinates relative
+/// to the link's start are at most `extent`.
+pub(crate) fn rounding(extent: Real) -> Real {
+    32.0 * f64::UNIT_ROUNDOFF * extent
+}
+
+#[inline(never)] // compiled for each instruction set, not for each use as well
+fn ranks_at(level: Level, pairs: &PairRows, count: usize) -> RankRows {
+    let [to_axis, extent] = [[0.0; BATCH]; 2];
+    let mut ranks = RankRows { nearest: NearestRows::new(), to_axis, extent };
+    dispatch!(level, simd => fill::<Unfused<_>>(simd, pairs, count, &mut ranks));
+    ranks
+}
+
+#[inline(always)]
+fn fill<L: Pack<Element = f64>>(
+    token: L::Token,
+    pairs: &PairRows,
+    count: usize,
+    ranks: &mut RankRows,
+) {
+    for lane in (0..count).step_by(L::LANES) {
+        let pair = PairLanes::<L>::new(token, pairs, lane);
+        ranks.nearest.take(lane, &pair);
+        let PairLanes { pair: Pair { link, unit, extent, .. }, axial, .. } = pair;
+        ((axial.axis_squared.sqrt() - link.radius) * unit).store(&mut ranks.to_axis[lane..]);
+        extent.store(&mut ranks.extent[lane..]);
+    }
 }
 
 #[cfg(test)]

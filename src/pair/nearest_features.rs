@@ -49,9 +49,8 @@
 //!
 //! The vertices of a triangle without area can move against each other: it counts as a kink too.
 
-use super::coordinates::{Pair, place_exactly};
-use super::nearest::Nearest;
-use super::placed_link::PlacedLink;
+use super::coordinates::{Nearest, Pair};
+use super::placed_link::{PlacedLink, place_exactly};
 use crate::answer::{LinkFeature, TriangleFeature};
 use crate::distance::depth::{LinkTriangle, ROUNDING, WayOut};
 use crate::distance::{

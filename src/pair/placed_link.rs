@@ -1,9 +1,8 @@
 //! A link in the mesh's frame, and its distance from a triangle.
 
-use super::coordinates::{Pair, Placed, SLACK, offset_from_axis};
-use super::nearest::Nearest;
+use super::coordinates::{Nearest, Pair, Placed, SLACK, offset_from_axis};
 use crate::answer::{LinkProximity, Witness};
-use crate::distance::{Axial, Face, Link, Scalar, Vec3, segment_segment};
+use crate::distance::{Axial, DoubleDouble, Face, Link, Scalar, Vec3, segment_segment};
 use crate::robot::ModifiedCylinder;
 use parry3d_f64::math::{Pose, Real, Vector};
 
@@ -205,4 +204,24 @@ impl PlacedLink {
         let beyond = normal.dot(centre) - link.reach_along(normal) - corner;
         ((beyond.over(normal.norm()) - link.radius - SLACK) / scale).max(0.0)
     }
+}
+
+/// Returns link and triangle in the coordinates of [`PlacedLink::pair`], in double-double numbers:
+/// only the link's direction is rounded.
+pub(crate) fn place_exactly(
+    link: &PlacedLink,
+    corners: [Vector; 3],
+) -> ([Vec3<DoubleDouble>; 3], Link<DoubleDouble>) {
+    let pair = link.pair(corners);
+    let scale = 1.0 / pair.unit;
+    let offset = |point: Vector| {
+        let coordinate =
+            |x: Real, from: Real| DoubleDouble::from(x * scale) - (from * scale).into();
+        let (to, from) = (point, link.start());
+        Vec3::new(coordinate(to.x, from.x), coordinate(to.y, from.y), coordinate(to.z, from.z))
+    };
+    let has_axis = pair.link.axis != Vec3::zero(0.0);
+    let flat = link.flat().map(|flat| flat && has_axis);
+    let placed = Link::new(offset(link.end()), pair.link.radius.into(), flat);
+    (corners.map(offset), placed)
 }

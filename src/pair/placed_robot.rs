@@ -1,6 +1,6 @@
 //! A robot in the mesh's frame.
 
-use super::checks::{check_range, rigid_pose};
+use super::answer_check::{check_range, rigid_pose};
 use super::placed_link::PlacedLink;
 use crate::answer::ProximityError;
 use crate::distance::Scalar;

@@ -2,9 +2,9 @@
 //! every instruction set.
 
 use super::coordinates::Placed;
+use super::measure_batch::rounding;
 use super::pair_lanes::{BATCH, PairLanes, Rows, corners, put_corners, store};
 use super::placed_link::PlacedLink;
-use super::ranked::rounding;
 use crate::distance::lanes::Pack;
 use crate::distance::{Unfused, dispatch};
 use fearless_simd::Level;

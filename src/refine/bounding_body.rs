@@ -61,9 +61,8 @@
 //!
 //! If directions may be off by a stated turn, w reaches farther along d by r times that turn.
 
-use super::piece::Piece;
-use super::placed_tube::PlacedTube;
-use super::refinable::Body;
+use super::depth_first::Body;
+use super::placed_tube::{Piece, PlacedTube};
 use crate::answer::{ProximityError, TubePiece};
 use crate::curve::{CurveBound, Section};
 use crate::pair::PlacedLink;
@@ -94,7 +93,32 @@ impl Body for BoundingBody {
     }
 }
 
+/// A piece as a range of its section, which is the same in every shape.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SectionRange<'a> {
+    pub section: u32,
+    /// The range along the section, as shares of its length.
+    pub shares: [Real; 2],
+    /// Its body in the current shape.
+    pub outer: &'a BoundingBody,
+    pub radius: Real,
+}
+
 impl PlacedTube<'_> {
+    /// Returns a piece as a range of its section, which is the same in every shape, with its body.
+    pub(super) fn section_range<'o>(
+        &self,
+        piece: &Piece,
+        outer: &'o BoundingBody,
+    ) -> SectionRange<'o> {
+        SectionRange {
+            section: piece.section,
+            shares: self.shares(piece),
+            outer,
+            radius: self.radius(piece),
+        }
+    }
+
     /// Returns a piece with its finite body, which is at least `lower` away from the mesh.
     pub(crate) fn report(&self, piece: &Piece, outer: &BoundingBody, lower: Real) -> TubePiece {
         let body = &outer.body;

@@ -4,10 +4,7 @@
 mod best_first;
 mod bounding_body;
 mod depth_first;
-mod nearest_pairs;
-mod piece;
 mod placed_tube;
-mod refinable;
 mod section_motions;
 #[cfg(test)]
 mod section_motions_tests;
@@ -16,18 +13,16 @@ mod tests;
 mod tube_in_mesh;
 mod tube_pair;
 mod tube_point;
-mod tube_point_of_links;
 mod tube_with_itself;
 
 pub(crate) use best_first::{Examined, MOST_LEVELS, PendingPiece, PendingPieces, PieceState};
-pub(crate) use bounding_body::BoundingBody;
+pub(crate) use bounding_body::{BoundingBody, SectionRange};
 pub(crate) use depth_first::{
-    BodyQuery, BoundedPiece, RefineAction, RefinePolicy, WorkItem, refine,
+    Body, BodyQuery, BoundedPiece, Refinable, RefineAction, RefinePolicy, UpperBound, WorkItem,
+    refine,
 };
-pub(crate) use piece::Piece;
-pub(crate) use placed_tube::PlacedTube;
-pub(crate) use refinable::{Body, Refinable, UpperBound};
+pub(crate) use placed_tube::{Piece, PlacedTube};
 pub(crate) use section_motions::{MAX_EXTRA_TURN, SectionMotion, SectionMotions};
 pub(crate) use tube_in_mesh::{MeshUpperBound, TubeInMesh};
-pub(crate) use tube_pair::{PairQueue, PairUpperBound, PiecePair, SectionRange, TubePair};
+pub(crate) use tube_pair::{PairQueue, PairUpperBound, PiecePair, TubePair};
 pub(crate) use tube_with_itself::{SelfPair, SelfPairQueue, TubeWithItself};

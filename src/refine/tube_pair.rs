@@ -18,12 +18,9 @@
 //!    decreases.
 //! 3. **Halve** the piece whose body becomes narrower by more.
 
-use super::bounding_body::BoundingBody;
-use super::depth_first::WorkItem;
-use super::nearest_pairs::NearestPairs;
-use super::piece::Piece;
-use super::placed_tube::PlacedTube;
-use super::refinable::{Body, Refinable, UpperBound};
+use super::bounding_body::{BoundingBody, SectionRange};
+use super::depth_first::{Body, Refinable, UpperBound, WorkItem};
+use super::placed_tube::{Piece, PlacedTube};
 use super::tube_point::TubePoint;
 use crate::answer::ProximityError;
 use crate::pair::{NearestOfLinks, PlacedLink};
@@ -104,17 +101,6 @@ impl WorkItem<TubePair<'_>> for PiecePair {
     fn halves(self, _: &TubePair, halves: [PiecePair; 2]) -> [Self; 2] {
         halves
     }
-}
-
-/// A piece as a range of its section, which is the same in every shape.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct SectionRange<'a> {
-    pub section: u32,
-    /// The range along the section, as shares of its length.
-    pub shares: [Real; 2],
-    /// Its body in the current shape.
-    pub outer: &'a BoundingBody,
-    pub radius: Real,
 }
 
 /// The initial pieces and pairs of a query. A later query reuses the memory.
@@ -412,4 +398,41 @@ pub(super) fn half_way(places: [Vector; 2], radii: [Real; 2]) -> Vector {
     // This form maps NaN (both places coincide) to the first place.
     let share = if share > 0.0 { share.min(1.0) } else { 0.0 };
     places[0] + way * share
+}
+
+/// Pairs of body indices with lower bounds on their distances. Keeps the nearest `most` pairs.
+#[derive(Clone, Debug, Default)]
+pub(super) struct NearestPairs {
+    order: Vec<(Real, [u32; 2])>,
+    most: usize,
+    is_all: bool,
+}
+
+impl NearestPairs {
+    pub(super) fn begin(&mut self, most: usize) {
+        self.order.clear();
+        (self.most, self.is_all) = (most, true);
+    }
+
+    pub(super) fn push(&mut self, at_least: Real, [i, j]: [usize; 2]) {
+        self.order.push((at_least, [i as u32, j as u32]));
+        if self.order.len() >= self.most.saturating_mul(2) {
+            self.keep_nearest();
+        }
+    }
+
+    /// Returns the pairs, the farthest first, and whether all pairs were kept.
+    pub(super) fn farthest_first(&mut self) -> (impl Iterator<Item = [usize; 2]>, bool) {
+        self.keep_nearest();
+        self.order.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(b.1.cmp(&a.1)));
+        (self.order.iter().map(|(_, pair)| pair.map(|place| place as usize)), self.is_all)
+    }
+
+    fn keep_nearest(&mut self) {
+        if self.order.len() > self.most {
+            self.order.select_nth_unstable_by(self.most, |a, b| a.0.total_cmp(&b.0));
+            self.order.truncate(self.most);
+            self.is_all = false;
+        }
+    }
 }

@@ -99,14 +99,11 @@
 //! (`TubeTurns::room`). Each point between these two parts bounds the distance of both
 //! (`tube_point`).
 
-use super::bounding_body::BoundingBody;
-use super::depth_first::WorkItem;
-use super::nearest_pairs::NearestPairs;
-use super::piece::Piece;
-use super::placed_tube::PlacedTube;
-use super::refinable::{Body, Refinable};
+use super::bounding_body::{BoundingBody, SectionRange};
+use super::depth_first::{Body, Refinable, WorkItem};
+use super::placed_tube::{Piece, PlacedTube};
 use super::section_motions::{SectionMotion, SectionMotions};
-use super::tube_pair::{PairUpperBound, SectionRange, TubePair, found_from, half_way};
+use super::tube_pair::{NearestPairs, PairUpperBound, TubePair, found_from, half_way};
 use super::tube_point::TubePoint;
 use crate::answer::ProximityError;
 use crate::curve::{EndFace, Section, Tube, TubeTurns};

@@ -1,10 +1,11 @@
-//! Lengths and directions that neither overflow nor underflow.
+//! Lengths and directions that neither overflow nor underflow; conversions between parry's vectors
+//! and the vectors of the distance kernels.
 //!
 //! The square of a length leaves the range of f64 beyond about 1e154 and below 1e-154; coordinates
 //! up to 1e150 are accepted. If a square comes near either end of the range, the vector is first
 //! scaled near 1 by a power of two, which is exact.
 
-use crate::distance::Scalar;
+use crate::distance::{Scalar, Vec3};
 use parry3d_f64::math::{Real, Vector};
 
 /// Squares of lengths in this range lose no significant bit.
@@ -36,4 +37,18 @@ pub(crate) fn length_and_direction(v: Vector) -> (Real, Vector) {
     let scaled = v * scale;
     let length = scaled.length();
     (length / scale, if scaled == Vector::ZERO { scaled } else { scaled / length })
+}
+
+impl From<Vector> for Vec3<f64> {
+    #[inline(always)]
+    fn from(vector: Vector) -> Self {
+        Self::new(vector.x, vector.y, vector.z)
+    }
+}
+
+impl From<Vec3<f64>> for Vector {
+    #[inline(always)]
+    fn from(vector: Vec3<f64>) -> Self {
+        Self::new(vector.x, vector.y, vector.z)
+    }
 }

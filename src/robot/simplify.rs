@@ -45,8 +45,8 @@
 
 use super::RobotError;
 use super::compare::ToleranceSegment;
-use super::radius_runs::RadiusRuns;
 use super::sight::{Sight, SightLimit};
+use super::stations::RadiusRuns;
 use parry3d_f64::math::{Real, Vector};
 
 /// Finds the fewest links that follow a centreline within a tolerance.

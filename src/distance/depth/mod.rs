@@ -6,7 +6,6 @@ mod direction;
 mod ellipse;
 mod foot;
 mod link_link;
-mod link_link_points;
 mod link_triangle;
 mod separation;
 mod way_out;

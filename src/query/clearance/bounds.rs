@@ -27,11 +27,10 @@
 //! be divided keeps its `lower` and never stops the sequence. Along the sequence no `lower` falls
 //! and `upper` never rises.
 
-use super::memory::TubeMemory;
 use crate::answer::{Clearance, ProximityError};
 use crate::refine::{
-    Examined, MeshUpperBound, PendingPiece, PendingPieces, PieceState, Refinable, TubeInMesh,
-    UpperBound,
+    BoundingBody, Examined, MeshUpperBound, PendingPiece, PendingPieces, Piece, PieceState,
+    Refinable, TubeInMesh, UpperBound,
 };
 use parry3d_f64::math::Real;
 
@@ -221,5 +220,35 @@ impl<'a, T: Refinable> BoundsSearch<'a, T> {
             resolved: upper - lower <= self.tolerance + uncertainty,
             uncertainty,
         }
+    }
+}
+
+/// The place that realised the last answer.
+#[derive(Clone, Copy, Debug)]
+struct LastPlace {
+    pub triangle: u32,
+    pub section: u32,
+    pub arc: Real,
+}
+
+impl From<&MeshUpperBound> for LastPlace {
+    fn from(found: &MeshUpperBound) -> Self {
+        let witness = found.witness;
+        Self { triangle: witness.triangle, section: found.section, arc: witness.arc_length }
+    }
+}
+
+/// The state that warm-starts the next query about a tube.
+#[derive(Clone, Default)]
+pub(crate) struct TubeMemory {
+    pub pieces: PendingPieces<Piece, BoundingBody, MeshUpperBound>,
+    /// The initial pieces of a query.
+    pub begun: Vec<Piece>,
+    pub last: Option<LastPlace>,
+}
+
+impl TubeMemory {
+    pub(crate) fn forget(&mut self) {
+        self.last = None;
     }
 }

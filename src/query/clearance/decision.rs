@@ -16,8 +16,7 @@
 //!
 //! **Proof.** The sequence of divisions does not depend on the resolution (`refine::best_first`).
 
-use super::bounds::MOST_DIVISIONS;
-use super::memory::TubeMemory;
+use super::bounds::{MOST_DIVISIONS, TubeMemory};
 use crate::answer::{Decision, ProximityError};
 use crate::refine::{
     Body, Examined, MOST_LEVELS, PendingPiece, PendingPieces, PieceState, Refinable, TubeInMesh,

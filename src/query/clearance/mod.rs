@@ -2,8 +2,6 @@
 
 mod bounds;
 mod decision;
-mod memory;
 
-pub(crate) use bounds::{BoundedClearance, BoundsSearch, Hint, clearance};
+pub(crate) use bounds::{BoundedClearance, BoundsSearch, Hint, TubeMemory, clearance};
 pub(crate) use decision::{Wanted, clears_pieces, clears_tube};
-pub(crate) use memory::TubeMemory;

@@ -76,31 +76,22 @@
 //! # Cost
 //! A triangle queries all triangles that share a corner or an edge with it: whether one is nearer
 //! by far or culled, and which came first. The answers are the same for the whole ring, so a long
-//! ring is evaluated once (`long_rings`). So the cost grows linearly with the triangles near a link
-//! and around their corners.
+//! ring is evaluated once (`wall_components`). So the cost grows linearly with the triangles near a
+//! link and around their corners.
 //!
 //! # Overlap
 //! Where link and wall overlap, d = 0. A piece is then a connected piece of wall inside the link,
 //! and one contact. Its representative is the triangle nearest to the axis; ties go to the lowest
 //! triangle.
 
-use super::link_neighbourhood::LinkNeighbourhood;
-use super::long_rings::{FEW, LongRings};
-use super::prominence::{ContactQuery, Prominence};
-use super::triangle_candidates::{CandidateEnd, CandidateIndex, TriangleCandidates};
-use super::wall::Wall;
-use super::wall_components::{IncidentTriangles, WallComponents};
+use super::prominence::{ContactQuery, LinkNeighbourhood, Prominence};
+use super::triangle_candidates::{CandidateEnd, CandidateIndex, TriangleCandidates, Wall};
+use super::wall_components::{CULLED, FEW, IncidentTriangles, LongRings, NONE, WallComponents};
 use crate::answer::{Contact, LinkProximity};
 use crate::pair::{PlacedLink, PlacedPair, PlacedRobot, Ranked, add_contacts, rank_each};
 use fearless_simd::Level;
 use parry3d_f64::math::Real;
 use std::ops::Range;
-
-/// The index of the piece of all culled triangles.
-pub(crate) const CULLED: u32 = 0;
-
-/// The index of no triangle.
-pub(crate) const NONE: u32 = u32::MAX;
 
 /// Links are collected until more triangles than this are to be measured. More fill the packs
 /// better; fewer need less memory.

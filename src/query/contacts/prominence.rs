@@ -39,8 +39,9 @@
 //!
 //! # Cost
 //! - A minimum is kept at once if no kept minimum has a similar normal.
-//! - From any other one the wall is flooded (`flood`) over passes below `d(C) + p`, corners first.
-//!   The flood ends at a minimum that represents it. Mostly that minimum is a few triangles away.
+//! - From any other one the wall is flooded ([`Flood`]) over passes below `d(C) + p`, corners
+//!   first. The flood ends at a minimum that represents it. Mostly that minimum is a few triangles
+//!   away.
 //! - Reached pieces stay joined, because the distances rise. So no triangle is flooded twice, and a
 //!   later flood continues at the rim of an earlier one.
 //! - A corner is measured once, when a triangle that has it is reached, in waves, so that packs are
@@ -53,12 +54,28 @@
 //! - A dropped minimum may go around the whole rim of such a piece before it meets its
 //!   representative, but mostly that is beside it. It tests the kept minima of a piece in turn, the
 //!   last representative first: if there are many, most have a similar normal.
+//!
+//! # Algorithm
+//! [`Flood`] floods the wall near one link below rising distances, from its minima, until each is
+//! decided. It answers whether a minimum reaches a kept one below a distance.
+//!
+//! 1. Each reached triangle belongs to a piece (union-find). A piece has a list of *open* triangles
+//!    and a list of its kept minima.
+//! 2. If a kept minimum of the piece represents the query's minimum, it is reached.
+//! 3. Otherwise take the open triangles as a *wave*. Reach all triangles around each of their
+//!    corners that is a pass. A triangle with a corner that is no pass is *closed*.
+//! 4. If there is no open triangle left, follow those edges of the closed triangles that are passes
+//!    although both ends are none.
+//! 5. Repeat from step 2. If no step reaches anything, the minimum is not reached. The closed
+//!    triangles become open for the next, greater distance.
 
-use super::flood::Flood;
-use super::link_neighbourhood::LinkNeighbourhood;
+use super::triangle_candidates::{CandidateIndex, LinkCandidates, Wall};
+use super::wall_components::{NONE, find_root, unite};
 use crate::answer::Contact;
+use crate::mesh::ends_of;
+use crate::pair::{Height, PlacedLink, measure_points, measure_segments};
 use fearless_simd::Level;
-use parry3d_f64::math::Real;
+use parry3d_f64::math::{Real, Vector};
 
 /// The cosine of the greatest angle between the normals of a contact and its representative.
 const MIN_COSINE: Real = 0.5;
@@ -125,4 +142,371 @@ fn is_represented(kept: &mut [u32], stands_for_it: impl Fn(u32) -> bool) -> bool
         kept.swap(0, place);
     }
     place.is_some()
+}
+
+/// The reached part of the wall near one link; memory is reused by later queries.
+#[derive(Clone, Default)]
+struct Flood {
+    /// The reached triangles.
+    reached: Vec<Reached>,
+    /// For each triangle of the mesh its index in `reached`. Stale values are harmless, because the
+    /// triangle there is compared.
+    of_triangle: Vec<u32>,
+    /// The corners of the reached triangles, one for each place.
+    corners: Vec<Corner>,
+    /// The distances of the first corners; the others are not measured yet.
+    heights: Vec<Height>,
+    /// For each vertex of the mesh its index in `corners`.
+    of_vertex: Vec<u32>,
+    /// Union-find: for each reached triangle an earlier one of the same piece, or itself.
+    joined: Vec<u32>,
+    /// For the first triangle of each piece: the open triangles, and the kept minima of the piece.
+    open: DisjointLists,
+    kept: DisjointLists,
+    /// The open triangles of the current step, and the closed triangles.
+    wave: Vec<u32>,
+    closed: Vec<u32>,
+    /// Edges to be measured: a triangle that has the edge, and the number of the part.
+    edges: Vec<(u32, usize)>,
+}
+
+#[derive(Clone, Copy)]
+struct Reached {
+    triangle: u32,
+    corners: [u32; 3],
+}
+
+#[derive(Clone, Copy)]
+struct Corner {
+    /// The first vertex at its place.
+    vertex: u32,
+    /// Whether all near triangles around it were reached and are one piece.
+    is_followed: bool,
+}
+
+impl Flood {
+    /// Starts again for a link, without reached triangles.
+    pub(super) fn begin(&mut self, around: LinkNeighbourhood) {
+        let mesh = around.wall.mesh;
+        self.of_triangle.resize(mesh.len(), 0);
+        self.of_vertex.resize(mesh.vertices().len(), 0);
+        self.reached.clear();
+        self.corners.clear();
+        self.heights.clear();
+        self.joined.clear();
+        self.open.clear();
+        self.kept.clear();
+    }
+
+    /// Adds a kept minimum at a near triangle.
+    pub(super) fn keep(&mut self, around: LinkNeighbourhood, triangle: u32, minimum: u32) {
+        let place = self.reach(around, triangle);
+        self.kept.put(find_root(&mut self.joined, place), minimum);
+    }
+
+    /// Returns true if a path below the distance `below` leads from a triangle to a kept minimum
+    /// for which `stands_for` holds. `below` must not decrease from call to call.
+    pub(super) fn reaches(
+        &mut self,
+        level: Level,
+        around: LinkNeighbourhood,
+        triangle: u32,
+        below: Real,
+        stands_for: impl Fn(u32) -> bool,
+    ) -> bool {
+        let place = self.reach(around, triangle);
+        self.closed.clear();
+        // The closed triangles whose edges have been followed.
+        let mut ended = 0;
+        let is_reached = loop {
+            let piece = find_root(&mut self.joined, place);
+            if self.kept.find(piece, &stands_for) {
+                break true;
+            }
+            self.wave.clear();
+            self.open.take(piece, &mut self.wave);
+            if !self.wave.is_empty() {
+                self.follow_corners(level, around, below);
+            } else if ended < self.closed.len() {
+                self.follow_edges(level, around, below, ended);
+                ended = self.closed.len();
+            } else {
+                break false;
+            }
+        };
+        let piece = find_root(&mut self.joined, place);
+        self.closed.iter().for_each(|&place| self.open.put(piece, place));
+        is_reached
+    }
+
+    /// Returns the index of a near triangle in `reached`, and appends the triangle if it is new.
+    fn reach(&mut self, around: LinkNeighbourhood, triangle: u32) -> u32 {
+        if let Some(place) = self.place(triangle) {
+            return place;
+        }
+        let mesh = around.wall.mesh;
+        let corners = mesh.indices()[triangle as usize].map(|vertex| {
+            let vertex = mesh.parts().first_at(vertex);
+            let at = &mut self.of_vertex[vertex as usize];
+            if self.corners.get(*at as usize).is_none_or(|corner| corner.vertex != vertex) {
+                *at = self.corners.len() as u32;
+                self.corners.push(Corner { vertex, is_followed: false });
+            }
+            *at
+        });
+        let place = self.reached.len() as u32;
+        self.of_triangle[triangle as usize] = place;
+        self.reached.push(Reached { triangle, corners });
+        self.joined.push(place);
+        self.open.begin();
+        self.kept.begin();
+        self.open.put(place, place);
+        place
+    }
+
+    /// Returns the index of a triangle in `reached`, if it was reached.
+    #[inline(always)]
+    fn place(&self, triangle: u32) -> Option<u32> {
+        let place = self.of_triangle[triangle as usize];
+        let reached = self.reached.get(place as usize)?;
+        (reached.triangle == triangle).then_some(place)
+    }
+
+    /// Reaches all near triangles around a corner or an edge of a reached triangle, and unites
+    /// their pieces.
+    fn follow(&mut self, around: LinkNeighbourhood, triangle: u32, part: usize) {
+        let own = self.reach(around, triangle);
+        for other in around.wall.mesh.parts().others(triangle, part) {
+            if self.place(other).is_none() && !around.holds(other) {
+                continue;
+            }
+            let place = self.reach(around, other);
+            let [first, second] = unite(&mut self.joined, own, place);
+            if first != second {
+                self.open.append(second, first);
+                self.kept.append(second, first);
+            }
+        }
+    }
+
+    /// Step 3: follows the corners of the wave that are passes below a distance, and closes
+    /// triangles with a corner that is no pass.
+    fn follow_corners(&mut self, level: Level, around: LinkNeighbourhood, below: Real) {
+        let vertices = around.wall.mesh.vertices();
+        let unknown = self.corners[self.heights.len()..].iter();
+        let points = unknown.map(|corner| vertices[corner.vertex as usize]);
+        measure_points(level, around.link, points, |height| self.heights.push(height));
+        let wave = std::mem::take(&mut self.wave);
+        for &place in &wave {
+            let Reached { triangle, corners } = self.reached[place as usize];
+            let mut is_closed = false;
+            for (part, corner) in corners.map(|corner| corner as usize).into_iter().enumerate() {
+                if self.corners[corner].is_followed {
+                    continue;
+                }
+                if around.is_pass(&self.heights[corner], below) {
+                    self.corners[corner].is_followed = true;
+                    self.follow(around, triangle, part);
+                } else {
+                    is_closed = true;
+                }
+            }
+            if is_closed {
+                self.closed.push(place);
+            }
+        }
+        self.wave = wave;
+    }
+
+    /// Step 4: follows the edges of the closed triangles, from one of them on, that are passes
+    /// below a distance although their ends are none.
+    fn follow_edges(&mut self, level: Level, around: LinkNeighbourhood, below: Real, from: usize) {
+        let mesh = around.wall.mesh;
+        self.edges.clear();
+        let closed = std::mem::take(&mut self.closed);
+        for &place in &closed[from..] {
+            let Reached { triangle, corners } = self.reached[place as usize];
+            let points = mesh.corners(triangle);
+            for part in 3..6 {
+                let ends = ends_of(corners, part).map(|corner| corner as usize);
+                if ends.iter().any(|&end| self.corners[end].is_followed) {
+                    continue;
+                }
+                let [start, end] = ends_of(points, part);
+                if !around.may_pass_between(ends.map(|end| &self.heights[end]), end - start, below)
+                {
+                    continue;
+                }
+                if self.reaches_other_piece(around, triangle, part) {
+                    self.edges.push((triangle, part));
+                }
+            }
+        }
+        self.closed = closed;
+        let edges = std::mem::take(&mut self.edges);
+        let segments =
+            edges.iter().map(|&(triangle, part)| in_order(ends_of(mesh.corners(triangle), part)));
+        let mut of_heights = edges.iter();
+        measure_segments(level, around.link, segments, |height| {
+            let Some(&(triangle, part)) = of_heights.next() else { return };
+            // Another triangle with this edge may have been followed already.
+            if around.is_pass(&height, below) && self.reaches_other_piece(around, triangle, part) {
+                self.follow(around, triangle, part);
+            }
+        });
+        self.edges = edges;
+    }
+
+    /// Returns true if the next near triangle in the ring of an edge belongs to another piece, or
+    /// is not reached. If this is false for all triangles of the ring, they are one piece.
+    fn reaches_other_piece(
+        &mut self,
+        around: LinkNeighbourhood,
+        triangle: u32,
+        part: usize,
+    ) -> bool {
+        let own = self.reach(around, triangle);
+        for other in around.wall.mesh.parts().others(triangle, part) {
+            if let Some(other) = self.place(other) {
+                return find_root(&mut self.joined, other) != find_root(&mut self.joined, own);
+            }
+            if around.holds(other) {
+                return true;
+            }
+        }
+        false
+    }
+}
+
+/// The ends of an edge in an order that does not depend on the triangle.
+fn in_order([from, to]: [Vector; 2]) -> [Vector; 2] {
+    if from.to_array() <= to.to_array() { [from, to] } else { [to, from] }
+}
+
+/// Disjoint lists: each number is in at most one list, and once.
+#[derive(Clone, Default)]
+struct DisjointLists {
+    /// For each list its first and its last number.
+    ends: Vec<[u32; 2]>,
+    /// For each number the next.
+    next: Vec<u32>,
+}
+
+impl DisjointLists {
+    /// Removes all lists and numbers.
+    pub(super) fn clear(&mut self) {
+        self.ends.clear();
+        self.next.clear();
+    }
+
+    /// Adds an empty list; lists are numbered in order.
+    pub(super) fn begin(&mut self) {
+        self.ends.push([NONE; 2]);
+    }
+
+    /// Prepends a number that is in no list.
+    pub(super) fn put(&mut self, list: u32, number: u32) {
+        let (at, number_at) = (list as usize, number as usize);
+        let [head, tail] = self.ends[at];
+        self.next.resize(self.next.len().max(number_at + 1), NONE);
+        self.next[number_at] = head;
+        self.ends[at] = [number, if tail == NONE { number } else { tail }];
+    }
+
+    /// Appends the numbers of the list `from` to the list `to`, and empties `from`.
+    pub(super) fn append(&mut self, from: u32, to: u32) {
+        let [head, tail] = std::mem::replace(&mut self.ends[from as usize], [NONE; 2]);
+        if head == NONE {
+            return;
+        }
+        let [to_head, to_tail] = self.ends[to as usize];
+        if to_head == NONE {
+            self.ends[to as usize] = [head, tail];
+        } else {
+            self.next[to_tail as usize] = head;
+            self.ends[to as usize] = [to_head, tail];
+        }
+    }
+
+    /// Moves the numbers of a list to the end of `out`.
+    pub(super) fn take(&mut self, list: u32, out: &mut Vec<u32>) {
+        let [mut at, _] = std::mem::replace(&mut self.ends[list as usize], [NONE; 2]);
+        while at != NONE {
+            out.push(at);
+            at = self.next[at as usize];
+        }
+    }
+
+    /// Returns true if `is_such` holds for a number of a list, and moves the first such number to
+    /// the front.
+    pub(super) fn find(&mut self, list: u32, is_such: impl Fn(u32) -> bool) -> bool {
+        let [head, tail] = self.ends[list as usize];
+        let (mut before, mut at) = (NONE, head);
+        while at != NONE && !is_such(at) {
+            (before, at) = (at, self.next[at as usize]);
+        }
+        if at != NONE && before != NONE {
+            self.next[before as usize] = self.next[at as usize];
+            self.next[at as usize] = head;
+            self.ends[list as usize] = [at, if at == tail { before } else { tail }];
+        }
+        at != NONE
+    }
+}
+
+/// The triangles near one link.
+#[derive(Clone, Copy)]
+pub(super) struct LinkNeighbourhood<'a> {
+    pub link: &'a PlacedLink,
+    pub wall: Wall<'a>,
+    pub near: LinkCandidates<'a>,
+    pub index: &'a CandidateIndex,
+    /// The greatest distance of a pass.
+    pub margin: Real,
+}
+
+impl LinkNeighbourhood<'_> {
+    /// Returns true if a triangle may be within the margin.
+    #[inline(always)]
+    pub(super) fn holds(&self, triangle: u32) -> bool {
+        self.near.index(self.index, triangle).is_some()
+            || self.near.is_culled(self.index, self.wall.place_of(), triangle)
+    }
+
+    /// Returns true if a corner or edge at this distance is a pass below `below`.
+    #[inline(always)]
+    fn is_pass(&self, height: &Height, below: Real) -> bool {
+        height.distance < below && height.distance + height.rounding <= self.margin
+    }
+
+    /// Returns true if an edge may be a pass below `below` although neither of its ends is. `along`
+    /// leads from one end to the other.
+    fn may_pass_between(&self, ends: [&Height; 2], along: Vector, below: Real) -> bool {
+        lower_between(ends, along).is_some_and(|lower| lower < below && lower <= self.margin)
+    }
+}
+
+/// Returns a lower bound on the distance of an edge, if the edge may be nearer than both of its
+/// ends. `along` leads from one end to the other.
+///
+/// **Derivation.** The distance is convex along the edge. Let an end have the distance d and the
+/// vector W from the link. Along the whole edge the tangent there changes by `g = W . along / |W|`.
+/// If the distance does not fall from an end on, that end is nearest. Otherwise it lies above both
+/// tangents `d1 + s g1` and `d2 + (1 - s) g2`, which cross at `s = (d2 + g2 - d1) / (g1 + g2)`.
+///
+/// **Rounding.** W turns by the ratio of its rounding to d.
+fn lower_between([one, other]: [&Height; 2], along: Vector) -> Option<Real> {
+    let rounding = one.rounding.max(other.rounding);
+    let turned = 4.0 * rounding * along.length() / one.distance.min(other.distance);
+    let change =
+        [one.way.dot(along) / one.way.length(), -other.way.dot(along) / other.way.length()];
+    // NaN if W is 0: then no point is nearer.
+    if !(change[0] < turned && change[1] < turned) {
+        return None;
+    }
+    let fall = change.map(|change| change.min(0.0) - turned);
+    let share = (other.distance + fall[1] - one.distance) / (fall[0] + fall[1]);
+    // If nothing falls this is 0 / 0; the comparison turns NaN into 0.
+    let share = if share > 0.0 { share.min(1.0) } else { 0.0 };
+    Some(one.distance + fall[0] * share - 4.0 * rounding)
 }

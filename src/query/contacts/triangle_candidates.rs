@@ -1,7 +1,8 @@
 //! The triangles that may be within a margin of a link, with the bounds of the search, before they
 //! are measured.
 
-use crate::mesh::{BLOCK, PART_WITHOUT};
+use crate::mesh::{BLOCK, Mesh, PART_WITHOUT};
+use crate::search::hierarchy::WideBvh;
 use parry3d_f64::math::Real;
 
 /// The triangles that may be within a margin of the links of a robot, link by link.
@@ -152,5 +153,26 @@ impl TriangleCandidate {
     pub(crate) fn is_beyond(&self, part: usize) -> bool {
         let edge = |number: usize| self.beyond >> (number % 3) & 1 == 1;
         if part < 3 { edge(part) || edge(part + 2) } else { edge(part) }
+    }
+}
+
+/// The mesh, and its hierarchy if the search culls triangles on slopes.
+#[derive(Clone, Copy)]
+pub(crate) struct Wall<'a> {
+    pub mesh: &'a Mesh,
+    /// The hierarchy of a search that culls triangles on slopes.
+    pub tree: Option<&'a WideBvh<f32>>,
+}
+
+impl<'a> Wall<'a> {
+    /// A wall without such a search.
+    pub(crate) fn of(mesh: &'a Mesh) -> Self {
+        Self { mesh, tree: None }
+    }
+
+    /// Returns the place of each triangle in the leaves of the search; empty without such a search.
+    #[inline(always)]
+    pub(super) fn place_of(&self) -> &'a [u32] {
+        self.tree.map_or(&[], |tree| &tree.place_of)
     }
 }

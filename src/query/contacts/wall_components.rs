@@ -1,13 +1,23 @@
-//! The sweep over the triangles near one link: pieces of wall appear and merge. `local_minima` has
-//! the derivation.
+//! The sweep over the triangles near one link: connected components of the wall appear and merge.
+//! `local_minima` has the derivation.
+//!
+//! **Long rings.** A triangle queries all others around its corners and edges. In a fan, or if all
+//! invalid vertices were put at the origin, a ring is long, and the cost would be quadratic. So one
+//! walk around a long ring, near each link, collects the result for all of its triangles.
+//!
+//! **Union-find** (Galler and Fischer). Each item names an earlier item of the same set, or itself
+//! if it is the first.
 
-use super::local_minima::{CULLED, NONE};
-use super::long_rings::{FEW, LongRings};
-use super::triangle_candidates::{CandidateIndex, LinkCandidates};
-use super::wall::Wall;
-use crate::mesh::{PARTS, ends_of, find_root};
+use super::triangle_candidates::{CandidateIndex, LinkCandidates, Wall};
+use crate::mesh::{PARTS, SharedParts, ends_of};
 use crate::pair::{Nearest, PlacedLink, Ranked, rounding};
 use parry3d_f64::math::{Real, Vector};
+
+/// The index of the piece of all culled triangles.
+pub(crate) const CULLED: u32 = 0;
+
+/// The index of no triangle.
+pub(crate) const NONE: u32 = u32::MAX;
 
 /// The pieces of wall within the margin of one link.
 pub(crate) struct WallComponents<'a> {
@@ -143,4 +153,97 @@ fn is_on(point: Vector, [from, to]: [Vector; 2], rounding: Real) -> bool {
     // For a segment without length this is 0 / 0; the comparison turns NaN into 0.
     let share = if share > 0.0 { share.min(1.0) } else { 0.0 };
     (relative - edge * share).abs().max_element() <= 0.5 * rounding
+}
+
+/// Triangles of a ring that are queried one by one. A carefully made mesh has fewer around its
+/// corners.
+pub(crate) const FEW: usize = 24;
+
+/// The results for the long rings near one link.
+#[derive(Clone)]
+pub(crate) struct LongRings<K> {
+    /// For each part of each candidate the number of its ring, counted from 1; 0 without a result.
+    /// Empty before the first result.
+    of_part: Vec<u32>,
+    known: Vec<K>,
+}
+
+impl<K> Default for LongRings<K> {
+    fn default() -> Self {
+        Self { of_part: Vec::new(), known: Vec::new() }
+    }
+}
+
+impl<K: Default> LongRings<K> {
+    /// Removes all results, before the next link.
+    pub(crate) fn clear(&mut self) {
+        self.of_part.clear();
+        self.known.clear();
+    }
+
+    /// Returns the result for the ring around a part of a candidate; the candidate itself is
+    /// included.
+    ///
+    /// The first call for a ring computes it: `add` receives every triangle of the ring with its
+    /// index among the candidates.
+    pub(crate) fn around(
+        &mut self,
+        shared: &SharedParts,
+        near: LinkCandidates,
+        index: &CandidateIndex,
+        [place, part]: [usize; 2],
+        mut add: impl FnMut(&mut K, u32, Option<usize>),
+    ) -> &K {
+        let ring = self.ring(place, part).unwrap_or_else(|| {
+            self.of_part.resize(PARTS * near.in_question.len(), 0);
+            let mut known = K::default();
+            for (triangle, part) in shared.ring(near.in_question[place].triangle, part) {
+                let place = near.index(index, triangle);
+                add(&mut known, triangle, place);
+                if let Some(place) = place {
+                    self.of_part[PARTS * place + part] = self.known.len() as u32 + 1;
+                }
+            }
+            self.known.push(known);
+            self.known.len() - 1
+        });
+        &self.known[ring]
+    }
+
+    /// Calls `change` for the results of all rings of a candidate.
+    pub(crate) fn all_around(&mut self, place: usize, mut change: impl FnMut(&mut K)) {
+        if self.known.is_empty() {
+            return;
+        }
+        for part in 0..PARTS {
+            if let Some(ring) = self.ring(place, part) {
+                change(&mut self.known[ring]);
+            }
+        }
+    }
+
+    fn ring(&self, place: usize, part: usize) -> Option<usize> {
+        self.of_part.get(PARTS * place + part).and_then(|&number| (number as usize).checked_sub(1))
+    }
+}
+
+/// Returns the first item of a set, and halves the path to it.
+#[inline(always)]
+pub(crate) fn find_root(joined: &mut [u32], mut place: u32) -> u32 {
+    while joined[place as usize] != place {
+        let next = joined[place as usize];
+        joined[place as usize] = joined[next as usize];
+        place = next;
+    }
+    place
+}
+
+/// Unites the sets of two items. Returns the first item of the united set, then the former first
+/// item of the other set; both are equal if the items were in one set.
+#[inline(always)]
+pub(crate) fn unite(joined: &mut [u32], one: u32, other: u32) -> [u32; 2] {
+    let (one, other) = (find_root(joined, one), find_root(joined, other));
+    let firsts = [one.min(other), one.max(other)];
+    joined[firsts[1] as usize] = firsts[0];
+    firsts
 }

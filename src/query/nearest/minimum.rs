@@ -26,10 +26,10 @@
 //! **Rounding.** `lower[k]` is rounded down and the capsule test is conservative: both can only
 //! search a link too many.
 
+use super::link_lower_bounds::LinkLowerBounds;
 use crate::answer::Work;
 use crate::mesh::BLOCK;
 use crate::pair::{Best, Nearest, PlacedRobot};
-use crate::query::nearest::memory::LinkLowerBounds;
 use crate::robot::{BoundingCapsule, LinkNode, distance_to_segment};
 use crate::search::hierarchy::MeshSearch;
 use parry3d_f64::math::Real;

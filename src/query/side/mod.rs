@@ -5,18 +5,14 @@
 //! generalized winding numbers", 2013.) The number is whole for a closed mesh, and 0 at each
 //! outside point.
 //!
-//! - `solid_angle`: the solid angle of a triangle, with an error bound.
-//! - `far_field`: the solid angle of many triangles far away, with an error bound (after Barill et
-//!   al., "Fast winding numbers for soups and clouds", 2018).
-//! - `angle_sum`: the sum, and the side that it proves.
+//! - `solid_angle`: the solid angle of a triangle; of many triangles far away (after Barill et al.,
+//!   "Fast winding numbers for soups and clouds", 2018); their sum, and the side that it proves.
 //! - `winding`: the traversal of the hierarchy.
 
-mod angle_sum;
-mod far_field;
 mod solid_angle;
 #[cfg(test)]
 mod tests;
 mod winding;
 
-pub(crate) use angle_sum::SolidAngle;
+pub(crate) use solid_angle::SolidAngle;
 pub(crate) use winding::{FarFields, Winding};

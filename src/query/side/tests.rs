@@ -1,8 +1,7 @@
 //! Tests of the error bounds against solid angles of twice the digits.
 
 use super::SolidAngle;
-use super::far_field::FarField;
-use super::solid_angle::solid_angle;
+use super::solid_angle::{FarField, solid_angle};
 use crate::distance::{DoubleDouble, Scalar, Vec3};
 use continuum_testing::Random;
 use parry3d_f64::math::Vector;

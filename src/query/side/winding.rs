@@ -2,8 +2,7 @@
 //! one by one.
 
 use super::SolidAngle;
-use super::far_field::FarField;
-use super::solid_angle::solid_angle;
+use super::solid_angle::{FarField, solid_angle};
 use crate::answer::Side;
 use crate::distance::Scalar;
 use crate::distance::lanes::Lane;

@@ -8,8 +8,7 @@
 //! 4. **Merge** the findings of all threads.
 
 use super::blocks::Blocks;
-use super::kernels::Kernels;
-use super::scan::{Job, JobLink, SharedBound, ThreadFindings};
+use super::scan::{Job, JobLink, Kernels, SharedBound, ThreadFindings};
 use crate::answer::{LinkProximity, ProximityError, Work};
 use crate::distance::Scalar;
 use crate::mesh::Mesh;

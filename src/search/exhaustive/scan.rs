@@ -1,11 +1,16 @@
 //! The loop of exhaustive search: every link against every triangle.
+//!
+//! [`Kernels`] has the loop for each precision, as functions without type parameters. So they are
+//! compiled for every instruction set in this crate, and not again in each crate that uses an
+//! engine.
 
-use super::blocks::Blocks;
+use super::blocks::{Blocks, prepare};
 use crate::answer::Work;
-use crate::distance::Scalar;
 use crate::distance::lanes::{Lane, Pack};
+use crate::distance::{Scalar, dispatch};
 use crate::mesh::{BLOCK, Mesh};
 use crate::pair::{Best, LinkLanes, Nearest, PlacedLink, SearchLink};
+use fearless_simd::Level;
 use parry3d_f64::math::Real;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
@@ -246,3 +251,44 @@ impl<E: Lane> LinkScan<'_, E> {
         self.best.measure(self.link, triangle as u32, self.job.mesh.corners(triangle as u32))
     }
 }
+
+/// A precision with its loops.
+pub(crate) trait Kernels: Lane {
+    /// [`prepare`].
+    fn prepare(level: Level, faces: &mut [Self], spheres: &mut [Self]);
+    /// [`Job::first_bounds`].
+    fn first_bounds(level: Level, job: &Job<Self>);
+    /// [`Job::scan`] with culling.
+    fn scan(level: Level, job: &Job<Self>, chunk: usize, findings: &mut ThreadFindings);
+    /// [`Job::scan`] without culling.
+    fn scan_every_pair(level: Level, job: &Job<Self>, chunk: usize, findings: &mut ThreadFindings);
+}
+
+macro_rules! kernels {
+    ($element:ty) => {
+        impl Kernels for $element {
+            #[inline(never)]
+            fn prepare(level: Level, faces: &mut [Self], spheres: &mut [Self]) {
+                dispatch!(level, simd => prepare::<<Self as Lane>::Pack<_>>(simd, faces, spheres));
+            }
+
+            #[inline(never)]
+            fn first_bounds(level: Level, job: &Job<Self>) {
+                dispatch!(level, simd => job.first_bounds::<<Self as Lane>::Pack<_>>(simd));
+            }
+
+            #[inline(never)]
+            fn scan(level: Level, job: &Job<Self>, chunk: usize, findings: &mut ThreadFindings) {
+                dispatch!(level, simd => job.scan::<<Self as Lane>::Pack<_>, true>(simd, chunk, findings));
+            }
+
+            #[inline(never)]
+            fn scan_every_pair(level: Level, job: &Job<Self>, chunk: usize, findings: &mut ThreadFindings) {
+                dispatch!(level, simd => job.scan::<<Self as Lane>::Pack<_>, false>(simd, chunk, findings));
+            }
+        }
+    };
+}
+
+kernels!(f32);
+kernels!(f64);

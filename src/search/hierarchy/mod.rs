@@ -3,10 +3,6 @@
 
 mod bound;
 mod build;
-mod candidates;
-mod capped_gather;
-mod hierarchies;
-mod leaf_visitor;
 mod mesh_search;
 mod moving_mesh;
 mod node;
@@ -14,9 +10,7 @@ mod oriented_box;
 mod traverse;
 
 pub(crate) use build::WideBvh;
-pub(crate) use hierarchies::{Hierarchy, Searched};
-pub(crate) use leaf_visitor::LeafVisitor;
-pub(crate) use mesh_search::{MeshSearch, PlacedMeshSearch, Scratch};
+pub(crate) use mesh_search::{Hierarchy, MeshSearch, PlacedMeshSearch, Scratch, Searched};
 pub(crate) use moving_mesh::{MeshAt, MovingMesh};
 pub(crate) use node::{Child, WIDTH};
-pub(crate) use traverse::Traversal;
+pub(crate) use traverse::{LeafVisitor, Traversal};

@@ -34,9 +34,6 @@
 //! [`SearchLink::limit_of_bounds`].
 
 use super::build::WideBvh;
-use super::candidates::select_least;
-use super::capped_gather::CappedGather;
-use super::leaf_visitor::LeafVisitor;
 use super::node::{Child, Node, WIDTH};
 use crate::answer::Work;
 use crate::distance::lanes::{Lane, Pack};
@@ -467,4 +464,130 @@ where
         near |= L::bits(squared.lt(limit)) << lane;
     }
     (near & node.used(), bounds)
+}
+
+/// Moves the candidates with the least bounds to the first `count` places.
+///
+/// The others keep their places, except where they make room. They are in the order of the leaves,
+/// so triangles that are near each other are often near in memory too.
+fn select_least<E: Copy + PartialOrd>(candidates: &mut [(E, u32)], count: usize) {
+    let Some((first, others)) = candidates.split_at_mut_checked(count) else { return };
+    let mut farthest = farthest_of(first);
+    for other in others {
+        if first.get(farthest).is_some_and(|first| other.0 < first.0) {
+            std::mem::swap(&mut first[farthest], other);
+            farthest = farthest_of(first);
+        }
+    }
+}
+
+fn farthest_of<E: PartialOrd>(candidates: &[(E, u32)]) -> usize {
+    (1..candidates.len())
+        .fold(0, |far, place| if candidates[far].0 < candidates[place].0 { place } else { far })
+}
+
+/// Receives the leaves of a [`Traversal`](super::Traversal), one after another.
+///
+/// A closure would be too slow: it is not inlined into the loop for each instruction set, so every
+/// operation on a pack would be a function call.
+pub(crate) trait LeafVisitor<E: Lane> {
+    /// Processes one leaf. Implementations must be `#[inline(always)]`.
+    fn visit<L: Pack<Element = E>>(
+        &mut self,
+        token: L::Token,
+        lanes: &LinkLanes<L>,
+        tree: &WideBvh<E>,
+        mesh: &Mesh,
+        leaf: u32,
+    );
+}
+
+/// The triangles gathered so far. The tests are the same as in a search for the nearest triangle
+/// (`traverse`).
+struct CappedGather<'a, E> {
+    /// A gathered triangle has an axis distance below this.
+    pub limit: E,
+    /// The most triangles to gather.
+    pub most: usize,
+    /// The triangles so far.
+    pub found: &'a mut Vec<u32>,
+    /// Whether there are more than `most`.
+    pub is_overfull: bool,
+}
+
+impl<E: Lane> LeafVisitor<E> for CappedGather<'_, E> {
+    #[inline(always)]
+    fn visit<L: Pack<Element = E>>(
+        &mut self,
+        token: L::Token,
+        lanes: &LinkLanes<L>,
+        tree: &WideBvh<E>,
+        _: &Mesh,
+        number: u32,
+    ) {
+        if self.is_overfull {
+            return;
+        }
+        let leaf = &tree.leaves[number as usize];
+        let limit = L::splat(token, self.limit);
+        for lane in (0..BLOCK).step_by(L::LANES) {
+            let vertices = load_vertices::<L>(token, &leaf.rows, lane);
+            if lanes.not_behind_plane(vertices, limit) == 0 {
+                continue;
+            }
+            let mut near = lanes.may_be_nearer(&Face::in_order(vertices), limit).nearer;
+            while near != 0 {
+                let triangle = leaf.triangles[lane + near.trailing_zeros() as usize];
+                near &= near - 1;
+                // A leaf that is not full repeats its last triangle.
+                if self.found.last() == Some(&triangle) {
+                    continue;
+                }
+                if self.found.len() == self.most {
+                    self.is_overfull = true;
+                    return;
+                }
+                self.found.push(triangle);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use continuum_testing::Random;
+
+    #[test]
+    fn the_least_come_first_and_the_others_stay() {
+        let random = &mut Random::new(5);
+        let mut moved = 0;
+        for _ in 0..1000 {
+            // Many bounds are equal; each triangle occurs once.
+            let length = random.below(40);
+            let before: Vec<_> = (0..length).map(|triangle| (random.below(12), triangle)).collect();
+            let count = random.below(10) as usize;
+            let mut after = before.clone();
+            select_least(&mut after, count);
+            let (mut sorted, mut kept) = (before.clone(), after.clone());
+            sorted.sort_unstable();
+            kept.sort_unstable();
+            assert_eq!(kept, sorted);
+            if let Some((first, others)) = after.split_at_checked(count) {
+                let largest = first.iter().map(|candidate| candidate.0).max();
+                assert!(
+                    others
+                        .iter()
+                        .all(|candidate| largest.is_none_or(|largest| largest <= candidate.0))
+                );
+                let strays =
+                    after.iter().zip(&before).skip(count).filter(|(after, before)| after != before);
+                // Each candidate that moved to the front swapped places with another.
+                let came = first.iter().filter(|candidate| candidate.1 as usize >= count).count();
+                assert!(strays.clone().count() >= came);
+                moved += came;
+            }
+        }
+        assert!(moved > 1000, "{moved}");
+    }
 }

@@ -1,9 +1,10 @@
-//! The clearance of a tube, between bounds.
+//! Answers about a tube and a mesh: the clearance between bounds, its pieces, and the decision.
 
 use super::Witness;
 #[cfg(feature = "serde-serialize")]
 use super::checked_fields::check_bounds;
 use super::checked_fields::checked_fields;
+use crate::robot::ModifiedCylinder;
 use parry3d_f64::math::Real;
 
 /// The place where a tube is closest to a mesh, between bounds. All fields are in the mesh's frame
@@ -12,7 +13,7 @@ use parry3d_f64::math::Real;
 #[cfg_attr(feature = "serde-serialize", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
     feature = "serde-serialize",
-    serde(try_from = "serialised::Fields", into = "serialised::Fields")
+    serde(try_from = "clearance_fields::Fields", into = "clearance_fields::Fields")
 )]
 #[non_exhaustive]
 pub struct Clearance {
@@ -63,6 +64,7 @@ pub(super) fn resolve(apart: Real, [one, other]: [Real; 2], tolerance: Real) -> 
 }
 
 checked_fields!(
+    clearance_fields,
     "Clearance",
     Clearance {
         lower: Real,
@@ -75,3 +77,65 @@ checked_fields!(
     },
     |&Fields { lower, upper, uncertainty, .. }| check_bounds([lower, upper], uncertainty)
 );
+
+/// A piece of a tube, as
+/// [`BvhSearch::clearance_pieces`](crate::proximity::BvhSearch::clearance_pieces) returns it: as
+/// fine as the answer needed. All fields are in the mesh's frame and unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct TubePiece {
+    /// The section of constant radius to which the piece belongs, counted from the base.
+    pub section: u32,
+    /// The arc lengths of its two ends on the centreline.
+    pub arc_lengths: [Real; 2],
+    /// A convex body that contains the piece. The excess of its radius over the section's radius
+    /// measures how coarse the piece is.
+    pub body: ModifiedCylinder,
+    /// Lower bound on the piece's distance from the mesh. It is only as tight as the answer needed,
+    /// so often well below the distance.
+    pub lower: Real,
+}
+
+/// Whether a tube, a motion at every time, or a whole scene keeps a margin.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde-serialize", derive(serde::Serialize, serde::Deserialize))]
+pub enum Decision {
+    /// Proven: the clearance is more than the margin.
+    Clear,
+    /// Proven: the clearance is at most the margin.
+    Contact,
+    /// Neither: the clearance is within the resolution of the margin; or the input, or a limit on
+    /// the work, does not allow a decision.
+    Undecided,
+}
+
+/// The reason why a query about a motion is undecided.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde-serialize", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub enum UndecidedReason {
+    /// A shape comes within the resolution of the margin, up to its stated errors; or the end of a
+    /// link becomes flat or round where that decides. A finer resolution may help.
+    Near,
+    /// The query has reached its limit of work. A coarser resolution helps, or a motion in several
+    /// parts.
+    Work,
+}
+
+impl Decision {
+    /// Returns the better of two answers to one query: one that decides, or else one without an
+    /// error. Computes the second only if the first does not decide.
+    ///
+    /// # Errors
+    /// Both answers are errors.
+    pub(crate) fn better_of<E>(
+        first: Result<Self, E>,
+        second: impl FnOnce() -> Result<Self, E>,
+    ) -> Result<Self, E> {
+        match first {
+            Ok(Self::Undecided) => Ok(second().unwrap_or(Self::Undecided)),
+            Ok(decided) => Ok(decided),
+            Err(_) => second(),
+        }
+    }
+}

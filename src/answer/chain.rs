@@ -1,8 +1,87 @@
-//! The contact of a link with the wall, with its normal and its derivative by the joints.
+//! Answers about a chain: the closest places of its links, contacts, derivatives, certificates.
 
 use super::Witness;
-use super::feature::ContactFeature;
+#[cfg(feature = "serde-serialize")]
+use super::checked_fields::check_distance;
+use super::checked_fields::checked_fields;
 use parry3d_f64::math::{Real, Vector};
+
+/// The place where one link of a robot is closest to a mesh, in the mesh's frame and unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde-serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde-serialize",
+    serde(try_from = "link_proximity_fields::Fields", into = "link_proximity_fields::Fields")
+)]
+#[non_exhaustive]
+pub struct LinkProximity {
+    /// The link's index in [`Chain::links`](crate::Chain::links).
+    pub link: u32,
+    /// The distance between link and triangle, 0 if they touch or overlap.
+    pub distance: Real,
+    /// The two closest points and their places.
+    pub witness: Witness,
+}
+
+impl LinkProximity {
+    /// Placeholder in a batch.
+    pub(crate) fn placeholder() -> Self {
+        Self { link: 0, distance: Real::NAN, witness: Witness::placeholder() }
+    }
+}
+
+checked_fields!(
+    link_proximity_fields,
+    "LinkProximity",
+    LinkProximity {
+        link: u32,
+        distance: Real,
+        #[serde(flatten)]
+        witness: Witness,
+    },
+    |&Fields { distance, .. }| check_distance(distance)
+);
+
+/// A part of a link.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LinkFeature {
+    /// The surface around the axis, between its ends.
+    Side,
+    /// The cap at the start, flat or round.
+    StartCap,
+    /// The cap at the end, flat or round.
+    EndCap,
+}
+
+/// A part of a triangle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TriangleFeature {
+    /// The interior.
+    Face,
+    /// The edge from this corner (0, 1 or 2) to the next.
+    Edge(u8),
+    /// This corner (0, 1 or 2).
+    Vertex(u8),
+}
+
+/// The features at the closest points of a link and a triangle.
+///
+/// ```
+/// use parry_continuum::proximity::{ContactFeature, LinkFeature, TriangleFeature};
+///
+/// /// Whether the tip of an instrument could cut into an edge of the wall.
+/// fn is_sharp(feature: ContactFeature) -> bool {
+///     feature.link == LinkFeature::EndCap && !matches!(feature.triangle, TriangleFeature::Face)
+/// }
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct ContactFeature {
+    /// The part of the link.
+    pub link: LinkFeature,
+    /// The part of the triangle, up to rounding.
+    pub triangle: TriangleFeature,
+}
 
 /// A place where a link is near a mesh. All fields are in the mesh's frame and unit.
 ///
@@ -133,3 +212,91 @@ impl Contact {
         }));
     }
 }
+
+/// The derivative of a link's distance from a triangle by the axis ends, the radius and the
+/// corners, in the mesh's frame.
+///
+/// If the two overlap, it is the derivative of [`depth`](super::Contact::depth), minus the least
+/// translation.
+///
+/// # Definitions
+/// - n: the normal, from triangle to link.
+/// - f: the fraction along the axis at the link's closest point.
+/// - w: the barycentric coordinates of the triangle's closest point.
+/// - L, a: the length of the axis, and its unit direction.
+/// - l: the lever, from the axis to the link's closest point.
+///
+/// If the two overlap, the points that separate last replace the closest points.
+///
+/// # Formulas
+/// By the envelope theorem the closest points count as they are, not how they move. So the distance
+/// grows by n times the motion of the link's closest point, minus n times the motion of the
+/// triangle's closest point:
+///
+/// | derivative by | beside the link, or beyond a round cap | beyond a flat cap |
+/// |---|---|---|
+/// | `start` | (1 - f) n | (1 - f) n + (n . a) l / L |
+/// | `end` | f n | f n - (n . a) l / L |
+/// | `radius` | -1 | -abs(n x a) |
+/// | `vertices[i]` | -w_i n | -w_i n |
+///
+/// The second term for a flat cap is its lever: the cap turns with the axis. The radius counts at
+/// the rim alone, because n is parallel to a if the closest point lies inside the cap.
+///
+/// # Rounding
+/// The derivative is computed with about 32 digits and rounded at the end. If a flat cap or a
+/// crossing axis decides the way out, it is computed with 16 digits.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Derivative {
+    /// By the start of the axis.
+    pub start: Vector,
+    /// By the end of the axis.
+    pub end: Vector,
+    /// By the radius.
+    pub radius: Real,
+    /// By the triangle's corners.
+    pub vertices: [Vector; 3],
+    /// Whether the distance has a kink here, as [`Contact::kink`](super::Contact::kink). The fields
+    /// are then the derivatives for one of the equally near points.
+    pub kink: bool,
+}
+
+impl Derivative {
+    /// The rate of change of the distance if the ends of the link's axis move with these
+    /// velocities, in the mesh's frame.
+    pub fn rate(&self, start: Vector, end: Vector) -> Real {
+        self.start.dot(start) + self.end.dot(end)
+    }
+}
+
+/// Bounds on a distance that include all rounding: `lower <= true <= upper`.
+///
+/// The true distance is from the placed link to the triangle or to another link. The placed link
+/// has the axis ends `pose * start` and `pose * end`, both computed in `f64`, and the radius as
+/// given.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde-serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde-serialize",
+    serde(try_from = "certificate_fields::Fields", into = "certificate_fields::Fields")
+)]
+#[non_exhaustive]
+pub struct Certificate {
+    /// Lower bound on the distance, in the unit of the shapes.
+    pub lower: Real,
+    /// Upper bound on the distance.
+    pub upper: Real,
+}
+
+checked_fields!(
+    certificate_fields,
+    "Certificate",
+    Certificate { lower: Real, upper: Real },
+    |&Fields { lower, upper }| {
+        if !(0.0 <= lower && lower <= upper && upper.is_finite()) {
+            return Err(format!("{lower} to {upper} bounds no distance"));
+        }
+        Ok(())
+    }
+);

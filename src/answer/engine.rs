@@ -1,0 +1,118 @@
+//! Answers about the mesh itself, proofs for others, and the work of an engine.
+
+use std::fmt;
+
+/// The side of a mesh on which a point lies.
+///
+/// The mesh's winding number w decides: the sum of the solid angles of its triangles, divided by 4
+/// pi. For a closed mesh w is an integer, and not 0 inside. Triangles may face outward or inward,
+/// if all do the same.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde-serialize", derive(serde::Serialize, serde::Deserialize))]
+pub enum Side {
+    /// Proven: |w| > 3/4.
+    Inside,
+    /// Proven: |w| < 1/4.
+    Outside,
+    /// Neither: the point lies on the surface, within rounding; or a hole of the mesh covers at
+    /// least a quarter of the view from the point.
+    Undecided,
+}
+
+/// Whether a robot is inside a wall and keeps a margin to it: both, if [`holds`](Self::holds).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde-serialize", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub struct InsideAnswer {
+    /// The side of the robot's base, the first point of its centreline.
+    pub base: Side,
+    /// Whether every link is farther than the margin.
+    pub clears: bool,
+}
+
+impl InsideAnswer {
+    /// Returns whether the base is inside and every link keeps the margin. In a closed mesh the
+    /// whole robot is then inside.
+    pub fn holds(&self) -> bool {
+        self.base == Side::Inside && self.clears
+    }
+}
+
+/// A proof that a robot is farther than a margin from a mesh, as a text for a file.
+///
+/// The checker needs the mesh, not this library: `docs/book/check_proof.py` is a short program in
+/// plain Python that calculates in whole numbers. It answers yes or no. It prints the premises of
+/// the proof, and that the proof does not cover the side of the wall. The [page on
+/// proofs](crate::book::proofs) has the format and the reasoning.
+///
+/// [`to_string`](ToString::to_string) returns the text.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Proof {
+    text: String,
+    planes: usize,
+    shapes: usize,
+}
+
+impl Proof {
+    pub(crate) fn new(text: String, planes: usize, shapes: usize) -> Self {
+        Self { text, planes, shapes }
+    }
+
+    /// The number of planes that separate the robot from the mesh.
+    pub fn planes(&self) -> usize {
+        self.planes
+    }
+
+    /// The number of shapes of the robot in the proof: 1, unless it moves.
+    pub fn shapes(&self) -> usize {
+        self.shapes
+    }
+}
+
+impl fmt::Display for Proof {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.text)
+    }
+}
+
+/// The work of an engine since it was built, batches excluded.
+///
+/// ```
+/// use parry_continuum::Chain;
+/// use parry_continuum::parry::{math::{Pose, Vector}, shape::Ball};
+/// use parry_continuum::proximity::{BvhSearch, Exhaustive, Proximity, Work};
+///
+/// let (vertices, triangles) = Ball::new(10.0).to_trimesh(64, 32);
+/// let mut search = BvhSearch::from_triangles(&vertices, &triangles)?;
+/// let mut all = Exhaustive::<f32>::from_triangles(&vertices, &triangles)?;
+/// let robot = Chain::from_centreline(&[Vector::ZERO, Vector::new(0.0, 0.0, 5.0)], &[0.5])?;
+/// assert_eq!(search.work(), Work::default());
+/// search.minimum(&robot, &Pose::IDENTITY)?;
+/// all.minimum(&robot, &Pose::IDENTITY)?;
+/// assert!(search.work().axis_distances < triangles.len() as u64 && triangles.len() as u64 <= all.work().visited);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde-serialize", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub struct Work {
+    /// Nodes of the hierarchy whose children (up to 16) were bounded; 0 in an exhaustive engine.
+    pub nodes: u64,
+    /// Pairs of link and triangle that were visited, 16 triangles at a time.
+    pub visited: u64,
+    /// Pairs whose distance between axis and triangle was computed, a pack at a time.
+    pub axis_distances: u64,
+    /// Pairs that were measured in double precision, with the disc of a flat cap if the disc
+    /// decides.
+    pub measured: u64,
+}
+
+impl std::ops::AddAssign for Work {
+    fn add_assign(&mut self, other: Self) {
+        self.nodes += other.nodes;
+        self.visited += other.visited;
+        self.axis_distances += other.axis_distances;
+        self.measured += other.measured;
+    }
+}
