@@ -58,7 +58,7 @@ impl Curve {
         Self { points: (0..=radii.len()).map(point).collect(), radii: radii.to_vec() }
     }
 
-    /// Round caps inside, flat ones at both ends, whatever the lengths and radii.
+    /// Round caps inside and flat caps at both ends, for all lengths and radii.
     fn naive(&self) -> Result<Vec<ModifiedCylinder>, RobotError> {
         let last = self.radii.len() - 1;
         let cap = |is_end| if is_end { Cap::Flat } else { Cap::Round };

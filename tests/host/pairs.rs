@@ -115,7 +115,7 @@ fn answers_are_off_by_no_more_than_the_table_says() {
                         dispatcher.intersection_test(&pos12, g1, g2).unwrap().intersecting,
                         "{name}"
                     );
-                    // What it says separates the two, but for what the iterations leave.
+                    // The translation separates the two, up to the tolerance of the iterations.
                     let contact = dispatcher.contact(&pos12, g1, g2, 0.0).unwrap().unwrap();
                     let separates = |more: Real| {
                         let way = -contact.normal1 * (contact.dist - more);
@@ -291,8 +291,8 @@ fn iterations_do_not_depend_on_the_unit_of_length() {
     assert!(apart > 400 && across > 25 && hits > 80, "{apart} apart, {across} across, {hits} hits");
 }
 
-/// In metres and micrometres clearances are as exact as in the unit of the shapes, and casts are
-/// neither late nor missed.
+/// In metres and micrometres clearances are as exact as in the unit of the shapes, and no cast is
+/// late or missed.
 #[test]
 fn clearances_in_small_units_are_no_larger_than_they_are() {
     let (mut random, dispatcher) = (Random::new(134), ContinuumDispatcher::default());

@@ -1,5 +1,4 @@
-//! The rule of ARCHITECTURE.md that keeps threads from waiting for each other for ever, as far as a
-//! text shows it.
+//! The rule of ARCHITECTURE.md against deadlocks, as far as the source text can show it.
 
 use super::sources::sources;
 

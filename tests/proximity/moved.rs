@@ -52,7 +52,7 @@ fn after_the_mesh_moved_an_answer_is_right_or_an_error() {
     for seed in 0..60 {
         let random = &mut Random::new(seed);
         let (mesh, robot, pose) = (wall(random), robot(random), random.pose(0.3));
-        // Every vertex moves, or those of one side alone.
+        // Every vertex moves, or the vertices of one side alone.
         let side = if seed % 2 == 0 { -9.0 } else { 0.0 };
         let shift = random.point();
         let moved: Vec<_> =
@@ -111,7 +111,7 @@ fn after_the_mesh_moved_an_answer_is_right_or_an_error() {
                     of_moved.derivative(&robot, &pose, answer),
                     "{name}, {seed}"
                 );
-                // The mesh from before the move gives no proof about what it is not.
+                // The mesh from before the move certifies no answer about the moved mesh.
                 assert!(answer.certify(&robot, &pose, &moved_mesh).is_ok(), "{name}, {seed}");
                 let old = answer.certify(&robot, &pose, &mesh);
                 assert!(is_unfit(&old) || is_of(answer, &robot, &pose, &mesh), "{name}, {seed}");

@@ -21,7 +21,7 @@ use std::f64::consts::{PI, TAU};
 /// What is nearer to a decision than this, as a share, counts as undecided.
 const DOUBT: f64 = 1e-6;
 
-/// Radii that differ by no more than this share are one.
+/// Radii that differ by at most this share are one.
 const SAME: f64 = 1.0 / (1_u64 << 32) as f64;
 
 /// How many pieces a link is cut into.
@@ -42,15 +42,14 @@ enum Beyond {
     Wider,
 }
 
-/// The least distance of the local minima that there surely are, and of those that there may be;
-/// infinite without one.
+/// The least distance of the certain local minima, and of the possible ones; infinite without one.
 #[derive(Clone, Copy, Debug)]
 struct Minima {
     sure: f64,
     possible: f64,
 }
 
-/// Whether something holds for certain, or may hold.
+/// Whether something certainly holds, or possibly holds.
 #[derive(Clone, Copy)]
 struct Holds {
     sure: bool,
@@ -290,7 +289,7 @@ impl Robot {
             let bare =
                 if other.flat[other_end] { Holds::YES } else { self.is_bare(j, other_end, point) };
             is_seen_too = sees.and(bare);
-            // What is nearest on the other face is told for round ends alone.
+            // The nearest point of the other face is reported for round ends alone.
             is_seen_too.sure &= !other.flat[other_end];
         }
         holds.and(bare).and(is_seen_too)
@@ -483,7 +482,7 @@ struct Counts {
     passes: u32,
 }
 
-/// Robots of one kind beside the oracles, until there are so many that are free.
+/// Robots of one kind beside the oracles, until this many are free.
 fn judge(
     random: &mut Random,
     shape: Option<Shape>,
@@ -571,7 +570,7 @@ fn free_robots_do_not_touch_themselves() {
     assert!(counts.touching > 2 && counts.apart > 5, "{counts:?}");
 }
 
-/// Robots that come back to themselves are found, whatever their radii.
+/// Robots that come back to themselves are found, for all radii.
 #[test]
 fn robots_that_touch_themselves_are_found() {
     let mut random = Random::new(52);

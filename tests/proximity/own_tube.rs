@@ -115,8 +115,7 @@ fn neighbouring_turns_of_a_coil_are_as_far_apart_as_an_equation_says() {
                 }
             }
         }
-        // What is stated of both parts counts on either side, and at the rim of a face a little
-        // more.
+        // The stated error of both parts widens each bound, and slightly more at the rim of a face.
         let tube = tube.with_error(0.05).unwrap();
         for (off, right) in [
             (-0.13, Decision::Clear),
@@ -250,7 +249,7 @@ fn legs_of_a_hairpin_meet_if_it_turns_by_more_than_half_a_turn() {
     }
     // Exactly half a turn: as wide as its waist, anywhere along the legs.
     let tube = from_function(&Arc::new(hairpin(PI, bend, [leg, leg], radius)));
-    // Nearer than pieces of a bend are told apart that may turn by as much, and may not.
+    // Nearer than the resolution at which pieces of a bend are known to turn enough or not.
     assert_eq!(query.clears_tube(&tube, 17.0 - 1e-5, 2e-6).unwrap(), Decision::Clear);
     assert_eq!(query.clears_tube(&tube, 17.0 + 1e-9, 1e-10).unwrap(), Decision::Contact);
 }
@@ -390,8 +389,8 @@ fn a_knot_is_as_thick_as_it_can_be() {
     );
 }
 
-/// How often a coil's curve is asked for a place, for margins a little off the truth: as the root
-/// of 1 / resolution.
+/// Evaluations of a coil's curve for margins slightly off the truth: they grow as the root of
+/// 1 / resolution.
 #[test]
 fn the_work_grows_like_the_root_of_the_resolution() {
     let coil = Coil { radius: 3.0, rise: 0.3 };

@@ -19,8 +19,7 @@ const TIMES: u32 = MANY / FEW;
 /// How long an engine takes: see [`time`].
 type Timed = fn(u32, &TriMesh, [Vector; 2], (Real, Vector)) -> Duration;
 
-/// Builds an engine and asks it for the contacts of a capsule, of which there is one, so many
-/// times.
+/// Builds an engine and queries the contacts of a capsule, exactly one, this many times.
 fn time<E: Proximity>(
     times: u32,
     mesh: &TriMesh,

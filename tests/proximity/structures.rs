@@ -181,7 +181,7 @@ fn a_tube_inside_another_does_not_collide_with_it() {
     for nested in [[0, 1], [1, 0]] {
         scene.set_nested(&[nested, [7, 8]]);
         assert!(scene.clears(&robots).unwrap());
-        // The others are held against one another as before.
+        // The others are compared with one another as before.
         let tightest = scene.tightest(&robots).unwrap().unwrap();
         assert_eq!(tightest.slack, 1.75);
         assert!(matches!(tightest.between, Between::Robots { robots: [0, 2], .. }));

@@ -102,7 +102,7 @@ impl Anatomy {
         self.mesh.is_none() && self.base.is_none() && self.axis.is_none()
     }
 
-    /// The robot's pose as asked for; what is not said is found in the mesh.
+    /// The robot's pose from the options; the mesh supplies what they omit.
     pub fn pose(&self, mesh: &TriMesh) -> Result<Pose, String> {
         if self.is_planned() {
             return Ok(ventricle::entry());

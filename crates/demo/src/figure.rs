@@ -38,9 +38,9 @@ pub struct Caption {
     pub notes: Vec<String>,
 }
 
-/// Draws the scene. `pose` is the robot's in the mesh's frame, `answers` those of one engine, one
-/// per link; `pieces` are those of a query about the curve, or none. The mesh's z is taken to be up
-/// and its y to the front, as in scans.
+/// Draws the scene. `pose` places the robot in the mesh's frame. `answers` holds one answer per
+/// link, `pieces` the pieces of a query about the curve, or none. In the mesh, z is up and y is to
+/// the front, as in scans.
 pub fn draw(
     mesh: &TriMesh,
     robot: &Chain,

@@ -1,5 +1,5 @@
-//! Whether a GPU's double precision deserves the name: Vulkan asks of it no more than of single
-//! precision.
+//! Tests whether a GPU's double precision is double precision: Vulkan requires no more accuracy of
+//! it than of single precision.
 
 use crate::{Adapter, Batch, Device, DeviceError, Kernel, Precision};
 

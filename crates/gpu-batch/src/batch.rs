@@ -38,7 +38,7 @@ pub struct Batch {
     device_time: Option<Duration>,
 }
 
-/// Buffers for so many problems.
+/// Buffers for a number of problems.
 struct Room {
     problems: u64,
     head: Buffer,
@@ -193,10 +193,10 @@ impl Batch {
     }
 }
 
-/// Takes the answers, each of which begins with the submission's number if it was written for that.
+/// Takes the answers. Each answer of this submission begins with the submission's number.
 ///
 /// # Errors
-/// One was not.
+/// An answer has another number.
 fn read(
     precision: Precision,
     bytes: &[u8],

@@ -120,7 +120,7 @@ impl Device {
         &self.0.queue
     }
 
-    /// What it can do.
+    /// The limits of the device.
     pub fn limits(&self) -> &wgpu::Limits {
         &self.0.limits
     }
@@ -209,7 +209,7 @@ impl Device {
         })
     }
 
-    /// A buffer of at least so many bytes; never empty, because an empty one cannot be bound.
+    /// A buffer of at least this size in bytes; never empty, because an empty one cannot be bound.
     pub fn buffer(&self, size: u64, usage: wgpu::BufferUsages) -> wgpu::Buffer {
         let size = size.max(16).next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT);
         self.raw().create_buffer(&wgpu::BufferDescriptor {

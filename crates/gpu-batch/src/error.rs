@@ -56,7 +56,7 @@ pub enum DeviceError {
         /// What the compiler says.
         message: String,
     },
-    /// The GPU failed meanwhile.
+    /// The GPU failed during the work.
     #[error(transparent)]
     Failed(#[from] DeviceFailure),
 }

@@ -12,7 +12,7 @@ pub enum DeviceFailure {
         "the GPU was lost (reset, removed, or out of time); open it anew, or compute on the CPU"
     )]
     Lost,
-    /// Its memory does not hold what is asked for. Less may succeed.
+    /// The GPU's memory is too small for the request. A smaller one may succeed.
     #[error("the GPU is out of memory; ask for less at once, or compute on the CPU")]
     OutOfMemory,
     /// Its driver refused a command.

@@ -19,13 +19,13 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! What a kernel may build on stands in [`wgsl`].
+//! The functions that a kernel may use are in [`wgsl`].
 //!
 //! # Kernels of more than one step
-//! Whoever has several kernels, buffers that stay, or more than numbers to send takes the parts: a
-//! [`Device`] compiles a [`Shader`], makes buffers and groups of them, and reads back what a
-//! submission wrote, or says why there is nothing to read. A [`Watch`] reports what fails on the
-//! device, a [`Clock`] measures how long a pass took, and [`record!`] declares what Rust writes and
+//! For several kernels, buffers that stay, or data other than numbers, use the parts. A [`Device`]
+//! compiles a [`Shader`], makes buffers and groups of them, and reads back what a submission wrote,
+//! or says why there is nothing to read. A [`Watch`] reports failures of the device, a [`Clock`]
+//! measures the time of a pass, and [`record!`] declares what Rust writes and
 //! WGSL reads.
 #![forbid(unsafe_code)]
 #![warn(missing_debug_implementations, missing_docs)]

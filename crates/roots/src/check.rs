@@ -44,7 +44,7 @@ pub(super) enum Checker<T, const M: usize> {
     Wide { coefficients: [T; M], degree: usize },
 }
 
-/// A polynomial in a variable in which the root in question is near 1, or at most 1.
+/// A polynomial in a scaled variable: the tested root is near 1, or at most 1.
 struct View<T, const M: usize> {
     coefficients: [T; M],
     degree: usize,

@@ -162,8 +162,8 @@ pub(crate) const FACTOR_STEPS: usize = 20;
 pub(crate) const FACTOR_ROUNDINGS: f64 = 2.0;
 
 impl<T: Real> Factors<T> {
-    /// What the product lacks of the quartic's coefficients, highest power first, and the most it
-    /// lacks relative to what it is the difference of.
+    /// The differences of the quartic's coefficients from the product's, highest power first, and
+    /// the largest one relative to its terms.
     fn lack(&self, a: T, b: T, c: T, d: T) -> ([T; 4], T) {
         let ([u0, u1], [v0, v1]) = (self.u, self.v);
         let (uu, uv, vu, vv) = (u0 * u1, u0 * v1, u1 * v0, v0 * v1);

@@ -59,7 +59,7 @@ pub(super) fn magnitude<T: Real, const M: usize>(quotient: &[T; M], degree: usiz
 }
 
 impl<T: Real, const M: usize> Division<T, M> {
-    /// Whether the divisor divides the polynomial of this degree as far as rounding lets one see.
+    /// Whether the divisor divides the polynomial of this degree, within rounding.
     #[inline]
     pub(super) fn is_exact(&self, degree: usize, u: T, v: T, roundings: f64) -> bool {
         // P at a root of the divisor is b (z + u) + a.
@@ -124,7 +124,7 @@ pub(super) fn deflated<T: Real, const M: usize>(
     quotient
 }
 
-/// The real root after two Newton steps, as far as they bring p down.
+/// The real root after two Newton steps; a step that does not lower |p| is not taken.
 fn polished<T: Real, const M: usize>(p: &[T; M], degree: usize, s: T) -> T {
     let mut s = s;
     let (mut quotient, mut value) = by_linear(p, degree, s);

@@ -110,7 +110,7 @@ fn the_trade_is_measured_drawn_and_quoted() {
         "trade/none",
     ];
     let (success, _, error) = run(TRADEOFF, &arguments);
-    // In one line, behind what it was at.
+    // In one line, after the stage.
     let last = error.lines().last().unwrap_or_default();
     assert!(!success && last.contains("every shape touches the wall"), "{error}");
 }
@@ -164,8 +164,8 @@ fn speed_is_measured_drawn_and_quoted() {
         ["`clears`", "`minimum`", "`within`"]
     );
     for row in &rare {
-        // How many touch; median, one in a thousand, worst, worst over median; and the same of
-        // those that are free.
+        // The number of touching shapes; median, one in a thousand, worst, worst over median; then
+        // the same for free shapes.
         let numbers: Vec<f64> = row[2..].iter().map(|cell| cell.parse().unwrap()).collect();
         assert!(
             numbers[0] > 20.0 && numbers[5] > 20.0 && numbers[0] + numbers[5] == 1000.0,
@@ -261,7 +261,7 @@ fn rules_of_own_parts_are_counted_and_quoted() {
     assert_eq!(page, format!("before\n<!-- own_parts -->\n{out}<!-- /own_parts -->\nafter\n"));
     let rows = table(&page, "| robot | margin, mm |");
     assert_eq!(rows.len(), 9, "{page}");
-    // All shapes are counted, some are near themselves, and this crate's rule misses none of these.
+    // All shapes are counted, some are near themselves, and this crate's rule misses none of them.
     let number = |row: &[String], column: usize| row[column].parse::<u32>().expect("a number");
     assert!(
         rows.iter().all(|row| number(row, 2) + number(row, 3) + number(row, 4) == 40),

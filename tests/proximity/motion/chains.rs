@@ -197,8 +197,8 @@ impl Motion for Pushed {
     }
 }
 
-/// Joints less than a radius behind the tip's face stay flat, as far as the motion cannot bring
-/// them away from it: round, the first of them would reach 0.35 beyond the tip.
+/// Joints less than a radius behind the tip's face stay flat if the motion cannot move them away
+/// from it: a round cap at the first of them would reach 0.35 beyond the tip.
 #[test]
 fn short_links_do_not_reach_beyond_a_flat_tip() {
     let points: Vec<_> = (0..=120).map(|k| Vector::Z * (0.25 * Real::from(k))).collect();

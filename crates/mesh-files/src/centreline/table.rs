@@ -254,7 +254,7 @@ fn columns(line: &str) -> Vec<String> {
         !is_quoted
     };
     let outside: String = line.chars().filter(is_outside).collect();
-    // With both tabs and commas, commas are those of decimals only if the words between tabs are
+    // With both tabs and commas, commas are decimal commas only if the words between tabs are
     // numbers.
     let is_decimal =
         |line: &str| line.split('\t').all(|word| number(word.trim().trim_matches('"')).is_some());

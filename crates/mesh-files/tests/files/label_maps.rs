@@ -146,8 +146,8 @@ fn volume(mesh: &Mesh) -> f64 {
     six.sum::<f64>() / 6.0
 }
 
-/// A closed surface around the ball: each vertex lies in a cube of voxels that the sphere passes
-/// through, so it is off the sphere by no more than the cube's diagonal.
+/// A closed surface around the ball. Each vertex lies in a cube of voxels that the sphere passes
+/// through, so it is off the sphere by at most the cube's diagonal.
 fn assert_ball(name: &str, mesh: &Mesh, centre: Vertex, radius: f64, unit: f64) {
     assert_closed(mesh);
     assert!(mesh.triangles.len() > 2000, "{name}: {}", mesh.triangles.len());

@@ -162,7 +162,7 @@ mod label_maps {
         assert_eq!(present, (0..1000).collect::<Vec<_>>());
     }
 
-    /// The bytes that a refusal names suffice, and no more than them are taken.
+    /// The memory that a refusal names is enough, and at most that much is taken.
     #[test]
     fn the_memory_that_is_asked_for_is_enough_and_no_more_is_taken() {
         let hash =

@@ -1,5 +1,5 @@
-//! Files that were spoilt: whatever the bytes, reading ends soon, takes little memory, and gives a
-//! mesh or an error of one line.
+//! Corrupted files: for any bytes, reading ends soon, takes little memory, and returns a mesh or an
+//! error of one line.
 
 use crate::reports::report;
 use mesh_files::{MeshFileError, Options, from_bytes};

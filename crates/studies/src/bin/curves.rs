@@ -69,7 +69,7 @@ open, and with it more than 10^-6 near the face.
 
 ";
 
-/// A robot and what is near it.
+/// A robot, and a mesh near it.
 struct Scene {
     curve: Centreline,
     sections: Vec<TubeSection>,
@@ -275,7 +275,7 @@ fn deviation(way: Way) -> f64 {
 struct Outcome {
     accepted: usize,
     resolved: usize,
-    /// The median of how far apart the bounds are, but for what was stated.
+    /// The median distance of the bounds, without the stated uncertainty.
     width: f64,
     /// The median of how far the clearance of the tube itself, without its deviation, is from the
     /// truth.
@@ -569,7 +569,8 @@ fn plot(
     Ok(())
 }
 
-/// A shape for each noise, for whoever sees no colours: so many corners, or a star.
+/// A shape for each noise, so that the plot needs no colours: a polygon with this many corners, or
+/// a star.
 fn mark(at: (i32, i32), number: usize, style: ShapeStyle) -> Polygon<(i32, i32)> {
     let (corners, inner) = [(24, 1.0), (3, 1.0), (4, 1.0), (10, 0.4), (8, 0.3)][number];
     let size = 2.0 + f64::from(style.stroke_width);

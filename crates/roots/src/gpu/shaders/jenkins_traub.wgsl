@@ -1,6 +1,6 @@
 // Jenkins and Traub's algorithm: the twin of jenkins_traub.rs, which has the description.
 
-// A factor, z - u or z^2 + u z + v, and what is left without it; degree 0 where there is none.
+// A factor, z - u or z^2 + u z + v, and the quotient; degree 0 if there is none.
 struct Factor {
     degree: u32,
     u: real,

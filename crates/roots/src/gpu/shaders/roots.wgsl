@@ -25,12 +25,12 @@ fn push_pair(re: real, im: real) {
     push_root(re, -abs(im));
 }
 
-// Whether the number is neither infinite nor NaN, where a device lets NaN arise.
+// Whether the number is finite. False for NaN on devices that produce NaN.
 fn is_finite(x: real) -> bool {
     return abs(x) <= LARGEST;
 }
 
-// The e with 2^e <= |x| < 2^(e+1), but for the rounding to single precision.
+// The e with 2^e <= |x| < 2^(e+1), up to the rounding to single precision.
 fn exponent(x: real) -> i32 {
     return i32((bitcast<u32>(clamp(f32(abs(x)), 0x1p-120f, 0x1p120f)) >> 23u) & 0xffu) - 127;
 }

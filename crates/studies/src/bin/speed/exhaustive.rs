@@ -20,7 +20,7 @@ use std::hint::black_box;
 use std::sync::LazyLock;
 use std::time::Duration;
 
-/// The ventricle divided in four so many times, in the order of subdivision.
+/// The ventricle divided in four this many times, in the order of subdivision.
 pub fn divided(times: u32) -> (Vec<Vector>, Vec<[u32; 3]>) {
     // Growing it takes longer than some of the chapters.
     static WHOLE: LazyLock<(Vec<Vector>, Vec<[u32; 3]>)> =

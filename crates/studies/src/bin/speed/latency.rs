@@ -26,7 +26,7 @@ struct Loop {
     contacts: Vec<Contact>,
 }
 
-/// What is asked, and how.
+/// A query and its name.
 type Query = (&'static str, fn(&mut Loop, &Pose) -> Result<(), ProximityError>);
 
 const QUERIES: [Query; 4] = [

@@ -15,8 +15,8 @@ use std::fmt::Write;
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
-/// How many random shapes a scene is asked about: so many do not stay in the caches, where a batch
-/// of 1,500, asked again and again, sometimes does and sometimes does not.
+/// Random shapes per scene. This many do not fit into the caches; a repeated batch of 1,500
+/// sometimes does.
 const SHAPES: usize = 10_000;
 
 struct Shape {
@@ -133,8 +133,7 @@ fn text(error: ProximityError) -> String {
     error.to_string()
 }
 
-/// Microseconds a shape of those that touch and of those that are free: parry, `clears` and the
-/// minimum.
+/// Microseconds per touching shape and per free shape: parry, `clears` and the minimum.
 ///
 /// Each query is timed alone, and the shapes take turns as they were drawn. The robot is written to
 /// its place just before.

@@ -12,11 +12,11 @@ use parry_continuum::proximity::{BvhSearch, Proximity, ProximityError};
 use std::fmt::Write;
 use std::hint::black_box;
 
-/// How many shapes are asked about.
+/// Number of shapes.
 const SHAPES: usize = 100_000;
 
-/// How often each: what counts is the least time, and of it what the thread itself computed, so
-/// that whatever else the machine does is left out.
+/// Repetitions per shape. The least processor time of the thread counts, which excludes other
+/// processes.
 const ROUNDS: usize = 3;
 
 /// Contacts up to so far away, mm.
@@ -28,12 +28,12 @@ const MOST: f64 = 20.0;
 /// Between these marks the page has the chapter.
 pub const MARK: &str = "rare";
 
-/// What is asked.
+/// The query.
 const QUERIES: [&str; 3] = ["clears", "minimum", "within"];
 
 /// The chapter of the page, without its marks.
 pub fn chapter(effort: Effort, written: &str, goals: &mut Goals) -> Result<String, String> {
-    // A rehearsal has no time for so many.
+    // A rehearsal takes fewer.
     let shapes = if effort.enough.is_zero() { SHAPES / 100 } else { SHAPES };
     let mut page = format!(
         "## The worst of many\n\n\
@@ -83,7 +83,7 @@ pub fn chapter(effort: Effort, written: &str, goals: &mut Goals) -> Result<Strin
     Ok(page)
 }
 
-/// What is known of a shape.
+/// The times of a shape, and whether it touches.
 #[derive(Clone)]
 struct Shape {
     is_free: bool,

@@ -132,7 +132,7 @@ pub fn at_all<'a>(
     })
 }
 
-/// Writes a row: the median times of the jobs, each of `count` questions; what is not there has no
+/// Writes a row: the median times of the jobs, each of `count` questions; a missing job has no
 /// time.
 fn row(
     effort: Effort,

@@ -8,7 +8,7 @@ use crate::subject::Model;
 use continuum_studies::machine;
 use std::fmt::Write;
 
-/// The errors that are asked for, mm.
+/// The errors of the table, mm.
 const ERRORS: [f64; 6] = [0.003, 0.01, 0.03, 0.1, 0.3, 1.0];
 
 /// What the guide is made of.

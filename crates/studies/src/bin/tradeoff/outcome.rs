@@ -23,7 +23,7 @@ pub const INPUT_SPACING: Real = 0.1;
 /// Largest spacing of the reference's stations, mm.
 pub const REFERENCE_SPACING: Real = 0.05;
 
-/// What is known of one shape.
+/// The truth and the answers of one shape.
 pub struct Outcome {
     /// The clearance of the true shape.
     pub truth: Real,
@@ -36,7 +36,7 @@ pub struct Outcome {
     pub metres: [Real; 2],
 }
 
-/// What is known of one shape at one tolerance.
+/// The answers of one shape at one tolerance.
 #[derive(Clone, Copy, Default)]
 pub struct AtTolerance {
     /// In the order of [`Model::ALL`].

@@ -1,4 +1,4 @@
-//! What a model wrongly forbids, and what it wrongly allows.
+//! The shapes that a model wrongly forbids or wrongly allows.
 
 use crate::outcome::{METRES_AT, Outcome, TOLERANCES};
 use crate::statistics::{Share, length};
@@ -36,8 +36,8 @@ pub fn chapter(outcomes: &[Outcome], out: &Path) -> Result<String, String> {
     );
     for margin in MARGINS {
         for model in Model::ALL {
-            // parry's answers are those of capsules and cylinders but for what GJK does, which has
-            // its own table.
+            // parry's answers equal those of capsules and cylinders up to the error of GJK, which
+            // has its own table.
             for tolerance in if Model::OURS.contains(&model) || model == Model::Tube {
                 &SHOWN[..]
             } else {

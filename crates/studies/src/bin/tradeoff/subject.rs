@@ -34,7 +34,7 @@ impl Model {
         Self::Tube,
     ];
 
-    /// Those of links by this crate.
+    /// The models of links by this crate.
     pub const OURS: [Self; 4] = [Self::Capsule, Self::Cylinder, Self::Modified, Self::Faced];
 
     /// Its place in [`Model::ALL`], and in [`Model::OURS`].
