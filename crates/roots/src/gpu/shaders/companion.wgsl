@@ -137,7 +137,8 @@ fn sweep(start: u32, last: u32, exceptional: bool) {
     }
 }
 
-// The reflection 1 - v w^T that turns (x, y, z) into (-norm, 0, 0), with v = (1, v1, v2), from both sides.
+// The reflection 1 - v w^T that turns (x, y, z) into (-norm, 0, 0), with v = (1, v1, v2), from both
+// sides.
 fn reflect_rows(start: u32, last: u32, k: u32, three: bool, sx: real, sy: real, sz: real, size: real) {
     let radius = sqrt(sx * sx + sy * sy + sz * sz);
     let signed = select(radius, -radius, sx < real(0.0));
