@@ -58,8 +58,8 @@ fn largest_of_depressed(q: real, r: real) -> real {
     return select(size, -size, r < real(0.0));
 }
 
-// The largest real root of y^3 - b y^2 + p y + s; or the middle of two larger roots, if rounding may
-// have hidden them.
+// The largest real root of y^3 - b y^2 + p y + s; or the middle of two larger roots, if rounding
+// may have hidden them.
 fn largest_of_resolvent(b: real, p: real, s: real) -> vec2<real> {
     let third = b * real(1.0 / 3.0);
     let q = (third * third) - p * real(1.0 / 3.0);
