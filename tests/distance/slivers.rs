@@ -282,7 +282,7 @@ fn links<T: Precision>(finest: f64) {
                 };
                 let closest =
                     triangle_modified_cylinder(sliver.triangle, ends[0], ends[1], radius, flat);
-                // A round tip may be lower than the flat end, which is then not asked.
+                // A round tip may be lower than the flat end, which then does not matter.
                 let ball = sliver.height(exact(tip)) - lit(radius.into());
                 if other || sliver.height(lowest).lt(ball) {
                     errors.check(sliver, lowest, sliver.height(lowest), &ends, radius, closest);

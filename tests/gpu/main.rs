@@ -1,5 +1,4 @@
-//! The engine on the GPU beyond what all engines have in common, which tests/proximity asks of it
-//! too.
+//! The engine on the GPU. tests/proximity also tests it with the questions of all engines.
 #![cfg(feature = "gpu")]
 
 use continuum_testing::{Random, answered, gpu};

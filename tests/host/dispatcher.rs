@@ -1,5 +1,5 @@
 //! The dispatcher answers every query for links and chains, in both orders, through every
-//! composite, and never lets a pair that it cannot answer read as a free one.
+//! composite, and never reports an unsupported pair as free.
 
 use crate::draw::{Draw, U};
 use crate::inner::ask_everything;

@@ -95,8 +95,7 @@ fn a_capsule_and_any_link_meet_exactly() {
         let context = || format!("{first:?} {second:?} {pose:?} {found:?}");
         let Some(least) = found.points.iter().map(|point| point.dist).reduce(Real::min) else {
             nothing += 1;
-            // They are apart by more than was asked for: some plane says so, or the sampled points
-            // do.
+            // They are farther apart than the prediction, by some plane or by the sampled points.
             let points = (0..=200).map(|k| {
                 let at = capsule.start().lerp(capsule.end(), Real::from(k) / 200.0);
                 solid.distance_to_local_point(at, true) - capsule.radius()

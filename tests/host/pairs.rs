@@ -20,8 +20,8 @@ const ROUNDING: Real = 1e-11;
 const EARLY: Real = 1e-8;
 /// What parry's GJK leaves open for shapes of size 1.
 const GJK: Real = 1e-5;
-/// By what a translation may fall short of separating: what GJK, which is asked, leaves open. (How
-/// much longer than the least it is: see [`depths`](super::depths).)
+/// By how much a translation may fail to separate: the tolerance of GJK, which checks it. (For its
+/// excess over the least, see [`depths`](super::depths).)
 const SEPARATED: Real = 1e-5;
 
 /// A convex shape of about size 1 and its name.

@@ -2,7 +2,8 @@
 
 use super::sources::sources;
 
-/// What makes threads wait, and the files that may: each says why nobody waits there for a pool.
+/// The calls that make threads wait, and the files that may use them: each states why no thread
+/// waits there for a pool.
 const WAITING: [&str; 9] = [
     "OnceLock",
     "LazyLock",

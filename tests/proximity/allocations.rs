@@ -199,7 +199,7 @@ impl<M: Motion> Motion for Counted<M> {
     }
 }
 
-/// How often a planner allocates that asks about edge after edge, and how many shapes it looks at.
+/// Allocations of a planner that tests edge after edge, and the number of shapes that it tests.
 fn planner(search: &mut BvhSearch, edges: Vec<impl Motion>) -> [u64; 2] {
     let edges: Vec<_> = edges.into_iter().map(|edge| Counted(edge, Cell::new(0))).collect();
     let mut round = || {

@@ -115,7 +115,7 @@ fn what_was_asked_before_changes_no_answer() {
     );
 }
 
-/// As many as a debug build asks in a second or two.
+/// As many as a debug build answers in a second or two.
 const STEPS: u32 = 25_000;
 
 /// The disc of a flat cap turns with its axis: the rim moves far although both ends stay.

@@ -1,5 +1,5 @@
-//! Answers belong to the mesh that an engine has now: what describes an answer is asked of the
-//! engine, and an answer that does not fit is an error.
+//! Answers belong to the mesh that an engine has now: the engine describes an answer, and an answer
+//! that does not fit is an error.
 
 use crate::agreement::{UNIT, engines};
 use crate::scenes::{mesh_of, nasty_mesh};
@@ -399,8 +399,8 @@ fn engines_from_triangles() {
     ));
 }
 
-/// Several meshes asked in turn, each for what is nearer than the last, where margins are violated:
-/// a bound below zero asks for nothing.
+/// Queries of several meshes in turn, each bounded by the slack of the last, with violated margins:
+/// a bound below zero returns nothing.
 #[test]
 fn the_tightest_of_several_meshes_where_a_margin_is_violated() {
     let (mut violated, mut beyond) = (0, 0);

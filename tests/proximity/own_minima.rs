@@ -6,9 +6,9 @@
 //! - [`Robot::minima`] looks at each pair of links that share no joint. The place where two convex
 //!   links are nearest counts if the robot leads nowhere nearer from there, and if the adjoining
 //!   link does not hold the point.
-//! - [`Robot::pass`] knows nothing of places either. It cuts all links into pieces and compares the
-//!   least distance of one run of pieces to another with the distances at the ends of the two runs.
-//!   If it is less, a local minimum is within.
+//! - [`Robot::pass`] uses no places either. It cuts all links into pieces and compares the least
+//!   distance of one run of pieces to another with the distances at the ends of the two runs. If it
+//!   is less, a local minimum is within.
 
 use continuum_testing::Random;
 use continuum_testing::narrow_phase::modified_cylinder_modified_cylinder;
@@ -237,7 +237,8 @@ impl Robot {
             .and(self.is_shoulder_bare(j, y, -way))
     }
 
-    /// Whether a face sees a link, and the place where they are nearest is a local minimum.
+    /// Whether a link is in front of a face, and the place where they are nearest is a local
+    /// minimum.
     fn is_seen(&self, i: usize, end: usize, j: usize) -> Holds {
         let (body, other) = (&self.bodies[i], &self.bodies[j]);
         let (centre, normal) = (body.ends[end], body.outward(end));

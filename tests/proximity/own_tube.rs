@@ -1,4 +1,4 @@
-//! A tube beside itself, where a derivation knows how near that is, and against chains.
+//! A tube beside itself, against distances from derivations, and against chains.
 
 use super::robots::robot;
 use super::tube::{all_ways, fine, from_function};
@@ -100,7 +100,7 @@ fn neighbouring_turns_of_a_coil_are_as_far_apart_as_an_equation_says() {
             // than a query divides it into.
             assert_eq!(decide(apart - 1e-4, 2e-5), Decision::Clear, "{pitch}");
             assert_eq!(decide(apart + 1e-9, 1e-10), Decision::Contact, "{pitch}");
-            // A touch at the margin itself is nobody's to tell.
+            // A distance of exactly the margin is never a proven contact.
             assert_ne!(decide(apart, 1e-5), Decision::Contact, "{pitch}");
             assert_eq!(decide(0.0, 1e-5), Decision::Clear);
         }
@@ -242,7 +242,7 @@ fn legs_of_a_hairpin_meet_if_it_turns_by_more_than_half_a_turn() {
                 }
             }
         }
-        // Of a margin wider than the bend it need not be told, but no contact is made up.
+        // A margin wider than the bend may stay undecided, but no false contact is reported.
         if beyond < 0.0 {
             assert_ne!(query.clears_tube(&tube, 1e3, 1e-6).unwrap(), Decision::Contact);
         }
@@ -426,7 +426,7 @@ fn what_is_wrong_is_named() {
         ],
         |s| (Vector::Z * s, Vector::Z),
     );
-    // Its ends are flat, which asks for the same.
+    // Its ends are flat, so the same limit applies.
     assert_eq!(tight.unwrap_err().kind(), "bends_within_radius");
     // Two straight legs, and between them a bend of the radius 1, far from the faces.
     let frame = |k: u32| {

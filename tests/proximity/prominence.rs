@@ -242,7 +242,7 @@ impl FineMesh {
     }
 }
 
-/// Against ways on a finely divided mesh: what is a pass is asked of points alone.
+/// Against paths on a finely divided mesh: passes are tested at points alone.
 #[test]
 fn prominent_contacts_are_those_of_a_finely_divided_mesh() {
     let mut census = Census::default();

@@ -355,8 +355,8 @@ fn triangle_and_its_name(corners: [Vector; 3]) -> (BvhSearch, String, String) {
 }
 
 /// Links, and tubes of them, that are shorter than their radius and have one flat and one round
-/// end: a proof is found up to the distance from the half ball beyond the round end's disc,
-/// believed, and found no farther.
+/// end: a proof is found and accepted up to the distance from the half ball beyond the round end's
+/// disc, and no proof beyond it.
 #[test]
 fn short_pieces_with_one_flat_end_hold_the_half_ball() {
     let (mut checks, mut shorter) = (Checks::new("half-balls"), 0);
@@ -395,8 +395,8 @@ fn short_pieces_with_one_flat_end_hold_the_half_ball() {
     assert!(shorter > 40 && said.len() == 4 * shorter, "{shorter}");
 }
 
-/// Pieces by the page's own words, as bent, as long and as far off as it allows, beside a triangle:
-/// what is believed is true of every disc and of the half balls beyond round ends.
+/// Pieces as the page defines them, with the largest bend, length and offset that it allows, beside
+/// a triangle: an accepted proof is true of every disc and of the half balls beyond round ends.
 #[test]
 fn what_is_believed_of_a_piece_is_true_of_its_discs_and_half_balls() {
     let (mut checks, mut nearest, mut flats) = (Checks::new("pieces"), Vec::new(), 0);

@@ -1,5 +1,5 @@
-//! What a scene remembers changes no answer: at every step of robots that move in any way it says
-//! what a scene says that was never asked before.
+//! The memory of a scene changes no answer: at every step of robots that move in any way it answers
+//! as a fresh scene.
 
 use continuum_testing::Random;
 use parry_continuum::Chain;

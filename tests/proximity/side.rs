@@ -272,7 +272,7 @@ fn any_unit_serves() {
     assert_eq!(search.side(Vector::splat(f64::MAX)), Side::Outside);
 }
 
-/// A clone knows what was prepared, and each keeps its own vertices.
+/// A clone shares the prepared structures, and each engine keeps its own vertices.
 #[test]
 fn the_side_follows_the_vertices() {
     let (vertices, indices) = torus();

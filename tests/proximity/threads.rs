@@ -207,7 +207,7 @@ fn questions_from_threads_and_tasks_together_end() {
     });
 }
 
-/// Motions have no batch: each task asks a clone.
+/// Motions have no batch: each task queries a clone.
 #[test]
 fn motions_from_a_callers_tasks_are_judged() {
     let (mesh, robots) = (ball(SMALL), robots(16));

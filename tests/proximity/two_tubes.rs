@@ -177,7 +177,7 @@ fn a_scaled_problem_has_the_scaled_answer() {
     }
 }
 
-/// What was asked before changes where a query begins, and leaves no bound wrong.
+/// Earlier queries change where a query begins, and never a bound's validity.
 #[test]
 fn a_memory_of_other_tubes_does_no_harm() {
     let mut random = Random::new(4);

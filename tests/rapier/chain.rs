@@ -97,8 +97,8 @@ fn contact_starts_and_stops_at_the_right_steps() {
     assert_eq!((starts, stops), (2, 2));
 }
 
-/// Dropped on a floor, a tangle of links lies still on it: its links overlap at every joint, which
-/// is nobody's contact.
+/// Dropped on a floor, a tangle of links comes to rest: its links overlap at every joint, which is
+/// not a contact.
 #[test]
 fn a_chain_has_no_contacts_with_itself() {
     let points = [

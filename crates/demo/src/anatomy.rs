@@ -1,5 +1,4 @@
-//! Which anatomy a program asks, and where the robot stands in it: the options of the example
-//! programs.
+//! The options of the example programs: the anatomy, and the robot's pose in it.
 
 use crate::command::whole;
 use crate::{steer, ventricle};

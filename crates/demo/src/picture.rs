@@ -201,7 +201,7 @@ impl<'a> Picture<'a> {
         canvas
     }
 
-    /// What a ray sees: layers of skin from near to far, up to a solid or the backdrop.
+    /// The hits of a ray: layers of skin from near to far, up to a solid or the backdrop.
     fn look(&self, ray: &Ray, camera: &Camera, backdrop: Colour, pixel: Real) -> Colour {
         let solid = self.nearest(ray);
         let limit = solid.map_or(1e3 * camera.eye.length().max(1.0), |(_, t, _)| t);

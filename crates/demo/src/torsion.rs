@@ -25,7 +25,7 @@ pub const POISSON: Real = 0.3;
 
 /// A robot whose tubes have twisted.
 pub struct Twisted {
-    /// The centreline at each arc length that was asked for, in the frame of the robot's base.
+    /// The centreline at each requested arc length, in the frame of the robot's base.
     pub points: Vec<Vector>,
     /// The frame at the last of them, carried along without twist.
     pub tip: Pose,

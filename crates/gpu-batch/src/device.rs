@@ -35,7 +35,7 @@ impl Device {
     /// `wgpu`, such as `WGPU_BACKEND`, narrow the choice.
     ///
     /// # Errors
-    /// There is no GPU, its driver refuses it, or it lacks double precision and that was asked for.
+    /// There is no GPU, its driver refuses it, or it lacks the requested double precision.
     pub fn open(precision: Precision) -> Result<Self, DeviceError> {
         let device = Self::open_of(
             wgpu::InstanceDescriptor::new_without_display_handle().with_env(),
@@ -235,8 +235,8 @@ impl Device {
     /// are done.
     ///
     /// # Errors
-    /// The device has failed since `watch` was asked last: `read` was not called. Or `read` says
-    /// that there is nothing to read.
+    /// The device has failed since the last check of `watch`, and `read` was not called; or `read`
+    /// reports that there is nothing to read.
     pub fn run_and_read(
         &self,
         watch: &mut Watch,

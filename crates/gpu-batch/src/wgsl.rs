@@ -44,7 +44,7 @@ pub fn prelude(precision: Precision) -> String {
         + include_str!("shaders/over.wgsl")
 }
 
-/// The declaration of a constant that Rust knows too.
+/// The declaration of a constant that Rust defines too.
 pub fn constant(name: &str, value: impl Display) -> String {
     format!("const {name} = {value};\n")
 }

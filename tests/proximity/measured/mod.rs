@@ -95,7 +95,7 @@ fn near(random: &mut Random, discs: &[Discs], curve: Curve, away: f64) -> Vector
     }
 }
 
-/// What was asked.
+/// The query.
 #[derive(Debug, Default)]
 struct Seen {
     asked: usize,

@@ -8,7 +8,7 @@ use parry_continuum::{
     BendingMotion, BendingSection, Chain, LinearMotion, Motion, RigidMotion, Tube,
 };
 
-/// Between their ends, motions jump through a wall that no coarse step sees.
+/// Between their ends, motions jump through a wall that no coarse step detects.
 #[test]
 fn a_jump_through_a_wall_is_seen() {
     let wall = [[-60.0, -60.0], [60.0, -60.0], [60.0, 60.0], [-60.0, 60.0]];

@@ -65,8 +65,8 @@ fn each_term_that_is_left_out_is_found() {
             let mut states = States { motion: motion.clone(), inner: inner.clone(), stated: all };
             assert_eq!(verify_motion(&states, steps), Ok(()), "{name}, {steps}");
             states.stated = stated;
-            // One step sees that both ends of a path that is stated for its beginning are as near
-            // as that allows.
+            // One step shows that both ends of a path stated for its beginning are as near as
+            // allowed.
             let refused = verify_motion(&states, steps);
             assert!(
                 refused.is_err() || steps == 1 && name == "longer",

@@ -342,8 +342,8 @@ fn what_turns_by_nearly_half_a_turn_is_not_asked_about_for_moving() {
 
 #[test]
 fn what_may_come_to_be_asked_about_is_no_contact() {
-    // Links with 170 degrees between them, 4 apart, that are carried about and turned: at no time
-    // are they asked about.
+    // Links with 170 degrees between them, 4 apart, that are carried about and turned: they never
+    // count.
     let directions = [0.0, 85.0_f64, 170.0].map(|angle| {
         let (sin, cos) = angle.to_radians().sin_cos();
         Vector::new(sin, 0.0, cos)

@@ -377,8 +377,8 @@ fn a_link_that_loses_its_length_is_no_fault() {
 
 #[test]
 fn an_end_of_which_no_speed_is_stated_is_undecided() {
-    // The first link's end is flat because the tip is near. How fast that is nobody says, so that
-    // the end may become round, and come as near to the needle as the tip does not.
+    // The first link's end is flat because the tip is near. The speed of that change is unknown,
+    // so the end may become round, and come nearer to the needle than the tip.
     let shape = |_: Real, tube: &mut Tube| {
         tube.set_chain(&Chain::from_centreline(
             &[0.0, 5.0, 5.5].map(|z| Vector::Z * z),

@@ -209,7 +209,7 @@ fn every_type_of_number_gives_the_same_surface() {
         let mesh = label("a.nrrd", &nrrd(&matrix, kind, encoding, "LPS", &bytes), 3).unwrap();
         assert!(mesh == expected, "{kind} {encoding}");
     }
-    // What the header asks to do with the numbers is done: 2 x 3 + 1.
+    // The header's scale and shift are applied: 2 x 3 + 1.
     let scaled = Nifti::new(voxels).sform(&matrix).floats(112, &[2.0, 1.0]).bytes();
     assert_eq!(label("a.nii", &scaled, 7).unwrap().triangles, expected.triangles);
 }

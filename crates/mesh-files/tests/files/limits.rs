@@ -1,4 +1,4 @@
-//! What a file's header counts is not believed, and what an archive unpacks to is not kept.
+//! Counts in a file's header are not trusted, and the contents of an archive are not stored.
 
 use crate::{file, ply_header, read, refused};
 use mesh_files::{MeshFileError, Options, load};

@@ -5,9 +5,9 @@ use crate::reports::report;
 use mesh_files::{MeshFileError, Options, from_bytes};
 use std::time::{Duration, Instant};
 
-/// How many spoilt files of each format.
+/// Corrupted files per format.
 const ROUNDS: usize = 2000;
-/// The files have a few hundred bytes; memory is in proportion, unless a header is believed.
+/// The files have a few hundred bytes; memory is in proportion, unless a header is trusted.
 const MEMORY: u64 = 4 << 20;
 const TIME: Duration = Duration::from_secs(1);
 

@@ -201,8 +201,8 @@ fn rows<T: SearchPrecision + Send>(
     Ok((page, shares + "\n"))
 }
 
-/// Bytes a triangle, as the system sees them grow: to be measured first, while no memory is there
-/// to be used again.
+/// Bytes per triangle, from the growth of the process: measured first, while no freed memory can be
+/// reused.
 pub fn memory(effort: Effort) -> Result<String, String> {
     let (vertices, indices) = divided(effort.largest.min(4));
     let mesh = TriMesh::new(vertices, indices).map_err(|error| error.to_string())?;

@@ -18,7 +18,7 @@ const MARGIN: f64 = 3.0;
 /// Fewer ticks than this tell no p99.9.
 const TICKS: usize = 1000;
 
-/// A loop that asks one engine at every tick.
+/// A loop that queries one engine at every tick.
 struct Loop {
     search: BvhSearch,
     robot: Chain,

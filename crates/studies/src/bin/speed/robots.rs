@@ -119,7 +119,7 @@ fn compound(capsules: &[Capsule]) -> Compound {
 
 pub type Job<'a> = Box<dyn FnMut() -> Result<(), String> + 'a>;
 
-/// A job that asks about every place of a robot.
+/// A job that queries every place of a robot.
 pub fn at_all<'a>(
     poses: &'a [Pose],
     mut ask: impl FnMut(&Pose) -> Result<f64, String> + 'a,

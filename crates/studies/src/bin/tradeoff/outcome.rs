@@ -13,7 +13,7 @@ use rayon::prelude::*;
 /// The tolerances of `simplify` that are compared, mm.
 pub const TOLERANCES: [Real; 7] = [0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0];
 
-/// The tolerance at which parry is asked in metres too.
+/// The tolerance at which parry is also measured in metres.
 pub const METRES_AT: usize = 4;
 
 /// Spacing of the curve that is simplified, mm. Its chords stay within 0.1^2 x 0.052 / 8 = 7e-5 mm

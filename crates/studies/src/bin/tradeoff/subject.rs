@@ -7,7 +7,7 @@ use parry_continuum::parry::shape::{Capsule, Cylinder};
 use parry_continuum::proximity::BvhSearch;
 use parry_continuum::{Chain, RobotError, Tube, simplify};
 
-/// A model of the robot, and whose arithmetic asks for it.
+/// A model of the robot, and the library that computes with it.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Model {
     Capsule,
