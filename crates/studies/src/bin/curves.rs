@@ -1,6 +1,6 @@
 //! Curves as they come: clean, joined, repeated, unevenly spaced, noisy. How many tubes are
 //! accepted, how close their bounds are, and how far from the truth; and how finely tubes are
-//! divided beside flat faces. Writes the tables of `docs/book/tube.md` and the plot
+//! divided beside flat faces. Writes `docs/CURVES.md`, the table of `docs/book/tube.md` and the plot
 //! `docs/curves.svg`.
 //!
 //! ```text
@@ -410,9 +410,10 @@ fn main() -> ExitCode {
     let faces = faces(my.robots);
     print!("{faces}");
     let page = my.out.join("book/tube.md");
-    let written = fs::write(my.out.join("CURVES.md"), format!("{HEAD}{table}{BESIDE_FACES}{faces}"))
-        .map_err(|error| error.to_string())
-        .and_then(|()| quote::in_page(&selection, "curves", &page));
+    let written =
+        fs::write(my.out.join("CURVES.md"), format!("{HEAD}{table}{BESIDE_FACES}{faces}"))
+            .map_err(|error| error.to_string())
+            .and_then(|()| quote::in_page(&selection, "curves", &page));
     let written = written.and_then(|()| {
         plot(&refused, my.robots, &my.out.join("curves.svg")).map_err(|error| error.to_string())
     });
