@@ -42,9 +42,9 @@ pub fn chapter(effort: Effort, goals: &mut Goals) -> Result<String, String> {
     let mut page = format!(
         "## Exhaustive\n\n\
          The ventricle of 6,000 triangles divided in four {often}, 30 links, one thread. The peer is a loop of parry's \
-         `distance(Cylinder, Triangle)` over the same pairs. Culling: every triangle is visited, but a sphere around \
-         it may spare it the rest. Nanoseconds a pair, and times faster than the peer. Triangles shuffled; and in \
-         the order of subdivision, where neighbours stand together.\n\n\
+         `distance(Cylinder, Triangle)` over the same pairs. Culling: every triangle is visited, and a sphere around \
+         it may prune it. Nanoseconds per pair, and times faster than the peer. Triangles are shuffled, or in the \
+         order of subdivision, where neighbours are adjacent.\n\n\
          | order | precision | culling | capsules | fitted caps | cylinders | fitted caps / capsules | cylinders / capsules |\n\
          |---|---|---|---|---|---|---|---|\n",
     );

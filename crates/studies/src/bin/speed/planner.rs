@@ -73,11 +73,10 @@ pub fn chapter(effort: Effort, goals: &mut Goals) -> Result<(String, String), St
     let mut page = String::from(
         "## Planner\n\n\
          Random shapes of three tubes, 30 links each, from a fixed entry: does the shape touch the wall? `clears` with \
-         margin 0, and the minimum, each without any memory of the last shape. The peer is parry's \
-         `intersection_test(Cylinder, TriMesh)` link by link, to the first that touches. The shapes come as they were \
-         drawn, each query is timed alone, and the robot (for parry its cylinders) is written to its place just before, as \
-         by a planner that has just computed it. Microseconds a shape, of those that touch and of those that are free, \
-         and how many of each there are.\n\n\
+         margin 0, and `minimum`, each without a warm start. The peer is parry's \
+         `intersection_test(Cylinder, TriMesh)` link by link, to the first that touches. Shapes are in the order of \
+         drawing. Each query is timed alone, and the robot (for parry its cylinders) is written to memory just before, \
+         as by a planner. Microseconds per touching shape and per free shape, and the number of each.\n\n\
          | scene | triangles | touching | parry | clears | minimum | free | parry | clears | minimum |\n\
          |---|---|---|---|---|---|---|---|---|---|\n",
     );

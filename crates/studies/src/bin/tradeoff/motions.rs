@@ -304,9 +304,9 @@ pub fn chapter(robot: &Robot, mesh: &TriMesh, base: &Pose, count: usize) -> Resu
         MARGINS[1],
     );
     let mut walls = format!(
-        "\nThe same edges while the wall moves too, in the same run: `clears_motion` with the wall at rest; `clears_motion_while` \
-         with a wall that stays where it is, which shows what the boxes for the end of the time cost; and with one of which each \
-         vertex moves along z, by {WALL_MOVES} mm at most, in a wave.\n\n\
+        "\nThe same edges while the wall moves too, in the same run: `clears_motion` with the wall at rest; \
+         `clears_motion_while` with a wall at rest, which shows the cost of the boxes for the end of the time; and \
+         with a wall whose vertices move along z, by {WALL_MOVES} mm at most, in a wave.\n\n\
          | tip moves | at rest: shapes | time | contacts | stays: shapes | time | contacts | moves: shapes | time | contacts | undecided |\n\
          |---|---|---|---|---|---|---|---|---|---|---|\n"
     );
