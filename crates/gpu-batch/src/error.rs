@@ -62,8 +62,8 @@ pub enum DeviceError {
 }
 
 impl DeviceError {
-    /// What went wrong in one word: the variant in snake case, or that of the failure that it
-    /// passes on.
+    /// Returns the kind in one word: the variant in snake case, or the kind of the failure that it
+    /// contains.
     pub fn kind(&self) -> &'static str {
         match self {
             Self::Failed(failure) => failure.kind(),

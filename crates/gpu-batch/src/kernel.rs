@@ -49,7 +49,7 @@ impl<'a> Kernel<'a> {
         u32::from(self.problem).max(1)
     }
 
-    /// Numbers of an answer with what comes before it.
+    /// Numbers of an answer with its head.
     pub(crate) fn answer(&self) -> u32 {
         ANSWER_HEAD + u32::from(self.answer)
     }

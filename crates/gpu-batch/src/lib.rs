@@ -1,5 +1,5 @@
-//! A function in WGSL over many small records of numbers, a GPU thread each, through `wgpu`:
-//! Vulkan, Metal or Direct3D 12.
+//! Runs a WGSL function over many small records of numbers, one GPU thread per record, through
+//! `wgpu`: Vulkan, Metal or Direct3D 12.
 //!
 //! A [`Device`] is a GPU, opened in one [`Precision`]. A [`Kernel`] is the text of a function and
 //! how many numbers it takes and gives. A [`Batch`] runs it over as many problems as there are:
