@@ -1,4 +1,4 @@
-//! The promise that no root is silent garbage.
+//! The test that every returned root solves the polynomial within rounding.
 //!
 //! A number z is a root to rounding if |p(z)| <= c n u sum |a_k| |z|^k: then it is the exact root
 //! of a polynomial whose coefficients differ from the given ones by c n u relative, and nothing

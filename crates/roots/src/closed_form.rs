@@ -84,8 +84,8 @@ fn largest<T: Real>(q: T, r: T) -> T {
     if r < T::ZERO { -size } else { size }
 }
 
-/// The largest real root of y^3 - b y^2 + p y + s; and where rounding may have hidden two roots
-/// larger than the one that is left, their middle.
+/// The largest real root of y^3 - b y^2 + p y + s; or the middle of two larger roots, if rounding
+/// may have hidden them.
 fn largest_of_resolvent<T: Real>(b: T, p: T, s: T) -> [T; 2] {
     // t^3 - 3 q t - 2 r for y = t + b / 3.
     let third = b * T::of(1.0 / 3.0);
