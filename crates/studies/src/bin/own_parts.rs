@@ -203,7 +203,7 @@ fn table(my: &Options) -> Result<String, String> {
          either moves along it are within the margin, less both radii: sought among samples, all pairs of which are compared. What \
          the samples leave unclear is left out. The planner's rule takes all pairs of samples more than 3 radii apart along \
          the robot, or more than 3 radii and the margin.\n\n\
-         | robot | margin, mm | near itself | clear | unclear | `self_clears` misses | forbids | 3 radii: misses | forbids | 3 radii and the margin: misses | forbids |\n\
+         | robot | margin, mm | near itself | clear | unclear | `SelfQuery::clears` misses | forbids | 3 radii: misses | forbids | 3 radii and the margin: misses | forbids |\n\
          |---|---|---|---|---|---|---|---|---|---|---|\n",
         my.shapes,
         command::line("-p continuum-studies --bin own_parts")

@@ -297,7 +297,13 @@ fn one_robot(effort: Effort, links: i32, page: &mut String) -> Result<(), String
         Some(at_all(&once, |_| parry(f64::MAX))),
         None,
     ];
-    row(effort, &format!("| coil of {links} links | `self_minimum` | {goal} |"), jobs, 1, page)?;
+    row(
+        effort,
+        &format!("| coil of {links} links | `SelfQuery::minimum` | {goal} |"),
+        jobs,
+        1,
+        page,
+    )?;
     let mut query = SelfQuery::new();
     let as_number = |clears: bool| f64::from(u8::from(clears));
     let jobs = vec![
@@ -310,5 +316,11 @@ fn one_robot(effort: Effort, links: i32, page: &mut String) -> Result<(), String
         Some(at_all(&once, |_| parry(1.0))),
         None,
     ];
-    row(effort, &format!("| coil of {links} links | `self_clears`, 1 mm | {goal} |"), jobs, 1, page)
+    row(
+        effort,
+        &format!("| coil of {links} links | `SelfQuery::clears`, 1 mm | {goal} |"),
+        jobs,
+        1,
+        page,
+    )
 }
