@@ -104,8 +104,8 @@ pub fn chapter(effort: Effort, goals: &mut Goals) -> Result<(String, String), St
                 " {count} | {parry:.2} | {clears:.2} ({:.1} x) | {minimum:.2} |",
                 parry / clears,
             );
-            for ([least, most], value) in ranges.iter_mut().zip([clears, parry / clears]) {
-                (*least, *most) = (least.min(value), most.max(value));
+            for (range, value) in ranges.iter_mut().zip([clears, parry / clears]) {
+                *range = [range[0].min(value), range[1].max(value)];
             }
             let goal = if is_clear { 20.0 } else { 10.0 };
             goals.note(
