@@ -13,7 +13,7 @@ use parry_continuum::proximity::{Exhaustive, Proximity, SearchPrecision};
 use std::hint::black_box;
 use std::time::Duration;
 
-/// parry's time for a pair does not depend on the number of triangles; one in so many will do.
+/// Measures parry on every n-th triangle: its time per pair does not depend on their number.
 const SAMPLE: usize = 50;
 
 fn exhaustive(criterion: &mut Criterion) {

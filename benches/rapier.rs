@@ -1,9 +1,8 @@
 //! A step of a rapier world with a robot in a ventricle: one body per link, or one collider for the
 //! chain.
 //!
-//! The robot sways into the wall and back while its tubes turn, so that its shape differs at every
-//! step. Everything is kinematic: the bodies cost nothing to move, what is left are the broad and
-//! the narrow phase.
+//! The robot sways into the wall and back while its tubes turn, so its shape changes at every
+//! step. Everything is kinematic, so the time is that of the broad and the narrow phase.
 
 use continuum_demo::{ctr, ventricle};
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};

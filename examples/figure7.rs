@@ -31,7 +31,7 @@ const PAPER: Colour = hex(0xf3f5f6);
 /// Vermilion and bluish green, which colour-blind readers tell apart (Okabe and Ito).
 const INADEQUATE: Colour = hex(0xd55e00);
 const ADEQUATE: Colour = hex(0x009e73);
-/// Links take turns, so that each can be told from the next.
+/// Links alternate in colour, so that neighbours differ.
 const LINKS: [Colour; 2] = [hex(0x3f7fa8), hex(0x9cc4da)];
 
 /// One way to cap a chain.
@@ -58,7 +58,7 @@ impl Curve {
         Self { points: (0..=radii.len()).map(point).collect(), radii: radii.to_vec() }
     }
 
-    /// Round caps inside, flat ones at both ends, whatever the lengths and radii.
+    /// Round caps inside and flat caps at both ends, for all lengths and radii.
     fn naive(&self) -> Result<Vec<ModifiedCylinder>, RobotError> {
         let last = self.radii.len() - 1;
         let cap = |is_end| if is_end { Cap::Flat } else { Cap::Round };
@@ -174,7 +174,7 @@ fn draw(panels: &[Panel]) -> Canvas {
 }
 
 fn render(panel: &Panel) -> Canvas {
-    // Its chord lies flat, and one sees its proximal end face.
+    // Its chord lies flat, and its proximal end face is visible.
     let (first, last) = (panel.links[0], panel.links[panel.links.len() - 1]);
     let chord = (last.end() - first.start()).normalize();
     let pose = Pose::from_rotation(Rot3::from_rotation_arc(chord, Vector::X));

@@ -176,7 +176,7 @@ fn print_times(scene: &mut Scene, robots: &[(&Chain, Pose); 2]) -> Result<(), St
     Ok(())
 }
 
-/// Both robots, their closest points, and those of each to the wall.
+/// Both robots, their closest points, and the closest points of each robot and the wall.
 fn draw(
     mesh: &TriMesh,
     robots: &[(&Chain, Pose); 2],

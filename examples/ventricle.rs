@@ -181,7 +181,7 @@ fn steer(options: &Options) -> Result<(), String> {
     Ok(())
 }
 
-/// The robot at the given joints, of the model and fineness asked for.
+/// The robot at the given joints, with the requested model and number of links.
 fn chain(options: &Options, robot: &Robot, joints: &Joints) -> Result<Chain, RobotError> {
     const LINKS: usize = 30;
     const CURVE: usize = 400;
@@ -298,7 +298,7 @@ fn ratio(of: Duration, to: Duration) -> f64 {
     of.as_secs_f64() / to.as_secs_f64()
 }
 
-/// Where the robot is closest: between the bounds of the curve if they were asked for, otherwise by
+/// Where the robot is closest: between the bounds of the curve if they are requested, otherwise by
 /// its links.
 fn nearest(
     links: &[LinkProximity],

@@ -1,4 +1,4 @@
-//! What stands behind the reference, a chapter at a time.
+//! The book: one chapter per module.
 
 #[doc = include_str!("book_links.md")]
 #[doc = include_str!("../docs/book/shape.md")]
@@ -40,7 +40,7 @@ pub mod tube {}
 #[doc = include_str!("../docs/book/trade.md")]
 pub mod trade {}
 
-// Its code runs where rapier is there.
+// Its code needs rapier.
 #[cfg(any(not(doctest), feature = "rapier"))]
 #[doc = include_str!("book_links.md")]
 #[doc = include_str!("../docs/book/hosts.md")]

@@ -99,7 +99,7 @@ fn value(joints: &mut Joints, joint: usize) -> &mut Real {
     if joint < 3 { &mut joints.extensions[joint] } else { &mut joints.angles[joint - 3] }
 }
 
-/// The ends of the links, the same number whatever the joints.
+/// The ends of the links; their number does not depend on the joints.
 fn points(robot: &Robot, joints: &Joints) -> Vec<Vector> {
     let (mut arc_lengths, mut from) = (vec![0.0], 0.0);
     for (extension, links) in joints.extensions.iter().zip(LINKS) {

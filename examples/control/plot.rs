@@ -43,7 +43,7 @@ pub fn draw(free: &Run, kept: &Run, margin: Real, tick: Real) -> Canvas {
     canvas
 }
 
-/// The free run is dashed, for whoever sees no colours.
+/// The free run is dashed, so that it differs without colours too.
 fn draw_curve(canvas: &mut Canvas, points: &[[f32; 2]], width: f32, colour: Colour) {
     for (place, piece) in points.windows(2).enumerate() {
         if colour == KEPT || place % 12 < 8 {

@@ -9,7 +9,7 @@ use mesh_files::Frame;
 use parry_continuum::parry::bounding_volume::{Aabb, BoundingVolume};
 use parry_continuum::parry::math::Pose;
 
-/// So many times larger or smaller than the wall a robot is hardly ever.
+/// A robot is hardly ever this many times larger or smaller than the wall.
 const FAR_FROM_ALIKE: f64 = 100.0;
 
 /// What to try, and what would then be done to the robot.

@@ -109,7 +109,7 @@ fn ask(my: &Options) -> Result<(), Box<dyn Error>> {
     let curve = my.tolerance.map(|tolerance| -> Result<_, Box<dyn Error>> {
         Ok(wall.search.clearance(&Tube::from_samples(points, radii, None)?, &pose, tolerance)?)
     });
-    // What is known is printed, whatever became of the curve.
+    // Print the links even if the curve fails.
     let (curve, failed) = match curve.transpose() {
         Ok(curve) => (curve, None),
         Err(error) => (None, Some(error)),

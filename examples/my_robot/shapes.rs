@@ -11,7 +11,7 @@ use serde_json::json;
 use std::error::Error;
 use std::io::{BufWriter, Write, stdout};
 
-/// How many are asked for at once.
+/// Shapes per batch.
 const AT_ONCE: usize = 4096;
 
 pub fn print(

@@ -1,4 +1,4 @@
-//! The wall from a file, and what is known of it.
+//! The wall from a file, with its frame and unit.
 
 use crate::Options;
 use crate::frames::name;

@@ -25,7 +25,7 @@ const FOOT: usize = 120;
 /// How long a link is about, mm.
 const LINK: Real = 1.0;
 
-/// How many shapes of each edge are looked at to tell how far the tip moves.
+/// Shapes per edge from which the length of the tip's path is measured.
 const STEPS: u32 = 100;
 
 /// A moment of the way.

@@ -1,5 +1,4 @@
-//! What the robot is told to do: its tubes come out along a planned shape, then its base is pushed
-//! on.
+//! The planned motion: the tubes extend along a planned shape, then the base is pushed on.
 
 use continuum_demo::ctr::{Joints, Robot};
 use continuum_demo::rod::RestShape;

@@ -136,7 +136,7 @@ impl GpuExhaustive {
                 && let Some(nearest) = self.nearest(place, bound)
             {
                 let other = self.links[place].0.answer(place - first, &nearest);
-                let key = |answer: &LinkProximity| (answer.triangle, answer.link);
+                let key = |answer: &LinkProximity| (answer.witness.triangle, answer.link);
                 let is_nearer = |best: LinkProximity| {
                     other.distance < best.distance
                         || (other.distance <= best.distance && key(&other) < key(&best))

@@ -107,9 +107,8 @@ fn cylinders_agree_in_well_conditioned_units() {
     check_agreement(Flat);
 }
 
-/// parry reports at least `factor` times the clearance there is, on the unsafe side; that of a
-/// touch is infinite. (Should one of these fail because parry has learnt to answer: good news, drop
-/// it.)
+/// parry reports at least `factor` times the true clearance, on the unsafe side; for contact the
+/// factor is infinite. (If one of these fails because parry has improved, remove it.)
 #[track_caller]
 fn assert_overestimated(problem: &Problem, kind: Kind, link_first: bool, factor: f64) -> [f64; 2] {
     let (theirs, ours) = (parry(problem, kind, link_first), ours(problem, kind));

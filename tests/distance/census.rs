@@ -1,7 +1,7 @@
 //! Every numbered case at the head of a kernel's file, and of Algorithm 1, is visited by the
-//! problems that the other tests use: the reference cases and the seeded families. Cases are told
-//! by the geometry of the input and of the answer, both in double-double arithmetic; the library is
-//! not asked which way it went.
+//! problems that the other tests use: the reference cases and the seeded families. The case of a
+//! problem follows from the geometry of the input and of the answer, in double-double arithmetic,
+//! not from the library.
 
 use continuum_testing::Random;
 use continuum_testing::certificate::{Exact, Shape};
@@ -359,7 +359,7 @@ fn every_numbered_case_is_visited() {
         counts.unwrap_or_else(|| panic!("{file}.rs has no case '{case}'"))[sample] += 1;
     };
     for case in distance_cases() {
-        // Near one, so that the fourth powers of the geometry here neither overflow nor vanish.
+        // Near one, so that the fourth powers of the geometry stay in range.
         let unit = (case.scale.max(case.mag)).power_of_two_to_unity();
         let input = Input::from(&case).map(|x| x * unit);
         View::new(&input).count(|file, name| count(0, file, name));

@@ -181,7 +181,7 @@ fn answers_on_the_integer_lattice_lie_within_proven_bounds() {
     let (mut worst, mut seen) = ([0.0; KERNELS.len()], Seen::default());
     for _ in 0..3_000 {
         let mut input = Input::from(&random.problem(Family::Lattice, -17.0));
-        // Discs in planes other than those of the axis.
+        // Discs in planes that do not contain the axis.
         input.disc_normal = Vec3::new(random.whole(-2, 2), random.whole(-2, 2), random.whole(1, 2));
         check(&input, &mut worst, &mut seen);
         check(&input.map(|x| x as f32), &mut worst, &mut seen);

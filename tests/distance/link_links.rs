@@ -278,8 +278,8 @@ fn a_wire_is_as_far_as_a_flat_triangle() {
     }
 }
 
-/// Points of one disc, none of which is nearer to the other than the discs are, and some of which
-/// are nearly as near.
+/// Points of one disc: no point is nearer to the other disc than the discs' distance, and some
+/// points are nearly that near.
 #[test]
 fn discs_are_as_far_as_their_nearest_chords() {
     let mut random = Random::new(5);

@@ -33,7 +33,7 @@ fn whole_extent(problem: &Problem) -> f64 {
     extent(&problem.points(), problem.radius)
 }
 
-/// Asserts that two distances agree within so many units of the extent.
+/// Asserts that two distances agree within this many units of the extent.
 #[track_caller]
 fn assert_same(what: &str, problem: &Problem, got: f64, expected: f64, unit: f64) {
     assert!(

@@ -75,7 +75,7 @@ impl<T: Precision> Sliver<T> {
     fn lowest(&self, centre: Exact, normal: Exact, radius: DoubleDouble) -> Exact {
         let up = self.normal - normal * self.normal.dot(normal);
         let slope = up.norm();
-        // Where the tilt is no more than rounding, the centre is as low as any point.
+        // If the tilt is within rounding, the centre is as low as any point.
         let is_parallel = slope.rounded() <= 2.0 * T::UNIT;
         if is_parallel { centre } else { centre - up * (radius / slope) }
     }
@@ -214,7 +214,7 @@ fn disc<T: Precision>(
     let downhill = random.perpendicular_to(up);
     let (sin, cos) = tilt.sin_cos();
     let lowest = sliver.above(random, height);
-    // A disc parallel to the face has no lowest point to speak of: its centre is put there.
+    // A disc parallel to the face has no single lowest point: take its centre.
     let slope = (downhill * cos - up * sin) * if tilt == 0.0 { 0.0 } else { radius };
     let centre = lowest - Vec3::from(slope.to_array().map(lit));
     let axis = (up * cos + downhill * sin) * random.between(0.1, 2.0);
@@ -225,7 +225,7 @@ fn disc<T: Precision>(
 fn discs<T: Precision>(finest: f64) {
     on_slivers::<T>(finest, 1, |random, sliver, height, errors| {
         let (centre, tip, radius) = disc::<T>(random, sliver, height);
-        // The normal, of whatever length, is as exact as the points.
+        // The normal, of any length, is as exact as the points.
         let normal = rounded::<T>(exact(tip) - exact(centre));
         let lowest = sliver.lowest(exact(centre), unit(exact(normal)), lit(radius.into()));
         let closest = triangle_disc(sliver.triangle, centre, normal, radius);
@@ -282,7 +282,7 @@ fn links<T: Precision>(finest: f64) {
                 };
                 let closest =
                     triangle_modified_cylinder(sliver.triangle, ends[0], ends[1], radius, flat);
-                // A round tip may be lower than the flat end, which is then not asked.
+                // A round tip may be lower than the flat end, which then does not matter.
                 let ball = sliver.height(exact(tip)) - lit(radius.into());
                 if other || sliver.height(lowest).lt(ball) {
                     errors.check(sliver, lowest, sliver.height(lowest), &ends, radius, closest);

@@ -1,5 +1,4 @@
-//! The engine on the GPU beyond what all engines have in common, which tests/proximity asks of it
-//! too.
+//! The engine on the GPU. tests/proximity also tests it with the questions of all engines.
 #![cfg(feature = "gpu")]
 
 use continuum_testing::{Random, answered, gpu};
@@ -49,8 +48,8 @@ fn distances(answers: &[LinkProximity]) -> Vec<f64> {
     answers.iter().map(|answer| answer.distance).collect()
 }
 
-/// The GPU's candidates hold the double-precision minimum: the distances are those of the CPU bit
-/// for bit, with and without culling, one by one and in a batch, and no link needed the CPU.
+/// The GPU's candidates contain the double-precision minimum: the distances equal the CPU's bit for
+/// bit, with and without culling, one by one and in a batch, and no link needed the CPU.
 #[test]
 fn the_distances_are_those_of_the_cpu() {
     let (mesh, robots) = (cave(), robots(12));
@@ -155,7 +154,7 @@ fn far_links_are_answered_too() {
     }
 }
 
-/// The adapter says what it is, and its clock runs if it has one.
+/// The adapter reports its name and kind, and its clock runs if it has one.
 #[test]
 fn the_adapter_is_named() {
     for (_, precision) in gpu::PRECISIONS {

@@ -49,8 +49,7 @@ pub fn composites(random: &mut Random) -> Vec<(&'static str, SharedShape, Shared
     pairs
 }
 
-/// A query on a composite is the best of the queries on its parts, which the dispatcher is asked
-/// for one by one.
+/// A query on a composite is the best of the dispatcher's queries on its parts, one by one.
 #[test]
 fn composites_get_the_best_of_their_parts() {
     let dispatcher = ContinuumDispatcher::default();

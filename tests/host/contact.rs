@@ -160,8 +160,8 @@ fn a_ball_on_a_sliver_and_other_poor_triangles_still_come_apart() {
     }
 }
 
-/// Neither sampled directions nor a descent from the best of them separate sooner, whatever the
-/// caps, with the axis outside the triangle or through it, thick links and wires alike.
+/// No sampled direction, and no descent from the best one, separates by a shorter translation: for
+/// all caps, with the axis outside the triangle or through it, for thick links and wires.
 #[test]
 fn no_sampled_direction_separates_sooner() {
     let mut random = Random::new(64);

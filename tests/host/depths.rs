@@ -62,8 +62,8 @@ fn searched(random: &mut Random, gap: impl Fn(Vector) -> Real) -> (Real, Vector)
     best
 }
 
-/// The name of what a link is held against, and how much deeper than the least its depth may be, as
-/// a share of the sizes.
+/// The name of the other shape, and by how much a depth may exceed the least one, as a share of the
+/// sizes.
 const EXCESS: [(&str, Real); 9] = [
     ("round link", 1e-12),
     ("flat link", 1e-6),

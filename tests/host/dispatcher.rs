@@ -1,5 +1,5 @@
 //! The dispatcher answers every query for links and chains, in both orders, through every
-//! composite, and never lets a pair that it cannot answer read as a free one.
+//! composite, and never reports an unsupported pair as free.
 
 use crate::draw::{Draw, U};
 use crate::inner::ask_everything;
@@ -302,7 +302,7 @@ fn endless_convex_shapes_are_refused() {
         for (pos12, g1, g2) in
             [(pose, &link as &dyn Shape, &*shape), (pose.inverse(), &*shape, &link)]
         {
-            // But for motions, in which it may not even be looked at.
+            // Except in motions, which may not visit it.
             let answered = ask_everything(&dispatcher, &pos12, g1, g2);
             assert_eq!(answered[..5], [false; 5], "{:?}", shape.as_typed_shape());
         }

@@ -13,8 +13,8 @@ use parry_continuum::{Cap, ContinuumDispatcher, ModifiedCylinder};
 
 const ROUNDING: Real = 1e-13;
 
-/// Height of the lowest point: a round cap that looks down reaches a radius below its centre, any
-/// other as far as its rim.
+/// Height of the lowest point: a round cap that points down reaches a radius below its centre, any
+/// other cap reaches its rim.
 fn lowest(link: &ModifiedCylinder, pose: &Pose, normal: Vector) -> Real {
     let axis = (link.end() - link.start()).normalize_or_zero();
     let axis = pose.rotation * axis;

@@ -1,4 +1,4 @@
-//! What the inner dispatcher is asked, and what becomes of its refusals.
+//! The queries that reach the inner dispatcher, and its errors.
 
 use crate::composites::composites;
 use crate::scene::{floor_field, floor_mesh, tube};
@@ -121,8 +121,7 @@ impl QueryDispatcher for Ignorant {
 fn a_pair_that_is_refused_makes_the_whole_query_refused() {
     let mut random = Random::new(46);
     let dispatcher = ContinuumDispatcher(Ignorant);
-    // A box that is touched by nothing and that nobody knows how to measure, among triangles that
-    // are known.
+    // An untouched box of an unsupported kind, among supported triangles.
     let cuboid = SharedShape::new(Cuboid::new(Vector::splat(0.5)));
     let triangle = SharedShape::new(Triangle::new(Vector::X, Vector::Y, Vector::Z));
     let mixed = Compound::new(vec![(Pose::IDENTITY, triangle), (Pose::IDENTITY, cuboid)]);

@@ -1,4 +1,4 @@
-//! What parry asks about links side by side with level ends, which overlap deeply.
+//! parry's queries about links side by side with level ends, which overlap deeply.
 
 use continuum_testing::{Random, found_level_links};
 use parry_continuum::ContinuumDispatcher;

@@ -1,6 +1,6 @@
-//! The contact points of two links of which at most one meets the other with a flat cap: each is on
-//! both surfaces and as far apart as it says, and the nearest is the exact distance, or the exact
-//! depth of the overlap.
+//! The contact points of two links, at most one of which meets the other with a flat cap. Each
+//! point is on both surfaces and has the right `dist`. The nearest has the exact distance, or the
+//! exact depth of the overlap.
 //!
 //! The proof of a contact needs nothing of its making. For any unit vector the gap between the two
 //! links' supports along it is a lower bound on their distance; so where the gap along the
@@ -31,7 +31,7 @@ fn gap(first: &ModifiedCylinder, second: &ModifiedCylinder, along: Vector) -> Re
     -support(second, -along) - support(first, along)
 }
 
-/// A link whose numbers are near one, neither thin nor flat.
+/// A link whose numbers are near one: not thin and not flat.
 fn link(random: &mut Random, caps: [Cap; 2]) -> ModifiedCylinder {
     let start = random.vector(0.5);
     let end = start + random.direction() * random.between(0.3, 2.0);
@@ -95,8 +95,7 @@ fn a_capsule_and_any_link_meet_exactly() {
         let context = || format!("{first:?} {second:?} {pose:?} {found:?}");
         let Some(least) = found.points.iter().map(|point| point.dist).reduce(Real::min) else {
             nothing += 1;
-            // They are apart by more than was asked for: some plane says so, or the sampled points
-            // do.
+            // They are farther apart than the prediction, by some plane or by the sampled points.
             let points = (0..=200).map(|k| {
                 let at = capsule.start().lerp(capsule.end(), Real::from(k) / 200.0);
                 solid.distance_to_local_point(at, true) - capsule.radius()

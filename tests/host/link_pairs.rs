@@ -57,8 +57,8 @@ fn said(pos12: &Pose, g1: &dyn Shape, g2: &dyn Shape, unit: Real) -> Vec<String>
     ]
 }
 
-/// What is left between two ways to the same number of size 1: 64 units in the last place of the
-/// largest coordinate.
+/// The allowed difference between two computations of a number of size 1: 64 units in the last
+/// place of the largest coordinate.
 const ROUNDING: Real = 64.0 * U * 4.0;
 
 const KINDS: [Wall; 4] = [Wall::Ball, Wall::Capsule, Wall::Cylinder, Wall::Link];
@@ -107,7 +107,7 @@ fn a_ball_a_capsule_and_a_cylinder_are_links() {
     assert!(overlapping > 300, "{overlapping}");
 }
 
-/// Hosts find a point again by its names, and start its force from what it was.
+/// Hosts identify a point by its feature ids, and warm-start its force.
 #[test]
 fn no_two_points_of_a_manifold_have_the_same_names() {
     let dispatcher = ContinuumDispatcher::default();
@@ -121,7 +121,7 @@ fn no_two_points_of_a_manifold_have_the_same_names() {
         assert!(are_all_new, "{names:?}: {g1:?} {g2:?} {pos12:?}");
         names.len()
     };
-    // A rod that lies on a cap, both ends of which are over it.
+    // A rod that lies on a cap; both its ends are over the cap.
     let table = ModifiedCylinder::cylinder(Vector::ZERO, Vector::Z, 1.0).unwrap();
     let rod = ModifiedCylinder::capsule(Vector::X * -0.5, Vector::X * 0.5, 0.1).unwrap();
     let above = Pose::translation(0.0, 0.0, 1.1);
@@ -189,8 +189,7 @@ fn the_unit_of_length_does_not_matter_to_links() {
     assert!(flat > 50, "{flat}");
 }
 
-/// What is asked in the other order is measured in the other's frame, so only rounding is between
-/// the two.
+/// The swapped query is computed in the other frame, so the two differ by rounding alone.
 #[test]
 fn the_order_of_two_links_does_not_matter() {
     let mut random = Random::new(453);
@@ -223,7 +222,7 @@ fn the_order_of_two_links_does_not_matter() {
     assert!(apart > 1000 && overlapping > 1000, "{apart} {overlapping}");
 }
 
-/// In metres as in millimetres, but for rounding: a thousand is no power of two.
+/// In metres as in millimetres, up to rounding: a thousand is not a power of two.
 #[test]
 fn metres_and_millimetres_say_the_same() {
     let mut random = Random::new(454);

@@ -1,4 +1,4 @@
-//! What parry sees of links and chains: shapes, points, rays, masses, the dispatcher and contact
+//! parry's interface to links and chains: shapes, points, rays, masses, the dispatcher and contact
 //! manifolds.
 
 mod casts;

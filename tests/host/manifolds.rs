@@ -21,7 +21,7 @@ fn manifolds(
     prediction: Real,
 ) -> Result<Vec<Manifold>, Unsupported> {
     let (mut manifolds, mut workspace) = (vec![], None);
-    // Twice, because parry updates what it found before.
+    // Twice, because parry updates the previous manifold.
     dispatcher.contact_manifolds(pos12, g1, g2, prediction, &mut manifolds, &mut workspace)?;
     dispatcher.contact_manifolds(pos12, g1, g2, prediction, &mut manifolds, &mut workspace)?;
     Ok(manifolds)

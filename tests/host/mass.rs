@@ -1,4 +1,4 @@
-//! A link's mass properties are those of its slices added up, and parry's where parry has the
+//! A link's mass properties are the sum over its slices, and equal parry's where parry has the
 //! shape.
 
 use crate::draw::{CAPS, Draw};

@@ -145,8 +145,8 @@ fn what_touches_at_the_start_does_not_get_through() {
     assert!(held > 500 && free > 100, "{held} held, {free} free");
 }
 
-/// A ball whose centre is all but on a wall has no room that could be told from none. Where there
-/// is some, half of it is left.
+/// A ball whose centre is nearly on a wall has no depth left within rounding. If there is some,
+/// half of it is left.
 #[test]
 fn a_ball_whose_centre_is_on_a_wall_is_not_refused() {
     let dispatcher = ContinuumDispatcher::default();

@@ -20,8 +20,8 @@ const ROUNDING: Real = 1e-11;
 const EARLY: Real = 1e-8;
 /// What parry's GJK leaves open for shapes of size 1.
 const GJK: Real = 1e-5;
-/// By what a translation may fall short of separating: what GJK, which is asked, leaves open. (How
-/// much longer than the least it is: see [`depths`](super::depths).)
+/// By how much a translation may fail to separate: the tolerance of GJK, which checks it. (For its
+/// excess over the least, see [`depths`](super::depths).)
 const SEPARATED: Real = 1e-5;
 
 /// A convex shape of about size 1 and its name.
@@ -115,7 +115,7 @@ fn answers_are_off_by_no_more_than_the_table_says() {
                         dispatcher.intersection_test(&pos12, g1, g2).unwrap().intersecting,
                         "{name}"
                     );
-                    // What it says separates the two, but for what the iterations leave.
+                    // The translation separates the two, up to the tolerance of the iterations.
                     let contact = dispatcher.contact(&pos12, g1, g2, 0.0).unwrap().unwrap();
                     let separates = |more: Real| {
                         let way = -contact.normal1 * (contact.dist - more);
@@ -291,8 +291,8 @@ fn iterations_do_not_depend_on_the_unit_of_length() {
     assert!(apart > 400 && across > 25 && hits > 80, "{apart} apart, {across} across, {hits} hits");
 }
 
-/// In metres and micrometres clearances are as exact as in the unit of the shapes, and casts are
-/// neither late nor missed.
+/// In metres and micrometres clearances are as exact as in the unit of the shapes, and no cast is
+/// late or missed.
 #[test]
 fn clearances_in_small_units_are_no_larger_than_they_are() {
     let (mut random, dispatcher) = (Random::new(134), ContinuumDispatcher::default());

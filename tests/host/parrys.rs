@@ -26,7 +26,7 @@ const KINDS: [&str; 7] = [
     "parry's `Cylinder` beside parry's `Cylinder`",
 ];
 
-/// A shape of a robot's sizes, in a unit of which a millimetre is so many.
+/// A shape of a robot's sizes, in a unit that fits this many times into a millimetre.
 fn shape(kind: usize, [a, b, c]: [Real; 3], hull: &[Vector], unit: Real) -> SharedShape {
     let [a, b, c] = [a * unit, b * unit, c * unit];
     match kind {
@@ -99,7 +99,7 @@ fn off(kind: usize, unit: Real) -> [Real; 2] {
             ModifiedCylinder::new(-along, along, radius, caps).unwrap()
         };
         let right = reference(&link, &*wall, &pose);
-        // Triangles do not tell of what is inside.
+        // Triangles have no inside.
         if right <= 1e-3 * radius || wall.contains_point(&pose, link.start()) {
             continue;
         }

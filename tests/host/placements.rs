@@ -1,6 +1,5 @@
-//! What the queries say of aligned and touching placements fits together, for every pair of the
-//! dispatcher's table, in both orders. (What `distance` says is held against other measurements in
-//! [`pairs`](super::pairs).)
+//! The queries agree on aligned and touching placements, for every pair of the dispatcher's table,
+//! in both orders. ([`pairs`](super::pairs) compares `distance` with other measurements.)
 
 use continuum_testing::Random;
 use continuum_testing::placements::{Placement, Wall};
@@ -13,8 +12,8 @@ use parry_continuum::parry::shape::Shape;
 const PREDICTIONS: [Real; 9] = [-0.2, -1e-3, -1e-9, 0.0, 1e-12, 1e-6, 0.02, 0.5, Real::INFINITY];
 const PLACEMENTS: usize = 400;
 
-/// What is left between two queries of the same pair: rounding, or what parry's GJK leaves for
-/// shapes of size one.
+/// The allowed difference between two queries of the same pair: rounding, or the tolerance of
+/// parry's GJK for shapes of size one.
 fn tolerance(kind: Wall) -> Real {
     match kind {
         Wall::Triangle | Wall::Plate | Wall::BoxMesh | Wall::HeightField => 1e-11,
@@ -160,7 +159,7 @@ fn points_distances_and_tests_of_touching_placements_agree() {
     }
 }
 
-/// parry's GJK and EPA say `None` for some of these.
+/// parry's GJK and EPA return `None` for some of them.
 #[test]
 fn an_unbounded_contact_finds_what_distance_finds() {
     for kind in Wall::ALL.into_iter().filter(|&kind| kind != Wall::Voxels) {

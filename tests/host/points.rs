@@ -33,9 +33,9 @@ fn distances_are_certified_by_a_separating_plane_outside_and_by_a_ball_inside() 
 
         if distance > 0.0 {
             outside += 1;
-            // No support point along the outward normal comes closer to `p`: a lower bound,
-            // whatever the normal is. On a rim the normal is the difference of the
-            // witnesses, which is only as good as they are apart.
+            // No support point along the outward normal comes closer to `p`: a lower bound for
+            // any normal. On a rim the normal is the difference of the witnesses, which is
+            // imprecise if they are close.
             let (normal, tolerance) = match feature {
                 FeatureId::Face(_) => (link.feature_normal_at_point(0, feature, p), 16.0),
                 _ if apart < 1e-9 * coordinates => (None, 0.0),

@@ -121,8 +121,7 @@ fn answers_about_tubes_and_motions_come_back() {
         assert_eq!(from_str::<Decision>(&to_string(&decision).unwrap()).unwrap(), decision);
     }
 
-    // Out of the ball, and along a floor as far away as the margin but for a little, which nobody
-    // can tell.
+    // Out of the ball, and along a floor at almost exactly the margin, which is undecided.
     let corners = [[-9.0, -9.0], [9.0, -9.0], [0.0, 9.0]].map(|[x, y]| Vector::new(x, y, -2.0));
     let mut floor =
         BvhSearch::new(&TriMesh::new(corners.to_vec(), vec![[0, 1, 2]]).unwrap()).unwrap();

@@ -1,5 +1,5 @@
-//! A link is a good citizen of parry: its bounds, support points, features and scaled copies are
-//! those of the true shape.
+//! A link is a complete parry shape: its bounds, support points, features and scaled copies fit the
+//! true shape.
 
 use crate::draw::{CAPS, Draw, U, surface_point, violation};
 use continuum_testing::Random;

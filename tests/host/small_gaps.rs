@@ -1,5 +1,5 @@
-//! What is small beside the unit of length: gaps, balls, overlaps that are less than what is asked
-//! for, and boxes that touch no more than rounding says.
+//! Lengths that are small beside the unit of length: gaps, balls, overlaps below the prediction,
+//! and boxes that touch within rounding.
 
 use continuum_testing::Random;
 use parry_continuum::parry::math::{Pose, Real, Vector};
@@ -83,7 +83,7 @@ fn a_tiny_ball_beside_a_tiny_link_does_not_touch_it() {
     }
 }
 
-/// What grazes a part grazes the whole: the boxes of the two touch, but for rounding.
+/// A shape that grazes a part grazes the whole: the boxes of the two touch, up to rounding.
 #[test]
 fn a_cast_that_grazes_a_part_is_not_rounded_past_the_whole() {
     let (mut random, mut met) = (Random::new(311), 0);
@@ -97,7 +97,7 @@ fn a_cast_that_grazes_a_part_is_not_rounded_past_the_whole() {
             (Pose::from_translation(Vector::Y * 90.0), SharedShape::ball(1.0)),
         ]);
         let chain = Chain::capsules(&[Vector::ZERO, Vector::Z * long], &[r]).unwrap();
-        // Beside the box, at exactly the sum of the sizes, as far as numbers go.
+        // Beside the box, at exactly the sum of the sizes, up to rounding.
         let pos12 = Pose::from_translation(Vector::new(-9.0, beside + half + r, 0.1));
         let velocity = Vector::X * random.between(0.5, 2.0);
         let options = ShapeCastOptions { stop_at_penetration: false, ..Default::default() };

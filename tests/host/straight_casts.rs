@@ -1,5 +1,5 @@
 //! Casts of links that move straight against triangles and other convex shapes: never late, and
-//! early by no more than is said.
+//! early by at most the documented amount.
 
 use crate::draw::Draw;
 use crate::scene::floor_mesh;
@@ -191,7 +191,8 @@ fn the_error_does_not_grow_with_the_triangle() {
     }
 }
 
-/// Still objects never meet, however near they are; nor do those that part or slide past.
+/// Objects at rest never meet, however near they are; objects that separate or slide past never
+/// meet either.
 #[test]
 fn what_does_not_come_nearer_does_not_meet() {
     let ours = ContinuumDispatcher::default();

@@ -181,7 +181,7 @@ fn a_wall_that_hardly_comes_nearer_is_never_met() {
     }
 }
 
-/// parry's GJK says of these that they are 0.452 apart.
+/// parry's GJK returns a distance of 0.452 for this pair.
 #[test]
 fn a_cylinder_that_touches_a_link_is_at_no_distance() {
     let link = ModifiedCylinder::cylinder(

@@ -5,7 +5,7 @@ use super::sources::{Source, sources, words};
 use std::collections::BTreeMap;
 use std::fs;
 
-/// For each room what it may import, itself included: what it stands on, and what that stands on.
+/// The rooms that each room may import: itself, the rooms below it, and the rooms below them.
 fn rooms(page: &str) -> BTreeMap<String, Vec<String>> {
     let mut rooms = BTreeMap::<String, Vec<String>>::new();
     for row in page.lines().filter_map(|line| line.strip_prefix("| `src/")) {

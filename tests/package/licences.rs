@@ -5,7 +5,7 @@ use serde_json::Value;
 use std::collections::HashSet;
 use std::process::Command;
 
-/// Licences that ask for no more than MIT or Apache-2.0 do.
+/// Licences with at most the conditions of MIT or Apache-2.0.
 const GOOD: [&str; 9] = [
     "MIT",
     "Apache-2.0",

@@ -1,6 +1,5 @@
-//! Every name that the library shows leads somewhere: it has an example or a page. The names are
-//! those of docs/internals/public_api.txt, which `.ci/public-api` compares with what the compiler
-//! says.
+//! Every public name has an example or a page. docs/internals/public_api.txt lists the names, and
+//! `.ci/public-api` compares it with the compiler's list.
 
 use std::collections::BTreeSet;
 use std::fs;

@@ -5,7 +5,7 @@ use super::sources::{Source, sources, words};
 use std::collections::BTreeMap;
 use std::fs;
 
-/// The most files of a list.
+/// The most files of a reading list.
 const MOST: usize = 6;
 
 /// A step of a list: a file, what of it is called, and whether it stands under another.

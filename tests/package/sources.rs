@@ -10,7 +10,7 @@ pub struct Source {
     pub code: String,
 }
 
-/// All files of `src`, but not those of tests.
+/// All files of `src` except tests.
 pub fn sources() -> Vec<Source> {
     let mut found = Vec::new();
     visit("src", &mut found);

@@ -1,9 +1,9 @@
-//! The rule of ARCHITECTURE.md that keeps threads from waiting for each other for ever, as far as a
-//! text shows it.
+//! The rule of ARCHITECTURE.md against deadlocks, as far as the source text can show it.
 
 use super::sources::sources;
 
-/// What makes threads wait, and the files that may: each says why nobody waits there for a pool.
+/// The calls that make threads wait, and the files that may use them: each states why no thread
+/// waits there for a pool.
 const WAITING: [&str; 9] = [
     "OnceLock",
     "LazyLock",

@@ -103,8 +103,8 @@ fn nasty_meshes(seed: u64, rounds: usize) {
     assert!(apart > rounds && touching > rounds / 3, "{apart} apart, {touching} touching");
 }
 
-/// A wall all of whose triangles point at the robot from the same distance but for a
-/// hundred-millionth: in single precision they are all as near.
+/// A wall of triangles at the same distance from the robot up to 1e-8: in single precision all are
+/// ties.
 #[test]
 fn near_ties_are_decided_in_double_precision() {
     let mut random = Random::new(9);
@@ -311,7 +311,7 @@ fn each_robot_of_a_batch_has_a_result_of_its_own() {
     }
 }
 
-/// A clone has the mesh as it was, whatever becomes of the other's.
+/// A clone keeps its mesh when the other engine's mesh moves.
 #[test]
 fn clones_share_the_mesh_until_one_moves_it() {
     let mut random = Random::new(15);

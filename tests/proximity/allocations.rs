@@ -71,8 +71,7 @@ fn a_control_loop_allocates_nothing() {
     assert!(steady_state(|_| drop(simplify(&points, &line.radii, 0.1))) > 100);
 }
 
-/// A chain that is filled again is the chain that is made anew, and keeps what it was if the new
-/// line is bad.
+/// A chain that is filled again equals a new chain, and stays unchanged if the new line is bad.
 #[test]
 fn two_robots_and_a_scene_allocate_nothing() {
     let (vertices, indices) = ventricle::mesh(6_000);
@@ -200,7 +199,7 @@ impl<M: Motion> Motion for Counted<M> {
     }
 }
 
-/// How often a planner allocates that asks about edge after edge, and how many shapes it looks at.
+/// Allocations of a planner that tests edge after edge, and the number of shapes that it tests.
 fn planner(search: &mut BvhSearch, edges: Vec<impl Motion>) -> [u64; 2] {
     let edges: Vec<_> = edges.into_iter().map(|edge| Counted(edge, Cell::new(0))).collect();
     let mut round = || {
@@ -253,7 +252,7 @@ fn motions_are_judged_in_memory_that_is_used_again() {
     assert!(allocated <= 12 * shapes && shapes > 40, "{allocated} {shapes}");
 }
 
-/// A robot of so many links that wind through the ball of radius 1.
+/// A robot of this many links that wind through the ball of radius 1.
 fn long_robot(links: u32, turn: f64) -> Chain {
     let point = |k: u32| {
         let (sin, cos) = (turn + 0.3 * f64::from(k)).sin_cos();
@@ -263,8 +262,8 @@ fn long_robot(links: u32, turn: f64) -> Chain {
         .unwrap()
 }
 
-/// What an exhaustive engine keeps grows neither with the robots of a batch for each thread, nor
-/// with all pairs of links and triangles that are near.
+/// The memory of an exhaustive engine does not grow with the robots per thread of a batch, or with
+/// the near pairs of links and triangles.
 #[test]
 fn an_exhaustive_engine_keeps_little_at_once() {
     let ball = |rows: u32, columns: u32| {
@@ -295,7 +294,7 @@ fn an_exhaustive_engine_keeps_little_at_once() {
         assert!(answers.len() == 20 && answers.contains(&least[place]));
         assert!(clears[place] == (least[place].distance > 0.1));
     }
-    // One that has no answer leaves those of the others as they are.
+    // A robot without an answer does not change the others' answers.
     let mut refused = batch.clone();
     refused[2000].1.translation.x = f64::NAN;
     let (mut others, mut theirs, mut kept) = (Vec::new(), Vec::new(), Vec::new());

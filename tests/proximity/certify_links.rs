@@ -113,7 +113,7 @@ fn drawn(random: &mut Random, kind: Kind) -> [ModifiedCylinder; 2] {
             radii = radii.map(|radius| radius + 0.5);
             axes[1][0] = axes[0][1] + random.direction() * random.magnitude(-3.0, 1.0);
         }
-        // Two faces, parallel but for a tiny tilt, at any height over one another.
+        // Two faces, parallel up to a tiny tilt, at any height over one another.
         Kind::FacingDiscs => {
             flat = [[true; 2]; 2];
             radii = radii.map(|radius| radius + 0.25);

@@ -1,4 +1,4 @@
-//! The reference cases, asked of every engine.
+//! The reference cases, in every engine.
 
 use crate::agreement::{UNIT, check_agreement, engines};
 use crate::scenes::{extent, mesh_of};

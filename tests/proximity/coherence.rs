@@ -1,5 +1,4 @@
-//! `clears` and `minimum` asked again and again in a loop answer as an engine that knows nothing of
-//! the queries before, whatever comes.
+//! `clears` and `minimum` in a loop answer as a fresh engine, for any sequence of queries.
 
 use continuum_testing::Random;
 use parry_continuum::Chain;
@@ -19,7 +18,7 @@ struct Scene {
 }
 
 impl Scene {
-    /// A robot of so many links, five sizes long.
+    /// A robot of this many links, five sizes long.
     fn new(size: f64, links: u32) -> Self {
         let points = (0..=links)
             .map(|k| Vector::Z * (5.0 / f64::from(links) * f64::from(k) * size))
@@ -116,7 +115,7 @@ fn what_was_asked_before_changes_no_answer() {
     );
 }
 
-/// As many as a debug build asks in a second or two.
+/// As many as a debug build answers in a second or two.
 const STEPS: u32 = 25_000;
 
 /// The disc of a flat cap turns with its axis: the rim moves far although both ends stay.
@@ -254,8 +253,8 @@ fn a_hundred_thousand_minima_in_a_row_are_those_of_a_cold_engine() {
     many_minima_in_a_row(100_000);
 }
 
-/// Whoever stays where he is, touching, and asks again is told again: of links that stick out of
-/// the mesh, whose distances are known less well.
+/// A touching robot that rests gets the same answer again, with links that stick out of the mesh,
+/// whose distances are bounded less closely.
 #[test]
 fn a_touch_is_not_forgotten() {
     let corners =

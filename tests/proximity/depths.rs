@@ -52,7 +52,7 @@ impl Placed {
         let radius =
             [0.0, 0.25, 0.5, 1.0, 0.01, random.between(0.01, 1.0)][random.below(6) as usize];
         let caps = [[FLAT; 2], [ROUND; 2], [FLAT, ROUND], [ROUND, FLAT]][random.below(4) as usize];
-        // A little above or below what is asked for, or exactly there.
+        // A small offset of either sign, or none.
         let exponent = -random.between(2.0, 14.0);
         let little = [0.0, 1.0, -1.0][random.below(3) as usize] * 10.0_f64.powf(exponent);
         let [a, b, c] = triangle;

@@ -94,9 +94,9 @@ fn components(derivative: &Derivative) -> Vec<f64> {
 
 /// Every coordinate of the reference cases, against central differences with 32 digits. A step of
 /// 1e-9 of the gap (or of a short link) is
-/// exact where the distance is smooth, one of 3e-16 where a closest point passes to another
-/// feature, and the second derivative jumps; of those that a step twice as long confirms, the
-/// derivative has to be what one says. Where the two sides differ there is a kink.
+/// exact where the distance is smooth. A step of 3e-16 is exact where a closest point passes to
+/// another feature and the second derivative jumps. The derivative must equal a difference that a
+/// step twice as long confirms. Where the two sides differ there is a kink.
 #[test]
 fn every_case_within_64_units() {
     let (mut compared, mut kinks, mut flat_caps, mut inside, mut unresolved) = (0, 0, 0, 0, 0);
@@ -122,7 +122,7 @@ fn every_case_within_64_units() {
         }
         let length = robot.links()[0].length();
         let reach = if length > 0.0 { gap.min(length) } else { gap };
-        // A very short link turns fast: the largest derivative tells what the differences resolve.
+        // A very short link turns fast: the largest derivative limits what the differences resolve.
         let largest = components(&derivative).into_iter().map(f64::abs).fold(1.0, f64::max);
         let unit = largest * 2.0_f64.powi(-53);
         for (number, computed) in components(&derivative).into_iter().enumerate() {

@@ -11,8 +11,8 @@ use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{BvhSearch, Decision};
 use std::sync::Arc;
 
-/// What the discs that are tried leave open, at the size of these scenes; and how near they come to
-/// what is touched.
+/// The error of the sampled discs at the size of these scenes, and how near they come to a touched
+/// triangle.
 const OFF: Real = 1e-4;
 const TOUCHING: Real = 1e-3;
 

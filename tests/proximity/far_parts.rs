@@ -1,5 +1,4 @@
-//! What lies far out, be it a vertex, a triangle or the robot, changes neither answers nor their
-//! price.
+//! A vertex, a triangle or a robot far out does not change answers or their cost.
 
 use crate::agreement::{UNIT, engines};
 use continuum_testing::Random;
@@ -91,7 +90,7 @@ fn work(mesh: &TriMesh, robot: &Chain, pose: &Pose) -> [(&'static str, Work); 2]
     [("search", search.work()), ("exhaustive", exhaustive.work())]
 }
 
-/// In single precision alone each of these scenes has nearly every triangle measured.
+/// In single precision alone, nearly every triangle of such a scene would be measured.
 #[test]
 fn what_is_far_away_does_not_make_queries_slow() {
     let mut random = Random::new(31);

@@ -30,7 +30,7 @@ fn tube(around: u32, along: u32) -> TriMesh {
     TriMesh::new(vertices, indices).expect("a mesh")
 }
 
-/// A helix of so many links near the wall, three tubes of different radius.
+/// A helix of this many links near the wall, three tubes of different radius.
 fn helix(links: usize) -> Chain {
     let points: Vec<_> = (0..=links)
         .map(|i| {

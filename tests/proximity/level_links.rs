@@ -1,4 +1,4 @@
-//! Robots of one link, side by side with level ends: they overlap deeply, whatever rounding says of
+//! Robots of one link, side by side with level ends: they overlap deeply, however rounding moves
 //! their faces.
 
 use continuum_testing::{LevelLinks, Random, found_level_links};

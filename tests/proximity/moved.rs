@@ -1,5 +1,5 @@
-//! Answers belong to the mesh that an engine has now: what describes an answer is asked of the
-//! engine, and an answer that does not fit is an error.
+//! Answers belong to the mesh that an engine has now: the engine describes an answer, and an answer
+//! that does not fit is an error.
 
 use crate::agreement::{UNIT, engines};
 use crate::scenes::{mesh_of, nasty_mesh};
@@ -52,7 +52,7 @@ fn after_the_mesh_moved_an_answer_is_right_or_an_error() {
     for seed in 0..60 {
         let random = &mut Random::new(seed);
         let (mesh, robot, pose) = (wall(random), robot(random), random.pose(0.3));
-        // Every vertex moves, or those of one side alone.
+        // Every vertex moves, or the vertices of one side alone.
         let side = if seed % 2 == 0 { -9.0 } else { 0.0 };
         let shift = random.point();
         let moved: Vec<_> =
@@ -111,7 +111,7 @@ fn after_the_mesh_moved_an_answer_is_right_or_an_error() {
                     of_moved.derivative(&robot, &pose, answer),
                     "{name}, {seed}"
                 );
-                // The mesh from before the move gives no proof about what it is not.
+                // The mesh from before the move certifies no answer about the moved mesh.
                 assert!(answer.certify(&robot, &pose, &moved_mesh).is_ok(), "{name}, {seed}");
                 let old = answer.certify(&robot, &pose, &mesh);
                 assert!(is_unfit(&old) || is_of(answer, &robot, &pose, &mesh), "{name}, {seed}");
@@ -399,8 +399,8 @@ fn engines_from_triangles() {
     ));
 }
 
-/// Several meshes asked in turn, each for what is nearer than the last, where margins are violated:
-/// a bound below zero asks for nothing.
+/// Queries of several meshes in turn, each bounded by the slack of the last, with violated margins:
+/// a bound below zero returns nothing.
 #[test]
 fn the_tightest_of_several_meshes_where_a_margin_is_violated() {
     let (mut violated, mut beyond) = (0, 0);

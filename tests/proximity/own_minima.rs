@@ -6,9 +6,9 @@
 //! - [`Robot::minima`] looks at each pair of links that share no joint. The place where two convex
 //!   links are nearest counts if the robot leads nowhere nearer from there, and if the adjoining
 //!   link does not hold the point.
-//! - [`Robot::pass`] knows nothing of places either. It cuts all links into pieces and compares the
-//!   least distance of one run of pieces to another with the distances at the ends of the two runs.
-//!   If it is less, a local minimum is within.
+//! - [`Robot::pass`] uses no places either. It cuts all links into pieces and compares the least
+//!   distance of one run of pieces to another with the distances at the ends of the two runs. If it
+//!   is less, a local minimum is within.
 
 use continuum_testing::Random;
 use continuum_testing::narrow_phase::modified_cylinder_modified_cylinder;
@@ -21,7 +21,7 @@ use std::f64::consts::{PI, TAU};
 /// What is nearer to a decision than this, as a share, counts as undecided.
 const DOUBT: f64 = 1e-6;
 
-/// Radii that differ by no more than this share are one.
+/// Radii that differ by at most this share are one.
 const SAME: f64 = 1.0 / (1_u64 << 32) as f64;
 
 /// How many pieces a link is cut into.
@@ -42,15 +42,14 @@ enum Beyond {
     Wider,
 }
 
-/// The least distance of the local minima that there surely are, and of those that there may be;
-/// infinite without one.
+/// The least distance of the certain local minima, and of the possible ones; infinite without one.
 #[derive(Clone, Copy, Debug)]
 struct Minima {
     sure: f64,
     possible: f64,
 }
 
-/// Whether something holds for certain, or may hold.
+/// Whether something certainly holds, or possibly holds.
 #[derive(Clone, Copy)]
 struct Holds {
     sure: bool,
@@ -238,7 +237,8 @@ impl Robot {
             .and(self.is_shoulder_bare(j, y, -way))
     }
 
-    /// Whether a face sees a link, and the place where they are nearest is a local minimum.
+    /// Whether a link is in front of a face, and the place where they are nearest is a local
+    /// minimum.
     fn is_seen(&self, i: usize, end: usize, j: usize) -> Holds {
         let (body, other) = (&self.bodies[i], &self.bodies[j]);
         let (centre, normal) = (body.ends[end], body.outward(end));
@@ -290,7 +290,7 @@ impl Robot {
             let bare =
                 if other.flat[other_end] { Holds::YES } else { self.is_bare(j, other_end, point) };
             is_seen_too = sees.and(bare);
-            // What is nearest on the other face is told for round ends alone.
+            // The nearest point of the other face is reported for round ends alone.
             is_seen_too.sure &= !other.flat[other_end];
         }
         holds.and(bare).and(is_seen_too)
@@ -483,7 +483,7 @@ struct Counts {
     passes: u32,
 }
 
-/// Robots of one kind beside the oracles, until there are so many that are free.
+/// Robots of one kind beside the oracles, until this many are free.
 fn judge(
     random: &mut Random,
     shape: Option<Shape>,
@@ -571,7 +571,7 @@ fn free_robots_do_not_touch_themselves() {
     assert!(counts.touching > 2 && counts.apart > 5, "{counts:?}");
 }
 
-/// Robots that come back to themselves are found, whatever their radii.
+/// Robots that come back to themselves are found, for all radii.
 #[test]
 fn robots_that_touch_themselves_are_found() {
     let mut random = Random::new(52);

@@ -84,7 +84,7 @@ fn a_helix_meets_itself_at_one_pitch() {
             |s: f64| Vector::new(radius * turn(s).cos(), radius * turn(s).sin(), rise * turn(s));
         let robot = along(helix, 600, thickness);
         let found = SelfQuery::new().minimum(&robot).unwrap().unwrap();
-        // A chord of 1.8 degrees leaves the circle by 4e-4, on either turn alike but for its tilt.
+        // A chord of 1.8 degrees leaves the circle by 4e-4, equally on both turns up to its tilt.
         let expected = (chord - 2.0 * thickness).max(0.0);
         assert!(
             (found.distance - expected).abs() < 1e-3,
@@ -182,7 +182,7 @@ fn a_tip_that_runs_into_a_face_is_never_lost() {
     assert!(apart > 100, "rounding parted only {apart}");
 }
 
-/// Two axes that are nearest at places within both are a local minimum, whatever the joints between
+/// Two axes that are nearest at places within both are a local minimum, for all joints between
 /// them.
 #[test]
 fn no_local_minimum_is_left_out() {
@@ -257,8 +257,7 @@ fn a_thin_tube_that_bends_back_meets_the_round_end_of_its_step() {
     let met = SelfQuery::new().minimum(&robot).unwrap().unwrap();
     assert!(met.distance == 0.0 && met.links == [0, 2], "{met:?}");
     assert!(!SelfQuery::new().clears(&robot, 0.0).unwrap());
-    // Thinner by so much that it stays away, as far as the point of the axis that is nearest to the
-    // step is.
+    // Thin enough to stay away at the point of the axis that is nearest to the step.
     let robot = Chain::capsules(&points, &[0.5, 0.1, 0.1]).unwrap();
     let apart = SelfQuery::new().minimum(&robot).unwrap().unwrap();
     let [tip, joint] = [points[3], points[2]];
@@ -287,7 +286,7 @@ fn a_robot_that_is_folded_is_refused() {
     }
 }
 
-/// An arc in the plane of x and z, of links of length 1, that turns by so much at each joint.
+/// An arc in the plane of x and z, of links of length 1, that turns by this much at each joint.
 fn arc(turn: f64, count: usize) -> Vec<Vector> {
     let mut points = vec![Vector::ZERO];
     for k in 0..count {

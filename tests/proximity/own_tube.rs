@@ -1,4 +1,4 @@
-//! A tube beside itself, where a derivation knows how near that is, and against chains.
+//! A tube beside itself, against distances from derivations, and against chains.
 
 use super::robots::robot;
 use super::tube::{all_ways, fine, from_function};
@@ -100,7 +100,7 @@ fn neighbouring_turns_of_a_coil_are_as_far_apart_as_an_equation_says() {
             // than a query divides it into.
             assert_eq!(decide(apart - 1e-4, 2e-5), Decision::Clear, "{pitch}");
             assert_eq!(decide(apart + 1e-9, 1e-10), Decision::Contact, "{pitch}");
-            // A touch at the margin itself is nobody's to tell.
+            // A distance of exactly the margin is never a proven contact.
             assert_ne!(decide(apart, 1e-5), Decision::Contact, "{pitch}");
             assert_eq!(decide(0.0, 1e-5), Decision::Clear);
         }
@@ -115,8 +115,7 @@ fn neighbouring_turns_of_a_coil_are_as_far_apart_as_an_equation_says() {
                 }
             }
         }
-        // What is stated of both parts counts on either side, and at the rim of a face a little
-        // more.
+        // The stated error of both parts widens each bound, and slightly more at the rim of a face.
         let tube = tube.with_error(0.05).unwrap();
         for (off, right) in [
             (-0.13, Decision::Clear),
@@ -243,14 +242,14 @@ fn legs_of_a_hairpin_meet_if_it_turns_by_more_than_half_a_turn() {
                 }
             }
         }
-        // Of a margin wider than the bend it need not be told, but no contact is made up.
+        // A margin wider than the bend may stay undecided, but no false contact is reported.
         if beyond < 0.0 {
             assert_ne!(query.clears_tube(&tube, 1e3, 1e-6).unwrap(), Decision::Contact);
         }
     }
     // Exactly half a turn: as wide as its waist, anywhere along the legs.
     let tube = from_function(&Arc::new(hairpin(PI, bend, [leg, leg], radius)));
-    // Nearer than pieces of a bend are told apart that may turn by as much, and may not.
+    // Nearer than the resolution at which pieces of a bend are known to turn enough or not.
     assert_eq!(query.clears_tube(&tube, 17.0 - 1e-5, 2e-6).unwrap(), Decision::Clear);
     assert_eq!(query.clears_tube(&tube, 17.0 + 1e-9, 1e-10).unwrap(), Decision::Contact);
 }
@@ -423,8 +422,8 @@ fn a_finer_resolution_decides_no_less() {
     assert!(decided > rounds(100) && gained > rounds(100), "{decided} {gained}");
 }
 
-/// How often a coil's curve is asked for a place, for margins a little off the truth: as the root
-/// of 1 / resolution.
+/// Evaluations of a coil's curve for margins slightly off the truth: they grow as the root of
+/// 1 / resolution.
 #[test]
 fn the_work_grows_like_the_root_of_the_resolution() {
     let coil = Coil { radius: 3.0, rise: 0.3 };
@@ -460,7 +459,7 @@ fn what_is_wrong_is_named() {
         ],
         |s| (Vector::Z * s, Vector::Z),
     );
-    // Its ends are flat, which asks for the same.
+    // Its ends are flat, so the same limit applies.
     assert_eq!(tight.unwrap_err().kind(), "bends_within_radius");
     // Two straight legs, and between them a bend of the radius 1, far from the faces.
     let frame = |k: u32| {

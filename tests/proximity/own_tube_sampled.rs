@@ -1,7 +1,7 @@
-//! A tube beside itself, against all pairs of its discs and faces, sampled and then sought between
-//! the samples. What is asked about is told by the arcs' own curvature, and what is in front of a
-//! face by points of the discs. Beside a face only local minima have to be found; what else is in
-//! front of it may be.
+//! A tube beside itself, against all pairs of its discs and faces, sampled and then refined between
+//! the samples. The arcs' own curvature decides which pairs count, and points of the discs decide
+//! what is in front of a face. Beside a face only local minima must be found; other pairs in front
+//! of it may be.
 
 use super::own_tube::winding;
 use super::tube::all_ways;
@@ -13,7 +13,7 @@ use parry_continuum::proximity::{Decision, ProximityError, SelfQuery};
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::Arc;
 
-/// So much more or less of a turn is rounding.
+/// A difference of turn that counts as rounding.
 const ROUNDING: f64 = 1e-9;
 
 #[derive(Clone, Copy)]
@@ -53,7 +53,7 @@ impl Disc {
         ahead.hypot((across - self.radius).max(0.0)) - other.radius
     }
 
-    /// How far another disc is from this one, a face, as far as it is in front of it: where the
+    /// The distance from this disc, a face, to the part of another disc in front of it, where the
     /// normal points.
     fn front_apart(&self, other: &Self) -> f64 {
         let (distance, way) = self.closest(other);
@@ -85,7 +85,7 @@ struct Sampled<'a> {
     faces: Vec<(bool, Disc)>,
 }
 
-/// The least distance of all pairs that must be found, and of those that may be.
+/// The least distance of all pairs that must be found, and of all pairs that may be.
 #[derive(Clone, Copy, Debug)]
 struct Truth {
     minima: f64,
@@ -149,7 +149,7 @@ impl<'a> Sampled<'a> {
         })
     }
 
-    /// The least distances of all pairs that are asked about, from above.
+    /// Upper bounds on the least distances of all pairs that count.
     fn nearest(&self) -> Truth {
         let step = |k: usize| {
             let next = self.discs.get(k + 1).filter(|next| next.1 == self.discs[k].1);
@@ -210,7 +210,7 @@ impl<'a> Sampled<'a> {
                 let (distance, way) = one.closest(two);
                 if way.dot(one.normal) >= -ROUNDING && way.dot(two.normal) <= ROUNDING {
                     least = least.min(distance);
-                    // Others are found beside the link at the end of which they are.
+                    // Other faces are found beside the link whose end they are.
                     minima = if *at_end && !ends { minima.min(distance) } else { minima };
                 }
             }

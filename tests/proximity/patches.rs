@@ -1,4 +1,4 @@
-//! Patches of wall that a link sees from nearly straight above.
+//! Patches of wall nearly straight below a link.
 
 use crate::agreement::engines;
 use continuum_testing::Random;

@@ -178,7 +178,7 @@ fn pieces_are_long_where_the_wall_is_far() {
     assert!(counts.is_sorted() && counts[3] < 4 * counts[0], "{counts:?}");
 }
 
-/// An arc of radius 1 from the origin along z, and what is near it.
+/// An arc of radius 1 from the origin along z, and a mesh near it.
 fn short_arc(length: f64, curvature: f64) -> Tube {
     let mut arcs = Arcs::from_frame(Pose::IDENTITY);
     arcs.push(1.0, &[(length, Vector::X * curvature)]);
@@ -213,7 +213,7 @@ fn pieces_grow_like_the_root_of_the_tolerance_beside_a_face() {
     }
 }
 
-/// What is far away is as large as one likes, and costs no digits of what is near.
+/// Distant parts of any size cost no digits near the robot.
 #[test]
 fn a_triangle_far_away_does_not_blur_a_near_one() {
     let tube = short_arc(4.0, 0.2);

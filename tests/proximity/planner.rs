@@ -137,8 +137,8 @@ fn a_triangle_just_before_a_flat_cap_neither_touches_nor_hides_what_does() {
     );
 }
 
-/// A triangle that begins in the plane of a flat cap, but for rounding, and whose third corner lies
-/// in the link: nothing that is as small as rounding makes a gap of that.
+/// A triangle that begins in the plane of a flat cap, up to rounding, and whose third corner lies
+/// in the link: rounding never turns this overlap into a gap.
 #[test]
 fn a_triangle_from_the_plane_of_a_flat_cap_into_the_link_touches_it() {
     let mut random = Seeded::new(12);

@@ -134,9 +134,9 @@ fn prominent_contacts_are_those_of_the_definition() {
     assert!(by_height > 50 && by_normal > 50 && by_margin > 2, "{census:?}");
 }
 
-/// A mesh whose triangles are divided into `parts` x `parts` each. Ways along the edges of the
-/// small triangles are true ways, and one is as low as the lowest way but for the length of an
-/// edge.
+/// A mesh whose triangles are divided into `parts` x `parts` each. Paths along the edges of the
+/// small triangles are paths on the mesh, and one is as low as the lowest path up to the length of
+/// an edge.
 struct FineMesh {
     /// How far each corner of a small triangle is from the link, and where it is.
     heights: Vec<f64>,
@@ -242,7 +242,7 @@ impl FineMesh {
     }
 }
 
-/// Against ways on a finely divided mesh: what is a pass is asked of points alone.
+/// Against paths on a finely divided mesh: passes are tested at points alone.
 #[test]
 fn prominent_contacts_are_those_of_a_finely_divided_mesh() {
     let mut census = Census::default();
@@ -497,8 +497,8 @@ fn a_pass_of_very_many_triangles_is_asked_in_time() {
     assert!(best[1] < 4 * best[0], "{best:?}");
 }
 
-/// Pages that hang from one edge like those of a book, half of them from below. Those above reach
-/// up to 1 from it, at angles of up to 60 degrees with the vertical.
+/// Pages that hang from one edge as in a book, half of them from below. The upper ones reach up to
+/// 1 from it, at angles of up to 60 degrees with the vertical.
 fn book(count: u32) -> TriMesh {
     let page = |k: u32| {
         let (sin, cos) = page_angle(k / 2, count / 2).sin_cos();

@@ -1,5 +1,5 @@
-//! Proofs that travel: `docs/book/check_proof.py` says yes to those of clear chains, tubes and
-//! motions, and no to those that were tampered with.
+//! Proofs: `docs/book/check_proof.py` accepts the proofs of clear chains, tubes and motions, and
+//! refuses altered ones.
 
 use super::contacts::{small_mesh, small_robot};
 use continuum_demo::joint_motion::JointMotion;
@@ -201,7 +201,7 @@ impl Lines {
     }
 }
 
-/// 200 texts of which each has one step or one number that makes it false.
+/// 200 texts, each false by one step or one number.
 #[test]
 fn what_was_tampered_with_is_refused() {
     let mut search = ball(10.0, 8);
@@ -355,8 +355,8 @@ fn triangle_and_its_name(corners: [Vector; 3]) -> (BvhSearch, String, String) {
 }
 
 /// Links, and tubes of them, that are shorter than their radius and have one flat and one round
-/// end: a proof is found up to the distance from the half ball beyond the round end's disc,
-/// believed, and found no farther.
+/// end: a proof is found and accepted up to the distance from the half ball beyond the round end's
+/// disc, and no proof beyond it.
 #[test]
 fn short_pieces_with_one_flat_end_hold_the_half_ball() {
     let (mut checks, mut shorter) = (Checks::new("half-balls"), 0);
@@ -395,8 +395,8 @@ fn short_pieces_with_one_flat_end_hold_the_half_ball() {
     assert!(shorter > 40 && said.len() == 4 * shorter, "{shorter}");
 }
 
-/// Pieces by the page's own words, as bent, as long and as far off as it allows, beside a triangle:
-/// what is believed is true of every disc and of the half balls beyond round ends.
+/// Pieces as the page defines them, with the largest bend, length and offset that it allows, beside
+/// a triangle: an accepted proof is true of every disc and of the half balls beyond round ends.
 #[test]
 fn what_is_believed_of_a_piece_is_true_of_its_discs_and_half_balls() {
     let (mut checks, mut nearest, mut flats) = (Checks::new("pieces"), Vec::new(), 0);
@@ -490,7 +490,7 @@ fn what_is_believed_of_a_piece_is_true_of_its_discs_and_half_balls() {
     assert!(believed > 75 && flats > 50, "{believed} {flats}");
 }
 
-/// Files that are no proofs, or no meshes of triangles: one line says no, and what it quotes is
+/// Files that are not proofs or not meshes of triangles: one line refuses them, and its quotes are
 /// escaped.
 #[test]
 fn malformed_files_are_refused() {
@@ -638,7 +638,7 @@ fn malformed_files_are_refused() {
         wrong.push((mesh.clone(), text.to_owned()));
         wrong.push((text.to_owned(), chain.clone()));
     }
-    // A motion that gets from one shape to the next faster than it says, at the base or at the tip.
+    // A motion that is faster between two shapes than it states, at the base or at the tip.
     let slow = motion.lines().map(|line| match line.split(' ').collect::<Vec<_>>()[..] {
         [radius, caps, curvature, length, off, _, turn] => {
             format!("{radius} {caps} {curvature} {length} {off} 0.0 {turn}\n")
@@ -663,8 +663,7 @@ fn malformed_files_are_refused() {
     }
 }
 
-/// Proofs and meshes with some bytes changed: whatever is believed then is true of the robot that
-/// is printed.
+/// Proofs and meshes with some bytes changed: an accepted proof is true of the printed robot.
 #[test]
 fn what_is_believed_of_a_changed_text_is_true() {
     let mut search = ball(10.0, 4);
@@ -862,7 +861,7 @@ fn robot_in_ventricle() -> (Chain, Pose) {
     (Chain::from_centreline(&robot.points, &robot.radii).unwrap(), ventricle::entry())
 }
 
-/// What the proofs of a shape and of a motion take in the ventricle, with so many triangles.
+/// The cost of the proofs of a shape and of a motion in a ventricle of this many triangles.
 fn in_the_ventricle(triangles: usize) -> Option<[(usize, Duration); 2]> {
     let (vertices, triangles) = ventricle::mesh(triangles);
     let (robot, pose) = robot_in_ventricle();

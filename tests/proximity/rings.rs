@@ -12,15 +12,14 @@ const FEW: u32 = 1_000;
 const MANY: u32 = 16_000;
 const RADIUS: Real = 0.1;
 
-/// How often a mesh of few triangles is asked, so that it takes about as long as to ask that of
-/// many once: what else the machine does then slows down both alike.
+/// Queries of the mesh of few triangles, to take about as long as one query of the mesh of many:
+/// other load then slows both alike.
 const TIMES: u32 = MANY / FEW;
 
 /// How long an engine takes: see [`time`].
 type Timed = fn(u32, &TriMesh, [Vector; 2], (Real, Vector)) -> Duration;
 
-/// Builds an engine and asks it for the contacts of a capsule, of which there is one, so many
-/// times.
+/// Builds an engine and queries the contacts of a capsule, exactly one, this many times.
 fn time<E: Proximity>(
     times: u32,
     mesh: &TriMesh,
@@ -43,8 +42,8 @@ fn time<E: Proximity>(
     time
 }
 
-/// With 16 times the triangles it takes less than 4 times as long as to ask 16 times: about as
-/// long, if no triangle asks all others, and 16 times as long, if each does.
+/// With 16 times the triangles one query takes less than 4 times as long as 16 queries: about as
+/// long if no triangle visits all others, and 16 times as long if each does.
 fn grows_slowly(mesh: impl Fn(u32) -> TriMesh, axis: [Vector; 2], expected: (Real, Vector)) {
     let meshes = [(TIMES, mesh(FEW)), (1, mesh(MANY))];
     let engines: [Timed; 2] = [

@@ -40,7 +40,7 @@ pub(super) fn robot(random: &mut Random, most: u32) -> Chain {
     made.unwrap_or_else(|_| Chain::from_centreline(&[Vector::ZERO, Vector::X], &[0.25]).unwrap())
 }
 
-/// A pose that brings a link of the second robot to one of the first, but for up to `off`.
+/// A pose that brings a link of the second robot to one of the first, up to `off` away.
 pub(super) fn beside(random: &mut Random, a: &Chain, pose_a: &Pose, b: &Chain, off: f64) -> Pose {
     let mut some =
         |robot: &Chain| robot.links()[random.below(robot.links().len() as u32) as usize].start();
@@ -86,7 +86,7 @@ fn the_nearest_of_all_pairs_is_found() {
     let mut random = Random::new(1);
     let (mut pair, mut touching, mut apart, mut many) = (RobotPair::new(), 0, 0, 0);
     for round in 0..1500 {
-        // Now and then so many links that trees over them are descended.
+        // Sometimes enough links to descend the link trees.
         let most = if round % 30 == 0 { 200 } else { 20 };
         let (a, b) = (robot(&mut random, most), robot(&mut random, most));
         many += usize::from(a.links().len().min(b.links().len()) > 64);
@@ -148,8 +148,7 @@ fn the_nearest_of_all_pairs_is_found() {
     assert!(touching > 300 && apart > 300 && many > 10, "{touching} {apart} {many}");
 }
 
-/// The definition, over the whole table: groups of equal neighbours none of which has a nearer
-/// neighbour.
+/// The definition, over the whole table: groups of equal neighbours without a nearer neighbour.
 fn places(table: &[Vec<RobotProximity>], margin: f64) -> Vec<[u32; 2]> {
     let (rows, columns) = (table.len(), table[0].len());
     let neighbours = |[i, j]: [usize; 2]| {

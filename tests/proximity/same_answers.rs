@@ -1,4 +1,4 @@
-//! Answers about tubes and motions are the same to the last bit, whatever was asked before and on
+//! Answers about tubes and motions are the same to the last bit after any earlier queries and on
 //! any number of threads. Finer tolerances never give looser bounds.
 
 use super::tube::from_function;
@@ -193,7 +193,7 @@ fn batches_answer_the_same_on_any_number_of_threads() {
     );
 }
 
-/// The bounds of each tolerance lie within those of the one before.
+/// The bounds of each tolerance lie within the bounds of the previous one.
 #[test]
 fn finer_tolerances_never_give_looser_bounds() {
     let (mut random, mut narrower) = (Random::new(4), 0);

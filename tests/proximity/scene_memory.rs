@@ -1,5 +1,5 @@
-//! What a scene remembers changes no answer: at every step of robots that move in any way it says
-//! what a scene says that was never asked before.
+//! The memory of a scene changes no answer: at every step of robots that move in any way it answers
+//! as a fresh scene.
 
 use continuum_testing::Random;
 use parry_continuum::Chain;
@@ -29,7 +29,7 @@ impl Place {
 struct Walker {
     points: Vec<Vector>,
     radii: Vec<f64>,
-    /// How links are made of these.
+    /// Which constructor makes the links.
     model: u32,
     pose: Pose,
     /// What its steps are like: it shifts, turns, bends, grows, or all of that.
@@ -71,7 +71,7 @@ impl Walker {
             self.pose.translation += self.shift * self.step;
         }
         if is(&self.way, 1) {
-            // About the middle of the robot, so that what is near turns most.
+            // About the middle of the robot, so that the nearest part turns most.
             let middle = self.pose * self.points[self.points.len() / 2];
             let about =
                 Pose::from_translation(middle) * Pose::new(Vector::ZERO, self.turn * self.step);

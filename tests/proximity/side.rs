@@ -180,7 +180,7 @@ fn by_winding(winding: f64) -> Option<Side> {
     }
 }
 
-/// A vessel open at both ends is what it is with flat lids, as far as it tells.
+/// A vessel open at both ends has the same sides as with flat lids, where they are decided.
 #[test]
 fn an_opening_leaves_doubt_where_it_fills_the_view() {
     let open = lumen::mesh(24);
@@ -240,8 +240,7 @@ fn flaws_of_a_wall_mislead_nowhere() {
     assert!(seen[0] > 400 && seen[1] > 400 && seen[2] > 20, "{seen:?}");
 }
 
-/// The unit does not matter, nor how far from the origin a mesh is, nor that a triangle lies far
-/// out.
+/// The unit, the distance of the mesh from the origin and a triangle far out do not matter.
 #[test]
 fn any_unit_serves() {
     let mut random = Random::new(61);
@@ -273,7 +272,7 @@ fn any_unit_serves() {
     assert_eq!(search.side(Vector::splat(f64::MAX)), Side::Outside);
 }
 
-/// A clone knows what was prepared, and each keeps its own vertices.
+/// A clone shares the prepared structures, and each engine keeps its own vertices.
 #[test]
 fn the_side_follows_the_vertices() {
     let (vertices, indices) = torus();

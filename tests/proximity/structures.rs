@@ -1,4 +1,4 @@
-//! A scene of several structures: each asked alone says the same.
+//! A scene of several structures answers as its structures one by one.
 
 use continuum_testing::Random;
 use parry_continuum::Chain;
@@ -22,7 +22,7 @@ fn robot(random: &mut Random) -> Chain {
     Chain::from_centreline(&points, &[0.3; 8]).unwrap()
 }
 
-/// The tightest pair, every structure and robot asked in turn.
+/// The tightest pair, from every structure and robot in turn.
 fn one_by_one(
     structures: &mut [(BvhSearch, Option<f64>, Pose)],
     robots: &[(&Chain, Pose)],
@@ -142,7 +142,7 @@ fn of_equal_slacks_the_lowest_structure_counts() {
     scene.set_margin(2, None).unwrap();
     assert_eq!(structure(&mut scene), 3);
     scene.set_margin(1, Some(1.0)).unwrap();
-    // It was 3 that was tightest last, and is asked first.
+    // Structure 3 was tightest last, and is searched first.
     assert_eq!(structure(&mut scene), 1);
 }
 
@@ -181,7 +181,7 @@ fn a_tube_inside_another_does_not_collide_with_it() {
     for nested in [[0, 1], [1, 0]] {
         scene.set_nested(&[nested, [7, 8]]);
         assert!(scene.clears(&robots).unwrap());
-        // The others are held against one another as before.
+        // The others are compared with one another as before.
         let tightest = scene.tightest(&robots).unwrap().unwrap();
         assert_eq!(tightest.slack, 1.75);
         assert!(matches!(tightest.between, Between::Robots { robots: [0, 2], .. }));
@@ -189,7 +189,7 @@ fn a_tube_inside_another_does_not_collide_with_it() {
         assert!(!scene.clears(&robots).unwrap());
         scene.set_robot_margin(Some(0.25)).unwrap();
     }
-    // Nothing is asked of the second, but that it be somewhere.
+    // The second robot of a nested pair still needs a finite pose.
     let nowhere = [robots[0], (&inner, Pose::from_translation(Vector::splat(f64::NAN)))];
     scene.set_nested(&[[0, 1]]);
     assert!(matches!(scene.clears(&nowhere), Err(SceneError::Robot { robot: 1, .. })));

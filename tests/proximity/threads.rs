@@ -1,10 +1,10 @@
 //! Nothing hangs: fresh engines that many threads ask at once, far and near, in batches and from a
 //! caller's own tasks.
 //!
-//! Each question is asked of an engine that has built nothing yet, so that threads meet in what it
-//! builds. Luck decides how they meet; that no build uses the pool is shown without luck by
-//! `src/threads/lazy.rs` and `tests/package/threads.rs`. `PARRY_CONTINUUM_ROUNDS` names more
-//! rounds, such as a thousand.
+//! Each query goes to an engine that has built nothing yet, so that threads meet while it builds.
+//! How they meet is random. `src/threads/lazy.rs` and `tests/package/threads.rs` show without
+//! chance that no build uses the pool. `PARRY_CONTINUUM_ROUNDS` sets the rounds, such as a
+//! thousand.
 
 use continuum_testing::{Random, answered};
 use parry_continuum::parry::math::{Pose, Vector};
@@ -49,7 +49,7 @@ fn ball((rows, columns): (u32, u32)) -> TriMesh {
     TriMesh::new(vertices, triangles).unwrap()
 }
 
-/// Robots in the ball; those of every second pose stick through it.
+/// Robots in the ball; every second one sticks through it.
 fn robots(count: u32) -> Vec<(Chain, Pose)> {
     let mut random = Random::new(7);
     let robot = |k: u32| {
@@ -207,7 +207,7 @@ fn questions_from_threads_and_tasks_together_end() {
     });
 }
 
-/// Motions have no batch: each task asks a clone.
+/// Motions have no batch: each task queries a clone.
 #[test]
 fn motions_from_a_callers_tasks_are_judged() {
     let (mesh, robots) = (ball(SMALL), robots(16));

@@ -41,8 +41,8 @@ pub(super) type Model = fn(&[Vector], &[f64]) -> Result<Chain, RobotError>;
 
 /// Within 1e-5 of the tube, at the size of these scenes. Towards flat ends its links become
 /// shorter, since the rim of a tilted one would stick out. A link of length l at s behind a face
-/// sticks out if l k r / 2 > s (1 - k r), with the curvature k and the radius r. So l = 0.08 s will
-/// do up to k r = 0.96; halves, l = s, only up to 2 / 3.
+/// sticks out if l k r / 2 > s (1 - k r), with the curvature k and the radius r. So l = 0.08 s is
+/// enough up to k r = 0.96, and halves, l = s, only up to 2 / 3.
 pub(super) fn fine(arcs: &Arcs, model: Model) -> Chain {
     let sharpest = arcs.stretches.iter().fold(1e-3, |most: f64, part| most.max(part.curvature));
     let spacing = (40e-6 / sharpest).sqrt();
@@ -217,8 +217,7 @@ fn curves_of_any_kind_are_never_misjudged() {
     judge_curves_of_any_kind(900);
 }
 
-/// A chain is a tube whose pieces are straight: the bounds are those of rounding, whatever the
-/// tolerance.
+/// A chain is a tube whose pieces are straight: the bounds differ by rounding, for all tolerances.
 #[test]
 fn chains_are_tubes_of_straight_pieces() {
     let (mut search, base, robot) =
@@ -251,7 +250,7 @@ fn chains_are_tubes_of_straight_pieces() {
     assert!(free > 30 && free < 270);
 }
 
-/// Rounding turns the body around a piece at a face, the more the shorter the piece.
+/// Rounding turns the body around a piece at a face, and turns shorter pieces more.
 #[test]
 fn links_as_short_as_rounding_keep_their_faces() {
     let mut random = Random::new(11);
@@ -368,8 +367,8 @@ fn directions_of_any_length_will_do() {
     }
 }
 
-/// A stated error of the centreline widens the bounds by so much at least. That is no part of the
-/// tolerance.
+/// A stated error of the centreline widens the bounds by at least that error, which is not part of
+/// the tolerance.
 #[test]
 fn stated_errors_count() {
     let (mut search, base, robot) =

@@ -38,7 +38,7 @@ fn sampled(arcs: [&Arcs; 2], pose: &Pose) -> f64 {
     let mut least = f64::INFINITY;
     for &(first, radius) in &discs[0] {
         for &(other, other_radius) in &second {
-            // The balls around both discs spare most.
+            // The balls around both discs prune most pairs.
             if (first.0 - other.0).length() - radius - other_radius < least {
                 least = least.min(discs_apart([first, other], [radius, other_radius]));
             }
@@ -129,8 +129,7 @@ fn tubes_are_as_near_as_their_discs() {
     );
 }
 
-/// A chain is a tube whose pieces are straight: the bounds are those of rounding, whatever its
-/// caps.
+/// A chain is a tube whose pieces are straight: the bounds differ by rounding, for all caps.
 #[test]
 fn chains_are_tubes_of_straight_pieces() {
     let mut random = Random::new(2);
@@ -178,7 +177,7 @@ fn a_scaled_problem_has_the_scaled_answer() {
     }
 }
 
-/// What was asked before changes where a query begins, and leaves no bound wrong.
+/// Earlier queries change where a query begins, and never a bound's validity.
 #[test]
 fn a_memory_of_other_tubes_does_no_harm() {
     let mut random = Random::new(4);

@@ -39,8 +39,7 @@ fn a_link_visits_few_nodes_and_leaves() {
     }
 }
 
-/// Nodes and leaves for each shape of a planner that has asked for a while, of those that touch the
-/// wall and of those that do not.
+/// Nodes and leaves per shape of a planner after a warm-up, for touching shapes and for free ones.
 fn visits_of_shapes(search: &mut BvhSearch, entry: Pose) -> [[f64; 2]; 2] {
     let (tubes, mut random) = (ctr::three_tubes(), Random(7));
     let mut visits = [[0; 2]; 2];

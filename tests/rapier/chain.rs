@@ -71,7 +71,7 @@ fn contact_starts_and_stops_at_the_right_steps() {
     let (mut touching, mut starts, mut stops) = (false, 0, 0);
     let reach = world.integration_parameters.prediction_distance();
     for step in 0..120 {
-        // The contacts of a step are those of the pose at its beginning.
+        // The contacts of a step belong to the pose at its beginning.
         let clearance = search.minimum(&robot, &sway(step)).unwrap().distance;
         world.bodies[body].set_next_kinematic_position(sway(step + 1));
         let events = Events::default();
@@ -97,8 +97,8 @@ fn contact_starts_and_stops_at_the_right_steps() {
     assert_eq!((starts, stops), (2, 2));
 }
 
-/// Dropped on a floor, a tangle of links lies still on it: its links overlap at every joint, which
-/// is nobody's contact.
+/// Dropped on a floor, a tangle of links comes to rest: its links overlap at every joint, which is
+/// not a contact.
 #[test]
 fn a_chain_has_no_contacts_with_itself() {
     let points = [

@@ -11,7 +11,7 @@ use rapier3d_f64::pipeline::{
 use rapier3d_f64::prelude::*;
 use std::collections::HashMap;
 
-/// Keeps the lines, by the collider that they are of; those of contacts under `None`.
+/// Stores the lines by collider, and the lines of contacts under `None`.
 #[derive(Default)]
 struct Lines(HashMap<Option<ColliderHandle>, Vec<[Vector; 2]>>);
 
@@ -46,7 +46,7 @@ fn drawn(world: &PhysicsWorld, mode: DebugRenderMode) -> Lines {
     lines
 }
 
-/// The links of whatever robot a shape is.
+/// The links of a shape, for every kind of robot.
 fn links_of(shape: &dyn Shape) -> Vec<ModifiedCylinder> {
     let link = shape.as_shape::<ModifiedCylinder>().map(|link| vec![*link]);
     link.or_else(|| shape.as_shape::<Chain>().map(|chain| chain.links().to_vec()))

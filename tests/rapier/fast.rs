@@ -1,4 +1,4 @@
-//! Fast links do not pass through a wall without thickness, whatever their attitude.
+//! Fast links do not pass through a wall without thickness, in any attitude.
 //!
 //! Thrown at it with continuous collision detection, they touch it with one end, and the blow
 //! swings the other end through the wall within the next step. rapier takes a hit at the very start
@@ -54,7 +54,7 @@ fn thin(kind: &str, radius: Real) -> SharedShape {
     }
 }
 
-/// How many of so many throws get through, in random attitudes and with some spin.
+/// Counts the throws that get through, in random attitudes and with some spin.
 fn through(kind: &str, radius: Real, speed: Real, throws: usize) -> usize {
     let mut random = Random::new(141);
     let passes = |_: &usize| {

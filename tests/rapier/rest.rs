@@ -49,7 +49,7 @@ struct Fall {
 }
 
 impl Fall {
-    /// Neither sank that deep nor gained energy.
+    /// Asserts that it did not sink that deep and gained no energy.
     #[track_caller]
     fn assert_calm(&self, deepest: Real, context: &str) {
         assert!(
@@ -146,7 +146,7 @@ fn a_capsule_falls_like_parrys_capsule_and_a_cylinder_like_parrys_cylinder_or_be
     }
 }
 
-/// Whatever place it falls on: what lies is held evenly, so that it neither rolls nor slides away.
+/// At every place where it falls: a lying link is supported evenly, so it does not roll or slide.
 #[test]
 fn a_rod_that_falls_flat_stays_where_it_falls() {
     const STARTS: usize = 24;

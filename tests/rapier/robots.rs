@@ -75,8 +75,8 @@ fn ring_of_capsules(turn: Real) -> SharedShape {
     SharedShape::new(Compound::new(ring(turn).windows(2).map(capsule).collect()))
 }
 
-/// Rings of a coil, one on the other, on a floor: how far the height of each is from that of its
-/// place, in radii, and how many are awake after so many steps.
+/// Rings of a coil, one on the other, on a floor: the error of each height in radii, and how many
+/// are awake after this many steps.
 fn coil(ring: fn(Real) -> SharedShape) -> (Real, usize) {
     let mut world = world(2.0 * RADIUS);
     world.insert(

@@ -12,7 +12,7 @@ fn the_world_is_made_for_links_of_a_size() {
     let parameters = &world.integration_parameters;
     assert_eq!(parameters.prediction_distance(), 2e-5);
     assert!(!parameters.contact_recycling && parameters.max_linear_velocity() == Real::MAX);
-    // The dispatcher knows the pair that parry's own refuses or gets wrong by a thousandth.
+    // The dispatcher answers the pair that parry's own refuses or gets wrong by a thousandth.
     let link = ModifiedCylinder::cylinder(Vector::ZERO, Vector::X * 1e-3, 5e-4).unwrap();
     let wall = [(-1.0, -1.0), (1.0, -1.0), (0.0, 1.0)].map(|(x, z)| Vector::new(x, 2e-3, z));
     let installed = world.narrow_phase.query_dispatcher();

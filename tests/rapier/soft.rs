@@ -70,7 +70,7 @@ fn a_robot_rests_on_a_mesh_that_moves() {
         println!("{name}: {deepest} deep, {loose} loose, {gain} gained; parry's {parrys:?}");
         assert_eq!(loose, 0, "{name}");
         assert!(deepest > 1.1 * deepest_of_parrys, "{name}: {deepest} against {parrys:?}");
-        // No more than it takes to leave the overlap.
+        // Gains at most what leaving the overlap takes.
         assert!(gain < -deepest, "{name}: {gain}");
     }
 }

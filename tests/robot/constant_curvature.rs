@@ -37,7 +37,7 @@ fn the_frame_solves_its_equation() {
                 frame.rotation = middle * half_turn;
                 arc_length += step;
                 let found = robot.frame(arc_length);
-                // A chord is shorter than its arc by so much.
+                // A chord is shorter than its arc by this much.
                 allowed += step * step * step * (x * x + y * y) / 24.0;
                 assert!(
                     found.translation.distance(frame.translation) <= allowed,
@@ -91,7 +91,7 @@ fn points_and_tube_are_on_the_curve() {
             assert_eq!(*radius, sections[number / 7].radius);
         }
         if let Ok(tube) = robot.tube() {
-            // What it states of its curve holds.
+            // Its statements about the curve hold.
             tube.verify(200).unwrap();
             tubes += 1;
         }

@@ -1,4 +1,4 @@
-//! A matrix becomes the pose that it stands for, or an error that tells what it does instead.
+//! A matrix becomes its pose, or an error that says why it is not rigid.
 
 use parry_continuum::parry::math::{Real, Vector};
 use parry_continuum::{MatrixError, pose_from_matrix};

@@ -74,7 +74,7 @@ fn brute_force(
 #[derive(Default)]
 struct Seen {
     problems: usize,
-    /// Some links were spared, but not all that radii allow.
+    /// Some links were removed, but not all that the radii allow.
     neither_all_nor_nothing: usize,
     /// The radius changes along the way.
     steps: usize,
@@ -327,7 +327,7 @@ fn hooks_and_runs_back_on_a_line() {
     let overshoot = 14.0_f64.sqrt();
     assert_eq!(links(&on_a_line(&[0.0, 3.0, 2.0]), overshoot * 1.000001), 1);
     assert_eq!(links(&on_a_line(&[0.0, 3.0, 2.0]), overshoot * 0.999999), 2);
-    // A loop that closes is kept open by one vertex, whatever the tolerance.
+    // A closed loop keeps one more vertex, for all tolerances.
     let (kept, _) = simplify(&on_a_line(&[0.0, 1.0, 2.0, 0.0]), &[0.1; 3], 1e9).unwrap();
     assert_eq!(kept.len(), 3);
 }

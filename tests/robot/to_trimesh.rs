@@ -1,4 +1,4 @@
-//! A link's outline is a closed mesh on its surface, outward, and as fine as one asks for.
+//! A link's outline is a closed mesh on its surface, outward, with the requested fineness.
 
 use parry_continuum::parry::math::{Real, Vector};
 use parry_continuum::parry::shape::TriMesh;

@@ -1,4 +1,4 @@
-//! Tubes as they are built: what is refused, what is measured, and that a function is tried.
+//! Construction of tubes: errors, measured points, and tests of a function.
 
 use continuum_testing::{Arcs, Random, Stretch};
 use parry_continuum::parry::math::Vector;
@@ -235,7 +235,7 @@ fn lengths_are_those_of_the_lines() {
     assert_eq!(tube.length(), 4.0);
     let chain = Chain::from_centreline(&line(5), &[0.5, 0.5, 0.2, 0.2]).unwrap();
     assert_eq!(Tube::from(&chain).length(), 4.0);
-    // Repeated points, with whatever radius, change nothing.
+    // Repeated points, with any radius, change nothing.
     let points = [0.0, 0.0, 1.0, 1.0, 2.0].map(|z| Vector::Z * z);
     assert_eq!(Tube::from_samples(&points, &[9.0, 0.5, 9.0, 0.5], None).unwrap().length(), 2.0);
 }

@@ -1,5 +1,4 @@
-//! Which anatomy a program asks, and where the robot stands in it: the options of the example
-//! programs.
+//! The options of the example programs: the anatomy, and the robot's pose in it.
 
 use crate::command::whole;
 use crate::{steer, ventricle};
@@ -102,7 +101,7 @@ impl Anatomy {
         self.mesh.is_none() && self.base.is_none() && self.axis.is_none()
     }
 
-    /// The robot's pose as asked for; what is not said is found in the mesh.
+    /// The robot's pose from the options; the mesh supplies what they omit.
     pub fn pose(&self, mesh: &TriMesh) -> Result<Pose, String> {
         if self.is_planned() {
             return Ok(ventricle::entry());

@@ -1,4 +1,4 @@
-//! Distance as colour: dark where the robot all but touches, bright where there is room. The map is
+//! Distance as colour: dark near contact, bright at a distance. The map is
 //! matplotlib's viridis (S. van der Walt and N. Smith, CC0), whose lightness grows evenly, also for
 //! readers who are colour-blind.
 

@@ -1,5 +1,4 @@
-//! What the example programs share as commands: errors of one line, numbers, how far the work is,
-//! and where pictures go.
+//! Shared by the example programs: errors of one line, numbers, progress, and paths of pictures.
 
 use clap::Parser;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -73,7 +72,7 @@ pub fn progress(count: u32, things: &str) -> Result<ProgressBar, String> {
     Ok(ProgressBar::new(count.into()).with_style(style.progress_chars("━╸ ")))
 }
 
-/// What a program that takes minutes is at.
+/// The stage of a program that takes minutes.
 pub struct Stages(Instant);
 
 impl Stages {
@@ -81,7 +80,7 @@ impl Stages {
         Self(Instant::now())
     }
 
-    /// Says on the standard error what comes now, and after how many seconds.
+    /// Prints the next stage and the elapsed seconds on the standard error.
     pub fn next(&self, name: &str) {
         eprintln!("{:5.0} s  {name}", self.0.elapsed().as_secs_f64());
     }

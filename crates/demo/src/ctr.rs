@@ -74,7 +74,7 @@ pub fn three_tubes() -> Robot {
 }
 
 impl Robot {
-    /// The length that is out.
+    /// The extended length.
     pub fn length(&self, joints: &Joints) -> Real {
         joints.extensions.iter().sum()
     }
@@ -117,7 +117,7 @@ impl Robot {
         frames
     }
 
-    /// The centreline as a function that is quick to ask again and again.
+    /// The centreline as a function that is fast to evaluate repeatedly.
     pub fn curve(&self, joints: &Joints) -> Curve {
         let ends = self.ends(joints);
         let starts = ends.iter().zip(&self.sections).map(|(end, section)| end - section.length);

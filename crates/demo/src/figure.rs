@@ -38,9 +38,9 @@ pub struct Caption {
     pub notes: Vec<String>,
 }
 
-/// Draws the scene. `pose` is the robot's in the mesh's frame, `answers` those of one engine, one
-/// per link; `pieces` are those of a query about the curve, or none. The mesh's z is taken to be up
-/// and its y to the front, as in scans.
+/// Draws the scene. `pose` places the robot in the mesh's frame. `answers` holds one answer per
+/// link, `pieces` the pieces of a query about the curve, or none. In the mesh, z is up and y is to
+/// the front, as in scans.
 pub fn draw(
     mesh: &TriMesh,
     robot: &Chain,
@@ -156,7 +156,7 @@ fn ring(canvas: &mut Canvas, [x, y]: [f32; 2], radius: f32) {
     canvas.frame([x - radius, y - radius, x + radius, y + radius], radius, 4.0, MARK);
 }
 
-/// What the lines and the tinted triangles mean; `at` is the left end of the base line.
+/// The legend of the lines and the tinted triangles; `at` is the left end of the base line.
 fn legend(canvas: &mut Canvas, at: [f32; 2], tint: Colour) {
     let [x, y] = at;
     canvas.stroke(&[vec![[x, y - 7.0], [x + 44.0, y - 7.0]]], 3.0, INK, 1.0);
@@ -181,7 +181,7 @@ fn legend(canvas: &mut Canvas, at: [f32; 2], tint: Colour) {
     canvas.text("the closest link", [x + 66.0, y], Align::Left, 18.0, INK);
 }
 
-/// What the outlines mean.
+/// The legend of the outlines.
 fn outline_legend(canvas: &mut Canvas, [x, y]: [f32; 2]) {
     let [one, other] = OUTLINES;
     canvas.panel([x, y - 19.0, x + 50.0, y + 3.0], 4.0, INK, 0.8);

@@ -4,8 +4,9 @@
 //! Where all tubes of a section are curved, its curvature vector is the sum over these tubes of w
 //! u(a): w is the tube's share of their stiffness times its curvature, and u(a) a unit vector that
 //! turns with the tube's angle a. So the vector changes at most at the rate b = sum of w |a'|, and
-//! never is farther than b / 2 from what it is at half time. That bounds curvatures and steps for
-//! [`bending_speed`]. Its second derivative is at most the sum of w |a'|^2, for [`bending_displacement`].
+//! stays within b / 2 of its value at half time. That bounds curvatures and steps for
+//! [`bending_speed`]. Its second derivative is at most the sum of w |a'|^2, which bounds
+//! [`bending_displacement`].
 
 use crate::ctr::{Curve, Joints, Robot};
 use parry_continuum::parry::math::{Pose, Real, Vector};

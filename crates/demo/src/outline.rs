@@ -9,8 +9,8 @@ use std::f64::consts::TAU;
 /// How many points stand for a circle.
 const POINTS: u32 = 48;
 
-/// What a camera sees of a link, as a closed line in pixels: the hull of the rims of its flat ends
-/// and of the circles that its balls fill.
+/// The outline of a link in a camera's picture, as a closed line in pixels: the hull of the rims of
+/// its flat ends and of the circles of its balls.
 pub fn outline(link: &ModifiedCylinder, pose: &Pose, camera: &Camera, size: [usize; 2]) -> Stroke {
     let mut places = Vec::new();
     for (end, cap) in [link.start(), link.end()].into_iter().zip(link.caps()) {

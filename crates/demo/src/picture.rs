@@ -1,11 +1,11 @@
 //! A ray-caster: the wall as a translucent skin, solids inside it, seen through parry's `RayCast`
 //! trait.
 //!
-//! A ray that enters the lumen meets the skin from outside, where it is clear as glass except at
-//! grazing angles; one that leaves it meets the far side, which is drawn as tissue. So the inside
-//! shows without a cut. Solids are whatever implements `Shape`; each ray finds them by
-//! `cast_ray_and_get_normal`, and they darken the tissue near them by `distance_to_point`, so that
-//! their height above it can be judged.
+//! A ray that enters the lumen meets the skin from outside, where it is transparent except at
+//! grazing angles. A ray that leaves the lumen meets the far side, which is drawn as tissue. So the
+//! inside is visible without a cut. Any `Shape` is a solid: rays hit it by
+//! `cast_ray_and_get_normal`, and it darkens the tissue near it by `distance_to_point`, which shows
+//! its height above the tissue.
 
 use crate::canvas::{Canvas, Colour, hex, mix};
 use parry_continuum::parry::bounding_volume::{Aabb, BoundingVolume};
@@ -201,7 +201,7 @@ impl<'a> Picture<'a> {
         canvas
     }
 
-    /// What a ray sees: layers of skin from near to far, up to a solid or the backdrop.
+    /// The hits of a ray: layers of skin from near to far, up to a solid or the backdrop.
     fn look(&self, ray: &Ray, camera: &Camera, backdrop: Colour, pixel: Real) -> Colour {
         let solid = self.nearest(ray);
         let limit = solid.map_or(1e3 * camera.eye.length().max(1.0), |(_, t, _)| t);
@@ -337,7 +337,7 @@ fn gloss(colour: Colour, normal: Vector, towards: Vector, camera: &Camera) -> Co
     std::array::from_fn(|i| (colour[i] * lit * (1.0 - 0.45 * rim) + glint).min(1.0))
 }
 
-/// Smooth normals: those of the triangles around each vertex, by their angle there.
+/// Smooth normals: the mean normal of the triangles around each vertex, weighted by their angles.
 fn vertex_normals(mesh: &TriMesh) -> Vec<Vector> {
     let mut normals = vec![Vector::ZERO; mesh.vertices().len()];
     for triangle in mesh.indices() {

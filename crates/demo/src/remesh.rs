@@ -1,9 +1,9 @@
 //! Well-shaped triangles: a closed surface coarsened to a number of triangles, and evened out on
 //! the field it came from.
 //!
-//! Coarsening collapses the shortest edge again and again, as long as the surface stays what it
-//! was: the edge's ends must share exactly their two opposite vertices (the link condition, which
-//! keeps the topology), and no triangle may turn over or become a sliver. Between the rounds, edges
+//! Coarsening collapses the shortest edge again and again, if two conditions hold: the edge's ends
+//! share exactly their two opposite vertices (the link condition, which keeps the topology), and no
+//! triangle turns over or becomes a sliver. Between the rounds, edges
 //! flip towards six neighbours per vertex and then towards the larger angles, and vertices slide
 //! along the surface to the centroid of their neighbourhood (after Botsch and Kobbelt, A remeshing
 //! approach to multiresolution modeling, 2004). Lengths are measured in units that shrink where the

@@ -1,7 +1,7 @@
 //! An elastic robot in a rapier world: one body per link, joints that bend.
 //!
-//! Where there are no forces the robot has the shape that it is told, its *rest shape*: the rest
-//! angle of each joint is that of the kinematic centreline there. A joint holds its two links
+//! Without forces the robot has its *rest shape*: the rest angle of each joint is the angle of the
+//! kinematic centreline there. A joint holds its two links
 //! together and turns them back towards that angle with the moment `EI / l` per radian, `EI` being
 //! the bending stiffness of the tubes there and `l` the length of robot that the joint stands for;
 //! so the chain of links bends as a beam does. Twist is resisted as bending is.

@@ -1,4 +1,4 @@
-//! Where to start and where to go in a mesh that nobody has planned a path for.
+//! Finds a start and a goal in any mesh.
 //!
 //! The start: the point deepest inside, looking along the longest free line. The goal: the joints
 //! that bring the robot furthest with room around it, found by sampling thousands of shapes and

@@ -20,8 +20,8 @@ pub type Field<'a> = &'a (dyn Fn(Vector) -> Real + Sync);
 const TETRAHEDRA: [[usize; 4]; 6] =
     [[0, 1, 3, 7], [0, 2, 6, 7], [0, 4, 5, 7], [0, 1, 5, 7], [0, 2, 3, 7], [0, 4, 6, 7]];
 
-/// Even permutations of a tetrahedron's corners that put corner i first, and those that put a given
-/// pair first.
+/// Even permutations of a tetrahedron's corners that put corner i first, and even permutations that
+/// put a given pair first.
 const ONE_FIRST: [[usize; 4]; 4] = [[0, 1, 2, 3], [1, 0, 3, 2], [2, 3, 0, 1], [3, 2, 1, 0]];
 const PAIR_FIRST: [[usize; 4]; 6] =
     [[0, 1, 2, 3], [0, 2, 3, 1], [0, 3, 1, 2], [1, 2, 0, 3], [1, 3, 2, 0], [2, 3, 0, 1]];

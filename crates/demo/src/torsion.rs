@@ -25,7 +25,7 @@ pub const POISSON: Real = 0.3;
 
 /// A robot whose tubes have twisted.
 pub struct Twisted {
-    /// The centreline at each arc length that was asked for, in the frame of the robot's base.
+    /// The centreline at each requested arc length, in the frame of the robot's base.
     pub points: Vec<Vector>,
     /// The frame at the last of them, carried along without twist.
     pub tip: Pose,
@@ -58,7 +58,7 @@ impl State {
     }
 
     fn pose(&self) -> Pose {
-        // The columns are orthonormal but for rounding and the error of the integration.
+        // The columns are orthonormal up to rounding and the error of the integration.
         let [_, y, z] = self.columns;
         let z = z.normalize();
         let x = y.cross(z).normalize();
@@ -118,8 +118,8 @@ fn advance(tubes: &[Reach], s: Real, state: &State, step: Real) -> State {
 }
 
 impl Robot {
-    /// The robot at joints whose angles are those of the tubes' own ends, at each of the given arc
-    /// lengths (ascending, from 0 to the length that is out, both included).
+    /// The robot at joints whose angles are given at the tubes' own ends, at each of the given arc
+    /// lengths (ascending, from 0 to the extended length, both included).
     pub fn twisted(&self, joints: &Joints, arc_lengths: &[Real]) -> Twisted {
         let (mut tubes, mut breaks, mut end) = (Vec::new(), Vec::new(), 0.0);
         for (section, extension) in self.sections.iter().zip(&joints.extensions) {

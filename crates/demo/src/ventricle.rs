@@ -12,7 +12,7 @@ use crate::remesh::remesh;
 use crate::surface::{Mesh, extract, subdivide};
 use parry_continuum::parry::math::{Pose, Real, Rot3, Vector};
 
-/// The triangles of [`mesh`] where nothing else is asked for, and the fewest it makes well.
+/// The default number of triangles of [`mesh`], and the fewest that give a good mesh.
 pub const DEFAULT_TRIANGLES: usize = 6000;
 
 /// The box that encloses the ventricle.

@@ -6,7 +6,7 @@ pub struct Adapter {
     pub name: String,
     /// The interface through which it is used, such as Vulkan.
     pub interface: String,
-    /// Whether it is a program on the CPU that takes a GPU's place: right, but not fast.
+    /// Whether it is a software GPU on the CPU: correct, but slow.
     pub is_software: bool,
 }
 

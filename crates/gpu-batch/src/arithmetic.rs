@@ -1,5 +1,5 @@
-//! Whether a GPU's double precision deserves the name: Vulkan asks of it no more than of single
-//! precision.
+//! Tests whether a GPU's double precision is double precision: Vulkan requires no more accuracy of
+//! it than of single precision.
 
 use crate::{Adapter, Batch, Device, DeviceError, Kernel, Precision};
 
@@ -21,7 +21,7 @@ const TOLERANCE: f64 = 4.0;
 /// Compares the device's quotients and square roots with the CPU's.
 ///
 /// # Errors
-/// They differ by more than a few units in the last place, or the device failed.
+/// The results differ by more than a few units in the last place, or the device failed.
 pub(crate) fn check(device: &Device) -> Result<(), DeviceError> {
     let kernel = Kernel::new("self_test", include_str!("shaders/self_test.wgsl"), 2, 2);
     let mut got = Vec::new();

@@ -1,4 +1,4 @@
-//! Many small problems at once, a thread each.
+//! Many small problems at once, one thread per problem.
 
 use crate::clock::{Clock, READINGS};
 use crate::failures::Watch;
@@ -7,13 +7,13 @@ use crate::{Binding, Device, DeviceError, DeviceFailure, Kernel, Precision, reco
 use std::time::Duration;
 use wgpu::{BindGroup, BindGroupLayout, Buffer, BufferUsages, ComputePipeline};
 
-/// Problems of a submission at most.
+/// The most problems of a submission.
 const MOST_PROBLEMS: u64 = 1 << 22;
-/// As many submissions have numbers of their own, which single precision holds.
+/// This many submissions have distinct numbers, which single precision represents exactly.
 const SUBMISSIONS: u32 = (1 << f32::MANTISSA_DIGITS) - 1;
 /// Threads of a workgroup.
 pub(crate) const BATCH_THREADS: u32 = 64;
-/// Numbers before an answer: the one of its submission.
+/// Numbers before an answer: the number of its submission.
 pub(crate) const ANSWER_HEAD: u32 = 1;
 
 record! {
@@ -24,13 +24,13 @@ record! {
     }
 }
 
-/// A kernel on a GPU that answers many problems at once, a thread each.
+/// A kernel on a GPU that answers many problems at once, one thread per problem.
 pub struct Batch {
     device: Device,
     watch: Watch,
     pub(crate) layout: BindGroupLayout,
     pub(crate) kernel: ComputePipeline,
-    /// Numbers of a problem, and of an answer with what comes before it.
+    /// Numbers of a problem, and of an answer with its head.
     problem: u64,
     answer: u64,
     submission: u32,
@@ -38,7 +38,7 @@ pub struct Batch {
     device_time: Option<Duration>,
 }
 
-/// Buffers for so many problems.
+/// Buffers for a number of problems.
 struct Room {
     problems: u64,
     head: Buffer,
@@ -61,7 +61,7 @@ impl std::fmt::Debug for Batch {
 }
 
 impl Batch {
-    /// Makes ready for a kernel.
+    /// Prepares a kernel.
     ///
     /// # Errors
     /// The driver does not compile it.
@@ -193,10 +193,10 @@ impl Batch {
     }
 }
 
-/// Takes the answers, each of which begins with the submission's number if it was written for that.
+/// Takes the answers. Each answer of this submission begins with the submission's number.
 ///
 /// # Errors
-/// One was not.
+/// An answer has another number.
 fn read(
     precision: Precision,
     bytes: &[u8],

@@ -1,4 +1,4 @@
-/// How a kernel sees a buffer.
+/// How a kernel uses a buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Binding {
     /// A uniform, at an offset that each dispatch names.

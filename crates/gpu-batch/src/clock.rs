@@ -15,7 +15,7 @@ pub struct Clock {
 }
 
 impl Clock {
-    /// None where the device keeps no time.
+    /// None if the device has no clock.
     pub fn new(device: &Device) -> Option<Self> {
         device.tick()?;
         let descriptor =
@@ -35,7 +35,7 @@ impl Clock {
         }
     }
 
-    /// Has the readings copied to the front of `to`.
+    /// Copies the readings to the front of `to`.
     pub fn copy(&self, encoder: &mut CommandEncoder, to: &Buffer) {
         encoder.resolve_query_set(&self.set, 0..2, &self.readings, 0);
         encoder.copy_buffer_to_buffer(&self.readings, 0, to, 0, Some(READINGS));

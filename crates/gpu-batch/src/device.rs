@@ -6,11 +6,11 @@ use crate::{Adapter, Binding, DeviceError, DeviceFailure, Precision, Shader, ari
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 
-/// A GPU, opened in one precision. Copies stand for the same GPU.
+/// A GPU, opened in one precision. Clones refer to the same GPU.
 #[derive(Clone)]
 pub struct Device(Arc<Opened>);
 
-/// A device, its queue, and what one has to know of it.
+/// A device, its queue and its properties.
 struct Opened {
     adapter: Adapter,
     precision: Precision,
@@ -35,7 +35,7 @@ impl Device {
     /// `wgpu`, such as `WGPU_BACKEND`, narrow the choice.
     ///
     /// # Errors
-    /// There is no GPU, its driver refuses it, or it lacks double precision and that was asked for.
+    /// There is no GPU, its driver refuses it, or it lacks the requested double precision.
     pub fn open(precision: Precision) -> Result<Self, DeviceError> {
         let device = Self::open_of(
             wgpu::InstanceDescriptor::new_without_display_handle().with_env(),
@@ -100,17 +100,17 @@ impl Device {
         })))
     }
 
-    /// Which GPU it is.
+    /// The GPU.
     pub fn adapter(&self) -> &Adapter {
         &self.0.adapter
     }
 
-    /// The numbers with which it computes.
+    /// The precision in which it computes.
     pub fn precision(&self) -> Precision {
         self.0.precision
     }
 
-    /// The device as `wgpu` has it.
+    /// The `wgpu` device.
     pub fn raw(&self) -> &wgpu::Device {
         &self.0.device
     }
@@ -120,7 +120,7 @@ impl Device {
         &self.0.queue
     }
 
-    /// What it can do.
+    /// The limits of the device.
     pub fn limits(&self) -> &wgpu::Limits {
         &self.0.limits
     }
@@ -130,7 +130,7 @@ impl Device {
         self.0.tick
     }
 
-    /// For a new user, who hears of what fails from now on.
+    /// A watch for a new user, which reports failures from now on.
     pub fn watch(&self) -> Watch {
         self.0.failures.watch()
     }
@@ -192,7 +192,7 @@ impl Device {
         })
     }
 
-    /// A bind group: what stands at each place of a layout.
+    /// A bind group: the resource at each place of a layout.
     pub fn group(
         &self,
         layout: &wgpu::BindGroupLayout,
@@ -209,7 +209,7 @@ impl Device {
         })
     }
 
-    /// A buffer of at least so many bytes; never empty, because an empty one cannot be bound.
+    /// A buffer of at least this size in bytes; never empty, because an empty one cannot be bound.
     pub fn buffer(&self, size: u64, usage: wgpu::BufferUsages) -> wgpu::Buffer {
         let size = size.max(16).next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT);
         self.raw().create_buffer(&wgpu::BufferDescriptor {
@@ -220,7 +220,7 @@ impl Device {
         })
     }
 
-    /// The largest buffer that a kernel can see.
+    /// The largest buffer that a kernel can use.
     pub fn largest_binding(&self) -> u64 {
         self.limits().max_storage_buffer_binding_size.min(self.limits().max_buffer_size)
     }
@@ -235,8 +235,8 @@ impl Device {
     /// are done.
     ///
     /// # Errors
-    /// The device has failed since `watch` was asked last: `read` was not called. Or `read` says
-    /// that there is nothing to read.
+    /// The device has failed since the last check of `watch`, and `read` was not called; or `read`
+    /// reports that there is nothing to read.
     pub fn run_and_read(
         &self,
         watch: &mut Watch,

@@ -56,14 +56,14 @@ pub enum DeviceError {
         /// What the compiler says.
         message: String,
     },
-    /// The GPU failed meanwhile.
+    /// The GPU failed during the work.
     #[error(transparent)]
     Failed(#[from] DeviceFailure),
 }
 
 impl DeviceError {
-    /// What went wrong in one word: the variant in snake case, or that of the failure that it
-    /// passes on.
+    /// Returns the kind in one word: the variant in snake case, or the kind of the failure that it
+    /// contains.
     pub fn kind(&self) -> &'static str {
         match self {
             Self::Failed(failure) => failure.kind(),

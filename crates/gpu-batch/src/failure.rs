@@ -1,30 +1,29 @@
 use strum::IntoStaticStr;
 use thiserror::Error;
 
-/// How a GPU failed. All who use it hear of it, by what they do next; what they do after that may
-/// succeed.
+/// How a GPU failed. The next call of every user returns the failure; later calls may succeed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error, IntoStaticStr)]
 #[strum(serialize_all = "snake_case")]
 #[non_exhaustive]
 pub enum DeviceFailure {
-    /// It was reset or removed. It answers nothing more.
+    /// The device was reset or removed. It answers nothing more.
     #[error(
         "the GPU was lost (reset, removed, or out of time); open it anew, or compute on the CPU"
     )]
     Lost,
-    /// Its memory does not hold what is asked for. Less may succeed.
+    /// The GPU's memory is too small for the request. A smaller one may succeed.
     #[error("the GPU is out of memory; ask for less at once, or compute on the CPU")]
     OutOfMemory,
     /// Its driver refused a command.
     #[error("the GPU's driver refused a command; update the driver, or compute on the CPU")]
     Refused,
-    /// It did not write its answer.
+    /// The device did not write its answer.
     #[error("the GPU did not answer; update its driver, or compute on the CPU")]
     Unanswered,
 }
 
 impl DeviceFailure {
-    /// What went wrong in one word: the variant in snake case.
+    /// Returns the kind in one word: the variant in snake case.
     pub fn kind(&self) -> &'static str {
         self.into()
     }

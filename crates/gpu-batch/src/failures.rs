@@ -1,10 +1,10 @@
-//! What went wrong on a device. Drivers report at any time, from any thread, and do not say whose
-//! command it was: so everybody who uses the device hears of every failure.
+//! The failures of a device. Drivers report at any time, from any thread, and do not name the
+//! command. So every user of the device gets every failure.
 
 use crate::DeviceFailure;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// From the gravest on: what follows from a graver failure says less than that.
+/// The kinds, from the most severe on: a failure that follows from a more severe one says less.
 const KINDS: [DeviceFailure; 3] =
     [DeviceFailure::Lost, DeviceFailure::OutOfMemory, DeviceFailure::Refused];
 
@@ -20,7 +20,7 @@ struct Log {
     last: [u64; KINDS.len()],
 }
 
-/// What one user of a [`Device`](crate::Device) has heard of its failures.
+/// The failures of a [`Device`](crate::Device) that one user has already got.
 #[derive(Debug)]
 pub struct Watch {
     failures: Failures,
@@ -56,10 +56,10 @@ impl Failures {
 }
 
 impl Watch {
-    /// The gravest that has failed since the last check. A lost device stays lost.
+    /// Checks for failures since the last check. A lost device stays lost.
     ///
     /// # Errors
-    /// Something has failed.
+    /// The most severe failure.
     pub fn check(&mut self) -> Result<(), DeviceFailure> {
         let log = self.failures.lock();
         let heard = std::mem::replace(&mut self.heard, log.reported);

@@ -12,16 +12,17 @@ pub struct Kernel<'a> {
 }
 
 impl<'a> Kernel<'a> {
-    /// A text that has `fn solve(problem: u32, answer: u32)`. That reads the numbers of its problem
-    /// from `problems[problem]` on, so many as `problem` says here (at least 1), and writes
-    /// those of its answer from `answers[answer]` on, so many as `answer` says. All are of the
-    /// type `real`, which is `f32` or `f64`. What else the text may build on stands in
-    /// [`wgsl`]. `name` is for messages.
+    /// A kernel from a text with `fn solve(problem: u32, answer: u32)`.
+    ///
+    /// `solve` reads the numbers of its problem from `problems[problem]` on: `problem` numbers, at
+    /// least 1. It writes its answer from `answers[answer]` on: `answer` numbers. All have the type
+    /// `real`, which is `f32` or `f64`. The text may use the functions in [`wgsl`]. `name` is for
+    /// messages.
     pub const fn new(name: &'a str, text: &'a str, problem: u16, answer: u16) -> Self {
         Self { name, text, problem, answer }
     }
 
-    /// The whole text that is compiled in a precision, for whoever checks it without a GPU.
+    /// The whole text that is compiled in a precision, to check it without a GPU.
     pub fn shader(&self, precision: Precision) -> Shader {
         let sizes = [
             ("THREADS", BATCH_THREADS),
@@ -48,7 +49,7 @@ impl<'a> Kernel<'a> {
         u32::from(self.problem).max(1)
     }
 
-    /// Numbers of an answer with what comes before it.
+    /// Numbers of an answer with its head.
     pub(crate) fn answer(&self) -> u32 {
         ANSWER_HEAD + u32::from(self.answer)
     }

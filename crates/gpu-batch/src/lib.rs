@@ -1,5 +1,5 @@
-//! A function in WGSL over many small records of numbers, a GPU thread each, through `wgpu`:
-//! Vulkan, Metal or Direct3D 12.
+//! Runs a WGSL function over many small records of numbers, one GPU thread per record, through
+//! `wgpu`: Vulkan, Metal or Direct3D 12.
 //!
 //! A [`Device`] is a GPU, opened in one [`Precision`]. A [`Kernel`] is the text of a function and
 //! how many numbers it takes and gives. A [`Batch`] runs it over as many problems as there are:
@@ -19,13 +19,13 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! What a kernel may build on stands in [`wgsl`].
+//! The functions that a kernel may use are in [`wgsl`].
 //!
 //! # Kernels of more than one step
-//! Whoever has several kernels, buffers that stay, or more than numbers to send takes the parts: a
-//! [`Device`] compiles a [`Shader`], makes buffers and groups of them, and reads back what a
-//! submission wrote, or says why there is nothing to read. A [`Watch`] reports what fails on the
-//! device, a [`Clock`] measures how long a pass took, and [`record!`] declares what Rust writes and
+//! For several kernels, buffers that stay, or data other than numbers, use the parts. A [`Device`]
+//! compiles a [`Shader`], makes buffers and groups of them, and reads back what a submission wrote,
+//! or says why there is nothing to read. A [`Watch`] reports failures of the device, a [`Clock`]
+//! measures the time of a pass, and [`record!`] declares what Rust writes and
 //! WGSL reads.
 #![forbid(unsafe_code)]
 #![warn(missing_debug_implementations, missing_docs)]

@@ -1,4 +1,4 @@
-// Exhaustive: whoever writes kernels for both precisions must see that there are no others.
+// Exhaustive, so that a kernel for both precisions covers all precisions.
 /// The numbers with which a GPU computes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Precision {

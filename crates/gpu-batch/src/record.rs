@@ -1,17 +1,17 @@
-//! Records that the host writes and shaders read: one list of their fields makes both, laid out as
-//! WGSL says.
+//! Records that the host writes and shaders read: one list of fields defines both, in WGSL's
+//! layout.
 
 use crate::Precision;
 
-/// What a record is made of.
+/// The type of a record's field.
 pub trait Field {
     /// The type in WGSL, where `real` is a number of the device's precision.
     const WGSL: &'static str;
 
-    /// What its place in memory is a multiple of, in bytes.
+    /// The alignment in bytes.
     fn alignment(precision: Precision) -> usize;
 
-    /// As a shader reads it.
+    /// Its bytes, as a shader reads them.
     fn write(&self, precision: Precision, to: &mut Vec<u8>);
 }
 
@@ -51,7 +51,7 @@ impl Field for [f64; 3] {
     }
 }
 
-/// A record that goes to a device.
+/// A record that is sent to a device.
 pub trait Record: Default {
     /// Its name in WGSL.
     const NAME: &'static str;
@@ -59,7 +59,7 @@ pub trait Record: Default {
     /// The names and the types of its fields in WGSL.
     const FIELDS: &'static [(&'static str, &'static str)];
 
-    /// As a shader reads it.
+    /// Its bytes, as a shader reads them.
     fn write(&self, precision: Precision, to: &mut Vec<u8>);
 
     /// Bytes.

@@ -1,4 +1,4 @@
-/// A kernel as it is compiled, in one precision.
+/// The text of a kernel in one precision.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Shader {

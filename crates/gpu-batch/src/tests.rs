@@ -106,7 +106,7 @@ fn an_earlier_answer_is_no_answer() {
     assert_eq!(batch.run([7.0, 8.0, 9.0], |_| panic!("an answer")), Err(DeviceFailure::Unanswered));
 }
 
-/// Whose command it was a driver does not say: every user of the device hears of it, once.
+/// A driver does not name the command: every user of the device gets the failure, once.
 #[test]
 fn a_refused_command_is_an_error_of_every_batch_once() {
     if device(Precision::F32).is_none() {

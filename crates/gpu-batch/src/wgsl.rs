@@ -1,4 +1,4 @@
-//! What kernels may build on.
+//! Functions for kernels.
 //!
 //! `real` is `f32` or `f64`, and one text serves both. Beyond the arithmetic of WGSL, [`prelude`]
 //! has
@@ -23,7 +23,7 @@ use std::fmt::Display;
 /// the exponent's bias, less what centres the error.
 const CBRT_BITS: u32 = 0x2a51_0554;
 
-/// What `real` is, and what all kernels have in common.
+/// The definition of `real`, and the functions of all kernels.
 pub fn prelude(precision: Precision) -> String {
     let (real, unit, smallest, text) = match precision {
         Precision::F32 => (
@@ -44,7 +44,7 @@ pub fn prelude(precision: Precision) -> String {
         + include_str!("shaders/over.wgsl")
 }
 
-/// The declaration of a constant that Rust knows too.
+/// The declaration of a constant that Rust defines too.
 pub fn constant(name: &str, value: impl Display) -> String {
     format!("const {name} = {value};\n")
 }

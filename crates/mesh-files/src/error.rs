@@ -127,7 +127,7 @@ pub enum MeshFileError {
     Empty {
         /// The file.
         file: PathBuf,
-        /// The number of faces, all of which have no area.
+        /// The number of faces; none has an area.
         skipped_faces: usize,
     },
     /// Reading would take more memory than the options allow.

@@ -56,9 +56,9 @@ pub struct Options {
     /// - A label map takes 5 bytes for each voxel of the smallest box around the label, and at most
     ///   134 for each face between a voxel of the label and another voxel. Its voxels are never
     ///   stored as a whole, even if the file is a small archive.
-    /// - A file of triangles takes memory in proportion to its size, whatever its header counts.
-    ///   [`load_with`] refuses a file that is itself larger than the limit before it reads the
-    ///   file.
+    /// - A file of triangles takes memory in proportion to its size, not to the count in its
+    ///   header. [`load_with`] refuses a file that is itself larger than the limit before it reads
+    ///   the file.
     pub memory_limit: u64,
 }
 

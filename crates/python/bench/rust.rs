@@ -11,10 +11,10 @@ use parry_continuum::proximity::{BvhSearch, Proximity};
 use std::error::Error;
 use std::io::{Read, stdin};
 
-/// Of so many rounds the fastest counts.
+/// Rounds; the fastest counts.
 const ROUNDS: usize = 15;
 
-/// The seconds that this process has computed, whatever else the machine does.
+/// The processor time of this process, in seconds.
 fn processor_time() -> f64 {
     let mut time = libc::timespec { tv_sec: 0, tv_nsec: 0 };
     // SAFETY: the pointer is that of a structure which lives as long as the call.

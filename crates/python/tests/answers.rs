@@ -122,12 +122,12 @@ fn main() -> Result<(), Box<dyn Error>> {
             }
         }
         let tube = Tube::from_samples(&points, &radii, None)?;
-        // Where a tube touches, which common point is named depends on what was asked before.
+        // In contact, the common point of a tube depends on earlier queries.
         let found =
             BvhSearch::from_triangles(&vertices, &triangles)?.clearance(&tube, &pose, TOLERANCE)?;
         out.extend([found.lower, found.upper, f64::from(found.resolved), found.uncertainty]);
         add_witness(&mut out, &found.witness);
-        // Of motions only what does not depend on what was asked before.
+        // For motions, only the fields that do not depend on earlier queries.
         let rigid = RigidMotion::new(
             Tube::from(&Chain::from_centreline(&points, &radii)?),
             [pose, Pose::IDENTITY],

@@ -1,4 +1,4 @@
-//! The promise that no root is silent garbage.
+//! The test that every returned root solves the polynomial within rounding.
 //!
 //! A number z is a root to rounding if |p(z)| <= c n u sum |a_k| |z|^k: then it is the exact root
 //! of a polynomial whose coefficients differ from the given ones by c n u relative, and nothing
@@ -44,7 +44,7 @@ pub(super) enum Checker<T, const M: usize> {
     Wide { coefficients: [T; M], degree: usize },
 }
 
-/// A polynomial in a variable in which the root in question is near 1, or at most 1.
+/// A polynomial in a scaled variable: the tested root is near 1, or at most 1.
 struct View<T, const M: usize> {
     coefficients: [T; M],
     degree: usize,

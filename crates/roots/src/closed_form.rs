@@ -84,8 +84,8 @@ fn largest<T: Real>(q: T, r: T) -> T {
     if r < T::ZERO { -size } else { size }
 }
 
-/// The largest real root of y^3 - b y^2 + p y + s; and where rounding may have hidden two roots
-/// larger than the one that is left, their middle.
+/// The largest real root of y^3 - b y^2 + p y + s; or the middle of two larger roots, if rounding
+/// may have hidden them.
 fn largest_of_resolvent<T: Real>(b: T, p: T, s: T) -> [T; 2] {
     // t^3 - 3 q t - 2 r for y = t + b / 3.
     let third = b * T::of(1.0 / 3.0);
@@ -162,8 +162,8 @@ pub(crate) const FACTOR_STEPS: usize = 20;
 pub(crate) const FACTOR_ROUNDINGS: f64 = 2.0;
 
 impl<T: Real> Factors<T> {
-    /// What the product lacks of the quartic's coefficients, highest power first, and the most it
-    /// lacks relative to what it is the difference of.
+    /// The differences of the quartic's coefficients from the product's, highest power first, and
+    /// the largest one relative to its terms.
     fn lack(&self, a: T, b: T, c: T, d: T) -> ([T; 4], T) {
         let ([u0, u1], [v0, v1]) = (self.u, self.v);
         let (uu, uv, vu, vv) = (u0 * u1, u0 * v1, u1 * v0, v0 * v1);

@@ -137,7 +137,7 @@ fn sweep<T: Real, const M: usize>(
         sum = size * T::of(1.5) + corner + corner;
         product = size * size + corner * (size * T::of(1.5) + corner);
     }
-    // The first column of (H - shift 1) (H - shift 2), but for a factor.
+    // The first column of (H - shift 1) (H - shift 2), up to a factor.
     let (h00, h10) = (h[start][start], h[start + 1][start]);
     let mut x = (h00 * (h00 - sum) + product) / h10 + h[start][start + 1];
     let mut y = h00 + h[start + 1][start + 1] - sum;

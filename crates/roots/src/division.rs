@@ -59,7 +59,7 @@ pub(super) fn magnitude<T: Real, const M: usize>(quotient: &[T; M], degree: usiz
 }
 
 impl<T: Real, const M: usize> Division<T, M> {
-    /// Whether the divisor divides the polynomial of this degree as far as rounding lets one see.
+    /// Whether the divisor divides the polynomial of this degree, within rounding.
     #[inline]
     pub(super) fn is_exact(&self, degree: usize, u: T, v: T, roundings: f64) -> bool {
         // P at a root of the divisor is b (z + u) + a.
@@ -88,13 +88,13 @@ impl<T: Real, const M: usize> Division<T, M> {
 
 /// Takes z^2 + `u` z + `v` out of p, adds its roots and returns the quotient.
 ///
-/// The recurrence from the highest power down keeps its digits for a factor with small roots, that
-/// from the lowest up for one with large roots. In between the two are joined where the
-/// polynomial's terms are largest at the factor's roots, so that either sees only what is smaller
+/// The recurrence from the highest power down keeps its digits for a factor with small roots, the
+/// recurrence from the lowest power up for a factor with large roots. In between the two are joined
+/// at the polynomial's largest term at the factor's roots, so that each handles only smaller terms
 /// (Peters and Wilkinson).
 ///
-/// Of two real roots of different size a quadratic knows the smaller one only to rounding of the
-/// larger. So they are polished and taken out one by one.
+/// Of two real roots of different size a quadratic determines the smaller one only within rounding
+/// of the larger. So they are polished and taken out one by one.
 pub(super) fn deflated<T: Real, const M: usize>(
     p: &[T; M],
     degree: usize,
@@ -124,7 +124,7 @@ pub(super) fn deflated<T: Real, const M: usize>(
     quotient
 }
 
-/// The real root after two Newton steps, as far as they bring p down.
+/// The real root after two Newton steps; a step that does not lower |p| is not taken.
 fn polished<T: Real, const M: usize>(p: &[T; M], degree: usize, s: T) -> T {
     let mut s = s;
     let (mut quotient, mut value) = by_linear(p, degree, s);

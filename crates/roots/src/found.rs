@@ -110,7 +110,7 @@ pub enum RootsError<T: Real, const M: usize> {
     /// Not every root was found to rounding.
     #[error("only {} roots converged: try another finder", found.len())]
     NotConverged {
-        /// Those that were: each is a root to rounding.
+        /// The roots found so far: each is a root within rounding.
         found: Roots<T, M>,
     },
 }

@@ -20,7 +20,7 @@
 //!    degrees and, after each failure, 94 degrees on. When the estimates of a real root (-P(0) /
 //!    K(0)) or of a quadratic factor have settled twice to within half, stage 3 is tried with them.
 //! 3. **Variable shift**: the estimate becomes the shift of the next step, which converges faster
-//!    than Newton's method, until P at the estimate is no more than rounding.
+//!    than Newton's method, until P at the estimate is within rounding.
 //!
 //! The factor is divided out. Since small roots come first, that is stable.
 
@@ -71,7 +71,7 @@ impl Method for JenkinsTraub {
     }
 }
 
-/// A factor and what is left without it.
+/// A factor and the quotient.
 enum Factor<T, const M: usize> {
     Linear { root: T, quotient: [T; M] },
     Quadratic { u: T, v: T, quotient: [T; M] },

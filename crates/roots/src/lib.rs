@@ -41,7 +41,7 @@
 //! # Ok::<(), polynomial_roots::RootsError<f64, 4>>(())
 //! ```
 //!
-//! The methods are those of section IV of Leibrandt and Yang, "Efficient Proximity Queries for
+//! The methods are from section IV of Leibrandt and Yang, "Efficient Proximity Queries for
 //! Continuum Robots on Parallel Computing Hardware".
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]

@@ -37,8 +37,7 @@ impl<const M: usize> Exponents<M> {
         Self(coefficients.map(|a| if a == T::ZERO { None } else { Some(a.exponent()) }))
     }
 
-    /// Whether the coefficients are so close in size that neither cutting nor scaling is called
-    /// for.
+    /// Whether the coefficients are so close in size that cutting and scaling are unnecessary.
     pub(super) fn are_close<T: Real>(&self) -> bool {
         let (mut low, mut high) = (i32::MAX, i32::MIN);
         for &e in self.0.iter().flatten() {

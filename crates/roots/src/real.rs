@@ -38,7 +38,7 @@ pub trait Real:
     fn exponent(self) -> i32;
     /// `self` 2^`exponent`: exact unless it leaves the range of normal numbers.
     fn times_power_of_two(self, exponent: i32) -> Self;
-    /// Whether the number is neither infinite nor NaN.
+    /// Whether the number is finite.
     fn is_finite(self) -> bool;
     /// The cube root.
     fn cbrt(self) -> Self;

@@ -39,9 +39,8 @@ fn polynomials(degree: usize, count: usize, precision: Precision) -> Vec<f64> {
     (0..count * (degree + 1)).map(|_| round(random.between(-100.0, 100.0))).collect()
 }
 
-/// Deflation and the matrix lose some digits, so that a root is the exact one of a polynomial whose
-/// coefficients differ by some hundred units: that is what is asked of most, and of all that they
-/// are no garbage.
+/// Deflation and the matrix lose some digits: a root is exact for a polynomial whose coefficients
+/// differ by some hundred units. Most roots must satisfy that, and none may be meaningless.
 #[test]
 fn what_is_found_are_roots() {
     const COUNT: usize = 400;

@@ -24,7 +24,7 @@ pub struct EveryPair<T: Scalar, S> {
 pub struct Nearest {
     /// Measured in `f64`, by the same route.
     pub distance: f64,
-    /// The first of the nearest, as far as `T` resolves them.
+    /// The first of the nearest, within the resolution of `T`.
     pub triangle: usize,
 }
 

@@ -59,7 +59,7 @@ fn the_printed_quartic_is_right_on_tame_problems_and_grossly_wrong_on_others() {
     // A double root splits into a complex pair by rounding.
     let [double_root @ .., _] = shares(&[Kind::ParallelOutside]);
     assert!(double_root.iter().all(|&share| share > 0.1), "{double_root:?}");
-    // Along the normal (18) has no root that matters, and (16) knows only the rim.
+    // Along the normal (18) has no relevant root, and (16) covers only the rim.
     let along = shares(&[Kind::AlongNormal, Kind::BesideBarrel]);
     assert!(along.iter().all(|&share| share > 0.05), "{along:?}");
 }

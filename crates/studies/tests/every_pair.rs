@@ -1,4 +1,4 @@
-//! The loop over every pair takes any route to the discs, and asks it only where a cap decides.
+//! The loop over every pair takes any route to the discs, and uses it only where a cap decides.
 
 use continuum_studies::Number;
 use continuum_studies::every_pair::EveryPair;

@@ -129,7 +129,7 @@ impl From<&Problem> for Input<f64> {
 }
 
 impl From<&Case> for Input<f64> {
-    /// Fills in the parts that the kind of the case lacks from those that it has.
+    /// Derives the missing parts of the case from the given ones.
     fn from(case: &Case) -> Self {
         let ([start, end], triangle) = match case.kind.as_str() {
             "segment_segment" => ([case.s0, case.s1], [case.u0, case.u1, case.s1]),

@@ -37,7 +37,7 @@ pub use effort::rounds;
 pub use level::{LevelLinks, found_level_links};
 pub use random::Random;
 
-/// Returns the answers of a batch, all of which must be `Ok`.
+/// Returns the answers of a batch; all must be `Ok`.
 pub fn answered<T: Clone, E: std::fmt::Debug>(batch: &[Result<T, E>]) -> Vec<T> {
     batch.iter().map(|answer| answer.as_ref().expect("an answer").clone()).collect()
 }

@@ -1,4 +1,4 @@
-//! A small seeded generator (xorshift64*): every run sees the same sample, on every machine.
+//! A small seeded generator (xorshift64*): every run has the same sample, on every machine.
 
 use parry_continuum::parry::math::{Pose, Vector};
 

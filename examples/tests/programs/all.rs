@@ -1,4 +1,4 @@
-//! Every program: what it refuses, what it prints and what it draws.
+//! Every program: its errors, its output and its pictures.
 
 use crate::{refuse, succeed};
 use continuum_testing::programs::{colours, file, place, read, room};
@@ -173,7 +173,7 @@ fn a_way_is_planned_proven_and_drawn() {
     assert!(rows[2][4] > 2.0 * rows[1][4] && rows[2][4] > rows[0][4], "{out}");
     assert!(out.contains("it keeps 0.3 mm, which"), "{out}");
     assert!(colours("planned/way.png") > 1000);
-    // Nothing comes nearer than is proven, nor sees what steps do not.
+    // No step comes nearer than the proven bound.
     let line = out
         .lines()
         .find(|line| line.starts_with("no shape of the way"))

@@ -1,5 +1,5 @@
-//! Tubes of samples some of which were taken twice, a little apart: their bounds hold, and the pair
-//! costs what it is apart.
+//! Tubes of samples, some taken twice, slightly apart: the bounds hold, and the pair widens them by
+//! its distance.
 
 use super::frames::{Kind, frames, stretch};
 use super::{Seen, discs, judge};
@@ -18,7 +18,7 @@ fn repeat(
     let at = [0, last, random.below(last + 1), random.below(last + 1)][random.below(4) as usize]
         as usize;
     let along = points[(at + 1).min(points.len() - 1)] - points[at.saturating_sub(1)];
-    // Along the curve a pair shows no more than others do, and is believed.
+    // A pair along the curve shows no more bend than others, and counts as a sample.
     let way = loop {
         let way = random.direction();
         if way.dot(along.normalize()).abs() < 0.97 {
@@ -82,7 +82,8 @@ fn samples_taken_twice_never_make_a_bound_wrong() {
     );
 }
 
-/// What was taken twice costs what it is apart, and nothing where the curve goes through both.
+/// A sample taken twice widens the bounds by the distance of the two, or not at all if the curve
+/// goes through both.
 #[test]
 fn a_pair_counts_in_the_uncertainty() {
     let arc = |k: f64| Vector::new(20.0 - 20.0 * (0.05 * k).cos(), 0.0, 20.0 * (0.05 * k).sin());
@@ -102,8 +103,8 @@ fn a_pair_counts_in_the_uncertainty() {
     assert_eq!(width(&points), 0.0);
 }
 
-/// A curve that goes through all samples and bends as they show is covered, also where samples at
-/// one place are among those that crowd, and where it all but bends too much.
+/// A curve that goes through all samples and bends as they show is covered, also if crowded samples
+/// coincide, and if it nearly bends too much.
 #[test]
 fn a_curve_through_samples_that_crowd_is_covered() {
     // Of a turn by the chord t at the end of a segment of 1 the curve beside it may leave that by k

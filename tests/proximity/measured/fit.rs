@@ -21,7 +21,7 @@ fn in_ball(random: &mut Random) -> Vector {
     }
 }
 
-/// Robots of 80 mm like those of a planner: up to four arcs, two radii.
+/// Robots of 80 mm as in a planner: up to four arcs, two radii.
 fn robot(random: &mut Random) -> Arcs {
     let mut arcs = Arcs::from_frame(random.pose(20.0));
     let stretches = 1 + random.below(2);
@@ -38,7 +38,7 @@ fn robot(random: &mut Random) -> Arcs {
     arcs
 }
 
-/// Samples of a robot, some of which are there twice, each off by up to the noise.
+/// Samples of a robot, some taken twice, each off by up to the noise.
 fn measured(random: &mut Random, arcs: &Arcs, count: usize, noise: f64) -> (Vec<Vector>, Vec<f64>) {
     let (mut points, mut radii, mut from) =
         (vec![arcs.at(0.0).0 + in_ball(random) * noise], Vec::new(), 0.0);
@@ -139,7 +139,7 @@ fn normal(arcs: &Arcs) -> Vector {
     start.cross(end).normalize()
 }
 
-/// What is stated of a face makes its bounds closer.
+/// A stated turn at a face tightens the bounds.
 #[test]
 fn a_stated_turn_sharpens_a_face() {
     let points: Vec<_> = (0..=100).map(|k| Vector::Z * (f64::from(k) * 0.2)).collect();
@@ -180,8 +180,8 @@ fn is_no_worse(
     }
 }
 
-/// What is stated of directions never makes a bound looser, nor an answer less certain: beside a
-/// mesh, another tube and itself, near faces and far from them.
+/// A stated turn never loosens a bound or an answer: beside a mesh, another tube and itself, near
+/// faces and far from them.
 #[test]
 fn a_stated_turn_never_makes_an_answer_worse() {
     let (mut random, mut seen) = (Random::new(93), Seen::default());
@@ -270,7 +270,7 @@ fn a_stated_turn_never_makes_an_answer_worse() {
     assert!(seen.asked == 6 * TUBES && decided > TUBES / 2, "{seen:?} {better} {decided} {beside}");
 }
 
-/// What is refused is told in the words of the function that was called.
+/// Errors use the words of the function that was called.
 #[test]
 fn what_is_refused_names_the_deviation() {
     let zigzag: Vec<_> =

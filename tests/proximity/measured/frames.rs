@@ -55,8 +55,8 @@ pub(super) fn stretch(
     (0..PARTS).map(|k| (length / f64::from(PARTS), at(k))).collect()
 }
 
-/// Frames of a curve, with a radius for each segment: no segment is longer than `spacing`, nor less
-/// than half as long.
+/// Frames of a curve, with a radius for each segment. Segments are at most `spacing` long, and at
+/// least half as long.
 pub(super) fn frames(
     random: &mut Random,
     arcs: &Arcs,
@@ -111,9 +111,8 @@ fn curves_that_bend_as_their_frames_show_are_never_misjudged() {
     assert!(seen.resolved > rounds(9_000), "{seen:?} {kinds:?}");
 }
 
-/// A tube of three radii whose middle section is a single segment, in which the bend jumps from
-/// that of the section before to that of the one behind: once or twice, at any place, or not at
-/// all.
+/// A tube of three radii whose middle section is a single segment. In it the bend jumps from the
+/// previous section's to the next section's: once or twice, at any place, or not at all.
 #[test]
 fn sections_of_one_segment_are_known_by_their_own_frames() {
     let (mut random, mut seen, mut straight) = (Random::new(72), Seen::default(), [0; 2]);

@@ -37,7 +37,7 @@ fn distance(all: &[Discs], curve: Curve, point: Vector) -> f64 {
         let shares: Vec<_> = (0..=SAMPLES).map(|k| k as f64 / SAMPLES as f64).collect();
         let sampled: Vec<_> = shares.iter().map(|&share| at(share)).collect();
         let lowest = sampled.iter().copied().fold(f64::INFINITY, f64::min);
-        // A disc's distance changes by no more than its centre and its rim move.
+        // A disc's distance changes by at most the motion of its centre and its rim.
         let near = lowest + 4.0 * (to - from) / SAMPLES as f64;
         for k in 0..=SAMPLES {
             let (before, behind) = (k.saturating_sub(1), (k + 1).min(SAMPLES));
@@ -95,7 +95,7 @@ fn near(random: &mut Random, discs: &[Discs], curve: Curve, away: f64) -> Vector
     }
 }
 
-/// What was asked.
+/// The query.
 #[derive(Debug, Default)]
 struct Seen {
     asked: usize,

@@ -1,5 +1,4 @@
-//! Tubes of samples that lie as unevenly as one likes: each segment bends as the samples around it
-//! show.
+//! Tubes of arbitrarily uneven samples: each segment bends as the samples around it show.
 
 use super::frames::{Kind, stretch};
 use super::{Seen, discs, judge};

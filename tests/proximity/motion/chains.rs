@@ -197,8 +197,8 @@ impl Motion for Pushed {
     }
 }
 
-/// Joints less than a radius behind the tip's face stay flat, as far as the motion cannot bring
-/// them away from it: round, the first of them would reach 0.35 beyond the tip.
+/// Joints less than a radius behind the tip's face stay flat if the motion cannot move them away
+/// from it: a round cap at the first of them would reach 0.35 beyond the tip.
 #[test]
 fn short_links_do_not_reach_beyond_a_flat_tip() {
     let points: Vec<_> = (0..=120).map(|k| Vector::Z * (0.25 * Real::from(k))).collect();
@@ -239,7 +239,7 @@ fn the_segment_of_an_answer_is_that_of_the_input() {
         assert_eq!(first.witness.segment, 2);
         assert_eq!(search.clearance_of_motion(&motion, 0.01).unwrap().witness.segment, 2);
     }
-    // The centre of the tip comes to 0.5; which way its face is turned nobody knows.
+    // The centre of the tip comes to 0.5; the direction of its face is unknown.
     let shapes = [&from, &to].map(|points| Chain::capsules(points, &[0.1; 3]).unwrap());
     let contact = search.clears_path(&shapes, 0.01, 0.6, 1e-3).unwrap().contact.unwrap();
     assert_eq!(contact.witness.segment, 2);

@@ -1,5 +1,5 @@
-//! Where a motion says that it goes: fewer shapes are looked at, no answer changes, and what it
-//! says wrong is found.
+//! Motions with displacement bounds: fewer shapes are tested, no answer changes, and wrong bounds
+//! are detected.
 
 use super::{anatomy, polyline, random_edge};
 use continuum_demo::{ctr, ventricle};
@@ -243,8 +243,8 @@ fn a_wall_that_comes_nearer_counts_beside_the_course() {
     assert!(seen.iter().all(|seen| *seen > 20), "{seen:?}");
 }
 
-/// A capsule that is at rest until half of its time, then goes down evenly by `way`, but for a
-/// bulge that is `bulge` deep.
+/// A capsule at rest until half of its time, which then moves down evenly by `way`, plus a bulge of
+/// depth `bulge`.
 #[derive(Debug)]
 struct Bulging {
     way: Real,

@@ -1,4 +1,4 @@
-//! Edges of a planner, each point of which moves on a curve of its own, against fine steps.
+//! Edges of a planner, where each point moves on its own curve, against fine steps.
 
 use super::{Steps, anatomy, arcs, random_edge};
 use continuum_demo::joint_motion::JointMotion;
@@ -86,7 +86,7 @@ fn judge(
     }
 }
 
-/// Edges in steps of which no point moves by more than about `fine`.
+/// Edges in steps in which no point moves by more than about `fine`.
 fn judge_edges(search: &mut BvhSearch, random: &mut Random, edges: usize, fine: Real) -> Seen {
     let robot = ctr::three_tubes();
     let mut seen = Seen::default();

@@ -69,7 +69,7 @@ fn a_link_without_a_length_is_a_ball_for_a_moment() {
     assert!(answer.is_clear(), "{answer:?}");
 }
 
-/// A link that nearly loses its length turns as fast as one likes; that costs no answer.
+/// A link that nearly loses its length turns arbitrarily fast, and is still answered.
 #[test]
 fn a_link_that_nearly_loses_its_length_is_answered() {
     let mut ahead = point(Vector::Z * 10.5);
@@ -183,7 +183,7 @@ fn losing(count: usize, seed: u64) {
     assert!(shapes < 2_000, "{shapes}");
 }
 
-/// A robot is also asked about itself while a link of it grows out of nothing.
+/// Self contact while a link grows from length 0.
 #[test]
 fn a_growing_robot_is_asked_about_itself() {
     let from = [Vector::ZERO, Vector::Z * 20.0, Vector::Z * 20.0];

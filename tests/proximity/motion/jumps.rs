@@ -8,7 +8,7 @@ use parry_continuum::{
     BendingMotion, BendingSection, Chain, LinearMotion, Motion, RigidMotion, Tube,
 };
 
-/// Between their ends, motions jump through a wall that no coarse step sees.
+/// Between their ends, motions jump through a wall that no coarse step detects.
 #[test]
 fn a_jump_through_a_wall_is_seen() {
     let wall = [[-60.0, -60.0], [60.0, -60.0], [60.0, 60.0], [-60.0, 60.0]];
@@ -102,7 +102,7 @@ fn a_joint_near_the_base_does_not_reach_through_it() {
 fn the_smallest_turn_counts() {
     let tube = Tube::from(&Chain::capsules(&[Vector::ZERO, 40.0 * Vector::Z], &[0.5]).unwrap());
     for angle in [1e-6, 1.9e-8, 1e-9] {
-        // Tips that turn about x move along -y, half as far as the wall is away, or twice.
+        // Tips that turn about x move along -y, by half of the distance of the wall, or twice that.
         let moved = 40.0 * angle;
         let wall = |share: Real| {
             let y = -0.5 - share * moved;

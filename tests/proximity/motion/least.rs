@@ -57,7 +57,7 @@ struct Judged {
     shapes: u64,
 }
 
-/// Compares the bounds of a motion with its shapes in so many steps.
+/// Compares the bounds of a motion with its shapes in this many steps.
 fn judge(
     search: &mut BvhSearch,
     motion: &impl Motion,
@@ -350,7 +350,7 @@ fn what_displacements_settle_bounds_the_answer() {
             "{tolerance}: {least:?}"
         );
     }
-    // Chains of which one part moves towards its wall, and another part rests beside one a little
+    // Chains with one part that moves towards its wall, and one that rests beside a wall slightly
     // farther away.
     let (mut random, mut nearer) = (Random::new(51), 0);
     for round in 0..400 {

@@ -1,5 +1,5 @@
-//! Each term of a motion alone, left out of what is stated or stated too low, is found in as many
-//! steps as one likes; and motions that state what they do are never accused.
+//! Each term of a motion, omitted from the stated bound or stated too low, is detected with any
+//! number of steps. Motions with correct bounds are never refused.
 
 use super::speeds::Understated;
 use continuum_testing::Random;
@@ -12,9 +12,9 @@ use parry_continuum::{
 /// How a tube is given.
 #[derive(Clone, Copy, Debug)]
 enum Given {
-    /// By so many samples.
+    /// By this many samples.
     Samples(usize),
-    /// By samples, and off by so much.
+    /// By samples, and off by this much.
     Rough(usize, Real),
 }
 
@@ -30,7 +30,7 @@ struct Arc {
     growth: Real,
     shift: Vector,
     turn: Vector,
-    /// What is stated: all terms, or some of them multiplied by something.
+    /// The stated bound: all terms, or some of them scaled.
     stated: [Real; 4],
     turn_stated: Real,
 }
@@ -141,7 +141,7 @@ fn turns_alone_are_missed() {
     }
 }
 
-/// A robot that goes there and back is where it was; what it did in between shows on the way.
+/// A robot that moves there and back is where it was; only the times between show the motion.
 #[test]
 fn a_way_there_and_back_is_missed() {
     struct ThereAndBack(Real);
@@ -211,8 +211,8 @@ impl<F: Fn([Real; 2]) -> Real> Motion for Turning<F> {
 /// The share whose speed is stated for a range.
 type Stated = fn([Real; 2]) -> Real;
 
-/// What is stated of a range must hold for all of it: a bound that looks at one of its ends, at its
-/// middle or at its length is too low for a place alone, or for the whole section, or for neither.
+/// A stated bound must hold for the whole range. A bound from one end, from the middle or from the
+/// length is too low for one place, for the whole section, or for none.
 #[test]
 fn a_bound_for_a_part_of_a_range_is_missed() {
     let understated: [(&str, Stated); 6] = [
@@ -257,7 +257,7 @@ fn a_bound_for_a_part_of_a_range_is_missed() {
     }
 }
 
-/// Rounding and what samples leave open are never held against a motion that states what it does.
+/// Rounding and the uncertainty of samples never refuse a motion with correct bounds.
 #[test]
 fn honest_motions_pass() {
     let (mut random, mut rigid_ones, mut found) = (Random::new(12), 0, 0);
@@ -288,7 +288,7 @@ fn honest_motions_pass() {
             // Too few samples for its bend.
             Err(_) => continue,
         }
-        // In one plane, so that bends and turns add up to no more than is stated.
+        // In one plane, so that bends and turns sum to at most the stated bound.
         let checked = verify_motion(&motion, steps);
         assert!(
             matches!(

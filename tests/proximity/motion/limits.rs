@@ -1,4 +1,4 @@
-//! How much work a question about a motion takes at most, and what it says then.
+//! The limit of work of a motion query, and its answer at the limit.
 
 use super::least::Counted;
 use continuum_testing::Random;
@@ -95,7 +95,7 @@ fn a_slide_along_a_plane_takes_few_shapes() {
     }
 }
 
-/// No question looks at more shapes than it says, and it says why it ends.
+/// No query tests more shapes than the documented limit, and it reports why it ends.
 #[test]
 fn a_question_ends_at_its_limit_and_says_so() {
     let (from, to) = (needle(-5.0, 0.0, 2.5e-6), needle(5.0, 0.0, 2.5e-6));

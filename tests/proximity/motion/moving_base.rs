@@ -65,8 +65,8 @@ fn each_term_that_is_left_out_is_found() {
             let mut states = States { motion: motion.clone(), inner: inner.clone(), stated: all };
             assert_eq!(verify_motion(&states, steps), Ok(()), "{name}, {steps}");
             states.stated = stated;
-            // One step sees that both ends of a path that is stated for its beginning are as near
-            // as that allows.
+            // One step shows that both ends of a path stated for its beginning are as near as
+            // allowed.
             let refused = verify_motion(&states, steps);
             assert!(
                 refused.is_err() || steps == 1 && name == "longer",
@@ -76,8 +76,8 @@ fn each_term_that_is_left_out_is_found() {
     }
 }
 
-/// Pushed, rolled, bent and grown at once: what is stated holds, and is no more than a few times
-/// what happens.
+/// Pushed, rolled, bent and grown at once: the stated bound holds, and is at most a few times the
+/// true motion.
 #[test]
 fn all_at_once_is_stated() {
     let from = [section(10.0, [0.0, 0.02]), section(5.0, [0.05, 0.0])];

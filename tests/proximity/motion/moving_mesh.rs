@@ -1,4 +1,4 @@
-//! Motions in a mesh that moves meanwhile, against the mesh as it is in fine steps.
+//! Motions in a mesh that moves at the same time, against the mesh in fine steps.
 
 use super::{anatomy, random_edge};
 use continuum_demo::{ctr, ventricle};
@@ -24,7 +24,7 @@ struct Seen {
     both_ends_clear: usize,
 }
 
-/// Compares the answers about a few margins with the clearance in so many steps.
+/// Compares the answers about a few margins with the clearance in this many steps.
 fn judge(
     search: &BvhSearch,
     to: &[Vector],

@@ -26,7 +26,7 @@ struct Counts {
     contact_steps: usize,
 }
 
-/// A motion of a robot with so many sections, none of which is wider than this.
+/// A motion of a robot with this many sections, with at most this radius.
 struct Robot<M> {
     motion: M,
     sections: usize,
@@ -140,7 +140,7 @@ fn curling(random: &mut Random) -> Robot<BendingMotion> {
     }
 }
 
-/// A hairpin of links, the tip of which swings past the base, or into its face.
+/// A hairpin of links whose tip swings past the base, or into its face.
 fn hairpin(random: &mut Random) -> Robot<LinearMotion> {
     let (gap, length) = (random.between(4.0, 9.0), random.between(15.0, 30.0));
     let low = [random.between(-6.0, 3.0), random.between(3.0, 10.0)][random.below(2) as usize];
@@ -218,7 +218,7 @@ fn a_robot_keeps_clear_of_itself_where_its_steps_do() {
     }
 }
 
-/// A robot that is straight, but for a moment in which it curls up.
+/// A robot that is straight, except for a moment in which it curls up.
 struct Flick {
     length: Real,
     radius: Real,
@@ -284,15 +284,15 @@ fn a_flick_between_two_steps_is_seen() {
         let contact = found.contact.unwrap();
         assert!((contact.t - 0.7).abs() < lasts, "{found:?}");
         assert!(query.clears_motion(&flick, apart - 0.1, 1e-2).unwrap().is_clear());
-        // Who states too low speeds is told what is wrong with them, and else nothing would be.
+        // `verify_motion` detects a speed that is too low; the query trusts the speed.
         let slow = Understated(&flick, 1e-6);
         assert!(verify_motion(&slow, 1000).is_err());
         assert!(query.clears_motion(&slow, apart - 0.1, 1e-2).unwrap().is_clear());
     }
 }
 
-/// A robot the tip of which passes its base, carried along by a part that grows a thousand times as
-/// fast as it is thick.
+/// A robot whose tip passes its base, carried along by a part that grows a thousand times as fast
+/// as it is thick.
 fn passing(gap: Real) -> LinearMotion {
     let at = |z: Real| {
         let tip = [Vector::new(10.0, 0.0, z), Vector::new(0.5 + gap, 0.0, z)];
@@ -325,9 +325,8 @@ fn a_pass_between_two_steps_is_seen() {
 
 #[test]
 fn what_turns_by_nearly_half_a_turn_is_not_asked_about_for_moving() {
-    // A thick arc, parts of which are near one another that turn by three quarters of that. Points
-    // move by less than the resolution, so that one shape would do for these, but for how they
-    // turn.
+    // A thick arc with near parts that turn by about three quarters of half a turn. Points move by
+    // less than the resolution, so one shape would be enough if they did not turn.
     let at = |turn: Real| [BendingSection { length: turn / 0.9, radius: 1.0, bend: [0.9, 0.0] }];
     let motion = BendingMotion::new(&at(2.2), &at(2.6), Pose::IDENTITY).unwrap();
     let mut query = SelfQuery::new();
@@ -335,8 +334,7 @@ fn what_turns_by_nearly_half_a_turn_is_not_asked_about_for_moving() {
     // What turns by far more comes as near as that.
     let motion = BendingMotion::new(&at(2.6), &at(5.8), Pose::IDENTITY).unwrap();
     assert!(query.clears_motion(&motion, 0.1, 1e-3).unwrap().contact.is_some());
-    // Beside a margin that is wider than the bend nobody knows what is asked about, and that is
-    // soon said.
+    // With a margin wider than the bend, the queried pairs are unknown, and the query ends early.
     let motion = BendingMotion::new(&at(2.9), &at(3.1), Pose::IDENTITY).unwrap();
     let found = query.clears_motion(&motion, 0.5, 1e-3).unwrap();
     assert!(found.decision == Decision::Undecided && found.reason.is_some(), "{found:?}");
@@ -344,8 +342,8 @@ fn what_turns_by_nearly_half_a_turn_is_not_asked_about_for_moving() {
 
 #[test]
 fn what_may_come_to_be_asked_about_is_no_contact() {
-    // Links with 170 degrees between them, 4 apart, that are carried about and turned: at no time
-    // are they asked about.
+    // Links with 170 degrees between them, 4 apart, that are carried about and turned: they never
+    // count.
     let directions = [0.0, 85.0_f64, 170.0].map(|angle| {
         let (sin, cos) = angle.to_radians().sin_cos();
         Vector::new(sin, 0.0, cos)
@@ -363,7 +361,7 @@ fn what_may_come_to_be_asked_about_is_no_contact() {
     }
 }
 
-/// Links of length 1 that turn by so much at each joint.
+/// Links of length 1 that turn by this much at each joint.
 fn arc(turn: Real, count: usize) -> Vec<Vector> {
     let mut points = vec![Vector::ZERO];
     for k in 0..count {

@@ -8,7 +8,7 @@ use parry_continuum::parry::math::{Real, Vector};
 use parry_continuum::proximity::{BvhSearch, Decision, MotionAnswer, ProximityError};
 use parry_continuum::{Chain, RobotError};
 
-/// So many links stand for a section.
+/// Links per section.
 const LINKS: u32 = 8;
 
 /// The centreline at even shares of each section, in the mesh's frame.

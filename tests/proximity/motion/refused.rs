@@ -1,4 +1,4 @@
-//! Motions that cannot be asked about.
+//! Motions that cannot be queried.
 
 use super::anatomy;
 use continuum_demo::ventricle;
@@ -81,7 +81,7 @@ fn a_motion_that_cannot_be_asked_about_is_refused() {
         "{refused:?}"
     );
     assert!(matches!(verify_motion(&changing, 4), Err(RobotError::SectionsChange { .. })));
-    // There is no shape, or none that can be asked about.
+    // There is no shape, or none that can be queried.
     let broken = Made(
         |_: Real, tube: &mut Tube| tube.set_samples(&[], &[], None).map(|()| Pose::IDENTITY),
         || 0.0,

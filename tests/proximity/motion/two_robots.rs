@@ -14,7 +14,7 @@ use parry_continuum::{
 const STEPS: usize = 300;
 const RESOLUTION: Real = 1e-3;
 
-/// Any motion of a robot with so many sections, each with the largest radius.
+/// Any motion of a robot with this many sections, each with the largest radius.
 struct Any {
     shape: Box<ShapeOf>,
     speed: Box<SpeedOf>,
@@ -116,7 +116,7 @@ fn motions(random: &mut Random, kind: u32) -> [Any; 2] {
             let second = MovingBase::new(second, [beside, moved]).unwrap();
             [Any::new(first, count, radius), Any::new(second, count_of_second, radius_of_second)]
         }
-        // Chains with steps and short links, one of which may be at rest.
+        // Chains with steps and short links; one chain may be at rest.
         2 => [0, 1].map(|k| {
             let base = random.point() * 3.0;
             let (from, radii) = polyline(random, base);
@@ -125,7 +125,7 @@ fn motions(random: &mut Random, kind: u32) -> [Any; 2] {
             let largest = radii.iter().copied().fold(0.0, Real::max);
             Any::new(LinearMotion::chain(&from, &to, &radii).unwrap(), radii.len(), largest)
         }),
-        // The same chain twice, parallel or coaxial, of which one passes along the other.
+        // The same chain twice, parallel or coaxial; one passes along the other.
         3 => {
             let (points, radii) = ([Vector::ZERO, Vector::Z * 4.0, Vector::Z * 6.0], [1.0, 0.5]);
             let chain = Chain::from_centreline(&points, &radii).unwrap();
@@ -219,7 +219,7 @@ fn two_motions_are_clear_where_their_steps_are() {
             let found = pair.clears_motions(&first, &second, margin, RESOLUTION).unwrap();
             assert_true(&mut pair, both, margin, truth, &found);
             counts[kind as usize][found.decision as usize] += 1;
-            // Nothing depends on which one is the first, but for what is undecided.
+            // The order of the robots matters only for undecided answers.
             let other = pair.clears_motions(&second, &first, margin, RESOLUTION).unwrap();
             assert_true(&mut pair, [&second, &first], margin, truth, &other);
             if margin <= truth[0] - 2.0 * RESOLUTION {
@@ -258,7 +258,7 @@ fn a_pass_between_two_steps_is_seen() {
         if gap > 0.0 {
             assert!(pair.clears_motions(&at_rest, &fast, gap - 1e-3, 1e-4).unwrap().is_clear());
         }
-        // Who states too low a speed is told what is wrong with it, and else nothing would be.
+        // `verify_motion` detects a speed that is too low; the query trusts the speed.
         let slow = Understated(&fast, 1e-6);
         assert!(verify_motion(&slow, 100).is_err());
         assert!(pair.clears_motions(&at_rest, &slow, 0.9 * gap, 1e-4).unwrap().is_clear());
@@ -280,7 +280,7 @@ fn robots_of_many_links_may_be_fast() {
     assert!(pair.clears_motions(&slow, &fast, 0.4, 1e-3).unwrap().is_clear());
     let contact = pair.clears_motions(&slow, &fast, 0.6, 1e-3).unwrap().contact.unwrap();
     assert!((contact.t - 0.7).abs() < 1e-2, "{contact:?}");
-    // What is wrong with a speed is told, however many pairs there are.
+    // A wrong speed is reported for any number of pairs.
     let wrong = |point: Real, turn: Real| Any {
         shape: Box::new({
             let fast = fast.clone();
@@ -377,8 +377,8 @@ fn a_link_that_loses_its_length_is_no_fault() {
 
 #[test]
 fn an_end_of_which_no_speed_is_stated_is_undecided() {
-    // The first link's end is flat because the tip is near. How fast that is nobody says, so that
-    // the end may become round, and come as near to the needle as the tip does not.
+    // The first link's end is flat because the tip is near. The speed of that change is unknown,
+    // so the end may become round, and come nearer to the needle than the tip.
     let shape = |_: Real, tube: &mut Tube| {
         tube.set_chain(&Chain::from_centreline(
             &[0.0, 5.0, 5.5].map(|z| Vector::Z * z),

@@ -1,5 +1,5 @@
-//! What the page asks of the library: walls, robots, and how far they are apart. All in the wall's
-//! frame and unit.
+//! The page's interface to the library: walls, robots and their distances, in the wall's frame and
+//! unit.
 
 mod answers;
 mod csv;

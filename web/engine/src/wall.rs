@@ -24,8 +24,8 @@ impl Wall {
         Ok(Self { search, entry: ventricle::entry() })
     }
 
-    /// A file of the user's: its name, whose extension says what it holds, and its bytes. A robot
-    /// of tubes comes in at the point that is deepest inside.
+    /// A user's file: its name, whose extension states the format, and its bytes. A robot of tubes
+    /// enters at the point that is deepest inside.
     ///
     /// # Errors
     /// The file is broken, or of an unknown format.

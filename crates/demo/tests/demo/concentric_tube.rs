@@ -185,7 +185,7 @@ fn aligned_tubes_follow_circles() {
     let joints = Joints { extensions: vec![20.0, 15.0, 8.0], angles: vec![0.0; 3] };
     let [first, second]: [Real; 2] =
         [(5.0 * 0.0522 + 0.05263 + 0.05e-9) / 6.05, (0.05263 + 0.05e-9) / 1.05];
-    // The third tube is straight where it is alone, but for its nominal 1e-9 / mm.
+    // The third tube is straight where it is alone, except for its nominal 1e-9 / mm.
     let heading = first * 20.0 + second * 15.0;
     let tip = robot.frames(&joints, &[43.0])[0];
     let expected = Vector::new(

@@ -1,4 +1,4 @@
-//! The robot in motion is the robot of each moment, and no faster than it says.
+//! The moving robot equals the robot at each time, and is at most as fast as it states.
 
 use continuum_demo::ctr::{Joints, Robot, three_tubes};
 use continuum_demo::joint_motion::JointMotion;

@@ -1,4 +1,4 @@
-//! The demo is what it says: the wall, the robot and the pictures.
+//! The demo's wall, robot and pictures are as documented.
 
 mod concentric_tube;
 mod joint_motion;

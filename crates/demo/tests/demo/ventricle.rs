@@ -1,5 +1,5 @@
-//! The scene of the examples is what it says: a closed ventricle with a robot that fits, a start
-//! and a goal in any other mesh, and pictures that show caps as they are queried.
+//! The scene of the examples: a closed ventricle with a robot that fits, a start and a goal in any
+//! other mesh, and pictures that show the caps of the queries.
 
 use continuum_demo::canvas::Canvas;
 use continuum_demo::colour_map::ColourMap;

@@ -1,9 +1,9 @@
-// Many problems at once, a thread each: `solve` of the text before this one takes the place of a problem's first number
-// and that of its answer's.
+// Many problems at once, one thread per problem: `solve` of the text before this one takes the
+// indices of the first number of a problem and of its answer.
 
 @group(0) @binding(0) var<uniform> head: Head;
 @group(0) @binding(1) var<storage, read> problems: array<real>;
-// Each answer has the submission's number before it: what nobody has written is no answer.
+// Each answer begins with the submission's number, so that an unwritten answer is detected.
 @group(0) @binding(2) var<storage, read_write> answers: array<real>;
 
 @compute @workgroup_size(THREADS)

@@ -1,4 +1,4 @@
-// What numbers in single precision need beyond arithmetic. The other shaders say `real` and are one text for both
+// Functions of single precision. The other shaders use the type `real` and are one text for both
 // precisions.
 
 // The cube root of the magnitude within 5 %: a start value, never an answer.
@@ -13,7 +13,7 @@ fn power_of_two_to_unity(x: real) -> real {
     return select(bitcast<f32>(mirrored << 23u), real(1.0), x == real(0.0));
 }
 
-// A bound from 0 up as it is passed between workgroups: not above, and not below the number.
+// A nonnegative bound as it is passed between workgroups: not above, and not below the number.
 fn from_below(x: real) -> f32 {
     return x;
 }

@@ -268,7 +268,7 @@ fn columns(line: &str) -> Vec<&str> {
         .collect()
     };
     let has = |mark: char| outside.iter().any(|(_, c)| *c == mark);
-    // With both tabs and commas, commas are those of decimals only if the words between tabs are
+    // With both tabs and commas, commas are decimal commas only if the words between tabs are
     // numbers.
     let is_decimal = || split(&|c| c == '\t').into_iter().all(|word| number(word).is_some());
     let is_mark = |mark: char| has(mark) && (mark != '\t' || !has(',') || is_decimal());

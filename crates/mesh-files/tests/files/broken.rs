@@ -121,7 +121,7 @@ fn a_file_is_looked_at_before_it_is_read() {
     refused("folder", loaded(&directory), "not a file");
     #[cfg(unix)]
     {
-        // It never ends: neither under its own name nor under a better one.
+        // It never ends, under its own name and under a better one.
         refused("zero", loaded("/dev/zero"), "ends in .stl, .obj or .ply");
         let link = format!("{}/zero.stl", env!("CARGO_TARGET_TMPDIR"));
         let _ = std::fs::remove_file(&link);

@@ -146,8 +146,8 @@ fn volume(mesh: &Mesh) -> f64 {
     six.sum::<f64>() / 6.0
 }
 
-/// A closed surface around the ball: each vertex lies in a cube of voxels that the sphere passes
-/// through, so it is off the sphere by no more than the cube's diagonal.
+/// A closed surface around the ball. Each vertex lies in a cube of voxels that the sphere passes
+/// through, so it is off the sphere by at most the cube's diagonal.
 fn assert_ball(name: &str, mesh: &Mesh, centre: Vertex, radius: f64, unit: f64) {
     assert_closed(mesh);
     assert!(mesh.triangles.len() > 2000, "{name}: {}", mesh.triangles.len());
@@ -209,7 +209,7 @@ fn every_type_of_number_gives_the_same_surface() {
         let mesh = label("a.nrrd", &nrrd(&matrix, kind, encoding, "LPS", &bytes), 3).unwrap();
         assert!(mesh == expected, "{kind} {encoding}");
     }
-    // What the header asks to do with the numbers is done: 2 x 3 + 1.
+    // The header's scale and shift are applied: 2 x 3 + 1.
     let scaled = Nifti::new(voxels).sform(&matrix).floats(112, &[2.0, 1.0]).bytes();
     assert_eq!(label("a.nii", &scaled, 7).unwrap().triangles, expected.triangles);
 }

@@ -1,4 +1,4 @@
-//! What a file's header counts is not believed, and what an archive unpacks to is not kept.
+//! Counts in a file's header are not trusted, and the contents of an archive are not stored.
 
 use crate::{file, ply_header, read, refused};
 use mesh_files::{MeshFileError, Options, load};
@@ -169,7 +169,7 @@ mod label_maps {
         assert!(labels(&shades, Some(5)).is_empty());
     }
 
-    /// The bytes that a refusal names suffice, and no more than them are taken.
+    /// The memory that a refusal names is enough, and at most that much is taken.
     #[test]
     fn the_memory_that_is_asked_for_is_enough_and_no_more_is_taken() {
         let hash =

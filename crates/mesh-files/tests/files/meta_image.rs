@@ -64,7 +64,7 @@ fn what_is_wrong_with_a_meta_image_is_said_in_one_line() {
     ] {
         assert!(read("ball.mha", text + &body).is_ok());
     }
-    // Neither another folder's file nor a pattern of names.
+    // No file of another folder, and no pattern of names.
     for other in ["../ball.raw", "/etc/passwd", "slice%03d.raw", "LIST"] {
         refused(
             other,

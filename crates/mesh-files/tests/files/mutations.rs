@@ -1,13 +1,13 @@
-//! Files that were spoilt: whatever the bytes, reading ends soon, takes little memory, and gives a
-//! mesh or an error of one line.
+//! Corrupted files: for any bytes, reading ends soon, takes little memory, and returns a mesh or an
+//! error of one line.
 
 use crate::reports::report;
 use mesh_files::{MeshFileError, Options, from_bytes};
 use std::time::{Duration, Instant};
 
-/// How many spoilt files of each format.
+/// Corrupted files per format.
 const ROUNDS: usize = 2000;
-/// The files have a few hundred bytes; memory is in proportion, unless a header is believed.
+/// The files have a few hundred bytes; memory is in proportion, unless a header is trusted.
 const MEMORY: u64 = 4 << 20;
 const TIME: Duration = Duration::from_secs(1);
 

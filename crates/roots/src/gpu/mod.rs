@@ -93,7 +93,7 @@ fn constants(precision: Precision, degree: u16) -> String {
     whole.concat() + &real.concat()
 }
 
-/// The highest degree of which a record's size can be told.
+/// The highest degree whose record size fits the type.
 const MOST: u16 = u16::MAX / 2;
 
 /// The roots of many polynomials at once, a GPU thread each, for coefficients of comparable size.
@@ -108,7 +108,7 @@ pub struct GpuRoots {
 }
 
 impl GpuRoots {
-    /// Makes ready for polynomials of this degree, from 1 to 32767 (and as far as the driver goes).
+    /// Prepares for polynomials of this degree, from 1 to 32767 (or the driver's limit).
     ///
     /// # Errors
     /// The driver does not compile the kernel.
@@ -118,8 +118,8 @@ impl GpuRoots {
         Ok(Self { degree: degree.into(), batch: Batch::new(device, &kernel(&text, degree))? })
     }
 
-    /// The roots of polynomials that stand one after another, each lowest power first: as many as
-    /// the degree for each, conjugates side by side, NaN for those that did not converge. `out`
+    /// The roots of polynomials that follow one another, each lowest power first. Each has as many
+    /// roots as its degree, conjugates side by side, NaN for a root that did not converge. `out`
     /// is cleared first.
     ///
     /// # Errors
@@ -157,7 +157,7 @@ fn text(finder: Finder, precision: Precision, degree: u16) -> String {
     approximate(finder, precision, degree) + shaders!("find_roots")
 }
 
-/// The whole text of the kernel for polynomials of a degree, for whoever checks it without a GPU.
+/// The whole text of the kernel for polynomials of a degree, to check it without a GPU.
 pub fn shader(finder: Finder, precision: Precision, degree: u16) -> Shader {
     kernel(&text(finder, precision, degree), degree).shader(precision)
 }

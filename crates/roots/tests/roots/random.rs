@@ -77,7 +77,7 @@ fn check<F: RootFinder, T: Real + Into<f64>, const M: usize>(count: usize) {
     assert!(tally.residual <= 20.0 * n, "{name} {tally:?}");
     // To first order the residual times the condition.
     assert!(tally.forward <= 20.0 * n, "{name} {tally:?}");
-    // n roots, each off by so much.
+    // n roots, each off by this much.
     assert!(tally.backward.max(tally.sum).max(tally.product) <= 20.0 * n * n, "{name} {tally:?}");
     if M > 2 {
         let roots = tally.real_roots + tally.complex_roots;

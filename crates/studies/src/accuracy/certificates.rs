@@ -63,7 +63,7 @@ impl Pair {
         Some((self.features(64.0 * unit), scaled(bounds.upper - bounds.lower, -exponent) / unit))
     }
 
-    /// Which features are nearest, told apart as far as `rounding` lets.
+    /// Which features are nearest; differences within `rounding` count as ties.
     fn features(&self, rounding: f64) -> Features {
         let Self { triangle, ends: [start, end], radius, flat, .. } = *self;
         let [from, to] = [start, end].map(f64::vec3);

@@ -60,7 +60,7 @@ pub fn scaled(number: f64, exponent: i32) -> f64 {
     number * power(half) * power(exponent - half)
 }
 
-/// What is known of a kernel's distance, in lengths near one.
+/// Bounds on a kernel's distance, in lengths near one.
 #[derive(Clone, Copy)]
 pub struct Proof {
     pub middle: DoubleDouble,
@@ -101,7 +101,7 @@ impl<T: Measured> Problem<T> {
     pub fn new(sample: &Sample) -> Self {
         let Sample { extreme, power, exponent, .. } = *sample;
         // Rounded near one, scaled, and back again, so that the proof is of the very numbers the
-        // kernels get. Normals have no length to speak of.
+        // kernels get. The length of a normal does not matter.
         let rounded = sample.input.map(T::from_f64);
         let mut input = rounded.map(|x| T::from_f64(scaled(x.into(), exponent)));
         (input.plane_normal, input.disc_normal) = (rounded.plane_normal, rounded.disc_normal);
@@ -120,7 +120,7 @@ impl<T: Measured> Problem<T> {
     }
 }
 
-/// What is known of every kernel's distance, by points and planes that prove it.
+/// Bounds on every kernel's distance, proven by points and planes.
 fn proofs(input: &Input<f64>, units: [f64; KERNELS.len()]) -> [Option<Proof>; KERNELS.len()] {
     let precise = input.map(DoubleDouble::from);
     let (shapes, answers) = (shapes(&precise), precise.answers());

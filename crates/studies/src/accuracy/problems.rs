@@ -40,7 +40,7 @@ pub struct Sample {
 }
 
 impl Extreme {
-    /// Every one of them with its name and what it is.
+    /// Every category with its name and its description.
     pub const ALL: [(Self, &str, &str); 18] = [
         (Self::Generic, "generic", "no relation"),
         (
@@ -74,7 +74,7 @@ impl Extreme {
         ),
     ];
 
-    /// The largest power of ten it is driven to, for numbers of so many digits.
+    /// The largest power of ten of the category, for numbers with this many digits.
     pub fn powers(self, digits: i32) -> i32 {
         match self {
             Self::NearParallel | Self::CapTransition | Self::TangentRim | Self::Contact => digits,
@@ -341,7 +341,7 @@ fn parallel(random: &mut Random, problem: &mut Problem) {
 fn zero_area(random: &mut Random, problem: &mut Problem) {
     let [a, b, _] = problem.triangle;
     match random.below(4) {
-        // On a line but for rounding; exactly; two the same; all the same.
+        // On a line up to rounding; exactly; two the same; all the same.
         0 => problem.triangle[2] = a + (b - a) * random.between(-1.0, 2.0),
         1 => {
             let mut integer = || f64::from(random.below(9)) - 4.0;

@@ -95,7 +95,7 @@ fn at_hundred(share: f64) -> String {
 /// The head of [`lines`].
 pub const HEAD: &str = "pair,category,cases,f64 median,f64 worst,f32 cases,f32 median,f32 worst,parry median,parry worst";
 
-/// One line for each pair and category. `peer` writes what is known of parry.
+/// One line for each pair and category. `peer` writes the columns of parry.
 pub fn lines(cases: &[Case], mut peer: impl FnMut(&[&Case]) -> String) -> Vec<String> {
     let mut lines = Vec::new();
     for (kind, name) in KINDS {

@@ -18,7 +18,7 @@ pub fn cell(errors: Vec<f64>) -> String {
     }
 }
 
-/// One line for each precision, category and pair. `peer` writes what is known of parry.
+/// One line for each precision, category and pair. `peer` writes the columns of parry.
 pub fn lines(
     measurement: &Measurement,
     mut peer: impl FnMut(Extreme, &[usize]) -> String,

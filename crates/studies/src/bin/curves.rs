@@ -1,6 +1,6 @@
 //! Curves as they come: clean, joined, repeated, unevenly spaced, noisy. How many tubes are
 //! accepted, how close their bounds are, and how far from the truth; and how finely tubes are
-//! divided beside flat faces. Writes the tables of `docs/book/tube.md` and the plot
+//! divided beside flat faces. Writes `docs/CURVES.md`, the table of `docs/book/tube.md` and the plot
 //! `docs/curves.svg`.
 //!
 //! ```text
@@ -18,6 +18,7 @@ use parry_continuum::{RobotError, Tube, TubeSection};
 use plotters::prelude::*;
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -29,7 +30,7 @@ struct Options {
     /// How many robots
     #[arg(long, value_name = "COUNT", default_value_t = 200)]
     robots: u64,
-    /// Where book/tube.md is, and the plot goes
+    /// Where book/tube.md is, and where CURVES.md and the plot go
     #[arg(long, value_name = "DIRECTORY", default_value = "docs")]
     out: PathBuf,
 }
@@ -40,7 +41,35 @@ const RADIUS: f64 = 0.5;
 /// The rows of the robot in the demonstration.
 const VENTRICLE: &str = "the ventricle's robot";
 
-/// A robot and what is near it.
+/// The rows that the book shows.
+const SELECTED: [&str; 5] = [
+    "the ventricle's robot, 20 frames",
+    "clean",
+    "clean, 20 frames",
+    "100 samples, noise 0.01",
+    "100 samples, noise 0.1",
+];
+
+/// The head of CURVES.md.
+const HEAD: &str = "\
+# Curves from samples, frames and noisy points
+
+Written by `cargo run --release -p continuum-studies --bin curves`. [The book](book/tube.md#from-data-to-bounds) describes the
+robots and the columns, and shows some of these rows.
+
+";
+
+/// The head of the second table of CURVES.md.
+const BESIDE_FACES: &str = "
+## Beside flat faces
+
+A tube beside 200 triangles at its flat base: in the plane of the face, beside its rim or beside the tube, level, tilted or across, at
+0.001 to 2. A tenth of the tolerance needs a few more pieces. At 10^6 from the origin, rounding leaves the direction of short pieces
+open, and with it more than 10^-6 near the face.
+
+";
+
+/// A robot, and a mesh near it.
 struct Scene {
     curve: Centreline,
     sections: Vec<TubeSection>,
@@ -246,7 +275,7 @@ fn deviation(way: Way) -> f64 {
 struct Outcome {
     accepted: usize,
     resolved: usize,
-    /// The median of how far apart the bounds are, but for what was stated.
+    /// The median distance of the bounds, without the stated uncertainty.
     width: f64,
     /// The median of how far the clearance of the tube itself, without its deviation, is from the
     /// truth.
@@ -351,6 +380,7 @@ fn main() -> ExitCode {
         "| 100 samples unless said otherwise | tube | tolerance | accepted | resolved | bounds apart | off the truth | truth within | µs for the tube, the query, at least |\n\
          |---|---|---|---|---|---|---|---|---|\n",
     );
+    let mut selection = table.clone();
     let mut refused = Vec::new();
     for (name, input, way, tolerance) in &rows {
         let Outcome { accepted, resolved, width, off, covered, times } = ask(
@@ -360,15 +390,18 @@ fn main() -> ExitCode {
             *tolerance,
         );
         let [tube, query] = times;
-        let _ = writeln!(
-            table,
-            "| {name} | {} | {tolerance} | {accepted} | {resolved} | {} | {} | {covered} | {}, {} |",
+        let row = format!(
+            "| {name} | {} | {tolerance} | {accepted} | {resolved} | {} | {} | {covered} | {}, {} |\n",
             way.name(),
             number(width, 2),
             number(off, 2),
             number(tube, 0),
             number(query, 0)
         );
+        table.push_str(&row);
+        if SELECTED.contains(&name.as_str()) {
+            selection.push_str(&row);
+        }
         if input.noise > 0.0 && input.spacing == Spacing::Even {
             refused.push((matches!(way, Fit(_)), input.samples, input.noise, resolved));
         }
@@ -377,8 +410,10 @@ fn main() -> ExitCode {
     let faces = faces(my.robots);
     print!("{faces}");
     let page = my.out.join("book/tube.md");
-    let written = quote::in_page(&table, "curves", &page)
-        .and_then(|()| quote::in_page(&faces, "faces", &page));
+    let written =
+        fs::write(my.out.join("CURVES.md"), format!("{HEAD}{table}{BESIDE_FACES}{faces}"))
+            .map_err(|error| error.to_string())
+            .and_then(|()| quote::in_page(&selection, "curves", &page));
     let written = written.and_then(|()| {
         plot(&refused, my.robots, &my.out.join("curves.svg")).map_err(|error| error.to_string())
     });
@@ -535,7 +570,8 @@ fn plot(
     Ok(())
 }
 
-/// A shape for each noise, for whoever sees no colours: so many corners, or a star.
+/// A shape for each noise, so that the plot needs no colours: a polygon with this many corners, or
+/// a star.
 fn mark(at: (i32, i32), number: usize, style: ShapeStyle) -> Polygon<(i32, i32)> {
     let (corners, inner) = [(24, 1.0), (3, 1.0), (4, 1.0), (10, 0.4), (8, 0.3)][number];
     let size = 2.0 + f64::from(style.stroke_width);

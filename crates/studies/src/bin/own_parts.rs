@@ -1,6 +1,5 @@
-//! Which parts of a robot are held against one another: this crate's rule beside the one that
-//! planners use, the parts that are more than three radii apart along the robot. Writes the table
-//! of `docs/book/robots.md`.
+//! Which parts of a robot are compared: this crate's rule beside the planners' rule, which compares
+//! parts more than three radii apart along the robot. Writes the table of `docs/book/robots.md`.
 //!
 //! ```text
 //! cargo run --release -p continuum-studies --bin own_parts
@@ -69,7 +68,7 @@ fn tubes(random: &mut Random) -> Shape {
     Shape { points: centreline.points, radii: centreline.radii }
 }
 
-/// 20 links of 20 mm, each joint of which bends by up to 80 degrees in any direction.
+/// 20 links of 20 mm. Each joint bends by up to 80 degrees in any direction.
 fn snake(random: &mut Random) -> Shape {
     let (mut frame, mut points) = (Pose::IDENTITY, vec![Vector::ZERO]);
     for _ in 0..20 {
@@ -112,9 +111,8 @@ impl Samples {
         (self.points[i] - self.points[j]).length() - self.radii[i] - self.radii[j]
     }
 
-    /// The nearest of all pairs of places that come no nearer when either moves along the robot,
-    /// and of which the robot is not simply the one thing: the way down does not lead to where
-    /// both are one.
+    /// The nearest local minimum: of all pairs of places that come no nearer when either moves
+    /// along the robot, except pairs from which the distance falls until both places coincide.
     fn truth(&self, most: f64) -> f64 {
         const AROUND: usize = 2;
         let count = self.points.len();
@@ -176,7 +174,7 @@ fn counted(my: &Options, shape: fn(&mut Random) -> Shape, margin: f64) -> Result
         let shape = shape(&mut random);
         let samples = Samples::of(&shape);
         // Two places may be half a step off on either side, across their distance of about two
-        // radii: to be near for certain, or clear, it takes more than that.
+        // radii. A proven contact or clearance needs more than that.
         let step = samples.step();
         let radius = shape.radii.iter().fold(f64::INFINITY, |least, &r| least.min(r));
         let off = 0.25 * step * step / radius;

@@ -92,7 +92,7 @@ fn text(form: Form) -> String {
     [laboratory::VECTORS, include_str!("shaders/forms.wgsl"), &solve].concat()
 }
 
-/// The whole text of a form's kernel, for whoever checks it without a GPU.
+/// The whole text of a form's kernel, to check it without a GPU.
 pub fn shader(form: Form, precision: Precision) -> Shader {
     kernel(&text(form)).shader(precision)
 }

@@ -236,7 +236,7 @@ fn text(pair: Pair, discs: Discs, precision: Precision) -> String {
     .concat()
 }
 
-/// The whole text of a pair's kernel, for whoever checks it without a GPU.
+/// The whole text of a pair's kernel, to check it without a GPU.
 pub fn shader(pair: Pair, discs: Discs, precision: Precision) -> Shader {
     kernel(&text(pair, discs, precision)).shader(precision)
 }

@@ -215,7 +215,7 @@ fn short_links() {
     }
 }
 
-/// The paper's quartic finds the distance of most discs, and never less than it is: its candidates
+/// The paper's quartic finds the distance of most discs, and never a smaller one: its candidates
 /// are points of the segment. (The closed form loses digits on nearly double roots.)
 #[test]
 fn discs_by_the_quartic() {

@@ -1,4 +1,4 @@
-//! The program `gpu_speed`, rehearsed on whatever GPU there is.
+//! A rehearsal of the program `gpu_speed` on the machine's GPU.
 
 use continuum_testing::gpu;
 use continuum_testing::programs::*;
@@ -31,7 +31,7 @@ fn the_speed_of_the_gpu_is_measured_and_written() {
         ("| triangles | precision | capsules, device |", precisions),
         ("| triangles | precision | discs |", 3 * precisions),
         ("| distance | precision | clamps, device |", 2 * precisions),
-        // Four finders at three degrees, of which the closed form solves the first.
+        // Four finders at three degrees; the closed form solves only the first degree.
         ("| degree | finder |", 4 + 3 + 3),
     ] {
         assert_eq!(table(&studies, head).len(), rows, "{head}: {studies}");

@@ -24,7 +24,7 @@ fn records<const N: usize>(names: [&'static str; N]) -> [Record; N] {
     names.map(Record::new)
 }
 
-/// A mesh and what asks it.
+/// A mesh and its queries.
 struct Anatomy {
     mesh: TriMesh,
     search: BvhSearch,

@@ -43,7 +43,7 @@ pub fn motions(bytes: &[u8]) {
 }
 
 /// Returns whether rounding decides, in an intermediate shape, the direction or the existence of a
-/// segment. The motion itself knows both from its start and end.
+/// segment. The motion itself derives both from its start and end.
 fn rounding_decides(from: &[Vector], to: &[Vector], between: &[Vector]) -> bool {
     let reach =
         from.iter().chain(to).fold(0.0, |most: f64, point| point.abs().max_element().max(most));

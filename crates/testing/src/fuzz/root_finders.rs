@@ -1,4 +1,4 @@
-//! Any polynomial: each finder returns all roots, each of which solves the polynomial, or an error.
+//! Any polynomial: each finder returns all roots, and each solves the polynomial, or an error.
 
 use super::source::Source;
 use polynomial_roots::{Bairstow, ClosedForm, Companion, JenkinsTraub, Real, RootFinder};

@@ -23,7 +23,8 @@ fn cubic(a: real, b: real, c: real) {
     let third = a * real(1.0 / 3.0);
     let q = (a * a - b * real(3.0)) * real(1.0 / 9.0);
     let r = ((a * a * a * real(2.0) - a * b * real(9.0)) + c * real(27.0)) * real(1.0 / 54.0);
-    // The root farthest from the centre -a / 3 of the three, or Cardano's: it lies on the side of -r.
+    // The root farthest from the centre -a / 3 of the three, or Cardano's: it lies on the side of
+    // -r.
     var x = -largest_of_depressed(q, r) - third;
     x = cubic_polished(x, a, b, c);
     x = cubic_polished(x, a, b, c);
@@ -32,7 +33,8 @@ fn cubic(a: real, b: real, c: real) {
         quadratic(a, b);
         return;
     }
-    // x^2 + u x + v: from the top where x is the smallest root, from the bottom where it is the largest.
+    // x^2 + u x + v: from the top if x is the smallest root, from the bottom if it is the
+    // largest.
     if (abs(c) < abs(x * x * x)) {
         let v = -(c / x);
         quadratic((v - b) / x, v);
@@ -56,8 +58,8 @@ fn largest_of_depressed(q: real, r: real) -> real {
     return select(size, -size, r < real(0.0));
 }
 
-// The largest real root of y^3 - b y^2 + p y + s; and where rounding may have hidden two roots larger than the one
-// that is left, their middle.
+// The largest real root of y^3 - b y^2 + p y + s; or the middle of two larger roots, if rounding
+// may have hidden them.
 fn largest_of_resolvent(b: real, p: real, s: real) -> vec2<real> {
     let third = b * real(1.0 / 3.0);
     let q = (third * third) - p * real(1.0 / 3.0);
@@ -78,7 +80,8 @@ fn quartic(a: real, b: real, c: real, d: real) {
     let p = a * c - d * real(4.0);
     let s = (b * d * real(4.0) - a * a * d) - c * c;
     let resolved = largest_of_resolvent(b, p, s);
-    // r^2 and w^2, and what rounds them: y does with everything of its dimension in the resolvent.
+    // r^2 and w^2, and their rounding: y carries the rounding of all terms of its dimension in the
+    // resolvent.
     let size = abs(b) + sqrt(abs(d));
     var y = cubic_polished(resolved.x, -b, p, s);
     if ((half * half - b) + y < -((half * half + abs(y) + size) * real(1.0 / 256.0))) {
@@ -132,7 +135,8 @@ struct Factors {
     v1: real,
 }
 
-// What the product lacks of the coefficients, highest power first, and the most relative to its terms.
+// The differences of the coefficients from the product's, highest power first, and the largest
+// relative to its terms.
 struct Lack {
     r3: real,
     r2: real,

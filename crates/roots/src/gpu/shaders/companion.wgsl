@@ -110,7 +110,7 @@ fn sweep(start: u32, last: u32, exceptional: bool) {
         sum = size * real(1.5) + corner + corner;
         product = size * size + corner * (size * real(1.5) + corner);
     }
-    // The first column of (H - shift 1) (H - shift 2), but for a factor.
+    // The first column of (H - shift 1) (H - shift 2), up to a factor.
     let h00 = matrix[start][start];
     let h10 = matrix[start + 1u][start];
     var x = (h00 * (h00 - sum) + product) / h10 + matrix[start][start + 1u];
@@ -137,7 +137,8 @@ fn sweep(start: u32, last: u32, exceptional: bool) {
     }
 }
 
-// The reflection 1 - v w^T that turns (x, y, z) into (-norm, 0, 0), with v = (1, v1, v2), from both sides.
+// The reflection 1 - v w^T that turns (x, y, z) into (-norm, 0, 0), with v = (1, v1, v2), from both
+// sides.
 fn reflect_rows(start: u32, last: u32, k: u32, three: bool, sx: real, sy: real, sz: real, size: real) {
     let radius = sqrt(sx * sx + sy * sy + sz * sz);
     let signed = select(radius, -radius, sx < real(0.0));

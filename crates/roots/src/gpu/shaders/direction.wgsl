@@ -1,5 +1,5 @@
-// Where the iterations start: on a circle, and after each failure elsewhere on it. The twins are first_direction and
-// turned in bairstow.rs.
+// The start of the iterations: on a circle, and after each failure elsewhere on it. The twins are
+// first_direction and turned in bairstow.rs.
 
 fn first_direction() -> vec2<real> {
     return vec2<real>(FIRST_X, FIRST_Y);

@@ -50,7 +50,7 @@ fn is_within(value: real, limit: real) -> bool {
     return value <= limit && is_finite(limit);
 }
 
-// Whether the divisor divides the polynomial of this degree as far as rounding lets one see.
+// Whether the divisor divides the polynomial of this degree, within rounding.
 fn division_is_exact(division: ptr<function, Division>, degree: u32, u: real, v: real, roundings: real) -> bool {
     let b = (*division).b;
     let a = (*division).a;
@@ -97,7 +97,7 @@ fn deflated(p: ptr<function, Coefficients>, degree: u32, u: real, v: real) -> Co
     return quotient;
 }
 
-// The real root after two Newton steps, as far as they bring p down.
+// The real root after two Newton steps; a step that does not lower |p| is not taken.
 fn division_polished(p: ptr<function, Coefficients>, degree: u32, start: real) -> real {
     var s = start;
     var division = by_linear(p, degree, s);

@@ -1,7 +1,7 @@
-// The roots of many polynomials, a thread each: the twin of `approximations` in lib.rs. `approximate` is that of
-// one method, declared beside this text.
+// The roots of many polynomials, one thread each: the twin of `approximations` in lib.rs.
+// `approximate` of one method is declared beside this text.
 
-// An answer is how many roots were found, then their real and imaginary parts.
+// An answer is the number of roots, then their real and imaginary parts.
 fn solve(problem: u32, answer: u32) {
     var coefficients = Coefficients();
     for (var k = 0u; k < COEFFICIENTS; k++) {

@@ -1,6 +1,6 @@
 // Jenkins and Traub's algorithm: the twin of jenkins_traub.rs, which has the description.
 
-// A factor, z - u or z^2 + u z + v, and what is left without it; degree 0 where there is none.
+// A factor, z - u or z^2 + u z + v, and the quotient; degree 0 if there is none.
 struct Factor {
     degree: u32,
     u: real,
@@ -170,7 +170,7 @@ fn divided_by_z(rest: vec2<real>, u: real, v: real) -> vec2<real> {
     return vec2<real>(-(rest.y / v), rest.x - u * rest.y / v);
 }
 
-// The factor, or in its u where the iteration was when it ran out of steps.
+// The factor, or in its u the last estimate if the steps ran out.
 fn linear_stage(p: ptr<function, Coefficients>, n: u32, start: Coefficients, root: real) -> Factor {
     var k = start;
     var s = root;

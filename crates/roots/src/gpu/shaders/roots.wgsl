@@ -1,8 +1,9 @@
-// What the root finders share: where roots go, quadratics, and powers of two. The twins are found.rs,
+// Shared by the root finders: the output, quadratics, and powers of two. The twins are found.rs,
 // quadratic.rs and real.rs.
 //
-// COEFFICIENTS, one more than the degree, LARGEST and ROOT_STEPS are declared beside this text. Coefficients come lowest power first and are
-// of comparable size: polynomials are not cut into pieces here.
+// COEFFICIENTS, one more than the degree, LARGEST and ROOT_STEPS are declared beside this text.
+// Coefficients are lowest power first and of comparable size: polynomials are not cut into pieces
+// here.
 
 // There is always room for a quartic.
 const ROOM = max(COEFFICIENTS, 5u);
@@ -25,12 +26,12 @@ fn push_pair(re: real, im: real) {
     push_root(re, -abs(im));
 }
 
-// Whether the number is neither infinite nor NaN, where a device lets NaN arise.
+// Whether the number is finite. False for NaN on devices that produce NaN.
 fn is_finite(x: real) -> bool {
     return abs(x) <= LARGEST;
 }
 
-// The e with 2^e <= |x| < 2^(e+1), but for the rounding to single precision.
+// The e with 2^e <= |x| < 2^(e+1), up to the rounding to single precision.
 fn exponent(x: real) -> i32 {
     return i32((bitcast<u32>(clamp(f32(abs(x)), 0x1p-120f, 0x1p120f)) >> 23u) & 0xffu) - 127;
 }
@@ -39,7 +40,7 @@ fn times_power_of_two(x: real, power: i32) -> real {
     return x * real(bitcast<f32>(u32(clamp(power, -126, 127) + 127) << 23u));
 }
 
-// The cube root of a number that is not negative: Halley's method triples the digits of the estimate.
+// The cube root of a nonnegative number: Halley's method triples the digits of the estimate.
 fn cbrt(x: real) -> real {
     var root = cbrt_estimate(x);
     for (var i = 0u; i < ROOT_STEPS; i++) {
@@ -49,8 +50,8 @@ fn cbrt(x: real) -> real {
     return select(real(0.0), root, real(0.0) < x);
 }
 
-// The cosine of a third of the angle with this cosine. Single precision starts, and Newton's method on
-// 4 y^3 - 3 y = cosine wins the digits.
+// The cosine of a third of the angle with this cosine. Newton's method on 4 y^3 - 3 y = cosine
+// refines a start in single precision.
 fn cos_of_third(cosine: real) -> real {
     var y = real(cos(acos(f32(cosine)) / 3.0f));
     for (var i = 0u; i < ROOT_STEPS; i++) {

@@ -2,10 +2,9 @@
 //! --bin accuracy`.
 //!
 //! Writes `docs/ACCURACY.md`, tables by category beside it (`accuracy*.csv`) and the picture
-//! `docs/correctness.png`. They tell how far this crate's distances are from the truth, on the
-//! reference cases and on seeded problems at the extremes, and how far those of parry's
-//! `query::distance` are for the same links. With the feature `gpu` the kernels on the GPU are
-//! measured too.
+//! `docs/correctness.png`. They show the errors of this crate's distances, on the reference cases
+//! and on seeded problems at the extremes, and the errors of parry's `query::distance` for the same
+//! links. With the feature `gpu` the kernels on the GPU are measured too.
 
 #[cfg(feature = "gpu")]
 mod device;

@@ -7,8 +7,8 @@ use parry_continuum::gpu::GpuExhaustive;
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::Proximity;
 
-/// The meshes, 1e4 triangles and more, and the largest: the ventricle divided in four until it has
-/// enough, shuffled, and of that the first so many.
+/// The meshes, 1e4 triangles and more. Each is the first part of the ventricle, divided in four
+/// until it has enough triangles, and shuffled.
 pub fn meshes(largest: u32) -> Result<Vec<TriMesh>, String> {
     let mut sizes: Vec<_> = [10_000, 100_000, 1_000_000, 10_000_000]
         .into_iter()

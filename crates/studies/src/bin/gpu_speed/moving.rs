@@ -34,7 +34,7 @@ pub fn chapter(
     Ok(page)
 }
 
-/// An engine that sees the anatomy move.
+/// An engine whose mesh moves.
 struct Moving<'a> {
     engine: Box<dyn Proximity + 'a>,
     frames: usize,

@@ -1,4 +1,4 @@
-//! Medians of the GPU's own times beside those of the whole calls.
+//! Medians of the GPU's own times, beside medians of the whole calls.
 
 use std::time::{Duration, Instant};
 

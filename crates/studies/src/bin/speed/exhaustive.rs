@@ -20,7 +20,7 @@ use std::hint::black_box;
 use std::sync::LazyLock;
 use std::time::Duration;
 
-/// The ventricle divided in four so many times, in the order of subdivision.
+/// The ventricle divided in four this many times, in the order of subdivision.
 pub fn divided(times: u32) -> (Vec<Vector>, Vec<[u32; 3]>) {
     // Growing it takes longer than some of the chapters.
     static WHOLE: LazyLock<(Vec<Vector>, Vec<[u32; 3]>)> =
@@ -42,9 +42,9 @@ pub fn chapter(effort: Effort, goals: &mut Goals) -> Result<String, String> {
     let mut page = format!(
         "## Exhaustive\n\n\
          The ventricle of 6,000 triangles divided in four {often}, 30 links, one thread. The peer is a loop of parry's \
-         `distance(Cylinder, Triangle)` over the same pairs. Culling: every triangle is visited, but a sphere around \
-         it may spare it the rest. Nanoseconds a pair, and times faster than the peer. Triangles shuffled; and in \
-         the order of subdivision, where neighbours stand together.\n\n\
+         `distance(Cylinder, Triangle)` over the same pairs. Culling: every triangle is visited, and a sphere around \
+         it may prune it. Nanoseconds per pair, and times faster than the peer. Triangles are shuffled, or in the \
+         order of subdivision, where neighbours are adjacent.\n\n\
          | order | precision | culling | capsules | fitted caps | cylinders | fitted caps / capsules | cylinders / capsules |\n\
          |---|---|---|---|---|---|---|---|\n",
     );
@@ -201,8 +201,8 @@ fn rows<T: SearchPrecision + Send>(
     Ok((page, shares + "\n"))
 }
 
-/// Bytes a triangle, as the system sees them grow: to be measured first, while no memory is there
-/// to be used again.
+/// Bytes per triangle, from the growth of the process: measured first, while no freed memory can be
+/// reused.
 pub fn memory(effort: Effort) -> Result<String, String> {
     let (vertices, indices) = divided(effort.largest.min(4));
     let mesh = TriMesh::new(vertices, indices).map_err(|error| error.to_string())?;

@@ -18,7 +18,7 @@ const MARGIN: f64 = 3.0;
 /// Fewer ticks than this tell no p99.9.
 const TICKS: usize = 1000;
 
-/// A loop that asks one engine at every tick.
+/// A loop that queries one engine at every tick.
 struct Loop {
     search: BvhSearch,
     robot: Chain,
@@ -26,7 +26,7 @@ struct Loop {
     contacts: Vec<Contact>,
 }
 
-/// What is asked, and how.
+/// A query and its name.
 type Query = (&'static str, fn(&mut Loop, &Pose) -> Result<(), ProximityError>);
 
 const QUERIES: [Query; 4] = [
@@ -44,8 +44,8 @@ const QUERIES: [Query; 4] = [
     }),
 ];
 
-/// The chapter of the page, and what other work does to a query of all links, as a sentence.
-pub fn chapter(effort: Effort) -> Result<(String, String), String> {
+/// Returns the chapter of the page.
+pub fn chapter(effort: Effort) -> Result<String, String> {
     let mut page = format!(
         "## Latency\n\n\
          The robot of 30 links at the wall of the cavity, one query a tick, with the answers of the tick before. *Alone*: \
@@ -56,13 +56,11 @@ pub fn chapter(effort: Effort) -> Result<(String, String), String> {
         OTHER_WORK >> 20
     );
     let mut other_work = vec![0_u8; OTHER_WORK];
-    let mut slowed = Vec::new();
     for level in [4, 6].into_iter().filter(|level| *level <= 4 + effort.largest) {
         let mesh = cavity::mesh(level);
         let search = BvhSearch::new(&mesh).map_err(|error| error.to_string())?;
         for (name, query) in QUERIES {
             let _ = write!(page, "| `{name}` | {} |", mesh.num_triangles());
-            let mut medians = [0.0; 2];
             for is_after_work in [false, true] {
                 let (search, robot) = (search.clone(), cavity::chain(2.0));
                 let mut turn = Loop { search, robot, links: Vec::new(), contacts: Vec::new() };
@@ -74,7 +72,6 @@ pub fn chapter(effort: Effort) -> Result<(String, String), String> {
                 let times = latencies(effort.enough / 4, between, |pose| query(&mut turn, pose))
                     .map_err(|error| error.to_string())?;
                 let micros = |time: Duration| time.as_secs_f64() * 1e6;
-                medians[usize::from(is_after_work)] = micros(times[times.len() / 2]);
                 // The time that one in a thousand exceeds.
                 let rare = times[times.len() - 1 - times.len() / 1000];
                 let _ = write!(
@@ -87,22 +84,9 @@ pub fn chapter(effort: Effort) -> Result<(String, String), String> {
                 );
             }
             page.push('\n');
-            if name == "per_link" {
-                let [alone, after_work] = medians;
-                let triangles = mesh.num_triangles();
-                slowed.push(format!(
-                    "{after_work:.1} us instead of {alone:.1} at {triangles} triangles"
-                ));
-            }
         }
     }
-    let sentence = format!(
-        "These queries follow one another. Where {} MB of other data pass through the caches between two of them, a query \
-         for all links takes {}, beside a wall that is 2 mm away.",
-        OTHER_WORK >> 20,
-        slowed.join(" and ")
-    );
-    Ok((page, sentence))
+    Ok(page)
 }
 
 /// The sorted times of one query a tick along a slow motion, until `enough` has passed.

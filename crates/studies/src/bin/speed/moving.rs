@@ -14,7 +14,8 @@ pub fn chapter(effort: Effort) -> Result<String, String> {
     let mut page = String::from(
         "## Moving anatomy\n\n\
          A pulsating ventricle: every vertex moves in every frame, then one per-link query of 30 links with fitted \
-         caps, on all cores. Milliseconds a frame; a search that is built anew includes neither parry's mesh nor its hierarchy.\n\n\
+         caps, on all cores. Milliseconds per frame; the time of a search that is built anew excludes parry's mesh and \
+         its hierarchy.\n\n\
          | triangles | refit and search | exhaustive f32 | exhaustive f64 | build and search |\n|---|---|---|---|---|\n",
     );
     let [_, (_, robot), _] = models().map_err(|error| error.to_string())?;

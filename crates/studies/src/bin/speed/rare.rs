@@ -12,11 +12,11 @@ use parry_continuum::proximity::{BvhSearch, Proximity, ProximityError};
 use std::fmt::Write;
 use std::hint::black_box;
 
-/// How many shapes are asked about.
+/// Number of shapes.
 const SHAPES: usize = 100_000;
 
-/// How often each: what counts is the least time, and of it what the thread itself computed, so
-/// that whatever else the machine does is left out.
+/// Repetitions per shape. The least processor time of the thread counts, which excludes other
+/// processes.
 const ROUNDS: usize = 3;
 
 /// Contacts up to so far away, mm.
@@ -28,21 +28,21 @@ const MOST: f64 = 20.0;
 /// Between these marks the page has the chapter.
 pub const MARK: &str = "rare";
 
-/// What is asked.
+/// The query.
 const QUERIES: [&str; 3] = ["clears", "minimum", "within"];
 
 /// The chapter of the page, without its marks.
 pub fn chapter(effort: Effort, written: &str, goals: &mut Goals) -> Result<String, String> {
-    // A rehearsal has no time for so many.
+    // A rehearsal takes fewer.
     let shapes = if effort.enough.is_zero() { SHAPES / 100 } else { SHAPES };
     let mut page = format!(
         "## The worst of many\n\n\
-         {written}. {shapes} random shapes of three tubes, 30 links each, in the cavity: each new, without any memory of the last \
-         one, and asked about {ROUNDS} times, of which the least counts, in time that the thread computed, the clock included. `prepare` was called before, so that no question \
-         builds anything. Shapes that touch the wall and those that are free apart; `clears` with margin 0, `within` with \
+         {written}. {shapes} random shapes of three tubes, 30 links each, in the cavity: each new, without a warm start, and \
+         queried {ROUNDS} times. The least processor time of the thread counts, the clock included. `prepare` was called \
+         before, so that no query builds anything. Touching and free shapes are separate; `clears` with margin 0, `within` with \
          {MARGIN} mm. Microseconds: the median, what one shape in a thousand exceeds, and the worst; and the worst over the \
-         median. Most free shapes are settled by one look at a body around the whole robot, so that the median of `clears` and \
-         `within` is that look. The worst of them are as near to the wall as those that touch, and cost as much.\n\n\
+         median. Most free shapes are decided by one test of a body around the whole robot, so the median of `clears` \
+         and `within` is that test. The worst free shapes are as near to the wall as touching ones, and cost as much.\n\n\
          | query | triangles | touching | p50 | p99.9 | worst | worst / p50 | free | p50 | p99.9 | worst | worst / p50 |\n\
          |---|---|---|---|---|---|---|---|---|---|---|---|\n"
     );
@@ -83,7 +83,7 @@ pub fn chapter(effort: Effort, written: &str, goals: &mut Goals) -> Result<Strin
     Ok(page)
 }
 
-/// What is known of a shape.
+/// The times of a shape, and whether it touches.
 #[derive(Clone)]
 struct Shape {
     is_free: bool,

@@ -27,15 +27,16 @@ const BESIDE: f64 = 4.0;
 pub fn chapter(effort: Effort, written: &str) -> Result<String, String> {
     let mut page = format!(
         "## Robots beside robots\n\n\
-         {written}. Two bent robots of 30 links with flat tips, the second of which moves past the first in {PLACES} places \
-         and never touches it; and a coil of three turns beside itself. Microseconds a query, in bursts. Searches and loops over \
-         all pairs find the same distances, to rounding; parry's are those of capsules.\n\n\
-         - Every link: the distance of each pair, bounded by the least so far or by the margin: the axes' distance less both radii \
-         spares what it can.\n\
+         {written}. Two bent robots of 30 links with flat tips: the second moves past the first in {PLACES} places \
+         and never touches it. And a coil of three turns beside itself. Microseconds per query, in bursts. Searches and \
+         loops over all pairs find the same distances, within rounding; parry's distances are for capsules.\n\n\
+         - Every link: the distance of each pair, bounded by the least so far or by the margin. The axes' distance \
+         less both radii prunes pairs.\n\
          - Every segment: the distance of the axes less both radii and no more, for all pairs.\n\
          - parry, capsules: `closest_points` of each pair, never farther than the least so far or the margin. parry, compounds: \
          `distance` of two compounds of capsules.\n\
-         - Of a robot and itself the loops leave out neighbours alone, and find what is near for being near along the robot.\n\n\
+         - For a robot and itself the loops leave out only neighbours, and find parts that are near because they are \
+         near along the robot.\n\n\
          | robots | question | goal | cold | in a loop | every link | every segment | parry, capsules | parry, compounds |\n\
          |---|---|---|---|---|---|---|---|---|\n"
     );
@@ -119,7 +120,7 @@ fn compound(capsules: &[Capsule]) -> Compound {
 
 pub type Job<'a> = Box<dyn FnMut() -> Result<(), String> + 'a>;
 
-/// A job that asks about every place of a robot.
+/// A job that queries every place of a robot.
 pub fn at_all<'a>(
     poses: &'a [Pose],
     mut ask: impl FnMut(&Pose) -> Result<f64, String> + 'a,
@@ -132,7 +133,7 @@ pub fn at_all<'a>(
     })
 }
 
-/// Writes a row: the median times of the jobs, each of `count` questions; what is not there has no
+/// Writes a row: the median times of the jobs, each of `count` questions; a missing job has no
 /// time.
 fn row(
     effort: Effort,

@@ -80,7 +80,7 @@ fn robot() -> Result<Chain, String> {
     Chain::from_centreline(&points, &[1.0; 30]).map_err(text)
 }
 
-/// One question, asked of the scene and of the merged mesh.
+/// One query of the scene and of the merged mesh.
 type Ask<'a> = Box<dyn FnMut(&Pose) -> Result<f64, String> + 'a>;
 
 fn rows(

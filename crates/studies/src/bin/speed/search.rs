@@ -82,9 +82,9 @@ pub fn chapter(effort: Effort, goals: &mut Goals) -> Result<(String, Vec<String>
     let mut page = String::from(
         "## Search\n\n\
          A bumpy cavity of about 100 mm with a robot of 30 links (1.2, 0.9 and 0.5 mm) inside, 60 moving frames: near the \
-         wall, about 2 mm away from it, and far, about 19 mm. Microseconds a query, and how many times faster than parry \
-         that is. The first time the engine has no answers to start from; again it has those of the frame before. Queries in \
-         bursts of 60.\n\n\
+         wall, about 2 mm away from it, and far, about 19 mm. Microseconds per query, and how many times faster than \
+         parry. First time: without a warm start. Again: with the answers of the previous frame. Queries in bursts of \
+         60.\n\n\
          - All links (`per_link`): parry's `distance(Cylinder, TriMesh)` for each of them.\n\
          - The closest link (`minimum`): parry's `closest_points` for each of them, never farther than the nearest so far.\n\
          - Enough room (`clears`), with half the clearance as margin: parry's `closest_points` within the margin for each \

@@ -41,7 +41,7 @@ impl<T: Number> Local<T> {
     }
 }
 
-/// A route, and what is asked of it.
+/// A route, and its problems.
 struct Route<T> {
     name: &'static str,
     distance: fn(&DiscProblem) -> f64,

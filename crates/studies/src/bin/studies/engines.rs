@@ -19,7 +19,7 @@ use std::fmt::Write;
 use std::path::Path;
 use std::time::Instant;
 
-/// An engine is run at most so often, and not again once it has taken so many seconds.
+/// The most runs of an engine, and the seconds after which it is not run again.
 const ROUNDS: usize = 5;
 const ENOUGH: f64 = 1.0;
 
@@ -126,7 +126,7 @@ pub fn chapter(largest: usize, out: &Path) -> Result<String, String> {
     let mut sizes = Vec::new();
     let mut mesh = ventricle::mesh(ventricle::DEFAULT_TRIANGLES);
     loop {
-        // The largest is a finer one of which the shuffle leaves a part.
+        // The largest is a part of a finer, shuffled mesh.
         let last = mesh.1.len() >= largest;
         if last || mesh.1.len() < 200_000 {
             let (vertices, mut indices) = shuffled(mesh.clone(), 1);
@@ -144,7 +144,7 @@ pub fn chapter(largest: usize, out: &Path) -> Result<String, String> {
     }
     let peak = [peak::single(), peak::double()];
     let text = |error: std::fmt::Error| error.to_string();
-    // Double precision goes to the files; the findings speak of it too.
+    // Double precision goes to the files, and into the findings.
     let shorten = |table: String, file: &str| {
         long_table::write(&table, &out.join(file), |cells| cells[0] == PRECISIONS[0])
     };

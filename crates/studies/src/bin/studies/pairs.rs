@@ -9,7 +9,7 @@ use parry_continuum::distance::{Scalar, Vec3};
 use std::fmt::Write;
 use std::hint::black_box;
 
-/// Queries in memory: so many that no branch predictor learns them by heart.
+/// Queries in memory: too many for a branch predictor to learn.
 const POOL: usize = 100_000;
 /// Queries a turn.
 const BATCH: usize = 10_000;

@@ -11,8 +11,8 @@ const ROUNDS: usize = 1_000_000;
 
 macro_rules! peak {
     ($name:ident, $work:ident, $vector:ident) => {
-        /// Operations a second of one thread in this precision: fused multiply-adds of the widest vectors, two
-        /// operations each, none waiting for another. The best of several measurements.
+        /// Operations per second of one thread in this precision: independent fused multiply-adds
+        /// of the widest vectors, two operations each. The best of several measurements.
         pub fn $name() -> f64 {
             let level = Level::new();
             let mut best = 0.0_f64;

@@ -9,7 +9,7 @@ use std::fmt::Write;
 use std::hint::black_box;
 use std::path::Path;
 
-/// On one thread the finders take turns with so many parts of the polynomials, each so small a
+/// On one thread the finders take turns with this many parts of the polynomials, each this small a
 /// share of all.
 const TURNS: usize = 20;
 const SHARE: usize = 200;

@@ -10,11 +10,11 @@ use polynomial_roots::{Companion, RootFinder, RootsError};
 use std::fmt::Write;
 use std::hint::black_box;
 
-/// The routes take turns with so many parts of the polynomials.
+/// The routes take turns with this many parts of the polynomials.
 const TURNS: usize = 20;
 const ROUTES: [&str; 3] = ["ours", "nalgebra", "nalgebra, balanced"];
 const KINDS: [&str; 2] = ["in [-100, 100]", "1e-6 to 1e6"];
-/// Iterations after which nalgebra gives up: far more than it takes where it converges.
+/// Iterations after which nalgebra gives up: far more than a convergent run needs.
 const PATIENCE: usize = 10_000;
 /// Of a root that solves its polynomial to rounding, in units of u.
 const SOLVED: f64 = 100.0;

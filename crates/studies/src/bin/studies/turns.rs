@@ -1,11 +1,11 @@
-//! Times of jobs that take turns, so that whatever slows the machine slows them alike.
+//! Times of jobs that take turns, so that other load slows all of them alike.
 
 use std::time::Instant;
 
-/// A job, which is told whose turn it is.
+/// A job; its argument is the number of the turn.
 pub type Job<'a> = &'a mut dyn FnMut(usize);
 
-/// The median time of each job in seconds, over so many turns.
+/// The median time of each job in seconds, over this many turns.
 pub fn in_turns<const N: usize>(turns: usize, mut jobs: [Job; N]) -> [f64; N] {
     let mut times = [const { Vec::new() }; N];
     for turn in 0..turns {

@@ -12,7 +12,7 @@ use parry_continuum::{Chain, simplify};
 use std::hint::black_box;
 use std::time::Instant;
 
-/// How often each shape is asked for; its time is the median.
+/// Repetitions per shape; its time is the median.
 const TURNS: usize = 3;
 
 /// Median seconds over the shapes.

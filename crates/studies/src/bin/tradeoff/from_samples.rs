@@ -18,11 +18,11 @@ use std::time::Instant;
 /// Tolerances that are compared, mm.
 const TOLERANCES: [Real; 4] = [1.0, 0.1, 0.01, 0.001];
 
-/// The margin that is asked for, and how near to it an answer may stay open, mm.
+/// The margin, and the resolution of the answer, mm.
 const MARGIN: Real = 0.5;
 const RESOLUTION: Real = 0.001;
 
-/// How often each shape is asked for; its time is the median.
+/// Repetitions per shape; its time is the median.
 const TURNS: usize = 5;
 
 /// How many shapes of each kind are timed.
@@ -80,8 +80,8 @@ pub struct FromSamples {
 /// A way from a shape to an answer.
 type Way<'a> = Box<dyn FnMut(&Shape) -> Result<(), String> + 'a>;
 
-/// The chapter: shapes that are free and that touch apart, and the mesh as it is and divided in
-/// four twice. And what it says of the mesh as it is. Its long table goes to `out`.
+/// The chapter, and its rows for the undivided mesh. Free and touching shapes are separate, and so
+/// are the mesh and the mesh divided in four twice. The long table goes to `out`.
 pub fn chapter(
     robot: &Robot,
     [free, touching]: [&[Joints]; 2],

@@ -48,7 +48,7 @@ pub fn combinations(times: &Times, errors: &[[Errors; Model::ALL.len()]]) -> Vec
     all
 }
 
-/// Those of the combinations that no other beats in both, from the fastest to the most accurate.
+/// The Pareto front of the combinations, from the fastest to the most accurate.
 pub fn front(all: &[Combination]) -> Vec<Combination> {
     let mut sorted = all.to_vec();
     sorted.sort_by(|a, b| a.time.total_cmp(&b.time).then(a.error.total_cmp(&b.error)));

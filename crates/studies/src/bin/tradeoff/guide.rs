@@ -8,7 +8,7 @@ use crate::subject::Model;
 use continuum_studies::machine;
 use std::fmt::Write;
 
-/// The errors that are asked for, mm.
+/// The errors of the table, mm.
 const ERRORS: [f64; 6] = [0.003, 0.01, 0.03, 0.1, 0.3, 1.0];
 
 /// What the guide is made of.
@@ -32,20 +32,22 @@ pub fn text(facts: &Facts) -> String {
         all.iter().find(same).map_or(f64::NAN, |one| one.time)
     };
     let again = time(Model::Modified, "search, again");
+    let same = |one: &&Combination| one.model == Model::Modified && one.tolerance == 0.1;
+    let worst_of_links = all.iter().find(same).map_or(f64::NAN, |one| one.error);
     let simplifying = times.building.iter().map(|one| one.simplify * 1e6);
     let (quick, slow) =
         simplifying.fold((f64::INFINITY, 0.0_f64), |(low, high), us| (low.min(us), high.max(us)));
     let most = 100.0 * forbidden.count as f64 / forbidden.of.max(1) as f64;
     format!(
-        "**Take a `Tube`, and ask `clearance` or `clears_tube` for the error that you can bear.** The bounds hold for your \
+        "**Take a `Tube`, and call `clearance` or `clears_tube` with the error that you can bear.** The bounds hold for your \
          curve, and the larger the error, the less the query does.\n\n\
          Measured by `{command}` on {}: a concentric tube robot of radius 1.25 to 0.5 mm in a ventricle of {} triangles. Times \
          from about 270 samples of a new shape to its clearance, on one thread:\n\n\
          {}\n\
          Links instead of a curve suit parry, rapier and robots that are made of rigid parts:\n\n\
          - The links decide the error, the engine only the time. `docs/TRADEOFF.md` has a table of links for an \
-         error. Within 0.1 mm a query takes {:.1} us in a control loop. `Exhaustive::<f32>` takes {:.0} times as long, and \
-         parry's cylinders {:.0} times.\n\
+         error. Links within 0.1 mm of the curve err by at most {} mm, and a query takes {:.1} us in a control loop. \
+         `Exhaustive::<f32>` takes {:.0} times as long, and parry's cylinders {:.0} times.\n\
          - The flat face of a chain is perpendicular to its last link, not to the curve. In a fine chain that is the largest \
          error. Let links end 0.3 and 0.01 mm before each face, or take `stations`, which does that.\n\
          - To be on the safe side, ask `clears` with the worst error added to the margin.\n\
@@ -55,6 +57,7 @@ pub fn text(facts: &Facts) -> String {
         machine::description(),
         from_samples.first().map_or(0, |row| row.triangles),
         samples_table(from_samples),
+        length(worst_of_links),
         again * 1e6,
         time(Model::Modified, "exhaustive, f32") / again,
         time(Model::ParryCylinder, "parry's search") / again,

@@ -77,7 +77,7 @@ pub fn chapter(
          tubes' ends are those drawn. The same angles at the base: motors turn the tubes there. The same angles at the \
          ends: as if the angles there were measured. Differences are in magnitude and in mm, over the shapes that are \
          free with both. The last column: free with one and touching the wall with the other. The longest shapes twist \
-         most, and touch the wall whatever the model: there the tip is off by up to {} mm. Where the base is \
+         most, and touch the wall in every model: there the tip is off by up to {} mm. Where the base is \
          nearest nothing is off but capsules, hence the small medians.\n\n\
          | what is left out | tip off by: median | worst | clearance off by: median | 95 % below | worst | decided otherwise |\n\
          |---|---|---|---|---|---|---|\n",

@@ -1,4 +1,4 @@
-//! What it takes to prove a motion, beside one bound for the whole robot and beside steps.
+//! The cost of proving a motion, beside one bound for the whole robot and beside steps.
 
 use crate::statistics::{Share, quantile};
 use crate::ways::text;
@@ -18,7 +18,7 @@ use std::time::Instant;
 /// What encloses the chapter in the page.
 pub const MARK: &str = "motions";
 
-/// How far the tips move, and the margins that are asked for, mm.
+/// The motions of the tips, and the margins, mm.
 const LENGTHS: [Real; 4] = [1.0, 2.0, 5.0, 10.0];
 const MARGINS: [Real; 2] = [0.0, 0.5];
 
@@ -104,9 +104,10 @@ fn by_moving_walls(
     Ok(verdict(search.clears_motion_while(to, motion, margin, RESOLUTION).map_err(text)?.decision))
 }
 
-/// By one bound for the whole robot: its clearance in the middle of an interval tells for how long
-/// before and after nothing can come nearer than the margin, if all of it moves as fast as its
-/// fastest point. What is left is halved. (Conservative advancement, to both sides.)
+/// By one bound for the whole robot. Its clearance in the middle of an interval bounds the time
+/// before and after in which nothing comes nearer than the margin, if all of it moves as fast as
+/// its fastest point. The remaining intervals are halved. (Conservative advancement, to both
+/// sides.)
 fn by_one_bound(
     search: &mut BvhSearch,
     motion: &Counted,
@@ -260,7 +261,7 @@ fn insertion(robot: &Robot, goal: &Joints) -> Result<Vec<JointMotion>, String> {
         .collect()
 }
 
-/// The chapter, with so many edges of each length.
+/// The chapter, with this many edges of each length.
 pub fn chapter(robot: &Robot, mesh: &TriMesh, base: &Pose, count: usize) -> Result<String, String> {
     let mut search = BvhSearch::new(mesh).map_err(text)?;
     let sections = robot.sections.len();
@@ -303,9 +304,9 @@ pub fn chapter(robot: &Robot, mesh: &TriMesh, base: &Pose, count: usize) -> Resu
         MARGINS[1],
     );
     let mut walls = format!(
-        "\nThe same edges while the wall moves too, in the same run: `clears_motion` with the wall at rest; `clears_motion_while` \
-         with a wall that stays where it is, which shows what the boxes for the end of the time cost; and with one of which each \
-         vertex moves along z, by {WALL_MOVES} mm at most, in a wave.\n\n\
+        "\nThe same edges while the wall moves too, in the same run: `clears_motion` with the wall at rest; \
+         `clears_motion_while` with a wall at rest, which shows the cost of the boxes for the end of the time; and \
+         with a wall whose vertices move along z, by {WALL_MOVES} mm at most, in a wave.\n\n\
          | tip moves | at rest: shapes | time | contacts | stays: shapes | time | contacts | moves: shapes | time | contacts | undecided |\n\
          |---|---|---|---|---|---|---|---|---|---|---|\n"
     );

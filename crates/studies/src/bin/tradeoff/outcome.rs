@@ -13,7 +13,7 @@ use rayon::prelude::*;
 /// The tolerances of `simplify` that are compared, mm.
 pub const TOLERANCES: [Real; 7] = [0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0];
 
-/// The tolerance at which parry is asked in metres too.
+/// The tolerance at which parry is also measured in metres.
 pub const METRES_AT: usize = 4;
 
 /// Spacing of the curve that is simplified, mm. Its chords stay within 0.1^2 x 0.052 / 8 = 7e-5 mm
@@ -23,7 +23,7 @@ pub const INPUT_SPACING: Real = 0.1;
 /// Largest spacing of the reference's stations, mm.
 pub const REFERENCE_SPACING: Real = 0.05;
 
-/// What is known of one shape.
+/// The truth and the answers of one shape.
 pub struct Outcome {
     /// The clearance of the true shape.
     pub truth: Real,
@@ -36,7 +36,7 @@ pub struct Outcome {
     pub metres: [Real; 2],
 }
 
-/// What is known of one shape at one tolerance.
+/// The answers of one shape at one tolerance.
 #[derive(Clone, Copy, Default)]
 pub struct AtTolerance {
     /// In the order of [`Model::ALL`].

@@ -57,27 +57,27 @@ pub fn page(facts: &Facts) -> String {
          face can stick out of the face by at most {} mm.\n\n\
          ## The trade\n\n\
          The query is `minimum`, the robot's clearance; it is asked for the first {timed} shapes that are free, on one \
-         thread. Times are medians over the shapes, the chain already built. *First time*: the engine has no answers \
-         to start from. *Again*: it has those of a shape a small step earlier (0.1 mm of each extension, 0.01 rad of each \
+         thread. Times are medians over the shapes, the chain already built. *First time*: without a warm start. \
+         *Again*: with the answers of a shape a small step earlier (0.1 mm of each extension, 0.01 rad of each \
          angle). The search works \
-         in f32 and the exhaustive engines in f32 or f64; all measure again in f64 what rounding leaves in question, so \
-         that precision costs time, not accuracy: here {}. parry's programs ask link after link (or \
-         sphere after sphere), each only for what is nearer than the clearance so far. *Error* is the model's clearance \
+         in f32 and the exhaustive engines in f32 or f64; all measure the candidates again in f64, so precision costs \
+         time, not accuracy: here {}. parry is queried link by link (or sphere by sphere), each within the clearance \
+         so far. *Error* is the model's clearance \
          less the true one, over all free shapes: positive is over, the unsafe side. The links stay within {SHOWN} mm, and the bounds of the *tube* (`clearance`) are \
          at most as far apart: the lower one counts; \
          [tradeoff_links.csv](tradeoff_links.csv) has all tolerances from {} to {} mm.\n\n{}\n{}\n\n\
          ![Error against time](tradeoff.svg)\n\n\
          The front of the picture:\n\n{}\n\
-         For an error that you can bear, the fastest of these that stays within it:\n\n{}\n\
+         For an error that you can bear, the fastest row that stays within it:\n\n{}\n\
          ### What geometry predicts\n\n\
          `simplify` promises that the links' axis and the curve are within the tolerance of each other, and an error on \
          the side of a tube is no larger. The ends add to it. A flat face follows the last link's direction, \
          which a chord of sagitta t turns by sqrt(2 t kappa) from the curve's: at a radius r the rim is out of place by r \
          sqrt(2 t kappa), here at most with r = {widest} mm and kappa = {CURVATURE} / mm. A capsule's end reaches r beyond a \
          flat face: its clearance falls short by up to r, at any tolerance.\n\n\
-         *Short ends*: at each face two links more, whose ends are 0.3 and 0.01 mm before it. The last link is so short that \
-         the face has the curve's direction. The link before it ends so near the face that its tilted end does not stick \
-         out. What is left is the tolerance and a few micrometres.\n\n{}\n\
+         *Short ends*: at each face two links more, whose ends are 0.3 and 0.01 mm before it. The last link is so \
+         short that the face has the curve's direction. The link before it ends so near the face that its tilted end \
+         does not stick out. The remaining error is the tolerance and a few micrometres.\n\n{}\n\
          ### Before the query\n\n\
          From a curve with a point every {INPUT_SPACING} mm to the links, and from the links to the chain (medians):\n\n{}",
         machine::description(),

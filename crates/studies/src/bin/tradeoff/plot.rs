@@ -162,7 +162,7 @@ fn shape(way: &str) -> Shape {
     }
 }
 
-/// Colours that most people can tell apart, whatever their eyes (Okabe and Ito).
+/// Colours that people with and without colour blindness can tell apart (Okabe and Ito).
 fn colour(model: Model) -> RGBColor {
     match model {
         Model::Tube => RGBColor(213, 94, 0),

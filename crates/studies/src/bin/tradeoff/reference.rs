@@ -10,7 +10,7 @@ use parry_continuum::parry::math::{Pose, Real};
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{BvhSearch, Proximity};
 
-/// Differences of clearances to those of the reference, the largest in magnitude, mm.
+/// The largest difference of clearances from the reference's, in magnitude, mm.
 pub struct Checked {
     /// With stations twice as close.
     pub halved: Real,

@@ -5,7 +5,7 @@ use continuum_demo::steer::Random;
 use parry_continuum::parry::math::{Real, Vector};
 use std::f64::consts::TAU;
 
-/// How far out a shape reaches at most: one of these shares of each section's length, each as
+/// The largest extension of a shape: one of these shares of each section's length, each equally
 /// likely.
 pub const REACHES: [Real; 3] = [0.15, 0.3, 0.6];
 
@@ -37,7 +37,7 @@ const AT_FACE: [Real; 2] = [0.01, 0.3];
 pub struct Stations {
     pub arc_lengths: Vec<Real>,
     pub radii: Vec<Real>,
-    /// The numbers of those that fix the directions of faces.
+    /// The indices of the samples that fix the directions of faces.
     pub at_faces: Vec<usize>,
 }
 
@@ -57,7 +57,7 @@ impl Stations {
         Self { arc_lengths, radii, at_faces: Vec::new() }
     }
 
-    /// Evenly, no further than `spacing` apart, and those that fix the directions of faces.
+    /// Even samples, at most `spacing` apart, and the samples that fix the directions of faces.
     pub fn even(robot: &Robot, joints: &Joints, spacing: Real) -> Self {
         let near = |extension: Real| AT_FACE.into_iter().filter(move |off| *off < 0.5 * extension);
         let mut stations = Self::of(robot, joints, |extension| {

@@ -1,4 +1,4 @@
-//! What a model wrongly forbids, and what it wrongly allows.
+//! The shapes that a model wrongly forbids or wrongly allows.
 
 use crate::outcome::{METRES_AT, Outcome, TOLERANCES};
 use crate::statistics::{Share, length};
@@ -36,8 +36,8 @@ pub fn chapter(outcomes: &[Outcome], out: &Path) -> Result<String, String> {
     );
     for margin in MARGINS {
         for model in Model::ALL {
-            // parry's answers are those of capsules and cylinders but for what GJK does, which has
-            // its own table.
+            // parry's answers equal those of capsules and cylinders up to the error of GJK, which
+            // has its own table.
             for tolerance in if Model::OURS.contains(&model) || model == Model::Tube {
                 &SHOWN[..]
             } else {
@@ -75,9 +75,9 @@ pub fn chapter(outcomes: &[Outcome], out: &Path) -> Result<String, String> {
 fn alone(outcomes: &[Outcome]) -> String {
     let mut page = String::from(
         "\n### Gaps alone, and GJK alone\n\n\
-         The rows above mix causes. Here two models have the same links, so that one thing differs: the gaps between \
+         The rows above mix causes. Here two models have the same links, so one thing differs: the gaps between \
          cylinders at the bends, or GJK in place of exact distances. Differences over all shapes, in mm. *Wrongly \
-         allowed*: of the shapes that touch the wall by the second of the two, those that the first calls free.\n\n\
+         allowed*: shapes that touch the wall in the second model and are free in the first.\n\n\
          | alone | within | most above | most below | wrongly allowed |\n|---|---|---|---|---|\n",
     );
     let mut row = |name: &str, tolerance: usize, pair: &dyn Fn(&Outcome) -> (f64, f64)| {

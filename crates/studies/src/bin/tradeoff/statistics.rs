@@ -29,7 +29,7 @@ impl Errors {
     }
 }
 
-/// A share of a sample: so many of so many.
+/// A share of a sample: `count` of `of`.
 #[derive(Clone, Copy, Default)]
 pub struct Share {
     pub count: usize,
@@ -78,7 +78,7 @@ fn percent(share: f64) -> String {
     }
 }
 
-/// A length in mm with two digits, and none where it is no more than rounding.
+/// A length in mm with two digits; 0 within rounding.
 pub fn length(mm: f64) -> String {
     match mm.abs() {
         size if size < 1e-12 => "0".into(),

@@ -7,7 +7,7 @@ use parry_continuum::parry::shape::{Capsule, Cylinder};
 use parry_continuum::proximity::BvhSearch;
 use parry_continuum::{Chain, RobotError, Tube, simplify};
 
-/// A model of the robot, and whose arithmetic asks for it.
+/// A model of the robot, and the library that computes with it.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Model {
     Capsule,
@@ -34,7 +34,7 @@ impl Model {
         Self::Tube,
     ];
 
-    /// Those of links by this crate.
+    /// The models of links by this crate.
     pub const OURS: [Self; 4] = [Self::Capsule, Self::Cylinder, Self::Modified, Self::Faced];
 
     /// Its place in [`Model::ALL`], and in [`Model::OURS`].

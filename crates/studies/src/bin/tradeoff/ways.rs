@@ -14,7 +14,7 @@ pub trait Clearance {
     fn prepare(&mut self) {}
 }
 
-/// A way to ask, by name, and the model that it asks for.
+/// A kind of query, by name, and its model.
 pub struct Way<'a> {
     pub model: Model,
     pub name: &'static str,

@@ -1,7 +1,8 @@
-// The two distances of the paper's Tables II and III by clamping and by a decision tree, squared: the same products,
-// so that they differ in branching alone. Neither is as exact as the functions of the narrow phase.
+// The two distances of the paper's Tables II and III by clamping and by a decision tree, squared,
+// with the same products, so that they differ in branching alone. Both are less exact than the
+// functions of the narrow phase.
 
-// Segment p0 p1 and segment q0 q1: what both forms compute first.
+// Segment p0 p1 and segment q0 q1: the first part of both forms.
 struct TwoSegments {
     along1: vec3<real>,
     along2: vec3<real>,
@@ -78,7 +79,8 @@ fn tree_follow(two: TwoSegments, v: real) -> real {
     return t / two.a;
 }
 
-// Point and triangle without a branch: the face where the foot lies inside, and the three edges by clamping.
+// Point and triangle without a branch: the face if the foot lies inside, and the three edges by
+// clamping.
 fn clamped_triangle(p: vec3<real>, a: vec3<real>, b: vec3<real>, c: vec3<real>) -> real {
     let ab = b - a;
     let ac = c - a;

@@ -1,4 +1,4 @@
-// One problem of a pair of the narrow phase: what all pairs take their part of.
+// One problem of a pair of the narrow phase: every pair uses a part of it.
 
 struct PairProblem {
     a: vec3<real>,

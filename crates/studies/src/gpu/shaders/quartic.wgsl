@@ -1,4 +1,5 @@
-// Segment against disc by the paper's quartic, recentred: the twin of RecentredQuartic in quartic.rs.
+// Segment against disc by the paper's quartic, recentred: the twin of RecentredQuartic in
+// quartic.rs.
 // `approximate` is the root finder, declared beside this text.
 
 // For the disc around the origin with a unit normal.
