@@ -58,9 +58,9 @@ fn add_answer(out: &mut Vec<f64>, found: &MotionAnswer) {
 fn add_between(out: &mut Vec<f64>, found: &[RobotProximity]) {
     for found in found {
         out.push(found.distance);
-        out.extend(found.on_first.to_array());
-        out.extend(found.on_second.to_array());
-        out.extend(found.arc_lengths);
+        out.extend(found.witness.on_first.to_array());
+        out.extend(found.witness.on_second.to_array());
+        out.extend(found.witness.arc_lengths);
     }
 }
 
@@ -116,7 +116,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             search.contacts_within(&chain, &pose, MARGIN, 0.0, &mut contacts)?;
             out.push(contacts.len() as f64);
             for contact in &contacts {
-                out.extend([contact.fraction, contact.distance, contact.depth.unwrap_or(f64::NAN)]);
+                out.extend([contact.fraction, contact.distance, contact.depth]);
                 out.extend(contact.normal.unwrap_or(Vector::NAN).to_array());
                 add_witness(&mut out, &contact.witness);
             }

@@ -43,9 +43,9 @@ def python(mesh: Mesh, points: Array, end: Array, radii: Array, pose: Array) -> 
         closest = mesh.minimum(points, radii, pose=pose, caps=caps)
         links = mesh.per_link(points, radii, pose=pose, caps=caps)
         proof = mesh.certify(points, radii, links, pose=pose, caps=caps)
-        inside = mesh.clears_inside(points, radii, MARGIN, pose=pose, caps=caps)
-        contacts = mesh.contacts_within(points, radii, MARGIN, pose=pose, caps=caps)
-        assert_array_equal(inside.clears, mesh.clears(points, radii, MARGIN, pose=pose, caps=caps))
+        inside = mesh.clears_inside(points, radii, margin=MARGIN, pose=pose, caps=caps)
+        contacts = mesh.contacts_within(points, radii, margin=MARGIN, pose=pose, caps=caps)
+        assert_array_equal(inside.clears, mesh.clears(points, radii, margin=MARGIN, pose=pose, caps=caps))
         assert_array_equal(closest.distance, mesh.distance(points, radii, pose=pose, caps=caps))
         for k, row in enumerate(out):
             row += [closest.distance[k], *witness(closest, k)]
@@ -60,10 +60,10 @@ def python(mesh: Mesh, points: Array, end: Array, radii: Array, pose: Array) -> 
                 row += [contacts.fraction[c], contacts.distance[c], contacts.depth[c], contacts.normal[c]]
                 row += witness(contacts, c)
     # Where a tube touches, which common point is named depends on what was asked before: each is asked of a mesh of its own.
-    many = mesh.clearance(points, radii, TOLERANCE, pose=pose)
-    motions = [mesh.clears_motion(points, end, radii, 0.0, TOLERANCE, caps=caps) for caps in ("fitted", "capsules")]
+    many = mesh.clearance(points, radii, tolerance=TOLERANCE, pose=pose)
+    motions = [mesh.clears_motion(points, end, radii, margin=0.0, resolution=TOLERANCE, caps=caps) for caps in ("fitted", "capsules")]
     for k, row in enumerate(out):
-        tube = fresh(mesh).clearance(points[k], radii[k], TOLERANCE, pose=pose[k])
+        tube = fresh(mesh).clearance(points[k], radii[k], tolerance=TOLERANCE, pose=pose[k])
         assert many.lower[k] <= tube.upper and tube.lower <= many.upper[k]
         row += [tube.lower, tube.upper, tube.resolved, tube.uncertainty, *witness(tube)]
         sections = [np.column_stack([[1, 1], 0.01 * shape[:2, :2]]) for shape in (points[k], end[k])]
@@ -73,7 +73,7 @@ def python(mesh: Mesh, points: Array, end: Array, radii: Array, pose: Array) -> 
         paths = np.stack([points[k], points[k] + [0.5, -0.25, 1.0]])
         for found in [
             *(fresh(mesh).clears_motion(motion, margin=0.0, resolution=TOLERANCE) for motion in (rigid, bending, based)),
-            fresh(mesh).clears_path(paths, radii[k], 0.1, MARGIN, TOLERANCE),
+            fresh(mesh).clears_path(paths, radii[k], 0.1, margin=MARGIN, resolution=TOLERANCE),
             fresh(mesh).clears_motion_while(0.9 * mesh.vertices, rigid, margin=0.0, resolution=TOLERANCE),
         ]:
             row += [found.interval, found.decision]
@@ -81,7 +81,7 @@ def python(mesh: Mesh, points: Array, end: Array, radii: Array, pose: Array) -> 
         segments = RobotPair().per_link(*two, pose_a=pose[k])
         has_length = segments.segments[:, 0] >= 0
         row += [np.column_stack([segments.distance, segments.on_first, segments.on_second, segments.arc_lengths])[has_length]]
-        places = RobotPair().contacts_within(*two, 4.0, pose_a=pose[k])
+        places = RobotPair().contacts_within(*two, margin=4.0, pose_a=pose[k])
         row += [len(places.distance)]
         row += [np.column_stack([places.distance, places.on_first, places.on_second, places.arc_lengths])]
         for motion in motions:
@@ -127,7 +127,7 @@ def test_one_is_as_many() -> None:
         # One radius and one pose for all.
         assert mesh.distance(p, 0.2, pose=t) == mesh.distance(points, 0.2, pose=t)[k]
         assert mesh.distance(p, r) == mesh.distance(points, r)[k]
-        one = mesh.contacts_within(p, r, 1.0, pose=t)
-        many = mesh.contacts_within(points, radii, 1.0, pose=pose)
+        one = mesh.contacts_within(p, r, margin=1.0, pose=t)
+        many = mesh.contacts_within(points, radii, margin=1.0, pose=pose)
         for a, b in zip(one[:9], many[:9]):
             assert_array_equal(a, b[many.offsets[k] : many.offsets[k + 1]])
