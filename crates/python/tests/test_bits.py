@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
 
-from parry_continuum import BendingMotion, Mesh, MovingBase, RigidMotion, RobotPair
+from parry_continuum import BendingMotion, ContinuumError, Mesh, MovingBase, RigidMotion, RobotPair, SelfQuery
 from shapes import Array, poses, robots, soup, sphere
 
 CRATE = Path(__file__).parent.parent
@@ -84,6 +84,16 @@ def python(mesh: Mesh, points: Array, end: Array, radii: Array, pose: Array) -> 
         places = RobotPair().contacts_within(*two, margin=4.0, pose_a=pose[k])
         row += [len(places.distance)]
         row += [np.column_stack([places.distance, places.on_first, places.on_second, places.arc_lengths])]
+        # There and back, 2 beside. Some joints at the turn are too sharp for the query.
+        try:
+            own = SelfQuery().minimum(np.concatenate([points[k], points[k, ::-1] + [2.0, 0, 0]]), radii[k, 0])
+        except ContinuumError as error:
+            assert error.kind == "joint_too_sharp"
+            row += [-1]
+        else:
+            row += [own.distance < np.inf]
+            if own.distance < np.inf:
+                row += [own.distance, own.on_first, own.on_second, own.arc_lengths]
         for motion in motions:
             row += [motion.interval[k], motion.decision[k]]
     return np.concatenate([np.ravel(np.asarray(n, float)) for row in out for n in row])
@@ -113,15 +123,15 @@ def test_one_is_as_many() -> None:
     radii = random.uniform(0.05, 0.3, (30, 11))
     for k, (p, r, t) in enumerate(zip(points, radii, pose)):
         for name, extra in [
-            ("distance", ()),
-            ("minimum", ()),
-            ("per_link", ()),
-            ("clears", (1.0,)),
-            ("clears_inside", (1.0,)),
-            ("distance_and_gradient", ()),
+            ("distance", {}),
+            ("minimum", {}),
+            ("per_link", {}),
+            ("clears", {"margin": 1.0}),
+            ("clears_inside", {"margin": 1.0}),
+            ("distance_and_gradient", {}),
         ]:
-            one = getattr(mesh, name)(p, r, *extra, pose=t)
-            many = getattr(mesh, name)(points, radii, *extra, pose=pose)
+            one = getattr(mesh, name)(p, r, **extra, pose=t)
+            many = getattr(mesh, name)(points, radii, **extra, pose=pose)
             for a, b in zip(one if isinstance(one, tuple) else [one], many if isinstance(many, tuple) else [many]):
                 assert_array_equal(a, b[k])
         # One radius and one pose for all.

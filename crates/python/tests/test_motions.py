@@ -156,7 +156,7 @@ def test_linear_motions_are_those_of_shapes() -> None:
         motion = LinearMotion(start, end, RADIUS, caps=caps)
         for ask in ("clears_motion", "time_of_contact"):
             found = getattr(MESH, ask)(motion, margin=0.1, resolution=0.01)
-            expected = getattr(MESH, ask)(start, end, RADIUS, 0.1, 0.01, caps=caps)
+            expected = getattr(MESH, ask)(start, end, RADIUS, margin=0.1, resolution=0.01, caps=caps)
             for field, fields in zip(found[:3], expected[:3]):
                 assert_array_equal(field, fields)
         assert_array_equal(
