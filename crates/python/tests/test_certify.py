@@ -78,7 +78,7 @@ def test_answers_for_another_second_robot(second: Any, radii: Any, pose: Any) ->
 
 def test_a_mesh_that_has_moved() -> None:
     mesh = Mesh(*sphere())
-    mesh.move(mesh.vertices * 1.001)
+    mesh.set_vertices(mesh.vertices * 1.001)
     with pytest.raises(ContinuumError, match="does not fit"):
         mesh.certify(MANY, 0.2, ANSWER, pose=POSES)
 

@@ -105,7 +105,7 @@ def test_a_copy_shares_its_meshes_and_a_deep_copy_does_not() -> None:
     scene.add("wall", mesh, margin=0.0)
     shared, own = copy.copy(scene), copy.deepcopy(scene)
     before = scene.tightest([(ONE, 0.1)]).slack
-    mesh.move(vertices * 2)
+    mesh.set_vertices(vertices * 2)
     after = scene.tightest([(ONE, 0.1)]).slack
     assert after > before
     assert (shared.tightest([(ONE, 0.1)]).slack, own.tightest([(ONE, 0.1)]).slack) == (after, before)

@@ -246,7 +246,7 @@ def test_own_exceptions_are_not_swallowed(error: BaseException) -> None:
         lambda: SCENE.clears([(own, 0.1)]),
         lambda: Mesh(own),
         lambda: Mesh(VERTICES, own),
-        lambda: MESH.move(own),
+        lambda: MESH.set_vertices(own),
         lambda: LinearMotion(own, ONE, 0.1),
     ):
         with pytest.raises(type(error)) as raised:

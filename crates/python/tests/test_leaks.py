@@ -33,7 +33,7 @@ def refused() -> None:
         (lambda: MESH.clearance(ROBOT, 0.1, tolerance=0.1), 50_000),
         (lambda: MESH.distance_and_gradient(ROBOT, 0.1), 10_000),
         (lambda: MESH.distance(MANY, 0.1), 10_000),
-        (lambda: MESH.move(MESH.vertices), 5_000),
+        (lambda: MESH.set_vertices(MESH.vertices), 5_000),
         (lambda: Mesh(MESH), 5_000),
         (lambda: PAIR.minimum(ROBOT, 0.1, ROBOT + 3, 0.1), 30_000),
         (lambda: PAIR.contacts_within(ROBOT, 0.1, ROBOT + 3, 0.1, margin=9.0), 30_000),

@@ -133,7 +133,7 @@ def test_five_thousand_inputs() -> None:
             lambda: scene(mesh).contacts_within([(given["points"], given["radii"], given["pose"]), (robot, 0.1)], reach=number),
             lambda: scene(mesh).per_structure([(given["points"], given["radii"]), (robot, 0.1)]),
             lambda: mesh.side(given["points"]),
-            lambda: Mesh(mesh.vertices, mesh.faces).move(spoilt(random, mesh.vertices)),
+            lambda: Mesh(mesh.vertices, mesh.faces).set_vertices(spoilt(random, mesh.vertices)),
             lambda: Mesh(mesh.vertices, spoilt(random, faces)),
             lambda: Mesh(spoilt(random, mesh.vertices), random.integers(-3, 400, (5, 3))),
             lambda: simplify(tolerance=number, **plain),

@@ -63,7 +63,7 @@ ASK = {
     "end": [lambda: MESH.clears_motion(MANY, POINTS, 0.1, margin=0.1, resolution=0.1)],
     "shapes": [lambda: MESH.clears_path(POINTS, 0.1, 0.1, margin=0.1, resolution=0.1)],
     "tangents": [lambda: MESH.clearance(MANY, 0.1, tolerance=0.1, tangents=POINTS)],
-    "vertices": [lambda: Mesh(masked(VERTICES), FACES), lambda: MESH.move(masked(VERTICES))],
+    "vertices": [lambda: Mesh(masked(VERTICES), FACES), lambda: MESH.set_vertices(masked(VERTICES))],
     "faces": [lambda: Mesh(VERTICES, masked(FACES)), lambda: Mesh(VERTICES, np.ma.masked_array(FACES))],
     "to": [lambda: MESH.clears_motion_while(masked(VERTICES), MANY, MANY, 0.1, margin=0.1, resolution=0.1)],
     "start_pose": [lambda: RigidMotion(MANY, 0.1, masked(POSES), POSES)],

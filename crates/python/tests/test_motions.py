@@ -251,7 +251,7 @@ def test_meshes_that_move_meanwhile() -> None:
     step = np.linalg.norm(to - vertices, axis=1).max() / 99 + np.linalg.norm(end - start, axis=-1).max() / 99
     moved, least = Mesh(mesh), np.full(12, np.inf)
     for t in np.linspace(0, 1, 100):
-        moved.move((1 - t) * vertices + t * to)
+        moved.set_vertices((1 - t) * vertices + t * to)
         least = np.minimum(least, moved.distance((1 - t) * start + t * end, RADIUS, caps="capsules"))
     assert (least > 0.1).sum() > 3
     for sign in (-1, 1):

@@ -39,7 +39,7 @@ def answers(mesh: Mesh) -> list[Array]:
 
 def agree(mesh: Mesh, expected: list[Array]) -> bool:
     found = answers(mesh)
-    mesh.move(VERTICES + 1)
+    mesh.set_vertices(VERTICES + 1)
     return all(map(np.array_equal, found, expected)) and np.array_equal(mesh.distance(ROBOTS, 0.1), expected[-1])
 
 
@@ -106,7 +106,7 @@ def test_forks_while_other_threads_ask() -> None:
         while not is_over.is_set():
             fresh = Mesh(VERTICES, FACES)  # with all that is to be built
             meshes.append(fresh)
-            fresh.move(VERTICES)
+            fresh.set_vertices(VERTICES)
             del meshes[:-3]
 
     threads = [threading.Thread(target=work) for work in (ask, ask, move)]

@@ -128,7 +128,7 @@ def test_meshes_move() -> None:
     mesh, scene = Mesh(vertices, faces), Scene()
     scene.add("wall", mesh, margin=0.5)
     before = scene.tightest([(A, 0.1)]).slack
-    mesh.move(vertices * 2)
+    mesh.set_vertices(vertices * 2)
     assert_array_equal(scene.tightest([(A, 0.1)]).slack, mesh.distance(A, 0.1) - 0.5)
     assert (scene.tightest([(A, 0.1)]).slack > before).all()
 

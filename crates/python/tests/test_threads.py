@@ -69,7 +69,7 @@ def test_a_batch_sees_one_mesh() -> None:
         turn = 0
         while not is_over.is_set():
             turn += 1
-            mesh.move(places[turn % 2])
+            mesh.set_vertices(places[turn % 2])
 
     mover = threading.Thread(target=move)
     mover.start()
@@ -88,7 +88,7 @@ def test_a_batch_sees_one_mesh() -> None:
 def test_what_moved_is_seen_at_once() -> None:
     mesh = Mesh(VERTICES, FACES)
     for shift in range(5):
-        mesh.move(VERTICES + [shift, 0, 0])
+        mesh.set_vertices(VERTICES + [shift, 0, 0])
         assert_array_equal(mesh.distance(ROBOTS, 0.1), Mesh(VERTICES + [shift, 0, 0], FACES).distance(ROBOTS, 0.1))
 
 

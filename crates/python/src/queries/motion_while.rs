@@ -32,7 +32,7 @@ impl Mesh {
     /// place in the same time: an organ that breathes, a registration that is corrected, a step of a simulation of tissue.
     ///
     /// With `start`, `end` and `radii`, the robot's points move straight and evenly. A `Motion` after
-    /// `to` is any other motion. A robot at rest is a `RigidMotion` from a pose to the same pose. The mesh stays where it was; `move` moves it. Each motion goes once through all triangles.
+    /// `to` is any other motion. A robot at rest is a `RigidMotion` from a pose to the same pose. The mesh stays where it was; `set_vertices` moves it. Each motion goes once through all triangles.
     ///
     /// Parameters
     /// ----------
