@@ -109,10 +109,10 @@ def test_errors_are_sent() -> None:
 def test_fewer_points() -> None:
     straight = np.linspace([0, 0, 0], [0, 0, 9], 30)
     for fewer in (simplify, stations):
-        points, radii = fewer(straight, 0.5, 0.01)
+        points, radii = fewer(straight, 0.5, tolerance=0.01)
         assert_array_equal(points, straight[[0, -1]])
         assert radii.tolist() == [0.5]
         with pytest.raises(ContinuumError):
-            fewer(straight, 0.5, -1.0)
+            fewer(straight, 0.5, tolerance=-1.0)
         with pytest.raises(ContinuumError):
-            fewer(straight[None], 0.5, 0.01)
+            fewer(straight[None], 0.5, tolerance=0.01)

@@ -1,6 +1,6 @@
 //! Decisions about two robots that move at the same time.
 
-use super::{Pairs, RobotPair, Session};
+use super::{RobotPair, Session};
 use crate::input::of;
 use crate::motions::{Motion, MotionPair, Moving};
 use crate::output::{
