@@ -7,8 +7,7 @@ import time
 import numpy as np
 from ways import turned
 
-import parry_continuum
-from parry_continuum import RobotPair
+from parry_continuum import RobotPair, SelfQuery
 
 ENOUGH = 0.15  # seconds of each question in each round
 ROUNDS = 3
@@ -163,15 +162,21 @@ def two_robots(peer_types, offset):
     def own(name, minimum, clears, robots=given):
         taken, found = timed(lambda pose: minimum(*robots, pose_b=pose, caps="capsules").distance, poses)
         margin = found.min() / 2
-        kept, clear = timed(lambda pose: clears(*robots, margin, pose_b=pose, caps="capsules"), poses)
+        kept, clear = timed(lambda pose: clears(*robots, margin=margin, pose_b=pose, caps="capsules"), poses)
         assert clear.all()
         rows.append((name, taken, kept, "", ""))
         return found, margin
 
-    exact, margin = own("**`between`**, **`clears_between`**", parry_continuum.between, parry_continuum.clears_between)
-    own("**`RobotPair`**, which remembers", pair.minimum, pair.clears)
+    def new_minimum(*robots, **more):
+        return RobotPair().minimum(*robots, **more)
+
+    def new_clears(*robots, **more):
+        return RobotPair().clears(*robots, **more)
+
+    exact, margin = own("**`RobotPair`**, a new one for each query", new_minimum, new_clears)
+    own("**`RobotPair`**, the same for all queries", pair.minimum, pair.clears)
     short = (a[0][:2], a[1], b[0][:2], b[1])
-    own("`between` of one link and one: what a call costs", parry_continuum.between, parry_continuum.clears_between, short)
+    own("a new `RobotPair`, one link and one: what a call costs", new_minimum, new_clears, short)
 
     middles = (b[0][1:] + b[0][:-1]) / 2
     for make in peer_types:
@@ -222,14 +227,14 @@ def one_robot(peer_types, count):
     """Rows of the table of a coil: the name and the times of both questions."""
     robot = coil(count)
     once = range(5)
-    pair = RobotPair()
+    query = SelfQuery()
     rows = []
-    for name, minimum, clears in [
-        ("**`self_minimum`**, **`self_clears`**", parry_continuum.self_minimum, parry_continuum.self_clears),
-        ("**`RobotPair`**, which remembers", pair.self_minimum, pair.self_clears),
+    for name, query_of in [
+        ("**`SelfQuery`**, a new one for each query", SelfQuery),
+        ("**`SelfQuery`**, the same for all queries", lambda: query),
     ]:
-        taken = timed(lambda _, ask=minimum: ask(*robot, caps="capsules").distance, once)[0]
-        kept = timed(lambda _, ask=clears: ask(*robot, 1.0, caps="capsules"), once)[0]
+        taken = timed(lambda _, of=query_of: of().minimum(*robot, caps="capsules").distance, once)[0]
+        kept = timed(lambda _, of=query_of: of().clears(*robot, margin=1.0, caps="capsules"), once)[0]
         rows.append((name, taken, kept))
     for make in peer_types:
         peer = make()

@@ -8,6 +8,7 @@ counts little.
 """
 
 import collections
+import functools
 import importlib.metadata
 import importlib.util
 import itertools
@@ -85,9 +86,9 @@ def overhead(mesh, vertices, faces, shapes):
     radii = np.full(shapes.shape[1] - 1, RADIUS)
     asks = {
         "distance": (mesh.distance, radii),
-        "clears": (mesh.clears, radii, 1.0),
+        "clears": (functools.partial(mesh.clears, margin=1.0), radii),
         "per_link": (mesh.per_link, radii),
-        "within": (mesh.within, radii, 1.0),
+        "contacts_within": (functools.partial(mesh.contacts_within, margin=1.0), radii),
     }
     rust, python = {}, {}
     one_by_one = list(shapes)
@@ -118,7 +119,11 @@ def overhead(mesh, vertices, faces, shapes):
 def threads(mesh, shapes):
     """How many times as many robots two of Python's threads answer as one does, by the clock."""
     radii = np.full(shapes.shape[1] - 1, RADIUS)
-    asks = {"distance": (mesh.distance, radii), "per_link": (mesh.per_link, radii), "within": (mesh.within, radii, 1.0)}
+    asks = {
+        "distance": (mesh.distance, radii),
+        "per_link": (mesh.per_link, radii),
+        "contacts_within": (functools.partial(mesh.contacts_within, margin=1.0), radii),
+    }
     one_by_one = list(shapes)
     taken = {}
 

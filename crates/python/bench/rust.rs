@@ -100,6 +100,6 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
         Ok(())
     })?;
-    println!("within {one}");
+    println!("contacts_within {one}");
     Ok(())
 }

@@ -17,12 +17,12 @@ from parry_continuum import Decision, load
 def audit(mesh, points, radius, resolution):
     """A row for each leak: the step, its kind, the segment, the place on the wall, and how deep it is."""
     rows = []
-    contacts = mesh.contacts_within(points, radius, 0.0)
+    contacts = mesh.contacts_within(points, radius, margin=0.0)
     for step in np.flatnonzero(np.diff(contacts.offsets)):
         of_step = slice(*contacts.offsets[step : step + 2])
         deepest = of_step.start + np.argmin(contacts.depth[of_step])
         rows.append((step, "in the wall", contacts.segment[deepest], contacts.on_mesh[deepest], -contacts.depth[deepest]))
-    ways = mesh.clears_motion(points[:-1], points[1:], radius, 0.0, resolution)
+    ways = mesh.clears_motion(points[:-1], points[1:], radius, margin=0.0, resolution=resolution)
     is_free = np.diff(contacts.offsets) == 0
     jumps = (ways.decision == Decision.CONTACT) & is_free[:-1] & is_free[1:]
     for step in np.flatnonzero(jumps):

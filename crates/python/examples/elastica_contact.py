@@ -25,7 +25,7 @@ class MeshContact(ea.NoForces):
         self.mesh, self.stiffness, self.damping, self.margin = mesh, stiffness, damping, margin
 
     def apply_forces(self, system, time=0.0):
-        contacts = self.mesh.contacts_within(system.position_collection.T, system.radius, self.margin)
+        contacts = self.mesh.contacts_within(system.position_collection.T, system.radius, margin=self.margin)
         known = np.isfinite(contacts.normal[:, 0])
         if not known.any():
             return

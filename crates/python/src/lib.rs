@@ -28,10 +28,7 @@ mod _native {
         BendingMotion, LinearMotion, Motion, MotionPath, MovingBase, RigidMotion, verify_motion,
     };
     #[pymodule_export]
-    use super::queries::two_robots::{
-        RobotPair, between, clears_between, motion_self_clears, self_clears, self_minimum,
-        tube_self_clears,
-    };
+    use super::queries::two_robots::{RobotPair, SelfQuery};
     #[pymodule_export]
     use super::robots::{simplify, stations};
     #[pymodule_export]

@@ -19,7 +19,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// ``Mesh(vertices, faces)`` copies both. ``Mesh(other)`` takes a mesh of trimesh (or a scene), pyvista, meshio or Open3D, or what
 /// else has ``.vertices`` and ``.faces``. Lengths are in one unit of your choice, the same for mesh and robots. `load` reads a file.
 ///
-/// Any number of threads may ask one mesh at the same time: queries run without the GIL. `move` moves the vertices for all
+/// Any number of threads may ask one mesh at the same time: queries run without the GIL. `set_vertices` moves the vertices for all
 /// queries that begin later. A mesh can be copied and pickled.
 ///
 /// Parameters
@@ -287,10 +287,10 @@ impl Mesh {
     /// --------
     /// >>> from parry_continuum import Mesh
     /// >>> floor = Mesh([[-9, -9, 0], [9, -9, 0], [0, 9, 0]], [[0, 1, 2]])
-    /// >>> floor.move(floor.vertices + [0, 0, 1])
+    /// >>> floor.set_vertices(floor.vertices + [0, 0, 1])
     /// >>> floor.distance([[0, 0, 2], [1, 0, 2]], 0.5)
     /// 0.5
-    fn r#move(&self, vertices: &Bound<'_, PyAny>) -> PyResult<()> {
+    fn set_vertices(&self, vertices: &Bound<'_, PyAny>) -> PyResult<()> {
         let py = vertices.py();
         let vertices = vectors(rows(vertices, "vertices")?.points());
         let moved = Arc::new(self.engine(py).moved(py, &vertices)?);
@@ -301,7 +301,7 @@ impl Mesh {
 
     /// Builds now what a first question would build, so that none has to wait.
     ///
-    /// Call it after `move` too, where the first question after it must not take longer than others.
+    /// Call it after `set_vertices` too, where the first question after it must not take longer than others.
     fn prepare(&self, py: Python<'_>) -> PyResult<()> {
         alone(py, &self.engine(py), |session| session.search.prepare())
     }

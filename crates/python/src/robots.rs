@@ -38,10 +38,11 @@ type Fewer = fn(&[Vector], &[f64], f64) -> Result<(Vec<Vector>, Vec<f64>), Robot
 /// --------
 /// >>> import numpy as np
 /// >>> from parry_continuum import simplify
-/// >>> points, radii = simplify([[0, 0, 0], [0, 0, 1], [0, 0, 2], [1, 0, 2]], 0.1, 0.01)
+/// >>> points, radii = simplify([[0, 0, 0], [0, 0, 1], [0, 0, 2], [1, 0, 2]], 0.1, tolerance=0.01)
 /// >>> len(points)
 /// 3
 #[pyfunction]
+#[pyo3(signature = (points, radii, *, tolerance))]
 pub(crate) fn simplify<'py>(
     py: Python<'py>,
     points: &Bound<'py, PyAny>,
@@ -68,6 +69,7 @@ pub(crate) fn simplify<'py>(
 /// ContinuumError
 ///     The tolerance is negative or NaN, or the points are no robot.
 #[pyfunction]
+#[pyo3(signature = (points, radii, *, tolerance))]
 pub(crate) fn stations<'py>(
     py: Python<'py>,
     points: &Bound<'py, PyAny>,

@@ -7,8 +7,8 @@
 
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::proximity::{
-    BvhSearch, Certificate, Decision, MotionAnswer, Proximity, RobotPair, RobotProximity, Side,
-    Witness,
+    BvhSearch, Certificate, Decision, MotionAnswer, Proximity, RobotPair, RobotProximity,
+    SelfQuery, Side, Witness,
 };
 use parry_continuum::{
     BendingMotion, BendingSection, Chain, LinearMotion, MovingBase, RigidMotion, Tube,
@@ -58,9 +58,9 @@ fn add_answer(out: &mut Vec<f64>, found: &MotionAnswer) {
 fn add_between(out: &mut Vec<f64>, found: &[RobotProximity]) {
     for found in found {
         out.push(found.distance);
-        out.extend(found.on_first.to_array());
-        out.extend(found.on_second.to_array());
-        out.extend(found.arc_lengths);
+        out.extend(found.witness.on_first.to_array());
+        out.extend(found.witness.on_second.to_array());
+        out.extend(found.witness.arc_lengths);
     }
 }
 
@@ -116,7 +116,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             search.contacts_within(&chain, &pose, MARGIN, 0.0, &mut contacts)?;
             out.push(contacts.len() as f64);
             for contact in &contacts {
-                out.extend([contact.fraction, contact.distance, contact.depth.unwrap_or(f64::NAN)]);
+                out.extend([contact.fraction, contact.distance, contact.depth]);
                 out.extend(contact.normal.unwrap_or(Vector::NAN).to_array());
                 add_witness(&mut out, &contact.witness);
             }
@@ -157,6 +157,13 @@ fn main() -> Result<(), Box<dyn Error>> {
         RobotPair::new().contacts_within(&a, &pose, &b, &Pose::IDENTITY, 4.0, &mut between)?;
         out.push(between.len() as f64);
         add_between(&mut out, &between);
+        // There and back, 2 beside. Some joints at the turn are too sharp for the query.
+        let back = points.iter().rev().map(|point| *point + 2.0 * Vector::X);
+        let hairpin: Vec<_> = points.iter().copied().chain(back).collect();
+        let hairpin = Chain::from_centreline(&hairpin, &vec![radii[0]; hairpin.len() - 1])?;
+        let own = SelfQuery::new().minimum(&hairpin);
+        out.push(own.as_ref().map_or(-1.0, |found| f64::from(found.is_some())));
+        add_between(&mut out, own.ok().flatten().as_slice());
         for motion in [
             LinearMotion::chain(&points, &end, &radii)?,
             LinearMotion::capsules(&points, &end, &radii)?,

@@ -48,10 +48,10 @@ def test_radii_and_poses() -> None:
 
 def test_scalars_and_arrays() -> None:
     one = MESH.distance(ROBOTS[0], 0.1)
-    assert type(one) is float and type(MESH.clears(ROBOTS[0], 0.1, 0.1)) is bool
+    assert type(one) is float and type(MESH.clears(ROBOTS[0], 0.1, margin=0.1)) is bool
     many = MESH.distance(ROBOTS[:1], 0.1)
     assert many.shape == (1,) and many.dtype == np.float64
-    assert MESH.clears(ROBOTS, 0.1, 0.1).dtype == np.bool_
+    assert MESH.clears(ROBOTS, 0.1, margin=0.1).dtype == np.bool_
     links = MESH.per_link(ROBOTS, 0.1)
     assert links.distance.shape == (20, 11) and links.on_mesh.shape == (20, 11, 3)
     assert links.triangle.dtype == np.int64
@@ -61,10 +61,10 @@ def test_no_robots() -> None:
     none = np.zeros((0, 5, 3))
     assert MESH.distance(none, 0.1).shape == (0,)
     assert MESH.per_link(none, 0.1).on_robot.shape == (0, 4, 3)
-    assert MESH.contacts_within(none, 0.1, 1.0).offsets.tolist() == [0]
-    assert MESH.clearance(none, 0.1, 0.1).status.shape == (0,)
+    assert MESH.contacts_within(none, 0.1, margin=1.0).offsets.tolist() == [0]
+    assert MESH.clearance(none, 0.1, tolerance=0.1).status.shape == (0,)
     assert MESH.distance_and_gradient(none, 0.1).points.shape == (0, 5, 3)
-    assert MESH.clears_motion(none, none, 0.1, 0.1, 0.1).interval.shape == (0, 2)
+    assert MESH.clears_motion(none, none, 0.1, margin=0.1, resolution=0.1).interval.shape == (0, 2)
     assert MESH.side(np.zeros((0, 3))).shape == (0,)
 
 
@@ -86,7 +86,7 @@ def test_segments_without_length() -> None:
     assert_array_equal(links.triangle >= 0, has_length)
     assert np.isnan(links.on_robot[~has_length]).all()
     assert_array_equal(links.distance[has_length], MESH.per_link(ROBOTS[0, :5], 0.1).distance)
-    assert set(MESH.contacts_within(points, 0.1, 20.0).segment) <= set(np.flatnonzero(has_length))
+    assert set(MESH.contacts_within(points, 0.1, margin=20.0).segment) <= set(np.flatnonzero(has_length))
 
 
 ONE, MANY = ROBOTS[0], ROBOTS
@@ -117,16 +117,16 @@ ONE, MANY = ROBOTS[0], ROBOTS
         (lambda: MESH.distance(ONE[:1], 0.1), "too_few_points", "at least 2"),
         (lambda: MESH.per_link(ONE[:1], 0.1), "too_few_points", "at least 2"),
         (lambda: MESH.per_link(MANY[:, :1], 0.1), "too_few_points", "robot 0"),
-        (lambda: MESH.clears(ONE, 0.1, -1.0), "negative", "`margin`"),
-        (lambda: MESH.contacts_within(ONE, 0.1, np.nan), "negative", "`margin`"),
-        (lambda: MESH.clearance(ONE, 0.1, -1.0), "negative", "`tolerance`"),
-        (lambda: MESH.clearance(MANY, 0.1, np.nan), "negative", "`tolerance`"),
-        (lambda: MESH.clearance(ONE, 0.1, 0.1, tangents=np.ones((3, 3))), "bad_shape", "two directions"),
-        (lambda: MESH.clearance(ONE, 0.1, 0.1, tangents=np.zeros((2, 3))), "bad_tangent", "`tangents`"),
-        (lambda: MESH.clears_motion(ONE, MANY, 0.1, 0.1, 0.1), "bad_shape", "same shape"),
-        (lambda: MESH.clears_motion(ONE, ONE, 0.1, 0.1, 0.1, caps="cylinders"), "bad_caps", "'fitted'"),
-        (lambda: MESH.clears_motion(ONE, ONE, 0.1, 0.1, -0.1), "negative", "`resolution`"),
-        (lambda: MESH.clears_motion(ONE, ONE * np.nan, 0.1, 0.1, 0.1), "point_not_finite", "`end`"),
+        (lambda: MESH.clears(ONE, 0.1, margin=-1.0), "negative", "`margin`"),
+        (lambda: MESH.contacts_within(ONE, 0.1, margin=np.nan), "negative", "`margin`"),
+        (lambda: MESH.clearance(ONE, 0.1, tolerance=-1.0), "negative", "`tolerance`"),
+        (lambda: MESH.clearance(MANY, 0.1, tolerance=np.nan), "negative", "`tolerance`"),
+        (lambda: MESH.clearance(ONE, 0.1, tolerance=0.1, tangents=np.ones((3, 3))), "bad_shape", "two directions"),
+        (lambda: MESH.clearance(ONE, 0.1, tolerance=0.1, tangents=np.zeros((2, 3))), "bad_tangent", "`tangents`"),
+        (lambda: MESH.clears_motion(ONE, MANY, 0.1, margin=0.1, resolution=0.1), "bad_shape", "same shape"),
+        (lambda: MESH.clears_motion(ONE, ONE, 0.1, margin=0.1, resolution=0.1, caps="cylinders"), "bad_caps", "'fitted'"),
+        (lambda: MESH.clears_motion(ONE, ONE, 0.1, margin=0.1, resolution=-0.1), "negative", "`resolution`"),
+        (lambda: MESH.clears_motion(ONE, ONE * np.nan, 0.1, margin=0.1, resolution=0.1), "point_not_finite", "`end`"),
         (lambda: MESH.side([1.0, 2.0]), "bad_shape", "(..., 3)"),
         (lambda: MESH.certify(ONE, 0.1, MESH.per_link(ONE[:5], 0.1)), "answer_does_not_fit", "(4,)"),
         (lambda: MESH.certify(ONE, 0.1, 3), "answer_does_not_fit", "per_link"),
@@ -151,7 +151,7 @@ def test_what_is_at_fault() -> None:
         MESH.distance(points[17], 0.1)
     assert (raised.value.robot, raised.value.index) == (None, 3)
     with pytest.raises(ContinuumError) as raised:
-        MESH.clears_tube(MANY[0], 0.1, MESH.clearance(MANY[0], 0.1, 0.0).lower, 1e-300)
+        MESH.clears_tube(MANY[0], 0.1, margin=MESH.clearance(MANY[0], 0.1, tolerance=0.0).lower, resolution=1e-300)
     assert raised.value.kind == "tolerance_too_fine"
     assert raised.value.possible is not None and raised.value.possible > 1e-300
 
@@ -160,7 +160,7 @@ def test_status_of_a_batch() -> None:
     points = MANY.copy()
     points[3, 4, 0] = np.inf
     points[5, 6] = points[5, 4]  # there and back
-    found = MESH.clearance(points, 0.1, 0.01)
+    found = MESH.clearance(points, 0.1, tolerance=0.01)
     assert found.status[3] == "point_not_finite" and found.status[5] == "turns_too_sharply"
     refused = found.status != ""
     assert_array_equal(np.flatnonzero(refused), [3, 5])

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from parry_continuum import ContinuumError, Mesh, RobotPair, self_minimum
+from parry_continuum import ContinuumError, Mesh, RobotPair, SelfQuery
 from shapes import poses, robots, sphere
 
 RANDOM = np.random.default_rng(8)
@@ -37,7 +37,7 @@ def test_own_answers_are_certified() -> None:
         assert (proof.lower[known] - gap <= answer.distance[known]).all()
         assert (answer.distance[known] <= proof.upper[known] + gap).all()
         assert (proof.upper[known] - proof.lower[known] < gap).all()
-    own = self_minimum(HOOK, 0.5)
+    own = SelfQuery().minimum(HOOK, 0.5)
     proof = PAIR.certify(HOOK, 0.5, HOOK, 0.5, own)
     assert proof.lower <= 3.0 <= proof.upper + gap
     one = MESH.certify(MANY[0], 0.2, MESH.per_link(MANY[0], 0.2))
@@ -78,7 +78,7 @@ def test_answers_for_another_second_robot(second: Any, radii: Any, pose: Any) ->
 
 def test_a_mesh_that_has_moved() -> None:
     mesh = Mesh(*sphere())
-    mesh.move(mesh.vertices * 1.001)
+    mesh.set_vertices(mesh.vertices * 1.001)
     with pytest.raises(ContinuumError, match="does not fit"):
         mesh.certify(MANY, 0.2, ANSWER, pose=POSES)
 

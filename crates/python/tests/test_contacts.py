@@ -15,12 +15,12 @@ def test_prominence() -> None:
     a = (21 * np.arange(100)[:, None] + np.arange(20)).ravel()
     faces = np.concatenate([np.stack([a, a + 21, a + 1], 1), np.stack([a + 21, a + 22, a + 1], 1)])
     wall, robot = Mesh(vertices, faces), np.array([[-4, 0, 1.0], [4, 0, 1.0]])
-    every = wall.contacts_within(robot, 0.2, 1.2)
+    every = wall.contacts_within(robot, 0.2, margin=1.2)
     assert 5 <= len(every.segment) <= 20
     assert (np.abs(every.on_mesh[:, 1]) < 0.2).all() and every.distance.min() == wall.distance(robot, 0.2)
     # Between bumps the wall is about 0.2 lower than on them.
-    assert len(wall.contacts_within(robot, 0.2, 1.2, prominence=0.1).segment) == len(every.segment)
-    few = wall.contacts_within(robot, 0.2, 1.2, prominence=0.5)
+    assert len(wall.contacts_within(robot, 0.2, margin=1.2, prominence=0.1).segment) == len(every.segment)
+    few = wall.contacts_within(robot, 0.2, margin=1.2, prominence=0.5)
     assert few.distance.tolist() == [every.distance.min()]
     # Before the outermost bumps it is 1.03 away, so that no way within a margin of 1 leads from them to a nearer place.
-    assert len(wall.contacts_within(robot, 0.2, 1.0, prominence=0.5).segment) == 3
+    assert len(wall.contacts_within(robot, 0.2, margin=1.0, prominence=0.5).segment) == 3

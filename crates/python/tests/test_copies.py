@@ -1,4 +1,4 @@
-"""Motions, scenes and pairs are copied and pickled, and answer as before."""
+"""Motions, scenes and queries are copied and pickled, and answer as before."""
 
 from __future__ import annotations
 
@@ -23,6 +23,7 @@ from parry_continuum import (
     RigidMotion,
     RobotPair,
     Scene,
+    SelfQuery,
 )
 from shapes import poses, robots, sphere
 
@@ -104,7 +105,7 @@ def test_a_copy_shares_its_meshes_and_a_deep_copy_does_not() -> None:
     scene.add("wall", mesh, margin=0.0)
     shared, own = copy.copy(scene), copy.deepcopy(scene)
     before = scene.tightest([(ONE, 0.1)]).slack
-    mesh.move(vertices * 2)
+    mesh.set_vertices(vertices * 2)
     after = scene.tightest([(ONE, 0.1)]).slack
     assert after > before
     assert (shared.tightest([(ONE, 0.1)]).slack, own.tightest([(ONE, 0.1)]).slack) == (after, before)
@@ -117,6 +118,17 @@ def test_pairs(way: str) -> None:
     again = WAYS[way](pair)
     assert type(again) is RobotPair
     assert_array_equal(again.minimum(MANY, 0.1, ONE, 0.1).distance, expected.distance)
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_self_queries(way: str) -> None:
+    query = SelfQuery()
+    hooks = np.array([[0, 0, 0], [0, 0, 9], [2, 0, 11], [4, 0, 9], [4, 0, 0]]) * np.linspace(1, 2, 5)[:, None, None]
+    expected = query.minimum(hooks, 0.1)
+    again = WAYS[way](query)
+    assert type(again) is SelfQuery and again is not query
+    assert_array_equal(again.minimum(hooks, 0.1).distance, expected.distance)
+    np.testing.assert_allclose(expected.distance, 4 * np.linspace(1, 2, 5) - 0.2, rtol=1e-14)
 
 
 def test_another_process() -> None:

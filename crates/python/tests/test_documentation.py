@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import doctest
+import inspect
 import re
 from pathlib import Path
 
 import pytest
 
 import parry_continuum
-from parry_continuum import Mesh, Motion, RigidMotion, RobotPair, Scene
+from parry_continuum import Mesh, Motion, RigidMotion, RobotPair, Scene, SelfQuery
 
-CLASSES = [Mesh, Scene, RobotPair, Motion, RigidMotion]
+CLASSES = [Mesh, Scene, RobotPair, SelfQuery, Motion, RigidMotion]
 METHODS = {
     f"{owner.__name__}.{name}": getattr(owner, name)
     for owner in CLASSES
@@ -23,7 +24,7 @@ DOCUMENTED = {
     **{name: getattr(parry_continuum, name) for name in parry_continuum.__all__ if name != "__version__"},
     **METHODS,
 }
-WITHOUT_PARAMETERS = {"Mesh.prepare", "RobotPair.forget"}
+WITHOUT_PARAMETERS = {"Mesh.prepare", "RobotPair.forget", "SelfQuery.forget"}
 PAGE = Path(__file__).parent.parent / "README.md"
 README = PAGE.read_text()
 
@@ -36,6 +37,15 @@ def test_docstrings(name: str) -> None:
         assert all(section in text for section in ("Parameters", "Raises")), f"{name} lacks a section"
     test = doctest.DocTestParser().get_doctest(text, {}, name, None, None)
     assert doctest.DocTestRunner(optionflags=doctest.NORMALIZE_WHITESPACE).run(test).failed == 0
+
+
+BY_NAME = {"margin", "prominence", "reach", "resolution", "tolerance"}
+
+
+@pytest.mark.parametrize("name", [name for name, value in DOCUMENTED.items() if inspect.isroutine(value)])
+def test_lengths_of_a_query_are_given_by_name(name: str) -> None:
+    for parameter in inspect.signature(DOCUMENTED[name]).parameters.values():
+        assert (parameter.name not in BY_NAME) or parameter.kind is inspect.Parameter.KEYWORD_ONLY, parameter
 
 
 def test_most_methods_have_examples() -> None:

@@ -18,13 +18,10 @@ from parry_continuum import (
     RigidMotion,
     RobotPair,
     Scene,
-    between,
-    clears_between,
+    SelfQuery,
     load,
-    self_minimum,
     simplify,
     stations,
-    tube_self_clears,
 )
 from shapes import poses, robots, sphere
 
@@ -33,7 +30,7 @@ VERTICES, FACES = sphere()
 MESH = Mesh(VERTICES, FACES)
 MANY, POSES = robots(RANDOM, 5), poses(RANDOM, 5)
 ONE = MANY[0]
-PAIR, SCENE = RobotPair(), Scene(robot_margin=0.1)
+PAIR, QUERY, SCENE = RobotPair(), SelfQuery(), Scene(robot_margin=0.1)
 SCENE.add("wall", MESH, margin=0.1)
 HUGE = 10**400
 SCALED = 2 * POSES
@@ -77,13 +74,11 @@ EQUAL = np.zeros((12, 3))
 @pytest.mark.parametrize(
     "question",
     [
-        lambda *given, **more: between(*given, **more),
         lambda *given, **more: PAIR.minimum(*given, **more),
         lambda *given, **more: PAIR.per_link(*given, **more),
-        lambda *given, **more: PAIR.contacts_within(*given, 1.0, **more),
-        lambda *given, **more: PAIR.clears(*given, 1.0, **more),
-        lambda *given, **more: clears_between(*given, 1.0, **more),
-        lambda *given, **more: PAIR.clears_tubes(*given, 1.0, 0.1, **more),
+        lambda *given, **more: PAIR.contacts_within(*given, margin=1.0, **more),
+        lambda *given, **more: PAIR.clears(*given, margin=1.0, **more),
+        lambda *given, **more: PAIR.clears_tubes(*given, margin=1.0, resolution=0.1, **more),
     ],
 )
 def test_the_second_robot(question: Any, ask: Any, text: str) -> None:
@@ -105,12 +100,12 @@ def test_the_second_robot(question: Any, ask: Any, text: str) -> None:
     ],
 )
 def test_curves_of_the_second_robot(more: dict[str, Any], text: str) -> None:
-    for ask in (lambda: PAIR.clearance(ONE, 0.1, ONE + 1, 0.1, 1.0, **more), lambda: PAIR.clears_tubes(ONE, 0.1, ONE + 1, 0.1, 1.0, 0.1, **more)):
+    for ask in (lambda: PAIR.clearance(ONE, 0.1, ONE + 1, 0.1, tolerance=1.0, **more), lambda: PAIR.clears_tubes(ONE, 0.1, ONE + 1, 0.1, margin=1.0, resolution=0.1, **more)):
         with pytest.raises(ContinuumError) as raised:
             ask()
         assert text in str(raised.value)
     with pytest.raises(ContinuumError, match="`points_b`: the centreline turns so sharply at point"):
-        PAIR.clearance(ONE, 0.1, FOLDED, 0.1, 1.0)
+        PAIR.clearance(ONE, 0.1, FOLDED, 0.1, tolerance=1.0)
 
 
 @pytest.mark.parametrize(
@@ -130,7 +125,7 @@ def test_curves_of_the_second_robot(more: dict[str, Any], text: str) -> None:
 )
 def test_an_entry_of_a_scene(entry: Any, text: str) -> None:
     given = [(ONE, 0.1), entry, (ONE, 0.1, None)]
-    for ask in (SCENE.clears, SCENE.tightest, SCENE.per_structure, lambda robots: SCENE.contacts_within(robots, 1.0)):
+    for ask in (SCENE.clears, SCENE.tightest, SCENE.per_structure, lambda robots: SCENE.contacts_within(robots, reach=1.0)):
         with pytest.raises(ContinuumError) as raised:
             ask(given)
         assert str(raised.value).startswith(text)
@@ -147,9 +142,9 @@ def test_single_robots_keep_their_names() -> None:
     for ask, text in (
         (lambda: MESH.distance(ONE, 0.1, pose=SCALED[0]), "`pose`: the matrix scales by 2"),
         (lambda: MESH.distance(MANY, 0.1, pose=SCALED), "robot 0: `pose`: the matrix scales by 2"),
-        (lambda: MESH.clears_motion(ONE, spoilt(0, 3)[0], 0.1, 0.1, 0.1), "repair it in `end`"),
+        (lambda: MESH.clears_motion(ONE, spoilt(0, 3)[0], 0.1, margin=0.1, resolution=0.1), "repair it in `end`"),
         (lambda: BendingMotion([[1, 0, 0]], [[1, 0, 0]], 0.1, pose=SCALED[0]), "`pose`: the matrix scales"),
-        (lambda: self_minimum(ONE, -1.0), "`radii` must be finite"),
+        (lambda: QUERY.minimum(ONE, -1.0), "`radii` must be finite"),
         (lambda: SCENE.add("x", MESH, margin=1.0, pose=SCALED[0]), "`pose`: the matrix scales"),
     ):
         with pytest.raises(ContinuumError) as raised:
@@ -179,9 +174,9 @@ SCALARS = {
         lambda x: PAIR.clears(ONE, 0.1, ONE, 0.1, margin=x),
         lambda x: PAIR.contacts_within(ONE, 0.1, ONE, 0.1, margin=x),
         lambda x: PAIR.clears_tubes(ONE, 0.1, ONE, 0.1, margin=x, resolution=0.1),
-        lambda x: PAIR.self_clears(ONE, 0.1, margin=x),
-        lambda x: PAIR.clears_motion(LinearMotion(ONE, ONE, 0.1), LinearMotion(ONE, ONE, 0.1), margin=x, resolution=0.1),
-        lambda x: tube_self_clears(ONE, 0.1, margin=x, resolution=0.1),
+        lambda x: QUERY.clears(ONE, 0.1, margin=x),
+        lambda x: PAIR.clears_motions(LinearMotion(ONE, ONE, 0.1), LinearMotion(ONE, ONE, 0.1), margin=x, resolution=0.1),
+        lambda x: QUERY.clears_tube(ONE, 0.1, margin=x, resolution=0.1),
         lambda x: SCENE.add("wall", MESH, margin=x),
     ],
     "resolution": [lambda x: MESH.clears_tube(ONE, 0.1, margin=0.1, resolution=x)],
@@ -192,9 +187,9 @@ SCALARS = {
         lambda x: simplify(ONE, 0.1, tolerance=x),
         lambda x: stations(ONE, 0.1, tolerance=x),
     ],
-    "prominence": [lambda x: MESH.contacts_within(ONE, 0.1, 1.0, prominence=x)],
-    "deviation": [lambda x: MESH.clearance(ONE, 0.1, 0.1, deviation=x), lambda x: RigidMotion.of_curve(ONE, 0.1, POSES[0], POSES[0], deviation=x)],
-    "turn": [lambda x: MESH.clearance(ONE, 0.1, 0.1, turn=x)],
+    "prominence": [lambda x: MESH.contacts_within(ONE, 0.1, margin=1.0, prominence=x)],
+    "deviation": [lambda x: MESH.clearance(ONE, 0.1, tolerance=0.1, deviation=x), lambda x: RigidMotion.of_curve(ONE, 0.1, POSES[0], POSES[0], deviation=x)],
+    "turn": [lambda x: MESH.clearance(ONE, 0.1, tolerance=0.1, turn=x)],
     "reach": [lambda x: SCENE.contacts_within([(ONE, 0.1)], reach=x)],
     "robot_margin": [lambda x: Scene(robot_margin=x)],
     "scale": [lambda x: load("wall.stl", scale=x)],
@@ -247,11 +242,11 @@ def test_own_exceptions_are_not_swallowed(error: BaseException) -> None:
         lambda: MESH.distance(own, 0.1),
         lambda: MESH.distance(ONE, own),
         lambda: MESH.distance(ONE, 0.1, pose=own),
-        lambda: between(ONE, 0.1, own, 0.1),
+        lambda: PAIR.minimum(ONE, 0.1, own, 0.1),
         lambda: SCENE.clears([(own, 0.1)]),
         lambda: Mesh(own),
         lambda: Mesh(VERTICES, own),
-        lambda: MESH.move(own),
+        lambda: MESH.set_vertices(own),
         lambda: LinearMotion(own, ONE, 0.1),
     ):
         with pytest.raises(type(error)) as raised:
@@ -309,7 +304,7 @@ def test_arguments_that_change_one_another(name: str, change: Any) -> None:
 def test_the_second_robot_changes_the_first() -> None:
     points = ONE.copy()
     with pytest.raises(ContinuumError, match="`points_b` has changed its size"):
-        between(ONE, 0.1, points, 0.1, pose_a=Changes(lambda: resize(points, 0, 3)))
+        PAIR.minimum(ONE, 0.1, points, 0.1, pose_a=Changes(lambda: resize(points, 0, 3)))
     points, scene = ONE.copy(), Scene(robot_margin=0.1)
     with pytest.raises(ContinuumError, match="`points` has changed its size"):
         scene.clears([(ONE, 0.1, Changes(lambda: resize(points, 0, 3))), (points, 0.1)])

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from parry_continuum import ContinuumError, LinearMotion, Mesh, RobotPair, Scene, between
+from parry_continuum import ContinuumError, LinearMotion, Mesh, RobotPair, Scene
 from shapes import robots
 
 MESH = Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
@@ -27,18 +27,18 @@ def refused() -> None:
 @pytest.mark.parametrize(
     ("ask", "count"),
     [
-        (lambda: MESH.clears(ROBOT, 0.1, 0.1), 1_000_000),
+        (lambda: MESH.clears(ROBOT, 0.1, margin=0.1), 1_000_000),
         (lambda: MESH.per_link(ROBOT, 0.1), 100_000),
-        (lambda: MESH.contacts_within(ROBOT, 0.1, 0.5), 100_000),
-        (lambda: MESH.clearance(ROBOT, 0.1, 0.1), 50_000),
+        (lambda: MESH.contacts_within(ROBOT, 0.1, margin=0.5), 100_000),
+        (lambda: MESH.clearance(ROBOT, 0.1, tolerance=0.1), 50_000),
         (lambda: MESH.distance_and_gradient(ROBOT, 0.1), 10_000),
         (lambda: MESH.distance(MANY, 0.1), 10_000),
-        (lambda: MESH.move(MESH.vertices), 5_000),
+        (lambda: MESH.set_vertices(MESH.vertices), 5_000),
         (lambda: Mesh(MESH), 5_000),
-        (lambda: between(ROBOT, 0.1, ROBOT + 3, 0.1), 30_000),
-        (lambda: PAIR.contacts_within(ROBOT, 0.1, ROBOT + 3, 0.1, 9.0), 30_000),
+        (lambda: PAIR.minimum(ROBOT, 0.1, ROBOT + 3, 0.1), 30_000),
+        (lambda: PAIR.contacts_within(ROBOT, 0.1, ROBOT + 3, 0.1, margin=9.0), 30_000),
         (lambda: SCENE.tightest([(ROBOT, 0.1)]), 20_000),
-        (lambda: SCENE.contacts_within([(ROBOT, 0.1)], 3.0), 20_000),
+        (lambda: SCENE.contacts_within([(ROBOT, 0.1)], reach=3.0), 20_000),
         (lambda: MESH.clears_motion(LinearMotion(MANY, MANY + 1, 0.1), margin=0.1, resolution=0.1), 3_000),
         (refused, 20_000),
     ],

@@ -16,6 +16,7 @@ from parry_continuum import (
     RigidMotion,
     RobotPair,
     Scene,
+    SelfQuery,
     simplify,
     stations,
 )
@@ -65,7 +66,7 @@ def spoilt(random: np.random.Generator, array: np.ndarray) -> object:
 def test_five_thousand_inputs() -> None:
     random = np.random.default_rng(31)
     refused: dict[str, int] = {}
-    answered, pair = 0, RobotPair()
+    answered, pair, query = 0, RobotPair(), SelfQuery()
     for _ in range(5000):
         count, points = random.integers(1, 20), random.integers(1, 8)
         robot = robots(random, count, points)
@@ -115,24 +116,24 @@ def test_five_thousand_inputs() -> None:
             lambda: mesh.certify(answer=mesh.per_link(robot, 0.1), **given),
             lambda: mesh.clearance(tolerance=max(number, 1e-3), **tube),
             lambda: mesh.clears_tube(margin=number, resolution=0.1, **tube),
-            lambda: pair.tube_self_clears(given["points"], given["radii"], number, 0.1, turn=number),
+            lambda: query.clears_tube(given["points"], given["radii"], margin=number, resolution=0.1, turn=number),
             lambda: mesh.clears_motion(margin=number, resolution=0.1, **motion),
             lambda: mesh.time_of_contact(margin=number, resolution=0.1, **motion),
             lambda: mesh.clears_motion_while(spoilt(random, mesh.vertices), margin=number, resolution=0.1, **motion),
-            lambda: mesh.clears_path(spoilt(random, shapes), given["radii"], max(number, 0), number, 0.1),
+            lambda: mesh.clears_path(spoilt(random, shapes), given["radii"], max(number, 0), margin=number, resolution=0.1),
             lambda: mesh.clears_motion(moving(), margin=number, resolution=0.1),
-            lambda: pair.motion_self_clears(moving(), number, 0.1),
-            lambda: pair.clears_motion(moving(), moving(), number, 0.1),
+            lambda: query.clears_motion(moving(), margin=number, resolution=0.1),
+            lambda: pair.clears_motions(moving(), moving(), margin=number, resolution=0.1),
             lambda: pair.certify(given["points"], given["radii"], robot, 0.1, pair.minimum(robot, 0.1, robot, 0.1)),
             lambda: mesh.clearance_of_motion(moving(), tolerance=max(number, 1e-2)),
             lambda: pair.per_link(given["points"], given["radii"], robot, 0.1, pose_a=given["pose"]),
-            lambda: pair.contacts_within(given["points"], given["radii"], robot, 0.1, number),
-            lambda: pair.clearance(given["points"], given["radii"], robot, 0.1, max(number, 1e-2), tangents_a=tube["tangents"]),
-            lambda: pair.clears_tubes(given["points"], given["radii"], robot, 0.1, number, 0.1, turn_a=number),
-            lambda: scene(mesh).contacts_within([(given["points"], given["radii"], given["pose"]), (robot, 0.1)], number),
+            lambda: pair.contacts_within(given["points"], given["radii"], robot, 0.1, margin=number),
+            lambda: pair.clearance(given["points"], given["radii"], robot, 0.1, tolerance=max(number, 1e-2), tangents_a=tube["tangents"]),
+            lambda: pair.clears_tubes(given["points"], given["radii"], robot, 0.1, margin=number, resolution=0.1, turn_a=number),
+            lambda: scene(mesh).contacts_within([(given["points"], given["radii"], given["pose"]), (robot, 0.1)], reach=number),
             lambda: scene(mesh).per_structure([(given["points"], given["radii"]), (robot, 0.1)]),
             lambda: mesh.side(given["points"]),
-            lambda: Mesh(mesh.vertices, mesh.faces).move(spoilt(random, mesh.vertices)),
+            lambda: Mesh(mesh.vertices, mesh.faces).set_vertices(spoilt(random, mesh.vertices)),
             lambda: Mesh(mesh.vertices, spoilt(random, faces)),
             lambda: Mesh(spoilt(random, mesh.vertices), random.integers(-3, 400, (5, 3))),
             lambda: simplify(tolerance=number, **plain),
@@ -152,6 +153,6 @@ def test_arguments_that_are_missing() -> None:
     with pytest.raises(TypeError):
         MESHES[0].distance()  # type: ignore[call-arg]
     with pytest.raises(TypeError):
-        MESHES[0].clears([[0, 0, 0], [1, 0, 0]], 0.1, "far")  # type: ignore[arg-type]
+        MESHES[0].clears([[0, 0, 0], [1, 0, 0]], 0.1, margin="far")  # type: ignore[arg-type]
     with pytest.raises(TypeError):
         MESHES[0].distance([[0, 0, 0], [1, 0, 0]], 0.1, None, "fitted")  # type: ignore[misc]

@@ -49,8 +49,8 @@ def test_what_has_vertices_and_faces() -> None:
         (lambda: Mesh(VERTICES), "bad_type", None),
         (lambda: Mesh(np.where(VERTICES > 9.9, np.inf, VERTICES), FACES), "not_finite", 0),
         (lambda: Mesh(VERTICES * 1e300, FACES), "out_of_range", 0),
-        (lambda: Mesh(VERTICES, FACES).move(VERTICES[1:]), "vertex_count", None),
-        (lambda: Mesh(VERTICES, FACES).move(VERTICES * np.nan), "not_finite", 0),
+        (lambda: Mesh(VERTICES, FACES).set_vertices(VERTICES[1:]), "vertex_count", None),
+        (lambda: Mesh(VERTICES, FACES).set_vertices(VERTICES * np.nan), "not_finite", 0),
         (lambda: load("there/is/none.stl"), "file", None),
         (lambda: load("none.txt"), "file", None),
     ],
@@ -78,14 +78,14 @@ def test_move() -> None:
     mesh.prepare()
     before = mesh.per_link(ROBOTS, 0.1)
     moved = VERTICES * [1.0, 1.2, 0.9] + [0.5, 0, 0]
-    assert mesh.move(moved) is None
+    assert mesh.set_vertices(moved) is None
     assert_array_equal(mesh.vertices, moved)
     for field, fresh in zip(mesh.per_link(ROBOTS, 0.1), Mesh(moved, FACES).per_link(ROBOTS, 0.1)):
         assert_array_equal(field, fresh)
     with pytest.raises(ContinuumError):
-        mesh.move(moved * np.nan)
+        mesh.set_vertices(moved * np.nan)
     assert_array_equal(mesh.vertices, moved)
-    mesh.move(VERTICES)
+    mesh.set_vertices(VERTICES)
     assert_array_equal(mesh.per_link(ROBOTS, 0.1).distance, before.distance)
 
 
@@ -94,9 +94,9 @@ def test_copies(copied: object) -> None:
     mesh = Mesh(VERTICES, FACES)
     other = copied(mesh)  # type: ignore[operator]
     assert_array_equal(other.distance(ROBOTS, 0.1), mesh.distance(ROBOTS, 0.1))
-    other.move(VERTICES + 1)
+    other.set_vertices(VERTICES + 1)
     assert_array_equal(mesh.vertices, VERTICES)
-    mesh.move(VERTICES - 1)
+    mesh.set_vertices(VERTICES - 1)
     assert_array_equal(other.vertices, VERTICES + 1)
 
 
@@ -109,10 +109,10 @@ def test_errors_are_sent() -> None:
 def test_fewer_points() -> None:
     straight = np.linspace([0, 0, 0], [0, 0, 9], 30)
     for fewer in (simplify, stations):
-        points, radii = fewer(straight, 0.5, 0.01)
+        points, radii = fewer(straight, 0.5, tolerance=0.01)
         assert_array_equal(points, straight[[0, -1]])
         assert radii.tolist() == [0.5]
         with pytest.raises(ContinuumError):
-            fewer(straight, 0.5, -1.0)
+            fewer(straight, 0.5, tolerance=-1.0)
         with pytest.raises(ContinuumError):
-            fewer(straight[None], 0.5, 0.01)
+            fewer(straight[None], 0.5, tolerance=0.01)

@@ -16,7 +16,7 @@ from parry_continuum import (
     MovingBase,
     RigidMotion,
     RobotPair,
-    motion_self_clears,
+    SelfQuery,
     verify_motion,
 )
 from shapes import poses, robots
@@ -94,8 +94,8 @@ def test_paths_of_two_robots() -> None:
     there_and_back = MotionPath([LEGS[0], LinearMotion(LEFT + SHIFT, LEFT, 0.1)])
     at_rest = LinearMotion(LEFT - SHIFT, LEFT - SHIFT, 0.1)
     for motions in ((there_and_back, at_rest), (at_rest, there_and_back)):
-        assert RobotPair().clears_motion(*motions, margin=0.7, resolution=0.01).is_clear
-    assert motion_self_clears(there_and_back, margin=0.1, resolution=0.01).is_clear
+        assert RobotPair().clears_motions(*motions, margin=0.7, resolution=0.01).is_clear
+    assert SelfQuery().clears_motion(there_and_back, margin=0.1, resolution=0.01).is_clear
 
 
 @pytest.mark.parametrize(

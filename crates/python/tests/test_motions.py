@@ -100,7 +100,7 @@ def test_reasons() -> None:
         assert found.decision is decision and found.reason is UndecidedReason.NONE
     many = floor.clears_motion(np.stack([start] * 2), np.stack([end, start]), RADIUS, margin=1.5, resolution=0.1)
     assert many.reason.dtype == np.int8 and many.reason.tolist() == [UndecidedReason.NONE] * 2
-    at_rest = RobotPair().clears_motion(motion, LinearMotion(start + [9, 0, 0], end + [9, 0, 0], RADIUS), 0.5, 0.1)
+    at_rest = RobotPair().clears_motions(motion, LinearMotion(start + [9, 0, 0], end + [9, 0, 0], RADIUS), margin=0.5, resolution=0.1)
     assert at_rest.decision is Decision.CLEAR and at_rest.reason is UndecidedReason.NONE
 
 
@@ -156,12 +156,12 @@ def test_linear_motions_are_those_of_shapes() -> None:
         motion = LinearMotion(start, end, RADIUS, caps=caps)
         for ask in ("clears_motion", "time_of_contact"):
             found = getattr(MESH, ask)(motion, margin=0.1, resolution=0.01)
-            expected = getattr(MESH, ask)(start, end, RADIUS, 0.1, 0.01, caps=caps)
+            expected = getattr(MESH, ask)(start, end, RADIUS, margin=0.1, resolution=0.01, caps=caps)
             for field, fields in zip(found[:3], expected[:3]):
                 assert_array_equal(field, fields)
         assert_array_equal(
             MESH.clearance_of_motion(motion, tolerance=0.01).upper,
-            MESH.clearance_of_motion(start, end, RADIUS, 0.01, caps=caps).upper,
+            MESH.clearance_of_motion(start, end, RADIUS, tolerance=0.01, caps=caps).upper,
         )
 
 
@@ -206,7 +206,7 @@ def test_curves_move_as_they_stand() -> None:
     for given in ({}, {"tangents": tangents}, {"deviation": 0.01}, {"deviation": 0.01, "turn": 0.05}):
         still = RigidMotion.of_curve(points, RADIUS, np.eye(4), np.eye(4), **given)
         found = MESH.clearance_of_motion(still, tolerance=0.01)
-        tube = MESH.clearance(points, RADIUS, 0.01, **given)
+        tube = MESH.clearance(points, RADIUS, tolerance=0.01, **given)
         assert found.lower <= tube.upper and tube.lower <= found.upper
         assert abs(found.uncertainty - tube.uncertainty) < 1e-12
 
@@ -225,20 +225,20 @@ def test_shapes_of_a_planner() -> None:
         # Every tube so near keeps this much; and where the sides of links are nearest, it keeps no more than this.
         safe = max(0.0, distance - deviation - step - 0.011)
         if distance > deviation + step + 0.02:
-            assert MESH.clears_path(path, RADIUS, deviation, safe, 0.01).decision is Decision.CLEAR
+            assert MESH.clears_path(path, RADIUS, deviation, margin=safe, resolution=0.01).decision is Decision.CLEAR
         if distance > 0.3:  # a tube within 0.3 is nearer than that by as much
-            assert MESH.clears_path(path, RADIUS, 0.3, distance - 0.1, 0.01).decision is not Decision.CLEAR
+            assert MESH.clears_path(path, RADIUS, 0.3, margin=distance - 0.1, resolution=0.01).decision is not Decision.CLEAR
         far = distance + deviation + RADIUS + 0.011
-        found = MESH.clears_path(path, RADIUS, deviation, far, 0.01)
+        found = MESH.clears_path(path, RADIUS, deviation, margin=far, resolution=0.01)
         assert found.decision is Decision.CONTACT and 0 <= found.t <= 1 and found.upper <= far
-        decisions.append(MESH.clears_path(path, RADIUS, deviation, 0.5, 0.01))
-    many = MESH.clears_path(shapes, RADIUS, deviation, 0.5, 0.01)
+        decisions.append(MESH.clears_path(path, RADIUS, deviation, margin=0.5, resolution=0.01))
+    many = MESH.clears_path(shapes, RADIUS, deviation, margin=0.5, resolution=0.01)
     assert_array_equal(many.decision, [one.decision for one in decisions])
     assert_array_equal(many.interval, [one.interval for one in decisions])
     assert len(set(many.decision.tolist())) > 1
     radii = np.full((20, 5), RADIUS)
-    assert_array_equal(MESH.clears_path(shapes, radii, deviation, 0.5, 0.01).decision, many.decision)
-    assert MESH.clears_path(shapes[0, :1], RADIUS, 0.0, 0.0, 0.01).decision in (Decision.CLEAR, Decision.CONTACT)
+    assert_array_equal(MESH.clears_path(shapes, radii, deviation, margin=0.5, resolution=0.01).decision, many.decision)
+    assert MESH.clears_path(shapes[0, :1], RADIUS, 0.0, margin=0.0, resolution=0.01).decision in (Decision.CLEAR, Decision.CONTACT)
 
 
 def test_meshes_that_move_meanwhile() -> None:
@@ -251,7 +251,7 @@ def test_meshes_that_move_meanwhile() -> None:
     step = np.linalg.norm(to - vertices, axis=1).max() / 99 + np.linalg.norm(end - start, axis=-1).max() / 99
     moved, least = Mesh(mesh), np.full(12, np.inf)
     for t in np.linspace(0, 1, 100):
-        moved.move((1 - t) * vertices + t * to)
+        moved.set_vertices((1 - t) * vertices + t * to)
         least = np.minimum(least, moved.distance((1 - t) * start + t * end, RADIUS, caps="capsules"))
     assert (least > 0.1).sum() > 3
     for sign in (-1, 1):
@@ -262,9 +262,9 @@ def test_meshes_that_move_meanwhile() -> None:
             motion = LinearMotion(start[k], end[k], RADIUS, caps="capsules")
             found = mesh.clears_motion_while(to, motion, margin=margin, resolution=0.01)
             assert found.decision is (Decision.CLEAR if sign < 0 else Decision.CONTACT)
-            shapes = mesh.clears_motion_while(to, start[k], end[k], RADIUS, margin, 0.01, caps="capsules")
+            shapes = mesh.clears_motion_while(to, start[k], end[k], RADIUS, margin=margin, resolution=0.01, caps="capsules")
             assert shapes.decision is found.decision
-    many = mesh.clears_motion_while(to, start, end, RADIUS, 0.3, 0.01)
+    many = mesh.clears_motion_while(to, start, end, RADIUS, margin=0.3, resolution=0.01)
     assert many.decision.shape == (12,)
     assert_array_equal(mesh.vertices, vertices)
 
@@ -303,7 +303,7 @@ def doubled(motion: Motion) -> Motion:
         (lambda r, p: MESH.distance(np.zeros((10**15, 0, 3)), 0.1), "too_few_points", "robots without points"),
         (lambda r, p: LinearMotion(np.zeros((10**15, 0, 3)), r, 0.1), "too_few_points", "`start`"),
         (lambda r, p: BendingMotion(np.zeros((10**15, 0, 3)), r, 0.1), "no_sections", "`start`"),
-        (lambda r, p: MESH.clears_path(np.zeros((10**15, 0, 2, 3)), 0.1, 0.1, 0.1, 0.1), "too_few_points", "`shapes`"),
+        (lambda r, p: MESH.clears_path(np.zeros((10**15, 0, 2, 3)), 0.1, 0.1, margin=0.1, resolution=0.1), "too_few_points", "`shapes`"),
         (lambda r, p: nested(MotionPath([LinearMotion(r[0], r[0], 0.1)]), p[0]), "nested_too_deep", "7 deep"),
         (lambda r, p: doubled(LinearMotion(r[0], r[0], 0.1)), "nested_too_deep", "make one path"),
         (
@@ -311,12 +311,12 @@ def doubled(motion: Motion) -> Motion:
             "bad_type",
             "`radii` is given beside a motion",
         ),
-        (lambda r, p: MESH.clears_path(r[0], 0.1, 0.1, 0.1, 0.1), "bad_shape", r"\(S, N, 3\)"),
-        (lambda r, p: MESH.clears_path(r[:0], 0.1, 0.1, 0.1, 0.1), "no_motions", "shapes"),
-        (lambda r, p: MESH.clears_path(r, 0.1, -0.1, 0.1, 0.1), "negative", "`deviation`"),
-        (lambda r, p: MESH.clears_path(r * [[[np.nan]], [[1]], [[1]]], 0.1, 0, 1, 0.1), "point_not_finite", r"shapes\[0\]"),
+        (lambda r, p: MESH.clears_path(r[0], 0.1, 0.1, margin=0.1, resolution=0.1), "bad_shape", r"\(S, N, 3\)"),
+        (lambda r, p: MESH.clears_path(r[:0], 0.1, 0.1, margin=0.1, resolution=0.1), "no_motions", "shapes"),
+        (lambda r, p: MESH.clears_path(r, 0.1, -0.1, margin=0.1, resolution=0.1), "negative", "`deviation`"),
+        (lambda r, p: MESH.clears_path(r * [[[np.nan]], [[1]], [[1]]], 0.1, 0, margin=1, resolution=0.1), "point_not_finite", r"shapes\[0\]"),
         (
-            lambda r, p: MESH.clears_motion_while(MESH.vertices[:5], r[0], r[0], 0.1, 0.1, 0.1),
+            lambda r, p: MESH.clears_motion_while(MESH.vertices[:5], r[0], r[0], 0.1, margin=0.1, resolution=0.1),
             "vertex_count",
             "5",
         ),
@@ -340,5 +340,5 @@ def test_missing_arguments() -> None:
     robot = robots(np.random.default_rng(0), 1)[0]
     with pytest.raises(ContinuumError, match="`radii` is missing"):
         MESH.clears_motion(robot, robot, margin=0.1, resolution=0.1)  # type: ignore[call-overload]
-    with pytest.raises(ContinuumError, match="`resolution` is missing"):
+    with pytest.raises(TypeError, match="missing 1 required keyword-only argument: 'resolution'"):
         MESH.time_of_contact(LinearMotion(robot, robot, 0.1), margin=0.1)  # type: ignore[call-overload]

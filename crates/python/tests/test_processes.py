@@ -29,8 +29,8 @@ def answers(mesh: Mesh) -> list[Array]:
     return [
         mesh.distance(ROBOTS, 0.1),
         np.array([mesh.distance(robot, 0.1) for robot in ROBOTS[:5]]),
-        mesh.clears(ROBOTS, 0.1, 0.5),
-        mesh.contacts_within(ROBOTS[:30], 0.1, 2.0).distance,
+        mesh.clears(ROBOTS, 0.1, margin=0.5),
+        mesh.contacts_within(ROBOTS[:30], 0.1, margin=2.0).distance,
         mesh.side(ROBOTS[:, 0]),
         mesh.distance(ROBOTS[:1] + 1e12, 0.1),
         Mesh(VERTICES + 1, FACES).distance(ROBOTS, 0.1),
@@ -39,7 +39,7 @@ def answers(mesh: Mesh) -> list[Array]:
 
 def agree(mesh: Mesh, expected: list[Array]) -> bool:
     found = answers(mesh)
-    mesh.move(VERTICES + 1)
+    mesh.set_vertices(VERTICES + 1)
     return all(map(np.array_equal, found, expected)) and np.array_equal(mesh.distance(ROBOTS, 0.1), expected[-1])
 
 
@@ -99,14 +99,14 @@ def test_forks_while_other_threads_ask() -> None:
         while not is_over.is_set():
             mesh = meshes[-1]
             mesh.per_link(ROBOTS, 0.1)
-            mesh.contacts_within(ROBOTS[:20], 0.1, 2.0)
+            mesh.contacts_within(ROBOTS[:20], 0.1, margin=2.0)
             mesh.side(ROBOTS)
 
     def move() -> None:
         while not is_over.is_set():
             fresh = Mesh(VERTICES, FACES)  # with all that is to be built
             meshes.append(fresh)
-            fresh.move(VERTICES)
+            fresh.set_vertices(VERTICES)
             del meshes[:-3]
 
     threads = [threading.Thread(target=work) for work in (ask, ask, move)]
@@ -127,7 +127,7 @@ def test_forks_while_other_threads_ask() -> None:
 def test_forks_while_another_thread_builds() -> None:
     """A first question builds something, which others wait for. In the child it stays half built, and nobody finishes it."""
     vertices, faces = sphere(10.0, 250, 125)
-    asks = [lambda mesh: mesh.side([0.0, 0, 0]), lambda mesh: len(mesh.contacts_within(ROBOTS[0], 0.1, 1.0).segment)]
+    asks = [lambda mesh: mesh.side([0.0, 0, 0]), lambda mesh: len(mesh.contacts_within(ROBOTS[0], 0.1, margin=1.0).segment)]
     in_the_middle = 0
     for turn in range(12):
         ask = asks[turn % 2]

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
 
-from parry_continuum import ContinuumError, Mesh, Scene, between
+from parry_continuum import ContinuumError, Mesh, RobotPair, Scene
 from shapes import poses, robots, sphere
 
 RANDOM = np.random.default_rng(61)
@@ -36,7 +36,7 @@ def slacks(robot_margin: float | None) -> np.ndarray:
     for points, pose in ((A, POSES), (B, np.tile(np.eye(4), (60, 1, 1)))):
         columns += [WALL.distance(points, 0.1, pose=pose) - 0.5, VESSEL.distance(points, 0.1, pose=back @ pose) - 2.0]
     if robot_margin is not None:
-        columns.append(between(A, 0.1, B, 0.1, pose_a=POSES).distance - robot_margin)
+        columns.append(RobotPair().minimum(A, 0.1, B, 0.1, pose_a=POSES).distance - robot_margin)
     return np.stack(columns, axis=1)
 
 
@@ -99,12 +99,12 @@ def test_per_structure() -> None:
 
 def test_contacts() -> None:
     scene, back = made(), np.linalg.inv(AWAY)
-    found = scene.contacts_within([(A, 0.1, POSES), (B, 0.1)], 1.0)
+    found = scene.contacts_within([(A, 0.1, POSES), (B, 0.1)], reach=1.0)
     count = 0
     for structure, (mesh, pose) in enumerate([(WALL, np.eye(4)), (VESSEL, np.eye(4)), (VESSEL, back)]):
         for robot, (points, poses_of) in enumerate([(A, POSES), (B, np.tile(np.eye(4), (60, 1, 1)))]):
             for k in range(60):
-                own = mesh.contacts_within(points[k], 0.1, 1.0, pose=pose @ poses_of[k])
+                own = mesh.contacts_within(points[k], 0.1, margin=1.0, pose=pose @ poses_of[k])
                 rows = np.arange(*found.offsets[k : k + 2])
                 rows = rows[(found.structure[rows] == structure) & (found.robot[rows] == robot)]
                 assert (found.batch[rows] == k).all()
@@ -119,7 +119,7 @@ def test_contacts() -> None:
                 np.testing.assert_allclose(found.normal[rows], own.normal @ there[:3, :3].T, atol=1e-9)
                 count += len(rows)
     assert count == len(found.distance) > 50 and set(found.structure) == {0, 1, 2}
-    one = scene.contacts_within([(A[7], 0.1, POSES[7]), (B[7], 0.1)], 1.0)
+    one = scene.contacts_within([(A[7], 0.1, POSES[7]), (B[7], 0.1)], reach=1.0)
     assert_array_equal(one.distance, found.distance[slice(*found.offsets[7:9])])
 
 
@@ -128,7 +128,7 @@ def test_meshes_move() -> None:
     mesh, scene = Mesh(vertices, faces), Scene()
     scene.add("wall", mesh, margin=0.5)
     before = scene.tightest([(A, 0.1)]).slack
-    mesh.move(vertices * 2)
+    mesh.set_vertices(vertices * 2)
     assert_array_equal(scene.tightest([(A, 0.1)]).slack, mesh.distance(A, 0.1) - 0.5)
     assert (scene.tightest([(A, 0.1)]).slack > before).all()
 
@@ -176,14 +176,14 @@ def test_contacts_have_a_prominence() -> None:
     scene.add("rough", rough, margin=None)
     counts = []
     for prominence in (0.0, 0.3, np.inf):
-        found = scene.contacts_within([(A, 0.1, POSES)], 5.0, prominence)
-        expected = rough.contacts_within(A, 0.1, 5.0, prominence, pose=POSES)
+        found = scene.contacts_within([(A, 0.1, POSES)], reach=5.0, prominence=prominence)
+        expected = rough.contacts_within(A, 0.1, margin=5.0, prominence=prominence, pose=POSES)
         assert_array_equal(found.distance, expected.distance)
         assert_array_equal(found.offsets, expected.offsets)
         counts.append(len(found.distance))
     assert counts[0] > counts[1] > 0 and counts[0] > counts[2] > 0
-    one = scene.contacts_within([(A[3], 0.1, POSES[3])], 5.0, prominence=0.3)
-    assert_array_equal(one.distance, rough.contacts_within(A[3], 0.1, 5.0, 0.3, pose=POSES[3]).distance)
+    one = scene.contacts_within([(A[3], 0.1, POSES[3])], reach=5.0, prominence=0.3)
+    assert_array_equal(one.distance, rough.contacts_within(A[3], 0.1, margin=5.0, prominence=0.3, pose=POSES[3]).distance)
 
 
 @pytest.mark.parametrize("robots", [[(A[0], 0.1)], [(A, 0.1)], [(A[:0], 0.1)], [(A[0], 0.1), (B[0], 0.1)]])
@@ -207,8 +207,8 @@ def test_bad_lengths_have_their_own_names_without_structures_too(robots: list[ob
         (lambda: made().clears([(A, 0.1), (B[:5], 0.1)]), "bad_shape"),
         (lambda: made().tightest([(A[0].T, 0.1)]), "bad_shape"),
         (lambda: made().tightest([(A[0], -0.1)]), "bad_radius"),
-        (lambda: made().contacts_within([(A[0], 0.1)], -1.0), "negative"),
-        (lambda: made().contacts_within([(A[0], -0.1)], 1.0), "bad_radius"),
+        (lambda: made().contacts_within([(A[0], 0.1)], reach=-1.0), "negative"),
+        (lambda: made().contacts_within([(A[0], -0.1)], reach=1.0), "bad_radius"),
         (lambda: made().per_structure([(A[0], 0.1, np.eye(3))]), "bad_shape"),
     ],
 )

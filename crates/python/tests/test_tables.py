@@ -24,22 +24,22 @@ def motion(points: Any) -> LinearMotion:
     return LinearMotion(points, points + 0.1, 0.1)
 
 
-CONTACTS = len(MESH.contacts_within(MANY, 0.1, 5.0).distance)
+CONTACTS = len(MESH.contacts_within(MANY, 0.1, margin=5.0).distance)
 # Of each answer: of one, of a batch and of none, how many rows it has.
 ANSWERS = {
     "minimum": (lambda p: MESH.minimum(p, 0.1), 1, B),
     "per_link": (lambda p: MESH.per_link(p, 0.1), N - 1, B * (N - 1)),
-    "within": (lambda p: MESH.contacts_within(p, 0.1, 5.0), len(MESH.contacts_within(ONE, 0.1, 5.0).distance), CONTACTS),
-    "clearance": (lambda p: MESH.clearance(p, 0.1, 1.0), 1, B),
-    "clears_inside": (lambda p: MESH.clears_inside(p, 0.1, 0.1), 1, B),
+    "within": (lambda p: MESH.contacts_within(p, 0.1, margin=5.0), len(MESH.contacts_within(ONE, 0.1, margin=5.0).distance), CONTACTS),
+    "clearance": (lambda p: MESH.clearance(p, 0.1, tolerance=1.0), 1, B),
+    "clears_inside": (lambda p: MESH.clears_inside(p, 0.1, margin=0.1), 1, B),
     "clears_motion": (lambda p: MESH.clears_motion(motion(p), margin=0.1, resolution=0.1), 1, B),
     "clearance_of_motion": (lambda p: MESH.clearance_of_motion(motion(p), tolerance=1.0), 1, B),
     "certify": (lambda p: MESH.certify(p, 0.1, MESH.per_link(p, 0.1)), N - 1, B * (N - 1)),
     "gradient": (lambda p: MESH.distance_and_gradient(p, 0.1), 1, B),
     "pair.minimum": (lambda p: PAIR.minimum(p, 0.1, ONE + 1, 0.1), 1, B),
     "pair.per_link": (lambda p: PAIR.per_link(p, 0.1, ONE + 1, 0.1), N - 1, B * (N - 1)),
-    "pair.clearance": (lambda p: PAIR.clearance(p, 0.1, ONE + 1, 0.1, 1.0), 1, B),
-    "pair.clears_motion": (lambda p: PAIR.clears_motion(motion(p), motion(ONE + 1), 0.1, 0.1), 1, B),
+    "pair.clearance": (lambda p: PAIR.clearance(p, 0.1, ONE + 1, 0.1, tolerance=1.0), 1, B),
+    "pair.clears_motions": (lambda p: PAIR.clears_motions(motion(p), motion(ONE + 1), margin=0.1, resolution=0.1), 1, B),
     "per_structure": (lambda p: SCENE.per_structure([(p, 0.1)]), 2, 2 * B),
     "tightest": (lambda p: SCENE.tightest([(p, 0.1)]), 1, B),
 }
@@ -71,7 +71,7 @@ def test_what_the_columns_are() -> None:
     assert_array_equal(table["segment"], np.tile(np.arange(N - 1), B))
     pair = PAIR.minimum(ONE, 0.1, ONE + 3, 0.1)
     assert pair.to_dict()["segments_1"].tolist() == [pair.segments[1]]
-    near = MESH.contacts_within(MANY, 0.1, 5.0).to_dict()
+    near = MESH.contacts_within(MANY, 0.1, margin=5.0).to_dict()
     assert "offsets" not in near and (np.diff(near["robot"]) >= 0).all()
     decided = MESH.clears_motion(motion(MANY), margin=0.1, resolution=0.1).to_dict()
     assert decided["decision"].dtype == np.int8 and decided["interval_0"].shape == (B,)

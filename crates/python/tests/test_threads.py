@@ -25,14 +25,14 @@ ROBOTS = robots(np.random.default_rng(4), 400)
 def test_threads_share_a_mesh() -> None:
     mesh = Mesh(VERTICES, FACES)
     expected = mesh.distance(ROBOTS, 0.1)
-    contacts = mesh.contacts_within(ROBOTS, 0.1, 6.0)
+    contacts = mesh.contacts_within(ROBOTS, 0.1, margin=6.0)
     assert len(contacts.segment) > 100
 
     def ask(turn: int) -> None:
         for k in range(turn, len(ROBOTS), 8):
             assert mesh.distance(ROBOTS[k], 0.1) == expected[k]
         assert_array_equal(mesh.distance(ROBOTS, 0.1), expected)
-        for one, other in zip(mesh.contacts_within(ROBOTS, 0.1, 6.0), contacts):
+        for one, other in zip(mesh.contacts_within(ROBOTS, 0.1, margin=6.0), contacts):
             assert_array_equal(one, other)
 
     with ThreadPoolExecutor(8) as threads:
@@ -49,7 +49,7 @@ def test_first_questions_of_many_threads() -> None:
             start.wait()
             if turn % 2:
                 return mesh.side(ROBOTS[:30])
-            return mesh.contacts_within(ROBOTS[:40], 0.1, 3.0).triangle
+            return mesh.contacts_within(ROBOTS[:40], 0.1, margin=3.0).triangle
 
         with ThreadPoolExecutor(8) as threads:
             found = list(threads.map(ask, range(8)))
@@ -69,7 +69,7 @@ def test_a_batch_sees_one_mesh() -> None:
         turn = 0
         while not is_over.is_set():
             turn += 1
-            mesh.move(places[turn % 2])
+            mesh.set_vertices(places[turn % 2])
 
     mover = threading.Thread(target=move)
     mover.start()
@@ -88,7 +88,7 @@ def test_a_batch_sees_one_mesh() -> None:
 def test_what_moved_is_seen_at_once() -> None:
     mesh = Mesh(VERTICES, FACES)
     for shift in range(5):
-        mesh.move(VERTICES + [shift, 0, 0])
+        mesh.set_vertices(VERTICES + [shift, 0, 0])
         assert_array_equal(mesh.distance(ROBOTS, 0.1), Mesh(VERTICES + [shift, 0, 0], FACES).distance(ROBOTS, 0.1))
 
 

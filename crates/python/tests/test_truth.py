@@ -9,21 +9,11 @@ import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
 
-from parry_continuum import (
-    Decision,
-    LinearMotion,
-    Mesh,
-    RobotPair,
-    Scene,
-    Side,
-    UndecidedReason,
-    motion_self_clears,
-    tube_self_clears,
-)
+from parry_continuum import Decision, LinearMotion, Mesh, RobotPair, Scene, SelfQuery, Side, UndecidedReason
 from shapes import sphere
 
 MESH = Mesh(*sphere())
-PAIR = RobotPair()
+PAIR, QUERY = RobotPair(), SelfQuery()
 INSIDE = np.array([[0, 0, 0.0], [0, 0, 1.0]])
 THROUGH = np.array([[0, 0, 0.0], [0, 0, 30.0]])
 BOTH = np.stack([INSIDE, THROUGH])
@@ -59,17 +49,17 @@ DECIDED = {
     "clears_tube": [MESH.clears_tube(p, 0.1, margin=0.5, resolution=0.01) for p in (INSIDE, THROUGH, BOTH)],
     "clears_inside": [MESH.clears_inside(p, 0.1, margin=0.5) for p in (INSIDE, THROUGH, BOTH)],
     "tightest": [SCENE.tightest([(p, 0.1)]) for p in (INSIDE, THROUGH, BOTH)],
-    "pair.clears_motion": [
-        PAIR.clears_motion(motion(p), AT_REST, margin=1.0, resolution=0.01)
+    "pair.clears_motions": [
+        PAIR.clears_motions(motion(p), AT_REST, margin=1.0, resolution=0.01)
         for p in (INSIDE, INSIDE + [3, 0, 0], np.stack([INSIDE, INSIDE + [3, 0, 0]]))
     ],
     "pair.clears_tubes": [
         PAIR.clears_tubes(p, 0.1, INSIDE + [3, 0, 0], 0.1, margin=1.0, resolution=0.01)
         for p in (INSIDE, INSIDE + [3, 0, 0], np.stack([INSIDE, INSIDE + [3, 0, 0]]))
     ],
-    "tube_self_clears": [tube_self_clears(p, 0.1, margin=1.0, resolution=0.01) for p in (INSIDE, THROUGH, BOTH)],
-    "motion_self_clears": [
-        motion_self_clears(m, margin=2.5, resolution=1e-3)
+    "query.clears_tube": [QUERY.clears_tube(p, 0.1, margin=1.0, resolution=0.01) for p in (INSIDE, THROUGH, BOTH)],
+    "query.clears_motion": [
+        QUERY.clears_motion(m, margin=2.5, resolution=1e-3)
         for m in (LinearMotion(hairpin(-6), hairpin(-5), 1.0), LinearMotion(hairpin(-6), hairpin(2), 1.0), swing([-5, 2]))
     ],
 }
@@ -78,7 +68,7 @@ DECIDED = {
 @pytest.mark.parametrize("name", DECIDED)
 def test_is_clear(name: str) -> None:
     clear, touches, both = DECIDED[name]
-    assert [clear.is_clear, touches.is_clear] == [True, name == "tube_self_clears"]
+    assert [clear.is_clear, touches.is_clear] == [True, name == "query.clears_tube"]
     assert type(clear.is_clear) is bool
     assert_array_equal(both.is_clear, [clear.is_clear, touches.is_clear])
     assert both.is_clear.dtype == np.bool_ and type(both.is_clear) is np.ndarray
@@ -98,16 +88,16 @@ def test_no_truth_value(name: str) -> None:
     [
         (MESH.minimum(INSIDE, 0.1), "`distance`"),
         (MESH.per_link(BOTH, 0.1), "`distance`"),
-        (MESH.contacts_within(INSIDE, 0.1, 0.5), r"len\(contacts.distance\)"),
-        (MESH.clearance(INSIDE, 0.1, 0.5), "`lower` and `upper`"),
+        (MESH.contacts_within(INSIDE, 0.1, margin=0.5), r"len\(contacts.distance\)"),
+        (MESH.clearance(INSIDE, 0.1, tolerance=0.5), "`lower` and `upper`"),
         (MESH.clearance_of_motion(motion(INSIDE), tolerance=0.5), "`lower` and `upper`"),
         (MESH.certify(INSIDE, 0.1, MESH.per_link(INSIDE, 0.1)), "`lower` and `upper`"),
         (MESH.distance_and_gradient(INSIDE, 0.1), "`value`"),
         (PAIR.minimum(INSIDE, 0.1, THROUGH, 0.1), "`distance`"),
-        (PAIR.contacts_within(INSIDE, 0.1, THROUGH, 0.1, 9.0), r"len\(contacts.distance\)"),
-        (PAIR.clearance(INSIDE, 0.1, THROUGH, 0.1, 9.0), "`lower` and `upper`"),
+        (PAIR.contacts_within(INSIDE, 0.1, THROUGH, 0.1, margin=9.0), r"len\(contacts.distance\)"),
+        (PAIR.clearance(INSIDE, 0.1, THROUGH, 0.1, tolerance=9.0), "`lower` and `upper`"),
         (SCENE.per_structure([(INSIDE, 0.1)]), "`slack`"),
-        (SCENE.contacts_within([(INSIDE, 0.1)], 0.5), r"len\(contacts.distance\)"),
+        (SCENE.contacts_within([(INSIDE, 0.1)], reach=0.5), r"len\(contacts.distance\)"),
         (Side.OUTSIDE, r"side is Side\.INSIDE.*\.is_clear"),
         (Side.UNDECIDED, r"side is Side\.INSIDE.*\.is_clear"),
         (MESH.side([0, 0, 0]), r"side is Side\.INSIDE.*\.is_clear"),

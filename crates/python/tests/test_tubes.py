@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from parry_continuum import ContinuumError, Decision, Mesh, RobotPair, tube_self_clears
+from parry_continuum import ContinuumError, Decision, Mesh, RobotPair, SelfQuery
 from shapes import Array
 
 FLOOR = Mesh([[-90, -90, 0], [90, -90, 0], [0, 90, 0]], [[0, 1, 2]])
@@ -26,7 +26,7 @@ def test_bounds_hold(count: int) -> None:
     points, tangents, true = arc(count)
     widths = []
     for given in ({}, {"tangents": tangents[[0, -1]]}, {"tangents": tangents}):
-        found = FLOOR.clearance(points, RADIUS, 1e-4, **given)
+        found = FLOOR.clearance(points, RADIUS, tolerance=1e-4, **given)
         assert found.lower <= true <= found.upper
         widths.append(found.upper - found.lower)
     # Directions at the ends tell how the faces are turned, and those at all points how the curve bends between them.
@@ -40,31 +40,31 @@ def test_measured_points() -> None:
     for deviation in (0.01, 0.05):
         noise = random.normal(size=points.shape)
         noise *= (deviation * random.random(80) / np.linalg.norm(noise, axis=1))[:, None]
-        found = FLOOR.clearance(points + noise, RADIUS, 1e-3, deviation=deviation)
+        found = FLOOR.clearance(points + noise, RADIUS, tolerance=1e-3, deviation=deviation)
         assert found.lower <= true <= found.upper
         assert 0 < found.uncertainty
-    batch = FLOOR.clearance(np.stack([points] * 20), RADIUS, 1e-3, deviation=0.01)
-    one = FLOOR.clearance(points, RADIUS, 1e-3, deviation=0.01)
+    batch = FLOOR.clearance(np.stack([points] * 20), RADIUS, tolerance=1e-3, deviation=0.01)
+    one = FLOOR.clearance(points, RADIUS, tolerance=1e-3, deviation=0.01)
     assert (batch.lower == one.lower).all() and (batch.upper == one.upper).all()
 
 
 def test_turns() -> None:
     """Directions of measured points are known as far as somebody states them."""
     points, _, true = arc(80)
-    unknown = FLOOR.clearance(points, RADIUS, 1e-3, deviation=0.01)
+    unknown = FLOOR.clearance(points, RADIUS, tolerance=1e-3, deviation=0.01)
     assert unknown.upper - unknown.lower > 0.9 * RADIUS
     last = 0.0
     for turn in (0.01, 0.05, 0.2):
-        found = FLOOR.clearance(points, RADIUS, 1e-3, deviation=0.01, turn=turn)
+        found = FLOOR.clearance(points, RADIUS, tolerance=1e-3, deviation=0.01, turn=turn)
         assert found.lower <= true <= found.upper
         assert last < found.upper - found.lower < unknown.upper - unknown.lower
         last = found.upper - found.lower
     margin = true - 0.25 * RADIUS
-    assert FLOOR.clears_tube(points, RADIUS, margin, 0.01, deviation=0.01) is Decision.UNDECIDED
-    assert FLOOR.clears_tube(points, RADIUS, margin, 0.01, deviation=0.01, turn=0.05) is Decision.CLEAR
+    assert FLOOR.clears_tube(points, RADIUS, margin=margin, resolution=0.01, deviation=0.01) is Decision.UNDECIDED
+    assert FLOOR.clears_tube(points, RADIUS, margin=margin, resolution=0.01, deviation=0.01, turn=0.05) is Decision.CLEAR
     for turn in (-0.1, np.nan):
         with pytest.raises(ContinuumError, match="`turn`"):
-            FLOOR.clearance(points, RADIUS, 0.1, turn=turn)
+            FLOOR.clearance(points, RADIUS, tolerance=0.1, turn=turn)
 
 
 def test_two_tubes() -> None:
@@ -85,24 +85,24 @@ def test_two_tubes() -> None:
         (noisy, {"deviation_a": 0.01, "tangents_b": tangents * mirror}),
     ]:
         for _ in range(2):  # with and without a memory
-            found = pair.clearance(*robots_of, 1e-3, **stated)
+            found = pair.clearance(*robots_of, tolerance=1e-3, **stated)
             assert found.lower <= 2 * true <= found.upper
         assert np.linalg.norm(found.on_first - found.on_second) <= found.upper + 1e-12
         widths.append(found.upper - found.lower)
     assert widths[1] < widths[2] < widths[0] and widths[1] <= 1e-3 and widths[1] < widths[3] < widths[4]
     for margin, decision in [(2 * true - 0.3, Decision.CLEAR), (2 * true + 0.3, Decision.CONTACT)]:
         ends = {"tangents_a": tangents, "tangents_b": tangents * mirror}
-        assert pair.clears_tubes(*given, margin, 0.01, **ends) is decision
+        assert pair.clears_tubes(*given, margin=margin, resolution=0.01, **ends) is decision
     shifts = np.eye(4) + np.zeros((30, 4, 4))
     shifts[:, 2, 3] = np.linspace(0, 5, 30)
     batch = (np.stack([points] * 30), RADIUS, points * mirror, RADIUS)
-    many = pair.clearance(*batch, 0.2, pose_a=shifts)
+    many = pair.clearance(*batch, tolerance=0.2, pose_a=shifts)
     assert (many.lower <= 2 * true + shifts[:, 2, 3]).all() and (2 * true + shifts[:, 2, 3] <= many.upper).all()
-    decided = pair.clears_tubes(*batch, 2 * true + 2.5, 0.3, pose_a=shifts)
+    decided = pair.clears_tubes(*batch, margin=2 * true + 2.5, resolution=0.3, pose_a=shifts)
     assert decided[0] == Decision.CONTACT and decided[-1] == Decision.CLEAR
     spoilt = np.stack([points] * 3)
     spoilt[1, 5] = np.nan
-    found = pair.clearance(spoilt, RADIUS, points * mirror, RADIUS, 0.2)
+    found = pair.clearance(spoilt, RADIUS, points * mirror, RADIUS, tolerance=0.2)
     assert found.status.tolist() == ["", "point_not_finite", ""] and np.isnan(found.lower).tolist() == [False, True, False]
     for text, stated in [
         ("`tangents_b` and a deviation", {"tangents_b": tangents, "deviation_b": 0.1}),
@@ -110,9 +110,9 @@ def test_two_tubes() -> None:
         ("`turn_b`", {"turn_b": -1.0}),
     ]:
         with pytest.raises(ContinuumError, match=text):
-            pair.clearance(*given, 0.1, **stated)
+            pair.clearance(*given, tolerance=0.1, **stated)
     with pytest.raises(ContinuumError, match="`tolerance`"):
-        pair.clearance(*given, np.nan)
+        pair.clearance(*given, tolerance=np.nan)
 
 
 def test_a_coil_keeps_a_margin_to_itself() -> None:
@@ -125,25 +125,25 @@ def test_a_coil_keeps_a_margin_to_itself() -> None:
     tangents = np.stack([-radius * np.sin(angle), radius * np.cos(angle), rise + 0 * angle], axis=1)
     noise = np.random.default_rng(59).normal(size=points.shape)
     noise *= 0.01 / np.linalg.norm(noise, axis=1)[:, None]
-    pair = RobotPair()
+    query = SelfQuery()
     for given, ways, off in [
         (points, {"tangents": tangents[[0, -1]]}, 0.02),
         (points, {"tangents": tangents}, 0.02),
         (points + noise, {"deviation": 0.02, "turn": 0.05}, 0.2),
     ]:
         for margin, decision in [(0.0, Decision.CLEAR), (true - off, Decision.CLEAR), (true + off, Decision.CONTACT)]:
-            for ask in (tube_self_clears, pair.tube_self_clears):
-                assert ask(given, RADIUS, margin, 0.01, **ways) is decision
+            for asked in (query, SelfQuery()):
+                assert asked.clears_tube(given, RADIUS, margin=margin, resolution=0.01, **ways) is decision
     stretched = np.stack([points, points * [1, 1, 2], points * [1, 1, 0.2]])
-    decided = tube_self_clears(stretched, [RADIUS] * 400, true + 0.1, 0.05)
+    decided = query.clears_tube(stretched, [RADIUS] * 400, margin=true + 0.1, resolution=0.05)
     assert decided.dtype == np.int8 and decided.tolist() == [Decision.CONTACT, Decision.CLEAR, Decision.CONTACT]
-    for kind, arguments in [
-        ("negative", (points, RADIUS, -1.0, 0.01)),
-        ("negative", (points, RADIUS, 1.0, np.nan)),
-        ("bends_within_radius", (points, 11.0, 1.0, 0.01)),
+    for kind, radius, margin, resolution in [
+        ("negative", RADIUS, -1.0, 0.01),
+        ("negative", RADIUS, 1.0, np.nan),
+        ("bends_within_radius", 11.0, 1.0, 0.01),
     ]:
         with pytest.raises(ContinuumError) as caught:
-            tube_self_clears(*arguments)
+            query.clears_tube(points, radius, margin=margin, resolution=resolution)
         assert caught.value.kind == kind
 
 
@@ -159,26 +159,26 @@ def test_what_was_asked_before_does_not_count() -> None:
         {"deviation": 0.01, "turn": 0.05},
         {"turn": 0.1},
     ]
-    fresh = [Mesh(FLOOR).clearance(points, RADIUS, 1e-3, **way) for way in ways]
+    fresh = [Mesh(FLOOR).clearance(points, RADIUS, tolerance=1e-3, **way) for way in ways]
     for turn in range(21):
         # In an order in which each comes after each.
         way = turn * (1 + turn // 7) % 7
-        found = FLOOR.clearance(points, RADIUS, 1e-3, **ways[way])
+        found = FLOOR.clearance(points, RADIUS, tolerance=1e-3, **ways[way])
         assert (found.lower, found.upper) == (fresh[way].lower, fresh[way].upper)
 
 
 def test_decisions() -> None:
     points, tangents, true = arc(40)
     for margin, decision in [(true - 0.8, Decision.CLEAR), (true + 0.8, Decision.CONTACT)]:
-        assert FLOOR.clears_tube(points, RADIUS, margin, 0.01, tangents=tangents) is decision
-        assert FLOOR.clears_tube(np.stack([points] * 3), RADIUS, margin, 0.01, deviation=0.01).tolist() == [decision] * 3
+        assert FLOOR.clears_tube(points, RADIUS, margin=margin, resolution=0.01, tangents=tangents) is decision
+        assert FLOOR.clears_tube(np.stack([points] * 3), RADIUS, margin=margin, resolution=0.01, deviation=0.01).tolist() == [decision] * 3
 
 
 def test_refused() -> None:
     points, tangents, _ = arc(40)
     with pytest.raises(ContinuumError, match="give one"):
-        FLOOR.clearance(points, RADIUS, 0.1, tangents=tangents, deviation=0.1)
+        FLOOR.clearance(points, RADIUS, tolerance=0.1, tangents=tangents, deviation=0.1)
     for deviation in (-1.0, np.nan, np.inf):
         with pytest.raises(ContinuumError, match="`deviation`") as raised:
-            FLOOR.clearance(points, RADIUS, 0.1, deviation=deviation)
+            FLOOR.clearance(points, RADIUS, tolerance=0.1, deviation=deviation)
         assert raised.value.kind == "negative"

@@ -1,4 +1,4 @@
-"""Robots against each other and against themselves, beside numpy's distances between segments."""
+"""Two robots, and one robot and itself, beside numpy's distances between segments."""
 
 from __future__ import annotations
 
@@ -15,11 +15,7 @@ from parry_continuum import (
     MotionPath,
     RigidMotion,
     RobotPair,
-    between,
-    clears_between,
-    motion_self_clears,
-    self_clears,
-    self_minimum,
+    SelfQuery,
 )
 from shapes import Array, poses, robots
 
@@ -45,7 +41,7 @@ def sampled(a: Array, b: Array) -> tuple[float, float]:
 def test_two_robots_beside_samples() -> None:
     random = np.random.default_rng(41)
     a, b = robots(random, 20, points=5), robots(random, 20, points=6)
-    found = between(a, RADIUS, b, RADIUS, caps="capsules")
+    found = RobotPair().minimum(a, RADIUS, b, RADIUS, caps="capsules")
     touching = 0
     for k in range(20):
         most, least = sampled(a[k], b[k])
@@ -67,17 +63,17 @@ def test_two_robots_beside_samples() -> None:
 def test_one_and_many() -> None:
     random = np.random.default_rng(42)
     a, b, pose_a, pose_b = robots(random, 30), robots(random, 30), poses(random, 30), poses(random, 30)
-    all_pairs = between(a, RADIUS, b, 0.1, pose_a=pose_a, pose_b=pose_b)
+    all_pairs = RobotPair().minimum(a, RADIUS, b, 0.1, pose_a=pose_a, pose_b=pose_b)
     margin = float(np.median(all_pairs.distance))
-    clears = clears_between(a, RADIUS, b, 0.1, margin, pose_a=pose_a, pose_b=pose_b)
+    clears = RobotPair().clears(a, RADIUS, b, 0.1, margin=margin, pose_a=pose_a, pose_b=pose_b)
     assert_array_equal(clears, all_pairs.distance > margin)
-    first_and_all = between(a[0], RADIUS, b, 0.1, pose_a=pose_a[0], pose_b=pose_b)
-    all_and_first = between(b, 0.1, a[0], RADIUS, pose_a=pose_b, pose_b=pose_a[0])
+    first_and_all = RobotPair().minimum(a[0], RADIUS, b, 0.1, pose_a=pose_a[0], pose_b=pose_b)
+    all_and_first = RobotPair().minimum(b, 0.1, a[0], RADIUS, pose_a=pose_b, pose_b=pose_a[0])
     for k in range(30):
-        one = between(a[k], RADIUS, b[k], 0.1, pose_a=pose_a[k], pose_b=pose_b[k])
+        one = RobotPair().minimum(a[k], RADIUS, b[k], 0.1, pose_a=pose_a[k], pose_b=pose_b[k])
         for field, fields in zip(one, all_pairs):
             assert_array_equal(field, fields[k])
-        one = between(a[0], RADIUS, b[k], 0.1, pose_a=pose_a[0], pose_b=pose_b[k])
+        one = RobotPair().minimum(a[0], RADIUS, b[k], 0.1, pose_a=pose_a[0], pose_b=pose_b[k])
         for field, fields in zip(one, first_and_all):
             assert_array_equal(field, fields[k])
     np.testing.assert_allclose(first_and_all.distance, all_and_first.distance, rtol=0, atol=1e-14)
@@ -86,45 +82,46 @@ def test_one_and_many() -> None:
 def test_itself() -> None:
     angle = np.linspace(0, 1.9 * np.pi, 60)
     ring = 5 * np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=1)
-    found = self_minimum(ring, RADIUS, caps="capsules")
+    found = SelfQuery().minimum(ring, RADIUS, caps="capsules")
     gap = np.linalg.norm(ring[0] - ring[-1]) - 2 * RADIUS
     assert abs(found.distance - gap) < 1e-12
     assert_array_equal(np.sort(found.segments), [0, 58])
     straight = np.linspace([0, 0, 0], [9, 0, 0], 60)
-    none = self_minimum(straight, RADIUS)
+    none = SelfQuery().minimum(straight, RADIUS)
     assert none.distance == np.inf and (none.segments == -1).all() and np.isnan(none.on_first).all()
     both = np.stack([ring, straight] * 20)
-    distances = self_minimum(both, RADIUS, caps="capsules").distance
+    distances = SelfQuery().minimum(both, RADIUS, caps="capsules").distance
     assert_array_equal(distances, [found.distance, np.inf] * 20)
     for margin in (gap - 0.01, gap + 0.01):
-        assert_array_equal(self_clears(both, RADIUS, margin, caps="capsules"), distances > margin)
-        assert self_clears(ring, RADIUS, margin, caps="capsules") is bool(found.distance > margin)
+        assert_array_equal(SelfQuery().clears(both, RADIUS, margin=margin, caps="capsules"), distances > margin)
+        assert SelfQuery().clears(ring, RADIUS, margin=margin, caps="capsules") is bool(found.distance > margin)
 
 
 def test_segments_are_the_inputs() -> None:
     """Where points are repeated, too."""
     a = np.array([[0, 0, 0], [0, 0, 0], [0, 0, 4], [0, 0, 4], [0, 0, 8], [4, 0, 12], [4, 0, 12.0]])
     for height, segment in [(1, 1), (5, 3)]:
-        found = between(a, RADIUS, [[-3, -1, height], [-3, 1, height]], RADIUS)
+        found = RobotPair().minimum(a, RADIUS, [[-3, -1, height], [-3, 1, height]], RADIUS)
         assert_array_equal(found.segments, [segment, 0])
 
 
 def test_pairs_remember_and_answer_alike() -> None:
     random = np.random.default_rng(43)
     a, b, pose = robots(random, 30), robots(random, 30), poses(random, 30)
-    pair = RobotPair()
+    pair, query = RobotPair(), SelfQuery()
     given = (a, RADIUS, b, 0.1)
     for _ in range(2):
-        for field, expected in zip(pair.minimum(*given, pose_b=pose), between(*given, pose_b=pose)):
+        for field, expected in zip(pair.minimum(*given, pose_b=pose), RobotPair().minimum(*given, pose_b=pose)):
             assert_array_equal(field, expected)
         for k in range(30):
             one = pair.minimum(a[k], RADIUS, b[k], 0.1, pose_b=pose[k])
-            assert one.distance == between(a[k], RADIUS, b[k], 0.1, pose_b=pose[k]).distance
-        margin = float(np.median(between(*given).distance))
-        assert_array_equal(pair.clears(*given, margin), clears_between(*given, margin))
-        assert_array_equal(pair.self_minimum(a, RADIUS).distance, self_minimum(a, RADIUS).distance)
-        assert_array_equal(pair.self_clears(a, RADIUS, 0.1), self_clears(a, RADIUS, 0.1))
+            assert one.distance == RobotPair().minimum(a[k], RADIUS, b[k], 0.1, pose_b=pose[k]).distance
+        margin = float(np.median(RobotPair().minimum(*given).distance))
+        assert_array_equal(pair.clears(*given, margin=margin), RobotPair().clears(*given, margin=margin))
+        assert_array_equal(query.minimum(a, RADIUS).distance, SelfQuery().minimum(a, RADIUS).distance)
+        assert_array_equal(query.clears(a, RADIUS, margin=0.1), SelfQuery().clears(a, RADIUS, margin=0.1))
         pair.forget()
+        query.forget()
 
 
 def test_each_segment() -> None:
@@ -139,10 +136,10 @@ def test_each_segment() -> None:
             if k % 4 == 0 and segment == 2:
                 assert np.isnan(found.distance[k, segment]) and (found.segments[k, segment] == -1).all()
                 continue
-            alone = between(a[k, segment : segment + 2], RADIUS, b[k], RADIUS, pose_a=pose[k], caps="capsules")
+            alone = RobotPair().minimum(a[k, segment : segment + 2], RADIUS, b[k], RADIUS, pose_a=pose[k], caps="capsules")
             assert abs(found.distance[k, segment] - alone.distance) < 1e-12
             assert found.segments[k, segment].tolist() == [segment, alone.segments[1]] or alone.distance == 0
-    least = between(a, RADIUS, b, RADIUS, pose_a=pose, caps="capsules").distance
+    least = RobotPair().minimum(a, RADIUS, b, RADIUS, pose_a=pose, caps="capsules").distance
     assert_array_equal(np.nanmin(found.distance, axis=1), least)
     one = RobotPair().per_link(a[1], RADIUS, b[1], RADIUS, pose_a=pose[1], caps="capsules")
     for field, fields in zip(one, found):
@@ -153,10 +150,10 @@ def test_every_place() -> None:
     """Pairs of segments of which no neighbours are closer, by all pairs of segments."""
     random = np.random.default_rng(45)
     a, b = np.cumsum(random.normal(size=(2, 20, 8, 3)), axis=2)
-    found, margin, several = RobotPair().contacts_within(a, 0.1, b, 0.1, 3.0, caps="capsules"), 3.0, 0
+    found, margin, several = RobotPair().contacts_within(a, 0.1, b, 0.1, margin=3.0, caps="capsules"), 3.0, 0
     for k in range(20):
         distance = np.array(
-            [[between(a[k, i : i + 2], 0.1, b[k, j : j + 2], 0.1, caps="capsules").distance for j in range(7)] for i in range(7)]
+            [[RobotPair().minimum(a[k, i : i + 2], 0.1, b[k, j : j + 2], 0.1, caps="capsules").distance for j in range(7)] for i in range(7)]
         )
         padded = np.pad(distance, 1, constant_values=np.inf)
         around = np.stack([padded[1 + i : 8 + i, 1 + j : 8 + j] for i in (-1, 0, 1) for j in (-1, 0, 1) if (i, j) != (0, 0)])
@@ -179,31 +176,31 @@ def test_both_move() -> None:
     ends[1] += [2.5, 0, 0]
     first, second = (LinearMotion(*way, 0.3) for way in ends)
     pair, steps = RobotPair(), np.linspace(0, 1, 201)
-    found = pair.clears_motion(first, second, 0.2, 1e-3)
+    found = pair.clears_motions(first, second, margin=0.2, resolution=1e-3)
     assert set(found.decision) == {Decision.CLEAR, Decision.CONTACT}
     for place in range(40):
-        alone = pair.clears_motion(*(LinearMotion(*way[:, place], 0.3) for way in ends), 0.2, 1e-3)
+        alone = pair.clears_motions(*(LinearMotion(*way[:, place], 0.3) for way in ends), margin=0.2, resolution=1e-3)
         assert alone.decision is Decision(found.decision[place])
         for one, of_all in zip(alone[1:], found[1:]):
             assert_array_equal(one, of_all[place])
         a, b = (start + steps[:, None, None] * (end - start) for start, end in ends[:, :, place])
-        distances = between(a, 0.3, b, 0.3).distance
+        distances = RobotPair().minimum(a, 0.3, b, 0.3).distance
         if alone.decision is Decision.CLEAR:
             assert distances.min() > 0.2
         else:
             a, b = (start + alone.t * (end - start) for start, end in ends[:, :, place])
-            assert between(a, 0.3, b, 0.3).distance <= alone.upper <= 0.2
+            assert RobotPair().minimum(a, 0.3, b, 0.3).distance <= alone.upper <= 0.2
             assert np.linalg.norm(alone.on_first - alone.on_second) <= alone.upper + 1e-12
             # Steps come as near, but for what moves between two of them.
             most = sum(np.abs(end - start).max() for start, end in ends[:, :, place]) * 3**0.5
             assert distances.min() <= 0.2 + most / 400
     # One beside all of a batch, and a path of them.
     one = LinearMotion(*ends[0][:, 0], 0.3)
-    beside = pair.clears_motion(one, second, 0.2, 1e-3)
+    beside = pair.clears_motions(one, second, margin=0.2, resolution=1e-3)
     assert beside.decision.shape == (40,) and beside.decision[0] == found.decision[0]
     there_and_back = MotionPath([one, LinearMotion(*ends[0][::-1, 0], 0.3)])
     still = RigidMotion(ends[1][0, 0], 0.3, np.eye(4), np.eye(4))
-    answers = {pair.clears_motion(moving, still, 0.2, 1e-3).decision for moving in (one, there_and_back)}
+    answers = {pair.clears_motions(moving, still, margin=0.2, resolution=1e-3).decision for moving in (one, there_and_back)}
     assert len(answers) == 1
 
 
@@ -245,38 +242,37 @@ def test_a_robot_moves_beside_itself() -> None:
         return np.concatenate([np.broadcast_to(fixed, (40, 4, 3)), tips[:, None]], axis=1)
 
     starts, ends = hairpins(), hairpins()
-    swings, pair, steps = LinearMotion(starts, ends, 0.5), RobotPair(), np.linspace(0, 1, 201)
-    found = pair.motion_self_clears(swings, 1.5, 1e-3)
+    swings, query, steps = LinearMotion(starts, ends, 0.5), SelfQuery(), np.linspace(0, 1, 201)
+    found = query.clears_motion(swings, margin=1.5, resolution=1e-3)
     assert {Decision.CLEAR, Decision.CONTACT} <= set(found.decision)
     for place, (start, end) in enumerate(zip(starts, ends)):
-        alone = motion_self_clears(LinearMotion(start, end, 0.5), 1.5, 1e-3)
+        alone = SelfQuery().clears_motion(LinearMotion(start, end, 0.5), margin=1.5, resolution=1e-3)
         assert alone.decision is Decision(found.decision[place])
         for one, of_all in zip(alone[1:], found[1:]):
             assert_array_equal(one, of_all[place])
-        clear = self_clears(start + steps[:, None, None] * (end - start), 0.5, 1.5)
+        clear = SelfQuery().clears(start + steps[:, None, None] * (end - start), 0.5, margin=1.5)
         if alone.decision is Decision.CLEAR:
             assert clear.all()
         elif alone.decision is Decision.CONTACT:
-            assert self_minimum(start + alone.t * (end - start), 0.5).distance <= alone.upper <= 1.5
+            assert SelfQuery().minimum(start + alone.t * (end - start), 0.5).distance <= alone.upper <= 1.5
             assert np.linalg.norm(alone.on_first - alone.on_second) <= alone.upper + 1e-12
     with pytest.raises(ContinuumError) as caught:
-        motion_self_clears(swings, -1.0, 1e-3)
+        SelfQuery().clears_motion(swings, margin=-1.0, resolution=1e-3)
     assert caught.value.kind == "negative"
 
 
 @pytest.mark.parametrize(
     ("ask", "kind", "text"),
     [
-        (lambda r: RobotPair().contacts_within(r[0], 0.1, r[1], 0.1, -1.0), "negative", "`margin`"),
+        (lambda r: RobotPair().contacts_within(r[0], 0.1, r[1], 0.1, margin=-1.0), "negative", "`margin`"),
         (lambda r: RobotPair().per_link(r[:3], 0.1, r[:4], 0.1), "bad_shape", "`points_a` has 3 robots and `points_b` 4"),
         (lambda r: RobotPair().minimum(r[0], -0.1, r[1], 0.1), "bad_radius", "radius 0"),
-        (lambda r: between(r[:3], 0.1, r[:4], 0.1), "bad_shape", "`points_a` has 3 robots and `points_b` 4"),
-        (lambda r: between(r[0], 0.1, r[1].T, 0.1), "bad_shape", "`points_b`"),
-        (lambda r: between(r[0], 0.1, r[1], 0.1, pose_b=np.diag([2, 2, 2, 1])), "scales", "scales by 2"),
-        (lambda r: clears_between(r[0], 0.1, r[1], 0.1, -1.0), "negative", "`margin`"),
-        (lambda r: between(r[0], -0.1, r[1], 0.1), "bad_radius", "radius 0"),
-        (lambda r: self_minimum([[0, 0, 0], [0, 0, 1], [0, 0.1, 0]], 0.5), "joint_too_sharp", "joint"),
-        (lambda r: self_clears(r, 0.1, np.nan), "negative", "`margin`"),
+        (lambda r: RobotPair().minimum(r[:3], 0.1, r[:4], 0.1), "bad_shape", "`points_a` has 3 robots and `points_b` 4"),
+        (lambda r: RobotPair().minimum(r[0], 0.1, r[1].T, 0.1), "bad_shape", "`points_b`"),
+        (lambda r: RobotPair().minimum(r[0], 0.1, r[1], 0.1, pose_b=np.diag([2, 2, 2, 1])), "scales", "scales by 2"),
+        (lambda r: RobotPair().clears(r[0], 0.1, r[1], 0.1, margin=-1.0), "negative", "`margin`"),
+        (lambda r: SelfQuery().minimum([[0, 0, 0], [0, 0, 1], [0, 0.1, 0]], 0.5), "joint_too_sharp", "joint"),
+        (lambda r: SelfQuery().clears(r, 0.1, margin=np.nan), "negative", "`margin`"),
     ],
 )
 def test_refused(ask: object, kind: str, text: str) -> None:

@@ -497,7 +497,7 @@ class _RobotMotionAnswerFields(NamedTuple):
 
 
 class RobotMotionAnswer(_Answer, _RobotMotionAnswerFields):
-    """Whether two robots that move keep a margin between them, and which shapes do not."""
+    """Whether two moving robots, or two parts of one, keep a margin, and which shapes do not."""
 
     __slots__ = ()
 

@@ -41,17 +41,12 @@ __all__ = [
     "RigidMotion",
     "RobotPair",
     "Scene",
+    "SelfQuery",
     "__version__",
-    "between",
-    "clears_between",
     "load",
     "load_centreline",
-    "motion_self_clears",
-    "self_clears",
-    "self_minimum",
     "simplify",
     "stations",
-    "tube_self_clears",
     "verify_motion",
 ]
 
@@ -134,7 +129,7 @@ class Mesh:
     def vertices(self) -> Floats: ...
     @property
     def faces(self) -> Ints: ...
-    def move(self, vertices: ArrayLike) -> None: ...
+    def set_vertices(self, vertices: ArrayLike) -> None: ...
     def prepare(self) -> None: ...
     def distance(
         self, points: ArrayLike, radii: ArrayLike, *, pose: _Poses | None = None, caps: _Caps = "fitted"
@@ -149,8 +144,8 @@ class Mesh:
         self,
         points: ArrayLike,
         radii: ArrayLike,
-        margin: float,
         *,
+        margin: float,
         pose: _Poses | None = None,
         caps: _Caps = "fitted",
     ) -> BoolOrBools: ...
@@ -158,8 +153,8 @@ class Mesh:
         self,
         points: ArrayLike,
         radii: ArrayLike,
-        margin: float,
         *,
+        margin: float,
         pose: _Poses | None = None,
         caps: _Caps = "fitted",
     ) -> InsideAnswer: ...
@@ -167,9 +162,9 @@ class Mesh:
         self,
         points: ArrayLike,
         radii: ArrayLike,
+        *,
         margin: float,
         prominence: float = 0.0,
-        *,
         pose: _Poses | None = None,
         caps: _Caps = "fitted",
     ) -> Contacts: ...
@@ -179,8 +174,8 @@ class Mesh:
         self,
         points: ArrayLike,
         radii: ArrayLike,
-        tolerance: float,
         *,
+        tolerance: float,
         tangents: ArrayLike | None = None,
         deviation: float = 0.0,
         turn: float | None = None,
@@ -190,9 +185,9 @@ class Mesh:
         self,
         points: ArrayLike,
         radii: ArrayLike,
+        *,
         margin: float,
         resolution: float,
-        *,
         tangents: ArrayLike | None = None,
         deviation: float = 0.0,
         turn: float | None = None,
@@ -204,9 +199,9 @@ class Mesh:
         start: ArrayLike,
         end: ArrayLike,
         radii: ArrayLike,
+        *,
         margin: float,
         resolution: float,
-        *,
         caps: _MotionCaps = "fitted",
     ) -> MotionAnswer: ...
     @overload
@@ -217,9 +212,9 @@ class Mesh:
         start: ArrayLike,
         end: ArrayLike,
         radii: ArrayLike,
+        *,
         margin: float,
         resolution: float,
-        *,
         caps: _MotionCaps = "fitted",
     ) -> MotionAnswer: ...
     @overload
@@ -230,8 +225,8 @@ class Mesh:
         start: ArrayLike,
         end: ArrayLike,
         radii: ArrayLike,
-        tolerance: float,
         *,
+        tolerance: float,
         caps: _MotionCaps = "fitted",
     ) -> MotionClearance: ...
     @overload
@@ -243,22 +238,22 @@ class Mesh:
         start: ArrayLike,
         end: ArrayLike,
         radii: ArrayLike,
+        *,
         margin: float,
         resolution: float,
-        *,
         caps: _MotionCaps = "fitted",
     ) -> MotionAnswer: ...
     @overload
     def clears_motion_while(self, to: ArrayLike, start: Motion, *, margin: float, resolution: float) -> MotionAnswer: ...
     def clears_path(
-        self, shapes: ArrayLike, radii: ArrayLike, deviation: float, margin: float, resolution: float
+        self, shapes: ArrayLike, radii: ArrayLike, deviation: float, *, margin: float, resolution: float
     ) -> MotionAnswer: ...
     def prove(
         self,
         points: ArrayLike,
         radii: ArrayLike,
-        margin: float,
         *,
+        margin: float,
         pose: _Poses | None = None,
         caps: _Caps = "fitted",
     ) -> str | None: ...
@@ -266,9 +261,9 @@ class Mesh:
         self,
         points: ArrayLike,
         radii: ArrayLike,
+        *,
         margin: float,
         resolution: float,
-        *,
         tangents: ArrayLike | None = None,
         deviation: float = 0.0,
         turn: float | None = None,
@@ -280,9 +275,9 @@ class Mesh:
         start: ArrayLike,
         end: ArrayLike,
         radii: ArrayLike,
+        *,
         margin: float,
         resolution: float,
-        *,
         caps: _MotionCaps = "fitted",
     ) -> str | None: ...
     @overload
@@ -320,7 +315,7 @@ class Scene:
     def tightest(self, robots: Sequence[_Robot], *, caps: _Caps = "fitted") -> Tightest: ...
     def per_structure(self, robots: Sequence[_Robot], *, caps: _Caps = "fitted") -> PerStructure: ...
     def contacts_within(
-        self, robots: Sequence[_Robot], reach: float, prominence: float = 0.0, *, caps: _Caps = "fitted"
+        self, robots: Sequence[_Robot], *, reach: float, prominence: float = 0.0, caps: _Caps = "fitted"
     ) -> SceneContacts: ...
 
 @final
@@ -358,8 +353,8 @@ class RobotPair:
         radii_a: ArrayLike,
         points_b: ArrayLike,
         radii_b: ArrayLike,
-        margin: float,
         *,
+        margin: float,
         pose_a: _Poses | None = None,
         pose_b: _Poses | None = None,
         caps: _Caps = "fitted",
@@ -370,8 +365,8 @@ class RobotPair:
         radii_a: ArrayLike,
         points_b: ArrayLike,
         radii_b: ArrayLike,
-        margin: float,
         *,
+        margin: float,
         pose_a: _Poses | None = None,
         pose_b: _Poses | None = None,
         caps: _Caps = "fitted",
@@ -382,8 +377,8 @@ class RobotPair:
         radii_a: ArrayLike,
         points_b: ArrayLike,
         radii_b: ArrayLike,
-        tolerance: float,
         *,
+        tolerance: float,
         tangents_a: ArrayLike | None = None,
         tangents_b: ArrayLike | None = None,
         deviation_a: float = 0.0,
@@ -399,9 +394,9 @@ class RobotPair:
         radii_a: ArrayLike,
         points_b: ArrayLike,
         radii_b: ArrayLike,
+        *,
         margin: float,
         resolution: float,
-        *,
         tangents_a: ArrayLike | None = None,
         tangents_b: ArrayLike | None = None,
         deviation_a: float = 0.0,
@@ -423,23 +418,31 @@ class RobotPair:
         pose_b: _Poses | None = None,
         caps: _Caps = "fitted",
     ) -> Certificate: ...
-    def clears_motion(self, a: Motion, b: Motion, margin: float, resolution: float) -> RobotMotionAnswer: ...
-    def motion_self_clears(self, motion: Motion, margin: float, resolution: float) -> RobotMotionAnswer: ...
-    def self_minimum(self, points: ArrayLike, radii: ArrayLike, *, caps: _Caps = "fitted") -> RobotProximity: ...
-    def self_clears(
-        self, points: ArrayLike, radii: ArrayLike, margin: float, *, caps: _Caps = "fitted"
+    def clears_motions(self, a: Motion, b: Motion, *, margin: float, resolution: float) -> RobotMotionAnswer: ...
+
+@final
+class SelfQuery:
+    def __new__(cls) -> SelfQuery: ...
+    def forget(self) -> None: ...
+    def __copy__(self) -> SelfQuery: ...
+    def __deepcopy__(self, _memo: Any, /) -> SelfQuery: ...
+    def __reduce__(self) -> tuple[Any, Any]: ...
+    def minimum(self, points: ArrayLike, radii: ArrayLike, *, caps: _Caps = "fitted") -> RobotProximity: ...
+    def clears(
+        self, points: ArrayLike, radii: ArrayLike, *, margin: float, caps: _Caps = "fitted"
     ) -> BoolOrBools: ...
-    def tube_self_clears(
+    def clears_tube(
         self,
         points: ArrayLike,
         radii: ArrayLike,
+        *,
         margin: float,
         resolution: float,
-        *,
         tangents: ArrayLike | None = None,
         deviation: float = 0.0,
         turn: float | None = None,
     ) -> DecisionOrDecisions: ...
+    def clears_motion(self, motion: Motion, *, margin: float, resolution: float) -> RobotMotionAnswer: ...
 
 def load(
     path: Any,
@@ -452,40 +455,6 @@ def load(
 def load_centreline(
     path: str | bytes | PathLike[str] | PathLike[bytes] | IO[bytes] | IO[str], *, line: int | None = None, frame: _Frame | None = None, scale: float = 1.0
 ) -> Centreline: ...
-def simplify(points: ArrayLike, radii: ArrayLike, tolerance: float) -> tuple[Floats, Floats]: ...
-def stations(points: ArrayLike, radii: ArrayLike, tolerance: float) -> tuple[Floats, Floats]: ...
-def between(
-    points_a: ArrayLike,
-    radii_a: ArrayLike,
-    points_b: ArrayLike,
-    radii_b: ArrayLike,
-    *,
-    pose_a: _Poses | None = None,
-    pose_b: _Poses | None = None,
-    caps: _Caps = "fitted",
-) -> RobotProximity: ...
-def clears_between(
-    points_a: ArrayLike,
-    radii_a: ArrayLike,
-    points_b: ArrayLike,
-    radii_b: ArrayLike,
-    margin: float,
-    *,
-    pose_a: _Poses | None = None,
-    pose_b: _Poses | None = None,
-    caps: _Caps = "fitted",
-) -> BoolOrBools: ...
-def motion_self_clears(motion: Motion, margin: float, resolution: float) -> RobotMotionAnswer: ...
-def self_minimum(points: ArrayLike, radii: ArrayLike, *, caps: _Caps = "fitted") -> RobotProximity: ...
-def self_clears(points: ArrayLike, radii: ArrayLike, margin: float, *, caps: _Caps = "fitted") -> BoolOrBools: ...
-def tube_self_clears(
-    points: ArrayLike,
-    radii: ArrayLike,
-    margin: float,
-    resolution: float,
-    *,
-    tangents: ArrayLike | None = None,
-    deviation: float = 0.0,
-    turn: float | None = None,
-) -> DecisionOrDecisions: ...
+def simplify(points: ArrayLike, radii: ArrayLike, *, tolerance: float) -> tuple[Floats, Floats]: ...
+def stations(points: ArrayLike, radii: ArrayLike, *, tolerance: float) -> tuple[Floats, Floats]: ...
 def verify_motion(motion: Motion, steps: int) -> None: ...

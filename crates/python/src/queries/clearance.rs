@@ -141,7 +141,7 @@ impl Mesh {
     /// >>> found = floor.clearance(arc, 0.5, tolerance=0.01)
     /// >>> bool(found.resolved), bool(found.lower <= found.upper <= found.lower + 0.01)
     /// (True, True)
-    #[pyo3(signature = (points, radii, tolerance, *, tangents = None, deviation = 0.0, turn = None, pose = None))]
+    #[pyo3(signature = (points, radii, *, tolerance, tangents = None, deviation = 0.0, turn = None, pose = None))]
     #[allow(clippy::too_many_arguments)] // they are named in Python
     fn clearance<'py>(
         &self,
@@ -247,7 +247,7 @@ impl Mesh {
     /// ContinuumError
     ///     The margin or the resolution is negative or NaN, or the resolution is finer than the points allow: ``possible`` says
     ///     what can be had. Of a batch, ``robot`` is the first that is refused.
-    #[pyo3(signature = (points, radii, margin, resolution, *, tangents = None, deviation = 0.0, turn = None, pose = None))]
+    #[pyo3(signature = (points, radii, *, margin, resolution, tangents = None, deviation = 0.0, turn = None, pose = None))]
     #[allow(clippy::too_many_arguments)] // they are named in Python
     fn clears_tube<'py>(
         &self,

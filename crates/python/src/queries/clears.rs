@@ -32,9 +32,9 @@ impl Mesh {
     /// --------
     /// >>> from parry_continuum import Mesh
     /// >>> floor = Mesh([[-9, -9, 0], [9, -9, 0], [0, 9, 0]], [[0, 1, 2]])
-    /// >>> floor.clears([[0, 0, 2], [1, 0, 2]], 0.5, 1.4), floor.clears([[0, 0, 2], [1, 0, 2]], 0.5, 1.5)
-    /// (True, False)
-    #[pyo3(signature = (points, radii, margin, *, pose = None, caps = Caps::Fitted), text_signature = "($self, points, radii, margin, *, pose=None, caps=\"fitted\")")]
+    /// >>> [floor.clears([[0, 0, 2], [1, 0, 2]], 0.5, margin=margin) for margin in (1.4, 1.5)]
+    /// [True, False]
+    #[pyo3(signature = (points, radii, *, margin, pose = None, caps = Caps::Fitted), text_signature = "($self, points, radii, *, margin, pose=None, caps=\"fitted\")")]
     fn clears<'py>(
         &self,
         py: Python<'py>,
@@ -77,7 +77,7 @@ impl Mesh {
     /// ------
     /// ContinuumError
     ///     As for `clears`.
-    #[pyo3(signature = (points, radii, margin, *, pose = None, caps = Caps::Fitted), text_signature = "($self, points, radii, margin, *, pose=None, caps=\"fitted\")")]
+    #[pyo3(signature = (points, radii, *, margin, pose = None, caps = Caps::Fitted), text_signature = "($self, points, radii, *, margin, pose=None, caps=\"fitted\")")]
     fn clears_inside<'py>(
         &self,
         py: Python<'py>,

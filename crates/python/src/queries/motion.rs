@@ -1,7 +1,7 @@
 //! Whether a robot keeps a margin on all of its way, and until when.
 
 use super::motion_answer::motion_answer;
-use super::way::{Arguments, Question, needed};
+use super::way::{Arguments, Question};
 use crate::input::{Caps, of};
 use crate::mesh::Mesh;
 use crate::threads::Session;
@@ -43,9 +43,10 @@ impl Question<MotionAnswer> for FirstContact {
 impl Mesh {
     /// Whether robots keep more than a margin away on all of their way.
     ///
-    /// ``clears_motion(start, end, radii, margin, resolution)``: every point of the centreline moves straight and evenly, from
-    /// `start` at the time 0 to `end` at 1, in the mesh's frame. ``clears_motion(motion, margin=..., resolution=...)`` asks about any
-    /// other `Motion`, such as a `RigidMotion`, a `BendingMotion` or one of these on a `MovingBase`.
+    /// With `start`, `end` and `radii`, every point of the centreline moves straight and evenly, from
+    /// `start` at the time 0 to `end` at the time 1, in the mesh's frame. A `Motion` as the only
+    /// positional argument is any other motion: a `RigidMotion`, a `BendingMotion`, a `MovingBase` or
+    /// a `MotionPath`.
     ///
     /// ``Decision.CLEAR`` is proven for every time between, so that no robot slips through a thin wall between two steps.
     ///
@@ -81,7 +82,7 @@ impl Mesh {
     /// >>> below = above - [0, 0, 4]
     /// >>> floor.clears_motion(above, below, 0.1, margin=0, resolution=1e-3).decision is Decision.CONTACT
     /// True
-    #[pyo3(signature = (start, end = None, radii = None, margin = None, resolution = None, *, caps = None), text_signature = "($self, start, end=None, radii=None, margin=None, resolution=None, *, caps=\"fitted\")")]
+    #[pyo3(signature = (start, end = None, radii = None, *, margin, resolution, caps = None), text_signature = "($self, start, end=None, radii=None, *, margin, resolution, caps=\"fitted\")")]
     #[allow(clippy::too_many_arguments)] // they are named in Python
     fn clears_motion<'py>(
         &self,
@@ -89,15 +90,12 @@ impl Mesh {
         start: &Bound<'py, PyAny>,
         end: Option<&Bound<'py, PyAny>>,
         radii: Option<&Bound<'py, PyAny>>,
-        #[pyo3(from_py_with = of::optional::margin)] margin: Option<f64>,
-        #[pyo3(from_py_with = of::optional::resolution)] resolution: Option<f64>,
+        #[pyo3(from_py_with = of::margin)] margin: f64,
+        #[pyo3(from_py_with = of::resolution)] resolution: f64,
         caps: Option<Caps>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let way = self.way(&Arguments { start, end, radii, caps })?;
-        let question = Clears {
-            margin: needed(py, "margin", margin)?,
-            resolution: needed(py, "resolution", resolution)?,
-        };
+        let question = Clears { margin, resolution };
         motion_answer(py, way.count(), &way.ask(py, &self.engine(py), &question)?)
     }
 
@@ -130,7 +128,7 @@ impl Mesh {
     /// >>> found = floor.time_of_contact(above, above - [0, 0, 4], 0.5, margin=0, resolution=1e-3)
     /// >>> bool(found.interval[0] <= 0.375 <= found.interval[1] + 1e-3) # after 1.5 of 4
     /// True
-    #[pyo3(signature = (start, end = None, radii = None, margin = None, resolution = None, *, caps = None), text_signature = "($self, start, end=None, radii=None, margin=None, resolution=None, *, caps=\"fitted\")")]
+    #[pyo3(signature = (start, end = None, radii = None, *, margin, resolution, caps = None), text_signature = "($self, start, end=None, radii=None, *, margin, resolution, caps=\"fitted\")")]
     #[allow(clippy::too_many_arguments)] // they are named in Python
     fn time_of_contact<'py>(
         &self,
@@ -138,15 +136,12 @@ impl Mesh {
         start: &Bound<'py, PyAny>,
         end: Option<&Bound<'py, PyAny>>,
         radii: Option<&Bound<'py, PyAny>>,
-        #[pyo3(from_py_with = of::optional::margin)] margin: Option<f64>,
-        #[pyo3(from_py_with = of::optional::resolution)] resolution: Option<f64>,
+        #[pyo3(from_py_with = of::margin)] margin: f64,
+        #[pyo3(from_py_with = of::resolution)] resolution: f64,
         caps: Option<Caps>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let way = self.way(&Arguments { start, end, radii, caps })?;
-        let question = FirstContact {
-            margin: needed(py, "margin", margin)?,
-            resolution: needed(py, "resolution", resolution)?,
-        };
+        let question = FirstContact { margin, resolution };
         motion_answer(py, way.count(), &way.ask(py, &self.engine(py), &question)?)
     }
 }

@@ -1,6 +1,6 @@
 //! How near a robot comes on its way.
 
-use super::way::{Arguments, Question, needed};
+use super::way::{Arguments, Question};
 use crate::input::{Caps, of};
 use crate::mesh::Mesh;
 use crate::output::{answer, array, array_or_number, flat};
@@ -56,22 +56,18 @@ impl Mesh {
     /// >>> found = floor.clearance_of_motion(high, high - [0, 0, 2], 0.5, tolerance=0.01)
     /// >>> bool(found.lower <= 1.5 <= found.upper), bool(found.t > 0.99)
     /// (True, True)
-    #[pyo3(signature = (start, end = None, radii = None, tolerance = None, *, caps = None), text_signature = "($self, start, end=None, radii=None, tolerance=None, *, caps=\"fitted\")")]
+    #[pyo3(signature = (start, end = None, radii = None, *, tolerance, caps = None), text_signature = "($self, start, end=None, radii=None, *, tolerance, caps=\"fitted\")")]
     fn clearance_of_motion<'py>(
         &self,
         py: Python<'py>,
         start: &Bound<'py, PyAny>,
         end: Option<&Bound<'py, PyAny>>,
         radii: Option<&Bound<'py, PyAny>>,
-        #[pyo3(from_py_with = of::optional::tolerance)] tolerance: Option<f64>,
+        #[pyo3(from_py_with = of::tolerance)] tolerance: f64,
         caps: Option<Caps>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let way = self.way(&Arguments { start, end, radii, caps })?;
-        let all = way.ask(
-            py,
-            &self.engine(py),
-            &Least { tolerance: needed(py, "tolerance", tolerance)? },
-        )?;
+        let all = way.ask(py, &self.engine(py), &Least { tolerance })?;
         let shape = |last: &[usize]| way.count().iter().chain(last).copied().collect::<Vec<_>>();
         let numbers = |of: fn(&MotionClearance) -> f64| {
             array_or_number(py, shape(&[]), all.iter().map(of).collect())

@@ -1,7 +1,7 @@
 //! Whether a robot keeps a margin from a mesh that moves meanwhile.
 
 use super::motion_answer::motion_answer;
-use super::way::{Arguments, Question, needed};
+use super::way::{Arguments, Question};
 use crate::input::{Caps, of, vectors};
 use crate::mesh::{Mesh, rows};
 use crate::threads::Session;
@@ -31,9 +31,8 @@ impl Mesh {
     /// Whether robots keep more than a margin away from the mesh on their way, while each vertex moves straight and evenly to another
     /// place in the same time: an organ that breathes, a registration that is corrected, a step of a simulation of tissue.
     ///
-    /// ``clears_motion_while(to, start, end, radii, margin, resolution)`` asks about points that move straight and evenly, and
-    /// ``clears_motion_while(to, motion, margin=..., resolution=...)`` about any motion. A robot at rest is a `RigidMotion` from a pose
-    /// to the same pose. The mesh stays where it was; `move` moves it. Each motion goes once through all triangles.
+    /// With `start`, `end` and `radii`, the robot's points move straight and evenly. A `Motion` after
+    /// `to` is any other motion. A robot at rest is a `RigidMotion` from a pose to the same pose. The mesh stays where it was; `set_vertices` moves it. Each motion goes once through all triangles.
     ///
     /// Parameters
     /// ----------
@@ -63,7 +62,7 @@ impl Mesh {
     /// True
     /// >>> floor.clears_motion_while(risen, at_rest, margin=2, resolution=1e-3).decision is Decision.CONTACT
     /// True
-    #[pyo3(signature = (to, start, end = None, radii = None, margin = None, resolution = None, *, caps = None), text_signature = "($self, to, start, end=None, radii=None, margin=None, resolution=None, *, caps=\"fitted\")")]
+    #[pyo3(signature = (to, start, end = None, radii = None, *, margin, resolution, caps = None), text_signature = "($self, to, start, end=None, radii=None, *, margin, resolution, caps=\"fitted\")")]
     #[allow(clippy::too_many_arguments)] // they are named in Python
     fn clears_motion_while<'py>(
         &self,
@@ -72,16 +71,12 @@ impl Mesh {
         start: &Bound<'py, PyAny>,
         end: Option<&Bound<'py, PyAny>>,
         radii: Option<&Bound<'py, PyAny>>,
-        #[pyo3(from_py_with = of::optional::margin)] margin: Option<f64>,
-        #[pyo3(from_py_with = of::optional::resolution)] resolution: Option<f64>,
+        #[pyo3(from_py_with = of::margin)] margin: f64,
+        #[pyo3(from_py_with = of::resolution)] resolution: f64,
         caps: Option<Caps>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let way = self.way(&Arguments { start, end, radii, caps })?;
-        let question = While {
-            to: vectors(rows(to, "to")?.points()),
-            margin: needed(py, "margin", margin)?,
-            resolution: needed(py, "resolution", resolution)?,
-        };
+        let question = While { to: vectors(rows(to, "to")?.points()), margin, resolution };
         motion_answer(py, way.count(), &way.ask(py, &self.engine(py), &question)?)
     }
 }

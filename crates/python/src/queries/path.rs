@@ -55,6 +55,7 @@ impl Mesh {
     /// >>> steps = np.stack([needle - [0, 0, depth] for depth in range(7)])  # to a height of 3
     /// >>> floor.clears_path(steps, 0.5, deviation=0.1, margin=2.0, resolution=0.01).decision is Decision.CLEAR
     /// True
+    #[pyo3(signature = (shapes, radii, deviation, *, margin, resolution))]
     fn clears_path<'py>(
         &self,
         py: Python<'py>,

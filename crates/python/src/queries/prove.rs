@@ -2,7 +2,7 @@
 
 use super::clearance::{Stated, tubes};
 use super::distance::set_chain;
-use super::way::{Arguments, Question, needed};
+use super::way::{Arguments, Question};
 use crate::error::Refused;
 use crate::input::{Caps, Given, Robots, of};
 use crate::mesh::Mesh;
@@ -101,7 +101,7 @@ impl Mesh {
     /// True
     /// >>> obj = [f"v {x!r} {y!r} {z!r}" for x, y, z in floor.vertices.tolist()]
     /// >>> obj += [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in floor.faces.tolist()]
-    #[pyo3(signature = (points, radii, margin, *, pose = None, caps = Caps::Fitted), text_signature = "($self, points, radii, margin, *, pose=None, caps=\"fitted\")")]
+    #[pyo3(signature = (points, radii, *, margin, pose = None, caps = Caps::Fitted), text_signature = "($self, points, radii, *, margin, pose=None, caps=\"fitted\")")]
     fn prove<'py>(
         &self,
         py: Python<'py>,
@@ -140,7 +140,7 @@ impl Mesh {
     /// ------
     /// ContinuumError
     ///     More than one robot is given, or as for `clears_tube`.
-    #[pyo3(signature = (points, radii, margin, resolution, *, tangents = None, deviation = 0.0, turn = None, pose = None))]
+    #[pyo3(signature = (points, radii, *, margin, resolution, tangents = None, deviation = 0.0, turn = None, pose = None))]
     #[allow(clippy::too_many_arguments)] // they are named in Python
     fn prove_tube<'py>(
         &self,
@@ -190,7 +190,7 @@ impl Mesh {
     /// >>> motion = RigidMotion([[0, 0, 5], [4, 0, 5]], 0.5, np.eye(4), down)
     /// >>> floor.prove_motion(motion, margin=3, resolution=0.01).splitlines()[2]
     /// 'margin 3.0'
-    #[pyo3(signature = (start, end = None, radii = None, margin = None, resolution = None, *, caps = None), text_signature = "($self, start, end=None, radii=None, margin=None, resolution=None, *, caps=\"fitted\")")]
+    #[pyo3(signature = (start, end = None, radii = None, *, margin, resolution, caps = None), text_signature = "($self, start, end=None, radii=None, *, margin, resolution, caps=\"fitted\")")]
     #[allow(clippy::too_many_arguments)] // they are named in Python
     fn prove_motion<'py>(
         &self,
@@ -198,16 +198,13 @@ impl Mesh {
         start: &Bound<'py, PyAny>,
         end: Option<&Bound<'py, PyAny>>,
         radii: Option<&Bound<'py, PyAny>>,
-        #[pyo3(from_py_with = of::optional::margin)] margin: Option<f64>,
-        #[pyo3(from_py_with = of::optional::resolution)] resolution: Option<f64>,
+        #[pyo3(from_py_with = of::margin)] margin: f64,
+        #[pyo3(from_py_with = of::resolution)] resolution: f64,
         caps: Option<Caps>,
     ) -> PyResult<Option<String>> {
         let way = self.way(&Arguments { start, end, radii, caps })?;
         one(py, way.count())?;
-        let question = Proves {
-            margin: needed(py, "margin", margin)?,
-            resolution: needed(py, "resolution", resolution)?,
-        };
+        let question = Proves { margin, resolution };
         Ok(text(way.ask(py, &self.engine(py), &question)?.into_iter().flatten().next()))
     }
 }

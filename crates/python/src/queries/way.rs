@@ -32,12 +32,11 @@ pub(super) trait Question<A>: Sync {
     ) -> Result<A, parry_continuum::proximity::ProximityError>;
 }
 
-/// The value of a parameter that has to be there.
-pub(super) fn needed<T>(py: Python<'_>, parameter: &str, given: Option<T>) -> PyResult<T> {
+/// The value of a parameter that shapes need.
+fn needed<T>(py: Python<'_>, parameter: &str, given: Option<T>) -> PyResult<T> {
     given.ok_or_else(|| {
-        let text = format!(
-            "`{parameter}` is missing; give `start`, `end`, `radii` and numbers, or a motion, and the numbers by name"
-        );
+        let text =
+            format!("`{parameter}` is missing; give `start`, `end` and `radii`, or one motion");
         Refused::other("bad_type", text).raise(py, None)
     })
 }
@@ -65,7 +64,7 @@ impl<'a, 'py> Way<'a, 'py> {
                 None => Ok(Self::Motion(motion)),
                 Some((name, _)) => {
                     let text = format!(
-                        "`{name}` is given beside a motion, which has its own; give `margin` and the like by name"
+                        "`{name}` is given beside a motion, which has its own; leave `{name}` out"
                     );
                     Err(Refused::other("bad_type", text).raise(py, None))
                 }

@@ -49,7 +49,7 @@ impl Mesh {
     /// >>> contacts = floor.contacts_within([[0, 0, 4], [0, 0, 3], [0, 0, 1]], 0.5, margin=1, caps="capsules")
     /// >>> contacts.segment, contacts.distance, contacts.normal
     /// (array([1]), array([0.5]), array([[0., 0., 1.]]))
-    #[pyo3(signature = (points, radii, margin, prominence = 0.0, *, pose = None, caps = Caps::Fitted), text_signature = "($self, points, radii, margin, prominence=0.0, *, pose=None, caps=\"fitted\")")]
+    #[pyo3(signature = (points, radii, *, margin, prominence = 0.0, pose = None, caps = Caps::Fitted), text_signature = "($self, points, radii, *, margin, prominence=0.0, pose=None, caps=\"fitted\")")]
     #[allow(clippy::too_many_arguments)] // they are named in Python
     fn contacts_within<'py>(
         &self,

@@ -374,7 +374,7 @@ impl Scene {
     }
 
     /// Every contact of every robot with every structure that is at most `reach` away, whether that has a margin or not, structure
-    /// by structure and robot by robot: `Mesh.within` of all of them.
+    /// by structure and robot by robot: `Mesh.contacts_within` of all of them.
     ///
     /// Parameters
     /// ----------
@@ -383,7 +383,7 @@ impl Scene {
     /// reach : float
     ///     A length, at least 0.
     /// prominence : float
-    ///     As for `Mesh.within`: 0 takes every place that is closest among its neighbours.
+    ///     As for `Mesh.contacts_within`: 0 takes every place that is closest among its neighbours.
     ///
     /// Returns
     /// -------
@@ -394,7 +394,7 @@ impl Scene {
     /// ------
     /// ContinuumError
     ///     The reach or the prominence is negative or NaN, or as for `tightest`.
-    #[pyo3(signature = (robots, reach, prominence = 0.0, *, caps = Caps::Fitted), text_signature = "($self, robots, reach, prominence=0.0, *, caps=\"fitted\")")]
+    #[pyo3(signature = (robots, *, reach, prominence = 0.0, caps = Caps::Fitted), text_signature = "($self, robots, *, reach, prominence=0.0, caps=\"fitted\")")]
     fn contacts_within<'py>(
         &self,
         py: Python<'py>,

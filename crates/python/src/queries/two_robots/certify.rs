@@ -25,7 +25,7 @@ impl RobotPair {
     /// points_a, radii_a, points_b, radii_b, pose_a, pose_b, caps
     ///     As they were given to the function that answered.
     /// answer : RobotProximity
-    ///     Of `between`, `RobotPair.minimum` or `RobotPair.per_link`.
+    ///     Of `RobotPair.minimum` or `RobotPair.per_link`.
     ///
     /// Returns
     /// -------
@@ -36,7 +36,7 @@ impl RobotPair {
     /// ------
     /// ContinuumError
     ///     The answer does not fit robots and poses: a point is not where it says, the distance is another, or the shapes differ.
-    ///     Or as for `between`.
+    ///     Or as for `minimum`.
     ///
     /// Examples
     /// --------
@@ -94,7 +94,8 @@ impl RobotPair {
                 answer.links =
                     [link_of(a, &links[0], named[at])?, link_of(b, &links[1], named[at + 1])?];
                 answer.distance = distances[row];
-                (answer.witness.on_first, answer.witness.on_second) = (on_first[row], on_second[row]);
+                (answer.witness.on_first, answer.witness.on_second) =
+                    (on_first[row], on_second[row]);
                 answer.witness.arc_lengths = [lengths[at], lengths[at + 1]];
                 let Certificate { lower, upper, .. } =
                     answer.certify(a, &poses[0], b, &poses[1])?;

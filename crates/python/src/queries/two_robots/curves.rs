@@ -1,4 +1,4 @@
-//! How near two curved tubes are, between bounds, and whether one keeps a margin to itself.
+//! Bounds and decisions about two curved tubes.
 
 use super::{Pairs, RobotPair, Session, second};
 use crate::error::Refused;
@@ -118,89 +118,6 @@ impl Pairs {
     }
 }
 
-impl Pairs {
-    fn tube_self_clears<'py>(
-        &self,
-        py: Python<'py>,
-        robots: &Robots<'py>,
-        stated: Stated,
-        [margin, resolution]: [f64; 2],
-    ) -> PyResult<Bound<'py, PyAny>> {
-        let mut all: Vec<i8> = Vec::with_capacity(robots.len());
-        let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [i8]| {
-            row[0] = decision_value(session.own.clears_tube(
-                &tube(robot, stated)?,
-                margin,
-                resolution,
-            )?);
-            Ok(())
-        };
-        ask_each(py, self, robots, (0, 1), ask, |_, found| all.extend(found))?;
-        members(py, Enumeration::Decision, robots.shape(&[]), all)
-    }
-}
-
-/// Whether a curved tube keeps more than a margin to itself.
-///
-/// Asked for are the parts that `self_minimum` asks for, of the curve itself. The robot is taken for a smooth tube with flat ends, as
-/// `Mesh.clearance` takes it.
-///
-/// Parameters
-/// ----------
-/// points : (N, 3) or (B, N, 3) array
-/// radii : float, (N - 1,) or (B, N - 1) array
-/// margin : float
-///     A length, at least 0.
-/// resolution : float
-///     The answer is undecided only where the distance of such parts is within this of the margin, where the margin is as wide as
-///     the tightest bend, where the points are too few to show how far the curve turns, or where 65,536 pairs of pieces do
-///     not decide it.
-/// tangents, deviation, turn
-///     As for `Mesh.clearance`.
-///
-/// Returns
-/// -------
-/// Decision or Decisions
-///     As of `Mesh.clears_tube`.
-///
-/// Raises
-/// ------
-/// ContinuumError
-///     The margin or the resolution is negative or NaN, the resolution is finer than the points allow, points turn too sharply for a
-///     tube, or it bends within its radius.
-///
-/// Examples
-/// --------
-/// >>> import numpy as np
-/// >>> from parry_continuum import tube_self_clears
-/// >>> angle = np.linspace(0, 4 * np.pi, 241)
-/// >>> coil = np.stack([10 * np.cos(angle), 10 * np.sin(angle), 4 * angle / (2 * np.pi)], axis=1)
-/// >>> ends = [[0, 10, 2 / np.pi]] * 2  # its direction as it begins and, after whole turns, ends
-/// >>> tube_self_clears(coil, 1.0, 1.9, 0.05, tangents=ends), tube_self_clears(coil, 1.0, 2.1, 0.05, tangents=ends)
-/// (<Decision.CLEAR: 1>, <Decision.CONTACT: -1>)
-#[pyfunction]
-#[pyo3(signature = (points, radii, margin, resolution, *, tangents = None, deviation = 0.0, turn = None))]
-#[allow(clippy::too_many_arguments)] // they are named in Python
-pub(crate) fn tube_self_clears<'py>(
-    py: Python<'py>,
-    points: &Bound<'py, PyAny>,
-    radii: &Bound<'py, PyAny>,
-    #[pyo3(from_py_with = of::margin)] margin: f64,
-    #[pyo3(from_py_with = of::resolution)] resolution: f64,
-    tangents: Option<&Bound<'py, PyAny>>,
-    #[pyo3(from_py_with = of::deviation)] deviation: f64,
-    #[pyo3(from_py_with = of::optional::turn)] turn: Option<f64>,
-) -> PyResult<Bound<'py, PyAny>> {
-    let stated = Stated { deviation, turn };
-    let robots = tubes(
-        Robots::new(Names::one("points"), points, radii, None)?,
-        "tangents",
-        tangents,
-        stated,
-    )?;
-    Pairs::default().tube_self_clears(py, &robots, stated, [margin, resolution])
-}
-
 /// The arguments that say what two tubes are.
 struct Arguments<'a, 'py> {
     points: [&'a Bound<'py, PyAny>; 2],
@@ -238,7 +155,7 @@ impl RobotPair {
     /// Parameters
     /// ----------
     /// points_a, radii_a, points_b, radii_b, pose_a, pose_b
-    ///     As for `between`.
+    ///     As for `minimum`.
     /// tolerance : float
     ///     How far apart the bounds may be, at least 0.
     /// tangents_a, tangents_b, deviation_a, deviation_b, turn_a, turn_b
@@ -252,7 +169,7 @@ impl RobotPair {
     /// Raises
     /// ------
     /// ContinuumError
-    ///     The tolerance is negative or NaN. Of one pair: points turn too sharply for a tube, or as for `between`.
+    ///     The tolerance is negative or NaN. Of one pair: points turn too sharply for a tube, or as for `minimum`.
     ///
     /// Examples
     /// --------
@@ -263,7 +180,7 @@ impl RobotPair {
     /// >>> found = RobotPair().clearance(arc, 1.0, arc * [-1, 1, 1] + [65, 0, 0], 1.0, tolerance=0.1)
     /// >>> bool(found.lower <= 3 <= found.upper), bool(found.resolved)
     /// (True, True)
-    #[pyo3(signature = (points_a, radii_a, points_b, radii_b, tolerance, *, tangents_a = None, tangents_b = None, deviation_a = 0.0, deviation_b = 0.0, turn_a = None, turn_b = None, pose_a = None, pose_b = None))]
+    #[pyo3(signature = (points_a, radii_a, points_b, radii_b, *, tolerance, tangents_a = None, tangents_b = None, deviation_a = 0.0, deviation_b = 0.0, turn_a = None, turn_b = None, pose_a = None, pose_b = None))]
     #[allow(clippy::too_many_arguments)] // they are named in Python
     fn clearance<'py>(
         &self,
@@ -300,7 +217,7 @@ impl RobotPair {
     /// Parameters
     /// ----------
     /// points_a, radii_a, points_b, radii_b, pose_a, pose_b
-    ///     As for `between`.
+    ///     As for `minimum`.
     /// margin : float
     ///     A length, at least 0.
     /// resolution : float
@@ -319,7 +236,7 @@ impl RobotPair {
     /// ContinuumError
     ///     The margin or the resolution is negative or NaN, the resolution is finer than the points allow, or as for `clearance`. Of
     ///     a batch, ``robot`` is the first that is refused.
-    #[pyo3(signature = (points_a, radii_a, points_b, radii_b, margin, resolution, *, tangents_a = None, tangents_b = None, deviation_a = 0.0, deviation_b = 0.0, turn_a = None, turn_b = None, pose_a = None, pose_b = None))]
+    #[pyo3(signature = (points_a, radii_a, points_b, radii_b, *, margin, resolution, tangents_a = None, tangents_b = None, deviation_a = 0.0, deviation_b = 0.0, turn_a = None, turn_b = None, pose_a = None, pose_b = None))]
     #[allow(clippy::too_many_arguments)] // they are named in Python
     fn clears_tubes<'py>(
         &self,
@@ -350,43 +267,5 @@ impl RobotPair {
             ],
         };
         self.0.clears_tubes(py, &given.robots()?, given.stated, [margin, resolution])
-    }
-
-    /// Whether a curved tube keeps more than a margin to itself: as `parry_continuum.tube_self_clears`.
-    ///
-    /// Parameters
-    /// ----------
-    /// points, radii, margin, resolution, tangents, deviation, turn
-    ///     As for `parry_continuum.tube_self_clears`.
-    ///
-    /// Returns
-    /// -------
-    /// Decision or Decisions
-    ///
-    /// Raises
-    /// ------
-    /// ContinuumError
-    ///     As for `parry_continuum.tube_self_clears`.
-    #[pyo3(signature = (points, radii, margin, resolution, *, tangents = None, deviation = 0.0, turn = None))]
-    #[allow(clippy::too_many_arguments)] // they are named in Python
-    fn tube_self_clears<'py>(
-        &self,
-        py: Python<'py>,
-        points: &Bound<'py, PyAny>,
-        radii: &Bound<'py, PyAny>,
-        #[pyo3(from_py_with = of::margin)] margin: f64,
-        #[pyo3(from_py_with = of::resolution)] resolution: f64,
-        tangents: Option<&Bound<'py, PyAny>>,
-        #[pyo3(from_py_with = of::deviation)] deviation: f64,
-        #[pyo3(from_py_with = of::optional::turn)] turn: Option<f64>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        let stated = Stated { deviation, turn };
-        let robots = tubes(
-            Robots::new(Names::one("points"), points, radii, None)?,
-            "tangents",
-            tangents,
-            stated,
-        )?;
-        self.0.tube_self_clears(py, &robots, stated, [margin, resolution])
     }
 }

@@ -1,17 +1,15 @@
-//! A robot against another, and against itself.
+//! Queries about two robots, and about one robot and itself.
 
 mod answers;
 mod certify;
 mod curves;
-mod functions;
 mod motions;
 mod robot_pair;
+mod self_query;
 
 pub(crate) use answers::segment_of;
-pub(crate) use curves::tube_self_clears;
-pub(crate) use functions::{between, clears_between, self_clears, self_minimum};
-pub(crate) use motions::motion_self_clears;
 pub(crate) use robot_pair::RobotPair;
+pub(crate) use self_query::SelfQuery;
 
 use super::distance::set_chain;
 use crate::error::Refused;
@@ -24,28 +22,43 @@ use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::proximity::{self, RobotProximity};
 use pyo3::prelude::*;
 
-/// Sessions that nobody uses. Needs no mesh.
-#[derive(Default)]
-struct Pairs(Held<Vec<Session>>);
+/// Sessions that no query uses now. They need no mesh.
+struct Sessions<S>(Held<Vec<S>>);
+
+impl<S> Default for Sessions<S> {
+    fn default() -> Self {
+        Self(Held::new(Vec::new()))
+    }
+}
+
+impl<S> Sessions<S> {
+    /// Drops all warm starts.
+    fn forget(&self, py: Python<'_>) {
+        let sessions = self.0.with(py, std::mem::take);
+        drop(sessions); // not under the lock
+    }
+}
+
+impl<S: Default + Send> Lender for Sessions<S> {
+    type Session = S;
+
+    fn lend(&self, py: Python<'_>) -> PyResult<S> {
+        Ok(self.0.with(py, Vec::pop).unwrap_or_default())
+    }
+
+    fn take_back(&self, py: Python<'_>, _: usize, sessions: impl IntoIterator<Item = S>) {
+        self.0.with(py, |free| free.extend(sessions));
+    }
+}
+
+/// Sessions of queries about two robots.
+type Pairs = Sessions<Session>;
 
 #[derive(Default)]
 struct Session {
     pair: proximity::RobotPair,
-    own: proximity::SelfQuery,
     chains: [Option<Chain>; 2],
     found: Vec<RobotProximity>,
-}
-
-impl Lender for Pairs {
-    type Session = Session;
-
-    fn lend(&self, py: Python<'_>) -> PyResult<Session> {
-        Ok(self.0.with(py, Vec::pop).unwrap_or_default())
-    }
-
-    fn take_back(&self, py: Python<'_>, _: usize, sessions: impl IntoIterator<Item = Session>) {
-        self.0.with(py, |free| free.extend(sessions));
-    }
 }
 
 /// A pair of robots in the chains of a session: who is asked about them, their poses and points, and memory for the answers.
@@ -60,7 +73,7 @@ struct Placed<'a> {
 impl Session {
     fn place<'a>(&'a mut self, robot: &Given<'a>, caps: Caps) -> Result<Placed<'a>, Refused> {
         let other = second(robot)?;
-        let Self { pair, chains: [one, two], found, .. } = self;
+        let Self { pair, chains: [one, two], found } = self;
         let chains = [set_chain(one, robot, caps)?, set_chain(two, &other, caps)?];
         let (poses, points) = ([robot.pose()?, other.pose()?], [robot.points, other.points]);
         Ok(Placed { pair, chains, poses, points, found })
@@ -165,42 +178,6 @@ impl Pairs {
         let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [bool]| {
             let Placed { pair, chains, poses, .. } = session.place(robot, caps)?;
             row[0] = pair.clears(chains[0], &poses[0], chains[1], &poses[1], margin)?;
-            Ok(())
-        };
-        ask_each(py, self, robots, (false, 1), ask, |_, found| all.extend(found))?;
-        array_or_number(py, robots.shape(&[]), all)
-    }
-
-    fn self_minimum<'py>(
-        &self,
-        py: Python<'py>,
-        robots: &Robots<'py>,
-        caps: Caps,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        let mut rows = Vec::with_capacity(robots.len());
-        let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [Option<Row>]| {
-            let chain = set_chain(&mut session.chains[0], robot, caps)?;
-            row[0] = session
-                .own
-                .minimum(chain)?
-                .map(|found| Row::new(found, [chain; 2], [robot.points; 2]));
-            Ok(())
-        };
-        ask_each(py, self, robots, (None, 1), ask, |_, found| rows.extend_from_slice(found))?;
-        proximities(py, robots, &rows)
-    }
-
-    fn self_clears<'py>(
-        &self,
-        py: Python<'py>,
-        robots: &Robots<'py>,
-        margin: f64,
-        caps: Caps,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        let mut all: Vec<bool> = Vec::with_capacity(robots.len());
-        let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [bool]| {
-            let chain = set_chain(&mut session.chains[0], robot, caps)?;
-            row[0] = session.own.clears(chain, margin)?;
             Ok(())
         };
         ask_each(py, self, robots, (false, 1), ask, |_, found| all.extend(found))?;

@@ -1,6 +1,6 @@
-//! Whether two robots keep a margin between them while both move, or one keeps it to itself.
+//! Decisions about two robots that move at the same time.
 
-use super::{Pairs, RobotPair, Session};
+use super::{RobotPair, Session};
 use crate::input::of;
 use crate::motions::{Motion, MotionPair, Moving};
 use crate::output::{
@@ -47,12 +47,12 @@ impl RobotPair {
     /// >>> first = LinearMotion(left, right, 1.0)
     /// >>> second = LinearMotion(right + [0, 3, 0], left + [0, 3, 0], 1.0)
     /// >>> pair = RobotPair()
-    /// >>> pair.clears_motion(first, second, margin=0.9, resolution=1e-3).decision is Decision.CLEAR
+    /// >>> pair.clears_motions(first, second, margin=0.9, resolution=1e-3).decision is Decision.CLEAR
     /// True
-    /// >>> pair.clears_motion(first, second, margin=1.5, resolution=1e-3).decision is Decision.CONTACT
+    /// >>> pair.clears_motions(first, second, margin=1.5, resolution=1e-3).decision is Decision.CONTACT
     /// True
-    #[pyo3(signature = (a, b, margin, resolution))]
-    fn clears_motion<'py>(
+    #[pyo3(signature = (a, b, *, margin, resolution))]
+    fn clears_motions<'py>(
         &self,
         py: Python<'py>,
         a: &Bound<'py, Motion>,
@@ -71,105 +71,12 @@ impl RobotPair {
         ask_each(py, &self.0, &motions, (None, 1), ask, |_, found| {
             all.extend(found.iter().flatten())
         })?;
-        answers(py, &all, |further| motions.shape(further))
-    }
-
-    /// Whether a robot that moves keeps more than a margin to itself: as `parry_continuum.motion_self_clears`.
-    ///
-    /// Parameters
-    /// ----------
-    /// motion, margin, resolution
-    ///     As for `parry_continuum.motion_self_clears`.
-    ///
-    /// Returns
-    /// -------
-    /// RobotMotionAnswer
-    ///
-    /// Raises
-    /// ------
-    /// ContinuumError
-    ///     As for `parry_continuum.motion_self_clears`.
-    #[pyo3(signature = (motion, margin, resolution))]
-    fn motion_self_clears<'py>(
-        &self,
-        py: Python<'py>,
-        motion: &Bound<'py, Motion>,
-        #[pyo3(from_py_with = of::margin)] margin: f64,
-        #[pyo3(from_py_with = of::resolution)] resolution: f64,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        self.0.motion_self_clears(py, motion.get(), margin, resolution)
+        motion_answers(py, &all, |further| motions.shape(further))
     }
 }
 
-/// Whether a robot that moves keeps more than a margin to itself.
-///
-/// ``Decision.CLEAR`` is proven for every time between, from the speeds of the motion. Asked for are the parts that
-/// `tube_self_clears` asks for.
-///
-/// Parameters
-/// ----------
-/// motion : Motion
-///     A motion, or a batch.
-/// margin : float
-///     A length, at least 0.
-/// resolution : float
-///     A length. The answer is undecided only where the robot comes within this of the margin, where the margin is as wide as the
-///     tightest bend, where an end turns from flat to round, or where 65,536 shapes or 262,144 pairs of pieces do not decide it.
-///
-/// Returns
-/// -------
-/// RobotMotionAnswer
-///     Of one motion, or arrays with one entry for each. Both points of a contact are on the same robot, the first one nearer to its
-///     base.
-///
-/// Raises
-/// ------
-/// ContinuumError
-///     Margin or resolution are negative or NaN, the resolution is finer than rounding or than so fast a motion can be divided, one of the
-///     shapes is no robot, or it bends within its radius or too sharply at a joint.
-///
-/// Examples
-/// --------
-/// >>> import numpy as np
-/// >>> from parry_continuum import Decision, LinearMotion, motion_self_clears
-/// >>> def hairpin(y): return np.array([[0, 0, 0], [0, 0, 40], [8, 0, 40], [4, y, 2]])
-/// >>> swing = LinearMotion(hairpin(-6), hairpin(6), 1.0)  # the tip passes the base
-/// >>> motion_self_clears(swing, margin=1.5, resolution=1e-3).decision is Decision.CLEAR
-/// True
-/// >>> motion_self_clears(swing, margin=2.5, resolution=1e-3).decision is Decision.CONTACT
-/// True
-#[pyfunction]
-#[pyo3(signature = (motion, margin, resolution))]
-pub(crate) fn motion_self_clears<'py>(
-    py: Python<'py>,
-    motion: &Bound<'py, Motion>,
-    #[pyo3(from_py_with = of::margin)] margin: f64,
-    #[pyo3(from_py_with = of::resolution)] resolution: f64,
-) -> PyResult<Bound<'py, PyAny>> {
-    Pairs::default().motion_self_clears(py, motion.get(), margin, resolution)
-}
-
-impl Pairs {
-    fn motion_self_clears<'py>(
-        &self,
-        py: Python<'py>,
-        motions: &Motion,
-        margin: f64,
-        resolution: f64,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        let mut all: Vec<RobotMotionAnswer> = Vec::with_capacity(motions.len());
-        let ask =
-            |session: &mut Session, motion: &&Moving, row: &mut [Option<RobotMotionAnswer>]| {
-                row[0] = Some(session.own.clears_motion(*motion, margin, resolution)?);
-                Ok(())
-            };
-        ask_each(py, self, motions, (None, 1), ask, |_, found| all.extend(found.iter().flatten()))?;
-        answers(py, &all, |further| motions.shape(further))
-    }
-}
-
-/// What is found of each motion, in the shape of the batch.
-fn answers<'py>(
+/// The answers, in the shape of the batch.
+pub(super) fn motion_answers<'py>(
     py: Python<'py>,
     all: &[RobotMotionAnswer],
     shape: impl Fn(&[usize]) -> Vec<usize>,

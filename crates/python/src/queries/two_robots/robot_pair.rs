@@ -1,15 +1,15 @@
-//! Two robots that are asked about again and again.
+//! The class `RobotPair`: queries about two robots.
 
 use super::{Pairs, pairs};
-use crate::input::{Caps, Names, Robots, of};
+use crate::input::{Caps, of};
 use pyo3::prelude::*;
 use pyo3::types::{PyTuple, PyType};
 
-/// Questions about two robots, or about one and itself.
+/// Exact queries about two robots.
 ///
-/// It remembers what was nearest, which bounds the next query: small motions are answered fastest, and any robots may follow.
-/// Answers do not depend on it. Any number of threads may ask one `RobotPair`. `between`, `clears_between`, `self_minimum` and
-/// `self_clears` are the same without a memory.
+/// The last answers warm-start the next query. Any robots may follow; small motions are answered
+/// fastest. The warm start never changes an answer. Any number of threads may use one `RobotPair`.
+/// A copy starts without a warm start. For one robot and itself see `SelfQuery`.
 ///
 /// Examples
 /// --------
@@ -32,7 +32,7 @@ impl RobotPair {
         Self(Pairs::default())
     }
 
-    /// A new one: what it remembers only makes answers faster.
+    /// The copy has no warm start, which only makes answers faster.
     fn __copy__(&self) -> Self {
         Self::new()
     }
@@ -45,18 +45,23 @@ impl RobotPair {
         (slf.get_type(), PyTuple::empty(slf.py()))
     }
 
-    /// Forgets the last answers, as if it were new.
+    /// Forgets the last answers: the next query starts without a warm start.
     fn forget(&self, py: Python<'_>) {
-        let sessions = self.0.0.with(py, std::mem::take);
-        drop(sessions); // not under the lock
+        self.0.forget(py);
     }
 
-    /// The distance between two robots, and the two points that are closest: as `between`.
+    /// The distance between two robots, and the two closest points.
+    ///
+    /// The distance is 0 where the robots touch or overlap. If one argument is a batch and the other
+    /// is one robot, that robot is paired with each robot of the batch.
     ///
     /// Parameters
     /// ----------
-    /// points_a, radii_a, points_b, radii_b, pose_a, pose_b, caps
-    ///     As for `between`.
+    /// points_a, points_b : (N, 3) or (B, N, 3) arrays
+    /// radii_a, radii_b : float, (N - 1,) or (B, N - 1) arrays
+    /// pose_a, pose_b : (4, 4) or (B, 4, 4) arrays, optional
+    ///     From the frame of each robot to one frame for both. The answer is in that frame.
+    /// caps : {"fitted", "capsules", "cylinders"}
     ///
     /// Returns
     /// -------
@@ -65,7 +70,14 @@ impl RobotPair {
     /// Raises
     /// ------
     /// ContinuumError
-    ///     As for `between`.
+    ///     Points or radii are no robot, or a pose is not rigid.
+    ///
+    /// Examples
+    /// --------
+    /// >>> from parry_continuum import RobotPair
+    /// >>> found = RobotPair().minimum([[0, 0, 0], [0, 0, 9]], 0.5, [[3, -5, 4], [3, 5, 4]], 0.5)
+    /// >>> found.distance, found.arc_lengths
+    /// (2.0, array([4., 5.]))
     #[pyo3(signature = (points_a, radii_a, points_b, radii_b, *, pose_a = None, pose_b = None, caps = Caps::Fitted), text_signature = "($self, points_a, radii_a, points_b, radii_b, *, pose_a=None, pose_b=None, caps=\"fitted\")")]
     #[allow(clippy::too_many_arguments)] // they are named in Python
     fn minimum<'py>(
@@ -88,7 +100,7 @@ impl RobotPair {
     /// Parameters
     /// ----------
     /// points_a, radii_a, points_b, radii_b, pose_a, pose_b, caps
-    ///     As for `between`.
+    ///     As for `minimum`.
     ///
     /// Returns
     /// -------
@@ -99,7 +111,7 @@ impl RobotPair {
     /// Raises
     /// ------
     /// ContinuumError
-    ///     As for `between`.
+    ///     As for `minimum`.
     #[pyo3(signature = (points_a, radii_a, points_b, radii_b, *, pose_a = None, pose_b = None, caps = Caps::Fitted), text_signature = "($self, points_a, radii_a, points_b, radii_b, *, pose_a=None, pose_b=None, caps=\"fitted\")")]
     #[allow(clippy::too_many_arguments)] // they are named in Python
     fn per_link<'py>(
@@ -125,7 +137,7 @@ impl RobotPair {
     /// Parameters
     /// ----------
     /// points_a, radii_a, points_b, radii_b, pose_a, pose_b, caps
-    ///     As for `between`.
+    ///     As for `minimum`.
     /// margin : float
     ///     A length, at least 0.
     ///
@@ -137,8 +149,8 @@ impl RobotPair {
     /// Raises
     /// ------
     /// ContinuumError
-    ///     The margin is negative or NaN, or as for `between`.
-    #[pyo3(signature = (points_a, radii_a, points_b, radii_b, margin, *, pose_a = None, pose_b = None, caps = Caps::Fitted), text_signature = "($self, points_a, radii_a, points_b, radii_b, margin, *, pose_a=None, pose_b=None, caps=\"fitted\")")]
+    ///     The margin is negative or NaN, or as for `minimum`.
+    #[pyo3(signature = (points_a, radii_a, points_b, radii_b, *, margin, pose_a = None, pose_b = None, caps = Caps::Fitted), text_signature = "($self, points_a, radii_a, points_b, radii_b, *, margin, pose_a=None, pose_b=None, caps=\"fitted\")")]
     #[allow(clippy::too_many_arguments)] // they are named in Python
     fn contacts_within<'py>(
         &self,
@@ -156,12 +168,14 @@ impl RobotPair {
         self.0.contacts_within(py, &robots, margin, caps)
     }
 
-    /// Whether two robots keep more than a margin from each other: as `clears_between`.
+    /// Whether the distance between two robots is more than a margin.
+    ///
+    /// The answer equals ``minimum(...).distance > margin`` and takes less work.
     ///
     /// Parameters
     /// ----------
     /// points_a, radii_a, points_b, radii_b, pose_a, pose_b, caps
-    ///     As for `between`.
+    ///     As for `minimum`.
     /// margin : float
     ///     A length, at least 0.
     ///
@@ -172,8 +186,15 @@ impl RobotPair {
     /// Raises
     /// ------
     /// ContinuumError
-    ///     The margin is negative or NaN, or as for `between`.
-    #[pyo3(signature = (points_a, radii_a, points_b, radii_b, margin, *, pose_a = None, pose_b = None, caps = Caps::Fitted), text_signature = "($self, points_a, radii_a, points_b, radii_b, margin, *, pose_a=None, pose_b=None, caps=\"fitted\")")]
+    ///     The margin is negative or NaN, or as for `minimum`.
+    ///
+    /// Examples
+    /// --------
+    /// >>> from parry_continuum import RobotPair
+    /// >>> robots = ([[0, 0, 0], [0, 0, 9]], 0.5, [[3, -5, 4], [3, 5, 4]], 0.5)
+    /// >>> RobotPair().clears(*robots, margin=1.9)
+    /// True
+    #[pyo3(signature = (points_a, radii_a, points_b, radii_b, *, margin, pose_a = None, pose_b = None, caps = Caps::Fitted), text_signature = "($self, points_a, radii_a, points_b, radii_b, *, margin, pose_a=None, pose_b=None, caps=\"fitted\")")]
     #[allow(clippy::too_many_arguments)] // they are named in Python
     fn clears<'py>(
         &self,
@@ -189,67 +210,5 @@ impl RobotPair {
     ) -> PyResult<Bound<'py, PyAny>> {
         let robots = pairs([points_a, radii_a, points_b, radii_b], [pose_a, pose_b])?;
         self.0.clears(py, &robots, margin, caps)
-    }
-
-    /// The least distance between parts of a robot that could meet: as `parry_continuum.self_minimum`.
-    ///
-    /// Parameters
-    /// ----------
-    /// points : (N, 3) or (B, N, 3) array
-    /// radii : float, (N - 1,) or (B, N - 1) array
-    /// caps : {"fitted", "capsules", "cylinders"}
-    ///
-    /// Returns
-    /// -------
-    /// RobotProximity
-    ///
-    /// Raises
-    /// ------
-    /// ContinuumError
-    ///     As for `parry_continuum.self_minimum`.
-    #[pyo3(signature = (points, radii, *, caps = Caps::Fitted), text_signature = "($self, points, radii, *, caps=\"fitted\")")]
-    fn self_minimum<'py>(
-        &self,
-        py: Python<'py>,
-        points: &Bound<'py, PyAny>,
-        radii: &Bound<'py, PyAny>,
-        caps: Caps,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        self.0.self_minimum(py, &Robots::new(Names::one("points"), points, radii, None)?, caps)
-    }
-
-    /// Whether the parts of a robot that could meet keep more than a margin: as `parry_continuum.self_clears`.
-    ///
-    /// Parameters
-    /// ----------
-    /// points : (N, 3) or (B, N, 3) array
-    /// radii : float, (N - 1,) or (B, N - 1) array
-    /// margin : float
-    ///     A length, at least 0.
-    /// caps : {"fitted", "capsules", "cylinders"}
-    ///
-    /// Returns
-    /// -------
-    /// bool or (B,) array of bool
-    ///
-    /// Raises
-    /// ------
-    /// ContinuumError
-    ///     The margin is negative or NaN, or as for `parry_continuum.self_minimum`.
-    #[pyo3(signature = (points, radii, margin, *, caps = Caps::Fitted), text_signature = "($self, points, radii, margin, *, caps=\"fitted\")")]
-    fn self_clears<'py>(
-        &self,
-        py: Python<'py>,
-        points: &Bound<'py, PyAny>,
-        radii: &Bound<'py, PyAny>,
-        #[pyo3(from_py_with = of::margin)] margin: f64,
-        caps: Caps,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        self.0.self_clears(
-            py,
-            &Robots::new(Names::one("points"), points, radii, None)?,
-            margin,
-            caps,
-        )
     }
 }
