@@ -1,12 +1,15 @@
 //! A tube fitted to measured points.
 //!
 //! # Algorithm
-//! 1. **Parameter.** The length of the polyline. Noise makes it far too long if points are dense,
-//!    so steps 2 and 1 repeat with the lengths of the last spline ([`PASSES`] parameters in all).
-//! 2. **Smooth.** A smoothing spline near the points; cross-validation chooses the weight (`best`).
-//! 3. **Draw near.** If the spline is farther from a point than the stated deviation, forces draw
+//! 1. **Merge** consecutive points that are much closer to one another than most, and much closer
+//!    than the deviation. They share one knot at their mean. Otherwise the shortest of 100,000
+//!    distances would cost the spline all its digits.
+//! 2. **Parameter.** The length of the polyline. Noise makes it far too long if points are dense,
+//!    so steps 3 and 2 repeat with the lengths of the last spline ([`PASSES`] parameters in all).
+//! 3. **Smooth.** A smoothing spline near the points; cross-validation chooses the weight (`best`).
+//! 4. **Draw near.** If the spline is farther from a point than the stated deviation, forces draw
 //!    it near (`within`).
-//! 4. **Lay** the tube along the spline (`lay`).
+//! 5. **Lay** the tube along the spline (`lay`).
 //!
 //! The number of splines does not depend on the points. Each takes time proportional to their
 //! number.
@@ -30,7 +33,7 @@
 use super::Tube;
 use super::curve::{CurveBound, NextPoint};
 use super::section::stretch;
-use super::smoothing_spline::{Smoother, SmoothingSpline};
+use super::smoothing_spline::{Knots, Smoother, SmoothingSpline};
 use super::tube_builder::TubeBuilder;
 use crate::distance::Scalar;
 use crate::robot::{RobotError, check_segments, direction};
@@ -38,6 +41,9 @@ use parry3d_f64::math::{Real, Vector};
 
 /// Least distance of knots, as a share of their mean distance.
 const CLOSEST: Real = 1.0 / (1 << 20) as Real;
+
+/// Points closer than this share of the mean distance are merged.
+const CLOSE: Real = 1.0 / (1 << 10) as Real;
 
 /// Number of parameters, each from the lengths of the previous spline.
 const PASSES: u32 = 3;
@@ -107,7 +113,7 @@ impl Tube {
             points.iter().fold(0.0, |most: Real, point| point.abs().max_element().max(most)),
         );
         let near: Vec<_> = points.iter().map(|&point| (point - origin) * scale).collect();
-        let spline = smooth(&near, deviation * scale);
+        let spline = smooth(&near, segment_radii, deviation * scale);
         let mut tube = Self::empty();
         tube.residual = spline.largest_residual(&near) / scale;
         let rounding = 16.0 * Real::UNIT_ROUNDOFF * largest;
@@ -117,45 +123,103 @@ impl Tube {
     }
 }
 
-/// Steps 1 to 3 for points scaled near 1.
-pub(super) fn smooth(points: &[Vector], deviation: Real) -> SmoothingSpline {
-    let mut knots = knots_apart(points.windows(2).map(|pair| (pair[1] - pair[0]).length()));
+/// Steps 1 to 4 for points scaled near 1.
+pub(super) fn smooth(points: &[Vector], radii: &[Real], deviation: Real) -> SmoothingSpline {
+    let merged = Merged::of(points, radii, deviation);
+    let means = &merged.means;
+    let mut knots = merged.knots_apart(means.windows(2).map(|pair| (pair[1] - pair[0]).length()));
     for _ in 1..PASSES {
-        let (spline, _) = best(&knots, points);
+        let (spline, _) = best(&knots, &merged);
         // The lengths of the spline between its knots, from two chords each.
-        knots = knots_apart((0..points.len() - 1).map(|k| {
+        knots = merged.knots_apart((0..means.len() - 1).map(|k| {
             let middle = spline.at(k, 0.5)[0];
             (middle - spline.values[k]).length() + (spline.values[k + 1] - middle).length()
         }));
     }
-    let (spline, weight) = best(&knots, points);
-    within(deviation, spline, &knots, points, weight)
+    let (spline, weight) = best(&knots, &merged);
+    merged.spread(within(deviation - merged.largest, spline, &knots, means, weight))
 }
 
-/// Returns ascending knots with these distances, each at least [`CLOSEST`] of their mean.
-fn knots_apart(lengths: impl Iterator<Item = Real> + Clone) -> Vec<Real> {
-    let (sum, count) =
-        lengths.clone().fold((0.0, 0), |(sum, count), length| (sum + length, count + 1));
-    let least = CLOSEST * sum / Real::from(count);
-    let mut knots = vec![0.0];
-    let mut last = 0.0;
-    knots.extend(lengths.map(|length| {
-        last += length.max(least);
-        last
-    }));
-    knots
+/// The points, where consecutive ones that are close to one another are merged (step 1).
+struct Merged {
+    means: Vec<Vector>,
+    counts: Vec<Real>,
+    /// The largest distance of a point from its mean, and the sum of all squared distances.
+    largest: Real,
+    scatter: Real,
 }
 
-/// Returns the spline with the best score, and its weight (step 2).
-fn best(knots: &[Real], points: &[Vector]) -> (SmoothingSpline, Real) {
-    let weights = Weights::of(knots);
-    let weight =
-        weights.at(weights.best(|step| Smoother::new(knots, weights.at(step)).score(points)));
-    (Smoother::new(knots, weight).spline(points), weight)
+impl Merged {
+    /// The segments between merged points vanish. So their radii must be those of the segments
+    /// before or behind them.
+    fn of(points: &[Vector], radii: &[Real], deviation: Real) -> Self {
+        let length: Real = points.windows(2).map(|pair| (pair[1] - pair[0]).length()).sum();
+        let mean = length / (points.len() - 1) as Real;
+        let close = (CLOSE * mean).min(deviation / 64.0);
+        let mut merged = Self { means: Vec::new(), counts: Vec::new(), largest: 0.0, scatter: 0.0 };
+        let mut from = 0;
+        while let Some(first) = points.get(from) {
+            let is_far = |point: &Vector| (*point - *first).length() > close;
+            let near = points[from..].iter().position(is_far).unwrap_or(points.len() - from);
+            let around = [from.checked_sub(1), Some(from + near - 1)];
+            let around = around.map(|segment| radii.get(segment?));
+            let inner = &radii[from..from + near - 1];
+            let can_merge = inner.iter().all(|radius| around.contains(&Some(radius)));
+            let group = &points[from..from + if can_merge { near } else { 1 }];
+            from += group.len();
+            let count = group.len() as Real;
+            let offset = group.iter().map(|point| *point - *first).sum::<Vector>() / count;
+            let mean = *first + offset;
+            for point in group.iter().filter(|_| group.len() > 1) {
+                let away = (*point - mean).length();
+                merged.largest = merged.largest.max(away);
+                merged.scatter += away * away;
+            }
+            merged.means.push(mean);
+            merged.counts.push(count);
+        }
+        merged
+    }
+
+    /// Returns ascending knots with these distances, each at least [`CLOSEST`] of their mean.
+    fn knots_apart(&self, lengths: impl Iterator<Item = Real> + Clone) -> Knots {
+        let (sum, count) =
+            lengths.clone().fold((0.0, 0), |(sum, count), length| (sum + length, count + 1));
+        let least = CLOSEST * sum / Real::from(count);
+        let mut places = vec![0.0];
+        let mut last = 0.0;
+        places.extend(lengths.map(|length| {
+            last += length.max(least);
+            last
+        }));
+        Knots { places, counts: self.counts.clone() }
+    }
+
+    /// Returns the spline with one knot per point again.
+    fn spread(&self, spline: SmoothingSpline) -> SmoothingSpline {
+        fn each<T: Copy>(counts: &[Real], all: &[T]) -> Vec<T> {
+            let repeat = |(one, count): (&T, &Real)| std::iter::repeat_n(*one, *count as usize);
+            all.iter().zip(counts).flat_map(repeat).collect()
+        }
+        let SmoothingSpline { knots, values, seconds } = &spline;
+        SmoothingSpline {
+            knots: each(&self.counts, knots),
+            values: each(&self.counts, values),
+            seconds: each(&self.counts, seconds),
+        }
+    }
+}
+
+/// Returns the spline with the best score, and its weight (step 3).
+fn best(knots: &Knots, merged: &Merged) -> (SmoothingSpline, Real) {
+    let weights = Weights::of(&knots.places);
+    let score = |step| Smoother::new(knots, weights.at(step)).score(&merged.means, merged.scatter);
+    let weight = weights.at(weights.best(score));
+    (Smoother::new(knots, weight).spline(&merged.means), weight)
 }
 
 /// Returns the spline if it is within the deviation of each point, otherwise approximately the
-/// smoothest spline that is (step 3).
+/// smoothest spline that is (step 4).
 ///
 /// That spline minimises the same sum under the condition that each residual is short enough. The
 /// condition acts like a force on each point that is too far away: the result is the spline of the
@@ -166,7 +230,7 @@ fn best(knots: &[Real], points: &[Vector]) -> (SmoothingSpline, Real) {
 fn within(
     deviation: Real,
     mut spline: SmoothingSpline,
-    knots: &[Real],
+    knots: &Knots,
     points: &[Vector],
     mut weight: Real,
 ) -> SmoothingSpline {
@@ -260,7 +324,7 @@ impl Weights {
     }
 }
 
-/// Lays the tube along the spline (step 4).
+/// Lays the tube along the spline (step 5).
 ///
 /// # Errors
 /// The tube turns by more than 1 rad within a part, or bends within its radius next to a face.

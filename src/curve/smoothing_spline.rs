@@ -1,17 +1,20 @@
-//! The natural cubic smoothing spline: of all functions f it minimises the sum of `|y - f|^2` plus
-//! `weight` times the integral of `|f''|^2`.
+//! The natural cubic smoothing spline: of all functions f it minimises the sum of `m |y - f|^2`
+//! plus `weight` times the integral of `|f''|^2`.
 //!
 //! # Definitions
 //! - `y`: the points at the knots. `h_i`: the distances of the knots.
+//! - `m`: how many measured points a knot stands for; `y` is then their mean. `M`: the diagonal
+//!   matrix of all `m`.
 //! - `R`: the tridiagonal matrix of `(h_i-1 + h_i) / 3` and `h_i / 6`. `Q`: the second differences.
 //! - `g`: the second derivatives at the inner knots.
 //!
 //! # Algorithm
-//! 1. **Solve** `(R + weight Q^T Q) g = Q^T y`. The matrix has five diagonals, so the time is
-//!    proportional to the number of points. The values are `y - weight Q g`. (C. H. Reinsch,
+//! 1. **Solve** `(R + weight Q^T M^-1 Q) g = Q^T y`. The matrix has five diagonals, so the time is
+//!    proportional to the number of knots. The values are `y - weight M^-1 Q g`. (C. H. Reinsch,
 //!    "Smoothing by spline functions", Numerische Mathematik 10, 1967.)
 //! 2. **Score** a weight by generalised cross-validation (P. Craven, G. Wahba, Numerische
-//!    Mathematik 31, 1979). It needs the trace of the map from y to the residuals.
+//!    Mathematik 31, 1979). It needs the trace of the map from y to the residuals. The sum of
+//!    squares is taken over all measured points.
 //! 3. **Trace.** Five diagonals of the inverse suffice, and the factors yield them (M. F.
 //!    Hutchinson, F. R. de Hoog, Numerische Mathematik 47, 1985).
 //!
@@ -33,6 +36,15 @@ pub(super) struct SmoothingSpline {
     pub seconds: Vec<Vector>,
 }
 
+/// The knots of a spline.
+#[derive(Clone, Debug)]
+pub(super) struct Knots {
+    /// Ascending parameters.
+    pub places: Vec<Real>,
+    /// How many measured points each knot stands for.
+    pub counts: Vec<Real>,
+}
+
 /// The matrix with five diagonals, factored as L D L^T.
 struct Factors {
     diagonal: Vec<Real>,
@@ -47,24 +59,27 @@ fn differences(knots: &[Real], k: usize) -> [Real; 3] {
     [1.0 / before, -1.0 / before - 1.0 / behind, 1.0 / behind]
 }
 
-/// Returns the diagonals of Q^T Q in row k.
-fn squared_differences(knots: &[Real], k: usize, count: usize) -> [Real; 3] {
-    let own = differences(knots, k);
-    let next = if k + 1 < count { differences(knots, k + 1) } else { [0.0; 3] };
-    let beyond = if k + 2 < count { differences(knots, k + 2) } else { [0.0; 3] };
+/// Returns the diagonals of Q^T M^-1 Q in row k.
+fn squared_differences(Knots { places, counts }: &Knots, k: usize) -> [Real; 3] {
+    let rows = places.len() - 2;
+    let own = differences(places, k);
+    let next = if k + 1 < rows { differences(places, k + 1) } else { [0.0; 3] };
+    let beyond = if k + 2 < rows { differences(places, k + 2) } else { [0.0; 3] };
     let [a, b, c] = own;
-    [a * a + b * b + c * c, b * next[0] + c * next[1], c * beyond[0]]
+    let [d, e, f] = [0, 1, 2].map(|point: usize| own[point] / counts[k + point]);
+    [a * d + b * e + c * f, e * next[0] + f * next[1], f * beyond[0]]
 }
 
 impl Factors {
-    fn new(knots: &[Real], weight: Real) -> Self {
-        let count = knots.len() - 2;
+    fn new(knots: &Knots, weight: Real) -> Self {
+        let places = &knots.places;
+        let count = places.len() - 2;
         let (mut diagonal, mut first, mut second) =
             (vec![0.0; count], vec![0.0; count], vec![0.0; count]);
         for k in 0..count {
-            let [whole, next, beyond] = squared_differences(knots, k, count);
-            let mut pivot = (knots[k + 2] - knots[k]) / 3.0 + weight * whole;
-            let mut below = (knots[k + 2] - knots[k + 1]) / 6.0 + weight * next;
+            let [whole, next, beyond] = squared_differences(knots, k);
+            let mut pivot = (places[k + 2] - places[k]) / 3.0 + weight * whole;
+            let mut below = (places[k + 2] - places[k + 1]) / 6.0 + weight * next;
             if k > 0 {
                 pivot -= first[k - 1] * first[k - 1] * diagonal[k - 1];
                 below -= first[k - 1] * second[k - 1] * diagonal[k - 1];
@@ -100,8 +115,8 @@ impl Factors {
         }
     }
 
-    /// Returns the trace of the inverse times Q^T Q (step 3).
-    fn trace(&self, knots: &[Real]) -> Real {
+    /// Returns the trace of the inverse times Q^T M^-1 Q (step 3).
+    fn trace(&self, knots: &Knots) -> Real {
         let count = self.diagonal.len();
         // Rows of the inverse: the diagonal and the two entries to the right.
         let (mut next, mut beyond) = ([0.0; 3], [0.0; 3]);
@@ -111,7 +126,7 @@ impl Factors {
             let one = -first * next[0] - second * next[1];
             let two = -first * next[1] - second * beyond[0];
             let own = [1.0 / self.diagonal[k] - first * one - second * two, one, two];
-            let squares = squared_differences(knots, k, count);
+            let squares = squared_differences(knots, k);
             sum += own[0] * squares[0] + 2.0 * (own[1] * squares[1] + own[2] * squares[2]);
             beyond = next;
             next = own;
@@ -122,7 +137,7 @@ impl Factors {
 
 /// Computes splines of points at fixed knots with a fixed weight.
 pub(super) struct Smoother<'a> {
-    knots: &'a [Real],
+    knots: &'a Knots,
     weight: Real,
     factors: Option<Factors>,
     /// The columns of Q.
@@ -130,17 +145,18 @@ pub(super) struct Smoother<'a> {
 }
 
 impl<'a> Smoother<'a> {
-    pub(super) fn new(knots: &'a [Real], weight: Real) -> Self {
+    pub(super) fn new(knots: &'a Knots, weight: Real) -> Self {
+        let places = &knots.places;
         // Two points are on a line.
-        let factors = (knots.len() > 2).then(|| Factors::new(knots, weight));
-        let columns = (2..knots.len()).map(|k| differences(knots, k - 2)).collect();
+        let factors = (places.len() > 2).then(|| Factors::new(knots, weight));
+        let columns = (2..places.len()).map(|k| differences(places, k - 2)).collect();
         Self { knots, weight, factors, columns }
     }
 
     /// Returns the spline near `points` (step 1).
     pub(super) fn spline(&self, points: &[Vector]) -> SmoothingSpline {
-        let mut spline =
-            SmoothingSpline { knots: self.knots.to_vec(), values: Vec::new(), seconds: Vec::new() };
+        let knots = self.knots.places.clone();
+        let mut spline = SmoothingSpline { knots, values: Vec::new(), seconds: Vec::new() };
         self.fill(points.iter().copied(), &mut spline);
         spline
     }
@@ -166,20 +182,23 @@ impl<'a> Smoother<'a> {
         }
         factors.solve(bends);
         for (k, (&bend, column)) in bends.iter().zip(&self.columns).enumerate() {
-            for (value, factor) in values[k..].iter_mut().zip(column) {
-                *value -= bend * (self.weight * factor);
+            let counts = &self.knots.counts[k..];
+            for ((value, factor), count) in values[k..].iter_mut().zip(column).zip(counts) {
+                *value -= bend * (self.weight * factor / count);
             }
         }
     }
 
-    /// Returns the score of cross-validation; less is better (step 2).
-    pub(super) fn score(&self, points: &[Vector]) -> Real {
+    /// Returns the score of cross-validation; less is better (step 2). `scatter`: the sum of the
+    /// squared distances of all measured points from the means of their knots.
+    pub(super) fn score(&self, points: &[Vector], scatter: Real) -> Real {
         let Some(factors) = &self.factors else { return 0.0 };
         let values = self.spline(points).values;
-        let squares: Real =
-            points.iter().zip(&values).map(|(a, b)| (*a - *b).length_squared()).sum();
-        let (count, free) = (points.len() as Real, self.weight * factors.trace(self.knots));
-        let counted = count - CAUTION * (count - free);
+        let pairs = points.iter().zip(&values).zip(&self.knots.counts);
+        let squares: Real = pairs.map(|((a, b), count)| (*a - *b).length_squared() * count).sum();
+        let squares = squares + scatter;
+        let (knots, free) = (points.len() as Real, self.weight * factors.trace(self.knots));
+        let counted = self.knots.counts.iter().sum::<Real>() - CAUTION * (knots - free);
         // Without degrees of freedom the weight cannot be chosen.
         if counted > 0.0 { squares / (counted * counted) } else { Real::INFINITY }
     }

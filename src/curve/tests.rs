@@ -72,7 +72,7 @@ fn a_fit_bends_little_more_than_the_smoothest_spline_that_is_as_far_from_the_poi
                             + Vector::new(normal(), normal(), normal()) * noise
                     })
                     .collect();
-                let fitted = smooth(&points, 5.0 * noise);
+                let fitted = smooth(&points, &vec![1.0; points.len() - 1], 5.0 * noise);
                 let residual = fitted.largest_residual(&points);
                 assert!(residual <= 5.0 * noise);
                 let given = DMatrix::from_fn(count, 3, |k, axis| points[k][axis]);

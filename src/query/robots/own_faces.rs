@@ -8,13 +8,14 @@
 //!   the rule of `JoinedLink::face_counts`.
 //! - Two faces **look at one another** if the earlier one is the end of its link and the later one
 //!   the start of its link. They are queried at any turn.
-//! - **Node**: a run of links. It stores a ball around their axes, their largest radius, and a cone
+//! - **Node**: a run of links, the same as the node of the link tree with its number. It stores a ball around their axes, their largest radius, and a cone
 //!   that contains the directions of its links and of one more on either side.
 //!
 //! # Pruning
 //! A pair of nodes is skipped in three cases:
 //! 1. Neither node has a face; or no pair is in the band and no two faces look at one another.
-//! 2. The balls, each wider by its largest radius, are farther apart than the bound.
+//! 2. The balls, each wider by its largest radius, are farther apart than the bound; or the
+//!    capsules of the link tree are. A capsule is much narrower around links that lie in a row.
 //! 3. The robot leads nearer everywhere. Let `w` be the segment from a face of one node to a place
 //!    of the other, and `t` any direction of the latter's cone.
 //!    - If all `w . t > 0`, the robot leads nearer backwards from every place, unless it stops
@@ -48,6 +49,7 @@
 //! the largest coordinate covers all. Pairs that `JoinedLink` accepts as local minima within the
 //! error of the segment are visited, too.
 
+use super::pair_frame::{NodeCapsule, PairFrame};
 use super::robot_with_itself::TurnSums;
 use crate::distance::Scalar;
 use crate::pair::{PlacedRobot, Tolerance};
@@ -106,6 +108,9 @@ pub(super) struct OwnFaces {
     with_faces: Vec<usize>,
     /// The nodes in preorder, the first half's before the second's.
     nodes: Vec<Node>,
+    /// The capsules of the link tree, in its frame.
+    capsules: Vec<NodeCapsule>,
+    frame: PairFrame,
     stack: Vec<[usize; 2]>,
     rounding: Tolerance,
     #[cfg(test)]
@@ -217,11 +222,15 @@ impl OwnFaces {
         let root = &self.nodes[0];
         let largest = root.centre.abs().max_element() + root.reach + root.radius;
         self.rounding = Tolerance(64.0 * Real::UNIT_ROUNDOFF * largest);
+        self.frame = PairFrame::around([robot; 2]);
+        let outline = |node: usize| self.frame.outline(robot, node);
+        self.capsules.clear();
+        self.capsules.extend((0..self.nodes.len()).map(outline));
         self.stack.clear();
         self.stack.push([0, 0]);
         while let Some(pair) = self.stack.pop() {
             let [one, two] = pair.map(|place| &self.nodes[place]);
-            let kinds = self.asks(turns, band, bound, one, two);
+            let kinds = self.asks(turns, band, bound, pair);
             #[cfg(test)]
             {
                 self.looked_at += 1;
@@ -260,7 +269,8 @@ impl OwnFaces {
 
     /// Whether pairs of two nodes that are in the band may count, and whether faces that look at
     /// one another may.
-    fn asks(&self, turns: &TurnSums, band: Band, bound: Real, one: &Node, two: &Node) -> [bool; 2] {
+    fn asks(&self, turns: &TurnSums, band: Band, bound: Real, pair: [usize; 2]) -> [bool; 2] {
+        let [one, two] = pair.map(|place| &self.nodes[place]);
         let last = two.first + two.count - 1;
         if last < one.first + 2 {
             return [false; 2];
@@ -283,6 +293,11 @@ impl OwnFaces {
         }
         if one.first == two.first {
             return [in_band, look];
+        }
+        let [capsule, other] = pair.map(|place| &self.capsules[place]);
+        // Capsules are hardly farther apart than the centres.
+        if away > bound && self.frame.outside(capsule.at_least(other)) - self.rounding.0 > bound {
+            return [false; 2];
         }
         // Case 3.
         let from_one = two.seen_from(one, way, away, self.rounding);

@@ -299,6 +299,19 @@ impl<'a> RobotWithItself<'a> {
         }
         let mut now = bound;
         faces.run(&self.robot, turns, band, bound, |links, [in_band, look]| {
+            let is_half_turn = links[1] >= turns.queried_from[links[0]];
+            if in_band && is_half_turn && band == Band::All {
+                let [one, two] = links.map(|link| self.robot.link(link));
+                if let Some(nearest) = one.measure_link_within(now, &two)
+                    && self.counts(links)
+                {
+                    now = keep(nearest.answer(links, [&one, &two]))?;
+                }
+            }
+            let is_at_face = in_band && !is_half_turn && links[1] >= turns.quarter_from[links[0]];
+            if !look && !is_at_face {
+                return Some(now);
+            }
             let joined = links.map(|link| self.joined(link));
             let [one, two] = &joined;
             let tolerance = one.tolerance(two);
@@ -312,16 +325,7 @@ impl<'a> RobotWithItself<'a> {
                     }
                 }
             }
-            if !in_band || links[1] < turns.quarter_from[links[0]] {
-                return Some(now);
-            }
-            if links[1] >= turns.queried_from[links[0]] {
-                if band == Band::All
-                    && let Some(nearest) = one.link.measure_link_within(now, &two.link)
-                    && self.counts(links)
-                {
-                    now = keep(nearest.answer(links, [&one.link, &two.link]))?;
-                }
+            if !is_at_face {
                 return Some(now);
             }
             for (on_face, other) in [(0, 1), (1, 0)] {

@@ -157,6 +157,37 @@ fn a_stated_turn_sharpens_a_face() {
     assert!((0.9..1.04).contains(&unknown) && known < 0.08, "{unknown} {known}");
 }
 
+/// Points that were measured twice cost the spline no digits, however many there are.
+#[test]
+fn many_points_measured_twice_are_fitted() {
+    let (count, rise, radius) = (10_000, 5.0, 10.0);
+    for apart in [0.0, 1e-12, 1e-6] {
+        let mut points = Vec::new();
+        for k in 0..count {
+            let (sin, cos) = (40.0 * f64::from(k) / f64::from(count)).sin_cos();
+            let height = rise * 40.0 * f64::from(k) / f64::from(count);
+            let point = Vector::new(radius * cos, radius * sin, height);
+            points.extend([point, point + Vector::X * apart]);
+        }
+        let tube = Tube::fit(&points, &vec![1.0; points.len() - 1], 0.05).unwrap();
+        let length = 40.0 * f64::hypot(rise, radius);
+        assert!((tube.length() - length).abs() < 0.1, "{apart}: {}", tube.length());
+        assert!(tube.residual() < 0.01, "{apart}: {}", tube.residual());
+    }
+}
+
+/// A short segment that is wider than both neighbours is not merged away.
+#[test]
+fn a_short_wide_segment_is_kept() {
+    let heights = [0.0, 1.0, 2.0, 3.0, 4.0, 4.0 + 1e-4, 5.0, 6.0, 7.0, 8.0];
+    let mut radii = [1.0; 9];
+    radii[4] = 3.0;
+    let tube = Tube::fit(&heights.map(|z| Vector::Z * z), &radii, 0.05).unwrap();
+    let mut beside = super::speck(Vector::new(3.5, 0.0, 4.0));
+    let found = beside.clearance(&tube, &Pose::IDENTITY, 1e-3).unwrap();
+    assert!(found.lower <= 0.5, "{found:?}");
+}
+
 /// A curve that stands still and turns back has no bound on its curvature.
 #[test]
 fn points_that_turn_back_are_refused() {
