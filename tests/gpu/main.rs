@@ -2,6 +2,8 @@
 //! too.
 #![cfg(feature = "gpu")]
 
+mod search;
+
 use continuum_testing::{Random, answered, gpu};
 use parry_continuum::Chain;
 use parry_continuum::gpu::GpuExhaustive;
