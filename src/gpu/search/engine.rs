@@ -68,6 +68,30 @@ const MANY_TRIANGLES: usize = 1 << 16;
 /// search.minimum_batch(&robots, &mut closest)?;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
+///
+/// Opening a GPU takes a moment. Engines for several meshes can share one:
+///
+/// ```no_run
+/// use parry_continuum::gpu::{Gpu, GpuSearch, Precision};
+/// use parry_continuum::parry::{math::{Pose, Vector}, shape::{Ball, TriMesh}};
+/// use parry_continuum::{Chain, Tube, proximity::Proximity};
+///
+/// let gpu = Gpu::open(Precision::F32)?;
+/// let (vertices, triangles) = Ball::new(10.0).to_trimesh(64, 32);
+/// let mut lumen = GpuSearch::from_triangles(&gpu, &vertices, &triangles)?;
+/// let mut vessel = GpuSearch::on(&gpu, &TriMesh::new(vertices, triangles)?)?;
+/// lumen.set_min_links(Some(1000)); // batches of 1,000 links and more go to the GPU
+/// lumen.prepare();
+/// let points = [Vector::ZERO, Vector::Z * 5.0];
+/// let robot = Chain::from_centreline(&points, &[0.5])?;
+/// let mut clear = Vec::new();
+/// lumen.clears_batch(&vec![(&robot, Pose::IDENTITY); 5000], 1.0, &mut clear)?;
+/// println!("{:?} on the GPU, {} robots on the CPU", lumen.device_time(), lumen.answered_on_cpu());
+/// // The search on the CPU has more queries.
+/// let tube = Tube::from_samples(&points, &[0.5], None)?;
+/// println!("{}", vessel.cpu().clearance(&tube, &Pose::IDENTITY, 0.01)?.lower);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub struct GpuSearch {
     gpu: Gpu,
     level: Level,

@@ -167,6 +167,7 @@ impl<'a> TwinTree<'a> {
 
 mod tests {
     use super::super::bounds;
+    use super::super::device::DeviceTree;
     use super::super::kernels::text_of_bounds;
     use super::*;
     use crate::gpu::tests::gpu;
@@ -174,6 +175,7 @@ mod tests {
     use crate::pair::{Best, PlacedLink};
     use crate::robot::{Cap, ModifiedCylinder};
     use continuum_testing::Random;
+    use gpu_batch::wgpu::BufferUsages;
     use gpu_batch::{Batch, Kernel};
     use parry3d_f64::math::{Pose, Real, Vector};
 
@@ -394,5 +396,56 @@ mod tests {
             }
         }
         assert!(second > 5 && touching > 50 && full == 0, "{second} {touching} {full}");
+    }
+
+    /// The device fits the boxes that the twin fits, at first and after a move.
+    #[test]
+    fn the_device_fits_the_boxes_of_the_twin() {
+        let Some(gpu) = gpu() else { return };
+        let mut random = Random::new(41);
+        let kernels = gpu.0.search().unwrap();
+        let device = &gpu.0.device;
+        for count in [1_u32, 2, 5, 3000] {
+            let corners: Vec<_> = (0..3 * count).map(|_| random.point()).collect();
+            let indices = (0..count).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
+            let mut mesh = Mesh::of(corners, indices);
+            let tree = SearchTree::new(&SearchFrame::new(&mesh), &mesh);
+            let mut on_device = DeviceTree::new(&gpu.0, kernels, &mesh, &tree).unwrap();
+            for stretch in [1.0, 3.0] {
+                let moved: Vec<_> = mesh
+                    .vertices()
+                    .iter()
+                    .map(|v| Vector::new(v.x * stretch, v.y, v.z + v.x * (stretch - 1.0)))
+                    .collect();
+                mesh.set_vertices(&moved);
+                on_device.invalidate();
+                let frame = SearchFrame::new(&mesh);
+                on_device.update(&gpu.0, kernels, &frame, &mesh);
+                let twin = TwinTree::refit(&tree, &frame, &mesh);
+                let size = 64 * tree.nodes.len() as u64;
+                let usages = BufferUsages::MAP_READ | BufferUsages::COPY_DST;
+                let readback = device.buffer(size, usages);
+                let mut encoder = device.raw().create_command_encoder(&Default::default());
+                encoder.copy_buffer_to_buffer(&on_device.nodes, 0, &readback, 0, Some(size));
+                let mut words = Vec::new();
+                let read = |bytes: &[u8]| {
+                    let all = bytes.as_chunks::<4>().0.iter();
+                    words.extend(all.map(|word| u32::from_ne_bytes(*word)));
+                    Ok(())
+                };
+                let mut watch = device.watch();
+                device.run_and_read(&mut watch, encoder.finish(), &readback, size, read).unwrap();
+                for ((words, boxes), node) in
+                    words.chunks_exact(16).zip(&twin.boxes).zip(&tree.nodes)
+                {
+                    assert_eq!([words[3], words[11]], node.children);
+                    assert_eq!([words[7], words[15]], node.lowest);
+                    let at = |place: usize| {
+                        Vec3::from([0, 1, 2].map(|axis| f32::from_bits(words[place + axis])))
+                    };
+                    assert_eq!([[at(0), at(4)], [at(8), at(12)]], *boxes, "{count}");
+                }
+            }
+        }
     }
 }
