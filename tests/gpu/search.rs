@@ -2,7 +2,7 @@
 
 use continuum_demo::steer::Random;
 use continuum_demo::{ctr, ventricle};
-use continuum_testing::{Random as Seeded, effort, gpu};
+use continuum_testing::{Random as Seeded, gpu, rounds};
 use parry_continuum::Chain;
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::shape::{Ball, TriMesh};
@@ -17,7 +17,7 @@ fn random_robots_are_answered_as_on_the_cpu() {
     let Some(mut engine) = gpu::search(&mesh) else { return };
     let mut reference = BvhSearch::new(&mesh).unwrap();
     let (tubes, mut random) = (ctr::three_tubes(), Random(17));
-    let (mut touching, mut apart, count) = (0, 0, effort::rounds(100_000_usize));
+    let (mut touching, mut apart, count) = (0, 0, rounds(100_000_usize));
     let mut left = count;
     while left > 0 {
         let now = left.min(5000);
