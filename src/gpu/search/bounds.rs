@@ -120,11 +120,13 @@ fn map2(a: Point, b: Point, op: impl Fn(f32, f32) -> f32) -> Point {
     Vec3::new(op(a.x, b.x), op(a.y, b.y), op(a.z, b.z))
 }
 
+#[cfg(test)]
 fn abs(a: Point) -> Point {
     Vec3::new(a.x.abs(), a.y.abs(), a.z.abs())
 }
 
 /// Bounds on the signed distance of a triangle from a link.
+#[cfg(test)]
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bounds {
     pub lower: f32,
@@ -132,6 +134,7 @@ pub(super) struct Bounds {
 }
 
 /// A place on the axis (from 0 to 1) and one on a triangle, as shares of two edges.
+#[cfg(test)]
 #[derive(Clone, Copy)]
 struct Places {
     s: f32,
@@ -141,6 +144,7 @@ struct Places {
 
 /// A link as the device sees it. `FUSED`: whether products are fused with sums.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(not(test), expect(dead_code, reason = "the host needs the error alone"))]
 pub(super) struct SearchedLink<const FUSED: bool = false> {
     start: Point,
     end: Point,
@@ -190,7 +194,10 @@ impl<const FUSED: bool> SearchedLink<FUSED> {
             is_thin,
         }
     }
+}
 
+#[cfg(test)]
+impl<const FUSED: bool> SearchedLink<FUSED> {
     /// The square of a lower bound on the distance between the axis and a box.
     pub(super) fn box_distance_squared(&self, low: Point, high: Point) -> f32 {
         // 1. The gaps between two boxes.
@@ -270,6 +277,7 @@ impl<const FUSED: bool> SearchedLink<FUSED> {
 }
 
 /// Places where a segment from 0 to `along` and the segment from `a` to `a + edge` are close.
+#[cfg(test)]
 fn close_segments<const FUSED: bool>(along: Point, a: Point, edge: Point) -> [f32; 2] {
     let (aa, ee) = (dot::<FUSED>(along, along), dot::<FUSED>(edge, edge));
     let ae = dot::<FUSED>(along, edge);
@@ -282,6 +290,7 @@ fn close_segments<const FUSED: bool>(along: Point, a: Point, edge: Point) -> [f3
 }
 
 /// A guess at the closest places of an axis from 0 to `along` and a triangle.
+#[cfg(test)]
 fn close_places<const FUSED: bool>(along: Point, a: Point, e1: Point, e2: Point) -> Places {
     let squared_between = |Places { s, v, w }: Places| {
         let d = a + e1 * v + e2 * w - along * s;

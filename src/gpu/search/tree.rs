@@ -54,6 +54,7 @@ pub(super) struct SearchTree {
 }
 
 /// The triangles of a leaf, as a range of [`SearchTree::triangles`].
+#[cfg(test)]
 pub(super) fn leaf_range(child: u32) -> std::ops::Range<usize> {
     let (first, last) = ((child & !LEAF) as usize / LEAF_SIZE, child as usize % LEAF_SIZE);
     first..first + last + 1

@@ -6,7 +6,7 @@ use crate::engine::{BvhSearch, Proximity};
 use crate::gpu::opened::Gpu;
 use crate::gpu::{GpuError, GpuSearch, Precision};
 use crate::robot::Chain;
-use continuum_testing::{Random, answered};
+use continuum_testing::Random;
 use gpu_batch::{DeviceError, DeviceFailure, wgpu};
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::shape::TriMesh;
@@ -51,7 +51,7 @@ fn check(engine: &mut GpuSearch, mesh: &TriMesh, robots: &[(&Chain, Pose)]) {
     engine.minimum_batch(robots, &mut minima).unwrap();
     reference.minimum_batch(robots, &mut expected).unwrap();
     assert_eq!(minima, expected);
-    let least = answered(&expected);
+    let least: Vec<_> = expected.iter().flatten().collect();
     let (mut links, mut expected) = (Vec::new(), Vec::new());
     engine.per_link_batch(robots, &mut links).unwrap();
     reference.per_link_batch(robots, &mut expected).unwrap();
@@ -157,16 +157,16 @@ fn many_equals_take_the_second_pass_and_then_the_cpu() {
             .collect();
         let mut engine = search(gpu, &mesh);
         check(&mut engine, &mesh, &refs(&robots));
-        assert_eq!(engine.answered_on_cpu() > 0, is_left, "{count}");
-        let before = engine.answered_on_cpu();
-        // The room has grown.
-        let (mut found, mut expected) = (Vec::new(), Vec::new());
-        for _ in 0..4 {
+        assert!(engine.answered_on_cpu() > 0);
+        // The room for candidates grows, but not beyond what a link may have.
+        let (mut found, mut expected, mut before) = (Vec::new(), Vec::new(), 0);
+        for _ in 0..10 {
+            before = engine.answered_on_cpu();
             engine.minimum_batch(&refs(&robots), &mut found).unwrap();
         }
         BvhSearch::new(&mesh).unwrap().minimum_batch(&refs(&robots), &mut expected).unwrap();
         assert_eq!(found, expected);
-        assert!(is_left || engine.answered_on_cpu() == before);
+        assert_eq!(engine.answered_on_cpu() > before, is_left, "{count}");
     }
 }
 
