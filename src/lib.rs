@@ -40,7 +40,7 @@
 //!   winding number, with a bound on its error.
 //! - **The queries.** Build one engine of [`proximity`] per mesh and reuse it:
 //!   [`BvhSearch`](proximity::BvhSearch) or [`Exhaustive`](proximity::Exhaustive), with the same
-//!   answers. The feature `gpu` adds `gpu::GpuExhaustive`. The first page of [`proximity`] lists
+//!   answers. The feature `gpu` adds `gpu::GpuSearch`. The first page of [`proximity`] lists
 //!   the call for each question.
 //! - **The motion.** [`BvhSearch::clears_motion`](proximity::BvhSearch::clears_motion) proves that
 //!   a [`Motion`] keeps a margin at every time.

@@ -1,8 +1,8 @@
 //! Robot against mesh, and robot against robot: distances, contacts, margins and motions.
 //!
 //! Build one engine per mesh and reuse it for all queries. [`BvhSearch`] answers every question.
-//! [`Exhaustive`] and the GPU engine answer the questions of the trait [`Proximity`], with the same
-//! distances.
+//! [`Exhaustive`] and the engines on the GPU answer the questions of the trait [`Proximity`], with
+//! the same distances.
 //!
 //! **A chain of links, exactly**
 //!

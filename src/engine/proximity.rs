@@ -393,8 +393,8 @@ pub trait Proximity: Engine {
     /// The engine keeps the places of its last answers as seeds of the next searches. It drops the
     /// cached distances.
     ///
-    /// [`Exhaustive`](super::Exhaustive) refills its blocks of triangles. The GPU engine sends the
-    /// vertices with the next query.
+    /// [`Exhaustive`](super::Exhaustive) refills its blocks of triangles. The engines on the GPU
+    /// send the vertices with the next query.
     ///
     /// # Errors
     /// The number of vertices differs, or a vertex is not finite or out of range. The engine then

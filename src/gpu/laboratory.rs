@@ -27,3 +27,8 @@ pub fn kernels(precision: Precision) -> Vec<Shader> {
 pub fn every_pair(precision: Precision, route: &str) -> Shader {
     wgsl::nearest(precision, route)
 }
+
+/// The kernels of [`GpuSearch`](super::GpuSearch), which compute in single precision on every GPU.
+pub fn search_kernels() -> Vec<Shader> {
+    super::search::kernels::all()
+}

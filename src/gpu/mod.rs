@@ -1,18 +1,19 @@
-//! Exhaustive queries on the GPU, through `wgpu`: Vulkan, Metal or Direct3D 12 (feature `gpu`).
+//! Queries on the GPU, through `wgpu`: Vulkan, Metal or Direct3D 12 (feature `gpu`).
 //!
-//! [`GpuExhaustive`] is an engine like those of [`proximity`](crate::proximity), with the same
-//! trait and the same distances. It pays if the mesh is large or moves, or if many robots are
-//! queried at once: [`per_link_batch`](crate::proximity::Proximity::per_link_batch) answers them in
-//! one submission. A single query waits some hundred microseconds for the GPU.
+//! Both engines have the trait of those of [`proximity`](crate::proximity), with the same distances.
 //!
-//! The kernels repeat the narrow phase of [`distance`](crate::distance), function by function, in
-//! WGSL. Each kernel is one text for both precisions.
+//! - [`GpuSearch`] searches a hierarchy: for batches of thousands of robots, and for large meshes
+//!   that move. Small batches run on the CPU. Its files are in `search`.
+//! - [`GpuExhaustive`] visits every triangle, as the paper does. A single query waits some hundred
+//!   microseconds for the GPU. Its kernels repeat the narrow phase of
+//!   [`distance`](crate::distance), function by function, in WGSL. Each kernel is one text for both
+//!   precisions.
 //!
-//! The files, in the order of a query:
+//! The files of the exhaustive engine, in the order of a query:
 //!
 //! | file | contents |
 //! |---|---|
-//! | `engine` | the engine and its answers: [`GpuExhaustive`] |
+//! | `engine` | the engine and its answers |
 //! | `answers`, `measure` | from robots to links, and from candidates to answers in `f64` |
 //! | `query` | the four kernels; `plan` assigns pairs to threads, `candidates` reads the results |
 //! | `mesh`, `link`, `buffers` | the contents of the device's memory |
@@ -35,6 +36,7 @@ mod mesh;
 mod opened;
 mod plan;
 mod query;
+mod search;
 #[cfg(test)]
 mod tests;
 mod wgsl;
@@ -43,3 +45,4 @@ pub use engine::GpuExhaustive;
 pub use error::GpuError;
 pub use gpu_batch::{Adapter, DeviceError, Precision};
 pub use opened::Gpu;
+pub use search::GpuSearch;

@@ -1,9 +1,10 @@
 //! An open GPU with the compiled kernels of a query.
 use super::GpuError;
+use super::search::SearchKernels;
 use super::wgsl::{self, CONVEX};
 use gpu_batch::wgpu::{BindGroupLayout, ComputePipeline};
 use gpu_batch::{Adapter, Binding, Device, DeviceError, Precision, Shader};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// An open GPU with compiled kernels. Opening takes a moment, so engines for several meshes can
 /// share one.
@@ -63,6 +64,7 @@ pub(super) struct Opened {
     pub nearest: ComputePipeline,
     pub reduce: ComputePipeline,
     pub collect: ComputePipeline,
+    search: OnceLock<SearchKernels>,
 }
 
 impl Opened {
@@ -82,8 +84,21 @@ impl Opened {
             collect: query(wgsl::collect(precision))?,
             prepare_layout,
             query_layout,
+            search: OnceLock::new(),
             device,
         })
+    }
+
+    /// The kernels of the search, compiled at first use.
+    ///
+    /// # Errors
+    /// The driver does not compile one.
+    pub(super) fn search(&self) -> Result<&SearchKernels, DeviceError> {
+        if let Some(kernels) = self.search.get() {
+            return Ok(kernels);
+        }
+        let kernels = SearchKernels::new(&self.device, false)?;
+        Ok(self.search.get_or_init(|| kernels))
     }
 
     /// Compiles the kernel that computes every pair in full, with this route from a segment to a

@@ -62,6 +62,12 @@ impl<'a> PlacedRobot<'a> {
         (0..self.robot.links().len()).map(|link| self.link(link))
     }
 
+    /// Returns the end of every link in the mesh's frame.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn link_ends(&self) -> impl Iterator<Item = Vector> {
+        self.robot.links().iter().map(|link| self.pose * link.end())
+    }
+
     /// Returns the total length of the links before a link.
     pub(crate) fn length_before(&self, link: usize) -> Real {
         self.robot.length_before(link)

@@ -1,6 +1,8 @@
 //! The engine on the GPU. tests/proximity also tests it with the questions of all engines.
 #![cfg(feature = "gpu")]
 
+mod search;
+
 use continuum_testing::{Random, answered, gpu};
 use parry_continuum::Chain;
 use parry_continuum::gpu::GpuExhaustive;

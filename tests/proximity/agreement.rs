@@ -26,6 +26,10 @@ pub fn engines(mesh: &TriMesh) -> Vec<(&'static str, Box<dyn Proximity>)> {
             ));
         }
     }
+    #[cfg(feature = "gpu")]
+    if let Some(search) = continuum_testing::gpu::search(mesh) {
+        engines.push(("GPU search", Box::new(search)));
+    }
     engines
 }
 

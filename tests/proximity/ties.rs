@@ -54,11 +54,16 @@ fn check(mesh: &TriMesh, robot: &Chain, pose: &Pose) -> usize {
         |answer: &&LinkProximity| (answer.distance.to_bits(), answer.witness.triangle, answer.link);
     let least = *expected.iter().min_by_key(key).unwrap();
     for threads in [1, 2, 3] {
-        let engines: [(&str, Box<dyn Proximity + Send>); 3] = [
+        #[allow(unused_mut)]
+        let mut engines: Vec<(&str, Box<dyn Proximity + Send>)> = vec![
             ("exhaustive f64", Box::new(Exhaustive::<f64>::new(mesh).unwrap())),
             ("exhaustive f32", Box::new(Exhaustive::<f32>::new(mesh).unwrap())),
             ("search", Box::new(BvhSearch::new(mesh).unwrap())),
         ];
+        #[cfg(feature = "gpu")]
+        if let Some(search) = continuum_testing::gpu::search(mesh) {
+            engines.push(("GPU search", Box::new(search)));
+        }
         for (name, mut engine) in engines {
             pool(threads).install(|| {
                 let (mut out, mut batch, mut minima) = (Vec::new(), Vec::new(), Vec::new());

@@ -21,6 +21,13 @@ struct Opened {
     failures: Failures,
 }
 
+/// Commands that a device has been given, and how many bytes can be read after them.
+#[derive(Debug)]
+pub struct Submitted {
+    submission: wgpu::SubmissionIndex,
+    size: u64,
+}
+
 impl std::fmt::Debug for Device {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Device")
@@ -245,6 +252,22 @@ impl Device {
         size: u64,
         read: impl FnOnce(&[u8]) -> Result<(), DeviceFailure>,
     ) -> Result<(), DeviceFailure> {
+        let submitted = self.submit(watch, commands, from, size)?;
+        self.read(watch, submitted, from, read)
+    }
+
+    /// Submits commands, after which `size` bytes of `from`, a buffer for reading, can be read. The
+    /// device works on them while the caller goes on.
+    ///
+    /// # Errors
+    /// The device has failed since `watch` was asked last. Nothing was submitted.
+    pub fn submit(
+        &self,
+        watch: &mut Watch,
+        commands: wgpu::CommandBuffer,
+        from: &wgpu::Buffer,
+        size: u64,
+    ) -> Result<Submitted, DeviceFailure> {
         watch.check()?;
         let submission = self.queue().submit([commands]);
         let failures = self.0.failures.clone();
@@ -253,9 +276,23 @@ impl Device {
                 failures.report(DeviceFailure::Refused);
             }
         });
-        self.wait(submission);
+        Ok(Submitted { submission, size })
+    }
+
+    /// Waits for what was submitted and has `read` take the bytes of its buffer.
+    ///
+    /// # Errors
+    /// As [`run_and_read`](Self::run_and_read).
+    pub fn read(
+        &self,
+        watch: &mut Watch,
+        submitted: Submitted,
+        from: &wgpu::Buffer,
+        read: impl FnOnce(&[u8]) -> Result<(), DeviceFailure>,
+    ) -> Result<(), DeviceFailure> {
+        self.wait(submitted.submission);
         watch.check()?;
-        let answer = match from.get_mapped_range(0..size) {
+        let answer = match from.get_mapped_range(0..submitted.size) {
             Ok(bytes) => read(&bytes),
             Err(_) => Err(DeviceFailure::Unanswered),
         };

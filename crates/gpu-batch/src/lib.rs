@@ -51,7 +51,7 @@ pub use adapter::Adapter;
 pub use batch::Batch;
 pub use binding::Binding;
 pub use clock::{Clock, READINGS};
-pub use device::Device;
+pub use device::{Device, Submitted};
 pub use error::DeviceError;
 pub use failure::DeviceFailure;
 pub use failures::Watch;

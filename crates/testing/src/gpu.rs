@@ -3,7 +3,8 @@
 //! On a machine without a GPU these tests pass without doing anything. They fail there if
 //! `PARRY_CONTINUUM_REQUIRE_GPU` is set.
 
-use parry_continuum::gpu::{DeviceError, Gpu, GpuError, Precision};
+use parry_continuum::gpu::{DeviceError, Gpu, GpuError, GpuSearch, Precision};
+use parry_continuum::parry::shape::TriMesh;
 use std::sync::OnceLock;
 
 /// The precisions and their names in messages.
@@ -29,6 +30,14 @@ pub fn open(precision: Precision) -> Option<&'static Gpu> {
         Err(error) => panic!("{error}"),
     };
     opened.get_or_init(open).as_ref()
+}
+
+/// Returns the search on the GPU, for queries of any size; `None` if there is no GPU and none is
+/// required.
+pub fn search(mesh: &TriMesh) -> Option<GpuSearch> {
+    let mut search = GpuSearch::on(open(Precision::F32)?, mesh).expect("a mesh for the GPU");
+    search.set_min_links(Some(0));
+    Some(search)
 }
 
 pub fn is_required() -> bool {

@@ -158,7 +158,7 @@ impl BvhSearch {
         Ok(Self::of(Mesh::from_triangles(vertices, triangles)?))
     }
 
-    fn of(mesh: Mesh) -> Self {
+    pub(crate) fn of(mesh: Mesh) -> Self {
         let level = Level::new();
         let mesh = Arc::new(PreparedMesh::new(level, mesh));
         Self { level, mesh, memory: Memory::default(), batch: Vec::new() }

@@ -2,6 +2,7 @@
 //! these tests pass without a check, unless PARRY_CONTINUUM_REQUIRE_GPU is set.
 
 mod failures;
+mod search;
 
 use super::layout::{FACE_VECTORS, LinkRecord, Round};
 use super::opened::Gpu;
@@ -19,7 +20,7 @@ use parry3d_f64::shape::{Ball, TriMesh};
 use std::sync::OnceLock;
 
 /// The GPU of this machine in single precision, if there is one.
-fn gpu() -> Option<&'static Gpu> {
+pub(super) fn gpu() -> Option<&'static Gpu> {
     static GPU: OnceLock<Option<Gpu>> = OnceLock::new();
     let open = || match Gpu::open(Precision::F32) {
         Ok(gpu) => Some(gpu),

@@ -15,6 +15,9 @@ const PRECISIONS: [Precision; 2] = [Precision::F32, Precision::F64];
 /// Every kernel in a precision.
 fn kernels(precision: Precision) -> Vec<Shader> {
     let mut kernels = laboratory::kernels(precision);
+    if precision == Precision::F32 {
+        kernels.extend(laboratory::search_kernels());
+    }
     for discs in [Discs::Convex, Discs::ClosedForm, Discs::Companion] {
         kernels.push(laboratory::every_pair(precision, &discs.route(precision)));
         kernels.extend(Pair::ALL.map(|pair| pairs::shader(pair, discs, precision)));

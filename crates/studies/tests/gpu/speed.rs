@@ -8,13 +8,19 @@ use parry_continuum::gpu::Precision;
 fn the_speed_of_the_gpu_is_measured_and_written() {
     let gpu_speed = env!("CARGO_BIN_EXE_gpu_speed");
     let _ = std::fs::remove_dir_all(place("gpu_speed"));
-    let arguments =
-        ["--largest", "1000", "--problems", "20", "--enough", "0", "--out", "gpu_speed"];
+    let arguments = [
+        ["--largest", "1000"],
+        ["--robots", "20"],
+        ["--problems", "20"],
+        ["--enough", "0"],
+        ["--out", "gpu_speed"],
+    ];
+    let arguments = arguments.as_flattened();
     if gpu::open(Precision::F32).is_none() {
-        refuse(gpu_speed, &arguments, "adapter");
+        refuse(gpu_speed, arguments, "adapter");
         return;
     }
-    succeed(gpu_speed, &arguments);
+    succeed(gpu_speed, arguments);
     let page = read("gpu_speed/GPU_SPEED.md");
     assert_finite(&page);
     let precisions = if gpu::open(Precision::F64).is_some() { 2 } else { 1 };
@@ -24,6 +30,9 @@ fn the_speed_of_the_gpu_is_measured_and_written() {
         "| triangles | search | exhaustive f32, CPU |",
     ] {
         assert_eq!(table(&page, head).len(), 1, "{head}: {page}");
+    }
+    for head in ["| triangles | question | robots |", "| triangles | question | nodes |"] {
+        assert_eq!(table(&page, head).len(), 3, "{head}: {page}");
     }
     let studies = read("gpu_speed/internals/gpu_studies.md");
     assert_finite(&studies);
@@ -50,7 +59,7 @@ fn the_speed_of_the_gpu_is_measured_and_written() {
     let adapter = gpu::open(Precision::F32).unwrap().adapter();
     if adapter.is_software {
         assert!(page.contains("This is a GPU in software"), "{page}");
-        refuse(gpu_speed, &arguments, "choose another --out");
+        refuse(gpu_speed, arguments, "choose another --out");
     }
     refuse(gpu_speed, &["--tflops", "1"], "66.9,33.5");
 }

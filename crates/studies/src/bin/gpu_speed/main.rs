@@ -1,4 +1,5 @@
-//! How fast on the GPU: single queries, batches and moving anatomy against the engines on the CPU.
+//! How fast on the GPU: single queries, batches and moving anatomy against the engines on the CPU,
+//! exhaustive and by search.
 //! Writes `docs/GPU_SPEED.md`. The paper's Figure 9 and Tables II to V on the GPU go to
 //! `docs/internals/gpu_studies.md`.
 //!
@@ -16,6 +17,7 @@ mod forms;
 mod meshes;
 mod moving;
 mod roots;
+mod search;
 mod timed;
 
 use clap::Parser;
@@ -40,6 +42,10 @@ struct Options {
     /// Triangles of the largest mesh whose every pair is computed in full
     #[arg(long, value_name = "COUNT", default_value_t = 1_000_000)]
     every_pair: u32,
+
+    /// Robots of the largest batch
+    #[arg(long, value_name = "COUNT", default_value_t = 1_000_000, value_parser = command::whole(1..=10_000_000))]
+    robots: u32,
 
     /// Polynomials of each degree, and problems of Tables II and III
     #[arg(long, value_name = "COUNT", default_value_t = 1_000_000, value_parser = command::whole(1..=10_000_000))]
@@ -135,6 +141,8 @@ fn measure(options: &Options) -> Result<(), String> {
          {written} A time is that of the whole call, with transfers and what the CPU measures again.\n{remarks}"
     );
     add(&mut page, "engines", engines::chapter(&opened, &meshes, robot, enough)?);
+    let robots = options.robots as usize;
+    add(&mut page, "search", search::chapter(&opened[0], &meshes, robots, enough)?);
     add(&mut page, "moving", moving::chapter(&opened, &meshes, robot, enough)?);
     let mut studies = format!(
         "# The paper's studies on the GPU\n\n\

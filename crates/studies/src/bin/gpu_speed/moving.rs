@@ -6,6 +6,7 @@ use crate::{Opened, text};
 use continuum_demo::ventricle;
 use continuum_studies::models::LINKS;
 use parry_continuum::Chain;
+use parry_continuum::gpu::GpuSearch;
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{BvhSearch, Exhaustive, LinkProximity, Proximity};
 use std::fmt::Write;
@@ -21,13 +22,14 @@ pub fn chapter(
     let mut page = format!(
         "## Moving anatomy\n\n\
          Every vertex moves, then comes one query for the closest points of all {LINKS} links (fitted caps): milliseconds of \
-         the frame. The search refits its hierarchy.\n\n\
+         the frame. Both searches refit their hierarchies.\n\n\
          | triangles | search | exhaustive f32, CPU |"
     );
     for opened in opened {
         write!(page, " GPU {} |", opened.name).map_err(text)?;
     }
-    writeln!(page, "\n|---|---|---|{}", "---|".repeat(opened.len())).map_err(text)?;
+    writeln!(page, " search, GPU |\n|---|---|---|{}", "---|".repeat(opened.len() + 1))
+        .map_err(text)?;
     for mesh in meshes {
         page.push_str(&row(opened, mesh, robot, enough)?);
     }
@@ -54,6 +56,9 @@ fn row(
         Box::new(Exhaustive::<f32>::new(mesh).map_err(text)?),
     ];
     engines.extend(on_gpus(opened, mesh)?);
+    let mut search = GpuSearch::on(&opened[0].gpu, mesh).map_err(text)?;
+    search.set_min_links(Some(0));
+    engines.push(Box::new(search));
     let frame = |moving: &mut Moving| {
         moving.frames += 1;
         moving.engine.set_vertices(&beats[moving.frames % 2]).map_err(text)?;

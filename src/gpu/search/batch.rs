@@ -1,0 +1,657 @@
+//! A batch of robots on the device: the device finds candidates, the CPU measures them.
+//!
+//! # Definitions
+//! - **Part**: up to [`PART`] links of one robot; a workgroup with a thread for each link.
+//! - d(t): the distance of triangle t from a link. `lower`, `upper`, e: its bounds on the device
+//!   and their error (see the module `bounds`), `lower - e <= d <= max(upper + e, 0)`.
+//! - D: an upper bound on the distance that is wanted: `max(upper + e, 0)` of some triangle of the
+//!   link (per link) or of the part (minimum), or the margin, rounded up (clears). D never grows.
+//! - T: the lowest triangle with `upper + e < 0` so far, of the link or the part; none at first.
+//!   Such a triangle certainly touches.
+//! - t is **wanted** if `lower <= D + e` and `t <= T`.
+//!
+//! # Algorithm
+//! 1. **Pack**, on the CPU: the points and radii of a chunk of robots, in the search frame.
+//! 2. **First pass**, on the device (`search`): visit the boxes that may hold a wanted triangle,
+//!    the nearer child first. A thread keeps the wanted triangles it meets, up to [`ROOM`], and at
+//!    the end those that are still wanted. For a margin, a triangle with `upper + e <= margin`
+//!    settles the robot.
+//! 3. **Second pass**, on the device (`gather`): the parts in which a wanted triangle found no room
+//!    gather all wanted triangles for the final D and T.
+//! 4. **Measure**, on the CPU: all candidates, in double precision. The best is the answer.
+//! 5. **Remainder**, on the CPU: robots that the device cannot represent, or whose candidates do
+//!    not fit, take the search on the CPU. They are counted.
+//!
+//! Chunks overlap: the CPU packs a chunk and measures the chunk before while the device works.
+//!
+//! # Claim
+//! The answers are those of [`BvhSearch`](crate::proximity::BvhSearch), bit for bit.
+//!
+//! **Proof.** Let t be the nearest triangle of the link, or of the part with any of its links, at
+//! distance d(t); of equals the lowest. It is wanted at all times:
+//! 1. `lower(t) - e <= d(t)`, and d(t) is at most each `max(upper + e, 0)`, so `lower(t) <= D + e`.
+//! 2. If T is a triangle, it touches. So d(t) = 0, and t is not higher than T.
+//!
+//! The same holds for every link of the part that has t. Boxes are left out only if they hold no
+//! wanted triangle: claim 1 of `bounds`. So t is among the candidates, unless it found no room in
+//! the first pass; then the part takes the second pass, where t is wanted too. The CPU measures all
+//! candidates with the function that measures in every engine. For a margin: a robot is settled
+//! early only if it is certainly within; otherwise every triangle within the margin is wanted.
+
+use super::bounds::{FAR, error_of};
+use super::device::{DeviceTree, SearchKernels, dispatch, query_binding};
+#[cfg(doc)]
+use super::kernels::ROOM;
+use super::kernels::{FOUND, FULL, HIT, PART, Question, SearchQuery};
+use crate::answer::ProximityError;
+use crate::distance::Vec3;
+use crate::distance::lanes::Lane;
+use crate::gpu::opened::Opened;
+use crate::mesh::{SearchFrame, round};
+use crate::pair::PlacedRobot;
+use crate::robot::{Chain, ModifiedCylinder};
+use crate::threads::each;
+use gpu_batch::wgpu::{BindGroup, Buffer, BufferUsages, ComputePassDescriptor};
+use gpu_batch::{Clock, DeviceFailure, READINGS, Record, Submitted, Watch};
+use parry3d_f64::math::{Pose, Real};
+use std::mem::take;
+use std::ops::Range;
+use std::time::Duration;
+
+/// Links of a chunk at most, but at least a robot. Larger chunks overlap less, smaller ones wait
+/// more often.
+const CHUNK: usize = 1 << 18;
+/// Robots that one task of the CPU takes.
+const TASK_SIZE: usize = 64;
+/// Bytes of a part, a head, an entry, the counters, and the limits of a part.
+const PART_SIZE: u64 = 16;
+const HEAD: u64 = 8;
+const ENTRY: u64 = 8;
+const COUNTERS: u64 = 16;
+const LIMITS: u64 = 8 * PART as u64;
+/// Room for entries at first: per link where each link is asked about, else per part.
+const ENTRIES_PER_LINK: u64 = 4;
+const ENTRIES_PER_PART: u64 = 16;
+
+/// The robots of a query.
+#[derive(Clone, Copy)]
+pub(super) enum Robots<'a> {
+    Batch(&'a [(&'a Chain, Pose)]),
+    One(&'a PlacedRobot<'a>),
+}
+
+impl<'a> Robots<'a> {
+    pub(super) fn len(self) -> usize {
+        match self {
+            Self::Batch(robots) => robots.len(),
+            Self::One(_) => 1,
+        }
+    }
+
+    pub(super) fn links(self, robot: usize) -> &'a [ModifiedCylinder] {
+        match self {
+            Self::Batch(robots) => robots[robot].0.links(),
+            Self::One(placed) => placed.links(),
+        }
+    }
+
+    /// # Errors
+    /// The error of a bad robot.
+    fn placed(self, robot: usize) -> Result<PlacedRobot<'a>, ProximityError> {
+        match self {
+            Self::Batch(robots) => PlacedRobot::new(robots[robot].0, &robots[robot].1),
+            Self::One(placed) => Ok(*placed),
+        }
+    }
+}
+
+/// What the device has found about a robot.
+pub(super) struct Found<'a> {
+    /// A link is certainly within the margin.
+    pub is_hit: bool,
+    /// The links and triangles that may be the answer.
+    pub candidates: &'a [(u32, u32)],
+}
+
+/// The mesh as a batch needs it.
+#[derive(Clone, Copy)]
+pub(super) struct Searched<'a> {
+    pub gpu: &'a Opened,
+    pub kernels: &'a SearchKernels,
+    pub tree: &'a DeviceTree,
+    pub frame: &'a SearchFrame,
+}
+
+/// Memory of the batches, here and on the device, reused by the next.
+pub(super) struct Batches {
+    watch: Watch,
+    /// Two chunks in turn.
+    slots: [Slot; 2],
+    /// How often the room for entries has been doubled, for each kind of question.
+    doubled: [u32; Question::KINDS],
+    /// The robots of the last batch that the device left to the CPU.
+    pub left: Vec<usize>,
+    /// The time of the kernels of the last batch, if the device keeps time.
+    pub device_time: Option<Duration>,
+    /// Nodes, leaves and links of the last batch, if the kernels count them.
+    pub work: [u64; 3],
+}
+
+/// A chunk of robots.
+#[derive(Default)]
+struct Slot {
+    robots: Range<usize>,
+    layouts: Vec<Layout>,
+    parts: u32,
+    links: usize,
+    room: u32,
+    part_bytes: Vec<u8>,
+    numbers: Vec<u8>,
+    buffers: Option<SlotBuffers>,
+    submitted: Option<Submitted>,
+}
+
+/// Where a robot of a chunk is.
+#[derive(Clone, Copy, Default)]
+struct Layout {
+    first_part: u32,
+    /// The number of links, or 0 if the device is not asked about the robot.
+    links: u32,
+    is_left: bool,
+    /// Where its points and its radii begin, in numbers.
+    points: u32,
+    radii: u32,
+    /// Whether the radii are those of the robot before.
+    is_alike: bool,
+}
+
+/// The buffers of a chunk, for a number of parts, of numbers and of entries.
+struct SlotBuffers {
+    sizes: [u64; 3],
+    query: Buffer,
+    parts: Buffer,
+    numbers: Buffer,
+    heads: Buffer,
+    entries: Buffer,
+    counters: Buffer,
+    readback: Buffer,
+    clock: Option<Clock>,
+    group: BindGroup,
+}
+
+impl Batches {
+    /// `watch` has already reported the failures before the first batch.
+    pub(super) fn new(watch: Watch) -> Self {
+        Self {
+            watch,
+            slots: Default::default(),
+            doubled: [0; Question::KINDS],
+            left: Vec::new(),
+            device_time: None,
+            work: [0; 3],
+        }
+    }
+
+    /// Drops the buffers, after a failure or with another tree.
+    pub(super) fn forget(&mut self) {
+        self.slots = Default::default();
+    }
+
+    /// Answers all robots but those of [`Batches::left`]. `answer` writes the answer of a robot
+    /// from what was found; if it returns false, the robot is left to the CPU.
+    ///
+    /// # Errors
+    /// The device has failed since the last batch, or did not answer.
+    pub(super) fn run<A: Send>(
+        &mut self,
+        searched: Searched,
+        robots: Robots,
+        question: Question,
+        out: &mut [Result<A, ProximityError>],
+        answer: impl Fn(&PlacedRobot, Found, &mut Result<A, ProximityError>) -> bool + Sync,
+    ) -> Result<(), DeviceFailure> {
+        self.left.clear();
+        self.work = [0; 3];
+        self.device_time = searched.gpu.device.tick().map(|_| Duration::ZERO);
+        let (mut next, mut turn) = (0, 0);
+        let mut pending = None;
+        while next < robots.len() {
+            let chunk = chunk_from(robots, next);
+            next = chunk.end;
+            self.slots[turn].pack(searched, robots, chunk, out);
+            let doubled = self.doubled[question.kind()];
+            self.slots[turn].submit(searched, question, doubled, &mut self.watch)?;
+            if let Some(before) = pending.replace(turn) {
+                self.finish(before, searched, robots, question, out, &answer)?;
+            }
+            turn = 1 - turn;
+        }
+        pending.map_or(Ok(()), |last| self.finish(last, searched, robots, question, out, &answer))
+    }
+
+    /// Step 4, for the chunk in a slot.
+    fn finish<A: Send>(
+        &mut self,
+        slot: usize,
+        searched: Searched,
+        robots: Robots,
+        question: Question,
+        out: &mut [Result<A, ProximityError>],
+        answer: &(impl Fn(&PlacedRobot, Found, &mut Result<A, ProximityError>) -> bool + Sync),
+    ) -> Result<(), DeviceFailure> {
+        let Self { watch, slots, doubled, left, device_time, work } = self;
+        let slot = &mut slots[slot];
+        let (first, device) = (slot.robots.start, &searched.gpu.device);
+        left.extend((first..).zip(&slot.layouts).filter(|(_, layout)| layout.is_left).map(|x| x.0));
+        let Some((submitted, buffers)) = slot.submitted.take().zip(slot.buffers.as_ref()) else {
+            return Ok(());
+        };
+        let (parts, room, layouts) = (slot.parts as usize, slot.room, &slot.layouts);
+        let out = &mut out[slot.robots.clone()];
+        device.read(watch, submitted, &buffers.readback, |bytes| {
+            let (readings, bytes) = bytes.split_at(READINGS as usize);
+            *device_time = device_time
+                .zip(Clock::time_between(device, readings))
+                .map(|(sum, more)| sum + more);
+            let (counters, bytes) = bytes.split_at(COUNTERS as usize);
+            for (sum, more) in work.iter_mut().zip(words(counters).skip(1)) {
+                *sum += u64::from(more);
+            }
+            let (heads, entries) = bytes.split_at(parts * HEAD as usize);
+            let heads = Heads { heads, entries, room };
+            let shares = out.chunks_mut(TASK_SIZE).zip(layouts.chunks(TASK_SIZE)).enumerate();
+            let mut shares: Vec<_> = shares
+                .map(|(share, (out, layouts))| {
+                    (first + share * TASK_SIZE, layouts, out, Ok((Vec::new(), false)))
+                })
+                .collect();
+            each(&mut shares, |_, (first, layouts, out, left)| {
+                *left = heads.answer(robots, *first, layouts, out, answer);
+            });
+            let mut is_full = false;
+            for (.., share) in shares {
+                let (robots, full) = share?;
+                left.extend(robots);
+                is_full |= full;
+            }
+            if is_full {
+                let doubled = &mut doubled[question.kind()];
+                *doubled = (*doubled + 1).min(8);
+            }
+            Ok(())
+        })
+    }
+}
+
+/// The chunk of robots from `first` on.
+fn chunk_from(robots: Robots, first: usize) -> Range<usize> {
+    let (mut end, mut links) = (first, 0);
+    while end < robots.len() {
+        links += robots.links(end).len();
+        if links > CHUNK && end > first {
+            break;
+        }
+        end += 1;
+    }
+    first..end
+}
+
+/// The words in some bytes of the device.
+fn words(bytes: &[u8]) -> impl Iterator<Item = u32> + Clone + '_ {
+    bytes.as_chunks::<4>().0.iter().map(|word| u32::from_ne_bytes(*word))
+}
+
+/// The pairs of words in some bytes of the device.
+fn pairs(bytes: &[u8]) -> impl Iterator<Item = (u32, u32)> + Clone + '_ {
+    let word = |pair: &[u8; 8], at| {
+        u32::from_ne_bytes([pair[at], pair[at + 1], pair[at + 2], pair[at + 3]])
+    };
+    bytes.as_chunks::<8>().0.iter().map(move |pair| (word(pair, 0), word(pair, 4)))
+}
+
+/// What came back about the parts of a chunk.
+#[derive(Clone, Copy)]
+struct Heads<'a> {
+    heads: &'a [u8],
+    entries: &'a [u8],
+    /// The number of entries that had room.
+    room: u32,
+}
+
+impl Heads<'_> {
+    /// Answers robots, the first of which is `first`. Returns those that are left to the CPU, and
+    /// whether some had too little room.
+    ///
+    /// # Errors
+    /// A part was not answered.
+    fn answer<A>(
+        self,
+        robots: Robots,
+        first: usize,
+        layouts: &[Layout],
+        out: &mut [Result<A, ProximityError>],
+        answer: &impl Fn(&PlacedRobot, Found, &mut Result<A, ProximityError>) -> bool,
+    ) -> Result<(Vec<usize>, bool), DeviceFailure> {
+        let (mut left, mut is_full, mut candidates) = (Vec::new(), false, Vec::new());
+        for ((number, layout), out) in (first..).zip(layouts).zip(out) {
+            if layout.links == 0 {
+                continue;
+            }
+            candidates.clear();
+            let (mut is_hit, mut is_left) = (false, false);
+            let parts = layout.links.div_ceil(PART) as usize;
+            let heads = &self.heads[layout.first_part as usize * HEAD as usize..];
+            for ((begin, status), first_link) in
+                pairs(heads).take(parts).zip((0..).step_by(PART as usize))
+            {
+                match status {
+                    HIT => is_hit = true,
+                    FULL => (is_left, is_full) = (true, true),
+                    FOUND.. => {
+                        let (begin, count) = (begin as usize, (status - FOUND) as usize);
+                        if begin + count > self.room as usize {
+                            return Err(DeviceFailure::Unanswered);
+                        }
+                        let bytes =
+                            &self.entries[begin * ENTRY as usize..][..count * ENTRY as usize];
+                        candidates.extend(
+                            pairs(bytes).map(|(link, triangle)| (first_link + link, triangle)),
+                        );
+                    }
+                    _ => return Err(DeviceFailure::Unanswered),
+                }
+            }
+            let found = Found { is_hit, candidates: &candidates };
+            // A hit settles a robot, whatever its other parts hold.
+            let is_answered = (is_hit || !is_left)
+                && match robots.placed(number) {
+                    Ok(robot) => answer(&robot, found, out),
+                    Err(error) => {
+                        *out = Err(error);
+                        true
+                    }
+                };
+            if !is_answered {
+                left.push(number);
+            }
+        }
+        Ok((left, is_full))
+    }
+}
+
+impl Slot {
+    /// Step 1. Writes the errors of bad robots to `out`.
+    fn pack<A: Send>(
+        &mut self,
+        searched: Searched,
+        robots: Robots,
+        chunk: Range<usize>,
+        out: &mut [Result<A, ProximityError>],
+    ) {
+        let first = chunk.start;
+        self.layouts.clear();
+        self.layouts.resize(chunk.len(), Layout::default());
+        self.robots = chunk.clone();
+        let mut shares: Vec<_> = self.layouts.chunks_mut(TASK_SIZE).collect();
+        each(&mut shares, |share, layouts| {
+            for (robot, layout) in (first + share * TASK_SIZE..).zip(layouts.iter_mut()) {
+                let links = robots.links(robot);
+                layout.links = links.len() as u32;
+                layout.is_alike = robot > first && are_alike(links, robots.links(robot - 1));
+            }
+        });
+        let (mut points, mut radii, mut parts) = (0, 0, 0);
+        for layout in &mut self.layouts {
+            (layout.points, layout.first_part) = (points, parts);
+            points += 3 * (layout.links + 1);
+            parts += layout.links.div_ceil(PART);
+        }
+        self.links = self.layouts.iter().map(|layout| layout.links as usize).sum();
+        let mut before = points;
+        for layout in &mut self.layouts {
+            if !layout.is_alike {
+                before = points + radii;
+                radii += 2 * layout.links;
+            }
+            layout.radii = before;
+        }
+        self.parts = parts;
+        self.part_bytes.clear();
+        self.part_bytes.resize(parts as usize * PART_SIZE as usize, 0);
+        self.numbers.clear();
+        self.numbers.resize(4 * (points + radii) as usize, 0);
+
+        // Each task writes the parts, the points and the radii of its robots.
+        let (mut all_points, mut all_radii) = self.numbers.split_at_mut(4 * points as usize);
+        let mut all_parts = &mut self.part_bytes[..];
+        let mut shares = Vec::with_capacity(chunk.len().div_ceil(TASK_SIZE));
+        let outs = out[chunk].chunks_mut(TASK_SIZE);
+        for (layouts, out) in self.layouts.chunks_mut(TASK_SIZE).zip(outs) {
+            let count = |of: &dyn Fn(&Layout) -> u32| layouts.iter().map(|l| of(l) as usize).sum();
+            let points: usize = count(&|layout| 3 * (layout.links + 1));
+            let radii: usize = count(&|layout| if layout.is_alike { 0 } else { 2 * layout.links });
+            let parts: usize = count(&|layout| layout.links.div_ceil(PART));
+            let points = take_front(&mut all_points, 4 * points);
+            let radii = take_front(&mut all_radii, 4 * radii);
+            let parts = take_front(&mut all_parts, PART_SIZE as usize * parts);
+            shares.push((layouts, out, points, radii, parts));
+        }
+        each(&mut shares, |share, (layouts, out, points, radii, parts)| {
+            let robots_of_share = first + share * TASK_SIZE..;
+            for ((robot, layout), out) in
+                robots_of_share.zip(layouts.iter_mut()).zip(out.iter_mut())
+            {
+                let links = robots.links(robot);
+                let points = take_front(points, 12 * (links.len() + 1));
+                let own = if layout.is_alike { 0 } else { 8 * links.len() };
+                write_radii(take_front(radii, own), searched.frame, links);
+                let parts =
+                    take_front(parts, PART_SIZE as usize * links.len().div_ceil(PART as usize));
+                let is_resolved = match robots.placed(robot) {
+                    Ok(placed) => write_points(points, searched.frame, &placed),
+                    Err(error) => {
+                        *out = Err(error);
+                        layout.links = 0;
+                        continue;
+                    }
+                };
+                if !is_resolved {
+                    (layout.links, layout.is_left) = (0, true);
+                    continue;
+                }
+                write_parts(parts, layout);
+            }
+        });
+    }
+
+    /// Steps 2 and 3.
+    ///
+    /// # Errors
+    /// The device has failed since it was asked last.
+    fn submit(
+        &mut self,
+        searched: Searched,
+        question: Question,
+        doubled: u32,
+        watch: &mut Watch,
+    ) -> Result<(), DeviceFailure> {
+        let Searched { gpu, kernels, frame, .. } = searched;
+        let device = &gpu.device;
+        if self.parts == 0 {
+            return Ok(());
+        }
+        let parts = u64::from(self.parts);
+        let room = match question {
+            Question::PerLink => ENTRIES_PER_LINK * self.links as u64,
+            Question::Minimum | Question::Clears(_) => ENTRIES_PER_PART * parts,
+        };
+        // No rank of a candidate or a byte exceeds a word.
+        let room = (room << doubled).min(device.largest_binding() / ENTRY).min(1 << 28);
+        let sizes = [parts, self.numbers.len() as u64, room].map(u64::next_power_of_two);
+        let buffers = match self.buffers.take() {
+            Some(buffers) if fits(buffers.sizes, sizes) => buffers,
+            _ => SlotBuffers::new(searched, sizes),
+        };
+        self.room = room as u32;
+        let (margin, certain) = margins(question, frame);
+        let record = SearchQuery { parts: self.parts, margin, certain, room: self.room };
+        let mut bytes = Vec::new();
+        record.write(device.precision(), &mut bytes);
+        device.queue().write_buffer(&buffers.query, 0, &bytes);
+        device.queue().write_buffer(&buffers.parts, 0, &self.part_bytes);
+        device.queue().write_buffer(&buffers.numbers, 0, &self.numbers);
+
+        let mut encoder = device.raw().create_command_encoder(&Default::default());
+        encoder.clear_buffer(&buffers.heads, 0, Some(parts * HEAD));
+        encoder.clear_buffer(&buffers.counters, 0, None);
+        let timestamp_writes = buffers.clock.as_ref().map(Clock::writes);
+        let mut pass =
+            encoder.begin_compute_pass(&ComputePassDescriptor { label: None, timestamp_writes });
+        pass.set_bind_group(0, &buffers.group, &[0]);
+        for kernel in &kernels.passes[question.kind()] {
+            pass.set_pipeline(kernel);
+            dispatch(device, &mut pass, self.parts);
+        }
+        drop(pass);
+        let (to, mut end) = (&buffers.readback, READINGS);
+        for (from, size) in [
+            (&buffers.counters, COUNTERS),
+            (&buffers.heads, parts * HEAD),
+            (&buffers.entries, room * ENTRY),
+        ] {
+            encoder.copy_buffer_to_buffer(from, 0, to, end, Some(size));
+            end += size;
+        }
+        if let Some(clock) = &buffers.clock {
+            clock.copy(&mut encoder, to);
+        }
+        self.submitted = Some(device.submit(watch, encoder.finish(), to, end)?);
+        self.buffers = Some(buffers);
+        Ok(())
+    }
+}
+
+/// Whether buffers are large enough, and not far too large.
+fn fits(have: [u64; 3], need: [u64; 3]) -> bool {
+    have.into_iter().zip(need).all(|(have, need)| need <= have && have <= 16 * need.max(1 << 10))
+}
+
+/// Whether two robots have the same radii and caps.
+fn are_alike(one: &[ModifiedCylinder], other: &[ModifiedCylinder]) -> bool {
+    let shape = |link: &ModifiedCylinder| (link.radius(), link.flat());
+    std::ptr::eq(one, other)
+        || (one.len() == other.len()
+            && one.iter().zip(other).all(|(one, other)| shape(one) == shape(other)))
+}
+
+/// Takes the front off a slice.
+fn take_front<'a>(slice: &mut &'a mut [u8], count: usize) -> &'a mut [u8] {
+    let (front, rest) = take(slice).split_at_mut(count);
+    *slice = rest;
+    front
+}
+
+fn write_radii(bytes: &mut [u8], frame: &SearchFrame, links: &[ModifiedCylinder]) {
+    for (bytes, link) in bytes.chunks_exact_mut(8).zip(links) {
+        let [start, end] = link.flat().map(|is_flat| f32::from(u8::from(is_flat)));
+        let pair = [radius_of(link, frame), start + 2.0 * end];
+        bytes.copy_from_slice(pair.map(f32::to_ne_bytes).as_flattened());
+    }
+}
+
+fn radius_of(link: &ModifiedCylinder, frame: &SearchFrame) -> f32 {
+    (link.radius() * frame.scale) as f32
+}
+
+/// Writes the points of a robot. Returns whether the device can search for it: all numbers are in
+/// range, and the error of its bounds is small beside a triangle.
+fn write_points(bytes: &mut [u8], frame: &SearchFrame, robot: &PlacedRobot) -> bool {
+    // The least numbers of the mesh's unit must not show in the search frame.
+    let mut is_resolved = frame.least < Real::from(f32::EPSILON) * 1e-3;
+    let mut bytes = bytes.chunks_exact_mut(12);
+    let mut write = |point: Vec3<f32>| {
+        if let Some(bytes) = bytes.next() {
+            bytes.copy_from_slice(<[f32; 3]>::from(point).map(f32::to_ne_bytes).as_flattened());
+        }
+    };
+    let [base, _] = robot.ends();
+    let mut start = round::<f32>((base - frame.centre) * frame.scale);
+    write(start);
+    for (link, end) in robot.links().iter().zip(robot.link_ends()) {
+        let end = round::<f32>((end - frame.centre) * frame.scale);
+        let radius = radius_of(link, frame);
+        let reach = start.largest().max(end.largest()).max(radius);
+        let error = Real::from(error_of([start, end], radius, link.flat()));
+        is_resolved &= Real::from(reach) <= <f32 as Lane>::FARTHEST && 4.0 * error <= frame.typical;
+        write(end);
+        start = end;
+    }
+    is_resolved
+}
+
+fn write_parts(bytes: &mut [u8], layout: &Layout) {
+    for (bytes, first) in
+        bytes.chunks_exact_mut(PART_SIZE as usize).zip((0..).step_by(PART as usize))
+    {
+        let links = (layout.links - first).min(PART);
+        let words = [layout.points + 3 * first, layout.radii + 2 * first, links, 0];
+        bytes.copy_from_slice(words.map(u32::to_ne_bytes).as_flattened());
+    }
+}
+
+/// The margin in the search frame, rounded up and rounded down, as bits.
+fn margins(question: Question, frame: &SearchFrame) -> (u32, u32) {
+    let Question::Clears(margin) = question else { return (FAR.to_bits(), 0) };
+    let nearest = (margin * frame.scale).min(FAR.into()) as f32;
+    let (up, down) = (nearest.next_up().min(FAR), nearest.next_down().max(0.0));
+    (up.to_bits(), if nearest < FAR { down } else { FAR }.to_bits())
+}
+
+impl SlotBuffers {
+    fn new(searched: Searched, sizes: [u64; 3]) -> Self {
+        let Searched { gpu, kernels, tree, .. } = searched;
+        let (device, [parts, numbers, entries]) = (&gpu.device, sizes);
+        let up = BufferUsages::STORAGE | BufferUsages::COPY_DST;
+        let down = BufferUsages::STORAGE | BufferUsages::COPY_SRC | BufferUsages::COPY_DST;
+        let query = device.buffer(
+            device.uniform_stride::<SearchQuery>(),
+            BufferUsages::UNIFORM | BufferUsages::COPY_DST,
+        );
+        let part_buffer = device.buffer(parts * PART_SIZE, up);
+        let number_buffer = device.buffer(numbers, up);
+        let heads = device.buffer(parts * HEAD, down);
+        let entry_buffer = device.buffer(entries * ENTRY, down);
+        let counters = device.buffer(COUNTERS, down);
+        let limits = device.buffer(parts * LIMITS, BufferUsages::STORAGE);
+        let readback = device.buffer(
+            READINGS + COUNTERS + parts * HEAD + entries * ENTRY,
+            BufferUsages::MAP_READ | BufferUsages::COPY_DST,
+        );
+        let group = device.group(
+            &kernels.query_layout,
+            &[
+                query_binding(device, &query),
+                tree.nodes.as_entire_binding(),
+                tree.triangles.as_entire_binding(),
+                part_buffer.as_entire_binding(),
+                number_buffer.as_entire_binding(),
+                heads.as_entire_binding(),
+                entry_buffer.as_entire_binding(),
+                counters.as_entire_binding(),
+                limits.as_entire_binding(),
+            ],
+        );
+        Self {
+            sizes,
+            query,
+            parts: part_buffer,
+            numbers: number_buffer,
+            heads,
+            entries: entry_buffer,
+            counters,
+            readback,
+            clock: Clock::new(device),
+            group,
+        }
+    }
+}

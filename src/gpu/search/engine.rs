@@ -1,0 +1,577 @@
+//! The engine that searches on the GPU.
+//!
+//! # The choice between CPU and device
+//! A batch goes to the device from so many links on that the device is faster
+//! ([`MIN_LINKS`], per core of the CPU). The rest goes to a [`BvhSearch`] on the CPU. After a move
+//! that search must be refitted first, so a large mesh is then searched on the device however small
+//! the batch is.
+
+use super::batch::{Batches, Found, Robots, Searched};
+use super::device::{DeviceTree, SearchKernels};
+use super::kernels::Question;
+use super::tree::{MOST_TRIANGLES, SearchTree};
+use crate::answer::{Contact, LinkProximity, ProximityError};
+use crate::engine::{BvhSearch, Engine, Proximity};
+use crate::gpu::{Adapter, Gpu, GpuError, Precision};
+use crate::mesh::{Mesh, SearchFrame};
+use crate::pair::{Best, Nearest, PlacedRobot, rank_each};
+use crate::query::contacts::ContactQuery;
+use crate::robot::Chain;
+use crate::threads::threads;
+use fearless_simd::Level;
+use gpu_batch::DeviceFailure;
+use parry3d_f64::math::{Pose, Real, Vector};
+use parry3d_f64::shape::TriMesh;
+use std::time::Duration;
+
+/// From so many links per core of the CPU on a batch is faster on the device, for each kind of
+/// question. From measurements on an H200 beside 16 cores: 82k triangles, robots of 30 links.
+const MIN_LINKS: [usize; Question::KINDS] = [240, 480, 15_000];
+/// After a move of a mesh of so many triangles, a refit on the CPU takes longer than one on the
+/// device.
+const MANY_TRIANGLES: usize = 1 << 16;
+
+/// Proximity queries on a bounding volume hierarchy, on the GPU.
+///
+/// The engine for batches, and for large meshes that move. The answers are those of [`BvhSearch`],
+/// bit for bit: the device finds the few triangles that may be nearest, in single precision and
+/// within a proven bound on its rounding. The CPU measures these candidates in double precision.
+///
+/// - **Batches.** [`minimum_batch`](Proximity::minimum_batch),
+///   [`per_link_batch`](Proximity::per_link_batch) and
+///   [`clears_batch`](Proximity::clears_batch) upload the points of the robots and read back the
+///   candidates. The CPU measures one part of a batch while the device searches the next.
+/// - **Small batches** and single queries run on the CPU, which is faster there: see
+///   [`set_min_links`](Self::set_min_links).
+/// - **Moving meshes.** [`set_vertices`](Proximity::set_vertices) keeps the vertices. The next
+///   query uploads them, and the device refits its hierarchy. From 65,536 triangles on, every query
+///   after a move runs on the device until [`prepare`](Self::prepare) has refitted the hierarchy of
+///   the CPU.
+/// - **Contacts** ([`contacts_within`](Proximity::contacts_within)) run on the CPU. For tubes, motions and sides
+///   [`cpu`](Self::cpu) returns the search on the CPU.
+///
+/// Robots that single precision does not resolve are searched on the CPU, and so are robots with
+/// very many equally near triangles. [`answered_on_cpu`](Self::answered_on_cpu) counts them.
+///
+/// ```no_run
+/// use parry_continuum::gpu::GpuSearch;
+/// use parry_continuum::parry::{math::{Pose, Vector}, shape::{Ball, TriMesh}};
+/// use parry_continuum::{Chain, proximity::Proximity};
+///
+/// let (vertices, triangles) = Ball::new(10.0).to_trimesh(64, 32);
+/// let mut search = GpuSearch::new(&TriMesh::new(vertices, triangles)?)?;
+/// println!("{}", search.adapter());
+/// let robot = Chain::from_centreline(&[Vector::ZERO, Vector::Z * 5.0], &[0.5])?;
+/// let robots: Vec<_> =
+///     (0..100_000).map(|k| (&robot, Pose::rotation(Vector::X * f64::from(k)))).collect();
+/// let mut closest = Vec::new();
+/// search.minimum_batch(&robots, &mut closest)?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// Opening a GPU takes a moment. Engines for several meshes can share one:
+///
+/// ```no_run
+/// use parry_continuum::gpu::{Gpu, GpuSearch, Precision};
+/// use parry_continuum::parry::{math::{Pose, Vector}, shape::{Ball, TriMesh}};
+/// use parry_continuum::{Chain, Tube, proximity::Proximity};
+///
+/// let gpu = Gpu::open(Precision::F32)?;
+/// let (vertices, triangles) = Ball::new(10.0).to_trimesh(64, 32);
+/// let mut lumen = GpuSearch::from_triangles(&gpu, &vertices, &triangles)?;
+/// let mut vessel = GpuSearch::on(&gpu, &TriMesh::new(vertices, triangles)?)?;
+/// lumen.set_min_links(Some(1000)); // batches of 1,000 links and more go to the GPU
+/// lumen.prepare();
+/// let points = [Vector::ZERO, Vector::Z * 5.0];
+/// let robot = Chain::from_centreline(&points, &[0.5])?;
+/// let mut clear = Vec::new();
+/// lumen.clears_batch(&vec![(&robot, Pose::IDENTITY); 5000], 1.0, &mut clear)?;
+/// println!("{:?} on the GPU, {} robots on the CPU", lumen.device_time(), lumen.answered_on_cpu());
+/// // The search on the CPU has more queries.
+/// let tube = Tube::from_samples(&points, &[0.5], None)?;
+/// println!("{}", vessel.cpu().clearance(&tube, &Pose::IDENTITY, 0.01)?.lower);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct GpuSearch {
+    gpu: Gpu,
+    level: Level,
+    mesh: Mesh,
+    frame: SearchFrame,
+    tree: SearchTree,
+    /// `None` after a failure: the state of the device is then unknown, so the next query uploads
+    /// the tree anew.
+    on_device: Option<DeviceTree>,
+    batches: Batches,
+    /// The search on the CPU. Its mesh is stale after a move, until it is needed.
+    cpu: BvhSearch,
+    is_cpu_stale: bool,
+    min_links: Option<usize>,
+    answered_on_cpu: u64,
+    /// Kernels that count their work, if they are selected.
+    counting: Option<SearchKernels>,
+}
+
+// A planner may own an engine on its own thread.
+const _: () = {
+    const fn is_send<T: Send>() {}
+    is_send::<GpuSearch>();
+};
+
+impl std::fmt::Debug for GpuSearch {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("GpuSearch")
+            .field("gpu", &self.gpu)
+            .field("triangles", &self.mesh.len())
+            .field("answered_on_cpu", &self.answered_on_cpu)
+            .finish_non_exhaustive()
+    }
+}
+
+impl GpuSearch {
+    /// Builds an engine for `mesh` on the fastest GPU of this machine.
+    ///
+    /// # Errors
+    /// As [`Gpu::open`] and [`GpuSearch::on`].
+    pub fn new(mesh: &TriMesh) -> Result<Self, GpuError> {
+        Self::on(&Gpu::open(Precision::F32)?, mesh)
+    }
+
+    /// Builds an engine for `mesh` on an open GPU of either precision.
+    ///
+    /// # Errors
+    /// - The mesh has no triangles, or a vertex is not finite or out of range.
+    /// - The mesh does not fit into the GPU's memory, or into its largest buffer.
+    /// - The GPU has failed, or its driver does not compile a kernel.
+    pub fn on(gpu: &Gpu, mesh: &TriMesh) -> Result<Self, GpuError> {
+        Self::of(gpu, Mesh::new(mesh)?)
+    }
+
+    /// Builds an engine for triangles, each given as three indices into `vertices`.
+    ///
+    /// # Errors
+    /// As [`GpuSearch::on`]; or an index has no vertex.
+    pub fn from_triangles(
+        gpu: &Gpu,
+        vertices: &[Vector],
+        triangles: &[[u32; 3]],
+    ) -> Result<Self, GpuError> {
+        Self::of(gpu, Mesh::from_triangles(vertices, triangles)?)
+    }
+
+    fn of(gpu: &Gpu, mesh: Mesh) -> Result<Self, GpuError> {
+        let too_large =
+            || GpuError::MeshTooLarge { adapter: gpu.adapter().to_string(), triangles: mesh.len() };
+        if mesh.len() > MOST_TRIANGLES {
+            return Err(too_large());
+        }
+        let kernels = gpu.0.search()?;
+        let frame = SearchFrame::new(&mesh);
+        let tree = SearchTree::new(&frame, &mesh);
+        let mut watch = gpu.0.device.watch();
+        let on_device = DeviceTree::new(&gpu.0, kernels, &mesh, &tree).ok_or_else(too_large)?;
+        match watch.check() {
+            Ok(()) => {}
+            Err(DeviceFailure::OutOfMemory) => return Err(too_large()),
+            Err(failure) => return Err(failure.into()),
+        }
+        Ok(Self {
+            gpu: gpu.clone(),
+            level: Level::new(),
+            cpu: BvhSearch::of(mesh.clone()),
+            mesh,
+            frame,
+            tree,
+            on_device: Some(on_device),
+            batches: Batches::new(watch),
+            is_cpu_stale: false,
+            min_links: None,
+            answered_on_cpu: 0,
+            counting: None,
+        })
+    }
+
+    /// The GPU of this engine.
+    pub fn adapter(&self) -> &Adapter {
+        self.gpu.adapter()
+    }
+
+    /// Sets from how many links on a batch goes to the device; `None` restores the default.
+    ///
+    /// With 0 all queries but [`contacts_within`](Proximity::contacts_within) run on the device, with [`usize::MAX`]
+    /// on the CPU. The answers are the same. The default depends on the question and on the number
+    /// of cores. On 16 cores it is 3,840 links for [`per_link_batch`](Proximity::per_link_batch),
+    /// 7,680 for [`minimum_batch`](Proximity::minimum_batch) and 240,000 for
+    /// [`clears_batch`](Proximity::clears_batch).
+    pub fn set_min_links(&mut self, links: Option<usize>) {
+        self.min_links = links;
+    }
+
+    /// Builds every structure that a first query on the CPU would build, and refits the hierarchy
+    /// of the CPU after a move.
+    pub fn prepare(&mut self) {
+        self.refitted().prepare();
+    }
+
+    /// Returns the search on the CPU for the mesh as it is now, for the questions that
+    /// [`Proximity`] does not have. It shares its hierarchy with this engine.
+    pub fn cpu(&mut self) -> BvhSearch {
+        self.refitted().clone()
+    }
+
+    /// The number of robots that were meant for the device but searched on the CPU, since the
+    /// engine was built.
+    pub fn answered_on_cpu(&self) -> u64 {
+        self.answered_on_cpu
+    }
+
+    /// The time that the device searched for the last batch on it, without transfers; `None` if it
+    /// keeps no time.
+    pub fn device_time(&self) -> Option<Duration> {
+        self.batches.device_time
+    }
+
+    /// Has the kernels count their work.
+    ///
+    /// # Errors
+    /// The driver does not compile a kernel.
+    #[cfg(feature = "laboratory")]
+    #[doc(hidden)]
+    pub fn count_work(&mut self) -> Result<(), GpuError> {
+        self.counting = Some(SearchKernels::new(&self.gpu.0.device, true)?);
+        self.batches.forget();
+        Ok(())
+    }
+
+    /// The nodes and leaves that the first pass of the last batch visited, and the links.
+    #[cfg(feature = "laboratory")]
+    #[doc(hidden)]
+    pub fn work(&self) -> [u64; 3] {
+        self.batches.work
+    }
+
+    /// The search on the CPU, refitted if the mesh has moved.
+    fn refitted(&mut self) -> &mut BvhSearch {
+        if std::mem::take(&mut self.is_cpu_stale) {
+            Engine::move_vertices(&mut self.cpu, self.mesh.vertices());
+        }
+        &mut self.cpu
+    }
+
+    fn is_for_device(&self, robots: Robots, question: Question) -> bool {
+        let min = match self.min_links {
+            Some(links) => links,
+            None if self.is_cpu_stale && self.mesh.len() >= MANY_TRIANGLES => 0,
+            None => MIN_LINKS[question.kind()] * threads(),
+        };
+        let mut links = 0;
+        min == 0
+            || (0..robots.len()).any(|robot| {
+                links += robots.links(robot).len();
+                links >= min
+            })
+    }
+
+    /// Answers robots on the device, all but those of [`Batches::left`].
+    ///
+    /// # Errors
+    /// The device has failed.
+    fn search<A: Send>(
+        &mut self,
+        robots: Robots,
+        question: Question,
+        out: &mut [Result<A, ProximityError>],
+        answer: impl Fn(Measure, Found, &mut Result<A, ProximityError>) -> bool + Sync,
+    ) -> Result<(), ProximityError> {
+        let Self { gpu, level, mesh, frame, tree, on_device, batches, counting, .. } = self;
+        let gpu = &*gpu.0;
+        let kernels = match &*counting {
+            Some(kernels) => kernels,
+            // They were compiled when the engine was built.
+            None => gpu.search().map_err(|_| DeviceFailure::Refused)?,
+        };
+        // After a failure all of the device's memory is allocated anew.
+        let uploaded = on_device.take().or_else(|| {
+            batches.forget();
+            DeviceTree::new(gpu, kernels, mesh, tree)
+        });
+        let mut uploaded = uploaded.ok_or(DeviceFailure::OutOfMemory)?;
+        uploaded.update(gpu, kernels, frame, mesh);
+        let searched = Searched { gpu, kernels, tree: &uploaded, frame };
+        batches.run(searched, robots, question, out, |robot, found, out| {
+            answer(Measure { level: *level, mesh, robot }, found, out)
+        })?;
+        *on_device = Some(uploaded);
+        self.answered_on_cpu += self.batches.left.len() as u64;
+        Ok(())
+    }
+
+    /// Answers a batch on the device, and what is left of it on the CPU.
+    ///
+    /// # Errors
+    /// The device has failed.
+    fn search_batch<A: Send>(
+        &mut self,
+        robots: &[(&Chain, Pose)],
+        question: Question,
+        out: &mut Vec<Result<A, ProximityError>>,
+        unanswered: impl Fn() -> A,
+        answer: impl Fn(Measure, Found, &mut Result<A, ProximityError>) -> bool + Sync,
+        on_cpu: impl FnOnce(
+            &mut BvhSearch,
+            &[(&Chain, Pose)],
+            &mut Vec<Result<A, ProximityError>>,
+        ) -> Result<(), ProximityError>,
+    ) -> Result<(), ProximityError> {
+        out.resize_with(robots.len(), || Ok(unanswered()));
+        self.search(Robots::Batch(robots), question, out, answer)?;
+        let left = std::mem::take(&mut self.batches.left);
+        if left.is_empty() {
+            return Ok(());
+        }
+        let some: Vec<_> = left.iter().map(|&robot| robots[robot]).collect();
+        let mut answers = Vec::new();
+        on_cpu(self.refitted(), &some, &mut answers)?;
+        left.into_iter().zip(answers).for_each(|(robot, answer)| out[robot] = answer);
+        Ok(())
+    }
+
+    /// Answers one robot on the device. `None` if it is left to the CPU.
+    ///
+    /// # Errors
+    /// The device has failed.
+    fn search_one<A: Send>(
+        &mut self,
+        robot: &PlacedRobot,
+        question: Question,
+        unanswered: A,
+        answer: impl Fn(Measure, Found, &mut Result<A, ProximityError>) -> bool + Sync,
+    ) -> Result<Option<A>, ProximityError> {
+        let mut out = [Ok(unanswered)];
+        self.search(Robots::One(robot), question, &mut out, answer)?;
+        let [out] = out;
+        if self.batches.left.is_empty() { out.map(Some) } else { Ok(None) }
+    }
+}
+
+/// A robot whose candidates are measured.
+struct Measure<'a> {
+    level: Level,
+    mesh: &'a Mesh,
+    robot: &'a PlacedRobot<'a>,
+}
+
+impl Measure<'_> {
+    /// Writes the nearest triangle of each link. Returns false if a link has no candidate.
+    fn per_link(self, found: Found, out: &mut Result<Vec<LinkProximity>, ProximityError>) -> bool {
+        let Self { level, mesh, robot } = self;
+        let links: Vec<_> = robot.placed_links().collect();
+        let mut best = vec![Best::within(Real::INFINITY); links.len()];
+        let link_of = |place: usize| found.candidates[place].0 as usize;
+        let pairs =
+            found.candidates.iter().map(|&(link, triangle)| (&links[link as usize], triangle));
+        let mut place = 0;
+        rank_each(level, mesh, pairs, |ranked| {
+            best[link_of(place)].take(ranked.nearest);
+            place += 1;
+        });
+        let mut answers = std::mem::replace(out, Ok(Vec::new())).unwrap_or_default();
+        answers.clear();
+        answers.extend(
+            links
+                .iter()
+                .zip(best)
+                .enumerate()
+                .map_while(|(number, (link, best))| Some(link.answer(number, &best.nearest()?))),
+        );
+        let is_complete = answers.len() == links.len();
+        *out = Ok(answers);
+        is_complete
+    }
+
+    /// Returns the closest candidate. Ties go to the lowest triangle, then to the lowest link.
+    fn minimum(self, found: Found) -> Option<LinkProximity> {
+        let Self { level, mesh, robot } = self;
+        let links: Vec<_> =
+            found.candidates.iter().map(|&(link, _)| robot.link(link as usize)).collect();
+        let pairs =
+            links.iter().zip(found.candidates).map(|(link, &(_, triangle))| (link, triangle));
+        let mut best: Option<((Real, u32, u32), usize, Nearest)> = None;
+        let mut place = 0;
+        rank_each(level, mesh, pairs, |ranked| {
+            let nearest = ranked.nearest;
+            let key = (nearest.distance, nearest.triangle, found.candidates[place].0);
+            if best.is_none_or(|(least, ..)| key < least) {
+                best = Some((key, place, nearest));
+            }
+            place += 1;
+        });
+        let ((.., link), place, nearest) = best?;
+        Some(links[place].answer(link as usize, &nearest))
+    }
+
+    /// Returns whether every link is farther than the margin.
+    fn clears(self, found: Found, margin: Real) -> bool {
+        let Self { level, mesh, robot } = self;
+        if found.is_hit {
+            return false;
+        }
+        let links: Vec<_> =
+            found.candidates.iter().map(|&(link, _)| robot.link(link as usize)).collect();
+        let pairs =
+            links.iter().zip(found.candidates).map(|(link, &(_, triangle))| (link, triangle));
+        let mut is_clear = true;
+        rank_each(level, mesh, pairs, |ranked| is_clear &= ranked.nearest.distance > margin);
+        is_clear
+    }
+}
+
+impl Engine for GpuSearch {
+    fn mesh(&self) -> &Mesh {
+        &self.mesh
+    }
+
+    fn ask_per_link(
+        &mut self,
+        robot: PlacedRobot,
+        out: &mut Vec<LinkProximity>,
+    ) -> Result<(), ProximityError> {
+        if self.is_for_device(Robots::One(&robot), Question::PerLink)
+            && let Some(answers) =
+                self.search_one(&robot, Question::PerLink, Vec::new(), |measure, found, out| {
+                    measure.per_link(found, out)
+                })?
+        {
+            *out = answers;
+            return Ok(());
+        }
+        self.refitted().ask_per_link(robot, out)
+    }
+
+    fn ask_nearest(
+        &mut self,
+        robot: PlacedRobot,
+        bound: Real,
+    ) -> Result<Option<LinkProximity>, ProximityError> {
+        if self.is_for_device(Robots::One(&robot), Question::Minimum)
+            && let Some(least) = self.search_one(
+                &robot,
+                Question::Minimum,
+                LinkProximity::placeholder(),
+                minimum_of,
+            )?
+        {
+            return Ok((least.distance <= bound).then_some(least));
+        }
+        self.refitted().ask_nearest(robot, bound)
+    }
+
+    fn ask_clears(&mut self, robot: PlacedRobot, margin: Real) -> Result<bool, ProximityError> {
+        let question = Question::Clears(margin);
+        if self.is_for_device(Robots::One(&robot), question)
+            && let Some(clears) = self.search_one(&robot, question, false, clears_of(margin))?
+        {
+            return Ok(clears);
+        }
+        self.refitted().ask_clears(robot, margin)
+    }
+
+    /// Runs on the CPU: the contacts of a robot need the neighbours of its candidates.
+    fn ask_contacts(
+        &mut self,
+        robot: PlacedRobot,
+        query: ContactQuery,
+        out: &mut Vec<Contact>,
+    ) -> Result<(), ProximityError> {
+        self.refitted().ask_contacts(robot, query, out)
+    }
+
+    fn ask_per_link_batch(
+        &mut self,
+        robots: &[(&Chain, Pose)],
+        out: &mut Vec<Result<Vec<LinkProximity>, ProximityError>>,
+    ) -> Result<(), ProximityError> {
+        let question = Question::PerLink;
+        if !self.is_for_device(Robots::Batch(robots), question) {
+            return self.refitted().ask_per_link_batch(robots, out);
+        }
+        self.search_batch(
+            robots,
+            question,
+            out,
+            Vec::new,
+            |measure, found, out| measure.per_link(found, out),
+            |cpu, robots, out| cpu.ask_per_link_batch(robots, out),
+        )
+    }
+
+    fn ask_minimum_batch(
+        &mut self,
+        robots: &[(&Chain, Pose)],
+        out: &mut Vec<Result<LinkProximity, ProximityError>>,
+    ) -> Result<(), ProximityError> {
+        let question = Question::Minimum;
+        if !self.is_for_device(Robots::Batch(robots), question) {
+            return self.refitted().ask_minimum_batch(robots, out);
+        }
+        self.search_batch(
+            robots,
+            question,
+            out,
+            LinkProximity::placeholder,
+            minimum_of,
+            |cpu, robots, out| cpu.ask_minimum_batch(robots, out),
+        )
+    }
+
+    fn ask_clears_batch(
+        &mut self,
+        robots: &[(&Chain, Pose)],
+        margin: Real,
+        out: &mut Vec<Result<bool, ProximityError>>,
+    ) -> Result<(), ProximityError> {
+        let question = Question::Clears(margin);
+        if !self.is_for_device(Robots::Batch(robots), question) {
+            return self.refitted().ask_clears_batch(robots, margin, out);
+        }
+        self.search_batch(
+            robots,
+            question,
+            out,
+            || false,
+            clears_of(margin),
+            |cpu, robots, out| cpu.ask_clears_batch(robots, margin, out),
+        )
+    }
+
+    fn move_vertices(&mut self, vertices: &[Vector]) {
+        self.mesh.set_vertices(vertices);
+        self.frame = SearchFrame::new(&self.mesh);
+        self.is_cpu_stale = true;
+        if let Some(tree) = &mut self.on_device {
+            tree.invalidate();
+        }
+    }
+}
+
+/// Writes the answer of a robot's minimum. Returns false if it has no candidate.
+fn minimum_of(
+    measure: Measure,
+    found: Found,
+    out: &mut Result<LinkProximity, ProximityError>,
+) -> bool {
+    let Some(least) = measure.minimum(found) else { return false };
+    *out = Ok(least);
+    true
+}
+
+/// Writes whether a robot clears the margin.
+fn clears_of(
+    margin: Real,
+) -> impl Fn(Measure, Found, &mut Result<bool, ProximityError>) -> bool + Sync {
+    move |measure, found, out| {
+        *out = Ok(measure.clears(found, margin));
+        true
+    }
+}
+
+impl Proximity for GpuSearch {}

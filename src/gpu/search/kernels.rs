@@ -1,0 +1,144 @@
+//! The text of the kernels, and the constants and records that they share with the host.
+
+use super::bounds;
+use super::tree::{LEAF, LEAF_SIZE, MAX_DEPTH};
+use gpu_batch::wgsl::constant;
+use gpu_batch::{Record, Shader, record};
+use parry3d_f64::math::Real;
+
+/// Links per workgroup, a thread each.
+pub(super) const PART: u32 = 32;
+/// Candidates that a thread has room for in the first pass. More take a second pass.
+pub(super) const ROOM: u32 = 8;
+/// The most candidates of a link that the second pass gathers.
+pub(super) const MOST_GATHERED: u32 = 1024;
+/// Threads per workgroup of a refit.
+pub(super) const REFIT_THREADS: u32 = 64;
+/// No triangle, and no node.
+pub(super) const NOTHING: u32 = u32::MAX;
+
+/// The status of a part: a link is certainly within the margin; no room for its candidates; waiting
+/// for the second pass. [`FOUND`] plus the number of its candidates otherwise; 0 is no answer.
+pub(super) const HIT: u32 = 1;
+pub(super) const FULL: u32 = 2;
+const SECOND: u32 = 3;
+pub(super) const FOUND: u32 = 4;
+
+/// The question of a search.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Question {
+    PerLink,
+    Minimum,
+    /// Is the robot farther than this margin?
+    Clears(Real),
+}
+
+impl Question {
+    /// The kinds of questions. Each has its own kernels.
+    pub(super) const KINDS: usize = 3;
+
+    pub(super) fn kind(self) -> usize {
+        match self {
+            Self::PerLink => 0,
+            Self::Minimum => 1,
+            Self::Clears(_) => 2,
+        }
+    }
+}
+
+record! {
+    /// The parameters of a search.
+    pub(super) struct SearchQuery {
+        pub parts: u32,
+        /// The margin rounded up, and rounded down, as the bits of an `f32`.
+        pub margin: u32,
+        pub certain: u32,
+        /// The number of entries that have room.
+        pub room: u32,
+    }
+}
+
+record! {
+    /// The nodes of a level.
+    pub(super) struct RefitLevel {
+        pub first: u32,
+        pub nodes: u32,
+    }
+}
+
+macro_rules! text {
+    ($file:literal) => {
+        include_str!(concat!("../shaders/search/", $file, ".wgsl"))
+    };
+}
+
+fn constants(values: &[(&str, u32)]) -> String {
+    let bounds = bounds::constants();
+    values
+        .iter()
+        .fold(bounds, |text, (name, value)| text + &constant(name, format_args!("{value}u")))
+}
+
+fn tree() -> String {
+    let sizes = [
+        ("LEAF", LEAF),
+        ("LEAF_SIZE", LEAF_SIZE as u32),
+        ("REFIT_THREADS", REFIT_THREADS),
+        ("NOTHING", NOTHING),
+    ];
+    constants(&sizes) + text!("tree")
+}
+
+/// Fills the triangles with the current vertices.
+pub(super) fn corners() -> Shader {
+    Shader::new("corners", tree() + text!("corners"))
+}
+
+/// Fits the boxes of a level.
+pub(super) fn refit() -> Shader {
+    Shader::new("refit", tree() + &RefitLevel::wgsl() + text!("refit"))
+}
+
+/// The two passes of a kind of question. If `counts_work`, they count nodes, leaves and links.
+pub(super) fn passes(kind: usize, counts_work: bool) -> [Shader; 2] {
+    let sizes = [
+        ("PART", PART),
+        ("ROOM", ROOM),
+        ("MOST_GATHERED", MOST_GATHERED),
+        ("DEPTH", MAX_DEPTH + 2),
+        ("HIT", HIT),
+        ("FULL", FULL),
+        ("SECOND", SECOND),
+        ("FOUND", FOUND),
+        ("MINIMUM", Question::Minimum.kind() as u32),
+        ("CLEARS", Question::Clears(0.0).kind() as u32),
+        ("QUESTION", kind as u32),
+    ];
+    let values = sizes.iter().map(|(name, value)| constant(name, format_args!("{value}u")));
+    let shared = tree()
+        + &values.collect::<String>()
+        + &constant("COUNTS_WORK", counts_work)
+        + &SearchQuery::wgsl()
+        + text!("bounds")
+        + text!("robots");
+    [
+        Shader::new("search", shared.clone() + text!("search")),
+        Shader::new("gather", shared + text!("gather")),
+    ]
+}
+
+/// Every kernel, for tests.
+#[cfg(feature = "laboratory")]
+pub(in crate::gpu) fn all() -> Vec<Shader> {
+    let mut all = vec![corners(), refit()];
+    for kind in 0..Question::KINDS {
+        all.extend([false, true].into_iter().flat_map(|counts_work| passes(kind, counts_work)));
+    }
+    all
+}
+
+/// The functions of the bounds alone, for tests.
+#[cfg(test)]
+pub(super) fn text_of_bounds() -> String {
+    bounds::constants() + text!("bounds")
+}

@@ -1,0 +1,451 @@
+//! The kernels of the search on the CPU, step by step, and the tests that compare the two.
+
+use super::bounds::{FAR, SearchedLink};
+use super::kernels::{MOST_GATHERED, NOTHING, ROOM};
+use super::tree::{LEAF, SearchTree, leaf_range};
+use crate::distance::Vec3;
+use crate::mesh::{Mesh, SearchFrame};
+
+type Point = Vec3<f32>;
+
+/// A box: its lowest and its highest corner.
+type Corners = [Point; 2];
+
+/// The tree as the device has it after a refit.
+pub(super) struct TwinTree<'a> {
+    tree: &'a SearchTree,
+    pub boxes: Vec<[Corners; 2]>,
+    triangles: Vec<[Point; 3]>,
+}
+
+/// Nodes and leaves visited.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct TwinWork {
+    pub nodes: usize,
+    pub leaves: usize,
+}
+
+/// The wanted triangles of a link: D and T of the module `batch`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Wanted {
+    pub bound: f32,
+    pub below: u32,
+}
+
+impl Wanted {
+    pub(super) const ANY: Self = Self { bound: FAR, below: NOTHING };
+}
+
+fn low_of(a: Point, b: Point) -> Point {
+    Vec3::new(a.x.min(b.x), a.y.min(b.y), a.z.min(b.z))
+}
+
+fn high_of(a: Point, b: Point) -> Point {
+    Vec3::new(a.x.max(b.x), a.y.max(b.y), a.z.max(b.z))
+}
+
+impl<'a> TwinTree<'a> {
+    /// corners.wgsl and refit.wgsl.
+    pub(super) fn refit(tree: &'a SearchTree, frame: &SearchFrame, mesh: &Mesh) -> Self {
+        let corners = |&triangle: &u32| mesh.corners(triangle).map(|corner| frame.point(corner));
+        let triangles: Vec<[Point; 3]> = tree.triangles.iter().map(corners).collect();
+        let nothing = [Vec3::new(FAR, FAR, FAR), Vec3::new(-FAR, -FAR, -FAR)];
+        let mut boxes = vec![[nothing; 2]; tree.nodes.len()];
+        for &node in &tree.by_height {
+            boxes[node as usize] = tree.nodes[node as usize].children.map(|child| {
+                let all: Vec<Corners> = if child & LEAF != 0 {
+                    let corners = triangles[leaf_range(child)].iter().flatten();
+                    corners.map(|&corner| [corner; 2]).collect()
+                } else {
+                    boxes[child as usize].to_vec()
+                };
+                all.into_iter().fold(nothing, |[low, high], [other_low, other_high]| {
+                    [low_of(low, other_low), high_of(high, other_high)]
+                })
+            });
+        }
+        Self { tree, boxes, triangles }
+    }
+
+    /// search.wgsl for one link: its candidates, what is wanted in the end, and whether a wanted
+    /// triangle found no room.
+    pub(super) fn search<const FUSED: bool>(
+        &self,
+        link: &SearchedLink<FUSED>,
+        mut wanted: Wanted,
+        work: &mut TwinWork,
+    ) -> (Vec<u32>, Wanted, bool) {
+        let mut candidates: Vec<(f32, u32)> = Vec::new();
+        let mut lost = FAR;
+        let mut waiting = vec![(0.0, 0)];
+        let far = |wanted: Wanted, lower: f32, triangle: u32| {
+            lower > wanted.bound + link.error || triangle > wanted.below
+        };
+        while let Some((squared, place)) = waiting.pop() {
+            if squared > link.box_limit(wanted.bound) {
+                continue;
+            }
+            if place & LEAF == 0 {
+                work.nodes += 1;
+                let node = &self.tree.nodes[place as usize];
+                let limit = link.box_limit(wanted.bound);
+                let mut near = Vec::new();
+                for ((child, lowest), [low, high]) in
+                    node.children.into_iter().zip(node.lowest).zip(self.boxes[place as usize])
+                {
+                    let squared = link.box_distance_squared(low, high);
+                    if squared <= limit && lowest <= wanted.below {
+                        near.push((squared, child));
+                    }
+                }
+                near.sort_by(|a, b| b.0.total_cmp(&a.0));
+                waiting.extend(near);
+                continue;
+            }
+            work.leaves += 1;
+            for at in leaf_range(place) {
+                let triangle = self.tree.triangles[at];
+                let bounds = link.bounds(self.triangles[at]);
+                if far(wanted, bounds.lower, triangle) {
+                    continue;
+                }
+                let certain = bounds.upper + link.error;
+                wanted.bound = wanted.bound.min(certain.max(0.0));
+                if certain < 0.0 {
+                    wanted.below = wanted.below.min(triangle);
+                }
+                if candidates.len() == ROOM as usize {
+                    candidates.retain(|&(lower, triangle)| !far(wanted, lower, triangle));
+                }
+                candidates.push((bounds.lower, triangle));
+                if candidates.len() > ROOM as usize {
+                    candidates.sort_by(|a, b| a.0.total_cmp(&b.0));
+                    lost = candidates.pop().map_or(lost, |(lower, _)| lost.min(lower));
+                }
+            }
+        }
+        candidates.retain(|&(lower, triangle)| !far(wanted, lower, triangle));
+        let is_lost = lost <= wanted.bound + link.error;
+        (candidates.into_iter().map(|candidate| candidate.1).collect(), wanted, is_lost)
+    }
+
+    /// gather.wgsl for one link. `None` if there are too many.
+    pub(super) fn gather<const FUSED: bool>(
+        &self,
+        link: &SearchedLink<FUSED>,
+        wanted: Wanted,
+    ) -> Option<Vec<u32>> {
+        let mut found = Vec::new();
+        let mut waiting = vec![0];
+        while let Some(place) = waiting.pop() {
+            if place & LEAF != 0 {
+                for at in leaf_range(place) {
+                    let triangle = self.tree.triangles[at];
+                    let lower = link.bounds(self.triangles[at]).lower;
+                    if lower <= wanted.bound + link.error && triangle <= wanted.below {
+                        found.push(triangle);
+                    }
+                }
+                if found.len() > MOST_GATHERED as usize {
+                    return None;
+                }
+                continue;
+            }
+            let node = &self.tree.nodes[place as usize];
+            for ((child, lowest), [low, high]) in
+                node.children.into_iter().zip(node.lowest).zip(self.boxes[place as usize])
+            {
+                let squared = link.box_distance_squared(low, high);
+                if lowest <= wanted.below && squared <= link.box_limit(wanted.bound) {
+                    waiting.push(child);
+                }
+            }
+        }
+        Some(found)
+    }
+}
+
+mod tests {
+    use super::super::bounds;
+    use super::super::device::DeviceTree;
+    use super::super::kernels::text_of_bounds;
+    use super::*;
+    use crate::gpu::tests::gpu;
+    use crate::mesh::round;
+    use crate::pair::{Best, PlacedLink};
+    use crate::robot::{Cap, ModifiedCylinder};
+    use continuum_testing::Random;
+    use gpu_batch::wgpu::BufferUsages;
+    use gpu_batch::{Batch, Kernel};
+    use parry3d_f64::math::{Pose, Real, Vector};
+
+    /// A link near a triangle in a search frame, in double precision, of the kinds that break
+    /// bounds: short and thick, touching, parallel, thin triangles, far away.
+    fn pair(random: &mut Random, kind: u32) -> (ModifiedCylinder, [Vector; 3]) {
+        let size = [1.0, 0.1, 0.003][random.below(3) as usize];
+        let at = random.point() * 0.5;
+        let mut corners = [(); 3].map(|()| at + random.point() * (0.5 * size));
+        if kind % 5 == 1 {
+            // A sliver, or no area.
+            let share = random.unit();
+            corners[2] = corners[0] * share
+                + corners[1] * (1.0 - share)
+                + random.point() * (1e-7 * f64::from(kind % 2) * size);
+        }
+        let near = at + random.point() * [0.0, 1.0, 1.0, 30.0][random.below(4) as usize] * size;
+        let direction = match kind % 4 {
+            0 => random.direction(),
+            1 => (corners[1] - corners[0]).normalize_or(Vector::X),
+            2 => (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize_or(Vector::Y),
+            _ => (corners[1] - corners[0] + random.direction() * (1e-4 * size))
+                .normalize_or(Vector::Z),
+        };
+        let length = [1.0, 0.3, 0.01, 1e-4, 1e-6][random.below(5) as usize] * size;
+        let radius = [0.0, 0.02, 0.2, 1.0][random.below(4) as usize] * size;
+        let caps = [0, 1].map(|end| if (kind >> end) & 1 == 0 { Cap::Flat } else { Cap::Round });
+        let link = ModifiedCylinder::new(near, near + direction * length, radius, caps).unwrap();
+        (link, corners)
+    }
+
+    /// What the bounds claim, and how close they are.
+    #[derive(Debug, Default)]
+    struct Tally {
+        touching: u32,
+        certain: u32,
+        apart: u32,
+        tight: u32,
+    }
+
+    impl Tally {
+        fn check(
+            &mut self,
+            d: Real,
+            lower: f32,
+            upper: f32,
+            error: f32,
+            what: &dyn Fn() -> String,
+        ) {
+            let [lower, upper, error] = [lower, upper, error].map(Real::from);
+            // In this frame the measured distance is exact beside the error.
+            assert!(lower - error <= d, "{lower} {error} {d}: {}", what());
+            assert!(d <= upper.max(-error) + error, "{upper} {error} {d}: {}", what());
+            if upper + error < 0.0 {
+                assert_eq!(d, 0.0, "{}", what());
+                self.certain += 1;
+            }
+            if d > 0.0 {
+                self.apart += 1
+            } else {
+                self.touching += 1
+            }
+            self.tight += u32::from(upper.max(0.0) - lower.max(0.0) <= 2.0 * error);
+        }
+
+        /// Bounds that were loose would be right and useless.
+        fn is_telling(&self) -> bool {
+            let all = self.touching + self.apart;
+            self.touching > all / 20 && self.certain > self.touching / 3 && self.tight > all / 2
+        }
+    }
+
+    fn in_frame(link: &ModifiedCylinder, corners: [Vector; 3]) -> ([Point; 2], f32, [Point; 3]) {
+        let ends = [link.start(), link.end()].map(round::<f32>);
+        (ends, link.radius() as f32, corners.map(round::<f32>))
+    }
+
+    fn measured(link: &ModifiedCylinder, corners: [Vector; 3]) -> Real {
+        PlacedLink::new(link, &Pose::IDENTITY).measure(0, corners).distance
+    }
+
+    #[test]
+    fn the_bounds_hold_fused_or_not() {
+        let mut random = Random::new(29);
+        let (mut plain, mut fused) = (Tally::default(), Tally::default());
+        for kind in 0..200_000 {
+            let (link, corners) = pair(&mut random, kind);
+            let d = measured(&link, corners);
+            let (ends, radius, triangle) = in_frame(&link, corners);
+            let what = || format!("{kind}: {link:?}, {corners:?}");
+            let one = SearchedLink::<false>::new(ends, radius, link.flat());
+            let found = one.bounds(triangle);
+            plain.check(d, found.lower, found.upper, one.error, &what);
+            let other = SearchedLink::<true>::new(ends, radius, link.flat());
+            let found = other.bounds(triangle);
+            fused.check(d, found.lower, found.upper, other.error, &what);
+            // A box around the triangle.
+            let [a, b, c] = triangle;
+            let (low, high) = (low_of(a, low_of(b, c)), high_of(a, high_of(b, c)));
+            let limit = Real::from(one.box_limit(d as f32)).sqrt() * (1.0 + 1e-6);
+            for squared in
+                [one.box_distance_squared(low, high), other.box_distance_squared(low, high)]
+            {
+                assert!(Real::from(squared).sqrt() <= limit, "{}", what());
+            }
+        }
+        assert!(plain.is_telling() && fused.is_telling(), "{plain:?} {fused:?}");
+    }
+
+    #[test]
+    fn the_bounds_hold_on_the_device() {
+        let Some(gpu) = gpu() else { return };
+        let solve = "fn solve(problem: u32, answer: u32) {
+            var p: array<f32, 17>;
+            for (var k = 0u; k < 17u; k++) { p[k] = problems[problem + k]; }
+            let link = link_new(vec3<f32>(p[0], p[1], p[2]), vec3<f32>(p[3], p[4], p[5]), p[6], p[7]);
+            let a = vec3<f32>(p[8], p[9], p[10]);
+            let b = vec3<f32>(p[11], p[12], p[13]);
+            let c = vec3<f32>(p[14], p[15], p[16]);
+            let found = triangle_bounds(link, a, b, c);
+            answers[answer] = found.lower;
+            answers[answer + 1u] = found.upper;
+            answers[answer + 2u] = link.error;
+            answers[answer + 3u] = box_distance_squared(link, min(a, min(b, c)), max(a, max(b, c)));
+        }";
+        let text = text_of_bounds() + solve;
+        let mut batch = Batch::new(&gpu.0.device, &Kernel::new("bounds", &text, 17, 4)).unwrap();
+        let mut random = Random::new(31);
+        let problems: Vec<_> = (0..50_000).map(|kind| pair(&mut random, kind)).collect();
+        let numbers = problems.iter().flat_map(|(link, corners)| {
+            let (ends, radius, triangle) = in_frame(link, *corners);
+            let caps = u8::from(link.flat()[0]) + 2 * u8::from(link.flat()[1]);
+            let mut numbers: Vec<f64> = Vec::new();
+            let mut add = |point: Point| numbers.extend([point.x, point.y, point.z].map(f64::from));
+            ends.into_iter().for_each(&mut add);
+            let rest =
+                triangle.into_iter().flat_map(|point| [point.x, point.y, point.z].map(f64::from));
+            let rest: Vec<_> = [f64::from(radius), caps.into()].into_iter().chain(rest).collect();
+            numbers.into_iter().chain(rest).collect::<Vec<_>>()
+        });
+        let (mut tally, mut place) = (Tally::default(), 0);
+        batch
+            .run(numbers, |found| {
+                let (link, corners) = &problems[place];
+                let d = measured(link, *corners);
+                let what = || format!("{place}: {link:?}, {corners:?}");
+                tally.check(d, found[0] as f32, found[1] as f32, found[2] as f32, &what);
+                let limit = d + link.radius() + found[2];
+                assert!(found[3].sqrt() <= limit * (1.0 + 1e-6), "{}", what());
+                let (ends, radius, _) = in_frame(link, *corners);
+                let error = bounds::error_of(ends, radius, link.flat());
+                assert!((found[2] / f64::from(error) - 1.0).abs() < 1e-5, "{}", what());
+                place += 1;
+            })
+            .unwrap();
+        assert!(place == problems.len() && tally.is_telling(), "{tally:?}");
+    }
+
+    /// The nearest triangle is among the candidates of the first pass, or of the second.
+    #[test]
+    fn the_twin_finds_the_nearest_triangle() {
+        let mut random = Random::new(37);
+        let (mut second, mut touching, mut full) = (0, 0, 0);
+        for round_of in 0..40 {
+            // Random triangles, each several times; in some rounds all meet in a point.
+            let tip = random.point();
+            let corners: Vec<_> = (0..300)
+                .flat_map(|k| {
+                    let at = random.point();
+                    let first = if round_of % 4 == 0 && k % 2 == 0 { tip } else { at };
+                    [first, at + random.point() * 0.2, at + random.point() * 0.2]
+                })
+                .collect();
+            let mut indices: Vec<_> = (0..300).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
+            indices.extend_from_within(..150);
+            let mesh = Mesh::of(corners, indices);
+            let frame = SearchFrame::new(&mesh);
+            let tree = SearchTree::new(&frame, &mesh);
+            let twin = TwinTree::refit(&tree, &frame, &mesh);
+            for kind in 0..50 {
+                let start = if kind % 3 == 0 { tip } else { random.point() };
+                let start = start + random.direction() * random.between(0.0, 0.3);
+                let caps =
+                    [0, 1].map(|end| if (kind >> end) & 1 == 0 { Cap::Flat } else { Cap::Round });
+                let link =
+                    ModifiedCylinder::new(start, start + random.direction() * 0.2, 0.05, caps)
+                        .unwrap();
+                let placed = PlacedLink::new(&link, &Pose::IDENTITY);
+                let mut best = Best::within(Real::INFINITY);
+                (0..mesh.len() as u32).for_each(|t| {
+                    best.take(placed.measure(t, mesh.corners(t)));
+                });
+                let nearest = best.nearest().unwrap();
+                touching += usize::from(nearest.distance <= 0.0);
+                let ends = [link.start(), link.end()].map(|end| frame.point::<f32>(end));
+                let searched = SearchedLink::<false>::new(
+                    ends,
+                    (link.radius() * frame.scale) as f32,
+                    link.flat(),
+                );
+                let mut work = TwinWork::default();
+                let (mut found, wanted, is_lost) = twin.search(&searched, Wanted::ANY, &mut work);
+                if is_lost {
+                    second += 1;
+                    match twin.gather(&searched, wanted) {
+                        Some(gathered) => found = gathered,
+                        None => {
+                            full += 1;
+                            continue;
+                        }
+                    }
+                }
+                assert!(
+                    found.contains(&nearest.triangle),
+                    "{round_of} {kind}: {nearest:?} {found:?}"
+                );
+                assert!(work.nodes < tree.nodes.len() && work.leaves > 0);
+            }
+        }
+        assert!(second > 5 && touching > 50 && full == 0, "{second} {touching} {full}");
+    }
+
+    /// The device fits the boxes that the twin fits, at first and after a move.
+    #[test]
+    fn the_device_fits_the_boxes_of_the_twin() {
+        let Some(gpu) = gpu() else { return };
+        let mut random = Random::new(41);
+        let kernels = gpu.0.search().unwrap();
+        let device = &gpu.0.device;
+        for count in [1_u32, 2, 5, 3000] {
+            let corners: Vec<_> = (0..3 * count).map(|_| random.point()).collect();
+            let indices = (0..count).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
+            let mut mesh = Mesh::of(corners, indices);
+            let tree = SearchTree::new(&SearchFrame::new(&mesh), &mesh);
+            let mut on_device = DeviceTree::new(&gpu.0, kernels, &mesh, &tree).unwrap();
+            for stretch in [1.0, 3.0] {
+                let moved: Vec<_> = mesh
+                    .vertices()
+                    .iter()
+                    .map(|v| Vector::new(v.x * stretch, v.y, v.z + v.x * (stretch - 1.0)))
+                    .collect();
+                mesh.set_vertices(&moved);
+                on_device.invalidate();
+                let frame = SearchFrame::new(&mesh);
+                on_device.update(&gpu.0, kernels, &frame, &mesh);
+                let twin = TwinTree::refit(&tree, &frame, &mesh);
+                let size = 64 * tree.nodes.len() as u64;
+                let usages = BufferUsages::MAP_READ | BufferUsages::COPY_DST;
+                let readback = device.buffer(size, usages);
+                let mut encoder = device.raw().create_command_encoder(&Default::default());
+                encoder.copy_buffer_to_buffer(&on_device.nodes, 0, &readback, 0, Some(size));
+                let mut words = Vec::new();
+                let read = |bytes: &[u8]| {
+                    let all = bytes.as_chunks::<4>().0.iter();
+                    words.extend(all.map(|word| u32::from_ne_bytes(*word)));
+                    Ok(())
+                };
+                let mut watch = device.watch();
+                device.run_and_read(&mut watch, encoder.finish(), &readback, size, read).unwrap();
+                for ((words, boxes), node) in
+                    words.chunks_exact(16).zip(&twin.boxes).zip(&tree.nodes)
+                {
+                    assert_eq!([words[3], words[11]], node.children);
+                    assert_eq!([words[7], words[15]], node.lowest);
+                    let at = |place: usize| {
+                        Vec3::from([0, 1, 2].map(|axis| f32::from_bits(words[place + axis])))
+                    };
+                    assert_eq!([[at(0), at(4)], [at(8), at(12)]], *boxes, "{count}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,92 @@
+// The second pass: all candidates of the parts whose links had more than found room, within the
+// bounds that the first pass has found. The twin of Twin::gather in gpu/search/twin.rs.
+
+var<workgroup> part_count: atomic<u32>;
+var<workgroup> part_full: atomic<u32>;
+var<workgroup> part_first: u32;
+
+var<private> stack: array<u32, DEPTH>;
+
+// Visits the candidates of a link. Counts them; or, from `first` on, writes them.
+fn gather_link(link: SearchedLink, lane: u32, bound: f32, below: u32, first: u32) -> u32 {
+    let limit = box_limit(link, bound);
+    var waiting = 1u;
+    stack[0] = 0u;
+    var found = 0u;
+    while (waiting > 0u && found <= MOST_GATHERED) {
+        waiting--;
+        let place = stack[waiting];
+        if (is_leaf(place)) {
+            for (var k = 0u; k < leaf_count(place); k++) {
+                let triangle = triangles[leaf_first(place) + k];
+                let bounds = triangle_bounds(link, triangle.a, triangle.b, triangle.c);
+                if (bounds.lower <= bound + link.error && triangle.number <= below) {
+                    if (first != NOTHING) {
+                        entries[first + found] = vec2<u32>(lane, triangle.number);
+                    }
+                    found++;
+                }
+            }
+            continue;
+        }
+        let node = nodes[place];
+        if (node.lowest0 <= below && box_distance_squared(link, node.low0, node.high0) <= limit) {
+            stack[waiting] = node.child0;
+            waiting++;
+        }
+        if (node.lowest1 <= below && box_distance_squared(link, node.low1, node.high1) <= limit) {
+            stack[waiting] = node.child1;
+            waiting++;
+        }
+    }
+    return found;
+}
+
+@compute @workgroup_size(PART)
+fn gather(
+    @builtin(workgroup_id) workgroup: vec3<u32>,
+    @builtin(num_workgroups) workgroups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let number = workgroup.y * workgroups.x + workgroup.x;
+    if (lane == 0u) {
+        atomicStore(&part_count, 0u);
+        atomicStore(&part_full, 0u);
+        part_first = NOTHING;
+    }
+    workgroupBarrier();
+    var is_link = false;
+    var own_first = 0u;
+    if (number < query.parts && heads[number].y == SECOND) {
+        let part = parts[number];
+        is_link = lane < part.links;
+        if (is_link) {
+            let limit = limits[number * PART + lane];
+            let bound = bitcast<f32>(limit.x);
+            let found = gather_link(robot_link(part, lane), lane, bound, limit.y, NOTHING);
+            own_first = atomicAdd(&part_count, found);
+            if (found > MOST_GATHERED) {
+                atomicStore(&part_full, 1u);
+            }
+        }
+    }
+    workgroupBarrier();
+    if (lane == 0u && number < query.parts && heads[number].y == SECOND) {
+        let total = atomicLoad(&part_count);
+        heads[number] = vec2<u32>(0u, FULL);
+        if (atomicLoad(&part_full) == 0u) {
+            let first = atomicAdd(&counters[0], total);
+            if (first + total <= query.room) {
+                part_first = first;
+                heads[number] = vec2<u32>(first, FOUND + total);
+            }
+        }
+    }
+    workgroupBarrier();
+    if (is_link && part_first != NOTHING) {
+        let limit = limits[number * PART + lane];
+        let bound = bitcast<f32>(limit.x);
+        let link = robot_link(parts[number], lane);
+        gather_link(link, lane, bound, limit.y, part_first + own_first);
+    }
+}

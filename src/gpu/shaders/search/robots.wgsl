@@ -1,0 +1,43 @@
+// What a search reads and writes. A part is up to PART links of one robot: a workgroup, a thread a
+// link.
+
+struct Part {
+    // Where its points and its radii begin in `robots`.
+    points: u32,
+    radii: u32,
+    links: u32,
+    unused: u32,
+}
+
+@group(0) @binding(0) var<uniform> query: SearchQuery;
+@group(0) @binding(1) var<storage, read> nodes: array<Node>;
+@group(0) @binding(2) var<storage, read> triangles: array<Triangle>;
+@group(0) @binding(3) var<storage, read> parts: array<Part>;
+// Points; and for each link its radius and which caps are flat.
+@group(0) @binding(4) var<storage, read> robots: array<f32>;
+// For each part its first entry, and a status or FOUND plus the number of its entries.
+@group(0) @binding(5) var<storage, read_write> heads: array<vec2<u32>>;
+// Candidates: a link of the part and a triangle.
+@group(0) @binding(6) var<storage, read_write> entries: array<vec2<u32>>;
+// The number of entries; nodes, leaves and links visited.
+@group(0) @binding(7) var<storage, read_write> counters: array<atomic<u32>>;
+// For the links of a part that takes a second pass: the bound, and the triangle limit.
+@group(0) @binding(8) var<storage, read_write> limits: array<vec2<u32>>;
+
+fn robot_point(place: u32) -> vec3<f32> {
+    return vec3<f32>(robots[place], robots[place + 1u], robots[place + 2u]);
+}
+
+fn robot_link(part: Part, link: u32) -> SearchedLink {
+    let place = part.points + 3u * link;
+    let radius = part.radii + 2u * link;
+    let start = robot_point(place);
+    let end = robot_point(place + 3u);
+    return link_new(start, end, robots[radius], robots[radius + 1u]);
+}
+
+// The limit on the squared distance of a box from the axis.
+fn box_limit(link: SearchedLink, bound: f32) -> f32 {
+    let limit = bound + link.radius + link.error;
+    return limit * limit;
+}
