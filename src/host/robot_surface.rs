@@ -249,11 +249,11 @@ fn within(margin: Real) -> Result<Real, Unsupported> {
 
 /// The error for a visited triangle with a vertex that is NaN or infinite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct TriangleNotFinite;
+pub(crate) struct TriangleNotFinite;
 
 /// When a search ends.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum SearchGoal {
+pub(crate) enum SearchGoal {
     /// When the nearest triangle is known.
     Nearest,
     /// When some triangle is nearer than the bound.

@@ -348,7 +348,7 @@ pub(super) struct RadiusRuns<'a> {
 }
 
 /// The points of one run. Both ends must stay, and no two consecutive points are equal.
-struct RadiusRun<'a> {
+pub(crate) struct RadiusRun<'a> {
     pub(super) points: &'a [Vector],
     pub(super) radius: Real,
 }

@@ -225,7 +225,7 @@ impl<'a, T: Refinable> BoundsSearch<'a, T> {
 
 /// The place that realised the last answer.
 #[derive(Clone, Copy, Debug)]
-struct LastPlace {
+pub(crate) struct LastPlace {
     pub triangle: u32,
     pub section: u32,
     pub arc: Real,

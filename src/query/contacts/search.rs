@@ -246,7 +246,7 @@ fn three_bits(lanes: [u64; 3], lane: usize, first: usize) -> u8 {
 
 /// The opposite corners beyond the edges of a leaf's triangles.
 #[derive(Clone)]
-struct LeafCorners<E> {
+pub(crate) struct LeafCorners<E> {
     /// Rows in the layout of the triangles' own corners; NaN if an edge has no second triangle.
     pub rows: [E; 9 * BLOCK],
     /// The corner that each triangle has first in its leaf, two bits per triangle.
