@@ -112,13 +112,13 @@ impl Tube {
         // Reserve for the most parts in both buffers: later calls then allocate nothing, for any
         // number of cubics.
         let most = 1 + MAX_PARTS as usize * (samples.points.len() - 1);
-        let mut laid = std::mem::take(&mut self.spare.0).into_samples();
+        let mut new_samples = std::mem::take(&mut self.buffer.0).into_samples();
         samples.reserve(most);
-        laid.reserve(most);
-        let mut sections = std::mem::take(&mut self.spare.1);
-        let is_laid = self.with_long_segments(tangents, &mut laid, &mut sections);
-        self.spare = (Curve::Samples(laid), sections);
-        if is_laid {
+        new_samples.reserve(most);
+        let mut sections = std::mem::take(&mut self.buffer.1);
+        let is_built = self.with_long_segments(tangents, &mut new_samples, &mut sections);
+        self.buffer = (Curve::Samples(new_samples), sections);
+        if is_built {
             self.exchange();
             let Curve::Samples(samples) = &self.curve else { return };
             let points = samples.points.iter();
@@ -131,7 +131,7 @@ impl Tube {
     fn with_long_segments(
         &self,
         tangents: Option<[Vector; 2]>,
-        laid: &mut Samples,
+        new_samples: &mut Samples,
         sections: &mut Vec<Section>,
     ) -> bool {
         let Curve::Samples(samples) = &self.curve else { return false };
@@ -139,35 +139,35 @@ impl Tube {
         let off = 4.0 * Real::UNIT_ROUNDOFF * self.reach + 2.0 * self.merged;
         let scale = self.reach.power_of_two_to_unity();
         let curve = SampledCurve { tube: self, samples, tangents, off, scale };
-        laid.clear();
+        new_samples.clear();
         sections.clear();
-        laid.points.push(points[0]);
-        laid.arcs.push(0.0);
-        let mut is_laid = false;
+        new_samples.points.push(points[0]);
+        new_samples.arcs.push(0.0);
+        let mut is_built = false;
         for section in &self.sections {
-            let first = laid.points.len() as u32 - 1;
+            let first = new_samples.points.len() as u32 - 1;
             for from in section.first as usize..section.last as usize {
                 let long = if section.is_even { None } else { curve.long(from, section.radius) };
                 let (number, point) = (segments[from], points[from + 1]);
                 let length = arcs[from + 1] - arcs[from];
                 if let Some(LongSegment { arch, bound }) = long {
-                    is_laid = true;
+                    is_built = true;
                     let length = length / Real::from(arch.parts(bound));
                     for next in arch.points(bound, point * scale, 1.0 / scale) {
-                        laid.push(number, NextPoint { length, ..next });
+                        new_samples.push(number, NextPoint { length, ..next });
                     }
                 } else {
-                    laid.push(number, NextPoint { point, length, bound: bounds[from] });
+                    new_samples.push(number, NextPoint { point, length, bound: bounds[from] });
                 }
                 // Without the rounding of a sum of parts.
-                if let Some(end) = laid.arcs.last_mut() {
+                if let Some(end) = new_samples.arcs.last_mut() {
                     *end = arcs[from + 1];
                 }
             }
-            sections.push(Section { first, last: laid.points.len() as u32 - 1, ..*section });
+            sections.push(Section { first, last: new_samples.points.len() as u32 - 1, ..*section });
         }
-        laid.segments.push(segments.last().copied().unwrap_or(0));
-        laid.bounds.push(CurveBound::default());
-        is_laid
+        new_samples.segments.push(segments.last().copied().unwrap_or(0));
+        new_samples.bounds.push(CurveBound::default());
+        is_built
     }
 }

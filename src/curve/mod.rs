@@ -81,7 +81,7 @@ pub struct Tube {
     curve: Curve,
     sections: Vec<Section>,
     /// Memory for the next samples. Measuring into it leaves the tube unchanged on an error.
-    spare: (Curve, Vec<Section>),
+    buffer: (Curve, Vec<Section>),
     /// The stated distance of the curve from the given one.
     error: Real,
     /// The stated error of directions near flat ends, rad; `None` if not stated.
@@ -95,7 +95,7 @@ pub struct Tube {
     /// An upper bound on the coordinates of the centreline and on its length.
     reach: Real,
     /// Memory for clusters of samples.
-    crowds: [Vec<SampleCluster>; 2],
+    clusters: [Vec<SampleCluster>; 2],
     /// Memory for the bends that samples show.
     hats: Vec<Hat>,
     /// Memory for the ends and caps of the next links.
@@ -272,22 +272,22 @@ impl Tube {
 
     /// Swaps curve and sections with the spare ones.
     fn exchange(&mut self) {
-        std::mem::swap(&mut self.curve, &mut self.spare.0);
-        std::mem::swap(&mut self.sections, &mut self.spare.1);
+        std::mem::swap(&mut self.curve, &mut self.buffer.0);
+        std::mem::swap(&mut self.sections, &mut self.buffer.1);
     }
 
     pub(crate) fn empty() -> Self {
         Self {
             curve: Curve::default(),
             sections: Vec::new(),
-            spare: (Curve::default(), Vec::new()),
+            buffer: (Curve::default(), Vec::new()),
             error: 0.0,
             turn: None,
             residual: 0.0,
             deviation: 0.0,
             merged: 0.0,
             reach: 0.0,
-            crowds: Default::default(),
+            clusters: Default::default(),
             hats: Vec::new(),
             ends: Vec::new(),
             caps: Vec::new(),

@@ -14,7 +14,7 @@ pub(super) struct SamplePrefix<'a> {
     /// The length of the polyline up to each sample.
     pub arcs: &'a [Real],
     /// The clusters.
-    pub crowds: &'a [SampleCluster],
+    pub clusters: &'a [SampleCluster],
 }
 
 /// A section under construction.
@@ -132,7 +132,7 @@ impl OpenSection {
         hats: &mut Vec<Hat>,
         bounds: &mut Vec<CurveBound>,
     ) -> Result<(Section, Option<usize>), Bend> {
-        let SamplePrefix { points, arcs, crowds } = *so_far;
+        let SamplePrefix { points, arcs, clusters } = *so_far;
         let first = self.section.first as usize;
         (self.section.last, self.section.end) = (last as u32, arcs[last]);
         let own = SectionSamples {
@@ -142,13 +142,13 @@ impl OpenSection {
             radius: self.section.radius,
             rounding,
             first,
-            crowds,
+            clusters,
         };
-        let (mut sharpest, mut crowding) = (None, None);
+        let (mut sharpest, mut dense_sample) = (None, None);
         if self.is_uneven {
             bounds.resize(first, CurveBound::default());
             let least = if self.turns < 2 { self.at_ends } else { 0.0 };
-            (sharpest, crowding) = own.bound_unevenly(least, hats, bounds);
+            (sharpest, dense_sample) = own.bound_unevenly(least, hats, bounds);
             self.section.bound_by(&bounds[first..], &arcs[first..=last]);
             if self.loosest > 0.0 {
                 // The true chords may be longer by this share, and their turn with them, squared.
@@ -181,7 +181,7 @@ impl OpenSection {
         }
         match sharpest {
             Some(Bend { at, from, turn }) => Err(Bend { at: first + at, from: first + from, turn }),
-            None => Ok((self.section, crowding.map(|sample| first + sample))),
+            None => Ok((self.section, dense_sample.map(|sample| first + sample))),
         }
     }
 }

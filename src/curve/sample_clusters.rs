@@ -87,21 +87,21 @@ pub(super) fn find(
     tangents: Option<[Vector; 2]>,
     at: usize,
     one_place: Real,
-    crowds: &mut Vec<SampleCluster>,
+    clusters: &mut Vec<SampleCluster>,
 ) -> bool {
     let apart = |other: &Vector| (*other - samples[at]).length();
     let is_apart = |length: &Real| *length > one_place;
     let before = samples[..at].iter().rev().map(apart).find(is_apart);
     let behind = samples[at..].iter().map(apart).find(is_apart);
     let closest = before.into_iter().chain(behind).fold(Real::INFINITY, Real::min);
-    let left_out = |crowds: &[SampleCluster]| {
-        crowds.iter().map(|crowd| crowd.last - crowd.first).sum::<usize>()
+    let left_out = |clusters: &[SampleCluster]| {
+        clusters.iter().map(|cluster| cluster.last - cluster.first).sum::<usize>()
     };
-    let known = left_out(crowds);
+    let known = left_out(clusters);
     let mut within = closest;
     for _ in 0..=MAX_DOUBLINGS {
-        find_within(samples, radii, tangents, [within, one_place], crowds);
-        if left_out(crowds) > known {
+        find_within(samples, radii, tangents, [within, one_place], clusters);
+        if left_out(clusters) > known {
             return true;
         }
         within *= 2.0;
@@ -115,9 +115,9 @@ fn find_within(
     radii: &[Real],
     tangents: Option<[Vector; 2]>,
     [within, one_place]: [Real; 2],
-    crowds: &mut Vec<SampleCluster>,
+    clusters: &mut Vec<SampleCluster>,
 ) {
-    crowds.clear();
+    clusters.clear();
     let (mut first, mut before, mut previous) = (0, Real::INFINITY, None);
     while first < samples.len() {
         let apart = |k: usize| (samples[k] - samples[first]).length();
@@ -146,7 +146,7 @@ fn find_within(
                 let tangent = tangents.map(|tangents| tangents[1 - end]);
                 through(end, here, ends, tangent, one_place)
             });
-            crowds.push(SampleCluster { first, last: next - 1, point, gap, bends });
+            clusters.push(SampleCluster { first, last: next - 1, point, gap, bends });
         } else {
             // Repeated samples are dropped elsewhere.
             next = first + 1;
@@ -205,21 +205,21 @@ fn through(
 
 /// Returns the bends of the segment adjacent to a cluster's point, if the curve passes through all
 /// samples.
-pub(super) fn bend_at(crowds: &[SampleCluster], point: usize, end: usize) -> [Real; 2] {
-    crowd_at(crowds, point).map_or([0.0; 2], |crowd| crowd.bends[end].beside)
+pub(super) fn bend_at(clusters: &[SampleCluster], point: usize, end: usize) -> [Real; 2] {
+    crowd_at(clusters, point).map_or([0.0; 2], |cluster| cluster.bends[end].beside)
 }
 
 /// As [`bend_at`], for the segment beyond it.
-pub(super) fn beyond_at(crowds: &[SampleCluster], point: usize, end: usize) -> Real {
-    crowd_at(crowds, point).map_or(0.0, |crowd| crowd.bends[end].beyond)
+pub(super) fn beyond_at(clusters: &[SampleCluster], point: usize, end: usize) -> Real {
+    crowd_at(clusters, point).map_or(0.0, |cluster| cluster.bends[end].beyond)
 }
 
-fn crowd_at(crowds: &[SampleCluster], point: usize) -> Option<&SampleCluster> {
-    let crowd = crowds.get(crowds.partition_point(|crowd| crowd.point < point));
-    crowd.filter(|crowd| crowd.point == point)
+fn crowd_at(clusters: &[SampleCluster], point: usize) -> Option<&SampleCluster> {
+    let cluster = clusters.get(clusters.partition_point(|cluster| cluster.point < point));
+    cluster.filter(|cluster| cluster.point == point)
 }
 
 /// Returns the largest distance of the curve from a cluster's point; 0 for other points.
-pub(super) fn gap_at(crowds: &[SampleCluster], point: usize) -> Real {
-    crowd_at(crowds, point).map_or(0.0, |crowd| crowd.gap)
+pub(super) fn gap_at(clusters: &[SampleCluster], point: usize) -> Real {
+    crowd_at(clusters, point).map_or(0.0, |cluster| cluster.gap)
 }

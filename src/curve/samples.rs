@@ -80,31 +80,31 @@ impl Tube {
         // Coordinates of one place that were computed in two ways may differ by this.
         let one_place = 32.0 * Real::UNIT_ROUNDOFF * reach;
         let given = InputSamples { samples, radii, tangents, reach, one_place };
-        let [mut crowds, mut good] = std::mem::take(&mut self.crowds);
+        let [mut clusters, mut good] = std::mem::take(&mut self.clusters);
         let mut hats = std::mem::take(&mut self.hats);
-        crowds.clear();
-        let (mut result, mut crowding) = self.lay_samples(&given, &mut crowds, &mut hats);
+        clusters.clear();
+        let (mut result, mut dense_sample) = self.lay_samples(&given, &mut clusters, &mut hats);
         for _ in 0..MAX_TRIALS {
             let at = match result {
                 Err(RobotError::TurnsTooSharply { index, .. }) => Some(index),
-                Ok(()) | Err(RobotError::BendsWithinRadius { .. }) => crowding,
+                Ok(()) | Err(RobotError::BendsWithinRadius { .. }) => dense_sample,
                 Err(_) => None,
             };
             let is_good = result.is_ok();
-            good.clone_from(&crowds);
+            good.clone_from(&clusters);
             if !at.is_some_and(|at| {
-                sample_clusters::find(samples, radii, tangents, at, one_place, &mut crowds)
+                sample_clusters::find(samples, radii, tangents, at, one_place, &mut clusters)
             }) {
                 break;
             }
-            (result, crowding) = self.lay_samples(&given, &mut crowds, &mut hats);
+            (result, dense_sample) = self.lay_samples(&given, &mut clusters, &mut hats);
             if is_good && result.is_err() {
-                crowds.clone_from(&good);
-                (result, _) = self.lay_samples(&given, &mut crowds, &mut hats);
+                clusters.clone_from(&good);
+                (result, _) = self.lay_samples(&given, &mut clusters, &mut hats);
                 break;
             }
         }
-        (self.crowds, self.hats) = ([crowds, good], hats);
+        (self.clusters, self.hats) = ([clusters, good], hats);
         if result.is_ok() {
             self.lay_long_segments(tangents);
         }
@@ -117,21 +117,21 @@ impl Tube {
     fn lay_samples(
         &mut self,
         given: &InputSamples,
-        crowds: &mut [SampleCluster],
+        clusters: &mut [SampleCluster],
         hats: &mut Vec<Hat>,
     ) -> (Result<(), RobotError>, Option<usize>) {
         // There are almost never clusters, and the loop without them is faster.
-        if crowds.is_empty() {
-            self.lay::<false>(given, crowds, hats)
+        if clusters.is_empty() {
+            self.lay::<false>(given, clusters, hats)
         } else {
-            self.lay::<true>(given, crowds, hats)
+            self.lay::<true>(given, clusters, hats)
         }
     }
 
     fn lay<const CROWD: bool>(
         &mut self,
         given: &InputSamples,
-        crowds: &mut [SampleCluster],
+        clusters: &mut [SampleCluster],
         hats: &mut Vec<Hat>,
     ) -> (Result<(), RobotError>, Option<usize>) {
         let InputSamples { samples, radii, tangents, reach, one_place } = *given;
@@ -151,17 +151,22 @@ impl Tube {
         let (mut arc, mut before, mut last) = (0.0, None::<Segment>, 0);
         let mut open = OpenSection::new(0, 0.0, radii[0]);
         // The next cluster, and the uncertainty of the curve at the last point.
-        let (mut number, mut off) =
-            (0, crowds.first().filter(|crowd| crowd.first == 0).map_or(0.0, |crowd| crowd.gap));
-        let (mut result, mut crowding) = (Ok(()), None);
+        let (mut number, mut off) = (
+            0,
+            clusters
+                .first()
+                .filter(|cluster| cluster.first == 0)
+                .map_or(0.0, |cluster| cluster.gap),
+        );
+        let (mut result, mut dense_sample) = (Ok(()), None);
         for (k, (&sample, &radius)) in samples[1..].iter().zip(radii).enumerate() {
             let mut off_here = 0.0;
-            if CROWD && let Some(crowd) = crowds.get(number) {
-                if crowd.first < k + 1 && k < crowd.last {
-                    number += usize::from(crowd.last == k + 1);
+            if CROWD && let Some(cluster) = clusters.get(number) {
+                if cluster.first < k + 1 && k < cluster.last {
+                    number += usize::from(cluster.last == k + 1);
                     continue;
                 }
-                off_here = if crowd.first == k + 1 { crowd.gap } else { 0.0 };
+                off_here = if cluster.first == k + 1 { cluster.gap } else { 0.0 };
             }
             // A part left out before the segment makes its direction uncertain.
             let Some(segment) = Segment::between(points[last], sample, rounding + gap) else {
@@ -185,11 +190,11 @@ impl Tube {
                         OpenSection::behind_step(last, arc, radius, turn),
                     );
                     self.merged = self.merged.max(done.section.radius - done.least_radius);
-                    let so_far = SamplePrefix { points: &points, arcs: &arcs, crowds };
+                    let so_far = SamplePrefix { points: &points, arcs: &arcs, clusters };
                     match done.close(last, rounding + widest_gap, &so_far, hats, &mut bounds) {
                         Ok((section, near)) => {
                             self.sections.push(section);
-                            crowding = crowding.or(near);
+                            dense_sample = dense_sample.or(near);
                         }
                         Err(bend) => result = result.and(Err(bend.error(&segments))),
                     }
@@ -210,7 +215,7 @@ impl Tube {
             before = Some(segment);
             off = off_here;
             if CROWD && off > 0.0 {
-                crowds[number].point = last;
+                clusters[number].point = last;
             }
         }
         if let (Some(segment), Some([_, tangent])) = (before, tangents) {
@@ -220,12 +225,12 @@ impl Tube {
         arcs.truncate(last + 1);
         segments.truncate(last + 1);
         self.merged = self.merged.max(open.section.radius - open.least_radius) + widest_gap;
-        self.merged += crowds.iter().fold(0.0, |widest: Real, crowd| widest.max(crowd.gap));
-        let so_far = SamplePrefix { points: &points, arcs: &arcs, crowds };
+        self.merged += clusters.iter().fold(0.0, |widest: Real, cluster| widest.max(cluster.gap));
+        let so_far = SamplePrefix { points: &points, arcs: &arcs, clusters };
         match open.close(last, rounding + widest_gap, &so_far, hats, &mut bounds) {
             Ok((section, near)) => {
                 self.sections.push(section);
-                crowding = crowding.or(near);
+                dense_sample = dense_sample.or(near);
             }
             Err(bend) => result = result.and(Err(bend.error(&segments))),
         }
@@ -239,13 +244,13 @@ impl Tube {
         }
         if result.is_ok() {
             let unknown = rounding + widest_gap;
-            result = self.stand_faces(&points, &bounds, unknown, given, crowds);
+            result = self.stand_faces(&points, &bounds, unknown, given, clusters);
         }
         // Converts to the index of the sample in the input.
-        let crowding = crowding
+        let dense_sample = dense_sample
             .map(|at: usize| at.checked_sub(1).map_or(0, |before| segments[before] as usize + 1));
         self.curve = Curve::Samples(Samples { points, arcs, segments, bounds });
-        (result, crowding)
+        (result, dense_sample)
     }
 
     /// Finds the flat ends of the sections and their directions. `points` are the samples without
@@ -256,7 +261,7 @@ impl Tube {
         bounds: &[CurveBound],
         rounding: Real,
         given: &InputSamples,
-        crowds: &[SampleCluster],
+        clusters: &[SampleCluster],
     ) -> Result<(), RobotError> {
         let last = self.sections.len() - 1;
         for end in [0, 1] {
@@ -281,13 +286,13 @@ impl Tube {
                         let from =
                             if end == 0 { section.first as usize } else { section.last as usize };
                         // Clusters are in the order of their points.
-                        let first = crowds.partition_point(|crowd| {
-                            crowd.point.saturating_add(FACE_SAMPLES) < from
+                        let first = clusters.partition_point(|cluster| {
+                            cluster.point.saturating_add(FACE_SAMPLES) < from
                         });
-                        let near = crowds[first..]
-                            .iter()
-                            .take_while(|crowd| crowd.point <= from.saturating_add(FACE_SAMPLES));
-                        let off = near.fold(0.0, |off: Real, crowd| off.max(2.0 * crowd.gap));
+                        let near = clusters[first..].iter().take_while(|cluster| {
+                            cluster.point <= from.saturating_add(FACE_SAMPLES)
+                        });
+                        let off = near.fold(0.0, |off: Real, cluster| off.max(2.0 * cluster.gap));
                         direction_at_end(ahead, stretch.len(), curvature, rounding + off)
                     }
                 };
@@ -296,7 +301,7 @@ impl Tube {
             });
         }
         for section in &self.sections {
-            super::check_faces(section, || given.position_of(section.first as usize, crowds))?;
+            super::check_faces(section, || given.position_of(section.first as usize, clusters))?;
         }
         self.mark_persistent_faces();
         Ok(())
@@ -327,13 +332,13 @@ struct InputSamples<'a> {
 
 impl InputSamples<'_> {
     /// Returns the index in the input of a point, counting the samples that were dropped.
-    fn position_of(&self, point: usize, crowds: &[SampleCluster]) -> usize {
+    fn position_of(&self, point: usize, clusters: &[SampleCluster]) -> usize {
         let (mut last, mut count) = (0, 0);
         for (k, &sample) in self.samples.iter().enumerate().skip(1) {
             let is_apart = |segment: Segment| segment.length > self.one_place;
-            let is_dropped = |crowd: &SampleCluster| crowd.first < k && k <= crowd.last;
+            let is_dropped = |cluster: &SampleCluster| cluster.first < k && k <= cluster.last;
             if count < point
-                && !crowds.iter().any(is_dropped)
+                && !clusters.iter().any(is_dropped)
                 && Segment::between(self.samples[last], sample, 0.0).is_some_and(is_apart)
             {
                 (last, count) = (k, count + 1);

@@ -81,7 +81,7 @@ pub(super) struct SectionSamples<'a> {
     pub rounding: Real,
     /// The index of the first of them among all samples, and the clusters.
     pub first: usize,
-    pub crowds: &'a [SampleCluster],
+    pub clusters: &'a [SampleCluster],
 }
 
 /// A segment in which the curve may turn too far.
@@ -108,7 +108,7 @@ pub(super) struct Hat {
     /// The bend as a vector; `None` at an end without a tangent.
     bend: Option<Vector>,
     /// Upper bound on the error of the bend due to clusters.
-    doubt: Real,
+    bend_noise: Real,
     /// Whether the bend may be compared with its neighbours' (see **Details**).
     is_even: bool,
     /// The counted bend.
@@ -136,20 +136,20 @@ impl<F: Fn(usize) -> Hat> Chain<F> {
     /// Returns the curvature around a sample that shows `most`: corrections 1 (peak) and 2.
     fn around(&self, place: usize, most: Real) -> Real {
         let mut curvature = most;
-        let Hat { bend, doubt, is_even, .. } = (self.hat)(place);
+        let Hat { bend, bend_noise, is_even, .. } = (self.hat)(place);
         if let Some(here) = bend.filter(|_| is_even) {
             // The decrease of bends towards an end, and how far they turn.
             let side = |end: usize| {
                 let next = self.next(place, end)?;
-                let Hat { bend, doubt: own, is_even, .. } = (self.hat)(next);
+                let Hat { bend, bend_noise: own, is_even, .. } = (self.hat)(next);
                 let bend = bend.filter(|_| is_even)?;
-                let fall = (here.length() - bend.length()).abs() + doubt + own;
+                let fall = (here.length() - bend.length()).abs() + bend_noise + own;
                 let next_fall = self.next(next, end).and_then(|beyond| {
                     let beyond = Some((self.hat)(beyond)).filter(|beyond| beyond.is_even)?;
                     let fall = (bend.length() - beyond.bend?.length()).abs();
-                    Some(fall + own + beyond.doubt)
+                    Some(fall + own + beyond.bend_noise)
                 });
-                let (apart, more) = (bend - here, doubt + own);
+                let (apart, more) = (bend - here, bend_noise + own);
                 let turned = apart.length_squared() + more * (2.0 * apart.length() + more);
                 Some([next_fall.map_or(fall, |next_fall| fall.max(next_fall)), turned])
             };
@@ -159,7 +159,7 @@ impl<F: Fn(usize) -> Hat> Chain<F> {
                 [Some(one), None] | [None, Some(one)] => [0.0, one[1]],
                 [None, None] => [0.0; 2],
             };
-            let [least, size] = [here.length() - doubt, here.length() + doubt];
+            let [least, size] = [here.length() - bend_noise, here.length() + bend_noise];
             if size > 0.0 {
                 let hidden = if least > 0.0 { turned.min(size * least) / least } else { size };
                 curvature += (2.0 * peak).min(0.25 * most) + hidden / 8.0;
@@ -185,12 +185,12 @@ impl<F: Fn(usize) -> Hat> Chain<F> {
             outer = length(Some(first), Some(next));
             first = next;
         }
-        let Hat { bend: Some(bend), doubt, .. } = (self.hat)(first) else { return 0.0 };
-        let size = bend.length() + doubt;
+        let Hat { bend: Some(bend), bend_noise, .. } = (self.hat)(first) else { return 0.0 };
+        let size = bend.length() + bend_noise;
         let second = inwards(first);
         let Some((next, next_doubt)) = second.and_then(|second| {
             let next = Some((self.hat)(second)).filter(|next| next.is_even)?;
-            Some((next.bend?, next.doubt))
+            Some((next.bend?, next.bend_noise))
         }) else {
             return size;
         };
@@ -200,9 +200,9 @@ impl<F: Fn(usize) -> Hat> Chain<F> {
         let apart = (outer + between + beyond) / 3.0;
         let to_end = if outer > 0.0 { (2.0 * outer + between) / 3.0 } else { between / 3.0 };
         let fall = size - next.length() + next_doubt;
-        let growth = fall * (to_end / apart);
+        let increase = fall * (to_end / apart);
         // Written so that NaN is no growth.
-        if growth > 0.0 { size + growth.min(0.5 * size) } else { size }
+        if increase > 0.0 { size + increase.min(0.5 * size) } else { size }
     }
 }
 
@@ -252,9 +252,9 @@ impl SectionSamples<'_> {
     }
 
     fn segment(&self, from: usize, to: usize) -> Option<Segment> {
-        let gap = |sample: usize| gap_at(self.crowds, self.first + sample);
+        let gap = |sample: usize| gap_at(self.clusters, self.first + sample);
         let segment = Segment::between(self.points[from], self.points[to], self.rounding)?;
-        Some(if self.crowds.is_empty() { segment } else { segment.with_gap(gap(from) + gap(to)) })
+        Some(if self.clusters.is_empty() { segment } else { segment.with_gap(gap(from) + gap(to)) })
     }
 
     /// Returns the hat of a sample between two segments.
@@ -270,15 +270,15 @@ impl SectionSamples<'_> {
                     .map(|tangent| (tangent - before.direction) / (0.5 * before.length)),
                 _ => None,
             };
-        let mut doubt = 0.0;
-        if !self.crowds.is_empty() {
+        let mut bend_noise = 0.0;
+        if !self.clusters.is_empty() {
             let size = bend.map_or(0.0, |bend| bend.length());
             let sum = |of: fn(&Segment) -> Real| before.iter().chain(&behind).map(of).sum::<Real>();
             let gap = sum(|segment| segment.length - segment.least);
-            doubt =
+            bend_noise =
                 (2.0 * sum(|segment| segment.noise) + size * gap) / sum(|segment| segment.least);
         }
-        Hat { sample, bend, doubt, is_even: true, shown: 0.0, around: 0.0 }
+        Hat { sample, bend, bend_noise, is_even: true, shown: 0.0, around: 0.0 }
     }
 
     /// Appends the hats of a chain of samples.
@@ -345,17 +345,20 @@ impl SectionSamples<'_> {
     /// cluster beside it. Bends of more than 1 rad, or within the radius, are excluded: the tube
     /// would be refused.
     fn through_crowds(&self, from: usize) -> Real {
-        if self.crowds.is_empty() {
+        if self.clusters.is_empty() {
             return 0.0;
         }
         let point = self.first + from;
         let length = self.arcs[from + 1] - self.arcs[from];
         let is_possible = |bend: &Real| bend * length <= 1.0 && bend * self.radius < 1.0;
-        let beside =
-            bend_at(self.crowds, point, 1).into_iter().chain(bend_at(self.crowds, point + 1, 0));
-        let before = if from > 0 { beyond_at(self.crowds, point - 1, 1) } else { 0.0 };
+        let beside = bend_at(self.clusters, point, 1).into_iter().chain(bend_at(
+            self.clusters,
+            point + 1,
+            0,
+        ));
+        let before = if from > 0 { beyond_at(self.clusters, point - 1, 1) } else { 0.0 };
         let behind =
-            if from + 2 <= self.last() { beyond_at(self.crowds, point + 2, 0) } else { 0.0 };
+            if from + 2 <= self.last() { beyond_at(self.clusters, point + 2, 0) } else { 0.0 };
         beside.chain([before, behind]).filter(is_possible).fold(0.0, Real::max)
     }
 
@@ -380,7 +383,8 @@ impl SectionSamples<'_> {
         };
         hats.clear();
         let show_widely = |hat: &mut Hat, _: Option<Segment>, _: Option<Segment>| {
-            hat.shown = hat.bend.map_or(0.0, |bend| bend.length() + noise / shortest) + hat.doubt;
+            hat.shown =
+                hat.bend.map_or(0.0, |bend| bend.length() + noise / shortest) + hat.bend_noise;
         };
         self.collect(is_in, show_widely, hats);
         let most = hats.iter().fold(0.0, |most: Real, hat| most.max(hat.shown));

@@ -228,13 +228,14 @@ impl TubeTurns {
             return None;
         }
         let [start, end] = [first, last].map(|heading| headings[heading].turned);
-        let spare = end - start - (angle - self.slack);
-        if spare.is_nan() || spare < 0.0 {
+        let buffer = end - start - (angle - self.slack);
+        if buffer.is_nan() || buffer < 0.0 {
             return None;
         }
         let before =
-            headings[..last].partition_point(|heading| heading.turned <= start + 0.5 * spare);
-        let behind = headings[..last].partition_point(|heading| heading.turned < end - 0.5 * spare);
+            headings[..last].partition_point(|heading| heading.turned <= start + 0.5 * buffer);
+        let behind =
+            headings[..last].partition_point(|heading| heading.turned < end - 0.5 * buffer);
         Some([headings[before.saturating_sub(1).max(first)].from, headings[behind].to])
     }
 }

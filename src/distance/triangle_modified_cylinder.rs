@@ -242,11 +242,7 @@ impl<T: Scalar> Axial<T> {
 
     /// Same as [`with_caps`](Self::with_caps), with the solver `S` for segments and discs.
     #[inline(always)]
-    fn with_caps_by<S: DiscSolver<T>>(
-        &self,
-        link: &Link<T>,
-        face: &Face<T>,
-    ) -> Closest<T> {
+    fn with_caps_by<S: DiscSolver<T>>(&self, link: &Link<T>, face: &Face<T>) -> Closest<T> {
         let upper = self.without_caps(link);
         let (centre, outward) = self.cap(link);
         let disc =

@@ -19,17 +19,17 @@ fn used_of_course(
     shares: [Real; 2],
     times: [Real; 2],
 ) -> Real {
-    let course = motion.displacement(section, shares, times).unwrap();
+    let bound = motion.displacement(section, shares, times).unwrap();
     let mut most: Real = 0.0;
     for part in [0.0, 0.25, 0.5, 0.75, 1.0] {
         let share = shares[0] + (shares[1] - shares[0]) * part;
-        let way = course.way(part);
+        let way = bound.way(part);
         let [first, last] = times.map(|t| at(motion, t, section, share).0);
         for q in [0.0, 0.25, 0.5, 0.75, 1.0] {
             let here = at(motion, times[0] + (times[1] - times[0]) * q, section, share).0;
             let off =
                 (here - first - way * q).length().max((last - here - way * (1.0 - q)).length());
-            most = most.max(off / course.off);
+            most = most.max(off / bound.off);
         }
     }
     most
@@ -149,9 +149,9 @@ fn what_a_curvature_changes_by_unevenly_counts_in_a_course() {
         BendingRates { length, growth: 0.0, curvature, bending: curvature * RATE, step: 0.0 };
     let used = |bends: &[Real]| {
         let times = [0.3, 0.32];
-        let course = bending_displacement(&[rates], bends, 0, [1.0; 2], times, point);
-        let off = point(1.0, 0.31) - point(1.0, times[0]) - course.way(0.0) * 0.5;
-        off.length() / course.off
+        let bound = bending_displacement(&[rates], bends, 0, [1.0; 2], times, point);
+        let off = point(1.0, 0.31) - point(1.0, times[0]) - bound.way(0.0) * 0.5;
+        off.length() / bound.off
     };
     let turning = curvature * RATE * RATE;
     assert!((0.8..=1.0).contains(&used(&[turning])), "{}", used(&[turning]));

@@ -79,8 +79,8 @@ impl<M: Motion> Drift for MotionDrift<'_, M> {
     fn stretches(&self, section: usize) -> Real {
         let [from, to] = self.times;
         let sides = [[from, self.t], [self.t, to]].map(|times| {
-            let course = self.motion.displacement(section, [0.0, 1.0], times)?;
-            let change = (course.ways[1] - course.ways[0]).length() + 2.0 * course.off;
+            let bound = self.motion.displacement(section, [0.0, 1.0], times)?;
+            let change = (bound.ways[1] - bound.ways[0]).length() + 2.0 * bound.off;
             (change >= 0.0).then_some(change)
         });
         let by_speed = self.moves(section, 0) + self.moves(section, 1);

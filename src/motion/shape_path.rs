@@ -54,12 +54,12 @@ impl<'a> ShapePath<'a> {
 
     /// Returns the shapes before and behind a time, and its position between them from 0 to 1.
     fn around(&self, t: Real) -> ([&'a Chain; 2], Real) {
-        let (legs, last) = (self.time_parts(), self.shapes.len() - 1);
-        let along = t * legs as Real;
+        let (parts, last) = (self.time_parts(), self.shapes.len() - 1);
+        let along = t * parts as Real;
         // The conversion saturates.
-        let leg = (along as usize).min(legs - 1);
-        let share = (along - leg as Real).max(0.0);
-        ([leg, leg + 1].map(|shape| &self.shapes[shape.min(last)]), share.min(1.0))
+        let part = (along as usize).min(parts - 1);
+        let share = (along - part as Real).max(0.0);
+        ([part, part + 1].map(|shape| &self.shapes[shape.min(last)]), share.min(1.0))
     }
 }
 
@@ -82,13 +82,13 @@ impl Motion for ShapePath<'_> {
     }
 
     fn speed(&self, section: usize, shares: [Real; 2], times: [Real; 2]) -> Speed {
-        let legs = self.time_parts();
+        let parts = self.time_parts();
         // Rounding may assign the time of one part to its neighbour.
-        let [first, last] = times.map(|t| ((t * legs as Real) as usize).min(legs - 1));
+        let [first, last] = times.map(|t| ((t * parts as Real) as usize).min(parts - 1));
         let mut point: Real = 0.0;
-        for leg in first..=last {
+        for part in first..=last {
             let [from, to] =
-                [leg, leg + 1].map(|shape| &self.shapes[shape.min(self.shapes.len() - 1)]);
+                [part, part + 1].map(|shape| &self.shapes[shape.min(self.shapes.len() - 1)]);
             let (Some(from), Some(to)) = (ends(from, section), ends(to, section)) else { continue };
             let [start, end] = [to[0] - from[0], to[1] - from[1]];
             let speed = |share: Real| (start + (end - start) * share).length();
@@ -98,7 +98,7 @@ impl Motion for ShapePath<'_> {
                 .fold(0.0, |most: Real, p| most.max(p.abs().max_element()));
             // Covers differences, a length, and the rounding of a moving vertex.
             let rounding = 16.0 * Real::UNIT_ROUNDOFF * reach;
-            let up = legs as Real * (1.0 + 32.0 * Real::UNIT_ROUNDOFF);
+            let up = parts as Real * (1.0 + 32.0 * Real::UNIT_ROUNDOFF);
             point = point.max((speed(shares[0]).max(speed(shares[1])) + rounding) * up);
         }
         Speed { point, turn: 0.0 }
@@ -111,19 +111,20 @@ impl Motion for ShapePath<'_> {
         shares: [Real; 2],
         times: [Real; 2],
     ) -> Option<DisplacementBound> {
-        let legs = self.time_parts() as Real;
-        let leg = ((0.5 * (times[0] + times[1]) * legs) as usize).min(self.time_parts() - 1);
+        let parts = self.time_parts() as Real;
+        let part = ((0.5 * (times[0] + times[1]) * parts) as usize).min(self.time_parts() - 1);
         // Times beyond the part by more than rounding belong to another part.
-        let unsure = 8.0 * Real::UNIT_ROUNDOFF * legs;
+        let unsure = 8.0 * Real::UNIT_ROUNDOFF * parts;
         let is_in =
-            |t: Real| (leg as Real - unsure..=leg as Real + 1.0 + unsure).contains(&(t * legs));
+            |t: Real| (part as Real - unsure..=part as Real + 1.0 + unsure).contains(&(t * parts));
         if !times.into_iter().all(is_in) {
             return None;
         }
-        let [from, to] = [leg, leg + 1].map(|shape| &self.shapes[shape.min(self.shapes.len() - 1)]);
+        let [from, to] =
+            [part, part + 1].map(|shape| &self.shapes[shape.min(self.shapes.len() - 1)]);
         let (from, to) = (ends(from, section)?, ends(to, section)?);
         let [start, end] = [to[0] - from[0], to[1] - from[1]];
-        let apart = (times[1] - times[0]) * legs;
+        let apart = (times[1] - times[0]) * parts;
         let ways = shares.map(|share| (start + (end - start) * share) * apart);
         let reach =
             from.into_iter().chain(to).fold(0.0, |most: Real, p| most.max(p.abs().max_element()));

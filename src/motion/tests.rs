@@ -182,12 +182,12 @@ fn a_path_has_no_gap() {
         let mut shape =
             || [0, 1, 2].map(|k| (random.point() + Vector::Z * (3.0 * Real::from(k))) * unit);
         let shapes = [0; 4].map(|_| shape());
-        let leg = |k: usize| LinearMotion::chain(&shapes[k], &shapes[k + 1], &radii).unwrap();
-        MotionPath::new((0..3).map(leg).collect()).unwrap();
+        let part = |k: usize| LinearMotion::chain(&shapes[k], &shapes[k + 1], &radii).unwrap();
+        MotionPath::new((0..3).map(part).collect()).unwrap();
         // One part in 10^12 of the size is no rounding.
         let off = random.direction() * (1e-12 * 10.0 * unit);
         let moved = shapes[1].map(|point| point + off);
-        let apart = vec![leg(0), LinearMotion::chain(&moved, &shapes[2], &radii).unwrap()];
+        let apart = vec![part(0), LinearMotion::chain(&moved, &shapes[2], &radii).unwrap()];
         let refused = MotionPath::new(apart).unwrap_err();
         assert!(
             matches!(refused, RobotError::MotionsApart { index: 1, section: 0, .. }),
@@ -197,18 +197,18 @@ fn a_path_has_no_gap() {
     for round in 0..200 {
         let bent = [0; 3].map(|_| sections(&mut random, &[0.3, 0.2]));
         let (bases, shift) = ([0; 3].map(|_| random.pose(9.0)), random.direction() * 1e-9);
-        let leg = |k: usize, to: Pose| {
+        let part = |k: usize, to: Pose| {
             let bending = BendingMotion::new(&bent[k], &bent[k + 1], bases[0]).unwrap();
             MovingBase::new(bending, [to, bases[k + 1]]).unwrap()
         };
-        let joined = MotionPath::new(vec![leg(0, bases[0]), leg(1, bases[1])]);
+        let joined = MotionPath::new(vec![part(0, bases[0]), part(1, bases[1])]);
         super::verify_motion(&joined.unwrap(), 8).unwrap();
         let there = match round % 3 {
             0 => Pose::from_parts(bases[1].translation + shift, bases[1].rotation),
             1 => bases[2],
             _ => Pose::new(Vector::ZERO, Vector::X * 1e-6) * bases[1],
         };
-        let refused = MotionPath::new(vec![leg(0, bases[0]), leg(1, there)]).unwrap_err();
+        let refused = MotionPath::new(vec![part(0, bases[0]), part(1, there)]).unwrap_err();
         assert_eq!(refused.kind(), "motions_apart", "{refused}");
     }
 }

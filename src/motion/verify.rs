@@ -272,10 +272,10 @@ fn check_courses(
             .of_place([share; 2])
             .map(|range| (range, motion.displacement(section, range, times)));
         let around = dyadic.iter().copied().filter(|(range, _)| holds(*range, [share; 2]));
-        for (shares, course) in own.chain(around) {
-            let Some(course) = course else { continue };
+        for (shares, bound) in own.chain(around) {
+            let Some(bound) = bound else { continue };
             let length = shares[1] - shares[0];
-            let way = course.way(if length > 0.0 { (share - shares[0]) / length } else { 0.0 });
+            let way = bound.way(if length > 0.0 { (share - shares[0]) / length } else { 0.0 });
             let left = |from: &SampledShape, to: &SampledShape| {
                 let share = (to.t - from.t) / (times[1] - times[0]);
                 let (found, off) = from.way(to, number)?;
@@ -284,7 +284,7 @@ fn check_courses(
             let parts = middle.map(|middle| [left(before, middle), left(middle, here)]);
             for found in parts.into_iter().flatten().chain([left(before, here)]).flatten() {
                 // Covers a few roundings. Written so that NaN is too far.
-                let stated = course.off;
+                let stated = bound.off;
                 let is_kept = found <= stated * (1.0 + 16.0 * Real::UNIT_ROUNDOFF);
                 if !is_kept {
                     let t = 0.5 * (times[0] + times[1]);

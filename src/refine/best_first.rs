@@ -3,13 +3,13 @@
 //! # Definitions
 //! - `lower` of a piece: a lower bound on its clearance: max(distance of its body, `lower` of its
 //!   parent).
-//! - `doubt` of a piece: the gap between its bounds that the unknown direction of a face causes
+//! - `direction_gap` of a piece: the gap between its bounds that the unknown direction of a face causes
 //!   ([`Refinable::direction_uncertainty`]).
 //! - `found` of a piece: the upper bound on the clearance that the piece yields.
 //! - A **measured** piece has its distance and its `found`. An **open** piece has the `lower` of
 //!   its parent. A **distant** piece was searched within its `lower`, without a result: its
 //!   distance is larger.
-//! - The **rank** of a measured piece: (`lower` + `doubt`, upper bound of `found`, place along the
+//! - The **rank** of a measured piece: (`lower` + `direction_gap`, upper bound of `found`, place along the
 //!   tube). An open piece ranks by (`lower`, 0, place), a distant piece by (`lower`, infinity,
 //!   place).
 //!
@@ -18,7 +18,7 @@
 //! pieces. Then the sequence of divisions depends only on the tube and on the obstacle. It is
 //! independent of search bounds, of start triangles and of the tolerance.
 //!
-//! **Proof.** Distance, `found`, `doubt` and place are functions of the piece. By induction over
+//! **Proof.** Distance, `found`, `direction_gap` and place are functions of the piece. By induction over
 //! its parents, so is the `lower` of a measured piece. Measuring a piece never lowers its rank. So
 //! if a measured piece is the first of all, it would also be the first if all pieces were measured.
 //!
@@ -66,7 +66,7 @@ pub(crate) struct PendingPiece<P, B, F> {
 /// The position of a piece in the queue, and its slot.
 #[derive(Clone, Copy, Debug)]
 struct Rank {
-    /// `lower` + `doubt`; the `doubt` of an unmeasured piece is 0.
+    /// `lower` + `direction_gap`; the `direction_gap` of an unmeasured piece is 0.
     least: Real,
     /// The upper bound of a measured piece; infinity for a distant piece, 0 for an open one.
     upper: Real,
@@ -100,7 +100,7 @@ impl Eq for Rank {}
 /// The first piece of the queue.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct First {
-    /// `lower` + `doubt`; the `doubt` of an unmeasured piece is 0.
+    /// `lower` + `direction_gap`; the `direction_gap` of an unmeasured piece is 0.
     pub least: Real,
     pub is_measured: bool,
 }
@@ -147,7 +147,7 @@ impl<P: Copy, B: Body, F: UpperBound> PendingPieces<P, B, F> {
         T: Refinable<Piece = P, Body = B, Upper = F>,
     {
         let slot = self.free.pop().unwrap_or(self.pieces.len() as u32);
-        let (doubt, upper, is_measured) = match &piece.state {
+        let (direction_gap, upper, is_measured) = match &piece.state {
             PieceState::Open => (0.0, 0.0, false),
             PieceState::Distant => (0.0, Real::INFINITY, false),
             PieceState::Measured(_, found) => {
@@ -155,7 +155,13 @@ impl<P: Copy, B: Body, F: UpperBound> PendingPieces<P, B, F> {
             }
         };
         let place = tube.place(&piece.piece);
-        self.queue.push(Rank { least: piece.lower + doubt, upper, is_measured, place, slot });
+        self.queue.push(Rank {
+            least: piece.lower + direction_gap,
+            upper,
+            is_measured,
+            place,
+            slot,
+        });
         match self.pieces.get_mut(slot as usize) {
             Some(free) => *free = piece,
             None => self.pieces.push(piece),

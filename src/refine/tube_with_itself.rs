@@ -612,16 +612,18 @@ impl<'a> TubeWithItself<'a> {
         pair.faces == [None; 2] || !self.is_whole(pair) || {
             let nearest = self.between_faces(pair);
             self.leave(pair, &nearest, |k| {
-                -self.doubt_of_way(pair, k, nearest.distance, self.moved(pair, k))
+                -self.uncertainty_of_way(pair, k, nearest.distance, self.moved(pair, k))
             })
         }
     }
 
     /// Whether the shortest segment certainly leaves all faces outwards, up to rounding.
     fn ways_surely_leave(&self, pair: &SelfPair, nearest: &NearestOfLinks) -> bool {
-        let rounding = doubt_of_way(ROUNDING_OF_FACES * self.tube().slack(), nearest.distance, 0.0);
-        let doubt = |k| self.doubt_of_way(pair, k, nearest.distance, SectionMotion::default());
-        self.leave(pair, nearest, |k| doubt(k) - 2.0 * rounding)
+        let rounding =
+            uncertainty_of_way(ROUNDING_OF_FACES * self.tube().slack(), nearest.distance, 0.0);
+        let direction_gap =
+            |k| self.uncertainty_of_way(pair, k, nearest.distance, SectionMotion::default());
+        self.leave(pair, nearest, |k| direction_gap(k) - 2.0 * rounding)
     }
 
     /// Whether a segment leaves all faces of a pair by at least `least(k)` along their normals, as
@@ -652,7 +654,7 @@ impl<'a> TubeWithItself<'a> {
 
     /// Returns a bound on the error of a segment of length `distance` along the normal of face k,
     /// after the displacement `moved`.
-    fn doubt_of_way(
+    fn uncertainty_of_way(
         &self,
         pair: &SelfPair,
         k: usize,
@@ -661,7 +663,7 @@ impl<'a> TubeWithItself<'a> {
     ) -> Real {
         let face = pair.faces[k].and_then(|end| self.face(&pair.pieces[k], end));
         let tilt = face.map_or(0.0, |face| face.tilt) + moved.turn;
-        doubt_of_way(self.off_of_bodies(pair) + moved.points, distance, tilt)
+        uncertainty_of_way(self.off_of_bodies(pair) + moved.points, distance, tilt)
     }
 
     /// Returns a bound on the distance of both bodies from the faces and links that they contain.
@@ -884,7 +886,7 @@ impl Refinable for TubeWithItself<'_> {
 
     fn halves(&self, pair: &SelfPair, _: &SelfPair, aim: Real) -> Option<[SelfPair; 2]> {
         let (tube, [least, most]) = (self.tube(), self.turns(pair));
-        // If the extra turn causes the doubt, a shorter interval helps more than shorter pieces.
+        // If the extra turn causes the direction gap, a shorter interval helps more than shorter pieces.
         let open = MIN_TURN.max(MAX_SHARE_OF_EXTRA_TURN * self.extra_turn(pair));
         if least < Self::angle(pair) && most - least < open && most > least {
             return None;
@@ -1006,7 +1008,7 @@ fn pair(one: &SelfBody, other: &SelfBody) -> SelfPair {
 
 /// Returns a bound on the error of a segment along a normal that is off by `tilt`, between bodies
 /// that are off by `off` together (module head).
-fn doubt_of_way(off: Real, distance: Real, tilt: Real) -> Real {
+fn uncertainty_of_way(off: Real, distance: Real, tilt: Real) -> Real {
     // Two roots keep the product within the range of numbers.
     off + 2.0 * off.sqrt() * (distance + off).sqrt() + (distance + off) * tilt
 }

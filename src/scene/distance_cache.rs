@@ -237,13 +237,13 @@ mod tests {
                 watch.begin(PlacedRobot::new(&chain, &at).unwrap(), 1);
                 let mut fresh = structure.search.clone();
                 let distance = fresh.minimum(&chain, &structure.in_mesh(&at)).unwrap().distance;
-                let keeps = watch.lower_bound(0, structure.size());
-                assert!(keeps <= distance, "seed {seed}, {way:?}: {keeps:e} of {distance:e}");
+                let bound = watch.lower_bound(0, structure.size());
+                assert!(bound <= distance, "seed {seed}, {way:?}: {bound:e} of {distance:e}");
                 if let Some(noted) = noted
-                    && keeps > 0.0
+                    && bound > 0.0
                 {
                     told[kind] += 1;
-                    sharp[kind] += u32::from(distance - keeps < 0.1 * (noted - distance));
+                    sharp[kind] += u32::from(distance - bound < 0.1 * (noted - distance));
                 }
                 if question % 10 == 1 {
                     watch.record(0, distance, structure.size());

@@ -204,7 +204,7 @@ fn a_gap_before_a_flat_cap_hides_no_overlap() {
             let answer =
                 GpuExhaustive::on(gpu, &mesh).unwrap().minimum(&robot, &Pose::IDENTITY).unwrap();
             assert_eq!(
-                (answer.distance, answer.triangle),
+                (answer.distance, answer.witness.triangle),
                 (0.0, 1),
                 "{name}, {round}: a gap of {gap}"
             );

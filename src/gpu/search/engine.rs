@@ -1,8 +1,7 @@
 //! The engine that searches on the GPU.
 //!
 //! # The choice between CPU and device
-//! A batch goes to the device from so many links on that the device is faster
-//! ([`MIN_LINKS`], per core of the CPU). The rest goes to a [`BvhSearch`] on the CPU. After a move
+//! A batch of at least [`MIN_LINKS`] links per core of the CPU runs on the device. The rest goes to a [`BvhSearch`] on the CPU. After a move
 //! that search must be refitted first, so a large mesh is then searched on the device however small
 //! the batch is.
 
@@ -24,8 +23,8 @@ use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::shape::TriMesh;
 use std::time::Duration;
 
-/// From so many links per core of the CPU on a batch is faster on the device, for each kind of
-/// question. From measurements on an H200 beside 16 cores: 82k triangles, robots of 30 links.
+/// The least number of links per core of the CPU for which a batch runs on the device, for each kind
+/// of question. Estimates: they were not measured with this engine.
 const MIN_LINKS: [usize; Question::KINDS] = [240, 480, 15_000];
 /// After a move of a mesh of so many triangles, a refit on the CPU takes longer than one on the
 /// device.
@@ -199,9 +198,7 @@ impl GpuSearch {
     ///
     /// With 0 all queries but [`contacts_within`](Proximity::contacts_within) run on the device, with [`usize::MAX`]
     /// on the CPU. The answers are the same. The default depends on the question and on the number
-    /// of cores. On 16 cores it is 3,840 links for [`per_link_batch`](Proximity::per_link_batch),
-    /// 7,680 for [`minimum_batch`](Proximity::minimum_batch) and 240,000 for
-    /// [`clears_batch`](Proximity::clears_batch).
+    /// of cores.
     pub fn set_min_links(&mut self, links: Option<usize>) {
         self.min_links = links;
     }

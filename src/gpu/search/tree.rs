@@ -19,7 +19,7 @@
 use crate::mesh::{Mesh, SearchFrame};
 use crate::threads::{both, each};
 
-/// Triangles per leaf. Measured on the twin: 1 visits more nodes, 4 measure more triangles.
+/// Triangles per leaf: 1 visits more nodes, 4 test more triangles.
 pub(super) const LEAF_SIZE: usize = 2;
 /// Marks a child that is a leaf: LEAF + LEAF_SIZE * first triangle + number of triangles - 1.
 pub(super) const LEAF: u32 = 1 << 31;

@@ -83,7 +83,7 @@ fn an_upload_that_is_refused_is_an_error_of_the_query_and_done_again() {
     let rest = exhaustive.minimum(&robot, &pose).unwrap();
     exhaustive.set_vertices(&moved).unwrap();
     let expected = exhaustive.minimum(&robot, &pose).unwrap();
-    assert_ne!(rest.triangle, expected.triangle);
+    assert_ne!(rest.witness.triangle, expected.witness.triangle);
     let (rest, expected) = (rest.distance, expected.distance);
 
     let mut engine = GpuExhaustive::on(&gpu, &mesh).unwrap();

@@ -1,7 +1,7 @@
 //! Bounds on the clearance of a tube: best first.
 //!
 //! # Definitions
-//! - `lower`, `doubt`, `found` and rank of a piece: see `refine::best_first`.
+//! - `lower`, `direction_gap`, `found` and rank of a piece: see `refine::best_first`.
 //! - `upper`: the least `found` of all pieces that step 2 took.
 //! - `aim`: the permitted gap between the bounds.
 //! - `hint`: an upper bound on the clearance, from a place of an earlier query or from any measured
@@ -10,7 +10,7 @@
 //! # Algorithm
 //! 1. **Begin** with pieces that turn by at most 1 rad, and measure them.
 //! 2. **Take** the measured piece of least rank. Its `found` may improve `upper`.
-//! 3. **Stop** if its `lower` + `doubt` is at least `upper - aim`. Otherwise divide it and measure
+//! 3. **Stop** if its `lower` + `direction_gap` is at least `upper - aim`. Otherwise divide it and measure
 //!    its halves. Repeat from 2.
 //! 4. **Answer.** The lower bound is the least `lower` of all pieces.
 //!
@@ -203,18 +203,19 @@ impl<'a, T: Refinable> BoundsSearch<'a, T> {
     /// Returns the answer, given the upper bound.
     pub(crate) fn answer(&self, upper: Real) -> BoundedClearance {
         let mut lower = upper;
-        let mut doubt: Real = 0.0;
+        let mut direction_gap: Real = 0.0;
         for piece in self.pieces.all() {
             if piece.lower > lower {
                 continue;
             }
             let of_piece = self.tube.direction_uncertainty(&piece.piece);
-            doubt = if piece.lower < lower { of_piece } else { doubt.max(of_piece) };
+            direction_gap =
+                if piece.lower < lower { of_piece } else { direction_gap.max(of_piece) };
             lower = piece.lower;
         }
-        // `doubt` matters only if it causes the gap.
-        let doubt = if lower < upper - self.aim { doubt } else { 0.0 };
-        let uncertainty = self.tube.position_uncertainty() + doubt;
+        // `direction_gap` matters only if it causes the gap.
+        let direction_gap = if lower < upper - self.aim { direction_gap } else { 0.0 };
+        let uncertainty = self.tube.position_uncertainty() + direction_gap;
         BoundedClearance {
             lower,
             resolved: upper - lower <= self.tolerance + uncertainty,

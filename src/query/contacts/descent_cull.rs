@@ -217,23 +217,23 @@ mod tests {
 
     /// Which of a block's triangles are on a slope.
     fn slopes_of(level: Level, searched: &SearchLink<f32>, rows: &[f32], across: &[f32]) -> u64 {
-        dispatch!(level, simd => slopes::<<f32 as Lane>::Pack<_>>(simd, searched, rows, across))
+        dispatch!(level, simd => descents::<<f32 as Lane>::Pack<_>>(simd, searched, rows, across))
     }
 
     #[inline(always)]
-    fn slopes<L: Pack<Element = f32>>(
+    fn descents<L: Pack<Element = f32>>(
         token: L::Token,
         searched: &SearchLink<f32>,
         rows: &[f32],
         across: &[f32],
     ) -> u64 {
         let lanes = LinkLanes::<L>::new(token, searched);
-        let (mut slopes, error) = (0, L::splat(token, searched.error));
+        let (mut descents, error) = (0, L::splat(token, searched.error));
         for lane in (0..BLOCK).step_by(L::LANES) {
             let corners = load_vertices(token, rows, lane);
-            slopes |= lanes.descends(corners, load_vertices(token, across, lane), error) << lane;
+            descents |= lanes.descends(corners, load_vertices(token, across, lane), error) << lane;
         }
-        slopes
+        descents
     }
 
     /// A wall of 2 x 4 squares, cut in two, over a tilted plane: level or steep, even or rough,
@@ -305,9 +305,9 @@ mod tests {
                 place_points(&frame, mesh.corners_across(triangle), &mut across, triangle as usize);
             }
             for level in levels() {
-                let slopes = slopes_of(level, &searched, &rows, &across);
+                let descents = slopes_of(level, &searched, &rows, &across);
                 for triangle in 0..BLOCK as u32 {
-                    if slopes >> triangle & 1 == 0 {
+                    if descents >> triangle & 1 == 0 {
                         others += 1;
                         continue;
                     }

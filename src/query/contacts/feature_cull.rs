@@ -162,9 +162,9 @@ mod tests {
         searched: &SearchLink<E>,
         rows: &[E],
     ) -> [FeatureMask; BLOCK] {
-        let mut feet = [(); BLOCK].map(|()| FeatureMask { away: [0; 3], beyond: [0; 3] });
-        dispatch!(level, simd => fill::<E::Pack<_>>(simd, searched, rows, &mut feet));
-        feet
+        let mut features = [(); BLOCK].map(|()| FeatureMask { away: [0; 3], beyond: [0; 3] });
+        dispatch!(level, simd => fill::<E::Pack<_>>(simd, searched, rows, &mut features));
+        features
     }
 
     /// The bits of each lane, moved to the lowest bit.
@@ -173,7 +173,7 @@ mod tests {
         token: L::Token,
         searched: &SearchLink<L::Element>,
         rows: &[L::Element],
-        feet: &mut [FeatureMask; BLOCK],
+        features: &mut [FeatureMask; BLOCK],
     ) where
         L::Element: Lane,
     {
@@ -184,7 +184,7 @@ mod tests {
             let (_, pack) = lanes.nearer_and_features(load_vertices(token, rows, lane), far, error);
             for place in 0..L::LANES {
                 let lowest = |lanes: [u64; 3]| lanes.map(|lanes| lanes >> place & 1);
-                feet[lane + place] =
+                features[lane + place] =
                     FeatureMask { away: lowest(pack.away), beyond: lowest(pack.beyond) };
             }
         }
@@ -224,7 +224,7 @@ mod tests {
         let mut rows = vec![E::default(); 9 * BLOCK];
         (0..BLOCK).for_each(|lane| place_face(&frame, &mesh, lane as u32, &mut rows, lane));
         for level in levels() {
-            for (lane, feet) in feet_of(level, &searched, &rows).iter().enumerate() {
+            for (lane, features) in feet_of(level, &searched, &rows).iter().enumerate() {
                 let corners = rotated(
                     mesh.corners(lane as u32),
                     first_of_face::<E>(&frame, &mesh, lane as u32),
@@ -235,13 +235,13 @@ mod tests {
                     link.measure(0, [from, to, to]).distance
                 };
                 let rounding = 32.0 * f64::UNIT_ROUNDOFF * link.extent_with(corners);
-                let [a, b, c] = feet.away;
+                let [a, b, c] = features.away;
                 if let Some(part) = PART_WITHOUT[(a | b << 1 | c << 2) as usize] {
                     let (part, beyond) = (usize::from(part), to_part(usize::from(part)) - distance);
                     assert!(beyond <= rounding, "{seed}, {level:?}, {lane}: {beyond} at {part}");
                     census.0[usize::from(part < 3)] += 1;
                 }
-                for edge in (0..3).filter(|&edge| feet.beyond[edge] == 1) {
+                for edge in (0..3).filter(|&edge| features.beyond[edge] == 1) {
                     let to_edge = to_part(3 + edge);
                     assert!(
                         to_edge > distance + 4.0 * rounding,

@@ -121,7 +121,7 @@ impl<E: Lane> LeafVisitor<E> for CandidateGather<'_, E> {
     ) {
         let leaf = &tree.leaves[number as usize];
         let across = self.across.map(|across| across.of(number, tree, mesh));
-        let (mut in_question, mut slopes) = (0, 0);
+        let (mut in_question, mut descents) = (0, 0);
         let (limit_of_all, error) =
             (L::splat(token, self.limit), L::splat(token, self.searched.error));
         for lane in (0..BLOCK).step_by(L::LANES) {
@@ -132,11 +132,11 @@ impl<E: Lane> LeafVisitor<E> for CandidateGather<'_, E> {
                 && let Some(across) = across
             {
                 let across = load_vertices::<L>(token, &across.rows, lane);
-                slopes |= (near & lanes.descends(vertices, across, error)) << lane;
+                descents |= (near & lanes.descends(vertices, across, error)) << lane;
             }
         }
-        self.found.add_culled(number, slopes);
-        in_question &= !slopes;
+        self.found.add_culled(number, descents);
+        in_question &= !descents;
         while in_question != 0 {
             let lane = in_question.trailing_zeros() as usize;
             in_question &= in_question - 1;
@@ -208,7 +208,7 @@ impl<'a, E: Lane> CandidateGather<'a, E> {
         for first in (0..self.waiting).step_by(L::LANES) {
             self.computed += L::LANES as u64;
             let vertices = load_vertices::<L>(token, &self.rows, first);
-            let (bounds, feet) = lanes.nearer_and_features(vertices, limit, error);
+            let (bounds, features) = lanes.nearer_and_features(vertices, limit, error);
             bounds.lower.store(&mut lower);
             bounds.upper.store(&mut upper);
             // The lanes behind the pending triangles hold stale values.
@@ -224,11 +224,11 @@ impl<'a, E: Lane> CandidateGather<'a, E> {
                     lower: lower - certain,
                     upper,
                     away: if is_apart {
-                        three_bits(feet.away, lane, self.firsts[place])
+                        three_bits(features.away, lane, self.firsts[place])
                     } else {
                         0
                     },
-                    beyond: three_bits(feet.beyond, lane, self.firsts[place]),
+                    beyond: three_bits(features.beyond, lane, self.firsts[place]),
                 });
             }
         }

@@ -11,21 +11,21 @@ pub(crate) struct TriangleCandidates {
     /// Candidates: triangles that may hold a local minimum.
     pub in_question: Vec<TriangleCandidate>,
     /// Triangles that certainly lie on a slope.
-    slopes: Vec<CulledLeaf>,
+    descents: Vec<CulledLeaf>,
 }
 
 /// The end of the triangles of one link.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct CandidateEnd {
     pub in_question: usize,
-    slopes: usize,
+    descents: usize,
 }
 
 /// The triangles that may be within a margin of one link.
 #[derive(Clone, Copy)]
 pub(crate) struct LinkCandidates<'a> {
     pub in_question: &'a [TriangleCandidate],
-    slopes: &'a [CulledLeaf],
+    descents: &'a [CulledLeaf],
 }
 
 /// A triangle that may be within a margin of a link.
@@ -64,7 +64,7 @@ pub(crate) struct CandidateIndex {
 impl TriangleCandidates {
     pub(crate) fn clear(&mut self) {
         self.in_question.clear();
-        self.slopes.clear();
+        self.descents.clear();
     }
 
     /// Adds triangles without bounds.
@@ -75,20 +75,20 @@ impl TriangleCandidates {
     /// Adds the triangles of a leaf that certainly lie on a slope, one bit per triangle.
     pub(crate) fn add_culled(&mut self, leaf: u32, lanes: u64) {
         if lanes != 0 {
-            self.slopes.push(CulledLeaf { leaf, lanes });
+            self.descents.push(CulledLeaf { leaf, lanes });
         }
     }
 
     /// Returns the current end, where the triangles of the next link begin.
     pub(crate) fn end(&self) -> CandidateEnd {
-        CandidateEnd { in_question: self.in_question.len(), slopes: self.slopes.len() }
+        CandidateEnd { in_question: self.in_question.len(), descents: self.descents.len() }
     }
 
     /// Returns the triangles of one link.
     pub(crate) fn between(&self, [from, to]: [CandidateEnd; 2]) -> LinkCandidates<'_> {
         LinkCandidates {
             in_question: &self.in_question[from.in_question..to.in_question],
-            slopes: &self.slopes[from.slopes..to.slopes],
+            descents: &self.descents[from.descents..to.descents],
         }
     }
 }
@@ -113,8 +113,8 @@ impl LinkCandidates<'_> {
         let Some(&place) = place_of.get(triangle as usize) else { return false };
         let (leaf, lane) = (place / BLOCK as u32, place as usize % BLOCK);
         let at = index.of_leaf.get(leaf as usize);
-        let slopes = at.and_then(|&at| self.slopes.get(at as usize));
-        slopes.is_some_and(|slopes| slopes.leaf == leaf && slopes.lanes >> lane & 1 == 1)
+        let descents = at.and_then(|&at| self.descents.get(at as usize));
+        descents.is_some_and(|descents| descents.leaf == leaf && descents.lanes >> lane & 1 == 1)
     }
 }
 
@@ -125,8 +125,8 @@ impl CandidateIndex {
         for (index, known) in (0..).zip(near.in_question) {
             self.of_triangle[known.triangle as usize] = index;
         }
-        for (index, slopes) in (0..).zip(near.slopes) {
-            let leaf = slopes.leaf as usize;
+        for (index, descents) in (0..).zip(near.descents) {
+            let leaf = descents.leaf as usize;
             if leaf >= self.of_leaf.len() {
                 // Every leaf has a triangle.
                 self.of_leaf.resize(triangles, 0);

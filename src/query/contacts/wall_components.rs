@@ -60,7 +60,7 @@ impl WallComponents<'_> {
             {
                 Some(index) => around.add(self.places[index], self.near.in_question[index].lower),
                 None => {
-                    around.slopes |= self.near.is_culled(self.index, self.wall.place_of(), other)
+                    around.descents |= self.near.is_culled(self.index, self.wall.place_of(), other)
                 }
             };
             let (mut around, mut others) =
@@ -73,7 +73,7 @@ impl WallComponents<'_> {
             }
             // If a culled triangle is certainly farther than this one, so is each part that they
             // share.
-            let meets_left_out = around.slopes || around.left_out_from < known.upper;
+            let meets_left_out = around.descents || around.left_out_from < known.upper;
             let first = around.first;
             let others = [meets_left_out.then_some(CULLED), (first < place).then_some(first)];
             if others == [None; 2] {
@@ -122,7 +122,7 @@ pub(crate) struct IncidentTriangles {
     /// The least lower bound on the distance of a culled candidate in the ring.
     left_out_from: Real,
     /// Whether a triangle of the ring was culled by the search as lying on a slope.
-    slopes: bool,
+    descents: bool,
     /// The least index of a measured triangle. If it is the querying triangle's own, it joins none
     /// there.
     first: u32,
@@ -130,7 +130,7 @@ pub(crate) struct IncidentTriangles {
 
 impl Default for IncidentTriangles {
     fn default() -> Self {
-        Self { left_out_from: Real::INFINITY, slopes: false, first: NONE }
+        Self { left_out_from: Real::INFINITY, descents: false, first: NONE }
     }
 }
 

@@ -42,11 +42,11 @@ const UP: Real = 1.0 + 16.0 * Real::UNIT_ROUNDOFF;
 impl HalfDisplacement {
     /// Returns the displacement before the middle shape (`side` 0) or after it (1); `None` if it is
     /// not bounded.
-    pub(super) fn of(course: &DisplacementBound, side: usize, beside: Real) -> Option<Self> {
-        let is_known = course.ways.iter().all(|way| way.is_finite())
-            && (0.0..Real::INFINITY).contains(&course.off);
+    pub(super) fn of(bound: &DisplacementBound, side: usize, beside: Real) -> Option<Self> {
+        let is_known = bound.ways.iter().all(|way| way.is_finite())
+            && (0.0..Real::INFINITY).contains(&bound.off);
         let sign = if side == 0 { -1.0 } else { 1.0 };
-        is_known.then(|| Self { ways: course.ways.map(|way| way * sign), off: course.off + beside })
+        is_known.then(|| Self { ways: bound.ways.map(|way| way * sign), off: bound.off + beside })
     }
 
     /// Returns a body that contains the body at every displacement, up to `off`.

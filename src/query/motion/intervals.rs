@@ -54,10 +54,10 @@ pub(super) fn most_pairs(reach: Real, MarginQuery { margin, resolution }: Margin
     if reach > margin.max(resolution) { 1 << 16 } else { usize::MAX }
 }
 
-/// Starts with the common parts of all motions' times; `legs` counts the parts of each motion.
-pub(super) fn begin(intervals: &mut VecDeque<[Real; 2]>, legs: impl IntoIterator<Item = usize>) {
-    let legs = legs.into_iter().map(|legs| legs.max(1));
-    let ends = legs.flat_map(|legs| (0..=legs).map(move |leg| leg as Real / legs as Real));
+/// Starts with the common parts of all motions' times; `parts` counts the parts of each motion.
+pub(super) fn begin(intervals: &mut VecDeque<[Real; 2]>, parts: impl IntoIterator<Item = usize>) {
+    let parts = parts.into_iter().map(|parts| parts.max(1));
+    let ends = parts.flat_map(|parts| (0..=parts).map(move |part| part as Real / parts as Real));
     let mut ends: Vec<Real> = ends.collect();
     ends.sort_unstable_by(Real::total_cmp);
     ends.dedup();

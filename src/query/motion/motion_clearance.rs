@@ -7,7 +7,7 @@
 //! - wanted = upper - aim: pieces whose lower bound is at least this are **settled**.
 //! - d: the distance of a piece's body in the middle shape. reach = tau V: how much nearer the
 //!   piece may come in the interval (`motion_search`).
-//! - doubt: the gap between the bounds that the unknown direction of a face causes.
+//! - direction gap: the gap between the bounds that the unknown direction of a face causes.
 //!
 //! # Algorithm
 //! 1. **Begin** with `upper` of one shape and `lower` = 0.
@@ -63,13 +63,13 @@ const SHARE: Real = 0.25;
 impl<M: Motion> MotionSearch<'_, M> {
     /// Returns bounds on the least clearance that are at most `tolerance` apart if possible.
     pub(crate) fn clearance(&mut self, tolerance: Real) -> Result<MotionClearance, ProximityError> {
-        let nothing = UnresolvedGap { lower: Real::INFINITY, doubt: 0.0 };
+        let nothing = UnresolvedGap { lower: Real::INFINITY, direction_gap: 0.0 };
         let mut known = MinimumBounds {
             tolerance: Real::INFINITY,
             uncertainty: 0.0,
             best: None,
             lower: 0.0,
-            doubtful: nothing,
+            unresolved: nothing,
         };
         self.begin();
         self.memory.part_bounds.clear();
@@ -94,7 +94,7 @@ impl<M: Motion> MotionSearch<'_, M> {
 
     /// Runs one round. Raises the lower bounds of the parts.
     fn run_round(&mut self, known: &mut MinimumBounds) -> Result<(), ProximityError> {
-        known.doubtful = UnresolvedGap { lower: Real::INFINITY, doubt: 0.0 };
+        known.unresolved = UnresolvedGap { lower: Real::INFINITY, direction_gap: 0.0 };
         self.begin();
         let parts = self.memory.part_bounds.len();
         for (interval, lower) in self.memory.intervals.iter_mut().zip(&self.memory.part_bounds) {
@@ -174,14 +174,14 @@ struct MinimumBounds {
     /// lower bound of the motion.
     lower: Real,
     /// The settled pieces with an unknown direction of a face.
-    doubtful: UnresolvedGap,
+    unresolved: UnresolvedGap,
 }
 
 /// Pieces settled with a larger gap because no more is known.
 struct UnresolvedGap {
     lower: Real,
     /// The additional gap.
-    doubt: Real,
+    direction_gap: Real,
 }
 
 impl MinimumBounds {
@@ -221,10 +221,10 @@ impl MinimumBounds {
 
     /// The part of the gap that stated errors and unknown directions cause.
     fn all_uncertainty(&self) -> Real {
-        // The doubt matters only if nothing else is as near.
+        // The direction gap matters only if nothing else is as near.
         let wanted = self.upper() - (self.tolerance + self.uncertainty);
-        let matters = self.doubtful.lower < wanted;
-        self.uncertainty + if matters { self.doubtful.doubt } else { 0.0 }
+        let matters = self.unresolved.lower < wanted;
+        self.uncertainty + if matters { self.unresolved.direction_gap } else { 0.0 }
     }
 
     /// The rest of the gap between the bounds, which the tolerance limits.
@@ -356,11 +356,12 @@ impl<'m, M: Motion> RefinePolicy<TubeInMesh<'m>, PendingPiece> for MinimumPolicy
             self.settle(lower);
             return Ok(RefineAction::Settled);
         }
-        let (reach, doubt) =
+        let (reach, direction_gap) =
             (self.approach_bound.max_approach(), tube.tube.direction_uncertainty(near.piece));
-        if doubt > 0.0 && reach <= 0.25 * self.aim && lower >= wanted - doubt {
-            let UnresolvedGap { lower: least, doubt: most } = self.known.doubtful;
-            self.known.doubtful = UnresolvedGap { lower: least.min(lower), doubt: most.max(doubt) };
+        if direction_gap > 0.0 && reach <= 0.25 * self.aim && lower >= wanted - direction_gap {
+            let UnresolvedGap { lower: least, direction_gap: most } = self.known.unresolved;
+            self.known.unresolved =
+                UnresolvedGap { lower: least.min(lower), direction_gap: most.max(direction_gap) };
             self.settle(lower);
             return Ok(RefineAction::Settled);
         }

@@ -143,16 +143,16 @@ impl<M: Motion> MovingTube<'_, M> {
             {
                 let times =
                     if side == 0 { [self.times[0], self.t] } else { [self.t, self.times[1]] };
-                let course = self.motion.displacement(part.section as usize, part.shares, times);
-                let keeps = course
-                    .and_then(|course| HalfDisplacement::of(&course, side, failure.beside))
+                let bound = self.motion.displacement(part.section as usize, part.shares, times);
+                let is_clear = bound
+                    .and_then(|bound| HalfDisplacement::of(&bound, side, failure.beside))
                     .is_some_and(|side| {
                         let asked = PlaneTest { body: &failure.body, side: &side, margin, slack };
                         self.planes.clears(&mut tube.search, &asked, failure)
                     });
-                part.is_left[side] = !keeps;
-                *is_left = !keeps;
-                left.is_any_settled |= keeps;
+                part.is_left[side] = !is_clear;
+                *is_left = !is_clear;
+                left.is_any_settled |= is_clear;
             }
             if left.sides == [true; 2] {
                 break;

@@ -24,8 +24,8 @@
 //! 2. Otherwise visit the node: push a pair for each of its children that may be within `limit`.
 //! 3. Otherwise visit the leaf. A run of several links is split if a triangle may be within
 //!    `limit`. A single link ends the search if a triangle is within `certain`. A triangle between
-//!    `certain` and `limit` becomes *doubtful*.
-//! 4. At the end, measure the doubtful pairs in double precision.
+//!    `certain` and `limit` becomes *unresolved*.
+//! 4. At the end, measure the unresolved pairs in double precision.
 
 use super::link_lower_bounds::{ClearedBy, LinkLowerBounds};
 use super::side_grid::SideGrid;
@@ -140,7 +140,7 @@ struct PairStack<E> {
     query: u64,
     waiting: Vec<NodePair<E>>,
     /// The pairs of link and triangle that the precision of the search cannot decide.
-    doubtful: Vec<(u32, u32)>,
+    unresolved: Vec<(u32, u32)>,
     /// The run and the leaf of the last triangle that was within the margin; a later query tests
     /// this pair first.
     last: Option<(u32, u32)>,
@@ -188,7 +188,7 @@ struct NodePair<E> {
 
 /// The outcome in the precision of the search.
 enum SearchOutcome {
-    /// Only doubtful pairs may be within the margin.
+    /// Only unresolved pairs may be within the margin.
     Doubtful,
     /// Some triangle is within the margin.
     Near,
@@ -223,14 +223,14 @@ impl<E: Lane> DualTraversal<'_, E> {
                     work.measured += pairs.len() as u64;
                     Best::within(margin).measure_batch(level, &link, mesh, &together[..pairs.len()])
                 };
-                let of_one_link = pairs.doubtful.chunk_by(|one, other| one.0 == other.0);
+                let of_one_link = pairs.unresolved.chunk_by(|one, other| one.0 == other.0);
                 Some(!of_one_link.flat_map(|pairs| pairs.chunks(BATCH)).any(is_within))
             }
         }
     }
 
     fn search(&mut self) -> SearchOutcome {
-        let PairStack { runs, query, waiting, doubtful, last, has_parted_all } = &mut *self.pairs;
+        let PairStack { runs, query, waiting, unresolved, last, has_parted_all } = &mut *self.pairs;
         let links = self.robot.link_tree();
         let zero = E::default();
         *query += 1;
@@ -238,7 +238,7 @@ impl<E: Lane> DualTraversal<'_, E> {
             runs.resize_with(links.len(), PlacedNode::default);
         }
         *has_parted_all = matches!(links[0], LinkNode::Leaf(_));
-        doubtful.clear();
+        unresolved.clear();
         waiting.clear();
         // In the frame of the search the mesh has a length between one and two.
         let whole = NodePair { run: 0, child: WHOLE_MESH, size: zero.one(), apart: zero };
@@ -419,8 +419,8 @@ impl<E: Lane> DualTraversal<'_, E> {
                 near &= near - 1;
                 let pair = (link as u32, triangle);
                 // A leaf that is not full repeats its last triangle.
-                if self.pairs.doubtful.last() != Some(&pair) {
-                    self.pairs.doubtful.push(pair);
+                if self.pairs.unresolved.last() != Some(&pair) {
+                    self.pairs.unresolved.push(pair);
                 }
             }
         }

@@ -263,12 +263,7 @@ fn between_hulls(group: &Group, bodies: &[ProofBody]) -> Option<Vector> {
 }
 
 /// Returns candidate normals between a body and one triangle.
-fn between_pair(
-    level: Level,
-    mesh: &Mesh,
-    triangle: u32,
-    body: &ProofBody,
-) -> [Option<Vector>; 4] {
+fn between_pair(level: Level, mesh: &Mesh, triangle: u32, body: &ProofBody) -> [Option<Vector>; 4] {
     let (corners, [start, end]) = (mesh.corners(triangle), body.ends);
     let link = PlacedLink::between(start, end, body.radius, body.flat);
     let answer: LinkProximity = link.answer(0, &link.measure(triangle, corners));
