@@ -2,9 +2,10 @@
 use super::GpuError;
 use super::search::SearchKernels;
 use super::wgsl::{self, CONVEX};
+use crate::threads::Lazy;
 use gpu_batch::wgpu::{BindGroupLayout, ComputePipeline};
 use gpu_batch::{Adapter, Binding, Device, DeviceError, Precision, Shader};
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 /// An open GPU with compiled kernels. Opening takes a moment, so engines for several meshes can
 /// share one.
@@ -64,7 +65,7 @@ pub(super) struct Opened {
     pub nearest: ComputePipeline,
     pub reduce: ComputePipeline,
     pub collect: ComputePipeline,
-    search: OnceLock<SearchKernels>,
+    search: Lazy<Result<SearchKernels, DeviceError>>,
 }
 
 impl Opened {
@@ -84,7 +85,7 @@ impl Opened {
             collect: query(wgsl::collect(precision))?,
             prepare_layout,
             query_layout,
-            search: OnceLock::new(),
+            search: Lazy::new(),
             device,
         })
     }
@@ -94,11 +95,8 @@ impl Opened {
     /// # Errors
     /// The driver does not compile one.
     pub(super) fn search(&self) -> Result<&SearchKernels, DeviceError> {
-        if let Some(kernels) = self.search.get() {
-            return Ok(kernels);
-        }
-        let kernels = SearchKernels::new(&self.device, false)?;
-        Ok(self.search.get_or_init(|| kernels))
+        let kernels = self.search.get_or_build(|| SearchKernels::new(&self.device, false));
+        kernels.as_ref().map_err(Clone::clone)
     }
 
     /// Compiles the kernel that computes every pair in full, with this route from a segment to a
