@@ -101,7 +101,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             for link in &links {
                 out.push(link.distance);
                 add_witness(&mut out, &link.witness);
-                let mesh = search.triangles()[link.triangle as usize]
+                let mesh = search.triangles()[link.witness.triangle as usize]
                     .map(|corner| search.vertices()[corner as usize]);
                 let bounds = Certificate::between(&chain.links()[link.link as usize], &pose, mesh)?;
                 out.extend([bounds.lower, bounds.upper]);

@@ -340,5 +340,5 @@ def test_missing_arguments() -> None:
     robot = robots(np.random.default_rng(0), 1)[0]
     with pytest.raises(ContinuumError, match="`radii` is missing"):
         MESH.clears_motion(robot, robot, margin=0.1, resolution=0.1)  # type: ignore[call-overload]
-    with pytest.raises(TypeError, match="missing 1 required keyword-only argument: 'resolution'"):
+    with pytest.raises(TypeError, match="missing 1 required keyword argument: 'resolution'"):
         MESH.time_of_contact(LinearMotion(robot, robot, 0.1), margin=0.1)  # type: ignore[call-overload]

@@ -189,9 +189,9 @@ def test_contacts_have_a_prominence() -> None:
 @pytest.mark.parametrize("robots", [[(A[0], 0.1)], [(A, 0.1)], [(A[:0], 0.1)], [(A[0], 0.1), (B[0], 0.1)]])
 def test_bad_lengths_have_their_own_names_without_structures_too(robots: list[object]) -> None:
     for scene in (Scene(), made()):
-        for lengths, name in (((-1.0, 0.0), "reach"), ((np.nan, 0.0), "reach"), ((1.0, -2.0), "prominence")):
+        for reach, prominence, name in ((-1.0, 0.0, "reach"), (np.nan, 0.0, "reach"), (1.0, -2.0, "prominence")):
             with pytest.raises(ContinuumError, match=f"^`{name}` is .*; it must be at least 0") as raised:
-                scene.contacts_within(robots, *lengths)  # type: ignore[arg-type]
+                scene.contacts_within(robots, reach=reach, prominence=prominence)  # type: ignore[arg-type]
             assert raised.value.kind == "negative"
 
 
