@@ -38,7 +38,7 @@ impl SelfQuery {
 
     /// Forgets the last answers: the next query starts without a warm start.
     pub fn forget(&mut self) {
-        self.chain.forget();
+        *self = Self::new();
     }
 
     /// Returns the place where a robot comes closest to itself, or `None` if no two of its parts can.

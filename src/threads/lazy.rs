@@ -23,8 +23,7 @@ use std::sync::OnceLock;
 ///
 /// Other threads that need the value wait for it, tasks of a pool included. During the build,
 /// [`each`](super::parallel::each) and the like work on the builder's thread.
-#[derive(Clone)]
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Lazy<T>(OnceLock<T>);
 
 impl<T> Lazy<T> {

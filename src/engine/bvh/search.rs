@@ -172,7 +172,7 @@ impl BvhSearch {
     /// | query | what it needs beside the hierarchy |
     /// |---|---|
     /// | [`clears`](Proximity::clears) | a coarse grid of the sides of the wall |
-    /// | [`contacts_within`](Proximity::within) | which triangles share corners and edges |
+    /// | [`contacts_within`](Proximity::contacts_within) | which triangles share corners and edges |
     /// | [`side`](Self::side) | the far field of each node |
     /// | any, if single precision is too coarse | a second hierarchy, in double precision |
     ///
