@@ -103,12 +103,8 @@ pub(crate) struct SelfMemory {
     nearest: Option<[usize; 2]>,
 }
 
+#[cfg(test)]
 impl SelfMemory {
-    pub fn forget(&mut self) {
-        self.nearest = None;
-    }
-
-    #[cfg(test)]
     pub(super) fn faces(&self) -> &OwnFaces {
         &self.faces
     }
