@@ -1,6 +1,6 @@
 //! Queries about motions, as [`BvhSearch`] answers them.
 //!
-//! Each query is a [`MotionSearch`] with the warm start of the last one.
+//! Each query is a [`MotionSearch`]. It reuses memory; answers do not depend on earlier queries.
 
 use super::search::{BvhSearch, Context, Remembered};
 use crate::answer::{MotionAnswer, MotionClearance, ProximityError};
@@ -58,7 +58,6 @@ impl BvhSearch {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///
-    /// # Errors
     /// # Errors
     /// - The margin or the resolution is negative or NaN.
     /// - The resolution is finer than rounding or the samples of a shape allow, or the motion is

@@ -2,9 +2,11 @@
 //! remains.
 //!
 //! # Definitions
-//! - A motion may bound the displacement of a piece (`motion::course`). Relative to the
+//! - A motion may bound the displacement of a piece (`motion::displacement_bound`). Relative to the
 //!   middle shape, every point moves by a vector in the triangle (0, a, b), up to an error of
-//!   `off`.
+//!   `off`. Here a and b are the displacements of the ends of the piece: at the share s of the piece
+//!   and the fraction q of the time, the displacement is q ((1 - s) a + s b). Before the middle
+//!   shape a and b have the opposite sign.
 //! - n: the normal of a plane that separates the body in the middle shape from a triangle. gap: the
 //!   width of the separation along n.
 //! - **beside**: (radius x turn + mesh speed) x time. The body contains balls around the points, or
@@ -49,7 +51,8 @@ impl HalfDisplacement {
         is_known.then(|| Self { ways: bound.ways.map(|way| way * sign), off: bound.off + beside })
     }
 
-    /// Returns a body that contains the body at every displacement, up to `off`.
+    /// Returns a body that contains the body at every displacement in the triangle (0, a, b). The
+    /// error `off` is not included: the caller searches that much farther.
     ///
     /// All displacements lie in the triangle (0, a, b). Along the axis the body becomes longer by
     /// their range. Let a' and b' be the components across the axis. The body moves by (a' + b') /

@@ -6,6 +6,11 @@
 //! that is near enough. Each gap must exceed what the displacement uses up. The normal of the
 //! nearest triangle alone is not enough: a piece that leaves one wall may approach another.
 //!
+//! **Claim.** A triangle that is more than margin + `off` + 2 slack from the swept body never comes
+//! within the margin. **Proof.** The swept body contains the piece at every displacement in the
+//! triangle (0, a, b); the true displacement is at most `off` from there. So only the triangles
+//! within that distance of the swept body are gathered, and each of them must be separated.
+//!
 //! A plane's normal leads from the nearest point of the triangle to that of the body. Normals found
 //! before are tried first, the latest one first: one normal separates most triangles of a wall.
 
