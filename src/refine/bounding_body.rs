@@ -17,7 +17,7 @@
 //!
 //! **Shifted chord.** A point c(m) of the curve in between makes the capsule narrower. Let e be the
 //! perpendicular from the chord to c(m), with its foot within the chord. Let D = k h^2 / 2, where h
-//! is the longer of the two parts that c(m) separates.
+//! is the longer of the two parts that c(m) separates. (m is a tick; ticks may be unevenly spaced.)
 //! 1. In a part, at the share q of the way to c(m), the curve deviates from q e by at most D q (1 -
 //!    q).
 //! 2. Let u = |q - 1/2|. The distance of the curve from the chord moved by e / 2 is at most `|q -
@@ -252,16 +252,20 @@ impl PlacedTube<'_> {
                 .min(piece.to - 1);
             let arc = self.tube.arc(section, tick);
             let longer = (arc - arcs[0]).max(arcs[1] - arc) * section.stretch;
-            let most = 0.5 * curvature * longer * longer;
+            // D, e and the excess of step 3.
+            let deviation = 0.5 * curvature * longer * longer;
             let offset = self.point(section, tick) - start;
             let share = offset.dot(along) / along.length_squared();
             if (0.0..=1.0).contains(&share) {
-                let off = offset - along * share;
-                let size = off.length();
-                let moved =
-                    if size < most { 0.25 * (most + size * (size / most)) } else { 0.5 * size };
+                let perpendicular = offset - along * share;
+                let size = perpendicular.length();
+                let moved = if size < deviation {
+                    0.25 * (deviation + size * (size / deviation))
+                } else {
+                    0.5 * size
+                };
                 if moved < excess {
-                    (shift, excess) = (off * 0.5, moved);
+                    (shift, excess) = (perpendicular * 0.5, moved);
                 }
             }
         }

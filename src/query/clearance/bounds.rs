@@ -181,7 +181,8 @@ impl<'a, T: Refinable> BoundsSearch<'a, T> {
         })
     }
 
-    /// Measures a piece within the hint; a piece known to be farther, within the upper bound.
+    /// Measures a piece within the hint; a piece known to be farther, within the upper bound. This
+    /// query never divides a piece before it is measured.
     fn measure(
         &mut self,
         piece: PendingPiece<T::Piece, T::Body, T::Upper>,
