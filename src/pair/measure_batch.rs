@@ -42,7 +42,7 @@ impl Best {
         for lane in set_bits(near) {
             // Most triangles within the bound tie with it, and most of these do not improve the
             // best: test before building the result.
-            if self.is_worse_than(answers.distance(lane), triangles[lane]) {
+            if self.is_improved_by(answers.distance(lane), triangles[lane]) {
                 is_best |= self.take(answers.nearest(lane, triangles[lane]));
             }
         }
@@ -169,7 +169,7 @@ impl Best {
 
     /// Returns whether a triangle at this distance improves the best.
     #[inline(always)]
-    fn is_worse_than(&self, distance: Real, triangle: u32) -> bool {
+    fn is_improved_by(&self, distance: Real, triangle: u32) -> bool {
         distance <= self.bound
             && self.nearest.is_none_or(|mine| {
                 distance < mine.distance || (distance <= mine.distance && triangle < mine.triangle)
@@ -179,7 +179,7 @@ impl Best {
 
     /// Keeps a triangle if it improves the best. Returns whether it does.
     pub(crate) fn take(&mut self, other: Nearest) -> bool {
-        let is_better = self.is_worse_than(other.distance, other.triangle);
+        let is_better = self.is_improved_by(other.distance, other.triangle);
         if is_better {
             let below = if other.distance > 0.0 { self.below } else { other.triangle };
             *self = Self { bound: other.distance, nearest: Some(other), below };

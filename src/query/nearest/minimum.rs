@@ -1,7 +1,7 @@
 //! The closest link of a chain and its nearest triangle: branch and bound over the link tree.
 //!
 //! # Definitions
-//! - `upper`: the caller's bound or the best distance so far, whichever is smaller (field `bound`).
+//! - `upper`: the caller's bound or the best distance so far, whichever is smaller.
 //! - `lower[k]`: a lower bound on the distance of link k ([`LinkLowerBounds`]).
 //! - `look_ahead`: extra search radius that yields `lower[k]` for later queries; 0 if it does not
 //!   pay.
@@ -79,8 +79,7 @@ struct BranchAndBound<'a> {
     search: MeshSearch<'a>,
     robot: PlacedRobot<'a>,
     lower_bounds: &'a mut LinkLowerBounds,
-    /// The upper bound `upper`.
-    bound: Real,
+    upper: Real,
     best: Option<LinkHit>,
     /// Extra search radius; none if the search is no wider than `upper`.
     look_ahead: Option<Real>,
@@ -93,7 +92,7 @@ impl<'a> BranchAndBound<'a> {
         robot: PlacedRobot<'a>,
         lower_bounds: &'a mut LinkLowerBounds,
     ) -> Self {
-        Self { search, robot, lower_bounds, bound, best: None, look_ahead: None }
+        Self { search, robot, lower_bounds, upper: bound, best: None, look_ahead: None }
     }
 
     /// Runs the search from the closest link and triangle of the last query, and records its cost.
@@ -115,24 +114,24 @@ impl<'a> BranchAndBound<'a> {
         let (robot, reach) = (self.robot, self.search.hierarchy.reach);
         let count = robot.links().len();
         self.lower_bounds.refresh(robot);
-        if self.lower_bounds.count_open(0..count, self.bound) == 0 {
+        if self.lower_bounds.count_open(0..count, self.upper) == 0 {
             return;
         }
         let (first, triangle) = match last {
             Some((link, triangle)) if link < count => (link, triangle),
             _ => self.seed(),
         };
-        if self.lower_bounds.count_open(first..first + 1, self.bound) > 0 {
-            let wanted = Best::within(self.bound);
+        if self.lower_bounds.count_open(first..first + 1, self.upper) > 0 {
+            let wanted = Best::within(self.upper);
             let nearest =
                 self.search.nearest(&robot.link(first), wanted, [Some(triangle), None]).nearest();
             self.offer(first, nearest);
         }
-        self.lower_bounds.drop_if_useless(count, self.bound);
+        self.lower_bounds.drop_if_useless(count, self.upper);
         // A robot that jumps would make the look-ahead so wide that nothing is pruned.
         let (last, before) = (&robot.links()[count - 1], robot.length_before(count - 1));
         let size = before + last.length() + 2.0 * last.radius();
-        self.look_ahead = self.lower_bounds.look_ahead(robot, self.bound, size.min(reach), reach);
+        self.look_ahead = self.lower_bounds.look_ahead(robot, self.upper, size.min(reach), reach);
         if self.look_ahead.is_some()
             && let Some((_, nearest)) = self.best
         {
@@ -143,14 +142,14 @@ impl<'a> BranchAndBound<'a> {
         while let Some(node) = tree.get(place) {
             let links = link..link + node.links();
             match node {
-                LinkNode::Inner { bound, below } => {
-                    if self.can_prune(bound, links.clone()) {
+                LinkNode::Inner { bound: capsule, below } => {
+                    if self.can_prune(capsule, links.clone()) {
                         place += below;
                         link = links.end;
                     }
                 }
                 LinkNode::Leaf(_) => {
-                    if link != first && self.lower_bounds.count_open(links, self.bound) > 0 {
+                    if link != first && self.lower_bounds.count_open(links, self.upper) > 0 {
                         self.search_link(link);
                     }
                     link += 1;
@@ -162,14 +161,14 @@ impl<'a> BranchAndBound<'a> {
 
     /// Step 3: returns true if no link of a subtree can improve on the best. False proves nothing.
     fn can_prune(&mut self, capsule: &BoundingCapsule, links: Range<usize>) -> bool {
-        let in_question = self.lower_bounds.count_open(links.clone(), self.bound);
+        let open = self.lower_bounds.count_open(links.clone(), self.upper);
         // The capsule of many links is a weak bound on a few of them.
-        if 2 * in_question <= links.len() {
-            return in_question == 0;
+        if 2 * open <= links.len() {
+            return open == 0;
         }
         let capsule = self.robot.bound(capsule);
         let Some(far) = self.search_radius() else {
-            return !self.search.may_meet_below(&capsule, self.bound, self.triangle_limit());
+            return !self.search.may_meet_below(&capsule, self.upper, self.triangle_limit());
         };
         let keep_away = !self.search.may_meet(&capsule, far);
         if keep_away {
@@ -181,7 +180,7 @@ impl<'a> BranchAndBound<'a> {
     /// Step 4: searches the triangle nearest to a link.
     fn search_link(&mut self, number: usize) {
         let link = self.robot.link(number);
-        let wanted = Best::within(self.bound).touching_below(self.triangle_limit());
+        let wanted = Best::within(self.upper).touching_below(self.triangle_limit());
         let found = if let Some(far) = self.search_radius() {
             let (best, apart, about) = self.search.nearest_with_lower_bound(
                 &link,
@@ -206,11 +205,11 @@ impl<'a> BranchAndBound<'a> {
     /// Returns `upper + look_ahead`. None without a look-ahead, and at `upper = 0`: then only links
     /// that touch can still win a tie.
     fn search_radius(&self) -> Option<Real> {
-        self.look_ahead.filter(|_| self.bound > 0.0).map(|look_ahead| self.bound + look_ahead)
+        self.look_ahead.filter(|_| self.upper > 0.0).map(|look_ahead| self.upper + look_ahead)
     }
 
-    /// Returns the lowest triangle number that is excluded. Of the links that touch, the one with
-    /// the lowest triangle wins, then the lowest link.
+    /// Returns the lowest triangle number that cannot win: at `upper = 0` the one after the best
+    /// triangle. The best triangle itself can still win for a lower link.
     fn triangle_limit(&self) -> u32 {
         match self.best {
             Some((_, nearest)) if nearest.distance <= 0.0 => nearest.triangle.saturating_add(1),
@@ -224,16 +223,16 @@ impl<'a> BranchAndBound<'a> {
         let found = (link, nearest);
         let best = self.best.map_or(found, |best| closer(found, best));
         self.best = Some(best);
-        self.bound = best.1.distance;
+        self.upper = best.1.distance;
     }
 
     /// The guess of step 2: a triangle about nearest to the robot's capsule, and the link closest
     /// to the centroid of that triangle.
     fn seed(&mut self) -> (usize, u32) {
-        let Some(LinkNode::Inner { bound, .. }) = self.robot.link_tree().first() else {
+        let Some(LinkNode::Inner { bound: capsule, .. }) = self.robot.link_tree().first() else {
             return (0, 0);
         };
-        let triangle = self.search.approximate_nearest(&self.robot.bound(bound)).unwrap_or(0);
+        let triangle = self.search.approximate_nearest(&self.robot.bound(capsule)).unwrap_or(0);
         let [a, b, c] = self.search.hierarchy.mesh.corners(triangle);
         let centre = self.robot.in_robot_frame(a / 3.0 + b / 3.0 + c / 3.0);
         let distances = self

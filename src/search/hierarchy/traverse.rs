@@ -10,7 +10,7 @@
 //!   The distance d of the triangle satisfies `lower - r - e < d < upper - r + e`; if the right
 //!   side is not positive, d is 0.
 //! - `limit`: an axis distance; no triangle with `lower >= limit` is wanted. It never grows.
-//! - `below`: no triangle with this number or a higher one is wanted.
+//! - `below`: no triangle with this number or a higher one can win (exclusive limit).
 //!
 //! All comparisons are in the precision of the search.
 //!
