@@ -20,7 +20,7 @@ pub(super) struct Arguments<'a, 'py> {
 pub(super) enum Way<'a, 'py> {
     Motion(&'a Bound<'py, Motion>),
     /// Each motion is made when it is asked about.
-    Linear(Robots<'py>, Maker),
+    Linear(Box<Robots<'py>>, Maker),
 }
 
 /// A question about any motion of the library's.
@@ -75,7 +75,7 @@ impl<'a, 'py> Way<'a, 'py> {
         let make = maker(py, given.caps.unwrap_or(Caps::Fitted))?;
         let robots = Robots::new(Names::one("start"), given.start, radii, None)?
             .with_as_many("end", end, "start")?;
-        Ok(Self::Linear(robots, make))
+        Ok(Self::Linear(Box::new(robots), make))
     }
 
     /// How many motions there are; none where there is one by itself.
@@ -109,7 +109,7 @@ impl<'a, 'py> Way<'a, 'py> {
                     row[0] = Some(question.ask(session, &motion)?);
                     Ok(())
                 };
-                ask_each(py, engine, robots, (None, 1), ask, take)?;
+                ask_each(py, engine, &**robots, (None, 1), ask, take)?;
             }
         }
         Ok(all)
