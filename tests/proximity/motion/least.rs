@@ -389,10 +389,11 @@ fn a_path_looks_closely_where_it_comes_nearest() {
     let mut search = floor();
     let link = |x: Real, z: Real| [Vector::new(x, 0.0, z), Vector::new(x + 2.0, 0.0, z)];
     let heights: Vec<_> = (0..=200).map(|k| 5.0 + 3.0 * (Real::from(k) * 0.1).cos()).collect();
-    let legs = heights
-        .windows(2)
-        .map(|ends| LinearMotion::chain(&link(0.0, ends[0]), &link(0.1, ends[1]), &[0.5]).unwrap());
-    let path = MotionPath::new(legs.collect()).unwrap();
+    // To and fro, so that each motion begins where the previous one ends.
+    let shape = |k: usize| link([0.0, 0.1][k % 2], heights[k]);
+    let motions =
+        (1..heights.len()).map(|k| LinearMotion::chain(&shape(k - 1), &shape(k), &[0.5]).unwrap());
+    let path = MotionPath::new(motions.collect()).unwrap();
     let counted = Counted::new(&path);
     let least = search.clearance_of_motion(&counted, 1e-3).unwrap();
     let lowest = heights.iter().copied().fold(Real::INFINITY, Real::min) - 0.5;
