@@ -259,21 +259,21 @@ fn contacts_have_a_prominence() {
     let mut random = Random::new(14);
     let robot = robot(&mut random);
     let pose = random.pose(0.1);
-    // A mesh that is rough by 0.05.
+    // A mesh that is rough by 0.5.
     let (vertices, triangles) = Ball::new(8.0).to_trimesh(48, 24);
-    let rough: Vec<_> = vertices.iter().map(|&vertex| vertex + random.point() * 0.05).collect();
+    let rough: Vec<_> = vertices.iter().map(|&vertex| vertex + random.point() * 0.5).collect();
     let mut wall = BvhSearch::from_triangles(&rough, &triangles).unwrap();
     let mut scene = Scene::new();
     scene.add("wall", wall.clone(), None).unwrap();
     let mut counts = Vec::new();
-    for prominence in [0.0, 0.2, f64::INFINITY] {
+    for prominence in [0.0, 0.3, f64::INFINITY] {
         let (mut found, mut expected) = (Vec::new(), Vec::new());
         scene.contacts_within(&[(&robot, pose)], 6.0, prominence, &mut found).unwrap();
         wall.contacts_within(&robot, &pose, 6.0, prominence, &mut expected).unwrap();
         assert_eq!(found.iter().map(|found| found.contact).collect::<Vec<_>>(), expected);
         counts.push(found.len());
     }
-    assert!(counts[0] > 2 * counts[1] && counts[2] > 0, "{counts:?}");
+    assert!(counts[0] > counts[1] && counts[1] >= counts[2] && counts[2] > 0, "{counts:?}");
 }
 
 /// `reach` is checked in an empty scene too, and no structure is blamed for it.
@@ -304,7 +304,7 @@ fn a_scene_without_any_margin_has_nothing_to_clear() {
         let error = scene.clears(&robots).unwrap_err();
         assert_eq!(error, SceneError::NoMargin);
         assert_eq!(error.kind(), "no_margin");
-        assert!(error.to_string().contains("`set_margin`"), "{error}");
+        assert!(error.to_string().contains("`per_structure`"), "{error}");
         let mut answers = Vec::new();
         scene.clears_batch(&[&robots], &mut answers);
         assert_eq!(answers, [Err(SceneError::NoMargin)]);

@@ -15,7 +15,9 @@ from shapes import sphere
 
 TESTS = Path(__file__).parent
 PROGRAM = """
-import sys, time
+import signal, sys, time
+# A shell that runs the tests in the background has its children ignore SIGINT.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 import numpy as np
 from parry_continuum import Mesh, load, load_centreline
 sys.path.insert(0, {tests!r})
