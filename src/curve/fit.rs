@@ -31,7 +31,7 @@
 //! derivation of bodies at a face then holds with the tilt `turn` (`refine::bounding_body`).
 
 use super::Tube;
-use super::curve::{CurveBound, NextPoint};
+use super::centreline::{CurveBound, NextPoint};
 use super::section::stretch;
 use super::smoothing_spline::{Knots, Smoother, SmoothingSpline};
 use super::tube_builder::TubeBuilder;

@@ -2,7 +2,7 @@
 
 use super::Tube;
 use super::cap_persistence::CapPersistence;
-use super::curve::{Curve, Samples};
+use super::centreline::{Curve, Samples};
 use super::section::{EndFace, Section};
 use crate::robot::{Cap, Chain, direction, from_segment_radii, has_direction, length};
 use parry3d_f64::math::{Real, Vector};

@@ -31,7 +31,7 @@
 //! lengths stay those of the chords, so a share of a section is the same place either way.
 
 use super::Tube;
-use super::curve::{Curve, CurveBound, NextPoint, Samples};
+use super::centreline::{Curve, CurveBound, NextPoint, Samples};
 use super::hermite_segment::{HermiteSegment, MAX_PARTS};
 use super::section::Section;
 use super::segment::Segment;

@@ -1,8 +1,8 @@
 //! The robot as a curve: a tube with given radii around a centreline of bounded curvature.
 
 mod cap_persistence;
+mod centreline;
 mod constant_curvature;
-mod curve;
 mod direction_at_end;
 mod fit;
 mod frames;
@@ -32,8 +32,8 @@ pub(crate) use section::{EndFace, Section};
 pub(crate) use turns::{TooSharp, TubeTurns};
 
 use crate::robot::{Cap, RobotError, direction, radius_for_all};
-pub(crate) use curve::CurveBound;
-use curve::{Curve, Foot, PlaceOnCurve};
+pub(crate) use centreline::CurveBound;
+use centreline::{Curve, Foot, PlaceOnCurve};
 use parry3d_f64::math::{Real, Vector};
 use sample_clusters::SampleCluster;
 use section_samples::Hat;

@@ -34,7 +34,7 @@
 
 use super::Tube;
 use super::cap_persistence::CapPersistence;
-use super::curve::{Curve, CurveBound, Samples};
+use super::centreline::{Curve, CurveBound, Samples};
 use super::direction_at_end::direction_at_end;
 use super::open_section::{OpenSection, SamplePrefix};
 use super::sample_clusters::{self, SampleCluster};

@@ -40,7 +40,7 @@
 
 use super::Tube;
 use super::cap_persistence::CapPersistence;
-use super::curve::CurveBound;
+use super::centreline::CurveBound;
 use crate::distance::Scalar;
 use crate::robot::RadiusSteps;
 use parry3d_f64::math::{Real, Vector};

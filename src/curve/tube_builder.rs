@@ -3,7 +3,7 @@
 
 use super::Tube;
 use super::cap_persistence::CapPersistence;
-use super::curve::{Curve, CurveBound, NextPoint, Samples};
+use super::centreline::{Curve, CurveBound, NextPoint, Samples};
 use super::section::{EndFace, Section};
 use crate::distance::Scalar;
 use crate::robot::{RobotError, is_same};

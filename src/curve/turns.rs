@@ -27,7 +27,7 @@
 //! its additions.
 
 use super::Tube;
-use super::curve::Curve;
+use super::centreline::Curve;
 use super::frames::ONE_DIRECTION;
 use crate::distance::Scalar;
 use crate::robot::{direction, length};

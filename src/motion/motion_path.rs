@@ -151,8 +151,8 @@ impl Joint {
         let [before, behind] = &self.ends;
         for (number, place) in self.places.iter().enumerate() {
             let Some(PlaceMotion { way, angle }) = before.moved(behind, number) else { continue };
-            // Written so that NaN is apart.
-            let is_joined = way <= 0.0 && !(angle > 0.0);
+            // A way that is NaN is apart. An angle is NaN where there is no direction.
+            let is_joined = way <= 0.0 && (angle <= 0.0 || angle.is_nan());
             if !is_joined {
                 let (section, share) = (place.section, place.shares[0]);
                 let [off, turn] = [way, angle].map(|part| part.max(0.0));

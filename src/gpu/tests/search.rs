@@ -183,9 +183,9 @@ fn a_lost_device_is_an_error_of_every_query_but_those_on_the_cpu() {
     gpu.0.device.raw().destroy();
     let lost = ProximityError::Device(DeviceFailure::Lost);
     for _ in 0..2 {
-        assert_eq!(engine.minimum(&robot, &pose), Err(lost.clone()));
+        assert_eq!(engine.minimum(&robot, &pose), Err(lost));
         let mut out = vec![Ok(false)];
-        assert_eq!(engine.clears_batch(&[(&robot, pose)], 0.1, &mut out), Err(lost.clone()));
+        assert_eq!(engine.clears_batch(&[(&robot, pose)], 0.1, &mut out), Err(lost));
         assert!(out.is_empty());
         assert_eq!(engine.set_vertices(mesh.vertices()), Ok(()));
     }

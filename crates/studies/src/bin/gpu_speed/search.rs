@@ -55,10 +55,9 @@ pub fn chapter(
         let mut gpu = GpuSearch::on(&opened.gpu, mesh).map_err(text)?;
         gpu.set_min_links(Some(0));
         for count in batches(most_robots) {
-            for question in 0..QUESTIONS.len() {
+            for (question, name) in QUESTIONS.iter().enumerate() {
                 let row = row(&mut cpu, &mut gpu, &robots[..count], question, enough)?;
-                writeln!(times, "| {triangles} | {} | {count} |{row}", QUESTIONS[question])
-                    .map_err(text)?;
+                writeln!(times, "| {triangles} | {name} | {count} |{row}").map_err(text)?;
             }
         }
         let left = gpu.answered_on_cpu();
