@@ -149,19 +149,10 @@ impl Tube {
                 })
             };
             self.sections.push(Section {
-                first: points.len() as u32,
                 last: points.len() as u32 + 1,
-                start,
                 end,
-                radius,
-                curvature: 0.0,
-                mean_curvature: 0.0,
-                curvature_at: [0.0; 2],
-                shown_at: [0.0; 2],
-                is_even: true,
-                stretch: 1.0,
                 faces: [face(0), face(1)],
-                fades: false,
+                ..Section::beginning(points.len(), start, radius)
             });
             points.extend(ends);
             arcs.extend([start, end]);

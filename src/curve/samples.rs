@@ -39,7 +39,7 @@ use super::direction_at_end::direction_at_end;
 use super::open_section::{OpenSection, SamplePrefix};
 use super::sample_clusters::{self, SampleCluster};
 use super::section::{EndFace, Section};
-use super::section_samples::Hat;
+use super::section_samples::{Bend, Hat};
 use super::segment::{Segment, curvature_between};
 use crate::distance::Scalar;
 use crate::robot::{COORDINATE_LIMIT, RobotError, check_segments};
@@ -159,6 +159,17 @@ impl Tube {
                 .map_or(0.0, |cluster| cluster.gap),
         );
         let (mut result, mut dense_sample) = (Ok(()), None);
+        let mut keep = |closed: Result<(Section, Option<usize>), Bend>,
+                        segments: &[u32],
+                        sections: &mut Vec<Section>| {
+            match closed {
+                Ok((section, near)) => {
+                    sections.push(section);
+                    dense_sample = dense_sample.or(near);
+                }
+                Err(bend) => result = result.and(Err(bend.error(segments))),
+            }
+        };
         for (k, (&sample, &radius)) in samples[1..].iter().zip(radii).enumerate() {
             let mut off_here = 0.0;
             if CROWD && let Some(cluster) = clusters.get(number) {
@@ -191,13 +202,9 @@ impl Tube {
                     );
                     self.merged = self.merged.max(done.section.radius - done.least_radius);
                     let so_far = SamplePrefix { points: &points, arcs: &arcs, clusters };
-                    match done.close(last, rounding + widest_gap, &so_far, hats, &mut bounds) {
-                        Ok((section, near)) => {
-                            self.sections.push(section);
-                            dense_sample = dense_sample.or(near);
-                        }
-                        Err(bend) => result = result.and(Err(bend.error(&segments))),
-                    }
+                    let closed =
+                        done.close(last, rounding + widest_gap, &so_far, hats, &mut bounds);
+                    keep(closed, &segments, &mut self.sections);
                 }
             } else {
                 open = OpenSection::new(0, 0.0, radius);
@@ -227,13 +234,8 @@ impl Tube {
         self.merged = self.merged.max(open.section.radius - open.least_radius) + widest_gap;
         self.merged += clusters.iter().fold(0.0, |widest: Real, cluster| widest.max(cluster.gap));
         let so_far = SamplePrefix { points: &points, arcs: &arcs, clusters };
-        match open.close(last, rounding + widest_gap, &so_far, hats, &mut bounds) {
-            Ok((section, near)) => {
-                self.sections.push(section);
-                dense_sample = dense_sample.or(near);
-            }
-            Err(bend) => result = result.and(Err(bend.error(&segments))),
-        }
+        let closed = open.close(last, rounding + widest_gap, &so_far, hats, &mut bounds);
+        keep(closed, &segments, &mut self.sections);
         if !bounds.is_empty() {
             bounds.resize(last + 1, CurveBound::default());
         }

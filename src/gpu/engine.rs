@@ -14,7 +14,6 @@ use crate::mesh::{Mesh, SearchFrame};
 use crate::pair::{PlacedLink, PlacedRobot};
 use crate::query::contacts::{ContactQuery, Wall, contacts_by_all_triangles};
 use crate::robot::Chain;
-use gpu_batch::DeviceFailure;
 use gpu_batch::wgpu::ComputePipeline;
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::shape::TriMesh;
@@ -131,14 +130,7 @@ impl GpuExhaustive {
     pub(super) fn tuned(gpu: &Gpu, mesh: Mesh, tuning: Tuning) -> Result<Self, GpuError> {
         let mut watch = gpu.0.device.watch();
         let on_device = DeviceMesh::new(&gpu.0, &mesh, tuning.part);
-        match watch.check() {
-            Ok(()) => {}
-            Err(DeviceFailure::OutOfMemory) => {
-                let adapter = gpu.adapter().to_string();
-                return Err(GpuError::MeshTooLarge { adapter, triangles: mesh.len() });
-            }
-            Err(failure) => return Err(failure.into()),
-        }
+        gpu.check_upload(&mut watch, mesh.len())?;
         Ok(Self {
             gpu: gpu.clone(),
             frame: SearchFrame::new(&mesh),

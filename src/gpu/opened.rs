@@ -4,7 +4,7 @@ use super::search::SearchKernels;
 use super::wgsl::{self, CONVEX};
 use crate::threads::Lazy;
 use gpu_batch::wgpu::{BindGroupLayout, ComputePipeline};
-use gpu_batch::{Adapter, Binding, Device, DeviceError, Precision, Shader};
+use gpu_batch::{Adapter, Binding, Device, DeviceError, DeviceFailure, Precision, Shader, Watch};
 use std::sync::Arc;
 
 /// An open GPU with compiled kernels. Opening takes a moment, so engines for several meshes can
@@ -30,6 +30,22 @@ impl Gpu {
     /// The name and the backend of the GPU.
     pub fn adapter(&self) -> &Adapter {
         self.0.device.adapter()
+    }
+
+    /// The error for a mesh that does not fit into the memory.
+    pub(super) fn too_large(&self, triangles: usize) -> GpuError {
+        GpuError::MeshTooLarge { adapter: self.adapter().to_string(), triangles }
+    }
+
+    /// Checks the upload of a mesh.
+    ///
+    /// # Errors
+    /// The mesh did not fit, or the device has failed.
+    pub(super) fn check_upload(&self, watch: &mut Watch, triangles: usize) -> Result<(), GpuError> {
+        watch.check().map_err(|failure| match failure {
+            DeviceFailure::OutOfMemory => self.too_large(triangles),
+            other => other.into(),
+        })
     }
 
     /// The search precision.

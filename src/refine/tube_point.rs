@@ -73,6 +73,28 @@ pub(crate) struct TubePoint {
     pub point: Vector,
 }
 
+/// A place of the centreline near a point x.
+struct NearPlace {
+    arc: Real,
+    place: Vector,
+    /// From x to the place, and its length.
+    way: Vector,
+    away: Real,
+    /// The distance of the curve from its interpolation there.
+    off: Real,
+}
+
+impl NearPlace {
+    /// The point of the tube on the way from the place to `x`, if the tube has all points within the
+    /// radius of the place. `reach` is an upper bound on the distance of the place from `x`.
+    fn less_radius(&self, radius: Real, reach: Real, x: Vector) -> TubePoint {
+        // NaN means unknown, not contact.
+        let upper = if reach.is_nan() { Real::INFINITY } else { (reach - radius).max(0.0) };
+        let point = if upper > 0.0 { x + self.way * (upper / self.away).min(1.0) } else { x };
+        TubePoint { upper, arc: self.arc, point }
+    }
+}
+
 impl PlacedTube<'_> {
     /// Returns an upper bound on the distance of `x` from a section, searching near `arc`.
     pub(crate) fn near(&self, number: u32, arc: Real, x: Vector) -> TubePoint {
@@ -95,19 +117,15 @@ impl PlacedTube<'_> {
     ) -> TubePoint {
         let section = self.section(number);
         let rounding = self.tube.error() + self.slack;
-        let foot = self.tube.foot(section, arc, self.pose.inverse_transform_point(x));
-        let [a, b] = foot.between.map(|point| self.pose * point);
-        let place = a + (b - a) * foot.share;
-        let way = place - x;
-        let away = way.length();
-        let reach = away + foot.off + rounding;
-        let mut best = TubePoint { upper: Real::INFINITY, arc: foot.arc, point: x };
+        let near = self.near_place(section, arc, x);
+        let reach = near.away + near.off + rounding;
+        let mut best = TubePoint { upper: Real::INFINITY, arc: near.arc, point: x };
         let mut is_beside = true;
         // Case 5.
         for (end, limit) in limits.into_iter().enumerate() {
             let Some(limit) = limit else { continue };
-            let is_within = if end == 0 { limit <= foot.arc } else { foot.arc <= limit };
-            if !is_within || !self.recedes_between(section, [foot.arc, limit], x, reach + rounding)
+            let is_within = if end == 0 { limit <= near.arc } else { near.arc <= limit };
+            if !is_within || !self.recedes_between(section, [near.arc, limit], x, reach + rounding)
             {
                 return best;
             }
@@ -126,7 +144,7 @@ impl PlacedTube<'_> {
             }
             let face_arc = if end == 0 { section.start } else { section.end };
             if reach < crowded - rounding
-                && self.recedes_between(section, [foot.arc, face_arc], x, reach + rounding)
+                && self.recedes_between(section, [near.arc, face_arc], x, reach + rounding)
             {
                 continue;
             }
@@ -137,13 +155,13 @@ impl PlacedTube<'_> {
                 + section.radius * face.tilt;
             // The face's centre and `place` belong to the tube for every normal. (The tilt may be
             // infinite; infinity times 0 is NaN.)
-            let beside = away + foot.off;
+            let beside = near.away + near.off;
             let least = if rim <= from_centre { rim } else { from_centre }.min(beside);
             let upper = least + rounding;
             if upper < best.upper {
                 best = TubePoint { upper, arc: face_arc, point: face.centre };
                 if least == beside {
-                    best = TubePoint { upper, arc: foot.arc, point: place };
+                    best = TubePoint { upper, arc: near.arc, point: near.place };
                 } else if least == rim {
                     let share = if size > section.radius { section.radius / size } else { 1.0 };
                     best.point = face.centre + across * share;
@@ -152,13 +170,18 @@ impl PlacedTube<'_> {
         }
         // Case 1.
         if is_beside {
-            // NaN means unknown, not contact.
-            let upper =
-                if reach.is_nan() { Real::INFINITY } else { (reach - section.radius).max(0.0) };
-            let point = if upper > 0.0 { x + way * (upper / away).min(1.0) } else { x };
-            best = TubePoint { upper, arc: foot.arc, point };
+            best = near.less_radius(section.radius, reach, x);
         }
         best
+    }
+
+    /// Returns the place of a section near `arc` that is near `x`.
+    fn near_place(&self, section: &Section, arc: Real, x: Vector) -> NearPlace {
+        let foot = self.tube.foot(section, arc, self.pose.inverse_transform_point(x));
+        let [a, b] = foot.between.map(|point| self.pose * point);
+        let place = a + (b - a) * foot.share;
+        let way = place - x;
+        NearPlace { arc: foot.arc, place, way, away: way.length(), off: foot.off }
     }
 
     /// Whether some sampled place between two arc lengths is farther from `x` than `least`. Tries
@@ -198,27 +221,17 @@ impl PlacedTube<'_> {
         let tick = if end == 0 { section.first } else { section.last };
         (self.point(section, tick) - x).length()
     }
-}
 
-impl PlacedTube<'_> {
-    /// As [`PlacedTube::near`], for a loose tube.
+    /// As [`near`](Self::near), for a loose tube.
     fn near_links(&self, number: u32, arc: Real, x: Vector) -> TubePoint {
         let section = self.section(number);
         let rounding = self.tube.error() + self.slack;
-        let foot = self.tube.foot(section, arc, self.pose.inverse_transform_point(x));
-        let [a, b] = foot.between.map(|point| self.pose * point);
-        let place = a + (b - a) * foot.share;
-        let way = place - x;
-        let away = way.length();
-        let reach = away + rounding;
+        let near = self.near_place(section, arc, x);
+        let reach = near.away + rounding;
         if [0, 1].into_iter().all(|end| self.is_before_end(number, end, x, reach + rounding)) {
-            // NaN means unknown, not contact.
-            let upper =
-                if reach.is_nan() { Real::INFINITY } else { (reach - section.radius).max(0.0) };
-            let point = if upper > 0.0 { x + way * (upper / away).min(1.0) } else { x };
-            return TubePoint { upper, arc: foot.arc, point };
+            return near.less_radius(section.radius, reach, x);
         }
-        TubePoint { upper: reach, arc: foot.arc, point: place }
+        TubePoint { upper: reach, arc: near.arc, point: near.place }
     }
 
     /// Whether some link end between a link and that end of its run is farther than `least` from

@@ -40,22 +40,7 @@ impl Refused {
 
     /// The parameter that a robot's error names.
     pub(crate) fn parameter_mut(&mut self) -> Option<&mut &'static str> {
-        match self {
-            Self::Robot(
-                RobotError::LengthsDiffer { parameter, .. }
-                | RobotError::BadRadius { parameter, .. }
-                | RobotError::HidesLength { parameter, .. }
-                | RobotError::PointNotFinite { parameter, .. }
-                | RobotError::PointOutOfRange { parameter, .. }
-                | RobotError::BadTangent { parameter, .. }
-                | RobotError::BadLength { parameter, .. }
-                | RobotError::BadCurvature { parameter, .. }
-                | RobotError::NoSections { parameter, .. }
-                | RobotError::TooFewPoints { parameter, .. }
-                | RobotError::Negative { parameter, .. },
-            ) => Some(parameter),
-            _ => None,
-        }
+        if let Self::Robot(error) = self { parameter_of(error) } else { None }
     }
 
     pub(crate) fn kind(&self) -> &'static str {
@@ -169,6 +154,24 @@ fn class(py: Python<'_>) -> PyResult<&Bound<'_, PyType>> {
     CLASS.import(py, "parry_continuum._errors", "ContinuumError")
 }
 
+/// The parameter of a robot, not of its pose, that an error names.
+fn parameter_of(error: &mut RobotError) -> Option<&mut &'static str> {
+    match error {
+        RobotError::LengthsDiffer { parameter, .. }
+        | RobotError::BadRadius { parameter, .. }
+        | RobotError::HidesLength { parameter, .. }
+        | RobotError::PointNotFinite { parameter, .. }
+        | RobotError::PointOutOfRange { parameter, .. }
+        | RobotError::BadTangent { parameter, .. }
+        | RobotError::BadLength { parameter, .. }
+        | RobotError::BadCurvature { parameter, .. }
+        | RobotError::NoSections { parameter, .. }
+        | RobotError::TooFewPoints { parameter, .. }
+        | RobotError::Negative { parameter, .. } => Some(parameter),
+        _ => None,
+    }
+}
+
 /// Robots are given as `points` and `radii`, so these are the names in their errors.
 impl From<RobotError> for Refused {
     fn from(mut error: RobotError) -> Self {
@@ -177,24 +180,6 @@ impl From<RobotError> for Refused {
             RobotError::BadRadius { parameter: parameter @ ("from" | "to"), .. } => {
                 *parameter = "radii"
             }
-            RobotError::LengthsDiffer { parameter, .. }
-            | RobotError::BadRadius { parameter, .. }
-            | RobotError::HidesLength { parameter, .. }
-            | RobotError::PointNotFinite { parameter, .. }
-            | RobotError::PointOutOfRange { parameter, .. }
-            | RobotError::BadTangent { parameter, .. }
-            | RobotError::BadLength { parameter, .. }
-            | RobotError::BadCurvature { parameter, .. }
-            | RobotError::NoSections { parameter, .. }
-            | RobotError::TooFewPoints { parameter, .. } => {
-                *parameter = match *parameter {
-                    "segment_radii" => "radii",
-                    "end_tangents" => "tangents",
-                    "from" => "start",
-                    "to" => "end",
-                    other => other,
-                };
-            }
             RobotError::BadPose { parameter, .. } | RobotError::PoseNotRigid { parameter, .. } => {
                 *parameter = match *parameter {
                     "from" => "start_pose",
@@ -202,7 +187,17 @@ impl From<RobotError> for Refused {
                     other => other,
                 };
             }
-            _ => {}
+            error => {
+                if let Some(parameter) = parameter_of(error) {
+                    *parameter = match *parameter {
+                        "segment_radii" => "radii",
+                        "end_tangents" => "tangents",
+                        "from" => "start",
+                        "to" => "end",
+                        other => other,
+                    };
+                }
+            }
         }
         Self::Robot(error)
     }

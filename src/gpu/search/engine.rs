@@ -158,8 +158,7 @@ impl GpuSearch {
     }
 
     fn of(gpu: &Gpu, mesh: Mesh) -> Result<Self, GpuError> {
-        let too_large =
-            || GpuError::MeshTooLarge { adapter: gpu.adapter().to_string(), triangles: mesh.len() };
+        let too_large = || gpu.too_large(mesh.len());
         if mesh.len() > MOST_TRIANGLES {
             return Err(too_large());
         }
@@ -168,11 +167,7 @@ impl GpuSearch {
         let tree = SearchTree::new(&frame, &mesh);
         let mut watch = gpu.0.device.watch();
         let on_device = DeviceTree::new(&gpu.0, kernels, &mesh, &tree).ok_or_else(too_large)?;
-        match watch.check() {
-            Ok(()) => {}
-            Err(DeviceFailure::OutOfMemory) => return Err(too_large()),
-            Err(failure) => return Err(failure.into()),
-        }
+        gpu.check_upload(&mut watch, mesh.len())?;
         Ok(Self {
             gpu: gpu.clone(),
             level: Level::new(),
