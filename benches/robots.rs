@@ -67,14 +67,12 @@ fn two_robots(criterion: &mut Criterion) {
         group.bench_function(name, |bencher| bencher.iter(|| ask(black_box(&next(&poses)))));
     };
     let here = Pose::IDENTITY;
-    bench("between", &mut |pose| {
+    bench("minimum without memory", &mut |pose| {
         RobotPair::new().minimum(&a, &here, &b, pose).expect("an answer").distance
     });
     let mut pair = RobotPair::new();
-    bench("RobotPair::minimum", &mut |pose| {
-        pair.minimum(&a, &here, &b, pose).expect("an answer").distance
-    });
-    bench("clears_between", &mut |pose| {
+    bench("minimum", &mut |pose| pair.minimum(&a, &here, &b, pose).expect("an answer").distance);
+    bench("clears without memory", &mut |pose| {
         f64::from(u8::from(RobotPair::new().clears(&a, &here, &b, pose, 1.0).expect("an answer")))
     });
     bench("every exact pair", &mut |pose| {

@@ -149,7 +149,7 @@ fn speed_is_measured_drawn_and_quoted() {
     assert!(page.contains("6,000 triangles divided in four once"), "{page}");
     let latency = table(&page, "| query | triangles | ticks |");
     let queries: Vec<_> = latency.iter().map(|row| &*row[0]).collect();
-    assert_eq!(queries, ["`minimum`", "`clears`", "`per_link`", "`within`"]);
+    assert_eq!(queries, ["`minimum`", "`clears`", "`per_link`", "`contacts_within`"]);
     for row in &latency {
         // The median, what one tick in a thousand exceeds, and the largest; alone, then after other
         // work.
@@ -161,7 +161,7 @@ fn speed_is_measured_drawn_and_quoted() {
     let rare = table(&page, "| query | triangles | touching |");
     assert_eq!(
         rare.iter().map(|row| &*row[0]).collect::<Vec<_>>(),
-        ["`clears`", "`minimum`", "`within`"]
+        ["`clears`", "`minimum`", "`contacts_within`"]
     );
     for row in &rare {
         // The number of touching shapes; median, one in a thousand, worst, worst over median; then

@@ -39,7 +39,7 @@ const QUERIES: [Query; 4] = [
         Ok(())
     }),
     ("per_link", |turn, pose| turn.search.per_link(&turn.robot, pose, &mut turn.links)),
-    ("within", |turn, pose| {
+    ("contacts_within", |turn, pose| {
         turn.search.contacts_within(&turn.robot, pose, MARGIN, 0.0, &mut turn.contacts)
     }),
 ];
@@ -50,7 +50,7 @@ pub fn chapter(effort: Effort) -> Result<String, String> {
         "## Latency\n\n\
          The robot of 30 links at the wall of the cavity, one query a tick, with the answers of the tick before. *Alone*: \
          nothing else runs between two ticks. *After other work*: between two ticks {} MB of other data pass through the caches. `clears` with 1 mm, \
-         `within` with {MARGIN} mm. Microseconds: the median, what one tick in a thousand exceeds, and the largest.\n\n\
+         `contacts_within` with {MARGIN} mm. Microseconds: the median, what one tick in a thousand exceeds, and the largest.\n\n\
          | query | triangles | ticks | alone: p50 | p99.9 | largest | ticks | after other work: p50 | p99.9 | largest |\n\
          |---|---|---|---|---|---|---|---|---|---|\n",
         OTHER_WORK >> 20

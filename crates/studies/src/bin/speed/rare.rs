@@ -29,7 +29,7 @@ const MOST: f64 = 20.0;
 pub const MARK: &str = "rare";
 
 /// The query.
-const QUERIES: [&str; 3] = ["clears", "minimum", "within"];
+const QUERIES: [&str; 3] = ["clears", "minimum", "contacts_within"];
 
 /// The chapter of the page, without its marks.
 pub fn chapter(effort: Effort, written: &str, goals: &mut Goals) -> Result<String, String> {
@@ -39,10 +39,10 @@ pub fn chapter(effort: Effort, written: &str, goals: &mut Goals) -> Result<Strin
         "## The worst of many\n\n\
          {written}. {shapes} random shapes of three tubes, 30 links each, in the cavity: each new, without a warm start, and \
          queried {ROUNDS} times. The least processor time of the thread counts, the clock included. `prepare` was called \
-         before, so that no query builds anything. Touching and free shapes are separate; `clears` with margin 0, `within` with \
+         before, so that no query builds anything. Touching and free shapes are separate; `clears` with margin 0, `contacts_within` with \
          {MARGIN} mm. Microseconds: the median, what one shape in a thousand exceeds, and the worst; and the worst over the \
          median. Most free shapes are decided by one test of a body around the whole robot, so the median of `clears` \
-         and `within` is that test. The worst free shapes are as near to the wall as touching ones, and cost as much.\n\n\
+         and `contacts_within` is that test. The worst free shapes are as near to the wall as touching ones, and cost as much.\n\n\
          | query | triangles | touching | p50 | p99.9 | worst | worst / p50 | free | p50 | p99.9 | worst | worst / p50 |\n\
          |---|---|---|---|---|---|---|---|---|---|---|---|\n"
     );

@@ -136,7 +136,7 @@ fn rows(
             ],
         ),
         (
-            "`contacts` and `within`",
+            "`contacts_within`",
             [
                 Box::new(move |pose| {
                     scene3
