@@ -2,8 +2,8 @@
 
 use crate::error::Refused;
 
-/// The names of a robot's parameters: of one robot `points`, `radii` and `pose`; of two robots, `points_a` and `points_b`; of a
-/// list of robots, those of an entry.
+/// The names of a robot's parameters: of one robot `points`, `radii` and `pose`; of two robots,
+/// `points_a` and `points_b`; of a list of robots, those of an entry.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Names {
     pub points: &'static str,

@@ -10,7 +10,8 @@ use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyFloat, PyList, PyTuple, PyType};
 
-/// Numbers with a shape. They belong to Python: whoever looks at them holds the GIL, since another thread may write there.
+/// Numbers with a shape. They belong to Python: whoever looks at them holds the GIL, since another
+/// thread may write there.
 pub(crate) struct Numbers<'py> {
     array: Bound<'py, PyArrayDyn<f64>>,
     /// How many there were when the array was given.
@@ -50,8 +51,8 @@ impl<'py> Numbers<'py> {
         Self { array, count }
     }
 
-    /// Refuses an array whose size or type has changed since it was given: by code of Python's that ran meanwhile, such as another
-    /// argument's `__array__`, or by another thread.
+    /// Refuses an array whose size or type has changed since it was given: by code of Python's that
+    /// ran meanwhile, such as another argument's `__array__`, or by another thread.
     pub(crate) fn check_unchanged(&self, name: &str) -> Result<(), Refused> {
         if self.array.len() == self.count && self.is_double() {
             return Ok(());
@@ -80,8 +81,8 @@ impl<'py> Numbers<'py> {
         if !self.is_double() {
             return &[];
         }
-        // SAFETY: the array is of doubles, contiguous and aligned. It is not written meanwhile: whoever calls holds the GIL, and
-        // gives the numbers up before Python's code runs again.
+        // SAFETY: the array is of doubles, contiguous and aligned. It is not written meanwhile:
+        // whoever calls holds the GIL, and gives the numbers up before Python's code runs again.
         unsafe { self.array.as_slice() }.unwrap_or_default()
     }
 
@@ -152,7 +153,8 @@ pub(crate) fn as_array<'py>(
         let text = format!("`{name}` is no array of numbers ({why}); give a numpy array");
         Refused::other("bad_type", text).raise(py, None)
     };
-    // What an object's own code raises is its own; what numpy says of lists and the like is said of the parameter.
+    // What an object's own code raises is its own; what numpy says of lists and the like is said of
+    // the parameter.
     let is_numpys = |error: &PyErr| {
         error.is_instance_of::<PyValueError>(py) || error.is_instance_of::<PyTypeError>(py)
     };

@@ -18,8 +18,8 @@ pub(crate) enum Poses<'py> {
 }
 
 impl<'py> Poses<'py> {
-    /// The poses of robots of which there are `count`, and how many poses there are: one for all, (4, 4), or one for each of a
-    /// batch. One robot takes any number of them.
+    /// The poses of robots of which there are `count`, and how many poses there are: one for all,
+    /// (4, 4), or one for each of a batch. One robot takes any number of them.
     pub(crate) fn new(
         given: &Bound<'py, PyAny>,
         count: Option<usize>,
@@ -75,7 +75,8 @@ impl<'py> Poses<'py> {
         matches!(self, Self::Shared(_))
     }
 
-    /// The matrices of some of the batch: one where one stands for all, and none where all are the identity.
+    /// The matrices of some of the batch: one where one stands for all, and none where all are the
+    /// identity.
     pub(crate) fn matrices(&self, range: Range<usize>) -> &[[f64; 16]] {
         match self {
             Self::Identity => &[],

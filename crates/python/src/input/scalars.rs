@@ -1,4 +1,5 @@
-//! Scalars. Python's own errors do not name the parameter in their text, so that each parameter has a function here.
+//! Scalars. Python's own errors do not name the parameter in their text, so that each parameter has
+//! a function here.
 
 use crate::error::Refused;
 use mesh_files::Frame;

@@ -32,9 +32,10 @@ use std::sync::Arc;
 
 /// A robot that changes with time, from 0 to 1; or a batch of such.
 ///
-/// `LinearMotion`, `RigidMotion` and `BendingMotion` are motions. `MovingBase` moves the base of any of them, and `MotionPath` puts
-/// them one after another. `Mesh.clears_motion`, `time_of_contact`, `clearance_of_motion` and `clears_motion_while` take any of
-/// them. A motion has copied what it was made of, and never changes. It can be pickled.
+/// `LinearMotion`, `RigidMotion` and `BendingMotion` are motions. `MovingBase` moves the base of
+/// any of them, and `MotionPath` puts them one after another. `Mesh.clears_motion`,
+/// `time_of_contact`, `clearance_of_motion` and `clears_motion_while` take any of them. A motion
+/// has copied what it was made of, and never changes. It can be pickled.
 #[pyclass(frozen, subclass, module = "parry_continuum")]
 pub(crate) struct Motion {
     motions: Arc<Vec<Moving>>,
@@ -138,7 +139,8 @@ struct Size {
 impl Size {
     const ONE: Self = Self { parts: 1, depth: 1 };
 
-    /// The size of what is made of these. Each level asks the one below it several times, so that no more of them are taken.
+    /// The size of what is made of these. Each level asks the one below it several times, so that
+    /// no more of them are taken.
     fn of(py: Python<'_>, parts: impl Iterator<Item = Self>) -> PyResult<Self> {
         const MOST_PARTS: usize = 1 << 20;
         const MOST_DEEP: usize = 6;

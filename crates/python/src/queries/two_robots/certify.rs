@@ -14,11 +14,13 @@ use pyo3::prelude::*;
 
 #[pymethods]
 impl RobotPair {
-    /// Bounds on the distances of a `RobotProximity` answer that hold whatever was rounded on the way.
+    /// Bounds on the distances of a `RobotProximity` answer that hold whatever was rounded on the
+    /// way.
     ///
-    /// Each bounds the distance between the two segments that the answer names, as `Mesh.certify` does for a segment and a triangle:
-    /// ``lower <= answer.distance <= upper`` but for the last bits of the distance. The answer's distances and points are checked
-    /// first: an answer for other points, another radius or pose is an error.
+    /// Each bounds the distance between the two segments that the answer names, as `Mesh.certify`
+    /// does for a segment and a triangle: ``lower <= answer.distance <= upper`` but for the last
+    /// bits of the distance. The answer's distances and points are checked first: an answer for
+    /// other points, another radius or pose is an error.
     ///
     /// Parameters
     /// ----------
@@ -30,13 +32,14 @@ impl RobotPair {
     /// Returns
     /// -------
     /// Certificate
-    ///     ``lower`` and ``upper``, in the shape of ``answer.distance``; NaN for segments without length.
+    ///     ``lower`` and ``upper``, in the shape of ``answer.distance``; NaN for segments without
+    ///     length.
     ///
     /// Raises
     /// ------
     /// ContinuumError
-    ///     The answer does not fit robots and poses: a point is not where it says, the distance is another, or the shapes differ.
-    ///     Or as for `minimum`.
+    ///     The answer does not fit robots and poses: a point is not where it says, the distance is
+    ///     another, or the shapes differ. Or as for `minimum`.
     ///
     /// Examples
     /// --------
