@@ -224,7 +224,7 @@ fn made(
 /// Centreline
 ///     ``points`` (N, 3); ``radii`` (N - 1,), or None; ``frame`` and ``unit``, or None where the
 ///     file does not state them; and ``skipped``, the number of points that have no position yet. A
-///     `Mesh` in another frame that is asked about these points warns.
+///     query of a `Mesh` in another frame warns about these points.
 ///
 /// Raises
 /// ------

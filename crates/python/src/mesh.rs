@@ -57,7 +57,7 @@ pub(crate) struct Mesh {
     has_warned: AtomicBool,
 }
 
-/// What is known of a mesh's coordinates, and what its file lost.
+/// The frame and unit of a mesh, if known, and the number of faces left out of its file.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Origin {
     pub frame: Option<Frame>,
@@ -65,7 +65,7 @@ pub(crate) struct Origin {
     pub skipped_faces: usize,
 }
 
-/// A function, and what it is called with to make the mesh again.
+/// A function and its arguments, whose call makes the mesh again.
 type Reduced<'py> = (Bound<'py, PyAny>, Bound<'py, PyTuple>);
 
 impl Mesh {
@@ -273,9 +273,9 @@ impl Mesh {
 
     /// Moves the vertices, in the order that they have.
     ///
-    /// Queries that begin after this returns see the new vertices. Those that run meanwhile, in
-    /// other threads, see the old ones, a whole batch alike. It costs a fraction of building a
-    /// mesh.
+    /// Queries that begin after this returns see the new vertices. Queries that already run in
+    /// other threads use the old vertices, for a whole batch alike. A move costs a fraction of
+    /// building a mesh.
     ///
     /// Parameters
     /// ----------

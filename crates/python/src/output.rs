@@ -66,7 +66,7 @@ where
     }
 }
 
-/// Points of which the frame is known.
+/// The points with their frame, if it is known.
 pub(crate) fn framed<'py>(
     points: Bound<'py, PyArrayDyn<f64>>,
     frame: Option<&str>,
@@ -83,8 +83,8 @@ pub(crate) fn flat(points: impl IntoIterator<Item = Vector>) -> Vec<f64> {
     points.into_iter().map(|point| point.to_array()).collect::<Vec<_>>().into_flattened()
 }
 
-/// An answer of the package's Python half: the tuple with names of that class, of these values.
-/// `answer!` is the same with a place of its own to keep the class.
+/// An answer of the package's Python half: the named tuple `class` with the given values. `answer!`
+/// does the same with a place of its own to keep the class.
 ///
 /// The class's own `__new__` is Python code, whose work this does: `tuple.__new__` with as many
 /// values as the class has names.

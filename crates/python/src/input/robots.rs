@@ -25,7 +25,7 @@ pub(crate) struct Robots<'py> {
     more: Option<Numbers<'py>>,
     radii: Radii<'py>,
     poses: Poses<'py>,
-    /// Whether the points of one robot stand for those of all of a batch.
+    /// Whether the points of one robot stand for all robots of a batch.
     is_one: bool,
     /// The other robots, of questions about several.
     others: Option<Box<Robots<'py>>>,
@@ -140,8 +140,8 @@ impl<'py> Robots<'py> {
         })
     }
 
-    /// Paths, each of several shapes of one robot, (S, N, 3) or (B, S, N, 3): the points of a path
-    /// are those of its shapes, one shape after the other.
+    /// Paths, each of several shapes of one robot, (S, N, 3) or (B, S, N, 3). The points of a path
+    /// are its shapes' points, one shape after the other.
     pub(crate) fn paths(
         name: &'static str,
         given: &Bound<'py, PyAny>,

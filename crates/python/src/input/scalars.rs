@@ -111,7 +111,7 @@ pub(crate) mod of {
         super::whole(given, "steps", 1)
     }
 
-    /// Those that may be None.
+    /// Scalars that may be None.
     pub(crate) mod optional {
         use pyo3::prelude::*;
 

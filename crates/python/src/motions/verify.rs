@@ -23,8 +23,9 @@ use pyo3::prelude::*;
 /// Raises
 /// ------
 /// ContinuumError
-///     The motion is faster than it states, has no shape at some time, or its sections change. The
-///     text names the first time and place; of a batch, ``robot`` is the first such motion.
+///     The motion exceeds a stated speed or displacement, has no shape at some time, or its
+///     sections change. The text names the first time and place; of a batch, ``robot`` is the first
+///     such motion.
 ///
 /// Examples
 /// --------

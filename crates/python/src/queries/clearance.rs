@@ -98,12 +98,12 @@ fn no_tube() -> Refused {
 impl Mesh {
     /// The clearance of curved tubes, between proven bounds.
     ///
-    /// A robot is taken for what it is: a smooth tube through its points, with flat ends. Between
-    /// two points it bends no more than the points show. ``lower <= clearance <= upper`` always
+    /// A robot is modelled as a smooth tube through its points, with flat ends. Between two points
+    /// the tube bends at most as much as the points show. ``lower <= clearance <= upper`` always
     /// holds, rounding included.
     ///
-    /// Of a batch, a robot that is refused costs the others nothing: its bounds are NaN, and its
-    /// ``status`` is the ``kind`` of its error. Of all others the status is the empty string.
+    /// A robot that is refused does not fail its batch: its bounds are NaN, and its ``status`` is
+    /// the ``kind`` of its error. All other robots have the empty string as ``status``.
     ///
     /// Parameters
     /// ----------
@@ -113,9 +113,10 @@ impl Mesh {
     ///     How far apart the bounds may be, at least 0.
     /// tangents : (2, 3), (N, 3), (B, 2, 3) or (B, N, 3) array, optional
     ///     The directions of the curve at its two ends or at all points, towards the tip, of any
-    ///     length. Those of the ends tell how the flat ends are turned, and those of all points how
-    ///     the curve bends between them: without them the bounds are as wide as the points leave
-    ///     that open. A point that is given twice needs one direction.
+    ///     length. Directions at the ends state how the flat ends are turned. Directions at all
+    ///     points also state how the curve bends between the points. Without tangents the bounds
+    ///     are as wide as the points leave these directions open. A point that is given twice needs
+    ///     one direction.
     /// deviation : float
     ///     How far a point may be from the curve, for points that are measured: a smooth curve is
     ///     fitted within that, and the bounds hold for every tube whose centreline is so near to

@@ -9,7 +9,7 @@ use parry_continuum::parry::math::Vector;
 use parry_continuum::proximity::Proximity;
 use pyo3::prelude::*;
 
-/// A robot is hardly ever so many times larger or smaller than the mesh.
+/// A robot is hardly ever larger or smaller than the mesh by more than this factor.
 const FAR_FROM_ALIKE: f64 = 100.0;
 
 /// A box around points.

@@ -61,7 +61,7 @@ impl Mesh {
     ///     A length, at least 0.
     /// resolution : float
     ///     A length. The answer is undecided only where some shape is farther away than the margin
-    ///     by no more than this, where an end turns from flat to round there, or where 65,536
+    ///     by at most this length, where an end turns from flat to round there, or where 65,536
     ///     shapes do not decide it.
     /// caps : {"fitted", "capsules"}
     ///
@@ -105,7 +105,7 @@ impl Mesh {
     /// When robots first come as close to the mesh as a margin, on their way.
     ///
     /// The margin is kept until ``interval[0]``, which is proven, and not kept at ``interval[1]``.
-    /// Between the two the place that touches moves by no more than the resolution.
+    /// Between the two times the place that touches moves by at most the resolution.
     ///
     /// Parameters
     /// ----------

@@ -47,8 +47,8 @@ impl Mesh {
     /// Returns
     /// -------
     /// MotionAnswer
-    ///     Of one motion, or arrays with one entry for each motion. Points are those of robot and
-    ///     mesh at that time.
+    ///     Of one motion, or arrays with one entry for each motion. The points of robot and mesh
+    ///     are their positions at the time of the answer.
     ///
     /// Raises
     /// ------

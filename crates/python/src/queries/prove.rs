@@ -68,7 +68,7 @@ impl Question<Option<Proof>> for Proves {
 impl Mesh {
     /// A proof that a robot keeps more than a margin away, for those who do not trust this library:
     /// a text that a short program in plain Python checks, ``docs/book/check_proof.py`` in the
-    /// repository. The page on proofs beside it says what it means.
+    /// repository. The page on proofs in the same folder explains the meaning of a proof.
     ///
     /// The proof does not say on which side of the wall the robot is: `side` answers that.
     ///
@@ -175,8 +175,8 @@ impl Mesh {
     /// Returns
     /// -------
     /// str or None
-    ///     None if some shape does not keep the margin, or by no more than about the resolution; or
-    ///     if the proof would take more than 65,536 shapes or 16 MiB.
+    ///     None if some shape does not keep the margin, or keeps it by at most about the
+    ///     resolution, or if the proof would take more than 65,536 shapes or 16 MiB.
     ///
     /// Raises
     /// ------

@@ -26,10 +26,12 @@ use std::sync::Arc;
 /// Parameters
 /// ----------
 /// robot_margin : float, optional
-///     What robots keep from one another. Without it they are not held against one another.
+///     The distance that robots keep from one another. Without it the scene does not compare robots
+///     with one another.
 /// nested : sequence of (int, int), optional
-///     Pairs of robots one of which is inside the other, as a tube in the tube that guides it: they
-///     touch, and are not held against one another. The numbers are places in the list of robots.
+///     Pairs of robots where one is inside the other, as a tube in the tube that guides it. Such
+///     robots touch, and the scene does not compare them with one another. The numbers are places
+///     in the list of robots.
 ///
 /// Raises
 /// ------
@@ -393,7 +395,7 @@ impl Scene {
     /// Returns
     /// -------
     /// SceneContacts
-    ///     Arrays of one length, with a row for each contact. Those of set k of the batch are
+    ///     Arrays of one length, with a row for each contact. The rows of set k of the batch are
     ///     ``offsets[k]:offsets[k + 1]``.
     ///
     /// Raises

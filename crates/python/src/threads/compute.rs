@@ -8,8 +8,8 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread::Builder;
 use std::time::Duration;
 
-/// Does `work` without the GIL. A panic is a defect of the library, and Python is told so by the
-/// exception of this package.
+/// Runs `work` without the GIL. A panic is a defect of the library, and raises the exception of
+/// this package.
 pub(crate) fn compute<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyResult<T> {
     let done = py.detach(|| catch_unwind(AssertUnwindSafe(work)));
     done.map_err(|panic| defect(&*panic).raise(py, None))

@@ -86,8 +86,8 @@ impl<L: Lender> Lender for Arc<L> {
 /// Answers about each robot, or motion, `width` of them for each, at least one, in order. `take`
 /// gets them chunk by chunk, with the place of the first of them.
 ///
-/// The first robot that is refused ends it. All are asked about the same mesh, whatever moves
-/// meanwhile.
+/// The first robot that is refused ends the batch. All robots see the same mesh, even if another
+/// thread moves it.
 pub(crate) fn ask_each<T: Clone + Send, L: Lender, Q: Asked>(
     py: Python<'_>,
     lender: &L,

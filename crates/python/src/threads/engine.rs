@@ -36,8 +36,8 @@ impl Session {
     }
 }
 
-/// The engine of a mesh as it is now. One that moves gets a new engine; who asks meanwhile keeps
-/// the old one.
+/// The engine of a mesh as it is now. A mesh that moves gets a new engine; running queries keep the
+/// old engine.
 pub(crate) struct Engine(Held<State>);
 
 struct State {
@@ -57,7 +57,7 @@ impl Engine {
         vertices: Vec<Vector>,
         faces: Vec<[u32; 3]>,
     ) -> PyResult<Self> {
-        /// Fewer triangles take less than it takes to press Ctrl-C.
+        /// Below this number of triangles, the build ends before a user can press Ctrl-C.
         const FEW: usize = 1 << 16;
         let (pool, count) = (pool(py)?, faces.len());
         let build = move || pool.install(|| BvhSearch::from_triangles(&vertices, &faces));

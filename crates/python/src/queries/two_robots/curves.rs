@@ -149,8 +149,8 @@ impl RobotPair {
     ///
     /// Both robots are taken for smooth tubes with flat ends, as `Mesh.clearance` takes them.
     ///
-    /// Of a batch, a pair that is refused costs the others nothing: its bounds are NaN, and its
-    /// ``status`` is the ``kind`` of its error.
+    /// A pair that is refused does not fail its batch: its bounds are NaN, and its ``status`` is
+    /// the ``kind`` of its error.
     ///
     /// Parameters
     /// ----------

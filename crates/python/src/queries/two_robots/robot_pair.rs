@@ -131,8 +131,9 @@ impl RobotPair {
 
     /// Every place where the robots are at most a margin apart, in the order of the segments.
     ///
-    /// A place is a pair of segments of which no neighbours, one segment on along either robot or
-    /// both, are closer. Neighbours that are as close count as one place, at the lowest segments.
+    /// A place is a pair of segments that is as close as its neighbours or closer. Neighbours are
+    /// one segment apart along either robot or both. Equally close neighbours count as one place,
+    /// at the lowest segments.
     ///
     /// Parameters
     /// ----------
@@ -144,7 +145,7 @@ impl RobotPair {
     /// Returns
     /// -------
     /// RobotContacts
-    ///     Arrays of one length, with a row for each place. Those of pair k are
+    ///     Arrays of one length, with a row for each place. The rows of pair k are
     ///     ``offsets[k]:offsets[k + 1]``.
     ///
     /// Raises
