@@ -17,7 +17,7 @@
 //! `r_k > r_k-1`, also `R_k > R_k-1`: every limit by links' radii is a limit by vertices' radii.
 //! The converse fails: a single thick vertex is a limit that the links' radii do not show. So the
 //! true limit is the shown one or a vertex between it and the end. An end that is less than
-//! `r_k <= R_k` away from all of these is flat by either rule.
+//! `r_k <= R_k` away from all these candidates is flat by either rule.
 //!
 //! # Directions
 //! In two cases the flat ends of a section count as round in an interval of time. A ball around the

@@ -15,7 +15,7 @@
 //!
 //! # Case 1: plain
 //! `|E| <= k l1 / 2`, also as an angle (`refine::bounding_body`). So the first segment's direction
-//! is that of the face up to `k l1 / 2`. If the turn between the segments is less than it could be,
+//! is that of the face up to `k l1 / 2`. If the turn between the segments is less than k allows,
 //! little more can be said: a curve that bends by k in one sense next to the face and in the other
 //! sense farther on shows no turn.
 //!

@@ -150,8 +150,8 @@ struct Merged {
 }
 
 impl Merged {
-    /// The segments between merged points vanish. So their radii must be those of the segments
-    /// before or behind them.
+    /// The segments between merged points vanish. So their radii must equal the radii of the
+    /// segments before or behind them.
     fn of(points: &[Vector], radii: &[Real], deviation: Real) -> Self {
         let length: Real = points.windows(2).map(|pair| (pair[1] - pair[0]).length()).sum();
         let mean = length / (points.len() - 1) as Real;

@@ -28,7 +28,7 @@
 //!
 //! # When
 //! A segment is laid as a cubic if the cubic's uncertainty is less than half of the chord's. Arc
-//! lengths stay those of the chords, so a share of a section is the same place either way.
+//! lengths are still the chords' lengths, so a share of a section is the same place either way.
 
 use super::Tube;
 use super::centreline::{Curve, CurveBound, NextPoint, Samples};
@@ -102,8 +102,8 @@ impl SampledCurve<'_> {
 }
 
 impl Tube {
-    /// Lays the long segments of uneven sections as cubics where that is better. Overwrites the
-    /// spare samples.
+    /// Lays the long segments of uneven sections as cubics where that is better. Overwrites
+    /// `buffer`.
     pub(super) fn lay_long_segments(&mut self, tangents: Option<[Vector; 2]>) {
         let Curve::Samples(samples) = &mut self.curve else { return };
         if samples.bounds.is_empty() {

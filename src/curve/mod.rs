@@ -270,7 +270,7 @@ impl Tube {
         Some(self.ticks_around(section, [share; 2]).map(|tick| self.share(section, tick)))
     }
 
-    /// Swaps curve and sections with the spare ones.
+    /// Swaps `curve` and `sections` with `buffer`.
     fn exchange(&mut self) {
         std::mem::swap(&mut self.curve, &mut self.buffer.0);
         std::mem::swap(&mut self.sections, &mut self.buffer.1);

@@ -367,7 +367,7 @@ pub trait Proximity: Engine {
     /// Moves the mesh's vertices and keeps its triangles.
     ///
     /// `vertices` has one position per vertex, in the mesh's frame. Earlier answers are about the
-    /// old mesh; [`contact_of`](Self::contact_of) refuses those that no longer fit.
+    /// old mesh; [`contact_of`](Self::contact_of) refuses answers that no longer fit.
     ///
     /// The next query uses the new vertices. Clones made before keep the old mesh; clones made
     /// afterwards have the new one. If a clone shares the mesh, the engine first copies the mesh

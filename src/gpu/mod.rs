@@ -1,6 +1,7 @@
 //! Queries on the GPU, through `wgpu`: Vulkan, Metal or Direct3D 12 (feature `gpu`).
 //!
-//! Both engines have the trait of those of [`proximity`](crate::proximity), with the same distances.
+//! Both engines implement [`Proximity`](crate::proximity::Proximity), and return the same distances
+//! as the engines of [`proximity`](crate::proximity).
 //!
 //! - [`GpuSearch`] searches a hierarchy: for batches of thousands of robots, and for large meshes
 //!   that move. Small batches run on the CPU. Its files are in `search`.

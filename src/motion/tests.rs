@@ -172,7 +172,7 @@ fn a_path_is_as_fast_as_its_motions() {
     assert!(MotionPath::<LinearMotion>::new(Vec::new()).is_err());
 }
 
-/// Motions that meet are joined, whatever rounds on the way; those that leave a gap are refused.
+/// Motions that meet within rounding are joined; motions that leave a gap are refused.
 #[test]
 fn a_path_has_no_gap() {
     let mut random = Random::new(91);

@@ -187,7 +187,7 @@ fn voxels_are_met_and_cast_against_but_have_no_distance() {
 }
 
 /// A shape that touches a voxel within rounding meets the voxels, although rounding parts their
-/// boxes. The expected answers are those of the voxels one by one.
+/// boxes. The expected answers come from the voxels one by one.
 #[test]
 fn rounding_hides_no_voxel_that_is_touched() {
     let dispatcher = ContinuumDispatcher::default();

@@ -1,6 +1,6 @@
-//! The contact points of two links, at most one of which meets the other with a flat cap. Each
-//! point is on both surfaces and has the right `dist`. The nearest has the exact distance, or the
-//! exact depth of the overlap.
+//! The contact points of two links, if at most one link meets the other with a flat cap. Each point
+//! is on both surfaces and has the right `dist`. The nearest has the exact distance, or the exact
+//! depth of the overlap.
 //!
 //! The proof of a contact needs nothing of its making. For any unit vector the gap between the two
 //! links' supports along it is a lower bound on their distance; so where the gap along the

@@ -1,4 +1,4 @@
-//! The rule of ARCHITECTURE.md against deadlocks, as far as the source text can show it.
+//! Checks the rule of ARCHITECTURE.md against deadlocks in the text of the sources.
 
 use super::sources::sources;
 

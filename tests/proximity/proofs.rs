@@ -638,7 +638,7 @@ fn malformed_files_are_refused() {
         wrong.push((mesh.clone(), text.to_owned()));
         wrong.push((text.to_owned(), chain.clone()));
     }
-    // A motion that is faster between two shapes than it states, at the base or at the tip.
+    // A motion that exceeds its stated speed between two shapes, at the base or at the tip.
     let slow = motion.lines().map(|line| match line.split(' ').collect::<Vec<_>>()[..] {
         [radius, caps, curvature, length, off, _, turn] => {
             format!("{radius} {caps} {curvature} {length} {off} 0.0 {turn}\n")

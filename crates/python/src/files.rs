@@ -27,7 +27,8 @@ fn half_turn(points: &mut [[f64; 3]]) {
     }
 }
 
-/// The frame of what was read, in the frame that was asked for: `points` are turned if the file states another one.
+/// The frame of what was read, in the frame that was asked for: `points` are turned if the file
+/// states another one.
 fn in_frame(
     points: &mut [[f64; 3]],
     stated: Option<Frame>,
@@ -72,32 +73,37 @@ fn labels_text(labels: &[u32]) -> String {
     labels.iter().take(SHOWN).map(u32::to_string).collect::<Vec<_>>().join(", ") + more
 }
 
-/// The mesh in a file: STL, OBJ, PLY, VTK's .vtp or .vtk, or the surface of a label map in NIfTI, NRRD or MetaImage, by the
-/// file's extension.
+/// The mesh in a file: STL, OBJ, PLY, VTK's .vtp or .vtk, or the surface of a label map in NIfTI,
+/// NRRD or MetaImage, by the file's extension.
 ///
-/// What the file states of its coordinates is kept: `Mesh.frame` and `Mesh.unit`. A warning says if faces without area are left
-/// out (`Mesh.skipped_faces`), and if several labels are read as one surface.
+/// What the file states of its coordinates is kept: `Mesh.frame` and `Mesh.unit`. A warning says if
+/// faces without area are left out (`Mesh.skipped_faces`), and if several labels are read as one
+/// surface.
 ///
 /// Parameters
 /// ----------
 /// path : str, bytes, os.PathLike or file object
-///     A file object, opened for reading bytes, has a ``name`` with the extension. A mesh of another package is taken too, as by
-///     `Mesh`.
+///     A file object, opened for reading bytes, has a ``name`` with the extension. A mesh of
+///     another package is taken too, as by `Mesh`.
 /// label : int, optional
-///     The label whose surface is taken from a label map; without one all voxels that are not 0 are inside.
+///     The label whose surface is taken from a label map; without one all voxels that are not 0 are
+///     inside.
 /// frame : {"RAS", "LPS"}, optional
-///     The frame that the mesh gets. A mesh whose file states the other one is turned: x and y change sign. A file that states
-///     none is taken to be in this frame. Without it, the mesh stays as it is.
+///     The frame that the mesh gets. A mesh whose file states the other one is turned: x and y
+///     change sign. A file that states none is taken to be in this frame. Without it, the mesh
+///     stays as it is.
 /// scale : float
-///     Multiplies every coordinate, for example 1000 for metres to millimetres. A label map comes in millimetres.
+///     Multiplies every coordinate, for example 1000 for metres to millimetres. A label map comes
+///     in millimetres.
 /// allow_no_position : bool
-///     Whether to read a label map that states the spacing of its voxels but not their position; its first voxel is then the
-///     origin.
+///     Whether to read a label map that states the spacing of its voxels but not their position;
+///     its first voxel is then the origin.
 ///
 /// Raises
 /// ------
 /// ContinuumError
-///     The file cannot be read or holds no mesh; ``kind`` is ``"file"``, and the text says what to change.
+///     The file cannot be read or holds no mesh; ``kind`` is ``"file"``, and the text says what to
+///     change.
 #[pyfunction]
 #[pyo3(signature = (path, *, label = None, frame = None, scale = 1.0, allow_no_position = false))]
 pub(crate) fn load(
@@ -200,8 +206,8 @@ fn made(
     Mesh::new_from(py, vectors(&vertices), triangles, origin)
 }
 
-/// The centreline in a file: VTK's .vtp or .vtk, 3D Slicer's .mrk.json, or a text (.csv, .tsv, .txt, .dat) with x,y,z and
-/// optionally the radius in its lines.
+/// The centreline in a file: VTK's .vtp or .vtk, 3D Slicer's .mrk.json, or a text (.csv, .tsv,
+/// .txt, .dat) with x,y,z and optionally the radius in its lines.
 ///
 /// Parameters
 /// ----------
@@ -216,15 +222,15 @@ fn made(
 /// Returns
 /// -------
 /// Centreline
-///     ``points`` (N, 3); ``radii`` (N - 1,), or None; ``frame`` and ``unit``, or None where the file does not state them; and
-///     ``skipped``, the number of points that have no position yet. A `Mesh` in another frame that is asked about these points
-///     warns.
+///     ``points`` (N, 3); ``radii`` (N - 1,), or None; ``frame`` and ``unit``, or None where the
+///     file does not state them; and ``skipped``, the number of points that have no position yet. A
+///     query of a `Mesh` in another frame warns about these points.
 ///
 /// Raises
 /// ------
 /// ContinuumError
-///     The file cannot be read, holds no line, or several and none is chosen; ``kind`` is ``"file"``, and the text says what to
-///     change.
+///     The file cannot be read, holds no line, or several and none is chosen; ``kind`` is
+///     ``"file"``, and the text says what to change.
 #[pyfunction]
 #[pyo3(signature = (path, *, line = None, frame = None, scale = 1.0))]
 pub(crate) fn load_centreline<'py>(

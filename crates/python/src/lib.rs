@@ -1,7 +1,9 @@
-//! parry-continuum for numpy: the module `parry_continuum._native`. Users see it through the Python package beside it.
+//! parry-continuum for numpy: the module `parry_continuum._native`. Users see it through the Python
+//! package beside it.
 //!
-//! `input` makes plain numbers of what Python hands over, `motions` has a class for each kind of motion, `threads` asks about them
-//! without the GIL, `queries` has a file for each question, and `output` makes arrays of the answers.
+//! `input` makes plain numbers of what Python hands over, `motions` has a class for each kind of
+//! motion, `threads` asks about them without the GIL, `queries` has a file for each question, and
+//! `output` makes arrays of the answers.
 
 mod error;
 mod files;

@@ -16,11 +16,13 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 /// A triangle mesh that is asked how near robots are to it.
 ///
-/// ``Mesh(vertices, faces)`` copies both. ``Mesh(other)`` takes a mesh of trimesh (or a scene), pyvista, meshio or Open3D, or what
-/// else has ``.vertices`` and ``.faces``. Lengths are in one unit of your choice, the same for mesh and robots. `load` reads a file.
+/// ``Mesh(vertices, faces)`` copies both. ``Mesh(other)`` takes a mesh of trimesh (or a scene),
+/// pyvista, meshio or Open3D, or what else has ``.vertices`` and ``.faces``. Lengths are in one
+/// unit of your choice, the same for mesh and robots. `load` reads a file.
 ///
-/// Any number of threads may ask one mesh at the same time: queries run without the GIL. `set_vertices` moves the vertices for all
-/// queries that begin later. A mesh can be copied and pickled.
+/// Any number of threads may ask one mesh at the same time: queries run without the GIL.
+/// `set_vertices` moves the vertices for all queries that begin later. A mesh can be copied and
+/// pickled.
 ///
 /// Parameters
 /// ----------
@@ -35,8 +37,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// Raises
 /// ------
 /// ContinuumError
-///     A vertex is not finite or out of range, a face names a vertex that is not there (its ``index`` is the face), there is
-///     no face, or an array has another shape.
+///     A vertex is not finite or out of range, a face names a vertex that is not there (its
+///     ``index`` is the face), there is no face, or an array has another shape.
 ///
 /// Examples
 /// --------
@@ -55,7 +57,7 @@ pub(crate) struct Mesh {
     has_warned: AtomicBool,
 }
 
-/// What is known of a mesh's coordinates, and what its file lost.
+/// The frame and unit of a mesh, if known, and the number of faces left out of its file.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Origin {
     pub frame: Option<Frame>,
@@ -63,7 +65,7 @@ pub(crate) struct Origin {
     pub skipped_faces: usize,
 }
 
-/// A function, and what it is called with to make the mesh again.
+/// A function and its arguments, whose call makes the mesh again.
 type Reduced<'py> = (Bound<'py, PyAny>, Bound<'py, PyTuple>);
 
 impl Mesh {
@@ -233,7 +235,8 @@ impl Mesh {
         Self::new_from(py, vertices, triangles, known(Origin::default()))
     }
 
-    /// The frame of the vertices, "RAS" or "LPS": that of the file, or the one that was asked for; None if unknown.
+    /// The frame of the vertices, "RAS" or "LPS": that of the file, or the one that was asked for;
+    /// None if unknown.
     #[getter]
     fn frame(&self) -> Option<&'static str> {
         self.origin.frame.map(frame_name)
@@ -270,8 +273,9 @@ impl Mesh {
 
     /// Moves the vertices, in the order that they have.
     ///
-    /// Queries that begin after this returns see the new vertices. Those that run meanwhile, in other threads, see the old
-    /// ones, a whole batch alike. It costs a fraction of building a mesh.
+    /// Queries that begin after this returns see the new vertices. Queries that already run in
+    /// other threads use the old vertices, for a whole batch alike. A move costs a fraction of
+    /// building a mesh.
     ///
     /// Parameters
     /// ----------
@@ -281,7 +285,8 @@ impl Mesh {
     /// Raises
     /// ------
     /// ContinuumError
-    ///     There are more or fewer than before, or one is not finite or out of range. The mesh then stays where it was.
+    ///     There are more or fewer than before, or one is not finite or out of range. The mesh then
+    ///     stays where it was.
     ///
     /// Examples
     /// --------
@@ -301,7 +306,8 @@ impl Mesh {
 
     /// Builds now what a first question would build, so that none has to wait.
     ///
-    /// Call it after `set_vertices` too, where the first question after it must not take longer than others.
+    /// Call it after `set_vertices` too, where the first question after it must not take longer
+    /// than others.
     fn prepare(&self, py: Python<'_>) -> PyResult<()> {
         alone(py, &self.engine(py), |session| session.search.prepare())
     }

@@ -21,7 +21,8 @@ pub(crate) fn array<'py, T: Element + Copy>(
     if numbers.len() > FEW || numbers.len() != shape.iter().product::<usize>() {
         return PyArray1::from_vec(py, numbers).reshape(shape);
     }
-    // SAFETY: the array is new, so that nobody else has it, and contiguous. All of it is written, with numbers that need no drop.
+    // SAFETY: the array is new, so that nobody else has it, and contiguous. All of it is written,
+    // with numbers that need no drop.
     unsafe {
         let array = PyArrayDyn::new(py, shape, false);
         std::ptr::copy_nonoverlapping(numbers.as_ptr(), array.data(), numbers.len());
@@ -29,16 +30,16 @@ pub(crate) fn array<'py, T: Element + Copy>(
     }
 }
 
-/// An array with a row of N numbers, or one number, for each of some answers. It is written where it lies, which takes least of
-/// answers that have many arrays.
+/// An array with a row of N numbers, or one number, for each of some answers. It is written where
+/// it lies, which takes least of answers that have many arrays.
 pub(crate) fn rows<'py, S, T: Element + Copy, const N: usize>(
     py: Python<'py>,
     answers: &[S],
     row: impl Fn(&S) -> [T; N],
 ) -> Bound<'py, PyAny> {
     let shape = [answers.len(), N];
-    // SAFETY: the array is new, so that nobody else has it, and contiguous, with a row for each of the answers. All of them are
-    // written, with numbers that need no drop.
+    // SAFETY: the array is new, so that nobody else has it, and contiguous, with a row for each of
+    // the answers. All of them are written, with numbers that need no drop.
     unsafe {
         let array =
             PyArrayDyn::<T>::new(py, IxDyn(if N == 1 { &shape[..1] } else { &shape }), false);
@@ -65,7 +66,7 @@ where
     }
 }
 
-/// Points of which the frame is known.
+/// The points with their frame, if it is known.
 pub(crate) fn framed<'py>(
     points: Bound<'py, PyArrayDyn<f64>>,
     frame: Option<&str>,
@@ -82,10 +83,11 @@ pub(crate) fn flat(points: impl IntoIterator<Item = Vector>) -> Vec<f64> {
     points.into_iter().map(|point| point.to_array()).collect::<Vec<_>>().into_flattened()
 }
 
-/// An answer of the package's Python half: the tuple with names of that class, of these values. `answer!` is the same with a place
-/// of its own to keep the class.
+/// An answer of the package's Python half: the named tuple `class` with the given values. `answer!`
+/// does the same with a place of its own to keep the class.
 ///
-/// The class's own `__new__` is Python code, whose work this does: `tuple.__new__` with as many values as the class has names.
+/// The class's own `__new__` is Python code, whose work this does: `tuple.__new__` with as many
+/// values as the class has names.
 pub(crate) fn named<'py, V>(
     py: Python<'py>,
     kept: &'static PyOnceLock<Py<PyAny>>,

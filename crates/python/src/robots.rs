@@ -14,8 +14,8 @@ type Fewer = fn(&[Vector], &[f64], f64) -> Result<(Vec<Vector>, Vec<f64>), Robot
 
 /// The fewest points that stay within a tolerance of a centreline.
 ///
-/// They are a subset of the given points, keep both ends and every change of radius, and their lines and the given ones lie
-/// within the tolerance of each other.
+/// They are a subset of the given points, keep both ends and every change of radius, and their
+/// lines and the given ones lie within the tolerance of each other.
 ///
 /// Parameters
 /// ----------
@@ -52,7 +52,8 @@ pub(crate) fn simplify<'py>(
     fewer(py, points, radii, tolerance, parry_continuum::simplify)
 }
 
-/// Points set evenly along a centreline, within a tolerance of it: nearly as few as `simplify` leaves, in linear time.
+/// Points set evenly along a centreline, within a tolerance of it: nearly as few as `simplify`
+/// leaves, in linear time.
 ///
 /// Parameters
 /// ----------

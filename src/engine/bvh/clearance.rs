@@ -61,7 +61,7 @@ impl BvhSearch {
     /// The pieces show where the tolerance costs work. They are sorted by arc length and cover the
     /// tube without gap or overlap: few and long far from the wall, short near it. The answer's
     /// `lower` is the least `lower` of the pieces, or else the answer's `upper`. For a tube that
-    /// states a turn the answer combines two queries: the pieces are those of the query with the
+    /// states a turn the answer combines two queries: the pieces come from the query with the
     /// larger `lower`. Once the query finds a common point with the mesh, it divides no further.
     /// The `lower` of a farther piece depends on earlier queries. `out` is cleared first.
     ///

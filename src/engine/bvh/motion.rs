@@ -233,8 +233,8 @@ impl BvhSearch {
     /// turns from flat to round, or because the query ends after 65,536 shapes. A finer tolerance
     /// never gives looser bounds.
     ///
-    /// A [`MotionPath`](crate::MotionPath) bounds many motions at once: the query refines each
-    /// motion only as far as it may be the nearest.
+    /// A [`MotionPath`](crate::MotionPath) bounds many motions at once: the query refines a motion
+    /// only while the motion may be the nearest.
     ///
     /// ```
     /// use parry_continuum::{LinearMotion, parry::{math::Vector, shape::Ball}, proximity::BvhSearch};

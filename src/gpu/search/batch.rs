@@ -13,9 +13,9 @@
 //! # Algorithm
 //! 1. **Pack**, on the CPU: the points and radii of a chunk of robots, in the search frame.
 //! 2. **First pass**, on the device (`search`): visit the boxes that may hold a wanted triangle,
-//!    the nearer child first. A thread keeps the wanted triangles it meets, up to [`ROOM`], and at
-//!    the end those that are still wanted. For a margin, a triangle with `upper + e <= margin`
-//!    settles the robot.
+//!    the nearer child first. A thread keeps the wanted triangles it meets, up to [`ROOM`]. At the
+//!    end it keeps only the triangles that are still wanted. For a margin, a triangle with
+//!    `upper + e <= margin` settles the robot.
 //! 3. **Second pass**, on the device (`gather`): the parts in which a wanted triangle found no room
 //!    gather all wanted triangles for the final D and T.
 //! 4. **Measure**, on the CPU: all candidates, in double precision. The best is the answer.
@@ -25,7 +25,7 @@
 //! Chunks overlap: the CPU packs a chunk and measures the chunk before while the device works.
 //!
 //! # Claim
-//! The answers are those of [`BvhSearch`](crate::proximity::BvhSearch), bit for bit.
+//! The answers equal the answers of [`BvhSearch`](crate::proximity::BvhSearch) bit for bit.
 //!
 //! **Proof.** Let t be the nearest triangle of the link, or of the part with any of its links, at
 //! distance d(t); of equals the lowest. It is wanted at all times:
@@ -69,7 +69,7 @@ const HEAD: u64 = 8;
 const ENTRY: u64 = 8;
 const COUNTERS: u64 = 16;
 const LIMITS: u64 = 8 * PART as u64;
-/// Room for entries at first: per link where each link is asked about, else per part.
+/// The initial room for entries: per link if the query answers each link, else per part.
 const ENTRIES_PER_LINK: u64 = 4;
 const ENTRIES_PER_PART: u64 = 16;
 
@@ -161,7 +161,7 @@ struct Layout {
     /// Where its points and its radii begin, in numbers.
     points: u32,
     radii: u32,
-    /// Whether the radii are those of the robot before.
+    /// Whether the radii equal the radii of the robot before.
     is_alike: bool,
 }
 
@@ -197,8 +197,8 @@ impl Batches {
         self.slots = Default::default();
     }
 
-    /// Answers all robots but those of [`Batches::left`]. `answer` writes the answer of a robot
-    /// from what was found; if it returns false, the robot is left to the CPU.
+    /// Answers all robots except the robots in [`Batches::left`]. `answer` writes the answer of a
+    /// robot from what was found; if it returns false, the robot is left to the CPU.
     ///
     /// # Errors
     /// The device has failed since the last batch, or did not answer.
@@ -319,8 +319,8 @@ struct Heads<'a> {
 }
 
 impl Heads<'_> {
-    /// Answers robots, the first of which is `first`. Returns those that are left to the CPU, and
-    /// whether some had too little room.
+    /// Answers robots from the number `first` on. Returns the robots that are left to the CPU, and
+    /// whether some robots had too little room.
     ///
     /// # Errors
     /// A part was not answered.
@@ -362,7 +362,7 @@ impl Heads<'_> {
                 }
             }
             let found = Found { is_hit, candidates: &candidates };
-            // A hit settles a robot, whatever its other parts hold.
+            // A hit settles a robot, regardless of its other parts.
             let is_answered = (is_hit || !is_left)
                 && match robots.placed(number) {
                     Ok(robot) => answer(&robot, found, out),

@@ -26,15 +26,16 @@ use std::time::Duration;
 /// The least number of links per core of the CPU for which a batch runs on the device, for each kind
 /// of question. Estimates: they were not measured with this engine.
 const MIN_LINKS: [usize; Question::KINDS] = [240, 480, 15_000];
-/// After a move of a mesh of so many triangles, a refit on the CPU takes longer than one on the
+/// From this number of triangles on, a refit after a move takes longer on the CPU than on the
 /// device.
 const MANY_TRIANGLES: usize = 1 << 16;
 
 /// Proximity queries on a bounding volume hierarchy, on the GPU.
 ///
-/// The engine for batches, and for large meshes that move. The answers are those of [`BvhSearch`],
-/// bit for bit: the device finds the few triangles that may be nearest, in single precision and
-/// within a proven bound on its rounding. The CPU measures these candidates in double precision.
+/// The engine for batches, and for large meshes that move. The answers equal the answers of
+/// [`BvhSearch`] bit for bit: the device finds the few triangles that may be nearest, in single
+/// precision and within a proven bound on its rounding. The CPU measures these candidates in double
+/// precision.
 ///
 /// - **Batches.** [`minimum_batch`](Proximity::minimum_batch),
 ///   [`per_link_batch`](Proximity::per_link_batch) and
@@ -263,7 +264,7 @@ impl GpuSearch {
             })
     }
 
-    /// Answers robots on the device, all but those of [`Batches::left`].
+    /// Answers all robots on the device except the robots in [`Batches::left`].
     ///
     /// # Errors
     /// The device has failed.
@@ -297,7 +298,7 @@ impl GpuSearch {
         Ok(())
     }
 
-    /// Answers a batch on the device, and what is left of it on the CPU.
+    /// Answers a batch on the device, and the remaining robots on the CPU.
     ///
     /// # Errors
     /// The device has failed.

@@ -332,7 +332,7 @@ impl<'m, M: Motion> RefinePolicy<TubeInMesh<'m>, PendingPiece> for MinimumPolicy
         let is_wide = self.left > 0
             && outer.excess > 2.0 * self.aim.max(reach)
             && (outer.is_flat() || outer.excess > 0.25 * upper);
-        // Not `wanted`: what is farther than `upper` is settled for all later rounds.
+        // Not `wanted`: a piece farther than `upper` is settled for all later rounds.
         let bound = upper + reach + tube.tube.slack();
         Ok(BodyQuery { bound, is_wide, aim: self.aim.max(reach), start: *self.moving.last })
     }

@@ -207,7 +207,7 @@ fn refine(
     }
 }
 
-/// The bounds of each tolerance lie within those of every coarser one.
+/// The bounds of each tolerance lie within the bounds of every coarser tolerance.
 #[test]
 fn a_finer_tolerance_never_gives_looser_bounds() {
     let (mut search, robot, mut random) = (anatomy(), ctr::three_tubes(), Random::new(25));

@@ -160,7 +160,7 @@ mod label_maps {
             panic!("there is no such label")
         };
         assert_eq!(present, (0..1000).collect::<Vec<_>>());
-        // Those that are read as one surface, and none if one of them is chosen.
+        // Lists the labels that are read as one surface, or none if one label is chosen.
         let labels = |bytes: &[u8], label| {
             from_bytes("a.nrrd", bytes, &Options::default().with_label(label)).unwrap().labels
         };

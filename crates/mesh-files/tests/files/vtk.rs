@@ -269,7 +269,7 @@ fn texts_have_radii_where_they_say_so() {
     // Commas with tabs behind them, and decimal commas between tabs.
     assert_eq!(radii("0 , 0 ,\t0,\u{a0}2\n0,0,1\n"), Ok((2, two.clone())));
     assert_eq!(radii("0,5\t0,0\t0\t2,0\n0,0\t0\t1\n"), Ok((2, two.clone())));
-    // A quoted tab separates nothing, and leaves the commas those of decimals.
+    // A quoted tab is no separator, so the commas are decimal commas.
     assert_eq!(radii("\"0,5\t\"\t0,0\t0\t2,0\n0,0\t0\t1\n"), Ok((2, two.clone())));
     assert_eq!(radii("x,y,z,radius\n0,0,0,2\n0,0,1,2\n"), Ok((2, two.clone())));
     assert_eq!(radii("x,y,z,distance_to_wall_mm\n0,0,0,2\n0,0,1,2\n"), Ok((2, None)));

@@ -2,8 +2,8 @@
 
 use crate::error::Refused;
 
-/// The names of a robot's parameters: of one robot `points`, `radii` and `pose`; of two robots, `points_a` and `points_b`; of a
-/// list of robots, those of an entry.
+/// The names of a robot's parameters: `points`, `radii` and `pose` for one robot, `points_a` and so
+/// on for a pair. For a list of robots, an error also names the entry, such as `robots[0]`.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Names {
     pub points: &'static str,
@@ -37,7 +37,7 @@ impl Names {
         self.entry.map_or(self.points.to_owned(), |entry| format!("robots[{entry}]"))
     }
 
-    /// The error in these names. The library calls a robot's parameters those of one robot.
+    /// The error with these parameter names. The library uses the names for one robot.
     pub(crate) fn apply(&self, refused: impl Into<Refused>) -> Refused {
         let refused = refused.into();
         self.in_entry(if self.suffix.is_empty() { refused } else { self.suffixed(refused) })

@@ -10,7 +10,8 @@ use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyFloat, PyList, PyTuple, PyType};
 
-/// Numbers with a shape. They belong to Python: whoever looks at them holds the GIL, since another thread may write there.
+/// Numbers with a shape. The array belongs to Python: hold the GIL to read the array, since another
+/// thread may write to it.
 pub(crate) struct Numbers<'py> {
     array: Bound<'py, PyArrayDyn<f64>>,
     /// How many there were when the array was given.
@@ -50,8 +51,8 @@ impl<'py> Numbers<'py> {
         Self { array, count }
     }
 
-    /// Refuses an array whose size or type has changed since it was given: by code of Python's that ran meanwhile, such as another
-    /// argument's `__array__`, or by another thread.
+    /// Refuses an array whose size or type has changed since it was given. Another thread can
+    /// change an array, and so can Python code that another argument runs, such as `__array__`.
     pub(crate) fn check_unchanged(&self, name: &str) -> Result<(), Refused> {
         if self.array.len() == self.count && self.is_double() {
             return Ok(());
@@ -80,8 +81,9 @@ impl<'py> Numbers<'py> {
         if !self.is_double() {
             return &[];
         }
-        // SAFETY: the array is of doubles, contiguous and aligned. It is not written meanwhile: whoever calls holds the GIL, and
-        // gives the numbers up before Python's code runs again.
+        // SAFETY: the array is of doubles, contiguous and aligned. Nothing writes to the array
+        // during the borrow: the caller holds the GIL, and drops the numbers before Python's code
+        // runs again.
         unsafe { self.array.as_slice() }.unwrap_or_default()
     }
 
@@ -152,7 +154,8 @@ pub(crate) fn as_array<'py>(
         let text = format!("`{name}` is no array of numbers ({why}); give a numpy array");
         Refused::other("bad_type", text).raise(py, None)
     };
-    // What an object's own code raises is its own; what numpy says of lists and the like is said of the parameter.
+    // What an object's own code raises is its own; what numpy says of lists and the like is said of
+    // the parameter.
     let is_numpys = |error: &PyErr| {
         error.is_instance_of::<PyValueError>(py) || error.is_instance_of::<PyTypeError>(py)
     };

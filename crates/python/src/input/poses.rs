@@ -18,8 +18,8 @@ pub(crate) enum Poses<'py> {
 }
 
 impl<'py> Poses<'py> {
-    /// The poses of robots of which there are `count`, and how many poses there are: one for all, (4, 4), or one for each of a
-    /// batch. One robot takes any number of them.
+    /// The poses of `count` robots, and the number of poses: one for all, (4, 4), or one for each
+    /// robot of a batch. One robot takes any number of poses.
     pub(crate) fn new(
         given: &Bound<'py, PyAny>,
         count: Option<usize>,
@@ -75,7 +75,8 @@ impl<'py> Poses<'py> {
         matches!(self, Self::Shared(_))
     }
 
-    /// The matrices of some of the batch: one where one stands for all, and none where all are the identity.
+    /// The matrices of some of the batch: one where one stands for all, and none where all are the
+    /// identity.
     pub(crate) fn matrices(&self, range: Range<usize>) -> &[[f64; 16]] {
         match self {
             Self::Identity => &[],
@@ -85,7 +86,7 @@ impl<'py> Poses<'py> {
     }
 }
 
-/// The matrices of poses: those of an array, or of scipy's `RigidTransform` or `Rotation`.
+/// The matrices of poses, from an array or from scipy's `RigidTransform` or `Rotation`.
 pub(crate) fn matrices<'py>(given: &Bound<'py, PyAny>, name: &str) -> PyResult<Numbers<'py>> {
     if given.cast_exact::<PyUntypedArray>().is_ok() {
         return Numbers::new(given, name);

@@ -25,7 +25,7 @@ pub(crate) struct Robots<'py> {
     more: Option<Numbers<'py>>,
     radii: Radii<'py>,
     poses: Poses<'py>,
-    /// Whether the points of one robot stand for those of all of a batch.
+    /// Whether the points of one robot stand for all robots of a batch.
     is_one: bool,
     /// The other robots, of questions about several.
     others: Option<Box<Robots<'py>>>,
@@ -140,8 +140,8 @@ impl<'py> Robots<'py> {
         })
     }
 
-    /// Paths, each of several shapes of one robot, (S, N, 3) or (B, S, N, 3): the points of a path are those of its shapes, one
-    /// shape after the other.
+    /// Paths, each of several shapes of one robot, (S, N, 3) or (B, S, N, 3). The points of a path
+    /// are its shapes' points, one shape after the other.
     pub(crate) fn paths(
         name: &'static str,
         given: &Bound<'py, PyAny>,
@@ -205,7 +205,8 @@ impl<'py> Robots<'py> {
         Ok(self)
     }
 
-    /// The same with directions of each robot's curve, at its two ends or at all of its points. `name` is the parameter's.
+    /// The same with directions of each robot's curve, at its two ends or at all of its points.
+    /// `name` is the parameter's.
     pub(crate) fn with_tangents(
         mut self,
         name: &'static str,
@@ -227,8 +228,8 @@ impl<'py> Robots<'py> {
         Ok(self)
     }
 
-    /// These robots, each beside one of the others. Where there is one of either, it stands for as many as there are of the
-    /// others.
+    /// These robots, each beside one of the others. Where there is one of either, it stands for as
+    /// many as there are of the others.
     pub(crate) fn with_others(mut self, py: Python<'_>, mut others: Self) -> PyResult<Self> {
         let Some(count) = broadcast(self.count, others.count) else {
             let [one, other] = [self.count, others.count].map(Option::unwrap_or_default);

@@ -1,4 +1,5 @@
-//! Scalars. Python's own errors do not name the parameter in their text, so that each parameter has a function here.
+//! Scalars. Python's own errors do not name the parameter in their text, so that each parameter has
+//! a function here.
 
 use crate::error::Refused;
 use mesh_files::Frame;
@@ -110,7 +111,7 @@ pub(crate) mod of {
         super::whole(given, "steps", 1)
     }
 
-    /// Those that may be None.
+    /// Scalars that may be None.
     pub(crate) mod optional {
         use pyo3::prelude::*;
 

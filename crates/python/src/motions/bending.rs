@@ -7,16 +7,18 @@ use parry_continuum::BendingSection;
 use parry_continuum::parry::math::Pose;
 use pyo3::prelude::*;
 
-/// The motion of a robot of sections of constant curvature, whose lengths and curvatures change evenly: of a tendon robot, or of
-/// concentric tubes that do not twist.
+/// The motion of a robot of sections of constant curvature, whose lengths and curvatures change
+/// evenly: of a tendon robot, or of concentric tubes that do not twist.
 ///
-/// The base stands still, and the curve leaves its origin along z; `MovingBase` moves it. A section has the curvature (x, y),
-/// 1 / length, towards x and y of the frame that is carried along the curve without twist.
+/// The base stands still, and the curve leaves its origin along z; `MovingBase` moves it. A section
+/// has the curvature (x, y), 1 / length, towards x and y of the frame that is carried along the
+/// curve without twist.
 ///
 /// Parameters
 /// ----------
 /// start, end : (S, 3) or (B, S, 3) arrays
-///     A row for each section, from the base: its length, and its curvature towards x and towards y, at the times 0 and 1.
+///     A row for each section, from the base: its length, and its curvature towards x and towards
+///     y, at the times 0 and 1.
 /// radii : float, (S,) or (B, S) array
 ///     One radius for each section.
 /// pose : (4, 4) or (B, 4, 4) array, optional
@@ -25,8 +27,9 @@ use pyo3::prelude::*;
 /// Raises
 /// ------
 /// ContinuumError
-///     The two differ in their number of sections, a length is not positive, a number is not finite, a section bends within its
-///     radius where it ends in a flat face, or the pose is not rigid.
+///     The two differ in their number of sections, a length is not positive, a number is not
+///     finite, a section bends within its radius where it ends in a flat face, or the pose is not
+///     rigid.
 ///
 /// Examples
 /// --------

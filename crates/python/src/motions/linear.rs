@@ -26,8 +26,8 @@ pub(crate) fn maker(py: Python<'_>, caps: Caps) -> PyResult<Maker> {
 
 /// The motion of a robot each of whose points moves straight and evenly, from one place to another.
 ///
-/// `Mesh.clears_motion(start, end, radii, ...)` asks about it without such an object. It is a part of a `MovingBase` or of a
-/// `MotionPath`.
+/// `Mesh.clears_motion(start, end, radii, ...)` asks about it without such an object. It is a part
+/// of a `MovingBase` or of a `MotionPath`.
 ///
 /// Parameters
 /// ----------

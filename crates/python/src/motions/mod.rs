@@ -32,16 +32,17 @@ use std::sync::Arc;
 
 /// A robot that changes with time, from 0 to 1; or a batch of such.
 ///
-/// `LinearMotion`, `RigidMotion` and `BendingMotion` are motions. `MovingBase` moves the base of any of them, and `MotionPath` puts
-/// them one after another. `Mesh.clears_motion`, `time_of_contact`, `clearance_of_motion` and `clears_motion_while` take any of
-/// them. A motion has copied what it was made of, and never changes. It can be pickled.
+/// `LinearMotion`, `RigidMotion` and `BendingMotion` are motions. `MovingBase` moves the base of
+/// any of them, and `MotionPath` puts them one after another. `Mesh.clears_motion`,
+/// `time_of_contact`, `clearance_of_motion` and `clears_motion_while` take any of them. A motion
+/// copies its arguments, never changes, and can be pickled.
 #[pyclass(frozen, subclass, module = "parry_continuum")]
 pub(crate) struct Motion {
     motions: Arc<Vec<Moving>>,
     size: Size,
     /// How many there are; none where one motion was given, without a first index.
     count: Option<usize>,
-    /// What it was made of.
+    /// The arguments of the motion's class.
     recipe: Option<Recipe>,
 }
 
@@ -112,7 +113,7 @@ impl Motion {
         Self { size, ..self }
     }
 
-    /// The same, with what it was made of.
+    /// The same, with the arguments of its class.
     fn with_recipe(self, recipe: Recipe) -> Self {
         Self { recipe: Some(recipe), ..self }
     }
@@ -138,7 +139,8 @@ struct Size {
 impl Size {
     const ONE: Self = Self { parts: 1, depth: 1 };
 
-    /// The size of what is made of these. Each level asks the one below it several times, so that no more of them are taken.
+    /// The size of a motion that has these parts. Each level asks the level below it several times,
+    /// so size and depth are limited.
     fn of(py: Python<'_>, parts: impl Iterator<Item = Self>) -> PyResult<Self> {
         const MOST_PARTS: usize = 1 << 20;
         const MOST_DEEP: usize = 6;

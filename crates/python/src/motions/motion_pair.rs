@@ -7,7 +7,8 @@ use pyo3::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// A motion of one robot beside one of another; of a batch, each beside the one at its place, or one beside all.
+/// A motion of one robot beside one of another; of a batch, each beside the one at its place, or
+/// one beside all.
 pub(crate) struct MotionPair {
     motions: [Arc<Vec<Moving>>; 2],
     count: Option<usize>,

@@ -4,11 +4,11 @@ use super::{Motion, Moving, Recipe, Size, at, together};
 use pyo3::prelude::*;
 use pyo3::types::PyList;
 
-/// Motions one after another, each of which takes the same share of the time: of n motions the first one is from the time 0 to
-/// 1 / n, the next one to 2 / n, and so on.
+/// Motions one after another, each with the same share of the time. Of n motions the first one
+/// takes the time from 0 to 1 / n, the next one until 2 / n, and so on.
 ///
-/// Each begins where the one before ends, and all have the same sections with the same radii. `Mesh.clearance_of_motion` looks
-/// closely only at those that may come nearest.
+/// Each begins where the one before ends, and all have the same sections with the same radii.
+/// `Mesh.clearance_of_motion` looks closely only at the motions that may come nearest.
 ///
 /// Parameters
 /// ----------
@@ -18,8 +18,9 @@ use pyo3::types::PyList;
 /// Raises
 /// ------
 /// ContinuumError
-///     The list is empty, the batches differ in how many motions they have, motions have different sections, or one begins
-///     farther from the end of the one before than rounding and stated deviations explain: ``index`` is its place in the list.
+///     The list is empty, the batches differ in how many motions they have, motions have different
+///     sections, or one begins farther from the end of the one before than rounding and stated
+///     deviations explain: ``index`` is its place in the list.
 ///
 /// Examples
 /// --------

@@ -4,11 +4,11 @@ use super::way::Way;
 use super::{Motion, Moving, Recipe, Size, at};
 use pyo3::prelude::*;
 
-/// A motion whose base is moved at the same time, evenly from one pose to another: a robot that is pushed or rolled while its
-/// sections bend and grow.
+/// A motion whose base is moved at the same time, evenly from one pose to another: a robot that is
+/// pushed or rolled while its sections bend and grow.
 ///
-/// The motion is in the frame of the base. The base's origin moves straight while the base turns evenly about one axis, by the
-/// lesser angle.
+/// The motion is in the frame of the base. The base's origin moves straight while the base turns
+/// evenly about one axis, by the lesser angle.
 ///
 /// Parameters
 /// ----------
@@ -20,7 +20,8 @@ use pyo3::prelude::*;
 /// Raises
 /// ------
 /// ContinuumError
-///     A pose is not rigid or out of range, the numbers of motions and poses differ, or the motion has no shape at some time.
+///     A pose is not rigid or out of range, the numbers of motions and poses differ, or the motion
+///     has no shape at some time.
 ///
 /// Examples
 /// --------

@@ -13,8 +13,9 @@ use pyo3::prelude::*;
 
 /// The motion of a robot that does not change its shape, evenly from one pose to another.
 ///
-/// The robot's origin moves straight while the robot turns evenly about one axis, by the lesser angle. From a pose to the same
-/// pose it is a robot at rest, for `Mesh.clears_motion_while`. The robot is made of links; `of_curve` takes it for a smooth tube.
+/// The robot's origin moves straight while the robot turns evenly about one axis, by the lesser
+/// angle. From a pose to the same pose it is a robot at rest, for `Mesh.clears_motion_while`. The
+/// robot is made of links; `of_curve` takes it for a smooth tube.
 ///
 /// Parameters
 /// ----------
@@ -29,7 +30,8 @@ use pyo3::prelude::*;
 /// Raises
 /// ------
 /// ContinuumError
-///     Points or radii are no robot, a pose is not rigid or out of range, or the numbers of robots and poses differ.
+///     Points or radii are no robot, a pose is not rigid or out of range, or the numbers of robots
+///     and poses differ.
 ///
 /// Examples
 /// --------

@@ -8,9 +8,10 @@ use pyo3::prelude::*;
 
 /// Tests the speeds and displacements that a motion states, on which every proof about it rests.
 ///
-/// The shapes at even steps of time are compared with one another, at nine places of each section and at its samples: no point
-/// moves farther and no direction turns more than stated. The motions of this package fulfil what they state; call it where you
-/// doubt it, as for a `MotionPath` of many parts. Finer steps are never harmful.
+/// The shapes at even steps of time are compared with one another, at nine places of each section
+/// and at its samples: no point moves farther and no direction turns more than stated. The motions
+/// of this package fulfil what they state; call it where you doubt it, as for a `MotionPath` of
+/// many parts. Finer steps are never harmful.
 ///
 /// Parameters
 /// ----------
@@ -22,8 +23,9 @@ use pyo3::prelude::*;
 /// Raises
 /// ------
 /// ContinuumError
-///     The motion is faster than it states, has no shape at some time, or its sections change. The text names the first time and
-///     place; of a batch, ``robot`` is the first such motion.
+///     The motion exceeds a stated speed or displacement, has no shape at some time, or its
+///     sections change. The text names the first time and place; of a batch, ``robot`` is the first
+///     such motion.
 ///
 /// Examples
 /// --------

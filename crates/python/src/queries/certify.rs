@@ -45,7 +45,8 @@ impl Answers {
     }
 }
 
-/// A field of an answer that `function` returned, which must have one of these shapes; and which of them it has.
+/// A field of an answer that `function` returned, and the place of the field's shape in `shapes`.
+/// Another shape is an error.
 pub(crate) fn answer_field<'py>(
     answer: &Bound<'py, PyAny>,
     function: &str,
@@ -73,12 +74,13 @@ pub(crate) fn answer_field<'py>(
 
 #[pymethods]
 impl Mesh {
-    /// Bounds on the distances of a `PerLink` answer that hold whatever was rounded on the way.
+    /// Bounds on the distances of a `PerLink` answer that hold despite all rounding.
     ///
-    /// Each bounds the distance between a segment's link and the triangle that the answer names, of the mesh as it is now. They
-    /// are computed in twice the digits, without trust in the code that answered: ``lower <= answer.distance <= upper`` but for
-    /// the last bits of the distance. The answer's distances and points are checked first: an answer for other points, another
-    /// radius, pose or mesh is an error.
+    /// Each bounds the distance between a segment's link and the triangle that the answer names, of
+    /// the mesh as it is now. The bounds are computed in twice the digits, without trust in the
+    /// code that answered: ``lower <= answer.distance <= upper`` up to the last bits of the
+    /// distance. The answer's distances and points are checked first: an answer for other points,
+    /// another radius, pose or mesh is an error.
     ///
     /// Parameters
     /// ----------
@@ -89,13 +91,14 @@ impl Mesh {
     /// Returns
     /// -------
     /// Certificate
-    ///     ``lower`` and ``upper``, arrays of the shape of ``answer.distance``; NaN for segments without length.
+    ///     ``lower`` and ``upper``, arrays of the shape of ``answer.distance``; NaN for segments
+    ///     without length.
     ///
     /// Raises
     /// ------
     /// ContinuumError
-    ///     The answer does not fit robot, pose and mesh: a point is not where it says, the distance is another, or the shapes
-    ///     differ. Or as for `distance`.
+    ///     The answer does not fit robot, pose and mesh: a point is not where it says, the distance
+    ///     is another, or the shapes differ. Or as for `distance`.
     ///
     /// Examples
     /// --------
@@ -129,7 +132,7 @@ impl Mesh {
             if named != links {
                 return Err(ProximityError::NoSuchLink { link: named, links }.into());
             }
-            // An answer of the library's own, whose fields become those that were given.
+            // Takes an answer of the library's own, and overwrites its fields with the given ones.
             session.search.per_link(chain, &pose, &mut session.links)?;
             for found in &mut session.links {
                 let segment = found.witness.segment as usize;

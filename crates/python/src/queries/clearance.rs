@@ -49,7 +49,8 @@ fn made(robot: &Given<'_>, stated: Stated) -> Result<Tube, RobotError> {
 }
 
 impl Session {
-    /// Makes the session's tube that of a robot, in the memory that it has where the robot is given by samples alone.
+    /// Makes the session's tube that of a robot, in the memory that it has where the robot is given
+    /// by samples alone.
     fn set_tube(&mut self, robot: &Given<'_>, stated: Stated) -> Result<Pose, Refused> {
         let has_samples = stated.deviation == 0.0 && stated.turn.is_none() && !has_frames(robot);
         match &mut self.tube {
@@ -97,11 +98,12 @@ fn no_tube() -> Refused {
 impl Mesh {
     /// The clearance of curved tubes, between proven bounds.
     ///
-    /// A robot is taken for what it is: a smooth tube through its points, with flat ends. Between two points it bends no more
-    /// than the points show. ``lower <= clearance <= upper`` always holds, rounding included.
+    /// A robot is modelled as a smooth tube through its points, with flat ends. Between two points
+    /// the tube bends at most as much as the points show. ``lower <= clearance <= upper`` always
+    /// holds, rounding included.
     ///
-    /// Of a batch, a robot that is refused costs the others nothing: its bounds are NaN, and its ``status`` is the ``kind`` of
-    /// its error. Of all others the status is the empty string.
+    /// A robot that is refused does not fail its batch: its bounds are NaN, and its ``status`` is
+    /// the ``kind`` of its error. All other robots have the empty string as ``status``.
     ///
     /// Parameters
     /// ----------
@@ -110,26 +112,31 @@ impl Mesh {
     /// tolerance : float
     ///     How far apart the bounds may be, at least 0.
     /// tangents : (2, 3), (N, 3), (B, 2, 3) or (B, N, 3) array, optional
-    ///     The directions of the curve at its two ends or at all points, towards the tip, of any length. Those of the ends tell
-    ///     how the flat ends are turned, and those of all points how the curve bends between them: without them the bounds are
-    ///     as wide as the points leave that open. A point that is given twice needs one direction.
+    ///     The directions of the curve at its two ends or at all points, towards the tip, of any
+    ///     length. Directions at the ends state how the flat ends are turned. Directions at all
+    ///     points also state how the curve bends between the points. Without tangents the bounds
+    ///     are as wide as the points leave these directions open. A point that is given twice needs
+    ///     one direction.
     /// deviation : float
-    ///     How far a point may be from the curve, for points that are measured: a smooth curve is fitted within that, and the
-    ///     bounds hold for every tube whose centreline is so near to it. It is for points without tangents.
+    ///     How far a point may be from the curve, for points that are measured: a smooth curve is
+    ///     fitted within that, and the bounds hold for every tube whose centreline is so near to
+    ///     it. It is for points without tangents.
     /// turn : float, optional
-    ///     The largest angle, in rad, between the robot's true direction and the curve's at flat ends: its two ends, and steps in
-    ///     radius. Without it, a ``deviation`` leaves the bounds a radius apart there.
+    ///     The largest angle, in rad, between the robot's true direction and the curve's at flat
+    ///     ends: its two ends, and steps in radius. Without it, a ``deviation`` leaves the bounds a
+    ///     radius apart there.
     ///
     /// Returns
     /// -------
     /// Clearance
-    ///     Numbers and points of one robot, or arrays with one for each robot. ``resolved`` says whether the bounds are as close
-    ///     as was asked for.
+    ///     Numbers and points of one robot, or arrays with one for each robot. ``resolved`` says
+    ///     whether the bounds are as close as was asked for.
     ///
     /// Raises
     /// ------
     /// ContinuumError
-    ///     The tolerance is negative or NaN. Of one robot: the turn is negative or not finite, its points turn too sharply for a tube, or as for `distance`.
+    ///     The tolerance is negative or NaN. Of one robot: the turn is negative or not finite, its
+    ///     points turn too sharply for a tube, or as for `distance`.
     ///
     /// Examples
     /// --------
@@ -233,20 +240,21 @@ impl Mesh {
     /// margin : float
     ///     A length, at least 0.
     /// resolution : float
-    ///     The answer is undecided only where the clearance is within this of the margin, or where 65,536
-    ///     pieces do not decide it.
+    ///     The answer is undecided only where the clearance is within this of the margin, or where
+    ///     65,536 pieces do not decide it.
     ///
     /// Returns
     /// -------
     /// Decision or Decisions
-    ///     1 clear, -1 contact (at most the margin away), both proven, and 0 undecided. A batch returns an array of int8, (B,).
-    ///     Ask for ``is_clear``: neither has a truth value.
+    ///     1 clear, -1 contact (at most the margin away), both proven, and 0 undecided. A batch
+    ///     returns an array of int8, (B,). Ask for ``is_clear``: neither has a truth value.
     ///
     /// Raises
     /// ------
     /// ContinuumError
-    ///     The margin or the resolution is negative or NaN, or the resolution is finer than the points allow: ``possible`` says
-    ///     what can be had. Of a batch, ``robot`` is the first that is refused.
+    ///     The margin or the resolution is negative or NaN, or the resolution is finer than the
+    ///     points allow: ``possible`` says what can be had. Of a batch, ``robot`` is the first that
+    ///     is refused.
     #[pyo3(signature = (points, radii, *, margin, resolution, tangents = None, deviation = 0.0, turn = None, pose = None))]
     #[allow(clippy::too_many_arguments)] // they are named in Python
     fn clears_tube<'py>(

@@ -10,7 +10,8 @@ use pyo3::prelude::*;
 
 #[pymethods]
 impl Mesh {
-    /// Whether robots keep more than a margin away: exactly ``distance(...) > margin``, for less work.
+    /// Whether robots keep more than a margin away: exactly ``distance(...) > margin``, for less
+    /// work.
     ///
     /// Parameters
     /// ----------
@@ -57,8 +58,8 @@ impl Mesh {
 
     /// Whether robots keep more than a margin away, and on which side their bases are.
     ///
-    /// A robot whose base is inside a closed mesh and which touches nothing is inside as a whole. An open mesh has no inside:
-    /// there ask for the `side` of every point that matters.
+    /// A robot whose base is inside a closed mesh and which touches nothing is inside as a whole.
+    /// An open mesh has no inside: there ask for the `side` of every point that matters.
     ///
     /// Parameters
     /// ----------
@@ -70,8 +71,8 @@ impl Mesh {
     /// Returns
     /// -------
     /// InsideAnswer
-    ///     ``clears`` and ``base``: bool and `Side`, or arrays of them. ``holds`` says whether the base is inside and the margin
-    ///     is kept.
+    ///     ``clears`` and ``base``: bool and `Side`, or arrays of them. ``holds`` says whether the
+    ///     base is inside and the margin is kept.
     ///
     /// Raises
     /// ------

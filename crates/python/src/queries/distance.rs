@@ -51,21 +51,23 @@ fn fill<'a>(
 impl Mesh {
     /// The distance between robots and the mesh's surface.
     ///
-    /// It is 0 where they touch or overlap, and exact for the shape that `points`, `radii` and `caps` describe. It has no
-    /// sign: a robot that touches nothing may be on either side of the wall (`side`, `clears_inside`).
+    /// It is 0 where they touch or overlap, and exact for the shape that `points`, `radii` and
+    /// `caps` describe. It has no sign: a robot that touches nothing may be on either side of the
+    /// wall (`side`, `clears_inside`).
     ///
     /// Parameters
     /// ----------
     /// points : (N, 3) or (B, N, 3) array
-    ///     The centreline of one robot or of B robots, in the robot's frame. One robot, (N, 3) or (1, N, 3), stands for as many as
-    ///     there are poses or rows of radii.
+    ///     The centreline of one robot or of B robots, in the robot's frame. One robot, (N, 3) or
+    ///     (1, N, 3), stands for as many as there are poses or rows of radii.
     /// radii : float, (N - 1,) or (B, N - 1) array
     ///     One radius for each segment between two points.
     /// pose : (4, 4) or (B, 4, 4) array, optional
-    ///     From the robot's frame to the mesh's: a rotation, a shift in the last column, and 0 0 0 1. Or scipy's `RigidTransform`
-    ///     or `Rotation`.
+    ///     From the robot's frame to the mesh's: a rotation, a shift in the last column, and
+    ///     0 0 0 1. Or scipy's `RigidTransform` or `Rotation`.
     /// caps : {"fitted", "capsules", "cylinders"}
-    ///     How links end: flat at the robot's ends and at steps in radius, and round at bends; all round; or all flat.
+    ///     How links end: flat at the robot's ends and at steps in radius, and round at bends; all
+    ///     round; or all flat.
     ///
     /// Returns
     /// -------
@@ -74,7 +76,8 @@ impl Mesh {
     /// Raises
     /// ------
     /// ContinuumError
-    ///     Points or radii are no robot, or the pose is not rigid. Of a batch, ``robot`` is the first that is refused.
+    ///     Points or radii are no robot, or the pose is not rigid. Of a batch, ``robot`` is the
+    ///     first that is refused.
     ///
     /// Examples
     /// --------
@@ -117,8 +120,8 @@ impl Mesh {
     /// Returns
     /// -------
     /// Minimum
-    ///     Numbers and points of one robot, or arrays with one for each robot. Of equal distances the lowest triangle is
-    ///     named, then the lowest segment.
+    ///     Numbers and points of one robot, or arrays with one for each robot. Of equal distances
+    ///     the lowest triangle is named, then the lowest segment.
     ///
     /// Raises
     /// ------

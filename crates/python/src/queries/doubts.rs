@@ -1,4 +1,5 @@
-//! What looks like a mistake, though an answer exists: a robot in another frame or unit than the mesh.
+//! What looks like a mistake, though an answer exists: a robot in another frame or unit than the
+//! mesh.
 
 use crate::input::{Block, Given};
 use crate::mesh::{Mesh, frames_text};
@@ -8,7 +9,7 @@ use parry_continuum::parry::math::Vector;
 use parry_continuum::proximity::Proximity;
 use pyo3::prelude::*;
 
-/// A robot is hardly ever so many times larger or smaller than the mesh.
+/// A robot is hardly ever larger or smaller than the mesh by more than this factor.
 const FAR_FROM_ALIKE: f64 = 100.0;
 
 /// A box around points.
@@ -33,7 +34,8 @@ impl Extent {
         (self.high - self.low).length()
     }
 
-    /// How far the boxes are apart along the axis where they are farthest apart; negative if they overlap.
+    /// How far the boxes are apart along the axis where they are farthest apart; negative if they
+    /// overlap.
     fn gap(&self, other: &Self) -> f64 {
         (self.low - other.high).max(other.low - self.high).max_element()
     }
@@ -111,10 +113,12 @@ fn doubts(
 
 #[pymethods]
 impl Mesh {
-    /// What looks like a mistake in frame or unit, though every query has an answer: a line for each doubt.
+    /// What looks like a mistake in frame or unit, though every query has an answer: a line for
+    /// each doubt.
     ///
-    /// There is a doubt if points and mesh state different frames, if the box of the robots is a hundred times smaller or larger
-    /// than the mesh's, or if the two boxes do not overlap. Each names what would help, if a change of frame or unit would.
+    /// There is a doubt if points and mesh state different frames, if the box of the robots is a
+    /// hundred times smaller or larger than the mesh's, or if the two boxes do not overlap. Each
+    /// names what would help, if a change of frame or unit would.
     ///
     /// Parameters
     /// ----------

@@ -1,9 +1,11 @@
 //! How the distance changes with all that the robot is made of.
 //!
-//! The library gives the derivative with respect to the ends p and q of the link that is closest, both in the mesh's frame.
-//! With the pose x -> R x + t, p = R a + t for a point a of the robot: the derivative with respect to a is R^T times that with
-//! respect to p, that with respect to t is the sum over the two ends, and that with respect to R is the sum of g a^T, with g
-//! the derivative with respect to an end. All other points and radii do not count: only the closest link moves the distance.
+//! The library gives the derivative with respect to the ends p and q of the link that is closest,
+//! both in the mesh's frame. With the pose x -> R x + t, p = R a + t for a point a of the robot:
+//! the derivative with respect to a is R^T times that with respect to p, that with respect to t is
+//! the sum over the two ends, and that with respect to R is the sum of g a^T, with g the derivative
+//! with respect to an end. All other points and radii do not count: only the closest link moves the
+//! distance.
 
 use super::distance::set_chain;
 use crate::error::Refused;
@@ -66,8 +68,9 @@ const EQUAL: f64 = 1.0 / (1_u64 << 32) as f64;
 
 /// Whether a change of one radius, however little, changes the cap that the closest place is on.
 ///
-/// The place is on the round cap of a joint. If a joint between equal radii, this one or another within one radius of it, becomes a
-/// step, then the wider side of the step is flat, and so is every joint that is too near to that face.
+/// The place is on the round cap of a joint. If a joint between equal radii, this one or another
+/// within one radius of it, becomes a step, then the wider side of the step is flat, and so is
+/// every joint that is too near to that face.
 fn is_at_filled_bend(chain: &Chain, contact: &Contact) -> bool {
     let (links, place) = (chain.links(), contact.link as usize);
     let link = &links[place];
@@ -88,14 +91,16 @@ fn is_at_filled_bend(chain: &Chain, contact: &Contact) -> bool {
 impl Mesh {
     /// The distance with its derivative with respect to every point, radius and pose.
     ///
-    /// Where robot and mesh are apart the value is the distance; where they overlap it is minus the length of the least
-    /// translation that parts the closest link from its triangle, so that it goes on through the wall.
+    /// Where robot and mesh are apart the value is the distance; where they overlap it is minus the
+    /// length of the least translation that parts the closest link from its triangle, so that it
+    /// goes on through the wall.
     ///
-    /// Of most robots one link is closest, and one triangle. Where two are equally close the distance has a kink, and what is
-    /// given is the derivative for one of them; ``kink`` says where the two closest points themselves could be others. With fitted
-    /// caps, a bend between segments of equal radii is filled. If one radius there changes alone, the bend is a step whose wider side
-    /// is flat, and the distance from there has a kink or jumps: ``kink`` says so too. The derivatives are NaN where neither side of
-    /// the triangle is the robot's.
+    /// Of most robots one link is closest, and one triangle. Where two are equally close the
+    /// distance has a kink, and what is given is the derivative for one of them; ``kink`` says
+    /// where the two closest points themselves could be others. With fitted caps, a bend between
+    /// segments of equal radii is filled. If one radius there changes alone, the bend is a step
+    /// whose wider side is flat, and the distance from there has a kink or jumps: ``kink`` says so
+    /// too. The derivatives are NaN where neither side of the triangle is the robot's.
     ///
     /// Parameters
     /// ----------
@@ -105,9 +110,10 @@ impl Mesh {
     /// Returns
     /// -------
     /// Gradient
-    ///     ``value``; ``points`` (N, 3), in the robot's frame; ``radii`` (N - 1,), whose sum belongs to one radius for all
-    ///     segments; ``pose`` (4, 4), the derivative with respect to the entries of the matrix, for changes that leave it rigid;
-    ///     ``kink``. Of a batch, each with B in front.
+    ///     ``value``; ``points`` (N, 3), in the robot's frame; ``radii`` (N - 1,), whose sum
+    ///     belongs to one radius for all segments; ``pose`` (4, 4), the derivative with respect to
+    ///     the entries of the matrix, for changes that leave it rigid; ``kink``. Of a batch, each
+    ///     with B in front.
     ///
     /// Raises
     /// ------

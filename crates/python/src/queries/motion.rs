@@ -43,12 +43,13 @@ impl Question<MotionAnswer> for FirstContact {
 impl Mesh {
     /// Whether robots keep more than a margin away on all of their way.
     ///
-    /// With `start`, `end` and `radii`, every point of the centreline moves straight and evenly, from
-    /// `start` at the time 0 to `end` at the time 1, in the mesh's frame. A `Motion` as the only
-    /// positional argument is any other motion: a `RigidMotion`, a `BendingMotion`, a `MovingBase` or
-    /// a `MotionPath`.
+    /// With `start`, `end` and `radii`, every point of the centreline moves straight and evenly,
+    /// from `start` at the time 0 to `end` at the time 1, in the mesh's frame. A `Motion` as the
+    /// only positional argument is any other motion: a `RigidMotion`, a `BendingMotion`, a
+    /// `MovingBase` or a `MotionPath`.
     ///
-    /// ``Decision.CLEAR`` is proven for every time between, so that no robot slips through a thin wall between two steps.
+    /// ``Decision.CLEAR`` is proven for every time between, so that no robot slips through a thin
+    /// wall between two steps.
     ///
     /// Parameters
     /// ----------
@@ -59,8 +60,9 @@ impl Mesh {
     /// margin : float
     ///     A length, at least 0.
     /// resolution : float
-    ///     A length. The answer is undecided only where some shape is farther away than the margin by no more than this, where
-    ///     an end turns from flat to round there, or where 65,536 shapes do not decide it.
+    ///     A length. The answer is undecided only where some shape is farther away than the margin
+    ///     by at most this length, where an end turns from flat to round there, or where 65,536
+    ///     shapes do not decide it.
     /// caps : {"fitted", "capsules"}
     ///
     /// Returns
@@ -71,7 +73,8 @@ impl Mesh {
     /// Raises
     /// ------
     /// ContinuumError
-    ///     Margin or resolution are negative or NaN, the resolution is finer than rounding, or one of the shapes is no robot.
+    ///     Margin or resolution are negative or NaN, the resolution is finer than rounding, or one
+    ///     of the shapes is no robot.
     ///
     /// Examples
     /// --------
@@ -101,8 +104,8 @@ impl Mesh {
 
     /// When robots first come as close to the mesh as a margin, on their way.
     ///
-    /// The margin is kept until ``interval[0]``, which is proven, and not kept at ``interval[1]``. Between the two the place
-    /// that touches moves by no more than the resolution.
+    /// The margin is kept until ``interval[0]``, which is proven, and not kept at ``interval[1]``.
+    /// Between the two times the place that touches moves by at most the resolution.
     ///
     /// Parameters
     /// ----------

@@ -28,11 +28,14 @@ impl Question<MotionAnswer> for While {
 
 #[pymethods]
 impl Mesh {
-    /// Whether robots keep more than a margin away from the mesh on their way, while each vertex moves straight and evenly to another
-    /// place in the same time: an organ that breathes, a registration that is corrected, a step of a simulation of tissue.
+    /// Whether robots keep more than a margin away from the mesh on their way, while each vertex
+    /// moves straight and evenly to another place in the same time: an organ that breathes, a
+    /// registration that is corrected, a step of a simulation of tissue.
     ///
-    /// With `start`, `end` and `radii`, the robot's points move straight and evenly. A `Motion` after
-    /// `to` is any other motion. A robot at rest is a `RigidMotion` from a pose to the same pose. The mesh stays where it was; `set_vertices` moves it. Each motion goes once through all triangles.
+    /// With `start`, `end` and `radii`, the robot's points move straight and evenly. A `Motion`
+    /// after `to` is any other motion. A robot at rest is a `RigidMotion` from a pose to the same
+    /// pose. The mesh stays where it was; `set_vertices` moves it. Each motion goes once through
+    /// all triangles.
     ///
     /// Parameters
     /// ----------
@@ -44,12 +47,14 @@ impl Mesh {
     /// Returns
     /// -------
     /// MotionAnswer
-    ///     Of one motion, or arrays with one entry for each motion. Points are those of robot and mesh at that time.
+    ///     Of one motion, or arrays with one entry for each motion. The points of robot and mesh
+    ///     are their positions at the time of the answer.
     ///
     /// Raises
     /// ------
     /// ContinuumError
-    ///     There are more or fewer vertices than the mesh has, one is not finite or out of range, or as for `clears_motion`.
+    ///     There are more or fewer vertices than the mesh has, one is not finite or out of range,
+    ///     or as for `clears_motion`.
     ///
     /// Examples
     /// --------

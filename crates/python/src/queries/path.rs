@@ -11,16 +11,20 @@ use pyo3::prelude::*;
 
 #[pymethods]
 impl Mesh {
-    /// Whether robots keep more than a margin away all along a planner's own shapes, where nobody states a speed.
+    /// Whether robots keep more than a margin away all along a planner's own shapes, where nobody
+    /// states a speed.
     ///
-    /// The shapes are the robot at the planner's steps, in the mesh's frame. From one to the next every point moves straight and
-    /// evenly. At every moment the robot is some smooth tube whose centreline is within the deviation of that, place by place: the
-    /// deviation counts how far segments leave the curve, how far the robot's way leaves the straight one between two steps, and
-    /// what the kinematics or a sensor errs.
+    /// The shapes are the robot at the planner's steps, in the mesh's frame. From one to the next
+    /// every point moves straight and evenly. At every moment the robot is some smooth tube whose
+    /// centreline is within the deviation of that, place by place: the deviation counts how far
+    /// segments leave the curve, how far the robot's way leaves the straight one between two steps,
+    /// and what the kinematics or a sensor errs.
     ///
-    /// ``Decision.CLEAR`` is proven for every such tube at every time. ``Decision.CONTACT`` says that every such tube is at most the
-    /// margin away at the time that is named: of S shapes the first one is at 0, the next at 1 / (S - 1). The deviation
-    /// says nothing of how a flat end is turned. So for ``CLEAR`` a flat end counts as a whole ball, and for ``CONTACT`` as its centre.
+    /// ``Decision.CLEAR`` is proven for every such tube at every time. ``Decision.CONTACT`` says
+    /// that every such tube is at most the margin away at the time that is named: of S shapes the
+    /// first one is at 0, the next at 1 / (S - 1). The deviation says nothing of how a flat end is
+    /// turned. So for ``CLEAR`` a flat end counts as a whole ball, and for ``CONTACT`` as its
+    /// centre.
     ///
     /// Parameters
     /// ----------
@@ -33,7 +37,8 @@ impl Mesh {
     /// margin : float
     ///     A length, at least 0.
     /// resolution : float
-    ///     A length. The answer is undecided only where it depends on the tube, or on less than this.
+    ///     A length. The answer is undecided only where it depends on the tube, or on less than
+    ///     this.
     ///
     /// Returns
     /// -------
@@ -43,8 +48,8 @@ impl Mesh {
     /// Raises
     /// ------
     /// ContinuumError
-    ///     A number is negative or NaN, the resolution is finer than rounding, there are no shapes, one is no robot, or segments
-    ///     without length are others in one shape than in the first.
+    ///     A number is negative or NaN, the resolution is finer than rounding, there are no shapes,
+    ///     one is no robot, or segments without length are others in one shape than in the first.
     ///
     /// Examples
     /// --------

@@ -31,8 +31,8 @@ const NOTHING: Row = Row {
 impl Mesh {
     /// The closest triangle of every segment, and the two points that are closest.
     ///
-    /// Answers stand where their segment does: row k is about the segment from point k to point k + 1. A segment without
-    /// length is no link, and has NaN and the triangle -1.
+    /// Answers stand where their segment does: row k is about the segment from point k to point
+    /// k + 1. A segment without length is no link, and has NaN and the triangle -1.
     ///
     /// Parameters
     /// ----------

@@ -66,12 +66,14 @@ impl Question<Option<Proof>> for Proves {
 
 #[pymethods]
 impl Mesh {
-    /// A proof that a robot keeps more than a margin away, for those who do not trust this library: a text that a short program in
-    /// plain Python checks, ``docs/book/check_proof.py`` in the repository. The page on proofs beside it says what it means.
+    /// A proof that a robot keeps more than a margin away, for those who do not trust this library:
+    /// a text that a short program in plain Python checks, ``docs/book/check_proof.py`` in the
+    /// repository. The page on proofs in the same folder explains the meaning of a proof.
     ///
     /// The proof does not say on which side of the wall the robot is: `side` answers that.
     ///
-    /// The program reads the mesh as an OBJ file with the vertices and triangles that the mesh has here, in its order.
+    /// The program reads the mesh as an OBJ file with the vertices and triangles that the mesh has
+    /// here, in its order.
     ///
     /// Parameters
     /// ----------
@@ -117,8 +119,8 @@ impl Mesh {
         })
     }
 
-    /// The same for a curved tube. What the proof takes for granted of the curve is printed by the program that checks it: points,
-    /// and how long and how bent it is between them at most.
+    /// The same for a curved tube. What the proof takes for granted of the curve is printed by the
+    /// program that checks it: points, and how long and how bent it is between them at most.
     ///
     /// Parameters
     /// ----------
@@ -162,8 +164,8 @@ impl Mesh {
         })
     }
 
-    /// The same for a motion: the proof that the robot keeps more than the margin away at every time from 0 to 1. The speeds of
-    /// the motion are taken for granted, and printed.
+    /// The same for a motion: the proof that the robot keeps more than the margin away at every
+    /// time from 0 to 1. The speeds of the motion are taken for granted, and printed.
     ///
     /// Parameters
     /// ----------
@@ -173,8 +175,8 @@ impl Mesh {
     /// Returns
     /// -------
     /// str or None
-    ///     None if some shape does not keep the margin, or by no more than about the resolution; or if the proof would take
-    ///     more than 65,536 shapes or 16 MiB.
+    ///     None if some shape does not keep the margin, or keeps it by at most about the
+    ///     resolution, or if the proof would take more than 65,536 shapes or 16 MiB.
     ///
     /// Raises
     /// ------

@@ -11,8 +11,8 @@ use pyo3::prelude::*;
 impl Mesh {
     /// On which side of the mesh points are, proven.
     ///
-    /// Triangles may face outward or inward, as long as all do the same. Near holes of an open mesh, and on triangles, the
-    /// answer is ``Side.UNDECIDED``.
+    /// Triangles may face outward or inward, as long as all do the same. Near holes of an open
+    /// mesh, and on triangles, the answer is ``Side.UNDECIDED``.
     ///
     /// Parameters
     /// ----------
@@ -22,8 +22,9 @@ impl Mesh {
     /// Returns
     /// -------
     /// Side or Sides
-    ///     The side of one point, or an array of int8 of the shape of `points` without its last axis: -1 inside, 1 outside, 0
-    ///     undecided. Neither has a truth value: compare with ``Side.INSIDE``.
+    ///     The side of one point, or an array of int8 of the shape of `points` without its last
+    ///     axis: -1 inside, 1 outside, 0 undecided. Neither has a truth value: compare with
+    ///     ``Side.INSIDE``.
     ///
     /// Raises
     /// ------

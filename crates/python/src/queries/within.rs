@@ -12,14 +12,17 @@ use pyo3::types::PyTuple;
 
 #[pymethods]
 impl Mesh {
-    /// Every contact at most a margin away: where the distance between a link and the mesh has a local minimum.
+    /// Every contact at most a margin away: where the distance between a link and the mesh has a
+    /// local minimum.
     ///
-    /// A wall that bends towards a link is one contact, however many triangles it has, and a link in a narrow lumen has one on
-    /// each side. Contacts come robot by robot, segment by segment, the nearest first.
+    /// A wall that bends towards a link is one contact, however many triangles it has, and a link
+    /// in a narrow lumen has one on each side. Contacts come robot by robot, segment by segment,
+    /// the nearest first.
     ///
-    /// Where the two are apart ``depth`` is the distance, and ``normal`` points from the wall to the robot. Where they overlap
-    /// ``depth`` is minus the length of the least translation, along ``normal``, that parts the link from that triangle. The
-    /// normal is NaN where neither side of the triangle is the robot's.
+    /// Where the two are apart ``depth`` is the distance, and ``normal`` points from the wall to
+    /// the robot. Where they overlap ``depth`` is minus the length of the least translation, along
+    /// ``normal``, that parts the link from that triangle. The normal is NaN where neither side of
+    /// the triangle is the robot's.
     ///
     /// Parameters
     /// ----------
@@ -28,8 +31,8 @@ impl Mesh {
     /// margin : float
     ///     A length, at least 0.
     /// prominence : float
-    ///     Leaves out local minima that are shallow: by how much farther every way on the mesh from a contact to a nearer place
-    ///     must first lead. 0 keeps all of them.
+    ///     Leaves out local minima that are shallow: by how much farther every way on the mesh from
+    ///     a contact to a nearer place must first lead. 0 keeps all of them.
     ///
     /// Returns
     /// -------

@@ -19,16 +19,19 @@ use std::sync::Arc;
 
 /// Several meshes, the structures, each with a margin of its own or none, and robots among them.
 ///
-/// A structure is a `Mesh`: where that moves, the structure has moved for all queries that begin later. Robots are a list, each
-/// ``(points, radii)`` or ``(points, radii, pose)``; each is one shape or a batch of as many.
+/// A structure is a `Mesh`: where that moves, the structure has moved for all queries that begin
+/// later. Robots are a list, each ``(points, radii)`` or ``(points, radii, pose)``; each is one
+/// shape or a batch of as many.
 ///
 /// Parameters
 /// ----------
 /// robot_margin : float, optional
-///     What robots keep from one another. Without it they are not held against one another.
+///     The distance that robots keep from one another. Without it the scene does not compare robots
+///     with one another.
 /// nested : sequence of (int, int), optional
-///     Pairs of robots one of which is inside the other, as a tube in the tube that guides it: they touch, and are not held
-///     against one another. The numbers are places in the list of robots.
+///     Pairs of robots where one is inside the other, as a tube in the tube that guides it. Such
+///     robots touch, and the scene does not compare them with one another. The numbers are places
+///     in the list of robots.
 ///
 /// Raises
 /// ------
@@ -115,7 +118,8 @@ impl Lender for Snapshot {
 }
 
 impl Scene {
-    /// The robots of a question. A mesh in the scene's own frame warns once if points without a pose state another frame.
+    /// The robots of a question. A mesh in the scene's own frame warns once if points without a
+    /// pose state another frame.
     fn robots<'py>(&self, py: Python<'py>, given: Vec<Bound<'py, PyAny>>) -> PyResult<Robots<'py>> {
         let made = robots::robots(py, &given)?;
         let meshes: Vec<_> = self.structures.with(py, |structures| {
@@ -175,8 +179,8 @@ impl Scene {
     ///     For messages.
     /// mesh : Mesh
     /// margin : float or None
-    ///     The distance that robots keep from it. A structure with None may be touched, such as a target: `per_structure` and
-    ///     `contacts` measure it, and the others ignore it.
+    ///     The distance that robots keep from it. A structure with None may be touched, such as a
+    ///     target: `per_structure` and `contacts` measure it, and the others ignore it.
     /// pose : (4, 4) array, optional
     ///     From the mesh's frame to the scene's.
     ///
@@ -278,7 +282,8 @@ impl Scene {
     /// Raises
     /// ------
     /// ContinuumError
-    ///     The list is empty, or something in it is no robot. Neither a structure nor the robots have a margin.
+    ///     The list is empty, or something in it is no robot. Neither a structure nor the robots
+    ///     have a margin.
     #[pyo3(signature = (robots, *, caps = Caps::Fitted), text_signature = "($self, robots, *, caps=\"fitted\")")]
     fn clears<'py>(
         &self,
@@ -308,7 +313,8 @@ impl Scene {
     /// Returns
     /// -------
     /// Tightest
-    ///     Of one set of robots, or arrays with one entry for each. Of equal slacks the lowest structure is named.
+    ///     Of one set of robots, or arrays with one entry for each. Of equal slacks the lowest
+    ///     structure is named.
     ///
     /// Raises
     /// ------
@@ -373,8 +379,9 @@ impl Scene {
         per_structure(py, &robots.shape(&[snapshot.structures.len()]), &all)
     }
 
-    /// Every contact of every robot with every structure that is at most `reach` away, whether that has a margin or not, structure
-    /// by structure and robot by robot: `Mesh.contacts_within` of all of them.
+    /// Every contact of every robot with every structure that is at most `reach` away, whether that
+    /// has a margin or not, structure by structure and robot by robot: `Mesh.contacts_within` of
+    /// all of them.
     ///
     /// Parameters
     /// ----------
@@ -388,7 +395,8 @@ impl Scene {
     /// Returns
     /// -------
     /// SceneContacts
-    ///     Arrays of one length, with a row for each contact. Those of set k of the batch are ``offsets[k]:offsets[k + 1]``.
+    ///     Arrays of one length, with a row for each contact. The rows of set k of the batch are
+    ///     ``offsets[k]:offsets[k + 1]``.
     ///
     /// Raises
     /// ------

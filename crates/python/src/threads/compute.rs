@@ -8,7 +8,8 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread::Builder;
 use std::time::Duration;
 
-/// Does `work` without the GIL. A panic is a defect of the library, and Python is told so by the exception of this package.
+/// Runs `work` without the GIL. A panic is a defect of the library, and raises the exception of
+/// this package.
 pub(crate) fn compute<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyResult<T> {
     let done = py.detach(|| catch_unwind(AssertUnwindSafe(work)));
     done.map_err(|panic| defect(&*panic).raise(py, None))
@@ -17,7 +18,8 @@ pub(crate) fn compute<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) 
 /// Signals are looked at this often.
 const TICK: Duration = Duration::from_millis(50);
 
-/// Does what may take long without the GIL, and ends at Ctrl-C. The work then goes on by itself, and its result is dropped.
+/// Does what may take long without the GIL, and ends at Ctrl-C. The work then goes on by itself,
+/// and its result is dropped.
 pub(crate) fn interruptible<T: Send + 'static>(
     py: Python<'_>,
     work: impl FnOnce() -> T + Send + 'static,

@@ -83,10 +83,11 @@ impl<L: Lender> Lender for Arc<L> {
     }
 }
 
-/// Answers about each robot, or motion, `width` of them for each, at least one, in order. `take` gets them chunk by chunk, with
-/// the place of the first of them.
+/// Answers about each robot, or motion, `width` of them for each, at least one, in order. `take`
+/// gets them chunk by chunk, with the place of the first of them.
 ///
-/// The first robot that is refused ends it. All are asked about the same mesh, whatever moves meanwhile.
+/// The first robot that is refused ends the batch. All robots see the same mesh, even if another
+/// thread moves it.
 pub(crate) fn ask_each<T: Clone + Send, L: Lender, Q: Asked>(
     py: Python<'_>,
     lender: &L,
@@ -148,7 +149,8 @@ struct Rows<'a, Q: Asked, A> {
 }
 
 impl<Q: Asked, A> Rows<'_, Q, A> {
-    /// Asks about the robots from the place `first` on, one for each row of answers. Returns the first that is refused.
+    /// Asks about the robots from the place `first` on, one for each row of answers. Returns the
+    /// first that is refused.
     fn ask<S, T>(
         &self,
         session: &mut S,

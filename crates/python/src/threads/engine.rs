@@ -11,8 +11,8 @@ use parry_continuum::proximity::{BvhSearch, Contact, LinkProximity, Proximity};
 use parry_continuum::{Chain, Tube};
 use pyo3::prelude::*;
 
-/// What one thread needs to ask: a clone of the engine, which shares mesh and hierarchy and remembers its own answers, and
-/// memory that is used again.
+/// What one thread needs to ask: a clone of the engine, which shares mesh and hierarchy and
+/// remembers its own answers, and memory that is used again.
 pub(crate) struct Session {
     pub search: BvhSearch,
     pub chain: Option<Chain>,
@@ -36,7 +36,8 @@ impl Session {
     }
 }
 
-/// The engine of a mesh as it is now. One that moves gets a new engine; who asks meanwhile keeps the old one.
+/// The engine of a mesh as it is now. A mesh that moves gets a new engine; running queries keep the
+/// old engine.
 pub(crate) struct Engine(Held<State>);
 
 struct State {
@@ -56,7 +57,7 @@ impl Engine {
         vertices: Vec<Vector>,
         faces: Vec<[u32; 3]>,
     ) -> PyResult<Self> {
-        /// Fewer triangles take less than it takes to press Ctrl-C.
+        /// Below this number of triangles, the build ends before a user can press Ctrl-C.
         const FEW: usize = 1 << 16;
         let (pool, count) = (pool(py)?, faces.len());
         let build = move || pool.install(|| BvhSearch::from_triangles(&vertices, &faces));
@@ -84,9 +85,10 @@ impl Engine {
         Ok(Self::of(search))
     }
 
-    /// In a child: where another thread of the parent was asking at the fork, it may have been building what the library
-    /// builds at a first question, behind a lock that nobody opens here. The vertices and triangles are whole, so the engine
-    /// is built of them again. Where nobody was asking, the parent's is as good as ever.
+    /// In a child: where another thread of the parent was asking at the fork, it may have been
+    /// building what the library builds at a first question, behind a lock that nobody opens here.
+    /// The vertices and triangles are whole, so the engine is built of them again. Where nobody was
+    /// asking, the parent's is as good as ever.
     fn notice_fork(&self, py: Python<'_>) -> PyResult<()> {
         let half_built = self.0.with(py, |state| {
             if state.forks == forks() {

@@ -4,7 +4,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 static FORKS: AtomicU64 = AtomicU64::new(0);
 
-/// Another number in each child. A process id would not do: a grandchild may get that of a process that is no more.
+/// Another number in each child. A process id would not do: a grandchild may get that of a process
+/// that is no more.
 pub(crate) fn forks() -> u64 {
     FORKS.load(Ordering::Relaxed)
 }
@@ -18,8 +19,9 @@ pub(crate) fn watch_forks() {
             FORKS.fetch_add(1, Ordering::Relaxed);
         }
         ONCE.call_once(|| {
-            // SAFETY: the handler only adds to an atomic number, and lives as long as the module, which is never unloaded.
-            // Should there be no memory for it, no child is noticed, as if nobody forked.
+            // SAFETY: the handler only adds to an atomic number, and lives as long as the module,
+            // which is never unloaded. Should there be no memory for it, no child is noticed, as if
+            // nobody forked.
             unsafe { libc::pthread_atfork(None, None, Some(in_child)) };
         });
     }

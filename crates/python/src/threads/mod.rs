@@ -1,12 +1,15 @@
 //! Threads, processes and the GIL: who holds what, when.
 //!
-//! - Arrays are read with the GIL, and copied: a thread of Python's may write to them as soon as it is given up.
+//! - Arrays are read with the GIL, and copied: a thread of Python's may write to them as soon as it
+//!   is given up.
 //! - All that computes does so without the GIL, on copies and on sessions of its own.
-//! - What may take long by itself, such as reading a file, runs on a thread of its own, so that Ctrl-C ends it (`interruptible`).
-//! - A lock of this package is taken only with the GIL, and given back before the GIL is. So when Python forks, which takes
-//!   the GIL, no lock is taken, and the child finds all of them free.
-//! - The threads of a pool do not live on in a child, so a child has a pool of its own (`pool`). What another thread was in
-//!   the middle of building in the library stays half built for ever in the child, so the child builds it again (`engine`).
+//! - What may take long by itself, such as reading a file, runs on a thread of its own, so that
+//!   Ctrl-C ends it (`interruptible`).
+//! - A lock of this package is taken only with the GIL, and given back before the GIL is. So when
+//!   Python forks, which takes the GIL, no lock is taken, and the child finds all of them free.
+//! - The threads of a pool do not live on in a child, so a child has a pool of its own (`pool`).
+//!   What another thread was in the middle of building in the library stays half built for ever in
+//!   the child, so the child builds it again (`engine`).
 
 mod compute;
 mod each;

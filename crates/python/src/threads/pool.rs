@@ -1,4 +1,5 @@
-//! The threads that batches run on: the package's own, one for each core, or as many as `RAYON_NUM_THREADS` says.
+//! The threads that batches run on: the package's own, one for each core, or as many as
+//! `RAYON_NUM_THREADS` says.
 
 use super::fork::forks;
 use super::held::Held;
@@ -6,8 +7,8 @@ use crate::error::Refused;
 use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
-/// The pool, and how often had been forked when it was made. It is never dropped: that of a parent has threads that are
-/// not there, and waiting for them would take for ever.
+/// The pool, and how often had been forked when it was made. It is never dropped: that of a parent
+/// has threads that are not there, and waiting for them would take for ever.
 static POOL: Held<Option<(u64, &'static ThreadPool)>> = Held::new(None);
 
 /// This process's pool, made when it is first asked for.

@@ -7,7 +7,7 @@ use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{BvhSearch, Decision, Exhaustive, LinkProximity, Proximity};
 use parry_continuum::{Chain, Tube};
 
-/// A mesh that moves, two robots, one of which is queried, and its pose.
+/// A moving mesh, two robots, the number of the queried robot, and that robot's pose.
 struct Scene {
     vertices: Vec<Vector>,
     indices: Vec<[u32; 3]>,

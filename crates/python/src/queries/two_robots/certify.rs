@@ -14,11 +14,12 @@ use pyo3::prelude::*;
 
 #[pymethods]
 impl RobotPair {
-    /// Bounds on the distances of a `RobotProximity` answer that hold whatever was rounded on the way.
+    /// Bounds on the distances of a `RobotProximity` answer that hold despite all rounding.
     ///
-    /// Each bounds the distance between the two segments that the answer names, as `Mesh.certify` does for a segment and a triangle:
-    /// ``lower <= answer.distance <= upper`` but for the last bits of the distance. The answer's distances and points are checked
-    /// first: an answer for other points, another radius or pose is an error.
+    /// Each bounds the distance between the two segments that the answer names, as `Mesh.certify`
+    /// does for a segment and a triangle: ``lower <= answer.distance <= upper`` up to the last bits
+    /// of the distance. The answer's distances and points are checked first: an answer for other
+    /// points, another radius or pose is an error.
     ///
     /// Parameters
     /// ----------
@@ -30,13 +31,14 @@ impl RobotPair {
     /// Returns
     /// -------
     /// Certificate
-    ///     ``lower`` and ``upper``, in the shape of ``answer.distance``; NaN for segments without length.
+    ///     ``lower`` and ``upper``, in the shape of ``answer.distance``; NaN for segments without
+    ///     length.
     ///
     /// Raises
     /// ------
     /// ContinuumError
-    ///     The answer does not fit robots and poses: a point is not where it says, the distance is another, or the shapes differ.
-    ///     Or as for `minimum`.
+    ///     The answer does not fit robots and poses: a point is not where it says, the distance is
+    ///     another, or the shapes differ. Or as for `minimum`.
     ///
     /// Examples
     /// --------
@@ -82,7 +84,7 @@ impl RobotPair {
         let ask = |session: &mut Session, robot: &Given<'_>, found: &mut [[f64; 2]]| {
             let Placed { pair, chains: [a, b], poses, points, .. } = session.place(robot, caps)?;
             let links = [in_order(a, points[0]), in_order(b, points[1])];
-            // An answer of the library's own, whose fields become those that were given.
+            // Takes an answer of the library's own, and overwrites its fields with the given ones.
             let mut answer = pair.minimum(a, &poses[0], b, &poses[1])?;
             for (row, bounds) in found.iter_mut().enumerate().take(rows) {
                 let row = robot.number * rows + row;

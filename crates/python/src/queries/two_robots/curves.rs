@@ -149,8 +149,8 @@ impl RobotPair {
     ///
     /// Both robots are taken for smooth tubes with flat ends, as `Mesh.clearance` takes them.
     ///
-    /// Of a batch, a pair that is refused costs the others nothing: its bounds are NaN, and its ``status`` is the ``kind`` of its
-    /// error.
+    /// A pair that is refused does not fail its batch: its bounds are NaN, and its ``status`` is
+    /// the ``kind`` of its error.
     ///
     /// Parameters
     /// ----------
@@ -169,7 +169,8 @@ impl RobotPair {
     /// Raises
     /// ------
     /// ContinuumError
-    ///     The tolerance is negative or NaN. Of one pair: points turn too sharply for a tube, or as for `minimum`.
+    ///     The tolerance is negative or NaN. Of one pair: points turn too sharply for a tube, or as
+    ///     for `minimum`.
     ///
     /// Examples
     /// --------
@@ -221,8 +222,8 @@ impl RobotPair {
     /// margin : float
     ///     A length, at least 0.
     /// resolution : float
-    ///     The answer is undecided only where the clearance is within this of the margin, or where 65,536
-    ///     pairs of pieces do not decide it.
+    ///     The answer is undecided only where the clearance is within this of the margin, or where
+    ///     65,536 pairs of pieces do not decide it.
     /// tangents_a, tangents_b, deviation_a, deviation_b, turn_a, turn_b
     ///     Of either robot as for `Mesh.clearance`.
     ///
@@ -234,8 +235,8 @@ impl RobotPair {
     /// Raises
     /// ------
     /// ContinuumError
-    ///     The margin or the resolution is negative or NaN, the resolution is finer than the points allow, or as for `clearance`. Of
-    ///     a batch, ``robot`` is the first that is refused.
+    ///     The margin or the resolution is negative or NaN, the resolution is finer than the points
+    ///     allow, or as for `clearance`. Of a batch, ``robot`` is the first that is refused.
     #[pyo3(signature = (points_a, radii_a, points_b, radii_b, *, margin, resolution, tangents_a = None, tangents_b = None, deviation_a = 0.0, deviation_b = 0.0, turn_a = None, turn_b = None, pose_a = None, pose_b = None))]
     #[allow(clippy::too_many_arguments)] // they are named in Python
     fn clears_tubes<'py>(

@@ -61,7 +61,8 @@ struct Session {
     found: Vec<RobotProximity>,
 }
 
-/// A pair of robots in the chains of a session: who is asked about them, their poses and points, and memory for the answers.
+/// Two robots in the chains of a session: the object that answers, the robots' poses and points,
+/// and memory for the answers.
 struct Placed<'a> {
     pair: &'a mut proximity::RobotPair,
     chains: [&'a Chain; 2],

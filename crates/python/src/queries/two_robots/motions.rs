@@ -15,8 +15,8 @@ use pyo3::prelude::*;
 impl RobotPair {
     /// Whether two robots that move at the same time keep more than a margin between them.
     ///
-    /// ``Decision.CLEAR`` is proven for every time between, from the speeds of the motions. A robot at rest is a `RigidMotion` from
-    /// a pose to the same pose.
+    /// ``Decision.CLEAR`` is proven for every time between, from the speeds of the motions. A robot
+    /// at rest is a `RigidMotion` from a pose to the same pose.
     ///
     /// Parameters
     /// ----------
@@ -25,8 +25,9 @@ impl RobotPair {
     /// margin : float
     ///     A length, at least 0.
     /// resolution : float
-    ///     A length. The answer is undecided only where the robots come within this of the margin, where an end turns from flat to
-    ///     round there, or where 65,536 shapes of each or a million pairs of pieces do not decide it.
+    ///     A length. The answer is undecided only where the robots come within this of the margin,
+    ///     where an end turns from flat to round there, or where 65,536 shapes of each or a million
+    ///     pairs of pieces do not decide it.
     ///
     /// Returns
     /// -------
@@ -36,8 +37,8 @@ impl RobotPair {
     /// Raises
     /// ------
     /// ContinuumError
-    ///     Margin or resolution are negative or NaN, the resolution is finer than rounding, one of the shapes is no robot, or batches
-    ///     differ in size.
+    ///     Margin or resolution are negative or NaN, the resolution is finer than rounding, one of
+    ///     the shapes is no robot, or batches differ in size.
     ///
     /// Examples
     /// --------

@@ -52,8 +52,8 @@ impl RobotPair {
 
     /// The distance between two robots, and the two closest points.
     ///
-    /// The distance is 0 where the robots touch or overlap. If one argument is a batch and the other
-    /// is one robot, that robot is paired with each robot of the batch.
+    /// The distance is 0 where the robots touch or overlap. If one argument is a batch and the
+    /// other is one robot, that robot is paired with each robot of the batch.
     ///
     /// Parameters
     /// ----------
@@ -105,8 +105,8 @@ impl RobotPair {
     /// Returns
     /// -------
     /// RobotProximity
-    ///     Arrays of the shape (N - 1, ...), or (B, N - 1, ...) of a batch. Of a segment of the first robot without length the distance
-    ///     is NaN, and the segments are -1.
+    ///     Arrays of the shape (N - 1, ...), or (B, N - 1, ...) of a batch. Of a segment of the
+    ///     first robot without length the distance is NaN, and the segments are -1.
     ///
     /// Raises
     /// ------
@@ -131,8 +131,9 @@ impl RobotPair {
 
     /// Every place where the robots are at most a margin apart, in the order of the segments.
     ///
-    /// A place is a pair of segments of which no neighbours, one segment on along either robot or both, are closer. Neighbours that are
-    /// as close count as one place, at the lowest segments.
+    /// A place is a pair of segments that is as close as its neighbours or closer. Neighbours are
+    /// one segment apart along either robot or both. Equally close neighbours count as one place,
+    /// at the lowest segments.
     ///
     /// Parameters
     /// ----------
@@ -144,7 +145,8 @@ impl RobotPair {
     /// Returns
     /// -------
     /// RobotContacts
-    ///     Arrays of one length, with a row for each place. Those of pair k are ``offsets[k]:offsets[k + 1]``.
+    ///     Arrays of one length, with a row for each place. The rows of pair k are
+    ///     ``offsets[k]:offsets[k + 1]``.
     ///
     /// Raises
     /// ------

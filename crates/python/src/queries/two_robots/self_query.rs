@@ -69,8 +69,8 @@ impl SelfQuery {
     /// The place where a robot comes closest to itself.
     ///
     /// Parts that are close only because they are neighbours do not count. The query considers two
-    /// links with a turn of at least pi between them; a flat end or a step in radius and a link, with
-    /// a turn of at least pi / 2; and two ends of links that face one another.
+    /// links with a turn of at least pi between them; a flat end or a step in radius and a link,
+    /// with a turn of at least pi / 2; and two ends of links that face one another.
     ///
     /// Parameters
     /// ----------
@@ -86,8 +86,8 @@ impl SelfQuery {
     /// Raises
     /// ------
     /// ContinuumError
-    ///     Points or radii are no robot, or a joint is so sharp that its links overlap over more than
-    ///     half of the shorter one.
+    ///     Points or radii are no robot, or a joint is so sharp that its links overlap over more
+    ///     than half of the shorter one.
     ///
     /// Examples
     /// --------
@@ -174,9 +174,10 @@ impl SelfQuery {
     /// margin : float
     ///     A length, at least 0.
     /// resolution : float
-    ///     A length, at least 0. The answer is undecided only if the distance of such parts is within
-    ///     the resolution of the margin, the margin is as wide as the tightest bend, the points are
-    ///     too few to show how far the curve turns, or 65,536 pairs of pieces do not decide.
+    ///     A length, at least 0. The answer is undecided only if the distance of such parts is
+    ///     within the resolution of the margin, the margin is as wide as the tightest bend, the
+    ///     points are too few to show how far the curve turns, or 65,536 pairs of pieces do not
+    ///     decide.
     /// tangents, deviation, turn
     ///     As for `Mesh.clearance`.
     ///
@@ -241,22 +242,22 @@ impl SelfQuery {
     /// margin : float
     ///     A length, at least 0.
     /// resolution : float
-    ///     A length, at least 0. The answer is undecided only if the robot comes within the resolution
-    ///     of the margin, the margin is as wide as the tightest bend, an end turns from flat to round,
-    ///     or 65,536 shapes or 262,144 pairs of pieces do not decide.
+    ///     A length, at least 0. The answer is undecided only if the robot comes within the
+    ///     resolution of the margin, the margin is as wide as the tightest bend, an end turns from
+    ///     flat to round, or 65,536 shapes or 262,144 pairs of pieces do not decide.
     ///
     /// Returns
     /// -------
     /// RobotMotionAnswer
-    ///     Of one motion, or arrays with one entry for each. Both points of a contact are on the same
-    ///     robot, the first one nearer to its base.
+    ///     Of one motion, or arrays with one entry for each. Both points of a contact are on the
+    ///     same robot, the first one nearer to its base.
     ///
     /// Raises
     /// ------
     /// ContinuumError
-    ///     The margin or the resolution is negative or NaN, the resolution is finer than rounding, the
-    ///     motion is too fast for the resolution, one of the shapes is no robot, or a shape bends
-    ///     within its radius or too sharply at a joint.
+    ///     The margin or the resolution is negative or NaN, the resolution is finer than rounding,
+    ///     the motion is too fast for the resolution, one of the shapes is no robot, or a shape
+    ///     bends within its radius or too sharply at a joint.
     ///
     /// Examples
     /// --------

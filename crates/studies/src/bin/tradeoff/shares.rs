@@ -36,8 +36,8 @@ pub fn chapter(outcomes: &[Outcome], out: &Path) -> Result<String, String> {
     );
     for margin in MARGINS {
         for model in Model::ALL {
-            // parry's answers equal those of capsules and cylinders up to the error of GJK, which
-            // has its own table.
+            // parry's answers equal the answers for capsules and cylinders up to the error of GJK,
+            // which has its own table.
             for tolerance in if Model::OURS.contains(&model) || model == Model::Tube {
                 &SHOWN[..]
             } else {
