@@ -59,15 +59,10 @@ impl Buffers {
             .parts
             .iter()
             .map(|part| {
-                let round = wgpu::BufferBinding {
-                    buffer: &rounds,
-                    offset: 0,
-                    size: std::num::NonZeroU64::new(Round::size(device.precision())),
-                };
                 device.group(
                     &gpu.query_layout,
                     &[
-                        wgpu::BindingResource::Buffer(round),
+                        device.uniform_binding::<Round>(&rounds),
                         link_buffer.as_entire_binding(),
                         limits.as_entire_binding(),
                         part.spheres.as_entire_binding(),

@@ -71,9 +71,7 @@ impl DeviceMesh {
             }
             gpu.device.queue().write_buffer(&part.vertex_buffer, 0, &bytes);
             pass.set_bind_group(0, &part.group, &[]);
-            let workgroups = part.triangles.div_ceil(THREADS);
-            let wide = workgroups.min(gpu.device.limits().max_compute_workgroups_per_dimension);
-            pass.dispatch_workgroups(wide, workgroups.div_ceil(wide), 1);
+            gpu.device.dispatch(&mut pass, part.triangles.div_ceil(THREADS));
         }
         drop(pass);
         gpu.device.queue().submit([encoder.finish()]);

@@ -141,8 +141,7 @@ impl Batch {
         pass.set_pipeline(&self.kernel);
         pass.set_bind_group(0, &room.group, &[0]);
         let workgroups = problems.div_ceil(BATCH_THREADS.into()) as u32;
-        let wide = workgroups.min(device.limits().max_compute_workgroups_per_dimension);
-        pass.dispatch_workgroups(wide, workgroups.div_ceil(wide), 1);
+        device.dispatch(&mut pass, workgroups);
         drop(pass);
         let size = problems * self.answer * device.precision().size();
         encoder.copy_buffer_to_buffer(&room.answer_buffer, 0, &room.readback, READINGS, Some(size));

@@ -238,6 +238,24 @@ impl Device {
             .next_multiple_of(self.limits().min_uniform_buffer_offset_alignment.into())
     }
 
+    /// The binding of a buffer of uniforms, of which each dispatch names one by its offset.
+    pub fn uniform_binding<'a, R: Record>(
+        &self,
+        buffer: &'a wgpu::Buffer,
+    ) -> wgpu::BindingResource<'a> {
+        wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+            buffer,
+            offset: 0,
+            size: std::num::NonZeroU64::new(R::size(self.precision())),
+        })
+    }
+
+    /// Dispatches at least `workgroups` workgroups, in rows that the device allows.
+    pub fn dispatch(&self, pass: &mut wgpu::ComputePass, workgroups: u32) {
+        let wide = workgroups.clamp(1, self.limits().max_compute_workgroups_per_dimension);
+        pass.dispatch_workgroups(wide, workgroups.div_ceil(wide), 1);
+    }
+
     /// Submits commands and has `read` take `size` bytes of `from`, a buffer for reading, once they
     /// are done.
     ///

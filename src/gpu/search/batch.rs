@@ -39,7 +39,7 @@
 //! early only if it is certainly within; otherwise every triangle within the margin is wanted.
 
 use super::bounds::{FAR, error_of};
-use super::device::{DeviceTree, SearchKernels, dispatch, query_binding};
+use super::device::{DeviceTree, SearchKernels};
 #[cfg(doc)]
 use super::kernels::ROOM;
 use super::kernels::{FOUND, FULL, HIT, PART, Question, SearchQuery};
@@ -47,7 +47,7 @@ use crate::answer::ProximityError;
 use crate::distance::Vec3;
 use crate::distance::lanes::Lane;
 use crate::gpu::opened::Opened;
-use crate::mesh::{SearchFrame, round};
+use crate::mesh::SearchFrame;
 use crate::pair::PlacedRobot;
 use crate::robot::{Chain, ModifiedCylinder};
 use crate::threads::each;
@@ -510,7 +510,7 @@ impl Slot {
         pass.set_bind_group(0, &buffers.group, &[0]);
         for kernel in &kernels.passes[question.kind()] {
             pass.set_pipeline(kernel);
-            dispatch(device, &mut pass, self.parts);
+            device.dispatch(&mut pass, self.parts);
         }
         drop(pass);
         let (to, mut end) = (&buffers.readback, READINGS);
@@ -575,10 +575,10 @@ fn write_points(bytes: &mut [u8], frame: &SearchFrame, robot: &PlacedRobot) -> b
         }
     };
     let [base, _] = robot.ends();
-    let mut start = round::<f32>((base - frame.centre) * frame.scale);
+    let mut start = frame.point(base);
     write(start);
     for (link, end) in robot.links().iter().zip(robot.link_ends()) {
-        let end = round::<f32>((end - frame.centre) * frame.scale);
+        let end = frame.point(end);
         let radius = radius_of(link, frame);
         let reach = start.largest().max(end.largest()).max(radius);
         let error = Real::from(error_of([start, end], radius, link.flat()));
@@ -630,7 +630,7 @@ impl SlotBuffers {
         let group = device.group(
             &kernels.query_layout,
             &[
-                query_binding(device, &query),
+                device.uniform_binding::<SearchQuery>(&query),
                 tree.nodes.as_entire_binding(),
                 tree.triangles.as_entire_binding(),
                 part_buffer.as_entire_binding(),

@@ -6,15 +6,13 @@
 //!    frame; fill the triangles (`corners`); fit the boxes of the nodes level by level, the lowest
 //!    first (`refit`). A level reads boxes of lower levels only.
 
-use super::kernels::{Question, REFIT_THREADS, RefitLevel, SearchQuery, corners, passes, refit};
+use super::kernels::{Question, REFIT_THREADS, RefitLevel, corners, passes, refit};
 use super::tree::SearchTree;
 use crate::distance::Vec3;
 use crate::gpu::opened::Opened;
 use crate::mesh::{Mesh, SearchFrame};
 use crate::threads::each;
-use gpu_batch::wgpu::{
-    BindGroup, BindGroupLayout, Buffer, BufferUsages, ComputePass, ComputePipeline,
-};
+use gpu_batch::wgpu::{BindGroup, BindGroupLayout, Buffer, BufferUsages, ComputePipeline};
 use gpu_batch::{Binding, Device, DeviceError, Record, Shader};
 
 /// Bytes of a node, a triangle and a vertex.
@@ -61,12 +59,6 @@ impl SearchKernels {
             query_layout,
         })
     }
-}
-
-/// Dispatches at least `count` workgroups.
-pub(super) fn dispatch(device: &Device, pass: &mut ComputePass, count: u32) {
-    let wide = count.clamp(1, device.limits().max_compute_workgroups_per_dimension);
-    pass.dispatch_workgroups(wide, count.div_ceil(wide), 1);
 }
 
 /// A tree in the device's memory.
@@ -132,7 +124,7 @@ impl DeviceTree {
         let level_buffer =
             device.buffer(records.len() as u64, BufferUsages::UNIFORM | BufferUsages::COPY_DST);
         device.queue().write_buffer(&level_buffer, 0, &records);
-        let level = uniform::<RefitLevel>(device, &level_buffer);
+        let level = device.uniform_binding::<RefitLevel>(&level_buffer);
         let [order, triangles_binding, nodes_binding] =
             [&order, &triangles, &nodes].map(Buffer::as_entire_binding);
         let refit_group =
@@ -176,36 +168,16 @@ impl DeviceTree {
         let mut pass = encoder.begin_compute_pass(&Default::default());
         pass.set_pipeline(&kernels.corners);
         pass.set_bind_group(0, &self.corners_group, &[]);
-        dispatch(device, &mut pass, (mesh.len() as u32).div_ceil(REFIT_THREADS));
+        device.dispatch(&mut pass, (mesh.len() as u32).div_ceil(REFIT_THREADS));
         pass.set_pipeline(&kernels.refit);
         for (place, &nodes) in (0..).zip(&self.levels) {
             let offset = place * device.uniform_stride::<RefitLevel>() as u32;
             pass.set_bind_group(0, &self.refit_group, &[offset]);
-            dispatch(device, &mut pass, nodes.div_ceil(REFIT_THREADS));
+            device.dispatch(&mut pass, nodes.div_ceil(REFIT_THREADS));
         }
         drop(pass);
         device.queue().submit([encoder.finish()]);
     }
-}
-
-/// The binding of a uniform whose offset each dispatch names.
-fn uniform<'a, R: Record>(
-    device: &Device,
-    buffer: &'a Buffer,
-) -> gpu_batch::wgpu::BindingResource<'a> {
-    gpu_batch::wgpu::BindingResource::Buffer(gpu_batch::wgpu::BufferBinding {
-        buffer,
-        offset: 0,
-        size: std::num::NonZeroU64::new(R::size(device.precision())),
-    })
-}
-
-/// The binding of the parameters of a search.
-pub(super) fn query_binding<'a>(
-    device: &Device,
-    buffer: &'a Buffer,
-) -> gpu_batch::wgpu::BindingResource<'a> {
-    uniform::<SearchQuery>(device, buffer)
 }
 
 /// Writes the words of each item to a buffer.

@@ -96,7 +96,7 @@ fn items(frame: &SearchFrame, mesh: &Mesh) -> Vec<Item> {
     let mut items = vec![Item::default(); mesh.len()];
     each(&mut items.chunks_mut(Mesh::TASK_SIZE).collect::<Vec<_>>(), |share, items| {
         for (triangle, item) in (share * Mesh::TASK_SIZE..).zip(items.iter_mut()) {
-            let mut around = Around::NOTHING;
+            let mut around = NodeBox::NOTHING;
             for corner in mesh.corners(triangle as u32) {
                 let point = <[f32; 3]>::from(frame.point::<f32>(corner));
                 around.add(point, point);
@@ -109,12 +109,12 @@ fn items(frame: &SearchFrame, mesh: &Mesh) -> Vec<Item> {
 
 /// A box that grows.
 #[derive(Clone, Copy)]
-struct Around {
+struct NodeBox {
     low: [f32; 3],
     high: [f32; 3],
 }
 
-impl Around {
+impl NodeBox {
     const NOTHING: Self = Self { low: [f32::INFINITY; 3], high: [f32::NEG_INFINITY; 3] };
 
     fn add(&mut self, low: [f32; 3], high: [f32; 3]) {
@@ -177,7 +177,7 @@ fn append(nodes: &mut Vec<Topology>, subtree: &[Topology], root: &mut (u32, u32)
 
 /// Orders more than one triangle by the best split, and returns where it is.
 fn split(items: &mut [Item], depth: u32) -> usize {
-    let mut centres = Around::NOTHING;
+    let mut centres = NodeBox::NOTHING;
     for item in items.iter() {
         let centre = [0, 1, 2].map(|axis| item.centre(axis));
         centres.add(centre, centre);
@@ -197,17 +197,17 @@ fn split(items: &mut [Item], depth: u32) -> usize {
     middle
 }
 
-fn bin_of(item: &Item, axis: usize, centres: &Around, sides: [f32; 3]) -> usize {
+fn bin_of(item: &Item, axis: usize, centres: &NodeBox, sides: [f32; 3]) -> usize {
     let share = (item.centre(axis) - centres.low[axis]) / sides[axis];
     ((share * BINS as f32) as usize).min(BINS - 1)
 }
 
 /// The axis and the first bin of the higher part of the split with the least cost: area times
 /// triangles, of both parts.
-fn best_bin(items: &[Item], centres: &Around, sides: [f32; 3]) -> Option<(usize, usize)> {
+fn best_bin(items: &[Item], centres: &NodeBox, sides: [f32; 3]) -> Option<(usize, usize)> {
     let (mut least, mut best) = (f32::INFINITY, None);
     for axis in (0..3).filter(|&axis| sides[axis] > 0.0) {
-        let mut bins = [(Around::NOTHING, 0_usize); BINS];
+        let mut bins = [(NodeBox::NOTHING, 0_usize); BINS];
         for item in items {
             let (around, count) = &mut bins[bin_of(item, axis, centres, sides)];
             around.add(item.low, item.high);
@@ -215,13 +215,13 @@ fn best_bin(items: &[Item], centres: &Around, sides: [f32; 3]) -> Option<(usize,
         }
         // The costs of the parts from the last bin down to each bin.
         let mut higher = [0.0; BINS];
-        let (mut around, mut count) = (Around::NOTHING, 0);
+        let (mut around, mut count) = (NodeBox::NOTHING, 0);
         for bin in (1..BINS).rev() {
             around.add(bins[bin].0.low, bins[bin].0.high);
             count += bins[bin].1;
             higher[bin] = if count == 0 { f32::INFINITY } else { around.area() * count as f32 };
         }
-        let (mut around, mut count) = (Around::NOTHING, 0);
+        let (mut around, mut count) = (NodeBox::NOTHING, 0);
         for bin in 1..BINS {
             around.add(bins[bin - 1].0.low, bins[bin - 1].0.high);
             count += bins[bin - 1].1;

@@ -380,7 +380,7 @@ class _CertificateFields(NamedTuple):
 
 
 class Certificate(_Answer, _CertificateFields):
-    """Bounds on distances that hold whatever was rounded on the way."""
+    """Bounds on distances that hold despite all rounding."""
 
     __slots__ = ()
     _instead = "compare its `lower` and `upper`"

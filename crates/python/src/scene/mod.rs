@@ -21,7 +21,7 @@ use std::sync::Arc;
 ///
 /// A structure is a `Mesh`: where that moves, the structure has moved for all queries that begin
 /// later. Robots are a list, each ``(points, radii)`` or ``(points, radii, pose)``; each is one
-/// shape or a batch of as many.
+/// shape or a batch of as many. A scene can be copied, with the same meshes, and pickled.
 ///
 /// Parameters
 /// ----------
@@ -37,8 +37,6 @@ use std::sync::Arc;
 /// ------
 /// ContinuumError
 ///     The margin is negative or NaN.
-///
-/// A scene can be copied, with the same meshes, and pickled.
 ///
 /// Examples
 /// --------
