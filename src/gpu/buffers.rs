@@ -4,7 +4,7 @@ use super::layout::{BLOCK_BOUNDS, CAPACITY, LinkRecord, Round, SLOT};
 use super::mesh::DeviceMesh;
 use super::opened::Opened;
 use super::plan::Plan;
-use gpu_batch::wgpu::{self, BindGroup, Buffer, BufferUsages};
+use gpu_batch::wgpu::{BindGroup, Buffer, BufferUsages};
 use gpu_batch::{Clock, Precision, READINGS, Record};
 
 /// Buffers for any query with this plan.
