@@ -31,8 +31,10 @@
 
 use crate::distance::Scalar;
 use crate::pair::PlacedRobot;
-use crate::robot::{LinkNode, length};
+use crate::robot::{LinkNode, ModifiedCylinder, length};
+
 use parry3d_f64::math::{Real, Vector};
+use std::slice;
 
 /// The summed displacement of links that are queried again and again.
 #[derive(Clone, Debug, Default)]
@@ -156,6 +158,35 @@ pub(crate) struct ReferenceOutline {
     per_length: Real,
 }
 
+/// The links of a robot from the tip to the base.
+struct FromTip<'a> {
+    robot: PlacedRobot<'a>,
+    links: slice::Iter<'a, ModifiedCylinder>,
+    /// The start of the link before, in the robot's frame and placed.
+    shared: Option<[Vector; 2]>,
+}
+
+impl Iterator for FromTip<'_> {
+    type Item = PlacedOutline;
+
+    // A call costs as much as a link.
+    #[inline(always)]
+    fn next(&mut self) -> Option<PlacedOutline> {
+        let link = self.links.next_back()?;
+        let end = match self.shared {
+            Some([point, placed]) if point == link.end() => placed,
+            _ => self.robot.placed(link.end()),
+        };
+        let start = self.robot.placed(link.start());
+        self.shared = Some([link.start(), start]);
+        Some(PlacedOutline { ends: [start, end], radius: link.radius(), flat: link.flat() })
+    }
+
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        self.links.size_hint()
+    }
+}
+
 impl PlacedOutline {
     pub(crate) fn of(robot: PlacedRobot, link: usize) -> Self {
         Self::of_node(robot, &LinkNode::Leaf(link))
@@ -179,16 +210,7 @@ impl PlacedOutline {
 
     /// All links from the tip to the base. An end that two links share is placed once.
     pub(crate) fn of_all(robot: PlacedRobot) -> impl Iterator<Item = Self> {
-        let mut shared: Option<(Vector, Vector)> = None;
-        robot.links().iter().rev().map(move |link| {
-            let end = match shared {
-                Some((point, placed)) if point == link.end() => placed,
-                _ => robot.placed(link.end()),
-            };
-            let start = robot.placed(link.start());
-            shared = Some((link.start(), start));
-            Self { ends: [start, end], radius: link.radius(), flat: link.flat() }
-        })
+        FromTip { robot, links: robot.links().iter(), shared: None }
     }
 
     /// The largest coordinate.
