@@ -2,10 +2,10 @@
 
 use super::sampled_shape::{PlaceMotion, SampledPlace, SampledShape, places};
 use super::{DisplacementBound, Motion, SectionSignature, Speed, rigid_pose};
-use crate::curve::Tube;
+use crate::curve::{CapPersistence, Section, Tube};
 use crate::distance::Scalar;
 use crate::robot::RobotError;
-use parry3d_f64::math::{Pose, Real};
+use parry3d_f64::math::{Pose, Real, Vector};
 
 /// A path: motions in sequence, each over an equal part of the time.
 ///
@@ -126,6 +126,15 @@ struct Joint {
     ends: [SampledShape; 2],
     signature: SectionSignature,
     places: Vec<SampledPlace>,
+    /// The flat faces at both ends of each section, of either shape.
+    faces: [Vec<[Option<PlacedFace>; 2]>; 2],
+}
+
+/// The direction of a flat face, and an upper bound on its error.
+#[derive(Clone, Copy)]
+struct PlacedFace {
+    outward: Vector,
+    tilt: Real,
 }
 
 impl Joint {
@@ -147,6 +156,26 @@ impl Joint {
                 self.places = places(&tube);
             }
             self.ends[number].take(t, &tube, &pose, &self.places);
+            let rounding = self.ends[number].rounding();
+            let placed = |section: &Section| {
+                [0, 1].map(|end: usize| {
+                    // A section that fades has no direction, and a face that may be round does not
+                    // matter.
+                    let face = section.faces[end].filter(|face| {
+                        face.persistence != CapPersistence::Never && !section.fades
+                    })?;
+                    // The direction of a link is computed from its two ends, which are rounded.
+                    let inside = [Real::EPSILON, 1.0 - Real::EPSILON][end];
+                    let around = tube.samples_around(section, inside);
+                    let [from, to] = around.filter(|[from, to]| from < to).unwrap_or([0.0, 1.0]);
+                    let length = (section.end - section.start) * (to - from);
+                    let unsure = 64.0 * Real::UNIT_ROUNDOFF + 2.0 * rounding / length;
+                    let outward = pose.rotation * face.outward;
+                    (length > 0.0).then_some(PlacedFace { outward, tilt: face.tilt + unsure })
+                })
+            };
+            self.faces[number].clear();
+            self.faces[number].extend(tube.sections().iter().map(placed));
         }
         let [before, behind] = &self.ends;
         for (number, place) in self.places.iter().enumerate() {
@@ -157,6 +186,19 @@ impl Joint {
                 let (section, share) = (place.section, place.shares[0]);
                 let [off, turn] = [way, angle].map(|part| part.max(0.0));
                 return Err(RobotError::MotionsApart { index, section, share, off, turn });
+            }
+        }
+        // A face may turn about its centre, which no sample shows.
+        let [before, behind] = &self.faces;
+        for (section, pair) in before.iter().zip(behind).enumerate() {
+            for end in 0..2 {
+                let (Some(one), Some(other)) = (pair.0[end], pair.1[end]) else { continue };
+                let turn = (one.outward - other.outward).length() - one.tilt - other.tilt;
+                if turn > 0.0 {
+                    let share = end as Real;
+                    let off = 0.0;
+                    return Err(RobotError::MotionsApart { index, section, share, off, turn });
+                }
             }
         }
         Ok(())

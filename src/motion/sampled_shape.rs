@@ -119,6 +119,11 @@ impl SampledShape {
         }
     }
 
+    /// Returns an upper bound on the rounding error of a point.
+    pub(super) fn rounding(&self) -> Real {
+        self.rounding
+    }
+
     /// Adds the stated displacements and turns of another step.
     pub(super) fn add(&mut self, stated: &[[Real; 2]]) {
         for (sum, [way, angle]) in self.stated.iter_mut().zip(stated) {

@@ -213,6 +213,23 @@ fn a_path_has_no_gap() {
     }
 }
 
+/// A flat end that turns about its centre is a gap: its rim jumps.
+#[test]
+fn a_direction_that_jumps_is_a_gap() {
+    let points = [Vector::ZERO, Vector::Z, Vector::Z * 2.0];
+    let at_rest = |tilt: Real| {
+        let ends = [Vector::Z, Vector::Z + Vector::X * tilt];
+        let tube = Tube::from_samples(&points, &[0.5; 2], Some(ends)).unwrap();
+        RigidMotion::new(tube, [Pose::IDENTITY; 2]).unwrap()
+    };
+    MotionPath::new(vec![at_rest(0.1), at_rest(0.1)]).unwrap();
+    let refused = MotionPath::new(vec![at_rest(0.0), at_rest(0.1)]).unwrap_err();
+    assert!(
+        matches!(refused, RobotError::MotionsApart { off: 0.0, turn, .. } if turn > 0.05),
+        "{refused}"
+    );
+}
+
 #[test]
 fn a_path_keeps_its_sections() {
     let way = |radius: Real| {
