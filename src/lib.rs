@@ -68,8 +68,9 @@
 //!
 //! A distance is within 16 u x extent of the true distance between the placed link and the
 //! triangle. Here u = 2^-53, and the extent is the largest difference between two coordinates of
-//! the pair, or the radius if that is larger. There are no absolute tolerances, so the unit of
-//! length does not matter. Lengths may have magnitudes up to 1e150.
+//! the pair, or the radius if that is larger. There are no absolute tolerances: multiplying all
+//! lengths by a power of two multiplies every answer by it. Lengths may have magnitudes up to
+//! 1e150.
 //!
 //! # Source
 //! *The paper* in these pages is Leibrandt and Yang, "Efficient Proximity Queries for Continuum

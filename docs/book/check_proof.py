@@ -210,8 +210,8 @@ class Shape:
 
     def bodies(self, scale, margin):
         """For each piece its two ends, which of them are flat, the radius of both, and how far
-        around all of it must be free, in whole numbers. The page on proofs says why such a body
-        contains the piece."""
+        around all of it must be free, in whole numbers. src/query/proof/mod.rs derives why such
+        a body contains the piece."""
         points, bodies = [whole(point, scale) for point in self.points], []
         for (r, caps, rest), start, end in zip(self.pieces, points, points[1:]):
             values = {name: Fraction(value) for name, value in rest.items()}

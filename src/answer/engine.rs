@@ -43,7 +43,7 @@ impl InsideAnswer {
 /// The checker needs the mesh, not this library: `docs/book/check_proof.py` is a short program in
 /// plain Python that calculates in whole numbers. It answers yes or no. It prints the premises of
 /// the proof, and that the proof does not cover the side of the wall. The [page on
-/// proofs](crate::book::proofs) has the format and the reasoning.
+/// proofs](crate::book::proofs) has the format and the premises.
 ///
 /// [`to_string`](ToString::to_string) returns the text.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -48,7 +48,9 @@ impl Tube {
     /// Between two frames the curve may bend as the directions show there and in the neighbouring
     /// segments of the section, or anything in between. Its curvature may jump anywhere. In a
     /// section of one segment the bend changes in one sense only, evenly or in jumps. The bounds of
-    /// each answer include the remaining uncertainty, which is nearly zero on an arc. A bend
+    /// each answer include the remaining uncertainty, which is nearly zero on an arc. A jump J of
+    /// the curvature keeps the bounds about J l^2 / 14 apart in its segment of length l and in the
+    /// two next to it; between sections of different radii it has no such effect. A bend
     /// shorter than a segment, or sharper than in its segment and the neighbours, is not covered:
     /// give more frames there.
     ///

@@ -140,7 +140,9 @@ impl Tube {
     /// **Curvature.** The curvature of a section is the largest that its samples show: turn over
     /// distance between neighbouring segments. A section of one segment shows none; the turns at
     /// its two ends count, which its neighbours share. If samples lie unevenly, each segment bends
-    /// at most as much as the two samples before it and the two behind it show.
+    /// at most as much as the two samples before it and the two behind it show. The curvature may
+    /// jump anywhere. A bend that turns about the curve by the share q of itself per sample, as in
+    /// a helix, shows q^2 / 12 too small: sample it densely.
     ///
     /// **Repeated points.** Points closer than the rounding of coordinates (2^-48 of the largest)
     /// are one point, for example where one section ends and the next begins. The radius of the
@@ -149,8 +151,9 @@ impl Tube {
     ///
     /// **Samples taken twice.** Two samples a little apart may show a bend that no smooth curve
     /// has. They count as one if they are 32 times nearer to each other than to the samples before
-    /// and behind them. The curve then passes the first sample within their distance. All bounds
-    /// and the `uncertainty` of answers include this distance.
+    /// and behind them. The bounds allow for both curves: through both samples, if the curve then
+    /// turns by at most 1 rad to the next sample, and past the first sample within their distance.
+    /// The `uncertainty` of answers includes this distance.
     ///
     /// # Errors
     /// - As [`Chain::from_centreline`](crate::Chain::from_centreline);

@@ -238,6 +238,8 @@ impl RobotPair {
     /// assert!(pair.clears_motions(&first, &second, 0.9, 1e-3)?.is_clear());
     /// let found = pair.clears_motions(&first, &second, 1.5, 1e-3)?;
     /// assert_eq!(found.decision, Decision::Contact);
+    /// let contact = found.contact.ok_or("they pass too near")?;
+    /// assert!(contact.t > 0.2 && contact.t < 0.8 && contact.upper <= 1.5);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///

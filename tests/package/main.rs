@@ -1,6 +1,7 @@
 //! What holds of the package as a whole: its licences, pages, names and layers, and that no thread
 //! waits in vain.
 
+mod calls;
 mod layers;
 mod licences;
 mod links;

@@ -164,7 +164,7 @@ impl Shape {
     /// Returns the bodies of the pieces, each with the free space required around it: the margin,
     /// and the displacement of the robot until the interval ends.
     ///
-    /// The book's page on proofs derives them; `docs/book/check_proof.py` recomputes them.
+    /// The head of [`super`] derives them; `docs/book/check_proof.py` recomputes them.
     pub(crate) fn bodies(&self, margin: Real) -> Vec<ProofBody> {
         let half = 0.5 * (self.times[1] - self.times[0]);
         let between = self.points.windows(2).zip(&self.pieces);

@@ -199,10 +199,10 @@ fn counted(my: &Options, shape: fn(&mut Random) -> Shape, margin: f64) -> Result
 
 fn table(my: &Options) -> Result<String, String> {
     let mut page = format!(
-        "{} random shapes of each robot (`{}`). A shape is near itself if two places of its centreline that come no nearer when \
-         either moves along it are within the margin, less both radii: sought among samples, all pairs of which are compared. What \
-         the samples leave unclear is left out. The planner's rule takes all pairs of samples more than 3 radii apart along \
-         the robot, or more than 3 radii and the margin.\n\n\
+        "{} random shapes of each robot (`{}`), each searched among samples. A shape is near itself if the distance of two places, \
+         less both radii, is a local minimum and within the margin. Shapes that the samples leave unclear do not count. The \
+         planner's rule takes all pairs of samples more than 3 radii apart along the robot, or more than 3 radii and the \
+         margin.\n\n\
          | robot | margin, mm | near itself | clear | unclear | `SelfQuery::clears` misses | forbids | 3 radii: misses | forbids | 3 radii and the margin: misses | forbids |\n\
          |---|---|---|---|---|---|---|---|---|---|---|\n",
         my.shapes,

@@ -46,11 +46,8 @@ pub fn text(facts: &Facts) -> String {
          {}\n\
          Links instead of a curve suit parry, rapier and robots that are made of rigid parts:\n\n\
          - The links decide the error, the engine only the time. `docs/TRADEOFF.md` has a table of links for an \
-         error. Links within 0.1 mm of the curve err by at most {} mm, and a query takes {:.1} us in a control loop. \
+         error. Links within 0.1 mm of the curve err by at most {} mm, as faces tilt, and a query takes {:.1} us in a loop. \
          `Exhaustive::<f32>` takes {:.0} times as long, and parry's cylinders {:.0} times.\n\
-         - The flat face of a chain is perpendicular to its last link, not to the curve. In a fine chain that is the largest \
-         error. Let links end 0.3 and 0.01 mm before each face, or take `stations`, which does that.\n\
-         - To be on the safe side, ask `clears` with the worst error added to the margin.\n\
          - Capsules cover the tube, but forbade {most:.1} % of the free shapes. Cylinders leave gaps at the bends.\n\
          - `simplify` took {quick:.0} to {slow:.0} us for a free shape. In a control loop choose the links once.\n\
          - Leaving out that tubes twist changed the clearance by {} mm in the median, at worst {} mm.\n",
