@@ -141,7 +141,7 @@ function clear() {
   find("doubts").replaceChildren();
   find("plot").replaceChildren();
   scene.hideRobot();
-  enableDownloads(false);
+  enableActions(false);
   find("proof-text").classList.remove("refused");
   find("proof-text").innerHTML = "To check the proof, run <code>python3 check_proof.py wall.obj proof.txt</code>.";
 }
@@ -187,11 +187,12 @@ function show(warnings: string[]) {
       return item;
     }),
   );
-  enableDownloads(true);
+  enableActions(true);
 }
 
-function enableDownloads(isEnabled: boolean) {
-  for (const id of ["report", "proof", "wall-obj"]) find<HTMLButtonElement>(id).disabled = !isEnabled;
+/** Enables what needs an answer. */
+function enableActions(isEnabled: boolean) {
+  for (const id of ["closest", "report", "proof", "wall-obj"]) find<HTMLButtonElement>(id).disabled = !isEnabled;
 }
 
 function makeJoints() {
@@ -221,7 +222,9 @@ function makeJoints() {
 }
 
 /** Takes a wall's files, or the ventricle. Choices belong to a file, so they are reset. */
-function takeWall(next: Chosen | undefined) {
+function takeWall(next?: Chosen, role?: "wall") {
+  // The field names the file only if the file comes from the field.
+  if (!role) find<HTMLInputElement>("wall-file").value = "";
   forgetWall();
   wallFile?.files.free();
   wallFile = next;
@@ -233,8 +236,9 @@ function takeWall(next: Chosen | undefined) {
 }
 
 /** Takes a robot's file, or the tubes. The joints move the tubes only. */
-function takeRobot(next: Chosen | undefined) {
-  if (robotFile?.files !== next?.files) robotFile?.files.free();
+function takeRobot(next?: Chosen, role?: "robot") {
+  if (!role) find<HTMLInputElement>("robot-file").value = "";
+  robotFile?.files.free();
   robotFile = next;
   const choices = next?.files.line_choices(next.name) ?? 0;
   const indices = Array.from({ length: choices }, (_, index): [string, string] => [String(index), `index ${index}`]);
@@ -251,8 +255,15 @@ function takeRobot(next: Chosen | undefined) {
     : "The robot is made of the concentric tubes.";
 }
 
+/** Files are taken one after the other: the last choice is the one that stays. */
+let taken = Promise.resolve();
+
 /** Takes files as a robot, as a wall, or by what they hold. */
-async function take(list: File[], role?: "robot" | "wall") {
+function take(list: File[], role?: "robot" | "wall") {
+  taken = taken.then(() => readFiles(list, role));
+}
+
+async function readFiles(list: File[], role?: "robot" | "wall") {
   if (list.length === 0) return;
   clear();
   find("answer").textContent = "Reading ...";
@@ -265,14 +276,14 @@ async function take(list: File[], role?: "robot" | "wall") {
       const files = new Files();
       files.add(name, contents[k]!);
       if (role === "robot" || (role === undefined && files.holds_robot(name))) {
-        takeRobot({ files, name });
+        takeRobot({ files, name }, role === "robot" ? role : undefined);
       } else {
         files.free();
         wall.files.add(name, contents[k]!);
         if (!wall.name || /\.(hdr|mhd|nhdr)$/i.test(name)) wall.name = name;
       }
     });
-    if (wall.name) takeWall(wall);
+    if (wall.name) takeWall(wall, role === "wall" ? role : undefined);
     else wall.files.free();
     update();
   } catch (error) {
@@ -318,16 +329,17 @@ function listen() {
     const input = find<HTMLInputElement>(`${role}-file`);
     // The same file can be chosen again after it was changed.
     input.addEventListener("click", () => (input.value = ""));
-    input.addEventListener("change", () => void take(Array.from(input.files ?? []), role));
+    input.addEventListener("change", () => take(Array.from(input.files ?? []), role));
   }
   find("reset-robot").addEventListener("click", () => {
-    takeRobot(undefined);
+    takeRobot();
     update();
   });
   find("reset-wall").addEventListener("click", () => {
-    takeWall(undefined);
+    takeWall();
     update();
   });
+  find("closest").addEventListener("click", () => scene.showPair());
   find("report").addEventListener("click", saveReport);
   find("proof").addEventListener("click", saveProof);
   find("wall-obj").addEventListener("click", () => read?.wall && save("wall.obj", read.wall.obj()));
@@ -339,7 +351,7 @@ function listen() {
   addEventListener("drop", (event) => {
     event.preventDefault();
     document.body.classList.remove("dropping");
-    void take(Array.from(event.dataTransfer?.files ?? []));
+    take(Array.from(event.dataTransfer?.files ?? []));
   });
   new ResizeObserver(() => {
     if (answered) plotClearance(find("plot"), answered.answers, answered.margin, answered.farthest);
@@ -351,8 +363,8 @@ find("red").style.background = RED;
 find<HTMLAnchorElement>("checker").href = checker;
 await start();
 makeJoints();
-takeRobot(undefined);
-takeWall(undefined);
+takeRobot();
+takeWall();
 listen();
 update();
 document.body.dataset.ready = "true";

@@ -12,7 +12,9 @@ const [LINKS, PAIR] = [1, 2];
 /** The width of the dark line around the robot, as a share of the link's radius. */
 const OUTLINE = 0.18;
 /** The size of the dots at the closest points, as a share of the picture's height. */
-const DOT = 0.011;
+const DOT = 0.009;
+/** How many gaps the picture of the closest pair is away, and at least which share of the wall's radius. */
+const [GAPS, NEAREST] = [12, 0.15];
 
 /** The picture: wall, links, and lines between closest points. */
 export class Scene {
@@ -21,6 +23,8 @@ export class Scene {
   private readonly camera = new three.PerspectiveCamera(35, 1, 0.1, 10_000);
   private readonly controls: OrbitControls;
   private readonly robot = new three.Group();
+  /** The closest points of robot and wall. */
+  private pair?: [three.Vector3, three.Vector3];
   private wall?: three.Mesh;
 
   constructor(private readonly canvas: HTMLCanvasElement) {
@@ -56,7 +60,7 @@ export class Scene {
     const { center, radius } = geometry.boundingSphere!;
     this.controls.target.copy(center);
     this.camera.position.copy(center).add(new three.Vector3(1, -1.6, 0.9).setLength(radius * 3));
-    this.camera.near = radius / 100;
+    this.camera.near = radius / 1000;
     this.camera.far = radius * 20;
     this.camera.updateProjectionMatrix();
     this.controls.update();
@@ -94,6 +98,7 @@ export class Scene {
       if (distance <= margin && link !== answers.closest()) this.line(point(onRobot, link), point(onMesh, link), RED, 2);
     });
     const [from, to] = [point(onRobot, answers.closest()), point(onMesh, answers.closest())];
+    this.pair = [from, to];
     this.line(from, to, "#ffffff", 7);
     this.line(from, to, "#000000", 3);
     for (const end of [from, to]) {
@@ -115,6 +120,22 @@ export class Scene {
       (child.material as three.Material).dispose();
     }
     this.robot.clear();
+    this.pair = undefined;
+  }
+
+  /** Moves near to the closest pair, and looks across it. */
+  showPair() {
+    if (!this.pair || !this.wall) return;
+    const [from, to] = this.pair;
+    const gap = to.clone().sub(from);
+    const { radius } = this.wall.geometry.boundingSphere!;
+    const offset = this.camera.position.clone().sub(this.controls.target);
+    const across = offset.clone().projectOnPlane(gap.clone().normalize());
+    const away = Math.max(GAPS * gap.length(), radius * NEAREST);
+    this.controls.target.copy(from).add(to).multiplyScalar(0.5);
+    this.camera.position.copy(across.lengthSq() > 0 ? across : offset).setLength(away).add(this.controls.target);
+    this.controls.update();
+    this.draw();
   }
 
   /** A line of a width in pixels, in front of everything. */

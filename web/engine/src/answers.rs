@@ -1,3 +1,5 @@
+//! The answers about one robot, as arrays for JavaScript.
+
 use crate::placement::Placement;
 use crate::{flat, frame_name};
 use parry_continuum::parry::math::Real;

@@ -1,3 +1,5 @@
+//! The robot: concentric tubes, or a centreline from a file.
+
 use crate::files::{Files, options, refused};
 use crate::{frame_name, frame_of};
 use continuum_demo::ctr::{Joints, three_tubes};

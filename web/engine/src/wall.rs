@@ -1,3 +1,5 @@
+//! The wall: its file, its frame, and the queries about it.
+
 use crate::files::{Files, options, refused};
 use crate::placement::place;
 use crate::{Answers, Robot, flat, frame_name, frame_of};
