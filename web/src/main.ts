@@ -295,12 +295,13 @@ async function readFiles(list: File[], role?: "robot" | "wall") {
 function saveReport() {
   if (!answered || !read?.wall) return;
   const { answers, margin } = answered;
-  const value = (id: string) => find<HTMLInputElement>(id).value;
+  const value = (id: string) => find<HTMLInputElement>(id).value || null;
+  const figure = (id: string) => (value(id) === null ? null : Number(value(id)));
   const robot = robotFile
-    ? { file: robotFile.name, line: value("line"), scale: value("robot-scale"), radius: value("radius") }
+    ? { file: robotFile.name, line: figure("line"), scale: figure("robot-scale"), radius: figure("radius") }
     : { joints: Object.fromEntries(joints.map((joint) => [joint.id, Number(joint.value)])) };
   const inputs = {
-    wall: { file: wallFile?.name ?? "the ventricle", label: value("label"), scale: value("wall-scale") },
+    wall: { file: wallFile?.name ?? "the ventricle", label: figure("label"), scale: figure("wall-scale"), frame: value("wall-frame") },
     robot: { ...robot, frame: value("robot-frame"), pose: value("pose") },
     margin,
   };

@@ -2,8 +2,6 @@ import * as Plot from "@observablehq/plot";
 import type { Answers } from "./engine/continuum_web.js";
 import { RED, linkColour } from "./colours";
 
-const HEIGHT = 150;
-
 /** The clearance along the robot: a bar for each link, the margin as a line, and the closest place as a dot. */
 export function plotClearance(into: HTMLElement, answers: Answers, margin: number, farthest: number) {
   let along = 0;
@@ -17,7 +15,7 @@ export function plotClearance(into: HTMLElement, answers: Answers, margin: numbe
   });
   const figure = Plot.plot({
     width: into.clientWidth,
-    height: HEIGHT,
+    height: into.clientHeight,
     marginTop: 22,
     marginBottom: 34,
     ariaLabel: "The clearance of each link along the robot",

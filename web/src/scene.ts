@@ -10,7 +10,7 @@ const AROUND = 24;
 /** Links are drawn after the wall, and the closest pair after the links. */
 const [LINKS, PAIR] = [1, 2];
 /** The width of the dark line around the robot, as a share of the link's radius. */
-const OUTLINE = 0.18;
+const OUTLINE = 0.12;
 /** The size of the dots at the closest points, as a share of the picture's height. */
 const DOT = 0.009;
 /** How many gaps the picture of the closest pair is away, and at least which share of the wall's radius. */
@@ -60,7 +60,7 @@ export class Scene {
     const { center, radius } = geometry.boundingSphere!;
     this.controls.target.copy(center);
     this.camera.position.copy(center).add(new three.Vector3(1, -1.6, 0.9).setLength(radius * 3));
-    this.camera.near = radius / 1000;
+    this.camera.near = radius / 100;
     this.camera.far = radius * 20;
     this.camera.updateProjectionMatrix();
     this.controls.update();

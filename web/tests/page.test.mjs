@@ -260,6 +260,9 @@ test("a pose places the robot", async () => {
   await page.fill("#pose", "1 0 0 0\n0 1 0 0\n0 0 1 -5\n0 0 0 1\n");
   await answers(15);
   assert.match(await text("details"), /placed by the pose/);
+  await page.selectOption("#robot-frame", "RAS");
+  await refuses(/the pose brings the robot into the wall's frame already; leave the robot's frame at 'not stated'/);
+  await page.selectOption("#robot-frame", "");
   await page.fill("#pose", "1 0 0 0");
   await refuses(/the pose has 1 lines; write 4 lines of 4 numbers/);
   await page.fill("#pose", "2 0 0 0\n0 2 0 0\n0 0 2 0\n0 0 0 1");
@@ -406,7 +409,12 @@ test("the report has the inputs and all digits", async () => {
   await page.fill("#margin", "21");
   const report = JSON.parse(readFileSync(await downloaded("report"), "utf8"));
   assert.equal(report.keeps_margin, false);
-  assert.deepEqual([report.inputs.margin, report.inputs.wall.file, report.inputs.robot.file], [21, "cube.obj", "line.csv"]);
+  const { margin, wall, robot } = report.inputs;
+  assert.deepEqual([margin, wall, robot], [
+    21,
+    { file: "cube.obj", label: null, scale: 1, frame: null },
+    { file: "line.csv", line: null, scale: 1, radius: null, frame: null, pose: null },
+  ]);
   assert.deepEqual(report.links.map((link) => link.distance), await distances());
   assert.deepEqual([report.minimum.distance, report.minimum.link, report.base], [20, 0, "inside"]);
   assert.deepEqual(report.mesh.bounds, [[0, 0, 0], [60, 60, 60]]);

@@ -20,13 +20,17 @@ pub struct Placement {
 /// unless `matrix` is not blank: 4 lines of 4 numbers.
 ///
 /// # Errors
-/// The matrix is not a pose, or it is not known whether to turn the robot.
+/// The matrix is not a pose; it is not known whether to turn the robot; or the user chose both a
+/// pose and a frame.
 pub fn place(robot: &Robot, wall: &mut Wall, matrix: &str) -> Result<Placement, String> {
     let given = if matrix.trim().is_empty() { None } else { Some(pose_of(matrix)?) };
     let Some(line) = robot.line() else {
         let pose = given.unwrap_or_else(|| wall.entry());
         return Ok(Placement { pose, turned: None, doubts: Vec::new() });
     };
+    if given.is_some() && line.frame.is_some() && !line.states_frame {
+        return Err("the pose brings the robot into the wall's frame already; leave the robot's frame at 'not stated'".into());
+    }
     let turned = if given.is_some() { None } else { turn(line, wall)? };
     let half_turn = Pose::from_parts(Vector::ZERO, Rot3::from_xyzw(0.0, 0.0, 1.0, 0.0));
     let unturned = given.unwrap_or(Pose::IDENTITY);

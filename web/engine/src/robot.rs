@@ -32,8 +32,8 @@ pub struct Line {
     pub scale: Real,
     /// By the file or by the user.
     pub frame: Option<Frame>,
+    pub states_frame: bool,
     pub name: String,
-    states_frame: bool,
     skipped_points: usize,
 }
 
@@ -104,8 +104,8 @@ impl Robot {
             has_radii,
             scale,
             frame: read.frame.or(asked),
-            name: name.to_owned(),
             states_frame: read.frame.is_some(),
+            name: name.to_owned(),
             skipped_points: read.skipped_points,
         };
         Ok(Self { chain, line: Some(line) })
