@@ -250,6 +250,11 @@ test("a wrong unit is doubted, and the scale helps", async () => {
   await page.fill("#robot-scale", "1000");
   await answers(20);
   assert.doesNotMatch(await text("doubts"), /measures/);
+  await page.setInputFiles("#robot-file", file("thick.csv", "30,30,20,2000\n30,30,40,2000\n"));
+  await shows("doubts", /the robot's radius is 2000\.000000, its length 20\.000000; check the radius's unit/);
+  await page.setInputFiles("#robot-file", file("metres.csv", metres));
+  await page.fill("#robot-scale", "1000");
+  await answers(20);
   await page.setInputFiles("#wall-file", file("metres.obj", cube("0.06")));
   await shows("wall-text", /to \(0\.1, 0\.1, 0\.1\)/);
   await page.fill("#wall-scale", "1000");
@@ -275,7 +280,10 @@ test("markups state their frame, and the robot is turned into the wall's", async
   await page.setInputFiles("#wall-file", file("cube.obj", cube(60)));
   const curve = (type) => JSON.stringify({
     markups: [{ type, coordinateSystem: "LPS", coordinateUnits: "mm",
-      controlPoints: [[-30, -30, 20], [-30, -30, 40]].map((position) => ({ position, positionStatus: "defined" })) }],
+      controlPoints: [
+        ...[[-30, -30, 20], [-30, -30, 40]].map((position) => ({ position, positionStatus: "defined" })),
+        { position: [0, 0, 0], positionStatus: "undefined" },
+      ] }],
   });
   await page.setInputFiles("#robot-file", file("curve.mrk.json", curve("Curve")));
   await page.fill("#radius", "1");
@@ -283,6 +291,7 @@ test("markups state their frame, and the robot is turned into the wall's", async
   await page.selectOption("#wall-frame", "RAS");
   await answers(20);
   assert.match(await text("details"), /The robot is turned from LPS to RAS/);
+  assert.match(await text("doubts"), /left out of curve\.mrk\.json: 1 points without a position/);
   assert.equal(await page.$eval("#robot-frame", (select) => select.selectedOptions[0].text), "LPS, stated by the file");
   assert.ok(await page.isDisabled("#robot-frame"));
   await page.selectOption("#wall-frame", "LPS");
