@@ -7,8 +7,8 @@ import type { Answers, Wall } from "./engine/continuum_web.js";
 import { RED, linkColour } from "./colours";
 
 const AROUND = 24;
-/** Links are drawn after the wall, and the closest pair after the links. */
-const [LINKS, PAIR] = [1, 2];
+/** What is drawn after the wall, in this order: links, lines of links within the margin, the closest pair and its halo. */
+const [LINKS, NEAR, HALO, PAIR] = [1, 2, 3, 4];
 /** The width of the dark line around the robot, as a share of the link's radius. */
 const OUTLINE = 0.12;
 /** The size of the dots at the closest points, as a share of the picture's height. */
@@ -95,15 +95,15 @@ export class Scene {
       place(radii[link]!, new three.MeshLambertMaterial({ color: shade, transparent: true }));
       const dark = { color: "#1b1b1b", side: three.BackSide, transparent: true };
       place(radii[link]! * (1 + OUTLINE), new three.MeshBasicMaterial(dark));
-      if (distance <= margin && link !== answers.closest()) this.line(point(onRobot, link), point(onMesh, link), RED, 2);
+      if (distance <= margin) this.line(point(onRobot, link), point(onMesh, link), RED, 2, NEAR);
     });
     const [from, to] = [point(onRobot, answers.closest()), point(onMesh, answers.closest())];
     this.pair = [from, to];
-    this.line(from, to, "#ffffff", 7);
-    this.line(from, to, "#000000", 3);
+    this.line(from, to, "#ffffff", 7, HALO);
+    this.line(from, to, "#000000", 3, PAIR);
     for (const end of [from, to]) {
-      this.dot(end, "#ffffff", 1.5 * DOT);
-      this.dot(end, "#000000", DOT);
+      this.dot(end, "#ffffff", 1.5 * DOT, HALO);
+      this.dot(end, "#000000", DOT, PAIR);
     }
     this.draw();
   }
@@ -139,21 +139,21 @@ export class Scene {
   }
 
   /** A line of a width in pixels, in front of everything. */
-  private line(from: three.Vector3, to: three.Vector3, color: string, linewidth: number) {
+  private line(from: three.Vector3, to: three.Vector3, color: string, linewidth: number, order: number) {
     const geometry = new LineSegmentsGeometry().setPositions([...from.toArray(), ...to.toArray()]);
     const material = new LineMaterial({ color, linewidth, depthTest: false, transparent: true });
     const line = new LineSegments2(geometry, material);
-    line.renderOrder = PAIR;
+    line.renderOrder = order;
     this.robot.add(line);
   }
 
   /** A dot of a size that does not depend on its distance, in front of everything. */
-  private dot(at: three.Vector3, color: string, size: number) {
+  private dot(at: three.Vector3, color: string, size: number, order: number) {
     const material = new three.SpriteMaterial({ color, map: DISC, sizeAttenuation: false, depthTest: false });
     const sprite = new three.Sprite(material);
     sprite.position.copy(at);
     sprite.scale.setScalar(size);
-    sprite.renderOrder = PAIR;
+    sprite.renderOrder = order;
     this.robot.add(sprite);
   }
 
