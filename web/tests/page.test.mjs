@@ -251,7 +251,7 @@ test("a wrong unit is doubted, and the scale helps", async () => {
   await answers(20);
   assert.doesNotMatch(await text("doubts"), /measures/);
   await page.setInputFiles("#robot-file", file("thick.csv", "30,30,20,2000\n30,30,40,2000\n"));
-  await shows("doubts", /the robot's radius is 2000\.000000, its length 20\.000000; check the radius's unit/);
+  await shows("doubts", /the radius 2000 is large beside the mesh's box, which measures 103\.923; check its unit: a radius in the file 0\.001 times/);
   await page.setInputFiles("#robot-file", file("metres.csv", metres));
   await page.fill("#robot-scale", "1000");
   await answers(20);

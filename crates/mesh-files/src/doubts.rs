@@ -5,13 +5,22 @@
 //!    overlap.
 //! 2. If there is a misfit, try the usual mistakes in this order: the other frame, another unit,
 //!    both. The first change after which the boxes fit is the remedy.
+//! 3. Compare the radius with the box around the mesh.
+
+use std::ops::RangeInclusive;
 
 /// Sizes of a robot and a mesh in the same unit differ by at most this factor.
 const LARGEST_RATIO: f64 = 100.0;
 
-/// A robot is at most this many times as long as its radius. Catheters and concentric tubes are 50
-/// to 1500 times as long.
-const LARGEST_SLENDERNESS: f64 = 1e4;
+/// The ratios of a radius to the diagonal of the mesh's box that are not doubted. Instruments have
+/// 1/50 (a bronchoscope in a trachea) to 1/4000 (a guide wire in an aorta).
+const USUAL_RADII: RangeInclusive<f64> = 1.0 / 5000.0..=1.0 / 10.0;
+
+/// The ratio of most instruments. A factor of 100 takes it out of the range on either side.
+const TYPICAL_RADIUS: f64 = 1.0 / 200.0;
+
+/// The factors by which a radius may be wrong.
+const RADIUS_UNITS: [f64; 6] = [1000.0, 100.0, 10.0, 0.1, 0.01, 0.001];
 
 /// The factors between metres, centimetres and millimetres.
 const UNITS: [f64; 4] = [1000.0, 1e-3, 10.0, 0.1];
@@ -135,13 +144,36 @@ pub fn misfits(robot: impl Fn(Change) -> Option<Bounds>, mesh: &Bounds, may_turn
     misfits
 }
 
-/// Returns a warning if a robot of this length is shorter than its largest radius, or more than
-/// 10,000 times as long. A radius of 0 is never doubted.
-pub fn radius_doubt(length: f64, radius: f64) -> Option<String> {
-    let is_usual = (1.0..=LARGEST_SLENDERNESS).contains(&(length / radius));
-    (radius > 0.0 && length.is_finite() && !is_usual).then(|| {
-        format!(
-            "the robot's radius is {radius:.6}, its length {length:.6}; check the radius's unit"
-        )
-    })
+/// A radius that is probably in another unit than the mesh.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RadiusDoubt {
+    /// The warning, without a full stop.
+    pub doubt: String,
+    /// The factor after which the radius is usual.
+    pub factor: f64,
+}
+
+/// Doubts a robot's largest radius that is more than 1/10 or less than 1/5000 of the diagonal of
+/// the mesh's box. A radius of 0 is never doubted.
+///
+/// If [`misfits`] names a scale that applies to the radius too, `radius` is the scaled radius.
+pub fn radius_doubt(radius: f64, mesh: &Bounds) -> Option<RadiusDoubt> {
+    let share = radius / mesh.size();
+    if radius == 0.0 || !share.is_finite() || USUAL_RADII.contains(&share) {
+        return None;
+    }
+    let size = if share > *USUAL_RADII.end() { "large" } else { "small" };
+    let doubt = format!(
+        "the radius {} is {size} beside the mesh's box, which measures {:.3}; check its unit",
+        short(radius),
+        mesh.size()
+    );
+    let off = |factor: &f64| (share * factor / TYPICAL_RADIUS).ln().abs();
+    let factor = RADIUS_UNITS.into_iter().min_by(|a, b| off(a).total_cmp(&off(b)))?;
+    Some(RadiusDoubt { doubt, factor })
+}
+
+/// Returns a number rounded to four significant digits.
+fn short(number: f64) -> f64 {
+    format!("{number:.3e}").parse().unwrap_or(number)
 }

@@ -29,7 +29,7 @@ mod text;
 pub use centreline::{
     Centreline, centreline_from_bytes, load_centreline, load_shapes, load_table, table_from_bytes,
 };
-pub use doubts::{Bounds, Change, Misfits, misfits, radius_doubt};
+pub use doubts::{Bounds, Change, Misfits, RadiusDoubt, misfits, radius_doubt};
 pub use error::MeshFileError;
 #[cfg(feature = "label-maps")]
 use label_map::Fault;

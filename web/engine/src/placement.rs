@@ -3,9 +3,9 @@
 use crate::robot::{Line, Robot};
 use crate::wall::Wall;
 use crate::{files::refused, frame_name};
-use mesh_files::{Bounds, Change, Frame, misfits, radius_doubt, table_from_bytes};
+use mesh_files::{Bounds, Change, Frame, RadiusDoubt, misfits, radius_doubt, table_from_bytes};
 use parry_continuum::parry::math::{Pose, Rot3, Vector};
-use parry_continuum::{ModifiedCylinder, pose_from_matrix};
+use parry_continuum::pose_from_matrix;
 
 /// The pose of a robot.
 #[derive(Clone, Debug)]
@@ -41,11 +41,13 @@ pub fn place(robot: &Robot, wall: &mut Wall, matrix: &str) -> Result<Placement, 
         let place = |point: &Vector| pose * Vector::from(change.apply(point.to_array()));
         Bounds::of_balls(line.points.iter().map(|point| (place(point).to_array(), radius)))
     };
-    let mut doubts = wall.bounds().map_or_else(Vec::new, |bounds| {
-        misfits(around, &bounds, may_turn).with_remedy(|change| words(change, line, wall))
+    let doubts = wall.bounds().map_or_else(Vec::new, |bounds| {
+        let misfits = misfits(around, &bounds, may_turn);
+        let scale = misfits.remedy.map_or(1.0, |remedy| remedy.scale);
+        let mut doubts = misfits.with_remedy(|change| words(change, line, wall));
+        doubts.extend(doubt_radius(line, scale, &bounds));
+        doubts
     });
-    let length = robot.chain().links().iter().map(ModifiedCylinder::length).sum();
-    doubts.extend(radius_doubt(length, line.radius));
     Ok(Placement { pose, turned, doubts })
 }
 
@@ -69,6 +71,14 @@ fn turn(line: &Line, wall: &Wall) -> Result<Option<[Frame; 2]>, String> {
         )),
         (None, _) => Ok(None),
     }
+}
+
+/// Doubts the radius, as it would be after the robot is scaled.
+fn doubt_radius(line: &Line, scale: f64, wall: &Bounds) -> Option<String> {
+    let radius = if line.has_radii { scale * line.radius } else { line.radius };
+    let RadiusDoubt { doubt, factor } = radius_doubt(radius, wall)?;
+    let place = if line.has_radii { " in the file" } else { "" };
+    Some(format!("{doubt}: a radius{place} {factor} times as large would be usual"))
 }
 
 /// A remedy in terms of the page's choices.

@@ -1,6 +1,6 @@
 //! A robot that is in another frame or unit than the mesh is doubted, with the change that helps.
 
-use mesh_files::{Bounds, Change, misfits, radius_doubt};
+use mesh_files::{Bounds, Change, RadiusDoubt, misfits, radius_doubt};
 
 /// A mesh between these corners.
 const MESH: Bounds = Bounds { low: [-60.0, 20.0, 100.0], high: [-20.0, 90.0, 150.0] };
@@ -68,12 +68,21 @@ fn points_that_are_not_finite_are_skipped() {
 
 #[test]
 fn a_radius_in_another_unit_is_doubted() {
-    for radius in [0.25, 1.0, 2.5] {
-        assert_eq!(radius_doubt(120.0, radius), None);
+    // The mesh measures 94.868: 9.5 is 1/10 of it, and 0.019 is 1/5000.
+    for radius in [0.0, 0.02, 0.5, 9.4] {
+        assert_eq!(radius_doubt(radius, &MESH), None);
     }
-    for radius in [250.0, 1e-3, f64::INFINITY] {
-        let doubt = radius_doubt(120.0, radius).unwrap();
-        assert!(doubt.contains("check the radius's unit"), "{doubt}");
+    for (radius, size, factor) in [
+        (500.0, "large", 1e-3),
+        (50.0, "large", 1e-2),
+        (0.005, "small", 100.0),
+        (0.0005, "small", 1e3),
+    ] {
+        let RadiusDoubt { doubt, factor: found } = radius_doubt(radius, &MESH).unwrap();
+        let expected = format!(
+            "the radius {radius} is {size} beside the mesh's box, which measures 94.868; check its unit"
+        );
+        assert_eq!((doubt, found), (expected, factor));
     }
-    assert_eq!(radius_doubt(120.0, 0.0), None);
+    assert_eq!(radius_doubt(f64::INFINITY, &MESH), None);
 }
