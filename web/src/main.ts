@@ -1,73 +1,198 @@
-import start, { Answers, Robot, Wall } from "./engine/continuum_web.js";
-import { GRADIENT } from "./colours";
+// The answer is a function of the inputs: any change of an input computes all of it again, or shows why there is none.
+
+import checker from "../../docs/book/check_proof.py?url";
+import start, { Answers, Files, Robot, Wall } from "./engine/continuum_web.js";
+import { GRADIENT, RED } from "./colours";
+import { save } from "./downloads";
+import { chosen, fill, find, notNegative, number, optionalNumber, positive, resetFrame, showStatedFrame } from "./fields";
+import { plotClearance } from "./plot";
 import { Scene } from "./scene";
 
-/** Clearances from here on have the last colour. */
+/** Clearances from here on have the last colour, in millimetres. A larger margin moves it. */
 const FARTHEST = 5;
 
-const find = <Element extends HTMLElement>(id: string) => document.getElementById(id) as Element;
-const scene = new Scene(find<HTMLCanvasElement>("scene"));
-const margin = find<HTMLInputElement>("margin");
-const radius = find<HTMLInputElement>("radius");
-
-let wall: Wall;
-/** The user's points, if there are any. */
-let points: string | undefined;
-let joints: HTMLInputElement[] = [];
-
-function say(message: string) {
-  find("message").textContent = message;
+/** The user's files, and the name of the one to read. */
+interface Chosen {
+  files: Files;
+  name: string;
 }
 
-/** What the library throws is a text that says what to change. */
-function attempt<Result>(action: () => Result): Result | undefined {
+/** A wall as it was read, or why it was not. */
+interface Read {
+  key: string;
+  wall?: Wall;
+  error?: unknown;
+}
+
+const scene = new Scene(find<HTMLCanvasElement>("scene"));
+let joints: HTMLInputElement[] = [];
+let wallFile: Chosen | undefined;
+let robotFile: Chosen | undefined;
+let read: Read | undefined;
+/** The last answers and the margin, as long as they are of the inputs. */
+let answered: { answers: Answers; margin: number; farthest: number } | undefined;
+
+const NOT_NEGATIVE = "a number that is at least 0";
+const POSITIVE = "a number greater than 0";
+
+function readMargin() {
+  return number("margin", "The margin", notNegative, NOT_NEGATIVE);
+}
+
+/** Reads the wall, unless it is the one that was read last. */
+function readWall(): Wall {
+  const label = wallFile && chosen("label");
+  const scale = number("wall-scale", "The wall's scale", positive, POSITIVE);
+  const allowNoPosition = find<HTMLInputElement>("no-position").checked;
+  const key = JSON.stringify([wallFile?.name, label, scale, allowNoPosition]);
+  if (read?.key !== key) {
+    forgetWall();
+    try {
+      const wall = wallFile
+        ? Wall.read(wallFile.files, wallFile.name, label === undefined ? undefined : Number(label), scale, allowNoPosition)
+        : Wall.ventricle();
+      read = { key, wall };
+      offerLabels(wall);
+      scene.showWall(wall);
+    } catch (error) {
+      read = { key, error };
+    }
+  }
+  if (!read?.wall) throw read?.error;
+  const wall = read.wall;
+  find("wall-text").textContent = "";
+  showStatedFrame("wall-frame", wall.stated_frame());
+  wall.choose_frame(chosen("wall-frame"));
+  find("wall-text").textContent = `${wallFile?.name ?? "The ventricle"}: ${wall.describe()}.`;
+  return wall;
+}
+
+function forgetWall() {
+  read?.wall?.free();
+  read = undefined;
+  scene.hideWall();
+  find("wall-text").textContent = "";
+}
+
+/** Offers the labels that were read as one surface. */
+function offerLabels(wall: Wall) {
+  const labels = Array.from(wall.labels(), String);
+  if (labels.length === 0) return;
+  fill("label", [["", "all, as one surface"], ...labels.map((label): [string, string] => [label, `label ${label}`])]);
+  find("label-choice").hidden = false;
+}
+
+function readRobot(): Robot {
+  if (!robotFile) {
+    const values = joints.map((joint) => Number(joint.value));
+    return Robot.of_tubes(
+      Float64Array.from(values.slice(0, 3)),
+      Float64Array.from(values.slice(3), (degrees) => (degrees * Math.PI) / 180),
+    );
+  }
+  const line = chosen("line");
+  const robot = Robot.read(
+    robotFile.files,
+    robotFile.name,
+    line === undefined ? undefined : Number(line),
+    number("robot-scale", "The robot's scale", positive, POSITIVE),
+    optionalNumber("radius", "The radius", notNegative, NOT_NEGATIVE),
+    chosen("robot-frame"),
+  );
+  showStatedFrame("robot-frame", robot.stated_frame());
+  return robot;
+}
+
+/** Calls an action with the wall and the robot of the inputs. */
+function withRobot<Result>(action: (wall: Wall, robot: Robot, pose: string) => Result): Result {
+  const wall = readWall();
+  const robot = readRobot();
   try {
-    say("");
-    return action();
-  } catch (error) {
-    say(String(error));
-    return undefined;
+    return action(wall, robot, find<HTMLTextAreaElement>("pose").value);
+  } finally {
+    robot.free();
   }
 }
 
-function robot(): Robot {
-  if (points !== undefined) return Robot.from_csv(points, Number(radius.value));
-  const values = joints.map((joint) => Number(joint.value));
-  return Robot.of_tubes(
-    Float64Array.from(values.slice(0, 3)),
-    Float64Array.from(values.slice(3), (degrees) => (degrees * Math.PI) / 180),
-  );
-}
-
+/** Answers for the inputs, or shows why there is no answer. */
 function update() {
-  const found = attempt(() => {
-    const asked = robot();
-    try {
-      return wall.ask(asked);
-    } finally {
-      asked.free();
-    }
-  });
-  if (!found) return;
-  show(found);
-  found.free();
+  clear();
+  try {
+    const margin = readMargin();
+    withRobot((wall, robot, pose) => {
+      const answers = wall.ask(robot, pose);
+      answered = { answers, margin, farthest: Math.max(FARTHEST, 2 * margin) };
+      show([...wall.notes(), ...robot.notes(), ...answers.doubts()]);
+    });
+  } catch (error) {
+    refuse(error);
+  }
 }
 
-function show(found: Answers) {
-  const limit = Number(margin.value);
-  find("margin-value").textContent = `${limit.toFixed(1)} mm`;
-  scene.showRobot(found, limit, FARTHEST);
-  const distances = found.distances();
-  const near = distances.filter((distance) => distance <= limit).length;
+/** Removes everything that belongs to the last answer. */
+function clear() {
+  answered?.answers.free();
+  answered = undefined;
   const answer = find("answer");
-  answer.textContent = `${found.minimum().toFixed(3)} mm`;
-  answer.classList.toggle("near", near > 0);
+  answer.textContent = "";
+  answer.className = "";
+  delete answer.dataset.distances;
+  for (const id of ["verdict", "details", "message"]) find(id).textContent = "";
+  find("doubts").replaceChildren();
+  find("plot").replaceChildren();
+  scene.hideRobot();
+  enableActions(false);
+  find("proof-text").classList.remove("refused");
+  find("proof-text").innerHTML = "To check the proof, run <code>python3 check_proof.py wall.obj proof.txt</code>.";
+}
+
+/** Shows an error instead of an answer. What the engine throws is a text that says what to change. */
+function refuse(error: unknown) {
+  clear();
+  find("answer").textContent = "No answer";
+  find("message").textContent =
+    error instanceof WebAssembly.RuntimeError ? `The engine stopped (${error.message}); reload the page` : String(error);
+}
+
+function show(warnings: string[]) {
+  if (!answered) return;
+  const { answers, margin, farthest } = answered;
+  const distances = answers.distances();
+  const near = distances.filter((distance) => distance <= margin).length;
+  scene.showRobot(answers, margin, farthest);
+  plotClearance(find("plot"), answers, margin, farthest);
+  find("high").textContent = `${farthest} mm and more`;
+  const answer = find("answer");
+  answer.textContent = `${answers.minimum().toFixed(3)} mm`;
+  answer.className = near > 0 ? "near" : "";
   // All digits, for whoever compares.
   answer.dataset.distances = JSON.stringify(Array.from(distances));
-  const place = `Link ${found.closest()} of ${distances.length} is closest, ${found.arc_length().toFixed(1)} mm along the robot.`;
-  const base = found.base() === "inside" ? "" : ` The robot's base is ${found.base() === "outside" ? "outside the wall" : "on the wall, or the wall is open"}.`;
-  const red = near === 0 ? "" : ` ${near} ${near === 1 ? "link is" : "links are"} within the margin.`;
-  find("details").textContent = place + red + base;
+  const links = `${near} ${near === 1 ? "link is" : "links are"} within it`;
+  find("verdict").textContent = near === 0 ? `Margin of ${margin} mm kept.` : `Margin of ${margin} mm not kept: ${links}.`;
+  find("verdict").className = near === 0 ? "kept" : "near";
+  const turned = answers.turned();
+  find("details").textContent = [
+    `Link ${answers.closest() + 1} of ${distances.length}, counted from the base, is closest, `
+      + `${answers.arc_length().toFixed(1)} mm along the robot.`,
+    ...(turned ? [`The robot is turned from ${turned}.`] : []),
+    ...(find<HTMLTextAreaElement>("pose").value.trim() ? ["The robot is placed by the pose."] : []),
+  ].join(" ");
+  const base = answers.base();
+  const side = base === "outside" ? "outside the wall" : "on the wall, or the wall is open";
+  const outside = base === "inside" ? [] : [`The robot's base is ${side}; distances do not say on which side the robot is.`];
+  find("doubts").replaceChildren(
+    ...[...warnings, ...outside].map((text) => {
+      const item = document.createElement("li");
+      item.textContent = text;
+      return item;
+    }),
+  );
+  enableActions(true);
+}
+
+/** Enables what needs an answer. */
+function enableActions(isEnabled: boolean) {
+  for (const id of ["closest", "report", "proof", "wall-obj"]) find<HTMLButtonElement>(id).disabled = !isEnabled;
 }
 
 function makeJoints() {
@@ -83,7 +208,6 @@ function makeJoints() {
     const write = () => (output.textContent = `${Number(input.value).toFixed(1)} ${unit}`);
     input.addEventListener("input", () => {
       write();
-      points = undefined;
       update();
     });
     write();
@@ -97,37 +221,129 @@ function makeJoints() {
   ];
 }
 
-function takeWall(next: Wall | undefined) {
-  if (!next) return;
-  wall?.free();
-  wall = next;
-  scene.showWall(wall);
-  update();
+/** Takes a wall's files, or the ventricle. Choices belong to a file, so they are reset. */
+function takeWall(next?: Chosen, role?: "wall") {
+  // The field names the file only if the file comes from the field.
+  if (!role) find<HTMLInputElement>("wall-file").value = "";
+  forgetWall();
+  wallFile?.files.free();
+  wallFile = next;
+  find("label-choice").hidden = true;
+  fill("label", [["", "all, as one surface"]]);
+  find<HTMLInputElement>("wall-scale").value = "1";
+  find<HTMLInputElement>("no-position").checked = false;
+  resetFrame("wall-frame");
 }
 
-async function take(file: File) {
-  if (/\.(csv|txt)$/i.test(file.name)) {
-    const before = points;
-    points = await file.text();
+/** Takes a robot's file, or the tubes. The joints move the tubes only. */
+function takeRobot(next?: Chosen, role?: "robot") {
+  if (!role) find<HTMLInputElement>("robot-file").value = "";
+  robotFile?.files.free();
+  robotFile = next;
+  const choices = next?.files.line_choices(next.name) ?? 0;
+  const indices = Array.from({ length: choices }, (_, index): [string, string] => [String(index), `index ${index}`]);
+  fill("line", [["", "choose one"], ...indices]);
+  find("line-choice").hidden = choices === 0;
+  find<HTMLInputElement>("robot-scale").value = "1";
+  resetFrame("robot-frame");
+  for (const id of ["line", "radius", "robot-scale", "robot-frame"]) {
+    find<HTMLInputElement>(id).disabled = next === undefined;
+  }
+  find<HTMLFieldSetElement>("joints").disabled = next !== undefined;
+  find("robot-text").textContent = next
+    ? `The robot is ${next.name}. The joints do not move it.`
+    : "The robot is made of the concentric tubes.";
+}
+
+/** Files are taken one after the other: the last choice is the one that stays. */
+let taken = Promise.resolve();
+
+/** Takes files as a robot, as a wall, or by what they hold. */
+function take(list: File[], role?: "robot" | "wall") {
+  taken = taken.then(() => readFiles(list, role));
+}
+
+async function readFiles(list: File[], role?: "robot" | "wall") {
+  if (list.length === 0) return;
+  clear();
+  find("answer").textContent = "Reading ...";
+  try {
+    const contents = await Promise.all(list.map(async (file) => new Uint8Array(await file.arrayBuffer())));
+    // The browser draws the line above first.
+    await new Promise((resolve) => setTimeout(resolve));
+    const wall: Chosen = { files: new Files(), name: "" };
+    list.forEach(({ name }, k) => {
+      const files = new Files();
+      files.add(name, contents[k]!);
+      if (role === "robot" || (role === undefined && files.holds_robot(name))) {
+        takeRobot({ files, name }, role === "robot" ? role : undefined);
+      } else {
+        files.free();
+        wall.files.add(name, contents[k]!);
+        if (!wall.name || /\.(hdr|mhd|nhdr)$/i.test(name)) wall.name = name;
+      }
+    });
+    if (wall.name) takeWall(wall, role === "wall" ? role : undefined);
+    else wall.files.free();
     update();
-    if (find("message").textContent) points = before;
-  } else {
-    const bytes = new Uint8Array(await file.arrayBuffer());
-    takeWall(attempt(() => Wall.read(file.name, bytes)));
+  } catch (error) {
+    refuse(error);
+  }
+}
+
+/** Downloads the inputs and the answers. */
+function saveReport() {
+  if (!answered || !read?.wall) return;
+  const { answers, margin } = answered;
+  const value = (id: string) => find<HTMLInputElement>(id).value || null;
+  const figure = (id: string) => (value(id) === null ? null : Number(value(id)));
+  const robot = robotFile
+    ? { file: robotFile.name, line: figure("line"), scale: figure("robot-scale"), radius: figure("radius") }
+    : { joints: Object.fromEntries(joints.map((joint) => [joint.id, Number(joint.value)])) };
+  const inputs = {
+    wall: { file: wallFile?.name ?? "the ventricle", label: figure("label"), scale: figure("wall-scale"), frame: value("wall-frame") },
+    robot: { ...robot, frame: value("robot-frame"), pose: value("pose") },
+    margin,
+  };
+  const warnings = Array.from(find("doubts").children, (item) => item.textContent);
+  const report = { inputs, keeps_margin: answers.minimum() > margin, ...JSON.parse(read.wall.report(answers)), warnings };
+  save("report.json", JSON.stringify(report, undefined, 2), "application/json");
+}
+
+function saveProof() {
+  const text = find("proof-text");
+  try {
+    const margin = readMargin();
+    const proof = withRobot((wall, robot, pose) => wall.prove(robot, pose, margin));
+    if (proof === undefined) throw "There is no proof: the robot does not keep the margin, or only by rounding";
+    save("proof.txt", proof);
+  } catch (error) {
+    text.textContent = String(error);
+    text.classList.add("refused");
   }
 }
 
 function listen() {
-  margin.addEventListener("input", update);
-  radius.addEventListener("input", update);
-  for (const id of ["mesh-file", "line-file"]) {
-    const input = find<HTMLInputElement>(id);
-    input.addEventListener("change", () => Promise.all(Array.from(input.files ?? [], take)));
+  for (const id of ["margin", "radius", "robot-scale", "wall-scale", "pose"]) find(id).addEventListener("input", update);
+  for (const id of ["label", "line", "wall-frame", "robot-frame", "no-position"]) find(id).addEventListener("change", update);
+  for (const role of ["robot", "wall"] as const) {
+    const input = find<HTMLInputElement>(`${role}-file`);
+    // The same file can be chosen again after it was changed.
+    input.addEventListener("click", () => (input.value = ""));
+    input.addEventListener("change", () => take(Array.from(input.files ?? []), role));
   }
-  find("reset").addEventListener("click", () => {
-    points = undefined;
-    takeWall(attempt(() => Wall.ventricle()));
+  find("reset-robot").addEventListener("click", () => {
+    takeRobot();
+    update();
   });
+  find("reset-wall").addEventListener("click", () => {
+    takeWall();
+    update();
+  });
+  find("closest").addEventListener("click", () => scene.showPair());
+  find("report").addEventListener("click", saveReport);
+  find("proof").addEventListener("click", saveProof);
+  find("wall-obj").addEventListener("click", () => read?.wall && save("wall.obj", read.wall.obj()));
   addEventListener("dragover", (event) => {
     event.preventDefault();
     document.body.classList.add("dropping");
@@ -136,14 +352,20 @@ function listen() {
   addEventListener("drop", (event) => {
     event.preventDefault();
     document.body.classList.remove("dropping");
-    void Promise.all(Array.from(event.dataTransfer?.files ?? [], take));
+    take(Array.from(event.dataTransfer?.files ?? []));
   });
+  new ResizeObserver(() => {
+    if (answered) plotClearance(find("plot"), answered.answers, answered.margin, answered.farthest);
+  }).observe(find("view"));
 }
 
 find("colours").style.background = GRADIENT;
-find("high").textContent = `${FARTHEST} mm and more`;
+find("red").style.background = RED;
+find<HTMLAnchorElement>("checker").href = checker;
 await start();
 makeJoints();
+takeRobot();
+takeWall();
 listen();
-takeWall(attempt(() => Wall.ventricle()));
+update();
 document.body.dataset.ready = "true";

@@ -14,6 +14,7 @@
 
 #[cfg(feature = "centrelines")]
 mod centreline;
+mod doubts;
 mod error;
 #[cfg(feature = "label-maps")]
 mod label_map;
@@ -25,11 +26,15 @@ mod stl;
 mod text;
 
 #[cfg(feature = "centrelines")]
-pub use centreline::{Centreline, centreline_from_bytes, load_centreline, load_shapes, load_table};
+pub use centreline::{
+    Centreline, centreline_from_bytes, load_centreline, load_shapes, load_table, table_from_bytes,
+};
+pub use doubts::{Bounds, Change, Misfits, RadiusDoubt, misfits, radius_doubt};
 pub use error::MeshFileError;
 #[cfg(feature = "label-maps")]
 use label_map::Fault;
 pub use mesh::{Frame, Mesh};
+use std::borrow::Cow;
 use std::path::Path;
 
 /// The options for reading a file.
@@ -225,30 +230,58 @@ pub fn load(path: impl AsRef<Path>) -> Result<Mesh, MeshFileError> {
 /// - Reading takes more memory than the options allow.
 /// - The scale is not a positive number.
 pub fn load_with(path: impl AsRef<Path>, options: &Options) -> Result<Mesh, MeshFileError> {
-    let path = path.as_ref();
+    load_by(path.as_ref(), options, &|file| read_file(file, options).map(Cow::Owned))
+}
+
+/// Same as [`load_with`], for files that are in memory.
+///
+/// `content` returns the bytes of a file. It is called with `path`, or with the path of the header
+/// or of the voxels if the format has them in two files.
+///
+/// # Errors
+/// As [`load_with`]; a file for which `content` returns `None` is
+/// [`Unreadable`](MeshFileError::Unreadable).
+pub fn load_from<'a>(
+    path: impl AsRef<Path>,
+    content: impl Fn(&Path) -> Option<&'a [u8]>,
+    options: &Options,
+) -> Result<Mesh, MeshFileError> {
+    load_by(path.as_ref(), options, &|file| match content(file) {
+        Some(bytes) => Ok(Cow::Borrowed(bytes)),
+        None => {
+            let reason = "it is not given".into();
+            Err(MeshFileError::Unreadable { file: file.to_owned(), reason })
+        }
+    })
+}
+
+/// Returns the bytes of a file.
+type Reader<'r, 'a> = &'r dyn Fn(&Path) -> Result<Cow<'a, [u8]>, MeshFileError>;
+
+fn load_by(path: &Path, options: &Options, reader: Reader) -> Result<Mesh, MeshFileError> {
     #[cfg(feature = "label-maps")]
-    if let Some(whole) = two_files(path, options) {
+    if let Some(whole) = two_files(path, reader) {
         let (format, bytes) = whole?;
         return parse(path, format, &bytes, options);
     }
     // Check the name first: reading a device may never end.
     let format = Format::of(path)?;
-    let bytes = read_file(path, options)?;
+    let bytes = reader(path)?;
     #[cfg(feature = "label-maps")]
-    let bytes = with_voxels(path, format, bytes, options)?;
+    let bytes = with_voxels(path, format, bytes, reader)?;
     parse(path, format, &bytes, options)
 }
 
 /// Returns a label map as one file, if its name says that header and voxels are in two files.
 #[cfg(feature = "label-maps")]
-fn two_files(path: &Path, options: &Options) -> Option<Result<(Format, Vec<u8>), MeshFileError>> {
+fn two_files<'a>(
+    path: &Path,
+    reader: Reader<'_, 'a>,
+) -> Option<Result<(Format, Cow<'a, [u8]>), MeshFileError>> {
     let extension = path.extension()?.to_str()?;
     let file = |own: &str| {
         let is_upper = extension.chars().all(char::is_uppercase);
-        read_file(
-            &path.with_extension(if is_upper { own.to_uppercase() } else { own.into() }),
-            options,
-        )
+        reader(&path.with_extension(if is_upper { own.to_uppercase() } else { own.into() }))
     };
     if label_map::nifti::is_pair(extension) {
         let both = file("hdr").and_then(|header| Ok((header, file("img")?)));
@@ -256,12 +289,11 @@ fn two_files(path: &Path, options: &Options) -> Option<Result<(Format, Vec<u8>),
             let whole = label_map::nifti::in_one(&header, &voxels);
             let broken =
                 |reason| MeshFileError::Broken { file: path.to_owned(), format: "NIfTI", reason };
-            Ok((Format::Nifti, whole.map_err(broken)?))
+            Ok((Format::Nifti, Cow::Owned(whole.map_err(broken)?)))
         }));
     }
     if extension.eq_ignore_ascii_case("nhdr") {
-        let whole = read_file(path, options)
-            .and_then(|bytes| with_voxels(path, Format::Nrrd, bytes, options));
+        let whole = reader(path).and_then(|bytes| with_voxels(path, Format::Nrrd, bytes, reader));
         return Some(whole.map(|bytes| (Format::Nrrd, bytes)));
     }
     None
@@ -269,21 +301,21 @@ fn two_files(path: &Path, options: &Options) -> Option<Result<(Format, Vec<u8>),
 
 /// Returns the file with the voxels that its header places in another file.
 #[cfg(feature = "label-maps")]
-fn with_voxels(
+fn with_voxels<'a>(
     path: &Path,
     format: Format,
-    bytes: Vec<u8>,
-    options: &Options,
-) -> Result<Vec<u8>, MeshFileError> {
+    bytes: Cow<'a, [u8]>,
+    reader: Reader<'_, 'a>,
+) -> Result<Cow<'a, [u8]>, MeshFileError> {
     use label_map::{meta_image, nrrd};
-    let voxels = |name: std::path::PathBuf| read_file(&path.with_file_name(name), options);
+    let voxels = |name: std::path::PathBuf| reader(&path.with_file_name(name));
     Ok(match format {
         Format::MetaImage => match meta_image::voxels_file(&bytes) {
-            Some(name) => meta_image::in_one(&bytes, &voxels(name)?),
+            Some(name) => Cow::Owned(meta_image::in_one(&bytes, &voxels(name)?)),
             None => bytes,
         },
         Format::Nrrd => match nrrd::voxels_file(&bytes) {
-            Some(name) => nrrd::in_one(&bytes, &voxels(name)?),
+            Some(name) => Cow::Owned(nrrd::in_one(&bytes, &voxels(name)?)),
             None => bytes,
         },
         _ => bytes,

@@ -1,17 +1,21 @@
-use crate::flat;
-use parry_continuum::parry::math::{Pose, Real};
+//! The answers about one robot, as arrays for JavaScript.
+
+use crate::placement::Placement;
+use crate::{flat, frame_name};
+use parry_continuum::parry::math::Real;
 use parry_continuum::proximity::{LinkProximity, Side};
 use parry_continuum::{Cap, ModifiedCylinder};
 use wasm_bindgen::prelude::wasm_bindgen;
 
 /// How far each link of a robot is from the wall, and where the links are.
 #[wasm_bindgen]
+#[derive(Debug)]
 pub struct Answers {
     pub(crate) links: Vec<LinkProximity>,
     pub(crate) minimum: LinkProximity,
     pub(crate) base: Side,
     pub(crate) robot: Vec<ModifiedCylinder>,
-    pub(crate) pose: Pose,
+    pub(crate) placement: Placement,
 }
 
 #[wasm_bindgen]
@@ -30,7 +34,7 @@ impl Answers {
         flat(self.links.iter().map(|link| &link.witness.on_mesh))
     }
 
-    /// The link that is closest.
+    /// The index of the closest link, from 0.
     pub fn closest(&self) -> u32 {
         self.minimum.link
     }
@@ -42,6 +46,23 @@ impl Answers {
     /// How far along the robot the closest point is.
     pub fn arc_length(&self) -> Real {
         self.minimum.witness.arc_length
+    }
+
+    /// The triangle that is closest, counted from 0.
+    pub fn triangle(&self) -> u32 {
+        self.minimum.witness.triangle
+    }
+
+    /// What looks like a mistake in frame or unit: a line for each doubt.
+    pub fn doubts(&self) -> Vec<String> {
+        self.placement.doubts.clone()
+    }
+
+    /// From which frame to which one the robot was turned, if it was.
+    pub fn turned(&self) -> Option<String> {
+        self.placement
+            .turned
+            .map(|[from, to]| format!("{} to {}", frame_name(from), frame_name(to)))
     }
 
     /// Of the robot's base: `inside`, `outside` or `undecided`.
@@ -56,9 +77,14 @@ impl Answers {
 
     /// The two ends of each link.
     pub fn ends(&self) -> Vec<Real> {
-        let ends =
-            self.robot.iter().flat_map(|link| [self.pose * link.start(), self.pose * link.end()]);
+        let pose = self.placement.pose;
+        let ends = self.robot.iter().flat_map(|link| [pose * link.start(), pose * link.end()]);
         flat(&ends.collect::<Vec<_>>())
+    }
+
+    /// The length of each link.
+    pub fn lengths(&self) -> Vec<Real> {
+        self.robot.iter().map(|link| link.length()).collect()
     }
 
     pub fn radii(&self) -> Vec<Real> {

@@ -1,8 +1,13 @@
-use crate::csv;
+//! The robot: concentric tubes, or a centreline from a file.
+
+use crate::files::{Files, options, refused};
+use crate::{frame_name, frame_of};
 use continuum_demo::ctr::{Joints, three_tubes};
 use continuum_demo::ventricle;
+use mesh_files::{Frame, centreline_from_bytes};
 use parry_continuum::Chain;
-use parry_continuum::parry::math::Real;
+use parry_continuum::parry::math::{Real, Vector};
+use std::path::Path;
 use wasm_bindgen::prelude::wasm_bindgen;
 
 /// How many links stand for the tubes.
@@ -10,9 +15,26 @@ const LINKS: usize = 30;
 
 /// A robot: concentric tubes, or the user's points.
 #[wasm_bindgen]
+#[derive(Debug)]
 pub struct Robot {
     chain: Chain,
-    stands_at_entry: bool,
+    line: Option<Line>,
+}
+
+/// A robot from a file.
+#[derive(Debug)]
+pub struct Line {
+    pub points: Vec<Vector>,
+    pub radius: Real,
+    /// Whether the file has the radii, so that the scale applies to them.
+    pub has_radii: bool,
+    /// The factor of the coordinates in the file.
+    pub scale: Real,
+    /// By the file or by the user.
+    pub frame: Option<Frame>,
+    pub states_frame: bool,
+    pub name: String,
+    skipped_points: usize,
 }
 
 #[wasm_bindgen]
@@ -26,18 +48,82 @@ impl Robot {
         let line = three_tubes().centreline(&joints, LINKS);
         let chain =
             Chain::from_centreline(&line.points, &line.radii).map_err(|error| error.to_string())?;
-        Ok(Self { chain, stands_at_entry: true })
+        Ok(Self { chain, line: None })
     }
 
-    /// Points in the wall's frame, as text: `x,y,z` or `x,y,z,radius` in each line. `radius` is for
-    /// segments without.
+    /// Reads the robot in a file, by the rules of `mesh_files::load_centreline`.
+    ///
+    /// - `line`: the line of a file with several, counted from 0.
+    /// - `scale`: the factor of the coordinates and the radii in the file.
+    /// - `radius`: the radius of all links if the file has none, in the wall's unit.
+    /// - `frame`: RAS or LPS, if the file does not state it.
     ///
     /// # Errors
-    /// A line is something else, or the points make no robot.
-    pub fn from_csv(text: &str, radius: Real) -> Result<Robot, String> {
-        let (points, radii) = csv::centreline(text, radius)?;
-        let chain = Chain::from_centreline(&points, &radii).map_err(|error| error.to_string())?;
-        Ok(Self { chain, stands_at_entry: false })
+    /// The file is invalid, the points make no robot, or a choice contradicts the file.
+    pub fn read(
+        files: &Files,
+        name: &str,
+        line: Option<u32>,
+        scale: Real,
+        radius: Option<Real>,
+        frame: Option<String>,
+    ) -> Result<Robot, String> {
+        let bytes = files.get(Path::new(name)).unwrap_or_default();
+        let options = options(scale).with_line(line.map(|line| line as usize));
+        let read = centreline_from_bytes(name, bytes, &options).map_err(|error| refused(&error))?;
+        let asked = frame.as_deref().map(frame_of).transpose()?;
+        if let (Some(stated), Some(asked)) = (read.frame, asked)
+            && stated != asked
+        {
+            return Err(format!(
+                "{name} says that it is {}; choose this frame for the robot",
+                frame_name(stated)
+            ));
+        }
+        let points: Vec<_> = read.points.into_iter().map(Vector::from).collect();
+        let has_radii = read.radii.is_some();
+        let radii = match (read.radii, radius) {
+            (Some(radii), None) => radii,
+            (None, Some(radius)) => vec![radius; points.len().saturating_sub(1)],
+            (Some(_), Some(_)) => {
+                return Err(format!(
+                    "{name} has a column of radii; leave the radius empty, or remove the column"
+                ));
+            }
+            (None, None) => {
+                return Err(format!(
+                    "{name} has no radius; enter one, or add a column radius to a CSV (radii of a vessel are not read)"
+                ));
+            }
+        };
+        let chain =
+            Chain::from_centreline(&points, &radii).map_err(|error| format!("{name}: {error}"))?;
+        let line = Line {
+            points,
+            radius: radii.into_iter().fold(0.0, Real::max),
+            has_radii,
+            scale,
+            frame: read.frame.or(asked),
+            states_frame: read.frame.is_some(),
+            name: name.to_owned(),
+            skipped_points: read.skipped_points,
+        };
+        Ok(Self { chain, line: Some(line) })
+    }
+
+    /// The frame that the file states: RAS, LPS or none.
+    pub fn stated_frame(&self) -> Option<String> {
+        let line = self.line.as_ref().filter(|line| line.states_frame)?;
+        line.frame.map(|frame| frame_name(frame).to_owned())
+    }
+
+    /// What was left out of the file.
+    pub fn notes(&self) -> Vec<String> {
+        let line = self.line.iter().filter(|line| line.skipped_points > 0);
+        line.map(|line| {
+            format!("left out of {}: {} points without a position", line.name, line.skipped_points)
+        })
+        .collect()
     }
 
     /// How far each tube can be out.
@@ -57,7 +143,8 @@ impl Robot {
         &self.chain
     }
 
-    pub(crate) fn stands_at_entry(&self) -> bool {
-        self.stands_at_entry
+    /// The file's line; `None` for concentric tubes.
+    pub(crate) fn line(&self) -> Option<&Line> {
+        self.line.as_ref()
     }
 }

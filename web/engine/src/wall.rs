@@ -1,45 +1,143 @@
-use crate::{Answers, Robot, flat};
+//! The wall: its file, its frame, and the queries about it.
+
+use crate::files::{Files, options, refused};
+use crate::placement::place;
+use crate::{Answers, Robot, flat, frame_name, frame_of};
 use continuum_demo::{steer, ventricle};
-use mesh_files::Options;
+use mesh_files::{Bounds, Frame};
 use parry_continuum::parry::math::{Pose, Real, Rot3, Vector};
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{BvhSearch, Proximity, Side};
+use serde_json::json;
+use std::fmt::Write;
 use wasm_bindgen::prelude::wasm_bindgen;
 
 /// The wall and the engine that searches it.
 #[wasm_bindgen]
+#[derive(Debug)]
 pub struct Wall {
     search: BvhSearch,
-    /// Where a robot comes in, and along which way.
-    entry: Pose,
+    name: String,
+    /// Where tubes come in, and in which direction; `None` until tubes are asked about.
+    entry: Option<Pose>,
+    stated_frame: Option<Frame>,
+    chosen_frame: Option<Frame>,
+    /// Whether the coordinates are millimetres by the file's own statement.
+    is_millimetres: bool,
+    labels: Vec<u32>,
+    notes: Vec<String>,
 }
 
 #[wasm_bindgen]
 impl Wall {
     /// A brain ventricle, in millimetres.
+    ///
+    /// # Errors
+    /// None: the mesh is valid.
     pub fn ventricle() -> Result<Wall, String> {
         let (vertices, triangles) = ventricle::mesh(ventricle::DEFAULT_TRIANGLES);
         let search =
             BvhSearch::from_triangles(&vertices, &triangles).map_err(|error| error.to_string())?;
-        Ok(Self { search, entry: ventricle::entry() })
+        Ok(Self {
+            search,
+            name: "the ventricle".into(),
+            entry: Some(ventricle::entry()),
+            stated_frame: None,
+            chosen_frame: None,
+            is_millimetres: true,
+            labels: Vec::new(),
+            notes: Vec::new(),
+        })
     }
 
-    /// A user's file: its name, whose extension states the format, and its bytes. A robot of tubes
-    /// enters at the point that is deepest inside.
+    /// Reads the wall in a file, by the rules of `mesh_files::load`.
+    ///
+    /// - `label`: the label of a segmentation; all that are not 0 without it.
+    /// - `scale`: the factor of all coordinates.
+    /// - `allow_no_position`: whether the first voxel is at the origin if the file states no
+    ///   position.
     ///
     /// # Errors
-    /// The file is broken, or of an unknown format.
-    pub fn read(name: &str, bytes: &[u8]) -> Result<Wall, String> {
-        let mesh = mesh_files::from_bytes(name, bytes, &Options::default())
-            .map_err(|error| error.to_string())?;
+    /// The file is invalid or of an unknown format, or a choice does not fit it.
+    pub fn read(
+        files: &Files,
+        name: &str,
+        label: Option<u32>,
+        scale: Real,
+        allow_no_position: bool,
+    ) -> Result<Wall, String> {
+        let options = options(scale).with_label(label).with_no_position_allowed(allow_no_position);
+        let mesh = mesh_files::load_from(name, |file| files.get(file), &options)
+            .map_err(|error| refused(&error))?;
+        let mut notes = Vec::new();
+        if mesh.skipped_faces > 0 {
+            notes.push(format!("left out of {name}: {} faces without area", mesh.skipped_faces));
+        }
+        let labels = if mesh.labels.len() > 1 { mesh.labels.clone() } else { Vec::new() };
+        if !labels.is_empty() {
+            let count = labels.len();
+            notes.push(format!("{name} has {count} labels, read as one surface; choose a label"));
+        }
+        let (stated_frame, is_millimetres) = (mesh.frame, mesh.states_unit && scale == 1.0);
         let (vertices, triangles) = mesh.into_parts::<Vector>();
-        let search =
-            BvhSearch::from_triangles(&vertices, &triangles).map_err(|error| error.to_string())?;
-        let middle = vertices.iter().copied().sum::<Vector>() / vertices.len() as Real;
-        let mesh = TriMesh::new(vertices, triangles).map_err(|error| error.to_string())?;
-        let from = steer::deepest_point(&mesh).unwrap_or(middle);
-        let turn = Rot3::from_rotation_arc(Vector::Z, steer::clear_direction(&mesh, from));
-        Ok(Self { search, entry: Pose::from_parts(from, turn) })
+        let search = BvhSearch::from_triangles(&vertices, &triangles)
+            .map_err(|error| format!("{name}: {error}"))?;
+        Ok(Self {
+            search,
+            name: name.to_owned(),
+            entry: None,
+            stated_frame,
+            chosen_frame: None,
+            is_millimetres,
+            labels,
+            notes,
+        })
+    }
+
+    /// Chooses the frame, RAS or LPS, if the file does not state it.
+    ///
+    /// # Errors
+    /// The file states the other frame.
+    pub fn choose_frame(&mut self, frame: Option<String>) -> Result<(), String> {
+        let chosen = frame.as_deref().map(frame_of).transpose()?;
+        if let (Some(stated), Some(chosen)) = (self.stated_frame, chosen)
+            && stated != chosen
+        {
+            let stated = frame_name(stated);
+            return Err(format!(
+                "{} says that it is {stated}; choose this frame for the wall",
+                self.name
+            ));
+        }
+        self.chosen_frame = chosen;
+        Ok(())
+    }
+
+    /// The frame that the file states: RAS, LPS or none.
+    pub fn stated_frame(&self) -> Option<String> {
+        self.stated_frame.map(|frame| frame_name(frame).to_owned())
+    }
+
+    /// The labels that were read as one surface, if there are several.
+    pub fn labels(&self) -> Vec<u32> {
+        self.labels.clone()
+    }
+
+    /// What was left out of the file, and what was merged.
+    pub fn notes(&self) -> Vec<String> {
+        self.notes.clone()
+    }
+
+    /// Size, frame and unit, in one line.
+    pub fn describe(&self) -> String {
+        let count = self.search.triangles().len();
+        let frame = self.frame().map_or("not stated", frame_name);
+        let unit = if self.is_millimetres { "mm" } else { "not stated, taken as mm" };
+        let place = self.bounds().map_or_else(String::new, |Bounds { low, high }| {
+            let [low, high] = [low, high].map(|p| p.map(|x| format!("{x:.1}")).join(", "));
+            format!(" from ({low}) to ({high})")
+        });
+        format!("{count} triangles{place}; frame {frame}; unit {unit}")
     }
 
     pub fn vertices(&self) -> Vec<Real> {
@@ -50,23 +148,99 @@ impl Wall {
         self.search.triangles().as_flattened().to_vec()
     }
 
-    /// How far each link is. A robot of tubes stands at the entry.
+    /// How far each link is. `matrix` is blank, or the pose: 4 lines of 4 numbers.
     ///
     /// # Errors
-    /// The robot is out of range.
-    pub fn ask(&mut self, robot: &Robot) -> Result<Answers, String> {
-        let pose = if robot.stands_at_entry() { self.entry } else { Pose::IDENTITY };
+    /// The matrix is not a pose, the frames are not known, or the robot is out of range.
+    pub fn ask(&mut self, robot: &Robot, matrix: &str) -> Result<Answers, String> {
+        let placement = place(robot, self, matrix)?;
+        let (chain, pose) = (robot.chain(), placement.pose);
         let mut links = Vec::new();
-        self.search
-            .per_link(robot.chain(), &pose, &mut links)
-            .map_err(|error| error.to_string())?;
-        let minimum =
-            self.search.minimum(robot.chain(), &pose).map_err(|error| error.to_string())?;
-        let base = robot
-            .chain()
+        self.search.per_link(chain, &pose, &mut links).map_err(|error| error.to_string())?;
+        let minimum = self.search.minimum(chain, &pose).map_err(|error| error.to_string())?;
+        let base = chain
             .links()
             .first()
             .map_or(Side::Undecided, |link| self.search.side(pose * link.start()));
-        Ok(Answers { links, minimum, base, robot: robot.chain().links().to_vec(), pose })
+        Ok(Answers { links, minimum, base, robot: chain.links().to_vec(), placement })
+    }
+
+    /// The answers with all digits, as JSON: mesh, base, links, minimum and warnings.
+    pub fn report(&self, answers: &Answers) -> String {
+        let bounds = self.bounds().map(|Bounds { low, high }| [low, high]);
+        let report = json!({
+            "mesh": {
+                "triangles": self.search.triangles().len(),
+                "bounds": bounds,
+                "frame": self.frame().map(frame_name),
+                "unit": self.is_millimetres.then_some("mm"),
+            },
+            "turned": answers.placement.turned.map(|frames| frames.map(frame_name)),
+            "base": answers.base(),
+            "links": answers.links,
+            "minimum": answers.minimum,
+            "warnings": answers.placement.doubts,
+        });
+        report.to_string()
+    }
+
+    /// The proof that the robot keeps more than the margin, for `check_proof.py`. Nothing if the
+    /// robot does not keep the margin, or keeps it by no more than rounding.
+    ///
+    /// # Errors
+    /// As [`ask`](Self::ask); or the margin is negative.
+    pub fn prove(
+        &mut self,
+        robot: &Robot,
+        matrix: &str,
+        margin: Real,
+    ) -> Result<Option<String>, String> {
+        let pose = place(robot, self, matrix)?.pose;
+        let proof =
+            self.search.prove(robot.chain(), &pose, margin).map_err(|error| error.to_string())?;
+        Ok(proof.map(|proof| proof.to_string()))
+    }
+
+    /// The wall as the OBJ file that belongs to a proof.
+    pub fn obj(&self) -> String {
+        let mut obj = String::new();
+        for Vector { x, y, z } in self.search.vertices() {
+            let _ = writeln!(obj, "v {x:?} {y:?} {z:?}");
+        }
+        for [a, b, c] in self.search.triangles() {
+            let _ = writeln!(obj, "f {} {} {}", a + 1, b + 1, c + 1);
+        }
+        obj
+    }
+}
+
+impl Wall {
+    pub(crate) fn name(&self) -> &str {
+        &self.name
+    }
+
+    pub(crate) fn frame(&self) -> Option<Frame> {
+        self.stated_frame.or(self.chosen_frame)
+    }
+
+    pub(crate) fn bounds(&self) -> Option<Bounds> {
+        Bounds::of_balls(self.search.vertices().iter().map(|vertex| (vertex.to_array(), 0.0)))
+    }
+
+    /// Where tubes come in: the point deepest inside, along the longest free line.
+    pub(crate) fn entry(&mut self) -> Pose {
+        let (vertices, triangles) = (self.search.vertices(), self.search.triangles());
+        let find = || {
+            let middle = vertices.iter().copied().sum::<Vector>() / vertices.len() as Real;
+            let Ok(mesh) = TriMesh::new(vertices.to_vec(), triangles.to_vec()) else {
+                return Pose::from_parts(middle, Rot3::IDENTITY);
+            };
+            let from = steer::deepest_point(&mesh).unwrap_or(middle);
+            Pose::from_parts(
+                from,
+                Rot3::from_rotation_arc(Vector::Z, steer::clear_direction(&mesh, from)),
+            )
+        };
+        *self.entry.get_or_insert_with(find)
     }
 }

@@ -13,7 +13,7 @@ use crate::mesh::{Frame, Mesh};
 use crate::{MeshFileError, Options, read_file, text};
 use poly_data::{JOINING, PolyData};
 use std::path::Path;
-pub use table::{load_shapes, load_table};
+pub use table::{load_shapes, load_table, table_from_bytes};
 
 /// Points along a line.
 #[derive(Clone, Debug, PartialEq)]

@@ -56,8 +56,22 @@ pub fn load_table(
     options: &Options,
 ) -> Result<Vec<Vec<f64>>, MeshFileError> {
     let path = path.as_ref();
+    table_from_bytes(path, &read_file(path, options)?, columns, expected)
+}
+
+/// Same as [`load_table`], for the content of a file with this name.
+///
+/// # Errors
+/// As [`load_table`].
+pub fn table_from_bytes(
+    path: impl AsRef<Path>,
+    bytes: &[u8],
+    columns: RangeInclusive<usize>,
+    expected: &'static str,
+) -> Result<Vec<Vec<f64>>, MeshFileError> {
+    let path = path.as_ref();
     let named = |fault: Fault| fault.named(path, expected);
-    let table = parse(&read_file(path, options)?).map_err(named)?;
+    let table = parse(bytes).map_err(named)?;
     for (line, row) in &table.rows {
         if !columns.contains(&row.len()) {
             return fault(*line, format!("has {} columns", row.len())).map_err(named);

@@ -3,6 +3,7 @@
 mod broken;
 #[cfg(feature = "centrelines")]
 mod centrelines;
+mod doubts;
 #[cfg(feature = "label-maps")]
 mod label_maps;
 mod limits;

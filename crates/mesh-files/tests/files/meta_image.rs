@@ -3,7 +3,7 @@
 
 use crate::{read, refused};
 use mesh_files::{Frame, Options, load_with};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// As make.py prints it.
 const CENTRE: [f64; 3] = [-17.62980947, 15.89470958, 12.0];
@@ -30,6 +30,23 @@ fn a_ball_is_where_its_voxels_are() {
         packed.vertices.iter().map(|v| v[axis]).sum::<f64>() / packed.vertices.len() as f64
     });
     assert!([0, 1, 2].iter().all(|&axis| (mean[axis] - CENTRE[axis]).abs() < 0.3), "{mean:?}");
+}
+
+#[test]
+fn header_and_voxels_are_read_from_memory() {
+    let [header, voxels] = ["ball.mhd", "ball.raw"].map(|name| std::fs::read(data(name)).unwrap());
+    let options = Options::default().with_label(Some(3));
+    let load = |has_voxels: bool| {
+        let content = |file: &Path| match file.to_str() {
+            Some("ball.mhd") => Some(&header[..]),
+            Some("ball.raw") if has_voxels => Some(&voxels[..]),
+            _ => None,
+        };
+        mesh_files::load_from("ball.mhd", content, &options)
+    };
+    assert_eq!(load(true), load_with(data("ball.mhd"), &options));
+    let missing = load(false).map_err(|error| error.to_string());
+    refused("ball.mhd", missing, "cannot read ball.raw (it is not given)");
 }
 
 #[test]

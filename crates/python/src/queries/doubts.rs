@@ -4,111 +4,34 @@
 use crate::input::{Block, Given};
 use crate::mesh::{Mesh, frames_text};
 use crate::threads::{Asked, alone, compute};
-use mesh_files::Frame;
-use parry_continuum::parry::math::Vector;
+use mesh_files::{Bounds, Change, Frame, misfits};
 use parry_continuum::proximity::Proximity;
 use pyo3::prelude::*;
 
-/// A robot is hardly ever larger or smaller than the mesh by more than this factor.
-const FAR_FROM_ALIKE: f64 = 100.0;
-
-/// A box around points.
-#[derive(Clone, Copy)]
-struct Extent {
-    low: Vector,
-    high: Vector,
-}
-
-impl Extent {
-    /// The box around balls, or `None` if there are none with finite numbers.
-    fn of(balls: impl IntoIterator<Item = (Vector, f64)>) -> Option<Self> {
-        let balls = balls.into_iter().filter(|(centre, radius)| (*centre * *radius).is_finite());
-        let boxes = balls.map(|(centre, radius)| Self {
-            low: centre - Vector::splat(radius),
-            high: centre + Vector::splat(radius),
-        });
-        boxes.reduce(|a, b| Self { low: a.low.min(b.low), high: a.high.max(b.high) })
-    }
-
-    fn size(&self) -> f64 {
-        (self.high - self.low).length()
-    }
-
-    /// How far the boxes are apart along the axis where they are farthest apart; negative if they
-    /// overlap.
-    fn gap(&self, other: &Self) -> f64 {
-        (self.low - other.high).max(other.low - self.high).max_element()
-    }
-
-    fn is_alike(&self, other: &Self) -> bool {
-        (1.0 / FAR_FROM_ALIKE..=FAR_FROM_ALIKE).contains(&(self.size() / other.size()))
-    }
-}
-
-/// What would bring the robot to the mesh.
-struct Remedy {
-    scale: f64,
-    turns: bool,
-}
-
-impl Remedy {
-    fn text(&self) -> String {
-        let Self { scale, turns } = self;
-        let points = match (turns, *scale == 1.0) {
-            (true, true) => {
-                "`points * [-1, -1, 1]`, the other of the frames RAS and LPS".to_owned()
-            }
-            (true, false) => format!("`points * [-{scale}, -{scale}, {scale}]`"),
-            (false, _) => format!("`points * {scale}`"),
-        };
-        if *scale == 1.0 { points } else { format!("{points} and `radii * {scale}`") }
-    }
-
-    fn apply(&self, point: Vector) -> Vector {
-        let sign = if self.turns { -1.0 } else { 1.0 };
-        point * self.scale * Vector::new(sign, sign, 1.0)
-    }
+/// What to try, in Python.
+fn words(Change { scale, turns }: Change) -> String {
+    let points = match (turns, scale == 1.0) {
+        (true, true) => "`points * [-1, -1, 1]`, the other of the frames RAS and LPS".to_owned(),
+        (true, false) => format!("`points * [-{scale}, -{scale}, {scale}]`"),
+        (false, _) => format!("`points * {scale}`"),
+    };
+    if scale == 1.0 { points } else { format!("{points} and `radii * {scale}`") }
 }
 
 /// One line for each doubt about balls around the points of robots.
 fn doubts(
-    robot: &[(Vector, f64)],
-    mesh: &Extent,
+    robot: &[([f64; 3], f64)],
+    mesh: &Bounds,
     frames: Option<[Frame; 2]>,
     may_turn: bool,
 ) -> Vec<String> {
-    let mut doubts: Vec<_> =
-        frames.into_iter().map(|frames| frames_text("points", frames)).collect();
-    let Some(around) = Extent::of(robot.iter().copied()) else { return doubts };
-    let mut misfits = Vec::new();
-    if !around.is_alike(mesh) {
-        let (robot, mesh) = (around.size(), mesh.size());
-        misfits.push(format!("the robot's box measures {robot:.3}, the mesh's {mesh:.3}"));
-    }
-    let gap = around.gap(mesh);
-    if gap > 0.0 {
-        misfits.push(format!(
-            "the robot's box and the mesh's do not overlap; they are {gap:.3} apart"
-        ));
-    }
-    let scales = [1000.0, 1e-3, 10.0, 0.1];
-    let turned = [(1.0, true)].into_iter().chain(scales.map(|scale| (scale, true)));
-    let turned = turned.filter(|_| may_turn);
-    let all =
-        turned.clone().take(1).chain(scales.map(|scale| (scale, false))).chain(turned.skip(1));
-    let helps = |remedy: &Remedy| {
-        let mended =
-            |&(point, radius): &(Vector, f64)| (remedy.apply(point), radius * remedy.scale);
-        Extent::of(robot.iter().map(mended))
-            .is_some_and(|mended| mended.gap(mesh) <= 0.0 && mended.is_alike(mesh))
+    let around = |change: Change| {
+        let changed =
+            |&(point, radius): &([f64; 3], f64)| (change.apply(point), radius * change.scale);
+        Bounds::of_balls(robot.iter().map(changed))
     };
-    if let Some(last) = misfits.last_mut()
-        && let Some(remedy) = all.map(|(scale, turns)| Remedy { scale, turns }).find(helps)
-    {
-        last.push_str(&format!("; with {} they fit", remedy.text()));
-    }
-    doubts.append(&mut misfits);
-    doubts
+    let frames = frames.into_iter().map(|frames| frames_text("points", frames));
+    frames.chain(misfits(around, mesh, may_turn).with_remedy(words)).collect()
 }
 
 #[pymethods]
@@ -161,11 +84,12 @@ impl Mesh {
             let placed = robot.pose();
             let pose = placed.map_err(|error| error.raise(py, robots.count.map(|_| place)))?;
             let radius = robot.radii.iter().copied().fold(0.0, f64::max);
-            balls.extend(robot.points.iter().map(|&point| (pose * point, radius)));
+            balls.extend(robot.points.iter().map(|&point| ((pose * point).to_array(), radius)));
         }
         let frames = if pose.is_none() { self.frames(points)? } else { None };
         let mesh = alone(py, &self.engine(py), |session| {
-            Extent::of(session.search.vertices().iter().map(|&vertex| (vertex, 0.0)))
+            let vertices = session.search.vertices().iter();
+            Bounds::of_balls(vertices.map(|vertex| (vertex.to_array(), 0.0)))
         })?;
         let Some(mesh) = mesh else { return Ok(Vec::new()) };
         let may_turn = pose.is_none();
