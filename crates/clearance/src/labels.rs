@@ -1,10 +1,9 @@
 //! The labels of a segmentation, with their volumes.
 
-use crate::messages;
 use crate::number::digits;
 use crate::options::Options;
+use crate::{messages, outputs};
 use serde_json::json;
-use std::io::{Write, stdout};
 
 /// Prints a line for each label, and which of them form the wall.
 pub fn print(my: &Options) -> Result<(), String> {
@@ -34,7 +33,7 @@ pub fn print(my: &Options) -> Result<(), String> {
         }
         text += &wall(my, labels.iter().map(|found| found.label).collect());
     }
-    stdout().write_all(text.as_bytes()).map_err(|error| error.to_string())
+    outputs::print(&text)
 }
 
 /// Returns a line that says which labels form the wall.

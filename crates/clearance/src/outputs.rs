@@ -2,6 +2,7 @@
 
 use crate::options::Options;
 use std::fs;
+use std::io::{ErrorKind, Write, stdout};
 use std::path::{Path, PathBuf};
 
 /// Checks that the outputs differ from the inputs and from one another.
@@ -45,6 +46,16 @@ pub fn write(option: &str, path: &Path, text: &str) -> Result<(), String> {
     fs::write(path, text).map_err(|error| {
         format!("cannot write {} ({error}); choose another {option}", path.display())
     })
+}
+
+/// Prints a text. A reader such as `head` may close the pipe early: that is no error.
+pub fn print(text: &str) -> Result<(), String> {
+    match stdout().write_all(text.as_bytes()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            Err(format!("cannot write to standard output ({error})"))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Returns where a path leads, for comparison. The file itself may not exist yet.

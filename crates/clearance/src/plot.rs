@@ -3,8 +3,7 @@
 //! # Algorithm
 //! 1. Divide the segments into about [`SLICES`] slices with flat ends, and measure each. A slice is
 //!    the union of the robot's discs there.
-//! 2. Add the closest place of each link, whose caps also fill the bends. So the curve passes
-//!    through the minimum.
+//! 2. Add the minimum, which the caps that fill the bends may have. So the curve passes through it.
 //! 3. Draw the distances by arc length, with the minimum and the margin.
 
 use crate::number::{as_written, length, short};
@@ -29,7 +28,6 @@ const ORANGE: RGBColor = RGBColor(213, 94, 0);
 pub struct Plot<'a> {
     pub robot: &'a Robot,
     pub pose: &'a Pose,
-    pub links: &'a [LinkProximity],
     pub minimum: &'a LinkProximity,
     pub margin: Option<f64>,
 }
@@ -57,7 +55,7 @@ impl Plot<'_> {
         let mut slices = Vec::new();
         search.per_link(&Chain::cylinders(&points, &radii)?, self.pose, &mut slices)?;
         let place = |found: &LinkProximity| (found.witness.arc_length, found.distance);
-        let mut curve: Vec<_> = slices.iter().chain(self.links).map(place).collect();
+        let mut curve: Vec<_> = slices.iter().chain([self.minimum]).map(place).collect();
         curve.sort_by(|a, b| a.0.total_cmp(&b.0));
         Ok(curve)
     }
@@ -99,10 +97,10 @@ impl Plot<'_> {
             length(at.1, 4, unit)
         );
         let mut chart = ChartBuilder::on(&area)
-            .caption(title, ("sans-serif", 20))
+            .caption(title, ("sans-serif", 24))
             .margin(16)
-            .x_label_area_size(44)
-            .y_label_area_size(64)
+            .x_label_area_size(52)
+            .y_label_area_size(72)
             .build_cartesian_2d(0.0..whole, 0.0..high)?;
         chart
             .configure_mesh()
@@ -110,8 +108,9 @@ impl Plot<'_> {
             .y_desc(format!("clearance{in_unit}"))
             .x_label_formatter(&|x| short(*x))
             .y_label_formatter(&|y| short(*y))
-            .label_style(("sans-serif", 14))
-            .light_line_style(WHITE)
+            .label_style(("sans-serif", 17))
+            .axis_desc_style(("sans-serif", 19))
+            .max_light_lines(0)
             .bold_line_style(RGBColor(225, 225, 225))
             .draw()?;
         chart.draw_series(LineSeries::new(curve.iter().copied(), BLUE.stroke_width(2)))?;
@@ -119,7 +118,7 @@ impl Plot<'_> {
             let is_right = place.0 > 0.5 * whole;
             let horizontal = if is_right { HPos::Right } else { HPos::Left };
             let vertical = if is_above { VPos::Bottom } else { VPos::Top };
-            let style = ("sans-serif", 14).into_font().color(&colour);
+            let style = ("sans-serif", 17).into_font().color(&colour);
             let across = if is_right { -9 } else { 9 };
             let up = if is_above { -6 } else { 6 };
             EmptyElement::at(place)

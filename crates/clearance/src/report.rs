@@ -6,9 +6,8 @@ use crate::single::Proven;
 use crate::verdict::{Verdict, side};
 use crate::wall::Wall;
 use mesh_files::Frame;
-use parry_continuum::proximity::{Clearance, LinkProximity, Proximity, Side};
+use parry_continuum::proximity::{Clearance, LinkProximity, Proximity, Side, Witness};
 use serde_json::json;
-use std::io::{self, Write};
 
 pub struct Report<'a> {
     pub wall: &'a Wall,
@@ -24,53 +23,43 @@ pub struct Report<'a> {
 }
 
 impl Report<'_> {
-    pub fn print(&self, as_json: bool) -> io::Result<()> {
-        if as_json { self.print_json() } else { self.print_lines() }
-    }
-
-    fn print_lines(&self) -> io::Result<()> {
-        let mut out = io::BufWriter::new(io::stdout().lock());
-        writeln!(out, "mesh: {}", self.wall.describe())?;
+    /// Returns the report as lines. The last line is the minimum.
+    pub fn lines(&self) -> String {
+        let unit = self.wall.unit();
+        let mut lines = vec![format!("mesh: {}", self.wall.describe())];
         if let Some([from, to]) = self.turned {
-            writeln!(out, "robot: turned from {} to {}", name(from), name(to))?;
+            lines.push(format!("robot: turned from {} to {}", name(from), name(to)));
         }
-        writeln!(out, "base: {}", side(self.base))?;
-        for l in &self.links {
-            writeln!(
-                out,
-                "link {}: {:.6}, from {:.6} to {:.6}",
-                l.link, l.distance, l.witness.on_robot, l.witness.on_mesh
-            )?;
-        }
+        lines.push(format!("base: {}", side(self.base)));
+        let link = |found: &LinkProximity| {
+            let Witness { on_robot, on_mesh, .. } = found.witness;
+            let LinkProximity { link, distance, .. } = found;
+            format!("link {link}: {distance:.6}, from {on_robot:.6} to {on_mesh:.6}")
+        };
+        lines.extend(self.links.iter().map(link));
         if let Some(curve) = &self.curve {
             let doubt = if curve.resolved { "" } else { ", farther apart than --tolerance" };
-            writeln!(
-                out,
-                "curve: {:.6} to {:.6}, {:.3} along it{doubt}",
-                curve.lower, curve.upper, curve.witness.arc_length
-            )?;
+            let Clearance { lower, upper, .. } = curve;
+            let place = curve.witness.arc_length;
+            lines.push(format!("curve: {lower:.6} to {upper:.6}, {place:.3} along it{doubt}"));
         }
-        match &self.proven {
-            Some(Proven::By(command)) => writeln!(out, "proof: check it with {command}")?,
-            Some(Proven::NotKept) => writeln!(out, "proof: none, since the margin is not kept")?,
-            Some(Proven::TooClose) => writeln!(
-                out,
-                "proof: none, since the margin is kept by too little; give a smaller --margin"
-            )?,
-            None => {}
-        }
-        if let Some(verdict) = &self.verdict {
-            writeln!(out, "{}", verdict.describe(self.base, self.wall.unit()))?;
-        }
-        writeln!(
-            out,
-            "{}",
-            minimum(&format!("link {}", self.minimum.link), &self.minimum, self.wall)
-        )?;
-        out.flush()
+        lines.extend(self.proven.as_ref().map(|proven| {
+            match proven {
+                Proven::By(command) => format!("proof: check it with {command}"),
+                Proven::NotKept => "proof: none, since the margin is not kept".into(),
+                Proven::TooClose => {
+                    "proof: none, since the margin is kept by too little; give a smaller --margin"
+                        .into()
+                }
+            }
+        }));
+        lines.extend(self.verdict.map(|verdict| verdict.describe(self.base, unit)));
+        lines.push(minimum(&format!("link {}", self.minimum.link), &self.minimum, self.wall));
+        lines.join("\n") + "\n"
     }
 
-    fn print_json(&self) -> io::Result<()> {
+    /// Returns the report as JSON, with all digits.
+    pub fn json(&self) -> String {
         let Wall { search, bounds, frame, .. } = self.wall;
         let report = json!({
             "mesh": {
@@ -98,7 +87,7 @@ impl Report<'_> {
             },
             "warnings": self.doubts,
         });
-        writeln!(io::stdout(), "{report:#}")
+        format!("{report:#}\n")
     }
 }
 

@@ -4,12 +4,10 @@ use crate::options::Options;
 use crate::robot::Robot;
 use crate::wall::Wall;
 use crate::{csv, messages, number, outputs, report};
-use indicatif::ProgressBar;
 use parry_continuum::Chain;
 use parry_continuum::parry::math::Pose;
 use parry_continuum::proximity::{LinkProximity, Proximity};
 use serde_json::json;
-use std::io::{Write, stdout};
 use std::path::Path;
 
 /// The number of shapes per batch.
@@ -55,13 +53,12 @@ pub fn answer(
     if my.csv.is_some() && !my.json {
         text += &summary(robots, &answers, wall);
     }
-    stdout().write_all(text.as_bytes()).map_err(|error| error.to_string())?;
+    outputs::print(&text)?;
     Ok(verdict.is_none_or(|(_, is_kept)| is_kept))
 }
 
 /// Asks about the robots in batches.
 fn ask(robots: &[Robot], wall: &mut Wall, pose: &Pose, file: &Path) -> Result<Vec<Answer>, String> {
-    let progress = ProgressBar::new(robots.len() as u64);
     let mut answers = Vec::with_capacity(robots.len());
     for some in robots.chunks(AT_ONCE) {
         let chains: Vec<_> =
@@ -85,9 +82,7 @@ fn ask(robots: &[Robot], wall: &mut Wall, pose: &Pose, file: &Path) -> Result<Ve
                     .map_err(|error| messages::of_query(&error, file)),
             });
         }
-        progress.inc(some.len() as u64);
     }
-    progress.finish_and_clear();
     Ok(answers)
 }
 

@@ -53,7 +53,7 @@ pub fn answer(
         outputs::write("--csv", path, &csv::links(&links))?;
     }
     if let Some(path) = &my.plot {
-        let plot = plot::Plot { robot, pose, links: &links, minimum: &minimum, margin: my.margin };
+        let plot = plot::Plot { robot, pose, minimum: &minimum, margin: my.margin };
         let unit = wall.unit();
         plot.draw(&mut wall.search, path, unit)?;
     }
@@ -88,9 +88,8 @@ pub fn answer(
     let is_kept = verdict.is_none_or(|verdict| verdict.is_kept == Some(true));
     let is_proven = !matches!(proven, Some(Proven::TooClose));
     let curve = curve.map(|(_, bounds)| bounds);
-    Report { wall, turned, base, links, curve, minimum, verdict, proven, doubts }
-        .print(my.json)
-        .map_err(|error| error.to_string())?;
+    let report = Report { wall, turned, base, links, curve, minimum, verdict, proven, doubts };
+    outputs::print(&if my.json { report.json() } else { report.lines() })?;
     match failure {
         Some(failure) => Err(failure),
         None => Ok(is_kept && is_proven),

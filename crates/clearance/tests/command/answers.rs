@@ -18,6 +18,7 @@ fn a_straight_robot_in_a_box_has_the_clearance_that_one_can_see() {
                 base: inside the mesh\n";
     assert!(out.starts_with(head) && out.lines().count() == 5, "{out}");
     assert_eq!(minimum(&["--mesh", room, "--centreline", shape]), 20.0);
+    assert_eq!(succeed(&["--mesh", room, "--centerline", shape]), out);
     // Semicolons, no heading, one radius for all; moved to 7 from a side.
     let plain = &file("plain.csv", "\u{feff}30; 30; 20\r\n30; 30; 40\r\n\r\n");
     let moved = &file("moved.txt", "1 0 0 -21\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
@@ -203,6 +204,12 @@ fn what_is_wrong_with_my_files_is_said_in_one_line() {
         assert!(status == Some(2) && error.contains(expected), "{error}");
         assert!(error.lines().count() == 1, "{error}");
     }
+    refuse(&["--mesh", room], "--centreline <FILE>");
+    refuse(&["--centreline", shape], "--mesh <FILE>");
+    refuse(&["--mesh", room, "--centerlin", shape], "a similar argument exists: '--centerline'");
+    refuse(&["--mesh", room, "--centreline", shape, "--frame", "xyz"], "lps, ras");
+    let both = ["--mesh", room, "--centreline", shape, "--shapes", shape];
+    refuse(&both, "cannot be used with '--shapes <FILE>'");
     #[cfg(unix)]
     refuse(&["--mesh", "/dev/zero", "--centreline", shape], "ends in .stl, .obj or .ply");
 }

@@ -36,7 +36,7 @@ fn labels_are_listed_with_their_volumes() {
 #[test]
 fn labels_that_are_merged_are_named_beside_the_answer() {
     let organs = &segmentation("merged.nrrd", "1 1 0 1 7 0");
-    let shape = &file("merged.csv", "0,9,0,1\n9,9,0\n");
+    let shape = &file("merged.csv", "-1,0.5,0,0.3\n9,0.5,0\n");
     let asked = ["--mesh", organs, "--centreline", shape];
     let (status, out, error) = run(&asked);
     assert!(status == Some(0) && out.contains("\nminimum "), "{out}{error}");
