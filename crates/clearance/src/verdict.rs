@@ -9,8 +9,8 @@ pub struct Verdict {
     pub margin: f64,
     /// `None` if the margin lies between the bounds of the curve.
     pub is_kept: Option<bool>,
-    /// Whether the decision is about the curve, not about the chain.
-    of_curve: bool,
+    /// For the curve instead of the chain: whether its bounds meet --tolerance.
+    curve: Option<bool>,
 }
 
 impl Verdict {
@@ -22,7 +22,7 @@ impl Verdict {
             Some(curve) if curve.upper <= margin => Some(false),
             Some(_) => None,
         };
-        Self { margin, is_kept, of_curve: curve.is_some() }
+        Self { margin, is_kept, curve: curve.map(|curve| curve.resolved) }
     }
 
     /// Describes the decision in one line. Names the side of the wall, since distances are
@@ -34,10 +34,11 @@ impl Verdict {
             Some(false) => "not kept",
             None => "undecided",
         };
-        let subject = if self.of_curve { " by the curve" } else { "" };
-        let advice = match self.is_kept {
-            None => "; give a smaller --tolerance",
-            Some(_) => "",
+        let subject = if self.curve.is_some() { " by the curve" } else { "" };
+        let advice = match (self.is_kept, self.curve) {
+            (None, Some(true)) => "; give a smaller --tolerance",
+            (None, _) => "; write more points along the robot",
+            (Some(_), _) => "",
         };
         format!("margin {margin}: {decision}{subject}, base {}{advice}", side(base))
     }

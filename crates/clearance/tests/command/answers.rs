@@ -349,12 +349,6 @@ fn the_minimum_is_printed_whatever_becomes_of_the_curve() {
         "{error}"
     );
     assert!(error.contains("leave out --tolerance for a robot of straight links"), "{error}");
-    // Finer than rounding.
-    let shape = &file("fine.csv", "30,30,20,2\n30,30,30,2\n30,31,40\n");
-    let (status, out, error) =
-        run(&["--mesh", wall, "--centreline", shape, "--tolerance", "1e-300", "--margin", "1"]);
-    assert!(status == Some(2) && out.contains("\nminimum ") && !out.contains("margin"), "{out}");
-    assert!(error.contains("give a larger --tolerance"), "{error}");
 }
 
 #[test]

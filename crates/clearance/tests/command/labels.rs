@@ -41,9 +41,9 @@ fn labels_that_are_merged_are_named_beside_the_answer() {
     let (status, out, error) = run(&asked);
     assert!(status == Some(0) && out.contains("\nminimum "), "{out}{error}");
     let note = format!("note: labels 1, 7 of {organs} are merged; --label takes one of them\n");
-    assert_eq!(error, note);
+    assert!(error.starts_with(&note), "{error}");
     let (_, _, error) = run(&[&asked[..], &["--label", "7"]].concat());
-    assert_eq!(error, "");
+    assert!(!error.contains("note: "), "{error}");
 }
 
 #[test]

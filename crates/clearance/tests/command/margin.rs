@@ -75,6 +75,17 @@ fn the_curve_decides_if_it_has_bounds() {
     }
 }
 
+/// Few points leave the curve between bounds that no tolerance brings together.
+#[test]
+fn a_curve_of_few_points_needs_more_of_them() {
+    let [wall, _] = &needle("few");
+    let shape = &file("few.csv", "30,30,20,2\n30,30,30,2\n30,31,40\n");
+    let asked = ["--mesh", wall, "--centreline", shape, "--tolerance", "1e-9", "--margin", "19.8"];
+    let (status, out, _) = run(&asked);
+    assert!(status == Some(1) && out.contains(", farther apart than --tolerance\n"), "{out}");
+    assert!(verdict(&out).ends_with("; write more points along the robot"), "{out}");
+}
+
 #[test]
 fn a_margin_holds_for_all_shapes() {
     let [wall, _] = &needle("shapes_margin");

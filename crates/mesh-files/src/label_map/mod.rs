@@ -216,11 +216,8 @@ impl Volume<'_> {
         let mut counts = BTreeMap::<u32, u64>::new();
         self.voxels.each(&mut |labels| {
             for run in labels.chunk_by(|a, b| a == b).filter(|run| run[0] != 0) {
-                // A label above the lowest ones never comes back: those only get lower.
-                let is_above = counts.last_key_value().is_some_and(|(&last, _)| run[0] > last);
-                if counts.len() < MOST_LABELS || !is_above {
-                    *counts.entry(run[0]).or_default() += run.len() as u64;
-                }
+                *counts.entry(run[0]).or_default() += run.len() as u64;
+                // A label that is dropped here stays above the kept ones, so it never comes back.
                 if counts.len() > MOST_LABELS {
                     counts.pop_last();
                 }
