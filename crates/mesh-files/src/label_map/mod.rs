@@ -217,7 +217,7 @@ impl Volume<'_> {
         self.voxels.each(&mut |labels| {
             for run in labels.chunk_by(|a, b| a == b).filter(|run| run[0] != 0) {
                 *counts.entry(run[0]).or_default() += run.len() as u64;
-                // A label that is dropped here stays above the kept ones, so it never comes back.
+                // The kept labels only get lower, so a dropped label is dropped whenever it comes.
                 if counts.len() > MOST_LABELS {
                     counts.pop_last();
                 }
