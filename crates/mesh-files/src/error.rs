@@ -166,6 +166,15 @@ pub enum MeshFileError {
         /// The requested label.
         label: u32,
     },
+    /// Labels are listed of a file of triangles, which has none.
+    #[error("{} holds triangles without labels ({format}); give the segmentation", file.display())]
+    #[non_exhaustive]
+    NoLabels {
+        /// The file.
+        file: PathBuf,
+        /// The format that its name promises.
+        format: &'static str,
+    },
     /// All voxels of a label map are 0.
     #[error("{} holds no segment, because all its voxels are 0; export the segmentation again", file.display())]
     #[non_exhaustive]

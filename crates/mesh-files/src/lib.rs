@@ -33,6 +33,8 @@ pub use doubts::{Bounds, Change, Misfits, RadiusDoubt, misfits, radius_doubt};
 pub use error::MeshFileError;
 #[cfg(feature = "label-maps")]
 use label_map::Fault;
+#[cfg(feature = "label-maps")]
+pub use label_map::LabelVolume;
 pub use mesh::{Frame, Mesh};
 use std::borrow::Cow;
 use std::path::Path;
@@ -255,21 +257,77 @@ pub fn load_from<'a>(
     })
 }
 
+fn load_by(path: &Path, options: &Options, reader: Reader) -> Result<Mesh, MeshFileError> {
+    let (format, bytes) = read_whole(path, reader)?;
+    parse(path, format, &bytes, options)
+}
+
+/// Returns the labels of a label map with their volumes, in ascending order, without the label 0:
+/// the lowest 1000 if there are more.
+///
+/// The scale of the options multiplies lengths, so volumes grow by its cube; the label is ignored.
+///
+/// # Errors
+/// As [`load_with`] for a label map; or the file holds triangles.
+#[cfg(feature = "label-maps")]
+pub fn load_labels(
+    path: impl AsRef<Path>,
+    options: &Options,
+) -> Result<Vec<LabelVolume>, MeshFileError> {
+    let path = path.as_ref();
+    let (format, bytes) = read_whole(path, &|file| read_file(file, options).map(Cow::Owned))?;
+    labels(path, format, &bytes, options)
+}
+
+/// Same as [`load_labels`], for the content of a file with this name.
+///
+/// # Errors
+/// As [`load_labels`].
+#[cfg(feature = "label-maps")]
+pub fn labels_from_bytes(
+    path: impl AsRef<Path>,
+    bytes: &[u8],
+    options: &Options,
+) -> Result<Vec<LabelVolume>, MeshFileError> {
+    let path = path.as_ref();
+    labels(path, Format::of(path)?, bytes, options)
+}
+
+#[cfg(feature = "label-maps")]
+fn labels(
+    path: &Path,
+    format: Format,
+    bytes: &[u8],
+    options: &Options,
+) -> Result<Vec<LabelVolume>, MeshFileError> {
+    let options = &options.with_label(None);
+    options.check_scale()?;
+    let Some(volume) = volume(format, bytes, options) else {
+        return Err(MeshFileError::NoLabels { file: path.to_owned(), format: format.name() });
+    };
+    let volumes = volume.and_then(|volume| volume.label_volumes(options.scale));
+    volumes.map_err(|fault| label_map_error(fault, path, format, bytes, options))
+}
+
 /// Returns the bytes of a file.
 type Reader<'r, 'a> = &'r dyn Fn(&Path) -> Result<Cow<'a, [u8]>, MeshFileError>;
 
-fn load_by(path: &Path, options: &Options, reader: Reader) -> Result<Mesh, MeshFileError> {
+/// Returns the format and the content of a file. A label map has its voxels, which may be in a
+/// second file.
+fn read_whole<'a>(
+    path: &Path,
+    reader: Reader<'_, 'a>,
+) -> Result<(Format, Cow<'a, [u8]>), MeshFileError> {
     #[cfg(feature = "label-maps")]
     if let Some(whole) = two_files(path, reader) {
-        let (format, bytes) = whole?;
-        return parse(path, format, &bytes, options);
+        return whole;
     }
     // Check the name first: reading a device may never end.
     let format = Format::of(path)?;
     let bytes = reader(path)?;
     #[cfg(feature = "label-maps")]
     let bytes = with_voxels(path, format, bytes, reader)?;
-    parse(path, format, &bytes, options)
+    Ok((format, bytes))
 }
 
 /// Returns a label map as one file, if its name says that header and voxels are in two files.
@@ -357,35 +415,7 @@ fn parse(
 ) -> Result<Mesh, MeshFileError> {
     options.check_scale()?;
     let file = path.to_owned();
-    let broken = |reason: String| {
-        let (file, format) = (path.to_owned(), format.name());
-        match text::looks_like(bytes) {
-            Some(found) if found != format => MeshFileError::Misnamed { file, format, found },
-            _ => MeshFileError::Broken { file, format, reason },
-        }
-    };
-    #[cfg(feature = "label-maps")]
-    let surface = |read: Result<label_map::Volume, Fault>| {
-        read.and_then(|volume| volume.surface(options.label, options.memory_limit)).map_err(
-            |fault| {
-                let file = path.to_owned();
-                match (fault, options.label) {
-                    (Fault::Broken(reason), _) => broken(reason),
-                    (Fault::NoPosition(missing), _) => MeshFileError::NoPosition { file, missing },
-                    (Fault::TooLarge(bytes), _) => {
-                        MeshFileError::TooLarge { file, bytes, limit: options.memory_limit }
-                    }
-                    (Fault::NotALabel(number), _) => MeshFileError::NotLabels { file, number },
-                    (Fault::NoneOf(present), Some(label)) => MeshFileError::NoSuchLabel {
-                        file,
-                        label,
-                        present: present.into_iter().collect(),
-                    },
-                    (Fault::NoneOf(_), None) => MeshFileError::NothingSegmented { file },
-                }
-            },
-        )
-    };
+    let broken = |reason: String| broken(reason, path, format, bytes);
     let mut mesh = match format {
         Format::Stl => stl::read(bytes).map_err(broken),
         Format::Obj => obj::read(bytes).map_err(broken),
@@ -398,11 +428,10 @@ fn parse(
                 .map_err(broken)
         }
         #[cfg(feature = "label-maps")]
-        Format::MetaImage => surface(label_map::meta_image::read(bytes)),
-        #[cfg(feature = "label-maps")]
-        Format::Nifti => surface(label_map::nifti::read(bytes, options.allow_no_position)),
-        #[cfg(feature = "label-maps")]
-        Format::Nrrd => surface(label_map::nrrd::read(bytes, options.allow_no_position)),
+        Format::MetaImage | Format::Nifti | Format::Nrrd => volume(format, bytes, options)
+            .unwrap_or_else(|| Err(Fault::from("it has no voxels")))
+            .and_then(|volume| volume.surface(options.label, options.memory_limit))
+            .map_err(|fault| label_map_error(fault, path, format, bytes, options)),
     }?;
     if let Some(label) = options.label.filter(|_| !format.has_labels()) {
         return Err(MeshFileError::WithoutLabels { file, format: format.name(), label });
@@ -419,6 +448,54 @@ fn parse(
     }
     options.scale_all(path, &mut mesh.vertices)?;
     Ok(mesh)
+}
+
+/// Returns the error for an invalid content, or for a name that promises another format.
+fn broken(reason: String, path: &Path, format: Format, bytes: &[u8]) -> MeshFileError {
+    let (file, format) = (path.to_owned(), format.name());
+    match text::looks_like(bytes) {
+        Some(found) if found != format => MeshFileError::Misnamed { file, format, found },
+        _ => MeshFileError::Broken { file, format, reason },
+    }
+}
+
+/// Returns the voxels of a label map, or `None` for a file of triangles.
+#[cfg(feature = "label-maps")]
+fn volume<'a>(
+    format: Format,
+    bytes: &'a [u8],
+    options: &Options,
+) -> Option<Result<label_map::Volume<'a>, Fault>> {
+    match format {
+        Format::MetaImage => Some(label_map::meta_image::read(bytes)),
+        Format::Nifti => Some(label_map::nifti::read(bytes, options.allow_no_position)),
+        Format::Nrrd => Some(label_map::nrrd::read(bytes, options.allow_no_position)),
+        _ => None,
+    }
+}
+
+/// Returns the error for a label map that gives no surface.
+#[cfg(feature = "label-maps")]
+fn label_map_error(
+    fault: Fault,
+    path: &Path,
+    format: Format,
+    bytes: &[u8],
+    options: &Options,
+) -> MeshFileError {
+    let file = path.to_owned();
+    match (fault, options.label) {
+        (Fault::Broken(reason), _) => broken(reason, path, format, bytes),
+        (Fault::NoPosition(missing), _) => MeshFileError::NoPosition { file, missing },
+        (Fault::TooLarge(bytes), _) => {
+            MeshFileError::TooLarge { file, bytes, limit: options.memory_limit }
+        }
+        (Fault::NotALabel(number), _) => MeshFileError::NotLabels { file, number },
+        (Fault::NoneOf(present), Some(label)) => {
+            MeshFileError::NoSuchLabel { file, label, present: present.into_iter().collect() }
+        }
+        (Fault::NoneOf(_), None) => MeshFileError::NothingSegmented { file },
+    }
 }
 
 /// Runs the code in the README.

@@ -229,3 +229,13 @@ fn the_robot_is_pushed_recorded_and_filmed() {
         assert!(colours(name) > 1000, "{name} has {} colours", colours(name));
     }
 }
+
+#[test]
+fn a_report_holds_all_digits_of_its_query() {
+    let out = succeed("report", &[]);
+    let (_, distances) = out.trim().split_once(": ").unwrap_or_else(|| panic!("{out}"));
+    let distances: Vec<_> =
+        distances.split(", ").filter_map(|part| part.split(' ').next()).collect();
+    assert!(distances.len() == 2 && distances[0] == distances[1], "{out}");
+    assert!((2.0..10.0).contains(&distances[0].parse().unwrap()), "{out}");
+}

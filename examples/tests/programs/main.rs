@@ -2,7 +2,6 @@
 //! input a picture.
 
 mod all;
-mod my_robot;
 
 use continuum_testing::programs;
 use std::path::PathBuf;

@@ -8,12 +8,15 @@ mod voxels;
 use crate::mesh::{Frame, Mesh};
 use fast_surface_nets::ndshape::RuntimeShape;
 use fast_surface_nets::{SignedDistance, SurfaceNetsBuffer, surface_nets};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Component, PathBuf};
 use voxels::Voxels;
 
 /// The maximum number of voxels. Their indices, with a margin around the grid, fit in 32 bits.
 const MOST_VOXELS: u64 = 1 << 31;
+
+/// The maximum number of labels that are listed: the lowest ones.
+const MOST_LABELS: usize = 1000;
 
 /// Why a label map gives no surface.
 pub enum Fault {
@@ -40,6 +43,18 @@ impl From<&str> for Fault {
     fn from(reason: &str) -> Self {
         Self::Broken(reason.into())
     }
+}
+
+/// A label of a label map, and its volume.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct LabelVolume {
+    /// The label.
+    pub label: u32,
+    /// The number of voxels with this label.
+    pub voxels: u64,
+    /// Their volume in cubic millimetres, times the cube of the options' scale.
+    pub volume: f64,
 }
 
 /// A label for each voxel, the first axis fastest, and the positions of the voxels.
@@ -196,6 +211,26 @@ impl Volume<'_> {
         })
     }
 
+    /// Returns the labels except 0 with their volumes, the lowest [`MOST_LABELS`] if there are more.
+    pub fn label_volumes(&self, scale: f64) -> Result<Vec<LabelVolume>, Fault> {
+        let mut counts = BTreeMap::<u32, u64>::new();
+        self.voxels.each(&mut |labels| {
+            for run in labels.chunk_by(|a, b| a == b).filter(|run| run[0] != 0) {
+                *counts.entry(run[0]).or_default() += run.len() as u64;
+                // The kept labels only get lower, so a dropped label is dropped whenever it comes.
+                if counts.len() > MOST_LABELS {
+                    counts.pop_last();
+                }
+            }
+        })?;
+        if counts.is_empty() {
+            return Err(Fault::NoneOf(BTreeSet::new()));
+        }
+        let voxel = self.place.turn().abs() * scale.powi(3);
+        let volume = |(label, voxels)| LabelVolume { label, voxels, volume: voxels as f64 * voxel };
+        Ok(counts.into_iter().map(volume).collect())
+    }
+
     /// Passes the voxels that are inside, in order, to a function.
     fn each_inside(
         &self,
@@ -229,16 +264,15 @@ struct Labels {
 
 impl Labels {
     fn add(&mut self, label: u32) {
-        const MOST: usize = 1000;
         // Neighbours are mostly alike: skip repetitions.
         if self.before.replace(label) == Some(label) {
             return;
         }
         let present = &mut self.present;
-        if present.len() < MOST || present.last().is_some_and(|&last| label < last) {
+        if present.len() < MOST_LABELS || present.last().is_some_and(|&last| label < last) {
             present.insert(label);
         }
-        if present.len() > MOST {
+        if present.len() > MOST_LABELS {
             present.pop_last();
         }
     }

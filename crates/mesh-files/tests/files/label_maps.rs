@@ -562,3 +562,62 @@ fn voxels_in_a_file_beside_the_header_are_read() {
         refused(name, load(name), expected);
     }
 }
+
+#[test]
+fn labels_are_listed_with_the_volume_of_their_voxels() {
+    let matrix = oblique(-1.0);
+    let (voxels, _) = ball(&matrix, 9.5);
+    let list = |name: &str, bytes: &[u8], scale| {
+        mesh_files::labels_from_bytes(name, bytes, &Options::scaled(scale))
+            .map_err(|error| error.to_string())
+    };
+    let count = |label: u8| voxels.iter().filter(|&&voxel| voxel == label).count() as u64;
+    let mut nifti = Nifti::new(voxels.clone());
+    let nifti = nifti.sform(&matrix).bytes();
+    let nrrd = nrrd(&matrix, "uchar", "raw", "LPS", &voxels);
+    for (name, bytes) in [("a.nii", &nifti), ("a.nrrd", &nrrd)] {
+        let found = list(name, bytes, 1.0).unwrap();
+        let labels: Vec<_> = found.iter().map(|found| (found.label, found.voxels)).collect();
+        assert_eq!(labels, [(3, count(3)), (7, count(7))], "{name}");
+        // A voxel is 1 x 1.2 x 0.8 mm. The ball's own volume is near.
+        for found in &found {
+            let volume = 0.96 * found.voxels as f64;
+            assert!((found.volume - volume).abs() < 1e-5 * volume, "{name}: {found:?}");
+        }
+        let ball = 4.0 / 3.0 * std::f64::consts::PI * 9.5_f64.powi(3);
+        assert!((found[0].volume / ball - 1.0).abs() < 0.02, "{name}: {found:?}");
+        let halved = list(name, bytes, 0.5).unwrap();
+        assert_eq!(halved[0].volume, found[0].volume / 8.0, "{name}");
+    }
+    let triangles = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n".as_bytes();
+    refused("a.obj", list("a.obj", triangles, 1.0), "without labels (OBJ); give the segmentation");
+    let mut nothing = Nifti::new(vec![0; voxels.len()]);
+    let nothing = list("a.nii", &nothing.sform(&matrix).bytes(), 1.0);
+    refused("a.nii", nothing, "all its voxels are 0");
+    refused("a.nii", list("a.nii", &nifti[..400], 1.0), "shorter than its header says");
+    refused("a.nii", list("a.nii", &nifti, -1.0), "the scale is -1");
+}
+
+/// The lowest labels are kept, and counted in full, in whatever order they come.
+#[test]
+fn of_many_labels_the_lowest_are_listed() {
+    let count = 1500_usize;
+    let text = |labels: &[usize]| {
+        let head = "NRRD0004\ntype: ushort\ndimension: 3\nspace: LPS\nsizes: SIZE 1 1\n\
+                    space directions: (1,0,0) (0,1,0) (0,0,1)\nspace origin: (0,0,0)\n\
+                    encoding: ascii\n\n";
+        let words: Vec<_> = labels.iter().map(usize::to_string).collect();
+        head.replace("SIZE", &labels.len().to_string()) + &words.join(" ") + "\n"
+    };
+    let rising: Vec<_> = (1..=count).flat_map(|label| [label, 0]).collect();
+    // Label k comes twice: among the falling, and among the rising.
+    let both: Vec<_> = rising.iter().rev().chain(&rising).copied().collect();
+    for (labels, times) in [(rising, 1), (both, 2)] {
+        let text = text(&labels);
+        let found = mesh_files::labels_from_bytes("a.nrrd", text.as_bytes(), &Options::default());
+        let found = found.unwrap();
+        let listed: Vec<_> = found.iter().map(|found| found.label as usize).collect();
+        assert_eq!(listed, (1..=1000).collect::<Vec<_>>());
+        assert!(found.iter().all(|found| found.voxels == times), "{times}");
+    }
+}

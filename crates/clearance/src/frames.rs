@@ -1,6 +1,6 @@
 //! The frames of patients: RAS and LPS differ by half a turn about the third axis.
 
-use crate::Options;
+use crate::options::Options;
 use crate::robot::Robot;
 use crate::wall::Wall;
 use clap::ValueEnum;
@@ -37,13 +37,13 @@ pub fn half_turn() -> Pose {
     Pose::from_parts(Vector::ZERO, Rotation::from_xyzw(0.0, 0.0, 1.0, 0.0))
 }
 
-/// From which frame to which one the robot has to be turned, if it has.
+/// Returns the frame of the robot and the frame of the wall, if the two differ.
 ///
 /// # Errors
-/// An option says something else than the file, or it is not known whether to turn.
+/// An option contradicts the file, or the frame of the mesh is unknown.
 pub fn turn(my: &Options, robot: &Robot, wall: &Wall) -> Result<Option<[Frame; 2]>, String> {
     if my.pose.is_some() {
-        return Ok(None); // It leads into the frame of the mesh.
+        return Ok(None); // The pose leads into the frame of the mesh.
     }
     let asked = my.frame.map(Frame::from);
     if let (Some(stated), Some(asked)) = (robot.frame, asked)

@@ -1,18 +1,11 @@
 //! A user's own mesh, centreline and matrix: distances known by hand, and errors that say what to
 //! change.
 
-use crate::{example, refuse, succeed};
-use continuum_testing::programs::{file, room, run};
+use crate::{minimum, refuse, run, succeed};
+use continuum_testing::programs::{file, room};
 
 /// A quarter turn that brings x to y and y to -x, and a shift.
 const TURNED: &str = "0 -1 0 60\n1 0 0 0\n0 0 1 0\n0 0 0 1\n";
-
-/// What the program prints after `minimum`.
-fn minimum(arguments: &[&str]) -> f64 {
-    let out = succeed("my_robot", arguments);
-    let last = out.lines().last().and_then(|line| line.strip_prefix("minimum ")).map(str::to_owned);
-    last.unwrap_or_else(|| panic!("{out}")).parse().unwrap()
-}
 
 #[test]
 fn a_straight_robot_in_a_box_has_the_clearance_that_one_can_see() {
@@ -20,11 +13,12 @@ fn a_straight_robot_in_a_box_has_the_clearance_that_one_can_see() {
     // the sides.
     let room = &room("box.obj");
     let shape = &file("shape.csv", "x,y,z,radius\n30,30,20,2\n30,30,30,1\n30,30,40\n");
-    let out = succeed("my_robot", &["--mesh", room, "--centreline", shape]);
+    let out = succeed(&["--mesh", room, "--centreline", shape]);
     let head = "mesh: 12 triangles from [0.000, 0.000, 0.000] to [60.000, 60.000, 60.000], frame not stated, unit not stated\n\
                 base: inside the mesh\n";
     assert!(out.starts_with(head) && out.lines().count() == 5, "{out}");
     assert_eq!(minimum(&["--mesh", room, "--centreline", shape]), 20.0);
+    assert_eq!(succeed(&["--mesh", room, "--centerline", shape]), out);
     // Semicolons, no heading, one radius for all; moved to 7 from a side.
     let plain = &file("plain.csv", "\u{feff}30; 30; 20\r\n30; 30; 40\r\n\r\n");
     let moved = &file("moved.txt", "1 0 0 -21\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
@@ -33,10 +27,8 @@ fn a_straight_robot_in_a_box_has_the_clearance_that_one_can_see() {
     // Turned: (5, 30) goes to (30, 5).
     let side = &file("side.csv", "5,30,20,1\n5,30,40,1\n");
     let turned = &file("turned.txt", TURNED);
-    let out = succeed(
-        "my_robot",
-        &["--mesh", room, "--centreline", side, "--pose", turned, "--tolerance", "0.01"],
-    );
+    let out =
+        succeed(&["--mesh", room, "--centreline", side, "--pose", turned, "--tolerance", "0.01"]);
     assert!(
         out.contains(", from [30.000000, 4.000000, ") && out.contains(" to [30.000000, 0.000000, "),
         "{out}"
@@ -48,7 +40,7 @@ fn a_straight_robot_in_a_box_has_the_clearance_that_one_can_see() {
     let bounds: Vec<f64> = curve.split([' ', ',']).filter_map(|word| word.parse().ok()).collect();
     assert!(bounds[0] <= 4.0 && 4.0 <= bounds[1] && bounds[1] - bounds[0] <= 0.0100001, "{out}");
     // The files that come with the example.
-    let data = |name: &str| format!("{}/data/{name}", env!("CARGO_MANIFEST_DIR"));
+    let data = |name: &str| format!("{}/../../examples/data/{name}", env!("CARGO_MANIFEST_DIR"));
     let [wall, shape, pose] = ["wall.stl", "shape.csv", "pose.txt"].map(data);
     let readme = ["--mesh", &wall, "--centreline", &shape, "--pose", &pose];
     let clearance = minimum(&readme);
@@ -111,8 +103,8 @@ fn faces_without_area_are_said_and_change_no_distance() {
     let good = std::fs::read_to_string(room("good_faces.obj")).unwrap();
     let wall = &file("bad_faces.obj", &(good + "f 1 2\nf 3 3 3\nf 4 5 5 4\n"));
     let shape = &file("faces.csv", "30,30,20,2\n30,30,40\n");
-    let (success, out, error) = run(example("my_robot"), &["--mesh", wall, "--centreline", shape]);
-    assert!(success && out.ends_with("minimum 20.000000\n"), "{out} {error}");
+    let (status, out, error) = run(&["--mesh", wall, "--centreline", shape]);
+    assert!(status == Some(0) && out.contains("\nminimum 20.00: "), "{out} {error}");
     assert!(
         error.ends_with("bad_faces.obj: 3 faces without area\n") && error.lines().count() == 1,
         "{error}"
@@ -124,7 +116,7 @@ fn what_is_wrong_with_my_files_is_said_in_one_line() {
     let room = &room("wrong.obj");
     let shape = &file("good.csv", "30,30,20,2\n30,30,40\n");
     let refuse_shape = |text: &str, expected: &str| {
-        refuse("my_robot", &["--mesh", room, "--centreline", &file("bad.csv", text)], expected);
+        refuse(&["--mesh", room, "--centreline", &file("bad.csv", text)], expected);
     };
     for text in ["x,y,z\n30,30,20\n30,30,40\n", "30,30,20\n30,30,40\n"] {
         refuse_shape(text, "no radius; write it behind x,y,z, or give --radius");
@@ -143,7 +135,7 @@ fn what_is_wrong_with_my_files_is_said_in_one_line() {
     );
     refuse_shape("30,30,20,2\n30,30,30\n30,30,40\n", "line 2 of ");
     let radius = ["--mesh", room, "--centreline", shape, "--radius", "1"];
-    refuse("my_robot", &radius, "has a column of radii; leave out --radius");
+    refuse(&radius, "has a column of radii; leave out --radius");
     refuse_shape("30,30,20,1\n", "point");
     refuse_shape("30,30,20,-1\n30,30,40\n", "radius 0 is -1");
     refuse_shape("30,30,20,1\n30,30,40,-1\n", "the radius of the last point is -1");
@@ -168,12 +160,8 @@ fn what_is_wrong_with_my_files_is_said_in_one_line() {
         let missing = file("missing.csv", text);
         for radius in [&["--radius", "0.5"][..], &[]] {
             let arguments = [&["--mesh", room, "--centreline", &missing][..], radius].concat();
-            refuse("my_robot", &arguments, &format!("line {line} of "));
-            refuse(
-                "my_robot",
-                &arguments,
-                &format!("in column {column}; write x,y,z or x,y,z,radius"),
-            );
+            refuse(&arguments, &format!("line {line} of "));
+            refuse(&arguments, &format!("in column {column}; write x,y,z or x,y,z,radius"));
         }
     }
     // Columns that their heading names otherwise.
@@ -184,7 +172,7 @@ fn what_is_wrong_with_my_files_is_said_in_one_line() {
     refuse_shape("30 30,20\n30,30,40\n", "has '30 30' in column 1");
     let refuse_pose = |text: &str, expected: &str| {
         let pose = file("bad.txt", text);
-        refuse("my_robot", &["--mesh", room, "--centreline", shape, "--pose", &pose], expected);
+        refuse(&["--mesh", room, "--centreline", shape, "--pose", &pose], expected);
     };
     refuse_pose("1 0 0 0\n0 1 0 0\n0 0 1 0\n", "--pose needs 4 lines of 4 numbers");
     refuse_pose("1 0 0\n0 1 0\n0 0 1\n", "write 4 numbers");
@@ -200,8 +188,8 @@ fn what_is_wrong_with_my_files_is_said_in_one_line() {
     refuse_pose(&TURNED.replace("-1", "-0.5"), "right angles by 0.75");
     refuse_pose("0 -1e3 0 60\n1e3 0 0 0\n0 0 1e3 0\n0 0 0 1\n", "scales by 1000");
     refuse_pose(&TURNED.replace("60", "nan"), "row 1, column 4");
-    refuse("my_robot", &["--mesh", room, "--centreline", "nowhere.csv"], "cannot read nowhere.csv");
-    refuse("my_robot", &["--mesh", "nowhere.stl", "--centreline", shape], "check the path");
+    refuse(&["--mesh", room, "--centreline", "nowhere.csv"], "cannot read nowhere.csv");
+    refuse(&["--mesh", "nowhere.stl", "--centreline", shape], "check the path");
     for (option, wrong, expected) in [
         ("--radius", "wide", "write a number"),
         ("--radius", "-1", "write a number that is at least 0"),
@@ -212,22 +200,24 @@ fn what_is_wrong_with_my_files_is_said_in_one_line() {
         ("--tolerance", "nan", "write a number greater than 0"),
         ("--label", "left", "write a whole number"),
     ] {
-        let (success, _, error) =
-            run(example("my_robot"), &["--mesh", room, "--centreline", shape, option, wrong]);
-        assert!(!success && error.contains(expected), "{error}");
+        let (status, _, error) = run(&["--mesh", room, "--centreline", shape, option, wrong]);
+        assert!(status == Some(2) && error.contains(expected), "{error}");
+        assert!(error.lines().count() == 1, "{error}");
     }
+    refuse(&["--mesh", room], "--centreline <FILE>");
+    refuse(&["--centreline", shape], "--mesh <FILE>");
+    refuse(&["--mesh", room, "--centerlin", shape], "a similar argument exists: '--centerline'");
+    refuse(&["--mesh", room, "--centreline", shape, "--frame", "xyz"], "lps, ras");
+    let both = ["--mesh", room, "--centreline", shape, "--shapes", shape];
+    refuse(&both, "cannot be used with '--shapes <FILE>'");
     #[cfg(unix)]
-    refuse(
-        "my_robot",
-        &["--mesh", "/dev/zero", "--centreline", shape],
-        "ends in .stl, .obj or .ply",
-    );
+    refuse(&["--mesh", "/dev/zero", "--centreline", shape], "ends in .stl, .obj or .ply");
 }
 
 /// What is printed as a warning beside an answer.
 fn warnings(arguments: &[&str]) -> Vec<String> {
-    let (success, out, error) = run(example("my_robot"), arguments);
-    assert!(success && out.contains("minimum "), "{out} {error}");
+    let (status, out, error) = run(arguments);
+    assert!(status == Some(0) && out.contains("minimum "), "{out} {error}");
     error.lines().filter_map(|line| line.strip_prefix("warning: ")).map(str::to_owned).collect()
 }
 
@@ -269,16 +259,11 @@ fn a_robot_in_another_frame_or_unit_is_doubted_and_the_remedy_works() {
         {"position": [-30, -30, 20]}, {"position": [-30, -30, 40]}]}]}"#;
     let curve = &file("frames.mrk.json", curve);
     let arguments = ["--mesh", wall, "--centreline", curve, "--radius", "2"];
-    refuse(
-        "my_robot",
-        &arguments,
-        "does not say whether it is LPS or RAS; say it with --mesh-frame",
-    );
+    refuse(&arguments, "does not say whether it is LPS or RAS; say it with --mesh-frame");
     let arguments = [&arguments[..], &["--mesh-frame", "ras"]].concat();
-    assert!(succeed("my_robot", &arguments).contains("robot: turned from LPS to RAS\n"));
+    assert!(succeed(&arguments).contains("robot: turned from LPS to RAS\n"));
     assert_eq!(minimum(&arguments), 10.0);
     refuse(
-        "my_robot",
         &[&arguments[..], &["--frame", "ras"]].concat(),
         "says that it is LPS; leave out --frame",
     );
@@ -288,16 +273,13 @@ fn a_robot_in_another_frame_or_unit_is_doubted_and_the_remedy_works() {
 fn the_base_is_told_to_be_inside_or_outside_and_a_unit_that_is_not_known() {
     let wall = &room("base.obj");
     let beside = &file("beside.csv", "70,30,20,1\n70,30,40\n");
-    let out = succeed("my_robot", &["--mesh", wall, "--centreline", beside]);
+    let out = succeed(&["--mesh", wall, "--centreline", beside]);
     assert!(
-        out.contains("\nbase: outside the mesh\n") && out.ends_with("minimum 9.000000\n"),
+        out.contains("\nbase: outside the mesh\n") && out.contains("\nminimum 9.000: link 0"),
         "{out}"
     );
     let on = &file("on.csv", "60,30,20,1\n70,30,20\n");
-    assert!(
-        succeed("my_robot", &["--mesh", wall, "--centreline", on])
-            .contains("\nbase: on the mesh, or ")
-    );
+    assert!(succeed(&["--mesh", wall, "--centreline", on]).contains("\nbase: on the mesh, or "));
     // Two voxels of an NRRD file; its unit is that of the scanner, or nothing.
     let organ = "NRRD0004\ntype: uchar\ndimension: 3\nspace: left-posterior-superior\nsizes: 2 1 1\n\
                  space directions: (20,0,0) (0,20,0) (0,0,20)\nUNITS\nspace origin: (0,0,0)\nencoding: ascii\n\n1 1\n";
@@ -305,12 +287,12 @@ fn the_base_is_told_to_be_inside_or_outside_and_a_unit_that_is_not_known() {
         [("known", "space units: \"mm\" \"mm\" \"mm\""), ("unknown", "# of nothing")]
             .map(|(name, units)| file(&format!("{name}.nrrd"), &organ.replace("UNITS", units)));
     let inside = &file("inside.csv", "0,0,0,1\n20,0,0\n");
-    let out = succeed("my_robot", &["--mesh", &known, "--centreline", inside]);
+    let out = succeed(&["--mesh", &known, "--centreline", inside]);
     assert!(out.contains(", frame LPS, unit mm\nbase: inside"), "{out}");
-    let out = succeed("my_robot", &["--mesh", &unknown, "--centreline", inside]);
+    let out = succeed(&["--mesh", &unknown, "--centreline", inside]);
     assert!(out.contains(", frame LPS, unit not stated\n"), "{out}");
     let options = ["--mesh", &known, "--centreline", inside, "--mesh-frame", "ras"];
-    refuse("my_robot", &options, "says that it is LPS; leave out --mesh-frame");
+    refuse(&options, "says that it is LPS; leave out --mesh-frame");
 }
 
 #[test]
@@ -318,7 +300,7 @@ fn many_shapes_give_a_line_each() {
     let wall = &room("many.obj");
     let shapes = "shape,x,y,z,radius\n1,30,30,20,2\n1,30,30,40\n7,30,30,10,1\n7,30,30,30\n8,30,30,20,1\n8,nan,30,30\n";
     let shapes = &file("many.csv", shapes);
-    let out = succeed("my_robot", &["--mesh", wall, "--shapes", shapes]);
+    let out = succeed(&["--mesh", wall, "--shapes", shapes]);
     let lines: Vec<_> = out.lines().collect();
     assert!(
         lines.len() == 4 && lines[0].starts_with("shape,distance,arc_length,segment,triangle,"),
@@ -327,28 +309,24 @@ fn many_shapes_give_a_line_each() {
     assert!(lines[1].starts_with("1,20,") && lines[2].starts_with("7,10,0,0,"), "{out}");
     assert!(lines[3].starts_with("8,,") && lines[3].contains("point 1"), "{out}");
     assert!(lines.iter().all(|line| line.split(',').count() >= 12), "{out}");
-    let out = succeed("my_robot", &["--mesh", wall, "--shapes", shapes, "--json"]);
+    let out = succeed(&["--mesh", wall, "--shapes", shapes, "--json"]);
     let objects: serde_json::Value = serde_json::from_str(&out).unwrap();
     assert_eq!(objects[1]["minimum"]["distance"], 10.0);
     assert!(objects[2]["error"].as_str().unwrap().contains("point 1"));
     refuse(
-        "my_robot",
         &["--mesh", wall, "--shapes", &file("few.csv", "1,30,30\n")],
         "write shape,x,y,z or shape,x,y,z,radius",
     );
-    refuse("my_robot", &["--mesh", wall, "--shapes", &file("none.csv", "\n")], "has no points");
+    refuse(&["--mesh", wall, "--shapes", &file("none.csv", "\n")], "has no points");
     let headed = file("headed.csv", "shape,y,x,z\n1,30,30,20\n");
-    refuse("my_robot", &["--mesh", wall, "--shapes", &headed], "has 'y' in column 2");
+    refuse(&["--mesh", wall, "--shapes", &headed], "has 'y' in column 2");
 }
 
 #[test]
 fn json_holds_all_of_it() {
     let wall = &room("json.obj");
     let shape = &file("json.csv", "30,30,20,2\n30,30,30,1\n30,30,40\n");
-    let out = succeed(
-        "my_robot",
-        &["--mesh", wall, "--centreline", shape, "--tolerance", "0.1", "--json"],
-    );
+    let out = succeed(&["--mesh", wall, "--centreline", shape, "--tolerance", "0.1", "--json"]);
     let report: serde_json::Value = serde_json::from_str(&out).unwrap();
     assert!(report["mesh"]["triangles"] == 12 && report["mesh"]["frame"].is_null());
     assert!(
@@ -364,13 +342,13 @@ fn the_minimum_is_printed_whatever_becomes_of_the_curve() {
     let wall = &room("sharp.obj");
     // It turns back on itself.
     let shape = &file("sharp.csv", "30,30,20,2\n30,30,40,2\n30,31,20\n");
-    let (success, out, error) =
-        run(example("my_robot"), &["--mesh", wall, "--centreline", shape, "--tolerance", "0.1"]);
-    assert!(!success && out.ends_with("minimum 18.000000\n"), "{out}");
+    let (status, out, error) = run(&["--mesh", wall, "--centreline", shape, "--tolerance", "0.1"]);
+    assert!(status == Some(2) && out.contains("\nminimum 18.00: link "), "{out}");
     assert!(
         error.starts_with("error: no bounds for the curve: ") && error.lines().count() == 1,
         "{error}"
     );
+    assert!(error.contains("leave out --tolerance for a robot of straight links"), "{error}");
 }
 
 #[test]
@@ -380,19 +358,95 @@ fn a_line_of_vtk_is_a_robot() {
                LINES 3 4\nOFFSETS vtktypeint64\n0 2 4\nCONNECTIVITY vtktypeint64\n0 1 2 3\n";
     let line = &file("line.vtk", vtk);
     let asked = ["--mesh", wall, "--centreline", line, "--radius", "2"];
-    refuse("my_robot", &asked, "holds 2 lines; choose one from 0 to 1");
+    refuse(&asked, "holds 2 lines; choose one from 0 to 1");
     assert_eq!(minimum(&[&asked[..], &["--line", "1"]].concat()), 10.0);
-    refuse("my_robot", &["--mesh", wall, "--centreline", line, "--line", "1"], "give --radius");
+    refuse(&["--mesh", wall, "--centreline", line, "--line", "1"], "give --radius");
     let shape = &file("line.csv", "30,30,20,2\n30,30,40\n");
-    refuse("my_robot", &["--mesh", wall, "--centreline", shape, "--line", "1"], "leave out --line");
+    refuse(&["--mesh", wall, "--centreline", shape, "--line", "1"], "leave out --line");
+}
+
+/// The last line names the link, its place and the triangle, with the unit if a file states it.
+#[test]
+fn the_last_line_names_the_place() {
+    let last = |wall: &str, shape: &str| {
+        let out = succeed(&["--mesh", wall, "--centreline", shape]);
+        out.lines().last().unwrap().to_owned()
+    };
+    // The sheet x = 0. The corner between the two links is nearest: 6.034 from it, and 17.94 from
+    // the base.
+    let sheet = |scale: f64| {
+        let corners = [[0, -9, -9], [0, 90, -9], [0, -9, 90], [0, 90, 90]];
+        let vertex = |v: [i32; 3]| {
+            let [x, y, z] = v.map(|x| f64::from(x) * scale);
+            format!("v {x} {y} {z}\n")
+        };
+        corners.map(vertex).concat() + "f 2 3 4\nf 1 2 3\n"
+    };
+    let shape = |scale: f64| {
+        let point = |p: [f64; 3]| {
+            let [x, y, z] = p.map(|x| x * scale);
+            format!("{x},{y},{z},{}\n", 0.5 * scale)
+        };
+        [[9.034, 1.0, 1.0], [6.534, 1.0, 18.764], [9.034, 1.0, 30.0]].map(point).concat()
+    };
+    for (name, scale, expected) in [
+        ("one", 1.0, "minimum 6.034: link 0, 17.9 from the base, triangle 1"),
+        ("metres", 1e-3, "minimum 0.006034: link 0, 0.0179 from the base, triangle 1"),
+        ("tiny", 1e-9, "minimum 6.034e-9: link 0, 1.79e-8 from the base, triangle 1"),
+        ("huge", 1e9, "minimum 6.034e9: link 0, 1.79e10 from the base, triangle 1"),
+    ] {
+        let wall = file(&format!("last_{name}.obj"), &sheet(scale));
+        let shape = file(&format!("last_{name}.csv"), &shape(scale));
+        assert_eq!(last(&wall, &shape), expected);
+    }
+    // A voxel of 20 mm around the origin: its surface reaches at most 10 mm from the centre, and the
+    // robot's side is 29 mm from it.
+    let organ = "NRRD0004\ntype: uchar\ndimension: 3\nspace: left-posterior-superior\nsizes: 1 1 1\n\
+                 space directions: (20,0,0) (0,20,0) (0,0,20)\nspace units: \"mm\" \"mm\" \"mm\"\n\
+                 space origin: (0,0,0)\nencoding: ascii\n\n1\n";
+    let line = last(&file("last.nrrd", organ), &file("last.csv", "-5,0,30,1\n5,0,30\n"));
+    let (distance, place) = line.split_once(": ").unwrap();
+    let distance: f64 =
+        distance.strip_prefix("minimum ").unwrap().strip_suffix(" mm").unwrap().parse().unwrap();
+    assert!((19.0..29.0).contains(&distance), "{line}");
+    assert!(
+        place.starts_with("link 0, ") && place.contains(" mm from the base, triangle "),
+        "{line}"
+    );
 }
 
 #[test]
-fn a_report_holds_all_digits_of_its_query() {
-    let out = succeed("report", &[]);
-    let (_, distances) = out.trim().split_once(": ").unwrap_or_else(|| panic!("{out}"));
-    let distances: Vec<_> =
-        distances.split(", ").filter_map(|part| part.split(' ').next()).collect();
-    assert!(distances.len() == 2 && distances[0] == distances[1], "{out}");
-    assert!((2.0..10.0).contains(&distances[0].parse().unwrap()), "{out}");
+fn a_radius_in_another_unit_is_doubted_and_the_remedy_works() {
+    let wall = &room("radius_wall.obj");
+    let plain = &file("radius_plain.csv", "30,30,20\n30,30,40\n");
+    let metres = &file("radius_metres.csv", "0.030,0.030,0.020\n0.030,0.030,0.040\n");
+    let asked = ["--mesh", wall, "--centreline", plain, "--radius"];
+    for good in ["0.5", "2", "0.03", "0"] {
+        assert_eq!(warnings(&[&asked[..], &[good]].concat()), [""; 0], "{good}");
+    }
+    for (radius, size) in
+        [("50", "large"), ("0.005", "small"), ("500", "large"), ("0.0005", "small")]
+    {
+        let said = warnings(&[&asked[..], &[radius]].concat());
+        let expected = format!("the radius {radius} is {size} beside the mesh's box");
+        let said = said.iter().find(|line| line.contains(&expected));
+        let said = said.unwrap_or_else(|| panic!("{radius}: {said:?}"));
+        let remedy = said.split("--radius ").nth(1).and_then(|rest| rest.split(' ').next());
+        assert_eq!(remedy.unwrap().parse(), Ok(0.5), "{said}");
+    }
+    // --scale does not multiply --radius.
+    let scaled = ["--mesh", wall, "--centreline", metres, "--scale", "1000", "--radius"];
+    let said = warnings(&[&scaled[..], &["0.0005"]].concat());
+    assert!(said.len() == 1 && said[0].contains("--radius 0.5"), "{said:?}");
+    assert_eq!(warnings(&[&scaled[..], &["0.5"]].concat()), [""; 0]);
+    // Radii in the file: in the unit of the file. A wrong scale is one doubt, not two.
+    let table = |name: &str, text: &str| file(&format!("radius_{name}.csv"), text);
+    let both = &table("both", "0.030,0.030,0.020,0.0005\n0.030,0.030,0.040\n");
+    let said = warnings(&["--mesh", wall, "--centreline", both]);
+    assert!(said.iter().all(|line| !line.contains("radius")), "{said:?}");
+    let mixed = &table("mixed", "0.030,0.030,0.020,0.5\n0.030,0.030,0.040\n");
+    let said = warnings(&["--mesh", wall, "--centreline", mixed, "--scale", "1000"]);
+    let expected = "a radius of 0.0005 in the file would be usual";
+    assert!(said.len() == 1 && said[0].contains(expected), "{said:?}");
+    assert_eq!(warnings(&["--mesh", wall, "--centreline", both, "--scale", "1000"]), [""; 0]);
 }

@@ -1,51 +1,52 @@
-//! The robot from a file: points, radii, and the frame where the file says.
+//! The robot from a file: points, radii, and the frame if the file states it.
 
-use crate::Options;
+use crate::messages;
+use crate::options::Options;
 use mesh_files::{Centreline, Frame};
 use parry_continuum::parry::math::Vector;
-use std::{error::Error, path::Path};
+use std::path::Path;
 
 pub struct Robot {
-    /// The number of the shape in its file.
+    /// The number of the shape in its file; 0 for a centreline.
     pub number: f64,
     pub points: Vec<Vector>,
     /// One for each segment between two points.
     pub radii: Vec<f64>,
+    /// Whether the radii are in the file: --scale then multiplies them.
+    pub has_own_radii: bool,
     pub frame: Option<Frame>,
+    /// The number of points in the file that are left out, because they have no position.
+    pub skipped_points: usize,
 }
 
-/// One robot.
-pub fn centreline(path: &Path, my: &Options) -> Result<Robot, Box<dyn Error>> {
+/// Reads one robot.
+pub fn centreline(path: &Path, my: &Options) -> Result<Robot, String> {
     let name = path.to_string_lossy().to_ascii_lowercase();
     if my.line.is_some() && ![".vtp", ".vtk", ".json"].iter().any(|end| name.ends_with(end)) {
-        return Err(format!("{} holds one robot; leave out --line", path.display()).into());
+        return Err(format!("{} holds one robot; leave out --line", path.display()));
     }
     let options = mesh_files::Options::scaled(my.scale.unwrap_or(1.0)).with_line(my.line);
-    let line = mesh_files::load_centreline(path, &options)?;
-    if line.skipped_points > 0 {
-        eprintln!(
-            "note: left out of {}: {} points without a place",
-            path.display(),
-            line.skipped_points
-        );
-    }
-    Ok(robot(0.0, line, path, my)?)
+    let line =
+        mesh_files::load_centreline(path, &options).map_err(|error| messages::of_file(&error))?;
+    robot(0.0, line, path, my)
 }
 
-/// Many robots, one after the other.
-pub fn shapes(path: &Path, my: &Options) -> Result<Vec<Robot>, Box<dyn Error>> {
+/// Reads many robots.
+pub fn shapes(path: &Path, my: &Options) -> Result<Vec<Robot>, String> {
     let options = mesh_files::Options::scaled(my.scale.unwrap_or(1.0));
-    let shapes = mesh_files::load_shapes(path, &options)?;
+    let shapes =
+        mesh_files::load_shapes(path, &options).map_err(|error| messages::of_file(&error))?;
     let of = |(number, line)| {
         robot(number, line, path, my).map_err(|error| format!("shape {number}: {error}"))
     };
-    Ok(shapes.into_iter().map(of).collect::<Result<_, _>>()?)
+    shapes.into_iter().map(of).collect()
 }
 
 fn robot(number: f64, line: Centreline, path: &Path, my: &Options) -> Result<Robot, String> {
     let file = path.display();
     let points: Vec<Vector> = line.points.into_iter().map(Vector::from).collect();
     let segments = points.len().saturating_sub(1);
+    let has_own_radii = line.radii.is_some();
     let radii = match (line.radii, my.radius) {
         (Some(radii), None) => radii,
         (None, Some(radius)) => vec![radius; segments],
@@ -54,9 +55,11 @@ fn robot(number: f64, line: Centreline, path: &Path, my: &Options) -> Result<Rob
         }
         (None, None) => {
             return Err(format!(
-                "{file} has no radius; write it behind x,y,z, or give --radius (radii of a vessel are not read)"
+                "{file} has no radius; write it behind x,y,z, or give --radius (radii of a vessel \
+                 are not read)"
             ));
         }
     };
-    Ok(Robot { number, points, radii, frame: line.frame })
+    let Centreline { frame, skipped_points, .. } = line;
+    Ok(Robot { number, points, radii, has_own_radii, frame, skipped_points })
 }

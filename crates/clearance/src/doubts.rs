@@ -1,0 +1,62 @@
+//! What looks like a mistake, though an answer exists: a robot in another frame or unit than the
+//! wall, or a radius in another unit. The remedy is in the words of the options.
+
+use crate::number::short;
+use crate::options::Options;
+use crate::robot::Robot;
+use crate::wall::Wall;
+use mesh_files::{Bounds, Change, Frame, misfits, radius_doubt};
+use parry_continuum::parry::math::{Pose, Vector};
+
+/// Returns one line for each doubt.
+pub fn doubts(my: &Options, robots: &[Robot], wall: &Wall, pose: &Pose) -> Vec<String> {
+    let bounds = Bounds { low: wall.bounds.mins.into(), high: wall.bounds.maxs.into() };
+    // The box of all robots, changed and moved.
+    let around = |change: Change| {
+        let points = robots.iter().flat_map(|robot| &robot.points);
+        let placed = |point: &Vector| *pose * Vector::from(change.apply((*point).into()));
+        Bounds::of_balls(points.map(|point| (placed(point).into(), 0.0)))
+    };
+    // A frame that is stated by file or option is not wrong.
+    let states_frame = my.frame.is_some() || robots.iter().any(|robot| robot.frame.is_some());
+    let may_turn = my.pose.is_none() && !states_frame;
+    let misfits = misfits(around, &bounds, may_turn);
+    let scale = misfits.remedy.map_or(1.0, |remedy| remedy.scale);
+    let mut doubts = misfits.with_remedy(|change| options(change, my, wall));
+    doubts.extend(radius_in_another_unit(my, robots, scale, &bounds));
+    doubts
+}
+
+/// Returns the options that make a change.
+fn options(change: Change, my: &Options, wall: &Wall) -> String {
+    let scale = (change.scale != 1.0)
+        .then(|| format!("--scale {}", change.scale * my.scale.unwrap_or(1.0)));
+    let turn = change.turns.then(|| match wall.frame {
+        Some(Frame::Ras) => "--frame lps",
+        Some(_) => "--frame ras",
+        None => "--frame lps --mesh-frame ras",
+    });
+    scale.into_iter().chain(turn.map(str::to_owned)).collect::<Vec<_>>().join(" ")
+}
+
+/// Doubts the largest radius, as it would be after the robot is scaled.
+fn radius_in_another_unit(
+    my: &Options,
+    robots: &[Robot],
+    scale: f64,
+    wall: &Bounds,
+) -> Option<String> {
+    let robot = robots.iter().find(|robot| !robot.radii.is_empty())?;
+    let radii = robots.iter().flat_map(|robot| &robot.radii).copied();
+    let largest = radii.filter(|radius| radius.is_finite()).fold(0.0, f64::max);
+    let radius = largest * if robot.has_own_radii { scale } else { 1.0 };
+    let found = radius_doubt(radius, wall)?;
+    let usual = radius * found.factor;
+    let remedy = if robot.has_own_radii {
+        let in_file = short(usual / (scale * my.scale.unwrap_or(1.0)));
+        format!("a radius of {in_file} in the file would be usual")
+    } else {
+        format!("--radius {} would be usual", short(usual))
+    };
+    Some(format!("{}: {remedy}", found.doubt))
+}

@@ -1,0 +1,142 @@
+//! The command's options, and its usage errors in one line.
+
+use crate::frames::Axes;
+use clap::Parser;
+use std::path::PathBuf;
+
+/// How far is a continuum robot from a wall, link by link?
+///
+/// All lengths are in the unit of the mesh. Links, segments, triangles and lines count from 0.
+#[derive(Parser)]
+#[command(name = "clearance", version, after_help = EXIT_STATUS)]
+pub struct Options {
+    /// The wall: an STL, OBJ, PLY, .vtp or .vtk file, or a segmentation in NIfTI, NRRD or
+    /// MetaImage (in millimetres)
+    #[arg(long, value_name = "FILE")]
+    pub mesh: PathBuf,
+    /// The label of the wall in a segmentation [default: all that are not 0, as one wall]
+    #[arg(long, value_name = "NUMBER", value_parser = |s: &str| whole::<u32>(s))]
+    pub label: Option<u32>,
+    /// List the labels of the segmentation with their volumes, and stop
+    #[arg(long, conflicts_with_all = ["centreline", "shapes"])]
+    pub labels: bool,
+    /// Accept a segmentation that states the spacing of its voxels but not their position: its
+    /// first voxel becomes the origin
+    #[arg(long)]
+    pub allow_no_position: bool,
+    /// Points along the robot, from base to tip. A text file (.csv, .tsv, .txt, .dat) has a line
+    /// for each point: x,y,z and optionally the radius of the segment that begins there; a heading
+    /// and lines that begin with # are skipped. Or a .vtp, .vtk or .mrk.json file
+    #[arg(
+        long,
+        visible_alias = "centerline",
+        value_name = "FILE",
+        required_unless_present_any = ["shapes", "labels"]
+    )]
+    pub centreline: Option<PathBuf>,
+    /// The line to take from a .vtp, .vtk or .mrk.json file with several. A list of fiducials needs
+    /// it too
+    #[arg(long, value_name = "NUMBER", value_parser = |s: &str| whole::<usize>(s))]
+    pub line: Option<usize>,
+    /// Many robots instead of one: lines of shape,x,y,z and optionally the radius. Consecutive
+    /// lines with the same number of a shape are one robot. Prints CSV, a line for each shape
+    #[arg(
+        long,
+        value_name = "FILE",
+        conflicts_with_all = ["centreline", "tolerance", "plot", "prove"]
+    )]
+    pub shapes: Option<PathBuf>,
+    /// The radius of all segments, in the unit of the mesh, if the file has none
+    #[arg(long, value_name = "LENGTH", allow_negative_numbers = true, value_parser = length)]
+    pub radius: Option<f64>,
+    /// Multiply the robot's coordinates and the radii in its file (not --radius), for example by
+    /// 1000 for metres to millimetres
+    #[arg(long, value_name = "FACTOR", allow_negative_numbers = true, value_parser = positive)]
+    pub scale: Option<f64>,
+    /// The frame of the centreline, if it is not the frame of the mesh and the file does not state
+    /// it. x and y change sign between the two
+    #[arg(long, conflicts_with = "pose")]
+    pub frame: Option<Axes>,
+    /// The frame of the mesh, if its file does not state it
+    #[arg(long, value_name = "FRAME")]
+    pub mesh_frame: Option<Axes>,
+    /// A file with a 4x4 matrix, row by row, that brings the robot into the frame of the mesh
+    #[arg(long, value_name = "FILE")]
+    pub pose: Option<PathBuf>,
+    /// Decide whether the robot is farther than this from the wall everywhere: a line with the
+    /// verdict, and exit status 1 if it is not
+    #[arg(long, value_name = "LENGTH", allow_negative_numbers = true, value_parser = length)]
+    pub margin: Option<f64>,
+    /// Also bound the clearance of the smooth curve through the points, between two bounds at most
+    /// this far apart. --margin and --prove are then about the curve
+    #[arg(long, value_name = "LENGTH", allow_negative_numbers = true, value_parser = positive)]
+    pub tolerance: Option<f64>,
+    /// Draw the clearance along the robot into an SVG file
+    #[arg(long, value_name = "FILE", value_parser = svg)]
+    pub plot: Option<PathBuf>,
+    /// Write a CSV file with a line for each link, or for each shape of --shapes
+    #[arg(long, value_name = "FILE")]
+    pub csv: Option<PathBuf>,
+    /// Write a proof that the robot keeps --margin, and beside it the mesh as FILE.obj. Prints the
+    /// command that checks the two
+    #[arg(long, value_name = "FILE", requires = "margin", value_parser = proof)]
+    pub prove: Option<PathBuf>,
+    /// Print JSON, with all digits
+    #[arg(long)]
+    pub json: bool,
+}
+
+const EXIT_STATUS: &str = "Exit status: 0, or 1 if --margin is not kept or cannot be proven, \
+                           or 2 after an error.";
+
+impl Options {
+    /// Reads the command line. Help goes to standard output; a usage error is one line on standard
+    /// error, and exit status 2.
+    pub fn read() -> Self {
+        Self::try_parse().unwrap_or_else(|error| {
+            if error.use_stderr() {
+                eprintln!("{} (--help lists the options)", in_one_line(&error.to_string()));
+                std::process::exit(2);
+            }
+            error.exit()
+        })
+    }
+}
+
+/// Returns the first paragraph of an error of clap, and its tip.
+fn in_one_line(text: &str) -> String {
+    let mut lines = text.lines().map(str::trim);
+    let paragraph: Vec<_> = lines.by_ref().take_while(|line| !line.is_empty()).collect();
+    let tip = lines.find_map(|line| line.strip_prefix("tip: ")).map(|tip| format!("; {tip}"));
+    paragraph.join(" ") + &tip.unwrap_or_default()
+}
+
+fn whole<T: std::str::FromStr>(text: &str) -> Result<T, &'static str> {
+    text.parse().map_err(|_| "write a whole number of at least 0")
+}
+
+fn length(text: &str) -> Result<f64, &'static str> {
+    let length = text.parse().ok().filter(|length| (0.0..f64::INFINITY).contains(length));
+    length.ok_or("write a number that is at least 0, with a point for decimals")
+}
+
+fn positive(text: &str) -> Result<f64, &'static str> {
+    let number = text.parse().ok().filter(|&number| number > 0.0 && number < f64::INFINITY);
+    number.ok_or("write a number greater than 0, with a point for decimals")
+}
+
+fn svg(text: &str) -> Result<PathBuf, &'static str> {
+    let path = PathBuf::from(text);
+    let is_svg = path.extension().is_some_and(|end| end.eq_ignore_ascii_case("svg"));
+    if is_svg { Ok(path) } else { Err("write a name that ends in .svg") }
+}
+
+fn proof(text: &str) -> Result<PathBuf, &'static str> {
+    let path = PathBuf::from(text);
+    let is_mesh = path.extension().is_some_and(|end| end.eq_ignore_ascii_case("obj"));
+    if path.file_stem().is_none() || is_mesh {
+        Err("write the name of a file, such as proof.txt; the mesh is written beside it as .obj")
+    } else {
+        Ok(path)
+    }
+}

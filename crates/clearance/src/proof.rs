@@ -1,0 +1,44 @@
+//! The proof of a margin, and the mesh, as files for `docs/book/check_proof.py`.
+
+use crate::outputs;
+use parry_continuum::proximity::{BvhSearch, Proof, Proximity};
+use std::path::{Path, PathBuf};
+
+/// The checker, from the root of the repository.
+const CHECKER: &str = "docs/book/check_proof.py";
+
+/// Writes the proof and its mesh, and returns the command that checks them.
+pub fn write(path: &Path, proof: &Proof, search: &BvhSearch) -> Result<String, String> {
+    let mesh = outputs::mesh_path(path);
+    outputs::write("--prove", &mesh, &obj(search))?;
+    outputs::write("--prove", path, &proof.to_string())?;
+    let words = [checker().as_path(), &mesh, path].map(quoted);
+    Ok(format!("python3 {}", words.join(" ")))
+}
+
+/// Returns the mesh of an engine as a Wavefront OBJ file. `{:?}` writes a number so that it is read
+/// as the same double.
+fn obj(search: &BvhSearch) -> String {
+    let vertices = search.vertices().iter().map(|v| format!("v {:?} {:?} {:?}\n", v.x, v.y, v.z));
+    let faces =
+        search.triangles().iter().map(|[a, b, c]| format!("f {} {} {}\n", a + 1, b + 1, c + 1));
+    vertices.chain(faces).collect()
+}
+
+/// Returns the path of the checker: in this directory, or in the repository that this command was
+/// built from.
+fn checker() -> PathBuf {
+    let repository = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2);
+    let built_from = repository.map(|root| root.join(CHECKER)).filter(|path| path.exists());
+    match built_from {
+        Some(path) if !Path::new(CHECKER).exists() => path,
+        _ => CHECKER.into(),
+    }
+}
+
+/// Quotes a path for a shell, if it needs that.
+fn quoted(path: &Path) -> String {
+    let text = path.display().to_string();
+    let is_plain = |c: char| c.is_alphanumeric() || "/._-\\:".contains(c);
+    if text.chars().all(is_plain) { text } else { format!("'{}'", text.replace('\'', r"'\''")) }
+}

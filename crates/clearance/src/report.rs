@@ -1,0 +1,104 @@
+//! The report about one robot, as lines or as JSON.
+
+use crate::frames::name;
+use crate::number::length;
+use crate::single::Proven;
+use crate::verdict::{Verdict, side};
+use crate::wall::Wall;
+use mesh_files::Frame;
+use parry_continuum::proximity::{Clearance, LinkProximity, Proximity, Side, Witness};
+use serde_json::json;
+
+pub struct Report<'a> {
+    pub wall: &'a Wall,
+    /// The frames of robot and wall, if the robot was turned from one to the other.
+    pub turned: Option<[Frame; 2]>,
+    pub base: Side,
+    pub links: Vec<LinkProximity>,
+    pub curve: Option<Clearance>,
+    pub minimum: LinkProximity,
+    pub verdict: Option<Verdict>,
+    pub proven: Option<Proven>,
+    pub doubts: &'a [String],
+}
+
+impl Report<'_> {
+    /// Returns the report as lines. The last line is the minimum.
+    pub fn lines(&self) -> String {
+        let unit = self.wall.unit();
+        let mut lines = vec![format!("mesh: {}", self.wall.describe())];
+        if let Some([from, to]) = self.turned {
+            lines.push(format!("robot: turned from {} to {}", name(from), name(to)));
+        }
+        lines.push(format!("base: {}", side(self.base)));
+        let link = |found: &LinkProximity| {
+            let Witness { on_robot, on_mesh, .. } = found.witness;
+            let LinkProximity { link, distance, .. } = found;
+            format!("link {link}: {distance:.6}, from {on_robot:.6} to {on_mesh:.6}")
+        };
+        lines.extend(self.links.iter().map(link));
+        if let Some(curve) = &self.curve {
+            let doubt = if curve.resolved { "" } else { ", farther apart than --tolerance" };
+            let Clearance { lower, upper, .. } = curve;
+            let place = curve.witness.arc_length;
+            lines.push(format!("curve: {lower:.6} to {upper:.6}, {place:.3} along it{doubt}"));
+        }
+        lines.extend(self.proven.as_ref().map(|proven| {
+            match proven {
+                Proven::By(command) => format!("proof: check it with {command}"),
+                Proven::NotKept => "proof: none, since the margin is not kept".into(),
+                Proven::TooClose => {
+                    "proof: none, since the margin is kept by too little; give a smaller --margin"
+                        .into()
+                }
+            }
+        }));
+        lines.extend(self.verdict.map(|verdict| verdict.describe(self.base, unit)));
+        lines.push(minimum(&format!("link {}", self.minimum.link), &self.minimum, self.wall));
+        lines.join("\n") + "\n"
+    }
+
+    /// Returns the report as JSON, with all digits.
+    pub fn json(&self) -> String {
+        let Wall { search, bounds, frame, .. } = self.wall;
+        let report = json!({
+            "mesh": {
+                "triangles": search.triangles().len(),
+                "bounds": [bounds.mins.to_array(), bounds.maxs.to_array()],
+                "frame": frame.map(name),
+                "unit": self.wall.unit(),
+            },
+            "turned": self.turned.map(|frames| frames.map(name)),
+            "base": match self.base {
+                Side::Inside => "inside",
+                Side::Outside => "outside",
+                Side::Undecided => "undecided",
+            },
+            "links": self.links,
+            "curve": self.curve,
+            "minimum": self.minimum,
+            "margin": self.verdict.map(|verdict| json!({
+                "value": verdict.margin,
+                "kept": verdict.is_kept,
+            })),
+            "proof": match &self.proven {
+                Some(Proven::By(command)) => Some(command),
+                _ => None,
+            },
+            "warnings": self.doubts,
+        });
+        format!("{report:#}\n")
+    }
+}
+
+/// Returns the last line: the least distance, and where it is. `subject` names the link or the
+/// shape.
+pub fn minimum(subject: &str, found: &LinkProximity, wall: &Wall) -> String {
+    let unit = wall.unit();
+    format!(
+        "minimum {}: {subject}, {} from the base, triangle {}",
+        length(found.distance, 4, unit),
+        length(found.witness.arc_length, 3, unit),
+        found.witness.triangle
+    )
+}

@@ -1,0 +1,164 @@
+//! The files that the command writes: `--csv`, `--plot` and `--prove`.
+
+use crate::{refuse, run, succeed};
+use continuum_testing::programs::{file, place, read, room};
+use std::process::Command;
+
+/// A box of 60, and a needle of two radii: 20 from both ends, 28 and 29 from the sides.
+fn needle(name: &str) -> [String; 2] {
+    let shape = "x,y,z,radius\n30,30,20,2\n30,30,30,1\n30,30,40\n";
+    [room(&format!("{name}_wall.obj")), file(&format!("{name}_shape.csv"), shape)]
+}
+
+#[test]
+fn a_table_has_a_line_for_each_link() {
+    let [wall, shape] = &needle("table");
+    let out = succeed(&["--mesh", wall, "--centreline", shape, "--csv", "links.csv"]);
+    assert!(out.contains("\nlink 0: 20.000000, "), "{out}");
+    let table = read("links.csv");
+    let lines: Vec<_> = table.lines().collect();
+    let head =
+        "link,distance,arc_length,segment,triangle,robot_x,robot_y,robot_z,mesh_x,mesh_y,mesh_z";
+    assert!(lines.len() == 3 && lines[0] == head, "{table}");
+    assert!(lines[1].starts_with("0,20,0,0,") && lines[2].starts_with("1,20,20,1,"), "{table}");
+    assert!(lines.iter().all(|line| line.split(',').count() == 11), "{table}");
+    // Many shapes: the table goes to the file, and the summary to the terminal.
+    let shapes = "1,30,30,20,2\n1,30,30,40\n7,30,30,10,1\n7,30,30,30\n8,30,30,20,1\n8,nan,30,30\n";
+    let shapes = &file("table_shapes.csv", shapes);
+    let printed = succeed(&["--mesh", wall, "--shapes", shapes]);
+    let out = succeed(&["--mesh", wall, "--shapes", shapes, "--csv", "shapes.csv"]);
+    assert_eq!(read("shapes.csv"), printed);
+    assert!(out.starts_with("minimum 10.00: shape 7, link 0, 0 from the base, triangle "), "{out}");
+    assert_eq!(out.lines().count(), 1);
+}
+
+#[test]
+fn a_plot_shows_the_clearance_along_the_robot() {
+    let [wall, shape] = &needle("plot");
+    let asked = ["--mesh", wall, "--centreline", shape, "--plot", "clearance.svg"];
+    succeed(&[&asked[..], &["--margin", "12.5"]].concat());
+    let plot = read("clearance.svg");
+    assert!(plot.starts_with("<svg") && plot.trim_end().ends_with("</svg>"), "{plot}");
+    for text in ["closest to the wall", "20.00", "link 0", "margin 12.5", "clearance"] {
+        assert!(plot.contains(text), "{text}: {plot}");
+    }
+    // The curve is the longest line. It is level with the ends of the robot at both ends (20), and
+    // highest near the middle of the thin half: 29 from the sides, where the ends are farther.
+    let corners = |line: &str| -> Vec<(f64, f64)> {
+        let numbers = |pair: &str| {
+            let (x, y) = pair.split_once(',').unwrap();
+            (x.parse().unwrap(), y.parse().unwrap())
+        };
+        line.split_whitespace().map(numbers).collect()
+    };
+    let lines =
+        plot.split("points=\"").skip(1).map(|rest| corners(rest.split('"').next().unwrap()));
+    let curve = lines.max_by_key(Vec::len).unwrap();
+    assert!(curve.len() > 300, "{}", curve.len());
+    assert!(curve.is_sorted_by_key(|corner| corner.0));
+    let (first, last) = (curve[0], curve[curve.len() - 1]);
+    let (high, low) = curve
+        .iter()
+        .fold((f64::MAX, f64::MIN), |(high, low), corner| (high.min(corner.1), low.max(corner.1)));
+    assert!((first.1 - last.1).abs() <= 1.0 && first.1 == low && high < low - 50.0, "{curve:?}");
+    // Half of the way: 28 on one side of the step and 29 on the other.
+    let middle: Vec<_> = curve
+        .iter()
+        .filter(|corner| (corner.0 - 0.5 * (first.0 + last.0)).abs() < 30.0)
+        .map(|corner| corner.1)
+        .collect();
+    let scale = (low - high) / 9.0;
+    let step = middle.iter().fold(f64::MIN, |low, &y| low.max(y)) - high;
+    assert!((step - scale).abs() < 0.35 * scale, "{step} {scale}");
+    refuse(
+        &["--mesh", wall, "--centreline", shape, "--plot", "clearance.png"],
+        "write a name that ends in .svg",
+    );
+}
+
+/// Runs the command that the program printed. `None` without Python, if that is not required.
+fn check(command: &str) -> Option<(bool, String)> {
+    let words: Vec<_> = command.split(' ').collect();
+    assert!(words[0] == "python3" && words.len() == 4, "{command}");
+    match Command::new(words[0]).args(&words[1..]).current_dir(place("")).output() {
+        Ok(output) => Some((output.status.success(), String::from_utf8(output.stdout).unwrap())),
+        Err(error) if std::env::var_os("CI").is_none() => {
+            eprintln!("skipped, without python3: {error}");
+            None
+        }
+        Err(error) => panic!("python3: {error}"),
+    }
+}
+
+/// The command that checks the proof.
+fn command(out: &str) -> &str {
+    let line = out.lines().find_map(|line| line.strip_prefix("proof: check it with "));
+    line.unwrap_or_else(|| panic!("{out}"))
+}
+
+#[test]
+fn the_checker_accepts_the_proof_by_the_printed_command() {
+    let [wall, shape] = &needle("proof");
+    let asked = ["--mesh", wall, "--centreline", shape, "--margin", "19.5"];
+    for (options, premise) in [
+        (&["--prove", "chain.txt"][..], "chain"),
+        (&["--prove", "tube.txt", "--tolerance", "0.1"], "tube"),
+    ] {
+        let out = succeed(&[&asked[..], options].concat());
+        assert!(out.contains("\nmargin 19.5: kept"), "{out}");
+        let Some((is_yes, said)) = check(command(&out)) else { return };
+        assert!(is_yes && said.trim_end().ends_with("\nyes"), "{said}");
+        assert!(
+            said.starts_with(&format!("This {premise} keeps more than 19.5 from 12 triangles"))
+        );
+        // The checker reads these files: a proof of a larger margin is refused.
+        let altered = read(options[1]).replace("margin 19.5", "margin 20.5");
+        file(options[1], &altered);
+        let (is_yes, said) = check(command(&out)).unwrap();
+        assert!(!is_yes && said.starts_with("no"), "{said}");
+    }
+}
+
+#[test]
+fn a_proof_in_another_folder_and_with_a_pose_is_accepted() {
+    let [wall, shape] = &needle("posed");
+    let pose = &file("posed.txt", "1 0 0 0\n0 1 0 0\n0 0 1 7.25\n0 0 0 1\n");
+    std::fs::create_dir_all(place("proofs")).unwrap();
+    let path = place("proofs").join("plan.txt");
+    let asked = ["--mesh", wall, "--centreline", shape, "--pose", pose, "--margin", "12"];
+    let out = succeed(&[&asked[..], &["--prove", path.to_str().unwrap()]].concat());
+    let Some((is_yes, said)) = check(command(&out)) else { return };
+    assert!(is_yes && said.contains("27.25"), "{said}");
+}
+
+#[test]
+fn there_is_no_proof_of_a_margin_that_is_not_kept() {
+    let [wall, shape] = &needle("unproven");
+    let asked = ["--mesh", wall, "--centreline", shape, "--prove", "unproven.txt"];
+    let (status, out, error) = run(&[&asked[..], &["--margin", "20"]].concat());
+    assert_eq!((status, error.as_str()), (Some(1), ""));
+    assert!(out.contains("\nproof: none, since the margin is not kept\n"), "{out}");
+    assert!(!place("unproven.txt").exists() && !place("unproven.obj").exists());
+    refuse(&asked, "--margin <LENGTH>");
+    let asked = ["--mesh", wall, "--centreline", shape, "--margin", "1", "--prove"];
+    refuse(&[&asked[..], &["proof.obj"]].concat(), "such as proof.txt");
+}
+
+#[test]
+fn no_file_that_is_read_is_replaced() {
+    let [wall, shape] = &needle("kept");
+    let asked = ["--mesh", wall, "--centreline", shape, "--margin", "1"];
+    let before = [wall, shape].map(|path| std::fs::read_to_string(path).unwrap());
+    for (options, expected) in [
+        (&["--csv", shape][..], "the file of --centreline; choose another name for --csv"),
+        (&["--csv", "kept_shape.csv"], "the file of --centreline; choose another name for --csv"),
+        (&["--prove", "kept_wall.txt"], "the file of --mesh; choose another name for --prove"),
+        (&["--csv", "both.svg", "--plot", "both.svg"], "the file of --plot"),
+        (&["--csv", "nowhere/links.csv"], "choose another --csv"),
+        (&["--plot", "nowhere/plot.svg"], "choose another --plot"),
+        (&["--prove", "nowhere/proof.txt"], "choose another --prove"),
+    ] {
+        refuse(&[&asked[..], options].concat(), expected);
+    }
+    assert_eq!([wall, shape].map(|path| std::fs::read_to_string(path).unwrap()), before);
+}

@@ -1,0 +1,42 @@
+//! The command as a user meets it: answers that one can see, files, exit statuses, and errors of
+//! one line in the words of the options.
+
+mod answers;
+mod files;
+mod labels;
+mod margin;
+mod readme;
+
+use continuum_testing::programs;
+use std::process::Command;
+
+const COMMAND: &str = env!("CARGO_BIN_EXE_clearance");
+
+/// The output of a command that succeeds.
+fn succeed(arguments: &[&str]) -> String {
+    programs::succeed(COMMAND, arguments)
+}
+
+/// The command must refuse these arguments with one line that contains `expected`, and status 2.
+fn refuse(arguments: &[&str], expected: &str) {
+    programs::refuse(COMMAND, arguments, expected);
+    let status = Command::new(COMMAND).args(arguments).current_dir(programs::place("")).output();
+    assert_eq!(status.unwrap().status.code(), Some(2), "{arguments:?}");
+}
+
+/// The exit status, the output and the errors of a command.
+fn run(arguments: &[&str]) -> (Option<i32>, String, String) {
+    let folder = programs::place("");
+    std::fs::create_dir_all(&folder).unwrap();
+    let output = Command::new(COMMAND).args(arguments).current_dir(folder).output().unwrap();
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    (output.status.code(), text(output.stdout), text(output.stderr))
+}
+
+/// The least distance in the last line.
+fn minimum(arguments: &[&str]) -> f64 {
+    let out = succeed(arguments);
+    let last = out.lines().last().and_then(|line| line.strip_prefix("minimum "));
+    let number = last.and_then(|line| line.split([' ', ':']).next());
+    number.unwrap_or_else(|| panic!("{out}")).parse().unwrap()
+}
