@@ -79,6 +79,7 @@
 //! | where is the least slack, and to which structure? | [`Scene::tightest`] |
 //! | how near is each structure? | [`Scene::per_structure`] |
 //! | every contact, with its structure | [`Scene::contacts_within`] |
+//! | do all robots keep all margins while they move? | [`Scene::clears_motion`] |
 //!
 //! **Many at once, and a mesh that moves**
 //!
@@ -156,8 +157,9 @@ pub use crate::answer::{
     Between, Certificate, Clearance, Contact, ContactFeature, Decision, Derivative, InsideAnswer,
     LinkFeature, LinkProximity, MeshError, MotionAnswer, MotionClearance, PairWitness,
     PlacementFault, Proof, ProximityError, RobotClearance, RobotMotionAnswer, RobotProximity,
-    RobotsInContact, SceneContact, SceneError, ShapeInContact, Side, StructureProximity, Tightest,
-    TriangleFeature, TubePiece, UndecidedReason, Witness, Work,
+    RobotsInContact, SceneContact, SceneError, SceneMotionAnswer, SceneMotionContact,
+    ShapeInContact, Side, StructureProximity, Tightest, TriangleFeature, TubePiece,
+    UndecidedReason, Witness, Work,
 };
 pub use crate::engine::{BvhSearch, Exhaustive, Proximity, RobotPair, SearchPrecision, SelfQuery};
 pub use crate::scene::Scene;

@@ -3,6 +3,8 @@
 mod batch;
 mod bounding_box;
 mod distance_cache;
+mod motions;
+mod moving_robot;
 mod queries;
 mod scene_bounds;
 mod structure;

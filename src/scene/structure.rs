@@ -1,7 +1,7 @@
 //! One structure of a scene: a mesh, its pose, and its margin.
 
 use super::bounding_box::BoundingBox;
-use crate::answer::{Contact, LinkProximity, MeshError, ProximityError};
+use crate::answer::{Contact, LinkProximity, MeshError, ProximityError, ShapeInContact};
 use crate::engine::{BvhSearch, Proximity};
 use crate::pair::{PlacedRobot, rigid_pose};
 use crate::robot::Chain;
@@ -74,6 +74,16 @@ impl Structure {
         self.pose.map_or(*robot, |pose| pose.inverse() * *robot)
     }
 
+    /// Maps the scene's frame to the mesh's; `None` if they are the same.
+    pub fn from_scene(&self) -> Option<Pose> {
+        self.pose.map(|pose| pose.inverse())
+    }
+
+    /// The largest coordinate of the mesh and of its pose, if it has one.
+    pub fn frame(&self) -> Option<Real> {
+        self.pose.map(|_| self.size)
+    }
+
     /// Places a robot in the mesh's frame. `placed` is the robot placed in the scene's frame.
     ///
     /// # Errors
@@ -99,6 +109,15 @@ impl Structure {
             nearest.witness.on_mesh = pose * nearest.witness.on_mesh;
         }
         nearest
+    }
+
+    /// Maps a shape in contact from the mesh's frame to the scene's.
+    pub fn placed_shape(&self, mut shape: ShapeInContact) -> ShapeInContact {
+        if let Some(pose) = &self.pose {
+            shape.witness.on_robot = pose * shape.witness.on_robot;
+            shape.witness.on_mesh = pose * shape.witness.on_mesh;
+        }
+        shape
     }
 
     /// Maps a contact from the mesh's frame to the scene's.

@@ -31,6 +31,7 @@ mod rings;
 mod robots;
 mod same_answers;
 mod scene_memory;
+mod scene_motions;
 mod scenes;
 mod side;
 mod structures;

@@ -289,10 +289,33 @@ impl BvhSearch {
     }
 }
 
+impl BvhSearch {
+    /// [`clears_motion`](Self::clears_motion) for a robot in a scene. The margin and the resolution
+    /// are checked. `frame` is as in [`MotionSearch`].
+    pub(crate) fn ask_clears_motion(
+        &mut self,
+        motion: &impl Motion,
+        wanted: MarginQuery,
+        frame: Option<Real>,
+    ) -> Result<MotionAnswer, ProximityError> {
+        let mut search = self.context().motion(motion);
+        search.frame = frame;
+        search.clears(wanted)
+    }
+}
+
 impl<'a> Context<'a> {
     /// A search along a motion, with the warm start of the last one.
     fn motion<M: Motion>(self, motion: &'a M) -> MotionSearch<'a, M> {
         let (search, Remembered { motion: memory, .. }) = self.search();
-        MotionSearch { search, memory, motion, shapes: 0, last: None, does_mesh_move: false }
+        MotionSearch {
+            search,
+            memory,
+            motion,
+            shapes: 0,
+            last: None,
+            does_mesh_move: false,
+            frame: None,
+        }
     }
 }

@@ -19,6 +19,7 @@ mod self_motion;
 mod separating_planes;
 mod unresolved_piece;
 
+pub(crate) use approach_bound::{half_length, midpoint};
 pub(crate) use interval_test::MarginQuery;
 pub(crate) use motion_pair::{MotionPair, MotionsMemory};
 pub(crate) use motion_search::{MotionMemory, MotionSearch};

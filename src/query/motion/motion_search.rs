@@ -171,6 +171,9 @@ pub(crate) struct MotionSearch<'a, M> {
     pub last: Option<u32>,
     /// Whether the mesh moves too, as stored in the memory.
     pub does_mesh_move: bool,
+    /// The largest coordinate of the mesh and of its pose, if the motion's poses are products with
+    /// the inverse of that pose.
+    pub frame: Option<Real>,
 }
 
 impl<M: Motion> MotionSearch<'_, M> {
@@ -365,6 +368,7 @@ impl<M: Motion> MotionSearch<'_, M> {
             (hierarchy.reach, 0.0, PlacedMeshSearch::at_rest(search))
         };
         let tube = PlacedTube::new(&current.tube, &pose, reach)?.moving();
+        let tube = self.frame.map_or(tube, |size| tube.posed(size));
         let mut tube = TubeInMesh { search, tube };
         pieces.clear();
         let failing = interval.pieces.clone().map_or(&[][..], |failing| &unresolved[failing]);
