@@ -88,6 +88,7 @@
 //! | query many robots on all cores | [`per_link_batch`], [`minimum_batch`], [`clears_batch`] |
 //! | query tubes or motions | [`clearance_batch`], [`clears_tube_batch`], [`clears_motion_batch`] |
 //! | query many sets of robots in a scene | [`Scene::clears_batch`], [`Scene::tightest_batch`] |
+//! | query many edges of a planner in a scene | [`Scene::clears_motion_batch`] |
 //! | build beforehand every structure that a first query would build | [`prepare`] |
 //! | move the mesh | [`set_vertices`] |
 //! | read the mesh as the engine has it now | [`vertices`], [`triangles`] |

@@ -287,6 +287,35 @@ fn what_was_asked_before_does_not_matter() {
     assert!((1..20).contains(&clear), "{clear}");
 }
 
+/// A batch answers each edge as if it were alone, also if another one has an error.
+#[test]
+fn a_batch_answers_each_edge_as_if_it_were_alone() {
+    let random = &mut Random::new(11);
+    let mut case = Case::random(random);
+    case.scene.set_margin(0, Some(0.1)).unwrap();
+    case.scene.set_self_margin(Some(0.1)).unwrap();
+    let motions: Vec<_> =
+        (0..40).map(|_| edges(random, 2).iter().map(Edge::motion).collect::<Vec<_>>()).collect();
+    let sharp = [Vector::ZERO, Vector::Z, Vector::X * 0.1].map(|point| point + Vector::Y * 30.0);
+    let sharp = LinearMotion::chain(&sharp, &sharp, &[0.3; 2]).unwrap();
+    let mut sets: Vec<Vec<_>> = motions.iter().map(Each::each).collect();
+    sets[17] = vec![&sharp];
+    let sets: Vec<_> = sets.iter().map(Vec::as_slice).collect();
+    let mut answers = Vec::new();
+    for _ in 0..2 {
+        case.scene.clears_motion_batch(&sets, RESOLUTION, &mut answers);
+        assert_eq!(answers.len(), sets.len());
+        for (set, answer) in sets.iter().zip(&answers) {
+            assert_eq!(*answer, case.scene.clone().clears_motion(set, RESOLUTION));
+        }
+    }
+    assert!(matches!(&answers[17], Err(SceneError::Robot { robot: 0, .. })));
+    let clear = answers.iter().flatten().filter(|answer| answer.is_clear()).count();
+    assert!((1..39).contains(&clear), "{clear}");
+    case.scene.clears_motion_batch::<LinearMotion>(&[], RESOLUTION, &mut answers);
+    assert!(answers.is_empty());
+}
+
 /// A needle from `base` to `tip`.
 fn needle(base: Vector, tip: Vector, radius: Real) -> Tube {
     Tube::from(&Chain::capsules(&[base, tip], &[radius]).unwrap())
