@@ -79,6 +79,7 @@
 //! | where is the least slack, and to which structure? | [`Scene::tightest`] |
 //! | how near is each structure? | [`Scene::per_structure`] |
 //! | every contact, with its structure | [`Scene::contacts_within`] |
+//! | do all tubes keep all margins? | [`Scene::clears_tube`] |
 //! | do all robots keep all margins while they move? | [`Scene::clears_motion`] |
 //!
 //! **Many at once, and a mesh that moves**

@@ -8,5 +8,6 @@ mod moving_robot;
 mod queries;
 mod scene_bounds;
 mod structure;
+mod tubes;
 
 pub use queries::Scene;

@@ -223,9 +223,9 @@ impl Scene {
     /// Sets the margin of each robot to itself. With `None`, the default, robots are not tested
     /// against themselves.
     ///
-    /// [`clears`](Self::clears) and [`clears_motion`](Self::clears_motion) test it. Which parts of a
-    /// robot count is as for [`SelfQuery`]. The least slack of [`tightest`](Self::tightest) does not
-    /// include it.
+    /// [`clears`](Self::clears), [`clears_tube`](Self::clears_tube) and
+    /// [`clears_motion`](Self::clears_motion) test it. Which parts of a robot count is as for
+    /// [`SelfQuery`]. The least slack of [`tightest`](Self::tightest) does not include it.
     ///
     /// # Errors
     /// The margin is negative or NaN.

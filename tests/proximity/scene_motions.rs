@@ -316,6 +316,70 @@ fn a_batch_answers_each_edge_as_if_it_were_alone() {
     assert!(answers.is_empty());
 }
 
+#[test]
+fn tubes_in_a_scene_are_decided_as_by_the_single_questions() {
+    let mut seen = [0; 3];
+    for seed in 0..rounds(150) {
+        let random = &mut Random::new(seed);
+        let mut case = Case::random(random);
+        if case.scene.clears(&[]).is_err() {
+            continue;
+        }
+        let edges = edges(random, 3);
+        let tubes: Vec<_> = edges.iter().map(|edge| Tube::from(&edge.chain(0.3))).collect();
+        let poses = [0; 3].map(|_| Pose::from_translation(random.point() * 0.5));
+        let robots: Vec<_> = tubes.iter().zip(poses).collect();
+        let mut singles = Vec::new();
+        for (search, margin, pose) in &mut case.organs {
+            let Some(margin) = *margin else { continue };
+            for (tube, at) in &robots {
+                let at = pose.inverse() * *at;
+                singles.push(search.clears_tube(tube, &at, margin, RESOLUTION).unwrap());
+            }
+        }
+        if let Some(margin) = case.between {
+            for [a, b] in [[0, 1], [0, 2], [1, 2]]
+                .into_iter()
+                .filter(|[a, b]| !case.nested.contains(&[*b, *a]))
+            {
+                let ((first, at), (second, beside)) = (&robots[a], &robots[b]);
+                let answer =
+                    RobotPair::new().clears_tubes(first, at, second, beside, margin, RESOLUTION);
+                singles.push(answer.unwrap());
+            }
+        }
+        if let Some(margin) = case.itself {
+            for tube in &tubes {
+                singles.push(SelfQuery::new().clears_tube(tube, margin, RESOLUTION).unwrap());
+            }
+        }
+        let expected = if singles.contains(&Decision::Contact) {
+            Decision::Contact
+        } else if singles.contains(&Decision::Undecided) {
+            Decision::Undecided
+        } else {
+            Decision::Clear
+        };
+        for _ in 0..2 {
+            assert_eq!(case.scene.clears_tube(&robots, RESOLUTION), Ok(expected), "seed {seed}");
+        }
+        seen[expected as usize] += 1;
+    }
+    assert!(seen[0] > 10 && seen[1] > 10, "{seen:?}");
+    // A pose that is not finite belongs to its robot, with or without anything near.
+    let tube = needle(Vector::ZERO, Vector::Z, 0.1);
+    let mut scene = Scene::new();
+    let at = |x: Real| (&tube, Pose::translation(x, 0.0, 0.0));
+    assert_eq!(scene.clears_tube(&[at(0.0)], RESOLUTION), Err(SceneError::NoMargin));
+    scene.set_robot_margin(Some(0.1)).unwrap();
+    assert_eq!(scene.clears_tube(&[at(0.0), at(1.0)], RESOLUTION), Ok(Decision::Clear));
+    assert_eq!(
+        scene.clears_tube(&[at(0.0), at(Real::NAN)], RESOLUTION),
+        Err(SceneError::Robot { robot: 1, error: ProximityError::PoseNotFinite })
+    );
+    assert_eq!(scene.clears_tube(&[], -1.0).map_err(|error| error.kind()), Err("negative"));
+}
+
 /// A needle from `base` to `tip`.
 fn needle(base: Vector, tip: Vector, radius: Real) -> Tube {
     Tube::from(&Chain::capsules(&[base, tip], &[radius]).unwrap())

@@ -128,7 +128,20 @@ impl BvhSearch {
         resolution: Real,
     ) -> Result<Decision, ProximityError> {
         check_decision(margin, resolution)?;
-        self.context().clears_tube(tube, pose, margin, resolution)
+        self.context().clears_tube(tube, pose, [margin, resolution], None)
+    }
+
+    /// [`clears_tube`](Self::clears_tube) for a tube in a scene. The margin and the resolution are
+    /// checked. `frame`: the largest coordinate of the mesh and of its pose in the scene, if `pose`
+    /// is the product of the tube's pose there and the inverse of the mesh's pose.
+    pub(crate) fn ask_clears_tube(
+        &mut self,
+        tube: &Tube,
+        pose: &Pose,
+        margin_and_resolution: [Real; 2],
+        frame: Option<Real>,
+    ) -> Result<Decision, ProximityError> {
+        self.context().clears_tube(tube, pose, margin_and_resolution, frame)
     }
 
     /// [`clearance`](Self::clearance) for many tubes, on all cores.
@@ -186,7 +199,7 @@ impl BvhSearch {
             out,
             || Decision::Undecided,
             |context, (tube, pose), out| {
-                *out = context.clears_tube(tube, pose, margin, resolution);
+                *out = context.clears_tube(tube, pose, [margin, resolution], None);
             },
         );
         Ok(())
@@ -266,10 +279,13 @@ impl<'a> Context<'a> {
         self,
         tube: &'a Tube,
         pose: &Pose,
-        margin: Real,
-        resolution: Real,
+        [margin, resolution]: [Real; 2],
+        frame: Option<Real>,
     ) -> Result<Decision, ProximityError> {
         let (mut tube, memory) = self.tube_in_mesh(tube, pose)?;
+        if let Some(size) = frame {
+            tube.tube = tube.tube.posed(size);
+        }
         let placed = tube.tube;
         let Some(less_known) = placed.without_turn() else {
             return clears_tube(&mut tube, memory, margin, resolution);
