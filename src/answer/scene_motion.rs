@@ -1,6 +1,6 @@
-//! Results of queries about robots that move in a scene.
+//! Answers about tubes and motions in a scene.
 
-use super::{Decision, RobotsInContact, ShapeInContact, UndecidedReason};
+use super::{Decision, PairWitness, RobotsInContact, ShapeInContact, UndecidedReason, Witness};
 use parry3d_f64::math::Real;
 
 /// Whether robots that move in a scene keep all margins, and what does not.
@@ -10,8 +10,9 @@ pub struct SceneMotionAnswer {
     /// Whether all margins are kept at every time from 0 to 1.
     pub decision: Decision,
     /// The first interval of time in which a margin may be violated; all margins are kept before.
-    /// `[1, 1]` if all are always kept. A contact may not be the first one, so its interval begins
-    /// with 0.
+    /// `[1, 1]` if all are always kept. A contact of
+    /// [`Scene::clears_motion`](crate::proximity::Scene::clears_motion) may not be the first one,
+    /// so its interval begins with 0.
     pub interval: [Real; 2],
     /// For `Contact`: what is in contact, where, and when.
     pub contact: Option<SceneMotionContact>,
@@ -89,4 +90,70 @@ impl SceneMotionContact {
             Self::Robots { shapes, .. } | Self::Itself { shapes, .. } => shapes.upper,
         }
     }
+}
+
+/// The least slack of tubes in a scene, between bounds, and its place.
+///
+/// The slack is the clearance minus the margin: negative if the margin is violated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct SceneClearance {
+    /// Lower bound on every slack.
+    pub lower: Real,
+    /// Upper bound on the slack at `place`.
+    pub upper: Real,
+    /// Whether the bounds meet the tolerance: `upper - lower <= tolerance + uncertainty`.
+    pub resolved: bool,
+    /// The part of the gap that no finer tolerance closes: the errors that the tubes state of
+    /// themselves.
+    pub uncertainty: Real,
+    /// The two objects with this slack, and where.
+    pub place: ScenePlace,
+}
+
+/// The least slack of robots that move in a scene, between bounds, and its place and time.
+///
+/// The slack is the clearance minus the margin: negative if the margin is violated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct SceneMotionClearance {
+    /// Lower bound on every slack at every time from 0 to 1.
+    pub lower: Real,
+    /// Upper bound on the slack at `place`, at the time `t`.
+    pub upper: Real,
+    /// Whether the bounds meet the tolerance: `upper - lower <= tolerance + uncertainty`.
+    pub resolved: bool,
+    /// The part of the gap that no finer tolerance closes: the errors that the shapes state of
+    /// themselves.
+    pub uncertainty: Real,
+    /// The time of the shapes that realise `upper`, from 0 to 1.
+    pub t: Real,
+    /// The two objects with this slack, and where.
+    pub place: ScenePlace,
+}
+
+/// Two objects of a scene and their nearest points, in the scene's frame and unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum ScenePlace {
+    /// A robot and a structure.
+    Structure {
+        /// The structure's number, in the order in which structures were added.
+        structure: u32,
+        /// The robot's index among the given robots.
+        robot: u32,
+        /// The section of constant radius at the place, counted from the base.
+        section: u32,
+        /// A point of the robot and a point of the structure.
+        witness: Witness,
+    },
+    /// Two robots.
+    Robots {
+        /// Their indices among the given robots, the lower first.
+        robots: [u32; 2],
+        /// The sections of constant radius at the place, counted from each base.
+        sections: [u32; 2],
+        /// A point of each robot.
+        witness: PairWitness,
+    },
 }

@@ -45,6 +45,11 @@ impl BoundingBox {
         self.low.abs().max(self.high.abs()).max_element()
     }
 
+    /// An upper bound on the distance of its points from the origin.
+    pub fn farthest(&self) -> Real {
+        length(self.low.abs().max(self.high.abs())) * (1.0 + 8.0 * Real::UNIT_ROUNDOFF)
+    }
+
     /// A lower bound on the distance of a robot, by the bounding box of the capsule that contains
     /// the robot.
     ///

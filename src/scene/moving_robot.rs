@@ -20,6 +20,8 @@
 //!    `refine::bounding_body`); cases 2 and 3 make the axis longer and the body wider.
 //! 3. Until another time of the part a point of the centreline moves by at most w. So the ball
 //!    around it comes nearer by at most w, flat ends that become round included.
+//! 4. If the structure moves, the box is that of the middle of the part, and the way of its points
+//!    is added to w.
 //!
 //! **Rounding.** M: the largest coordinate of robot and structure in the scene, with radius, pose
 //! and way. The body contains the ball up to rounding, by its own slack.
@@ -33,6 +35,7 @@
 
 use super::bounding_box::BoundingBox;
 use super::structure::Structure;
+use super::structure_end::MovingStructure;
 use crate::answer::ProximityError;
 use crate::curve::Tube;
 use crate::distance::Scalar;
@@ -91,6 +94,8 @@ impl KnownShapes {
 /// A body around a piece of the robot, and how far the piece moves in half of a part.
 #[derive(Clone, Debug)]
 struct SweptBody {
+    /// The part.
+    times: [Real; 2],
     body: PlacedLink,
     way: Real,
     /// The largest coordinate of the body, with radius, pose and way.
@@ -98,15 +103,61 @@ struct SweptBody {
 }
 
 impl SweptBody {
-    /// Returns whether the piece keeps the margin from a box during the part. `size`: the largest
+    /// A lower bound on the distance of the piece from a box during the part. `size`: the largest
     /// coordinate of the structure and its pose.
-    fn clears(&self, around: &BoundingBox, size: Real, margin: Real) -> bool {
+    fn at_least(&self, around: &BoundingBox, size: Real) -> Real {
         let largest = self.reach + size;
         let rounding = 1024.0 * Real::UNIT_ROUNDOFF * largest;
         // Written so that NaN is near.
-        largest < COORDINATE_LIMIT / 16.0
-            && around.distance_to(&self.body) - self.way - rounding > margin
+        if largest < COORDINATE_LIMIT / 16.0 {
+            around.distance_to(&self.body) - self.way - rounding
+        } else {
+            Real::NEG_INFINITY
+        }
     }
+}
+
+/// The bodies around a placed tube. `way` bounds how far a piece moves in half of the part.
+fn sweep(
+    placed: &PlacedTube,
+    times: [Real; 2],
+    pieces: &mut Vec<Piece>,
+    swept: &mut Vec<SweptBody>,
+    way: impl Fn(&Piece) -> Real,
+) {
+    let translation = placed.pose.translation.abs().max_element();
+    placed.begin(Real::INFINITY, pieces);
+    for piece in &*pieces {
+        let (outer, way) = (placed.outer(piece).body, way(piece));
+        let (start, end, radius) = (outer.start(), outer.end(), outer.radius());
+        let body = PlacedLink::between(start, end, radius, [false; 2]);
+        let largest = start.abs().max(end.abs()).max_element() + radius + way;
+        let is_known = body.is_finite() && way < Real::INFINITY;
+        let reach = if is_known { largest + translation } else { Real::INFINITY };
+        swept.push(SweptBody { times, body, way, reach });
+    }
+}
+
+/// The bodies around a tube at rest.
+pub(super) struct RestingTube(Vec<SweptBody>);
+
+impl RestingTube {
+    pub fn new(placed: &PlacedTube) -> Self {
+        let mut swept = Vec::new();
+        sweep(placed, [0.0, 1.0], &mut Vec::new(), &mut swept, |_| 0.0);
+        Self(swept)
+    }
+
+    /// A lower bound on the distance of the tube from a structure.
+    pub fn at_least(&self, structure: &Structure) -> Real {
+        at_least(&self.0, structure)
+    }
+}
+
+fn at_least(swept: &[SweptBody], structure: &Structure) -> Real {
+    let (around, size) = (structure.around_in_scene(), structure.size());
+    let bounds = swept.iter().map(|body| body.at_least(&around, size));
+    bounds.fold(Real::INFINITY, |least, bound| if bound >= least { least } else { bound })
 }
 
 /// A motion of a robot in a scene.
@@ -128,7 +179,7 @@ impl<'a, M: Motion + ?Sized> MovingRobot<'a, M> {
         shapes.used = 0;
         swept.clear();
         let mut robot = Self { motion, shapes: RefCell::new(shapes), swept };
-        let bounded = robot.sweep(tube.get_or_insert_with(Tube::empty), pieces);
+        let bounded = robot.bound(tube.get_or_insert_with(Tube::empty), pieces);
         if let Err(error) = bounded {
             robot.give_back(memory);
             return Err(error);
@@ -142,29 +193,20 @@ impl<'a, M: Motion + ?Sized> MovingRobot<'a, M> {
         memory.swept = self.swept;
     }
 
-    fn sweep(&mut self, tube: &mut Tube, pieces: &mut Vec<Piece>) -> Result<(), ProximityError> {
+    fn bound(&mut self, tube: &mut Tube, pieces: &mut Vec<Piece>) -> Result<(), ProximityError> {
         let parts = self.motion.time_parts().clamp(1, MAX_PARTS);
         for part in 0..parts {
             let times = [part, part + 1].map(|end| end as Real / parts as Real);
             tube.forget_error();
             let pose = self.shape(midpoint(times), tube)?;
             let placed = PlacedTube::new(tube, &pose, 0.0)?;
-            let translation = placed.pose.translation.abs().max_element();
-            placed.begin(Real::INFINITY, pieces);
-            for piece in &*pieces {
-                let outer = placed.outer(piece).body;
+            sweep(&placed, times, pieces, &mut self.swept, |piece| {
                 let section = piece.section as usize;
                 let speed = self.motion.speed(section, placed.shares(piece), times).point;
                 // An invalid speed bounds nothing here; the queries return it as an error.
                 let speed = check_speed(section, speed).unwrap_or(Real::INFINITY);
-                let way = half_length(times) * speed * (1.0 + 8.0 * Real::UNIT_ROUNDOFF);
-                let (start, end, radius) = (outer.start(), outer.end(), outer.radius());
-                let body = PlacedLink::between(start, end, radius, [false; 2]);
-                let largest = start.abs().max(end.abs()).max_element() + radius + way;
-                let is_known = body.is_finite() && way < Real::INFINITY;
-                let reach = if is_known { largest + translation } else { Real::INFINITY };
-                self.swept.push(SweptBody { body, way, reach });
-            }
+                half_length(times) * speed * (1.0 + 8.0 * Real::UNIT_ROUNDOFF)
+            });
         }
         Ok(())
     }
@@ -172,7 +214,26 @@ impl<'a, M: Motion + ?Sized> MovingRobot<'a, M> {
     /// Returns whether the robot certainly keeps a margin from a structure at all times.
     pub fn is_beyond(&self, structure: &Structure, margin: Real) -> bool {
         let (around, size) = (structure.around_in_scene(), structure.size());
-        self.swept.iter().all(|body| body.clears(&around, size, margin))
+        self.swept.iter().all(|body| body.at_least(&around, size) > margin)
+    }
+
+    /// [`is_beyond`](Self::is_beyond) for a structure that moves.
+    pub fn is_beyond_moving(
+        &self,
+        structure: &Structure,
+        end: &MovingStructure,
+        margin: Real,
+    ) -> bool {
+        self.swept.chunk_by(|one, other| one.times == other.times).all(|part| {
+            let (around, way) = end.around(structure, part[0].times);
+            let size = end.size() + way;
+            part.iter().all(|body| body.at_least(&around, size) - way > margin)
+        })
+    }
+
+    /// A lower bound on the distance of the robot from a structure at all times.
+    pub fn at_least(&self, structure: &Structure) -> Real {
+        at_least(&self.swept, structure)
     }
 
     /// The motion in the scene's frame.

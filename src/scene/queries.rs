@@ -7,7 +7,7 @@
 //! - `box`: the lower bound on d(k, i) by the bounding boxes
 //!   ([`BoundingBox`](super::bounding_box::BoundingBox)).
 //! - `bound`: the distance beyond which d(k, i) cannot matter: m(k) for [`Scene::clears`], the best
-//!   slack plus m(k) for [`Scene::tightest`], `reach` for [`Scene::contacts`].
+//!   slack plus m(k) for [`Scene::tightest`], `reach` for [`Scene::contacts_within`].
 //!
 //! # Algorithm
 //! 1. **Begin** ([`Scene::begin`]). Place all robots, which finds their errors. Stop if every robot
@@ -37,7 +37,8 @@ use super::moving_robot::MovingRobotMemory;
 use super::scene_bounds::SceneBounds;
 use super::structure::Structure;
 use crate::answer::{
-    Between, Contact, ProximityError, SceneContact, SceneError, StructureProximity, Tightest,
+    Between, Contact, PlacementFault, ProximityError, SceneContact, SceneError, StructureProximity,
+    Tightest,
 };
 use crate::distance::{DoubleDouble, Scalar};
 use crate::engine::{BvhSearch, Engine, Proximity, RobotPair, SelfQuery};
@@ -453,11 +454,31 @@ impl Scene {
         self.structures.iter().for_each(|structure| structure.search.prepare());
     }
 
-    fn structure(&mut self, structure: usize) -> Result<&mut Structure, SceneError> {
+    pub(super) fn structure(&mut self, structure: usize) -> Result<&mut Structure, SceneError> {
         let structures = self.structures.len();
         self.structures
             .get_mut(structure)
             .ok_or(SceneError::NoSuchStructure { structure, structures })
+    }
+
+    /// The pairs (structure, robot) whose structure has a margin, with a lower bound on the slack:
+    /// the least first. `at_least` bounds the distance of a robot from a structure.
+    pub(super) fn by_slack(
+        &self,
+        robots: usize,
+        at_least: impl Fn(usize, &Structure) -> Real,
+    ) -> Vec<(Real, [usize; 2])> {
+        let mut order = Vec::new();
+        for (number, structure) in self.structures.iter().enumerate() {
+            let Some(margin) = structure.margin else { continue };
+            order.extend((0..robots).map(|robot| {
+                let slack = (at_least(robot, structure) - margin).next_down();
+                // An infinite margin and an infinite bound.
+                (if slack.is_nan() { Real::NEG_INFINITY } else { slack }, [number, robot])
+            }));
+        }
+        order.sort_unstable_by(nearest_first);
+        order
     }
 
     fn have(&self, [structure, robot]: [usize; 2], robots: &[(&Chain, Pose)]) -> bool {
@@ -648,12 +669,32 @@ fn check(margin: Option<Real>) -> Result<(), ProximityError> {
     margin.map_or(Ok(()), check_margin)
 }
 
-fn of_structure(structure: &Structure, error: ProximityError) -> SceneError {
+pub(super) fn of_structure(structure: &Structure, error: ProximityError) -> SceneError {
     SceneError::Structure { name: structure.name.clone(), error }
 }
 
 pub(super) fn of_robot(robot: usize) -> impl Fn(ProximityError) -> SceneError {
     move |error| SceneError::Robot { robot, error }
+}
+
+/// Attributes an error of a query about two robots to the robot that causes it, or to both. The
+/// query calls them `a` and `b`, or their poses `pose_a` and `pose_b`.
+pub(super) fn of_pair(robots: [usize; 2], error: ProximityError) -> SceneError {
+    let of = |parameter: &str| of_robot(robots[usize::from(parameter.ends_with('b'))]);
+    match error {
+        ProximityError::OneMotion { parameter, fault } => {
+            of(parameter)(ProximityError::Motion(fault))
+        }
+        ProximityError::Placement { parameter, fault } => of(parameter)(match fault {
+            PlacementFault::PoseNotFinite => ProximityError::PoseNotFinite,
+            PlacementFault::PoseNotRigid { length } => ProximityError::PoseNotRigid { length },
+            PlacementFault::OutOfRange { link, limit } => {
+                ProximityError::OutOfRange { link, limit }
+            }
+            PlacementFault::TubeOutOfRange { limit } => ProximityError::TubeOutOfRange { limit },
+        }),
+        error => SceneError::Robots { robots, error },
+    }
 }
 
 /// The distance beyond which a structure with this margin is not tighter than the best, rounded up.

@@ -1,8 +1,10 @@
 //! Queries about tubes in a scene.
 
 use super::Scene;
-use super::queries::{of_robot, pairs_apart};
-use crate::answer::{Decision, SceneError};
+use super::least_slack::{BoundedSlack, LeastSlack};
+use super::moving_robot::RestingTube;
+use super::queries::{of_pair, of_robot, pairs_apart};
+use crate::answer::{Clearance, Decision, RobotClearance, SceneClearance, SceneError, ScenePlace};
 use crate::curve::Tube;
 use crate::query::check_not_negative;
 use crate::refine::PlacedTube;
@@ -54,13 +56,14 @@ impl Scene {
     ) -> Result<Decision, SceneError> {
         self.check_has_margin()?;
         check_not_negative("resolution", resolution).map_err(SceneError::Query)?;
-        for (robot, (tube, pose)) in tubes.iter().enumerate() {
-            PlacedTube::new(tube, pose, 0.0).map_err(of_robot(robot))?;
-        }
+        let resting = resting(tubes)?;
         let mut found = Decisions::default();
         for structure in &mut self.structures {
             let Some(margin) = structure.margin else { continue };
             for (robot, (tube, pose)) in tubes.iter().enumerate() {
+                if resting[robot].at_least(structure) > margin {
+                    continue;
+                }
                 let (pose, frame) = (structure.in_mesh(pose), structure.frame());
                 let search = &mut structure.search;
                 let answer = search.ask_clears_tube(tube, &pose, [margin, resolution], frame);
@@ -73,7 +76,7 @@ impl Scene {
             for [first, second] in pairs_apart(tubes.len(), &self.nested) {
                 let [(a, pose_a), (b, pose_b)] = [&tubes[first], &tubes[second]];
                 let answer = self.pair.clears_tubes(a, pose_a, b, pose_b, margin, resolution);
-                if found.ends_with(answer.map_err(SceneError::BetweenRobots)) {
+                if found.ends_with(answer.map_err(|error| of_pair([first, second], error))) {
                     return Ok(Decision::Contact);
                 }
             }
@@ -88,6 +91,91 @@ impl Scene {
         }
         found.decision()
     }
+
+    /// Bounds the least slack of tubes: of the tubes and the structures with a margin, and between
+    /// the tubes, if they have one.
+    ///
+    /// Returns `None` if there is no tube or no such margin. `lower` <= least slack <= `upper`.
+    /// `tolerance` is a length: the bounds differ by at most the tolerance if the tubes allow that
+    /// ([`resolved`](SceneClearance::resolved)). Each pose maps its tube's frame to the scene's
+    /// frame. The margins of robots to themselves do not count.
+    ///
+    /// ```
+    /// use parry_continuum::{Chain, Tube};
+    /// use parry_continuum::parry::{math::{Pose, Vector}, shape::Ball};
+    /// use parry_continuum::proximity::{BvhSearch, Scene, ScenePlace};
+    ///
+    /// let mut scene = Scene::new();
+    /// for (name, radius, margin) in [("wall", 10.0, 1.0), ("vessel", 1.0, 2.0)] {
+    ///     let (vertices, triangles) = Ball::new(radius).to_trimesh(64, 32);
+    ///     scene.add(name, BvhSearch::from_triangles(&vertices, &triangles)?, Some(margin))?;
+    /// }
+    /// let tube = Tube::from(&Chain::from_centreline(&[Vector::ZERO, Vector::Z * 3.0], &[0.5])?);
+    /// let robots = [(&tube, Pose::translation(4.0, 0.0, 0.0))];
+    /// let least = scene.clearance(&robots, 1e-3)?.ok_or("no margin")?;
+    /// assert!(least.lower < 0.51 && 0.5 <= least.upper); // 4 - 1 - 0.5 from the vessel
+    /// assert!(matches!(least.place, ScenePlace::Structure { structure: 1, .. }));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// - The tolerance is negative or NaN.
+    /// - A pose is not finite or not rigid, or moves its tube out of range. The message has the
+    ///   robot's number.
+    /// - A curve is not finite somewhere.
+    pub fn clearance(
+        &mut self,
+        tubes: &[(&Tube, Pose)],
+        tolerance: Real,
+    ) -> Result<Option<SceneClearance>, SceneError> {
+        check_not_negative("tolerance", tolerance).map_err(SceneError::Query)?;
+        let resting = resting(tubes)?;
+        let mut least = LeastSlack::new();
+        for (bound, [number, robot]) in
+            self.by_slack(tubes.len(), |robot, structure| resting[robot].at_least(structure))
+        {
+            let structure = &mut self.structures[number];
+            let Some(margin) = structure.margin.filter(|_| bound <= least.upper()) else {
+                continue;
+            };
+            let (tube, pose) = &tubes[robot];
+            let (pose, frame) = (structure.in_mesh(pose), structure.frame());
+            let found = structure.search.ask_clearance(tube, &pose, tolerance, frame);
+            let Clearance { lower, upper, uncertainty, section, witness, .. } =
+                found.map_err(of_robot(robot))?;
+            let witness = structure.placed_witness(witness);
+            let (structure, of) = (number as u32, robot as u32);
+            let place = ScenePlace::Structure { structure, robot: of, section, witness };
+            least.offer([0, number, robot], margin, [lower, upper], uncertainty, place);
+        }
+        if let Some(margin) = self.robot_margin {
+            for pair in pairs_apart(tubes.len(), &self.nested) {
+                let [(a, pose_a), (b, pose_b)] = pair.map(|robot| &tubes[robot]);
+                let found = self.pair.clearance(a, pose_a, b, pose_b, tolerance);
+                let RobotClearance { lower, upper, uncertainty, sections, witness, .. } =
+                    found.map_err(|error| of_pair(pair, error))?;
+                let robots = pair.map(|robot| robot as u32);
+                let place = ScenePlace::Robots { robots, sections, witness };
+                least.offer([1, pair[0], pair[1]], margin, [lower, upper], uncertainty, place);
+            }
+        }
+        Ok(least.answer(tolerance).map(|found| {
+            let BoundedSlack { lower, upper, resolved, uncertainty, place } = found;
+            SceneClearance { lower, upper, resolved, uncertainty, place }
+        }))
+    }
+}
+
+/// The bodies around the tubes.
+///
+/// # Errors
+/// A tube has no section, or its pose is not finite or not rigid or moves it out of range.
+fn resting(tubes: &[(&Tube, Pose)]) -> Result<Vec<RestingTube>, SceneError> {
+    let place = |(robot, (tube, pose)): (usize, &(&Tube, Pose))| {
+        let placed = PlacedTube::new(tube, pose, 0.0).map_err(of_robot(robot))?;
+        Ok(RestingTube::new(&placed))
+    };
+    tubes.iter().enumerate().map(place).collect()
 }
 
 /// The decisions of all queries so far.

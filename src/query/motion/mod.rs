@@ -6,6 +6,8 @@ mod current_shape;
 mod half_displacement;
 mod interval_test;
 mod intervals;
+mod minimum_policy;
+mod minimum_rounds;
 mod motion_clearance;
 mod motion_pair;
 mod motion_search;
@@ -21,6 +23,7 @@ mod unresolved_piece;
 
 pub(crate) use approach_bound::{half_length, midpoint};
 pub(crate) use interval_test::MarginQuery;
+pub(crate) use intervals::Sought;
 pub(crate) use motion_pair::{MotionPair, MotionsMemory};
 pub(crate) use motion_search::{MotionMemory, MotionSearch};
-pub(crate) use self_motion::{SelfMotionMemory, self_clears_motion};
+pub(crate) use self_motion::{SelfMotionMemory, self_decides_motion};
