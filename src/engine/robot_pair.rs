@@ -347,10 +347,13 @@ impl RobotPair {
     ///
     /// Writes one result per pair to `out`, in order.
     pub fn minimum_batch(
+        &self,
         pairs: &[[(&Chain, Pose); 2]],
         out: &mut Vec<Result<RobotProximity, ProximityError>>,
     ) {
-        batch(pairs, out, |pair, [(a, pose_a), (b, pose_b)]| pair.minimum(a, pose_a, b, pose_b));
+        self.batch(pairs, out, |pair, [(a, pose_a), (b, pose_b)]| {
+            pair.minimum(a, pose_a, b, pose_b)
+        });
     }
 
     /// [`clears`](Self::clears) for many pairs of robots, on all cores.
@@ -364,7 +367,7 @@ impl RobotPair {
     /// let needle = Chain::from_centreline(&[Vector::ZERO, Vector::Z * 40.0], &[1.0])?;
     /// let beside = |x: f64| [(&needle, Pose::IDENTITY), (&needle, Pose::translation(x, 0.0, 0.0))];
     /// let mut answers = Vec::new();
-    /// RobotPair::clears_batch(&[5.0, 3.0, f64::NAN].map(beside), 2.0, &mut answers)?;
+    /// RobotPair::new().clears_batch(&[5.0, 3.0, f64::NAN].map(beside), 2.0, &mut answers)?;
     /// assert_eq!(answers[..2], [Ok(true), Ok(false)]);
     /// assert_eq!(answers[2].map_err(|error| error.kind()), Err("pose_not_finite"));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -373,13 +376,14 @@ impl RobotPair {
     /// # Errors
     /// The margin is negative or NaN; `out` is then empty.
     pub fn clears_batch(
+        &self,
         pairs: &[[(&Chain, Pose); 2]],
         margin: Real,
         out: &mut Vec<Result<bool, ProximityError>>,
     ) -> Result<(), ProximityError> {
         out.clear();
         check_margin(margin)?;
-        batch(pairs, out, |pair, [(a, pose_a), (b, pose_b)]| {
+        self.batch(pairs, out, |pair, [(a, pose_a), (b, pose_b)]| {
             pair.clears(a, pose_a, b, pose_b, margin)
         });
         Ok(())
@@ -392,6 +396,7 @@ impl RobotPair {
     /// # Errors
     /// The margin or the resolution is negative or NaN; `out` is then empty.
     pub fn clears_motions_batch<A: Motion + Sync, B: Motion + Sync>(
+        &self,
         pairs: &[(A, B)],
         margin: Real,
         resolution: Real,
@@ -399,7 +404,7 @@ impl RobotPair {
     ) -> Result<(), ProximityError> {
         out.clear();
         check_decision(margin, resolution)?;
-        batch(pairs, out, |pair, (a, b)| pair.clears_motions(a, b, margin, resolution));
+        self.batch(pairs, out, |pair, (a, b)| pair.clears_motions(a, b, margin, resolution));
         Ok(())
     }
 
@@ -430,20 +435,22 @@ impl RobotPair {
     fn motions<'a, A, B>(&'a mut self, a: &'a A, b: &'a B) -> MotionPair<'a, A, B> {
         MotionPair { memory: &mut self.motions, motions: (a, b), names: MOTIONS }
     }
-}
 
-/// Answers many pairs on all cores, each core with a pair of its own.
-fn batch<Q: Sync, T: Send>(
-    pairs: &[Q],
-    out: &mut Vec<Result<T, ProximityError>>,
-    ask: impl Fn(&mut RobotPair, &Q) -> Result<T, ProximityError> + Sync + Send,
-) {
-    out.clear();
-    // Placeholders: each chunk writes its own answers.
-    out.resize_with(pairs.len(), || Err(ProximityError::EmptyTube));
-    in_chunks(pairs, out, &mut Vec::new(), |pair: &mut RobotPair, pairs, out| {
-        for (asked, out) in pairs.iter().zip(out) {
-            *out = ask(pair, asked);
-        }
-    });
+    /// Answers many pairs of robots in chunks. Each chunk has a clone of this pair.
+    fn batch<Q: Sync, T: Send>(
+        &self,
+        pairs: &[Q],
+        out: &mut Vec<Result<T, ProximityError>>,
+        ask: impl Fn(&mut Self, &Q) -> Result<T, ProximityError> + Sync + Send,
+    ) {
+        out.clear();
+        // Placeholders: each chunk writes its own answers.
+        out.resize_with(pairs.len(), || Err(ProximityError::EmptyTube));
+        in_chunks(pairs, out, &mut Vec::new(), |own: &mut Option<Self>, pairs, out| {
+            let own = own.get_or_insert_with(|| self.clone());
+            for (asked, out) in pairs.iter().zip(out) {
+                *out = ask(own, asked);
+            }
+        });
+    }
 }

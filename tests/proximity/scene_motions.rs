@@ -12,28 +12,28 @@ use parry_continuum::{
     RigidMotion, RobotError, Speed, Tube,
 };
 
-const RESOLUTION: Real = 1e-3;
-const STEPS: u32 = 60;
+pub(super) const RESOLUTION: Real = 1e-3;
+pub(super) const STEPS: u32 = 60;
 
-fn ball(radius: Real) -> BvhSearch {
+pub(super) fn ball(radius: Real) -> BvhSearch {
     let (vertices, triangles) = Ball::new(radius).to_trimesh(12, 6);
     BvhSearch::from_triangles(&vertices, &triangles).unwrap()
 }
 
 /// Capsules whose vertices move straight.
 #[derive(Clone)]
-struct Edge {
+pub(super) struct Edge {
     ends: [Vec<Vector>; 2],
     radii: Vec<Real>,
 }
 
 impl Edge {
     /// A robot of a few links near the origin, and another shape of it.
-    fn random(random: &mut Random) -> Self {
+    pub(super) fn random(random: &mut Random) -> Self {
         let mut from = vec![random.point() * 4.0];
         let mut heading = random.direction();
-        let sharp = random.between(0.2, 1.6);
-        for k in 0..3 + random.below(4) as usize {
+        let (sharp, links) = [(random.between(0.2, 1.2), 3), (1.8, 6)][random.below(2) as usize];
+        for k in 0..links + random.below(4) as usize {
             heading = (heading + random.direction() * sharp).normalize();
             from.push(from[k] + heading * random.between(0.8, 1.6));
         }
@@ -44,11 +44,11 @@ impl Edge {
         Self { ends: [from, to], radii }
     }
 
-    fn motion(&self) -> LinearMotion {
+    pub(super) fn motion(&self) -> LinearMotion {
         LinearMotion::capsules(&self.ends[0], &self.ends[1], &self.radii).unwrap()
     }
 
-    fn chain(&self, t: Real) -> Chain {
+    pub(super) fn chain(&self, t: Real) -> Chain {
         let pairs = self.ends[0].iter().zip(&self.ends[1]);
         let points: Vec<_> = pairs.map(|(from, to)| from.lerp(*to, t)).collect();
         Chain::capsules(&points, &self.radii).unwrap()
@@ -56,21 +56,21 @@ impl Edge {
 }
 
 /// A scene, and the same data for the single questions.
-struct Case {
-    scene: Scene,
-    organs: Vec<(BvhSearch, Option<Real>, Pose)>,
+pub(super) struct Case {
+    pub(super) scene: Scene,
+    pub(super) organs: Vec<(BvhSearch, Option<Real>, Pose)>,
     between: Option<Real>,
-    itself: Option<Real>,
+    pub(super) itself: Option<Real>,
     nested: Vec<[usize; 2]>,
 }
 
 impl Case {
-    fn random(random: &mut Random) -> Self {
+    pub(super) fn random(random: &mut Random) -> Self {
         let mut case = Self {
             scene: Scene::new(),
             organs: Vec::new(),
             between: [None, Some(random.between(0.0, 0.5))][random.below(2) as usize],
-            itself: [None, Some(random.between(0.0, 0.3))][random.below(2) as usize],
+            itself: [None, Some(random.between(0.0, 0.8))][random.below(2) as usize],
             nested: if random.below(3) == 0 { vec![[2, 0]] } else { Vec::new() },
         };
         for number in 0..5 {
@@ -95,46 +95,56 @@ impl Case {
     /// The answers of all single questions, in order.
     fn singles(&mut self, motions: &[LinearMotion]) -> Vec<(Decision, Asked)> {
         let mut answers = Vec::new();
-        for (number, (search, margin, pose)) in self.organs.iter_mut().enumerate() {
-            let Some(margin) = *margin else { continue };
-            for (robot, motion) in motions.iter().enumerate() {
-                let answer = if *pose == Pose::IDENTITY {
-                    search.clears_motion(motion, margin, RESOLUTION)
-                } else {
-                    let carried = MovingBase::new(motion.clone(), [pose.inverse(); 2]).unwrap();
-                    search.clears_motion(&carried, margin, RESOLUTION)
-                };
-                let decision = answer.unwrap().decision;
-                answers.push((decision, Asked::Structure(number as u32, robot as u32)));
-            }
-        }
-        if let Some(margin) = self.between {
-            for a in 0..motions.len() {
-                for b in a + 1..motions.len() {
-                    if self.nested.contains(&[b, a]) {
-                        continue;
-                    }
-                    let answer = RobotPair::new().clears_motions(
-                        &motions[a],
-                        &motions[b],
-                        margin,
-                        RESOLUTION,
-                    );
-                    answers.push((answer.unwrap().decision, Asked::Pair([a as u32, b as u32])));
+        for asked in self.asked(motions.len()) {
+            let decision = match asked {
+                Asked::Structure(number, robot) => {
+                    let (search, margin, pose) = &mut self.organs[number as usize];
+                    let (motion, margin) = (&motions[robot as usize], margin.unwrap());
+                    let answer = if *pose == Pose::IDENTITY {
+                        search.clears_motion(motion, margin, RESOLUTION)
+                    } else {
+                        let carried = MovingBase::new(motion.clone(), [pose.inverse(); 2]).unwrap();
+                        search.clears_motion(&carried, margin, RESOLUTION)
+                    };
+                    answer.unwrap().decision
                 }
-            }
-        }
-        if let Some(margin) = self.itself {
-            for (robot, motion) in motions.iter().enumerate() {
-                let answer = SelfQuery::new().clears_motion(motion, margin, RESOLUTION);
-                answers.push((answer.unwrap().decision, Asked::Itself(robot as u32)));
-            }
+                Asked::Pair(pair) => {
+                    let [a, b] = pair.map(|robot| &motions[robot as usize]);
+                    let margin = self.between.unwrap();
+                    RobotPair::new().clears_motions(a, b, margin, RESOLUTION).unwrap().decision
+                }
+                Asked::Itself(robot) => {
+                    let (motion, margin) = (&motions[robot as usize], self.itself.unwrap());
+                    let answer = SelfQuery::new().clears_motion(motion, margin, RESOLUTION);
+                    answer.unwrap().decision
+                }
+            };
+            answers.push((decision, asked));
         }
         answers
     }
 
+    /// All questions, in order.
+    pub(super) fn asked(&self, robots: usize) -> Vec<Asked> {
+        let mut asked = Vec::new();
+        for (number, (_, margin, _)) in self.organs.iter().enumerate() {
+            let of = |robot| Asked::Structure(number as u32, robot as u32);
+            asked.extend((0..robots).filter(|_| margin.is_some()).map(of));
+        }
+        for a in 0..robots {
+            for b in a + 1..robots {
+                if self.between.is_some() && !self.nested.contains(&[b, a]) {
+                    asked.push(Asked::Pair([a as u32, b as u32]));
+                }
+            }
+        }
+        let own = (0..robots).filter(|_| self.itself.is_some());
+        asked.extend(own.map(|robot| Asked::Itself(robot as u32)));
+        asked
+    }
+
     /// The margin of a question, and the distance at a time.
-    fn distance(&mut self, asked: Asked, edges: &[Edge], t: Real) -> (Real, Real) {
+    pub(super) fn distance(&mut self, asked: Asked, edges: &[Edge], t: Real) -> (Real, Real) {
         match asked {
             Asked::Structure(number, robot) => {
                 let (search, margin, pose) = &mut self.organs[number as usize];
@@ -149,22 +159,24 @@ impl Case {
                 (self.between.unwrap(), found.distance)
             }
             Asked::Itself(robot) => {
-                let found = SelfQuery::new().minimum(&edges[robot as usize].chain(t)).unwrap();
-                (self.itself.unwrap(), found.map_or(Real::INFINITY, |found| found.distance))
+                // A joint may be too sharp between the shapes that the query makes.
+                let found = SelfQuery::new().minimum(&edges[robot as usize].chain(t));
+                let distance = found.ok().flatten().map_or(Real::INFINITY, |found| found.distance);
+                (self.itself.unwrap(), distance)
             }
         }
     }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Asked {
+pub(super) enum Asked {
     Structure(u32, u32),
     Pair([u32; 2]),
     Itself(u32),
 }
 
 /// What a contact is about, and how far apart its points are.
-fn asked(contact: &SceneMotionContact) -> (Asked, Real) {
+pub(super) fn asked(contact: &SceneMotionContact) -> (Asked, Real) {
     match contact {
         SceneMotionContact::Structure { structure, robot, shape } => {
             let apart = (shape.witness.on_robot - shape.witness.on_mesh).length();
@@ -183,7 +195,7 @@ fn asked(contact: &SceneMotionContact) -> (Asked, Real) {
 }
 
 /// Robots whose joints are not too sharp for questions about a robot and itself.
-fn edges(random: &mut Random, count: usize) -> Vec<Edge> {
+pub(super) fn edges(random: &mut Random, count: usize) -> Vec<Edge> {
     let mut edges = Vec::new();
     while edges.len() < count {
         let edge = Edge::random(random);
@@ -197,7 +209,7 @@ fn edges(random: &mut Random, count: usize) -> Vec<Edge> {
 #[test]
 fn a_scene_decides_as_the_single_questions_and_no_step_is_nearer() {
     let mut seen = [0; 6];
-    for seed in 0..rounds(150) {
+    for seed in 0..rounds(5000) {
         let random = &mut Random::new(seed);
         let mut case = Case::random(random);
         if case.scene.clears(&[]).is_err() {
@@ -250,11 +262,12 @@ fn a_scene_decides_as_the_single_questions_and_no_step_is_nearer() {
         assert_eq!(fresh, Ok(answer), "seed {seed}");
         assert_eq!(Scene::clone(&case.scene).clears_motion(&motions.each(), RESOLUTION), fresh);
     }
-    assert!(seen[..5].iter().all(|count| *count >= 3), "{seen:?}");
+    let least = rounds(40);
+    assert!(seen[..5].iter().all(|count| *count >= least), "{seen:?}");
 }
 
 /// References to all items.
-trait Each<T> {
+pub(super) trait Each<T> {
     fn each(&self) -> Vec<&T>;
 }
 
@@ -319,7 +332,7 @@ fn a_batch_answers_each_edge_as_if_it_were_alone() {
 #[test]
 fn tubes_in_a_scene_are_decided_as_by_the_single_questions() {
     let mut seen = [0; 3];
-    for seed in 0..rounds(150) {
+    for seed in 0..rounds(400) {
         let random = &mut Random::new(seed);
         let mut case = Case::random(random);
         if case.scene.clears(&[]).is_err() {
