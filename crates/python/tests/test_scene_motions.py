@@ -28,15 +28,15 @@ POSES = [np.eye(4), np.array([[0, -1, 0, 2.0], [1, 0, 0, 1.0], [0, 0, 1, 1.5], [
 MARGINS = [0.2, 0.0]
 
 
-def scene(**more: float) -> Scene:
-    made = Scene(**more)
+def scene(robot_margin: float | None = None, self_margin: float | None = None) -> Scene:
+    made = Scene(robot_margin=robot_margin, self_margin=self_margin)
     for place, (pose, margin) in enumerate(zip(POSES, MARGINS)):
         made.add(f"square {place}", Mesh(SQUARE, FACES), margin=margin, pose=pose)
     made.add("target", Mesh(SQUARE, FACES), margin=None)
     return made
 
 
-def edges(count: int, seed: int) -> tuple[list[Motion], list[Motion]]:
+def edges(count: int, seed: int) -> tuple[list[LinearMotion], list[LinearMotion]]:
     """Two robots of three links each, at both ends of each edge."""
     random = np.random.default_rng(seed)
     robots = []
@@ -94,8 +94,8 @@ def test_the_least_slack_is_that_of_the_single_questions() -> None:
                 seen = MovingBase(motion, np.linalg.inv(pose), np.linalg.inv(pose))
                 one = Mesh(SQUARE, FACES).clearance_of_motion(seen, tolerance=1e-6)
                 slacks.append([one.lower - margin, one.upper - margin])
-        one = RobotPair().clearance_of_motion(a, b, tolerance=1e-6)
-        slacks.append([one.lower - 0.3, one.upper - 0.3])
+        both = RobotPair().clearance_of_motion(a, b, tolerance=1e-6)
+        slacks.append([both.lower - 0.3, both.upper - 0.3])
         least = np.min(slacks, axis=0)
         assert found.resolved and found.upper - found.lower <= 1e-3
         assert found.lower <= least[1] + 1e-9 and least[0] <= found.upper + 1e-9
@@ -146,13 +146,13 @@ def test_structures_move_meanwhile() -> None:
 def test_tubes_are_bounded_and_decided() -> None:
     asked = Scene(robot_margin=0.5)
     asked.add("square", Mesh(SQUARE, FACES), margin=0.5)
-    robots = [([[0, 0, 2], [0, 0, 4]], 0.25), ([[x, 0, 2] for x in (2, 3)], 0.25)]
+    robots = [(np.array([[0, 0, 2], [0, 0, 4]]), 0.25), (np.array([[2, 0, 2], [3, 0, 2]]), 0.25)]
     found = asked.clearance(robots, tolerance=1e-3)
     # 2 - 0.5 from the square; 2 - 0.25 - 0.5 from one another.
     assert found.lower <= 1.25 <= found.upper <= found.lower + 1e-3
     assert found.structure == -1 and found.robots.tolist() == [0, 1]
     assert asked.clears_tube(robots, resolution=1e-3) is Decision.CLEAR
-    low = [([[0, 0, 0.4], [0, 0, 4]], 0.25), robots[1]]
+    low = [(np.array([[0, 0, 0.4], [0, 0, 4]]), 0.25), robots[1]]
     assert asked.clears_tube(low, resolution=1e-3) is Decision.CONTACT
     assert np.isinf(Scene().clearance(robots, tolerance=1e-3).lower)
 
