@@ -163,13 +163,15 @@ enum End {
 }
 
 impl End {
+    /// Most structures approach the origin, where the robot is.
     fn random(random: &mut Random, pose: Pose, vertices: &[Vector]) -> Self {
+        let way = -pose.translation * random.between(0.0, 1.1) + random.point();
         if random.below(2) == 0 {
             let turn =
                 random.direction() * [0.0, random.between(0.0, 3.0)][random.below(2) as usize];
-            return Self::Pose { from: pose, turn, shift: random.point() * 3.0 };
+            return Self::Pose { from: pose, turn, shift: way };
         }
-        let (size, shift) = (random.between(0.3, 1.5), random.point());
+        let (size, shift) = (random.between(0.3, 1.5), pose.rotation.inverse() * way);
         let to = vertices.iter().map(|vertex| *vertex * size + shift + random.point() * 0.05);
         Self::Vertices { pose, to: to.collect(), from: vertices.to_vec() }
     }
