@@ -4,8 +4,8 @@
 //! # Algorithm
 //! 1. **Sweep** ([`MovingRobot`]). Make the first shapes of all robots, which finds most errors, and
 //!    bound where each robot goes.
-//! 2. **Structures**, in order, and for each structure the robots, in order. Skip a robot whose
-//!    bound is beyond the margin. Query the others as
+//! 2. **Structures** and robots, the least lower bound on the slack first: a contact is probably
+//!    found at once. Skip those whose bound is beyond the margin. Query the others as
 //!    [`BvhSearch::clears_motion`](crate::proximity::BvhSearch::clears_motion) does.
 //! 3. **Robots.** Query the pairs that are not nested, then each robot and itself.
 //! 4. The first contact ends the query; `time_of_contact` asks on and keeps the earliest. Without a
@@ -52,9 +52,9 @@ impl Scene {
     ///
     /// - `Clear`: all of them are clear. This is proven for every instant, given the speeds that
     ///   the motions state.
-    /// - `Contact`: the answer names the first of them with a contact, in this order: the
-    ///   structures, and for each structure the robots; the pairs of robots; each robot and itself.
-    ///   The contact may not be the first in time.
+    /// - `Contact`: the answer names the first of them with a contact, in this order: robots and
+    ///   structures, those that seem nearest first; the pairs of robots; each robot and itself. The
+    ///   contact may not be the first in time.
     /// - `Undecided`: none has a contact, and some are undecided. The answer has the earliest
     ///   interval, and its [reason](SceneMotionAnswer::reason).
     ///
@@ -230,7 +230,7 @@ impl Scene {
     ) -> Result<LeastSlack<(Real, ScenePlace)>, SceneError> {
         let mut least = LeastSlack::new();
         for (bound, [number, robot]) in
-            self.by_slack(robots.len(), |robot, structure| robots[robot].at_least(structure))
+            self.by_slack(robots.len(), |_, structure, robot| robots[robot].at_least(structure))
         {
             let structure = &mut self.structures[number];
             let Some(margin) = structure.margin.filter(|_| bound <= least.upper()) else {
@@ -324,20 +324,23 @@ impl Scene {
         found: &mut Findings,
     ) {
         let sought = found.sought;
-        for (number, structure) in self.structures.iter_mut().enumerate() {
+        // Of several ends the last one counts.
+        let end_of = |number: usize| {
+            moving.iter().rev().find(|(moving, _)| *moving == number).map(|(_, end)| end)
+        };
+        let order = self.by_slack(robots.len(), |number, structure, robot| {
+            end_of(number).map_or_else(
+                || robots[robot].at_least(structure),
+                |end| robots[robot].at_least_moving(structure, end),
+            )
+        });
+        // The others are beyond their margin.
+        for (_, [number, robot]) in order.into_iter().take_while(|(slack, _)| *slack <= 0.0) {
+            let structure = &mut self.structures[number];
             let Some(margin) = structure.margin else { continue };
-            // Of several ends the last one counts.
-            let end = moving.iter().rev().find(|(moving, _)| *moving == number).map(|(_, end)| end);
-            for (robot, asked) in robots.iter().enumerate() {
-                let is_beyond = match end {
-                    None => asked.is_beyond(structure, margin),
-                    Some(end) => asked.is_beyond_moving(structure, end, margin),
-                };
-                if is_beyond {
-                    continue;
-                }
-                let wanted = MarginQuery { margin, resolution };
-                let answer = decide_structure(asked, structure, end, wanted, sought)
+            let wanted = MarginQuery { margin, resolution };
+            let answer =
+                decide_structure(&robots[robot], structure, end_of(number), wanted, sought)
                     .map(|answer| Finding {
                         interval: answer.interval,
                         reason: answer.reason,
@@ -348,9 +351,8 @@ impl Scene {
                         }),
                     })
                     .map_err(of_robot(robot));
-                if found.ends_with(answer) {
-                    return;
-                }
+            if found.ends_with(answer) {
+                return;
             }
         }
         if let Some(margin) = self.robot_margin {

@@ -211,29 +211,24 @@ impl<'a, M: Motion + ?Sized> MovingRobot<'a, M> {
         Ok(())
     }
 
-    /// Returns whether the robot certainly keeps a margin from a structure at all times.
-    pub fn is_beyond(&self, structure: &Structure, margin: Real) -> bool {
-        let (around, size) = (structure.around_in_scene(), structure.size());
-        self.swept.iter().all(|body| body.at_least(&around, size) > margin)
-    }
-
-    /// [`is_beyond`](Self::is_beyond) for a structure that moves.
-    pub fn is_beyond_moving(
-        &self,
-        structure: &Structure,
-        end: &MovingStructure,
-        margin: Real,
-    ) -> bool {
-        self.swept.chunk_by(|one, other| one.times == other.times).all(|part| {
-            let (around, way) = end.around(structure, part[0].times);
-            let size = end.size() + way;
-            part.iter().all(|body| body.at_least(&around, size) - way > margin)
-        })
-    }
-
     /// A lower bound on the distance of the robot from a structure at all times.
     pub fn at_least(&self, structure: &Structure) -> Real {
         at_least(&self.swept, structure)
+    }
+
+    /// [`at_least`](Self::at_least) for a structure that moves.
+    pub fn at_least_moving(&self, structure: &Structure, end: &MovingStructure) -> Real {
+        let mut least = Real::INFINITY;
+        for part in self.swept.chunk_by(|one, other| one.times == other.times) {
+            let (around, way) = end.around(structure, part[0].times);
+            let size = end.size() + way;
+            for body in part {
+                let bound = body.at_least(&around, size) - way;
+                // Written so that NaN is near.
+                least = if bound >= least { least } else { bound };
+            }
+        }
+        least
     }
 
     /// The motion in the scene's frame.

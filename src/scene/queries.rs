@@ -462,17 +462,17 @@ impl Scene {
     }
 
     /// The pairs (structure, robot) whose structure has a margin, with a lower bound on the slack:
-    /// the least first. `at_least` bounds the distance of a robot from a structure.
+    /// the least first. `at_least` bounds the distance of a structure, with its number, from a robot.
     pub(super) fn by_slack(
         &self,
         robots: usize,
-        at_least: impl Fn(usize, &Structure) -> Real,
+        at_least: impl Fn(usize, &Structure, usize) -> Real,
     ) -> Vec<(Real, [usize; 2])> {
         let mut order = Vec::new();
         for (number, structure) in self.structures.iter().enumerate() {
             let Some(margin) = structure.margin else { continue };
             order.extend((0..robots).map(|robot| {
-                let slack = (at_least(robot, structure) - margin).next_down();
+                let slack = (at_least(number, structure, robot) - margin).next_down();
                 // An infinite margin and an infinite bound.
                 (if slack.is_nan() { Real::NEG_INFINITY } else { slack }, [number, robot])
             }));

@@ -132,7 +132,7 @@ impl Scene {
         let resting = resting(tubes)?;
         let mut least = LeastSlack::new();
         for (bound, [number, robot]) in
-            self.by_slack(tubes.len(), |robot, structure| resting[robot].at_least(structure))
+            self.by_slack(tubes.len(), |_, structure, robot| resting[robot].at_least(structure))
         {
             let structure = &mut self.structures[number];
             let Some(margin) = structure.margin.filter(|_| bound <= least.upper()) else {

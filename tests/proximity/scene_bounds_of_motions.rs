@@ -247,7 +247,7 @@ fn structures_that_move_are_followed() {
         }
     }
     for kind in seen {
-        assert!(kind[0] >= rounds(60) && kind[1] >= rounds(60), "{seen:?}");
+        assert!(kind[0] >= rounds(400) && kind[1] >= rounds(40), "{seen:?}");
     }
 }
 

@@ -60,7 +60,7 @@ impl Scene {
     /// structures, from one another, and each from itself. A planner asks this for each edge.
     ///
     /// ``Decision.CLEAR`` is proven for every instant, from the speeds of the motions. A contact is
-    /// the first of these: the structures, and for each structure the robots; the pairs of robots;
+    /// the first of these: robots and structures, those that seem nearest first; the pairs of robots;
     /// each robot and itself. It may not be the first in time: see `time_of_contact`. A set that is
     /// refused does not fail its batch: it is undecided, and its ``status`` is the ``kind`` of its
     /// error.
