@@ -11,8 +11,8 @@ use parry_continuum::{Chain, RigidMotion, Tube};
 const VEIN: [Vector; 2] = [Vector::new(11.0, -8.0, 15.0), Vector::new(10.5, 4.0, 14.5)];
 const VEIN_RADIUS: Real = 0.7;
 
-/// The endoscope's ends and radius, mm.
-const ENDOSCOPE: [Vector; 2] = [Vector::new(14.0, 34.0, 14.0), Vector::new(11.5, 22.0, 11.0)];
+/// The ends and the radius, mm, of the part of the endoscope that is inside.
+const ENDOSCOPE: [Vector; 2] = [Vector::new(12.8, 29.0, 6.5), Vector::new(11.7, 22.0, 11.0)];
 const ENDOSCOPE_RADIUS: Real = 1.0;
 
 /// A scene with the wall alone, which has the margin.
