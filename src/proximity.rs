@@ -60,6 +60,8 @@
 //! | the clearance of two tubes, between two bounds | [`RobotPair::clearance`] |
 //! | do two tubes keep a margin? | [`RobotPair::clears_tubes`] |
 //! | do two robots keep a margin while both move? | [`RobotPair::clears_motions`] |
+//! | when do two moving robots first come within a margin? | [`RobotPair::time_of_contact`] |
+//! | the least clearance of two moving robots, between two bounds | [`RobotPair::clearance_of_motion`] |
 //! | a proof of the distance of two links | [`RobotProximity::certify`] |
 //!
 //! **One robot and itself**
@@ -79,6 +81,12 @@
 //! | where is the least slack, and to which structure? | [`Scene::tightest`] |
 //! | how near is each structure? | [`Scene::per_structure`] |
 //! | every contact, with its structure | [`Scene::contacts_within`] |
+//! | do all tubes keep all margins? | [`Scene::clears_tube`] |
+//! | the least slack of tubes, between two bounds | [`Scene::clearance`] |
+//! | do all robots keep all margins while they move? | [`Scene::clears_motion`] |
+//! | ... while structures move too? | [`Scene::clears_motion_while`] |
+//! | when is the first margin violated? | [`Scene::time_of_contact`] |
+//! | the least slack of moving robots, between two bounds | [`Scene::clearance_of_motion`] |
 //!
 //! **Many at once, and a mesh that moves**
 //!
@@ -86,7 +94,9 @@
 //! |---|---|
 //! | query many robots on all cores | [`per_link_batch`], [`minimum_batch`], [`clears_batch`] |
 //! | query tubes or motions | [`clearance_batch`], [`clears_tube_batch`], [`clears_motion_batch`] |
+//! | query many pairs of robots | [`RobotPair::minimum_batch`], [`RobotPair::clears_batch`], [`RobotPair::clears_motions_batch`] |
 //! | query many sets of robots in a scene | [`Scene::clears_batch`], [`Scene::tightest_batch`] |
+//! | query many edges of a planner in a scene | [`Scene::clears_motion_batch`] |
 //! | build beforehand every structure that a first query would build | [`prepare`] |
 //! | move the mesh | [`set_vertices`] |
 //! | read the mesh as the engine has it now | [`vertices`], [`triangles`] |
@@ -155,9 +165,10 @@ pub use crate::answer::DeviceFailure;
 pub use crate::answer::{
     Between, Certificate, Clearance, Contact, ContactFeature, Decision, Derivative, InsideAnswer,
     LinkFeature, LinkProximity, MeshError, MotionAnswer, MotionClearance, PairWitness,
-    PlacementFault, Proof, ProximityError, RobotClearance, RobotMotionAnswer, RobotProximity,
-    RobotsInContact, SceneContact, SceneError, ShapeInContact, Side, StructureProximity, Tightest,
-    TriangleFeature, TubePiece, UndecidedReason, Witness, Work,
+    PlacementFault, Proof, ProximityError, RobotClearance, RobotMotionAnswer, RobotMotionClearance,
+    RobotProximity, RobotsInContact, SceneClearance, SceneContact, SceneError, SceneMotionAnswer,
+    SceneMotionClearance, SceneMotionContact, ScenePlace, ShapeInContact, Side, StructureProximity,
+    Tightest, TriangleFeature, TubePiece, UndecidedReason, Witness, Work,
 };
 pub use crate::engine::{BvhSearch, Exhaustive, Proximity, RobotPair, SearchPrecision, SelfQuery};
-pub use crate::scene::Scene;
+pub use crate::scene::{Scene, StructureEnd};

@@ -4,8 +4,8 @@ use continuum_demo::ctr::{Joints, Robot};
 use continuum_demo::joint_motion::JointMotion;
 use continuum_demo::steer::Random;
 use parry_continuum::parry::math::{Pose, Real};
-use parry_continuum::proximity::{BvhSearch, Decision};
-use parry_continuum::{Motion, RobotError, Speed, Tube};
+use parry_continuum::proximity::{BvhSearch, Decision, Scene};
+use parry_continuum::{Motion, RigidMotion, RobotError, Speed, Tube};
 use std::cell::Cell;
 use std::f64::consts::{PI, TAU};
 use std::time::{Duration, Instant};
@@ -67,7 +67,7 @@ pub fn length(way: &Place) -> Real {
 /// How edges are checked.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Check {
-    /// By `clears_motion`.
+    /// By `Scene::clears_motion`.
     Proof,
     /// By shapes between which the tip moves so far, mm.
     Steps(Real),
@@ -88,8 +88,19 @@ pub struct Edges<'a> {
     pub base: Pose,
     pub margin: Real,
     pub check: Check,
+    /// The wall alone.
     pub search: BvhSearch,
+    /// The wall, the vein, and the margins.
+    pub scene: Scene,
+    /// The other robot, which rests.
+    pub other: Option<&'a Resting>,
     pub costs: Costs,
+}
+
+/// A robot that rests: its shape, and the same as a motion.
+pub struct Resting {
+    pub tube: Tube,
+    pub motion: RigidMotion,
 }
 
 impl Edges<'_> {
@@ -109,11 +120,7 @@ impl Edges<'_> {
         };
         let begin = Instant::now();
         let is_clear = match self.check {
-            Check::Proof => self
-                .search
-                .clears_motion(&motion, self.margin, RESOLUTION)
-                .map_err(text)?
-                .is_clear(),
+            Check::Proof => self.decide(&motion)? == Decision::Clear,
             Check::Steps(step) => self.is_clear_in_steps(&motion, step)?,
         };
         self.costs.all += begin.elapsed();
@@ -123,20 +130,32 @@ impl Edges<'_> {
         Ok(is_clear)
     }
 
+    /// Decides about a motion of the robot, beside the other one.
+    pub fn decide(&mut self, motion: &dyn Motion) -> Result<Decision, String> {
+        let mut motions = vec![motion];
+        motions.extend(self.other.map(|other| &other.motion as &dyn Motion));
+        Ok(self.scene.clears_motion(&motions, RESOLUTION).map_err(text)?.decision)
+    }
+
     fn is_clear_in_steps(&mut self, motion: &Watched, step: Real) -> Result<bool, String> {
         let mut tube = motion.motion.tube(0.0).map_err(text)?;
         for t in motion.motion.steps(step) {
             let pose = motion.shape(t, &mut tube).map_err(text)?;
-            let decision =
-                self.search.clears_tube(&tube, &pose, self.margin, RESOLUTION).map_err(text)?;
-            if decision != Decision::Clear {
+            if !self.is_clear_at(&tube, pose)? {
                 return Ok(false);
             }
         }
         Ok(true)
     }
 
-    /// Which places keep the margin, on all cores.
+    /// Whether the robot keeps all margins in a shape.
+    fn is_clear_at(&mut self, tube: &Tube, pose: Pose) -> Result<bool, String> {
+        let mut tubes = vec![(tube, pose)];
+        tubes.extend(self.other.map(|other| (&other.tube, Pose::IDENTITY)));
+        Ok(self.scene.clears_tube(&tubes, RESOLUTION).map_err(text)? == Decision::Clear)
+    }
+
+    /// Which places keep all margins: the wall's first, on all cores.
     pub fn clear_places(&mut self, places: Vec<Place>) -> Result<Vec<Place>, String> {
         let tube = |place| Ok((self.robot.shape(&joints(place)).map_err(text)?, self.base));
         let tubes: Vec<_> = places.iter().map(tube).collect::<Result<_, String>>()?;
@@ -145,13 +164,13 @@ impl Edges<'_> {
         self.search
             .clears_tube_batch(&tubes, self.margin, RESOLUTION, &mut decisions)
             .map_err(text)?;
-        let is_clear = decisions.into_iter().map(|decision| decision == Ok(Decision::Clear));
-        Ok(places
-            .into_iter()
-            .zip(is_clear)
-            .filter(|(_, is_clear)| *is_clear)
-            .map(|(place, _)| place)
-            .collect())
+        let mut clear = Vec::new();
+        for ((place, (tube, pose)), decision) in places.into_iter().zip(&tubes).zip(decisions) {
+            if decision == Ok(Decision::Clear) && self.is_clear_at(tube, *pose)? {
+                clear.push(place);
+            }
+        }
+        Ok(clear)
     }
 }
 

@@ -1,15 +1,17 @@
 //! Plans the way of a concentric tube robot into a brain ventricle, every moment of it proven.
 //!
 //! `cargo run --release --example plan` grows a ventricle and looks for a way from the burr hole
-//! through the foramen of Monro into the third ventricle, in the space of the robot's joints.
-//! Whether an edge keeps the margin is proven by `clears_motion`; the same planner is then run with
-//! edges that are checked by steps, and what these accept is looked at again. `--picture` draws the
+//! through the foramen of Monro into the third ventricle, in the space of the robot's joints. The
+//! ventricle has a vein with a margin of its own, and an endoscope that rests. Whether an edge keeps
+//! all margins is proven by one call, `Scene::clears_motion`; the same planner is then run with edges
+//! that are checked by steps, and what these accept is looked at again. `--picture` draws the
 //! shapes of the way, `--clearance` how near it comes to the wall over time. `--mesh` takes real
 //! anatomy instead (in millimetres, or with `--scale`); `--base` and `--axis` place the robot in
 //! it.
 
 mod draw;
 mod edges;
+mod others;
 mod over_time;
 mod planner;
 
@@ -18,10 +20,10 @@ use continuum_demo::anatomy::{Anatomy, no_goal};
 use continuum_demo::canvas::Canvas;
 use continuum_demo::ctr::{Robot, three_tubes};
 use continuum_demo::{command, steer, ventricle};
-use edges::{Check, Costs, DRAWN_IN, Edges, Place, RESOLUTION, place, text};
+use edges::{Check, Costs, DRAWN_IN, Edges, Place, Resting, place, text};
 use over_time::OverTime;
 use parry_continuum::parry::math::{Pose, Real};
-use parry_continuum::proximity::{BvhSearch, Decision};
+use parry_continuum::proximity::{BvhSearch, Decision, Scene};
 use planner::{MOST_EDGES, Plan, plan, shorten};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -35,6 +37,10 @@ struct Options {
     /// The room that the robot keeps from the wall, in millimetres
     #[arg(long, value_name = "MM", default_value_t = 0.5, value_parser = command::length, allow_negative_numbers = true)]
     margin: Real,
+
+    /// The room that the robot keeps from the vein in the generated ventricle, in millimetres
+    #[arg(long, value_name = "MM", default_value_t = 1.0, value_parser = command::length, allow_negative_numbers = true)]
+    vein: Real,
 
     /// The seed of the random numbers
     #[arg(long, value_name = "NUMBER", default_value_t = 1)]
@@ -75,14 +81,21 @@ fn run(options: &Options) -> Result<(), String> {
     };
     let goal = place(&goal);
     let ends = [DRAWN_IN, goal];
-    check_ends(options, &robot, &base, &search, &ends)?;
+    let mut scene = others::scene(&search, options.margin)?;
+    let mut endoscope = None;
+    if options.anatomy.is_planned() {
+        others::add_vein(&mut scene, options.vein)?;
+        endoscope = Some(others::endoscope()?);
+    }
+    let all = Obstacles { search: &search, scene: &scene, other: endoscope.as_ref() };
+    check_ends(options, &robot, &base, &all, &ends)?;
 
     println!(
         "edges by         drawn   clear    edges  accepted  shapes an edge  kinematics  queries  a plan  touch  failed"
     );
     let mut proven = None;
     for check in [Check::Proof, Check::Steps(0.5), Check::Steps(0.1)] {
-        let mut edges = new_edges(options, &robot, &base, &search, check);
+        let mut edges = new_edges(options, &robot, &base, &all, check);
         let bar = command::progress(options.plans, "plans")?;
         let mut sums = Sums::default();
         for number in 0..u64::from(options.plans) {
@@ -102,7 +115,7 @@ fn run(options: &Options) -> Result<(), String> {
         options.margin
     ))?;
 
-    let mut edges = new_edges(options, &robot, &base, &search, Check::Proof);
+    let mut edges = new_edges(options, &robot, &base, &all, Check::Proof);
     let found = path.len() - 1;
     let path = shorten(&mut edges, path, options.seed)?;
     let costs = std::mem::take(&mut edges.costs);
@@ -121,6 +134,12 @@ fn run(options: &Options) -> Result<(), String> {
         options.margin,
         edges.costs.shapes
     );
+    if endoscope.is_some() {
+        println!(
+            "it also keeps {} mm from the vein, and {} mm from the endoscope",
+            options.vein, options.margin
+        );
+    }
     if let Some(file) = picture {
         save(&draw::draw(&mesh, &options.anatomy.name(), &mut edges, &path)?, &file, "--picture")?;
     }
@@ -145,15 +164,30 @@ fn save(canvas: &Canvas, file: &Path, option: &str) -> Result<(), String> {
     Ok(())
 }
 
+/// What the robot keeps away from.
+struct Obstacles<'a> {
+    search: &'a BvhSearch,
+    scene: &'a Scene,
+    other: Option<&'a Resting>,
+}
+
 fn new_edges<'a>(
     options: &Options,
     robot: &'a Robot,
     base: &Pose,
-    search: &BvhSearch,
+    all: &Obstacles<'a>,
     check: Check,
 ) -> Edges<'a> {
-    let margin = options.margin;
-    Edges { robot, base: *base, margin, check, search: search.clone(), costs: Costs::default() }
+    Edges {
+        robot,
+        base: *base,
+        margin: options.margin,
+        check,
+        search: all.search.clone(),
+        scene: all.scene.clone(),
+        other: all.other,
+        costs: Costs::default(),
+    }
 }
 
 /// # Errors
@@ -162,10 +196,10 @@ fn check_ends(
     options: &Options,
     robot: &Robot,
     base: &Pose,
-    search: &BvhSearch,
+    all: &Obstacles,
     ends: &[Place; 2],
 ) -> Result<(), String> {
-    let mut edges = new_edges(options, robot, base, search, Check::Proof);
+    let mut edges = new_edges(options, robot, base, all, Check::Proof);
     for (end, name) in ends.iter().zip(["at its base", "at its goal"]) {
         if edges.clear_places(vec![*end])?.is_empty() {
             return Err(format!(
@@ -177,13 +211,12 @@ fn check_ends(
     Ok(())
 }
 
-/// How many edges come as near to the wall as the margin.
+/// How many edges violate a margin.
 fn touching(edges: &mut Edges, accepted: &[[Place; 2]]) -> Result<usize, String> {
     let mut count = 0;
     for [from, to] in accepted {
         let motion = edges.motion(from, to)?;
-        let answer = edges.search.clears_motion(&motion, edges.margin, RESOLUTION).map_err(text)?;
-        count += usize::from(answer.decision == Decision::Contact);
+        count += usize::from(edges.decide(&motion)? == Decision::Contact);
     }
     Ok(count)
 }

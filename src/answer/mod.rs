@@ -7,6 +7,7 @@ mod error;
 mod motion;
 mod robots;
 mod scene;
+mod scene_motion;
 mod tube;
 mod witness;
 
@@ -18,7 +19,12 @@ pub use error::{MeshError, PlacementFault, ProximityError};
 #[cfg(feature = "gpu")]
 pub use gpu_batch::DeviceFailure;
 pub use motion::{MotionAnswer, MotionClearance, ShapeInContact};
-pub use robots::{RobotClearance, RobotMotionAnswer, RobotProximity, RobotsInContact};
+pub use robots::{
+    RobotClearance, RobotMotionAnswer, RobotMotionClearance, RobotProximity, RobotsInContact,
+};
 pub use scene::{Between, SceneContact, SceneError, StructureProximity, Tightest};
+pub use scene_motion::{
+    SceneClearance, SceneMotionAnswer, SceneMotionClearance, SceneMotionContact, ScenePlace,
+};
 pub use tube::{Clearance, Decision, TubePiece, UndecidedReason};
 pub use witness::{PairWitness, Witness};

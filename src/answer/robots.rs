@@ -2,7 +2,7 @@
 
 use super::checked_fields::checked_fields;
 #[cfg(feature = "serde-serialize")]
-use super::checked_fields::{check_bounds, check_distance, check_motion, check_shape};
+use super::checked_fields::{check_bounds, check_distance, check_motion, check_shape, check_time};
 use super::tube::resolve;
 use super::{Decision, PairWitness, UndecidedReason};
 use parry3d_f64::math::Real;
@@ -113,8 +113,9 @@ pub struct RobotMotionAnswer {
     /// - The query has reached its limit of work.
     pub decision: Decision,
     /// The first interval of time in which it is unknown whether the robots keep the margin; they
-    /// keep it before. `[1, 1]` if they always do. A contact may not be the first one, so its
-    /// interval begins with 0.
+    /// keep it before. `[1, 1]` if they always do. A contact of
+    /// [`clears_motions`](crate::proximity::RobotPair::clears_motions) may not be the first one, so
+    /// its interval begins with 0.
     pub interval: [Real; 2],
     /// For `Contact`: two shapes at most the margin apart, at the end of the interval.
     pub contact: Option<RobotsInContact>,
@@ -131,10 +132,10 @@ impl RobotMotionAnswer {
         Self { decision: Decision::Undecided, interval, contact: None, reason: Some(reason) }
     }
 
-    pub(crate) fn contact(contact: RobotsInContact) -> Self {
+    pub(crate) fn contact(clear_until: Real, contact: RobotsInContact) -> Self {
         Self {
             decision: Decision::Contact,
-            interval: [0.0, contact.t],
+            interval: [clear_until, contact.t],
             contact: Some(contact),
             reason: None,
         }
@@ -194,4 +195,51 @@ checked_fields!(
         witness: PairWitness,
     },
     |&Fields { t, upper, .. }| check_shape(t, upper)
+);
+
+/// The time and the places where two moving robots are closest, between bounds, in the frame and
+/// unit of the motions.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde-serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde-serialize",
+    serde(
+        try_from = "robot_motion_clearance_fields::Fields",
+        into = "robot_motion_clearance_fields::Fields"
+    )
+)]
+#[non_exhaustive]
+pub struct RobotMotionClearance {
+    /// Lower bound on the clearance at every time from 0 to 1.
+    pub lower: Real,
+    /// Upper bound on the clearance of the shapes at `t`: 0 if they touch or overlap.
+    pub upper: Real,
+    /// Whether the bounds meet the tolerance: `upper - lower <= tolerance + uncertainty`.
+    pub resolved: bool,
+    /// The part of the gap that no finer tolerance closes: the errors that the shapes state of
+    /// themselves.
+    pub uncertainty: Real,
+    /// The time of the shapes that realise `upper`, from 0 to 1.
+    pub t: Real,
+    /// The sections of constant radius that realise `upper`, counted from each base.
+    pub sections: [u32; 2],
+    /// A point of each robot, at most `upper` apart, and their places.
+    pub witness: PairWitness,
+}
+
+checked_fields!(
+    robot_motion_clearance_fields,
+    "RobotMotionClearance",
+    RobotMotionClearance {
+        lower: Real,
+        upper: Real,
+        resolved: bool,
+        uncertainty: Real,
+        t: Real,
+        sections: [u32; 2],
+        #[serde(flatten)]
+        witness: PairWitness,
+    },
+    |&Fields { lower, upper, uncertainty, t, .. }| check_bounds([lower, upper], uncertainty)
+        .and(check_time(t))
 );

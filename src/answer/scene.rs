@@ -76,6 +76,14 @@ pub enum SceneError {
         /// What is wrong, and what to change.
         error: ProximityError,
     },
+    /// Two robots together are at fault.
+    #[error("robots {} and {}: {error}", .robots[0], .robots[1])]
+    Robots {
+        /// Their indices among the given robots, the lower first.
+        robots: [usize; 2],
+        /// What is wrong, and what to change.
+        error: ProximityError,
+    },
     /// The margin between robots is at fault.
     #[error("between robots: {0}")]
     BetweenRobots(ProximityError),
@@ -107,6 +115,7 @@ impl SceneError {
         match self {
             Self::Structure { error, .. }
             | Self::Robot { error, .. }
+            | Self::Robots { error, .. }
             | Self::BetweenRobots(error)
             | Self::Query(error) => error.kind(),
             Self::NoMargin => "no_margin",

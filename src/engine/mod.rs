@@ -7,6 +7,7 @@ mod robot_pair;
 mod self_query;
 
 pub use bvh::BvhSearch;
+pub(crate) use bvh::SceneMotion;
 pub use exhaustive::{Exhaustive, SearchPrecision};
 pub use proximity::Proximity;
 #[cfg(feature = "gpu")]

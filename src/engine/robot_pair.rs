@@ -3,15 +3,19 @@
 //! [`RobotPair`] checks the arguments, places the robots and holds the warm starts. [`TwoRobots`],
 //! [`place_tubes`] and [`MotionPair`] answer the queries.
 
-use crate::answer::{Decision, ProximityError, RobotClearance, RobotMotionAnswer, RobotProximity};
+use crate::answer::{
+    Decision, ProximityError, RobotClearance, RobotMotionAnswer, RobotMotionClearance,
+    RobotProximity,
+};
 use crate::curve::Tube;
 use crate::motion::Motion;
-use crate::query::motion::{MarginQuery, MotionPair, MotionsMemory};
+use crate::query::motion::{MarginQuery, MotionPair, MotionsMemory, Sought};
 use crate::query::robots::{
     PairMemory, TubesMemory, TwoRobots, clearance_between, clears_tubes, place_tubes,
 };
 use crate::query::{check_decision, check_margin, check_not_negative};
 use crate::robot::Chain;
+use crate::threads::in_chunks;
 use parry3d_f64::math::{Pose, Real};
 
 /// Exact queries about two robots: the closest links, and whether all links keep a margin.
@@ -257,7 +261,198 @@ impl RobotPair {
         resolution: Real,
     ) -> Result<RobotMotionAnswer, ProximityError> {
         check_decision(margin, resolution)?;
-        let mut motions = MotionPair { memory: &mut self.motions, motions: (a, b), names: MOTIONS };
-        motions.clear(MarginQuery { margin, resolution })
+        self.ask_motions(a, b, MarginQuery { margin, resolution }, Sought::Any)
+    }
+
+    /// Bounds the time at which two robots that move at the same time first come within `margin` of
+    /// one another.
+    ///
+    /// The answer's [`interval`](RobotMotionAnswer::interval) is `[clear_until, t]`. The robots
+    /// provably keep the margin until `clear_until`. The shapes at `t`, which the answer names, do
+    /// not keep it. Between the two times the touching places approach by at most `resolution`. The
+    /// times are farther apart only if the robots come within the resolution of the margin before,
+    /// or if the query ends at a limit of [`clears_motions`](Self::clears_motions).
+    ///
+    /// Decisions and arguments are as for [`clears_motions`](Self::clears_motions).
+    ///
+    /// ```
+    /// use parry_continuum::{LinearMotion, parry::math::Vector, proximity::RobotPair};
+    ///
+    /// // Two needles of radius 1 whose tips approach by 20.
+    /// let needle = |x: [f64; 2]| {
+    ///     let ends = x.map(|x| [Vector::new(x, 0.0, -40.0), Vector::new(x, 0.0, 0.0)]);
+    ///     LinearMotion::chain(&ends[0], &ends[1], &[1.0])
+    /// };
+    /// let (first, second) = (needle([0.0, 10.0])?, needle([22.0, 12.0])?);
+    /// let found = RobotPair::new().time_of_contact(&first, &second, 5.0, 1e-3)?;
+    /// let [clear_until, t] = found.interval;
+    /// assert!(clear_until <= 0.75 && 0.75 <= t && t - clear_until <= 1e-3); // 20 - 15 are left
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`clears_motions`](Self::clears_motions).
+    pub fn time_of_contact(
+        &mut self,
+        a: &impl Motion,
+        b: &impl Motion,
+        margin: Real,
+        resolution: Real,
+    ) -> Result<RobotMotionAnswer, ProximityError> {
+        check_decision(margin, resolution)?;
+        self.ask_motions(a, b, MarginQuery { margin, resolution }, Sought::First)
+    }
+
+    /// Bounds the least clearance of two robots that move at the same time, over all times from 0
+    /// to 1.
+    ///
+    /// `lower` <= least clearance of the shapes at equal times <= `upper`. `tolerance` is a length:
+    /// the bounds differ by at most the tolerance if the motions' shapes allow that. The bounds hold
+    /// for every instant, rounding included, given the speeds that the motions state. The shapes at
+    /// [`t`](RobotMotionClearance::t) realise `upper`, at the two points of the answer.
+    ///
+    /// The answer always has bounds; [`resolved`](RobotMotionClearance::resolved) says whether they
+    /// meet the tolerance. They may not for the reasons of
+    /// [`BvhSearch::clearance_of_motion`](crate::proximity::BvhSearch::clearance_of_motion), or
+    /// because the query ends after 16 million pairs of pieces. A finer tolerance never gives looser
+    /// bounds.
+    ///
+    /// ```
+    /// use parry_continuum::{LinearMotion, parry::math::Vector, proximity::RobotPair};
+    ///
+    /// // Two needles of radius 1 whose tips pass one another at y = 0 and y = 3.
+    /// let needle = |y: f64, x: [f64; 2]| {
+    ///     let ends = x.map(|x| [Vector::new(0.0, y, -40.0), Vector::new(x, y, 0.0)]);
+    ///     LinearMotion::chain(&ends[0], &ends[1], &[1.0])
+    /// };
+    /// let (first, second) = (needle(0.0, [-10.0, 10.0])?, needle(3.0, [10.0, -10.0])?);
+    /// let least = RobotPair::new().clearance_of_motion(&first, &second, 1e-3)?;
+    /// assert!(least.resolved && least.lower <= 1.0 && 1.0 <= least.upper + 1e-9);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// - The tolerance is negative or NaN.
+    /// - A motion has no shape at some time, its sections change, or a stated speed is not finite.
+    /// - A robot is out of range.
+    pub fn clearance_of_motion(
+        &mut self,
+        a: &impl Motion,
+        b: &impl Motion,
+        tolerance: Real,
+    ) -> Result<RobotMotionClearance, ProximityError> {
+        check_not_negative("tolerance", tolerance)?;
+        self.ask_clearance_of_motion(a, b, tolerance, Real::INFINITY)
+    }
+
+    /// [`minimum`](Self::minimum) for many pairs of robots, on all cores.
+    ///
+    /// Writes one result per pair to `out`, in order.
+    pub fn minimum_batch(
+        &self,
+        pairs: &[[(&Chain, Pose); 2]],
+        out: &mut Vec<Result<RobotProximity, ProximityError>>,
+    ) {
+        self.batch(pairs, out, |pair, [(a, pose_a), (b, pose_b)]| {
+            pair.minimum(a, pose_a, b, pose_b)
+        });
+    }
+
+    /// [`clears`](Self::clears) for many pairs of robots, on all cores.
+    ///
+    /// Writes one result per pair to `out`, in order.
+    ///
+    /// ```
+    /// use parry_continuum::{Chain, proximity::RobotPair};
+    /// use parry_continuum::parry::math::{Pose, Vector};
+    ///
+    /// let needle = Chain::from_centreline(&[Vector::ZERO, Vector::Z * 40.0], &[1.0])?;
+    /// let beside = |x: f64| [(&needle, Pose::IDENTITY), (&needle, Pose::translation(x, 0.0, 0.0))];
+    /// let mut answers = Vec::new();
+    /// RobotPair::new().clears_batch(&[5.0, 3.0, f64::NAN].map(beside), 2.0, &mut answers)?;
+    /// assert_eq!(answers[..2], [Ok(true), Ok(false)]);
+    /// assert_eq!(answers[2].map_err(|error| error.kind()), Err("pose_not_finite"));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// The margin is negative or NaN; `out` is then empty.
+    pub fn clears_batch(
+        &self,
+        pairs: &[[(&Chain, Pose); 2]],
+        margin: Real,
+        out: &mut Vec<Result<bool, ProximityError>>,
+    ) -> Result<(), ProximityError> {
+        out.clear();
+        check_margin(margin)?;
+        self.batch(pairs, out, |pair, [(a, pose_a), (b, pose_b)]| {
+            pair.clears(a, pose_a, b, pose_b, margin)
+        });
+        Ok(())
+    }
+
+    /// [`clears_motions`](Self::clears_motions) for many pairs of motions, on all cores.
+    ///
+    /// Writes one result per pair to `out`, in order.
+    ///
+    /// # Errors
+    /// The margin or the resolution is negative or NaN; `out` is then empty.
+    pub fn clears_motions_batch<A: Motion + Sync, B: Motion + Sync>(
+        &self,
+        pairs: &[(A, B)],
+        margin: Real,
+        resolution: Real,
+        out: &mut Vec<Result<RobotMotionAnswer, ProximityError>>,
+    ) -> Result<(), ProximityError> {
+        out.clear();
+        check_decision(margin, resolution)?;
+        self.batch(pairs, out, |pair, (a, b)| pair.clears_motions(a, b, margin, resolution));
+        Ok(())
+    }
+
+    /// [`clears_motions`](Self::clears_motions) or [`time_of_contact`](Self::time_of_contact). The
+    /// numbers are checked.
+    pub(crate) fn ask_motions(
+        &mut self,
+        a: &impl Motion,
+        b: &impl Motion,
+        wanted: MarginQuery,
+        sought: Sought,
+    ) -> Result<RobotMotionAnswer, ProximityError> {
+        self.motions(a, b).decide(wanted, sought)
+    }
+
+    /// [`clearance_of_motion`](Self::clearance_of_motion); or a lower bound of at least `limit`. The
+    /// tolerance is checked.
+    pub(crate) fn ask_clearance_of_motion(
+        &mut self,
+        a: &impl Motion,
+        b: &impl Motion,
+        tolerance: Real,
+        limit: Real,
+    ) -> Result<RobotMotionClearance, ProximityError> {
+        self.motions(a, b).clearance(tolerance, limit)
+    }
+
+    fn motions<'a, A, B>(&'a mut self, a: &'a A, b: &'a B) -> MotionPair<'a, A, B> {
+        MotionPair { memory: &mut self.motions, motions: (a, b), names: MOTIONS }
+    }
+
+    /// Answers many pairs of robots in chunks. Each chunk has a clone of this pair.
+    fn batch<Q: Sync, T: Send>(
+        &self,
+        pairs: &[Q],
+        out: &mut Vec<Result<T, ProximityError>>,
+        ask: impl Fn(&mut Self, &Q) -> Result<T, ProximityError> + Sync + Send,
+    ) {
+        out.clear();
+        // Placeholders: each chunk writes its own answers.
+        out.resize_with(pairs.len(), || Err(ProximityError::EmptyTube));
+        in_chunks(pairs, out, &mut Vec::new(), |own: &mut Option<Self>, pairs, out| {
+            let own = own.get_or_insert_with(|| self.clone());
+            for (asked, out) in pairs.iter().zip(out) {
+                *out = ask(own, asked);
+            }
+        });
     }
 }

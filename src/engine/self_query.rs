@@ -1,13 +1,13 @@
 //! Queries about one robot and itself.
 //!
 //! [`SelfQuery`] checks the arguments and holds the warm starts. [`RobotWithItself`],
-//! [`self_clears_tube`] and [`self_clears_motion`] answer; the module of [`RobotWithItself`] derives
+//! [`self_clears_tube`] and [`self_decides_motion`] answer; the module of [`RobotWithItself`] derives
 //! which pairs of parts count.
 
 use crate::answer::{Decision, ProximityError, RobotMotionAnswer, RobotProximity};
 use crate::curve::Tube;
 use crate::motion::Motion;
-use crate::query::motion::{MarginQuery, SelfMotionMemory, self_clears_motion};
+use crate::query::motion::{MarginQuery, SelfMotionMemory, Sought, self_decides_motion};
 use crate::query::robots::{RobotWithItself, SelfMemory, SelfTubeMemory, self_clears_tube};
 use crate::query::{check_decision, check_margin};
 use crate::robot::Chain;
@@ -206,6 +206,17 @@ impl SelfQuery {
         resolution: Real,
     ) -> Result<RobotMotionAnswer, ProximityError> {
         check_decision(margin, resolution)?;
-        self_clears_motion(motion, &mut self.motion, MarginQuery { margin, resolution })
+        self.ask_motion(motion, MarginQuery { margin, resolution }, Sought::Any)
+    }
+
+    /// [`clears_motion`](Self::clears_motion), or the first contact in time. The numbers are
+    /// checked.
+    pub(crate) fn ask_motion(
+        &mut self,
+        motion: &impl Motion,
+        wanted: MarginQuery,
+        sought: Sought,
+    ) -> Result<RobotMotionAnswer, ProximityError> {
+        self_decides_motion(motion, &mut self.motion, wanted, sought)
     }
 }

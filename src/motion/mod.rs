@@ -21,6 +21,7 @@ pub use linear::LinearMotion;
 pub use motion_path::MotionPath;
 pub use moving_base::MovingBase;
 pub use rigid::RigidMotion;
+pub(crate) use rigid::RigidPath;
 pub(crate) use section_signature::{MotionDrift, SectionSignature};
 pub(crate) use shape_path::ShapePath;
 pub use verify::verify_motion;

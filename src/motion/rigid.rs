@@ -74,7 +74,7 @@ impl Motion for RigidMotion {
 
 /// A moving frame.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct RigidPath {
+pub(crate) struct RigidPath {
     from: Pose,
     /// v: the displacement of the origin.
     shift: Vector,
@@ -87,7 +87,7 @@ impl RigidPath {
     ///
     /// # Errors
     /// A pose is not finite or out of range, or its quaternion is not of unit length.
-    pub(super) fn new([from, to]: [Pose; 2]) -> Result<Self, RobotError> {
+    pub(crate) fn new([from, to]: [Pose; 2]) -> Result<Self, RobotError> {
         let (from, to) = (rigid_pose("from", &from)?, rigid_pose("to", &to)?);
         let way = (from.rotation.inverse() * to.rotation).normalize();
         let way = if way.w < 0.0 { -way } else { way };
@@ -100,13 +100,13 @@ impl RigidPath {
     }
 
     /// Returns the pose at a time.
-    pub(super) fn pose(&self, t: Real) -> Pose {
+    pub(crate) fn pose(&self, t: Real) -> Pose {
         let rotation = self.from.rotation * rotation_by(self.turn * t);
         Pose::from_parts(self.from.translation + self.shift * t, rotation.normalize())
     }
 
     /// Returns an upper bound on w.
-    pub(super) fn angle(&self) -> Real {
+    pub(crate) fn angle(&self) -> Real {
         self.turn.length() * UP
     }
 

@@ -81,15 +81,13 @@ pub(crate) struct BoundingBody {
     pub narrows: Real,
 }
 
-impl BoundingBody {
-    pub(crate) fn is_flat(&self) -> bool {
-        self.body.flat() != [false; 2]
-    }
-}
-
 impl Body for BoundingBody {
     fn excess(&self) -> Real {
         self.excess
+    }
+
+    fn is_flat(&self) -> bool {
+        self.body.flat() != [false; 2]
     }
 }
 

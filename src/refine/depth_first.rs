@@ -277,6 +277,9 @@ pub(crate) trait Refinable {
 pub(crate) trait Body: Copy {
     /// By about how much the body is larger than the piece.
     fn excess(&self) -> Real;
+
+    /// Whether an end of the body is flat.
+    fn is_flat(&self) -> bool;
 }
 
 /// An upper bound on a clearance.

@@ -107,6 +107,18 @@ impl<'a> PlacedTube<'a> {
         self.tube.is_turn_all_that_is_known().then_some(Self { turn: None, ..self })
     }
 
+    /// The same tube, if its pose is the product of its pose in a scene and the inverse of the
+    /// mesh's pose there. `size`: the largest coordinate of the mesh and of its pose.
+    ///
+    /// **Rounding.** Let M be the largest coordinate of tube and mesh in the scene. A rotation
+    /// keeps lengths, so `M <= 2 reach + size`. Two poses whose product is rounded place a point
+    /// less than 400 u M from its place (`scene::distance_cache`, step 3). That is less than the
+    /// slack of 8 (reach + size).
+    pub(crate) fn posed(self, size: Real) -> Self {
+        let more = 8.0 * (self.reach + size);
+        Self { slack: self.slack + slack_for(more), reach: self.reach + more, ..self }
+    }
+
     /// Returns the bound on the direction error near flat ends, 0 if unknown.
     pub(super) fn turn(&self) -> Real {
         self.turn.unwrap_or(0.0)

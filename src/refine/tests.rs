@@ -1,5 +1,6 @@
 //! Tests each bound against dense sampling of curves of known curvature.
 
+use super::depth_first::Body;
 use super::placed_tube::{Piece, PlacedTube};
 use crate::curve::{Section, Tube, TubeSection};
 use crate::distance::{Vec3, point_modified_cylinder};

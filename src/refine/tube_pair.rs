@@ -53,6 +53,10 @@ impl Body for [BoundingBody; 2] {
     fn excess(&self) -> Real {
         self[0].excess + self[1].excess
     }
+
+    fn is_flat(&self) -> bool {
+        self.iter().any(Body::is_flat)
+    }
 }
 
 /// An upper bound on the distance of two tubes, and the points that realise it.

@@ -155,6 +155,10 @@ impl Body for SelfPair {
     fn excess(&self) -> Real {
         self.outers.excess()
     }
+
+    fn is_flat(&self) -> bool {
+        self.outers.is_flat()
+    }
 }
 
 impl WorkItem<TubeWithItself<'_>> for SelfPair {

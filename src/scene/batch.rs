@@ -1,10 +1,11 @@
-//! Queries about many sets of robots in one scene, on all cores: a planner's shapes.
+//! Queries about many sets of robots in one scene, on all cores: a planner's shapes and edges.
 
 use super::Scene;
-use crate::answer::{SceneError, Tightest};
+use crate::answer::{SceneError, SceneMotionAnswer, Tightest};
+use crate::motion::Motion;
 use crate::robot::Chain;
 use crate::threads::in_chunks;
-use parry3d_f64::math::Pose;
+use parry3d_f64::math::{Pose, Real};
 
 /// The answer about one set of robots.
 type Answer<T> = Result<T, SceneError>;
@@ -68,20 +69,54 @@ impl Scene {
         self.batch(sets, None, out, |scene, robots| scene.tightest(robots));
     }
 
-    /// Answers the sets in chunks. Each chunk has a clone of the scene, which shares the meshes.
-    fn batch<T: Clone + Send>(
+    /// [`clears_motion`](Self::clears_motion) for many edges of a planner, on all cores.
+    ///
+    /// An edge has one motion per robot. Writes one result per edge to `out`, in order.
+    ///
+    /// ```
+    /// use parry_continuum::LinearMotion;
+    /// use parry_continuum::parry::{math::Vector, shape::Ball};
+    /// use parry_continuum::proximity::{BvhSearch, Decision, Scene};
+    ///
+    /// let (vertices, triangles) = Ball::new(10.0).to_trimesh(64, 32);
+    /// let mut scene = Scene::new();
+    /// scene.add("wall", BvhSearch::from_triangles(&vertices, &triangles)?, Some(1.0))?;
+    /// let shapes = [0.0, 3.0, 6.0, 9.0].map(|x| [Vector::ZERO, Vector::new(x, 0.0, 5.0)]);
+    /// let edges = shapes.windows(2).map(|ends| LinearMotion::chain(&ends[0], &ends[1], &[0.5]));
+    /// let edges = edges.collect::<Result<Vec<_>, _>>()?;
+    /// let sets: Vec<_> = edges.iter().map(|edge| [edge]).collect();
+    /// let sets: Vec<_> = sets.iter().map(|set| set.as_slice()).collect();
+    /// let mut answers = Vec::new();
+    /// scene.clears_motion_batch(&sets, 1e-3, &mut answers);
+    /// let decisions = answers.into_iter().map(|answer| answer.map(|answer| answer.decision));
+    /// let decisions = decisions.collect::<Result<Vec<_>, _>>()?;
+    /// assert_eq!(decisions, [Decision::Clear, Decision::Clear, Decision::Contact]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn clears_motion_batch<M: Motion + Sync + ?Sized>(
         &self,
-        sets: &[&[(&Chain, Pose)]],
+        edges: &[&[&M]],
+        resolution: Real,
+        out: &mut Vec<Result<SceneMotionAnswer, SceneError>>,
+    ) {
+        let ask = |scene: &mut Self, edge: &&[&M]| scene.clears_motion(edge, resolution);
+        self.batch(edges, SceneMotionAnswer::clear(), out, ask);
+    }
+
+    /// Answers the items in chunks. Each chunk has a clone of the scene, which shares the meshes.
+    fn batch<Q: Sync, T: Clone + Send>(
+        &self,
+        sets: &[Q],
         unanswered: T,
         out: &mut Vec<Answer<T>>,
-        ask: impl Fn(&mut Self, &[(&Chain, Pose)]) -> Answer<T> + Sync + Send,
+        ask: impl Fn(&mut Self, &Q) -> Answer<T> + Sync + Send,
     ) {
         out.clear();
         out.resize_with(sets.len(), || Ok(unanswered.clone()));
         in_chunks(sets, out, &mut Vec::new(), |scene: &mut Option<Self>, sets, out| {
             let scene = scene.get_or_insert_with(|| self.clone());
-            for (robots, out) in sets.iter().zip(out) {
-                *out = ask(scene, robots);
+            for (set, out) in sets.iter().zip(out) {
+                *out = ask(scene, set);
             }
         });
     }

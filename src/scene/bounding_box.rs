@@ -45,6 +45,11 @@ impl BoundingBox {
         self.low.abs().max(self.high.abs()).max_element()
     }
 
+    /// An upper bound on the distance of its points from the origin.
+    pub fn farthest(&self) -> Real {
+        length(self.low.abs().max(self.high.abs())) * (1.0 + 8.0 * Real::UNIT_ROUNDOFF)
+    }
+
     /// A lower bound on the distance of a robot, by the bounding box of the capsule that contains
     /// the robot.
     ///
@@ -69,6 +74,11 @@ impl BoundingBox {
         length(way) - 64.0 * Real::UNIT_ROUNDOFF * largest
     }
 
+    /// A lower bound on the distance of a link.
+    pub fn distance_to(&self, link: &PlacedLink) -> Real {
+        link.distance_to_box(self.low, self.high)
+    }
+
     /// Returns whether some link of a robot may be at most `bound` away, by the capsules around its
     /// links.
     pub fn may_be_within(&self, robot: &PlacedRobot, bound: Real) -> bool {
@@ -76,7 +86,7 @@ impl BoundingBox {
         while let Some(node) = nodes.get(place) {
             let ([start, end], radius, flat) = robot.outline(node);
             let link = PlacedLink::between(start, end, radius, flat);
-            let is_far = link.distance_to_box(self.low, self.high) > bound;
+            let is_far = self.distance_to(&link) > bound;
             place += match node {
                 LinkNode::Inner { below, .. } if is_far => 1 + below,
                 LinkNode::Leaf(_) if !is_far => return true,

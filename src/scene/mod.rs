@@ -3,8 +3,14 @@
 mod batch;
 mod bounding_box;
 mod distance_cache;
+mod least_slack;
+mod motions;
+mod moving_robot;
 mod queries;
 mod scene_bounds;
 mod structure;
+mod structure_end;
+mod tubes;
 
 pub use queries::Scene;
+pub use structure_end::StructureEnd;

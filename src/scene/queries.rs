@@ -7,7 +7,7 @@
 //! - `box`: the lower bound on d(k, i) by the bounding boxes
 //!   ([`BoundingBox`](super::bounding_box::BoundingBox)).
 //! - `bound`: the distance beyond which d(k, i) cannot matter: m(k) for [`Scene::clears`], the best
-//!   slack plus m(k) for [`Scene::tightest`], `reach` for [`Scene::contacts`].
+//!   slack plus m(k) for [`Scene::tightest`], `reach` for [`Scene::contacts_within`].
 //!
 //! # Algorithm
 //! 1. **Begin** ([`Scene::begin`]). Place all robots, which finds their errors. Stop if every robot
@@ -21,6 +21,7 @@
 //!    queries. `clears` stops at the first violated margin, `tightest` once `box - m(k)` exceeds
 //!    the best slack.
 //! 5. **Robots.** If a margin between robots is set, query the pairs of robots that are not nested.
+//!    `clears` also queries each robot and itself, if that margin is set.
 //!
 //! # Correctness
 //! **Claim.** Warm starts never change an answer. `tightest` returns the least (slack, structure,
@@ -32,13 +33,15 @@
 //! only search a pair too many.
 
 use super::distance_cache::DistanceCache;
+use super::moving_robot::MovingRobotMemory;
 use super::scene_bounds::SceneBounds;
 use super::structure::Structure;
 use crate::answer::{
-    Between, Contact, ProximityError, SceneContact, SceneError, StructureProximity, Tightest,
+    Between, Contact, PlacementFault, ProximityError, SceneContact, SceneError, StructureProximity,
+    Tightest,
 };
 use crate::distance::{DoubleDouble, Scalar};
-use crate::engine::{BvhSearch, Engine, Proximity, RobotPair};
+use crate::engine::{BvhSearch, Engine, Proximity, RobotPair, SelfQuery};
 use crate::pair::PlacedRobot;
 use crate::query::contacts::ContactQuery;
 use crate::query::{check_margin, check_not_negative};
@@ -95,13 +98,17 @@ use std::cmp::Ordering;
 /// ```
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
-    structures: Vec<Structure>,
+    pub(super) structures: Vec<Structure>,
     /// The bounds of all structures; `None` after a structure has changed.
     all: Option<SceneBounds>,
-    robot_margin: Option<Real>,
+    pub(super) robot_margin: Option<Real>,
+    pub(super) self_margin: Option<Real>,
     /// Pairs of nested robots, the lower number first.
-    nested: Vec<[usize; 2]>,
-    pair: RobotPair,
+    pub(super) nested: Vec<[usize; 2]>,
+    pub(super) pair: RobotPair,
+    pub(super) itself: SelfQuery,
+    /// The memory of moving robots, which is reused.
+    pub(super) moving: Vec<MovingRobotMemory>,
     /// The last pair (structure, robot) that was tightest, and the last that violated a margin.
     tightest: Option<[usize; 2]>,
     met: Option<[usize; 2]>,
@@ -214,6 +221,21 @@ impl Scene {
         Ok(())
     }
 
+    /// Sets the margin of each robot to itself. With `None`, the default, robots are not tested
+    /// against themselves.
+    ///
+    /// [`clears`](Self::clears), [`clears_tube`](Self::clears_tube) and
+    /// [`clears_motion`](Self::clears_motion) test it. Which parts of a robot count is as for
+    /// [`SelfQuery`]. The least slack of [`tightest`](Self::tightest) does not include it.
+    ///
+    /// # Errors
+    /// The margin is negative or NaN.
+    pub fn set_self_margin(&mut self, margin: Option<Real>) -> Result<(), SceneError> {
+        check(margin).map_err(SceneError::Query)?;
+        self.self_margin = margin;
+        Ok(())
+    }
+
     /// Sets the pairs of nested robots: one is inside the other, as a tube in the tube that guides
     /// it.
     ///
@@ -228,28 +250,46 @@ impl Scene {
     /// Returns whether all robots keep all margins.
     ///
     /// True exactly if the slack of [`tightest`](Self::tightest) is more than 0, or there is no
-    /// robot. The query ends at the first violated margin.
+    /// robot; and if all robots keep the [margin to themselves](Self::set_self_margin), if it is
+    /// set. The query ends at the first violated margin.
     ///
     /// # Errors
     /// - Neither a structure nor the robots have a margin.
     /// - A pose is not finite or not rigid, or moves a link out of range. The message has the
     ///   robot's number.
+    /// - A margin of robots to themselves is set, and a joint is too sharp for [`SelfQuery::clears`].
     pub fn clears(&mut self, robots: &[(&Chain, Pose)]) -> Result<bool, SceneError> {
-        let has_margin = |structure: &Structure| structure.margin.is_some();
-        if self.robot_margin.is_none() && !self.structures.iter().any(has_margin) {
-            return Err(SceneError::NoMargin);
-        }
+        self.check_has_margin()?;
         if self.begin(robots, None)? && !self.clears_structures(robots)? {
             return Ok(false);
         }
-        let Some(margin) = self.robot_margin else { return Ok(true) };
-        for [first, second] in pairs_apart(robots.len(), &self.nested) {
-            let [(a, pose_a), (b, pose_b)] = [&robots[first], &robots[second]];
-            if !self.pair.clears(a, pose_a, b, pose_b, margin).map_err(of_robot(second))? {
+        if let Some(margin) = self.robot_margin {
+            for [first, second] in pairs_apart(robots.len(), &self.nested) {
+                let [(a, pose_a), (b, pose_b)] = [&robots[first], &robots[second]];
+                if !self.pair.clears(a, pose_a, b, pose_b, margin).map_err(of_robot(second))? {
+                    return Ok(false);
+                }
+            }
+        }
+        let Some(margin) = self.self_margin else { return Ok(true) };
+        for (robot, (chain, _)) in robots.iter().enumerate() {
+            if !self.itself.clears(chain, margin).map_err(of_robot(robot))? {
                 return Ok(false);
             }
         }
         Ok(true)
+    }
+
+    /// # Errors
+    /// Nothing has a margin.
+    pub(super) fn check_has_margin(&self) -> Result<(), SceneError> {
+        let has_margin = |structure: &Structure| structure.margin.is_some();
+        let is_robot_tested = self.robot_margin.is_some() || self.self_margin.is_some();
+        if is_robot_tested || self.structures.iter().any(has_margin) {
+            Ok(())
+        } else {
+            Err(SceneError::NoMargin)
+        }
     }
 
     fn clears_structures(&mut self, robots: &[(&Chain, Pose)]) -> Result<bool, SceneError> {
@@ -414,11 +454,31 @@ impl Scene {
         self.structures.iter().for_each(|structure| structure.search.prepare());
     }
 
-    fn structure(&mut self, structure: usize) -> Result<&mut Structure, SceneError> {
+    pub(super) fn structure(&mut self, structure: usize) -> Result<&mut Structure, SceneError> {
         let structures = self.structures.len();
         self.structures
             .get_mut(structure)
             .ok_or(SceneError::NoSuchStructure { structure, structures })
+    }
+
+    /// The pairs (structure, robot) whose structure has a margin, with a lower bound on the slack:
+    /// the least first. `at_least` bounds the distance of a structure, with its number, from a robot.
+    pub(super) fn by_slack(
+        &self,
+        robots: usize,
+        at_least: impl Fn(usize, &Structure, usize) -> Real,
+    ) -> Vec<(Real, [usize; 2])> {
+        let mut order = Vec::new();
+        for (number, structure) in self.structures.iter().enumerate() {
+            let Some(margin) = structure.margin else { continue };
+            order.extend((0..robots).map(|robot| {
+                let slack = (at_least(number, structure, robot) - margin).next_down();
+                // An infinite margin and an infinite bound.
+                (if slack.is_nan() { Real::NEG_INFINITY } else { slack }, [number, robot])
+            }));
+        }
+        order.sort_unstable_by(nearest_first);
+        order
     }
 
     fn have(&self, [structure, robot]: [usize; 2], robots: &[(&Chain, Pose)]) -> bool {
@@ -609,12 +669,32 @@ fn check(margin: Option<Real>) -> Result<(), ProximityError> {
     margin.map_or(Ok(()), check_margin)
 }
 
-fn of_structure(structure: &Structure, error: ProximityError) -> SceneError {
+pub(super) fn of_structure(structure: &Structure, error: ProximityError) -> SceneError {
     SceneError::Structure { name: structure.name.clone(), error }
 }
 
-fn of_robot(robot: usize) -> impl Fn(ProximityError) -> SceneError {
+pub(super) fn of_robot(robot: usize) -> impl Fn(ProximityError) -> SceneError {
     move |error| SceneError::Robot { robot, error }
+}
+
+/// Attributes an error of a query about two robots to the robot that causes it, or to both. The
+/// query calls them `a` and `b`, or their poses `pose_a` and `pose_b`.
+pub(super) fn of_pair(robots: [usize; 2], error: ProximityError) -> SceneError {
+    let of = |parameter: &str| of_robot(robots[usize::from(parameter.ends_with('b'))]);
+    match error {
+        ProximityError::OneMotion { parameter, fault } => {
+            of(parameter)(ProximityError::Motion(fault))
+        }
+        ProximityError::Placement { parameter, fault } => of(parameter)(match fault {
+            PlacementFault::PoseNotFinite => ProximityError::PoseNotFinite,
+            PlacementFault::PoseNotRigid { length } => ProximityError::PoseNotRigid { length },
+            PlacementFault::OutOfRange { link, limit } => {
+                ProximityError::OutOfRange { link, limit }
+            }
+            PlacementFault::TubeOutOfRange { limit } => ProximityError::TubeOutOfRange { limit },
+        }),
+        error => SceneError::Robots { robots, error },
+    }
 }
 
 /// The distance beyond which a structure with this margin is not tighter than the best, rounded up.
@@ -623,7 +703,10 @@ fn beyond(best: &Best, margin: Real) -> Real {
 }
 
 /// The pairs of robots that are tested against one another, in order: all but the nested pairs.
-fn pairs_apart(robots: usize, nested: &[[usize; 2]]) -> impl Iterator<Item = [usize; 2]> {
+pub(super) fn pairs_apart(
+    robots: usize,
+    nested: &[[usize; 2]],
+) -> impl Iterator<Item = [usize; 2]> {
     let pairs =
         (0..robots).flat_map(move |first| (first + 1..robots).map(move |second| [first, second]));
     pairs.filter(|pair| !nested.contains(pair))

@@ -1,7 +1,7 @@
 //! One structure of a scene: a mesh, its pose, and its margin.
 
 use super::bounding_box::BoundingBox;
-use crate::answer::{Contact, LinkProximity, MeshError, ProximityError};
+use crate::answer::{Contact, LinkProximity, MeshError, ProximityError, Witness};
 use crate::engine::{BvhSearch, Proximity};
 use crate::pair::{PlacedRobot, rigid_pose};
 use crate::robot::Chain;
@@ -32,10 +32,27 @@ impl Structure {
     }
 
     fn update_bounds(&mut self) {
-        let vertices = self.search.vertices();
-        let corners = self.search.triangles().as_flattened().iter();
-        self.around = BoundingBox::points(corners.map(|&corner| vertices[corner as usize]));
+        self.around = self.bounds_of(self.search.vertices());
         self.measure();
+    }
+
+    /// The bounding box of the triangles if the vertices are these, in the mesh's frame.
+    pub fn bounds_of(&self, vertices: &[Vector]) -> BoundingBox {
+        let corners = self.search.triangles().as_flattened().iter();
+        BoundingBox::points(corners.map(|&corner| vertices[corner as usize]))
+    }
+
+    /// Checks that the vertices can move to these places.
+    ///
+    /// # Errors
+    /// As [`Proximity::set_vertices`].
+    pub fn check_moved(&self, vertices: &[Vector]) -> Result<(), MeshError> {
+        self.search.check_moved(vertices)
+    }
+
+    /// Maps the mesh's frame to the scene's.
+    pub fn pose(&self) -> Pose {
+        self.pose.unwrap_or(Pose::IDENTITY)
     }
 
     fn measure(&mut self) {
@@ -74,6 +91,16 @@ impl Structure {
         self.pose.map_or(*robot, |pose| pose.inverse() * *robot)
     }
 
+    /// Maps the scene's frame to the mesh's; `None` if they are the same.
+    pub fn from_scene(&self) -> Option<Pose> {
+        self.pose.map(|pose| pose.inverse())
+    }
+
+    /// The largest coordinate of the mesh and of its pose, if it has one.
+    pub fn frame(&self) -> Option<Real> {
+        self.pose.map(|_| self.size)
+    }
+
     /// Places a robot in the mesh's frame. `placed` is the robot placed in the scene's frame.
     ///
     /// # Errors
@@ -94,21 +121,27 @@ impl Structure {
 
     /// Maps an answer from the mesh's frame to the scene's.
     pub fn placed(&self, mut nearest: LinkProximity) -> LinkProximity {
-        if let Some(pose) = &self.pose {
-            nearest.witness.on_robot = pose * nearest.witness.on_robot;
-            nearest.witness.on_mesh = pose * nearest.witness.on_mesh;
-        }
+        nearest.witness = self.placed_witness(nearest.witness);
         nearest
+    }
+
+    /// Maps a place from the mesh's frame to the scene's.
+    pub fn placed_witness(&self, witness: Witness) -> Witness {
+        self.pose.map_or(witness, |pose| place_witness(&pose, witness))
     }
 
     /// Maps a contact from the mesh's frame to the scene's.
     pub fn placed_contact(&self, mut contact: Contact) -> Contact {
         if let Some(pose) = &self.pose {
-            contact.witness.on_robot = pose * contact.witness.on_robot;
-            contact.witness.on_mesh = pose * contact.witness.on_mesh;
+            contact.witness = place_witness(pose, contact.witness);
             contact.lever = pose.rotation * contact.lever;
             contact.normal = contact.normal.map(|normal| pose.rotation * normal);
         }
         contact
     }
+}
+
+/// Maps a place by the pose of a mesh.
+pub(super) fn place_witness(pose: &Pose, witness: Witness) -> Witness {
+    Witness { on_robot: pose * witness.on_robot, on_mesh: pose * witness.on_mesh, ..witness }
 }

@@ -81,6 +81,11 @@ fn motions() {
 }
 
 #[test]
+fn scenes() {
+    try_bytes("scenes", fuzz::scenes, 200);
+}
+
+#[test]
 fn touching() {
     try_bytes("touching", fuzz::touching, 300);
 }

@@ -184,3 +184,12 @@ pub(crate) fn texts<'py>(py: Python<'py>, texts: Vec<&str>) -> PyResult<Bound<'p
     let array = numpy(py)?.call_method1("array", (texts,))?;
     if is_empty { array.call_method1("astype", ("U",)) } else { Ok(array) }
 }
+
+/// Why answers of a batch are missing, as the `kind` of their errors; of one answer the empty string.
+pub(crate) fn statuses<'py>(
+    py: Python<'py>,
+    statuses: Vec<&str>,
+    is_batch: bool,
+) -> PyResult<Bound<'py, PyAny>> {
+    if is_batch { texts(py, statuses) } else { Ok("".into_pyobject(py)?.into_any()) }
+}

@@ -172,6 +172,10 @@ fn a_way_is_planned_proven_and_drawn() {
     assert!(rows[0][8] == 0.0 && rows.iter().all(|row| row[9] == 0.0), "{out}");
     assert!(rows[2][4] > 2.0 * rows[1][4] && rows[2][4] > rows[0][4], "{out}");
     assert!(out.contains("it keeps 0.3 mm, which"), "{out}");
+    assert!(
+        out.contains("it also keeps 1 mm from the vein, and 0.3 mm from the endoscope"),
+        "{out}"
+    );
     assert!(colours("planned/way.png") > 1000);
     // No step comes nearer than the proven bound.
     let line = out

@@ -53,7 +53,7 @@ impl BvhSearch {
         tolerance: Real,
     ) -> Result<Clearance, ProximityError> {
         check_not_negative("tolerance", tolerance)?;
-        self.context().clearance(tube, pose, tolerance)
+        self.context().clearance(tube, pose, tolerance, None)
     }
 
     /// [`clearance`](Self::clearance), and the pieces into which the query divided the tube.
@@ -128,7 +128,32 @@ impl BvhSearch {
         resolution: Real,
     ) -> Result<Decision, ProximityError> {
         check_decision(margin, resolution)?;
-        self.context().clears_tube(tube, pose, margin, resolution)
+        self.context().clears_tube(tube, pose, [margin, resolution], None)
+    }
+
+    /// [`clears_tube`](Self::clears_tube) for a tube in a scene. The margin and the resolution are
+    /// checked. `frame`: the largest coordinate of the mesh and of its pose in the scene, if `pose`
+    /// is the product of the tube's pose there and the inverse of the mesh's pose.
+    pub(crate) fn ask_clears_tube(
+        &mut self,
+        tube: &Tube,
+        pose: &Pose,
+        margin_and_resolution: [Real; 2],
+        frame: Option<Real>,
+    ) -> Result<Decision, ProximityError> {
+        self.context().clears_tube(tube, pose, margin_and_resolution, frame)
+    }
+
+    /// [`clearance`](Self::clearance) for a tube in a scene. The tolerance is checked; `frame` is as
+    /// for `ask_clears_tube`.
+    pub(crate) fn ask_clearance(
+        &mut self,
+        tube: &Tube,
+        pose: &Pose,
+        tolerance: Real,
+        frame: Option<Real>,
+    ) -> Result<Clearance, ProximityError> {
+        self.context().clearance(tube, pose, tolerance, frame)
     }
 
     /// [`clearance`](Self::clearance) for many tubes, on all cores.
@@ -161,7 +186,7 @@ impl BvhSearch {
         out.clear();
         check_not_negative("tolerance", tolerance)?;
         self.batch(tubes, out, Clearance::placeholder, |context, (tube, pose), out| {
-            *out = context.clearance(tube, pose, tolerance);
+            *out = context.clearance(tube, pose, tolerance, None);
         });
         Ok(())
     }
@@ -186,7 +211,7 @@ impl BvhSearch {
             out,
             || Decision::Undecided,
             |context, (tube, pose), out| {
-                *out = context.clears_tube(tube, pose, margin, resolution);
+                *out = context.clears_tube(tube, pose, [margin, resolution], None);
             },
         );
         Ok(())
@@ -235,8 +260,9 @@ impl<'a> Context<'a> {
         tube: &'a Tube,
         pose: &Pose,
         tolerance: Real,
+        frame: Option<Real>,
     ) -> Result<Clearance, ProximityError> {
-        let (mut tube, memory) = self.tube_in_mesh(tube, pose)?;
+        let (mut tube, memory) = self.tube_in_mesh(tube, pose, frame)?;
         let known = clearance_without_turn(&mut tube, memory, tolerance)?;
         let answer = clearance(&mut tube, memory, tolerance)?;
         Ok(known.map_or(answer, |known| known.and(answer, tolerance)))
@@ -249,7 +275,7 @@ impl<'a> Context<'a> {
         tolerance: Real,
         out: &mut Vec<TubePiece>,
     ) -> Result<Clearance, ProximityError> {
-        let (mut tube, memory) = self.tube_in_mesh(tube, pose)?;
+        let (mut tube, memory) = self.tube_in_mesh(tube, pose, None)?;
         let placed = tube.tube;
         let known = clearance_without_turn(&mut tube, memory, tolerance)?;
         if let Some(less_known) = placed.without_turn() {
@@ -266,10 +292,10 @@ impl<'a> Context<'a> {
         self,
         tube: &'a Tube,
         pose: &Pose,
-        margin: Real,
-        resolution: Real,
+        [margin, resolution]: [Real; 2],
+        frame: Option<Real>,
     ) -> Result<Decision, ProximityError> {
-        let (mut tube, memory) = self.tube_in_mesh(tube, pose)?;
+        let (mut tube, memory) = self.tube_in_mesh(tube, pose, frame)?;
         let placed = tube.tube;
         let Some(less_known) = placed.without_turn() else {
             return clears_tube(&mut tube, memory, margin, resolution);
@@ -285,9 +311,11 @@ impl<'a> Context<'a> {
         self,
         tube: &'a Tube,
         pose: &Pose,
+        frame: Option<Real>,
     ) -> Result<(TubeInMesh<'a>, &'a mut TubeMemory), ProximityError> {
         let (search, last) = self.search();
         let tube = PlacedTube::new(tube, pose, search.hierarchy.reach)?;
+        let tube = frame.map_or(tube, |size| tube.posed(size));
         Ok((TubeInMesh { search: PlacedMeshSearch::at_rest(search), tube }, &mut last.tube))
     }
 }

@@ -7,4 +7,5 @@ mod proof;
 mod search;
 mod side;
 
+pub(crate) use motion::SceneMotion;
 pub use search::BvhSearch;

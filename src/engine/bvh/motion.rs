@@ -5,7 +5,7 @@
 use super::search::{BvhSearch, Context, Remembered};
 use crate::answer::{MotionAnswer, MotionClearance, ProximityError};
 use crate::motion::{Motion, ShapePath};
-use crate::query::motion::{MarginQuery, MotionSearch};
+use crate::query::motion::{MarginQuery, MotionSearch, Sought};
 use crate::query::{check_decision, check_not_negative};
 use crate::robot::Chain;
 use parry3d_f64::math::{Real, Vector};
@@ -214,7 +214,7 @@ impl BvhSearch {
         resolution: Real,
     ) -> Result<MotionAnswer, ProximityError> {
         check_decision(margin, resolution)?;
-        self.prepared().hierarchy.mesh.check_moved(to)?;
+        self.check_moved(to)?;
         let mut search = self.context().motion(motion);
         search.move_mesh(to);
         search.clears(MarginQuery { margin, resolution })
@@ -264,7 +264,7 @@ impl BvhSearch {
         tolerance: Real,
     ) -> Result<MotionClearance, ProximityError> {
         check_not_negative("tolerance", tolerance)?;
-        self.context().motion(motion).clearance(tolerance)
+        self.context().motion(motion).clearance(tolerance, Real::INFINITY)
     }
 
     /// [`clears_motion`](Self::clears_motion) for many motions, on all cores.
@@ -289,10 +289,67 @@ impl BvhSearch {
     }
 }
 
+/// A motion in a structure of a scene. The numbers of the queries are checked.
+pub(crate) struct SceneMotion<'a, M> {
+    pub motion: &'a M,
+    /// As in [`MotionSearch`].
+    pub frame: Option<Real>,
+    /// The vertices at the end of the motion, if they move.
+    pub to: Option<&'a [Vector]>,
+}
+
+impl BvhSearch {
+    /// [`clears_motion`](Self::clears_motion) or [`time_of_contact`](Self::time_of_contact) in a
+    /// scene.
+    pub(crate) fn ask_margin(
+        &mut self,
+        asked: SceneMotion<impl Motion>,
+        wanted: MarginQuery,
+        sought: Sought,
+    ) -> Result<MotionAnswer, ProximityError> {
+        let mut search = self.scene_motion(asked);
+        match sought {
+            Sought::Any => search.clears(wanted),
+            Sought::First => search.first_contact(wanted),
+        }
+    }
+
+    /// [`clearance_of_motion`](Self::clearance_of_motion) in a scene; or a lower bound of at least
+    /// `limit`.
+    pub(crate) fn ask_clearance_of_motion(
+        &mut self,
+        asked: SceneMotion<impl Motion>,
+        tolerance: Real,
+        limit: Real,
+    ) -> Result<MotionClearance, ProximityError> {
+        self.scene_motion(asked).clearance(tolerance, limit)
+    }
+
+    fn scene_motion<'a, M: Motion>(
+        &'a mut self,
+        SceneMotion { motion, frame, to }: SceneMotion<'a, M>,
+    ) -> MotionSearch<'a, M> {
+        let mut search = self.context().motion(motion);
+        search.frame = frame;
+        if let Some(to) = to {
+            search.move_mesh(to);
+        }
+        search
+    }
+}
+
 impl<'a> Context<'a> {
     /// A search along a motion, with the warm start of the last one.
     fn motion<M: Motion>(self, motion: &'a M) -> MotionSearch<'a, M> {
         let (search, Remembered { motion: memory, .. }) = self.search();
-        MotionSearch { search, memory, motion, shapes: 0, last: None, does_mesh_move: false }
+        MotionSearch {
+            search,
+            memory,
+            motion,
+            shapes: 0,
+            last: None,
+            does_mesh_move: false,
+            frame: None,
+        }
     }
 }

@@ -230,6 +230,14 @@ impl BvhSearch {
             .is_some()
     }
 
+    /// Checks that the vertices can move to these places.
+    ///
+    /// # Errors
+    /// Their number differs, or one is not finite or out of range.
+    pub(crate) fn check_moved(&self, vertices: &[Vector]) -> Result<(), MeshError> {
+        self.prepared().hierarchy.mesh.check_moved(vertices)
+    }
+
     pub(super) fn prepared(&self) -> &PreparedMesh {
         &self.mesh
     }

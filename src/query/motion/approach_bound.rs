@@ -42,13 +42,13 @@ pub(super) fn check_subdivision(
 }
 
 /// Returns the midpoint of an interval.
-pub(super) fn midpoint(times: [Real; 2]) -> Real {
+pub(crate) fn midpoint(times: [Real; 2]) -> Real {
     0.5 * times[0] + 0.5 * times[1]
 }
 
 /// Returns half of an interval, rounded up. The midpoint is rounded, and so is a motion's own time
 /// in a path: by less than 4 u, however short the interval.
-pub(super) fn half_length(times: [Real; 2]) -> Real {
+pub(crate) fn half_length(times: [Real; 2]) -> Real {
     0.5 * (times[1] - times[0]) * (1.0 + 4.0 * Real::UNIT_ROUNDOFF) + 4.0 * Real::UNIT_ROUNDOFF
 }
 

@@ -13,7 +13,7 @@
 
 use crate::distance::Scalar;
 use crate::motion::{Motion, check_speed};
-use crate::refine::SectionRange;
+use crate::refine::{Body, SectionRange};
 use crate::robot::RobotError;
 use parry3d_f64::math::Real;
 

@@ -1,4 +1,5 @@
-//! Whether two robots that move at the same time keep a margin between them.
+//! Two robots that move at the same time: whether they keep a margin, and bounds on their least
+//! clearance.
 //!
 //! # Algorithm
 //! 1. Test an interval by the two shapes at its middle, as for one motion (`motion_search`). Let
@@ -8,14 +9,22 @@
 //! 3. Each shape starts with all pairs that may reach the margin in its interval, not with a list
 //!    of unresolved pairs. Such pairs are few, and their bodies show at once which pieces are near
 //!    each other.
+//! 4. **Least clearance**: the rounds of `minimum_rounds`. Pairs beyond `upper + reach` do not
+//!    matter. If more pairs are nearer than are tested per interval, the interval proves nothing
+//!    and is halved.
 
-use super::approach_bound::{ApproachBound, check_subdivision, half_length, midpoint};
+use super::approach_bound::{
+    ApproachBound, check_subdivision, half_length, midpoint, remaining_parts,
+};
 use super::current_shape::CurrentShape;
 use super::interval_test::{IntervalResult, IntervalTest, MarginQuery};
-use super::intervals;
+use super::intervals::{self, Interval, Sought};
+use super::minimum_policy::MinimumPolicy;
+use super::minimum_rounds::{Minimized, Minimum, MinimumBounds, RoundMemory, minimum};
 use super::moving_pair::MovingPair;
+use super::progress::MAX_SHAPES;
 use super::relative_motion::RelativeMotion;
-use crate::answer::{ProximityError, RobotMotionAnswer};
+use crate::answer::{PairWitness, ProximityError, RobotMotionAnswer, RobotMotionClearance};
 use crate::distance::Scalar;
 use crate::motion::{Motion, check_speed};
 use crate::refine::{
@@ -34,6 +43,10 @@ pub(crate) struct MotionsMemory {
     beginning: PairQueue,
     pairs: Vec<PiecePair>,
     intervals: VecDeque<[Real; 2]>,
+    /// For bounds on the least clearance (`minimum_rounds`).
+    bounded: VecDeque<Interval>,
+    part_bounds: Vec<Real>,
+    settled: Vec<Real>,
 }
 
 /// Two motions beside one another.
@@ -46,23 +59,41 @@ pub(crate) struct MotionPair<'a, A, B> {
 
 impl<A: Motion, B: Motion> MotionPair<'_, A, B> {
     /// Decides whether the margin is kept at all times.
-    pub(crate) fn clear(
+    pub(crate) fn decide(
         &mut self,
         wanted: MarginQuery,
+        sought: Sought,
     ) -> Result<RobotMotionAnswer, ProximityError> {
         let mut intervals = std::mem::take(&mut self.memory.intervals);
+        self.begin_intervals(&mut intervals);
+        let mut left = MAX_PAIRS;
+        let answer = intervals::decide(sought, &mut intervals, |times| {
+            self.test_interval(times, wanted, &mut left)
+        });
+        self.memory.intervals = intervals;
+        answer
+    }
+
+    fn begin_intervals(&mut self, intervals: &mut VecDeque<[Real; 2]>) {
         for current in &mut self.memory.current {
             current.forget();
         }
-        intervals::begin(
-            &mut intervals,
-            [self.motions.0.time_parts(), self.motions.1.time_parts()],
-        );
-        let mut left = MAX_PAIRS;
-        let answer =
-            intervals::clear(&mut intervals, |times| self.test_interval(times, wanted, &mut left));
-        self.memory.intervals = intervals;
-        answer
+        intervals::begin(intervals, [self.motions.0.time_parts(), self.motions.1.time_parts()]);
+    }
+
+    /// Returns bounds on the least clearance that are at most `tolerance` apart if possible; or a
+    /// lower bound of at least `limit`.
+    pub(crate) fn clearance(
+        &mut self,
+        tolerance: Real,
+        limit: Real,
+    ) -> Result<RobotMotionClearance, ProximityError> {
+        let mut search = PairClearance { pair: self, left: MAX_PAIRS };
+        let Minimum { lower, uncertainty, resolved, best, t } =
+            minimum(&mut search, tolerance, limit)?;
+        let PairUpperBound { upper, sections, arcs, points: [on_first, on_second] } = best;
+        let witness = PairWitness { on_first, on_second, arc_lengths: arcs };
+        Ok(RobotMotionClearance { lower, upper, resolved, uncertainty, t, sections, witness })
     }
 
     /// Tests the middle shapes of an interval. Returns the result, and how long before and after
@@ -74,10 +105,8 @@ impl<A: Motion, B: Motion> MotionPair<'_, A, B> {
         left: &mut u32,
     ) -> Result<(IntervalResult<PairUpperBound>, Real), ProximityError> {
         let (motions, names) = (self.motions, self.names);
-        let MotionsMemory { current: [first, second], beginning, pairs, .. } = &mut *self.memory;
-        let [first, second] = [shape(motions.0, first, times), shape(motions.1, second, times)];
-        let first = first.map_err(|error| error.of_robot(names[0]))?;
-        let second = second.map_err(|error| error.of_robot(names[1]))?;
+        let MotionsMemory { current, beginning, pairs, .. } = &mut *self.memory;
+        let [first, second] = shapes(motions, names, current, times)?;
         let mut tubes = TubePair::new([first.tube, second.tube]);
         // A finer resolution is below rounding.
         tubes.check_resolved(32.0 * tubes.slack(), wanted.resolution)?;
@@ -103,6 +132,119 @@ impl<A: Motion, B: Motion> MotionPair<'_, A, B> {
         }
         Ok((result, if is_all { approach_bound.hold } else { 0.0 }))
     }
+}
+
+/// A search for the least clearance of two motions.
+struct PairClearance<'s, 'a, A, B> {
+    pair: &'s mut MotionPair<'a, A, B>,
+    /// How many pairs of pieces may still be tested.
+    left: u32,
+}
+
+fn seed(known: &mut MinimumBounds<PairUpperBound>, tubes: &TubePair, t: Real) {
+    known.seed(tubes.position_uncertainty(), t, |best| match best {
+        Some(PairUpperBound { sections, arcs, .. }) => tubes.bound_at(sections, arcs),
+        None => tubes.first_bound(),
+    });
+}
+
+impl<A: Motion, B: Motion> Minimized for PairClearance<'_, '_, A, B> {
+    type Upper = PairUpperBound;
+
+    fn memory(&mut self) -> RoundMemory<'_> {
+        let MotionsMemory { bounded: intervals, part_bounds, settled, .. } = &mut *self.pair.memory;
+        RoundMemory { intervals, part_bounds, settled }
+    }
+
+    fn begin(&mut self) {
+        let mut intervals = std::mem::take(&mut self.pair.memory.intervals);
+        self.pair.begin_intervals(&mut intervals);
+        let begun = &mut self.pair.memory.bounded;
+        begun.clear();
+        begun.extend(intervals.iter().enumerate().map(|(part, times)| Interval {
+            times: *times,
+            part,
+            pieces: None,
+            is_after: false,
+            lower: Real::NEG_INFINITY,
+        }));
+        self.pair.memory.intervals = intervals;
+    }
+
+    fn is_exhausted(&self, shapes: u64) -> bool {
+        shapes >= MAX_SHAPES || self.left == 0
+    }
+
+    fn seed(
+        &mut self,
+        interval: &Interval,
+        known: &mut MinimumBounds<PairUpperBound>,
+    ) -> Result<(), ProximityError> {
+        let MotionPair { memory, motions, names } = &mut *self.pair;
+        let placed = shapes(*motions, *names, &mut memory.current, interval.times)?;
+        seed(known, &TubePair::new(placed.map(|shape| shape.tube)), interval.midpoint());
+        Ok(())
+    }
+
+    fn refine(
+        &mut self,
+        interval: Interval,
+        known: &mut MinimumBounds<PairUpperBound>,
+    ) -> Result<[Option<Interval>; 2], ProximityError> {
+        let Self { pair: MotionPair { memory, motions, names }, left } = self;
+        let MotionsMemory { current, beginning, pairs, .. } = &mut **memory;
+        let (times, t) = (interval.times, interval.midpoint());
+        let [first, second] = shapes(*motions, *names, current, times)?;
+        let approach_bound = ApproachBound::new(times, first.cap_change.max(second.cap_change));
+        let reach =
+            half_length(times) * (first.speed + second.speed) * (1.0 + 4.0 * Real::UNIT_ROUNDOFF);
+        let mut tubes = TubePair::new([first.tube, second.tube]);
+        seed(known, &tubes, t);
+        let slack = tubes.slack();
+        let upper = known.upper();
+        let scale = upper.max(known.tolerance).max(0.25 * reach);
+        let moving = MovingPair { motions: *motions, names: *names, times, speeds: [0.0; 2], left };
+        let mut policy = MinimumPolicy::new(moving, approach_bound, known, t, slack);
+        let most = if reach > policy.aim() { MAX_PAIRS_PER_INTERVAL } else { usize::MAX };
+        let is_all = tubes.begin(scale, upper + reach + slack, most, beginning, pairs)?;
+        // The pairs that `begin` leaves out.
+        policy.settle(upper);
+        refine(&mut tubes, pairs, &mut policy)?;
+        let (nearest, hold) = (policy.nearest, policy.approach_bound.hold);
+        // A clearance below 0 does not exist.
+        if policy.wanted() < 0.0 {
+            policy.settle(0.0);
+            return Ok([None, None]);
+        }
+        if *left == 0 {
+            // No later interval is tested either.
+            known.lower = known.lower.min(interval.lower.max(0.0));
+            return Ok([None, None]);
+        }
+        if is_all && nearest == Real::INFINITY {
+            return Ok([None, None]);
+        }
+        let (hold, lower) = if is_all { (hold, nearest) } else { (0.0, Real::NEG_INFINITY) };
+        let interval = interval.with_lower_bound(lower);
+        let rest = remaining_parts(interval.times, hold);
+        Ok(rest.map(|times| Some(Interval { times: times?, ..interval.clone() })))
+    }
+}
+
+/// The most pairs of pieces that are tested per interval, if the motion exceeds the gap between the
+/// bounds: a shorter interval has fewer pairs.
+const MAX_PAIRS_PER_INTERVAL: usize = 1 << 16;
+
+/// Places both robots in their middle shapes.
+fn shapes<'p, A: Motion, B: Motion>(
+    motions: (&A, &B),
+    names: [&'static str; 2],
+    [first, second]: &'p mut [CurrentShape; 2],
+    times: [Real; 2],
+) -> Result<[PlacedShape<'p>; 2], ProximityError> {
+    let [first, second] = [shape(motions.0, first, times), shape(motions.1, second, times)];
+    let first = first.map_err(|error| error.of_robot(names[0]))?;
+    Ok([first, second.map_err(|error| error.of_robot(names[1]))?])
 }
 
 /// A robot in its middle shape.

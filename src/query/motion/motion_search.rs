@@ -39,9 +39,10 @@
 //! until they isolate the instant at which it becomes round. The shape itself jumps there; if that
 //! is what comes near, the answer is undecided.
 
-use super::approach_bound::{ApproachBound, midpoint, remaining_parts};
+use super::approach_bound::ApproachBound;
 use super::current_shape::CurrentShape;
 use super::interval_test::{IntervalResult, IntervalTest, MarginQuery};
+use super::intervals::Interval;
 use super::moving_tube::{MovingTube, SmallRooms};
 use super::pending_piece::PendingPiece;
 use super::progress::{MAX_SHAPES, PATIENCE, Progress};
@@ -77,56 +78,6 @@ pub(crate) struct MotionMemory {
     /// current round proves.
     pub(super) part_bounds: Vec<Real>,
     pub(super) settled: Vec<Real>,
-}
-
-/// An interval of time and its unresolved pieces.
-#[derive(Clone, Debug)]
-pub(super) struct Interval {
-    times: [Real; 2],
-    /// A range of `MotionMemory::unresolved`; `None` for the whole robot.
-    pieces: Option<Range<usize>>,
-    /// Whether the interval lies after the middle shape in which its pieces were unresolved.
-    is_after: bool,
-    /// A lower bound on the clearance of its pieces.
-    pub lower: Real,
-}
-
-impl Interval {
-    pub(super) fn midpoint(&self) -> Real {
-        midpoint(self.times)
-    }
-
-    /// Returns the part of the motion's time that contains the interval.
-    pub(super) fn part(&self, parts: usize) -> usize {
-        ((self.midpoint() * parts as Real) as usize).min(parts - 1)
-    }
-
-    /// Returns the interval with the larger of both lower bounds.
-    pub(super) fn with_lower_bound(self, lower: Real) -> Self {
-        Self { lower: self.lower.max(lower), ..self }
-    }
-
-    /// Returns the remaining parts before and after the middle shape, which decides the pieces for
-    /// the time `hold` on both sides.
-    pub(super) fn halves(
-        &self,
-        hold: Real,
-        is_left: [bool; 2],
-        pieces: &Range<usize>,
-    ) -> [Option<Self>; 2] {
-        let [before, after] = remaining_parts(self.times, hold);
-        let rest = |times: Option<[Real; 2]>, is_after: bool| {
-            let is_left = is_left[usize::from(is_after)] && !pieces.is_empty();
-            let pieces = Some(pieces.clone());
-            times.filter(|_| is_left).map(|times| Self {
-                times,
-                pieces,
-                is_after,
-                lower: self.lower,
-            })
-        };
-        [rest(before, false), rest(after, true)]
-    }
 }
 
 /// The pending pieces of a shape.
@@ -171,6 +122,9 @@ pub(crate) struct MotionSearch<'a, M> {
     pub last: Option<u32>,
     /// Whether the mesh moves too, as stored in the memory.
     pub does_mesh_move: bool,
+    /// The largest coordinate of the mesh and of its pose, if the motion's poses are products with
+    /// the inverse of that pose.
+    pub frame: Option<Real>,
 }
 
 impl<M: Motion> MotionSearch<'_, M> {
@@ -291,6 +245,7 @@ impl<M: Motion> MotionSearch<'_, M> {
         let time = |leg: usize| leg as Real / legs as Real;
         intervals.extend((0..legs).map(|leg| Interval {
             times: [time(leg), time(leg + 1)],
+            part: leg,
             pieces: None,
             is_after: false,
             lower: Real::NEG_INFINITY,
@@ -365,6 +320,7 @@ impl<M: Motion> MotionSearch<'_, M> {
             (hierarchy.reach, 0.0, PlacedMeshSearch::at_rest(search))
         };
         let tube = PlacedTube::new(&current.tube, &pose, reach)?.moving();
+        let tube = self.frame.map_or(tube, |size| tube.posed(size));
         let mut tube = TubeInMesh { search, tube };
         pieces.clear();
         let failing = interval.pieces.clone().map_or(&[][..], |failing| &unresolved[failing]);

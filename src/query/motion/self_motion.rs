@@ -8,7 +8,7 @@
 use super::approach_bound::{ApproachBound, check_subdivision, half_length, midpoint};
 use super::current_shape::CurrentShape;
 use super::interval_test::{IntervalResult, IntervalTest, MarginQuery};
-use super::intervals;
+use super::intervals::{self, Sought};
 use super::moving_tube_with_itself::MovingTubeWithItself;
 use super::relative_motion::RelativeMotion;
 use crate::answer::{ProximityError, RobotMotionAnswer};
@@ -47,16 +47,17 @@ pub(crate) struct SelfMotionMemory {
 /// - The motion has no shape at some time, or one that bends too sharply, or changes its sections.
 /// - A stated speed is not finite or too large.
 /// - The samples allow no decision at that resolution.
-pub(crate) fn self_clears_motion<M: Motion>(
+pub(crate) fn self_decides_motion<M: Motion>(
     motion: &M,
     memory: &mut SelfMotionMemory,
     wanted: MarginQuery,
+    sought: Sought,
 ) -> Result<RobotMotionAnswer, ProximityError> {
     let mut intervals = std::mem::take(&mut memory.intervals);
     memory.current.forget();
     intervals::begin(&mut intervals, [motion.time_parts()]);
     let mut left = MAX_PAIRS;
-    let answer = intervals::clear(&mut intervals, |times| {
+    let answer = intervals::decide(sought, &mut intervals, |times| {
         test_interval(motion, memory, times, wanted, &mut left)
     });
     memory.intervals = intervals;

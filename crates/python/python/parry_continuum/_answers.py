@@ -507,6 +507,136 @@ class RobotMotionAnswer(_Answer, _RobotMotionAnswerFields):
         return self.decision == Decision.CLEAR
 
 
+class _RobotMotionClearanceFields(NamedTuple):
+    lower: FloatOrFloats
+    """The robots are never nearer to each other than this."""
+    upper: FloatOrFloats
+    """The shapes at ``t`` are no farther apart than this: 0 where they touch or overlap."""
+    resolved: BoolOrBools
+    """Whether the bounds are no farther apart than the tolerance and ``uncertainty``."""
+    uncertainty: FloatOrFloats
+    """What the errors that shapes state for themselves cost, and no finer tolerance can mend."""
+    t: FloatOrFloats
+    """The time of the shapes that realise ``upper``, from 0 to 1."""
+    on_first: Floats
+    """(3,): a point of the first robot."""
+    on_second: Floats
+    """(3,): a point of the second. The two are ``upper`` apart, or nearer."""
+    arc_lengths: Floats
+    """(2,): how far along the centreline of either from its base."""
+
+
+class RobotMotionClearance(_Answer, _RobotMotionClearanceFields):
+    """How near two moving robots come to each other, between bounds, and when."""
+
+    __slots__ = ()
+    _instead = "compare its `lower` and `upper`"
+
+
+class _SceneMotionAnswerFields(NamedTuple):
+    decision: DecisionOrDecisions
+    """Whether all margins are kept at every time from 0 to 1."""
+    interval: Floats
+    """(2,): all margins are kept before the first time, and may not be kept until the second."""
+    t: FloatOrFloats
+    """Where the decision is contact: the time of shapes that do not keep a margin; else NaN."""
+    upper: FloatOrFloats
+    """The clearance of those shapes is at most this."""
+    structure: IntOrInts
+    """The structure in contact, or -1 where it is between robots."""
+    robots: Ints
+    """(2,): the robot and -1, or the two robots, or one robot twice where it is itself."""
+    on_first: Floats
+    """(3,): a point of the first robot."""
+    on_second: Floats
+    """(3,): a point of the structure or the second robot."""
+    arc_lengths: Floats
+    """(2,): how far along the centreline of either robot from its base; NaN for a structure."""
+    triangle: IntOrInts
+    """The triangle of the structure, or -1."""
+    reason: ReasonOrReasons
+    """Where the decision is undecided, why; else ``UndecidedReason.NONE``."""
+    status: StrOrStrs
+    """Of a batch: why there is no answer, as the ``kind`` of the error, and the empty string where there is one."""
+
+
+class SceneMotionAnswer(_Answer, _SceneMotionAnswerFields):
+    """Whether robots that move in a scene keep all margins, and what does not."""
+
+    __slots__ = ()
+
+    @property
+    def is_clear(self) -> BoolOrBools:
+        """Whether all margins are proven to be kept: ``decision`` is ``CLEAR``."""
+        return self.decision == Decision.CLEAR
+
+
+class _SceneClearanceFields(NamedTuple):
+    lower: FloatOrFloats
+    """Every slack is at least this; infinite where nothing has a margin."""
+    upper: FloatOrFloats
+    """The slack there is at most this."""
+    resolved: BoolOrBools
+    """Whether the bounds are no farther apart than the tolerance and ``uncertainty``."""
+    uncertainty: FloatOrFloats
+    """What the errors that tubes state for themselves cost, and no finer tolerance can mend."""
+    structure: IntOrInts
+    """The structure, or -1 where it is between two robots."""
+    robots: Ints
+    """(2,): the robot and -1, or the two robots."""
+    on_first: Floats
+    """(3,): a point of the first robot."""
+    on_second: Floats
+    """(3,): a point of the structure or the second robot."""
+    arc_lengths: Floats
+    """(2,): how far along the centreline of either robot from its base; NaN for a structure."""
+    triangle: IntOrInts
+    """The triangle of the structure, or -1."""
+    status: StrOrStrs
+    """Of a batch: why there are no bounds, as the ``kind`` of the error, and the empty string where there are."""
+
+
+class SceneClearance(_Answer, _SceneClearanceFields):
+    """Bounds on the least slack of tubes in a scene."""
+
+    __slots__ = ()
+    _instead = "compare its `lower` and `upper`"
+
+
+class _SceneMotionClearanceFields(NamedTuple):
+    lower: FloatOrFloats
+    """Every slack is at least this at every time; infinite where nothing has a margin."""
+    upper: FloatOrFloats
+    """The slack there, at the time ``t``, is at most this."""
+    resolved: BoolOrBools
+    """Whether the bounds are no farther apart than the tolerance and ``uncertainty``."""
+    uncertainty: FloatOrFloats
+    """What the errors that shapes state for themselves cost, and no finer tolerance can mend."""
+    t: FloatOrFloats
+    """The time of the shapes that realise ``upper``, from 0 to 1."""
+    structure: IntOrInts
+    """The structure, or -1 where it is between two robots."""
+    robots: Ints
+    """(2,): the robot and -1, or the two robots."""
+    on_first: Floats
+    """(3,): a point of the first robot."""
+    on_second: Floats
+    """(3,): a point of the structure or the second robot."""
+    arc_lengths: Floats
+    """(2,): how far along the centreline of either robot from its base; NaN for a structure."""
+    triangle: IntOrInts
+    """The triangle of the structure, or -1."""
+    status: StrOrStrs
+    """Of a batch: why there are no bounds, as the ``kind`` of the error, and the empty string where there are."""
+
+
+class SceneMotionClearance(_Answer, _SceneMotionClearanceFields):
+    """Bounds on the least slack of robots that move in a scene, and when."""
+
+    __slots__ = ()
+    _instead = "compare its `lower` and `upper`"
+
+
 class _PerStructureFields(NamedTuple):
     distance: Floats
     """(M,): the distances, 0 where they touch or overlap."""

@@ -27,9 +27,10 @@ def scene(
     robot_margin: Optional[float],
     nested: Sequence[tuple[int, int]],
     structures: Sequence[tuple[str, Mesh, Optional[float], Optional[NDArray[np.float64]]]],
+    self_margin: Optional[float] = None,
 ) -> Scene:
     """A scene with its structures."""
-    made = Scene(robot_margin=robot_margin, nested=nested)
+    made = Scene(robot_margin=robot_margin, self_margin=self_margin, nested=nested)
     for name, mesh, margin, pose in structures:
         made.add(name, mesh, margin=margin, pose=pose)
     return made

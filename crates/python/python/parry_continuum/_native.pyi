@@ -25,8 +25,12 @@ from ._answers import (
     RobotClearance,
     RobotContacts,
     RobotMotionAnswer,
+    RobotMotionClearance,
     RobotProximity,
+    SceneClearance,
     SceneContacts,
+    SceneMotionAnswer,
+    SceneMotionClearance,
     SideOrSides,
     Tightest,
 )
@@ -304,7 +308,11 @@ _Robot = tuple[ArrayLike, ArrayLike] | tuple[ArrayLike, ArrayLike, _Poses | None
 @final
 class Scene:
     def __new__(
-        cls, *, robot_margin: float | None = None, nested: Sequence[tuple[int, int]] = ()
+        cls,
+        *,
+        robot_margin: float | None = None,
+        self_margin: float | None = None,
+        nested: Sequence[tuple[int, int]] = (),
     ) -> Scene: ...
     def add(self, name: str, mesh: Mesh, *, margin: float | None, pose: _Poses | None = None) -> int: ...
     def __len__(self) -> int: ...
@@ -317,6 +325,14 @@ class Scene:
     def contacts_within(
         self, robots: Sequence[_Robot], *, reach: float, prominence: float = 0.0, caps: _Caps = "fitted"
     ) -> SceneContacts: ...
+    def clears_tube(self, robots: Sequence[_Robot], *, resolution: float) -> DecisionOrDecisions: ...
+    def clearance(self, robots: Sequence[_Robot], *, tolerance: float) -> SceneClearance: ...
+    def clears_motion(self, motions: Sequence[Motion], *, resolution: float) -> SceneMotionAnswer: ...
+    def time_of_contact(self, motions: Sequence[Motion], *, resolution: float) -> SceneMotionAnswer: ...
+    def clears_motion_while(
+        self, ends: dict[int, ArrayLike], motions: Sequence[Motion], *, resolution: float
+    ) -> SceneMotionAnswer: ...
+    def clearance_of_motion(self, motions: Sequence[Motion], *, tolerance: float) -> SceneMotionClearance: ...
 
 @final
 class RobotPair:
@@ -419,6 +435,8 @@ class RobotPair:
         caps: _Caps = "fitted",
     ) -> Certificate: ...
     def clears_motions(self, a: Motion, b: Motion, *, margin: float, resolution: float) -> RobotMotionAnswer: ...
+    def time_of_contact(self, a: Motion, b: Motion, *, margin: float, resolution: float) -> RobotMotionAnswer: ...
+    def clearance_of_motion(self, a: Motion, b: Motion, *, tolerance: float) -> RobotMotionClearance: ...
 
 @final
 class SelfQuery:

@@ -2,6 +2,7 @@
 
 mod bending;
 mod linear;
+mod motion_list;
 mod motion_pair;
 mod motion_path;
 mod moving;
@@ -13,6 +14,7 @@ mod way;
 
 pub(crate) use bending::BendingMotion;
 pub(crate) use linear::{LinearMotion, Maker, maker};
+pub(crate) use motion_list::MotionList;
 pub(crate) use motion_pair::MotionPair;
 pub(crate) use motion_path::MotionPath;
 pub(crate) use moving::Moving;

@@ -3,7 +3,9 @@
 use crate::error::Refused;
 use crate::input::{Given, Robots, of};
 use crate::mesh::Mesh;
-use crate::output::{Enumeration, answer, array, array_or_number, decision_value, flat, members};
+use crate::output::{
+    Enumeration, answer, array, array_or_number, decision_value, flat, members, statuses,
+};
 use crate::threads::{Asked, Session, ask_each};
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::proximity::Clearance;
@@ -212,10 +214,7 @@ impl Mesh {
             )
         };
         let resolved = all.iter().map(|it| it.as_ref().is_some_and(|it| it.resolved)).collect();
-        let status = match robots.count {
-            Some(_) => crate::output::texts(py, status)?,
-            None => "".into_pyobject(py)?.into_any(),
-        };
+        let status = statuses(py, status, robots.count.is_some())?;
         let values = (
             numbers(|found| found.lower)?,
             numbers(|found| found.upper)?,

@@ -1,7 +1,10 @@
 //! The class `Scene`: several meshes with margins, and several robots.
 
 mod answers;
+mod bounds;
+mod motions;
 mod robots;
+mod tubes;
 
 use crate::error::Refused;
 use crate::input::{Caps, Given, Robots, matrices, of, places, pose_of, shape_text};
@@ -28,6 +31,9 @@ use std::sync::Arc;
 /// robot_margin : float, optional
 ///     The distance that robots keep from one another. Without it the scene does not compare robots
 ///     with one another.
+/// self_margin : float, optional
+///     The distance that each robot keeps from itself, as for `SelfQuery`. `clears`, `clears_tube` and
+///     `clears_motion` test it.
 /// nested : sequence of (int, int), optional
 ///     Pairs of robots where one is inside the other, as a tube in the tube that guides it. Such
 ///     robots touch, and the scene does not compare them with one another. The numbers are places
@@ -52,6 +58,7 @@ use std::sync::Arc;
 pub(crate) struct Scene {
     structures: Held<Vec<Structure>>,
     robot_margin: Option<f64>,
+    self_margin: Option<f64>,
     nested: Vec<[usize; 2]>,
 }
 
@@ -69,6 +76,7 @@ struct Structure {
 struct Snapshot {
     structures: Vec<(String, Arc<Engine>, Option<f64>, Pose)>,
     robot_margin: Option<f64>,
+    self_margin: Option<f64>,
     nested: Vec<[usize; 2]>,
 }
 
@@ -97,6 +105,7 @@ impl Lender for Snapshot {
                 scene.set_pose(number, pose)?;
             }
             scene.set_nested(&self.nested);
+            scene.set_self_margin(self.self_margin)?;
             Ok(scene.set_robot_margin(self.robot_margin)?)
         };
         build().map_err(|refused| refused.raise(py, None))?;
@@ -140,6 +149,7 @@ impl Scene {
         Snapshot {
             structures: engines.collect(),
             robot_margin: self.robot_margin,
+            self_margin: self.self_margin,
             nested: self.nested.clone(),
         }
     }
@@ -159,14 +169,16 @@ fn check(py: Python<'_>, parameter: &'static str, margin: Option<f64>) -> PyResu
 #[pymethods]
 impl Scene {
     #[new]
-    #[pyo3(signature = (*, robot_margin = None, nested = Vec::new()), text_signature = "(*, robot_margin=None, nested=())")]
+    #[pyo3(signature = (*, robot_margin = None, self_margin = None, nested = Vec::new()), text_signature = "(*, robot_margin=None, self_margin=None, nested=())")]
     fn new(
         py: Python<'_>,
         #[pyo3(from_py_with = of::optional::robot_margin)] robot_margin: Option<f64>,
+        #[pyo3(from_py_with = of::optional::self_margin)] self_margin: Option<f64>,
         #[pyo3(from_py_with = places)] nested: Vec<[usize; 2]>,
     ) -> PyResult<Self> {
         check(py, "robot_margin", robot_margin)?;
-        Ok(Self { structures: Held::new(Vec::new()), robot_margin, nested })
+        check(py, "self_margin", self_margin)?;
+        Ok(Self { structures: Held::new(Vec::new()), robot_margin, self_margin, nested })
     }
 
     /// Adds a structure, and returns its number: structures count from 0.
@@ -226,6 +238,7 @@ impl Scene {
         Self {
             structures: Held::new(structures),
             robot_margin: self.robot_margin,
+            self_margin: self.self_margin,
             nested: self.nested.clone(),
         }
     }
@@ -250,7 +263,8 @@ impl Scene {
         });
         let structures = structures.collect::<PyResult<Vec<_>>>()?;
         let nested: Vec<_> = self.nested.iter().map(|&[a, b]| (a, b)).collect();
-        let arguments = (self.robot_margin, nested, structures).into_pyobject(py)?;
+        let arguments =
+            (self.robot_margin, nested, structures, self.self_margin).into_pyobject(py)?;
         Ok((make, arguments.into_any()))
     }
 
@@ -266,7 +280,8 @@ impl Scene {
         self.structures.with(py, |structures| structures.len())
     }
 
-    /// Whether all robots keep the margins of all structures, and robots that of robots.
+    /// Whether all robots keep the margins of all structures, robots that of robots, and each robot
+    /// that to itself.
     ///
     /// Parameters
     /// ----------

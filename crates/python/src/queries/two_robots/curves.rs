@@ -4,7 +4,7 @@ use super::{Pairs, RobotPair, Session, second};
 use crate::error::Refused;
 use crate::input::{Given, Names, Robots, of};
 use crate::output::{
-    Enumeration, answer, array, array_or_number, decision_value, flat, members, texts,
+    Enumeration, answer, array, array_or_number, decision_value, flat, members, statuses,
 };
 use crate::queries::clearance::{Stated, tube, tubes};
 use crate::threads::{Asked, ask_each};
@@ -93,7 +93,7 @@ impl Pairs {
             points(|found| found.witness.on_first)?,
             points(|found| found.witness.on_second)?,
             array(py, robots.shape(&[2]), lengths)?,
-            if is_batch { texts(py, status)? } else { "".into_pyobject(py)?.into_any() },
+            statuses(py, status, is_batch)?,
         );
         answer!(py, "RobotClearance", values)
     }

@@ -8,7 +8,9 @@ use crate::output::{
 };
 use crate::threads::{Asked, ask_each};
 use parry_continuum::parry::math::Vector;
-use parry_continuum::proximity::{RobotMotionAnswer, RobotsInContact};
+use parry_continuum::proximity::{
+    ProximityError, RobotMotionAnswer, RobotMotionClearance, RobotsInContact,
+};
 use pyo3::prelude::*;
 
 #[pymethods]
@@ -61,12 +63,140 @@ impl RobotPair {
         #[pyo3(from_py_with = of::margin)] margin: f64,
         #[pyo3(from_py_with = of::resolution)] resolution: f64,
     ) -> PyResult<Bound<'py, PyAny>> {
+        let ask = move |session: &mut Session, a: &Moving, b: &Moving| {
+            session.pair.clears_motions(a, b, margin, resolution)
+        };
+        self.decide(py, [a, b], ask)
+    }
+
+    /// When two robots that move at the same time first come as close to each other as a margin.
+    ///
+    /// The margin is kept until ``interval[0]``, which is proven, and not kept at ``interval[1]``.
+    ///
+    /// Parameters
+    /// ----------
+    /// a, b, margin, resolution
+    ///     As for `clears_motions`.
+    ///
+    /// Returns
+    /// -------
+    /// RobotMotionAnswer
+    ///
+    /// Raises
+    /// ------
+    /// ContinuumError
+    ///     As for `clears_motions`.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import numpy as np
+    /// >>> from parry_continuum import LinearMotion, RobotPair
+    /// >>> needle = np.array([[0, 0, -40], [0, 0, 0]])
+    /// >>> first = LinearMotion(needle, needle + [10, 0, 0], 1.0)
+    /// >>> second = LinearMotion(needle + [22, 0, 0], needle + [12, 0, 0], 1.0)
+    /// >>> found = RobotPair().time_of_contact(first, second, margin=5, resolution=1e-3)
+    /// >>> bool(found.interval[0] <= 0.75 <= found.interval[1]) # 15 of 20
+    /// True
+    #[pyo3(signature = (a, b, *, margin, resolution))]
+    fn time_of_contact<'py>(
+        &self,
+        py: Python<'py>,
+        a: &Bound<'py, Motion>,
+        b: &Bound<'py, Motion>,
+        #[pyo3(from_py_with = of::margin)] margin: f64,
+        #[pyo3(from_py_with = of::resolution)] resolution: f64,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let ask = move |session: &mut Session, a: &Moving, b: &Moving| {
+            session.pair.time_of_contact(a, b, margin, resolution)
+        };
+        self.decide(py, [a, b], ask)
+    }
+
+    /// How near two robots that move at the same time come to each other, between proven bounds,
+    /// and when.
+    ///
+    /// Parameters
+    /// ----------
+    /// a, b
+    ///     As for `clears_motions`.
+    /// tolerance : float
+    ///     How far apart the bounds may be, at least 0.
+    ///
+    /// Returns
+    /// -------
+    /// RobotMotionClearance
+    ///     Of two motions, or arrays with one entry for each pair.
+    ///
+    /// Raises
+    /// ------
+    /// ContinuumError
+    ///     The tolerance is negative or NaN, one of the shapes is no robot, or batches differ in
+    ///     size.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import numpy as np
+    /// >>> from parry_continuum import LinearMotion, RobotPair
+    /// >>> left, right = np.array([[0, 0, -40], [-10, 0, 0]]), np.array([[0, 0, -40], [10, 0, 0]])
+    /// >>> first = LinearMotion(left, right, 1.0)
+    /// >>> second = LinearMotion(right + [0, 3, 0], left + [0, 3, 0], 1.0)
+    /// >>> found = RobotPair().clearance_of_motion(first, second, tolerance=1e-3)
+    /// >>> bool(found.lower <= 1 <= found.upper + 1e-9)
+    /// True
+    #[pyo3(signature = (a, b, *, tolerance))]
+    fn clearance_of_motion<'py>(
+        &self,
+        py: Python<'py>,
+        a: &Bound<'py, Motion>,
+        b: &Bound<'py, Motion>,
+        #[pyo3(from_py_with = of::tolerance)] tolerance: f64,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let motions = MotionPair::new(a, b)?;
+        let mut all: Vec<RobotMotionClearance> = Vec::with_capacity(motions.len());
+        let ask = |session: &mut Session,
+                   [a, b]: &[&Moving; 2],
+                   row: &mut [Option<RobotMotionClearance>]| {
+            row[0] = Some(session.pair.clearance_of_motion(*a, *b, tolerance)?);
+            Ok(())
+        };
+        ask_each(py, &self.0, &motions, (None, 1), ask, |_, found| {
+            all.extend(found.iter().flatten())
+        })?;
+        let shape = |further: &[usize]| motions.shape(further);
+        let numbers = |of: fn(&RobotMotionClearance) -> f64| {
+            array_or_number(py, shape(&[]), all.iter().map(of).collect())
+        };
+        let points = |of: fn(&RobotMotionClearance) -> Vector| {
+            array(py, shape(&[3]), flat(all.iter().map(of)))
+        };
+        let values = (
+            numbers(|found| found.lower)?,
+            numbers(|found| found.upper)?,
+            array_or_number(py, shape(&[]), all.iter().map(|found| found.resolved).collect())?,
+            numbers(|found| found.uncertainty)?,
+            numbers(|found| found.t)?,
+            points(|found| found.witness.on_first)?,
+            points(|found| found.witness.on_second)?,
+            array(py, shape(&[2]), all.iter().flat_map(|it| it.witness.arc_lengths).collect())?,
+        );
+        answer!(py, "RobotMotionClearance", values)
+    }
+}
+
+impl RobotPair {
+    fn decide<'py>(
+        &self,
+        py: Python<'py>,
+        [a, b]: [&Bound<'py, Motion>; 2],
+        decide: impl Fn(&mut Session, &Moving, &Moving) -> Result<RobotMotionAnswer, ProximityError>
+        + Sync,
+    ) -> PyResult<Bound<'py, PyAny>> {
         let motions = MotionPair::new(a, b)?;
         let mut all: Vec<RobotMotionAnswer> = Vec::with_capacity(motions.len());
         let ask = |session: &mut Session,
                    [a, b]: &[&Moving; 2],
                    row: &mut [Option<RobotMotionAnswer>]| {
-            row[0] = Some(session.pair.clears_motions(*a, *b, margin, resolution)?);
+            row[0] = Some(decide(session, a, b)?);
             Ok(())
         };
         ask_each(py, &self.0, &motions, (None, 1), ask, |_, found| {

@@ -1,6 +1,8 @@
 //! Twenty organs around a robot, each an engine of its own in a scene, beside one engine of all
 //! their triangles.
 
+mod edges;
+
 use crate::Effort;
 use crate::latency::{OTHER_WORK, walk};
 use crate::robots::{at_all, text};
@@ -42,6 +44,7 @@ pub fn chapter(effort: Effort, written: &str) -> Result<String, String> {
     for (name, away) in [("near", 0.0), ("far", 60.0)] {
         rows(effort, name, away, &organs, &mut other_work, &mut page)?;
     }
+    edges::table(effort, &organs, &mut page)?;
     Ok(page)
 }
 

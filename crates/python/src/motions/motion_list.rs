@@ -1,0 +1,67 @@
+//! The motions of several robots at once, or as many sets of them as a batch has.
+
+use super::{Motion, Moving, at, broadcast};
+use crate::error::Refused;
+use crate::threads::Asked;
+use pyo3::prelude::*;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// A motion for each robot; of a batch, each beside those at its place, or one beside all.
+pub(crate) struct MotionList {
+    motions: Vec<Arc<Vec<Moving>>>,
+    count: Option<usize>,
+}
+
+impl MotionList {
+    /// # Errors
+    /// The list is empty, or the batches differ in size.
+    pub(crate) fn new(py: Python<'_>, given: &[Bound<'_, Motion>]) -> PyResult<Self> {
+        if given.is_empty() {
+            let text = "`motions` is empty; give a list of at least one motion";
+            return Err(Refused::other("bad_type", text).raise(py, None));
+        }
+        let (mut count, mut motions) = (None, Vec::with_capacity(given.len()));
+        for (place, motion) in given.iter().enumerate() {
+            let (one, moving) = motion.get().parts();
+            let Some(both) = broadcast(count, one) else {
+                let [before, here] = [count, one].map(Option::unwrap_or_default);
+                let text = format!(
+                    "`motions[{place}]` has {here} motions and those before it {before}; give batches of as many, or one motion"
+                );
+                return Err(Refused::other("bad_shape", text).raise(py, None));
+            };
+            count = both;
+            motions.push(moving);
+        }
+        Ok(Self { motions, count })
+    }
+}
+
+/// Some sets of a batch, which share its memory.
+#[derive(Default)]
+pub(crate) struct SomeLists {
+    first: usize,
+    motions: Vec<Arc<Vec<Moving>>>,
+}
+
+impl Asked for MotionList {
+    type Block = SomeLists;
+    type One<'a> = Vec<&'a Moving>;
+
+    // One may take as long as thousands of robots.
+    const FEW: usize = 2;
+
+    fn count(&self) -> Option<usize> {
+        self.count
+    }
+
+    fn copy(&self, range: Range<usize>, block: &mut SomeLists) -> Result<(), Refused> {
+        *block = SomeLists { first: range.start, motions: self.motions.clone() };
+        Ok(())
+    }
+
+    fn one(block: &SomeLists, place: usize) -> Vec<&Moving> {
+        block.motions.iter().map(|motions| at(motions, block.first + place)).collect()
+    }
+}

@@ -1,0 +1,393 @@
+//! Queries about robots that move in a scene.
+
+use super::bounds::{Bounds, bounds};
+use super::{Scene, Session, check};
+use crate::error::Refused;
+use crate::input::{Numbers, matrices, of, pose_of, vectors};
+use crate::mesh::rows;
+use crate::motions::{Motion, MotionList, Moving};
+use crate::output::{
+    Enumeration, answer, array, array_or_number, decision_value, flat, members, reason_value,
+    statuses,
+};
+use crate::threads::{Asked, ask_each};
+use parry_continuum::parry::math::{Pose, Vector};
+use parry_continuum::proximity::{
+    self, SceneError, SceneMotionAnswer, SceneMotionContact, StructureEnd,
+};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+/// Where a structure is at the end of a motion.
+enum End {
+    Pose(Pose),
+    Vertices(Vec<Vector>),
+}
+
+type Answer = Result<SceneMotionAnswer, SceneError>;
+
+impl Scene {
+    /// Asks about each set of motions. One that is refused does not fail its batch.
+    fn decide<'py>(
+        &self,
+        py: Python<'py>,
+        motions: &[Bound<'py, Motion>],
+        ask: impl Fn(&mut proximity::Scene, &[&Moving]) -> Answer + Sync,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let motions = MotionList::new(py, motions)?;
+        let is_batch = motions.count().is_some();
+        let mut all: Vec<(Option<SceneMotionAnswer>, &'static str)> = Vec::new();
+        let ask = |session: &mut Session,
+                   motions: &Vec<&Moving>,
+                   row: &mut [(Option<SceneMotionAnswer>, &'static str)]| {
+            row[0] = match ask(&mut session.scene, motions).map_err(Refused::from) {
+                Ok(found) => (Some(found), ""),
+                Err(refused) if is_batch => (None, refused.kind()),
+                Err(refused) => return Err(refused),
+            };
+            Ok(())
+        };
+        ask_each(py, &self.snapshot(py), &motions, ((None, ""), 1), ask, |_, found| {
+            all.extend(found)
+        })?;
+        motion_answers(py, &all, |further| motions.shape(further), is_batch)
+    }
+}
+
+#[pymethods]
+impl Scene {
+    /// Whether robots that move at the same time keep all margins, at every time from 0 to 1: from
+    /// structures, from one another, and each from itself. A planner asks this for each edge.
+    ///
+    /// ``Decision.CLEAR`` is proven for every instant, from the speeds of the motions. A contact is
+    /// the first of these: robots and structures, those that seem nearest first; the pairs of robots;
+    /// each robot and itself. It may not be the first in time: see `time_of_contact`. A set that is
+    /// refused does not fail its batch: it is undecided, and its ``status`` is the ``kind`` of its
+    /// error.
+    ///
+    /// Parameters
+    /// ----------
+    /// motions : list of Motion
+    ///     A motion for each robot, in the scene's frame; each one motion or a batch of as many. A
+    ///     robot at rest is a `RigidMotion` from a pose to the same pose.
+    /// resolution : float
+    ///     A length. The answer is undecided only where robots come within this of a margin, where
+    ///     an end turns from flat to round there, or at a limit of work: ``reason`` says which.
+    ///
+    /// Returns
+    /// -------
+    /// SceneMotionAnswer
+    ///     Of one set of motions, or arrays with one entry for each.
+    ///
+    /// Raises
+    /// ------
+    /// ContinuumError
+    ///     The list is empty, batches differ in size, nothing has a margin, or the resolution is
+    ///     negative or NaN. Of one set: a shape is no robot, a robot bends too sharply for a margin to
+    ///     itself, or the resolution is finer than rounding. The text names the robot.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import numpy as np
+    /// >>> from parry_continuum import LinearMotion, Mesh, Scene
+    /// >>> floor = Mesh([[-9, -9, 0], [9, -9, 0], [0, 9, 0]], [[0, 1, 2]])
+    /// >>> scene = Scene(robot_margin=0.5)
+    /// >>> scene.add("floor", floor, margin=1.0)
+    /// 0
+    /// >>> high = np.array([[0, 0, 4], [1, 0, 4]])
+    /// >>> falls, waits = LinearMotion(high, high - [0, 0, 3], 0.2), LinearMotion(high + 2, high + 2, 0.2)
+    /// >>> found = scene.clears_motion([falls, waits], resolution=1e-3)
+    /// >>> found.decision, found.structure, found.robots
+    /// (<Decision.CONTACT: -1>, 0, array([ 0, -1]))
+    /// >>> scene.clears_motion([waits], resolution=1e-3).is_clear
+    /// True
+    #[pyo3(signature = (motions, *, resolution))]
+    fn clears_motion<'py>(
+        &self,
+        py: Python<'py>,
+        motions: Vec<Bound<'py, Motion>>,
+        #[pyo3(from_py_with = of::resolution)] resolution: f64,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        check(py, "resolution", Some(resolution))?;
+        self.decide(py, &motions, |scene, motions| scene.clears_motion(motions, resolution))
+    }
+
+    /// When moving robots first violate a margin.
+    ///
+    /// All margins are kept until ``interval[0]``, which is proven, and one is not kept at
+    /// ``interval[1]``. The contact is the earliest of all.
+    ///
+    /// Parameters
+    /// ----------
+    /// motions, resolution
+    ///     As for `clears_motion`.
+    ///
+    /// Returns
+    /// -------
+    /// SceneMotionAnswer
+    ///
+    /// Raises
+    /// ------
+    /// ContinuumError
+    ///     As for `clears_motion`.
+    #[pyo3(signature = (motions, *, resolution))]
+    fn time_of_contact<'py>(
+        &self,
+        py: Python<'py>,
+        motions: Vec<Bound<'py, Motion>>,
+        #[pyo3(from_py_with = of::resolution)] resolution: f64,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        check(py, "resolution", Some(resolution))?;
+        self.decide(py, &motions, |scene, motions| scene.time_of_contact(motions, resolution))
+    }
+
+    /// `clears_motion` while structures move, too.
+    ///
+    /// The meshes stay where they are.
+    ///
+    /// Parameters
+    /// ----------
+    /// ends : dict of int to array
+    ///     For the number of a structure, where it is at the time 1: a pose, (4, 4), from its mesh's
+    ///     frame to the scene's, or its vertices, (V, 3), in the mesh's frame. With a pose it moves as
+    ///     a whole, straight and evenly, and turns evenly by the smaller angle. With vertices each
+    ///     vertex moves straight and evenly. Other structures rest.
+    /// motions, resolution
+    ///     As for `clears_motion`.
+    ///
+    /// Returns
+    /// -------
+    /// SceneMotionAnswer
+    ///     The points of a contact are those at its time.
+    ///
+    /// Raises
+    /// ------
+    /// ContinuumError
+    ///     There is no such structure, a pose is not rigid, the number of vertices differs, or as for
+    ///     `clears_motion`.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import numpy as np
+    /// >>> from parry_continuum import Mesh, RigidMotion, Scene
+    /// >>> floor = Mesh([[-9, -9, 0], [9, -9, 0], [0, 9, 0]], [[0, 1, 2]])
+    /// >>> scene = Scene()
+    /// >>> scene.add("floor", floor, margin=1.0)
+    /// 0
+    /// >>> waits = RigidMotion([[0, 0, 5], [1, 0, 5]], 0.5, np.eye(4), np.eye(4))
+    /// >>> risen = np.eye(4)
+    /// >>> risen[2, 3] = 3.0
+    /// >>> scene.clears_motion_while({0: risen}, [waits], resolution=1e-3).is_clear
+    /// True
+    /// >>> scene.clears_motion_while({0: floor.vertices + [0, 0, 4]}, [waits], resolution=1e-3).is_clear
+    /// False
+    #[pyo3(signature = (ends, motions, *, resolution))]
+    fn clears_motion_while<'py>(
+        &self,
+        py: Python<'py>,
+        ends: &Bound<'py, PyDict>,
+        motions: Vec<Bound<'py, Motion>>,
+        #[pyo3(from_py_with = of::resolution)] resolution: f64,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        check(py, "resolution", Some(resolution))?;
+        let ends: Vec<(usize, End)> =
+            ends.iter().map(|(number, end)| self.end(&number, &end)).collect::<PyResult<_>>()?;
+        self.decide(py, &motions, |scene, motions| {
+            let ends = ends.iter().map(|(number, end)| {
+                let end = match end {
+                    End::Pose(pose) => StructureEnd::Pose(*pose),
+                    End::Vertices(to) => StructureEnd::Vertices(to),
+                };
+                (*number, end)
+            });
+            scene.clears_motion_while(&ends.collect::<Vec<_>>(), motions, resolution)
+        })
+    }
+
+    /// The least slack of moving robots, between proven bounds, and when: of the robots and the
+    /// structures with a margin, and between robots.
+    ///
+    /// The slack is the clearance minus the margin. A set that is refused does not fail its batch:
+    /// its bounds are NaN, and its ``status`` is the ``kind`` of its error.
+    ///
+    /// Parameters
+    /// ----------
+    /// motions
+    ///     As for `clears_motion`.
+    /// tolerance : float
+    ///     How far apart the bounds may be, at least 0.
+    ///
+    /// Returns
+    /// -------
+    /// SceneMotionClearance
+    ///     Of one set of motions, or arrays with one entry for each.
+    ///
+    /// Raises
+    /// ------
+    /// ContinuumError
+    ///     The list is empty, batches differ in size, or the tolerance is negative or NaN. Of one
+    ///     set: a shape is no robot.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import numpy as np
+    /// >>> from parry_continuum import LinearMotion, Mesh, Scene
+    /// >>> floor = Mesh([[-9, -9, 0], [9, -9, 0], [0, 9, 0]], [[0, 1, 2]])
+    /// >>> scene = Scene()
+    /// >>> scene.add("floor", floor, margin=1.0)
+    /// 0
+    /// >>> high = np.array([[0, 0, 4], [1, 0, 4]])
+    /// >>> found = scene.clearance_of_motion([LinearMotion(high, high - [0, 0, 2], 0.5)], tolerance=0.01)
+    /// >>> bool(found.lower <= 0.5 <= found.upper), bool(found.t > 0.99)
+    /// (True, True)
+    #[pyo3(signature = (motions, *, tolerance))]
+    fn clearance_of_motion<'py>(
+        &self,
+        py: Python<'py>,
+        motions: Vec<Bound<'py, Motion>>,
+        #[pyo3(from_py_with = of::tolerance)] tolerance: f64,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        check(py, "tolerance", Some(tolerance))?;
+        let motions = MotionList::new(py, &motions)?;
+        let is_batch = motions.count().is_some();
+        let mut all: Vec<Bounds> = Vec::with_capacity(motions.len());
+        let ask = |session: &mut Session, motions: &Vec<&Moving>, row: &mut [Bounds]| {
+            let found = session.scene.clearance_of_motion(motions, tolerance);
+            row[0] = match found.map_err(Refused::from) {
+                Ok(found) => found.map_or(Bounds::WITHOUT_MARGIN, Bounds::of_motion),
+                Err(refused) if is_batch => Bounds::refused(refused.kind()),
+                Err(refused) => return Err(refused),
+            };
+            Ok(())
+        };
+        ask_each(
+            py,
+            &self.snapshot(py),
+            &motions,
+            (Bounds::WITHOUT_MARGIN, 1),
+            ask,
+            |_, found| all.extend_from_slice(found),
+        )?;
+        let times = array_or_number(py, motions.shape(&[]), all.iter().map(|it| it.t).collect())?;
+        bounds(py, &all, |further| motions.shape(further), is_batch, Some(times))
+    }
+}
+
+impl Scene {
+    /// The end of a structure: a pose, or the vertices of its mesh.
+    fn end(&self, number: &Bound<'_, PyAny>, end: &Bound<'_, PyAny>) -> PyResult<(usize, End)> {
+        let py = number.py();
+        let Ok(structure) = number.extract::<usize>() else {
+            let text = format!(
+                "`ends` has the key {}; give the numbers that `add` returned",
+                number.repr()?
+            );
+            return Err(Refused::other("bad_type", text).raise(py, None));
+        };
+        let name = format!("ends[{structure}]");
+        let numbers = Numbers::new(end, &name)?;
+        if *numbers.shape() != [4, 4] {
+            return Ok((structure, End::Vertices(vectors(rows(end, &name)?.points()))));
+        }
+        let numbers = matrices(end, &name)?;
+        let matrix = numbers.values().as_chunks::<16>().0.first();
+        let pose = matrix.map(pose_of).transpose();
+        match pose.map_err(|refused| refused.of(&name).raise(py, None))? {
+            Some(pose) => Ok((structure, End::Pose(pose))),
+            None => Err(Refused::other("bad_shape", format!("`{name}` is empty")).raise(py, None)),
+        }
+    }
+}
+
+/// What a contact is between: the structure or -1, the robots, the points, and their places.
+struct Between {
+    t: f64,
+    upper: f64,
+    structure: i64,
+    robots: [i64; 2],
+    points: [Vector; 2],
+    arc_lengths: [f64; 2],
+    triangle: i64,
+}
+
+impl Between {
+    fn new(contact: &SceneMotionContact) -> Self {
+        let (t, upper) = (contact.t(), contact.upper());
+        let nothing = Self {
+            t,
+            upper,
+            structure: -1,
+            robots: [-1; 2],
+            points: [Vector::NAN; 2],
+            arc_lengths: [f64::NAN; 2],
+            triangle: -1,
+        };
+        let (robots, shapes) = match contact {
+            SceneMotionContact::Structure { structure, robot, shape, .. } => {
+                return Self {
+                    structure: (*structure).into(),
+                    robots: [(*robot).into(), -1],
+                    points: [shape.witness.on_robot, shape.witness.on_mesh],
+                    arc_lengths: [shape.witness.arc_length, f64::NAN],
+                    triangle: shape.witness.triangle.into(),
+                    ..nothing
+                };
+            }
+            SceneMotionContact::Robots { robots, shapes, .. } => (*robots, shapes),
+            SceneMotionContact::Itself { robot, shapes, .. } => ([*robot; 2], shapes),
+            _ => return nothing,
+        };
+        Self {
+            robots: robots.map(i64::from),
+            points: [shapes.witness.on_first, shapes.witness.on_second],
+            arc_lengths: shapes.witness.arc_lengths,
+            ..nothing
+        }
+    }
+}
+
+fn motion_answers<'py>(
+    py: Python<'py>,
+    all: &[(Option<SceneMotionAnswer>, &'static str)],
+    shape: impl Fn(&[usize]) -> Vec<usize>,
+    is_batch: bool,
+) -> PyResult<Bound<'py, PyAny>> {
+    let found: Vec<_> = all
+        .iter()
+        .map(|(answer, _)| answer.and_then(|answer| answer.contact).map(|it| Between::new(&it)))
+        .collect();
+    let numbers = |of: fn(&Between) -> f64| {
+        let numbers = found.iter().map(|it| it.as_ref().map_or(f64::NAN, of));
+        array_or_number(py, shape(&[]), numbers.collect())
+    };
+    let places = |of: fn(&Between) -> i64| {
+        let places = found.iter().map(|it| it.as_ref().map_or(-1, of));
+        array_or_number(py, shape(&[]), places.collect::<Vec<i64>>())
+    };
+    let points = |k: usize| {
+        let points = found.iter().map(|it| it.as_ref().map_or(Vector::NAN, |it| it.points[k]));
+        array(py, shape(&[3]), flat(points))
+    };
+    let decisions =
+        all.iter().map(|(it, _)| it.map_or(0, |it| decision_value(it.decision))).collect();
+    let reasons = all.iter().map(|(it, _)| reason_value(it.and_then(|it| it.reason))).collect();
+    let intervals = all.iter().flat_map(|(it, _)| it.map_or([0.0, 1.0], |it| it.interval));
+    let robots = found.iter().flat_map(|it| it.as_ref().map_or([-1; 2], |it| it.robots));
+    let lengths =
+        found.iter().flat_map(|it| it.as_ref().map_or([f64::NAN; 2], |it| it.arc_lengths));
+    let values = (
+        members(py, Enumeration::Decision, shape(&[]), decisions)?,
+        array(py, shape(&[2]), intervals.collect())?,
+        numbers(|it| it.t)?,
+        numbers(|it| it.upper)?,
+        places(|it| it.structure)?,
+        array(py, shape(&[2]), robots.collect())?,
+        points(0)?,
+        points(1)?,
+        array(py, shape(&[2]), lengths.collect())?,
+        places(|it| it.triangle)?,
+        members(py, Enumeration::UndecidedReason, shape(&[]), reasons)?,
+        statuses(py, all.iter().map(|(_, status)| *status).collect(), is_batch)?,
+    );
+    answer!(py, "SceneMotionAnswer", values)
+}

@@ -1,0 +1,180 @@
+//! The policy that bounds the least clearance of pieces during an interval of time, from the middle
+//! shape.
+//!
+//! # Definitions
+//! See `minimum_rounds` for `upper`, aim, `wanted`, d, reach and direction gap.
+//!
+//! # Algorithm
+//! A body beyond `upper + reach + slack` is settled. Otherwise its upper bound may lower `upper`,
+//! and then:
+//! 1. **Settled** if `d - reach - slack >= wanted`.
+//! 2. **Settled** with a larger gap if only the unknown direction of a face prevents the decision.
+//! 3. **Unresolved** if the piece is not fine (`reach > aim / 4`) and the motion prevents the
+//!    decision. Shorter intervals test the piece again; around t it stays `wanted` away for the time
+//!    `hold`.
+//! 4. **Halve** otherwise.
+
+use super::approach_bound::ApproachBound;
+use super::minimum_rounds::{MinimumBounds, UnresolvedGap};
+use super::relative_motion::RelativeMotion;
+use crate::answer::ProximityError;
+use crate::refine::{
+    Body, BodyQuery, BoundedPiece, Refinable, RefineAction, RefinePolicy, UpperBound,
+};
+use parry3d_f64::math::Real;
+
+/// The most pieces processed per shape; after them no piece is halved.
+const MAX_PIECES: u32 = 1 << 16;
+
+/// The policy for the middle shape of an interval.
+pub(super) struct MinimumPolicy<'b, V, U> {
+    pub moving: V,
+    pub approach_bound: ApproachBound,
+    pub known: &'b mut MinimumBounds<U>,
+    t: Real,
+    /// The permitted gap between the bounds of the answer.
+    aim: Real,
+    /// The least lower bound of the unresolved pieces.
+    pub nearest: Real,
+    /// How many pieces may still be halved.
+    left: u32,
+}
+
+impl<'b, V, U: UpperBound> MinimumPolicy<'b, V, U> {
+    /// `slack`: that of the shape at `t`.
+    pub fn new(
+        moving: V,
+        approach_bound: ApproachBound,
+        known: &'b mut MinimumBounds<U>,
+        t: Real,
+        slack: Real,
+    ) -> Self {
+        // The bounds of the answer must meet the tolerance after rounding.
+        let aim = (known.tolerance + known.uncertainty - 4.0 * slack).max(0.0);
+        Self { moving, approach_bound, known, t, aim, nearest: Real::INFINITY, left: MAX_PIECES }
+    }
+
+    /// The permitted gap between the bounds.
+    pub fn aim(&self) -> Real {
+        self.aim
+    }
+
+    /// Pieces that may come nearer than this matter.
+    pub fn wanted(&self) -> Real {
+        self.known.upper() - self.aim
+    }
+
+    /// Returns a lower bound on the clearance of a piece in the interval, from the distance of its
+    /// body.
+    fn at_least(&self, distance: Real, slack: Real) -> Real {
+        distance - self.approach_bound.max_approach() - slack
+    }
+
+    pub fn settle(&mut self, lower: Real) {
+        self.known.lower = self.known.lower.min(lower);
+    }
+
+    /// Records a piece that must be tested at other times.
+    fn record_unresolved<D: Refinable<Upper = U>, P>(&mut self, near: &BoundedPiece<D, P>, tube: &D)
+    where
+        V: RelativeMotion<D, P>,
+    {
+        let (wanted, distance) = (self.wanted(), D::distance(near.nearest));
+        self.nearest = self.nearest.min(self.at_least(distance, tube.slack()));
+        // During `hold` the piece stays at least this far away.
+        self.settle(wanted);
+        self.approach_bound.limit_hold(distance - wanted - tube.slack());
+        self.moving.record_unresolved(near, &self.approach_bound);
+    }
+}
+
+impl<D: Refinable, P, V: RelativeMotion<D, P>> RefinePolicy<D, P>
+    for MinimumPolicy<'_, V, D::Upper>
+{
+    const NEARER_HALF_FIRST: bool = true;
+
+    /// A clearance below 0 does not exist.
+    fn is_done(&self) -> bool {
+        self.wanted() < 0.0 || self.moving.is_exhausted()
+    }
+
+    fn body_query(
+        &mut self,
+        tube: &D,
+        part: &P,
+        piece: &D::Piece,
+        outer: &D::Body,
+    ) -> Result<BodyQuery, ProximityError> {
+        self.left = self.left.saturating_sub(1);
+        self.approach_bound.speed = self.moving.speed(part, piece, outer, tube)?;
+        let (reach, upper) = (self.approach_bound.max_approach(), self.known.upper());
+        let is_wide = self.left > 0
+            && outer.excess() > 2.0 * self.aim.max(reach)
+            && (outer.is_flat() || outer.excess() > 0.25 * upper);
+        // Not `wanted`: a piece farther than `upper` is settled for all later rounds.
+        let bound = upper + reach + tube.slack();
+        Ok(BodyQuery {
+            bound,
+            is_wide,
+            aim: self.aim.max(reach),
+            start: self.moving.seed_triangle(),
+        })
+    }
+
+    fn on_cleared(&mut self, _: &D::Piece, _: &D::Body, _: Real) {
+        self.settle(self.known.upper());
+    }
+
+    fn decide(
+        &mut self,
+        tube: &D,
+        near: &BoundedPiece<D, P>,
+    ) -> Result<RefineAction, ProximityError> {
+        self.moving.record(near);
+        self.known.offer(*near.found, self.t);
+        if self.is_done() {
+            return Ok(RefineAction::Answered);
+        }
+        let (lower, wanted) =
+            (self.at_least(D::distance(near.nearest), tube.slack()), self.wanted());
+        if lower >= wanted || self.left == 0 {
+            self.settle(lower);
+            return Ok(RefineAction::Settled);
+        }
+        let (reach, direction_gap) =
+            (self.approach_bound.max_approach(), tube.direction_uncertainty(near.piece));
+        if direction_gap > 0.0 && reach <= 0.25 * self.aim && lower >= wanted - direction_gap {
+            let UnresolvedGap { lower: least, direction_gap: most } = self.known.unresolved;
+            self.known.unresolved =
+                UnresolvedGap { lower: least.min(lower), direction_gap: most.max(direction_gap) };
+            self.settle(lower);
+            return Ok(RefineAction::Settled);
+        }
+        if reach > 0.25 * self.aim
+            && (near.found.upper() <= wanted + reach || near.outer.excess() <= 0.25 * reach)
+        {
+            self.record_unresolved(near, tube);
+            return Ok(RefineAction::Settled);
+        }
+        Ok(RefineAction::Halve(self.aim.max(0.25 * near.outer.excess())))
+    }
+
+    fn decide_indivisible(
+        &mut self,
+        tube: &D,
+        near: &BoundedPiece<D, P>,
+    ) -> Result<(), ProximityError> {
+        let reach = self.approach_bound.max_approach();
+        let is_fine = if tube.may_become_round(near.piece) {
+            reach.max(self.approach_bound.cap_change) <= self.aim / 128.0
+        } else {
+            reach <= (0.25 * self.aim).max(near.found.upper() - D::distance(near.nearest))
+        };
+        if is_fine {
+            self.settle(self.at_least(D::distance(near.nearest), tube.slack()));
+        } else {
+            self.record_unresolved(near, tube);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,302 @@
+//! A moving robot for all queries of a scene: its shapes, its motion in the frames of the
+//! structures, and a bound on where it goes.
+//!
+//! # Definitions
+//! - **Part**: one of n equal parts of the motion's time, with the midpoint t. tau: half of its
+//!   length.
+//! - **Body**: a capsule around a piece of the robot in the shape at t
+//!   ([`PlacedTube::outer`], with round ends). w: its way, tau V, where V bounds the speed of the
+//!   centreline of the piece.
+//! - d: the distance of a body from the bounding box of a structure.
+//!
+//! # Claim
+//! If `d - w > margin` for all bodies of all parts, the robot keeps the margin at all times.
+//!
+//! **Proof.**
+//! 1. At every time each point of the robot is within the radius of a point of the centreline: in a
+//!    disc or a ball around that point.
+//! 2. The body contains the ball around each point of its piece of the centreline. Along a chord
+//!    the centreline is within `radius of the body - radius` of the axis (case 1 of
+//!    `refine::bounding_body`); cases 2 and 3 make the axis longer and the body wider.
+//! 3. Until another time of the part a point of the centreline moves by at most w. So the ball
+//!    around it comes nearer by at most w, flat ends that become round included.
+//! 4. If the structure moves, the box is that of the middle of the part, and the way of its points
+//!    is added to w.
+//!
+//! **Rounding.** M: the largest coordinate of robot and structure in the scene, with radius, pose
+//! and way. The body contains the ball up to rounding, by its own slack.
+//! 1. The queries measure in the mesh's frame. A point there is less than 400 u M from its place
+//!    here (`distance_cache`, step 3).
+//! 2. The corners of a moved box err by less than 80 u M.
+//! 3. The distance from a box is a lower bound. The subtractions err by less than 16 u M.
+//!
+//! The sum is less than the 1024 u M that are subtracted. If coordinates are so large that a place
+//! in a mesh's frame could be out of range, the robot counts as near.
+
+use super::bounding_box::BoundingBox;
+use super::structure::Structure;
+use super::structure_end::MovingStructure;
+use crate::answer::ProximityError;
+use crate::curve::Tube;
+use crate::distance::Scalar;
+use crate::motion::{DisplacementBound, Motion, Speed, check_speed};
+use crate::pair::PlacedLink;
+use crate::query::motion::{half_length, midpoint};
+use crate::refine::{Piece, PlacedTube};
+use crate::robot::{COORDINATE_LIMIT, RobotError};
+use parry3d_f64::math::{Pose, Real};
+use std::cell::RefCell;
+
+/// How many shapes of a robot are kept. The queries of a scene share the shapes of the first
+/// intervals of time; later intervals depend on what is near.
+const MAX_SHAPES: usize = 64;
+
+/// The most parts of the time that are bounded. A path of more motions has longer parts.
+const MAX_PARTS: usize = 64;
+
+/// Memory that is reused. Nothing in it enters a later answer.
+#[derive(Clone, Debug, Default)]
+pub(super) struct MovingRobotMemory {
+    shapes: KnownShapes,
+    tube: Option<Tube>,
+    pieces: Vec<Piece>,
+    swept: Vec<SweptBody>,
+}
+
+/// The shapes of one motion at some times.
+#[derive(Clone, Debug, Default)]
+struct KnownShapes {
+    shapes: Vec<(Real, Pose, Tube)>,
+    /// How many of them belong to the current motion.
+    used: usize,
+}
+
+impl KnownShapes {
+    fn at(&self, t: Real) -> Option<&(Real, Pose, Tube)> {
+        self.shapes[..self.used].iter().find(|known| known.0.to_bits() == t.to_bits())
+    }
+
+    fn keep(&mut self, t: Real, pose: Pose, tube: &Tube) {
+        if self.used == MAX_SHAPES {
+            return;
+        }
+        match self.shapes.get_mut(self.used) {
+            Some(old) => {
+                (old.0, old.1) = (t, pose);
+                old.2.clone_from(tube);
+            }
+            None => self.shapes.push((t, pose, tube.clone())),
+        }
+        self.used += 1;
+    }
+}
+
+/// A body around a piece of the robot, and how far the piece moves in half of a part.
+#[derive(Clone, Debug)]
+struct SweptBody {
+    /// The part.
+    times: [Real; 2],
+    body: PlacedLink,
+    way: Real,
+    /// The largest coordinate of the body, with radius, pose and way.
+    reach: Real,
+}
+
+impl SweptBody {
+    /// A lower bound on the distance of the piece from a box during the part. `size`: the largest
+    /// coordinate of the structure and its pose.
+    fn at_least(&self, around: &BoundingBox, size: Real) -> Real {
+        let largest = self.reach + size;
+        let rounding = 1024.0 * Real::UNIT_ROUNDOFF * largest;
+        // Written so that NaN is near.
+        if largest < COORDINATE_LIMIT / 16.0 {
+            around.distance_to(&self.body) - self.way - rounding
+        } else {
+            Real::NEG_INFINITY
+        }
+    }
+}
+
+/// The bodies around a placed tube. `way` bounds how far a piece moves in half of the part.
+fn sweep(
+    placed: &PlacedTube,
+    times: [Real; 2],
+    pieces: &mut Vec<Piece>,
+    swept: &mut Vec<SweptBody>,
+    way: impl Fn(&Piece) -> Real,
+) {
+    let translation = placed.pose.translation.abs().max_element();
+    placed.begin(Real::INFINITY, pieces);
+    for piece in &*pieces {
+        let (outer, way) = (placed.outer(piece).body, way(piece));
+        let (start, end, radius) = (outer.start(), outer.end(), outer.radius());
+        let body = PlacedLink::between(start, end, radius, [false; 2]);
+        let largest = start.abs().max(end.abs()).max_element() + radius + way;
+        let is_known = body.is_finite() && way < Real::INFINITY;
+        let reach = if is_known { largest + translation } else { Real::INFINITY };
+        swept.push(SweptBody { times, body, way, reach });
+    }
+}
+
+/// The bodies around a tube at rest.
+pub(super) struct RestingTube(Vec<SweptBody>);
+
+impl RestingTube {
+    pub fn new(placed: &PlacedTube) -> Self {
+        let mut swept = Vec::new();
+        sweep(placed, [0.0, 1.0], &mut Vec::new(), &mut swept, |_| 0.0);
+        Self(swept)
+    }
+
+    /// A lower bound on the distance of the tube from a structure.
+    pub fn at_least(&self, structure: &Structure) -> Real {
+        at_least(&self.0, structure)
+    }
+}
+
+fn at_least(swept: &[SweptBody], structure: &Structure) -> Real {
+    let (around, size) = (structure.around_in_scene(), structure.size());
+    let bounds = swept.iter().map(|body| body.at_least(&around, size));
+    bounds.fold(Real::INFINITY, |least, bound| if bound >= least { least } else { bound })
+}
+
+/// A motion of a robot in a scene.
+pub(super) struct MovingRobot<'a, M: ?Sized> {
+    motion: &'a M,
+    shapes: RefCell<KnownShapes>,
+    swept: Vec<SweptBody>,
+}
+
+impl<'a, M: Motion + ?Sized> MovingRobot<'a, M> {
+    /// Bounds where the robot goes.
+    ///
+    /// # Errors
+    /// The motion has no shape in the middle of a part, or the shape cannot be placed.
+    pub fn new(motion: &'a M, memory: &mut MovingRobotMemory) -> Result<Self, ProximityError> {
+        let MovingRobotMemory { shapes, tube, pieces, swept } = memory;
+        let mut shapes = std::mem::take(shapes);
+        let mut swept = std::mem::take(swept);
+        shapes.used = 0;
+        swept.clear();
+        let mut robot = Self { motion, shapes: RefCell::new(shapes), swept };
+        let bounded = robot.bound(tube.get_or_insert_with(Tube::empty), pieces);
+        if let Err(error) = bounded {
+            robot.give_back(memory);
+            return Err(error);
+        }
+        Ok(robot)
+    }
+
+    /// Returns the memory after the last query.
+    pub fn give_back(self, memory: &mut MovingRobotMemory) {
+        memory.shapes = self.shapes.into_inner();
+        memory.swept = self.swept;
+    }
+
+    fn bound(&mut self, tube: &mut Tube, pieces: &mut Vec<Piece>) -> Result<(), ProximityError> {
+        let parts = self.motion.time_parts().clamp(1, MAX_PARTS);
+        for part in 0..parts {
+            let times = [part, part + 1].map(|end| end as Real / parts as Real);
+            tube.forget_error();
+            let pose = self.shape(midpoint(times), tube)?;
+            let placed = PlacedTube::new(tube, &pose, 0.0)?;
+            sweep(&placed, times, pieces, &mut self.swept, |piece| {
+                let section = piece.section as usize;
+                let speed = self.motion.speed(section, placed.shares(piece), times).point;
+                // An invalid speed bounds nothing here; the queries return it as an error.
+                let speed = check_speed(section, speed).unwrap_or(Real::INFINITY);
+                half_length(times) * speed * (1.0 + 8.0 * Real::UNIT_ROUNDOFF)
+            });
+        }
+        Ok(())
+    }
+
+    /// A lower bound on the distance of the robot from a structure at all times.
+    pub fn at_least(&self, structure: &Structure) -> Real {
+        at_least(&self.swept, structure)
+    }
+
+    /// [`at_least`](Self::at_least) for a structure that moves.
+    pub fn at_least_moving(&self, structure: &Structure, end: &MovingStructure) -> Real {
+        let mut least = Real::INFINITY;
+        for part in self.swept.chunk_by(|one, other| one.times == other.times) {
+            let (around, way) = end.around(structure, part[0].times);
+            let size = end.size() + way;
+            for body in part {
+                let bound = body.at_least(&around, size) - way;
+                // Written so that NaN is near.
+                least = if bound >= least { least } else { bound };
+            }
+        }
+        least
+    }
+
+    /// The motion in the scene's frame.
+    pub fn in_scene(&self) -> PlacedMotion<'_, 'a, M> {
+        PlacedMotion { robot: self, from_scene: None }
+    }
+
+    /// The motion in the frame of a structure's mesh.
+    pub fn in_mesh(&self, structure: &Structure) -> PlacedMotion<'_, 'a, M> {
+        PlacedMotion { robot: self, from_scene: structure.from_scene() }
+    }
+
+    /// Writes the shape at time `t` to `tube` and returns its pose in the scene. A shape is made
+    /// once for all queries, if it is one of the first.
+    fn shape(&self, t: Real, tube: &mut Tube) -> Result<Pose, RobotError> {
+        if let Some((_, pose, known)) = self.shapes.borrow().at(t) {
+            tube.clone_from(known);
+            return Ok(*pose);
+        }
+        let pose = self.motion.shape(t, tube)?;
+        self.shapes.borrow_mut().keep(t, pose, tube);
+        Ok(pose)
+    }
+}
+
+/// A robot's motion in some frame.
+pub(super) struct PlacedMotion<'r, 'a, M: ?Sized> {
+    robot: &'r MovingRobot<'a, M>,
+    /// Maps the scene's frame to that frame; `None` if they are the same.
+    from_scene: Option<Pose>,
+}
+
+impl<M: Motion + ?Sized> Motion for PlacedMotion<'_, '_, M> {
+    fn shape(&self, t: Real, tube: &mut Tube) -> Result<Pose, RobotError> {
+        let pose = self.robot.shape(t, tube)?;
+        Ok(self.from_scene.map_or(pose, |from_scene| from_scene * pose))
+    }
+
+    /// Speeds are the same in every frame, up to the rounding of the frame's rotation.
+    fn speed(&self, section: usize, shares: [Real; 2], times: [Real; 2]) -> Speed {
+        let Speed { point, turn } = self.robot.motion.speed(section, shares, times);
+        if self.from_scene.is_none() {
+            return Speed { point, turn };
+        }
+        Speed { point: point * (1.0 + 16.0 * Real::UNIT_ROUNDOFF), turn }
+    }
+
+    /// The rotated bound. A rotation errs by less than 32 u of a length, and so does the length of
+    /// its quaternion.
+    fn displacement(
+        &self,
+        section: usize,
+        shares: [Real; 2],
+        times: [Real; 2],
+    ) -> Option<DisplacementBound> {
+        let DisplacementBound { ways, off } =
+            self.robot.motion.displacement(section, shares, times)?;
+        let Some(from_scene) = self.from_scene else {
+            return Some(DisplacementBound { ways, off });
+        };
+        let rounding = 64.0 * Real::UNIT_ROUNDOFF * (ways[0].length() + ways[1].length());
+        Some(DisplacementBound {
+            ways: ways.map(|way| from_scene.rotation * way),
+            off: off * (1.0 + 16.0 * Real::UNIT_ROUNDOFF) + rounding,
+        })
+    }
+
+    fn time_parts(&self) -> usize {
+        self.robot.motion.time_parts()
+    }
+}
