@@ -233,12 +233,12 @@ impl<'a, M: Motion + ?Sized> MovingRobot<'a, M> {
 
     /// The motion in the scene's frame.
     pub fn in_scene(&self) -> PlacedMotion<'_, 'a, M> {
-        PlacedMotion { robot: self, from_scene: None }
+        PlacedMotion { robot: self, scene_to_mesh: None }
     }
 
     /// The motion in the frame of a structure's mesh.
     pub fn in_mesh(&self, structure: &Structure) -> PlacedMotion<'_, 'a, M> {
-        PlacedMotion { robot: self, from_scene: structure.from_scene() }
+        PlacedMotion { robot: self, scene_to_mesh: structure.scene_to_mesh() }
     }
 
     /// Writes the shape at time `t` to `tube` and returns its pose in the scene. A shape is made
@@ -258,19 +258,19 @@ impl<'a, M: Motion + ?Sized> MovingRobot<'a, M> {
 pub(super) struct PlacedMotion<'r, 'a, M: ?Sized> {
     robot: &'r MovingRobot<'a, M>,
     /// Maps the scene's frame to that frame; `None` if they are the same.
-    from_scene: Option<Pose>,
+    scene_to_mesh: Option<Pose>,
 }
 
 impl<M: Motion + ?Sized> Motion for PlacedMotion<'_, '_, M> {
     fn shape(&self, t: Real, tube: &mut Tube) -> Result<Pose, RobotError> {
         let pose = self.robot.shape(t, tube)?;
-        Ok(self.from_scene.map_or(pose, |from_scene| from_scene * pose))
+        Ok(self.scene_to_mesh.map_or(pose, |scene_to_mesh| scene_to_mesh * pose))
     }
 
     /// Speeds are the same in every frame, up to the rounding of the frame's rotation.
     fn speed(&self, section: usize, shares: [Real; 2], times: [Real; 2]) -> Speed {
         let Speed { point, turn } = self.robot.motion.speed(section, shares, times);
-        if self.from_scene.is_none() {
+        if self.scene_to_mesh.is_none() {
             return Speed { point, turn };
         }
         Speed { point: point * (1.0 + 16.0 * Real::UNIT_ROUNDOFF), turn }
@@ -286,12 +286,12 @@ impl<M: Motion + ?Sized> Motion for PlacedMotion<'_, '_, M> {
     ) -> Option<DisplacementBound> {
         let DisplacementBound { ways, off } =
             self.robot.motion.displacement(section, shares, times)?;
-        let Some(from_scene) = self.from_scene else {
+        let Some(scene_to_mesh) = self.scene_to_mesh else {
             return Some(DisplacementBound { ways, off });
         };
         let rounding = 64.0 * Real::UNIT_ROUNDOFF * (ways[0].length() + ways[1].length());
         Some(DisplacementBound {
-            ways: ways.map(|way| from_scene.rotation * way),
+            ways: ways.map(|way| scene_to_mesh.rotation * way),
             off: off * (1.0 + 16.0 * Real::UNIT_ROUNDOFF) + rounding,
         })
     }

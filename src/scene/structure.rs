@@ -92,7 +92,7 @@ impl Structure {
     }
 
     /// Maps the scene's frame to the mesh's; `None` if they are the same.
-    pub fn from_scene(&self) -> Option<Pose> {
+    pub fn scene_to_mesh(&self) -> Option<Pose> {
         self.pose.map(|pose| pose.inverse())
     }
 

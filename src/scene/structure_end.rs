@@ -40,6 +40,7 @@ pub enum StructureEnd<'a> {
 }
 
 /// A structure that moves.
+#[expect(clippy::large_enum_variant, reason = "a query has a few, and boxes none")]
 pub(super) enum MovingStructure<'a> {
     Posed {
         /// -b(t) and R(t)^-1, as the poses of the two bases.

@@ -31,7 +31,7 @@ pub fn doubts(my: &Options, robots: &[Robot], wall: &Wall, pose: &Pose) -> Vec<S
 fn options(change: Change, my: &Options, wall: &Wall) -> String {
     let scale = (change.scale != 1.0)
         .then(|| format!("--scale {}", change.scale * my.scale.unwrap_or(1.0)));
-    let turn = change.turns.then(|| match wall.frame {
+    let turn = change.turns.then_some(match wall.frame {
         Some(Frame::Ras) => "--frame lps",
         Some(_) => "--frame ras",
         None => "--frame lps --mesh-frame ras",

@@ -312,12 +312,12 @@ fn labels(
 /// Returns the bytes of a file.
 type Reader<'r, 'a> = &'r dyn Fn(&Path) -> Result<Cow<'a, [u8]>, MeshFileError>;
 
+/// The format and the content of a file.
+type Content<'a> = (Format, Cow<'a, [u8]>);
+
 /// Returns the format and the content of a file. A label map has its voxels, which may be in a
 /// second file.
-fn read_whole<'a>(
-    path: &Path,
-    reader: Reader<'_, 'a>,
-) -> Result<(Format, Cow<'a, [u8]>), MeshFileError> {
+fn read_whole<'a>(path: &Path, reader: Reader<'_, 'a>) -> Result<Content<'a>, MeshFileError> {
     #[cfg(feature = "label-maps")]
     if let Some(whole) = two_files(path, reader) {
         return whole;
@@ -335,7 +335,7 @@ fn read_whole<'a>(
 fn two_files<'a>(
     path: &Path,
     reader: Reader<'_, 'a>,
-) -> Option<Result<(Format, Cow<'a, [u8]>), MeshFileError>> {
+) -> Option<Result<Content<'a>, MeshFileError>> {
     let extension = path.extension()?.to_str()?;
     let file = |own: &str| {
         let is_upper = extension.chars().all(char::is_uppercase);
