@@ -1,10 +1,10 @@
 //! What looks like a mistake, though an answer exists: a robot in another frame or unit than the
-//! mesh.
+//! mesh, or a radius in another unit.
 
 use crate::input::{Block, Given};
 use crate::mesh::{Mesh, frames_text};
 use crate::threads::{Asked, alone, compute};
-use mesh_files::{Bounds, Change, Frame, misfits};
+use mesh_files::{Bounds, Change, Frame, RadiusDoubt, misfits, radius_doubt};
 use parry_continuum::proximity::Proximity;
 use pyo3::prelude::*;
 
@@ -30,8 +30,16 @@ fn doubts(
             |&(point, radius): &([f64; 3], f64)| (change.apply(point), radius * change.scale);
         Bounds::of_balls(robot.iter().map(changed))
     };
+    let misfits = misfits(around, mesh, may_turn);
+    let scale = misfits.remedy.map_or(1.0, |remedy| remedy.scale);
+    let radii = robot.iter().map(|&(_, radius)| radius).filter(|radius| radius.is_finite());
+    let radius = radius_doubt(radii.fold(0.0, f64::max) * scale, mesh).map(
+        |RadiusDoubt { doubt, factor }| {
+            format!("{doubt}: `radii * {}` would be usual", scale * factor)
+        },
+    );
     let frames = frames.into_iter().map(|frames| frames_text("points", frames));
-    frames.chain(misfits(around, mesh, may_turn).with_remedy(words)).collect()
+    frames.chain(misfits.with_remedy(words)).chain(radius).collect()
 }
 
 #[pymethods]
@@ -40,8 +48,9 @@ impl Mesh {
     /// each doubt.
     ///
     /// There is a doubt if points and mesh state different frames, if the box of the robots is a
-    /// hundred times smaller or larger than the mesh's, or if the two boxes do not overlap. Each
-    /// names what would help, if a change of frame or unit would.
+    /// hundred times smaller or larger than the mesh's, if the two boxes do not overlap, or if the
+    /// largest radius is not between 1/5000 and 1/10 of the diagonal of the mesh's box (0 is not
+    /// doubted). Each names what would help, if a change of frame or unit would.
     ///
     /// Parameters
     /// ----------
