@@ -154,7 +154,7 @@ def _columns(answer: Any, axes: tuple[str, str]) -> dict[str, NDArray[Any]]:
             ends = [str(number) for number in place]
             if further and further[-1] == 3:
                 ends[-1] = "xyz"[place[-1]]
-            columns["_".join([name, *ends])] = values[(slice(None), *place)]
+            columns["_".join([name, *ends])] = values[(slice(None),) + place]
     return columns
 
 
