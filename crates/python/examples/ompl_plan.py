@@ -79,7 +79,10 @@ def are_within_limits(states):
 
 
 class World:
-    """The pose of the robot's base, and what the robot must not touch: meshes with margins, and a second robot beside the base."""
+    """The pose of the robot's base, and what the robot must not touch: meshes with margins, and a second robot beside the base.
+
+    Margins are kept from surfaces. A robot whose base is inside the cavity cannot leave it without crossing the wall.
+    """
 
     def __init__(self, structures, base, robot_margin):
         self.structures, self.base = structures, base
@@ -145,7 +148,7 @@ def plan(world, ends, planner, step, seconds):
     if step is None:
         information.setMotionValidator(proven)
     else:
-        space.setLongestValidSegmentFraction(step / space.getMaximumExtent())
+        space.setLongestValidSegmentFraction(min(1.0, step / space.getMaximumExtent()))
     information.setup()
     start, goal = space.allocState(), space.allocState()
     start[0:6], goal[0:6] = (state.tolist() for state in ends)
@@ -190,7 +193,7 @@ def cavity(rings):
     z = np.linspace(-7, 47, rings)
     x, y, *widths = (np.interp(z, knots[:, 0], column) for column in knots[:, 1:].T)
     wall = skin(np.stack([x, y, z], axis=1), np.stack(widths, axis=1) * (1 + 0.03 * np.sin(1.1 * z))[:, None], rings // 2)
-    ends = np.array([[14.0, 3, -6], [15, 3, 9]])
+    ends = np.array([[14.0, 3, -9], [15, 3, 14]])
     vein = skin(np.repeat(ends, 2, axis=0), np.array([[0.0], [0.4], [0.4], [0.0]]) * [1, 1], 12)
     share = np.linspace(-1, 1, 15)
     plexus = skin(np.stack([3 + share, share - 4, 17 + 3 * share], axis=1), np.sqrt(1 - share**2)[:, None] * [2.5, 2.0], 16)
