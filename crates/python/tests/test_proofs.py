@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
-from parry_continuum import BendingMotion, ContinuumError, LinearMotion, Mesh
+from parry_continuum import BendingMotion, ContinuumError, LinearMotion, Mesh, write_proof
 from shapes import sphere
 
 CHECKER = Path(__file__).parents[3] / "docs" / "book" / "check_proof.py"
@@ -122,3 +124,45 @@ def test_malformed_files_are_refused_in_one_line(tmp_path: Path) -> None:
         assert len(lines) == 1
         assert lines[0].startswith("no: ")
     assert said(mesh.replace("\n", "\r\n"), proof.replace("\n", "\r\n"), tmp_path)[0] == 0
+
+
+@pytest.mark.parametrize("given", [str, os.fsencode, Path])
+def test_files_of_a_proof_are_believed(given: Any, tmp_path: Path) -> None:
+    # Numbers of every length, and a negative zero.
+    wall = Mesh(np.where(VERTICES == 0, -0.0, VERTICES / 3 * 1.1e-3), FACES)
+    proof = wall.prove(BEND * 1e-4, 0.5e-4, margin=1e-4)
+    path = tmp_path / "of the robot.v1.txt"
+    mesh_path = write_proof(given(path), wall, proof)
+    assert mesh_path == tmp_path / "of the robot.v1.obj"
+    assert sorted(tmp_path.iterdir()) == [mesh_path, path]
+    command = [sys.executable, str(CHECKER), str(mesh_path), str(path)]
+    assert subprocess.run(command, capture_output=True, text=True, check=False).stdout.endswith("yes\n")
+    assert b"\r" not in mesh_path.read_bytes() + path.read_bytes()
+
+
+def moved() -> Mesh:
+    wall = Mesh(VERTICES, FACES)
+    wall.set_vertices(VERTICES * 1.01)
+    return wall
+
+
+@pytest.mark.parametrize(
+    ("mesh", "proof", "path", "text", "kind"),
+    [
+        (WALL, None, "proof.txt", "`proof` is None: the margin is not kept", "bad_type"),
+        (WALL, 3, "proof.txt", "`proof` is no proof", "bad_type"),
+        (WALL, "proof of clearance 1 mesh", "proof.txt", "`proof` is no proof", "bad_type"),
+        (Mesh(VERTICES, FACES[::-1]), ..., "proof.txt", "about another mesh", "answer_does_not_fit"),
+        (moved(), ..., "proof.txt", "the mesh has moved", "answer_does_not_fit"),
+        (WALL, ..., "proof.obj", "proof.obj is where the mesh goes", "file"),
+    ],
+)
+def test_what_belongs_not_together_is_not_written(
+    mesh: Mesh, proof: Any, path: str, text: str, kind: str, tmp_path: Path
+) -> None:
+    if proof is ...:
+        proof = WALL.prove(BEND, 0.5, margin=1.0)
+    with pytest.raises(ContinuumError, match=text) as raised:
+        write_proof(tmp_path / path, mesh, proof)
+    assert raised.value.kind == kind
+    assert list(tmp_path.iterdir()) == []

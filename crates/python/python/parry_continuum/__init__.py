@@ -65,6 +65,9 @@ from ._native import (
     stations,
     verify_motion,
 )
+from ._plot import plot_clearance
+from ._proof_files import write_proof
+from ._pyvista import to_pyvista
 
 __all__ = [
     "BendingMotion",
@@ -107,7 +110,10 @@ __all__ = [
     "__version__",
     "load",
     "load_centreline",
+    "plot_clearance",
     "simplify",
     "stations",
+    "to_pyvista",
     "verify_motion",
+    "write_proof",
 ]
