@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from parry_continuum import Mesh, RobotPair
+from parry_continuum import Decision, Mesh, RobotPair
 from shapes import Array, poses, sphere
 
 EXAMPLES = Path(__file__).parent.parent / "examples"
@@ -161,7 +161,7 @@ def test_ompl() -> None:
     assert all(sampled_slack(ompl_plan, world, np.stack(edge), fine) > -0.01 for edge in itertools.pairwise(path))
 
 
-def test_shapes_of_ompl_are_those_of_the_motions() -> None:
+def test_ompl_shapes_and_the_second_robot() -> None:
     ompl_plan = example("ompl_plan", "ompl", "matplotlib")
     random = np.random.default_rng(2)
     world = ompl_plan.World({}, poses(random, 1)[0], 0.5)
@@ -177,3 +177,11 @@ def test_shapes_of_ompl_are_those_of_the_motions() -> None:
         still = floor.clearance_of_motion(world.motion(state, state), tolerance=1e-3)
         # The links contain the tube.
         assert still.lower - 0.05 < floor.distance(shape, ompl_plan.LINK_RADII) < still.upper
+
+    # Towards the second robot, and away from it.
+    straight = np.array([[7.0, 0, 0], [5.0, 0, 0]])
+    for side, decision in ((-1, Decision.CONTACT), (1, Decision.CLEAR)):
+        bent = straight + side * np.array([[0, 0.05, 0], [0, 0.06, 0]])
+        start, end = (straight * ompl_plan.SCALE).ravel(), (bent * ompl_plan.SCALE).ravel()
+        assert world.clears(start) and world.clears(end) is (decision is Decision.CLEAR)
+        assert world.decide(start, end) is decision
