@@ -1,7 +1,7 @@
 """Plans of OMPL whose edges are proven: `pip install 'ompl>=2' matplotlib`.
 
     python ompl_plan.py
-    python ompl_plan.py --mesh ventricle.stl --organ vein.stl --base 11 14 17 --axis -0.5 -0.1 -0.9
+    python ompl_plan.py --mesh ventricle.stl --organ vein.stl --base base.txt
 
 A concentric tube robot enters a cavity of the brain with two organs, beside a second robot at rest. RRT-Connect and PRM plan with
 edges that `Scene.clears_motion` proves, and with OMPL's own validator, which checks states 0.5 mm or 0.1 mm apart. The edges that
@@ -110,7 +110,7 @@ class World:
         states = states[are_within_limits(states)]
         states = states[self.clears(states)]
         if not len(states):
-            raise SystemExit("no random state keeps the margins; lower --margin, or move the robot by --base and --axis")
+            raise SystemExit("no random state keeps the margins; lower --margin, or change --base")
         return states[np.linalg.norm(centrelines(states)[:, -1], axis=1).argmax()]
 
 
@@ -193,7 +193,7 @@ def cavity(rings):
     z = np.linspace(-7, 47, rings)
     x, y, *widths = (np.interp(z, knots[:, 0], column) for column in knots[:, 1:].T)
     wall = skin(np.stack([x, y, z], axis=1), np.stack(widths, axis=1) * (1 + 0.03 * np.sin(1.1 * z))[:, None], rings // 2)
-    ends = np.array([[14.0, 3, -9], [15, 3, 14]])
+    ends = np.array([[14.0, 3, -7.5], [15, 3, 13]])
     vein = skin(np.repeat(ends, 2, axis=0), np.array([[0.0], [0.4], [0.4], [0.0]]) * [1, 1], 12)
     share = np.linspace(-1, 1, 15)
     plexus = skin(np.stack([3 + share, share - 4, 17 + 3 * share], axis=1), np.sqrt(1 - share**2)[:, None] * [2.5, 2.0], 16)
@@ -234,25 +234,16 @@ def draw(world, path, file):
         axes.plot(*shapes[k].T, color=plt.get_cmap("viridis")(k / len(shapes)), linewidth=3)
     axes.plot(*shapes[:, -1].T, "k--", linewidth=1, label="path of the tip")
     axes.set(xlabel="x, mm", ylabel="y, mm", zlabel="z, mm", aspect="equal")
-    axes.legend()
+    axes.legend(loc="upper left")
     figure.savefig(file, dpi=150)
     plt.close(figure)
-
-
-def base_pose(place, axis):
-    """The pose of a base at a place, with z along an axis."""
-    z = np.asarray(axis, float) / np.linalg.norm(axis)
-    x = np.cross(np.eye(3)[np.abs(z).argmin()], z)
-    x /= np.linalg.norm(x)
-    return np.vstack([np.stack([x, np.cross(z, x), z, place], axis=1), [0, 0, 0, 1]])
 
 
 def main(arguments=None):
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--mesh", help="the wall of a cavity, in mm; without it one is generated")
     parser.add_argument("--organ", action="append", default=[], help="an organ beside --mesh; may be repeated")
-    parser.add_argument("--base", type=float, nargs=3, default=[0, 0, 0], help="where the robot enters --mesh")
-    parser.add_argument("--axis", type=float, nargs=3, default=[0, 0, 1], help="the direction in which it enters")
+    parser.add_argument("--base", help="a text file of the robot's 4 x 4 base pose in --mesh; the robot leaves it along z")
     parser.add_argument("--margin", type=float, default=0.5, help="of the wall and the second robot, in mm")
     parser.add_argument("--organ-margin", type=float, default=0.5, help="of each organ, in mm")
     parser.add_argument("--rings", type=int, default=100, help="of the generated cavity: rings**2 triangles")
@@ -265,10 +256,10 @@ def main(arguments=None):
 
     wall, *organs = map(load, [given.mesh, *given.organ]) if given.mesh else cavity(given.rings)
     structures = {"wall": (wall, given.margin)} | {f"organ{k}": (mesh, given.organ_margin) for k, mesh in enumerate(organs)}
-    world = World(structures, base_pose(given.base, given.axis), given.margin)
+    world = World(structures, np.loadtxt(given.base) if given.base else np.eye(4), given.margin)
     start = np.array([SHORTEST[0], 0, 0, SHORTEST[1], 0, 0])
     if not world.clears(start):
-        raise SystemExit("the robot does not keep the margins where it enters; lower --margin, or change --base and --axis")
+        raise SystemExit("the robot does not keep the margins where it enters; lower --margin, or change --base")
     ends = [start, world.far_state(np.random.default_rng(given.seed))]
 
     ou.setLogLevel(ou.LOG_ERROR)
