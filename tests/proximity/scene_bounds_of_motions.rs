@@ -5,9 +5,10 @@ use super::scene_motions::{Asked, Case, Each, Edge, RESOLUTION, STEPS, asked, ba
 use continuum_testing::{Random, rounds};
 use parry_continuum::parry::math::{Pose, Real, Rotation, Vector};
 use parry_continuum::proximity::{
-    Decision, Proximity, Scene, SceneError, SceneMotionContact, ScenePlace, StructureEnd,
+    BvhSearch, Decision, Proximity, Scene, SceneError, SceneMotionContact, ScenePlace, StructureEnd,
 };
 use parry_continuum::{Chain, LinearMotion, Motion, RigidMotion, Tube};
+use std::f64::consts::{FRAC_PI_2, SQRT_2};
 
 fn steps() -> impl Iterator<Item = Real> {
     (0..=STEPS).map(|step| Real::from(step) / Real::from(STEPS))
@@ -286,4 +287,30 @@ fn an_organ_that_passes_in_between_is_found() {
         scene.clears_motion_while(&[(4, StructureEnd::Vertices(&[]))], &[&at_rest], 1e-3),
         Err(SceneError::NoSuchStructure { structure: 4, .. })
     ));
+}
+
+/// A long bar turns past a robot at rest: its tip comes near between both ends of the motion only.
+#[test]
+fn a_bar_that_turns_past_is_found() {
+    // The tip is at 5 (cos a, sin a). The robot is a needle of radius 0.1 at an angle of pi / 4.
+    let bar = [Vector::ZERO, Vector::new(5.0, 0.0, 0.0), Vector::new(5.0, 0.0, 1.0)];
+    let mut scene = Scene::new();
+    scene.add("bar", BvhSearch::from_triangles(&bar, &[[0, 1, 2]]).unwrap(), Some(0.1)).unwrap();
+    let ends = [(0, StructureEnd::Pose(Pose::rotation(Vector::Z * FRAC_PI_2)))];
+    for (from_axis, decision) in [(4.5, Decision::Contact), (5.21, Decision::Clear)] {
+        let place = Vector::new(from_axis, from_axis, 0.0) / SQRT_2;
+        let chain = Chain::capsules(&[place, place + Vector::Z], &[0.1]).unwrap();
+        let at_rest = RigidMotion::new(Tube::from(&chain), [Pose::IDENTITY; 2]).unwrap();
+        let motions: [&dyn Motion; 1] = [&at_rest];
+        let answer = scene.clears_motion_while(&ends, &motions, 1e-3).unwrap();
+        assert_eq!(answer.decision, decision, "{from_axis}");
+        if let Some(SceneMotionContact::Structure { shape, .. }) = answer.contact {
+            // Angles whose bar is at most radius and margin away from the needle's axis.
+            let half = (0.2 / from_axis).asin() / FRAC_PI_2;
+            assert!((shape.t - 0.5).abs() <= half + 1e-3, "{}", shape.t);
+            let on_mesh = shape.witness.on_mesh;
+            let angle = on_mesh.y.atan2(on_mesh.x);
+            assert!((angle - shape.t * FRAC_PI_2).abs() < 1e-9, "{on_mesh}");
+        }
+    }
 }

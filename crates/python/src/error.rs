@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{IntoPyDict, PyType};
 
-/// Why something has no answer, before Python is told.
+/// Why an input has no answer, before it becomes a Python exception.
 #[derive(Clone, Debug)]
 pub(crate) enum Refused {
     Robot(RobotError),

@@ -1,4 +1,4 @@
-//! The class `Mesh`: what it is made of, and how it moves. Its questions are in `queries`.
+//! The class `Mesh`: how it is made and how it moves. Its queries are in `queries`.
 
 use crate::error::Refused;
 use crate::files::{frame_name, warn};
@@ -73,7 +73,7 @@ impl Mesh {
         Self { engine: Held::new(engine), origin, has_warned: AtomicBool::new(false) }
     }
 
-    /// A new mesh of these triangles.
+    /// A new mesh with the given triangles.
     pub(crate) fn new_from(
         py: Python<'_>,
         vertices: Vec<Vector>,

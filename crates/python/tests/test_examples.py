@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import importlib
+import itertools
 import os
+import subprocess
 import sys
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 import numpy as np
 import pytest
 
-from parry_continuum import Mesh
-from shapes import sphere
+from parry_continuum import Decision, Mesh, RobotPair
+from shapes import Array, poses, sphere
 
 EXAMPLES = Path(__file__).parent.parent / "examples"
 
@@ -88,3 +91,97 @@ def test_dask() -> None:
 def test_ray(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PYTHONPATH", str(EXAMPLES))
     example("ray_blocks", "ray").main(20_000)  # compares with this process
+
+
+def along(world: Any, rows: Array, steps: int = 80) -> Array:
+    """Centrelines (T, 2 * steps + 1, 3) of rows (T, 2, 3), laid out step by step as the definition of `BendingMotion` says."""
+    at, frame = np.zeros((len(rows), 3)), np.tile(np.eye(3), (len(rows), 1, 1))
+    points = [at]
+    for length, x, y in np.moveaxis(rows, 0, -1):
+        turn = np.zeros((len(rows), 3, 3))
+        turn[:, 0, 2], turn[:, 1, 2] = x * length / steps, y * length / steps
+        turn -= np.swapaxes(turn, 1, 2)
+        half = np.eye(3) + turn / 2 + turn @ turn / 8 + turn @ turn @ turn / 48
+        for _ in range(steps):
+            at = at + (frame @ half)[:, :, 2] * length[:, None] / steps
+            frame = frame @ half @ half
+            points.append(at)
+    shapes: Array = np.stack(points, axis=1) @ world.base[:3, :3].T + world.base[:3, 3]
+    return shapes
+
+
+def sampled_slack(ompl_plan: ModuleType, world: Any, edge: Array, times: Array) -> float:
+    """The least slack in the shapes of an edge at these times, by single questions. Flat ends are off by less than 0.01 mm."""
+    start, end = ompl_plan.sections(edge)
+    shapes, radii = along(world, start + times[:, None, None] * (end - start)), np.repeat([1.0, 0.7], 80)
+    found = [mesh.distance(shapes, radii).min() - margin for mesh, margin in world.structures.values()]
+    return float(min(*found, RobotPair().minimum(shapes, radii, *world.second).distance.min() - 0.5))
+
+
+def test_ompl() -> None:
+    ompl_plan = example("ompl_plan", "ompl", "matplotlib")
+    few = ["--plans", "2", "--rings", "40", "--seconds", "1"]
+    # So long a segment is a whole edge: OMPL's validator looks at the ends only.
+    world, outcomes, path, files = ompl_plan.main([*few, "--steps", "50"])
+    assert {name for name, _ in outcomes} == {"RRTConnect", "PRM"} and {step for _, step in outcomes} == {None, 50.0}
+
+    fine = np.linspace(0, 1, 160)
+    assert len(path) > 2
+    for edge in itertools.pairwise(path):
+        assert sampled_slack(ompl_plan, world, np.stack(edge), fine) > -0.01
+        assert ompl_plan.are_within_limits(np.linspace(*edge, 50)).all()
+    random, touching = np.random.default_rng(1), 0
+    for (_, step), run in ((name, run) for name, runs in outcomes.items() for run in runs):
+        assert 0 < len(run.accepted) <= run.checked
+        assert step is not None or not run.touching.any()
+        assert ompl_plan.are_within_limits(run.accepted).all()
+        for k in random.permutation(len(run.accepted))[:6]:
+            if run.touching[k]:
+                motions = [world.motion(*run.accepted[k]), world.rest]
+                at = world.scene.clears_motion(motions, resolution=1e-3).t
+                assert sampled_slack(ompl_plan, world, run.accepted[k], np.array([at])) < 0.01
+                touching += 1
+            else:
+                assert sampled_slack(ompl_plan, world, run.accepted[k], fine[::2]) > -0.01
+    assert touching >= 2  # at least the edge from the start to the goal of each plan
+
+    assert len(files) == 3 * (len(path) - 1) and Path("plan/plan.png").stat().st_size > 1000
+    checker = Path(__file__).parents[3] / "docs" / "book" / "check_proof.py"
+    for proof in files:
+        wall = proof.with_name(proof.name.split("-")[0] + ".obj")
+        done = subprocess.run([sys.executable, str(checker), str(wall), str(proof)], capture_output=True, text=True, check=False)
+        assert done.stdout.splitlines()[-1] == "yes", done.stdout
+
+    # The same cavity from files.
+    np.savetxt("base.txt", world.base)
+    organs = ["--organ", "plan/organ0.obj", "--organ", "plan/organ1.obj"]
+    files_of_it = ["--mesh", "plan/wall.obj", "--base", "base.txt", *organs]
+    read, outcomes, path, _ = ompl_plan.main([*few, "--steps", "--plans", "1", "--output", "read", *files_of_it])
+    assert len(read.structures) == 3 and {step for _, step in outcomes} == {None}
+    assert all(sampled_slack(ompl_plan, world, np.stack(edge), fine) > -0.01 for edge in itertools.pairwise(path))
+
+
+def test_ompl_shapes_and_the_second_robot() -> None:
+    ompl_plan = example("ompl_plan", "ompl", "matplotlib")
+    random = np.random.default_rng(2)
+    world = ompl_plan.World({}, poses(random, 1)[0], 0.5)
+    low, high = ompl_plan.BOUNDS
+    states = random.uniform(low, high, (20, 6))
+    states[0, [1, 2, 4, 5]] = 0
+    shapes = ompl_plan.centrelines(states) @ world.base[:3, :3].T + world.base[:3, 3]
+    expected = along(world, ompl_plan.sections(states))
+    assert np.abs(shapes[:, -1] - expected[:, -1]).max() < 1e-3
+    for shape, state in zip(shapes, states):
+        assert np.allclose(ompl_plan.centrelines(state) @ world.base[:3, :3].T + world.base[:3, 3], shape, rtol=0, atol=1e-12)
+        floor = Mesh([[-99, -99, -60], [99, -99, -60], [0, 99, -50]], [[0, 1, 2]])
+        still = floor.clearance_of_motion(world.motion(state, state), tolerance=1e-3)
+        # The links contain the tube.
+        assert still.lower - 0.05 < floor.distance(shape, ompl_plan.LINK_RADII) < still.upper
+
+    # Towards the second robot, and away from it.
+    straight = np.array([[7.0, 0, 0], [5.0, 0, 0]])
+    for side, decision in ((-1, Decision.CONTACT), (1, Decision.CLEAR)):
+        bent = straight + side * np.array([[0, 0.05, 0], [0, 0.06, 0]])
+        start, end = (straight * ompl_plan.SCALE).ravel(), (bent * ompl_plan.SCALE).ravel()
+        assert world.clears(start) and world.clears(end) is (decision is Decision.CLEAR)
+        assert world.decide(start, end) is decision

@@ -282,9 +282,9 @@ AORTA = Mesh(VERTICES * 3 + [40, 20, 0], FACES)
         (ROBOT * 1000, 500.0, ["they are 29430.000 apart", "`points * 0.001` and `radii * 0.001` they fit"]),
         (ROBOT * HALF_TURN / 1000, 0.0005, ["`points * [-1000, -1000, 1000]` and `radii * 1000`"]),
         (ROBOT + 1e4, 0.5, ["do not overlap"]),
-        (ROBOT, 5.0, ["the radius 5 is large", "`radii * 0.1` would be usual"]),
+        (ROBOT, 50.0, ["the radius 50 is large", "`radii * 0.01` would be usual"]),
         (ROBOT, [0.0005, 0.0001], ["the radius 0.0005 is small", "`radii * 1000` would be usual"]),
-        (ROBOT / 1000, 5.0, ["`radii * 1000` they fit", "the radius 5000 is large", "`radii * 0.1` would be usual"]),
+        (ROBOT / 1000, 0.05, ["`radii * 1000` they fit", "the radius 50 is large", "`radii * 10` would be usual"]),
         (ROBOT, 0.0, []),
     ],
 )

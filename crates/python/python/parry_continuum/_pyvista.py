@@ -13,8 +13,7 @@ from ._native import Mesh
 from ._optional import optional
 
 if TYPE_CHECKING:
-    # Without pyvista it is no type to mypy, and stubtest leaves private names out.
-    from pyvista import PolyData as _PolyData
+    from pyvista import PolyData
 
 # Radii that differ by less are equal, as in the library.
 SAME = 2.0**-32
@@ -110,7 +109,7 @@ def to_pyvista(
     *,
     pose: Any = None,
     caps: Literal["fitted", "capsules", "cylinders"] = "fitted",
-) -> _PolyData:
+) -> PolyData:
     """Returns a mesh or a robot as a surface of pyvista, to look at or to save.
 
     ``to_pyvista(mesh)`` is the mesh. ``to_pyvista(points, radii)`` is a robot: its links with their
@@ -163,6 +162,6 @@ def to_pyvista(
     else:
         vertices, faces, numbers = _robot(shape, radii, pose, caps)
         name = "segment"
-    surface: _PolyData = pyvista.PolyData(vertices, np.insert(faces, 0, 3, axis=1).ravel())
+    surface: PolyData = pyvista.PolyData(vertices, np.insert(faces, 0, 3, axis=1).ravel())
     surface.cell_data[name] = numbers
     return surface

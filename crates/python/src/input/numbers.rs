@@ -144,7 +144,7 @@ pub(super) fn refuse_masked(given: &Bound<'_, PyAny>, name: &str) -> PyResult<()
     check(given)
 }
 
-/// What numpy makes of an argument, whatever its type.
+/// An argument of any type, converted by numpy.
 pub(crate) fn as_array<'py>(
     given: &Bound<'py, PyAny>,
     name: &str,

@@ -11,7 +11,7 @@ use parry_continuum::parry::math::{Pose, Vector};
 use pyo3::prelude::*;
 use std::ops::Range;
 
-/// One robot, or a batch of them, as Python describes them. What is asked of it needs the GIL.
+/// One robot or a batch, as Python passes them. Its methods need the GIL.
 pub(crate) struct Robots<'py> {
     names: Names,
     /// What the function calls `more`.

@@ -87,7 +87,7 @@ impl Motion {
         count: Option<usize>,
         make: impl Fn(usize) -> Result<Moving, Refused> + Sync,
     ) -> PyResult<Self> {
-        /// Signals are looked at after so many.
+        /// How many steps pass between two checks for signals.
         const CHUNK: usize = 1024;
         let all = count.unwrap_or(1);
         let mut motions = Vec::with_capacity(all);
@@ -164,12 +164,12 @@ impl Size {
     }
 }
 
-/// The motion at a place of a batch, of which there may be one for all.
+/// The motion at an index of a batch. A single motion stands for the whole batch.
 fn at(motions: &[Moving], place: usize) -> &Moving {
     &motions[if motions.len() == 1 { 0 } else { place }]
 }
 
-/// How many there are of a batch, of parts each of which is one for all or as many as there are.
+/// The length of a batch. Each of its parts has that length, or is one for the whole batch.
 fn together(
     py: Python<'_>,
     parts: impl IntoIterator<Item = (&'static str, Option<usize>)>,

@@ -6,7 +6,7 @@ use parry_continuum::{
     RobotError, Speed, Tube,
 };
 
-/// One motion of a batch, of whatever kind.
+/// One motion of a batch, of any kind.
 #[derive(Clone, Debug)]
 pub(crate) enum Moving {
     Linear(LinearMotion),

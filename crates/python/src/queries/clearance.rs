@@ -12,7 +12,7 @@ use parry_continuum::proximity::Clearance;
 use parry_continuum::{RobotError, Tube};
 use pyo3::prelude::*;
 
-/// What is stated of points that are measured.
+/// The errors that are stated for measured points.
 #[derive(Clone, Copy)]
 pub(crate) struct Stated {
     pub deviation: f64,

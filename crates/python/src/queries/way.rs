@@ -8,7 +8,7 @@ use crate::threads::{Asked, Engine, Session, ask_each};
 use pyo3::prelude::*;
 use std::sync::Arc;
 
-/// The arguments of a question about a motion, of which a motion stands for the first three.
+/// The arguments of a query about a motion. A motion object stands for the first three.
 pub(super) struct Arguments<'a, 'py> {
     pub start: &'a Bound<'py, PyAny>,
     pub end: Option<&'a Bound<'py, PyAny>>,
@@ -16,10 +16,10 @@ pub(super) struct Arguments<'a, 'py> {
     pub caps: Option<Caps>,
 }
 
-/// What is asked about.
+/// The motions of a query.
 pub(super) enum Way<'a, 'py> {
     Motion(&'a Bound<'py, Motion>),
-    /// Each motion is made when it is asked about.
+    /// Each motion is made when its query begins.
     Linear(Box<Robots<'py>>, Maker),
 }
 

@@ -112,7 +112,7 @@ pub(super) fn per_structure<'py>(
     answer!(py, "PerStructure", values)
 }
 
-/// Those of set k of a batch are between two offsets.
+/// The rows of set k of a batch are between two offsets.
 pub(super) fn contacts<'py>(
     py: Python<'py>,
     all: &[SceneContact],

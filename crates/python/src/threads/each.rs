@@ -8,7 +8,7 @@ use std::ops::Range;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// A worker takes so many robots at a time, or fewer: enough that taking them costs nothing.
+/// The most robots that a worker takes at a time: enough that taking them is negligible.
 const SHARE: usize = 8;
 
 /// After about so long signals are looked at, and Python's other threads get their turn.
@@ -17,7 +17,7 @@ const CHUNK: Duration = Duration::from_millis(50);
 /// The robots of a chunk are copied, so that there are no more of them than this.
 const LARGEST_CHUNK: usize = 1 << 16;
 
-/// What is asked about: one, or a batch of them.
+/// The subjects of a query: one, or a batch.
 pub(crate) trait Asked {
     /// A copy of some of them, which needs no GIL. It is filled again and again.
     type Block: Default + Sync;
@@ -141,7 +141,7 @@ pub(crate) fn alone<T: Send, L: Lender>(
     answer
 }
 
-/// The robots of a chunk, and what is asked of each.
+/// The robots of a chunk, and the query for each.
 struct Rows<'a, Q: Asked, A> {
     block: &'a Q::Block,
     width: usize,

@@ -98,7 +98,7 @@ impl Engine {
             (std::mem::take(&mut state.lent) > 0).then(|| state.base.clone())
         });
         let Some(parents) = half_built else { return Ok(()) };
-        // With the GIL, so that nobody asks the parent's meanwhile.
+        // With the GIL, so that no thread uses the parent's in that time.
         let (vertices, triangles) = (parents.vertices(), parents.triangles());
         let built = pool(py)?.install(|| BvhSearch::from_triangles(vertices, triangles));
         let base = built.map_err(|error| Refused::Mesh(error).raise(py, None))?;

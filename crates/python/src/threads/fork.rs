@@ -10,7 +10,7 @@ pub(crate) fn forks() -> u64 {
     FORKS.load(Ordering::Relaxed)
 }
 
-/// Begins to count, whoever forks: Python or a library.
+/// Begins to count forks, by Python or by a library.
 pub(crate) fn watch_forks() {
     #[cfg(unix)]
     {

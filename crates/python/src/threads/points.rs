@@ -12,7 +12,7 @@ use rayon::prelude::*;
 /// Fewer points are answered on the thread that asks.
 const FEW: usize = 256;
 
-/// Signals are looked at after so many.
+/// How many points pass between two checks for signals.
 const CHUNK: usize = 1 << 16;
 
 /// An answer about each point, in order.

@@ -23,7 +23,7 @@ impl Row {
     }
 }
 
-/// The segment of the input that a link is: of those that it stands for, the one with its ends.
+/// The input segment that has the ends of a link, among the segments that the link stands for.
 pub(crate) fn segment_of(chain: &Chain, points: &[Vector], link: usize) -> i64 {
     let has_its_ends = |&segment: &usize| {
         chain.links()[link].start() == points[segment]
@@ -77,7 +77,7 @@ fn tuple<'py>(
     answer!(py, "RobotProximity", values)
 }
 
-/// Rows of a batch, those of pair k between two offsets.
+/// Rows of a batch. The rows of pair k are between two offsets.
 pub(super) fn proximities_within<'py>(
     py: Python<'py>,
     rows: &[Row],

@@ -13,7 +13,7 @@ use parry_continuum::proximity::{Decision, ProximityError, RobotClearance};
 use parry_continuum::{Tube, proximity};
 use pyo3::prelude::*;
 
-/// What is stated of the points of either robot.
+/// The errors that are stated for the points of either robot.
 type Both = [Stated; 2];
 
 impl Session {
