@@ -3,7 +3,6 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::sync::Mutex;
 
 /// Returns the directory of this build: tests are in target/debug/deps.
 pub fn build_directory() -> PathBuf {
@@ -37,17 +36,12 @@ pub fn room(name: &str) -> String {
     file(name, &(corners.collect::<String>() + sides))
 }
 
-/// Builds an example program of the package in `manifest` once, with these features, and returns
-/// its path.
-pub fn example(manifest: &str, name: &str, features: &str) -> PathBuf {
-    static BUILT: Mutex<BTreeSet<String>> = Mutex::new(BTreeSet::new());
-    let mut built = BUILT.lock().unwrap();
-    if built.insert(name.into()) {
-        let mut build = Command::new(env!("CARGO"));
-        build.args(["build", "--quiet", "--example", name, "--features", features]);
-        assert!(build.current_dir(manifest).status().unwrap().success());
-    }
-    build_directory().join("examples").join(name)
+/// Returns the path of an example program, which `cargo test` has built: another build would compile
+/// the library again wherever its features differ.
+pub fn example(name: &str) -> PathBuf {
+    let program = build_directory().join("examples").join(name);
+    assert!(program.exists(), "{name} is not built: `cargo test --test` needs `--examples`");
+    program
 }
 
 /// Runs a program. Returns whether it succeeds, its output and its errors.

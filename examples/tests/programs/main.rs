@@ -3,14 +3,7 @@
 
 mod all;
 
-use continuum_testing::programs;
-use std::path::PathBuf;
-
-/// An example program, which is built first: in the workspace's root, as these tests are.
-fn example(name: &str) -> PathBuf {
-    let root = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
-    programs::example(root, name, if cfg!(feature = "gpu") { "gpu" } else { "" })
-}
+use continuum_testing::programs::{self, example};
 
 /// The output of an example that succeeds.
 fn succeed(name: &str, arguments: &[&str]) -> String {

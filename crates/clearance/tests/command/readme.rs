@@ -55,9 +55,7 @@ fn the_snippet_is_the_quickstart_and_prints_what_the_readme_shows() {
         blocks(&readme).into_iter().find(|(language, _)| *language == "rust").unwrap();
     assert_eq!(format!("{snippet}\n"), code);
     assert_eq!(code.lines().count(), 15);
-    // Built by `cargo test`. A build of its own would compile the library again, with other features.
-    let program = programs::build_directory().join("examples").join("quickstart");
-    assert!(program.exists(), "`cargo test --test` builds no examples; add --examples");
+    let program = programs::example("quickstart");
     let run = Command::new(program).current_dir(root()).output().unwrap();
     assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
     let out = String::from_utf8(run.stdout).unwrap();
