@@ -15,7 +15,7 @@ use crate::query::robots::{
 };
 use crate::query::{check_decision, check_margin, check_not_negative};
 use crate::robot::Chain;
-use crate::threads::in_chunks;
+use crate::threads::with_clones;
 use parry3d_f64::math::{Pose, Real};
 
 /// Exact queries about two robots: the closest links, and whether all links keep a margin.
@@ -438,21 +438,13 @@ impl RobotPair {
         MotionPair { memory: &mut self.motions, motions: (a, b), names: MOTIONS }
     }
 
-    /// Answers many pairs of robots in chunks. Each chunk has a clone of this pair.
+    /// Answers many pairs of robots on all cores.
     fn batch<Q: Sync, T: Send>(
         &self,
         pairs: &[Q],
         out: &mut Vec<Result<T, ProximityError>>,
         ask: impl Fn(&mut Self, &Q) -> Result<T, ProximityError> + Sync + Send,
     ) {
-        out.clear();
-        // Placeholders: each chunk writes its own answers.
-        out.resize_with(pairs.len(), || Err(ProximityError::EmptyTube));
-        in_chunks(pairs, out, &mut Vec::new(), |own: &mut Option<Self>, pairs, out| {
-            let own = own.get_or_insert_with(|| self.clone());
-            for (asked, out) in pairs.iter().zip(out) {
-                *out = ask(own, asked);
-            }
-        });
+        with_clones(self, pairs, out, || Err(ProximityError::EmptyTube), ask);
     }
 }

@@ -4,11 +4,8 @@ use super::Scene;
 use crate::answer::{SceneError, SceneMotionAnswer, Tightest};
 use crate::motion::Motion;
 use crate::robot::Chain;
-use crate::threads::in_chunks;
+use crate::threads::with_clones;
 use parry3d_f64::math::{Pose, Real};
-
-/// The answer about one set of robots.
-type Answer<T> = Result<T, SceneError>;
 
 impl Scene {
     /// [`clears`](Self::clears) for many sets of robots, on all cores.
@@ -37,7 +34,7 @@ impl Scene {
         sets: &[&[(&Chain, Pose)]],
         out: &mut Vec<Result<bool, SceneError>>,
     ) {
-        self.batch(sets, false, out, |scene, robots| scene.clears(robots));
+        with_clones(self, sets, out, || Ok(false), |scene, robots| scene.clears(robots));
     }
 
     /// [`tightest`](Self::tightest) for many sets of robots, on all cores.
@@ -66,7 +63,7 @@ impl Scene {
         sets: &[&[(&Chain, Pose)]],
         out: &mut Vec<Result<Option<Tightest>, SceneError>>,
     ) {
-        self.batch(sets, None, out, |scene, robots| scene.tightest(robots));
+        with_clones(self, sets, out, || Ok(None), |scene, robots| scene.tightest(robots));
     }
 
     /// [`clears_motion`](Self::clears_motion) for many edges of a planner, on all cores.
@@ -100,24 +97,6 @@ impl Scene {
         out: &mut Vec<Result<SceneMotionAnswer, SceneError>>,
     ) {
         let ask = |scene: &mut Self, edge: &&[&M]| scene.clears_motion(edge, resolution);
-        self.batch(edges, SceneMotionAnswer::clear(), out, ask);
-    }
-
-    /// Answers the items in chunks. Each chunk has a clone of the scene, which shares the meshes.
-    fn batch<Q: Sync, T: Clone + Send>(
-        &self,
-        sets: &[Q],
-        unanswered: T,
-        out: &mut Vec<Answer<T>>,
-        ask: impl Fn(&mut Self, &Q) -> Answer<T> + Sync + Send,
-    ) {
-        out.clear();
-        out.resize_with(sets.len(), || Ok(unanswered.clone()));
-        in_chunks(sets, out, &mut Vec::new(), |scene: &mut Option<Self>, sets, out| {
-            let scene = scene.get_or_insert_with(|| self.clone());
-            for (set, out) in sets.iter().zip(out) {
-                *out = ask(scene, set);
-            }
-        });
+        with_clones(self, edges, out, || Ok(SceneMotionAnswer::clear()), ask);
     }
 }

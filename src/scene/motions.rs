@@ -232,10 +232,11 @@ impl Scene {
         for (bound, [number, robot]) in
             self.by_slack(robots.len(), |_, structure, robot| robots[robot].at_least(structure))
         {
+            if bound > least.upper() {
+                break;
+            }
             let structure = &mut self.structures[number];
-            let Some(margin) = structure.margin.filter(|_| bound <= least.upper()) else {
-                continue;
-            };
+            let Some(margin) = structure.margin else { continue };
             let (motion, frame) = (robots[robot].in_mesh(structure), structure.frame());
             let asked = SceneMotion { motion: &motion, frame, to: None };
             let MotionClearance { lower, upper, uncertainty, t, section, witness, .. } = structure
@@ -499,7 +500,7 @@ fn decide_structure<M: Motion + ?Sized>(
 
 /// Attributes an error of two motions to the robot that causes it.
 fn of_motions(robots: [usize; 2], motions: [&impl Motion; 2], error: ProximityError) -> SceneError {
-    let ProximityError::TooFast { section, .. } = error else { return of_pair(robots, error) };
+    let ProximityError::TooFast { section, .. } = error else { return of_pair(robots)(error) };
     let [first, second] = motions.map(|motion| motion.speed(section, [0.0, 1.0], [0.0, 1.0]).point);
     of_robot(robots[usize::from(second > first)])(error)
 }

@@ -266,7 +266,8 @@ impl Scene {
         if let Some(margin) = self.robot_margin {
             for [first, second] in pairs_apart(robots.len(), &self.nested) {
                 let [(a, pose_a), (b, pose_b)] = [&robots[first], &robots[second]];
-                if !self.pair.clears(a, pose_a, b, pose_b, margin).map_err(of_robot(second))? {
+                let clears = self.pair.clears(a, pose_a, b, pose_b, margin);
+                if !clears.map_err(of_pair([first, second]))? {
                     return Ok(false);
                 }
             }
@@ -354,7 +355,8 @@ impl Scene {
         let Some(margin) = self.robot_margin else { return Ok(best.map(|(_, best)| best)) };
         for [first, second] in pairs_apart(robots.len(), &self.nested) {
             let [(a, pose_a), (b, pose_b)] = [&robots[first], &robots[second]];
-            let nearest = self.pair.minimum(a, pose_a, b, pose_b).map_err(of_robot(second))?;
+            let nearest =
+                self.pair.minimum(a, pose_a, b, pose_b).map_err(of_pair([first, second]))?;
             let slack = slack(nearest.distance, margin);
             if best.as_ref().is_none_or(|(least, _)| slack.lt(*least)) {
                 let between = Between::Robots { robots: [first as u32, second as u32], nearest };
@@ -679,9 +681,9 @@ pub(super) fn of_robot(robot: usize) -> impl Fn(ProximityError) -> SceneError {
 
 /// Attributes an error of a query about two robots to the robot that causes it, or to both. The
 /// query calls them `a` and `b`, or their poses `pose_a` and `pose_b`.
-pub(super) fn of_pair(robots: [usize; 2], error: ProximityError) -> SceneError {
-    let of = |parameter: &str| of_robot(robots[usize::from(parameter.ends_with('b'))]);
-    match error {
+pub(super) fn of_pair(robots: [usize; 2]) -> impl Fn(ProximityError) -> SceneError {
+    let of = move |parameter: &str| of_robot(robots[usize::from(parameter.ends_with('b'))]);
+    move |error| match error {
         ProximityError::OneMotion { parameter, fault } => {
             of(parameter)(ProximityError::Motion(fault))
         }

@@ -7,6 +7,7 @@ use super::queries::{of_pair, of_robot, pairs_apart};
 use crate::answer::{Clearance, Decision, RobotClearance, SceneClearance, SceneError, ScenePlace};
 use crate::curve::Tube;
 use crate::query::check_not_negative;
+use crate::query::motion::MarginQuery;
 use crate::refine::PlacedTube;
 use parry3d_f64::math::{Pose, Real};
 
@@ -65,8 +66,8 @@ impl Scene {
                     continue;
                 }
                 let (pose, frame) = (structure.in_mesh(pose), structure.frame());
-                let search = &mut structure.search;
-                let answer = search.ask_clears_tube(tube, &pose, [margin, resolution], frame);
+                let wanted = MarginQuery { margin, resolution };
+                let answer = structure.search.ask_clears_tube(tube, &pose, wanted, frame);
                 if found.ends_with(answer.map_err(of_robot(robot))) {
                     return Ok(Decision::Contact);
                 }
@@ -76,7 +77,7 @@ impl Scene {
             for [first, second] in pairs_apart(tubes.len(), &self.nested) {
                 let [(a, pose_a), (b, pose_b)] = [&tubes[first], &tubes[second]];
                 let answer = self.pair.clears_tubes(a, pose_a, b, pose_b, margin, resolution);
-                if found.ends_with(answer.map_err(|error| of_pair([first, second], error))) {
+                if found.ends_with(answer.map_err(of_pair([first, second]))) {
                     return Ok(Decision::Contact);
                 }
             }
@@ -134,10 +135,11 @@ impl Scene {
         for (bound, [number, robot]) in
             self.by_slack(tubes.len(), |_, structure, robot| resting[robot].at_least(structure))
         {
+            if bound > least.upper() {
+                break;
+            }
             let structure = &mut self.structures[number];
-            let Some(margin) = structure.margin.filter(|_| bound <= least.upper()) else {
-                continue;
-            };
+            let Some(margin) = structure.margin else { continue };
             let (tube, pose) = &tubes[robot];
             let (pose, frame) = (structure.in_mesh(pose), structure.frame());
             let found = structure.search.ask_clearance(tube, &pose, tolerance, frame);
@@ -153,7 +155,7 @@ impl Scene {
                 let [(a, pose_a), (b, pose_b)] = pair.map(|robot| &tubes[robot]);
                 let found = self.pair.clearance(a, pose_a, b, pose_b, tolerance);
                 let RobotClearance { lower, upper, uncertainty, sections, witness, .. } =
-                    found.map_err(|error| of_pair(pair, error))?;
+                    found.map_err(of_pair(pair))?;
                 let robots = pair.map(|robot| robot as u32);
                 let place = ScenePlace::Robots { robots, sections, witness };
                 least.offer([1, pair[0], pair[1]], margin, [lower, upper], uncertainty, place);

@@ -4,4 +4,4 @@ mod lazy;
 mod parallel;
 
 pub(crate) use lazy::Lazy;
-pub(crate) use parallel::{both, each, in_chunks, threads};
+pub(crate) use parallel::{both, each, in_chunks, threads, with_clones};

@@ -83,6 +83,25 @@ pub(crate) fn in_chunks<Q: Sync, A: Send, M: Default + Send>(
     memories.iter_mut().for_each(|memory| answer(memory, questions, answers));
 }
 
+/// Answers questions in chunks, each chunk with its own clone of `original`. Replaces the content of
+/// `answers`; until a question is answered, its place holds `unanswered`.
+pub(crate) fn with_clones<S: Clone + Send + Sync, Q: Sync, A: Send>(
+    original: &S,
+    questions: &[Q],
+    answers: &mut Vec<A>,
+    unanswered: impl FnMut() -> A,
+    ask: impl Fn(&mut S, &Q) -> A + Sync + Send,
+) {
+    answers.clear();
+    answers.resize_with(questions.len(), unanswered);
+    in_chunks(questions, answers, &mut Vec::new(), |own: &mut Option<S>, questions, answers| {
+        let own = own.get_or_insert_with(|| original.clone());
+        for (question, answer) in questions.iter().zip(answers) {
+            *answer = ask(own, question);
+        }
+    });
+}
+
 #[cfg(all(test, feature = "parallel"))]
 mod tests {
     use super::*;

@@ -16,6 +16,7 @@ use super::search::{BvhSearch, Context};
 use crate::answer::{Clearance, Decision, ProximityError, TubePiece};
 use crate::curve::Tube;
 use crate::query::clearance::{TubeMemory, clearance, clears_tube};
+use crate::query::motion::MarginQuery;
 use crate::query::{check_decision, check_not_negative};
 use crate::refine::{PendingPiece, PlacedTube, TubeInMesh};
 use crate::search::hierarchy::PlacedMeshSearch;
@@ -128,7 +129,7 @@ impl BvhSearch {
         resolution: Real,
     ) -> Result<Decision, ProximityError> {
         check_decision(margin, resolution)?;
-        self.context().clears_tube(tube, pose, [margin, resolution], None)
+        self.context().clears_tube(tube, pose, MarginQuery { margin, resolution }, None)
     }
 
     /// [`clears_tube`](Self::clears_tube) for a tube in a scene. The margin and the resolution are
@@ -138,10 +139,10 @@ impl BvhSearch {
         &mut self,
         tube: &Tube,
         pose: &Pose,
-        margin_and_resolution: [Real; 2],
+        wanted: MarginQuery,
         frame: Option<Real>,
     ) -> Result<Decision, ProximityError> {
-        self.context().clears_tube(tube, pose, margin_and_resolution, frame)
+        self.context().clears_tube(tube, pose, wanted, frame)
     }
 
     /// [`clearance`](Self::clearance) for a tube in a scene. The tolerance is checked; `frame` is as
@@ -211,7 +212,7 @@ impl BvhSearch {
             out,
             || Decision::Undecided,
             |context, (tube, pose), out| {
-                *out = context.clears_tube(tube, pose, [margin, resolution], None);
+                *out = context.clears_tube(tube, pose, MarginQuery { margin, resolution }, None);
             },
         );
         Ok(())
@@ -292,7 +293,7 @@ impl<'a> Context<'a> {
         self,
         tube: &'a Tube,
         pose: &Pose,
-        [margin, resolution]: [Real; 2],
+        MarginQuery { margin, resolution }: MarginQuery,
         frame: Option<Real>,
     ) -> Result<Decision, ProximityError> {
         let (mut tube, memory) = self.tube_in_mesh(tube, pose, frame)?;

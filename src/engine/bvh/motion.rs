@@ -72,7 +72,7 @@ impl BvhSearch {
         resolution: Real,
     ) -> Result<MotionAnswer, ProximityError> {
         check_decision(margin, resolution)?;
-        self.context().motion(motion).clears(MarginQuery { margin, resolution })
+        self.context().motion(motion).decide(MarginQuery { margin, resolution }, Sought::Any)
     }
 
     /// Bounds the time at which a motion first comes within `margin` of the mesh.
@@ -109,7 +109,7 @@ impl BvhSearch {
         resolution: Real,
     ) -> Result<MotionAnswer, ProximityError> {
         check_decision(margin, resolution)?;
-        self.context().motion(motion).first_contact(MarginQuery { margin, resolution })
+        self.context().motion(motion).decide(MarginQuery { margin, resolution }, Sought::First)
     }
 
     /// Decides whether the robot stays farther than `margin` along a planner's own shapes, without
@@ -167,7 +167,7 @@ impl BvhSearch {
         check_decision(margin, resolution)?;
         check_not_negative("deviation", deviation)?;
         let path = ShapePath::new(shapes, deviation)?;
-        self.context().motion(&path).clears(MarginQuery { margin, resolution })
+        self.context().motion(&path).decide(MarginQuery { margin, resolution }, Sought::Any)
     }
 
     /// Decides whether a motion stays farther than `margin` from a mesh that moves at the same
@@ -217,7 +217,7 @@ impl BvhSearch {
         self.check_moved(to)?;
         let mut search = self.context().motion(motion);
         search.move_mesh(to);
-        search.clears(MarginQuery { margin, resolution })
+        search.decide(MarginQuery { margin, resolution }, Sought::Any)
     }
 
     /// Bounds the least clearance of a motion over all times from 0 to 1.
@@ -283,7 +283,7 @@ impl BvhSearch {
         out.clear();
         check_decision(margin, resolution)?;
         self.batch(motions, out, MotionAnswer::clear, |context, motion, out| {
-            *out = context.motion(motion).clears(MarginQuery { margin, resolution });
+            *out = context.motion(motion).decide(MarginQuery { margin, resolution }, Sought::Any);
         });
         Ok(())
     }
@@ -307,11 +307,7 @@ impl BvhSearch {
         wanted: MarginQuery,
         sought: Sought,
     ) -> Result<MotionAnswer, ProximityError> {
-        let mut search = self.scene_motion(asked);
-        match sought {
-            Sought::Any => search.clears(wanted),
-            Sought::First => search.first_contact(wanted),
-        }
+        self.scene_motion(asked).decide(wanted, sought)
     }
 
     /// [`clearance_of_motion`](Self::clearance_of_motion) in a scene; or a lower bound of at least
@@ -342,14 +338,6 @@ impl<'a> Context<'a> {
     /// A search along a motion, with the warm start of the last one.
     fn motion<M: Motion>(self, motion: &'a M) -> MotionSearch<'a, M> {
         let (search, Remembered { motion: memory, .. }) = self.search();
-        MotionSearch {
-            search,
-            memory,
-            motion,
-            shapes: 0,
-            last: None,
-            does_mesh_move: false,
-            frame: None,
-        }
+        MotionSearch { search, memory, motion, last: None, does_mesh_move: false, frame: None }
     }
 }

@@ -1,4 +1,5 @@
-//! Intervals of time, and the loop over them for pairs of robots and for self contact.
+//! Intervals of time, and the loops over them that decide about a margin: for a motion in a mesh, for
+//! two motions, and for self contact.
 
 use super::approach_bound::{midpoint, remaining_parts};
 use super::interval_test::{IntervalResult, MarginQuery};
@@ -8,6 +9,7 @@ use crate::answer::{
 };
 use crate::refine::PairUpperBound;
 use parry3d_f64::math::Real;
+use std::array::from_fn;
 use std::collections::VecDeque;
 use std::ops::Range;
 
@@ -44,131 +46,154 @@ impl Interval {
         Self { lower: self.lower.max(lower), ..self }
     }
 
-    /// Returns the remaining parts before and after the middle shape, which decides the pieces for
-    /// the time `hold` on both sides.
+    /// Returns the remaining parts before and after the middle shape, which decides for the time
+    /// `hold` on both sides.
+    pub(super) fn rest(&self, hold: Real) -> [Option<Self>; 2] {
+        remaining_parts(self.times, hold).map(|times| Some(Self { times: times?, ..self.clone() }))
+    }
+
+    /// [`rest`](Self::rest), for the newly unresolved `pieces` that are left on either side.
     pub(super) fn halves(
         &self,
         hold: Real,
         is_left: [bool; 2],
         pieces: &Range<usize>,
     ) -> [Option<Self>; 2] {
-        let [before, after] = remaining_parts(self.times, hold);
-        let rest = |times: Option<[Real; 2]>, is_after: bool| {
+        let [before, after] = self.rest(hold);
+        let rest = |rest: Option<Self>, is_after: bool| {
             let is_left = is_left[usize::from(is_after)] && !pieces.is_empty();
             let pieces = Some(pieces.clone());
-            times.filter(|_| is_left).map(|times| Self {
-                times,
-                part: self.part,
-                pieces,
-                is_after,
-                lower: self.lower,
-            })
+            rest.filter(|_| is_left).map(|rest| Self { pieces, is_after, ..rest })
         };
         [rest(before, false), rest(after, true)]
     }
 }
 
-/// Decides whether a margin is kept in all intervals.
-///
-/// `test_interval` tests the middle shape of an interval. It returns the result and how long before
-/// and after the midpoint the unresolved pairs are decided; infinity if there are none.
+/// The result of an interval's middle shape, and the intervals that remain before and after it.
+pub(super) type TestedInterval<U> = (IntervalResult<U>, [Option<Interval>; 2]);
+
+/// The answer to a query about a margin. `U`: a place.
+pub(super) enum MarginAnswer<U> {
+    /// The margin is kept at all times.
+    Clear,
+    /// The first interval in which that is unknown, and the reason.
+    Undecided(([Real; 2], UndecidedReason)),
+    /// The margin is kept until `clear_until`, and violated at `t`.
+    Contact { clear_until: Real, t: Real, found: U },
+}
+
+impl MarginAnswer<PairUpperBound> {
+    pub(super) fn of_robots(self) -> RobotMotionAnswer {
+        match self {
+            Self::Clear => RobotMotionAnswer::clear(),
+            Self::Undecided(first) => RobotMotionAnswer::undecided(first),
+            Self::Contact { clear_until, t, found } => {
+                let PairUpperBound { upper, sections, arcs, points: [on_first, on_second] } = found;
+                let witness = PairWitness { on_first, on_second, arc_lengths: arcs };
+                let contact = RobotsInContact { t, upper, sections, witness };
+                RobotMotionAnswer::contact(clear_until, contact)
+            }
+        }
+    }
+}
+
+/// Decides whether a margin is kept in all intervals. `test_interval` tests the middle shape of one.
 ///
 /// # Errors
-/// As `test_interval`.
-pub(super) fn decide(
+/// As `test_interval`; or the samples allow no decision.
+pub(super) fn decide<U>(
     sought: Sought,
-    intervals: &mut VecDeque<[Real; 2]>,
-    test_interval: impl FnMut([Real; 2]) -> TestedInterval,
-) -> Result<RobotMotionAnswer, ProximityError> {
+    intervals: &mut VecDeque<Interval>,
+    test_interval: impl FnMut(&Interval) -> Result<TestedInterval<U>, ProximityError>,
+) -> Result<MarginAnswer<U>, ProximityError> {
     match sought {
-        Sought::Any => clear(intervals, test_interval),
+        Sought::Any => any_contact(intervals, test_interval),
         Sought::First => first_contact(intervals, test_interval),
     }
 }
 
-type TestedInterval = Result<(IntervalResult<PairUpperBound>, Real), ProximityError>;
-
-/// Any contact: breadth first.
-fn clear(
-    intervals: &mut VecDeque<[Real; 2]>,
-    mut test_interval: impl FnMut([Real; 2]) -> TestedInterval,
-) -> Result<RobotMotionAnswer, ProximityError> {
+/// Breadth first: long contacts are found early.
+fn any_contact<U>(
+    intervals: &mut VecDeque<Interval>,
+    mut test_interval: impl FnMut(&Interval) -> Result<TestedInterval<U>, ProximityError>,
+) -> Result<MarginAnswer<U>, ProximityError> {
     let (mut progress, mut shapes, mut too_fine) = (Progress::default(), 0, None);
-    while let Some(times) = intervals.pop_front() {
-        if let Some(first) = progress.is_exhausted(shapes, intervals.iter().copied().chain([times]))
-        {
-            return too_fine.map_or_else(|| Ok(RobotMotionAnswer::undecided(first)), Err);
+    while let Some(interval) = intervals.pop_front() {
+        let left = intervals.iter().chain([&interval]).map(|interval| interval.times);
+        if let Some(first) = progress.is_exhausted(shapes, left) {
+            return too_fine.map_or(Ok(MarginAnswer::Undecided(first)), Err);
         }
-        let (result, hold) = test_interval(times)?;
+        let (result, rest) = test_interval(&interval)?;
         shapes += 1;
-        progress.record(times, &result, shapes);
+        progress.record(interval.times, &result, shapes);
         if let Some(found) = result.contact {
-            // Times before are not proven clear, so `clear_until` is 0.
-            return Ok(RobotMotionAnswer::contact(0.0, in_contact(midpoint(times), found)));
+            // Times before t are not proven clear, so `clear_until` is 0.
+            return Ok(MarginAnswer::Contact { clear_until: 0.0, t: interval.midpoint(), found });
         }
         too_fine = too_fine.or(result.too_fine);
-        intervals.extend(remaining_parts(times, hold).into_iter().flatten());
+        intervals.extend(rest.into_iter().flatten());
     }
     if let Some(error) = too_fine {
         return Err(error);
     }
-    Ok(progress.undecided().map_or_else(RobotMotionAnswer::clear, RobotMotionAnswer::undecided))
+    Ok(progress.undecided().map_or(MarginAnswer::Clear, MarginAnswer::Undecided))
 }
 
-/// The first contact: earlier intervals first, as `MotionSearch::first_contact`.
-fn first_contact(
-    intervals: &mut VecDeque<[Real; 2]>,
-    mut test_interval: impl FnMut([Real; 2]) -> TestedInterval,
-) -> Result<RobotMotionAnswer, ProximityError> {
+/// Earlier intervals first: nothing after a contact matters.
+///
+/// An undecided interval limits the answer to its start. The search then looks for a shape in
+/// contact: larger intervals first, for at most [`PATIENCE`] more shapes. After [`MAX_SHAPES`]
+/// shapes, or another limit of work, the answer ends where the first remaining interval begins.
+fn first_contact<U>(
+    intervals: &mut VecDeque<Interval>,
+    mut test_interval: impl FnMut(&Interval) -> Result<TestedInterval<U>, ProximityError>,
+) -> Result<MarginAnswer<U>, ProximityError> {
     let (mut undecided, mut contact) = (None::<([Real; 2], UndecidedReason)>, None);
     let (mut clear_until, mut shapes, mut most, mut too_fine) = (1.0, 0, MAX_SHAPES, None);
     // `pop_back` takes the earliest interval.
     intervals.make_contiguous().reverse();
     while shapes < most {
         let next = if undecided.is_none() { intervals.pop_back() } else { intervals.pop_front() };
-        let Some(times) = next else { break };
-        let (result, hold) = test_interval(times)?;
+        let Some(interval) = next else { break };
+        let (result, rest) = test_interval(&interval)?;
         shapes += 1;
         if result.is_undecided && undecided.is_none() {
-            let is_exhausted = result.gives_up;
-            let reason = if is_exhausted { UndecidedReason::Work } else { UndecidedReason::Near };
-            undecided = Some((times, reason));
+            let reason =
+                if result.gives_up { UndecidedReason::Work } else { UndecidedReason::Near };
+            undecided = Some((interval.times, reason));
             most = most.min(shapes + PATIENCE);
         }
         if result.gives_up {
-            intervals.push_back(times);
+            intervals.push_back(interval);
             break;
         }
         if let Some(found) = result.contact {
-            let t = midpoint(times);
-            contact = Some(in_contact(t, found));
-            clear_until = if result.is_fine { times[0] } else { t };
+            let t = interval.midpoint();
+            contact = Some((t, found));
+            clear_until = if result.is_fine { interval.times[0] } else { t };
             intervals.clear();
             if !result.is_fine {
-                intervals.push_back([times[0], t]);
+                let times = [interval.times[0], t];
+                let [before, _] = rest;
+                intervals.push_back(Interval { times, ..before.unwrap_or(interval) });
             }
             continue;
         }
         too_fine = too_fine.or(result.too_fine);
-        intervals.extend(remaining_parts(times, hold).into_iter().rev().flatten());
+        intervals.extend(rest.into_iter().rev().flatten());
     }
-    let left = intervals.iter().copied().min_by(|a, b| a[0].total_cmp(&b[0]));
-    if let Some(contact) = contact {
+    let left = intervals.iter().map(|interval| interval.times);
+    let left = left.min_by(|a, b| a[0].total_cmp(&b[0]));
+    if let Some((t, found)) = contact {
         let unknown = undecided.map(|(times, _)| times).into_iter().chain(left);
         let clear_until = unknown.fold(clear_until, |first, times| first.min(times[0]));
-        return Ok(RobotMotionAnswer::contact(clear_until, contact));
+        return Ok(MarginAnswer::Contact { clear_until, t, found });
     }
     if let Some(error) = too_fine {
         return Err(error);
     }
     let first = undecided.or(left.map(|times| (times, UndecidedReason::Work)));
-    Ok(first.map_or_else(RobotMotionAnswer::clear, RobotMotionAnswer::undecided))
-}
-
-fn in_contact(t: Real, found: PairUpperBound) -> RobotsInContact {
-    let PairUpperBound { upper, sections, arcs, points: [on_first, on_second] } = found;
-    let witness = PairWitness { on_first, on_second, arc_lengths: arcs };
-    RobotsInContact { t, upper, sections, witness }
+    Ok(first.map_or(MarginAnswer::Clear, MarginAnswer::Undecided))
 }
 
 /// Returns the most pairs of pieces that are tested per interval, the nearest ones. If the motion
@@ -178,12 +203,23 @@ pub(super) fn most_pairs(reach: Real, MarginQuery { margin, resolution }: Margin
 }
 
 /// Starts with the common parts of all motions' times; `parts` counts the parts of each motion.
-pub(super) fn begin(intervals: &mut VecDeque<[Real; 2]>, parts: impl IntoIterator<Item = usize>) {
-    let parts = parts.into_iter().map(|parts| parts.max(1));
-    let ends = parts.flat_map(|parts| (0..=parts).map(move |part| part as Real / parts as Real));
-    let mut ends: Vec<Real> = ends.collect();
-    ends.sort_unstable_by(Real::total_cmp);
-    ends.dedup();
+pub(super) fn begin<const N: usize>(intervals: &mut VecDeque<Interval>, parts: [usize; N]) {
+    let parts = parts.map(|parts| parts.max(1));
+    let (mut start, mut passed) = (0.0, [0; N]);
     intervals.clear();
-    intervals.extend(ends.windows(2).map(|ends| [ends[0], ends[1]]));
+    while start < 1.0 {
+        let ends: [Real; N] = from_fn(|k| (passed[k] + 1) as Real / parts[k] as Real);
+        let end = ends.into_iter().fold(1.0, Real::min);
+        for (passed, own) in passed.iter_mut().zip(ends) {
+            *passed += usize::from(own == end);
+        }
+        intervals.push_back(Interval {
+            times: [start, end],
+            part: intervals.len(),
+            pieces: None,
+            is_after: false,
+            lower: Real::NEG_INFINITY,
+        });
+        start = end;
+    }
 }

@@ -13,12 +13,10 @@
 //!    matter. If more pairs are nearer than are tested per interval, the interval proves nothing
 //!    and is halved.
 
-use super::approach_bound::{
-    ApproachBound, check_subdivision, half_length, midpoint, remaining_parts,
-};
+use super::approach_bound::{ApproachBound, check_subdivision, half_length, midpoint};
 use super::current_shape::CurrentShape;
 use super::interval_test::{IntervalResult, IntervalTest, MarginQuery};
-use super::intervals::{self, Interval, Sought};
+use super::intervals::{self, Interval, MarginAnswer, Sought, TestedInterval};
 use super::minimum_policy::MinimumPolicy;
 use super::minimum_rounds::{Minimized, Minimum, MinimumBounds, RoundMemory, minimum};
 use super::moving_pair::MovingPair;
@@ -42,9 +40,8 @@ pub(crate) struct MotionsMemory {
     current: [CurrentShape; 2],
     beginning: PairQueue,
     pairs: Vec<PiecePair>,
-    intervals: VecDeque<[Real; 2]>,
+    intervals: VecDeque<Interval>,
     /// For bounds on the least clearance (`minimum_rounds`).
-    bounded: VecDeque<Interval>,
     part_bounds: Vec<Real>,
     settled: Vec<Real>,
 }
@@ -64,20 +61,20 @@ impl<A: Motion, B: Motion> MotionPair<'_, A, B> {
         wanted: MarginQuery,
         sought: Sought,
     ) -> Result<RobotMotionAnswer, ProximityError> {
+        self.begin();
         let mut intervals = std::mem::take(&mut self.memory.intervals);
-        self.begin_intervals(&mut intervals);
         let mut left = MAX_PAIRS;
-        let answer = intervals::decide(sought, &mut intervals, |times| {
-            self.test_interval(times, wanted, &mut left)
+        let answer = intervals::decide(sought, &mut intervals, |interval| {
+            self.test_interval(interval, wanted, &mut left)
         });
         self.memory.intervals = intervals;
-        answer
+        answer.map(MarginAnswer::of_robots)
     }
 
-    fn begin_intervals(&mut self, intervals: &mut VecDeque<[Real; 2]>) {
-        for current in &mut self.memory.current {
-            current.forget();
-        }
+    /// Starts with one interval per common part of both motions' times.
+    fn begin(&mut self) {
+        let MotionsMemory { current, intervals, .. } = &mut *self.memory;
+        current.iter_mut().for_each(CurrentShape::forget);
         intervals::begin(intervals, [self.motions.0.time_parts(), self.motions.1.time_parts()]);
     }
 
@@ -96,15 +93,14 @@ impl<A: Motion, B: Motion> MotionPair<'_, A, B> {
         Ok(RobotMotionClearance { lower, upper, resolved, uncertainty, t, sections, witness })
     }
 
-    /// Tests the middle shapes of an interval. Returns the result, and how long before and after
-    /// the midpoint all pairs are decided; infinity if none is unresolved.
+    /// Tests the middle shapes of an interval.
     fn test_interval(
         &mut self,
-        times: [Real; 2],
+        interval: &Interval,
         wanted: MarginQuery,
         left: &mut u32,
-    ) -> Result<(IntervalResult<PairUpperBound>, Real), ProximityError> {
-        let (motions, names) = (self.motions, self.names);
+    ) -> Result<TestedInterval<PairUpperBound>, ProximityError> {
+        let (motions, names, times) = (self.motions, self.names, interval.times);
         let MotionsMemory { current, beginning, pairs, .. } = &mut *self.memory;
         let [first, second] = shapes(motions, names, current, times)?;
         let mut tubes = TubePair::new([first.tube, second.tube]);
@@ -130,7 +126,7 @@ impl<A: Motion, B: Motion> MotionPair<'_, A, B> {
         if moving.is_exhausted() && result.contact.is_none() {
             (result.is_undecided, result.gives_up) = (true, true);
         }
-        Ok((result, if is_all { approach_bound.hold } else { 0.0 }))
+        Ok((result, interval.rest(if is_all { approach_bound.hold } else { 0.0 })))
     }
 }
 
@@ -152,23 +148,12 @@ impl<A: Motion, B: Motion> Minimized for PairClearance<'_, '_, A, B> {
     type Upper = PairUpperBound;
 
     fn memory(&mut self) -> RoundMemory<'_> {
-        let MotionsMemory { bounded: intervals, part_bounds, settled, .. } = &mut *self.pair.memory;
+        let MotionsMemory { intervals, part_bounds, settled, .. } = &mut *self.pair.memory;
         RoundMemory { intervals, part_bounds, settled }
     }
 
     fn begin(&mut self) {
-        let mut intervals = std::mem::take(&mut self.pair.memory.intervals);
-        self.pair.begin_intervals(&mut intervals);
-        let begun = &mut self.pair.memory.bounded;
-        begun.clear();
-        begun.extend(intervals.iter().enumerate().map(|(part, times)| Interval {
-            times: *times,
-            part,
-            pieces: None,
-            is_after: false,
-            lower: Real::NEG_INFINITY,
-        }));
-        self.pair.memory.intervals = intervals;
+        self.pair.begin();
     }
 
     fn is_exhausted(&self, shapes: u64) -> bool {
@@ -225,9 +210,7 @@ impl<A: Motion, B: Motion> Minimized for PairClearance<'_, '_, A, B> {
             return Ok([None, None]);
         }
         let (hold, lower) = if is_all { (hold, nearest) } else { (0.0, Real::NEG_INFINITY) };
-        let interval = interval.with_lower_bound(lower);
-        let rest = remaining_parts(interval.times, hold);
-        Ok(rest.map(|times| Some(Interval { times: times?, ..interval.clone() })))
+        Ok(interval.with_lower_bound(lower).rest(hold))
     }
 }
 

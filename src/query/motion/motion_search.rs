@@ -42,13 +42,12 @@
 use super::approach_bound::ApproachBound;
 use super::current_shape::CurrentShape;
 use super::interval_test::{IntervalResult, IntervalTest, MarginQuery};
-use super::intervals::Interval;
+use super::intervals::{self, Interval, MarginAnswer, Sought, TestedInterval};
 use super::moving_tube::{MovingTube, SmallRooms};
 use super::pending_piece::PendingPiece;
-use super::progress::{MAX_SHAPES, PATIENCE, Progress};
 use super::separating_planes::SeparatingPlanes;
 use super::unresolved_piece::UnresolvedPiece;
-use crate::answer::{MotionAnswer, ProximityError, ShapeInContact, UndecidedReason};
+use crate::answer::{MotionAnswer, ProximityError, ShapeInContact};
 use crate::motion::Motion;
 use crate::refine::{MeshUpperBound, Piece, PlacedTube, Refinable, TubeInMesh, refine};
 use crate::search::hierarchy::{MeshAt, MeshSearch, MovingMesh, PlacedMeshSearch};
@@ -100,24 +99,11 @@ impl PendingPieces<'_> {
     }
 }
 
-/// The result of an interval, and how long it holds.
-struct IntervalOutcome {
-    result: IntervalResult<MeshUpperBound>,
-    /// How long before and after the middle shape the unresolved pieces keep the margin.
-    hold: Real,
-    /// Whether unresolved pieces are left before the shape, and after it.
-    is_left: [bool; 2],
-    /// The unresolved pieces, as a range of `MotionMemory::unresolved`.
-    unresolved: Range<usize>,
-}
-
 /// A motion in a mesh.
 pub(crate) struct MotionSearch<'a, M> {
     pub search: MeshSearch<'a>,
     pub memory: &'a mut MotionMemory,
     pub motion: &'a M,
-    /// How many shapes were tested.
-    pub shapes: u64,
     /// The last triangle found: it starts the next search.
     pub last: Option<u32>,
     /// Whether the mesh moves too, as stored in the memory.
@@ -128,102 +114,26 @@ pub(crate) struct MotionSearch<'a, M> {
 }
 
 impl<M: Motion> MotionSearch<'_, M> {
-    /// Decides whether the margin is kept at all times. Breadth first: long contacts are found
-    /// early.
-    pub(crate) fn clears(&mut self, wanted: MarginQuery) -> Result<MotionAnswer, ProximityError> {
-        let (mut progress, mut too_fine) = (Progress::default(), None);
-        self.begin();
-        while let Some(interval) = self.memory.intervals.pop_front() {
-            let left =
-                self.memory.intervals.iter().chain([&interval]).map(|interval| interval.times);
-            if let Some(first) = progress.is_exhausted(self.shapes, left) {
-                return too_fine.map_or_else(|| Ok(MotionAnswer::undecided(first)), Err);
-            }
-            let IntervalOutcome { result, hold, is_left, unresolved } =
-                self.test_interval(&interval, wanted)?;
-            progress.record(interval.times, &result, self.shapes);
-            if let Some(found) = result.contact {
-                // Times before t are not proven clear, so `clear_until` is 0.
-                return Ok(MotionAnswer::contact(
-                    0.0,
-                    self.shape_in_contact(interval.midpoint(), &found),
-                ));
-            }
-            too_fine = too_fine.or(result.too_fine);
-            self.memory
-                .intervals
-                .extend(interval.halves(hold, is_left, &unresolved).into_iter().flatten());
-        }
-        if let Some(error) = too_fine {
-            return Err(error);
-        }
-        Ok(progress.undecided().map_or_else(MotionAnswer::clear, MotionAnswer::undecided))
-    }
-
-    /// Returns until when the margin is kept. Earlier intervals first: nothing after a contact
-    /// matters.
-    ///
-    /// An undecided interval limits the answer to its start. The search then looks for a shape
-    /// in contact: larger intervals first, for at most [`PATIENCE`] more shapes. After
-    /// [`MAX_SHAPES`] shapes the answer ends where the first remaining interval begins.
-    pub(crate) fn first_contact(
+    /// Decides whether the margin is kept at all times.
+    pub(crate) fn decide(
         &mut self,
         wanted: MarginQuery,
+        sought: Sought,
     ) -> Result<MotionAnswer, ProximityError> {
-        let (mut undecided, mut contact) = (None::<[Real; 2]>, None::<(Real, MeshUpperBound)>);
-        let (mut clear_until, mut most, mut too_fine) = (1.0, MAX_SHAPES, None);
         self.begin();
-        // `pop_back` takes the earliest interval.
-        self.memory.intervals.make_contiguous().reverse();
-        while self.shapes < most {
-            let intervals = &mut self.memory.intervals;
-            let next =
-                if undecided.is_none() { intervals.pop_back() } else { intervals.pop_front() };
-            let Some(interval) = next else { break };
-            let IntervalOutcome { result, hold, is_left, unresolved } =
-                self.test_interval(&interval, wanted)?;
-            if result.is_undecided && undecided.is_none() {
-                undecided = Some(interval.times);
-                most = most.min(self.shapes + PATIENCE);
+        let mut intervals = std::mem::take(&mut self.memory.intervals);
+        let answer = intervals::decide(sought, &mut intervals, |interval| {
+            self.test_interval(interval, wanted)
+        });
+        self.memory.intervals = intervals;
+        Ok(match answer? {
+            MarginAnswer::Clear => MotionAnswer::clear(),
+            MarginAnswer::Undecided(first) => MotionAnswer::undecided(first),
+            MarginAnswer::Contact { clear_until, t, found } => {
+                let MeshUpperBound { upper, section, witness } = found;
+                MotionAnswer::contact(clear_until, ShapeInContact { t, upper, section, witness })
             }
-            if let Some(found) = result.contact {
-                let t = interval.midpoint();
-                contact = Some((t, found));
-                clear_until = if result.is_fine { interval.times[0] } else { t };
-                self.memory.intervals.clear();
-                if !result.is_fine {
-                    let before = Interval {
-                        times: [interval.times[0], t],
-                        pieces: Some(unresolved),
-                        is_after: false,
-                        ..interval
-                    };
-                    self.memory.intervals.push_back(before);
-                }
-                continue;
-            }
-            too_fine = too_fine.or(result.too_fine);
-            let halves = interval.halves(hold, is_left, &unresolved);
-            self.memory.intervals.extend(halves.into_iter().rev().flatten());
-        }
-        let left = self.memory.intervals.iter().map(|interval| interval.times);
-        let left = left.min_by(|a, b| a[0].total_cmp(&b[0]));
-        let Some((t, found)) = contact else {
-            if let Some(error) = too_fine {
-                return Err(error);
-            }
-            let near = undecided.map(|interval| (interval, UndecidedReason::Near));
-            let first = near.or(left.map(|interval| (interval, UndecidedReason::Work)));
-            return Ok(first.map_or_else(MotionAnswer::clear, MotionAnswer::undecided));
-        };
-        let unknown = undecided.into_iter().chain(left).map(|interval| interval[0]);
-        let clear_until = unknown.fold(clear_until, Real::min);
-        Ok(MotionAnswer::contact(clear_until, self.shape_in_contact(t, &found)))
-    }
-
-    /// Returns a contact found in the shape at `t`.
-    fn shape_in_contact(&self, t: Real, found: &MeshUpperBound) -> ShapeInContact {
-        ShapeInContact { t, upper: found.upper, section: found.section, witness: found.witness }
+        })
     }
 
     /// Sets the displacements of the mesh during the motion: each vertex moves to its place in
@@ -239,17 +149,8 @@ impl<M: Motion> MotionSearch<'_, M> {
         let MotionMemory { current, intervals, unresolved, small_rooms, .. } = &mut *self.memory;
         current.forget();
         *small_rooms = SmallRooms::default();
-        intervals.clear();
         unresolved.clear();
-        let legs = self.motion.time_parts().max(1);
-        let time = |leg: usize| leg as Real / legs as Real;
-        intervals.extend((0..legs).map(|leg| Interval {
-            times: [time(leg), time(leg + 1)],
-            part: leg,
-            pieces: None,
-            is_after: false,
-            lower: Real::NEG_INFINITY,
-        }));
+        intervals::begin(intervals, [self.motion.time_parts()]);
     }
 
     /// Tests the middle shape of an interval.
@@ -257,7 +158,7 @@ impl<M: Motion> MotionSearch<'_, M> {
         &mut self,
         interval: &Interval,
         wanted: MarginQuery,
-    ) -> Result<IntervalOutcome, ProximityError> {
+    ) -> Result<TestedInterval<MeshUpperBound>, ProximityError> {
         let ((result, hold, is_left), unresolved) =
             self.with_middle_shape(interval, |tube, turn, moving, approach_bound| {
                 // A finer resolution is below rounding.
@@ -279,7 +180,7 @@ impl<M: Motion> MotionSearch<'_, M> {
                 };
                 Ok((result, approach_bound.hold, is_left))
             })?;
-        Ok(IntervalOutcome { result, hold, is_left, unresolved })
+        Ok((result, interval.halves(hold, is_left, &unresolved)))
     }
 
     /// Calls `ask` with the middle shape of an interval. Returns its result and the range of newly
@@ -307,7 +208,6 @@ impl<M: Motion> MotionSearch<'_, M> {
             ..
         } = &mut *self.memory;
         let pose = current.set_time(motion, t)?;
-        self.shapes += 1;
         let approach_bound =
             ApproachBound::new(times, current.mark_lasting_faces_between(motion, times));
         let MeshSearch { level, hierarchy, .. } = self.search;

@@ -8,7 +8,7 @@
 use super::approach_bound::{ApproachBound, check_subdivision, half_length, midpoint};
 use super::current_shape::CurrentShape;
 use super::interval_test::{IntervalResult, IntervalTest, MarginQuery};
-use super::intervals::{self, Sought};
+use super::intervals::{self, Interval, MarginAnswer, Sought, TestedInterval};
 use super::moving_tube_with_itself::MovingTubeWithItself;
 use super::relative_motion::RelativeMotion;
 use crate::answer::{ProximityError, RobotMotionAnswer};
@@ -38,7 +38,7 @@ pub(crate) struct SelfMotionMemory {
     moves: SectionMotions,
     beginning: SelfPairQueue,
     pairs: Vec<SelfPair>,
-    intervals: VecDeque<[Real; 2]>,
+    intervals: VecDeque<Interval>,
 }
 
 /// Decides whether a moving robot keeps the margin to itself at all times.
@@ -57,28 +57,28 @@ pub(crate) fn self_decides_motion<M: Motion>(
     memory.current.forget();
     intervals::begin(&mut intervals, [motion.time_parts()]);
     let mut left = MAX_PAIRS;
-    let answer = intervals::decide(sought, &mut intervals, |times| {
-        test_interval(motion, memory, times, wanted, &mut left)
+    let answer = intervals::decide(sought, &mut intervals, |interval| {
+        test_interval(motion, memory, interval, wanted, &mut left)
     });
     memory.intervals = intervals;
-    answer
+    answer.map(MarginAnswer::of_robots)
 }
 
-/// Tests the middle shape of an interval. Returns the result, and how long before and after the
-/// midpoint all pairs are decided.
+/// Tests the middle shape of an interval.
 fn test_interval<M: Motion>(
     motion: &M,
     memory: &mut SelfMotionMemory,
-    times: [Real; 2],
+    interval: &Interval,
     wanted @ MarginQuery { margin, resolution }: MarginQuery,
     left: &mut u32,
-) -> Result<(IntervalResult<PairUpperBound>, Real), ProximityError> {
+) -> Result<TestedInterval<PairUpperBound>, ProximityError> {
+    let times = interval.times;
     let SelfMotionMemory { current, turns, moves, beginning, pairs, .. } = memory;
     let pose = current.set_time(motion, midpoint(times))?;
     let cap_change = current.mark_lasting_faces_between(motion, times);
     measure_moves(motion, current.tube.sections(), times, moves)?;
     if moves.max_extra_turn() > MAX_EXTRA_TURN {
-        return Ok((IntervalResult::empty(), 0.0));
+        return Ok((IntervalResult::empty(), interval.rest(0.0)));
     }
     current.tube.measure_turns(turns)?;
     let mut own = TubeWithItself::moving(&current.tube, turns, moves)?;
@@ -107,7 +107,7 @@ fn test_interval<M: Motion>(
     if let Some(found) = &mut result.contact {
         found.points = found.points.map(|point| pose * point);
     }
-    Ok((result, if is_all { approach_bound.hold } else { 0.0 }))
+    Ok((result, interval.rest(if is_all { approach_bound.hold } else { 0.0 })))
 }
 
 /// Computes how far all sections move and turn from the midpoint of an interval.
