@@ -59,11 +59,11 @@ impl Scene {
     /// Whether robots that move at the same time keep all margins, at every time from 0 to 1: from
     /// structures, from one another, and each from itself. A planner asks this for each edge.
     ///
-    /// ``Decision.CLEAR`` is proven for every instant, from the speeds of the motions. A contact is
-    /// the first of these: robots and structures, those that seem nearest first; the pairs of robots;
-    /// each robot and itself. It may not be the first in time: see `time_of_contact`. A set that is
-    /// refused does not fail its batch: it is undecided, and its ``status`` is the ``kind`` of its
-    /// error.
+    /// ``Decision.CLEAR`` is proven for every instant, from the speeds of the motions. The query tests
+    /// robots against structures, beginning with the pairs that seem nearest. Then it tests pairs of
+    /// robots, then each robot against itself, and returns the first contact that it finds. Another
+    /// contact may be earlier in time: see `time_of_contact`. A set that is refused does not fail its
+    /// batch: it is undecided, and its ``status`` is the ``kind`` of its error.
     ///
     /// Parameters
     /// ----------
