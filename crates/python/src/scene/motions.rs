@@ -24,15 +24,13 @@ enum End {
     Vertices(Vec<Vector>),
 }
 
-type Answer = Result<SceneMotionAnswer, SceneError>;
-
 impl Scene {
     /// Asks about each set of motions. One that is refused does not fail its batch.
     fn decide<'py>(
         &self,
         py: Python<'py>,
         motions: &[Bound<'py, Motion>],
-        ask: impl Fn(&mut proximity::Scene, &[&Moving]) -> Answer + Sync,
+        ask: impl Fn(&mut proximity::Scene, &[&Moving]) -> Result<SceneMotionAnswer, SceneError> + Sync,
     ) -> PyResult<Bound<'py, PyAny>> {
         let motions = MotionList::new(py, motions)?;
         let ask =
