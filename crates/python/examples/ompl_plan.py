@@ -26,7 +26,7 @@ from ompl import base as ob
 from ompl import geometric as og
 from ompl import util as ou
 
-from parry_continuum import BendingMotion, Decision, Mesh, RigidMotion, Scene, load
+from parry_continuum import BendingMotion, Decision, Mesh, RigidMotion, Scene, load, write_proof
 
 # Joint limits of the two sections: least length, largest length, and the curvature of the tubes. Then the radii.
 SHORTEST, LONGEST, CURVATURE = np.array([1.0, 1.0]), np.array([32.0, 26.0]), np.array([0.05, 0.06])
@@ -208,15 +208,12 @@ def write_proofs(world, path, folder):
     folder.mkdir(parents=True, exist_ok=True)
     files = []
     for name, (mesh, margin) in world.structures.items():
-        lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in mesh.vertices.tolist()]
-        lines += [f"f {a} {b} {c}" for a, b, c in (mesh.faces + 1).tolist()]
-        (folder / f"{name}.obj").write_text("\n".join(lines) + "\n")
         for number, (start, end) in enumerate(itertools.pairwise(path)):
             proof = mesh.prove_motion(world.motion(start, end), margin=margin, resolution=RESOLUTION)
             if proof is None:
                 raise SystemExit(f"edge {number} has no proof for {name}; lower the margins")
             files.append(folder / f"{name}-{number}.txt")
-            files[-1].write_text(proof)
+            write_proof(files[-1], mesh, proof).replace(folder / f"{name}.obj")
     return files
 
 

@@ -186,10 +186,13 @@ pub(crate) fn texts<'py>(py: Python<'py>, texts: Vec<&str>) -> PyResult<Bound<'p
 }
 
 /// Why answers of a batch are missing, as the `kind` of their errors; of one answer the empty string.
-pub(crate) fn statuses<'py>(
+pub(crate) fn statuses<'py, A>(
     py: Python<'py>,
-    statuses: Vec<&str>,
+    answers: &[Result<A, &str>],
     is_batch: bool,
 ) -> PyResult<Bound<'py, PyAny>> {
-    if is_batch { texts(py, statuses) } else { Ok("".into_pyobject(py)?.into_any()) }
+    if !is_batch {
+        return Ok("".into_pyobject(py)?.into_any());
+    }
+    texts(py, answers.iter().map(|it| it.as_ref().err().copied().unwrap_or_default()).collect())
 }

@@ -1,8 +1,10 @@
-//! Fewer links for the same robot.
+//! Fewer links for the same robot, and the surfaces of links.
 
 use crate::error::Refused;
-use crate::input::{Block, Names, Robots, of};
+use crate::input::{Block, Caps, Names, Robots, of};
 use crate::output::{array, flat};
+use crate::queries::distance::set_chain;
+use crate::queries::two_robots::segment_of;
 use crate::threads::{Asked, compute};
 use numpy::PyArrayDyn;
 use parry_continuum::RobotError;
@@ -10,6 +12,8 @@ use parry_continuum::parry::math::Vector;
 use pyo3::prelude::*;
 
 type Arrays<'py> = (Bound<'py, PyArrayDyn<f64>>, Bound<'py, PyArrayDyn<f64>>);
+type Surfaces<'py> =
+    (Bound<'py, PyArrayDyn<f64>>, Bound<'py, PyArrayDyn<i64>>, Bound<'py, PyArrayDyn<i64>>);
 type Fewer = fn(&[Vector], &[f64], f64) -> Result<(Vec<Vector>, Vec<f64>), RobotError>;
 
 /// The fewest points that stay within a tolerance of a centreline.
@@ -98,4 +102,63 @@ fn fewer<'py>(
     let found = compute(py, || fewer(robot.points, robot.radii, tolerance))?;
     let (points, radii) = found.map_err(|error| Refused::from(error).raise(py, None))?;
     Ok((array(py, vec![points.len(), 3], flat(points))?, array(py, vec![radii.len()], radii)?))
+}
+
+/// The surfaces of a robot's links, each with 24 sides, in the mesh's frame.
+///
+/// Parameters
+/// ----------
+/// points, radii, pose, caps
+///     As for `Mesh.per_link`, of one robot.
+///
+/// Returns
+/// -------
+/// (vertices, triangles, segments)
+///     Arrays of the shapes (V, 3), (T, 3) and (T,): triangles face outwards, and each has the
+///     segment of the input that its link is.
+///
+/// Raises
+/// ------
+/// ContinuumError
+///     More than one robot is given, or as for `Mesh.per_link`.
+#[pyfunction]
+#[pyo3(signature = (points, radii, *, pose = None, caps = Caps::Fitted), text_signature = "(points, radii, *, pose=None, caps=\"fitted\")")]
+pub(crate) fn link_surfaces<'py>(
+    py: Python<'py>,
+    points: &Bound<'py, PyAny>,
+    radii: &Bound<'py, PyAny>,
+    pose: Option<&Bound<'py, PyAny>>,
+    caps: Caps,
+) -> PyResult<Surfaces<'py>> {
+    const SIDES: u32 = 24;
+    let robots = Robots::new(Names::one("points"), points, radii, pose)?;
+    if let Some(count) = robots.count {
+        let text =
+            format!("a surface is of one robot, and {count} are given; give them one by one");
+        return Err(Refused::other("bad_shape", text).raise(py, None));
+    }
+    let mut block = Block::default();
+    let mut made = || {
+        robots.copy(0..1, &mut block)?;
+        let robot = block.robot(0);
+        let (mut vertices, mut triangles, mut segments) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut chain, pose) = (None, robot.pose()?);
+        let chain = set_chain(&mut chain, &robot, caps)?;
+        for (number, link) in chain.links().iter().enumerate() {
+            let (around, faces) = link.transformed(&pose).to_trimesh(SIDES);
+            let first = vertices.len() as i64;
+            let segment = segment_of(chain, robot.points, number);
+            segments.extend(faces.iter().map(|_| segment));
+            triangles.extend(faces.iter().flatten().map(|&corner| first + i64::from(corner)));
+            vertices.extend(around);
+        }
+        Ok((vertices, triangles, segments))
+    };
+    let (vertices, triangles, segments) =
+        made().map_err(|refused: Refused| refused.raise(py, None))?;
+    Ok((
+        array(py, vec![vertices.len(), 3], flat(vertices))?,
+        array(py, vec![segments.len(), 3], triangles)?,
+        array(py, vec![segments.len()], segments)?,
+    ))
 }

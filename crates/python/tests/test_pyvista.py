@@ -101,6 +101,11 @@ def test_segments_are_numbered_as_in_answers(pyvista: Any) -> None:
     assert (heights[segment == 0] < 2.6).all() and (heights[segment == 2] > 1.4).all()
 
 
+def test_links_of_radius_0_have_no_surface(pyvista: Any) -> None:
+    surface = to_pyvista([[0, 0, 0], [0, 0, 2], [0, 0, 5]], [0.5, 0.0])
+    assert set(np.asarray(surface.cell_data["segment"]).tolist()) == {0}
+
+
 def test_a_pose(pyvista: Any) -> None:
     random = np.random.default_rng(3)
     robot, (pose,) = robots(random, 1)[0], poses(random, 1)

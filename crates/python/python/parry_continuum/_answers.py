@@ -181,6 +181,17 @@ class _Answer:
         return _columns(self, self._axes)
 
 
+class _MotionDecision(_Answer):
+    """An answer with a ``decision`` about the margins that a motion keeps."""
+
+    __slots__ = ()
+
+    @property
+    def is_clear(self: Any) -> BoolOrBools:
+        """Whether the margins are proven to be kept: ``decision`` is ``CLEAR``."""
+        return self.decision == Decision.CLEAR
+
+
 class _MinimumFields(NamedTuple):
     distance: FloatOrFloats
     """The distance, 0 where they touch or overlap."""
@@ -308,15 +319,10 @@ class _MotionAnswerFields(NamedTuple):
     """Where the decision is undecided, why; else ``UndecidedReason.NONE``."""
 
 
-class MotionAnswer(_Answer, _MotionAnswerFields):
+class MotionAnswer(_MotionDecision, _MotionAnswerFields):
     """Whether a motion keeps a margin, until when, and which shape does not."""
 
     __slots__ = ()
-
-    @property
-    def is_clear(self) -> BoolOrBools:
-        """Whether the margin is proven to be kept: ``decision`` is ``CLEAR``."""
-        return self.decision == Decision.CLEAR
 
 
 class _MotionClearanceFields(NamedTuple):
@@ -496,15 +502,10 @@ class _RobotMotionAnswerFields(NamedTuple):
     """Where the decision is undecided, why; else ``UndecidedReason.NONE``."""
 
 
-class RobotMotionAnswer(_Answer, _RobotMotionAnswerFields):
+class RobotMotionAnswer(_MotionDecision, _RobotMotionAnswerFields):
     """Whether two moving robots, or two parts of one, keep a margin, and which shapes do not."""
 
     __slots__ = ()
-
-    @property
-    def is_clear(self) -> BoolOrBools:
-        """Whether the margin is proven to be kept: ``decision`` is ``CLEAR``."""
-        return self.decision == Decision.CLEAR
 
 
 class _RobotMotionClearanceFields(NamedTuple):
@@ -560,15 +561,10 @@ class _SceneMotionAnswerFields(NamedTuple):
     """Of a batch: why there is no answer, as the ``kind`` of the error, and the empty string where there is one."""
 
 
-class SceneMotionAnswer(_Answer, _SceneMotionAnswerFields):
+class SceneMotionAnswer(_MotionDecision, _SceneMotionAnswerFields):
     """Whether robots that move in a scene keep all margins, and what does not."""
 
     __slots__ = ()
-
-    @property
-    def is_clear(self) -> BoolOrBools:
-        """Whether all margins are proven to be kept: ``decision`` is ``CLEAR``."""
-        return self.decision == Decision.CLEAR
 
 
 class _SceneClearanceFields(NamedTuple):

@@ -47,6 +47,7 @@ __all__ = [
     "Scene",
     "SelfQuery",
     "__version__",
+    "link_surfaces",
     "load",
     "load_centreline",
     "simplify",
@@ -473,6 +474,9 @@ def load(
 def load_centreline(
     path: str | bytes | PathLike[str] | PathLike[bytes] | IO[bytes] | IO[str], *, line: int | None = None, frame: _Frame | None = None, scale: float = 1.0
 ) -> Centreline: ...
+def link_surfaces(
+    points: ArrayLike, radii: ArrayLike, *, pose: _Poses | None = None, caps: _Caps = "fitted"
+) -> tuple[Floats, Ints, Ints]: ...
 def simplify(points: ArrayLike, radii: ArrayLike, *, tolerance: float) -> tuple[Floats, Floats]: ...
 def stations(points: ArrayLike, radii: ArrayLike, *, tolerance: float) -> tuple[Floats, Floats]: ...
 def verify_motion(motion: Motion, steps: int) -> None: ...

@@ -14,6 +14,6 @@ pub(crate) use counts::broadcast;
 pub(crate) use faces::faces;
 pub(crate) use names::Names;
 pub(crate) use numbers::{Numbers, numpy, shape_text, vectors};
-pub(crate) use poses::{Poses, matrices, pose_of};
+pub(crate) use poses::{Poses, matrices, pose_if_one, pose_of};
 pub(crate) use robots::{Block, Given, Robots};
-pub(crate) use scalars::{FrameName, of, places};
+pub(crate) use scalars::{FrameName, check_length, of, places};

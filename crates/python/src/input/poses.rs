@@ -105,6 +105,19 @@ pub(crate) fn matrices<'py>(given: &Bound<'py, PyAny>, name: &str) -> PyResult<N
     Numbers::new(array(given.py(), shape, whole.collect())?.as_any(), name)
 }
 
+/// The pose of one matrix, (4, 4), beside its numbers; none of another shape.
+pub(crate) fn pose_if_one(
+    py: Python<'_>,
+    numbers: &Numbers<'_>,
+    name: &str,
+) -> PyResult<Option<(Pose, [f64; 16])>> {
+    let (&[4, 4], Some(matrix)) = (numbers.shape(), numbers.values().as_chunks().0.first()) else {
+        return Ok(None);
+    };
+    let pose = pose_of(matrix).map_err(|refused| refused.of(name).raise(py, None))?;
+    Ok(Some((pose, *matrix)))
+}
+
 /// The pose that a matrix is.
 pub(crate) fn pose_of(matrix: &[f64; 16]) -> Result<Pose, Refused> {
     let row = |row: usize| std::array::from_fn(|column| matrix[4 * row + column]);

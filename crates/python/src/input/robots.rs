@@ -398,6 +398,11 @@ impl<'a> Given<'a> {
         self.others.map(|(block, place)| block.robot(place))
     }
 
+    /// This robot and the others of a question about several, in order.
+    pub(crate) fn all(self) -> impl Iterator<Item = Self> {
+        std::iter::successors(Some(self), Self::other)
+    }
+
     /// The robot's pose in the mesh's frame.
     pub(crate) fn pose(&self) -> Result<Pose, Refused> {
         let pose = self.matrix.map_or(Ok(Pose::IDENTITY), pose_of);

@@ -3,6 +3,7 @@
 
 use crate::error::Refused;
 use mesh_files::Frame;
+use parry_continuum::proximity::ProximityError;
 use pyo3::exceptions::{PyOverflowError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
@@ -40,6 +41,20 @@ pub(crate) fn places(given: &Bound<'_, PyAny>) -> PyResult<Vec<[usize; 2]>> {
             error
         }
     })
+}
+
+/// Refuses a length, if there is one, that is negative or NaN.
+pub(crate) fn check_length(
+    py: Python<'_>,
+    parameter: &'static str,
+    length: impl Into<Option<f64>>,
+) -> PyResult<()> {
+    match length.into() {
+        Some(value) if value.is_nan() || value < 0.0 => {
+            Err(Refused::Query(ProximityError::Negative { parameter, value }).raise(py, None))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// The error about a parameter that is not `what`.

@@ -29,6 +29,7 @@ use crate::threads::{Asked, compute};
 use pyo3::PyClass;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
+use std::fmt::Display;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -170,11 +171,11 @@ fn at(motions: &[Moving], place: usize) -> &Moving {
 }
 
 /// The length of a batch. Each of its parts has that length, or is one for the whole batch.
-fn together(
+fn together<N: Default + Display>(
     py: Python<'_>,
-    parts: impl IntoIterator<Item = (&'static str, Option<usize>)>,
+    parts: impl IntoIterator<Item = (N, Option<usize>)>,
 ) -> PyResult<Option<usize>> {
-    let (mut all, mut first) = (None, "");
+    let (mut all, mut first) = (None, N::default());
     for (name, count) in parts {
         let Some(both) = broadcast(all, count) else {
             let [one, other] = [all, count].map(Option::unwrap_or_default);

@@ -1,6 +1,6 @@
 //! The motions of several robots at once, or as many sets of them as a batch has.
 
-use super::{Motion, Moving, at, broadcast};
+use super::{Motion, Moving, at, together};
 use crate::error::Refused;
 use crate::threads::Asked;
 use pyo3::prelude::*;
@@ -21,19 +21,11 @@ impl MotionList {
             let text = "`motions` is empty; give a list of at least one motion";
             return Err(Refused::other("bad_type", text).raise(py, None));
         }
-        let (mut count, mut motions) = (None, Vec::with_capacity(given.len()));
-        for (place, motion) in given.iter().enumerate() {
-            let (one, moving) = motion.get().parts();
-            let Some(both) = broadcast(count, one) else {
-                let [before, here] = [count, one].map(Option::unwrap_or_default);
-                let text = format!(
-                    "`motions[{place}]` has {here} motions and those before it {before}; give batches of as many, or one motion"
-                );
-                return Err(Refused::other("bad_shape", text).raise(py, None));
-            };
-            count = both;
-            motions.push(moving);
-        }
+        let parts: Vec<_> = given.iter().map(|motion| motion.get().parts()).collect();
+        let named =
+            |(place, part): (usize, &(Option<usize>, _))| (format!("motions[{place}]"), part.0);
+        let count = together(py, parts.iter().enumerate().map(named))?;
+        let motions = parts.into_iter().map(|(_, motions)| motions).collect();
         Ok(Self { motions, count })
     }
 }

@@ -1,12 +1,12 @@
 //! How near a curved tube is, between bounds.
 
 use crate::error::Refused;
-use crate::input::{Given, Robots, of};
+use crate::input::{Given, Robots, check_length, of};
 use crate::mesh::Mesh;
 use crate::output::{
     Enumeration, answer, array, array_or_number, decision_value, flat, members, statuses,
 };
-use crate::threads::{Asked, Session, ask_each};
+use crate::threads::{Asked, Session, answer_each_or_kind, ask_each};
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::proximity::Clearance;
 use parry_continuum::{RobotError, Tube};
@@ -165,35 +165,13 @@ impl Mesh {
     ) -> PyResult<Bound<'py, PyAny>> {
         let stated = Stated { deviation, turn };
         let robots = tubes(self.robots(points, radii, pose)?, "tangents", tangents, stated)?;
-        if tolerance.is_nan() || tolerance < 0.0 {
-            let error = parry_continuum::proximity::ProximityError::Negative {
-                parameter: "tolerance",
-                value: tolerance,
-            };
-            return Err(Refused::from(error).raise(py, None));
-        }
-        let is_batch = robots.count.is_some();
-        let mut all: Vec<Option<Clearance>> = Vec::with_capacity(robots.len());
-        let mut status = Vec::with_capacity(robots.len());
-        let ask = |session: &mut Session,
-                   robot: &Given<'_>,
-                   row: &mut [(Option<Clearance>, &'static str)]| {
-            let pose = session.set_tube(robot, stated);
-            let found = pose.and_then(|pose| {
-                let tube = session.tube.as_ref().ok_or_else(no_tube)?;
-                Ok(session.search.clearance(tube, &pose, tolerance)?)
-            });
-            row[0] = match found {
-                Ok(found) => (Some(found), ""),
-                Err(refused) if is_batch => (None, refused.kind()),
-                Err(refused) => return Err(refused),
-            };
-            Ok(())
+        check_length(py, "tolerance", tolerance)?;
+        let ask = |session: &mut Session, robot: &Given<'_>| {
+            let pose = session.set_tube(robot, stated)?;
+            let tube = session.tube.as_ref().ok_or_else(no_tube)?;
+            Ok(session.search.clearance(tube, &pose, tolerance)?)
         };
-        ask_each(py, &self.engine(py), &robots, ((None, ""), 1), ask, |_, found| {
-            all.extend(found.iter().map(|row| row.0));
-            status.extend(found.iter().map(|row| row.1));
-        })?;
+        let all = answer_each_or_kind(py, &self.engine(py), &robots, ask)?;
         let shape = || robots.shape(&[]);
         let numbers = |of: fn(&Clearance) -> f64| {
             array_or_number(
@@ -213,8 +191,7 @@ impl Mesh {
                 flat(all.iter().map(|it| it.as_ref().map_or(Vector::NAN, of))),
             )
         };
-        let resolved = all.iter().map(|it| it.as_ref().is_some_and(|it| it.resolved)).collect();
-        let status = statuses(py, status, robots.count.is_some())?;
+        let resolved = all.iter().map(|it| it.as_ref().is_ok_and(|it| it.resolved)).collect();
         let values = (
             numbers(|found| found.lower)?,
             numbers(|found| found.upper)?,
@@ -225,7 +202,7 @@ impl Mesh {
             places(|found| found.witness.segment)?,
             numbers(|found| found.witness.arc_length)?,
             places(|found| found.witness.triangle)?,
-            status,
+            statuses(py, &all, robots.count.is_some())?,
         );
         answer!(py, "Clearance", values)
     }

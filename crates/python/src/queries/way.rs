@@ -4,7 +4,7 @@ use crate::error::Refused;
 use crate::input::{Caps, Given, Names, Robots};
 use crate::mesh::Mesh;
 use crate::motions::{Maker, Motion, Moving, maker};
-use crate::threads::{Asked, Engine, Session, ask_each};
+use crate::threads::{Asked, Engine, Session, answer_each};
 use pyo3::prelude::*;
 use std::sync::Arc;
 
@@ -93,25 +93,19 @@ impl<'a, 'py> Way<'a, 'py> {
         engine: &Arc<Engine>,
         question: &impl Question<A>,
     ) -> PyResult<Vec<A>> {
-        let mut all = Vec::with_capacity(self.count().unwrap_or(1));
-        let take = |_: usize, found: &[Option<A>]| all.extend(found.iter().flatten().cloned());
         match self {
             Self::Motion(motion) => {
-                let ask = |session: &mut Session, motion: &&Moving, row: &mut [Option<A>]| {
-                    row[0] = Some(question.ask(session, *motion)?);
-                    Ok(())
-                };
-                ask_each(py, engine, motion.get(), (None, 1), ask, take)?;
+                let ask =
+                    |session: &mut Session, motion: &&Moving| Ok(question.ask(session, *motion)?);
+                answer_each(py, engine, motion.get(), ask)
             }
             Self::Linear(robots, make) => {
-                let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [Option<A>]| {
+                let ask = |session: &mut Session, robot: &Given<'_>| {
                     let motion = make(robot.points, robot.more, robot.radii)?;
-                    row[0] = Some(question.ask(session, &motion)?);
-                    Ok(())
+                    Ok(question.ask(session, &motion)?)
                 };
-                ask_each(py, engine, &**robots, (None, 1), ask, take)?;
+                answer_each(py, engine, &**robots, ask)
             }
         }
-        Ok(all)
     }
 }

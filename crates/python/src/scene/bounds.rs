@@ -1,9 +1,11 @@
 //! The tuples `SceneClearance` and `SceneMotionClearance`.
 
-use crate::output::{answer, array, array_or_number, flat, statuses};
-use parry_continuum::parry::math::Vector;
+use super::place::{Place, place_fields};
+use crate::output::{answer, array_or_number, statuses};
+use crate::threads::Asked;
 use parry_continuum::proximity::{SceneClearance, SceneMotionClearance, ScenePlace};
 use pyo3::prelude::*;
+use pyo3::types::PyTuple;
 
 /// The bounds of one set of robots.
 #[derive(Clone, Copy)]
@@ -12,13 +14,8 @@ pub(super) struct Bounds {
     upper: f64,
     resolved: bool,
     uncertainty: f64,
-    pub t: f64,
-    structure: i64,
-    robots: [i64; 2],
-    points: [Vector; 2],
-    arc_lengths: [f64; 2],
-    triangle: i64,
-    status: &'static str,
+    t: f64,
+    place: Place,
 }
 
 impl Bounds {
@@ -29,108 +26,61 @@ impl Bounds {
         resolved: true,
         uncertainty: 0.0,
         t: f64::NAN,
-        structure: -1,
-        robots: [-1; 2],
-        points: [Vector::NAN; 2],
-        arc_lengths: [f64::NAN; 2],
-        triangle: -1,
-        status: "",
+        place: Place::NONE,
     };
 
-    pub(super) fn refused(status: &'static str) -> Self {
-        let (lower, upper) = (f64::NAN, f64::NAN);
-        Self { lower, upper, resolved: false, status, ..Self::WITHOUT_MARGIN }
-    }
+    const REFUSED: Self =
+        Self { lower: f64::NAN, upper: f64::NAN, resolved: false, ..Self::WITHOUT_MARGIN };
 
     pub(super) fn of_motion(found: SceneMotionClearance) -> Self {
         let SceneMotionClearance { lower, upper, resolved, uncertainty, t, place, .. } = found;
-        Self { lower, upper, resolved, uncertainty, t, ..Self::at(&place) }
+        Self { lower, upper, resolved, uncertainty, t, place: place_of(&place) }
     }
 
     pub(super) fn of_tubes(found: SceneClearance) -> Self {
         let SceneClearance { lower, upper, resolved, uncertainty, place, .. } = found;
-        Self { lower, upper, resolved, uncertainty, ..Self::at(&place) }
+        Self { lower, upper, resolved, uncertainty, t: f64::NAN, place: place_of(&place) }
     }
+}
 
-    fn at(place: &ScenePlace) -> Self {
-        match place {
-            ScenePlace::Structure { structure, robot, witness, .. } => Self {
-                structure: (*structure).into(),
-                robots: [(*robot).into(), -1],
-                points: [witness.on_robot, witness.on_mesh],
-                arc_lengths: [witness.arc_length, f64::NAN],
-                triangle: witness.triangle.into(),
-                ..Self::WITHOUT_MARGIN
-            },
-            ScenePlace::Robots { robots, witness, .. } => Self {
-                robots: robots.map(i64::from),
-                points: [witness.on_first, witness.on_second],
-                arc_lengths: witness.arc_lengths,
-                ..Self::WITHOUT_MARGIN
-            },
-            _ => Self::WITHOUT_MARGIN,
+fn place_of(place: &ScenePlace) -> Place {
+    match place {
+        ScenePlace::Structure { structure, robot, witness, .. } => {
+            Place::at_structure(*structure, *robot, witness)
         }
+        ScenePlace::Robots { robots, witness, .. } => Place::between_robots(*robots, witness),
+        _ => Place::NONE,
     }
 }
 
 /// The tuple of one answer, or of a batch; with the times of motions.
 pub(super) fn bounds<'py>(
     py: Python<'py>,
-    all: &[Bounds],
-    shape: impl Fn(&[usize]) -> Vec<usize>,
-    is_batch: bool,
-    times: Option<Bound<'py, PyAny>>,
+    asked: &impl Asked,
+    all: &[Result<Bounds, &'static str>],
+    is_of_motion: bool,
 ) -> PyResult<Bound<'py, PyAny>> {
+    let rows: Vec<_> = all.iter().map(|it| it.unwrap_or(Bounds::REFUSED)).collect();
     let numbers = |of: fn(&Bounds) -> f64| {
-        array_or_number(py, shape(&[]), all.iter().map(of).collect::<Vec<f64>>())
+        array_or_number(py, asked.shape(&[]), rows.iter().map(of).collect())
     };
-    let points = |k: usize| array(py, shape(&[3]), flat(all.iter().map(|it| it.points[k])));
-    let lower = numbers(|it| it.lower)?;
-    let upper = numbers(|it| it.upper)?;
-    let resolved = array_or_number(py, shape(&[]), all.iter().map(|it| it.resolved).collect())?;
-    let uncertainty = numbers(|it| it.uncertainty)?;
-    let places = |of: fn(&Bounds) -> i64| {
-        array_or_number(py, shape(&[]), all.iter().map(of).collect::<Vec<i64>>())
-    };
-    let structure = places(|it| it.structure)?;
-    let robots = array(py, shape(&[2]), all.iter().flat_map(|it| it.robots).collect())?;
-    let (on_first, on_second) = (points(0)?, points(1)?);
-    let lengths = array(py, shape(&[2]), all.iter().flat_map(|it| it.arc_lengths).collect())?;
-    let triangle = places(|it| it.triangle)?;
-    let status = statuses(py, all.iter().map(|it| it.status).collect(), is_batch)?;
-    match times {
-        Some(t) => {
-            let values = (
-                lower,
-                upper,
-                resolved,
-                uncertainty,
-                t,
-                structure,
-                robots,
-                on_first,
-                on_second,
-                lengths,
-                triangle,
-                status,
-            );
-            answer!(py, "SceneMotionClearance", values)
-        }
-        None => {
-            let values = (
-                lower,
-                upper,
-                resolved,
-                uncertainty,
-                structure,
-                robots,
-                on_first,
-                on_second,
-                lengths,
-                triangle,
-                status,
-            );
-            answer!(py, "SceneClearance", values)
-        }
+    let resolved = rows.iter().map(|it| it.resolved).collect();
+    let places: Vec<_> = rows.iter().map(|it| it.place).collect();
+    let mut values = vec![
+        numbers(|it| it.lower)?,
+        numbers(|it| it.upper)?,
+        array_or_number(py, asked.shape(&[]), resolved)?,
+        numbers(|it| it.uncertainty)?,
+    ];
+    if is_of_motion {
+        values.push(numbers(|it| it.t)?);
+    }
+    values.extend(place_fields(py, asked, &places)?);
+    values.push(statuses(py, all, asked.count().is_some())?);
+    let values = PyTuple::new(py, values)?;
+    if is_of_motion {
+        answer!(py, "SceneMotionClearance", values)
+    } else {
+        answer!(py, "SceneClearance", values)
     }
 }

@@ -3,11 +3,14 @@
 mod answers;
 mod bounds;
 mod motions;
+mod place;
 mod robots;
 mod tubes;
 
 use crate::error::Refused;
-use crate::input::{Caps, Given, Robots, matrices, of, places, pose_of, shape_text};
+use crate::input::{
+    Caps, Given, Robots, check_length, matrices, of, places, pose_if_one, shape_text,
+};
 use crate::mesh::Mesh;
 use crate::output::{array, array_or_number};
 use crate::threads::{self, Asked, Engine, Held, Lender, ask_each};
@@ -155,17 +158,6 @@ impl Scene {
     }
 }
 
-/// A margin is a length, or there is none.
-fn check(py: Python<'_>, parameter: &'static str, margin: Option<f64>) -> PyResult<()> {
-    match margin {
-        Some(value) if value.is_nan() || value < 0.0 => {
-            Err(Refused::Query(proximity::ProximityError::Negative { parameter, value })
-                .raise(py, None))
-        }
-        _ => Ok(()),
-    }
-}
-
 #[pymethods]
 impl Scene {
     #[new]
@@ -176,8 +168,8 @@ impl Scene {
         #[pyo3(from_py_with = of::optional::self_margin)] self_margin: Option<f64>,
         #[pyo3(from_py_with = places)] nested: Vec<[usize; 2]>,
     ) -> PyResult<Self> {
-        check(py, "robot_margin", robot_margin)?;
-        check(py, "self_margin", self_margin)?;
+        check_length(py, "robot_margin", robot_margin)?;
+        check_length(py, "self_margin", self_margin)?;
         Ok(Self { structures: Held::new(Vec::new()), robot_margin, self_margin, nested })
     }
 
@@ -207,22 +199,19 @@ impl Scene {
         #[pyo3(from_py_with = of::optional::margin)] margin: Option<f64>,
         pose: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<usize> {
-        check(py, "margin", margin)?;
+        check_length(py, "margin", margin)?;
         let (pose, matrix) = match pose {
             None => (Pose::IDENTITY, None),
             Some(pose) => {
                 let numbers = matrices(pose, "pose")?;
-                let (&[4, 4], Some(matrix)) =
-                    (numbers.shape(), numbers.values().as_chunks::<16>().0.first())
-                else {
+                let Some((pose, matrix)) = pose_if_one(py, &numbers, "pose")? else {
                     let text = format!(
                         "`pose` has the shape {}; give None, or the shape (4, 4)",
                         shape_text(numbers.shape())
                     );
                     return Err(Refused::other("bad_shape", text).raise(py, None));
                 };
-                let pose = pose_of(matrix).map_err(|refused| refused.of("pose").raise(py, None))?;
-                (pose, Some(*matrix))
+                (pose, Some(matrix))
             }
         };
         let structure = Structure { name, mesh: Arc::new(mesh), margin, pose, matrix };
@@ -425,8 +414,8 @@ impl Scene {
         caps: Caps,
     ) -> PyResult<Bound<'py, PyAny>> {
         // A batch without robots asks nothing of the scene itself.
-        check(py, "reach", Some(reach))?;
-        check(py, "prominence", Some(prominence))?;
+        check_length(py, "reach", Some(reach))?;
+        check_length(py, "prominence", Some(prominence))?;
         let robots = self.robots(py, robots)?;
         let (mut all, mut offsets): (Vec<SceneContact>, _) = (Vec::new(), vec![0_i64]);
         let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [Vec<SceneContact>]| {

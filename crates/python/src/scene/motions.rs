@@ -1,16 +1,16 @@
 //! Queries about robots that move in a scene.
 
 use super::bounds::{Bounds, bounds};
-use super::{Scene, Session, check};
+use super::place::{Place, place_fields};
+use super::{Scene, Session};
 use crate::error::Refused;
-use crate::input::{Numbers, matrices, of, pose_of, vectors};
+use crate::input::{check_length, matrices, of, pose_if_one, vectors};
 use crate::mesh::rows;
 use crate::motions::{Motion, MotionList, Moving};
 use crate::output::{
-    Enumeration, answer, array, array_or_number, decision_value, flat, members, reason_value,
-    statuses,
+    Enumeration, answer, array, array_or_number, decision_value, members, reason_value, statuses,
 };
-use crate::threads::{Asked, ask_each};
+use crate::threads::{Asked, answer_each_or_kind};
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::proximity::{
     self, SceneError, SceneMotionAnswer, SceneMotionContact, StructureEnd,
@@ -24,33 +24,19 @@ enum End {
     Vertices(Vec<Vector>),
 }
 
-type Answer = Result<SceneMotionAnswer, SceneError>;
-
 impl Scene {
     /// Asks about each set of motions. One that is refused does not fail its batch.
     fn decide<'py>(
         &self,
         py: Python<'py>,
         motions: &[Bound<'py, Motion>],
-        ask: impl Fn(&mut proximity::Scene, &[&Moving]) -> Answer + Sync,
+        ask: impl Fn(&mut proximity::Scene, &[&Moving]) -> Result<SceneMotionAnswer, SceneError> + Sync,
     ) -> PyResult<Bound<'py, PyAny>> {
         let motions = MotionList::new(py, motions)?;
-        let is_batch = motions.count().is_some();
-        let mut all: Vec<(Option<SceneMotionAnswer>, &'static str)> = Vec::new();
-        let ask = |session: &mut Session,
-                   motions: &Vec<&Moving>,
-                   row: &mut [(Option<SceneMotionAnswer>, &'static str)]| {
-            row[0] = match ask(&mut session.scene, motions).map_err(Refused::from) {
-                Ok(found) => (Some(found), ""),
-                Err(refused) if is_batch => (None, refused.kind()),
-                Err(refused) => return Err(refused),
-            };
-            Ok(())
-        };
-        ask_each(py, &self.snapshot(py), &motions, ((None, ""), 1), ask, |_, found| {
-            all.extend(found)
-        })?;
-        motion_answers(py, &all, |further| motions.shape(further), is_batch)
+        let ask =
+            |session: &mut Session, motions: &Vec<&Moving>| Ok(ask(&mut session.scene, motions)?);
+        let all = answer_each_or_kind(py, &self.snapshot(py), &motions, ask)?;
+        motion_answers(py, &motions, &all)
     }
 }
 
@@ -59,11 +45,11 @@ impl Scene {
     /// Whether robots that move at the same time keep all margins, at every time from 0 to 1: from
     /// structures, from one another, and each from itself. A planner asks this for each edge.
     ///
-    /// ``Decision.CLEAR`` is proven for every instant, from the speeds of the motions. A contact is
-    /// the first of these: robots and structures, those that seem nearest first; the pairs of robots;
-    /// each robot and itself. It may not be the first in time: see `time_of_contact`. A set that is
-    /// refused does not fail its batch: it is undecided, and its ``status`` is the ``kind`` of its
-    /// error.
+    /// ``Decision.CLEAR`` is proven for every instant, from the speeds of the motions. The query tests
+    /// robots against structures, beginning with the pairs that seem nearest. Then it tests pairs of
+    /// robots, then each robot against itself, and returns the first contact that it finds. Another
+    /// contact may be earlier in time: see `time_of_contact`. A set that is refused does not fail its
+    /// batch: it is undecided, and its ``status`` is the ``kind`` of its error.
     ///
     /// Parameters
     /// ----------
@@ -108,7 +94,7 @@ impl Scene {
         motions: Vec<Bound<'py, Motion>>,
         #[pyo3(from_py_with = of::resolution)] resolution: f64,
     ) -> PyResult<Bound<'py, PyAny>> {
-        check(py, "resolution", Some(resolution))?;
+        check_length(py, "resolution", resolution)?;
         self.decide(py, &motions, |scene, motions| scene.clears_motion(motions, resolution))
     }
 
@@ -137,7 +123,7 @@ impl Scene {
         motions: Vec<Bound<'py, Motion>>,
         #[pyo3(from_py_with = of::resolution)] resolution: f64,
     ) -> PyResult<Bound<'py, PyAny>> {
-        check(py, "resolution", Some(resolution))?;
+        check_length(py, "resolution", resolution)?;
         self.decide(py, &motions, |scene, motions| scene.time_of_contact(motions, resolution))
     }
 
@@ -189,7 +175,7 @@ impl Scene {
         motions: Vec<Bound<'py, Motion>>,
         #[pyo3(from_py_with = of::resolution)] resolution: f64,
     ) -> PyResult<Bound<'py, PyAny>> {
-        check(py, "resolution", Some(resolution))?;
+        check_length(py, "resolution", resolution)?;
         let ends: Vec<(usize, End)> =
             ends.iter().map(|(number, end)| self.end(&number, &end)).collect::<PyResult<_>>()?;
         self.decide(py, &motions, |scene, motions| {
@@ -247,29 +233,14 @@ impl Scene {
         motions: Vec<Bound<'py, Motion>>,
         #[pyo3(from_py_with = of::tolerance)] tolerance: f64,
     ) -> PyResult<Bound<'py, PyAny>> {
-        check(py, "tolerance", Some(tolerance))?;
+        check_length(py, "tolerance", tolerance)?;
         let motions = MotionList::new(py, &motions)?;
-        let is_batch = motions.count().is_some();
-        let mut all: Vec<Bounds> = Vec::with_capacity(motions.len());
-        let ask = |session: &mut Session, motions: &Vec<&Moving>, row: &mut [Bounds]| {
-            let found = session.scene.clearance_of_motion(motions, tolerance);
-            row[0] = match found.map_err(Refused::from) {
-                Ok(found) => found.map_or(Bounds::WITHOUT_MARGIN, Bounds::of_motion),
-                Err(refused) if is_batch => Bounds::refused(refused.kind()),
-                Err(refused) => return Err(refused),
-            };
-            Ok(())
+        let ask = |session: &mut Session, motions: &Vec<&Moving>| {
+            let found = session.scene.clearance_of_motion(motions, tolerance)?;
+            Ok(found.map_or(Bounds::WITHOUT_MARGIN, Bounds::of_motion))
         };
-        ask_each(
-            py,
-            &self.snapshot(py),
-            &motions,
-            (Bounds::WITHOUT_MARGIN, 1),
-            ask,
-            |_, found| all.extend_from_slice(found),
-        )?;
-        let times = array_or_number(py, motions.shape(&[]), all.iter().map(|it| it.t).collect())?;
-        bounds(py, &all, |further| motions.shape(further), is_batch, Some(times))
+        let all = answer_each_or_kind(py, &self.snapshot(py), &motions, ask)?;
+        bounds(py, &motions, &all, true)
     }
 }
 
@@ -285,109 +256,59 @@ impl Scene {
             return Err(Refused::other("bad_type", text).raise(py, None));
         };
         let name = format!("ends[{structure}]");
-        let numbers = Numbers::new(end, &name)?;
-        if *numbers.shape() != [4, 4] {
-            return Ok((structure, End::Vertices(vectors(rows(end, &name)?.points()))));
-        }
-        let numbers = matrices(end, &name)?;
-        let matrix = numbers.values().as_chunks::<16>().0.first();
-        let pose = matrix.map(pose_of).transpose();
-        match pose.map_err(|refused| refused.of(&name).raise(py, None))? {
-            Some(pose) => Ok((structure, End::Pose(pose))),
-            None => Err(Refused::other("bad_shape", format!("`{name}` is empty")).raise(py, None)),
-        }
+        let end = match pose_if_one(py, &matrices(end, &name)?, &name)? {
+            Some((pose, _)) => End::Pose(pose),
+            None => End::Vertices(vectors(rows(end, &name)?.points())),
+        };
+        Ok((structure, end))
     }
 }
 
-/// What a contact is between: the structure or -1, the robots, the points, and their places.
-struct Between {
-    t: f64,
-    upper: f64,
-    structure: i64,
-    robots: [i64; 2],
-    points: [Vector; 2],
-    arc_lengths: [f64; 2],
-    triangle: i64,
-}
-
-impl Between {
-    fn new(contact: &SceneMotionContact) -> Self {
-        let (t, upper) = (contact.t(), contact.upper());
-        let nothing = Self {
-            t,
-            upper,
-            structure: -1,
-            robots: [-1; 2],
-            points: [Vector::NAN; 2],
-            arc_lengths: [f64::NAN; 2],
-            triangle: -1,
-        };
-        let (robots, shapes) = match contact {
-            SceneMotionContact::Structure { structure, robot, shape, .. } => {
-                return Self {
-                    structure: (*structure).into(),
-                    robots: [(*robot).into(), -1],
-                    points: [shape.witness.on_robot, shape.witness.on_mesh],
-                    arc_lengths: [shape.witness.arc_length, f64::NAN],
-                    triangle: shape.witness.triangle.into(),
-                    ..nothing
-                };
-            }
-            SceneMotionContact::Robots { robots, shapes, .. } => (*robots, shapes),
-            SceneMotionContact::Itself { robot, shapes, .. } => ([*robot; 2], shapes),
-            _ => return nothing,
-        };
-        Self {
-            robots: robots.map(i64::from),
-            points: [shapes.witness.on_first, shapes.witness.on_second],
-            arc_lengths: shapes.witness.arc_lengths,
-            ..nothing
+fn place_of(contact: &SceneMotionContact) -> Place {
+    match contact {
+        SceneMotionContact::Structure { structure, robot, shape, .. } => {
+            Place::at_structure(*structure, *robot, &shape.witness)
         }
+        SceneMotionContact::Robots { robots, shapes, .. } => {
+            Place::between_robots(*robots, &shapes.witness)
+        }
+        SceneMotionContact::Itself { robot, shapes, .. } => {
+            Place::between_robots([*robot; 2], &shapes.witness)
+        }
+        _ => Place::NONE,
     }
 }
 
 fn motion_answers<'py>(
     py: Python<'py>,
-    all: &[(Option<SceneMotionAnswer>, &'static str)],
-    shape: impl Fn(&[usize]) -> Vec<usize>,
-    is_batch: bool,
+    asked: &impl Asked,
+    all: &[Result<SceneMotionAnswer, &'static str>],
 ) -> PyResult<Bound<'py, PyAny>> {
-    let found: Vec<_> = all
-        .iter()
-        .map(|(answer, _)| answer.and_then(|answer| answer.contact).map(|it| Between::new(&it)))
-        .collect();
-    let numbers = |of: fn(&Between) -> f64| {
-        let numbers = found.iter().map(|it| it.as_ref().map_or(f64::NAN, of));
-        array_or_number(py, shape(&[]), numbers.collect())
+    let contacts: Vec<_> = all.iter().map(|it| it.ok().and_then(|it| it.contact)).collect();
+    let numbers = |of: fn(&SceneMotionContact) -> f64| {
+        let numbers = contacts.iter().map(|it| it.as_ref().map_or(f64::NAN, of));
+        array_or_number(py, asked.shape(&[]), numbers.collect())
     };
-    let places = |of: fn(&Between) -> i64| {
-        let places = found.iter().map(|it| it.as_ref().map_or(-1, of));
-        array_or_number(py, shape(&[]), places.collect::<Vec<i64>>())
-    };
-    let points = |k: usize| {
-        let points = found.iter().map(|it| it.as_ref().map_or(Vector::NAN, |it| it.points[k]));
-        array(py, shape(&[3]), flat(points))
-    };
-    let decisions =
-        all.iter().map(|(it, _)| it.map_or(0, |it| decision_value(it.decision))).collect();
-    let reasons = all.iter().map(|(it, _)| reason_value(it.and_then(|it| it.reason))).collect();
-    let intervals = all.iter().flat_map(|(it, _)| it.map_or([0.0, 1.0], |it| it.interval));
-    let robots = found.iter().flat_map(|it| it.as_ref().map_or([-1; 2], |it| it.robots));
-    let lengths =
-        found.iter().flat_map(|it| it.as_ref().map_or([f64::NAN; 2], |it| it.arc_lengths));
+    let decisions = all.iter().map(|it| it.map_or(0, |it| decision_value(it.decision))).collect();
+    let reasons = all.iter().map(|it| reason_value(it.ok().and_then(|it| it.reason))).collect();
+    let intervals = all.iter().flat_map(|it| it.map_or([0.0, 1.0], |it| it.interval)).collect();
+    let places: Vec<_> =
+        contacts.iter().map(|it| it.as_ref().map_or(Place::NONE, place_of)).collect();
+    let [structure, robots, on_first, on_second, arc_lengths, triangle] =
+        place_fields(py, asked, &places)?;
     let values = (
-        members(py, Enumeration::Decision, shape(&[]), decisions)?,
-        array(py, shape(&[2]), intervals.collect())?,
-        numbers(|it| it.t)?,
-        numbers(|it| it.upper)?,
-        places(|it| it.structure)?,
-        array(py, shape(&[2]), robots.collect())?,
-        points(0)?,
-        points(1)?,
-        array(py, shape(&[2]), lengths.collect())?,
-        places(|it| it.triangle)?,
-        members(py, Enumeration::UndecidedReason, shape(&[]), reasons)?,
-        statuses(py, all.iter().map(|(_, status)| *status).collect(), is_batch)?,
+        members(py, Enumeration::Decision, asked.shape(&[]), decisions)?,
+        array(py, asked.shape(&[2]), intervals)?,
+        numbers(SceneMotionContact::t)?,
+        numbers(SceneMotionContact::upper)?,
+        structure,
+        robots,
+        on_first,
+        on_second,
+        arc_lengths,
+        triangle,
+        members(py, Enumeration::UndecidedReason, asked.shape(&[]), reasons)?,
+        statuses(py, all, asked.count().is_some())?,
     );
     answer!(py, "SceneMotionAnswer", values)
 }

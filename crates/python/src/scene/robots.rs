@@ -17,7 +17,7 @@ pub(super) fn place<'a>(
     robot: &Given<'a>,
     caps: Caps,
 ) -> Result<Vec<Placed<'a>>, Refused> {
-    let robots: Vec<_> = std::iter::successors(Some(*robot), Given::other).collect();
+    let robots: Vec<_> = robot.all().collect();
     if chains.len() < robots.len() {
         chains.resize_with(robots.len(), || None);
     }

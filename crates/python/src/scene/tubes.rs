@@ -1,12 +1,12 @@
 //! Queries about curved tubes in a scene.
 
 use super::bounds::{Bounds, bounds};
-use super::{Scene, Session, check};
+use super::{Scene, Session};
 use crate::error::Refused;
-use crate::input::{Given, of};
+use crate::input::{Given, check_length, of};
 use crate::output::{Enumeration, decision_value, members};
 use crate::queries::clearance::{Stated, tube};
-use crate::threads::{Asked, ask_each};
+use crate::threads::{Asked, answer_each, answer_each_or_kind};
 use parry_continuum::Tube;
 use parry_continuum::parry::math::Pose;
 use pyo3::prelude::*;
@@ -14,9 +14,7 @@ use pyo3::prelude::*;
 /// The tubes of a set of robots, with their poses.
 fn placed(robot: &Given<'_>) -> Result<Vec<(Tube, Pose)>, Refused> {
     let stated = Stated { deviation: 0.0, turn: None };
-    std::iter::successors(Some(*robot), Given::other)
-        .map(|robot| Ok((tube(&robot, stated)?, robot.pose()?)))
-        .collect()
+    robot.all().map(|robot| Ok((tube(&robot, stated)?, robot.pose()?))).collect()
 }
 
 fn each(placed: &[(Tube, Pose)]) -> Vec<(&Tube, Pose)> {
@@ -55,15 +53,13 @@ impl Scene {
         robots: Vec<Bound<'py, PyAny>>,
         #[pyo3(from_py_with = of::resolution)] resolution: f64,
     ) -> PyResult<Bound<'py, PyAny>> {
-        check(py, "resolution", Some(resolution))?;
+        check_length(py, "resolution", resolution)?;
         let robots = self.robots(py, robots)?;
-        let mut all: Vec<i8> = Vec::with_capacity(robots.len());
-        let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [i8]| {
+        let ask = |session: &mut Session, robot: &Given<'_>| {
             let placed = placed(robot)?;
-            row[0] = decision_value(session.scene.clears_tube(&each(&placed), resolution)?);
-            Ok(())
+            Ok(decision_value(session.scene.clears_tube(&each(&placed), resolution)?))
         };
-        ask_each(py, &self.snapshot(py), &robots, (0, 1), ask, |_, found| all.extend(found))?;
+        let all = answer_each(py, &self.snapshot(py), &robots, ask)?;
         members(py, Enumeration::Decision, robots.shape(&[]), all)
     }
 
@@ -108,23 +104,14 @@ impl Scene {
         robots: Vec<Bound<'py, PyAny>>,
         #[pyo3(from_py_with = of::tolerance)] tolerance: f64,
     ) -> PyResult<Bound<'py, PyAny>> {
-        check(py, "tolerance", Some(tolerance))?;
+        check_length(py, "tolerance", tolerance)?;
         let robots = self.robots(py, robots)?;
-        let is_batch = robots.count.is_some();
-        let mut all: Vec<Bounds> = Vec::with_capacity(robots.len());
-        let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [Bounds]| {
-            let found = placed(robot)
-                .and_then(|placed| Ok(session.scene.clearance(&each(&placed), tolerance)?));
-            row[0] = match found {
-                Ok(found) => found.map_or(Bounds::WITHOUT_MARGIN, Bounds::of_tubes),
-                Err(refused) if is_batch => Bounds::refused(refused.kind()),
-                Err(refused) => return Err(refused),
-            };
-            Ok(())
+        let ask = |session: &mut Session, robot: &Given<'_>| {
+            let placed = placed(robot)?;
+            let found = session.scene.clearance(&each(&placed), tolerance)?;
+            Ok(found.map_or(Bounds::WITHOUT_MARGIN, Bounds::of_tubes))
         };
-        ask_each(py, &self.snapshot(py), &robots, (Bounds::WITHOUT_MARGIN, 1), ask, |_, found| {
-            all.extend_from_slice(found)
-        })?;
-        bounds(py, &all, |further| robots.shape(further), is_batch, None)
+        let all = answer_each_or_kind(py, &self.snapshot(py), &robots, ask)?;
+        bounds(py, &robots, &all, false)
     }
 }

@@ -128,6 +128,40 @@ pub(crate) fn ask_each<T: Clone + Send, L: Lender, Q: Asked>(
     Ok(())
 }
 
+/// One answer about each robot, or motion, in order. The first that is refused ends the batch.
+pub(crate) fn answer_each<A: Clone + Send, L: Lender, Q: Asked>(
+    py: Python<'_>,
+    lender: &L,
+    asked: &Q,
+    answer: impl Fn(&mut L::Session, &Q::One<'_>) -> Result<A, Refused> + Sync,
+) -> PyResult<Vec<A>> {
+    let mut all = Vec::with_capacity(asked.len());
+    let ask = |session: &mut L::Session, one: &Q::One<'_>, row: &mut [Option<A>]| {
+        row[0] = Some(answer(session, one)?);
+        Ok(())
+    };
+    ask_each(py, lender, asked, (None, 1), ask, |_, found| {
+        all.extend(found.iter().flatten().cloned());
+    })?;
+    Ok(all)
+}
+
+/// The same, where one that is refused does not fail its batch: it has the `kind` of its error.
+pub(crate) fn answer_each_or_kind<A: Clone + Send, L: Lender, Q: Asked>(
+    py: Python<'_>,
+    lender: &L,
+    asked: &Q,
+    answer: impl Fn(&mut L::Session, &Q::One<'_>) -> Result<A, Refused> + Sync,
+) -> PyResult<Vec<Result<A, &'static str>>> {
+    let is_batch = asked.count().is_some();
+    answer_each(py, lender, asked, |session: &mut L::Session, one: &Q::One<'_>| {
+        match answer(session, one) {
+            Err(refused) if is_batch => Ok(Err(refused.kind())),
+            found => found.map(Ok),
+        }
+    })
+}
+
 /// A session for one question, without the GIL.
 pub(crate) fn alone<T: Send, L: Lender>(
     py: Python<'_>,

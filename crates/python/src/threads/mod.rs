@@ -20,7 +20,7 @@ mod points;
 mod pool;
 
 pub(crate) use compute::{compute, interruptible};
-pub(crate) use each::{Asked, Lender, alone, ask_each};
+pub(crate) use each::{Asked, Lender, alone, answer_each, answer_each_or_kind, ask_each};
 pub(crate) use engine::{Engine, Session};
 pub(crate) use fork::watch_forks;
 pub(crate) use held::Held;

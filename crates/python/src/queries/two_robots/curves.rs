@@ -2,12 +2,12 @@
 
 use super::{Pairs, RobotPair, Session, second};
 use crate::error::Refused;
-use crate::input::{Given, Names, Robots, of};
+use crate::input::{Given, Names, Robots, check_length, of};
 use crate::output::{
     Enumeration, answer, array, array_or_number, decision_value, flat, members, statuses,
 };
 use crate::queries::clearance::{Stated, tube, tubes};
-use crate::threads::{Asked, ask_each};
+use crate::threads::{Asked, answer_each_or_kind, ask_each};
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::proximity::{Decision, ProximityError, RobotClearance};
 use parry_continuum::{Tube, proximity};
@@ -39,29 +39,13 @@ impl Pairs {
         stated: Both,
         tolerance: f64,
     ) -> PyResult<Bound<'py, PyAny>> {
-        if tolerance.is_nan() || tolerance < 0.0 {
-            let error = ProximityError::Negative { parameter: "tolerance", value: tolerance };
-            return Err(Refused::from(error).raise(py, None));
-        }
-        let is_batch = robots.count.is_some();
-        let (mut all, mut status) = (Vec::with_capacity(robots.len()), Vec::new());
-        let ask = |session: &mut Session,
-                   robot: &Given<'_>,
-                   row: &mut [(Option<RobotClearance>, &'static str)]| {
-            let found = session.about_tubes(robot, stated, |pair, [a, b]| {
+        check_length(py, "tolerance", tolerance)?;
+        let ask = |session: &mut Session, robot: &Given<'_>| {
+            session.about_tubes(robot, stated, |pair, [a, b]| {
                 pair.clearance(a.0, a.1, b.0, b.1, tolerance)
-            });
-            row[0] = match found {
-                Ok(found) => (Some(found), ""),
-                Err(refused) if is_batch => (None, refused.kind()),
-                Err(refused) => return Err(refused),
-            };
-            Ok(())
+            })
         };
-        ask_each(py, self, robots, ((None, ""), 1), ask, |_, found| {
-            all.extend(found.iter().map(|row| row.0));
-            status.extend(found.iter().map(|row| row.1));
-        })?;
+        let all = answer_each_or_kind(py, self, robots, ask)?;
         let shape = || robots.shape(&[]);
         let numbers = |of: fn(&RobotClearance) -> f64| {
             array_or_number(
@@ -79,7 +63,7 @@ impl Pairs {
         };
         let lengths = all
             .iter()
-            .flat_map(|it| it.map_or([f64::NAN; 2], |it| it.witness.arc_lengths))
+            .flat_map(|it| it.as_ref().map_or([f64::NAN; 2], |it| it.witness.arc_lengths))
             .collect();
         let values = (
             numbers(|found| found.lower)?,
@@ -87,13 +71,13 @@ impl Pairs {
             array_or_number(
                 py,
                 shape(),
-                all.iter().map(|it| it.is_some_and(|it| it.resolved)).collect(),
+                all.iter().map(|it| it.as_ref().is_ok_and(|it| it.resolved)).collect(),
             )?,
             numbers(|found| found.uncertainty)?,
             points(|found| found.witness.on_first)?,
             points(|found| found.witness.on_second)?,
             array(py, robots.shape(&[2]), lengths)?,
-            statuses(py, status, is_batch)?,
+            statuses(py, &all, robots.count.is_some())?,
         );
         answer!(py, "RobotClearance", values)
     }

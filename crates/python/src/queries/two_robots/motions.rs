@@ -6,7 +6,7 @@ use crate::motions::{Motion, MotionPair, Moving};
 use crate::output::{
     Enumeration, answer, array, array_or_number, decision_value, flat, members, reason_value,
 };
-use crate::threads::{Asked, ask_each};
+use crate::threads::{Asked, answer_each};
 use parry_continuum::parry::math::Vector;
 use parry_continuum::proximity::{
     ProximityError, RobotMotionAnswer, RobotMotionClearance, RobotsInContact,
@@ -152,15 +152,8 @@ impl RobotPair {
         #[pyo3(from_py_with = of::tolerance)] tolerance: f64,
     ) -> PyResult<Bound<'py, PyAny>> {
         let motions = MotionPair::new(a, b)?;
-        let mut all: Vec<RobotMotionClearance> = Vec::with_capacity(motions.len());
-        let ask = |session: &mut Session,
-                   [a, b]: &[&Moving; 2],
-                   row: &mut [Option<RobotMotionClearance>]| {
-            row[0] = Some(session.pair.clearance_of_motion(*a, *b, tolerance)?);
-            Ok(())
-        };
-        ask_each(py, &self.0, &motions, (None, 1), ask, |_, found| {
-            all.extend(found.iter().flatten())
+        let all = answer_each(py, &self.0, &motions, |session: &mut Session, [a, b]| {
+            Ok(session.pair.clearance_of_motion(*a, *b, tolerance)?)
         })?;
         let shape = |further: &[usize]| motions.shape(further);
         let numbers = |of: fn(&RobotMotionClearance) -> f64| {
@@ -192,16 +185,8 @@ impl RobotPair {
         + Sync,
     ) -> PyResult<Bound<'py, PyAny>> {
         let motions = MotionPair::new(a, b)?;
-        let mut all: Vec<RobotMotionAnswer> = Vec::with_capacity(motions.len());
-        let ask = |session: &mut Session,
-                   [a, b]: &[&Moving; 2],
-                   row: &mut [Option<RobotMotionAnswer>]| {
-            row[0] = Some(decide(session, a, b)?);
-            Ok(())
-        };
-        ask_each(py, &self.0, &motions, (None, 1), ask, |_, found| {
-            all.extend(found.iter().flatten())
-        })?;
+        let ask = |session: &mut Session, [a, b]: &[&Moving; 2]| Ok(decide(session, a, b)?);
+        let all = answer_each(py, &self.0, &motions, ask)?;
         motion_answers(py, &all, |further| motions.shape(further))
     }
 }

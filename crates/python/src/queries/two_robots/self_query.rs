@@ -8,9 +8,9 @@ use crate::motions::{Motion, Moving};
 use crate::output::{Enumeration, array_or_number, decision_value, members};
 use crate::queries::clearance::{Stated, tube, tubes};
 use crate::queries::distance::set_chain;
-use crate::threads::{Asked, ask_each};
+use crate::threads::{Asked, answer_each, ask_each};
 use parry_continuum::Chain;
-use parry_continuum::proximity::{self, RobotMotionAnswer};
+use parry_continuum::proximity;
 use pyo3::prelude::*;
 use pyo3::types::{PyTuple, PyType};
 
@@ -278,16 +278,10 @@ impl SelfQuery {
         #[pyo3(from_py_with = of::resolution)] resolution: f64,
     ) -> PyResult<Bound<'py, PyAny>> {
         let motions = motion.get();
-        let mut all: Vec<RobotMotionAnswer> = Vec::with_capacity(motions.len());
-        let ask =
-            |session: &mut Session, motion: &&Moving, row: &mut [Option<RobotMotionAnswer>]| {
-                row[0] = Some(session.query.clears_motion(*motion, margin, resolution)?);
-                Ok(())
-            };
-        let take = |_: usize, found: &[Option<RobotMotionAnswer>]| {
-            all.extend(found.iter().flatten());
+        let ask = |session: &mut Session, motion: &&Moving| {
+            Ok(session.query.clears_motion(*motion, margin, resolution)?)
         };
-        ask_each(py, &self.0, motions, (None, 1), ask, take)?;
+        let all = answer_each(py, &self.0, motions, ask)?;
         motion_answers(py, &all, |further| motions.shape(further))
     }
 }
