@@ -492,7 +492,7 @@ fn label_map_error(
         }
         (Fault::NotALabel(number), _) => MeshFileError::NotLabels { file, number },
         (Fault::NoneOf(present), Some(label)) => {
-            MeshFileError::NoSuchLabel { file, label, present: present.into_iter().collect() }
+            MeshFileError::NoSuchLabel { file, label, present }
         }
         (Fault::NoneOf(_), None) => MeshFileError::NothingSegmented { file },
     }
