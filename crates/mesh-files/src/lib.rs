@@ -302,11 +302,9 @@ fn labels(
 ) -> Result<Vec<LabelVolume>, MeshFileError> {
     let options = &options.with_label(None);
     options.check_scale()?;
-    let Some(volume) = volume(format, bytes, options) else {
-        return Err(MeshFileError::NoLabels { file: path.to_owned(), format: format.name() });
-    };
-    let volumes = volume.and_then(|volume| volume.label_volumes(options.scale));
-    volumes.map_err(|fault| label_map_error(fault, path, format, bytes, options))
+    volume(format, bytes, options)
+        .and_then(|volume| volume.label_volumes(options.scale))
+        .map_err(|fault| label_map_error(fault, path, format, bytes, options))
 }
 
 /// Returns the bytes of a file.
@@ -429,7 +427,6 @@ fn parse(
         }
         #[cfg(feature = "label-maps")]
         Format::MetaImage | Format::Nifti | Format::Nrrd => volume(format, bytes, options)
-            .unwrap_or_else(|| Err(Fault::from("it has no voxels")))
             .and_then(|volume| volume.surface(options.label, options.memory_limit))
             .map_err(|fault| label_map_error(fault, path, format, bytes, options)),
     }?;
@@ -459,18 +456,18 @@ fn broken(reason: String, path: &Path, format: Format, bytes: &[u8]) -> MeshFile
     }
 }
 
-/// Returns the voxels of a label map, or `None` for a file of triangles.
+/// Returns the voxels of a label map.
 #[cfg(feature = "label-maps")]
 fn volume<'a>(
     format: Format,
     bytes: &'a [u8],
     options: &Options,
-) -> Option<Result<label_map::Volume<'a>, Fault>> {
+) -> Result<label_map::Volume<'a>, Fault> {
     match format {
-        Format::MetaImage => Some(label_map::meta_image::read(bytes)),
-        Format::Nifti => Some(label_map::nifti::read(bytes, options.allow_no_position)),
-        Format::Nrrd => Some(label_map::nrrd::read(bytes, options.allow_no_position)),
-        _ => None,
+        Format::MetaImage => label_map::meta_image::read(bytes),
+        Format::Nifti => label_map::nifti::read(bytes, options.allow_no_position),
+        Format::Nrrd => label_map::nrrd::read(bytes, options.allow_no_position),
+        _ => Err(Fault::NoLabels),
     }
 }
 
@@ -486,6 +483,7 @@ fn label_map_error(
     let file = path.to_owned();
     match (fault, options.label) {
         (Fault::Broken(reason), _) => broken(reason, path, format, bytes),
+        (Fault::NoLabels, _) => MeshFileError::NoLabels { file, format: format.name() },
         (Fault::NoPosition(missing), _) => MeshFileError::NoPosition { file, missing },
         (Fault::TooLarge(bytes), _) => {
             MeshFileError::TooLarge { file, bytes, limit: options.memory_limit }

@@ -23,6 +23,8 @@ const MOST_LABELS: usize = 1000;
 pub enum Fault {
     /// The file is invalid in its format.
     Broken(String),
+    /// The file holds triangles.
+    NoLabels,
     /// The file does not state the position of its voxels.
     NoPosition(String),
     /// A voxel has this value, which is not a label.
