@@ -52,9 +52,8 @@ pub fn place(robot: &Robot, wall: &mut Wall, matrix: &str) -> Result<Placement, 
 }
 
 fn pose_of(matrix: &str) -> Result<Pose, String> {
-    let rows = table_from_bytes("the pose", matrix.as_bytes(), 4..=4, "4 numbers")
+    let rows: Vec<[f64; 4]> = table_from_bytes("the pose", matrix.as_bytes(), "4 numbers")
         .map_err(|error| refused(&error))?;
-    let rows: Vec<[f64; 4]> = rows.iter().map(|row| [row[0], row[1], row[2], row[3]]).collect();
     let count = rows.len();
     let rows = <[[f64; 4]; 4]>::try_from(rows)
         .map_err(|_| format!("the pose has {count} lines; write 4 lines of 4 numbers"))?;
