@@ -12,14 +12,6 @@ use pyo3::types::{PyBytes, PyInt, PyString};
 use std::ffi::CString;
 use std::path::{Path, PathBuf};
 
-/// The name of a frame.
-pub(crate) fn frame_name(frame: Frame) -> &'static str {
-    match frame {
-        Frame::Ras => "RAS",
-        _ => "LPS",
-    }
-}
-
 /// Turns points from one frame to the other: half a turn about the third axis.
 fn half_turn(points: &mut [[f64; 3]]) {
     for [x, y, _] in points {
@@ -255,7 +247,7 @@ pub(crate) fn load_centreline<'py>(
         }
     };
     let mut read = read.map_err(|error| refuse(py, &error))?;
-    let frame = in_frame(&mut read.points, read.frame, frame).map(frame_name);
+    let frame = in_frame(&mut read.points, read.frame, frame).map(Frame::name);
     let points = array(py, vec![read.points.len(), 3], read.points.into_flattened())?;
     let points = crate::output::framed(points, frame)?;
     let radii = read.radii.map(|radii| array(py, vec![radii.len()], radii)).transpose()?;

@@ -1,8 +1,8 @@
 //! Where a robot is in the wall's frame, and what looks like a mistake in its frame or unit.
 
+use crate::files::refused;
 use crate::robot::{Line, Robot};
 use crate::wall::Wall;
-use crate::{files::refused, frame_name};
 use mesh_files::{Bounds, Change, Frame, RadiusDoubt, misfits, radius_doubt, table_from_bytes};
 use parry_continuum::parry::math::{Pose, Rot3, Vector};
 use parry_continuum::pose_from_matrix;
@@ -65,7 +65,7 @@ fn turn(line: &Line, wall: &Wall) -> Result<Option<[Frame; 2]>, String> {
         (Some(own), Some(other)) => Ok((own != other).then_some([own, other])),
         (Some(own), None) => Err(format!(
             "the robot is in {}, but {} does not say whether it is RAS or LPS; choose the wall's frame",
-            frame_name(own),
+            own.name(),
             wall.name()
         )),
         (None, _) => Ok(None),
