@@ -1,6 +1,5 @@
 //! The wall from a file, with its frame and unit.
 
-use crate::labels::listed;
 use crate::messages;
 use crate::options::Options;
 use mesh_files::Frame;
@@ -28,7 +27,7 @@ impl Wall {
             mesh_files::load_with(&my.mesh, &options).map_err(|error| messages::of_file(&error))?;
         let mut notes = Vec::new();
         if mesh.labels.len() > 1 {
-            let labels = listed(&mesh.labels);
+            let labels = mesh_files::list_labels(&mesh.labels);
             notes.push(format!("labels {labels} of {file} are merged; --label takes one of them"));
         }
         if mesh.skipped_faces > 0 {

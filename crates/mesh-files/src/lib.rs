@@ -30,7 +30,7 @@ pub use centreline::{
     Centreline, centreline_from_bytes, load_centreline, load_shapes, load_table, table_from_bytes,
 };
 pub use doubts::{Bounds, Change, Misfits, RadiusDoubt, misfits, radius_doubt};
-pub use error::MeshFileError;
+pub use error::{MeshFileError, list_labels};
 #[cfg(feature = "label-maps")]
 use label_map::Fault;
 #[cfg(feature = "label-maps")]

@@ -59,12 +59,6 @@ fn refuse(py: Python<'_>, error: &MeshFileError) -> PyErr {
     Refused::other("file", text).raise(py, None)
 }
 
-fn labels_text(labels: &[u32]) -> String {
-    const SHOWN: usize = 10;
-    let more = if labels.len() > SHOWN { ", ..." } else { "" };
-    labels.iter().take(SHOWN).map(u32::to_string).collect::<Vec<_>>().join(", ") + more
-}
-
 /// The mesh in a file: STL, OBJ, PLY, VTK's .vtp or .vtk, or the surface of a label map in NIfTI,
 /// NRRD or MetaImage, by the file's extension.
 ///
@@ -183,7 +177,7 @@ fn made(
         warn(py, &format!("left out of {name}: {} faces without area", file.skipped_faces))?;
     }
     if file.labels.len() > 1 {
-        let labels = labels_text(&file.labels);
+        let labels = mesh_files::list_labels(&file.labels);
         warn(
             py,
             &format!(
