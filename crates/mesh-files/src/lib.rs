@@ -36,6 +36,7 @@ use label_map::Fault;
 #[cfg(feature = "label-maps")]
 pub use label_map::LabelVolume;
 pub use mesh::{Frame, Mesh};
+pub use obj::to_obj;
 use std::borrow::Cow;
 use std::path::Path;
 

@@ -9,7 +9,6 @@ use parry_continuum::parry::math::{Pose, Real, Rot3, Vector};
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{BvhSearch, Proximity, Side};
 use serde_json::json;
-use std::fmt::Write;
 use wasm_bindgen::prelude::wasm_bindgen;
 
 /// The wall and the engine that searches it.
@@ -198,14 +197,7 @@ impl Wall {
 
     /// The wall as the OBJ file that belongs to a proof.
     pub fn obj(&self) -> String {
-        let mut obj = String::new();
-        for Vector { x, y, z } in self.search.vertices() {
-            let _ = writeln!(obj, "v {x:?} {y:?} {z:?}");
-        }
-        for [a, b, c] in self.search.triangles() {
-            let _ = writeln!(obj, "f {} {} {}", a + 1, b + 1, c + 1);
-        }
-        obj
+        mesh_files::to_obj(self.search.vertices(), self.search.triangles())
     }
 }
 
