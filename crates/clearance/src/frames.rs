@@ -25,14 +25,6 @@ impl From<Axes> for Frame {
     }
 }
 
-pub fn name(frame: Frame) -> &'static str {
-    match frame {
-        Frame::Lps => "LPS",
-        Frame::Ras => "RAS",
-        _ => "another one",
-    }
-}
-
 pub fn half_turn() -> Pose {
     Pose::from_parts(Vector::ZERO, Rotation::from_xyzw(0.0, 0.0, 1.0, 0.0))
 }
@@ -45,16 +37,10 @@ pub fn turn(my: &Options, robot: &Robot, wall: &Wall) -> Result<Option<[Frame; 2
     if my.pose.is_some() {
         return Ok(None); // The pose leads into the frame of the mesh.
     }
-    let asked = my.frame.map(Frame::from);
-    if let (Some(stated), Some(asked)) = (robot.frame, asked)
-        && stated != asked
-    {
-        return Err(format!(
-            "the centreline's file says that it is {}; leave out --frame",
-            name(stated)
-        ));
-    }
-    match (robot.frame.or(asked), wall.frame) {
+    let own = Frame::resolve(robot.frame, my.frame.map(Frame::from)).map_err(|stated| {
+        format!("the centreline's file says that it is {}; leave out --frame", stated.name())
+    })?;
+    match (own, wall.frame) {
         (Some(own), Some(other)) => Ok((own != other).then_some([own, other])),
         (Some(_), None) => {
             let file = my.mesh.display();

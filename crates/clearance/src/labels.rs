@@ -43,14 +43,10 @@ fn wall(my: &Options, labels: Vec<u32>) -> String {
         (Some(label), _) => format!("wall: none, since no voxel has label {label}\n"),
         (None, [label]) => format!("wall: label {label}\n"),
         (None, labels) => {
-            format!("wall: labels {} merged; --label takes one of them\n", listed(labels))
+            format!(
+                "wall: labels {} merged; --label takes one of them\n",
+                mesh_files::list_labels(labels)
+            )
         }
     }
-}
-
-/// Lists the first labels.
-pub fn listed(labels: &[u32]) -> String {
-    const SHOWN: usize = 10;
-    let more = if labels.len() > SHOWN { ", ..." } else { "" };
-    labels.iter().take(SHOWN).map(u32::to_string).collect::<Vec<_>>().join(", ") + more
 }

@@ -68,9 +68,8 @@ fn answer(my: &Options) -> Result<bool, String> {
 }
 
 fn read_pose(path: &Path) -> Result<Pose, String> {
-    let rows = mesh_files::load_table(path, 4..=4, "4 numbers", &mesh_files::Options::default())
+    let rows = mesh_files::load_table(path, "4 numbers", &mesh_files::Options::default())
         .map_err(|error| messages::of_file(&error))?;
-    let matrix = rows.iter().map(|row| [row[0], row[1], row[2], row[3]]).collect();
-    let matrix = Vec::try_into(matrix).map_err(|_| "--pose needs 4 lines of 4 numbers")?;
+    let matrix = Vec::try_into(rows).map_err(|_| "--pose needs 4 lines of 4 numbers")?;
     pose_from_matrix(matrix).map_err(|error| format!("--pose {}: {error}", path.display()))
 }

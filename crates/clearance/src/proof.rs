@@ -10,19 +10,10 @@ const CHECKER: &str = "docs/book/check_proof.py";
 /// Writes the proof and its mesh, and returns the command that checks them.
 pub fn write(path: &Path, proof: &Proof, search: &BvhSearch) -> Result<String, String> {
     let mesh = outputs::mesh_path(path);
-    outputs::write("--prove", &mesh, &obj(search))?;
+    outputs::write("--prove", &mesh, &mesh_files::to_obj(search.vertices(), search.triangles()))?;
     outputs::write("--prove", path, &proof.to_string())?;
     let words = [checker().as_path(), &mesh, path].map(quoted);
     Ok(format!("python3 {}", words.join(" ")))
-}
-
-/// Returns the mesh of an engine as a Wavefront OBJ file. `{:?}` writes a number so that it is read
-/// as the same double.
-fn obj(search: &BvhSearch) -> String {
-    let vertices = search.vertices().iter().map(|v| format!("v {:?} {:?} {:?}\n", v.x, v.y, v.z));
-    let faces =
-        search.triangles().iter().map(|[a, b, c]| format!("f {} {} {}\n", a + 1, b + 1, c + 1));
-    vertices.chain(faces).collect()
 }
 
 /// Returns the path of the checker: in this directory, or in the repository that this command was

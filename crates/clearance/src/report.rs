@@ -1,6 +1,5 @@
 //! The report about one robot, as lines or as JSON.
 
-use crate::frames::name;
 use crate::number::length;
 use crate::single::Proven;
 use crate::verdict::{Verdict, side};
@@ -28,7 +27,7 @@ impl Report<'_> {
         let unit = self.wall.unit();
         let mut lines = vec![format!("mesh: {}", self.wall.describe())];
         if let Some([from, to]) = self.turned {
-            lines.push(format!("robot: turned from {} to {}", name(from), name(to)));
+            lines.push(format!("robot: turned from {} to {}", from.name(), to.name()));
         }
         lines.push(format!("base: {}", side(self.base)));
         let link = |found: &LinkProximity| {
@@ -65,10 +64,10 @@ impl Report<'_> {
             "mesh": {
                 "triangles": search.triangles().len(),
                 "bounds": [bounds.mins.to_array(), bounds.maxs.to_array()],
-                "frame": frame.map(name),
+                "frame": frame.map(Frame::name),
                 "unit": self.wall.unit(),
             },
-            "turned": self.turned.map(|frames| frames.map(name)),
+            "turned": self.turned.map(|frames| frames.map(Frame::name)),
             "base": match self.base {
                 Side::Inside => "inside",
                 Side::Outside => "outside",

@@ -1,7 +1,5 @@
 //! The wall from a file, with its frame and unit.
 
-use crate::frames::name;
-use crate::labels::listed;
 use crate::messages;
 use crate::options::Options;
 use mesh_files::Frame;
@@ -29,24 +27,22 @@ impl Wall {
             mesh_files::load_with(&my.mesh, &options).map_err(|error| messages::of_file(&error))?;
         let mut notes = Vec::new();
         if mesh.labels.len() > 1 {
-            let labels = listed(&mesh.labels);
+            let labels = mesh_files::list_labels(&mesh.labels);
             notes.push(format!("labels {labels} of {file} are merged; --label takes one of them"));
         }
         if mesh.skipped_faces > 0 {
             notes.push(format!("left out of {file}: {} faces without area", mesh.skipped_faces));
         }
-        let (stated, states_unit) = (mesh.frame, mesh.states_unit);
-        let asked = my.mesh_frame.map(Frame::from);
-        if let (Some(stated), Some(asked)) = (stated, asked)
-            && stated != asked
-        {
-            return Err(format!("{file} says that it is {}; leave out --mesh-frame", name(stated)));
-        }
+        let states_unit = mesh.states_unit;
+        let frame =
+            Frame::resolve(mesh.frame, my.mesh_frame.map(Frame::from)).map_err(|stated| {
+                format!("{file} says that it is {}; leave out --mesh-frame", stated.name())
+            })?;
         let (vertices, triangles) = mesh.into_parts::<Vector>();
         let bounds = Aabb::from_points(vertices.iter().copied());
         let search = BvhSearch::from_triangles(&vertices, &triangles)
             .map_err(|error| format!("{file}: {error}"))?;
-        Ok(Self { search, bounds, frame: stated.or(asked), states_unit, notes })
+        Ok(Self { search, bounds, frame, states_unit, notes })
     }
 
     /// Returns the unit of length, if it is known.
@@ -57,7 +53,7 @@ impl Wall {
     /// Describes the wall in one line.
     pub fn describe(&self) -> String {
         let [low, high] = [self.bounds.mins, self.bounds.maxs];
-        let frame = self.frame.map_or("not stated", name);
+        let frame = self.frame.map_or("not stated", Frame::name);
         let unit = self.unit().unwrap_or("not stated");
         let count = self.search.triangles().len();
         format!("{count} triangles from {low:.3} to {high:.3}, frame {frame}, unit {unit}")

@@ -143,7 +143,7 @@ pub enum MeshFileError {
         limit: u64,
     },
     /// A label map has no voxel with the requested label.
-    #[error("{} has no voxel with label {label}, but with {}; choose one of them", file.display(), listed(present))]
+    #[error("{} has no voxel with label {label}, but with {}; choose one of them", file.display(), list_labels(present))]
     #[non_exhaustive]
     NoSuchLabel {
         /// The file.
@@ -231,8 +231,8 @@ fn without_area(skipped_faces: usize) -> String {
     }
 }
 
-/// Lists the first labels, for an error message.
-fn listed(labels: &[u32]) -> String {
+/// Lists the first ten labels, for a message.
+pub fn list_labels(labels: &[u32]) -> String {
     const SHOWN: usize = 10;
     let more = if labels.len() > SHOWN { ", ..." } else { "" };
     labels.iter().take(SHOWN).map(u32::to_string).collect::<Vec<_>>().join(", ") + more

@@ -30,12 +30,13 @@ pub use centreline::{
     Centreline, centreline_from_bytes, load_centreline, load_shapes, load_table, table_from_bytes,
 };
 pub use doubts::{Bounds, Change, Misfits, RadiusDoubt, misfits, radius_doubt};
-pub use error::MeshFileError;
+pub use error::{MeshFileError, list_labels};
 #[cfg(feature = "label-maps")]
 use label_map::Fault;
 #[cfg(feature = "label-maps")]
 pub use label_map::LabelVolume;
 pub use mesh::{Frame, Mesh};
+pub use obj::to_obj;
 use std::borrow::Cow;
 use std::path::Path;
 
@@ -302,11 +303,9 @@ fn labels(
 ) -> Result<Vec<LabelVolume>, MeshFileError> {
     let options = &options.with_label(None);
     options.check_scale()?;
-    let Some(volume) = volume(format, bytes, options) else {
-        return Err(MeshFileError::NoLabels { file: path.to_owned(), format: format.name() });
-    };
-    let volumes = volume.and_then(|volume| volume.label_volumes(options.scale));
-    volumes.map_err(|fault| label_map_error(fault, path, format, bytes, options))
+    volume(format, bytes, options)
+        .and_then(|volume| volume.label_volumes(options.scale))
+        .map_err(|fault| label_map_error(fault, path, format, bytes, options))
 }
 
 /// Returns the bytes of a file.
@@ -429,7 +428,6 @@ fn parse(
         }
         #[cfg(feature = "label-maps")]
         Format::MetaImage | Format::Nifti | Format::Nrrd => volume(format, bytes, options)
-            .unwrap_or_else(|| Err(Fault::from("it has no voxels")))
             .and_then(|volume| volume.surface(options.label, options.memory_limit))
             .map_err(|fault| label_map_error(fault, path, format, bytes, options)),
     }?;
@@ -459,18 +457,18 @@ fn broken(reason: String, path: &Path, format: Format, bytes: &[u8]) -> MeshFile
     }
 }
 
-/// Returns the voxels of a label map, or `None` for a file of triangles.
+/// Returns the voxels of a label map.
 #[cfg(feature = "label-maps")]
 fn volume<'a>(
     format: Format,
     bytes: &'a [u8],
     options: &Options,
-) -> Option<Result<label_map::Volume<'a>, Fault>> {
+) -> Result<label_map::Volume<'a>, Fault> {
     match format {
-        Format::MetaImage => Some(label_map::meta_image::read(bytes)),
-        Format::Nifti => Some(label_map::nifti::read(bytes, options.allow_no_position)),
-        Format::Nrrd => Some(label_map::nrrd::read(bytes, options.allow_no_position)),
-        _ => None,
+        Format::MetaImage => label_map::meta_image::read(bytes),
+        Format::Nifti => label_map::nifti::read(bytes, options.allow_no_position),
+        Format::Nrrd => label_map::nrrd::read(bytes, options.allow_no_position),
+        _ => Err(Fault::NoLabels),
     }
 }
 
@@ -486,13 +484,14 @@ fn label_map_error(
     let file = path.to_owned();
     match (fault, options.label) {
         (Fault::Broken(reason), _) => broken(reason, path, format, bytes),
+        (Fault::NoLabels, _) => MeshFileError::NoLabels { file, format: format.name() },
         (Fault::NoPosition(missing), _) => MeshFileError::NoPosition { file, missing },
         (Fault::TooLarge(bytes), _) => {
             MeshFileError::TooLarge { file, bytes, limit: options.memory_limit }
         }
         (Fault::NotALabel(number), _) => MeshFileError::NotLabels { file, number },
         (Fault::NoneOf(present), Some(label)) => {
-            MeshFileError::NoSuchLabel { file, label, present: present.into_iter().collect() }
+            MeshFileError::NoSuchLabel { file, label, present }
         }
         (Fault::NoneOf(_), None) => MeshFileError::NothingSegmented { file },
     }

@@ -12,6 +12,28 @@ pub enum Frame {
     Lps,
 }
 
+impl Frame {
+    /// Returns RAS or LPS.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Ras => "RAS",
+            Self::Lps => "LPS",
+        }
+    }
+
+    /// Returns the frame of coordinates: the one that their file states, or else the one that the
+    /// user chose.
+    ///
+    /// # Errors
+    /// The stated frame, if the user chose the other one.
+    pub fn resolve(stated: Option<Self>, chosen: Option<Self>) -> Result<Option<Self>, Self> {
+        match (stated, chosen) {
+            (Some(stated), Some(chosen)) if stated != chosen => Err(stated),
+            _ => Ok(stated.or(chosen)),
+        }
+    }
+}
+
 /// A mesh of triangles.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]

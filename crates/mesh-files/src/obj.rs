@@ -1,4 +1,4 @@
-//! Reads the vertices and faces of OBJ files.
+//! Reads the vertices and faces of OBJ files, and writes triangles as OBJ.
 //!
 //! Polygons are triangulated, faces without area are left out, and all objects of the file form one
 //! mesh.
@@ -6,6 +6,19 @@
 use crate::mesh::Mesh;
 use crate::polygon::Faces;
 use crate::text::{lines, noted_frame, number, shown};
+
+/// Returns triangles as the text of an OBJ file. Every coordinate is read back as the same double.
+pub fn to_obj<Vertex: Copy + Into<[f64; 3]>>(
+    vertices: &[Vertex],
+    triangles: &[[u32; 3]],
+) -> String {
+    let vertices = vertices.iter().map(|&vertex| {
+        let [x, y, z] = vertex.into();
+        format!("v {x:?} {y:?} {z:?}\n")
+    });
+    let faces = triangles.iter().map(|[a, b, c]| format!("f {} {} {}\n", a + 1, b + 1, c + 1));
+    vertices.chain(faces).collect()
+}
 
 /// The content so far.
 #[derive(Default)]

@@ -12,14 +12,6 @@ use pyo3::types::{PyBytes, PyInt, PyString};
 use std::ffi::CString;
 use std::path::{Path, PathBuf};
 
-/// The name of a frame.
-pub(crate) fn frame_name(frame: Frame) -> &'static str {
-    match frame {
-        Frame::Ras => "RAS",
-        _ => "LPS",
-    }
-}
-
 /// Turns points from one frame to the other: half a turn about the third axis.
 fn half_turn(points: &mut [[f64; 3]]) {
     for [x, y, _] in points {
@@ -65,12 +57,6 @@ fn refuse(py: Python<'_>, error: &MeshFileError) -> PyErr {
         error => error.to_string().replace(", or raise Options::memory_limit", ""),
     };
     Refused::other("file", text).raise(py, None)
-}
-
-fn labels_text(labels: &[u32]) -> String {
-    const SHOWN: usize = 10;
-    let more = if labels.len() > SHOWN { ", ..." } else { "" };
-    labels.iter().take(SHOWN).map(u32::to_string).collect::<Vec<_>>().join(", ") + more
 }
 
 /// The mesh in a file: STL, OBJ, PLY, VTK's .vtp or .vtk, or the surface of a label map in NIfTI,
@@ -191,7 +177,7 @@ fn made(
         warn(py, &format!("left out of {name}: {} faces without area", file.skipped_faces))?;
     }
     if file.labels.len() > 1 {
-        let labels = labels_text(&file.labels);
+        let labels = mesh_files::list_labels(&file.labels);
         warn(
             py,
             &format!(
@@ -255,7 +241,7 @@ pub(crate) fn load_centreline<'py>(
         }
     };
     let mut read = read.map_err(|error| refuse(py, &error))?;
-    let frame = in_frame(&mut read.points, read.frame, frame).map(frame_name);
+    let frame = in_frame(&mut read.points, read.frame, frame).map(Frame::name);
     let points = array(py, vec![read.points.len(), 3], read.points.into_flattened())?;
     let points = crate::output::framed(points, frame)?;
     let radii = read.radii.map(|radii| array(py, vec![radii.len()], radii)).transpose()?;

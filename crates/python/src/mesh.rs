@@ -1,7 +1,7 @@
 //! The class `Mesh`: how it is made and how it moves. Its queries are in `queries`.
 
 use crate::error::Refused;
-use crate::files::{frame_name, warn};
+use crate::files::warn;
 use crate::input::{FrameName, Names, Numbers, Robots, faces, shape_text, vectors};
 use crate::output::{array, flat};
 use crate::threads::{Engine, Held, alone};
@@ -143,7 +143,7 @@ impl Mesh {
 
 /// That points and mesh are in different frames, and what to do.
 pub(crate) fn frames_text(name: &str, frames: [Frame; 2]) -> String {
-    let [points, mesh] = frames.map(frame_name);
+    let [points, mesh] = frames.map(Frame::name);
     format!(
         "`{name}` state the frame {points}, and the mesh {mesh}: x and y have opposite signs; load both with frame='{mesh}', or \
          give `{name} * [-1, -1, 1]`"
@@ -239,7 +239,7 @@ impl Mesh {
     /// None if unknown.
     #[getter]
     fn frame(&self) -> Option<&'static str> {
-        self.origin.frame.map(frame_name)
+        self.origin.frame.map(Frame::name)
     }
 
     /// The unit of length that the file states, such as "mm"; None if unknown.

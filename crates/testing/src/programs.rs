@@ -44,34 +44,36 @@ pub fn example(name: &str) -> PathBuf {
     program
 }
 
-/// Runs a program. Returns whether it succeeds, its output and its errors.
-pub fn run(program: impl AsRef<Path>, arguments: &[&str]) -> (bool, String, String) {
+/// Runs a program. Returns its exit status, its output and its errors.
+pub fn run(program: impl AsRef<Path>, arguments: &[&str]) -> (Option<i32>, String, String) {
     let place = place("");
     std::fs::create_dir_all(&place).unwrap();
     let output =
         Command::new(program.as_ref()).args(arguments).current_dir(place).output().unwrap();
     let text = |bytes| String::from_utf8(bytes).unwrap();
-    (output.status.success(), text(output.stdout), text(output.stderr))
+    (output.status.code(), text(output.stdout), text(output.stderr))
 }
 
 /// Returns the output of a program that must succeed.
 pub fn succeed(program: impl AsRef<Path>, arguments: &[&str]) -> String {
     let program = program.as_ref();
-    let (success, out, error) = run(program, arguments);
-    assert!(success, "{} {arguments:?}: {error}", program.display());
+    let (status, out, error) = run(program, arguments);
+    assert!(status == Some(0), "{} {arguments:?}: {error}", program.display());
     out
 }
 
-/// Asserts that a program refuses these arguments with one line that contains `expected`.
-pub fn refuse(program: impl AsRef<Path>, arguments: &[&str], expected: &str) {
+/// Asserts that a program refuses these arguments with one line that contains `expected`. Returns its
+/// exit status.
+pub fn refuse(program: impl AsRef<Path>, arguments: &[&str], expected: &str) -> Option<i32> {
     let program = program.as_ref();
-    let (success, out, error) = run(program, arguments);
+    let (status, out, error) = run(program, arguments);
     let name = program.display();
-    assert!(!success && out.is_empty(), "{name} {arguments:?}: {out}");
+    assert!(status != Some(0) && out.is_empty(), "{name} {arguments:?}: {out}");
     assert!(
         error.contains(expected) && error.lines().count() == 1,
         "{name} {arguments:?}: {error}"
     );
+    status
 }
 
 /// Returns the cells of the table whose head begins with `head`, row by row. Asserts that every row

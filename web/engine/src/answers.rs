@@ -1,7 +1,7 @@
 //! The answers about one robot, as arrays for JavaScript.
 
+use crate::flat;
 use crate::placement::Placement;
-use crate::{flat, frame_name};
 use parry_continuum::parry::math::Real;
 use parry_continuum::proximity::{LinkProximity, Side};
 use parry_continuum::{Cap, ModifiedCylinder};
@@ -60,9 +60,7 @@ impl Answers {
 
     /// From which frame to which one the robot was turned, if it was.
     pub fn turned(&self) -> Option<String> {
-        self.placement
-            .turned
-            .map(|[from, to]| format!("{} to {}", frame_name(from), frame_name(to)))
+        self.placement.turned.map(|[from, to]| format!("{} to {}", from.name(), to.name()))
     }
 
     /// Of the robot's base: `inside`, `outside` or `undecided`.

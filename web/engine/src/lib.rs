@@ -20,14 +20,6 @@ fn flat<'a>(points: impl IntoIterator<Item = &'a Vector>) -> Vec<Real> {
     points.into_iter().flat_map(|point| point.to_array()).collect()
 }
 
-fn frame_name(frame: Frame) -> &'static str {
-    match frame {
-        Frame::Ras => "RAS",
-        Frame::Lps => "LPS",
-        _ => "another frame",
-    }
-}
-
 /// Returns the frame of this name.
 ///
 /// # Errors

@@ -1,8 +1,8 @@
 //! Where a robot is in the wall's frame, and what looks like a mistake in its frame or unit.
 
+use crate::files::refused;
 use crate::robot::{Line, Robot};
 use crate::wall::Wall;
-use crate::{files::refused, frame_name};
 use mesh_files::{Bounds, Change, Frame, RadiusDoubt, misfits, radius_doubt, table_from_bytes};
 use parry_continuum::parry::math::{Pose, Rot3, Vector};
 use parry_continuum::pose_from_matrix;
@@ -52,9 +52,8 @@ pub fn place(robot: &Robot, wall: &mut Wall, matrix: &str) -> Result<Placement, 
 }
 
 fn pose_of(matrix: &str) -> Result<Pose, String> {
-    let rows = table_from_bytes("the pose", matrix.as_bytes(), 4..=4, "4 numbers")
+    let rows: Vec<[f64; 4]> = table_from_bytes("the pose", matrix.as_bytes(), "4 numbers")
         .map_err(|error| refused(&error))?;
-    let rows: Vec<[f64; 4]> = rows.iter().map(|row| [row[0], row[1], row[2], row[3]]).collect();
     let count = rows.len();
     let rows = <[[f64; 4]; 4]>::try_from(rows)
         .map_err(|_| format!("the pose has {count} lines; write 4 lines of 4 numbers"))?;
@@ -66,7 +65,7 @@ fn turn(line: &Line, wall: &Wall) -> Result<Option<[Frame; 2]>, String> {
         (Some(own), Some(other)) => Ok((own != other).then_some([own, other])),
         (Some(own), None) => Err(format!(
             "the robot is in {}, but {} does not say whether it is RAS or LPS; choose the wall's frame",
-            frame_name(own),
+            own.name(),
             wall.name()
         )),
         (None, _) => Ok(None),

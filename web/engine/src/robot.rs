@@ -1,7 +1,7 @@
 //! The robot: concentric tubes, or a centreline from a file.
 
 use crate::files::{Files, options, refused};
-use crate::{frame_name, frame_of};
+use crate::frame_of;
 use continuum_demo::ctr::{Joints, three_tubes};
 use continuum_demo::ventricle;
 use mesh_files::{Frame, centreline_from_bytes};
@@ -72,14 +72,9 @@ impl Robot {
         let options = options(scale).with_line(line.map(|line| line as usize));
         let read = centreline_from_bytes(name, bytes, &options).map_err(|error| refused(&error))?;
         let asked = frame.as_deref().map(frame_of).transpose()?;
-        if let (Some(stated), Some(asked)) = (read.frame, asked)
-            && stated != asked
-        {
-            return Err(format!(
-                "{name} says that it is {}; choose this frame for the robot",
-                frame_name(stated)
-            ));
-        }
+        let frame = Frame::resolve(read.frame, asked).map_err(|stated| {
+            format!("{name} says that it is {}; choose this frame for the robot", stated.name())
+        })?;
         let points: Vec<_> = read.points.into_iter().map(Vector::from).collect();
         let has_radii = read.radii.is_some();
         let radii = match (read.radii, radius) {
@@ -103,7 +98,7 @@ impl Robot {
             radius: radii.into_iter().fold(0.0, Real::max),
             has_radii,
             scale,
-            frame: read.frame.or(asked),
+            frame,
             states_frame: read.frame.is_some(),
             name: name.to_owned(),
             skipped_points: read.skipped_points,
@@ -114,7 +109,7 @@ impl Robot {
     /// The frame that the file states: RAS, LPS or none.
     pub fn stated_frame(&self) -> Option<String> {
         let line = self.line.as_ref().filter(|line| line.states_frame)?;
-        line.frame.map(|frame| frame_name(frame).to_owned())
+        line.frame.map(|frame| frame.name().to_owned())
     }
 
     /// What was left out of the file.

@@ -2,14 +2,13 @@
 
 use crate::files::{Files, options, refused};
 use crate::placement::place;
-use crate::{Answers, Robot, flat, frame_name, frame_of};
+use crate::{Answers, Robot, flat, frame_of};
 use continuum_demo::{steer, ventricle};
 use mesh_files::{Bounds, Frame};
 use parry_continuum::parry::math::{Pose, Real, Rot3, Vector};
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{BvhSearch, Proximity, Side};
 use serde_json::json;
-use std::fmt::Write;
 use wasm_bindgen::prelude::wasm_bindgen;
 
 /// The wall and the engine that searches it.
@@ -100,22 +99,17 @@ impl Wall {
     /// The file states the other frame.
     pub fn choose_frame(&mut self, frame: Option<String>) -> Result<(), String> {
         let chosen = frame.as_deref().map(frame_of).transpose()?;
-        if let (Some(stated), Some(chosen)) = (self.stated_frame, chosen)
-            && stated != chosen
-        {
-            let stated = frame_name(stated);
-            return Err(format!(
-                "{} says that it is {stated}; choose this frame for the wall",
-                self.name
-            ));
-        }
+        Frame::resolve(self.stated_frame, chosen).map_err(|stated| {
+            let (name, stated) = (&self.name, stated.name());
+            format!("{name} says that it is {stated}; choose this frame for the wall")
+        })?;
         self.chosen_frame = chosen;
         Ok(())
     }
 
     /// The frame that the file states: RAS, LPS or none.
     pub fn stated_frame(&self) -> Option<String> {
-        self.stated_frame.map(|frame| frame_name(frame).to_owned())
+        self.stated_frame.map(|frame| frame.name().to_owned())
     }
 
     /// The labels that were read as one surface, if there are several.
@@ -131,7 +125,7 @@ impl Wall {
     /// Size, frame and unit, in one line.
     pub fn describe(&self) -> String {
         let count = self.search.triangles().len();
-        let frame = self.frame().map_or("not stated", frame_name);
+        let frame = self.frame().map_or("not stated", Frame::name);
         let unit = if self.is_millimetres { "mm" } else { "not stated, taken as mm" };
         let place = self.bounds().map_or_else(String::new, |Bounds { low, high }| {
             let [low, high] = [low, high].map(|p| p.map(|x| format!("{x:.1}")).join(", "));
@@ -172,10 +166,10 @@ impl Wall {
             "mesh": {
                 "triangles": self.search.triangles().len(),
                 "bounds": bounds,
-                "frame": self.frame().map(frame_name),
+                "frame": self.frame().map(Frame::name),
                 "unit": self.is_millimetres.then_some("mm"),
             },
-            "turned": answers.placement.turned.map(|frames| frames.map(frame_name)),
+            "turned": answers.placement.turned.map(|frames| frames.map(Frame::name)),
             "base": answers.base(),
             "links": answers.links,
             "minimum": answers.minimum,
@@ -203,14 +197,7 @@ impl Wall {
 
     /// The wall as the OBJ file that belongs to a proof.
     pub fn obj(&self) -> String {
-        let mut obj = String::new();
-        for Vector { x, y, z } in self.search.vertices() {
-            let _ = writeln!(obj, "v {x:?} {y:?} {z:?}");
-        }
-        for [a, b, c] in self.search.triangles() {
-            let _ = writeln!(obj, "f {} {} {}", a + 1, b + 1, c + 1);
-        }
-        obj
+        mesh_files::to_obj(self.search.vertices(), self.search.triangles())
     }
 }
 

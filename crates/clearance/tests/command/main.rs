@@ -8,7 +8,6 @@ mod margin;
 mod readme;
 
 use continuum_testing::programs;
-use std::process::Command;
 
 const COMMAND: &str = env!("CARGO_BIN_EXE_clearance");
 
@@ -19,18 +18,12 @@ fn succeed(arguments: &[&str]) -> String {
 
 /// The command must refuse these arguments with one line that contains `expected`, and status 2.
 fn refuse(arguments: &[&str], expected: &str) {
-    programs::refuse(COMMAND, arguments, expected);
-    let status = Command::new(COMMAND).args(arguments).current_dir(programs::place("")).output();
-    assert_eq!(status.unwrap().status.code(), Some(2), "{arguments:?}");
+    assert_eq!(programs::refuse(COMMAND, arguments, expected), Some(2), "{arguments:?}");
 }
 
 /// The exit status, the output and the errors of a command.
 fn run(arguments: &[&str]) -> (Option<i32>, String, String) {
-    let folder = programs::place("");
-    std::fs::create_dir_all(&folder).unwrap();
-    let output = Command::new(COMMAND).args(arguments).current_dir(folder).output().unwrap();
-    let text = |bytes| String::from_utf8(bytes).unwrap();
-    (output.status.code(), text(output.stdout), text(output.stderr))
+    programs::run(COMMAND, arguments)
 }
 
 /// The least distance in the last line.

@@ -3,7 +3,6 @@
 use super::{Centreline, Format};
 use crate::text::{lines, shown};
 use crate::{MeshFileError, Options, read_file};
-use std::ops::RangeInclusive;
 use std::path::Path;
 
 /// The columns of a centreline, and of many shapes, for error messages.
@@ -44,40 +43,34 @@ fn fault<T>(line: usize, problem: String) -> Result<T, Fault> {
 /// Empty lines, lines that begin with # and a heading are skipped. Columns are separated by
 /// semicolons, tabs, commas or spaces, and may be quoted.
 ///
-/// - `columns`: the allowed numbers of columns.
-/// - `expected`: the columns to write, for the error message.
+/// `expected` names the columns to write, for the error message.
 ///
 /// # Errors
-/// The file cannot be read, a line has another number of columns, or a word is not a number.
-pub fn load_table(
+/// The file cannot be read, a line has another number of columns than `COLUMNS`, or a word is not a number.
+pub fn load_table<const COLUMNS: usize>(
     path: impl AsRef<Path>,
-    columns: RangeInclusive<usize>,
     expected: &'static str,
     options: &Options,
-) -> Result<Vec<Vec<f64>>, MeshFileError> {
+) -> Result<Vec<[f64; COLUMNS]>, MeshFileError> {
     let path = path.as_ref();
-    table_from_bytes(path, &read_file(path, options)?, columns, expected)
+    table_from_bytes(path, &read_file(path, options)?, expected)
 }
 
 /// Same as [`load_table`], for the content of a file with this name.
 ///
 /// # Errors
 /// As [`load_table`].
-pub fn table_from_bytes(
+pub fn table_from_bytes<const COLUMNS: usize>(
     path: impl AsRef<Path>,
     bytes: &[u8],
-    columns: RangeInclusive<usize>,
     expected: &'static str,
-) -> Result<Vec<Vec<f64>>, MeshFileError> {
-    let path = path.as_ref();
-    let named = |fault: Fault| fault.named(path, expected);
-    let table = parse(bytes).map_err(named)?;
-    for (line, row) in &table.rows {
-        if !columns.contains(&row.len()) {
-            return fault(*line, format!("has {} columns", row.len())).map_err(named);
-        }
-    }
-    Ok(table.rows.into_iter().map(|(_, row)| row).collect())
+) -> Result<Vec<[f64; COLUMNS]>, MeshFileError> {
+    let numbers = |(line, row): (usize, Vec<f64>)| {
+        let problem = format!("has {} columns", row.len());
+        row.try_into().map_err(|_| Fault { line, problem })
+    };
+    let rows = parse(bytes).and_then(|table| table.rows.into_iter().map(numbers).collect());
+    rows.map_err(|fault| fault.named(path.as_ref(), expected))
 }
 
 /// Reads many robots from a text file with lines of shape,x,y,z and optionally the radius of the

@@ -8,7 +8,8 @@ mod voxels;
 use crate::mesh::{Frame, Mesh};
 use fast_surface_nets::ndshape::RuntimeShape;
 use fast_surface_nets::{SignedDistance, SurfaceNetsBuffer, surface_nets};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
+use std::ops::Range;
 use std::path::{Component, PathBuf};
 use voxels::Voxels;
 
@@ -22,6 +23,8 @@ const MOST_LABELS: usize = 1000;
 pub enum Fault {
     /// The file is invalid in its format.
     Broken(String),
+    /// The file holds triangles.
+    NoLabels,
     /// The file does not state the position of its voxels.
     NoPosition(String),
     /// A voxel has this value, which is not a label.
@@ -30,7 +33,7 @@ pub enum Fault {
     TooLarge(u64),
     /// No voxel is inside the surface. If a label was requested, these are the labels of the
     /// voxels.
-    NoneOf(BTreeSet<u32>),
+    NoneOf(Vec<u32>),
 }
 
 impl From<String> for Fault {
@@ -147,24 +150,22 @@ impl Volume<'_> {
         let is_inside = |found: u32| label.map_or(found != 0, |label| found == label);
         let mut low = [usize::MAX; 3];
         let mut high = [0; 3];
-        let mut inside = Labels::default();
-        let is_inside_first = |found: u32| {
-            let is_inside = is_inside(found);
-            if is_inside {
-                inside.add(found);
+        // With a requested label, counts all labels: the error message lists them.
+        let mut counts = LabelCounts::default();
+        self.each_run(&mut |found, run| {
+            if label.is_some() || found != 0 {
+                counts.add(found, run.len());
             }
-            is_inside
-        };
-        self.each_inside(is_inside_first, &mut |voxel| {
-            low = [0, 1, 2].map(|axis| low[axis].min(voxel[axis]));
-            high = [0, 1, 2].map(|axis| high[axis].max(voxel[axis]));
+            for voxel in run.filter(|_| is_inside(found)).map(|index| self.voxel(index)) {
+                low = [0, 1, 2].map(|axis| low[axis].min(voxel[axis]));
+                high = [0, 1, 2].map(|axis| high[axis].max(voxel[axis]));
+            }
         })?;
-        let labels =
-            if label.is_none() { inside.present.into_iter().collect() } else { Vec::new() };
+        let labels = counts.0.into_keys().collect();
         if low[0] == usize::MAX {
-            let present = if label.is_some() { self.present()? } else { BTreeSet::new() };
-            return Err(Fault::NoneOf(present));
+            return Err(Fault::NoneOf(labels));
         }
+        let labels = if label.is_none() { labels } else { Vec::new() };
         // A margin of one outside voxel closes the surface at the border. The far sides have a
         // second one, because the faces there belong to a neighbouring block that does not exist.
         let room = [0, 1, 2].map(|axis| high[axis] - low[axis] + 4);
@@ -174,9 +175,11 @@ impl Volume<'_> {
             |bytes: u64| if bytes <= limit { Ok(()) } else { Err(Fault::TooLarge(bytes)) };
         allowed(grid)?;
         let mut voxels = vec![Voxel(false); room.iter().product()];
-        self.each_inside(is_inside, &mut |voxel| {
-            let [x, y, z] = [0, 1, 2].map(|axis| voxel[axis] - low[axis] + 1);
-            voxels[(z * room[1] + y) * room[0] + x] = Voxel(true);
+        self.each_run(&mut |found, run| {
+            for voxel in run.filter(|_| is_inside(found)).map(|index| self.voxel(index)) {
+                let [x, y, z] = [0, 1, 2].map(|axis| voxel[axis] - low[axis] + 1);
+                voxels[(z * room[1] + y) * room[0] + x] = Voxel(true);
+            }
         })?;
         // Memory of the surface. Each face between two unlike voxels is a quadrilateral of the net:
         // two triangles, there and in the mesh, of 48 bytes. A vertex takes 64 bytes in both, and
@@ -213,67 +216,49 @@ impl Volume<'_> {
 
     /// Returns the labels except 0 with their volumes, the lowest [`MOST_LABELS`] if there are more.
     pub fn label_volumes(&self, scale: f64) -> Result<Vec<LabelVolume>, Fault> {
-        let mut counts = BTreeMap::<u32, u64>::new();
-        self.voxels.each(&mut |labels| {
-            for run in labels.chunk_by(|a, b| a == b).filter(|run| run[0] != 0) {
-                *counts.entry(run[0]).or_default() += run.len() as u64;
-                // The kept labels only get lower, so a dropped label is dropped whenever it comes.
-                if counts.len() > MOST_LABELS {
-                    counts.pop_last();
-                }
+        let mut counts = LabelCounts::default();
+        self.each_run(&mut |label, run| {
+            if label != 0 {
+                counts.add(label, run.len());
             }
         })?;
-        if counts.is_empty() {
-            return Err(Fault::NoneOf(BTreeSet::new()));
+        if counts.0.is_empty() {
+            return Err(Fault::NoneOf(Vec::new()));
         }
         let voxel = self.place.turn().abs() * scale.powi(3);
         let volume = |(label, voxels)| LabelVolume { label, voxels, volume: voxels as f64 * voxel };
-        Ok(counts.into_iter().map(volume).collect())
+        Ok(counts.0.into_iter().map(volume).collect())
     }
 
-    /// Passes the voxels that are inside, in order, to a function.
-    fn each_inside(
-        &self,
-        mut is_inside: impl FnMut(u32) -> bool,
-        see: &mut dyn FnMut([usize; 3]),
-    ) -> Result<(), Fault> {
-        let [width, height, _] = self.sizes;
+    /// Passes each run of voxels with the same label, in order, to a function: the label, and the
+    /// indices of the voxels.
+    fn each_run(&self, see: &mut dyn FnMut(u32, Range<usize>)) -> Result<(), Fault> {
         let mut first = 0;
         self.voxels.each(&mut |labels| {
-            for (index, _) in (first..).zip(labels).filter(|&(_, &found)| is_inside(found)) {
-                see([index % width, index / width % height, index / width / height]);
+            for run in labels.chunk_by(|a, b| a == b) {
+                see(run[0], first..first + run.len());
+                first += run.len();
             }
-            first += labels.len();
         })
     }
 
-    /// Returns the labels of the voxels, the lowest if there are many.
-    fn present(&self) -> Result<BTreeSet<u32>, Fault> {
-        let mut all = Labels::default();
-        self.voxels.each(&mut |labels| labels.iter().for_each(|&label| all.add(label)))?;
-        Ok(all.present)
+    /// Returns the three indices of the voxel with this index.
+    fn voxel(&self, index: usize) -> [usize; 3] {
+        let [width, height, _] = self.sizes;
+        [index % width, index / width % height, index / width / height]
     }
 }
 
-/// Labels of voxels, the lowest if there are many.
+/// The number of voxels of each label, for the lowest [`MOST_LABELS`] labels.
 #[derive(Default)]
-struct Labels {
-    present: BTreeSet<u32>,
-    before: Option<u32>,
-}
+struct LabelCounts(BTreeMap<u32, u64>);
 
-impl Labels {
-    fn add(&mut self, label: u32) {
-        // Neighbours are mostly alike: skip repetitions.
-        if self.before.replace(label) == Some(label) {
-            return;
-        }
-        let present = &mut self.present;
-        if present.len() < MOST_LABELS || present.last().is_some_and(|&last| label < last) {
-            present.insert(label);
-        }
-        if present.len() > MOST_LABELS {
-            present.pop_last();
+impl LabelCounts {
+    fn add(&mut self, label: u32, voxels: usize) {
+        *self.0.entry(label).or_default() += voxels as u64;
+        // The kept labels only get lower, so a dropped label is dropped whenever it comes.
+        if self.0.len() > MOST_LABELS {
+            self.0.pop_last();
         }
     }
 }

@@ -178,6 +178,19 @@ fn coordinates_that_are_whole_numbers_keep_all_their_digits() {
 }
 
 #[test]
+fn an_obj_that_is_written_is_read_as_the_same_doubles() {
+    let corners = [[0.1, -1.0 / 3.0, 5e-324], [1e300, 7.0, f64::EPSILON], [-0.0, 1e16 + 2.0, 1.5]];
+    let text = mesh_files::to_obj(&corners, &[[2, 0, 1]]);
+    let mesh = read("written.obj", &text).unwrap();
+    assert_eq!(
+        mesh.vertices.iter().map(|v| v.map(f64::to_bits)).collect::<Vec<_>>(),
+        corners.map(|v| v.map(f64::to_bits))
+    );
+    assert_eq!(mesh.triangles, [[2, 0, 1]]);
+    assert!(text.ends_with("f 3 1 2\n"), "{text}");
+}
+
+#[test]
 fn the_frame_that_a_file_notes_is_kept() {
     let mut noted = binary_stl(&ring());
     assert_eq!(read("plain.stl", &noted).unwrap().frame, None);
