@@ -53,7 +53,7 @@ use super::{DisplacementBound, Motion, Speed, rigid_pose};
 use crate::curve::check_bending;
 use crate::curve::{BendingSection, ConstantCurvature, Tube};
 use crate::distance::Scalar;
-use crate::robot::RobotError;
+use crate::robot::{RobotError, length};
 use parry3d_f64::math::{Pose, Real, Vector};
 
 /// How a section of constant curvature changes during a motion, for [`bending_speed`].
@@ -249,11 +249,11 @@ impl BendingMotion {
         let rates = (0..from.len()).map(|k| BendingRates {
             length: from[k].length.max(to[k].length),
             growth: to[k].length - from[k].length,
-            curvature: bend(&from[k]).length().max(bend(&to[k]).length()),
-            bending: (bend(&to[k]) - bend(&from[k])).length(),
+            curvature: length(bend(&from[k])).max(length(bend(&to[k]))),
+            bending: length(bend(&to[k]) - bend(&from[k])),
             // The norm of a vector that changes at a constant rate is convex in time.
             step: [from, to]
-                .map(|all| all.get(k + 1).map_or(0.0, |next| (bend(next) - bend(&all[k])).length()))
+                .map(|all| all.get(k + 1).map_or(0.0, |next| length(bend(next) - bend(&all[k]))))
                 .into_iter()
                 .fold(0.0, Real::max),
         });

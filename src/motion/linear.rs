@@ -32,7 +32,7 @@
 use super::{DisplacementBound, Motion, Speed};
 use crate::curve::Tube;
 use crate::distance::Scalar;
-use crate::robot::{RobotError, check_chain, direction, has_direction, without_length};
+use crate::robot::{RobotError, check_chain, direction, has_direction, length, without_length};
 use parry3d_f64::math::{Pose, Real, Vector};
 
 /// The motion of a chain whose vertices move straight at constant speed.
@@ -181,7 +181,10 @@ impl LinearMotion {
 
     /// Returns an upper bound on the angular speed of a link (claim 1).
     fn turn(&self, link: usize, times: [Real; 2]) -> Real {
+        // The angle does not depend on the scale, and near 1 no product underflows.
         let [first, last] = self.link(link);
+        let scale = first.abs().max(last.abs()).max_element().power_of_two_to_unity();
+        let [first, last] = [first * scale, last * scale];
         // Covers fewer than 32 roundings.
         let up = 1.0 + 32.0 * Real::UNIT_ROUNDOFF;
         let sizes = first.length() * last.length();
@@ -190,7 +193,7 @@ impl LinearMotion {
             return 0.0;
         }
         let least = least_length([first, last], times);
-        if least > self.needed(link) { cross / least / least * up } else { Real::INFINITY }
+        if least > self.needed(link) * scale { cross / least / least * up } else { Real::INFINITY }
     }
 }
 
@@ -217,7 +220,7 @@ impl Motion for LinearMotion {
         // Covers fewer than 32 roundings each of differences, squares and quotients.
         let up = 1.0 + 32.0 * Real::UNIT_ROUNDOFF;
         let [start, end] = [self.velocity(section), self.velocity(section + 1)];
-        let speed = |share: Real| (start + (end - start) * share).length();
+        let speed = |share: Real| length(start + (end - start) * share);
         let point = speed(shares[0]).max(speed(shares[1])) * up + self.rounding();
         Speed { point, turn: self.turn(section, times) }
     }

@@ -32,7 +32,7 @@ use super::rigid::RigidPath;
 use super::{DisplacementBound, Motion, Speed, rigid_pose};
 use crate::curve::Tube;
 use crate::distance::Scalar;
-use crate::robot::RobotError;
+use crate::robot::{RobotError, length};
 use parry3d_f64::math::{Pose, Real, Vector};
 
 /// A motion whose base moves at the same time from one pose to another: a robot that is pushed or
@@ -144,7 +144,7 @@ impl<M: Motion> Motion for MovingBase<M> {
         let ways =
             [0, 1].map(|end| poses[1] * (place[end] + inner.ways[end]) - poses[0] * place[end]);
         let turning = self.path.of_turning(self.carried(section, shares, times).point) * apart;
-        let own = inner.ways[0].length().max(inner.ways[1].length());
+        let own = length(inner.ways[0]).max(length(inner.ways[1]));
         let bow = 0.125 * turn * (turning + turn * inner.off + 2.0 * own);
         let places = poses.iter().flat_map(|pose| place.map(|place| *pose * place)).chain(place);
         let reach = places.fold(own, |most: Real, p| most.max(p.abs().max_element()));
