@@ -102,9 +102,10 @@
 //! | read the mesh as the engine has it now | [`vertices`], [`triangles`] |
 //! | drop the warm start | [`forget`] |
 //!
-//! An answer that names a place has a [`Witness`] or a [`PairWitness`]: `answer.witness.on_mesh`. A robot keeps a margin if its distance exceeds the margin. A yes or no
-//! about links is exact, so it is a `bool`. About tubes and motions it is a [`Decision`], which may
-//! be `Undecided`. An error says what to change; its `kind()` is one word for programs.
+//! An answer that names a place has a [`Witness`] or a [`PairWitness`]: `answer.witness.on_mesh`. A
+//! robot keeps a margin if its distance exceeds the margin. A yes or no about links is exact, so it
+//! is a `bool`. About tubes and motions it is a [`Decision`], which may be `Undecided`. An error
+//! says what to change; its `kind()` is one word for programs.
 //!
 //! ```
 //! use parry_continuum::Chain;

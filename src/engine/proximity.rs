@@ -382,9 +382,9 @@ pub trait Proximity: Engine {
     ///   [`minimum_within`](Self::minimum_within), tubes and motions: nothing.
     /// - [`clears`](Self::clears): the grid of the sides of the wall, only if the bounding box has
     ///   moved by several cells of the grid.
-    /// - [`contacts_within`](Self::contacts_within): one pass over all vertices finds vertices that have met or
-    ///   parted. If there are any, the query also builds which triangles are joined. Near the robot
-    ///   it builds the neighbours of triangles.
+    /// - [`contacts_within`](Self::contacts_within): one pass over all vertices finds vertices that
+    ///   have met or parted. If there are any, the query also builds which triangles are joined.
+    ///   Near the robot it builds the neighbours of triangles.
     /// - [`side`](super::BvhSearch::side), [`clears_inside`](super::BvhSearch::clears_inside): the
     ///   far field of each node.
     /// - Any query, if single precision is too coarse: nothing. The move itself refits the second

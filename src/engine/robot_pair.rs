@@ -307,15 +307,15 @@ impl RobotPair {
     /// to 1.
     ///
     /// `lower` <= least clearance of the shapes at equal times <= `upper`. `tolerance` is a length:
-    /// the bounds differ by at most the tolerance if the motions' shapes allow that. The bounds hold
-    /// for every instant, rounding included, given the speeds that the motions state. The shapes at
-    /// [`t`](RobotMotionClearance::t) realise `upper`, at the two points of the answer.
+    /// the bounds differ by at most the tolerance if the motions' shapes allow that. The bounds
+    /// hold for every instant, rounding included, given the speeds that the motions state. The
+    /// shapes at [`t`](RobotMotionClearance::t) realise `upper`, at the two points of the answer.
     ///
     /// The answer always has bounds; [`resolved`](RobotMotionClearance::resolved) says whether they
     /// meet the tolerance. They may not for the reasons of
     /// [`BvhSearch::clearance_of_motion`](crate::proximity::BvhSearch::clearance_of_motion), or
-    /// because the query ends after 16 million pairs of pieces. A finer tolerance never gives looser
-    /// bounds.
+    /// because the query ends after 16 million pairs of pieces. A finer tolerance never gives
+    /// looser bounds.
     ///
     /// ```
     /// use parry_continuum::{LinearMotion, parry::math::Vector, proximity::RobotPair};
@@ -422,8 +422,8 @@ impl RobotPair {
         self.motions(a, b).decide(wanted, sought)
     }
 
-    /// [`clearance_of_motion`](Self::clearance_of_motion); or a lower bound of at least `limit`. The
-    /// tolerance is checked.
+    /// [`clearance_of_motion`](Self::clearance_of_motion); or a lower bound of at least `limit`.
+    /// The tolerance is checked.
     pub(crate) fn ask_clearance_of_motion(
         &mut self,
         a: &impl Motion,

@@ -101,9 +101,9 @@ pub trait Motion {
     ///
     /// With it, [`clears_motion`](crate::proximity::BvhSearch::clears_motion) and similar queries
     /// need fewer shapes: a piece that moves along the wall, or away from it, does not count as
-    /// moving towards it. All ready motions know their displacements. [`bending_displacement`] helps for
-    /// sections of constant curvature. A wrong bound makes answers wrong. A bound that is not
-    /// finite, or whose `off` is negative, is ignored.
+    /// moving towards it. All ready motions know their displacements. [`bending_displacement`]
+    /// helps for sections of constant curvature. A wrong bound makes answers wrong. A bound that is
+    /// not finite, or whose `off` is negative, is ignored.
     ///
     /// A motion that wraps another may pass its bound on if it keeps time and place.
     fn displacement(

@@ -10,8 +10,8 @@ use parry3d_f64::math::{Pose, Real, Vector};
 /// A path: motions in sequence, each over an equal part of the time.
 ///
 /// Of n motions the first runs from t = 0 to 1 / n, the second to 2 / n, and so on.
-/// [`part_at`](Self::part_at) returns the motion at a given time. All have the same sections, and each
-/// begins where the previous one ends.
+/// [`part_at`](Self::part_at) returns the motion at a given time. All have the same sections, and
+/// each begins where the previous one ends.
 ///
 /// ```
 /// use parry_continuum::{LinearMotion, MotionPath, parry::{math::Vector, shape::Ball}, proximity::BvhSearch};

@@ -35,9 +35,9 @@ use parry3d_f64::math::Real;
 /// eighths of the section, and one drawn range per step, the same in every run. The least of these
 /// bounds counts, and the error names it.
 ///
-/// A stated displacement ([`Motion::displacement`]) is compared with the shapes at the ends of its time
-/// and at its middle. The ranges are the same as for speeds; the shapes are 1, 2, 4, 8 and more
-/// steps apart.
+/// A stated displacement ([`Motion::displacement`]) is compared with the shapes at the ends of its
+/// time and at its middle. The ranges are the same as for speeds; the shapes are 1, 2, 4, 8 and
+/// more steps apart.
 ///
 /// Part of a measured displacement may be an error of the shapes. It does not count against the
 /// motion:

@@ -2,8 +2,8 @@
 //! least slack.
 //!
 //! # Algorithm
-//! 1. **Sweep** ([`MovingRobot`]). Make the first shapes of all robots, which finds most errors, and
-//!    bound where each robot goes.
+//! 1. **Sweep** ([`MovingRobot`]). Make the first shapes of all robots, which finds most errors,
+//!    and bound where each robot goes.
 //! 2. **Structures** and robots, the least lower bound on the slack first: a contact is probably
 //!    found at once. Skip those whose bound is beyond the margin. Query the others as
 //!    [`BvhSearch::clears_motion`](crate::proximity::BvhSearch::clears_motion) does.
@@ -110,8 +110,8 @@ impl Scene {
     /// `ends` has the numbers of the structures that move, and where each of them is at t = 1. A
     /// structure that is not listed rests. The scene itself stays as it is.
     ///
-    /// `Clear` is proven for every instant. The points of a contact are those of robot and structure
-    /// at its time.
+    /// `Clear` is proven for every instant. The points of a contact are those of robot and
+    /// structure at its time.
     ///
     /// ```
     /// use parry_continuum::{Chain, RigidMotion, Tube};
@@ -137,8 +137,8 @@ impl Scene {
     /// As [`clears_motion`](Self::clears_motion); or:
     /// - There is no such structure.
     /// - A pose is not finite, not rigid or out of range.
-    /// - The number of vertices differs from that of the mesh, or one is not finite or out of range.
-    ///   The message names the structure.
+    /// - The number of vertices differs from that of the mesh, or one is not finite or out of
+    ///   range. The message names the structure.
     pub fn clears_motion_while<M: Motion + ?Sized>(
         &mut self,
         ends: &[(usize, StructureEnd)],
@@ -150,8 +150,8 @@ impl Scene {
 
     /// Bounds the time at which moving robots first violate a margin.
     ///
-    /// Arguments and decisions are as for [`clears_motion`](Self::clears_motion). The contact of the
-    /// answer is the earliest of all. The answer's [`interval`](SceneMotionAnswer::interval) is
+    /// Arguments and decisions are as for [`clears_motion`](Self::clears_motion). The contact of
+    /// the answer is the earliest of all. The answer's [`interval`](SceneMotionAnswer::interval) is
     /// `[clear_until, t]`: all margins are provably kept until `clear_until`, and the contact is at
     /// t. Between the two times the touching place moves by at most `resolution`. The times are
     /// farther apart only where a margin may be violated before, within the resolution.
@@ -186,8 +186,8 @@ impl Scene {
     ///
     /// Returns `None` if there is no robot or no such margin. `lower` <= least slack <= `upper`.
     /// `tolerance` is a length: the bounds differ by at most the tolerance if the motions' shapes
-    /// allow that ([`resolved`](SceneMotionClearance::resolved)). The margins of robots to themselves
-    /// do not count.
+    /// allow that ([`resolved`](SceneMotionClearance::resolved)). The margins of robots to
+    /// themselves do not count.
     ///
     /// ```
     /// use parry_continuum::{LinearMotion, parry::{math::Vector, shape::Ball}};

@@ -145,8 +145,8 @@ impl BvhSearch {
         self.context().clears_tube(tube, pose, wanted, frame)
     }
 
-    /// [`clearance`](Self::clearance) for a tube in a scene. The tolerance is checked; `frame` is as
-    /// for `ask_clears_tube`.
+    /// [`clearance`](Self::clearance) for a tube in a scene. The tolerance is checked; `frame` is
+    /// as for `ask_clears_tube`.
     pub(crate) fn ask_clearance(
         &mut self,
         tube: &Tube,

@@ -10,8 +10,8 @@
 //! # Algorithm
 //! 1. **Begin** with pieces that turn by at most 1 rad, and measure them.
 //! 2. **Take** the measured piece of least rank. Its `found` may improve `upper`.
-//! 3. **Stop** if its `lower` + `direction_gap` is at least `upper - aim`. Otherwise divide it and measure
-//!    its halves. Repeat from 2.
+//! 3. **Stop** if its `lower` + `direction_gap` is at least `upper - aim`. Otherwise divide it and
+//!    measure its halves. Repeat from 2.
 //! 4. **Answer.** The lower bound is the least `lower` of all pieces.
 //!
 //! **Warm start.** Bodies are first searched within `hint`. A body without a result is searched

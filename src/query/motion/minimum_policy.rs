@@ -10,8 +10,8 @@
 //! 1. **Settled** if `d - reach - slack >= wanted`.
 //! 2. **Settled** with a larger gap if only the unknown direction of a face prevents the decision.
 //! 3. **Unresolved** if the piece is not fine (`reach > aim / 4`) and the motion prevents the
-//!    decision. Shorter intervals test the piece again; around t it stays `wanted` away for the time
-//!    `hold`.
+//!    decision. Shorter intervals test the piece again; around t it stays `wanted` away for the
+//!    time `hold`.
 //! 4. **Halve** otherwise.
 
 use super::approach_bound::ApproachBound;

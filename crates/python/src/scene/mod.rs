@@ -35,8 +35,8 @@ use std::sync::Arc;
 ///     The distance that robots keep from one another. Without it the scene does not compare robots
 ///     with one another.
 /// self_margin : float, optional
-///     The distance that each robot keeps from itself, as for `SelfQuery`. `clears`, `clears_tube` and
-///     `clears_motion` test it.
+///     The distance that each robot keeps from itself, as for `SelfQuery`. `clears`, `clears_tube`
+///     and `clears_motion` test it.
 /// nested : sequence of (int, int), optional
 ///     Pairs of robots where one is inside the other, as a tube in the tube that guides it. Such
 ///     robots touch, and the scene does not compare them with one another. The numbers are places

@@ -45,11 +45,11 @@ impl Scene {
     /// Whether robots that move at the same time keep all margins, at every time from 0 to 1: from
     /// structures, from one another, and each from itself. A planner asks this for each edge.
     ///
-    /// ``Decision.CLEAR`` is proven for every instant, from the speeds of the motions. The query tests
-    /// robots against structures, beginning with the pairs that seem nearest. Then it tests pairs of
-    /// robots, then each robot against itself, and returns the first contact that it finds. Another
-    /// contact may be earlier in time: see `time_of_contact`. A set that is refused does not fail its
-    /// batch: it is undecided, and its ``status`` is the ``kind`` of its error.
+    /// ``Decision.CLEAR`` is proven for every instant, from the speeds of the motions. The query
+    /// tests robots against structures, beginning with the pairs that seem nearest. Then it tests
+    /// pairs of robots, then each robot against itself, and returns the first contact that it
+    /// finds. Another contact may be earlier in time: see `time_of_contact`. A set that is refused
+    /// does not fail its batch: it is undecided, and its ``status`` is the ``kind`` of its error.
     ///
     /// Parameters
     /// ----------
@@ -69,8 +69,8 @@ impl Scene {
     /// ------
     /// ContinuumError
     ///     The list is empty, batches differ in size, nothing has a margin, or the resolution is
-    ///     negative or NaN. Of one set: a shape is no robot, a robot bends too sharply for a margin to
-    ///     itself, or the resolution is finer than rounding. The text names the robot.
+    ///     negative or NaN. Of one set: a shape is no robot, a robot bends too sharply for a margin
+    ///     to itself, or the resolution is finer than rounding. The text names the robot.
     ///
     /// Examples
     /// --------
@@ -134,10 +134,10 @@ impl Scene {
     /// Parameters
     /// ----------
     /// ends : dict of int to array
-    ///     For the number of a structure, where it is at the time 1: a pose, (4, 4), from its mesh's
-    ///     frame to the scene's, or its vertices, (V, 3), in the mesh's frame. With a pose it moves as
-    ///     a whole, straight and evenly, and turns evenly by the smaller angle. With vertices each
-    ///     vertex moves straight and evenly. Other structures rest.
+    ///     For the number of a structure, where it is at the time 1: a pose, (4, 4), from its
+    ///     mesh's frame to the scene's, or its vertices, (V, 3), in the mesh's frame. With a pose
+    ///     it moves as a whole, straight and evenly, and turns evenly by the smaller angle. With
+    ///     vertices each vertex moves straight and evenly. Other structures rest.
     /// motions, resolution
     ///     As for `clears_motion`.
     ///
@@ -149,8 +149,8 @@ impl Scene {
     /// Raises
     /// ------
     /// ContinuumError
-    ///     There is no such structure, a pose is not rigid, the number of vertices differs, or as for
-    ///     `clears_motion`.
+    ///     There is no such structure, a pose is not rigid, the number of vertices differs, or as
+    ///     for `clears_motion`.
     ///
     /// Examples
     /// --------
