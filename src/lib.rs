@@ -17,7 +17,10 @@
 //! let mut links = Vec::new();
 //! search.per_link(&robot, &Pose::IDENTITY, &mut links)?;
 //! for link in &links {
-//!     println!("link {}: {:.3} mm to triangle {}", link.link, link.distance, link.witness.triangle);
+//!     println!(
+//!         "link {}: {:.3} mm to triangle {}",
+//!         link.link, link.distance, link.witness.triangle
+//!     );
 //! }
 //! assert!(search.clears(&robot, &Pose::IDENTITY, 2.0)?);
 //! # assert_eq!(links.len(), 2);

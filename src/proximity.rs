@@ -117,7 +117,10 @@
 //! let robot = Chain::from_centreline(&[Vector::ZERO, Vector::Z * 6.0], &[0.5])?;
 //! let closest = search.minimum(&robot, &Pose::IDENTITY)?;
 //! let at = closest.witness;
-//! println!("{} mm, {} mm along the robot, triangle {}", closest.distance, at.arc_length, at.triangle);
+//! println!(
+//!     "{} mm, {} mm along the robot, triangle {}",
+//!     closest.distance, at.arc_length, at.triangle
+//! );
 //! # assert!(at.arc_length == 6.0 && 3.9 < closest.distance && closest.distance < 4.0);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```

@@ -69,8 +69,8 @@ impl SelfQuery {
     /// number of neighbours has to be chosen.
     ///
     /// # Errors
-    /// A joint is so sharp that its links overlap over more than half of the shorter one: r
-    /// tan(angle / 2) > length / 2. The rule above holds for tubes that are thinner than their
+    /// A joint is so sharp that its links overlap over more than half of the shorter one:
+    /// r tan(angle / 2) > length / 2. The rule above holds for tubes that are thinner than their
     /// bends.
     ///
     /// ```
@@ -80,7 +80,8 @@ impl SelfQuery {
     /// // A hairpin: two straight legs, and half a circle of radius 10 between them.
     /// let angles = (0..=20).map(|k| std::f64::consts::PI * f64::from(k) / 20.0);
     /// let arc = angles.map(|a| Vector::new(10.0 * (1.0 - a.cos()), 0.0, 30.0 + 10.0 * a.sin()));
-    /// let points: Vec<_> = [Vector::ZERO].into_iter().chain(arc).chain([Vector::new(20.0, 0.0, 0.0)]).collect();
+    /// let points: Vec<_> =
+    ///     [Vector::ZERO].into_iter().chain(arc).chain([Vector::new(20.0, 0.0, 0.0)]).collect();
     /// let robot = Chain::from_centreline(&points, &[1.5; 22])?;
     /// let closest = SelfQuery::new().minimum(&robot)?.ok_or("too straight")?;
     /// assert!((closest.distance - 17.0).abs() < 1e-9);
@@ -102,7 +103,8 @@ impl SelfQuery {
     /// use parry_continuum::{Chain, proximity::SelfQuery};
     /// use parry_continuum::parry::math::Vector;
     ///
-    /// let straight = Chain::from_centreline(&[Vector::ZERO, Vector::Z, 2.0 * Vector::Z], &[3.0, 3.0])?;
+    /// let straight =
+    ///     Chain::from_centreline(&[Vector::ZERO, Vector::Z, 2.0 * Vector::Z], &[3.0, 3.0])?;
     /// assert!(SelfQuery::new().clears(&straight, 100.0)?);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
@@ -149,7 +151,8 @@ impl SelfQuery {
     /// // Two turns of a coil of radius 10 and pitch 4; the wire has radius 1.
     /// let angles = (0..=240).map(|k| std::f64::consts::PI * f64::from(k) / 60.0);
     /// let rise = 4.0 / (2.0 * std::f64::consts::PI);
-    /// let coil: Vec<_> = angles.map(|a| Vector::new(10.0 * a.cos(), 10.0 * a.sin(), rise * a)).collect();
+    /// let coil: Vec<_> =
+    ///     angles.map(|a| Vector::new(10.0 * a.cos(), 10.0 * a.sin(), rise * a)).collect();
     /// let along = Vector::new(0.0, 10.0, rise); // at both ends, after whole turns
     /// let tube = Tube::with_constant_radius(&coil, 1.0, Some([along; 2]))?;
     /// assert_eq!(SelfQuery::new().clears_tube(&tube, 1.9, 0.01)?, Decision::Clear);
@@ -183,14 +186,17 @@ impl SelfQuery {
     /// four to eight times per rad that a part of the robot turns, and more near a contact.
     ///
     /// **Premises.** The stated speeds and turns hold: see [`verify_motion`](crate::verify_motion).
-    /// At all times [`clears_tube`](Self::clears_tube) accepts the robot: it bends by less than 1 /
-    /// radius. The query checks the latter only for the shapes that it visits.
+    /// At all times [`clears_tube`](Self::clears_tube) accepts the robot: it bends by less than
+    /// 1 / radius. The query checks the latter only for the shapes that it visits.
     ///
     /// ```
     /// use parry_continuum::{LinearMotion, parry::math::Vector, proximity::{Decision, SelfQuery}};
     ///
     /// // A hairpin of straight links. Its tip swings past its base.
-    /// let hairpin = |y: f64| [[0.0, 0.0, 0.0], [0.0, 0.0, 40.0], [8.0, 0.0, 40.0], [4.0, y, 2.0]].map(Vector::from_array);
+    /// let hairpin = |y: f64| {
+    ///     [[0.0, 0.0, 0.0], [0.0, 0.0, 40.0], [8.0, 0.0, 40.0], [4.0, y, 2.0]]
+    ///         .map(Vector::from_array)
+    /// };
     /// let motion = LinearMotion::chain(&hairpin(-6.0), &hairpin(6.0), &[1.0; 3])?;
     /// assert!(SelfQuery::new().clears_motion(&motion, 1.5, 1e-3)?.is_clear());
     /// assert_eq!(SelfQuery::new().clears_motion(&motion, 2.5, 1e-3)?.decision, Decision::Contact);

@@ -103,7 +103,11 @@ use parry3d_f64::shape::{CompositeShape, HeightField, Shape, Voxels};
 /// use parry_continuum::parry::{math::{Pose, Vector}, query::QueryDispatcher, shape::Triangle};
 ///
 /// let link = ModifiedCylinder::cylinder(Vector::ZERO, Vector::Z, 0.5)?;
-/// let wall = Triangle::new(Vector::new(2.0, -9.0, -9.0), Vector::new(2.0, 9.0, -9.0), Vector::new(2.0, 0.0, 9.0));
+/// let wall = Triangle::new(
+///     Vector::new(2.0, -9.0, -9.0),
+///     Vector::new(2.0, 9.0, -9.0),
+///     Vector::new(2.0, 0.0, 9.0),
+/// );
 /// let apart = ContinuumDispatcher::default().distance(&Pose::IDENTITY, &link, &wall)?;
 /// assert_eq!(apart.distance, 1.5);
 /// # Ok::<(), Box<dyn std::error::Error>>(())

@@ -56,7 +56,8 @@ use parry3d_f64::math::Real;
 /// - a shape that cannot be made;
 /// - sections that change.
 /// ```
-/// use parry_continuum::{Motion, RobotError, Speed, Tube, parry::math::{Pose, Real, Vector}, verify_motion};
+/// use parry_continuum::parry::math::{Pose, Real, Vector};
+/// use parry_continuum::{Motion, RobotError, Speed, Tube, verify_motion};
 ///
 /// struct Sideways;
 ///
@@ -70,7 +71,10 @@ use parry3d_f64::math::Real;
 ///     }
 /// }
 ///
-/// assert!(matches!(verify_motion(&Sideways, 10), Err(RobotError::FasterThanStated { stated: 0.9, .. })));
+/// assert!(matches!(
+///     verify_motion(&Sideways, 10),
+///     Err(RobotError::FasterThanStated { stated: 0.9, .. })
+/// ));
 /// ```
 pub fn verify_motion(motion: &impl Motion, steps: u32) -> Result<(), RobotError> {
     let steps = steps.max(1);

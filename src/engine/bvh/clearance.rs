@@ -72,7 +72,10 @@ impl BvhSearch {
     ///
     /// let (vertices, triangles) = Ball::new(50.0).to_trimesh(64, 32);
     /// let mut search = BvhSearch::new(&TriMesh::new(vertices, triangles)?)?;
-    /// let arc: Vec<_> = (0..=60).map(|k| f64::from(k) / 60.0).map(|a| Vector::new(a.cos(), 0.0, a.sin()) * 30.0).collect();
+    /// let arc: Vec<_> = (0..=60)
+    ///     .map(|k| f64::from(k) / 60.0)
+    ///     .map(|a| Vector::new(a.cos(), 0.0, a.sin()) * 30.0)
+    ///     .collect();
     /// let tube = Tube::from_samples(&arc, &[1.0; 60], None)?;
     /// let mut pieces = Vec::new();
     /// let found = search.clearance_pieces(&tube, &Pose::IDENTITY, 0.01, &mut pieces)?;
@@ -110,7 +113,10 @@ impl BvhSearch {
     ///
     /// let (vertices, triangles) = Ball::new(50.0).to_trimesh(64, 32);
     /// let mut search = BvhSearch::new(&TriMesh::new(vertices, triangles)?)?;
-    /// let arc: Vec<_> = (0..=60).map(|k| f64::from(k) / 60.0).map(|a| Vector::new(a.cos(), 0.0, a.sin()) * 30.0).collect();
+    /// let arc: Vec<_> = (0..=60)
+    ///     .map(|k| f64::from(k) / 60.0)
+    ///     .map(|a| Vector::new(a.cos(), 0.0, a.sin()) * 30.0)
+    ///     .collect();
     /// let tube = Tube::from_samples(&arc, &[1.0; 60], None)?;
     /// assert_eq!(search.clears_tube(&tube, &Pose::IDENTITY, 15.0, 1e-3)?, Decision::Clear);
     /// assert_eq!(search.clears_tube(&tube, &Pose::IDENTITY, 20.0, 1e-3)?, Decision::Contact);
@@ -171,7 +177,10 @@ impl BvhSearch {
     /// let poses = [Vector::ZERO, Vector::Z * 30.0, Vector::NAN].map(Pose::from_translation);
     /// let mut answers = Vec::new();
     /// search.clearance_batch(&poses.map(|pose| (&tube, pose)), 0.01, &mut answers)?;
-    /// assert!(answers[0].is_ok_and(|found| found.lower > 38.0) && answers[1].is_ok_and(|found| found.upper < 11.0));
+    /// assert!(
+    ///     answers[0].is_ok_and(|found| found.lower > 38.0)
+    ///         && answers[1].is_ok_and(|found| found.upper < 11.0)
+    /// );
     /// assert_eq!(answers[2].map_err(|error| error.kind()), Err("pose_not_finite"));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```

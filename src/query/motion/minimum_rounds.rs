@@ -11,9 +11,9 @@
 //!
 //! # Algorithm
 //! 1. **Begin** with `upper` of one shape and `lower` = 0.
-//! 2. **Stop** if the bounds meet the tolerance, if `lower` reaches the limit beyond which the
-//!    caller needs no bounds, after [`MAX_SHAPES`] shapes, or if a round neither met its own
-//!    tolerance nor halved the gap.
+//! 2. **Stop** in any of four cases. The bounds meet the tolerance. `lower` reaches the limit
+//!    beyond which the caller needs no bounds. [`MAX_SHAPES`] shapes have been tested. The last
+//!    round missed its own tolerance and did not halve the gap.
 //! 3. **Round.** Its tolerance is [`SHARE`] of the gap. It takes over `upper` and the lower bounds
 //!    of the parts. Repeat from 2.
 //!

@@ -57,13 +57,14 @@ impl Scene {
     ///     A motion for each robot, in the scene's frame; each one motion or a batch of as many. A
     ///     robot at rest is a `RigidMotion` from a pose to the same pose.
     /// resolution : float
-    ///     A length. The answer is undecided only where robots come within this of a margin, where
-    ///     an end turns from flat to round there, or at a limit of work: ``reason`` says which.
+    ///     A length. The answer is undecided only if a distance is within the resolution of its
+    ///     margin, if an end near a margin turns from flat to round, or if the query reaches a
+    ///     limit of work. ``reason`` says which.
     ///
     /// Returns
     /// -------
     /// SceneMotionAnswer
-    ///     Of one set of motions, or arrays with one entry for each.
+    ///     The answer for one set of motions. For a batch, arrays with one entry per set.
     ///
     /// Raises
     /// ------
@@ -81,7 +82,8 @@ impl Scene {
     /// >>> scene.add("floor", floor, margin=1.0)
     /// 0
     /// >>> high = np.array([[0, 0, 4], [1, 0, 4]])
-    /// >>> falls, waits = LinearMotion(high, high - [0, 0, 3], 0.2), LinearMotion(high + 2, high + 2, 0.2)
+    /// >>> falls = LinearMotion(high, high - [0, 0, 3], 0.2)
+    /// >>> waits = LinearMotion(high + 2, high + 2, 0.2)
     /// >>> found = scene.clears_motion([falls, waits], resolution=1e-3)
     /// >>> found.decision, found.structure, found.robots
     /// (<Decision.CONTACT: -1>, 0, array([ 0, -1]))
@@ -165,7 +167,8 @@ impl Scene {
     /// >>> risen[2, 3] = 3.0
     /// >>> scene.clears_motion_while({0: risen}, [waits], resolution=1e-3).is_clear
     /// True
-    /// >>> scene.clears_motion_while({0: floor.vertices + [0, 0, 4]}, [waits], resolution=1e-3).is_clear
+    /// >>> moved = floor.vertices + [0, 0, 4]
+    /// >>> scene.clears_motion_while({0: moved}, [waits], resolution=1e-3).is_clear
     /// False
     #[pyo3(signature = (ends, motions, *, resolution))]
     fn clears_motion_while<'py>(
@@ -206,7 +209,7 @@ impl Scene {
     /// Returns
     /// -------
     /// SceneMotionClearance
-    ///     Of one set of motions, or arrays with one entry for each.
+    ///     The answer for one set of motions. For a batch, arrays with one entry per set.
     ///
     /// Raises
     /// ------
@@ -223,7 +226,8 @@ impl Scene {
     /// >>> scene.add("floor", floor, margin=1.0)
     /// 0
     /// >>> high = np.array([[0, 0, 4], [1, 0, 4]])
-    /// >>> found = scene.clearance_of_motion([LinearMotion(high, high - [0, 0, 2], 0.5)], tolerance=0.01)
+    /// >>> falls = LinearMotion(high, high - [0, 0, 2], 0.5)
+    /// >>> found = scene.clearance_of_motion([falls], tolerance=0.01)
     /// >>> bool(found.lower <= 0.5 <= found.upper), bool(found.t > 0.99)
     /// (True, True)
     #[pyo3(signature = (motions, *, tolerance))]
