@@ -15,7 +15,7 @@
 use super::search::{BvhSearch, Context};
 use crate::answer::{Clearance, Decision, ProximityError, TubePiece};
 use crate::curve::Tube;
-use crate::query::clearance::{TubeMemory, clearance, clears_tube};
+use crate::query::clearance::{MeshPieces, TubeMemory, clearance, clears_tube};
 use crate::query::motion::MarginQuery;
 use crate::query::{check_decision, check_not_negative};
 use crate::refine::{PendingPiece, PlacedTube, TubeInMesh};
@@ -228,12 +228,13 @@ impl BvhSearch {
     }
 }
 
-/// Step 1: the clearance of a tube as if no turn had been stated, or `None` if none was stated.
-fn clearance_without_turn(
+/// Step 1: the clearance of a tube as if no turn had been stated, and its pieces. `None` if none was
+/// stated.
+fn clearance_without_turn<'m>(
     tube: &mut TubeInMesh,
-    memory: &mut TubeMemory,
+    memory: &'m mut TubeMemory,
     tolerance: Real,
-) -> Result<Option<Clearance>, ProximityError> {
+) -> Result<Option<(Clearance, &'m MeshPieces)>, ProximityError> {
     let placed = tube.tube;
     let Some(less_known) = placed.without_turn() else { return Ok(None) };
     tube.tube = less_known;
@@ -242,17 +243,17 @@ fn clearance_without_turn(
     answer.map(Some)
 }
 
-/// Replaces `out` by the pieces of the last query about a placed tube, sorted by arc length.
+/// Replaces `out` by the pieces of a placed tube, sorted by arc length.
 ///
 /// # Errors
 /// The curve of a piece is not finite.
 fn report_pieces(
     placed: &PlacedTube,
-    memory: &TubeMemory,
+    pieces: &MeshPieces,
     out: &mut Vec<TubePiece>,
 ) -> Result<(), ProximityError> {
     out.clear();
-    for PendingPiece { piece, lower, .. } in memory.pieces.all() {
+    for PendingPiece { piece, lower, .. } in pieces.all() {
         let outer = placed.outer(piece);
         placed.check_finite(piece, &outer)?;
         out.push(placed.report(piece, &outer, *lower));
@@ -273,8 +274,8 @@ impl<'a> Context<'a> {
         frame: Option<Real>,
     ) -> Result<Clearance, ProximityError> {
         let (mut tube, memory) = self.tube_in_mesh(tube, pose, frame)?;
-        let known = clearance_without_turn(&mut tube, memory, tolerance)?;
-        let answer = clearance(&mut tube, memory, tolerance)?;
+        let known = clearance_without_turn(&mut tube, memory, tolerance)?.map(|(known, _)| known);
+        let (answer, _) = clearance(&mut tube, memory, tolerance)?;
         Ok(known.map_or(answer, |known| known.and(answer, tolerance)))
     }
 
@@ -287,13 +288,15 @@ impl<'a> Context<'a> {
     ) -> Result<Clearance, ProximityError> {
         let (mut tube, memory) = self.tube_in_mesh(tube, pose, None)?;
         let placed = tube.tube;
-        let known = clearance_without_turn(&mut tube, memory, tolerance)?;
-        if let Some(less_known) = placed.without_turn() {
-            report_pieces(&less_known, memory, out)?;
+        let mut known = None;
+        let without_turn = clearance_without_turn(&mut tube, memory, tolerance)?;
+        if let (Some(less_known), Some((answer, pieces))) = (placed.without_turn(), without_turn) {
+            report_pieces(&less_known, pieces, out)?;
+            known = Some(answer);
         }
-        let answer = clearance(&mut tube, memory, tolerance)?;
+        let (answer, pieces) = clearance(&mut tube, memory, tolerance)?;
         if known.is_none_or(|known| answer.lower >= known.lower) {
-            report_pieces(&placed, memory, out)?;
+            report_pieces(&placed, pieces, out)?;
         }
         Ok(known.map_or(answer, |known| known.and(answer, tolerance)))
     }

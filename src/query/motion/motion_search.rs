@@ -238,7 +238,6 @@ impl<M: Motion> MotionSearch<'_, M> {
             first,
             unresolved_bodies,
             last: &mut self.last,
-            beside: 0.0,
             planes,
             small_rooms,
         };

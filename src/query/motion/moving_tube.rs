@@ -1,7 +1,7 @@
 //! The pieces of one moving robot in an interval of time: their speeds and displacements, relative
 //! to the middle shape.
 
-use super::approach_bound::{ApproachBound, half_length};
+use super::approach_bound::{Approach, half_length};
 use super::approach_speed::ApproachSpeed;
 use super::half_displacement::HalfDisplacement;
 use super::pending_piece::PendingPiece;
@@ -40,27 +40,25 @@ pub(crate) struct MovingTube<'a, M> {
     pub unresolved_bodies: &'a mut Vec<UnresolvedPiece>,
     /// The last triangle found.
     pub last: &'a mut Option<u32>,
-    /// How much faster a point of the current body may be than the centreline, plus the speed of
-    /// the mesh.
-    pub beside: Real,
     pub planes: &'a mut SeparatingPlanes,
     pub small_rooms: &'a mut SmallRooms,
 }
 
 impl<'m, M: Motion> RelativeMotion<TubeInMesh<'m>, PendingPiece> for MovingTube<'_, M> {
-    fn speed(
+    /// The speed of the centreline; and how much faster a point of the body may be, plus the speed
+    /// of the mesh.
+    fn speeds(
         &mut self,
         pending: &PendingPiece,
         piece: &Piece,
         outer: &BoundingBody,
         tube: &TubeInMesh<'m>,
-    ) -> Result<Real, ProximityError> {
+    ) -> Result<[Real; 2], ProximityError> {
         let PendingPiece { section, shares, .. } = *pending;
         let stretch = SectionRange { section, shares, outer, radius: tube.radius(piece) };
         let ApproachSpeed { centreline, rim } =
             ApproachSpeed::of(self.motion, self.times, &stretch)?;
-        self.beside = (rim + self.mesh_speed) * (1.0 + 2.0 * Real::UNIT_ROUNDOFF);
-        Ok((centreline + self.beside) * (1.0 + 4.0 * Real::UNIT_ROUNDOFF))
+        Ok([centreline, (rim + self.mesh_speed) * (1.0 + 2.0 * Real::UNIT_ROUNDOFF)])
     }
 
     fn seed_triangle(&self) -> Option<u32> {
@@ -74,19 +72,19 @@ impl<'m, M: Motion> RelativeMotion<TubeInMesh<'m>, PendingPiece> for MovingTube<
     fn record_unresolved(
         &mut self,
         near: &BoundedPiece<TubeInMesh<'m>, PendingPiece>,
-        approach_bound: &ApproachBound,
+        approach: &Approach,
     ) {
         self.unresolved.push(PendingPiece { is_left: [true; 2], ..*near.part });
         if self.unresolved_bodies.len() <= MAX_PIECES {
             let Nearest { distance: away, on_robot, on_mesh, .. } = *near.nearest;
             let normal = (on_robot - on_mesh).normalize_or_zero();
-            let (body, beside) = (near.outer.body, self.beside * half_length(self.times));
+            let [_, beside] = approach.speeds;
             self.unresolved_bodies.push(UnresolvedPiece {
-                body,
+                body: near.outer.body,
                 away,
                 normal,
-                reach: approach_bound.max_approach(),
-                beside,
+                reach: approach.reach,
+                beside: beside * half_length(self.times),
             });
         }
     }
@@ -94,9 +92,9 @@ impl<'m, M: Motion> RelativeMotion<TubeInMesh<'m>, PendingPiece> for MovingTube<
     fn fastest_section(
         &self,
         near: &BoundedPiece<TubeInMesh<'m>, PendingPiece>,
-        speed: Real,
+        approach: &Approach,
     ) -> (usize, Real) {
-        (near.part.section as usize, speed)
+        (near.part.section as usize, approach.speed)
     }
 }
 
