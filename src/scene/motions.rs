@@ -8,11 +8,12 @@
 //!    found at once. Skip those whose bound is beyond the margin. Query the others as
 //!    [`BvhSearch::clears_motion`](crate::proximity::BvhSearch::clears_motion) does.
 //! 3. **Robots.** Query the pairs that are not nested, then each robot and itself.
-//! 4. The first contact ends the query; `time_of_contact` asks on and keeps the earliest. Without a
-//!    contact the first error counts, then the earliest interval that is undecided.
+//! 4. **Answer.** The first contact ends the query; `time_of_contact` continues and keeps the
+//!    earliest contact. Without a contact the answer is the first error, or else the earliest
+//!    undecided interval.
 //!
-//! The least slack is that of the structures, nearest first by their bounds, and of the pairs of
-//! robots ([`LeastSlack`]).
+//! The least slack combines the slacks of the structures, nearest first by their bounds, and of the
+//! pairs of robots ([`LeastSlack`]).
 //!
 //! The queries share the shapes of their first intervals. They share nothing else, so each decides
 //! as if it were the only one.

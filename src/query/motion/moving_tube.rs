@@ -31,8 +31,7 @@ pub(crate) struct MovingTube<'a, M> {
     pub t: Real,
     /// An upper bound on the speed of the mesh.
     pub mesh_speed: Real,
-    /// The pieces that the shape does not decide for the whole interval, after those of earlier
-    /// intervals.
+    /// The unresolved pieces of earlier intervals, then the ones of this interval.
     pub unresolved: &'a mut Vec<PendingPiece>,
     /// The index of the first unresolved piece of this interval.
     pub first: usize,

@@ -37,7 +37,7 @@ impl Mesh {
     /// Returns
     /// -------
     /// Contacts
-    ///     Arrays of one length, with a row for each contact. Those of robot k are
+    ///     Arrays of one length, with a row for each contact. The rows of robot k are
     ///     ``offsets[k]:offsets[k + 1]``.
     ///
     /// Raises

@@ -284,8 +284,7 @@ impl Scene {
     /// Raises
     /// ------
     /// ContinuumError
-    ///     The list is empty, or something in it is no robot. Neither a structure nor the robots
-    ///     have a margin.
+    ///     The list is empty, or something in it is no robot. Nothing in the scene has a margin.
     #[pyo3(signature = (robots, *, caps = Caps::Fitted), text_signature = "($self, robots, *, caps=\"fitted\")")]
     fn clears<'py>(
         &self,
