@@ -151,7 +151,6 @@ mod tests {
     use crate::engine::{BvhSearch, Exhaustive, Proximity};
     use crate::robot::Chain;
     use continuum_testing::Random;
-    use parry3d_f64::math::Pose;
     use parry3d_f64::shape::Ball;
 
     /// A closed wall with bumps, of radius 8 to 10.

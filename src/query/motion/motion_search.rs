@@ -46,7 +46,7 @@ use super::intervals::{self, Interval, MarginAnswer, Sought, TestedInterval};
 use super::moving_tube::{MovingTube, SmallRooms};
 use super::pending_piece::PendingPiece;
 use super::separating_planes::SeparatingPlanes;
-use super::unresolved_piece::UnresolvedPiece;
+use super::unresolved_piece::{UnresolvedPiece, UnresolvedPieces};
 use crate::answer::{MotionAnswer, ProximityError, ShapeInContact};
 use crate::motion::Motion;
 use crate::refine::{MeshUpperBound, Piece, PlacedTube, Refinable, TubeInMesh, refine};
@@ -232,11 +232,12 @@ impl<M: Motion> MotionSearch<'_, M> {
         let moving = MovingTube {
             motion,
             times,
-            t,
             mesh_speed,
-            unresolved: &mut *unresolved,
-            first,
-            unresolved_bodies,
+            unresolved: UnresolvedPieces {
+                pieces: &mut *unresolved,
+                first,
+                bodies: unresolved_bodies,
+            },
             last: &mut self.last,
             planes,
             small_rooms,
