@@ -73,14 +73,21 @@ impl LinearMotion {
     /// `from` and `to` are the points at t = 0 and 1, `segment_radii` one radius per segment.
     ///
     /// ```
-    /// use parry_continuum::{LinearMotion, parry::{math::Vector, shape::Ball}, proximity::BvhSearch};
+    /// use parry_continuum::parry::{math::Vector, shape::Ball};
+    /// use parry_continuum::{LinearMotion, proximity::BvhSearch};
     ///
     /// let (vertices, triangles) = Ball::new(10.0).to_trimesh(64, 32);
     /// let mut search = BvhSearch::from_triangles(&vertices, &triangles)?;
     /// let (from, to) = ([Vector::ZERO, Vector::Z * 8.0], [Vector::X, Vector::new(1.0, 0.0, 8.0)]);
     /// // The flat tip keeps 1 mm, the round one does not.
-    /// assert!(search.clears_motion(&LinearMotion::chain(&from, &to, &[1.0])?, 1.0, 1e-3)?.is_clear());
-    /// assert!(!search.clears_motion(&LinearMotion::capsules(&from, &to, &[1.0])?, 1.0, 1e-3)?.is_clear());
+    /// assert!(
+    ///     search.clears_motion(&LinearMotion::chain(&from, &to, &[1.0])?, 1.0, 1e-3)?.is_clear()
+    /// );
+    /// assert!(
+    ///     !search
+    ///         .clears_motion(&LinearMotion::capsules(&from, &to, &[1.0])?, 1.0, 1e-3)?
+    ///         .is_clear()
+    /// );
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///

@@ -43,7 +43,8 @@ use parry3d_f64::math::{Pose, Real, Vector};
 /// smaller angle, as in a [`RigidMotion`](crate::RigidMotion).
 ///
 /// ```
-/// use parry_continuum::{BendingMotion, BendingSection, MovingBase, parry::math::{Pose, Vector}, verify_motion};
+/// use parry_continuum::parry::math::{Pose, Vector};
+/// use parry_continuum::{BendingMotion, BendingSection, MovingBase, verify_motion};
 ///
 /// let straight = BendingSection { length: 30.0, radius: 1.0, bend: [0.0, 0.0] };
 /// let bent = BendingSection { length: 32.0, radius: 1.0, bend: [0.03, 0.01] };

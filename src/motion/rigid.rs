@@ -32,7 +32,10 @@ use parry3d_f64::math::{Pose, Real, Rotation, Vector};
 /// use parry_continuum::parry::math::{Pose, Vector};
 ///
 /// let needle = Chain::capsules(&[Vector::ZERO, 40.0 * Vector::Z], &[0.5])?;
-/// let motion = RigidMotion::new(Tube::from(&needle), [Pose::IDENTITY, Pose::new(Vector::Z, Vector::X * 0.3)])?;
+/// let motion = RigidMotion::new(
+///     Tube::from(&needle),
+///     [Pose::IDENTITY, Pose::new(Vector::Z, Vector::X * 0.3)],
+/// )?;
 /// verify_motion(&motion, 100)?;
 /// # Ok::<(), parry_continuum::RobotError>(())
 /// ```
