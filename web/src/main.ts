@@ -172,9 +172,13 @@ function show(warnings: string[]) {
   answer.className = near > 0 ? "near" : "";
   // All digits, for whoever compares.
   answer.dataset.distances = JSON.stringify(Array.from(distances));
+  const base = answers.base();
+  const side = base === "outside" ? "outside the wall" : "on the wall, or the wall is open";
   const links = `${near} ${near === 1 ? "link is" : "links are"} within it`;
-  find("verdict").textContent = near === 0 ? `Margin of ${margin} mm kept.` : `Margin of ${margin} mm not kept: ${links}.`;
-  find("verdict").className = near === 0 ? "kept" : "near";
+  const kept = base === "inside" ? "kept." : `kept, but the robot's base is ${side}.`;
+  find("verdict").textContent = `Margin of ${margin} mm ${near === 0 ? kept : `not kept: ${links}.`}`;
+  // Green only if the robot is where a robot belongs.
+  find("verdict").className = near > 0 ? "near" : base === "inside" ? "kept" : "";
   const turned = answers.turned();
   find("details").textContent = [
     `Link ${answers.closest() + 1} of ${distances.length}, counted from the base, is closest, `
@@ -182,8 +186,6 @@ function show(warnings: string[]) {
     ...(turned ? [`The robot is turned from ${turned}.`] : []),
     ...(find<HTMLTextAreaElement>("pose").value.trim() ? ["The robot is placed by the pose."] : []),
   ].join(" ");
-  const base = answers.base();
-  const side = base === "outside" ? "outside the wall" : "on the wall, or the wall is open";
   const outside = base === "inside" ? [] : [`The robot's base is ${side}; distances do not say on which side the robot is.`];
   find("doubts").replaceChildren(
     ...[...warnings, ...outside].map((text) => {
