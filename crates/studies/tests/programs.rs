@@ -209,13 +209,16 @@ fn speed_is_measured_drawn_and_quoted() {
         "{quoted}"
     );
 
-    // Three lines, each with its name.
+    // Three lines, each with its name; axes are black too.
     let plot = read("speed/docs/speed.svg");
     for name in ["parry, link by link", "every triangle, f32", "search, warm start"] {
         assert_eq!(plot.matches(name).count(), 1, "{name}: {plot}");
     }
-    let lines = plot.matches("<polyline").filter(|_| true).count();
-    assert!(lines >= 3, "{plot}");
+    let lines: Vec<_> = plot.split("<polyline").skip(1).collect();
+    for colour in ["#D55E00", "#0072B2"] {
+        let count = lines.iter().filter(|line| line.contains(colour)).count();
+        assert_eq!(count, 1, "{colour}: {plot}");
+    }
     assert_quoted(
         "speed/README.md",
         "speed",
