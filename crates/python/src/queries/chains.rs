@@ -5,7 +5,7 @@ use crate::error::Refused;
 use crate::input::{Block, Caps, Given, Robots};
 use crate::threads::{
     Asked, DeviceKind, DeviceSession, Engine, FirstRefused, LARGEST_CHUNK, Rows, Session, compute,
-    in_chunks, of_batch, pool,
+    in_chunks, pool,
 };
 use parry_continuum::Chain;
 use parry_continuum::parry::math::Pose;
@@ -75,7 +75,7 @@ pub(super) fn ask_chains<Q: ChainQuestion>(
             let ask = || pool.install(|| ask_device(&mut session, question, block, width, rows));
             let answered = compute(py, ask);
             engine.take_back_device(py, answered.is_ok().then_some(session));
-            return answered?.map_err(|error| of_batch(error).raise(py, None));
+            return answered?.map_err(|refused| refused.raise(py, None));
         }
         Rows::<Robots<'_>, _> { block, width, answer: &answer }.ask_lender(py, engine, robots, rows)
     };
@@ -86,14 +86,14 @@ pub(super) fn ask_chains<Q: ChainQuestion>(
 /// Answers all robots of a block, on the device or on the CPU, as the search chooses.
 ///
 /// # Errors
-/// The device has failed, or all robots are refused.
+/// The device has failed.
 fn ask_device<Q: ChainQuestion>(
     session: &mut DeviceSession,
     question: &Q,
     block: &Block,
     width: usize,
     rows: &mut [Q::Row],
-) -> Result<FirstRefused, ProximityError> {
+) -> Result<FirstRefused, Refused> {
     let count = rows.len() / width;
     let DeviceSession { search, chains, .. } = session;
     if chains.len() < count {
@@ -113,7 +113,14 @@ fn ask_device<Q: ChainQuestion>(
         .map_while(|(chain, pose)| Some((chain.as_ref()?, *pose.as_ref().ok()?)))
         .collect();
     let mut out = Vec::new();
-    question.ask_batch(search, &placed, &mut out)?;
+    if !placed.is_empty()
+        && let Err(error) = question.ask_batch(search, &placed, &mut out)
+    {
+        return match device_failure(&error) {
+            Some(failure) => Err(failure),
+            None => Ok(Some((0, error.into()))),
+        };
+    }
     for ((place, answer), rows) in out.into_iter().enumerate().zip(rows.chunks_mut(width)) {
         match answer {
             Ok(answer) => Q::keep(&answer, rows),

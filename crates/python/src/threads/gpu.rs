@@ -76,17 +76,11 @@ pub(super) fn time(search: &Search) -> Option<Duration> {
     search.device_time()
 }
 
-/// The error of a batch; of a device that failed, with what to do in Python.
-pub(crate) fn of_batch(error: ProximityError) -> Refused {
-    let has_failed = matches!(error, ProximityError::Device(_));
-    let refused = Refused::from(error);
-    if has_failed {
-        refused.with_advice(
-            "`Mesh(mesh.vertices, mesh.faces, device='gpu')` opens it anew, and `Mesh(mesh)` is on the CPU",
-        )
-    } else {
-        refused
-    }
+/// The error of a batch if the device has failed, with what to do in Python.
+pub(crate) fn device_failure(error: &ProximityError) -> Option<Refused> {
+    let ProximityError::Device(_) = error else { return None };
+    let advice = "`Mesh(mesh.vertices, mesh.faces, device='gpu')` opens it anew, and `Mesh(mesh)` is on the CPU";
+    Some(Refused::from(error.clone()).with_advice(advice))
 }
 
 fn refused(error: GpuError) -> Refused {

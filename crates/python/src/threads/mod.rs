@@ -35,7 +35,7 @@ pub(crate) use each::{
 };
 pub(crate) use engine::{Engine, Session};
 pub(crate) use fork::watch_forks;
-pub(crate) use gpu::{is_available, of_batch};
+pub(crate) use gpu::{device_failure, is_available};
 pub(crate) use held::Held;
 pub(crate) use points::ask_points;
 pub(crate) use pool::pool;

@@ -32,7 +32,7 @@ pub(super) fn time(_: &Search) -> Option<Duration> {
     None
 }
 
-/// The error of a batch.
-pub(crate) fn of_batch(error: ProximityError) -> Refused {
-    error.into()
+/// The error of a batch if the device has failed.
+pub(crate) fn device_failure(_: &ProximityError) -> Option<Refused> {
+    None
 }
