@@ -60,7 +60,7 @@ pub(super) fn ask_chains<Q: ChainQuestion>(
     take: impl FnMut(usize, &[Q::Row]),
 ) -> PyResult<()> {
     let few = <Robots<'_> as Asked>::FEW;
-    let (is_batch, pool) = (robots.len() >= few, pool(py)?);
+    let is_batch = robots.len() >= few;
     let largest = match engine.device() {
         DeviceKind::Cpu => None,
         DeviceKind::Gpu => Some((LINKS / robots.segments_each().max(1)).clamp(few, LARGEST_CHUNK)),
@@ -70,12 +70,15 @@ pub(super) fn ask_chains<Q: ChainQuestion>(
     };
     let ask = |block: &Block, rows: &mut [Q::Row]| {
         // After a move the search on the CPU may take long to refit, even for one robot.
-        let is_for_device = is_batch || engine.is_stale(py);
-        if is_for_device && let Some(mut session) = engine.lend_device(py)? {
-            let ask = || pool.install(|| ask_device(&mut session, question, block, width, rows));
-            let answered = compute(py, ask);
-            engine.take_back_device(py, answered.is_ok().then_some(session));
-            return answered?.map_err(|refused| refused.raise(py, None));
+        if largest.is_some() && (is_batch || engine.is_stale(py)) {
+            let pool = pool(py)?;
+            if let Some(mut session) = engine.lend_device(py)? {
+                let ask =
+                    || pool.install(|| ask_device(&mut session, question, block, width, rows));
+                let answered = compute(py, ask);
+                engine.take_back_device(py, answered.is_ok().then_some(session));
+                return answered?.map_err(|refused| refused.raise(py, None));
+            }
         }
         Rows::<Robots<'_>, _> { block, width, answer: &answer }.ask_lender(py, engine, robots, rows)
     };
