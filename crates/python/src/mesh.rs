@@ -26,8 +26,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 ///
 /// A mesh with ``device="gpu"`` answers large batches of `distance`, `minimum`, `per_link` and
 /// `clears` on the GPU, and the last bit of an answer is that of the CPU. The size from which on a
-/// batch counts as large depends on the question and on the number of threads; `gpu_seconds` tells
-/// whether one ran there. All other questions, smaller batches and single robots are answered on
+/// batch counts as large depends on the question and on the number of threads; `gpu_seconds` changes
+/// if one ran there. All other questions, smaller batches and single robots are answered on
 /// the CPU. `set_vertices` moves the vertices on the GPU, and the search on the CPU follows at the
 /// next question that needs it, or at `prepare`. With 65,536 faces or more, those four questions
 /// are asked of the GPU until then, about one robot too. One thread at a time uses the GPU for a

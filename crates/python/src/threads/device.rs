@@ -1,9 +1,8 @@
 //! The search on the GPU that a mesh shares with its copies, wherever their vertices have moved.
 //!
-//! One thread at a time has the search. Meanwhile all other threads ask the search on the CPU,
-//! whose answers are the same. The search follows the vertices of the mesh that asks. A forked
-//! child has no search, because no driver survives a fork: the child neither asks nor drops the
-//! search of its parent.
+//! One thread at a time has the search. The other threads ask the search on the CPU, whose answers
+//! are the same. The search follows the vertices of the mesh that asks. A forked child has no
+//! search, because no driver survives a fork: the child never asks or drops its parent's search.
 
 use super::fork::forks;
 use super::gpu;
