@@ -5,7 +5,7 @@ use crate::error::Refused;
 use crate::input::{Block, Caps, Given, Robots};
 use crate::threads::{
     Asked, DeviceKind, DeviceSession, Engine, FirstRefused, LARGEST_CHUNK, Rows, Session, compute,
-    in_chunks, pool,
+    device_failure, in_chunks, pool,
 };
 use parry_continuum::Chain;
 use parry_continuum::parry::math::Pose;
