@@ -1,7 +1,8 @@
 """The licences of all that is linked into the wheel, as licences/THIRD-PARTY.txt, which goes into the wheel.
 
-`python licences.py` is run by `.ci/python` and by the release, before the wheel is built. It fails where a package may not be
-used under terms like those of MIT or Apache-2.0.
+`python licences.py` is run by `.ci/python`, before the wheel is built. The release builds its wheels with the feature `gpu`, and
+runs `python licences.py --features gpu`; the arguments are those of cargo. It fails where a package may not be used under terms
+like those of MIT or Apache-2.0.
 """
 
 import json
@@ -18,9 +19,9 @@ the licence that it states. Then come the texts that the packages bring along, e
 """
 
 
-def linked():
+def linked(features):
     """The packages of others that end in the wheel, on any of the systems that wheels are built for."""
-    command = ["cargo", "metadata", "--format-version", "1"]
+    command = ["cargo", "metadata", "--format-version", "1", *features]
     metadata = json.loads(subprocess.run(command, cwd=HERE, check=True, stdout=subprocess.PIPE).stdout)
     packages = {package["id"]: package for package in metadata["packages"]}
     needs = {node["id"]: node["deps"] for node in metadata["resolve"]["nodes"]}
@@ -44,7 +45,7 @@ def is_good(expression):
 
 def main():
     lines, texts = [HEAD], {}
-    for package in linked():
+    for package in linked(sys.argv[1:]):
         name = f"{package['name']} {package['version']}"
         if not is_good(package["license"]):
             sys.exit(f"{name} is licensed under {package['license']}")

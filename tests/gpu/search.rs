@@ -53,6 +53,71 @@ fn random_robots_are_answered_as_on_the_cpu() {
     assert!(engine.answered_on_cpu() < count as u64 / 4, "{}", engine.answered_on_cpu());
 }
 
+/// From the centre of a ball nearly all triangles are equally near. Mesa's GPU in software stops the
+/// loops of such a search, and the robot is left to the CPU.
+#[test]
+fn loops_that_a_driver_stops_lose_no_answer() {
+    let (vertices, indices) = Ball::new(10.0).to_trimesh(60, 60);
+    let mesh = TriMesh::new(vertices, indices).unwrap();
+    let Some(mut engine) = gpu::search(&mesh) else { return };
+    let mut random = Seeded::new(31);
+    let shapes: Vec<_> = (0..200)
+        .map(|shape| {
+            let mut points = vec![random.point() * 0.2];
+            for k in 0..8 {
+                points.push(points[k] + random.direction() * 0.1);
+            }
+            let build = [Chain::from_centreline, Chain::capsules, Chain::cylinders][shape % 3];
+            build(&points, &[random.between(0.05, 0.6); 8]).unwrap()
+        })
+        .collect();
+    let robots: Vec<_> = shapes.iter().map(|shape| (shape, Pose::IDENTITY)).collect();
+    let mut reference = BvhSearch::new(&mesh).unwrap();
+    for _ in 0..3 {
+        let (mut found, mut expected) = (Vec::new(), Vec::new());
+        engine.per_link_batch(&robots, &mut found).unwrap();
+        reference.per_link_batch(&robots, &mut expected).unwrap();
+        assert_eq!(found, expected);
+        let (mut found, mut expected) = (Vec::new(), Vec::new());
+        engine.minimum_batch(&robots, &mut found).unwrap();
+        reference.minimum_batch(&robots, &mut expected).unwrap();
+        assert_eq!(found, expected);
+    }
+}
+
+/// A batch of more links than the device gets at once: chunks take turns in two sets of buffers, the
+/// last one smaller, and a robot that is left to the CPU stands in each.
+#[test]
+fn a_batch_takes_several_chunks() {
+    let (vertices, indices) = Ball::new(10.0).to_trimesh(8, 4);
+    let mesh = TriMesh::new(vertices, indices).unwrap();
+    let Some(mut engine) = gpu::search(&mesh) else { return };
+    let mut random = Seeded::new(29);
+    let shapes: Vec<_> = (0..64)
+        .map(|_| {
+            let mut points = vec![random.point() * 4.0];
+            for k in 0..64 {
+                points.push(points[k] + random.direction() * 0.3);
+            }
+            Chain::from_centreline(&points, &[0.2; 64]).unwrap()
+        })
+        .collect();
+    // Five chunks of 2^18 links, but for the last.
+    let mut robots: Vec<_> = (0..20_000).map(|k| (&shapes[k % 64], random.pose(1.0))).collect();
+    robots.iter_mut().step_by(4096).for_each(|(_, pose)| pose.translation.x = 1e9);
+    robots[17_000].1.translation.x = f64::NAN;
+    let mut reference = BvhSearch::new(&mesh).unwrap();
+    let (mut found, mut expected) = (Vec::new(), Vec::new());
+    engine.minimum_batch(&robots, &mut found).unwrap();
+    reference.minimum_batch(&robots, &mut expected).unwrap();
+    assert_eq!(found, expected);
+    assert_eq!(engine.answered_on_cpu(), 5);
+    let (mut found, mut expected) = (Vec::new(), Vec::new());
+    engine.clears_batch(&robots, 0.5, &mut found).unwrap();
+    reference.clears_batch(&robots, 0.5, &mut expected).unwrap();
+    assert_eq!(found, expected);
+}
+
 /// The search goes on while the mesh moves, and batches of every size reuse its buffers.
 #[test]
 #[cfg(target_os = "linux")]

@@ -1,7 +1,7 @@
 //! Meshes and centrelines from files, with the frame and the unit that the files state.
 
 use crate::error::Refused;
-use crate::input::{FrameName, of, vectors};
+use crate::input::{DeviceName, FrameName, of, vectors};
 use crate::mesh::{Mesh, Origin, is_file, parts};
 use crate::output::{answer, array};
 use crate::threads::interruptible;
@@ -84,14 +84,16 @@ fn refuse(py: Python<'_>, error: &MeshFileError) -> PyErr {
 /// allow_no_position : bool
 ///     Whether to read a label map that states the spacing of its voxels but not their position;
 ///     its first voxel is then the origin.
+/// device : {"cpu", "gpu"}
+///     What answers large batches: as for `Mesh`.
 ///
 /// Raises
 /// ------
 /// ContinuumError
 ///     The file cannot be read or holds no mesh; ``kind`` is ``"file"``, and the text says what to
-///     change.
+///     change. Or as for `Mesh`.
 #[pyfunction]
-#[pyo3(signature = (path, *, label = None, frame = None, scale = 1.0, allow_no_position = false))]
+#[pyo3(signature = (path, *, label = None, frame = None, scale = 1.0, allow_no_position = false, device = DeviceName::CPU), text_signature = "(path, *, label=None, frame=None, scale=1.0, allow_no_position=False, device=\"cpu\")")]
 pub(crate) fn load(
     py: Python<'_>,
     path: &Bound<'_, PyAny>,
@@ -99,12 +101,13 @@ pub(crate) fn load(
     frame: Option<FrameName>,
     #[pyo3(from_py_with = of::scale)] scale: f64,
     allow_no_position: bool,
+    device: DeviceName,
 ) -> PyResult<Mesh> {
     let options =
         Options::scaled(scale).with_label(label).with_no_position_allowed(allow_no_position);
     let (path, bytes) = match Source::of(path)? {
         Source::Mesh(vertices, faces) if label.is_none() => {
-            return Mesh::of_parts(&vertices, &faces, frame, scale);
+            return Mesh::of_parts(&vertices, &faces, frame, scale, device);
         }
         Source::Mesh(..) => {
             let text = "`label` is given beside a mesh, which has no labels; leave it out";
@@ -118,7 +121,7 @@ pub(crate) fn load(
         Some(bytes) => mesh_files::from_bytes(&file, &bytes, &options),
         None => mesh_files::load_with(&file, &options),
     })?;
-    made(py, &path, read.map_err(|error| refuse(py, &error))?, frame, scale)
+    made(py, &path, read.map_err(|error| refuse(py, &error))?, frame, scale, device)
 }
 
 /// Where a mesh or a centreline is.
@@ -171,6 +174,7 @@ fn made(
     mut file: mesh_files::Mesh,
     frame: Option<FrameName>,
     scale: f64,
+    device: DeviceName,
 ) -> PyResult<Mesh> {
     let name = path.display();
     if file.skipped_faces > 0 {
@@ -189,7 +193,7 @@ fn made(
     let origin =
         Origin { frame, unit: unit(file.states_unit, scale), skipped_faces: file.skipped_faces };
     let (vertices, triangles) = file.into_parts::<[f64; 3]>();
-    Mesh::new_from(py, vectors(&vertices), triangles, origin)
+    Mesh::new_from(py, vectors(&vertices), triangles, origin, device)
 }
 
 /// The centreline in a file: VTK's .vtp or .vtk, 3D Slicer's .mrk.json, or a text (.csv, .tsv,

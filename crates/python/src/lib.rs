@@ -24,7 +24,7 @@ mod _native {
     #[pymodule_export]
     use super::files::{load, load_centreline};
     #[pymodule_export]
-    use super::mesh::Mesh;
+    use super::mesh::{Mesh, gpu_available};
     #[pymodule_export]
     use super::motions::{
         BendingMotion, LinearMotion, Motion, MotionPath, MovingBase, RigidMotion, verify_motion,

@@ -2,9 +2,9 @@
 
 use crate::error::Refused;
 use crate::files::warn;
-use crate::input::{FrameName, Names, Numbers, Robots, faces, shape_text, vectors};
+use crate::input::{DeviceName, FrameName, Names, Numbers, Robots, faces, shape_text, vectors};
 use crate::output::{array, flat};
-use crate::threads::{Engine, Held, alone};
+use crate::threads::{DeviceKind, Engine, Held, alone, is_available};
 use mesh_files::Frame;
 use numpy::{PyArrayDyn, PyUntypedArray};
 use parry_continuum::parry::math::Vector;
@@ -24,6 +24,18 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// `set_vertices` moves the vertices for all queries that begin later. A mesh can be copied and
 /// pickled.
 ///
+/// A mesh with ``device="gpu"`` answers large batches of `distance`, `minimum`, `per_link` and
+/// `clears` on the GPU, and the last bit of an answer is that of the CPU. The size from which on a
+/// batch counts as large depends on the question and on the number of threads; `gpu_seconds` changes
+/// if one ran there. All other questions, smaller batches and single robots are answered on
+/// the CPU. `set_vertices` moves the vertices on the GPU, and the search on the CPU follows at the
+/// next question that needs it, or at `prepare`. With 65,536 faces or more, those four questions
+/// are asked of the GPU until then, about one robot too. One thread at a time uses the GPU for a
+/// mesh and its copies; others are answered on the CPU. A GPU that fails raises a `ContinuumError`.
+///
+/// A mesh on the GPU is copied and pickled as such. Where a pickle finds no GPU, the mesh is on the
+/// CPU, with a warning. A forked child answers on the CPU; it cannot use the GPU of its parent.
+///
 /// Parameters
 /// ----------
 /// vertices : (V, 3) array of any number type, or a mesh of another package
@@ -33,12 +45,18 @@ use std::sync::atomic::{AtomicBool, Ordering};
 ///     The frame of the vertices, for warnings about centrelines in the other one.
 /// unit : str, optional
 ///     The unit of the vertices, such as "mm". Nothing is computed from it.
+/// device : {"cpu", "gpu"}
+///     What answers large batches. "gpu" needs a released wheel, or a build with the feature
+///     ``gpu``, and a GPU: see `gpu_available`. ``Mesh(mesh, device="gpu")`` is the same mesh on
+///     the GPU.
 ///
 /// Raises
 /// ------
 /// ContinuumError
 ///     A vertex is not finite or out of range, a face names a vertex that is not there (its
-///     ``index`` is the face), there is no face, or an array has another shape.
+///     ``index`` is the face), there is no face, or an array has another shape. With
+///     ``device="gpu"``: this build has no GPU, none is found or it fails, or the mesh does not fit
+///     into its memory.
 ///
 /// Examples
 /// --------
@@ -79,8 +97,9 @@ impl Mesh {
         vertices: Vec<Vector>,
         triangles: Vec<[u32; 3]>,
         origin: Origin,
+        DeviceName(device): DeviceName,
     ) -> PyResult<Self> {
-        Ok(Self::of(Arc::new(Engine::new(py, vertices, triangles)?), origin))
+        Ok(Self::of(Arc::new(Engine::new(py, vertices, triangles, device)?), origin))
     }
 
     /// A mesh of arrays, scaled.
@@ -89,13 +108,14 @@ impl Mesh {
         faces: &Bound<'_, PyAny>,
         frame: Option<FrameName>,
         scale: f64,
+        device: DeviceName,
     ) -> PyResult<Self> {
         let py = vertices.py();
         let mut vertices = vectors(rows(vertices, "vertices")?.points());
         let faces = self::faces(faces, vertices.len())?;
         vertices.iter_mut().for_each(|vertex| *vertex *= scale);
         let frame = frame.map(|FrameName(frame)| frame);
-        Self::new_from(py, vertices, faces, Origin { frame, ..Origin::default() })
+        Self::new_from(py, vertices, faces, Origin { frame, ..Origin::default() }, device)
     }
 
     /// The engine of the mesh as it is now.
@@ -206,12 +226,13 @@ pub(crate) fn rows<'py>(given: &Bound<'py, PyAny>, name: &str) -> PyResult<Numbe
 #[pymethods]
 impl Mesh {
     #[new]
-    #[pyo3(signature = (vertices, faces = None, *, frame = None, unit = None))]
+    #[pyo3(signature = (vertices, faces = None, *, frame = None, unit = None, device = DeviceName::CPU), text_signature = "(vertices, faces=None, *, frame=None, unit=None, device=\"cpu\")")]
     fn new(
         vertices: &Bound<'_, PyAny>,
         faces: Option<&Bound<'_, PyAny>>,
         frame: Option<FrameName>,
         unit: Option<String>,
+        device: DeviceName,
     ) -> PyResult<Self> {
         let py = vertices.py();
         let known = |origin: Origin| Origin {
@@ -221,7 +242,8 @@ impl Mesh {
         };
         if let (Ok(mesh), None) = (vertices.cast::<Self>(), faces) {
             let mesh = mesh.get();
-            return Ok(Self::of(mesh.engine(py), known(mesh.origin.clone())));
+            let engine = mesh.engine(py).on(py, device.0)?;
+            return Ok(Self::of(engine, known(mesh.origin.clone())));
         }
         let (vertices, triangles) = match faces {
             Some(faces) => (vertices.clone(), faces.clone()),
@@ -232,7 +254,7 @@ impl Mesh {
         };
         let vertices = vectors(rows(&vertices, "vertices")?.points());
         let triangles = self::faces(&triangles, vertices.len())?;
-        Self::new_from(py, vertices, triangles, known(Origin::default()))
+        Self::new_from(py, vertices, triangles, known(Origin::default()), device)
     }
 
     /// The frame of the vertices, "RAS" or "LPS": that of the file, or the one that was asked for;
@@ -248,6 +270,21 @@ impl Mesh {
         self.origin.unit.as_deref()
     }
 
+    /// Where large batches are answered: "cpu", or "gpu". In a forked child it is "cpu".
+    #[getter]
+    fn device(&self, py: Python<'_>) -> &'static str {
+        self.engine(py).device().name()
+    }
+
+    /// The seconds that the GPU computed for the last batch that it answered, without transfers.
+    ///
+    /// The batch may be one of a copy of the mesh. None before the first batch, on the CPU, and for
+    /// a GPU that keeps no time.
+    #[getter]
+    fn gpu_seconds(&self, py: Python<'_>) -> Option<f64> {
+        self.engine(py).gpu_seconds(py)
+    }
+
     /// How many faces of the file were left out because they have no area.
     #[getter]
     fn skipped_faces(&self) -> usize {
@@ -257,15 +294,15 @@ impl Mesh {
     /// The vertices as they are now, a (V, 3) array of your own.
     #[getter]
     fn vertices<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        let search = self.engine(py).search(py)?;
-        let vertices = search.vertices();
+        let vertices = self.engine(py).vertices(py);
+        let vertices = vertices.as_slice();
         array(py, vec![vertices.len(), 3], flat(vertices.iter().copied()))
     }
 
     /// The triangles, an (F, 3) array of int64 of your own.
     #[getter]
     fn faces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<i64>>> {
-        let search = self.engine(py).search(py)?;
+        let search = self.engine(py).base(py);
         let numbers: Vec<_> =
             search.triangles().as_flattened().iter().map(|&vertex| vertex.into()).collect();
         array(py, vec![search.triangles().len(), 3], numbers)
@@ -298,7 +335,7 @@ impl Mesh {
     fn set_vertices(&self, vertices: &Bound<'_, PyAny>) -> PyResult<()> {
         let py = vertices.py();
         let vertices = vectors(rows(vertices, "vertices")?.points());
-        let moved = Arc::new(self.engine(py).moved(py, &vertices)?);
+        let moved = Arc::new(self.engine(py).moved(py, vertices)?);
         let before = self.engine.with(py, |engine| std::mem::replace(engine, moved));
         drop(before); // not under the lock
         Ok(())
@@ -323,17 +360,30 @@ impl Mesh {
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
         let make = slf.py().import("parry_continuum._copies")?.getattr("mesh")?;
-        let parts = ["vertices", "faces", "frame", "unit"].map(|name| slf.getattr(name));
+        let parts = ["vertices", "faces", "frame", "unit", "device"].map(|name| slf.getattr(name));
         let parts = parts.into_iter().collect::<PyResult<Vec<_>>>()?;
         Ok((make, PyTuple::new(slf.py(), parts)?))
     }
 
-    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
-        let search = self.engine(py).search(py)?;
-        Ok(format!(
-            "Mesh({} vertices, {} faces)",
-            search.vertices().len(),
-            search.triangles().len()
-        ))
+    fn __repr__(&self, py: Python<'_>) -> String {
+        let engine = self.engine(py);
+        let search = engine.base(py);
+        let device = match engine.device() {
+            DeviceKind::Cpu => String::new(),
+            DeviceKind::Gpu => ", device='gpu'".to_owned(),
+        };
+        let (vertices, faces) = (search.vertices().len(), search.triangles().len());
+        format!("Mesh({vertices} vertices, {faces} faces{device})")
     }
+}
+
+/// Whether ``Mesh(.., device="gpu")`` finds a GPU.
+///
+/// Opens the GPU, which takes a moment; the meshes of the process then share it. It is False for a
+/// build without the feature ``gpu``, for a machine without a GPU that Vulkan, Metal or Direct3D 12
+/// offers, and in a child of a process that had opened the GPU before it forked. A GPU in software,
+/// such as Mesa's, counts: it is right, but slow.
+#[pyfunction]
+pub(crate) fn gpu_available(py: Python<'_>) -> PyResult<bool> {
+    is_available(py)
 }

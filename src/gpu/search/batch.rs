@@ -19,8 +19,8 @@
 //! 3. **Second pass**, on the device (`gather`): the parts in which a wanted triangle found no room
 //!    gather all wanted triangles for the final D and T.
 //! 4. **Measure**, on the CPU: all candidates, in double precision. The best is the answer.
-//! 5. **Remainder**, on the CPU: robots that the device cannot represent, or whose candidates do
-//!    not fit, take the search on the CPU. They are counted.
+//! 5. **Remainder**, on the CPU: robots that the device cannot represent, whose candidates do not
+//!    fit, or whose loops the driver stopped take the search on the CPU. They are counted.
 //!
 //! Chunks overlap: the CPU packs a chunk and measures the chunk before while the device works.
 //!
@@ -42,7 +42,7 @@ use super::bounds::{FAR, error_of};
 use super::device::{DeviceTree, SearchKernels};
 #[cfg(doc)]
 use super::kernels::ROOM;
-use super::kernels::{FOUND, FULL, HIT, PART, Question, SearchQuery};
+use super::kernels::{FOUND, FULL, HIT, PART, Question, STOPPED, SearchQuery};
 use crate::answer::ProximityError;
 use crate::distance::Vec3;
 use crate::distance::lanes::Lane;
@@ -347,6 +347,7 @@ impl Heads<'_> {
                 match status {
                     HIT => is_hit = true,
                     FULL => (is_left, is_full) = (true, true),
+                    STOPPED => is_left = true,
                     FOUND.. => {
                         let (begin, count) = (begin as usize, (status - FOUND) as usize);
                         if begin + count > self.room as usize {

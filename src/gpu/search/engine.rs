@@ -50,8 +50,9 @@ const MANY_TRIANGLES: usize = 1 << 16;
 /// - **Contacts** ([`contacts_within`](Proximity::contacts_within)) run on the CPU. For tubes, motions and sides
 ///   [`cpu`](Self::cpu) returns the search on the CPU.
 ///
-/// Robots that single precision does not resolve are searched on the CPU, and so are robots with
-/// very many equally near triangles. [`answered_on_cpu`](Self::answered_on_cpu) counts them.
+/// Robots that single precision does not resolve are searched on the CPU. So are robots with very
+/// many equally near triangles, and robots for which the driver stops a long loop.
+/// [`answered_on_cpu`](Self::answered_on_cpu) counts them.
 ///
 /// ```no_run
 /// use parry_continuum::gpu::GpuSearch;

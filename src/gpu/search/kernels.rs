@@ -18,11 +18,13 @@ pub(super) const REFIT_THREADS: u32 = 64;
 pub(super) const NOTHING: u32 = u32::MAX;
 
 /// The status of a part: a link is certainly within the margin; no room for its candidates; waiting
-/// for the second pass. [`FOUND`] plus the number of its candidates otherwise; 0 is no answer.
+/// for the second pass; the driver has stopped a loop. [`FOUND`] plus the number of its candidates
+/// otherwise; 0 is no answer.
 pub(super) const HIT: u32 = 1;
 pub(super) const FULL: u32 = 2;
 const SECOND: u32 = 3;
-pub(super) const FOUND: u32 = 4;
+pub(super) const STOPPED: u32 = 4;
+pub(super) const FOUND: u32 = 5;
 
 /// The question of a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -109,6 +111,7 @@ pub(super) fn passes(kind: usize, counts_work: bool) -> [Shader; 2] {
         ("HIT", HIT),
         ("FULL", FULL),
         ("SECOND", SECOND),
+        ("STOPPED", STOPPED),
         ("FOUND", FOUND),
         ("MINIMUM", Question::Minimum.kind() as u32),
         ("CLEARS", Question::Clears(0.0).kind() as u32),

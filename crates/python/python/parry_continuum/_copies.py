@@ -2,18 +2,33 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
 from typing import Any, Optional
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ._errors import ContinuumError
 from ._native import Mesh, Motion, Scene
 
 
-def mesh(vertices: NDArray[np.float64], faces: NDArray[np.int64], frame: Any, unit: Optional[str]) -> Mesh:
-    """A mesh with what is known of it."""
-    return Mesh(vertices, faces, frame=frame, unit=unit)
+def mesh(
+    vertices: NDArray[np.float64],
+    faces: NDArray[np.int64],
+    frame: Any,
+    unit: Optional[str],
+    device: Any = "cpu",
+) -> Mesh:
+    """A mesh with what is known of it; on the CPU where its GPU is not."""
+    try:
+        return Mesh(vertices, faces, frame=frame, unit=unit, device=device)
+    except ContinuumError as error:
+        if device == "cpu":
+            raise
+        made = Mesh(vertices, faces, frame=frame, unit=unit)
+        warnings.warn(f"a mesh that was on the GPU is unpickled on the CPU, with the same answers: {error}", stacklevel=2)
+        return made
 
 
 def motion(cls: Any, maker: Optional[str], args: tuple[Any, ...], more: dict[str, Any]) -> Motion:

@@ -12,8 +12,8 @@ class ContinuumError(ValueError):
     ----------
     kind : str
         What is wrong in one word, for programs. The words are those of the Rust library's ``kind()``, and
-        ``"bad_shape"``, ``"bad_type"``, ``"bad_caps"``, ``"bad_frame"``, ``"changed"``, ``"nested_too_deep"``, ``"file"`` and
-        ``"no_threads"``. ``"defect"`` is an error of the library itself.
+        ``"bad_shape"``, ``"bad_type"``, ``"bad_caps"``, ``"bad_device"``, ``"bad_frame"``, ``"changed"``, ``"file"``,
+        ``"gpu_in_child"``, ``"nested_too_deep"``, ``"no_gpu_support"`` and ``"no_threads"``. ``"defect"`` is an error of the library itself.
     robot : int or None
         Which robot of a batch it is about.
     index : int or None

@@ -47,6 +47,7 @@ __all__ = [
     "Scene",
     "SelfQuery",
     "__version__",
+    "gpu_available",
     "link_surfaces",
     "load",
     "load_centreline",
@@ -60,6 +61,7 @@ __version__: str
 _Caps = Literal["fitted", "capsules", "cylinders"]
 _MotionCaps = Literal["fitted", "capsules"]
 _Frame = Literal["RAS", "LPS"]
+_Device = Literal["cpu", "gpu"]
 
 class _AsMatrix(Protocol):
     def as_matrix(self) -> Any: ...
@@ -122,12 +124,22 @@ class MotionPath(Motion):
 class Mesh:
     # Beside an array, a mesh of another package.
     def __new__(
-        cls, vertices: Any, faces: ArrayLike | None = None, *, frame: _Frame | None = None, unit: str | None = None
+        cls,
+        vertices: Any,
+        faces: ArrayLike | None = None,
+        *,
+        frame: _Frame | None = None,
+        unit: str | None = None,
+        device: _Device = "cpu",
     ) -> Mesh: ...
     @property
     def frame(self) -> _Frame | None: ...
     @property
     def unit(self) -> str | None: ...
+    @property
+    def device(self) -> _Device: ...
+    @property
+    def gpu_seconds(self) -> float | None: ...
     @property
     def skipped_faces(self) -> int: ...
     @property
@@ -463,6 +475,7 @@ class SelfQuery:
     ) -> DecisionOrDecisions: ...
     def clears_motion(self, motion: Motion, *, margin: float, resolution: float) -> RobotMotionAnswer: ...
 
+def gpu_available() -> bool: ...
 def load(
     path: Any,
     *,
@@ -470,6 +483,7 @@ def load(
     frame: _Frame | None = None,
     scale: float = 1.0,
     allow_no_position: bool = False,
+    device: _Device = "cpu",
 ) -> Mesh: ...
 def load_centreline(
     path: str | bytes | PathLike[str] | PathLike[bytes] | IO[bytes] | IO[str], *, line: int | None = None, frame: _Frame | None = None, scale: float = 1.0

@@ -16,4 +16,4 @@ pub(crate) use names::Names;
 pub(crate) use numbers::{Numbers, numpy, shape_text, vectors};
 pub(crate) use poses::{Poses, matrices, pose_if_one, pose_of};
 pub(crate) use robots::{Block, Given, Robots};
-pub(crate) use scalars::{FrameName, check_length, of, places};
+pub(crate) use scalars::{DeviceName, FrameName, check_length, of, places};

@@ -2,6 +2,7 @@
 //! a function here.
 
 use crate::error::Refused;
+use crate::threads::DeviceKind;
 use mesh_files::Frame;
 use parry_continuum::proximity::ProximityError;
 use pyo3::exceptions::{PyOverflowError, PyTypeError, PyValueError};
@@ -21,6 +22,30 @@ impl<'a, 'py> FromPyObject<'a, 'py> for FrameName {
             _ => {
                 let text = format!("`frame` is {}; it must be 'RAS' or 'LPS'", given.repr()?);
                 Err(Refused::other("bad_frame", text).raise(given.py(), None))
+            }
+        }
+    }
+}
+
+/// A device, as the parameter `device` names it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct DeviceName(pub DeviceKind);
+
+impl DeviceName {
+    /// The default.
+    pub(crate) const CPU: Self = Self(DeviceKind::Cpu);
+}
+
+impl<'a, 'py> FromPyObject<'a, 'py> for DeviceName {
+    type Error = PyErr;
+
+    fn extract(given: Borrowed<'a, 'py, PyAny>) -> PyResult<Self> {
+        match given.extract::<&str>() {
+            Ok("cpu") => Ok(Self(DeviceKind::Cpu)),
+            Ok("gpu") => Ok(Self(DeviceKind::Gpu)),
+            _ => {
+                let text = format!("`device` is {}; it must be 'cpu' or 'gpu'", given.repr()?);
+                Err(Refused::other("bad_device", text).raise(given.py(), None))
             }
         }
     }

@@ -1,12 +1,55 @@
 //! Whether a robot keeps a margin.
 
+use super::chains::{ChainQuestion, ask_chains};
 use super::distance::set_chain;
+use crate::error::Refused;
 use crate::input::{Caps, Given, of};
 use crate::mesh::Mesh;
 use crate::output::{Enumeration, answer, array_or_number, members, side_value};
 use crate::threads::{Asked, Session, ask_each};
-use parry_continuum::proximity::Proximity;
+use parry_continuum::Chain;
+use parry_continuum::parry::math::Pose;
+use parry_continuum::proximity::{Proximity, ProximityError};
 use pyo3::prelude::*;
+
+/// Whether a margin is kept.
+struct Clears {
+    caps: Caps,
+    margin: f64,
+}
+
+impl ChainQuestion for Clears {
+    type Row = bool;
+    type Answer = bool;
+
+    fn caps(&self) -> Caps {
+        self.caps
+    }
+
+    fn ask(
+        &self,
+        session: &mut Session,
+        robot: &Given<'_>,
+        rows: &mut [bool],
+    ) -> Result<(), Refused> {
+        let chain = set_chain(&mut session.chain, robot, self.caps)?;
+        rows[0] = session.search.clears(chain, &robot.pose()?, self.margin)?;
+        Ok(())
+    }
+
+    fn ask_batch(
+        &self,
+        search: &mut impl Proximity,
+        robots: &[(&Chain, Pose)],
+        out: &mut Vec<Result<bool, ProximityError>>,
+    ) -> Result<(), ProximityError> {
+        search.clears_batch(robots, self.margin, out)
+    }
+
+    fn keep(answer: &bool, rows: &mut [bool]) {
+        rows[0] = *answer;
+    }
+}
 
 #[pymethods]
 impl Mesh {
@@ -47,12 +90,9 @@ impl Mesh {
     ) -> PyResult<Bound<'py, PyAny>> {
         let robots = self.robots(points, radii, pose)?;
         let mut all: Vec<bool> = Vec::with_capacity(robots.len());
-        let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [bool]| {
-            let chain = set_chain(&mut session.chain, robot, caps)?;
-            row[0] = session.search.clears(chain, &robot.pose()?, margin)?;
-            Ok(())
-        };
-        ask_each(py, &self.engine(py), &robots, (false, 1), ask, |_, found| all.extend(found))?;
+        let question = Clears { caps, margin };
+        let keep = |_, found: &[bool]| all.extend(found);
+        ask_chains(py, &self.engine(py), &robots, &question, (false, 1), keep)?;
         array_or_number(py, robots.shape(&[]), all)
     }
 

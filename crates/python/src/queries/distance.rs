@@ -1,14 +1,52 @@
 //! How near a robot is.
 
+use super::chains::{ChainQuestion, ask_chains};
 use crate::error::Refused;
 use crate::input::{Caps, Given};
 use crate::mesh::Mesh;
 use crate::output::{answer, array_or_number, flat};
-use crate::threads::{Asked, Session, ask_each};
-use parry_continuum::parry::math::Vector;
-use parry_continuum::proximity::{LinkProximity, Proximity};
+use crate::threads::{Asked, Session};
+use parry_continuum::parry::math::{Pose, Vector};
+use parry_continuum::proximity::{LinkProximity, Proximity, ProximityError};
 use parry_continuum::{Chain, RobotError};
 use pyo3::prelude::*;
+
+/// The closest link and triangle.
+struct Minimum {
+    caps: Caps,
+}
+
+impl ChainQuestion for Minimum {
+    type Row = Option<LinkProximity>;
+    type Answer = LinkProximity;
+
+    fn caps(&self) -> Caps {
+        self.caps
+    }
+
+    fn ask(
+        &self,
+        session: &mut Session,
+        robot: &Given<'_>,
+        rows: &mut [Self::Row],
+    ) -> Result<(), Refused> {
+        rows[0] = Some(session.minimum(robot, self.caps)?);
+        Ok(())
+    }
+
+    fn ask_batch(
+        &self,
+        search: &mut impl Proximity,
+        robots: &[(&Chain, Pose)],
+        out: &mut Vec<Result<LinkProximity, ProximityError>>,
+    ) -> Result<(), ProximityError> {
+        search.minimum_batch(robots, out)
+    }
+
+    fn keep(answer: &LinkProximity, rows: &mut [Self::Row]) {
+        rows[0] = Some(*answer);
+    }
+}
 
 impl Session {
     /// The closest link and triangle of a robot.
@@ -100,12 +138,9 @@ impl Mesh {
     ) -> PyResult<Bound<'py, PyAny>> {
         let robots = self.robots(points, radii, pose)?;
         let mut distances: Vec<f64> = Vec::with_capacity(robots.len());
-        let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [f64]| {
-            row[0] = session.minimum(robot, caps)?.distance;
-            Ok(())
-        };
-        ask_each(py, &self.engine(py), &robots, (f64::NAN, 1), ask, |_, found| {
-            distances.extend(found)
+        let question = Minimum { caps };
+        ask_chains(py, &self.engine(py), &robots, &question, (None, 1), |_, found| {
+            distances.extend(found.iter().flatten().map(|found| found.distance))
         })?;
         array_or_number(py, robots.shape(&[]), distances)
     }
@@ -146,11 +181,8 @@ impl Mesh {
     ) -> PyResult<Bound<'py, PyAny>> {
         let robots = self.robots(points, radii, pose)?;
         let mut all: Vec<LinkProximity> = Vec::with_capacity(robots.len());
-        let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [Option<LinkProximity>]| {
-            row[0] = Some(session.minimum(robot, caps)?);
-            Ok(())
-        };
-        ask_each(py, &self.engine(py), &robots, (None, 1), ask, |_, found| {
+        let question = Minimum { caps };
+        ask_chains(py, &self.engine(py), &robots, &question, (None, 1), |_, found| {
             all.extend(found.iter().flatten())
         })?;
         let shape = || robots.shape(&[]);

@@ -1,6 +1,7 @@
 //! The questions that a mesh is asked, a file for each.
 
 pub(crate) mod certify;
+mod chains;
 pub(crate) mod clearance;
 mod clears;
 pub(crate) mod distance;

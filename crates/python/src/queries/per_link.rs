@@ -1,12 +1,15 @@
 //! How near each link of a robot is.
 
+use super::chains::{ChainQuestion, ask_chains};
 use super::distance::set_chain;
+use crate::error::Refused;
 use crate::input::{Caps, Given};
 use crate::mesh::Mesh;
 use crate::output::{answer, array};
-use crate::threads::{Asked, Session, ask_each};
-use parry_continuum::parry::math::Vector;
-use parry_continuum::proximity::Proximity;
+use crate::threads::{Asked, Session};
+use parry_continuum::Chain;
+use parry_continuum::parry::math::{Pose, Vector};
+use parry_continuum::proximity::{LinkProximity, Proximity, ProximityError};
 use pyo3::prelude::*;
 
 /// What there is of a segment; of one without length, nothing.
@@ -26,6 +29,53 @@ const NOTHING: Row = Row {
     arc_length: f64::NAN,
     triangle: -1,
 };
+
+/// The closest triangle of every link.
+struct PerLink {
+    caps: Caps,
+}
+
+impl ChainQuestion for PerLink {
+    type Row = Row;
+    type Answer = Vec<LinkProximity>;
+
+    fn caps(&self) -> Caps {
+        self.caps
+    }
+
+    fn ask(
+        &self,
+        session: &mut Session,
+        robot: &Given<'_>,
+        rows: &mut [Row],
+    ) -> Result<(), Refused> {
+        let chain = set_chain(&mut session.chain, robot, self.caps)?;
+        session.search.per_link(chain, &robot.pose()?, &mut session.links)?;
+        Self::keep(&session.links, rows);
+        Ok(())
+    }
+
+    fn ask_batch(
+        &self,
+        search: &mut impl Proximity,
+        robots: &[(&Chain, Pose)],
+        out: &mut Vec<Result<Self::Answer, ProximityError>>,
+    ) -> Result<(), ProximityError> {
+        search.per_link_batch(robots, out)
+    }
+
+    fn keep(answer: &Self::Answer, rows: &mut [Row]) {
+        for found in answer {
+            rows[found.witness.segment as usize] = Row {
+                distance: found.distance,
+                on_robot: found.witness.on_robot,
+                on_mesh: found.witness.on_mesh,
+                arc_length: found.witness.arc_length,
+                triangle: found.witness.triangle.into(),
+            };
+        }
+    }
+}
 
 #[pymethods]
 impl Mesh {
@@ -71,21 +121,8 @@ impl Mesh {
         let (mut distance, mut arc_length) = (Vec::with_capacity(count), Vec::with_capacity(count));
         let (mut on_robot, mut on_mesh) = (Vec::with_capacity(count), Vec::with_capacity(count));
         let mut triangle = Vec::with_capacity(count);
-        let ask = |session: &mut Session, robot: &Given<'_>, rows: &mut [Row]| {
-            let chain = set_chain(&mut session.chain, robot, caps)?;
-            session.search.per_link(chain, &robot.pose()?, &mut session.links)?;
-            for found in &session.links {
-                rows[found.witness.segment as usize] = Row {
-                    distance: found.distance,
-                    on_robot: found.witness.on_robot,
-                    on_mesh: found.witness.on_mesh,
-                    arc_length: found.witness.arc_length,
-                    triangle: found.witness.triangle.into(),
-                };
-            }
-            Ok(())
-        };
-        ask_each(py, &self.engine(py), &robots, (NOTHING, segments.max(1)), ask, |_, rows| {
+        let (question, empty) = (PerLink { caps }, (NOTHING, segments.max(1)));
+        ask_chains(py, &self.engine(py), &robots, &question, empty, |_, rows| {
             distance.extend(rows.iter().map(|row| row.distance));
             on_robot.extend(rows.iter().map(|row| row.on_robot.to_array()));
             on_mesh.extend(rows.iter().map(|row| row.on_mesh.to_array()));

@@ -4,7 +4,7 @@ use super::compute::compute;
 use super::pool::pool;
 use crate::error::Refused;
 use pyo3::prelude::*;
-use std::ops::Range;
+use std::ops::{Range, RangeInclusive};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -15,7 +15,7 @@ const SHARE: usize = 8;
 const CHUNK: Duration = Duration::from_millis(50);
 
 /// The robots of a chunk are copied, so that there are no more of them than this.
-const LARGEST_CHUNK: usize = 1 << 16;
+pub(crate) const LARGEST_CHUNK: usize = 1 << 16;
 
 /// The subjects of a query: one, or a batch.
 pub(crate) trait Asked {
@@ -94,24 +94,37 @@ pub(crate) fn ask_each<T: Clone + Send, L: Lender, Q: Asked>(
     asked: &Q,
     (empty, width): (T, usize),
     answer: impl Fn(&mut L::Session, &Q::One<'_>, &mut [T]) -> Result<(), Refused> + Sync,
+    take: impl FnMut(usize, &[T]),
+) -> PyResult<()> {
+    let ask = |block: &Q::Block, answers: &mut [T]| {
+        Rows::<Q, _> { block, width, answer: &answer }.ask_lender(py, lender, asked, answers)
+    };
+    in_chunks(py, asked, (empty, width), Q::FEW..=LARGEST_CHUNK, ask, take)
+}
+
+/// The first robot that is refused, by its place in the chunk, and why.
+pub(crate) type FirstRefused = Option<(usize, Refused)>;
+
+/// Has `ask` answer chunk after chunk. The first chunk has as many robots as `sizes` starts with;
+/// the next are as long as fits [`CHUNK`].
+pub(crate) fn in_chunks<T: Clone, Q: Asked>(
+    py: Python<'_>,
+    asked: &Q,
+    (empty, width): (T, usize),
+    sizes: RangeInclusive<usize>,
+    mut ask: impl FnMut(&Q::Block, &mut [T]) -> PyResult<FirstRefused>,
     mut take: impl FnMut(usize, &[T]),
 ) -> PyResult<()> {
     let of_batch = |robot: usize| asked.count().map(|_| robot);
     let (count, mut block, mut answers) = (asked.len(), Q::Block::default(), Vec::new());
-    let (mut start, mut chunk) = (0, Q::FEW);
+    let (mut start, mut chunk) = (0, *sizes.start());
     while start < count {
         let end = count.min(start + chunk);
         let begin = Instant::now();
         answers.clear();
         answers.resize((end - start) * width, empty.clone());
         asked.copy(start..end, &mut block).map_err(|refused| refused.raise(py, None))?;
-        let rows = Rows::<Q, _> { block: &block, width, answer: &answer };
-        let refused = if count < Q::FEW {
-            alone(py, lender, |session| rows.ask(session, 0, &mut answers))?
-        } else {
-            rows.ask_on_all_cores(py, lender, &mut answers)?
-        };
-        if let Some((place, refused)) = refused {
+        if let Some((place, refused)) = ask(&block, &mut answers)? {
             return Err(refused.raise(py, of_batch(start + place)));
         }
         take(start, &answers);
@@ -122,7 +135,7 @@ pub(crate) fn ask_each<T: Clone + Send, L: Lender, Q: Asked>(
             break;
         }
         let scale = CHUNK.as_secs_f64() / begin.elapsed().as_secs_f64().max(1e-9);
-        chunk = ((chunk as f64 * scale.min(8.0)) as usize).clamp(2, LARGEST_CHUNK);
+        chunk = ((chunk as f64 * scale.min(8.0)) as usize).clamp(2, *sizes.end());
         start = end;
     }
     Ok(())
@@ -176,21 +189,34 @@ pub(crate) fn alone<T: Send, L: Lender>(
 }
 
 /// The robots of a chunk, and the query for each.
-struct Rows<'a, Q: Asked, A> {
-    block: &'a Q::Block,
-    width: usize,
-    answer: &'a A,
+pub(crate) struct Rows<'a, Q: Asked, A> {
+    pub block: &'a Q::Block,
+    pub width: usize,
+    pub answer: &'a A,
 }
 
 impl<Q: Asked, A> Rows<'_, Q, A> {
+    /// Asks about all robots of the block: a small batch on this thread, a large one on all cores.
+    pub(crate) fn ask_lender<T: Send, L: Lender>(
+        &self,
+        py: Python<'_>,
+        lender: &L,
+        asked: &Q,
+        answers: &mut [T],
+    ) -> PyResult<FirstRefused>
+    where
+        A: Fn(&mut L::Session, &Q::One<'_>, &mut [T]) -> Result<(), Refused> + Sync,
+    {
+        if asked.len() < Q::FEW {
+            alone(py, lender, |session| self.ask(session, 0, answers))
+        } else {
+            self.ask_on_all_cores(py, lender, answers)
+        }
+    }
+
     /// Asks about the robots from the place `first` on, one for each row of answers. Returns the
     /// first that is refused.
-    fn ask<S, T>(
-        &self,
-        session: &mut S,
-        first: usize,
-        answers: &mut [T],
-    ) -> Option<(usize, Refused)>
+    fn ask<S, T>(&self, session: &mut S, first: usize, answers: &mut [T]) -> FirstRefused
     where
         A: Fn(&mut S, &Q::One<'_>, &mut [T]) -> Result<(), Refused>,
     {
@@ -207,7 +233,7 @@ impl<Q: Asked, A> Rows<'_, Q, A> {
         py: Python<'_>,
         lender: &L,
         answers: &mut [T],
-    ) -> PyResult<Option<(usize, Refused)>>
+    ) -> PyResult<FirstRefused>
     where
         A: Fn(&mut L::Session, &Q::One<'_>, &mut [T]) -> Result<(), Refused> + Sync,
     {

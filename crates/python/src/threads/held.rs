@@ -16,4 +16,9 @@ impl<T> Held<T> {
     pub(crate) fn with<R>(&self, _: Python<'_>, look: impl FnOnce(&mut T) -> R) -> R {
         look(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner))
     }
+
+    /// The data of an owner who shares them with nobody.
+    pub(crate) fn get_mut(&mut self) -> &mut T {
+        self.0.get_mut().unwrap_or_else(PoisonError::into_inner)
+    }
 }

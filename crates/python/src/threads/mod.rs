@@ -10,18 +10,32 @@
 //! - The threads of a pool do not live on in a child, so a child has a pool of its own (`pool`).
 //!   What another thread was in the middle of building in the library stays half built for ever in
 //!   the child, so the child builds it again (`engine`).
+//! - One thread at a time has a mesh's search on the GPU; the others ask the CPU (`device`). A child
+//!   has no GPU of its parent's.
 
 mod compute;
+mod device;
 mod each;
 mod engine;
 mod fork;
+#[cfg(feature = "gpu")]
+mod gpu;
+#[cfg(not(feature = "gpu"))]
+#[path = "no_gpu.rs"]
+mod gpu;
 mod held;
 mod points;
 mod pool;
 
 pub(crate) use compute::{compute, interruptible};
-pub(crate) use each::{Asked, Lender, alone, answer_each, answer_each_or_kind, ask_each};
+pub(crate) use device::{DeviceKind, DeviceSession};
+pub(crate) use each::{
+    Asked, FirstRefused, LARGEST_CHUNK, Lender, Rows, alone, answer_each, answer_each_or_kind,
+    ask_each, in_chunks,
+};
 pub(crate) use engine::{Engine, Session};
 pub(crate) use fork::watch_forks;
+pub(crate) use gpu::{device_failure, is_available};
 pub(crate) use held::Held;
 pub(crate) use points::ask_points;
+pub(crate) use pool::pool;

@@ -1,7 +1,7 @@
 //! Curves as they come: clean, joined, repeated, unevenly spaced, noisy. How many tubes are
 //! accepted, how close their bounds are, and how far from the truth; and how finely tubes are
-//! divided beside flat faces. Writes `docs/CURVES.md`, the table of `docs/book/tube.md` and the plot
-//! `docs/curves.svg`.
+//! divided beside flat faces. Writes `docs/CURVES.md`, the table of `docs/book/tube.md` and the
+//! plot `docs/curves.svg`.
 //!
 //! ```text
 //! cargo run --release -p continuum-studies --bin curves

@@ -83,10 +83,14 @@ fn gather(
         }
     }
     workgroupBarrier();
+    storageBarrier();
     if (is_link && part_first != NOTHING) {
         let limit = limits[number * PART + lane];
         let bound = bitcast<f32>(limit.x);
         let link = robot_link(parts[number], lane);
         gather_link(link, lane, bound, limit.y, part_first + own_first);
+    }
+    if (is_link && !loops_run()) {
+        heads[number] = vec2<u32>(0u, STOPPED);
     }
 }

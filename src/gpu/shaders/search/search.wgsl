@@ -212,9 +212,13 @@ fn search(
         }
     }
     workgroupBarrier();
+    storageBarrier();
     if (is_link && part_first != NOTHING) {
         for (var i = 0u; i < count; i++) {
             entries[part_first + own_first + i] = vec2<u32>(lane, candidates[i]);
         }
+    }
+    if (is_link && !loops_run()) {
+        heads[number] = vec2<u32>(0u, STOPPED);
     }
 }
