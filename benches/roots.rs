@@ -8,7 +8,7 @@ use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main};
 use parry_continuum::distance::Vec3;
 use parry_continuum::distance::laboratory::{Convex, DiscSolver};
-use polynomial_roots::*;
+use real_polynomial_roots::*;
 use std::hint::black_box;
 use std::time::Duration;
 

@@ -1,13 +1,13 @@
-//! Draws the seven ways to cap a chain (Fig. 7 of the paper): `cargo run --release --example
-//! figure7`.
+//! Draws four rules for the caps of a chain on three robots (Fig. 7 of the paper):
+//! `cargo run --release --example figure7`.
 //!
-//! Cylinders leave a gap at every joint, capsules have round ends. Round caps inside and flat ones
-//! at both ends are right only while segments are longer than the radius and the radius does not
-//! change; otherwise caps stick out. Algorithm 1 (`Chain::from_centreline`) places round caps only
-//! where they stay inside.
+//! Cylinders leave a gap at every joint, capsules have round ends. Naive caps, round inside and
+//! flat at both ends, are right only while links are longer than the radius and the radius does not
+//! change; otherwise caps stick out. Algorithm 1 (`Chain::from_centreline`) fits the caps: round
+//! only where they stay inside.
 
 use clap::Parser;
-use continuum_demo::canvas::{Align, Canvas, Colour, hex, mix};
+use continuum_demo::canvas::{Align, Canvas, Colour, hex};
 use continuum_demo::command;
 use continuum_demo::picture::{Camera, Picture, Solid};
 use parry_continuum::parry::math::{Pose, Real, Rot3, Vector};
@@ -17,7 +17,7 @@ use rayon::prelude::*;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// Draw the seven ways to cap a chain.
+/// Draw four rules for the caps of a chain.
 #[derive(Parser)]
 struct Options {
     /// Where to save the picture: a directory, or a file that ends in .png
@@ -28,19 +28,60 @@ struct Options {
 const INK: Colour = hex(0x22303c);
 const PALE: Colour = hex(0x5d6b75);
 const PAPER: Colour = hex(0xf3f5f6);
-/// Vermilion and bluish green, which colour-blind readers tell apart (Okabe and Ito).
-const INADEQUATE: Colour = hex(0xd55e00);
-const ADEQUATE: Colour = hex(0x009e73);
-/// Links alternate in colour, so that neighbours differ.
-const LINKS: [Colour; 2] = [hex(0x3f7fa8), hex(0x9cc4da)];
+/// A dark vermilion and bluish green, which colour-blind readers tell apart (Okabe and Ito).
+const WRONG: Colour = hex(0xa63200);
+const RIGHT: Colour = hex(0x009e73);
+/// Links alternate in colour, so that neighbours differ. In grey, both are lighter than [`WRONG`].
+const LINKS: [Colour; 2] = [hex(0x7db0d0), hex(0xcbe0ec)];
 
-/// One way to cap a chain.
-struct Panel {
-    letter: char,
-    title: &'static str,
+/// A rule: how it caps a chain.
+struct Rule {
+    name: &'static str,
     remark: &'static str,
-    adequate: bool,
+    links: fn(&Curve) -> Result<Vec<ModifiedCylinder>, RobotError>,
+}
+
+const RULES: [Rule; 4] = [
+    Rule { name: "cylinders", remark: "flat everywhere", links: Curve::cylinders },
+    Rule { name: "capsules", remark: "round everywhere", links: Curve::capsules },
+    Rule { name: "naive caps", remark: "flat at both ends, round inside", links: Curve::naive },
+    Rule { name: "fitted caps", remark: "round where it stays inside", links: Curve::fitted },
+];
+
+/// One rule on one robot.
+struct Panel {
     links: Vec<ModifiedCylinder>,
+    fitted: Vec<ModifiedCylinder>,
+}
+
+impl Panel {
+    fn is_right(&self) -> bool {
+        self.links.iter().zip(&self.fitted).all(|(link, fitted)| link.caps() == fitted.caps())
+    }
+
+    /// The links, and in the colour of mistakes each cap that sticks out or is missing.
+    fn solids(&self, pose: &Pose) -> Result<Vec<Solid>, RobotError> {
+        let (mut solids, mut mistakes) = (Vec::new(), Vec::new());
+        for (index, (link, fitted)) in self.links.iter().zip(&self.fitted).enumerate() {
+            let capped = |caps| -> Result<SharedShape, RobotError> {
+                let ends = [link.start(), link.end()];
+                let link = ModifiedCylinder::new(ends[0], ends[1], link.radius(), caps)?;
+                Ok(SharedShape::new(link))
+            };
+            let (own, fitted) = (link.caps(), fitted.caps());
+            // Flat where the two differ, and round there.
+            let flat = [0, 1].map(|end| if own[end] == fitted[end] { own[end] } else { Cap::Flat });
+            let round =
+                [0, 1].map(|end| if own[end] == fitted[end] { own[end] } else { Cap::Round });
+            solids.push(Solid::new(capped(flat)?, *pose, LINKS[index % 2], false));
+            if own != fitted {
+                mistakes.push(Solid::new(capped(round)?, *pose, WRONG, false));
+            }
+        }
+        // Where two surfaces coincide the first one shows.
+        solids.extend(mistakes);
+        Ok(solids)
+    }
 }
 
 /// A centreline on a circle of the given radius, one segment per tube radius.
@@ -77,115 +118,112 @@ impl Curve {
         Ok(Chain::capsules(&self.points, &self.radii)?.links().to_vec())
     }
 
-    fn algorithm_1(&self) -> Result<Vec<ModifiedCylinder>, RobotError> {
+    fn fitted(&self) -> Result<Vec<ModifiedCylinder>, RobotError> {
         Ok(Chain::from_centreline(&self.points, &self.radii)?.links().to_vec())
     }
 }
 
-fn panels() -> Result<Vec<Panel>, RobotError> {
-    let long = Curve::new(3.6, 1.5, &[1.0; 4]);
-    let short = Curve::new(2.6, 0.4, &[1.0; 9]);
-    let tubes = Curve::new(6.0, 1.0, &[1.5, 1.5, 1.5, 1.0, 1.0, 1.0, 0.5, 0.5, 0.5]);
-    let panel =
-        |letter, title, remark, adequate, links| Panel { letter, title, remark, adequate, links };
-    Ok(vec![
-        panel('a', "cylinders", "a gap at every joint", false, long.cylinders()?),
-        panel('b', "capsules", "longer by a radius at both ends", false, long.capsules()?),
-        panel('c', "flat ends, short links", "inner round caps stick out", false, short.naive()?),
-        panel(
-            'd',
-            "flat ends, three tubes",
-            "round caps stick out at steps",
-            false,
-            tubes.naive()?,
-        ),
-        panel('e', "flat ends, long links", "closed, and flat where it ends", true, long.naive()?),
-        panel(
-            'f',
-            "fitted caps, short links",
-            "round only where it stays inside",
-            true,
-            short.algorithm_1()?,
-        ),
-        panel('g', "fitted caps, three tubes", "flat at each step", true, tubes.algorithm_1()?),
+/// A robot, and what is said about it.
+struct Row {
+    name: &'static str,
+    remark: &'static str,
+    panels: [Panel; 4],
+}
+
+fn rows() -> Result<[Row; 3], RobotError> {
+    let row = |name, remark, curve: Curve| -> Result<Row, RobotError> {
+        let panel = |rule: &Rule| -> Result<Panel, RobotError> {
+            Ok(Panel { links: (rule.links)(&curve)?, fitted: curve.fitted()? })
+        };
+        let [a, b, c, d] = RULES.each_ref().map(panel);
+        Ok(Row { name, remark, panels: [a?, b?, c?, d?] })
+    };
+    let tubes = [1.5, 1.5, 1.5, 1.0, 1.0, 1.0, 0.5, 0.5, 0.5];
+    Ok([
+        row("long links", "1.5 radii each", Curve::new(3.6, 1.5, &[1.0; 4]))?,
+        row("short links", "0.4 radii each", Curve::new(2.6, 0.4, &[1.0; 9]))?,
+        row("three tubes", "three links each", Curve::new(6.0, 1.0, &tubes))?,
     ])
 }
 
-const CARD: [usize; 2] = [460, 470];
-const VIEW: [usize; 2] = [440, 330];
+const CARD: [usize; 2] = [400, 300];
 const GAP: usize = 24;
-const HEAD: usize = 120;
+/// Left of the cards, for the names of the robots.
+const SIDE: usize = 210;
+/// Above the cards, for the title and the names of the rules.
+const HEAD: usize = 256;
 
 fn main() -> ExitCode {
     command::run(|options: &Options| {
         let out = command::picture_path(&options.out, "figure7.png")?;
-        let panels = panels().map_err(|error| error.to_string())?;
-        draw(&panels).save(&out).map_err(|error| command::unwritable(&out, error))?;
+        let canvas = rows().and_then(|rows| draw(&rows)).map_err(|error| error.to_string())?;
+        canvas.save(&out).map_err(|error| command::unwritable(&out, error))?;
         println!("picture: {}", out.display());
         Ok(())
     })
 }
 
-fn draw(panels: &[Panel]) -> Canvas {
-    let width = 4 * CARD[0] + 5 * GAP;
-    let height = HEAD + 2 * CARD[1] + 2 * GAP;
+fn draw(rows: &[Row]) -> Result<Canvas, RobotError> {
+    let (width, height) = (SIDE + 4 * (CARD[0] + GAP), HEAD + rows.len() * (CARD[1] + GAP));
     let mut canvas = Canvas::new(width, height, |_, _| PAPER);
-    canvas.text("Seven ways to cap a chain", [GAP as f32 + 6.0, 64.0], Align::Left, 30.0, INK);
-    let pictures: Vec<Canvas> = panels.par_iter().map(render).collect();
-    for (index, (panel, picture)) in panels.iter().zip(&pictures).enumerate() {
-        // Four that are not adequate above, three that are below.
-        let (row, column) = (index / 4, index % 4);
-        let left = GAP + column * (CARD[0] + GAP);
-        let top = HEAD + row * (CARD[1] + GAP);
-        let [x, y] = [left as f32, top as f32];
-        let card = [x, y, x + CARD[0] as f32, y + CARD[1] as f32];
-        canvas.panel(card, 16.0, [1.0; 3], 1.0);
-        canvas.paste(picture, [left + 10, top + 12], 0.0);
-        let verdict = if panel.adequate { ADEQUATE } else { INADEQUATE };
-        canvas.frame(card, 16.0, 3.0, mix(verdict, [1.0; 3], 0.45));
-        let foot = y + CARD[1] as f32;
-        canvas.panel([x + 24.0, foot - 96.0, x + 74.0, foot - 46.0], 25.0, verdict, 1.0);
-        canvas.text(
-            &panel.letter.to_string(),
-            [x + 49.0, foot - 63.0],
-            Align::Centre,
-            22.0,
-            [1.0; 3],
-        );
-        canvas.text(panel.title, [x + 92.0, foot - 74.0], Align::Left, 19.0, INK);
-        canvas.text(panel.remark, [x + 92.0, foot - 36.0], Align::Left, 16.5, PALE);
+    let left = 30.0;
+    canvas.text(
+        "Only fitted caps give the shape of every robot",
+        [left, 62.0],
+        Align::Left,
+        32.0,
+        INK,
+    );
+    canvas.panel([left, 93.0, left + 22.0, 115.0], 4.0, WRONG, 1.0);
+    canvas.text("wrong: sticks out, or is missing", [left + 38.0, 112.0], Align::Left, 19.0, INK);
+    let at =
+        |column: usize, row: usize| [SIDE + column * (CARD[0] + GAP), HEAD + row * (CARD[1] + GAP)];
+    for (column, rule) in RULES.iter().enumerate() {
+        let x = at(column, 0)[0] as f32;
+        canvas.text(rule.name, [x, HEAD as f32 - 58.0], Align::Left, 24.0, INK);
+        canvas.text(rule.remark, [x, HEAD as f32 - 22.0], Align::Left, 17.0, PALE);
     }
-    let [x, y] = [(GAP + 3 * (CARD[0] + GAP) + 30) as f32, (HEAD + CARD[1] + GAP + 150) as f32];
-    let legend = [
-        (INADEQUATE, ["a to d: not the robot's shape,", "for the reason that is named"]),
-        (ADEQUATE, ["e to g: the robot's shape,", "as fitted caps make it"]),
-    ];
-    for (row, (verdict, lines)) in legend.into_iter().enumerate() {
-        let y = y - 60.0 + 92.0 * row as f32;
-        canvas.panel([x, y, x + 22.0, y + 22.0], 11.0, verdict, 1.0);
-        for (line, text) in lines.into_iter().enumerate() {
-            canvas.text(text, [x + 38.0, y + 18.0 + 32.0 * line as f32], Align::Left, 17.0, INK);
+    let pictures: Vec<_> = rows.par_iter().map(render).collect::<Result<_, _>>()?;
+    for (index, (row, pictures)) in rows.iter().zip(&pictures).enumerate() {
+        let middle = (HEAD + index * (CARD[1] + GAP) + CARD[1] / 2) as f32;
+        canvas.text(row.name, [left, middle], Align::Left, 20.0, INK);
+        canvas.text(row.remark, [left, middle + 34.0], Align::Left, 16.0, PALE);
+        for (column, (panel, picture)) in row.panels.iter().zip(pictures).enumerate() {
+            let corner = at(column, index);
+            canvas.paste(picture, corner, 16.0);
+            verdict(&mut canvas, panel.is_right(), corner.map(|x| x as f32));
         }
     }
-    canvas.text("radius 1; of three tubes 1.5, 1 and 0.5", [x, y + 150.0], Align::Left, 16.5, PALE);
-    canvas.text("links 1.5 long, short ones 0.4,", [x, y + 182.0], Align::Left, 16.5, PALE);
-    canvas.text("of three tubes 1", [x, y + 214.0], Align::Left, 16.5, PALE);
-    canvas
+    Ok(canvas)
 }
 
-fn render(panel: &Panel) -> Canvas {
-    // Its chord lies flat, and its proximal end face is visible.
-    let (first, last) = (panel.links[0], panel.links[panel.links.len() - 1]);
-    let chord = (last.end() - first.start()).normalize();
-    let pose = Pose::from_rotation(Rot3::from_rotation_arc(chord, Vector::X));
-    let solid = |(index, link): (usize, &ModifiedCylinder)| {
-        Solid::new(SharedShape::new(*link), pose, LINKS[index % 2], false)
+/// A tick or a cross in the corner of a card.
+fn verdict(canvas: &mut Canvas, is_right: bool, [x, y]: [f32; 2]) {
+    let (x, y) = (x + 22.0, y + 22.0);
+    let (lines, colour) = if is_right {
+        (vec![vec![[x, y + 16.0], [x + 11.0, y + 28.0], [x + 32.0, y]]], RIGHT)
+    } else {
+        let cross = vec![vec![[x, y], [x + 26.0, y + 26.0]], vec![[x, y + 26.0], [x + 26.0, y]]];
+        (cross, WRONG)
     };
-    let mut picture = Picture::new(None, panel.links.iter().enumerate().map(solid).collect());
-    picture.sky = [[1.0; 3], [1.0; 3]];
-    let outline = panel.links.iter().flat_map(|link| link.transformed(&pose).to_trimesh(24).0);
+    canvas.stroke(&lines, 7.0, colour, 1.0);
+}
+
+/// Draws the robot by each rule, all from the same place.
+fn render(row: &Row) -> Result<Vec<Canvas>, RobotError> {
+    // The chord lies flat, and the proximal end face is visible.
+    let all = || row.panels.iter().flat_map(|panel| &panel.links);
+    let links = &row.panels[0].links;
+    let chord = (links[links.len() - 1].end() - links[0].start()).normalize();
+    let pose = Pose::from_rotation(Rot3::from_rotation_arc(chord, Vector::X));
+    let outline: Vec<_> = all().flat_map(|link| link.transformed(&pose).to_trimesh(24).0).collect();
     let towards = Vector::new(0.75, 0.12, -1.0);
-    let aspect = VIEW[0] as Real / VIEW[1] as Real;
-    let camera = Camera::framing(&outline.collect::<Vec<_>>(), towards, Vector::Y, aspect, 0.07);
-    picture.render(&camera, VIEW[0], VIEW[1])
+    let aspect = CARD[0] as Real / CARD[1] as Real;
+    let camera = Camera::framing(&outline, towards, Vector::Y, aspect, 0.07);
+    let draw = |panel: &Panel| {
+        let mut picture = Picture::new(None, panel.solids(&pose)?);
+        picture.sky = [[1.0; 3], [1.0; 3]];
+        Ok(picture.render(&camera, CARD[0], CARD[1]))
+    };
+    row.panels.iter().map(draw).collect()
 }

@@ -2,8 +2,8 @@
 //!
 //! `cargo run --release --example two_robots` sends a robot through either frontal horn. At every
 //! step one scene is asked: whether each robot keeps its margin from the wall and from the other
-//! one, and where the least room is left. At the end there are the time per question, and a picture
-//! of the last step at which all is clear, with the closest points. `--mesh` takes real anatomy
+//! one, and where the slack (distance less margin) is least. At the end there are the time per
+//! question, and a picture of the last step at which all is clear, with the closest points. `--mesh` takes real anatomy
 //! instead (in millimetres, or with `--scale`); `--base` and `--axis` place the first robot in it,
 //! and the second stands `--beside` it.
 
@@ -11,7 +11,8 @@ use clap::Parser;
 use continuum_demo::anatomy::{Anatomy, no_goal};
 use continuum_demo::canvas::{Align, Canvas, Colour, hex};
 use continuum_demo::ctr::{Centreline, Joints, Robot, three_tubes};
-use continuum_demo::picture::{Camera, Picture, Solid};
+use continuum_demo::figure::{ring, ruler};
+use continuum_demo::picture::{Camera, Picture, SKY, Solid};
 use continuum_demo::{command, steer, timing, ventricle};
 use parry_continuum::Chain;
 use parry_continuum::parry::math::{Pose, Real, Rot3, Vector};
@@ -23,8 +24,8 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Duration;
 
-/// Send two concentric tube robots into one brain ventricle, and tell at every step where the least
-/// room is left.
+/// Send two concentric tube robots into one brain ventricle, and tell at every step where the slack
+/// is least.
 #[derive(Parser)]
 struct Options {
     #[command(flatten)]
@@ -55,6 +56,8 @@ const LINKS: usize = 30;
 const COLOURS: [Colour; 2] = [hex(0x2f6db3), hex(0xd9822b)];
 const INK: Colour = hex(0x22303c);
 const SIZE: [usize; 2] = [1400, 1000];
+/// The height of the title and the notes above the scene.
+const HEAD: usize = 156;
 
 fn main() -> ExitCode {
     command::run(steer)
@@ -83,7 +86,7 @@ fn steer(options: &Options) -> Result<(), String> {
     let mut scene = Scene::new();
     scene.add(options.anatomy.name(), search, Some(options.margin)).map_err(text)?;
     scene.set_robot_margin(Some(options.between)).map_err(text)?;
-    println!("step  clear  the least room that is left");
+    println!("step  clear  least slack: distance less margin");
     let mut last_clear = None;
     for step in 1..=options.steps {
         let share = Real::from(step) / Real::from(options.steps);
@@ -110,7 +113,7 @@ fn steer(options: &Options) -> Result<(), String> {
     scene.per_structure(&robots, &mut walls).map_err(text)?;
     print_times(&mut scene, &robots)?;
 
-    let canvas = draw(&mesh, &robots, &walls, &told(&scene, &tightest))?;
+    let canvas = draw(&mesh, &robots, &walls, &scene, &tightest)?;
     canvas.save(&out).map_err(|error| command::unwritable(&out, error))?;
     println!("\npicture of step {drawn}: {}", out.display());
     Ok(())
@@ -168,20 +171,23 @@ fn print_times(scene: &mut Scene, robots: &[(&Chain, Pose); 2]) -> Result<(), St
         Duration::from_millis(500),
     )?;
     println!("\ntime per question (median, taken in turns)");
-    for (name, time) in
-        ["the tightest of all", "whether all is clear", "robot against robot"].iter().zip(medians)
+    for (name, time) in ["the least slack of all", "whether all is clear", "robot against robot"]
+        .iter()
+        .zip(medians)
     {
         println!("  {name:<24} {:>8.1} us", time.as_secs_f64() * 1e6);
     }
     Ok(())
 }
 
-/// Both robots, their closest points, and the closest points of each robot and the wall.
+/// Both robots, their closest points, the closest points of each robot and the wall, and a ring
+/// around the place of least slack.
 fn draw(
     mesh: &TriMesh,
     robots: &[(&Chain, Pose); 2],
     walls: &[StructureProximity],
-    tightest: &str,
+    scene: &Scene,
+    tightest: &Tightest,
 ) -> Result<Canvas, String> {
     let [(a, pose_a), (b, pose_b)] = robots;
     let nearest = RobotPair::new().minimum(a, pose_a, b, pose_b).map_err(text)?;
@@ -193,13 +199,13 @@ fn draw(
     let thick = a.links().iter().map(|link| link.radius()).fold(0.0, Real::max);
     let mut join = |from: Vector, to: Vector| {
         for end in [from, to] {
-            let ball = SharedShape::ball(0.25 * thick);
+            let ball = SharedShape::ball(0.16 * thick);
             solids.push(Solid::new(ball, Pose::from_translation(end), INK, false));
         }
         if let Some(way) = (to - from).try_normalize() {
             let middle =
                 Pose::from_parts(from.midpoint(to), Rot3::from_rotation_arc(Vector::Y, way));
-            let line = SharedShape::cylinder(0.5 * (to - from).length(), 0.1 * thick);
+            let line = SharedShape::cylinder(0.5 * (to - from).length(), 0.06 * thick);
             solids.push(Solid::new(line, middle, INK, false));
         }
     };
@@ -209,34 +215,50 @@ fn draw(
     }
     let mut picture = Picture::new(Some(mesh), solids);
     picture.skin.veil = 0.15;
-    let [width, height] = SIZE;
+    let [width, height] = [SIZE[0], SIZE[1] - HEAD];
     let towards = Vector::new(0.1, -1.0, -0.15);
-    let camera =
-        Camera::framing(mesh.vertices(), towards, Vector::Z, width as Real / height as Real, 0.08);
-    let mut canvas = picture.render(&camera, width, height);
+    let ends = robots.iter().flat_map(|(chain, pose)| {
+        chain.links().iter().flat_map(move |link| [pose * link.start(), pose * link.end()])
+    });
+    let ends: Vec<_> = ends.collect();
+    let camera = Camera::framing(&ends, towards, Vector::Z, width as Real / height as Real, 0.25);
+    let mut canvas = Canvas::new(SIZE[0], SIZE[1], |_, _| SKY[0]);
+    canvas.paste(&picture.render(&camera, width, height), [0, HEAD], 0.0);
+    let on_canvas = |place: Vector| {
+        let [x, y] = camera.place(place, [width, height]);
+        [x, y + HEAD as f32]
+    };
+    let place = match &tightest.between {
+        Between::Robots { nearest, .. } => {
+            nearest.witness.on_first.midpoint(nearest.witness.on_second)
+        }
+        Between::Structure(wall) => {
+            wall.nearest.witness.on_robot.midpoint(wall.nearest.witness.on_mesh)
+        }
+        _ => return Err("the place of least slack is of an unknown kind".into()),
+    };
+    let [x, y] = on_canvas(place);
+    ring(&mut canvas, [x, y], 28.0);
+    let label = format!("least slack: {:.3} mm", tightest.slack);
+    canvas.panel([x - 150.0, y + 46.0, x + 150.0, y + 90.0], 8.0, SKY[0], 0.85);
+    canvas.text(&label, [x, y + 77.0], Align::Centre, 21.0, INK);
+    for (number, (chain, pose)) in robots.iter().enumerate() {
+        let [x, y] = on_canvas(pose * chain.links()[0].start());
+        canvas.text(&format!("robot {number}"), [x, y - 56.0], Align::Centre, 21.0, INK);
+    }
     canvas.text(
         "Two concentric tube robots in one ventricle",
-        [40.0, 890.0],
+        [40.0, 62.0],
         Align::Left,
-        28.0,
+        30.0,
         INK,
     );
-    let apart = format!(
-        "{:.3} mm between the robots, at links {} and {}",
-        nearest.distance, nearest.links[0], nearest.links[1]
-    );
-    canvas.text(&apart, [40.0, 926.0], Align::Left, 19.0, INK);
-    canvas.text(
-        &format!("the least room: {}", tightest.trim_start()),
-        [40.0, 956.0],
-        Align::Left,
-        19.0,
-        INK,
-    );
-    for (robot, colour) in COLOURS.into_iter().enumerate() {
-        let y = 926.0 + 30.0 * robot as f32;
-        canvas.panel([1250.0, y - 16.0, 1268.0, y + 2.0], 9.0, colour, 1.0);
-        canvas.text(&format!("robot {robot}"), [1282.0, y], Align::Left, 19.0, INK);
-    }
+    let note = format!("least slack (distance less margin): {}", told(scene, tightest).trim());
+    canvas.text(&note, [40.0, 100.0], Align::Left, 17.0, INK);
+    let [i, j] = nearest.links;
+    let apart = format!("between the robots: {:.3} mm, at links {i} and {j}", nearest.distance);
+    canvas.text(&apart, [40.0, 132.0], Align::Left, 17.0, INK);
+    let middle = ends.iter().sum::<Vector>() / ends.len() as Real;
+    ruler(&mut canvas, &camera, middle, [width, height], [40.0, SIZE[1] as f32 - 40.0]);
     Ok(canvas)
 }

@@ -171,10 +171,9 @@ fn steer(options: &Options) -> Result<(), String> {
         }
         None => None,
     };
-    let times =
-        print_times(&mesh, &chains, &base, &mut search, (&exhaustive_name, &mut *exhaustive))?;
+    print_times(&mesh, &chains, &base, &mut search, (&exhaustive_name, &mut *exhaustive))?;
 
-    let caption = caption(options, &mesh, chain, nearest(&found, curve, &pieces), times);
+    let caption = caption(options, &mesh, chain, closest(&found, curve, &pieces));
     let picture = figure::draw(&mesh, chain, &base, &found, &pieces, &caption);
     picture.save(&out).map_err(|error| command::unwritable(&out, error))?;
     println!("\npicture: {}", out.display());
@@ -248,15 +247,14 @@ fn print_pieces(pieces: &[TubePiece]) {
     }
 }
 
-/// Times each engine and parry in turns, and prints them. Returns search (the first time and
-/// again), exhaustive and parry.
+/// Times each engine and parry in turns, and prints them.
 fn print_times(
     mesh: &TriMesh,
     chains: &[Chain],
     base: &Pose,
     search: &mut BvhSearch,
     (exhaustive_name, exhaustive): (&str, &mut dyn Proximity),
-) -> Result<[Duration; 4], String> {
+) -> Result<(), String> {
     let chain = &chains[chains.len() - 1];
     let before = &chains[chains.len().saturating_sub(2)];
     let cylinders = timing::cylinders(chain);
@@ -291,7 +289,7 @@ fn print_times(
     row("search, first time", first);
     row("search, again after the step before", again);
     row(exhaustive_name, all);
-    Ok([first, again, all, parry])
+    Ok(())
 }
 
 fn ratio(of: Duration, to: Duration) -> f64 {
@@ -300,30 +298,22 @@ fn ratio(of: Duration, to: Duration) -> f64 {
 
 /// Where the robot is closest: between the bounds of the curve if they are requested, otherwise by
 /// its links.
-fn nearest(
-    links: &[LinkProximity],
-    curve: Option<Clearance>,
-    pieces: &[TubePiece],
-) -> Option<String> {
+fn closest(links: &[LinkProximity], curve: Option<Clearance>, pieces: &[TubePiece]) -> String {
     if let Some(curve) = curve {
         let (lower, upper, arc_length) = (curve.lower, curve.upper, curve.witness.arc_length);
         let count = pieces.len();
-        return Some(format!(
+        return format!(
             "the curve, in {count} pieces: {lower:.4} to {upper:.4} mm, {arc_length:.1} mm along it"
-        ));
+        );
     }
-    let nearest = links.iter().min_by(|a, b| a.distance.total_cmp(&b.distance))?;
-    let (link, triangle, distance) = (nearest.link, nearest.witness.triangle, nearest.distance);
-    Some(format!("closest: link {link} and triangle {triangle}, {distance:.3} mm apart"))
+    let Some(closest) = links.iter().min_by(|a, b| a.distance.total_cmp(&b.distance)) else {
+        return String::new();
+    };
+    let (distance, arc_length) = (closest.distance, closest.witness.arc_length);
+    format!("closest: {distance:.3} mm from the wall, {arc_length:.1} mm along the robot")
 }
 
-fn caption(
-    options: &Options,
-    mesh: &TriMesh,
-    chain: &Chain,
-    nearest: Option<String>,
-    [first, again, exhaustive, parry]: [Duration; 4],
-) -> figure::Caption {
+fn caption(options: &Options, mesh: &TriMesh, chain: &Chain, closest: String) -> figure::Caption {
     let (one, many) = match options.model {
         Model::Capsule => ("capsule", "capsules"),
         Model::Cylinder => ("cylinder", "cylinders"),
@@ -331,31 +321,9 @@ fn caption(
     };
     let count = chain.links().len();
     let links = format!("{count} {}", if count == 1 { one } else { many });
-    let mut notes = Vec::from_iter(nearest);
-    notes.push(format!(
-        "all links: search {} the first time, {} again",
-        clock(first),
-        clock(again)
-    ));
-    notes.push(format!(
-        "every triangle {}, parry link by link {}",
-        clock(exhaustive),
-        clock(parry)
-    ));
     figure::Caption {
         title: format!("A concentric tube robot in {}", options.anatomy.name()),
         subtitle: format!("{links} against {} triangles", mesh.num_triangles()),
-        notes,
+        closest,
     }
-}
-
-/// A time in the unit that suits it.
-fn clock(time: Duration) -> String {
-    let seconds = time.as_secs_f64();
-    let (value, unit) = match seconds {
-        s if s < 1e-3 => (s * 1e6, "µs"),
-        s if s < 1.0 => (s * 1e3, "ms"),
-        s => (s, "s"),
-    };
-    if value < 10.0 { format!("{value:.1} {unit}") } else { format!("{value:.0} {unit}") }
 }

@@ -17,7 +17,10 @@
 //! let mut links = Vec::new();
 //! search.per_link(&robot, &Pose::IDENTITY, &mut links)?;
 //! for link in &links {
-//!     println!("link {}: {:.3} mm to triangle {}", link.link, link.distance, link.witness.triangle);
+//!     println!(
+//!         "link {}: {:.3} mm to triangle {}",
+//!         link.link, link.distance, link.witness.triangle
+//!     );
 //! }
 //! assert!(search.clears(&robot, &Pose::IDENTITY, 2.0)?);
 //! # assert_eq!(links.len(), 2);
@@ -48,9 +51,9 @@
 //!   and itself. A [`Scene`](proximity::Scene) has several structures, each with its margin: see
 //!   [`book::robots`].
 //! - **Threads.** Each thread has a clone of the engine: see [`book::threads`].
-//! - **Contacts.** [`contacts_within`](proximity::Proximity::contacts_within) finds every place where the robot is
-//!   near the wall, with its normal and its derivative by the joints. [`book::control`] is about
-//!   controllers.
+//! - **Contacts.** [`contacts_within`](proximity::Proximity::contacts_within) finds every place
+//!   where the robot is near the wall, with its normal and its derivative by the joints.
+//!   [`book::control`] is about controllers.
 //! - **parry and rapier.** Links and chains are parry shapes with exact point and ray queries. Pass
 //!   a [`ContinuumDispatcher`] to parry's queries or to rapier's narrow phase. The feature `rapier`
 //!   adds a function that does so and sets the parameters that depend on the unit of length.

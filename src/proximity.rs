@@ -102,9 +102,10 @@
 //! | read the mesh as the engine has it now | [`vertices`], [`triangles`] |
 //! | drop the warm start | [`forget`] |
 //!
-//! An answer that names a place has a [`Witness`] or a [`PairWitness`]: `answer.witness.on_mesh`. A robot keeps a margin if its distance exceeds the margin. A yes or no
-//! about links is exact, so it is a `bool`. About tubes and motions it is a [`Decision`], which may
-//! be `Undecided`. An error says what to change; its `kind()` is one word for programs.
+//! An answer that names a place has a [`Witness`] or a [`PairWitness`]: `answer.witness.on_mesh`. A
+//! robot keeps a margin if its distance exceeds the margin. A yes or no about links is exact, so it
+//! is a `bool`. About tubes and motions it is a [`Decision`], which may be `Undecided`. An error
+//! says what to change; its `kind()` is one word for programs.
 //!
 //! ```
 //! use parry_continuum::Chain;
@@ -116,7 +117,10 @@
 //! let robot = Chain::from_centreline(&[Vector::ZERO, Vector::Z * 6.0], &[0.5])?;
 //! let closest = search.minimum(&robot, &Pose::IDENTITY)?;
 //! let at = closest.witness;
-//! println!("{} mm, {} mm along the robot, triangle {}", closest.distance, at.arc_length, at.triangle);
+//! println!(
+//!     "{} mm, {} mm along the robot, triangle {}",
+//!     closest.distance, at.arc_length, at.triangle
+//! );
 //! # assert!(at.arc_length == 6.0 && 3.9 < closest.distance && closest.distance < 4.0);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```

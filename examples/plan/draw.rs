@@ -109,8 +109,8 @@ pub fn draw(
     ruler(&mut canvas, &camera, middle, PANEL, [GAP as f32 + 4.0, foot + 52.0]);
     // At whole pixels, so that the colours stay what they are.
     let bar = [(0.4 * width as f32).round(), foot + 48.0];
-    let title = format!("distance from link to wall (mm; {FARTHEST}: or more)");
-    colours.draw(&mut canvas, bar, [(0.56 * width as f32).round(), 22.0], &title, INK);
+    let size = [(0.53 * width as f32).round(), 22.0];
+    colours.draw(&mut canvas, bar, size, "distance from link to wall, mm", INK);
     Ok(canvas)
 }
 

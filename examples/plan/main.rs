@@ -2,12 +2,12 @@
 //!
 //! `cargo run --release --example plan` grows a ventricle and looks for a way from the burr hole
 //! through the foramen of Monro into the third ventricle, in the space of the robot's joints. The
-//! ventricle has a vein with a margin of its own, and an endoscope that rests. Whether an edge keeps
-//! all margins is proven by one call, `Scene::clears_motion`; the same planner is then run with edges
-//! that are checked by steps, and what these accept is looked at again. `--picture` draws the
-//! shapes of the way, `--clearance` how near it comes to the wall over time. `--mesh` takes real
-//! anatomy instead (in millimetres, or with `--scale`); `--base` and `--axis` place the robot in
-//! it.
+//! ventricle has a vein with a margin of its own, and an endoscope that rests. Whether an edge
+//! keeps all margins is proven by one call, `Scene::clears_motion`; the same planner is then run
+//! with edges that are checked by steps, and what these accept is looked at again. `--picture`
+//! draws the shapes of the way, `--clearance` how near it comes to the wall over time. `--mesh`
+//! takes real anatomy instead (in millimetres, or with `--scale`); `--base` and `--axis` place the
+//! robot in it.
 
 mod draw;
 mod edges;

@@ -136,7 +136,7 @@ impl<'a> Studio<'a> {
         sheet.text(title, [GAP as f32, 54.0], Align::Left, 24.0, INK);
         let bar = [GAP as f32, (height - FOOT + 32) as f32];
         let size = [0.45 * width as f32, 16.0];
-        self.colours.draw(&mut sheet, bar, size, "distance from link to wall (mm)", INK);
+        self.colours.draw(&mut sheet, bar, size, "distance from link to wall, mm", INK);
         for (row, note) in [
             "dark wire: the kinematic shape, where the robot is bent away from it",
             "orange dots: contacts; mN: the sum of the magnitudes of their forces",

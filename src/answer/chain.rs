@@ -155,16 +155,21 @@ impl Contact {
     /// use parry_continuum::parry::{math::{Pose, Vector}, shape::TriMesh};
     /// use parry_continuum::proximity::{BvhSearch, Proximity};
     ///
-    /// let wall = [Vector::new(-9.0, 0.0, 3.0), Vector::new(9.0, 0.0, 3.0), Vector::new(0.0, 9.0, 4.0)];
+    /// let wall =
+    ///     [Vector::new(-9.0, 0.0, 3.0), Vector::new(9.0, 0.0, 3.0), Vector::new(0.0, 9.0, 4.0)];
     /// let mesh = TriMesh::new(wall.to_vec(), vec![[0, 1, 2]])?;
     /// let mut search = BvhSearch::new(&mesh)?;
     /// // One link with flat caps, turned by q about the x axis through its base.
-    /// let robot = |q: f64| Chain::from_centreline(&[Vector::ZERO, Vector::new(0.0, -q.sin(), q.cos())], &[0.5]);
+    /// let robot = |q: f64| {
+    ///     Chain::from_centreline(&[Vector::ZERO, Vector::new(0.0, -q.sin(), q.cos())], &[0.5])
+    /// };
     /// let q = 0.2;
     /// let closest = search.minimum(&robot(q)?, &Pose::IDENTITY)?;
     /// let contact = search.contact_of(&robot(q)?, &Pose::IDENTITY, &closest)?;
     /// let tangent = Vector::new(0.0, -q.sin(), q.cos());
-    /// let rate = contact.rate(Vector::X.cross(contact.witness.arc_length * tangent), Vector::X).ok_or("no normal")?;
+    /// let rate = contact
+    ///     .rate(Vector::X.cross(contact.witness.arc_length * tangent), Vector::X)
+    ///     .ok_or("no normal")?;
     /// let mut distance = |q: f64| -> Result<f64, Box<dyn std::error::Error>> {
     ///     Ok(search.minimum(&robot(q)?, &Pose::IDENTITY)?.distance)
     /// };
@@ -184,7 +189,7 @@ impl Contact {
     /// # use parry_continuum::Chain;
     /// # use parry_continuum::parry::{math::{Pose, Vector}, shape::TriMesh};
     /// # use parry_continuum::proximity::{BvhSearch, Proximity};
-    /// # let wall = [Vector::new(-9.0, -9.0, 3.0), Vector::new(9.0, -9.0, 3.0), Vector::new(0.0, 9.0, 3.0)];
+    /// # let wall = [[-9.0, -9.0, 3.0], [9.0, -9.0, 3.0], [0.0, 9.0, 3.0]].map(Vector::from_array);
     /// # let mesh = TriMesh::new(wall.to_vec(), vec![[0, 1, 2]])?;
     /// # let robot = Chain::from_centreline(&[Vector::ZERO, Vector::Z], &[0.5])?;
     /// # let mut search = BvhSearch::new(&mesh)?;

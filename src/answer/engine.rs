@@ -90,7 +90,10 @@ impl fmt::Display for Proof {
 /// assert_eq!(search.work(), Work::default());
 /// search.minimum(&robot, &Pose::IDENTITY)?;
 /// all.minimum(&robot, &Pose::IDENTITY)?;
-/// assert!(search.work().axis_distances < triangles.len() as u64 && triangles.len() as u64 <= all.work().visited);
+/// assert!(
+///     search.work().axis_distances < triangles.len() as u64
+///         && triangles.len() as u64 <= all.work().visited
+/// );
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -77,8 +77,8 @@ mod witness_fields {
     }
 }
 
-/// Two points that realise a distance, one of each robot, and their places, in the frame and unit of
-/// the poses.
+/// Two points that realise a distance, one of each robot, and their places, in the frame and unit
+/// of the poses.
 ///
 /// For one robot and itself, the first part is the one nearer to the base, and the frame is the
 /// robot's own.

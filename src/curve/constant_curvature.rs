@@ -50,7 +50,8 @@ pub struct BendingSection {
 /// let (few, radii) = stations(&points, &radii, 0.05)?; // few suffice for 0.05 mm
 /// let chain = Chain::from_centreline(&few, &radii)?;
 /// # assert!(few.len() < points.len() / 2 && chain.links().len() + 1 == few.len());
-/// # assert!((chain.links().last().map(|link| link.end()).unwrap_or_default() - robot.frame(70.0).translation).length() < 1e-12);
+/// # let end = chain.links().last().map(|link| link.end()).unwrap_or_default();
+/// # assert!((end - robot.frame(70.0).translation).length() < 1e-12);
 /// # drop(tube);
 /// # Ok::<(), parry_continuum::RobotError>(())
 /// ```

@@ -78,8 +78,11 @@ impl Tube {
     /// ```
     /// use parry_continuum::{Tube, parry::math::Vector};
     ///
-    /// let noise = |k: i32| Vector::new(f64::sin(f64::from(k * k)), f64::cos(f64::from(k * k)), 0.0) * 0.02;
-    /// let points: Vec<_> = (0..200).map(|k| Vector::Z * (f64::from(k) * 0.2) + noise(k)).collect();
+    /// let noise = |k: i32| {
+    ///     Vector::new(f64::sin(f64::from(k * k)), f64::cos(f64::from(k * k)), 0.0) * 0.02
+    /// };
+    /// let points: Vec<_> =
+    ///     (0..200).map(|k| Vector::Z * (f64::from(k) * 0.2) + noise(k)).collect();
     /// let tube = Tube::fit(&points, &[0.5; 199], 0.1)?;
     /// assert!(tube.residual() <= 0.1 && (tube.length() - 39.8).abs() < 0.1);
     /// # Ok::<(), parry_continuum::RobotError>(())

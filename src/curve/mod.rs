@@ -71,7 +71,10 @@ use section_samples::Hat;
 ///
 /// let (vertices, triangles) = Ball::new(50.0).to_trimesh(64, 32);
 /// let mut search = BvhSearch::new(&TriMesh::new(vertices, triangles)?)?;
-/// let arc: Vec<_> = (0..=60).map(|k| f64::from(k) / 60.0).map(|a| Vector::new(a.cos(), 0.0, a.sin()) * 30.0).collect();
+/// let arc: Vec<_> = (0..=60)
+///     .map(|k| f64::from(k) / 60.0)
+///     .map(|a| Vector::new(a.cos(), 0.0, a.sin()) * 30.0)
+///     .collect();
 /// let tube = Tube::from_samples(&arc, &[1.0; 60], None)?;
 /// let found = search.clearance(&tube, &Pose::IDENTITY, 0.01)?;
 /// assert!(found.upper - found.lower <= 0.01);

@@ -70,6 +70,15 @@ use super::{Closest, Convex, DiscSolver, Mask, Scalar, Vec3, frame::Frame, segme
 
 /// Returns the distance between two solid discs, and the closest points.
 ///
+/// ```text
+///        ^ normal1                     /
+///        |                            o centre2, radius2, normal2
+///        |              distance     /
+///   =====o=====* - - - - - - - - - -*
+///      centre1  point1          point2
+///        <-----> radius1
+/// ```
+///
 /// - `centre1`, `centre2`, `radius1`, `radius2`: in one frame and unit; radii at least 0.
 /// - `normal1`, `normal2`: of any length except 0.
 #[inline(always)]

@@ -13,7 +13,8 @@
 //! let triangle = [Vec3::new(1.0, -1.0, 3.0), Vec3::new(1.0, 1.0, 3.0), Vec3::new(-2.0, 0.0, 3.0)];
 //! let (start, end) = (Vec3::new(0.0, 0.0, 0.0), Vec3::new(0.0, 0.0, 2.0));
 //! // The first point is the triangle's, the second one the cylinder's.
-//! let Closest { distance, point1, point2 } = triangle_modified_cylinder(triangle, start, end, 0.5, [false, true]);
+//! let Closest { distance, point1, point2 } =
+//!     triangle_modified_cylinder(triangle, start, end, 0.5, [false, true]);
 //! assert_eq!((distance, point1.z, point2.z), (1.0, 3.0, 2.0));
 //! let round = triangle_modified_cylinder(triangle, start, end, 0.5, [false, false]);
 //! assert_eq!(round.distance, 0.5);

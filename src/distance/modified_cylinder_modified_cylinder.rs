@@ -57,6 +57,19 @@ use super::{Closest, Convex, DiscSolver, Scalar, Vec3, disc_disc, frame::Frame, 
 
 /// Returns the distance between two solid modified cylinders, and the closest points.
 ///
+/// ```text
+///       _______________________
+///      |                       \
+///      o axis1[0] --- axis1[1] o |   radius1, flat1 = [true, false]
+///      |___________*___________/
+///                  | point1
+///                  | distance
+///       ___________*___________
+///      /         point2        |
+///     |  o axis2[0] -- axis2[1] o    radius2, flat2 = [false, true]
+///      \_______________________|
+/// ```
+///
 /// - `axis1`, `axis2`: the ends of the axes, in one frame and unit.
 /// - `radius1`, `radius2`: in the same unit, at least 0.
 /// - `flat1`, `flat2`: whether the cap at each end is flat; a cap that is not flat is round.

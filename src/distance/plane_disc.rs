@@ -22,6 +22,15 @@ use super::{Closest, Mask, Scalar, Vec3, frame::Frame};
 
 /// Returns the distance between a plane and a solid disc, and the closest points; (20), (21).
 ///
+/// ```text
+///        ^ plane_normal
+///   _____|________*__________   plane
+///   plane_point   | point1
+///                 | distance
+///                 *._ point2
+///                    `-o-._     disc with centre, radius and disc_normal
+/// ```
+///
 /// - `plane_point`, `plane_normal`: a point of the plane, and its normal.
 /// - `centre`, `disc_normal`, `radius`: the disc, in the same frame and unit.
 ///

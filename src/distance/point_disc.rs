@@ -19,6 +19,15 @@ use super::{Closest, Mask, Scalar, Vec3, frame::Frame};
 
 /// Returns the distance between a point and a solid disc, and the closest points; (9) to (12).
 ///
+/// ```text
+///        ^ normal  * point
+///        |        /
+///        |       / distance
+///   =====o=====* point2
+///      centre
+///        <-----> radius
+/// ```
+///
 /// - `point`, `centre`, `radius`: in one frame and unit.
 /// - `normal`: of any length. A zero normal makes the disc a ball.
 #[inline(always)]

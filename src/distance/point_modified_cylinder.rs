@@ -24,6 +24,17 @@ use super::{Closest, Mask, Scalar, Vec3, frame::Frame, point_disc};
 /// Returns the distance between a point and a solid modified cylinder, and the closest points; 0
 /// inside.
 ///
+/// ```text
+///                  * point
+///                  |
+///                  | distance
+///       ___________*___________
+///      /         point2        |  ^
+///     |  o start ---------- end o | radius
+///      \_______________________|
+///  flat[0] = false      flat[1] = true
+/// ```
+///
 /// - `point`, `start`, `end`, `radius`: in one frame and unit.
 /// - `flat`: whether the cap at `start` and the cap at `end` are flat; a cap that is not flat is
 ///   round.

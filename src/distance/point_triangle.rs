@@ -19,6 +19,14 @@ use super::{Closest, Mask, Scalar, Vec3, face::Face, frame::Frame};
 
 /// Returns the distance between a point and a triangle, and the closest points.
 ///
+/// ```text
+///            * point
+///            |
+///            | distance
+///   _________*_______   triangle, edge-on
+///          point2
+/// ```
+///
 /// `point` and the vertices share one frame and unit. A triangle without area is a segment or a
 /// point.
 #[inline(always)]

@@ -63,6 +63,18 @@ use super::{Closest, Convex, DiscSolver, Mask, Scalar, Vec3, frame::Frame};
 
 /// Returns the distance between a segment and a solid disc, and the closest points; (13) to (19).
 ///
+/// ```text
+///        ^ normal           _.- segment[1]
+///        |              _.-'
+///        |          _.-'
+///        |         * point1 = segment[0]
+///        |        /
+///        |       / distance
+///   =====o=====* point2
+///      centre
+///        <-----> radius
+/// ```
+///
 /// - `segment`, `centre`, `radius`: in one frame and unit.
 /// - `normal`: of any length except 0.
 #[inline(always)]

@@ -35,6 +35,13 @@ use super::{Closest, Scalar, Vec3, frame::Frame};
 /// Returns the distance between the segments from `s[0]` to `s[1]` and from `u[0]` to `u[1]`, and
 /// the closest points; (1) to (8).
 ///
+/// ```text
+///   s[0] ------------* point1 ------ s[1]
+///                    |
+///                    | distance
+///          u[0] -----* point2 -- u[1]
+/// ```
+///
 /// All points share one frame and unit. A segment may have length 0.
 #[inline(always)]
 pub fn segment_segment<T: Scalar>(s: [Vec3<T>; 2], u: [Vec3<T>; 2]) -> Closest<T> {

@@ -35,6 +35,15 @@ const AT_AN_EDGE: f64 = 4.0;
 
 /// Returns the distance between a segment and a triangle, and the closest points.
 ///
+/// ```text
+///     segment[1] `-._
+///                    `* point1 = segment[0]
+///                     |
+///                     | distance
+///   __________________*_______   triangle, edge-on
+///                   point2
+/// ```
+///
 /// All points share one frame and unit. Both shapes may be degenerate.
 #[inline(always)]
 pub fn segment_triangle<T: Scalar>(segment: [Vec3<T>; 2], triangle: [Vec3<T>; 3]) -> Closest<T> {

@@ -29,6 +29,16 @@ const ROUNDING: f64 = 32.0;
 
 /// Returns the distance between a triangle and a solid disc, and the closest points; (22) to (25).
 ///
+/// ```text
+///        ^ normal
+///        |         *____________ triangle, edge-on
+///        |        / point1
+///        |       / distance
+///   =====o=====* point2
+///      centre
+///        <-----> radius
+/// ```
+///
 /// - `triangle`, `centre`, `radius`: in one frame and unit.
 /// - `normal`: of any length except 0.
 #[inline(always)]

@@ -109,6 +109,17 @@ use super::{
 /// Returns the distance between a triangle and a solid modified cylinder, and the closest points;
 /// equations (28) to (33).
 ///
+/// ```text
+///      ____________*____________   triangle, with point1
+///                  |
+///                  | distance
+///       ___________*___________
+///      /         point2        |  ^
+///     |  o start ---------- end o | radius
+///      \_______________________|
+///  flat[0] = false      flat[1] = true
+/// ```
+///
 /// - `triangle`: the vertices. `start`, `end`: the ends of the axis. All share one frame and unit.
 /// - `radius`: in the same unit, at least 0.
 /// - `flat`: whether the cap at `start` and the cap at `end` are flat; a cap that is not flat is
@@ -147,6 +158,16 @@ pub fn triangle_modified_cylinder_by<S: DiscSolver<T>, T: Scalar>(
 
 /// Returns the distance between a triangle and a capsule, and the closest points; equations (26),
 /// (27).
+///
+/// ```text
+///      ____________*____________   triangle, with point1
+///                  |
+///                  | distance
+///       ___________*___________
+///      /         point2        \    ^
+///     |  o start --------- end o |  | radius
+///      \_______________________/
+/// ```
 ///
 /// The arguments are those of [`triangle_modified_cylinder`], with two round caps.
 #[inline(always)]

@@ -1,7 +1,35 @@
-//! The exhaustive engine: proximity queries that visit every triangle.
+//! The exhaustive engine: visits every triangle. The reference for what each query means.
 //!
-//! Each query is one [`Pass`] over the blocks of triangles, with a [`PassGoal`]. A batch runs one
-//! pass per group of robots, so that a chunk of the mesh serves all their links from the cache.
+//! # Definitions
+//! The robot's links k = 0, 1, .. and the mesh's triangles i = 0, 1, .. are in one frame.
+//! - `d(k, i)`: the distance of link k from triangle i, measured in `f64`; 0 if they have a point
+//!   in common.
+//! - Tuples are compared by their first entries, ties by the next ones.
+//!
+//! | query | answer | a pass finds |
+//! |---|---|---|
+//! | `per_link` | for each k the least `(d(k, i), i)` | [`PassGoal::EachLink`] |
+//! | `minimum` | the least `(d(k, i), i, k)` | [`PassGoal::Least`] of infinity |
+//! | `minimum_within` | the minimum if `d(k, i) <= bound`, otherwise `None` | [`PassGoal::Least`] |
+//! | `clears` | whether `d(k, i) > margin` for all k and i | [`PassGoal::Within`] |
+//! | `contacts_within` | for each k the local minima along the wall with `d(k, i) <= margin` | [`PassGoal::Every`] |
+//!
+//! [`LocalMinima`] defines a local minimum. `definitions.rs` has each row as a plain loop, and
+//! compares the engines with these loops. The queries of [`BvhSearch`](super::BvhSearch) alone
+//! follow from the same distance:
+//! - `side` of a point: the sum of the solid angles of all triangles, which `definitions.rs` has
+//!   too.
+//! - `clearance` of a tube: the least distance of the tube from a triangle. `clears_tube`: whether
+//!   this distance exceeds the margin.
+//! - `clearance_of_motion`: the least clearance over all times from 0 to 1. `clears_motion`:
+//!   whether it exceeds the margin. `time_of_contact`: the first time at which the clearance is
+//!   at most the margin.
+//!
+//! # Algorithm
+//! Each query is one [`Pass`] over the blocks of triangles, with a [`PassGoal`]. A pass skips a
+//! pair only if a bound proves that `d(k, i)` exceeds the goal's bound or the best distance so far.
+//! A batch runs one pass per group of robots, so that a chunk of the mesh serves all their links
+//! from the cache.
 
 use super::proximity::{Engine, Proximity, any_triangle, placed};
 use crate::answer::{Contact, LinkProximity, MeshError, ProximityError, Work};
@@ -133,6 +161,7 @@ impl<T: SearchPrecision> Exhaustive<T> {
         self.work
     }
 
+    /// Runs one pass for all links of the robots.
     fn run<'a>(
         &mut self,
         robots: impl Iterator<Item = Result<PlacedRobot<'a>, ProximityError>>,
@@ -169,7 +198,8 @@ impl<T: SearchPrecision> Exhaustive<T> {
         }
     }
 
-    /// The closest of a robot's links. Ties go to the lowest triangle, then to the lowest link.
+    /// The least (distance, triangle, link) of a robot. Of equal ones `min_by` returns the first,
+    /// which has the lowest link.
     fn least(&self, number: usize) -> Option<LinkProximity> {
         let order = |a: &LinkProximity, b: &LinkProximity| {
             a.distance.total_cmp(&b.distance).then(a.witness.triangle.cmp(&b.witness.triangle))
@@ -227,6 +257,7 @@ impl<T: SearchPrecision> Engine for Exhaustive<T> {
         query: ContactQuery,
         out: &mut Vec<Contact>,
     ) -> Result<(), ProximityError> {
+        // Takes links together as long as a pass can keep all their pairs within the margin.
         let Self {
             level, culling, ref triangles, ref mut pass, ref mut minima, ref mut work, ..
         } = *self;

@@ -1,6 +1,8 @@
 //! The engines, and the trait that all of them implement.
 
 pub(crate) mod bvh;
+#[cfg(test)]
+mod definitions;
 mod exhaustive;
 mod proximity;
 mod robot_pair;

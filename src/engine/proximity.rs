@@ -137,7 +137,8 @@ pub trait Proximity: Engine {
     ///
     /// // A bump below the robot and one above it.
     /// let (ball, triangles) = Ball::new(1.0).to_trimesh(32, 16);
-    /// let vertices = [-3.0, 2.5].map(|z| ball.iter().map(move |v| v + Vector::Z * z)).into_iter().flatten();
+    /// let vertices =
+    ///     [-3.0, 2.5].map(|z| ball.iter().map(move |v| v + Vector::Z * z)).into_iter().flatten();
     /// let count = ball.len() as u32;
     /// let other = triangles.iter().map(|corners| corners.map(|corner| corner + count));
     /// let indices = triangles.iter().copied().chain(other).collect();
@@ -266,9 +267,14 @@ pub trait Proximity: Engine {
     /// use parry_continuum::parry::{math::{Pose, Vector}, shape::TriMesh};
     /// use parry_continuum::proximity::{BvhSearch, LinkFeature, Proximity, TriangleFeature};
     ///
-    /// let floor = [Vector::new(-9.0, -9.0, -3.0), Vector::new(9.0, -9.0, -3.0), Vector::new(0.0, 9.0, -3.0)];
+    /// let floor = [
+    ///     Vector::new(-9.0, -9.0, -3.0),
+    ///     Vector::new(9.0, -9.0, -3.0),
+    ///     Vector::new(0.0, 9.0, -3.0),
+    /// ];
     /// let mut search = BvhSearch::from_triangles(&floor, &[[0, 1, 2]])?;
-    /// let robot = Chain::capsules(&[Vector::ZERO, Vector::X, Vector::new(2.0, 0.0, -1.0)], &[0.5, 0.5])?;
+    /// let robot =
+    ///     Chain::capsules(&[Vector::ZERO, Vector::X, Vector::new(2.0, 0.0, -1.0)], &[0.5, 0.5])?;
     /// let closest = search.minimum(&robot, &Pose::IDENTITY)?;
     /// let contact = search.contact_of(&robot, &Pose::IDENTITY, &closest)?;
     /// assert_eq!((contact.link, contact.fraction, contact.normal), (1, 1.0, Some(Vector::Z)));
@@ -302,9 +308,14 @@ pub trait Proximity: Engine {
     /// use parry_continuum::parry::math::{Pose, Vector};
     /// use parry_continuum::proximity::{BvhSearch, Proximity};
     ///
-    /// let floor = [Vector::new(-9.0, -9.0, -3.0), Vector::new(9.0, -9.0, -3.0), Vector::new(0.0, 9.0, -3.0)];
+    /// let floor = [
+    ///     Vector::new(-9.0, -9.0, -3.0),
+    ///     Vector::new(9.0, -9.0, -3.0),
+    ///     Vector::new(0.0, 9.0, -3.0),
+    /// ];
     /// let mut search = BvhSearch::from_triangles(&floor, &[[0, 1, 2]])?;
-    /// let robot = Chain::capsules(&[Vector::ZERO, Vector::X, Vector::new(2.0, 0.0, -1.0)], &[0.5, 0.5])?;
+    /// let robot =
+    ///     Chain::capsules(&[Vector::ZERO, Vector::X, Vector::new(2.0, 0.0, -1.0)], &[0.5, 0.5])?;
     /// let (mut answers, mut contacts) = (Vec::new(), Vec::new());
     /// search.per_link(&robot, &Pose::IDENTITY, &mut answers)?;
     /// search.contacts_of(&robot, &Pose::IDENTITY, &answers, &mut contacts)?;
@@ -336,12 +347,17 @@ pub trait Proximity: Engine {
     /// use parry_continuum::parry::math::{Pose, Vector};
     /// use parry_continuum::proximity::{BvhSearch, Proximity};
     ///
-    /// let wall = [Vector::new(-9.0, -9.0, 3.0), Vector::new(9.0, -9.0, 3.0), Vector::new(0.0, 9.0, 3.0)];
+    /// let wall =
+    ///     [Vector::new(-9.0, -9.0, 3.0), Vector::new(9.0, -9.0, 3.0), Vector::new(0.0, 9.0, 3.0)];
     /// let mut search = BvhSearch::from_triangles(&wall, &[[0, 1, 2]])?;
     /// let robot = Chain::capsules(&[Vector::ZERO, Vector::new(1.0, 0.0, 1.0)], &[0.5])?;
     /// let closest = search.minimum(&robot, &Pose::IDENTITY)?;
-    /// let derivative = search.derivative(&robot, &Pose::IDENTITY, &closest)?.ok_or("no derivative")?;
-    /// assert_eq!((derivative.start, derivative.end, derivative.radius), (Vector::ZERO, -Vector::Z, -1.0));
+    /// let derivative =
+    ///     search.derivative(&robot, &Pose::IDENTITY, &closest)?.ok_or("no derivative")?;
+    /// assert_eq!(
+    ///     (derivative.start, derivative.end, derivative.radius),
+    ///     (Vector::ZERO, -Vector::Z, -1.0)
+    /// );
     /// assert_eq!(derivative.rate(Vector::X, 0.1 * Vector::Z), -0.1);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
@@ -382,9 +398,9 @@ pub trait Proximity: Engine {
     ///   [`minimum_within`](Self::minimum_within), tubes and motions: nothing.
     /// - [`clears`](Self::clears): the grid of the sides of the wall, only if the bounding box has
     ///   moved by several cells of the grid.
-    /// - [`contacts_within`](Self::contacts_within): one pass over all vertices finds vertices that have met or
-    ///   parted. If there are any, the query also builds which triangles are joined. Near the robot
-    ///   it builds the neighbours of triangles.
+    /// - [`contacts_within`](Self::contacts_within): one pass over all vertices finds vertices that
+    ///   have met or parted. If there are any, the query also builds which triangles are joined.
+    ///   Near the robot it builds the neighbours of triangles.
     /// - [`side`](super::BvhSearch::side), [`clears_inside`](super::BvhSearch::clears_inside): the
     ///   far field of each node.
     /// - Any query, if single precision is too coarse: nothing. The move itself refits the second

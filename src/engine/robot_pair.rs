@@ -32,7 +32,10 @@ use parry3d_f64::math::{Pose, Real};
 /// use parry_continuum::parry::math::{Pose, Vector};
 ///
 /// let catheter = Chain::from_centreline(&[Vector::ZERO, Vector::Z * 40.0], &[1.0])?;
-/// let endoscope = Chain::from_centreline(&[Vector::ZERO, Vector::Z * 30.0, Vector::new(5.0, 0.0, 40.0)], &[2.0, 2.0])?;
+/// let endoscope = Chain::from_centreline(
+///     &[Vector::ZERO, Vector::Z * 30.0, Vector::new(5.0, 0.0, 40.0)],
+///     &[2.0, 2.0],
+/// )?;
 /// let mut pair = RobotPair::new();
 /// for step in 0..10 {
 ///     let beside = Pose::translation(6.0 + f64::from(step), 0.0, 0.0);
@@ -40,7 +43,13 @@ use parry3d_f64::math::{Pose, Real};
 ///     println!("links {:?} are {} mm apart", closest.links, closest.distance);
 /// #   assert!((closest.distance - 3.0 - f64::from(step)).abs() < 1e-12);
 /// }
-/// assert!(pair.clears(&catheter, &Pose::IDENTITY, &endoscope, &Pose::translation(6.0, 0.0, 0.0), 2.5)?);
+/// assert!(pair.clears(
+///     &catheter,
+///     &Pose::IDENTITY,
+///     &endoscope,
+///     &Pose::translation(6.0, 0.0, 0.0),
+///     2.5
+/// )?);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug, Default)]
@@ -160,12 +169,24 @@ impl RobotPair {
     /// use parry_continuum::{Tube, proximity::RobotPair};
     /// use parry_continuum::parry::math::{Pose, Vector};
     ///
-    /// let arc: Vec<_> = (0..=60).map(|k| f64::from(k) / 60.0).map(|a| Vector::new(a.cos(), 0.0, a.sin()) * 30.0).collect();
-    /// let tube = Tube::from_samples(&arc, &[1.0; 60], Some([Vector::Z, Vector::new(-1.0_f64.sin(), 0.0, 1.0_f64.cos())]))?;
+    /// let arc: Vec<_> = (0..=60)
+    ///     .map(|k| f64::from(k) / 60.0)
+    ///     .map(|a| Vector::new(a.cos(), 0.0, a.sin()) * 30.0)
+    ///     .collect();
+    /// let tube = Tube::from_samples(
+    ///     &arc,
+    ///     &[1.0; 60],
+    ///     Some([Vector::Z, Vector::new(-1.0_f64.sin(), 0.0, 1.0_f64.cos())]),
+    /// )?;
     /// // The same tube, turned around its base. Its tip bends to the other side.
     /// let turned = Pose::new(Vector::X * 65.0, Vector::Z * std::f64::consts::PI);
     /// let found = RobotPair::new().clearance(&tube, &Pose::IDENTITY, &tube, &turned, 0.01)?;
-    /// assert!(found.resolved && found.lower <= 3.0 && 3.0 <= found.upper && found.upper - found.lower <= 0.01);
+    /// assert!(
+    ///     found.resolved
+    ///         && found.lower <= 3.0
+    ///         && 3.0 <= found.upper
+    ///         && found.upper - found.lower <= 0.01
+    /// );
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///
@@ -307,15 +328,15 @@ impl RobotPair {
     /// to 1.
     ///
     /// `lower` <= least clearance of the shapes at equal times <= `upper`. `tolerance` is a length:
-    /// the bounds differ by at most the tolerance if the motions' shapes allow that. The bounds hold
-    /// for every instant, rounding included, given the speeds that the motions state. The shapes at
-    /// [`t`](RobotMotionClearance::t) realise `upper`, at the two points of the answer.
+    /// the bounds differ by at most the tolerance if the motions' shapes allow that. The bounds
+    /// hold for every instant, rounding included, given the speeds that the motions state. The
+    /// shapes at [`t`](RobotMotionClearance::t) realise `upper`, at the two points of the answer.
     ///
     /// The answer always has bounds; [`resolved`](RobotMotionClearance::resolved) says whether they
     /// meet the tolerance. They may not for the reasons of
     /// [`BvhSearch::clearance_of_motion`](crate::proximity::BvhSearch::clearance_of_motion), or
-    /// because the query ends after 16 million pairs of pieces. A finer tolerance never gives looser
-    /// bounds.
+    /// because the query ends after 16 million pairs of pieces. A finer tolerance never gives
+    /// looser bounds.
     ///
     /// ```
     /// use parry_continuum::{LinearMotion, parry::math::Vector, proximity::RobotPair};
@@ -367,7 +388,8 @@ impl RobotPair {
     /// use parry_continuum::parry::math::{Pose, Vector};
     ///
     /// let needle = Chain::from_centreline(&[Vector::ZERO, Vector::Z * 40.0], &[1.0])?;
-    /// let beside = |x: f64| [(&needle, Pose::IDENTITY), (&needle, Pose::translation(x, 0.0, 0.0))];
+    /// let beside =
+    ///     |x: f64| [(&needle, Pose::IDENTITY), (&needle, Pose::translation(x, 0.0, 0.0))];
     /// let mut answers = Vec::new();
     /// RobotPair::new().clears_batch(&[5.0, 3.0, f64::NAN].map(beside), 2.0, &mut answers)?;
     /// assert_eq!(answers[..2], [Ok(true), Ok(false)]);
@@ -422,8 +444,8 @@ impl RobotPair {
         self.motions(a, b).decide(wanted, sought)
     }
 
-    /// [`clearance_of_motion`](Self::clearance_of_motion); or a lower bound of at least `limit`. The
-    /// tolerance is checked.
+    /// [`clearance_of_motion`](Self::clearance_of_motion); or a lower bound of at least `limit`.
+    /// The tolerance is checked.
     pub(crate) fn ask_clearance_of_motion(
         &mut self,
         a: &impl Motion,

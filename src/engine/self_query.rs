@@ -1,8 +1,8 @@
 //! Queries about one robot and itself.
 //!
 //! [`SelfQuery`] checks the arguments and holds the warm starts. [`RobotWithItself`],
-//! [`self_clears_tube`] and [`self_decides_motion`] answer; the module of [`RobotWithItself`] derives
-//! which pairs of parts count.
+//! [`self_clears_tube`] and [`self_decides_motion`] answer; the module of [`RobotWithItself`]
+//! derives which pairs of parts count.
 
 use crate::answer::{Decision, ProximityError, RobotMotionAnswer, RobotProximity};
 use crate::curve::Tube;
@@ -41,17 +41,18 @@ impl SelfQuery {
         *self = Self::new();
     }
 
-    /// Returns the place where a robot comes closest to itself, or `None` if no two of its parts can.
+    /// Returns the place where a robot comes closest to itself, or `None` if no two of its parts
+    /// can.
     ///
     /// `None` occurs for a robot that is straight or bends too little. Parts that are close only
     /// because they are neighbours do not count. The query considers these pairs of parts:
     ///
-    /// 1. Two links with a turn of at least pi between them. The turn is the sum of the angles of the
-    ///    joints.
-    /// 2. A face and a link, with a turn of at least pi / 2. A face is the base or the tip, if flat, or
-    ///    the wider side of a step, also if round.
-    /// 3. Two faces that look at one another, at any turn: the end of a link and the start of a later
-    ///    one.
+    /// 1. Two links with a turn of at least pi between them. The turn is the sum of the angles of
+    ///    the joints.
+    /// 2. A face and a link, with a turn of at least pi / 2. A face is the base or the tip, if
+    ///    flat, or the wider side of a step, also if round.
+    /// 3. Two faces that look at one another, at any turn: the end of a link and the start of a
+    ///    later one.
     ///
     /// A face counts if three conditions hold at the nearest place:
     ///
@@ -59,17 +60,18 @@ impl SelfQuery {
     /// - The robot leads nowhere nearer from there.
     /// - The adjoining link does not contain the nearest point of the face.
     ///
-    /// So the shoulders of a taper never meet. Radii that differ by less than a share of 2^-32 are no
-    /// step.
+    /// So the shoulders of a taper never meet. Radii that differ by less than a share of 2^-32 are
+    /// no step.
     ///
-    /// No other two places can be a local minimum of the distance, however the robot bends. A closed
-    /// curve turns by at least 2 pi (Fenchel's theorem), and the two corners of arc and chord take at
-    /// most pi of it. So a bend never collides with its own neighbourhood, and no number of neighbours
-    /// has to be chosen.
+    /// No other two places can be a local minimum of the distance, however the robot bends. A
+    /// closed curve turns by at least 2 pi (Fenchel's theorem), and the two corners of arc and
+    /// chord take at most pi of it. So a bend never collides with its own neighbourhood, and no
+    /// number of neighbours has to be chosen.
     ///
     /// # Errors
-    /// A joint is so sharp that its links overlap over more than half of the shorter one: r tan(angle /
-    /// 2) > length / 2. The rule above holds for tubes that are thinner than their bends.
+    /// A joint is so sharp that its links overlap over more than half of the shorter one:
+    /// r tan(angle / 2) > length / 2. The rule above holds for tubes that are thinner than their
+    /// bends.
     ///
     /// ```
     /// use parry_continuum::{Chain, proximity::SelfQuery};
@@ -78,7 +80,8 @@ impl SelfQuery {
     /// // A hairpin: two straight legs, and half a circle of radius 10 between them.
     /// let angles = (0..=20).map(|k| std::f64::consts::PI * f64::from(k) / 20.0);
     /// let arc = angles.map(|a| Vector::new(10.0 * (1.0 - a.cos()), 0.0, 30.0 + 10.0 * a.sin()));
-    /// let points: Vec<_> = [Vector::ZERO].into_iter().chain(arc).chain([Vector::new(20.0, 0.0, 0.0)]).collect();
+    /// let points: Vec<_> =
+    ///     [Vector::ZERO].into_iter().chain(arc).chain([Vector::new(20.0, 0.0, 0.0)]).collect();
     /// let robot = Chain::from_centreline(&points, &[1.5; 22])?;
     /// let closest = SelfQuery::new().minimum(&robot)?.ok_or("too straight")?;
     /// assert!((closest.distance - 17.0).abs() < 1e-9);
@@ -90,7 +93,8 @@ impl SelfQuery {
 
     /// Returns whether a robot keeps a margin to itself.
     ///
-    /// True exactly if [`minimum`](Self::minimum) returns `None` or a distance of more than `margin`.
+    /// True exactly if [`minimum`](Self::minimum) returns `None` or a distance of more than
+    /// `margin`.
     ///
     /// # Errors
     /// As [`minimum`](Self::minimum), or the margin is negative or NaN.
@@ -99,7 +103,8 @@ impl SelfQuery {
     /// use parry_continuum::{Chain, proximity::SelfQuery};
     /// use parry_continuum::parry::math::Vector;
     ///
-    /// let straight = Chain::from_centreline(&[Vector::ZERO, Vector::Z, 2.0 * Vector::Z], &[3.0, 3.0])?;
+    /// let straight =
+    ///     Chain::from_centreline(&[Vector::ZERO, Vector::Z, 2.0 * Vector::Z], &[3.0, 3.0])?;
     /// assert!(SelfQuery::new().clears(&straight, 100.0)?);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
@@ -116,24 +121,26 @@ impl SelfQuery {
     /// 2. A flat face and a place in front of it, with a turn of at least pi / 2.
     /// 3. Two faces that look at one another.
     ///
-    /// It leaves out a piece if the robot leads nearer to the face from every place of the piece. So a
-    /// bend never collides with its own neighbourhood.
+    /// It leaves out a piece if the robot leads nearer to the face from every place of the piece.
+    /// So a bend never collides with its own neighbourhood.
     ///
-    /// `margin` and `resolution` are lengths. `Clear` and `Contact` are proven. All distances allow for
-    /// the errors that the tube states of itself; the parts are selected on the curve as it was given.
-    /// `Undecided` occurs only if
+    /// `margin` and `resolution` are lengths. `Clear` and `Contact` are proven. All distances allow
+    /// for the errors that the tube states of itself; the parts are selected on the curve as it was
+    /// given. `Undecided` occurs only if
     ///
-    /// - the distance of such parts is within `resolution` of the margin, or within the stated errors;
-    /// - the margin is as wide as the tightest bend: at least 1 / curvature - r beside a step, and at
-    ///   least 2 / curvature - r1 - r2 elsewhere. The known curve may then leave open which parts
-    ///   count;
+    /// - the distance of such parts is within `resolution` of the margin, or within the stated
+    ///   errors;
+    /// - the margin is as wide as the tightest bend: at least 1 / curvature - r beside a step, and
+    ///   at least 2 / curvature - r1 - r2 elsewhere. The known curve may then leave open which
+    ///   parts count;
     /// - the samples are too few to show how far the curve turns; or
     /// - 65,536 pairs of pieces do not decide.
     ///
     /// # Errors
     /// - The margin or the resolution is negative or NaN.
     /// - The tube bends, or may bend, within its radius somewhere.
-    /// - The tube is made from a chain with a joint that is too sharp for [`minimum`](Self::minimum).
+    /// - The tube is made from a chain with a joint that is too sharp for
+    ///   [`minimum`](Self::minimum).
     /// - Samples do not allow a decision at that resolution, or the curve of the tube is not finite
     ///   somewhere.
     ///
@@ -144,7 +151,8 @@ impl SelfQuery {
     /// // Two turns of a coil of radius 10 and pitch 4; the wire has radius 1.
     /// let angles = (0..=240).map(|k| std::f64::consts::PI * f64::from(k) / 60.0);
     /// let rise = 4.0 / (2.0 * std::f64::consts::PI);
-    /// let coil: Vec<_> = angles.map(|a| Vector::new(10.0 * a.cos(), 10.0 * a.sin(), rise * a)).collect();
+    /// let coil: Vec<_> =
+    ///     angles.map(|a| Vector::new(10.0 * a.cos(), 10.0 * a.sin(), rise * a)).collect();
     /// let along = Vector::new(0.0, 10.0, rise); // at both ends, after whole turns
     /// let tube = Tube::with_constant_radius(&coil, 1.0, Some([along; 2]))?;
     /// assert_eq!(SelfQuery::new().clears_tube(&tube, 1.9, 0.01)?, Decision::Clear);
@@ -161,31 +169,34 @@ impl SelfQuery {
         self_clears_tube(tube, &mut self.tube, margin, resolution)
     }
 
-    /// Decides whether a moving robot stays farther than `margin` from itself, at every time from 0 to
-    /// 1.
+    /// Decides whether a moving robot stays farther than `margin` from itself, at every time from 0
+    /// to 1.
     ///
     /// - `Clear` is proven from the speeds and turns that the motion states. At no instant are two
     ///   places closest to one another and at most the margin apart, unless they are neighbours.
     /// - `Contact` names a time at which the shape violates the margin in the sense of
     ///   [`clears_tube`](Self::clears_tube), and two points of that shape in the mesh's frame.
     /// - `Undecided`: the robot comes within `resolution` of the margin, beyond the errors that it
-    ///   states of itself. Or margin or samples are among the cases that [`clears_tube`](Self::clears_tube) leaves
-    ///   undecided. Or an end that comes near turns from flat to round. Or the query ends after 65,536
-    ///   shapes, or after 262,144 pairs of pieces in total. The [reason](RobotMotionAnswer::reason)
-    ///   says which.
+    ///   states of itself. Or margin or samples are among the cases that
+    ///   [`clears_tube`](Self::clears_tube) leaves undecided. Or an end that comes near turns from
+    ///   flat to round. Or the query ends after 65,536 shapes, or after 262,144 pairs of pieces in
+    ///   total. The [reason](RobotMotionAnswer::reason) says which.
     ///
-    /// The work is one query about a tube and itself for each time that the proof needs. It needs four
-    /// to eight times per rad that a part of the robot turns, and more near a contact.
+    /// The work is one query about a tube and itself for each time that the proof needs. It needs
+    /// four to eight times per rad that a part of the robot turns, and more near a contact.
     ///
-    /// **Premises.** The stated speeds and turns hold: see [`verify_motion`](crate::verify_motion). At
-    /// all times [`clears_tube`](Self::clears_tube) accepts the robot: it bends by less than 1 / radius. The query
-    /// checks the latter only for the shapes that it visits.
+    /// **Premises.** The stated speeds and turns hold: see [`verify_motion`](crate::verify_motion).
+    /// At all times [`clears_tube`](Self::clears_tube) accepts the robot: it bends by less than
+    /// 1 / radius. The query checks the latter only for the shapes that it visits.
     ///
     /// ```
     /// use parry_continuum::{LinearMotion, parry::math::Vector, proximity::{Decision, SelfQuery}};
     ///
     /// // A hairpin of straight links. Its tip swings past its base.
-    /// let hairpin = |y: f64| [[0.0, 0.0, 0.0], [0.0, 0.0, 40.0], [8.0, 0.0, 40.0], [4.0, y, 2.0]].map(Vector::from_array);
+    /// let hairpin = |y: f64| {
+    ///     [[0.0, 0.0, 0.0], [0.0, 0.0, 40.0], [8.0, 0.0, 40.0], [4.0, y, 2.0]]
+    ///         .map(Vector::from_array)
+    /// };
     /// let motion = LinearMotion::chain(&hairpin(-6.0), &hairpin(6.0), &[1.0; 3])?;
     /// assert!(SelfQuery::new().clears_motion(&motion, 1.5, 1e-3)?.is_clear());
     /// assert_eq!(SelfQuery::new().clears_motion(&motion, 2.5, 1e-3)?.decision, Decision::Contact);
@@ -194,11 +205,11 @@ impl SelfQuery {
     ///
     /// # Errors
     /// - The margin or the resolution is negative or NaN.
-    /// - The motion has no shape at some time, or one that [`clears_tube`](Self::clears_tube) refuses, or its
-    ///   sections change.
+    /// - The motion has no shape at some time, or one that [`clears_tube`](Self::clears_tube)
+    ///   refuses, or its sections change.
     /// - A stated speed or turn is not finite, or a turn is more than 2^18 rad.
-    /// - The resolution is finer than rounding or the samples of a shape allow, or the motion is too
-    ///   fast to be divided that finely.
+    /// - The resolution is finer than rounding or the samples of a shape allow, or the motion is
+    ///   too fast to be divided that finely.
     pub fn clears_motion(
         &mut self,
         motion: &impl Motion,

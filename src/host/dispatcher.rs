@@ -1,18 +1,23 @@
 //! The query dispatcher for parry and rapier.
 //!
 //! # Algorithm
-//! Each query tries, in this order:
+//! 1. **Thin shapes.** Replace the other shape of a robot by a triangle if it degenerates to one
+//!    ([`ThinShape`]).
+//! 2. **Classify** the pair ([`ShapePair::of`]): the first row that fits says which file answers.
 //!
-//! 1. **Thin shapes.** Replace the other shape by a triangle if it is one ([`ThinShape`]).
-//! 2. **Surfaces.** A robot and a triangle or a mesh ([`RobotSurface`]), or a half-space
-//!    ([`RobotHalfSpace`]).
-//! 3. **Composites.** Split a composite shape ([`Decomposition`]) and query its parts.
-//! 4. **Links.** Two links, or a link and one of parry's shapes that is a link ([`LinkPair`]).
-//! 5. **Iterations.** Scale the pair ([`IteratedPair`]) and ask the inner dispatcher, with
-//!    fallbacks for a link ([`ConvexPair`]).
+//! | | pair | answered by |
+//! |---|---|---|
+//! | a | a robot and a triangle or a mesh | [`RobotSurface`] |
+//! | b | a robot and a half-space | [`RobotHalfSpace`] |
+//! | c | a shape with parts, and any other | each part, by this dispatcher ([`Decomposition`]) |
+//! | d | two links; or a link and one of parry's shapes that is a link | [`LinkPair`] |
+//! | e | any other pair | the inner dispatcher, in the unit of [`IteratedPair`] |
 //!
-//! Casts use [`straight_cast`] and [`link_cast`] instead of distances for links against triangles,
-//! links and convex shapes. Contact manifolds have a file of their own (`manifold.rs`).
+//! In e [`ConvexPair`] checks the answers about a link, and has fallbacks.
+//!
+//! The two casts classify for themselves: for links against triangles, links and convex shapes they
+//! use [`straight_cast`] and [`link_cast`] instead of distances. Contact manifolds have a file of
+//! their own (`manifold.rs`).
 
 use super::composite::CompositePair;
 use super::convex::ConvexPair;
@@ -103,7 +108,11 @@ use parry3d_f64::shape::{CompositeShape, HeightField, Shape, Voxels};
 /// use parry_continuum::parry::{math::{Pose, Vector}, query::QueryDispatcher, shape::Triangle};
 ///
 /// let link = ModifiedCylinder::cylinder(Vector::ZERO, Vector::Z, 0.5)?;
-/// let wall = Triangle::new(Vector::new(2.0, -9.0, -9.0), Vector::new(2.0, 9.0, -9.0), Vector::new(2.0, 0.0, 9.0));
+/// let wall = Triangle::new(
+///     Vector::new(2.0, -9.0, -9.0),
+///     Vector::new(2.0, 9.0, -9.0),
+///     Vector::new(2.0, 0.0, 9.0),
+/// );
 /// let apart = ContinuumDispatcher::default().distance(&Pose::IDENTITY, &link, &wall)?;
 /// assert_eq!(apart.distance, 1.5);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -128,13 +137,7 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
         check_pose(pos12)?;
         let thin = ThinShape::of(g1, g2);
         let [g1, g2] = thin.pair(g1, g2);
-        if let Some(pair) = RobotSurface::of(pos12, g1, g2) {
-            return pair.intersection_test();
-        }
-        if let Some(pair) = RobotHalfSpace::of(pos12, g1, g2)? {
-            return pair.intersection_test();
-        }
-        let parts = Decomposition::of(g1, g2)?;
+        let pair = ShapePair::of(pos12, g1, g2)?;
         // A ball uses the point query, as in parry: an oriented mesh is solid to it.
         if let (Some(ball), true) = (g1.as_ball(), has_parts(g2)) {
             return Ok(details::intersection_test_ball_point_query(pos12, ball, g2));
@@ -142,22 +145,23 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
         if let (true, Some(ball)) = (has_parts(g1), g2.as_ball()) {
             return Ok(details::intersection_test_point_query_ball(pos12, g1, ball));
         }
-        match parts {
-            Decomposition::Composite(parts) => {
+        match pair {
+            ShapePair::Surface(pair) => pair.intersection_test(),
+            ShapePair::HalfSpace(pair) => pair.intersection_test(),
+            ShapePair::Parts(Decomposition::Composite(parts)) => {
                 CompositePair { dispatcher: self, parts, pos12, other: g2 }.intersection_test()
             }
-            Decomposition::Field(field) => {
+            ShapePair::Parts(Decomposition::Field(field)) => {
                 HeightFieldPair { dispatcher: self, field, pos12, other: g2 }.intersection_test()
             }
-            Decomposition::Voxels(cells) => voxels::intersection_test(self, pos12, cells, g2),
-            Decomposition::OfSecond => {
+            ShapePair::Parts(Decomposition::Voxels(cells)) => {
+                voxels::intersection_test(self, pos12, cells, g2)
+            }
+            ShapePair::Parts(Decomposition::OfSecond) => {
                 self.intersection_test(&pos12.inverse(), g2, g1).map(ShapeIntersection::swapped)
             }
-            Decomposition::None => {
-                if let Some(links) = LinkPair::of(pos12, g1, g2)? {
-                    return Ok(ShapeIntersection::new(links.distance() <= 0.0));
-                }
-                let pair = IteratedPair::of(pos12, g1, g2)?;
+            ShapePair::Links(links) => Ok(ShapeIntersection::new(links.distance() <= 0.0)),
+            ShapePair::Iterated(pair) => {
                 let [g1, g2] = pair.shapes();
                 self.0.intersection_test(&pair.pos12, g1, g2)
             }
@@ -173,32 +177,25 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
         check_pose(pos12)?;
         let thin = ThinShape::of(g1, g2);
         let [g1, g2] = thin.pair(g1, g2);
-        if let Some(pair) = RobotSurface::of(pos12, g1, g2) {
-            return pair.distance();
-        }
-        if let Some(pair) = RobotHalfSpace::of(pos12, g1, g2)? {
-            return pair.distance();
-        }
-        match Decomposition::of(g1, g2)? {
-            Decomposition::Composite(parts) => {
+        match ShapePair::of(pos12, g1, g2)? {
+            ShapePair::Surface(pair) => pair.distance(),
+            ShapePair::HalfSpace(pair) => pair.distance(),
+            ShapePair::Parts(Decomposition::Composite(parts)) => {
                 let answer = StrictDispatcher::ask(self, |watched| {
                     details::distance_composite_shape_shape(watched, pos12, parts, g2)
                 })?;
                 // parry returns `Real::MAX` if no part was near enough.
                 if answer.distance < Real::MAX { Ok(answer) } else { Err(Unsupported) }
             }
-            Decomposition::Field(field) => {
+            ShapePair::Parts(Decomposition::Field(field)) => {
                 HeightFieldPair { dispatcher: self, field, pos12, other: g2 }.distance()
             }
-            Decomposition::Voxels(_) => Err(Unsupported),
-            Decomposition::OfSecond => {
+            ShapePair::Parts(Decomposition::Voxels(_)) => Err(Unsupported),
+            ShapePair::Parts(Decomposition::OfSecond) => {
                 self.distance(&pos12.inverse(), g2, g1).map(ShapeDistance::swapped)
             }
-            Decomposition::None => {
-                if let Some(links) = LinkPair::of(pos12, g1, g2)? {
-                    return Ok(ShapeDistance::new(links.distance()));
-                }
-                let pair = IteratedPair::of(pos12, g1, g2)?;
+            ShapePair::Links(links) => Ok(ShapeDistance::new(links.distance())),
+            ShapePair::Iterated(pair) => {
                 let [g1, g2] = pair.shapes();
                 let answer = match ConvexPair::of(&self.0, &pair.pos12, g1, g2) {
                     Some(convex) => ShapeDistance::new(convex.distance()?),
@@ -221,28 +218,24 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
         check_margin(prediction)?;
         let thin = ThinShape::of(g1, g2);
         let [g1, g2] = thin.pair(g1, g2);
-        if let Some(pair) = RobotSurface::of(pos12, g1, g2) {
-            return pair.contact(prediction);
-        }
-        if let Some(pair) = RobotHalfSpace::of(pos12, g1, g2)? {
-            return pair.contact(prediction);
-        }
-        match Decomposition::of(g1, g2)? {
-            Decomposition::Composite(parts) => {
+        match ShapePair::of(pos12, g1, g2)? {
+            ShapePair::Surface(pair) => pair.contact(prediction),
+            ShapePair::HalfSpace(pair) => pair.contact(prediction),
+            ShapePair::Parts(Decomposition::Composite(parts)) => {
                 CompositePair { dispatcher: self, parts, pos12, other: g2 }.contact(prediction)
             }
-            Decomposition::Field(field) => {
+            ShapePair::Parts(Decomposition::Field(field)) => {
                 HeightFieldPair { dispatcher: self, field, pos12, other: g2 }.contact(prediction)
             }
-            Decomposition::Voxels(_) => Err(Unsupported),
-            Decomposition::OfSecond => {
+            ShapePair::Parts(Decomposition::Voxels(_)) => Err(Unsupported),
+            ShapePair::Parts(Decomposition::OfSecond) => {
                 let contact = self.contact(&pos12.inverse(), g2, g1, prediction)?;
                 Ok(contact.map(Contact::flipped))
             }
-            Decomposition::None => {
-                let contact = self.contact_of_simple(pos12, g1, g2, prediction)?;
-                check_margin(contact.map_or(0.0, |contact| contact.dist))?;
-                Ok(contact.filter(|contact| contact.dist <= prediction))
+            ShapePair::Links(links) => within(prediction, links.contact(pos12, prediction)),
+            ShapePair::Iterated(pair) => {
+                let contact = self.contact_of_iterated(&pair, pair.length(prediction))?;
+                within(prediction, contact.map(|contact| pair.restore(contact)))
             }
         }
     }
@@ -258,29 +251,22 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
         check_margin(max_dist)?;
         let thin = ThinShape::of(g1, g2);
         let [g1, g2] = thin.pair(g1, g2);
-        if let Some(pair) = RobotSurface::of(pos12, g1, g2) {
-            return pair.closest_points(max_dist);
-        }
-        if let Some(pair) = RobotHalfSpace::of(pos12, g1, g2)? {
-            return pair.closest_points(max_dist);
-        }
-        match Decomposition::of(g1, g2)? {
-            Decomposition::Composite(parts) => {
+        match ShapePair::of(pos12, g1, g2)? {
+            ShapePair::Surface(pair) => pair.closest_points(max_dist),
+            ShapePair::HalfSpace(pair) => pair.closest_points(max_dist),
+            ShapePair::Parts(Decomposition::Composite(parts)) => {
                 CompositePair { dispatcher: self, parts, pos12, other: g2 }.closest_points(max_dist)
             }
-            Decomposition::Field(field) => {
+            ShapePair::Parts(Decomposition::Field(field)) => {
                 HeightFieldPair { dispatcher: self, field, pos12, other: g2 }
                     .closest_points(max_dist)
             }
-            Decomposition::Voxels(_) => Err(Unsupported),
-            Decomposition::OfSecond => self
+            ShapePair::Parts(Decomposition::Voxels(_)) => Err(Unsupported),
+            ShapePair::Parts(Decomposition::OfSecond) => self
                 .closest_points(&pos12.inverse(), g2, g1, max_dist)
                 .map(|points| points.flipped()),
-            Decomposition::None => {
-                if let Some(links) = LinkPair::of(pos12, g1, g2)? {
-                    return Ok(links.closest_points(pos12, max_dist));
-                }
-                let pair = IteratedPair::of(pos12, g1, g2)?;
+            ShapePair::Links(links) => Ok(links.closest_points(pos12, max_dist)),
+            ShapePair::Iterated(pair) => {
                 let ([g1, g2], max_dist) = (pair.shapes(), pair.length(max_dist));
                 let points = match ConvexPair::of(&self.0, &pair.pos12, g1, g2) {
                     Some(convex) => convex.closest_points(max_dist)?,
@@ -309,23 +295,23 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
             return pair.cast_shapes(local_vel12, options);
         }
         match Decomposition::of(g1, g2)? {
-            Decomposition::Composite(parts) => {
+            Some(Decomposition::Composite(parts)) => {
                 CompositePair { dispatcher: self, parts, pos12, other: g2 }
                     .cast_shapes(local_vel12, options)
             }
-            Decomposition::Field(field) => {
+            Some(Decomposition::Field(field)) => {
                 HeightFieldPair { dispatcher: self, field, pos12, other: g2 }
                     .cast_shapes(local_vel12, options)
             }
-            Decomposition::Voxels(cells) => {
+            Some(Decomposition::Voxels(cells)) => {
                 voxels::cast(self, (pos12, local_vel12), cells, g2, options)
             }
-            Decomposition::OfSecond => {
+            Some(Decomposition::OfSecond) => {
                 let local_vel21 = -(pos12.rotation.inverse() * local_vel12);
                 let hit = self.cast_shapes(&pos12.inverse(), local_vel21, g2, g1, options)?;
                 Ok(hit.map(ShapeCastHit::swapped))
             }
-            Decomposition::None => {
+            None => {
                 if let Some(pair) = LinkTrianglePair::of(g1, g2)? {
                     return straight_cast::cast_triangle(&pair, pos12, local_vel12, options);
                 }
@@ -386,28 +372,28 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
             return Ok(hit);
         }
         match Decomposition::of(g1, g2)? {
-            Decomposition::Composite(parts) => height_field::cast_parts_nonlinear(
+            Some(Decomposition::Composite(parts)) => height_field::cast_parts_nonlinear(
                 self,
                 (motion1, parts),
                 (motion2, g2),
                 (start_time, end_time),
                 stop_at_penetration,
             ),
-            Decomposition::Field(field) => height_field::cast_nonlinear(
+            Some(Decomposition::Field(field)) => height_field::cast_nonlinear(
                 self,
                 (motion1, field),
                 (motion2, g2),
                 (start_time, end_time),
                 stop_at_penetration,
             ),
-            Decomposition::Voxels(cells) => voxels::cast_nonlinear(
+            Some(Decomposition::Voxels(cells)) => voxels::cast_nonlinear(
                 self,
                 (motion1, cells),
                 (motion2, g2),
                 (start_time, end_time),
                 stop_at_penetration,
             ),
-            Decomposition::OfSecond => {
+            Some(Decomposition::OfSecond) => {
                 let hit = self.cast_shapes_nonlinear(
                     motion2,
                     g2,
@@ -419,7 +405,7 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
                 )?;
                 Ok(hit.map(ShapeCastHit::swapped))
             }
-            Decomposition::None => self.0.cast_shapes_nonlinear(
+            None => self.0.cast_shapes_nonlinear(
                 motion1,
                 g1,
                 motion2,
@@ -433,22 +419,6 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
 }
 
 impl<L: QueryDispatcher> ContinuumDispatcher<L> {
-    /// Returns the contact of two shapes that cannot be split; it may exceed the prediction.
-    fn contact_of_simple(
-        &self,
-        pos12: &Pose,
-        g1: &dyn Shape,
-        g2: &dyn Shape,
-        prediction: Real,
-    ) -> Result<Option<Contact>, Unsupported> {
-        if let Some(links) = LinkPair::of(pos12, g1, g2)? {
-            return Ok(links.contact(pos12, prediction));
-        }
-        let pair = IteratedPair::of(pos12, g1, g2)?;
-        let contact = self.contact_of_iterated(&pair, pair.length(prediction))?;
-        Ok(contact.map(|contact| pair.restore(contact)))
-    }
-
     /// Returns the contact of a pair for the inner dispatcher, in the pair's unit.
     pub(super) fn contact_of_iterated(
         &self,
@@ -482,6 +452,50 @@ impl<L> ContinuumDispatcher<L> {
     }
 }
 
+/// The kind of a pair of shapes, with the data of the algorithm that answers it. The rows of the
+/// table in the head of this file.
+enum ShapePair<'a> {
+    /// a: a robot and a triangle or a mesh.
+    Surface(RobotSurface<'a>),
+    /// b: a robot and a half-space.
+    HalfSpace(RobotHalfSpace<'a>),
+    /// c: a shape with parts.
+    Parts(Decomposition<'a>),
+    /// d: two links.
+    Links(LinkPair),
+    /// e: a pair for the inner dispatcher.
+    Iterated(IteratedPair<'a>),
+}
+
+impl<'a> ShapePair<'a> {
+    /// Classifies a pair, after [`ThinShape`].
+    ///
+    /// # Errors
+    /// [`Unsupported`] for a shape or a placement that the algorithm of its kind refuses.
+    fn of(pos12: &'a Pose, g1: &'a dyn Shape, g2: &'a dyn Shape) -> Result<Self, Unsupported> {
+        Ok(if let Some(pair) = RobotSurface::of(pos12, g1, g2) {
+            Self::Surface(pair)
+        } else if let Some(pair) = RobotHalfSpace::of(pos12, g1, g2)? {
+            Self::HalfSpace(pair)
+        } else if let Some(parts) = Decomposition::of(g1, g2)? {
+            Self::Parts(parts)
+        } else if let Some(pair) = LinkPair::of(pos12, g1, g2)? {
+            Self::Links(pair)
+        } else {
+            Self::Iterated(IteratedPair::of(pos12, g1, g2)?)
+        })
+    }
+}
+
+/// Returns the contact if it is within the prediction.
+///
+/// # Errors
+/// [`Unsupported`] for a contact whose `dist` is NaN.
+fn within(prediction: Real, contact: Option<Contact>) -> Result<Option<Contact>, Unsupported> {
+    check_margin(contact.map_or(0.0, |contact| contact.dist))?;
+    Ok(contact.filter(|contact| contact.dist <= prediction))
+}
+
 /// Which shape of a pair is split.
 enum Decomposition<'a> {
     /// The first shape is a composite: a chain, a mesh, a polyline, a compound.
@@ -492,28 +506,24 @@ enum Decomposition<'a> {
     Voxels(&'a Voxels),
     /// Only the second shape has parts.
     OfSecond,
-    /// Neither shape has parts.
-    None,
 }
 
 impl<'a> Decomposition<'a> {
-    /// Splits the first shape first.
+    /// Splits the first shape first. `None` if neither shape has parts.
     ///
     /// # Errors
     /// As [`check_scale`].
-    pub fn of(g1: &'a dyn Shape, g2: &'a dyn Shape) -> Result<Self, Unsupported> {
+    fn of(g1: &'a dyn Shape, g2: &'a dyn Shape) -> Result<Option<Self>, Unsupported> {
         check_scale(g1)?;
         check_scale(g2)?;
         Ok(if let Some(composite) = g1.as_composite_shape() {
-            Self::Composite(composite)
+            Some(Self::Composite(composite))
         } else if let Some(field) = g1.as_heightfield() {
-            Self::Field(field)
+            Some(Self::Field(field))
         } else if let Some(voxels) = g1.as_voxels() {
-            Self::Voxels(voxels)
-        } else if has_parts(g2) {
-            Self::OfSecond
+            Some(Self::Voxels(voxels))
         } else {
-            Self::None
+            has_parts(g2).then_some(Self::OfSecond)
         })
     }
 }

@@ -14,11 +14,21 @@
 //!
 //! let mut world = PhysicsWorld::default();
 //! rapier::install(&mut world.narrow_phase, &mut world.integration_parameters, 1.0)?;
-//! world.insert(RigidBodyBuilder::fixed(), ColliderBuilder::trimesh(
-//!     vec![Vector::new(-9.0, 0.0, -9.0), Vector::new(9.0, 0.0, -9.0), Vector::new(0.0, 0.0, 18.0)],
-//!     vec![[0, 2, 1]],
-//! )?);
-//! let robot = Chain::from_centreline(&[Vector::ZERO, 2.0 * Vector::X, Vector::new(3.5, 0.0, 1.0)], &[0.5, 0.5])?;
+//! world.insert(
+//!     RigidBodyBuilder::fixed(),
+//!     ColliderBuilder::trimesh(
+//!         vec![
+//!             Vector::new(-9.0, 0.0, -9.0),
+//!             Vector::new(9.0, 0.0, -9.0),
+//!             Vector::new(0.0, 0.0, 18.0),
+//!         ],
+//!         vec![[0, 2, 1]],
+//!     )?,
+//! );
+//! let robot = Chain::from_centreline(
+//!     &[Vector::ZERO, 2.0 * Vector::X, Vector::new(3.5, 0.0, 1.0)],
+//!     &[0.5, 0.5],
+//! )?;
 //! let above = RigidBodyBuilder::dynamic().translation(Vector::new(-1.0, 0.6, 0.0));
 //! let (robot, _) = world.insert(above, ColliderBuilder::new(SharedShape::new(robot)));
 //! for _ in 0..120 {

@@ -53,7 +53,7 @@ use super::{DisplacementBound, Motion, Speed, rigid_pose};
 use crate::curve::check_bending;
 use crate::curve::{BendingSection, ConstantCurvature, Tube};
 use crate::distance::Scalar;
-use crate::robot::RobotError;
+use crate::robot::{RobotError, length};
 use parry3d_f64::math::{Pose, Real, Vector};
 
 /// How a section of constant curvature changes during a motion, for [`bending_speed`].
@@ -87,8 +87,10 @@ pub struct BendingRates {
 /// use parry_continuum::{BendingRates, bending_speed};
 ///
 /// // A section of 20 that is pushed out by 2, and one of 10 that turns its plane by 0.1 rad.
-/// let first = BendingRates { length: 20.0, growth: 2.0, curvature: 0.0, bending: 0.0, step: 0.05 };
-/// let second = BendingRates { length: 10.0, growth: 0.0, curvature: 0.05, bending: 0.005, step: 0.0 };
+/// let first =
+///     BendingRates { length: 20.0, growth: 2.0, curvature: 0.0, bending: 0.0, step: 0.05 };
+/// let second =
+///     BendingRates { length: 10.0, growth: 0.0, curvature: 0.05, bending: 0.005, step: 0.0 };
 /// assert!((bending_speed(&[first, second], 0, [0.0, 0.5]).point - 1.0).abs() < 1e-9);
 /// let tip = bending_speed(&[first, second], 1, [1.0, 1.0]);
 /// // Plane: 0.005 x 10^2 / 2. Growth: 2. Moving step: 2 x 0.05 x 10.
@@ -136,7 +138,8 @@ pub fn bending_speed(sections: &[BendingRates], section: usize, shares: [Real; 2
 /// use parry_continuum::{BendingRates, bending_displacement, parry::math::Vector};
 ///
 /// // Straight at first, a section of 10 that bends evenly by 0.02 x 10 = 0.2 rad in all.
-/// let rates = BendingRates { length: 10.0, growth: 0.0, curvature: 0.02, bending: 0.02, step: 0.0 };
+/// let rates =
+///     BendingRates { length: 10.0, growth: 0.0, curvature: 0.02, bending: 0.02, step: 0.0 };
 /// let point = |share: f64, t: f64| {
 ///     let curvature = 0.02 * t.max(1e-9);
 ///     let (sin, cos) = (curvature * 10.0 * share).sin_cos();
@@ -249,11 +252,11 @@ impl BendingMotion {
         let rates = (0..from.len()).map(|k| BendingRates {
             length: from[k].length.max(to[k].length),
             growth: to[k].length - from[k].length,
-            curvature: bend(&from[k]).length().max(bend(&to[k]).length()),
-            bending: (bend(&to[k]) - bend(&from[k])).length(),
+            curvature: length(bend(&from[k])).max(length(bend(&to[k]))),
+            bending: length(bend(&to[k]) - bend(&from[k])),
             // The norm of a vector that changes at a constant rate is convex in time.
             step: [from, to]
-                .map(|all| all.get(k + 1).map_or(0.0, |next| (bend(next) - bend(&all[k])).length()))
+                .map(|all| all.get(k + 1).map_or(0.0, |next| length(bend(next) - bend(&all[k]))))
                 .into_iter()
                 .fold(0.0, Real::max),
         });

@@ -32,7 +32,7 @@
 use super::{DisplacementBound, Motion, Speed};
 use crate::curve::Tube;
 use crate::distance::Scalar;
-use crate::robot::{RobotError, check_chain, direction, has_direction, without_length};
+use crate::robot::{RobotError, check_chain, direction, has_direction, length, without_length};
 use parry3d_f64::math::{Pose, Real, Vector};
 
 /// The motion of a chain whose vertices move straight at constant speed.
@@ -73,14 +73,21 @@ impl LinearMotion {
     /// `from` and `to` are the points at t = 0 and 1, `segment_radii` one radius per segment.
     ///
     /// ```
-    /// use parry_continuum::{LinearMotion, parry::{math::Vector, shape::Ball}, proximity::BvhSearch};
+    /// use parry_continuum::parry::{math::Vector, shape::Ball};
+    /// use parry_continuum::{LinearMotion, proximity::BvhSearch};
     ///
     /// let (vertices, triangles) = Ball::new(10.0).to_trimesh(64, 32);
     /// let mut search = BvhSearch::from_triangles(&vertices, &triangles)?;
     /// let (from, to) = ([Vector::ZERO, Vector::Z * 8.0], [Vector::X, Vector::new(1.0, 0.0, 8.0)]);
     /// // The flat tip keeps 1 mm, the round one does not.
-    /// assert!(search.clears_motion(&LinearMotion::chain(&from, &to, &[1.0])?, 1.0, 1e-3)?.is_clear());
-    /// assert!(!search.clears_motion(&LinearMotion::capsules(&from, &to, &[1.0])?, 1.0, 1e-3)?.is_clear());
+    /// assert!(
+    ///     search.clears_motion(&LinearMotion::chain(&from, &to, &[1.0])?, 1.0, 1e-3)?.is_clear()
+    /// );
+    /// assert!(
+    ///     !search
+    ///         .clears_motion(&LinearMotion::capsules(&from, &to, &[1.0])?, 1.0, 1e-3)?
+    ///         .is_clear()
+    /// );
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///
@@ -181,7 +188,10 @@ impl LinearMotion {
 
     /// Returns an upper bound on the angular speed of a link (claim 1).
     fn turn(&self, link: usize, times: [Real; 2]) -> Real {
+        // The angle does not depend on the scale, and near 1 no product underflows.
         let [first, last] = self.link(link);
+        let scale = first.abs().max(last.abs()).max_element().power_of_two_to_unity();
+        let [first, last] = [first * scale, last * scale];
         // Covers fewer than 32 roundings.
         let up = 1.0 + 32.0 * Real::UNIT_ROUNDOFF;
         let sizes = first.length() * last.length();
@@ -190,7 +200,7 @@ impl LinearMotion {
             return 0.0;
         }
         let least = least_length([first, last], times);
-        if least > self.needed(link) { cross / least / least * up } else { Real::INFINITY }
+        if least > self.needed(link) * scale { cross / least / least * up } else { Real::INFINITY }
     }
 }
 
@@ -217,7 +227,7 @@ impl Motion for LinearMotion {
         // Covers fewer than 32 roundings each of differences, squares and quotients.
         let up = 1.0 + 32.0 * Real::UNIT_ROUNDOFF;
         let [start, end] = [self.velocity(section), self.velocity(section + 1)];
-        let speed = |share: Real| (start + (end - start) * share).length();
+        let speed = |share: Real| length(start + (end - start) * share);
         let point = speed(shares[0]).max(speed(shares[1])) * up + self.rounding();
         Speed { point, turn: self.turn(section, times) }
     }

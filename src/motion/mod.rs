@@ -47,7 +47,8 @@ use parry3d_f64::math::{Pose, Real};
 /// - Flat ends stay flat: the robot's two ends, and the wider side of each step in radius. So the
 ///   cap model must stay the same; a change from capsules to fitted caps, for example, is refused.
 /// ```
-/// use parry_continuum::{Motion, RobotError, Speed, Tube, parry::math::{Pose, Real, Vector}, verify_motion};
+/// use parry_continuum::parry::math::{Pose, Real, Vector};
+/// use parry_continuum::{Motion, RobotError, Speed, Tube, verify_motion};
 ///
 /// /// A straight needle of 30 mm that bends to an arc of 0.02 / mm, 40 points along it.
 /// struct Bending;
@@ -101,9 +102,9 @@ pub trait Motion {
     ///
     /// With it, [`clears_motion`](crate::proximity::BvhSearch::clears_motion) and similar queries
     /// need fewer shapes: a piece that moves along the wall, or away from it, does not count as
-    /// moving towards it. All ready motions know their displacements. [`bending_displacement`] helps for
-    /// sections of constant curvature. A wrong bound makes answers wrong. A bound that is not
-    /// finite, or whose `off` is negative, is ignored.
+    /// moving towards it. All ready motions know their displacements. [`bending_displacement`]
+    /// helps for sections of constant curvature. A wrong bound makes answers wrong. A bound that is
+    /// not finite, or whose `off` is negative, is ignored.
     ///
     /// A motion that wraps another may pass its bound on if it keeps time and place.
     fn displacement(

@@ -10,15 +10,17 @@ use parry3d_f64::math::{Pose, Real, Vector};
 /// A path: motions in sequence, each over an equal part of the time.
 ///
 /// Of n motions the first runs from t = 0 to 1 / n, the second to 2 / n, and so on.
-/// [`part_at`](Self::part_at) returns the motion at a given time. All have the same sections, and each
-/// begins where the previous one ends.
+/// [`part_at`](Self::part_at) returns the motion at a given time. All have the same sections, and
+/// each begins where the previous one ends.
 ///
 /// ```
-/// use parry_continuum::{LinearMotion, MotionPath, parry::{math::Vector, shape::Ball}, proximity::BvhSearch};
+/// use parry_continuum::parry::{math::Vector, shape::Ball};
+/// use parry_continuum::{LinearMotion, MotionPath, proximity::BvhSearch};
 ///
 /// let (vertices, triangles) = Ball::new(10.0).to_trimesh(64, 32);
 /// let mut search = BvhSearch::from_triangles(&vertices, &triangles)?;
-/// let shapes = [Vector::Z, Vector::Z + Vector::X * 2.0, Vector::X * 5.0].map(|tip| [Vector::ZERO, tip]);
+/// let shapes =
+///     [Vector::Z, Vector::Z + Vector::X * 2.0, Vector::X * 5.0].map(|tip| [Vector::ZERO, tip]);
 /// let edges = shapes.windows(2).map(|ends| LinearMotion::chain(&ends[0], &ends[1], &[1.0]));
 /// let path = MotionPath::new(edges.collect::<Result<_, _>>()?)?;
 /// let least = search.clearance_of_motion(&path, 0.01)?;

@@ -32,7 +32,7 @@ use super::rigid::RigidPath;
 use super::{DisplacementBound, Motion, Speed, rigid_pose};
 use crate::curve::Tube;
 use crate::distance::Scalar;
-use crate::robot::RobotError;
+use crate::robot::{RobotError, length};
 use parry3d_f64::math::{Pose, Real, Vector};
 
 /// A motion whose base moves at the same time from one pose to another: a robot that is pushed or
@@ -43,7 +43,8 @@ use parry3d_f64::math::{Pose, Real, Vector};
 /// smaller angle, as in a [`RigidMotion`](crate::RigidMotion).
 ///
 /// ```
-/// use parry_continuum::{BendingMotion, BendingSection, MovingBase, parry::math::{Pose, Vector}, verify_motion};
+/// use parry_continuum::parry::math::{Pose, Vector};
+/// use parry_continuum::{BendingMotion, BendingSection, MovingBase, verify_motion};
 ///
 /// let straight = BendingSection { length: 30.0, radius: 1.0, bend: [0.0, 0.0] };
 /// let bent = BendingSection { length: 32.0, radius: 1.0, bend: [0.03, 0.01] };
@@ -144,7 +145,7 @@ impl<M: Motion> Motion for MovingBase<M> {
         let ways =
             [0, 1].map(|end| poses[1] * (place[end] + inner.ways[end]) - poses[0] * place[end]);
         let turning = self.path.of_turning(self.carried(section, shares, times).point) * apart;
-        let own = inner.ways[0].length().max(inner.ways[1].length());
+        let own = length(inner.ways[0]).max(length(inner.ways[1]));
         let bow = 0.125 * turn * (turning + turn * inner.off + 2.0 * own);
         let places = poses.iter().flat_map(|pose| place.map(|place| *pose * place)).chain(place);
         let reach = places.fold(own, |most: Real, p| most.max(p.abs().max_element()));

@@ -19,7 +19,7 @@
 use super::{DisplacementBound, Motion, Speed, rigid_pose};
 use crate::curve::{Section, Tube};
 use crate::distance::Scalar;
-use crate::robot::{RobotError, rotation_by};
+use crate::robot::{RobotError, length, rotation_by};
 use parry3d_f64::math::{Pose, Real, Rotation, Vector};
 
 /// The motion of a tube of constant shape from one pose to another.
@@ -32,7 +32,10 @@ use parry3d_f64::math::{Pose, Real, Rotation, Vector};
 /// use parry_continuum::parry::math::{Pose, Vector};
 ///
 /// let needle = Chain::capsules(&[Vector::ZERO, 40.0 * Vector::Z], &[0.5])?;
-/// let motion = RigidMotion::new(Tube::from(&needle), [Pose::IDENTITY, Pose::new(Vector::Z, Vector::X * 0.3)])?;
+/// let motion = RigidMotion::new(
+///     Tube::from(&needle),
+///     [Pose::IDENTITY, Pose::new(Vector::Z, Vector::X * 0.3)],
+/// )?;
 /// verify_motion(&motion, 100)?;
 /// # Ok::<(), parry_continuum::RobotError>(())
 /// ```
@@ -96,7 +99,7 @@ impl RigidPath {
 
     /// Returns the part of a speed bound that is due to turning.
     pub(super) fn of_turning(&self, point: Real) -> Real {
-        (point * UP - self.shift.length()).max(0.0)
+        (point * UP - length(self.shift)).max(0.0)
     }
 
     /// Returns the pose at a time.
@@ -107,7 +110,7 @@ impl RigidPath {
 
     /// Returns an upper bound on w.
     pub(crate) fn angle(&self) -> Real {
-        self.turn.length() * UP
+        length(self.turn) * UP
     }
 
     /// Returns the displacement bound of a piece of a tube at rest in the frame.
@@ -163,12 +166,12 @@ impl RigidPath {
             return Speed { point: 0.0, turn: 0.0 };
         };
         let ends = shares.map(|share| tube.at_share(section, share));
-        let [a, b] = ends.map(|end| self.turn.cross(*pose * end.point).length());
+        let [a, b] = ends.map(|end| length(self.turn.cross(*pose * end.point)));
         let off = Self::beside(tube, section, shares);
         let reach = pose.translation.abs().max_element() + 2.0 * tube.reach();
         let rounding = 32.0 * Real::UNIT_ROUNDOFF * reach;
         Speed {
-            point: (self.shift.length() + a.max(b) + angle * (off + rounding)) * UP,
+            point: (length(self.shift) + a.max(b) + angle * (off + rounding)) * UP,
             turn: angle,
         }
     }

@@ -3,7 +3,7 @@
 
 use super::Motion;
 use crate::curve::{CapPersistence, Drift, Tube};
-use crate::robot::RobotError;
+use crate::robot::{RobotError, length};
 use parry3d_f64::math::Real;
 
 /// The sections of the shapes so far: their radii, and which of their ends are always flat. `None`
@@ -80,7 +80,7 @@ impl<M: Motion> Drift for MotionDrift<'_, M> {
         let [from, to] = self.times;
         let sides = [[from, self.t], [self.t, to]].map(|times| {
             let bound = self.motion.displacement(section, [0.0, 1.0], times)?;
-            let change = (bound.ways[1] - bound.ways[0]).length() + 2.0 * bound.off;
+            let change = length(bound.ways[1] - bound.ways[0]) + 2.0 * bound.off;
             (change >= 0.0).then_some(change)
         });
         let by_speed = self.moves(section, 0) + self.moves(section, 1);

@@ -14,7 +14,7 @@
 use super::{DisplacementBound, Motion, Speed};
 use crate::curve::Tube;
 use crate::distance::Scalar;
-use crate::robot::{Chain, RobotError};
+use crate::robot::{Chain, RobotError, length};
 use parry3d_f64::math::{Pose, Real, Vector};
 
 /// Shapes in sequence.
@@ -91,7 +91,7 @@ impl Motion for ShapePath<'_> {
                 [part, part + 1].map(|shape| &self.shapes[shape.min(self.shapes.len() - 1)]);
             let (Some(from), Some(to)) = (ends(from, section), ends(to, section)) else { continue };
             let [start, end] = [to[0] - from[0], to[1] - from[1]];
-            let speed = |share: Real| (start + (end - start) * share).length();
+            let speed = |share: Real| length(start + (end - start) * share);
             let reach = from
                 .into_iter()
                 .chain(to)
@@ -131,7 +131,7 @@ impl Motion for ShapePath<'_> {
         // Covers places, differences and displacements, and times that are off by `unsure`, into a
         // part that begins where this one ends.
         let off =
-            64.0 * Real::UNIT_ROUNDOFF * reach + 4.0 * unsure * start.length().max(end.length());
+            64.0 * Real::UNIT_ROUNDOFF * reach + 4.0 * unsure * length(start).max(length(end));
         Some(DisplacementBound { ways, off })
     }
 

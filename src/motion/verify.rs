@@ -35,9 +35,9 @@ use parry3d_f64::math::Real;
 /// eighths of the section, and one drawn range per step, the same in every run. The least of these
 /// bounds counts, and the error names it.
 ///
-/// A stated displacement ([`Motion::displacement`]) is compared with the shapes at the ends of its time
-/// and at its middle. The ranges are the same as for speeds; the shapes are 1, 2, 4, 8 and more
-/// steps apart.
+/// A stated displacement ([`Motion::displacement`]) is compared with the shapes at the ends of its
+/// time and at its middle. The ranges are the same as for speeds; the shapes are 1, 2, 4, 8 and
+/// more steps apart.
 ///
 /// Part of a measured displacement may be an error of the shapes. It does not count against the
 /// motion:
@@ -56,7 +56,8 @@ use parry3d_f64::math::Real;
 /// - a shape that cannot be made;
 /// - sections that change.
 /// ```
-/// use parry_continuum::{Motion, RobotError, Speed, Tube, parry::math::{Pose, Real, Vector}, verify_motion};
+/// use parry_continuum::parry::math::{Pose, Real, Vector};
+/// use parry_continuum::{Motion, RobotError, Speed, Tube, verify_motion};
 ///
 /// struct Sideways;
 ///
@@ -70,7 +71,10 @@ use parry3d_f64::math::Real;
 ///     }
 /// }
 ///
-/// assert!(matches!(verify_motion(&Sideways, 10), Err(RobotError::FasterThanStated { stated: 0.9, .. })));
+/// assert!(matches!(
+///     verify_motion(&Sideways, 10),
+///     Err(RobotError::FasterThanStated { stated: 0.9, .. })
+/// ));
 /// ```
 pub fn verify_motion(motion: &impl Motion, steps: u32) -> Result<(), RobotError> {
     let steps = steps.max(1);

@@ -111,7 +111,8 @@ impl LinkProximity {
     /// use parry_continuum::parry::{math::{Pose, Vector}, shape::TriMesh};
     /// use parry_continuum::proximity::{BvhSearch, Proximity};
     ///
-    /// let wall = [Vector::new(-9.0, -9.0, 3.0), Vector::new(9.0, -9.0, 3.0), Vector::new(0.0, 9.0, 3.1)];
+    /// let wall =
+    ///     [Vector::new(-9.0, -9.0, 3.0), Vector::new(9.0, -9.0, 3.0), Vector::new(0.0, 9.0, 3.1)];
     /// let mesh = TriMesh::new(wall.to_vec(), vec![[0, 1, 2]])?;
     /// let robot = Chain::from_centreline(&[Vector::ZERO, Vector::X], &[0.5])?;
     /// let closest = BvhSearch::new(&mesh)?.minimum(&robot, &Pose::IDENTITY)?;
@@ -277,7 +278,12 @@ impl Certificate {
     /// use parry_continuum::parry::math::{Pose, Vector};
     ///
     /// let link = ModifiedCylinder::capsule(Vector::ZERO, Vector::Z, 0.5)?;
-    /// let proof = Certificate::between_links(&link, &Pose::IDENTITY, &link, &Pose::translation(3.0, 0.0, 0.0))?;
+    /// let proof = Certificate::between_links(
+    ///     &link,
+    ///     &Pose::IDENTITY,
+    ///     &link,
+    ///     &Pose::translation(3.0, 0.0, 0.0),
+    /// )?;
     /// assert!(proof.lower <= 2.0 && 2.0 <= proof.upper && proof.upper - proof.lower < 1e-14);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
@@ -322,7 +328,8 @@ impl RobotProximity {
     /// use parry_continuum::parry::math::{Pose, Vector};
     ///
     /// let robot = Chain::from_centreline(&[Vector::ZERO, Vector::Z * 40.0], &[0.7])?;
-    /// let (here, crossing) = (Pose::IDENTITY, Pose::new(Vector::new(3.0, 9.0, 7.0), Vector::X * 0.9));
+    /// let (here, crossing) =
+    ///     (Pose::IDENTITY, Pose::new(Vector::new(3.0, 9.0, 7.0), Vector::X * 0.9));
     /// let closest = RobotPair::new().minimum(&robot, &here, &robot, &crossing)?;
     /// let proof = closest.certify(&robot, &here, &robot, &crossing)?;
     /// assert!(proof.upper - proof.lower < 1e-13);

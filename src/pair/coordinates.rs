@@ -61,7 +61,8 @@ impl<T: Scalar> Placed<T> {
 }
 
 impl Pair<Real> {
-    /// Returns a lower bound on the distance, by a plane across the vector from the axis to the triangle's centre.
+    /// Returns a lower bound on the distance, by a plane across the vector from the axis to the
+    /// triangle's centre.
     pub(super) fn at_least(&self) -> Real {
         let [a, b, c] = self.triangle;
         let centre = (a + b + c) * (1.0 / 3.0);

@@ -3,24 +3,25 @@
 //! # Definitions
 //! - `lower` of a piece: a lower bound on its clearance: max(distance of its body, `lower` of its
 //!   parent).
-//! - `direction_gap` of a piece: the gap between its bounds that the unknown direction of a face causes
-//!   ([`Refinable::direction_uncertainty`]).
+//! - `direction_gap` of a piece: the gap between its bounds that the unknown direction of a face
+//!   causes ([`Refinable::direction_uncertainty`]).
 //! - `found` of a piece: the upper bound on the clearance that the piece yields.
 //! - A **measured** piece has its distance and its `found`. An **open** piece has the `lower` of
 //!   its parent. A **distant** piece was searched within its `lower`, without a result: its
 //!   distance is larger.
-//! - The **rank** of a measured piece: (`lower` + `direction_gap`, upper bound of `found`, place along the
-//!   tube). An open piece ranks by (`lower`, 0, place), a distant piece by (`lower`, infinity,
-//!   place).
+//! - The **rank** of a measured piece: (`lower` + `direction_gap`, upper bound of `found`, place
+//!   along the tube). An open piece ranks by (`lower`, 0, place), a distant piece by (`lower`,
+//!   infinity, place).
 //!
 //! # Claim
 //! Let a query divide only the measured piece of least rank, and only if it is first among all
 //! pieces. Then the sequence of divisions depends only on the tube and on the obstacle. It is
 //! independent of search bounds, of start triangles and of the tolerance.
 //!
-//! **Proof.** Distance, `found`, `direction_gap` and place are functions of the piece. By induction over
-//! its parents, so is the `lower` of a measured piece. Measuring a piece never lowers its rank. So
-//! if a measured piece is the first of all, it would also be the first if all pieces were measured.
+//! **Proof.** Distance, `found`, `direction_gap` and place are functions of the piece. By induction
+//! over its parents, so is the `lower` of a measured piece. Measuring a piece never lowers its
+//! rank. So if a measured piece is the first of all, it would also be the first if all pieces were
+//! measured.
 //!
 //! Two consequences:
 //! - An upper bound of an earlier query may save searches. It never enters a result.

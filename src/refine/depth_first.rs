@@ -69,6 +69,9 @@ pub(crate) enum RefineAction {
 
 /// Decides how far [`refine`] divides the parts, and collects the answer.
 pub(crate) trait RefinePolicy<T: Refinable, P> {
+    /// What the query of a body computes and the decision about its part needs again.
+    type OfPart;
+
     /// Whether the half that contains the place of the upper bound is processed first.
     const NEARER_HALF_FIRST: bool;
 
@@ -85,7 +88,7 @@ pub(crate) trait RefinePolicy<T: Refinable, P> {
         part: &P,
         piece: &T::Piece,
         outer: &T::Body,
-    ) -> Result<BodyQuery, ProximityError>;
+    ) -> Result<(BodyQuery, Self::OfPart), ProximityError>;
 
     /// Called for a body that is farther away than its `bound`.
     fn on_cleared(&mut self, piece: &T::Piece, outer: &T::Body, bound: Real);
@@ -98,6 +101,7 @@ pub(crate) trait RefinePolicy<T: Refinable, P> {
         &mut self,
         tube: &T,
         near: &BoundedPiece<T, P>,
+        of_part: &Self::OfPart,
     ) -> Result<RefineAction, ProximityError>;
 
     /// Called for a part that should be halved and has no halves.
@@ -108,6 +112,7 @@ pub(crate) trait RefinePolicy<T: Refinable, P> {
         &mut self,
         tube: &T,
         near: &BoundedPiece<T, P>,
+        of_part: &Self::OfPart,
     ) -> Result<(), ProximityError>;
 }
 
@@ -115,13 +120,13 @@ pub(crate) trait RefinePolicy<T: Refinable, P> {
 ///
 /// # Errors
 /// The curve of the tube is not finite, or a part cannot be tested.
-pub(crate) fn refine<T: Refinable, P: WorkItem<T>, Q: RefinePolicy<T, P>>(
+pub(crate) fn refine<T: Refinable, P: WorkItem<T>, R: RefinePolicy<T, P>>(
     tube: &mut T,
     parts: &mut Vec<P>,
-    question: &mut Q,
+    policy: &mut R,
 ) -> Result<(), ProximityError> {
     while let Some(part) = parts.pop() {
-        if question.is_done() {
+        if policy.is_done() {
             parts.push(part);
             return Ok(());
         }
@@ -129,20 +134,20 @@ pub(crate) fn refine<T: Refinable, P: WorkItem<T>, Q: RefinePolicy<T, P>>(
         let outer = tube.body(&piece);
         tube.check_finite(&piece, &outer)?;
         // Step 1.
-        let BodyQuery { bound, is_wide, aim, start } =
-            question.body_query(tube, &part, &piece, &outer)?;
+        let (BodyQuery { bound, is_wide, aim, start }, of_part) =
+            policy.body_query(tube, &part, &piece, &outer)?;
         // Step 2.
         if is_wide && let Some(halves) = tube.halves(&piece, &outer, aim) {
             if tube.may_meet(&outer, bound) {
                 parts.extend(part.halves(tube, halves));
             } else {
-                question.on_cleared(&piece, &outer, bound);
+                policy.on_cleared(&piece, &outer, bound);
             }
             continue;
         }
         // Step 3.
         let Some(nearest) = tube.nearest(&outer, bound, start) else {
-            question.on_cleared(&piece, &outer, bound);
+            policy.on_cleared(&piece, &outer, bound);
             continue;
         };
         // Step 4.
@@ -155,17 +160,17 @@ pub(crate) fn refine<T: Refinable, P: WorkItem<T>, Q: RefinePolicy<T, P>>(
             found: &found,
         };
         // Step 5.
-        match question.decide(tube, &near)? {
+        match policy.decide(tube, &near, &of_part)? {
             RefineAction::Settled => {}
             RefineAction::Answered => return Ok(()),
             RefineAction::Halve(aim) => match tube.halves(&piece, &outer, aim) {
                 Some(halves) => {
                     let is_in_first = tube.is_in_first_half(&found, &halves);
                     let [first, second] = part.halves(tube, halves);
-                    let swap = Q::NEARER_HALF_FIRST && is_in_first;
+                    let swap = R::NEARER_HALF_FIRST && is_in_first;
                     parts.extend(if swap { [second, first] } else { [first, second] });
                 }
-                None => question.decide_indivisible(tube, &near)?,
+                None => policy.decide_indivisible(tube, &near, &of_part)?,
             },
         }
     }

@@ -85,8 +85,8 @@ struct NearPlace {
 }
 
 impl NearPlace {
-    /// The point of the tube on the way from the place to `x`, if the tube has all points within the
-    /// radius of the place. `reach` is an upper bound on the distance of the place from `x`.
+    /// The point of the tube on the way from the place to `x`, if the tube has all points within
+    /// the radius of the place. `reach` is an upper bound on the distance of the place from `x`.
     fn less_radius(&self, radius: Real, reach: Real, x: Vector) -> TubePoint {
         // NaN means unknown, not contact.
         let upper = if reach.is_nan() { Real::INFINITY } else { (reach - radius).max(0.0) };

@@ -890,7 +890,8 @@ impl Refinable for TubeWithItself<'_> {
 
     fn halves(&self, pair: &SelfPair, _: &SelfPair, aim: Real) -> Option<[SelfPair; 2]> {
         let (tube, [least, most]) = (self.tube(), self.turns(pair));
-        // If the extra turn causes the direction gap, a shorter interval helps more than shorter pieces.
+        // If the extra turn causes the direction gap, a shorter interval helps more than shorter
+        // pieces.
         let open = MIN_TURN.max(MAX_SHARE_OF_EXTRA_TURN * self.extra_turn(pair));
         if least < Self::angle(pair) && most - least < open && most > least {
             return None;

@@ -110,7 +110,8 @@ impl Chain {
     /// ```
     /// use parry_continuum::{Chain, parry::math::Vector};
     ///
-    /// let rod = Chain::with_constant_radius(&[Vector::ZERO, Vector::Z, Vector::Z + Vector::X], 0.1)?;
+    /// let rod =
+    ///     Chain::with_constant_radius(&[Vector::ZERO, Vector::Z, Vector::Z + Vector::X], 0.1)?;
     /// assert_eq!(rod.links().len(), 2);
     /// # Ok::<(), parry_continuum::RobotError>(())
     /// ```
@@ -128,7 +129,8 @@ impl Chain {
     /// ```
     /// use parry_continuum::{Chain, parry::math::Vector};
     ///
-    /// let mut robot = Chain::from_centreline(&[Vector::ZERO, Vector::Z, 2.0 * Vector::Z], &[0.5, 0.5])?;
+    /// let mut robot =
+    ///     Chain::from_centreline(&[Vector::ZERO, Vector::Z, 2.0 * Vector::Z], &[0.5, 0.5])?;
     /// robot.set_centreline(&[Vector::ZERO, Vector::Z, Vector::Z + Vector::X], &[0.5, 0.5])?;
     /// assert_eq!(robot.links()[1].end(), Vector::new(1.0, 0.0, 1.0));
     /// # Ok::<(), parry_continuum::RobotError>(())
@@ -216,7 +218,8 @@ impl Chain {
     /// use parry_continuum::{Chain, parry::math::Vector};
     ///
     /// // The second segment has no length.
-    /// let robot = Chain::from_centreline(&[0.0, 1.0, 1.0, 2.0].map(|z| Vector::Z * z), &[0.5; 3])?;
+    /// let robot =
+    ///     Chain::from_centreline(&[0.0, 1.0, 1.0, 2.0].map(|z| Vector::Z * z), &[0.5; 3])?;
     /// assert_eq!((robot.segments_of(0), robot.segments_of(1)), (0..2, 2..3));
     /// # Ok::<(), parry_continuum::RobotError>(())
     /// ```

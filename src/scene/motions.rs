@@ -2,17 +2,18 @@
 //! least slack.
 //!
 //! # Algorithm
-//! 1. **Sweep** ([`MovingRobot`]). Make the first shapes of all robots, which finds most errors, and
-//!    bound where each robot goes.
+//! 1. **Sweep** ([`MovingRobot`]). Make the first shapes of all robots, which finds most errors,
+//!    and bound where each robot goes.
 //! 2. **Structures** and robots, the least lower bound on the slack first: a contact is probably
 //!    found at once. Skip those whose bound is beyond the margin. Query the others as
 //!    [`BvhSearch::clears_motion`](crate::proximity::BvhSearch::clears_motion) does.
 //! 3. **Robots.** Query the pairs that are not nested, then each robot and itself.
-//! 4. The first contact ends the query; `time_of_contact` asks on and keeps the earliest. Without a
-//!    contact the first error counts, then the earliest interval that is undecided.
+//! 4. **Answer.** The first contact ends the query; `time_of_contact` continues and keeps the
+//!    earliest contact. Without a contact the answer is the first error, or else the earliest
+//!    undecided interval.
 //!
-//! The least slack is that of the structures, nearest first by their bounds, and of the pairs of
-//! robots ([`LeastSlack`]).
+//! The least slack combines the slacks of the structures, nearest first by their bounds, and of the
+//! pairs of robots ([`LeastSlack`]).
 //!
 //! The queries share the shapes of their first intervals. They share nothing else, so each decides
 //! as if it were the only one.
@@ -52,9 +53,9 @@ impl Scene {
     ///
     /// - `Clear`: all of them are clear. This is proven for every instant, given the speeds that
     ///   the motions state.
-    /// - `Contact`: the answer names the first of them with a contact, in this order: robots and
-    ///   structures, those that seem nearest first; the pairs of robots; each robot and itself. The
-    ///   contact may not be the first in time.
+    /// - `Contact`: the answer names the first contact in the order of the queries: robots and
+    ///   structures, the nearest by their bounds first; then pairs of robots; then each robot and
+    ///   itself. Another contact may be earlier in time.
     /// - `Undecided`: none has a contact, and some are undecided. The answer has the earliest
     ///   interval, and its [reason](SceneMotionAnswer::reason).
     ///
@@ -74,8 +75,10 @@ impl Scene {
     ///
     /// let tips = [-3.0, 3.0].map(|x| [Vector::ZERO, Vector::new(x, 0.0, 5.0)]);
     /// let moving = LinearMotion::chain(&tips[0], &tips[1], &[0.5])?;
-    /// let needle = Chain::capsules(&[Vector::new(0.0, 6.0, 5.0), Vector::new(0.0, 3.0, 5.0)], &[0.5])?;
-    /// let at_rest = |y: f64| RigidMotion::new(Tube::from(&needle), [Pose::translation(0.0, y, 0.0); 2]);
+    /// let needle =
+    ///     Chain::capsules(&[Vector::new(0.0, 6.0, 5.0), Vector::new(0.0, 3.0, 5.0)], &[0.5])?;
+    /// let at_rest =
+    ///     |y: f64| RigidMotion::new(Tube::from(&needle), [Pose::translation(0.0, y, 0.0); 2]);
     ///
     /// let second = at_rest(0.0)?;
     /// let answer = scene.clears_motion::<dyn Motion>(&[&moving, &second], 1e-3)?;
@@ -110,8 +113,8 @@ impl Scene {
     /// `ends` has the numbers of the structures that move, and where each of them is at t = 1. A
     /// structure that is not listed rests. The scene itself stays as it is.
     ///
-    /// `Clear` is proven for every instant. The points of a contact are those of robot and structure
-    /// at its time.
+    /// `Clear` is proven for every instant. The points of a contact are the points of robot and
+    /// structure at the time of the contact.
     ///
     /// ```
     /// use parry_continuum::{Chain, RigidMotion, Tube};
@@ -120,7 +123,8 @@ impl Scene {
     ///
     /// let (vertices, triangles) = Ball::new(1.0).to_trimesh(32, 16);
     /// let mut scene = Scene::new();
-    /// let vessel = scene.add("vessel", BvhSearch::from_triangles(&vertices, &triangles)?, Some(0.5))?;
+    /// let vessel =
+    ///     scene.add("vessel", BvhSearch::from_triangles(&vertices, &triangles)?, Some(0.5))?;
     /// scene.set_pose(vessel, &Pose::translation(4.0, 0.0, 3.0))?;
     /// let needle = Tube::from(&Chain::capsules(&[Vector::ZERO, Vector::Z * 6.0], &[0.5])?);
     /// let at_rest = RigidMotion::new(needle, [Pose::IDENTITY; 2])?;
@@ -137,8 +141,8 @@ impl Scene {
     /// As [`clears_motion`](Self::clears_motion); or:
     /// - There is no such structure.
     /// - A pose is not finite, not rigid or out of range.
-    /// - The number of vertices differs from that of the mesh, or one is not finite or out of range.
-    ///   The message names the structure.
+    /// - The number of vertices differs from that of the mesh, or one is not finite or out of
+    ///   range. The message names the structure.
     pub fn clears_motion_while<M: Motion + ?Sized>(
         &mut self,
         ends: &[(usize, StructureEnd)],
@@ -150,8 +154,8 @@ impl Scene {
 
     /// Bounds the time at which moving robots first violate a margin.
     ///
-    /// Arguments and decisions are as for [`clears_motion`](Self::clears_motion). The contact of the
-    /// answer is the earliest of all. The answer's [`interval`](SceneMotionAnswer::interval) is
+    /// Arguments and decisions are as for [`clears_motion`](Self::clears_motion). The contact of
+    /// the answer is the earliest of all. The answer's [`interval`](SceneMotionAnswer::interval) is
     /// `[clear_until, t]`: all margins are provably kept until `clear_until`, and the contact is at
     /// t. Between the two times the touching place moves by at most `resolution`. The times are
     /// farther apart only where a margin may be violated before, within the resolution.
@@ -164,10 +168,12 @@ impl Scene {
     /// let mut scene = Scene::new();
     /// scene.add("wall", BvhSearch::from_triangles(&vertices, &triangles)?, Some(0.0))?;
     /// let from = [Vector::ZERO, Vector::Z];
-    /// let motion = LinearMotion::chain(&from, &from.map(|point| point + Vector::Z * 20.0), &[0.01])?;
+    /// let motion =
+    ///     LinearMotion::chain(&from, &from.map(|point| point + Vector::Z * 20.0), &[0.01])?;
     /// let found = scene.time_of_contact(&[&motion], 1e-3)?;
     /// let [clear_until, t] = found.interval;
-    /// assert!(clear_until <= 0.45 && 0.449 <= t && t - clear_until <= 1e-3); // the tip has moved 9 of 20
+    /// // The tip has moved by 9 of 20.
+    /// assert!(clear_until <= 0.45 && 0.449 <= t && t - clear_until <= 1e-3);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///
@@ -186,8 +192,8 @@ impl Scene {
     ///
     /// Returns `None` if there is no robot or no such margin. `lower` <= least slack <= `upper`.
     /// `tolerance` is a length: the bounds differ by at most the tolerance if the motions' shapes
-    /// allow that ([`resolved`](SceneMotionClearance::resolved)). The margins of robots to themselves
-    /// do not count.
+    /// allow that ([`resolved`](SceneMotionClearance::resolved)). The margins of robots to
+    /// themselves do not count.
     ///
     /// ```
     /// use parry_continuum::{LinearMotion, parry::{math::Vector, shape::Ball}};

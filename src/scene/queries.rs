@@ -53,8 +53,9 @@ use std::cmp::Ordering;
 ///
 /// A structure is a mesh with a name. Its margin is the least distance that a robot must exceed;
 /// the *slack* is the distance minus the margin. A robot may touch a structure without a margin,
-/// such as a target. [`per_structure`](Self::per_structure) and [`contacts_within`](Self::contacts_within)
-/// measure such a structure; the other queries ignore it.
+/// such as a target. [`per_structure`](Self::per_structure) and
+/// [`contacts_within`](Self::contacts_within) measure such a structure; the other queries ignore
+/// it.
 ///
 /// Each query takes the robots with their poses in the scene's frame. If a [margin between
 /// robots](Self::set_robot_margin) is set, the queries also test each robot against the others.
@@ -257,7 +258,8 @@ impl Scene {
     /// - Neither a structure nor the robots have a margin.
     /// - A pose is not finite or not rigid, or moves a link out of range. The message has the
     ///   robot's number.
-    /// - A margin of robots to themselves is set, and a joint is too sharp for [`SelfQuery::clears`].
+    /// - A margin of robots to themselves is set, and a joint is too sharp for
+    ///   [`SelfQuery::clears`].
     pub fn clears(&mut self, robots: &[(&Chain, Pose)]) -> Result<bool, SceneError> {
         self.check_has_margin()?;
         if self.begin(robots, None)? && !self.clears_structures(robots)? {
@@ -464,7 +466,8 @@ impl Scene {
     }
 
     /// The pairs (structure, robot) whose structure has a margin, with a lower bound on the slack:
-    /// the least first. `at_least` bounds the distance of a structure, with its number, from a robot.
+    /// the least first. `at_least` bounds the distance of a structure, with its number, from a
+    /// robot.
     pub(super) fn by_slack(
         &self,
         robots: usize,

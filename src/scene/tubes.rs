@@ -17,7 +17,8 @@ impl Scene {
     ///
     /// Each pose maps its tube's frame to the scene's frame. `resolution` is a length. Structures
     /// without a margin are ignored. The margins [between robots](Self::set_robot_margin), except
-    /// for [nested](Self::set_nested) ones, and [to themselves](Self::set_self_margin) are optional.
+    /// for [nested](Self::set_nested) ones, and [to themselves](Self::set_self_margin) are
+    /// optional.
     ///
     /// - `Clear`: proven for all structures, pairs of robots, and robots with themselves.
     /// - `Contact`: proven for one of them.

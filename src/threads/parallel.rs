@@ -83,8 +83,8 @@ pub(crate) fn in_chunks<Q: Sync, A: Send, M: Default + Send>(
     memories.iter_mut().for_each(|memory| answer(memory, questions, answers));
 }
 
-/// Answers questions in chunks, each chunk with its own clone of `original`. Replaces the content of
-/// `answers`; until a question is answered, its place holds `unanswered`.
+/// Answers questions in chunks, each chunk with its own clone of `original`. Replaces the content
+/// of `answers`; until a question is answered, its place holds `unanswered`.
 pub(crate) fn with_clones<S: Clone + Send + Sync, Q: Sync, A: Send>(
     original: &S,
     questions: &[Q],

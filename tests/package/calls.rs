@@ -1,5 +1,5 @@
-//! Every call that a page names exists, and the chapter on queries names the call for every question
-//! of the module `proximity`. Fenced code is left out: other tests compile and run it.
+//! Every call that a page names exists, and the chapter on queries names the call for every
+//! question of the module `proximity`. Fenced code is left out: other tests compile and run it.
 
 use std::collections::BTreeSet;
 use std::fs;

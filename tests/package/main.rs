@@ -7,5 +7,6 @@ mod licences;
 mod links;
 mod public_names;
 mod reading_lists;
+mod release;
 mod sources;
 mod threads;

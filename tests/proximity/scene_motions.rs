@@ -547,7 +547,7 @@ fn one_shape_serves_all_questions() {
     assert_eq!((moving.1.get(), second.1.get()), (1, 1));
 }
 
-/// A robot that slides along a wall within the resolution: the reason is told.
+/// A robot that slides along a wall within the resolution: the answer states the reason.
 #[test]
 fn an_undecided_scene_says_why() {
     let tube = needle(Vector::Z * 3.0, Vector::Z * 7.0, 1.0);

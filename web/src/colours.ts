@@ -10,7 +10,7 @@ export const RED = "#d80000";
 export const GRADIENT = `linear-gradient(to right, ${CIVIDIS.join(", ")})`;
 
 /** Red, green and blue from 0 to 1 at a share of the way from near to far. */
-export function colour(share: number): [number, number, number] {
+function colour(share: number): [number, number, number] {
   const at = Math.min(Math.max(share, 0), 1) * (CIVIDIS.length - 1);
   const k = Math.min(Math.floor(at), CIVIDIS.length - 2);
   const [from, to] = [channels(CIVIDIS[k]), channels(CIVIDIS[k + 1])];
@@ -23,6 +23,6 @@ export function linkColour(distance: number, margin: number, farthest: number): 
 }
 
 /** Red, green and blue from 0 to 1. */
-export function channels(hex = "#000000"): [number, number, number] {
+function channels(hex = "#000000"): [number, number, number] {
   return [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16) / 255) as [number, number, number];
 }

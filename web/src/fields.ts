@@ -33,10 +33,24 @@ export function chosen(id: string): string | undefined {
   return find<HTMLSelectElement>(id).value || undefined;
 }
 
-/** Resets the choice of a frame. */
-export function resetFrame(id: string) {
-  fill(id, [["", "not stated"], ["RAS", "RAS"], ["LPS", "LPS"]]);
-  find<HTMLSelectElement>(id).disabled = false;
+/** Puts the choices of scale and frame, which robot and wall share, at their place in the page. */
+export function addCoordinates(role: "robot" | "wall") {
+  find(`${role}-coordinates`).outerHTML = `
+    <div class="choice">
+      <label for="${role}-scale">Scale, for example 1000 for metres</label>
+      <input id="${role}-scale" type="number" min="0" step="any" />
+    </div>
+    <div class="choice">
+      <label for="${role}-frame">Frame, if the file states none</label>
+      <select id="${role}-frame"></select>
+    </div>`;
+}
+
+/** Resets the choices of scale and frame. */
+export function resetCoordinates(role: "robot" | "wall") {
+  find<HTMLInputElement>(`${role}-scale`).value = "1";
+  fill(`${role}-frame`, [["", "not stated"], ["RAS", "RAS"], ["LPS", "LPS"]]);
+  find<HTMLSelectElement>(`${role}-frame`).disabled = false;
 }
 
 /** Shows the frame that a file states. It is not the user's to choose. */

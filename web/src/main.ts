@@ -4,7 +4,9 @@ import checker from "../../docs/book/check_proof.py?url";
 import start, { Answers, Files, Robot, Wall } from "./engine/continuum_web.js";
 import { GRADIENT, RED } from "./colours";
 import { save } from "./downloads";
-import { chosen, fill, find, notNegative, number, optionalNumber, positive, resetFrame, showStatedFrame } from "./fields";
+import {
+  addCoordinates, chosen, fill, find, notNegative, number, optionalNumber, positive, resetCoordinates, showStatedFrame,
+} from "./fields";
 import { plotClearance } from "./plot";
 import { Scene } from "./scene";
 
@@ -35,6 +37,9 @@ let answered: { answers: Answers; margin: number; farthest: number } | undefined
 const NOT_NEGATIVE = "a number that is at least 0";
 const POSITIVE = "a number greater than 0";
 
+/** How to check a proof: what the page shows until a proof is refused. */
+const PROOF_TEXT = find("proof-text").innerHTML;
+
 function readMargin() {
   return number("margin", "The margin", notNegative, NOT_NEGATIVE);
 }
@@ -52,7 +57,9 @@ function readWall(): Wall {
         ? Wall.read(wallFile.files, wallFile.name, label === undefined ? undefined : Number(label), scale, allowNoPosition)
         : Wall.ventricle();
       read = { key, wall };
-      offerLabels(wall);
+      // A wall of one label keeps the choice.
+      const labels = Array.from(wall.labels(), String);
+      if (labels.length > 0) offerLabels(labels);
       scene.showWall(wall);
     } catch (error) {
       read = { key, error };
@@ -74,12 +81,10 @@ function forgetWall() {
   find("wall-text").textContent = "";
 }
 
-/** Offers the labels that were read as one surface. */
-function offerLabels(wall: Wall) {
-  const labels = Array.from(wall.labels(), String);
-  if (labels.length === 0) return;
+/** Offers these labels, if there are any. */
+function offerLabels(labels: string[]) {
   fill("label", [["", "all, as one surface"], ...labels.map((label): [string, string] => [label, `label ${label}`])]);
-  find("label-choice").hidden = false;
+  find("label-choice").hidden = labels.length === 0;
 }
 
 function readRobot(): Robot {
@@ -143,7 +148,7 @@ function clear() {
   scene.hideRobot();
   enableActions(false);
   find("proof-text").classList.remove("refused");
-  find("proof-text").innerHTML = "To check the proof, run <code>python3 check_proof.py wall.obj proof.txt</code>.";
+  find("proof-text").innerHTML = PROOF_TEXT;
 }
 
 /** Shows an error instead of an answer. What the engine throws is a text that says what to change. */
@@ -167,9 +172,13 @@ function show(warnings: string[]) {
   answer.className = near > 0 ? "near" : "";
   // All digits, for whoever compares.
   answer.dataset.distances = JSON.stringify(Array.from(distances));
+  const base = answers.base();
+  const side = base === "outside" ? "outside the wall" : "on the wall, or the wall is open";
   const links = `${near} ${near === 1 ? "link is" : "links are"} within it`;
-  find("verdict").textContent = near === 0 ? `Margin of ${margin} mm kept.` : `Margin of ${margin} mm not kept: ${links}.`;
-  find("verdict").className = near === 0 ? "kept" : "near";
+  const kept = base === "inside" ? "kept." : `kept, but the robot's base is ${side}.`;
+  find("verdict").textContent = `Margin of ${margin} mm ${near === 0 ? kept : `not kept: ${links}.`}`;
+  // Green only if the robot is where a robot belongs.
+  find("verdict").className = near > 0 ? "near" : base === "inside" ? "kept" : "";
   const turned = answers.turned();
   find("details").textContent = [
     `Link ${answers.closest() + 1} of ${distances.length}, counted from the base, is closest, `
@@ -177,8 +186,6 @@ function show(warnings: string[]) {
     ...(turned ? [`The robot is turned from ${turned}.`] : []),
     ...(find<HTMLTextAreaElement>("pose").value.trim() ? ["The robot is placed by the pose."] : []),
   ].join(" ");
-  const base = answers.base();
-  const side = base === "outside" ? "outside the wall" : "on the wall, or the wall is open";
   const outside = base === "inside" ? [] : [`The robot's base is ${side}; distances do not say on which side the robot is.`];
   find("doubts").replaceChildren(
     ...[...warnings, ...outside].map((text) => {
@@ -222,30 +229,27 @@ function makeJoints() {
 }
 
 /** Takes a wall's files, or the ventricle. Choices belong to a file, so they are reset. */
-function takeWall(next?: Chosen, role?: "wall") {
+function takeWall(next?: Chosen, isFromField = false) {
   // The field names the file only if the file comes from the field.
-  if (!role) find<HTMLInputElement>("wall-file").value = "";
+  if (!isFromField) find<HTMLInputElement>("wall-file").value = "";
   forgetWall();
   wallFile?.files.free();
   wallFile = next;
-  find("label-choice").hidden = true;
-  fill("label", [["", "all, as one surface"]]);
-  find<HTMLInputElement>("wall-scale").value = "1";
+  offerLabels([]);
+  resetCoordinates("wall");
   find<HTMLInputElement>("no-position").checked = false;
-  resetFrame("wall-frame");
 }
 
 /** Takes a robot's file, or the tubes. The joints move the tubes only. */
-function takeRobot(next?: Chosen, role?: "robot") {
-  if (!role) find<HTMLInputElement>("robot-file").value = "";
+function takeRobot(next?: Chosen, isFromField = false) {
+  if (!isFromField) find<HTMLInputElement>("robot-file").value = "";
   robotFile?.files.free();
   robotFile = next;
   const choices = next?.files.line_choices(next.name) ?? 0;
   const indices = Array.from({ length: choices }, (_, index): [string, string] => [String(index), `index ${index}`]);
   fill("line", [["", "choose one"], ...indices]);
   find("line-choice").hidden = choices === 0;
-  find<HTMLInputElement>("robot-scale").value = "1";
-  resetFrame("robot-frame");
+  resetCoordinates("robot");
   for (const id of ["line", "radius", "robot-scale", "robot-frame"]) {
     find<HTMLInputElement>(id).disabled = next === undefined;
   }
@@ -276,14 +280,14 @@ async function readFiles(list: File[], role?: "robot" | "wall") {
       const files = new Files();
       files.add(name, contents[k]!);
       if (role === "robot" || (role === undefined && files.holds_robot(name))) {
-        takeRobot({ files, name }, role === "robot" ? role : undefined);
+        takeRobot({ files, name }, role !== undefined);
       } else {
         files.free();
         wall.files.add(name, contents[k]!);
         if (!wall.name || /\.(hdr|mhd|nhdr)$/i.test(name)) wall.name = name;
       }
     });
-    if (wall.name) takeWall(wall, role === "wall" ? role : undefined);
+    if (wall.name) takeWall(wall, role !== undefined);
     else wall.files.free();
     update();
   } catch (error) {
@@ -362,6 +366,8 @@ function listen() {
 find("colours").style.background = GRADIENT;
 find("red").style.background = RED;
 find<HTMLAnchorElement>("checker").href = checker;
+addCoordinates("robot");
+addCoordinates("wall");
 await start();
 makeJoints();
 takeRobot();

@@ -374,6 +374,8 @@ test("a dropped file is read like a chosen one, by what it holds", async () => {
   await drop("beside.csv", "x,y,z,radius\n70,30,20,1\n70,30,40\n");
   await answers(9);
   assert.match(await text("doubts"), /base is outside the wall/);
+  assert.match(await text("verdict"), /^Margin of [\d.]+ mm kept, but the robot's base is outside the wall\.$/);
+  assert.equal(await page.getAttribute("#verdict", "class"), "");
   const vtk = (points, cells) =>
     `# vtk DataFile Version 3.0\nx\nASCII\nDATASET POLYDATA\nPOINTS ${points.length} float\n${points.join("\n")}\n${cells}\n`;
   await drop("line.vtk", vtk(["30 30 20", "30 30 40"], "LINES 1 3\n2 0 1"));

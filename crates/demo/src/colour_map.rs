@@ -41,6 +41,7 @@ impl ColourMap {
     }
 
     /// Draws the map as a bar with numbers, its unit in the title. `at` is its left upper corner.
+    /// The last number, "5 or more", ends about three heights to the right of the bar.
     pub fn draw(
         &self,
         canvas: &mut Canvas,
@@ -68,7 +69,8 @@ impl ColourMap {
             } else {
                 digits
             };
-            let number = format!("{:.digits$}", tick as f64 * self.tick);
+            let rest = if tick == count { " or more" } else { "" };
+            let number = format!("{:.digits$}{rest}", tick as f64 * self.tick);
             canvas.text(&number, [x, foot + 0.65 * height + letter], Align::Centre, letter, ink);
         }
     }

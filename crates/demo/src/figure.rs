@@ -34,8 +34,8 @@ const MAGNIFIES: f32 = 1.5;
 pub struct Caption {
     pub title: String,
     pub subtitle: String,
-    /// Lines below the colour bar.
-    pub notes: Vec<String>,
+    /// Where the robot is closest to the wall, and how far.
+    pub closest: String,
 }
 
 /// Draws the scene. `pose` places the robot in the mesh's frame. `answers` holds one answer per
@@ -137,28 +137,29 @@ pub fn draw(
     canvas.text(&caption.subtitle, [56.0, 132.0], Align::Left, 19.0, PALE);
     ruler(&mut canvas, &whole, mesh.local_aabb().center(), size, [56.0, 1164.0]);
     let bar = [left as f32, foot + 74.0];
-    let title = format!("distance from link to wall (mm; {FARTHEST}: or more)");
-    colours.draw(&mut canvas, bar, [width as f32, 24.0], &title, INK);
-    legend(&mut canvas, [bar[0], bar[1] + 104.0], colours.colour(0.5 * colours.end));
-    let mut below = bar[1] + 188.0 + ROW as f32;
+    let size = [width as f32 - 72.0, 24.0];
+    colours.draw(&mut canvas, bar, size, "distance from link to wall, mm", INK);
+    let foot = [bar[0], bar[1] + 118.0];
+    legend(&mut canvas, foot, colours.colour(0.5 * colours.end), &caption.closest);
     if !pieces.is_empty() {
-        outline_legend(&mut canvas, [bar[0], bar[1] + 104.0 + 3.0 * ROW as f32]);
-        below += ROW as f32;
-    }
-    for (row, note) in caption.notes.iter().enumerate() {
-        canvas.text(note, [bar[0], below + 33.0 * row as f32], Align::Left, 18.0, PALE);
+        outline_legend(&mut canvas, [foot[0], foot[1] + 3.0 * ROW as f32]);
     }
     canvas
 }
 
-/// Marks a place.
-fn ring(canvas: &mut Canvas, [x, y]: [f32; 2], radius: f32) {
-    canvas.frame([x - radius, y - radius, x + radius, y + radius], radius, 4.0, MARK);
+/// Marks a place, with a pale edge that shows on every ground, in grey too.
+pub fn ring(canvas: &mut Canvas, [x, y]: [f32; 2], radius: f32) {
+    let around = [x - radius, y - radius, x + radius, y + radius];
+    canvas.frame(around, radius, 9.0, SKY[0]);
+    canvas.frame(around, radius, 4.5, MARK);
 }
 
-/// The legend of the lines and the tinted triangles; `at` is the left end of the base line.
-fn legend(canvas: &mut Canvas, at: [f32; 2], tint: Colour) {
+/// The legend of the ring, the lines and the tinted triangles; `at` is the left end of the base line.
+fn legend(canvas: &mut Canvas, at: [f32; 2], tint: Colour, closest: &str) {
     let [x, y] = at;
+    ring(canvas, [x + 25.0, y - 8.0], 11.0);
+    canvas.text(closest, [x + 66.0, y], Align::Left, 18.0, INK);
+    let y = y + ROW as f32;
     canvas.stroke(&[vec![[x, y - 7.0], [x + 44.0, y - 7.0]]], 3.0, INK, 1.0);
     canvas.panel([x + 38.0, y - 13.0, x + 50.0, y - 1.0], 6.0, INK, 1.0);
     canvas.text("closest points of a link and the wall", [x + 66.0, y], Align::Left, 18.0, INK);
@@ -176,9 +177,6 @@ fn legend(canvas: &mut Canvas, at: [f32; 2], tint: Colour) {
         18.0,
         INK,
     );
-    let y = y + ROW as f32;
-    ring(canvas, [x + 25.0, y - 8.0], 11.0);
-    canvas.text("the closest link", [x + 66.0, y], Align::Left, 18.0, INK);
 }
 
 /// The legend of the outlines.

@@ -54,9 +54,10 @@ pub fn entry() -> Pose {
 
 /// Where [`super::ctr::three_tubes`] goes from [`entry`]: down through the right foramen of Monro
 /// into the third ventricle, and back along it to the mouth of the aqueduct. A random search found
-/// it; it keeps 1 mm from the wall.
+/// it; it keeps 1 mm from the wall. Angles are whole degrees, as the page's sliders have them.
 pub fn goal() -> Joints {
-    Joints { extensions: vec![13.2, 18.1, 10.4], angles: vec![-0.54, -1.76, 0.0] }
+    let angles = [-31.0, -101.0, 0.0].map(Real::to_radians).to_vec();
+    Joints { extensions: vec![13.2, 18.1, 10.4], angles }
 }
 
 /// Two frames of a pulsating wall: its vertices as they are, and moved outwards by a hundredth.

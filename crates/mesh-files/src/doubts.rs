@@ -78,7 +78,8 @@ impl Bounds {
 pub struct Change {
     /// The factor of coordinates and radii.
     pub scale: f64,
-    /// Whether x and y change sign, as between [RAS](crate::Frame::Ras) and [LPS](crate::Frame::Lps).
+    /// Whether x and y change sign, as between [RAS](crate::Frame::Ras) and
+    /// [LPS](crate::Frame::Lps).
     pub turns: bool,
 }
 

@@ -18,11 +18,13 @@ def picture(mesh, shapes, radius, times):
     edges = np.concatenate([[0], np.cumsum(length)])
     figure, axes = plt.subplots(figsize=(8, 4), layout="constrained")
     image = axes.pcolormesh(np.append(times, 2 * times[-1] - times[-2]), edges, distance.T, cmap="viridis")
-    closest = edges[:-1][distance.argmin(axis=1)]
-    axes.plot(times, closest, "w.", markersize=3, label="closest link")
-    axes.set(xlabel="time", ylabel="arc length from the base")
+    closest = (0.5 * (edges[:-1] + edges[1:]))[distance.argmin(axis=1)]
+    # White with a black edge: visible on every colour.
+    style = {"markersize": 5, "markerfacecolor": "white", "markeredgecolor": "black", "markevery": 5, "clip_on": False}
+    axes.plot(times, closest, "o", label="closest link", **style)
+    axes.set(title="Clearance along the robot over time", xlabel="time", ylabel="arc length from the base")
     axes.legend(loc="lower right")
-    figure.colorbar(image, label="distance from the wall")
+    figure.colorbar(image, label="distance from the wall (dark: near)")
     return figure, distance
 
 

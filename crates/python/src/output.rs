@@ -185,7 +185,8 @@ pub(crate) fn texts<'py>(py: Python<'py>, texts: Vec<&str>) -> PyResult<Bound<'p
     if is_empty { array.call_method1("astype", ("U",)) } else { Ok(array) }
 }
 
-/// Why answers of a batch are missing, as the `kind` of their errors; of one answer the empty string.
+/// Why answers of a batch are missing, as the `kind` of their errors; of one answer the empty
+/// string.
 pub(crate) fn statuses<'py, A>(
     py: Python<'py>,
     answers: &[Result<A, &str>],

@@ -30,7 +30,7 @@
 //!   [`RootsError::NotConverged`] with the others.
 //!
 //! ```
-//! use polynomial_roots::{JenkinsTraub, RootFinder};
+//! use real_polynomial_roots::{JenkinsTraub, RootFinder};
 //!
 //! // x^3 - x^2 + x - 1 = (x - 1) (x^2 + 1)
 //! let roots = JenkinsTraub::roots([-1.0, 1.0, -1.0, 1.0])?;
@@ -38,7 +38,7 @@
 //! let real: Vec<f64> = roots.real().collect();
 //! assert_eq!(real.len(), 1);
 //! assert!((real[0] - 1.0).abs() < 1e-15);
-//! # Ok::<(), polynomial_roots::RootsError<f64, 4>>(())
+//! # Ok::<(), real_polynomial_roots::RootsError<f64, 4>>(())
 //! ```
 //!
 //! The methods are from section IV of Leibrandt and Yang, "Efficient Proximity Queries for

@@ -4,9 +4,9 @@
 //! set: then they fail.
 
 use continuum_testing::Random;
-use polynomial_roots::Complex;
-use polynomial_roots::gpu::gpu_batch::{Device, Precision};
-use polynomial_roots::gpu::{Finder, GpuRoots};
+use real_polynomial_roots::Complex;
+use real_polynomial_roots::gpu::gpu_batch::{Device, Precision};
+use real_polynomial_roots::gpu::{Finder, GpuRoots};
 
 const DEGREES: [usize; 5] = [2, 3, 4, 6, 15];
 const PRECISIONS: [(&str, Precision); 2] =

@@ -3,7 +3,7 @@
 use crate::Number;
 use parry_continuum::distance::Scalar;
 use parry_continuum::distance::laboratory::Sealed;
-use polynomial_roots::Real;
+use real_polynomial_roots::Real;
 use std::cell::Cell;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 

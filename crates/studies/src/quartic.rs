@@ -20,7 +20,7 @@
 use crate::Number;
 use parry_continuum::distance::laboratory::{DiscSolver, LineDisc};
 use parry_continuum::distance::{Closest, Scalar, Vec3};
-use polynomial_roots::RootFinder;
+use real_polynomial_roots::RootFinder;
 use std::marker::PhantomData;
 
 /// The quartic (18) as printed, by the root finder `F`.

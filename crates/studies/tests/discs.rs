@@ -7,7 +7,7 @@ use continuum_testing::disc_problems::{DiscProblem, Kind, problems, worst};
 use continuum_testing::precision::Precision;
 use parry_continuum::distance::laboratory::{DiscSolver, segment_disc_by};
 use parry_continuum::parry::math::Vector;
-use polynomial_roots::*;
+use real_polynomial_roots::*;
 
 /// The share of gross errors, above 1e-4 of the extent, among the problems of some kinds.
 fn gross<S: DiscSolver<f64>>(problems: &[(Kind, DiscProblem, f64)], kinds: &[Kind]) -> f64 {

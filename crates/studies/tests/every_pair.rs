@@ -10,7 +10,7 @@ use parry_continuum::distance::{Closest, Scalar, Vec3};
 use parry_continuum::parry::math::Pose;
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{Exhaustive, Proximity};
-use polynomial_roots::Companion;
+use real_polynomial_roots::Companion;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 /// A route that finds discs by a quartic, or none while it is blind.

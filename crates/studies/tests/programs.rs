@@ -86,13 +86,15 @@ fn the_trade_is_measured_drawn_and_quoted() {
     );
     assert!(after[1].contains(" 2 of each length"), "{again}");
     refuse(TRADEOFF, &["--only", "motions", "--out", "trade/nowhere"], "has no such chapter");
-    // Discs and rings for the search of four models and of the tube at seven tolerances, and in the
-    // legend.
+    // Marks of parry's two shapes and of the tube at seven tolerances each, and in the legend; a label
+    // for each row of the front.
     let picture = read("trade/docs/tradeoff.svg");
-    assert_eq!(picture.matches("<circle").count(), 2 * 5 * 7 + 2);
-    // With a GPU the legend has a frame for one precision, and another mark for the other.
-    let frame = r##"width="8" height="8" opacity="1" fill="none" stroke="#000000""##;
-    assert!(picture.matches(frame).count() <= 1, "{picture}");
+    for colour in ["#0072B2", "#56B4E9", "#D55E00"] {
+        let marks = picture.matches(&format!("<polygon opacity=\"1\" fill=\"{colour}\"")).count();
+        assert_eq!(marks, 7 + 1, "{colour}: {picture}");
+    }
+    let front = table(&page, "| time | worst error | model |");
+    assert_eq!(picture.matches(" within ").count(), front.len(), "{picture}");
     assert_quoted("trade/docs/book/trade.md", "tradeoff", "**Take a `Tube`");
     assert_eq!(table(&read("trade/docs/book/trade.md"), "| error | free shape: `Tube` |").len(), 4);
 
@@ -189,7 +191,7 @@ fn speed_is_measured_drawn_and_quoted() {
     let growth = table(&page, head);
     let names: Vec<_> = growth.iter().map(|row| &*row[0]).collect();
     for (model, engines) in ["capsules", "fitted caps", "cylinders"].iter().zip(names.chunks(3)) {
-        let expected = ["exhaustive f32", "exhaustive f64", "search, again"];
+        let expected = ["exhaustive f32", "exhaustive f64", "search, warm start"];
         assert_eq!(engines, expected.map(|engine| format!("{model}, {engine}")));
     }
     let sizes: Vec<u32> =
@@ -207,12 +209,16 @@ fn speed_is_measured_drawn_and_quoted() {
         "{quoted}"
     );
 
-    // A line and a legend for each model and engine.
+    // Three lines, each with its name; axes are black too.
     let plot = read("speed/docs/speed.svg");
-    for name in names {
-        assert!(plot.contains(name), "{name}: {plot}");
+    for name in ["parry, link by link", "every triangle, f32", "search, warm start"] {
+        assert_eq!(plot.matches(name).count(), 1, "{name}: {plot}");
     }
-    assert!(plot.matches("<polyline").count() >= 18, "{plot}");
+    let lines: Vec<_> = plot.split("<polyline").skip(1).collect();
+    for colour in ["#D55E00", "#0072B2"] {
+        let count = lines.iter().filter(|line| line.contains(colour)).count();
+        assert_eq!(count, 1, "{colour}: {plot}");
+    }
     assert_quoted(
         "speed/README.md",
         "speed",
@@ -247,7 +253,13 @@ fn curves_are_measured_drawn_and_quoted() {
     let fits: Vec<_> = rows.iter().filter(|row| row[1].starts_with("`fit`")).collect();
     assert!(rows.len() > 60 && fits.len() > 30, "{page}");
     assert!(fits.iter().all(|row| row[3] == "3" && row[4] == "3"), "{page}");
-    assert!(read("curves/docs/curves.svg").contains("noise 0.5, fit"));
+    // One line for all noises of `fit`, and one for each of three noises without it.
+    let picture = read("curves/docs/curves.svg");
+    for name in
+        ["fit, noise up to 0.5 mm", "from_samples, noise 0.01 mm", "noise 0.03 mm", "noise 0.1 mm"]
+    {
+        assert!(picture.contains(name), "{name}: {picture}");
+    }
 }
 
 #[test]

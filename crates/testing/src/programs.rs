@@ -36,8 +36,8 @@ pub fn room(name: &str) -> String {
     file(name, &(corners.collect::<String>() + sides))
 }
 
-/// Returns the path of an example program, which `cargo test` has built: another build would compile
-/// the library again wherever its features differ.
+/// Returns the path of an example program, which `cargo test` has built: another build would
+/// compile the library again wherever its features differ.
 pub fn example(name: &str) -> PathBuf {
     let program = build_directory().join("examples").join(name);
     assert!(program.exists(), "{name} is not built: `cargo test --test` needs `--examples`");
@@ -62,8 +62,8 @@ pub fn succeed(program: impl AsRef<Path>, arguments: &[&str]) -> String {
     out
 }
 
-/// Asserts that a program refuses these arguments with one line that contains `expected`. Returns its
-/// exit status.
+/// Asserts that a program refuses these arguments with one line that contains `expected`. Returns
+/// its exit status.
 pub fn refuse(program: impl AsRef<Path>, arguments: &[&str], expected: &str) -> Option<i32> {
     let program = program.as_ref();
     let (status, out, error) = run(program, arguments);

@@ -105,7 +105,7 @@ fn programs_draw_their_pictures() {
     let arguments = ["--mesh", &room, "--beside", "6", "--steps", "2", "--out", "drawn/two.png"];
     let out = succeed("two_robots", &arguments);
     assert!(
-        out.contains("step  clear  the least room") && out.contains("robot against robot"),
+        out.contains("step  clear  least slack") && out.contains("robot against robot"),
         "{out}"
     );
     succeed("figure7", &["--out", "drawn/seven.png"]);

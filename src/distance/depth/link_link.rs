@@ -1,5 +1,15 @@
 //! The least translation that separates two links that overlap.
 //!
+//! ```text
+//!      ________________
+//!     |  link 1    ____|_________
+//!     |           |    |  link 2 |      ---> n
+//!     |___________|____|         |
+//!                 |____|_________|
+//!                 |<-->|
+//!                depth(n)
+//! ```
+//!
 //! # Definitions
 //! - `depth(n)`: the translation of the second link along the unit vector `n` that separates the
 //!   two: the last point of the first link along `n` minus the first point of the second.

@@ -1,5 +1,15 @@
 //! The directions of the least translation that separates a link from a triangle.
 //!
+//! ```text
+//!      ________________
+//!     |  link          |
+//!     |          .|    |      ---> n
+//!     |________.' |____|
+//!            .'   | triangle
+//!            |<------->|
+//!             depth(n)
+//! ```
+//!
 //! # Definitions
 //! `depth(n)`: the translation of the triangle along the unit vector `n` that separates the two:
 //! the last point of the link along `n` minus the first point of the triangle.

@@ -15,7 +15,7 @@
 use super::search::{BvhSearch, Context};
 use crate::answer::{Clearance, Decision, ProximityError, TubePiece};
 use crate::curve::Tube;
-use crate::query::clearance::{TubeMemory, clearance, clears_tube};
+use crate::query::clearance::{MeshPieces, TubeMemory, clearance, clears_tube};
 use crate::query::motion::MarginQuery;
 use crate::query::{check_decision, check_not_negative};
 use crate::refine::{PendingPiece, PlacedTube, TubeInMesh};
@@ -72,7 +72,10 @@ impl BvhSearch {
     ///
     /// let (vertices, triangles) = Ball::new(50.0).to_trimesh(64, 32);
     /// let mut search = BvhSearch::new(&TriMesh::new(vertices, triangles)?)?;
-    /// let arc: Vec<_> = (0..=60).map(|k| f64::from(k) / 60.0).map(|a| Vector::new(a.cos(), 0.0, a.sin()) * 30.0).collect();
+    /// let arc: Vec<_> = (0..=60)
+    ///     .map(|k| f64::from(k) / 60.0)
+    ///     .map(|a| Vector::new(a.cos(), 0.0, a.sin()) * 30.0)
+    ///     .collect();
     /// let tube = Tube::from_samples(&arc, &[1.0; 60], None)?;
     /// let mut pieces = Vec::new();
     /// let found = search.clearance_pieces(&tube, &Pose::IDENTITY, 0.01, &mut pieces)?;
@@ -110,7 +113,10 @@ impl BvhSearch {
     ///
     /// let (vertices, triangles) = Ball::new(50.0).to_trimesh(64, 32);
     /// let mut search = BvhSearch::new(&TriMesh::new(vertices, triangles)?)?;
-    /// let arc: Vec<_> = (0..=60).map(|k| f64::from(k) / 60.0).map(|a| Vector::new(a.cos(), 0.0, a.sin()) * 30.0).collect();
+    /// let arc: Vec<_> = (0..=60)
+    ///     .map(|k| f64::from(k) / 60.0)
+    ///     .map(|a| Vector::new(a.cos(), 0.0, a.sin()) * 30.0)
+    ///     .collect();
     /// let tube = Tube::from_samples(&arc, &[1.0; 60], None)?;
     /// assert_eq!(search.clears_tube(&tube, &Pose::IDENTITY, 15.0, 1e-3)?, Decision::Clear);
     /// assert_eq!(search.clears_tube(&tube, &Pose::IDENTITY, 20.0, 1e-3)?, Decision::Contact);
@@ -145,8 +151,8 @@ impl BvhSearch {
         self.context().clears_tube(tube, pose, wanted, frame)
     }
 
-    /// [`clearance`](Self::clearance) for a tube in a scene. The tolerance is checked; `frame` is as
-    /// for `ask_clears_tube`.
+    /// [`clearance`](Self::clearance) for a tube in a scene. The tolerance is checked; `frame` is
+    /// as for `ask_clears_tube`.
     pub(crate) fn ask_clearance(
         &mut self,
         tube: &Tube,
@@ -171,7 +177,10 @@ impl BvhSearch {
     /// let poses = [Vector::ZERO, Vector::Z * 30.0, Vector::NAN].map(Pose::from_translation);
     /// let mut answers = Vec::new();
     /// search.clearance_batch(&poses.map(|pose| (&tube, pose)), 0.01, &mut answers)?;
-    /// assert!(answers[0].is_ok_and(|found| found.lower > 38.0) && answers[1].is_ok_and(|found| found.upper < 11.0));
+    /// assert!(
+    ///     answers[0].is_ok_and(|found| found.lower > 38.0)
+    ///         && answers[1].is_ok_and(|found| found.upper < 11.0)
+    /// );
     /// assert_eq!(answers[2].map_err(|error| error.kind()), Err("pose_not_finite"));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
@@ -219,12 +228,13 @@ impl BvhSearch {
     }
 }
 
-/// Step 1: the clearance of a tube as if no turn had been stated, or `None` if none was stated.
-fn clearance_without_turn(
+/// Step 1: the clearance of a tube as if no turn had been stated, and its pieces. `None` if none was
+/// stated.
+fn clearance_without_turn<'m>(
     tube: &mut TubeInMesh,
-    memory: &mut TubeMemory,
+    memory: &'m mut TubeMemory,
     tolerance: Real,
-) -> Result<Option<Clearance>, ProximityError> {
+) -> Result<Option<(Clearance, &'m MeshPieces)>, ProximityError> {
     let placed = tube.tube;
     let Some(less_known) = placed.without_turn() else { return Ok(None) };
     tube.tube = less_known;
@@ -233,17 +243,17 @@ fn clearance_without_turn(
     answer.map(Some)
 }
 
-/// Replaces `out` by the pieces of the last query about a placed tube, sorted by arc length.
+/// Replaces `out` by the pieces of a placed tube, sorted by arc length.
 ///
 /// # Errors
 /// The curve of a piece is not finite.
 fn report_pieces(
     placed: &PlacedTube,
-    memory: &TubeMemory,
+    pieces: &MeshPieces,
     out: &mut Vec<TubePiece>,
 ) -> Result<(), ProximityError> {
     out.clear();
-    for PendingPiece { piece, lower, .. } in memory.pieces.all() {
+    for PendingPiece { piece, lower, .. } in pieces.all() {
         let outer = placed.outer(piece);
         placed.check_finite(piece, &outer)?;
         out.push(placed.report(piece, &outer, *lower));
@@ -264,8 +274,8 @@ impl<'a> Context<'a> {
         frame: Option<Real>,
     ) -> Result<Clearance, ProximityError> {
         let (mut tube, memory) = self.tube_in_mesh(tube, pose, frame)?;
-        let known = clearance_without_turn(&mut tube, memory, tolerance)?;
-        let answer = clearance(&mut tube, memory, tolerance)?;
+        let known = clearance_without_turn(&mut tube, memory, tolerance)?.map(|(known, _)| known);
+        let (answer, _) = clearance(&mut tube, memory, tolerance)?;
         Ok(known.map_or(answer, |known| known.and(answer, tolerance)))
     }
 
@@ -278,13 +288,15 @@ impl<'a> Context<'a> {
     ) -> Result<Clearance, ProximityError> {
         let (mut tube, memory) = self.tube_in_mesh(tube, pose, None)?;
         let placed = tube.tube;
-        let known = clearance_without_turn(&mut tube, memory, tolerance)?;
-        if let Some(less_known) = placed.without_turn() {
-            report_pieces(&less_known, memory, out)?;
+        let mut known = None;
+        let without_turn = clearance_without_turn(&mut tube, memory, tolerance)?;
+        if let (Some(less_known), Some((answer, pieces))) = (placed.without_turn(), without_turn) {
+            report_pieces(&less_known, pieces, out)?;
+            known = Some(answer);
         }
-        let answer = clearance(&mut tube, memory, tolerance)?;
+        let (answer, pieces) = clearance(&mut tube, memory, tolerance)?;
         if known.is_none_or(|known| answer.lower >= known.lower) {
-            report_pieces(&placed, memory, out)?;
+            report_pieces(&placed, pieces, out)?;
         }
         Ok(known.map_or(answer, |known| known.and(answer, tolerance)))
     }

@@ -51,7 +51,8 @@ impl BvhSearch {
     /// let inside = LinearMotion::chain(&from, &to, &[1.0])?;
     /// assert!(search.clears_motion(&inside, 1.0, 1e-3)?.is_clear());
     /// // From inside to outside. Both end shapes are clear.
-    /// let through = LinearMotion::chain(&from, &from.map(|point| point + Vector::X * 20.0), &[1.0])?;
+    /// let through =
+    ///     LinearMotion::chain(&from, &from.map(|point| point + Vector::X * 20.0), &[1.0])?;
     /// let answer = search.clears_motion(&through, 0.0, 1e-3)?;
     /// assert_eq!(answer.decision, Decision::Contact);
     /// assert!(answer.contact.is_some_and(|shape| 0.0 < shape.t && shape.t < 1.0));
@@ -96,7 +97,8 @@ impl BvhSearch {
     /// let motion = LinearMotion::chain(&from, &to, &[0.01])?;
     /// let found = search.time_of_contact(&motion, 0.0, 1e-3)?;
     /// let [clear_until, t] = found.interval;
-    /// assert!(clear_until <= 0.45 && 0.449 <= t && t - clear_until <= 1e-3); // the tip has moved 9 of 20
+    /// // The tip has moved by 9 of 20.
+    /// assert!(clear_until <= 0.45 && 0.449 <= t && t - clear_until <= 1e-3);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///
@@ -136,12 +138,14 @@ impl BvhSearch {
     /// - `Undecided`: the decision depends on the tube, or on less than `resolution`.
     ///
     /// ```
-    /// use parry_continuum::{Chain, parry::{math::Vector, shape::Ball}, proximity::{BvhSearch, Decision}};
+    /// use parry_continuum::parry::{math::Vector, shape::Ball};
+    /// use parry_continuum::{Chain, proximity::{BvhSearch, Decision}};
     ///
     /// let (vertices, triangles) = Ball::new(10.0).to_trimesh(64, 32);
     /// let mut search = BvhSearch::from_triangles(&vertices, &triangles)?;
     /// // A needle that advances by 5 in steps of 1.
-    /// let needle = |tip: u32| Chain::capsules(&[Vector::ZERO, Vector::Z * f64::from(tip)], &[0.5]);
+    /// let needle =
+    ///     |tip: u32| Chain::capsules(&[Vector::ZERO, Vector::Z * f64::from(tip)], &[0.5]);
     /// let shapes = (1..=6).map(needle).collect::<Result<Vec<_>, _>>()?;
     /// let found = search.clears_path(&shapes, 0.1, 1.0, 1e-3)?;
     /// assert_eq!(found.decision, Decision::Clear);
@@ -237,7 +241,8 @@ impl BvhSearch {
     /// only while the motion may be the nearest.
     ///
     /// ```
-    /// use parry_continuum::{LinearMotion, parry::{math::Vector, shape::Ball}, proximity::BvhSearch};
+    /// use parry_continuum::parry::{math::Vector, shape::Ball};
+    /// use parry_continuum::{LinearMotion, proximity::BvhSearch};
     ///
     /// let (vertices, triangles) = Ball::new(10.0).to_trimesh(64, 32);
     /// let mut search = BvhSearch::from_triangles(&vertices, &triangles)?;

@@ -26,7 +26,7 @@ impl BvhSearch {
     ///
     /// The proof is a text that a short program in plain Python checks. The [page on
     /// proofs](crate::book::proofs) has both. `None` if the robot does not keep the margin, or
-    /// keeps it by no more than rounding.
+    /// exceeds it by at most rounding.
     ///
     /// The proof does not cover the side of the wall: [`side`](Self::side) answers that. The
     /// program prints this, and the premises.

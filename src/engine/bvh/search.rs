@@ -56,7 +56,9 @@ use std::sync::Arc;
 /// std::thread::scope(|scope| {
 ///     for turn in 0..2 {
 ///         let (mut search, robot) = (search.clone(), &robot);
-///         scope.spawn(move || search.clears(robot, &Pose::rotation(Vector::X * f64::from(turn)), 1.0));
+///         scope.spawn(move || {
+///             search.clears(robot, &Pose::rotation(Vector::X * f64::from(turn)), 1.0)
+///         });
 ///     }
 /// });
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -143,7 +145,8 @@ impl BvhSearch {
     /// use parry_continuum::parry::{math::{Pose, Vector}, shape::TriMesh};
     /// use parry_continuum::proximity::{BvhSearch, Proximity};
     ///
-    /// let wall = [Vector::new(-9.0, -9.0, 3.0), Vector::new(9.0, -9.0, 3.0), Vector::new(0.0, 9.0, 3.0)];
+    /// let wall =
+    ///     [Vector::new(-9.0, -9.0, 3.0), Vector::new(9.0, -9.0, 3.0), Vector::new(0.0, 9.0, 3.0)];
     /// let mut search = BvhSearch::from_triangles(&wall, &[[0, 1, 2]])?;
     /// search.set_vertices(&wall.map(|corner| corner + Vector::Z))?;
     /// let robot = Chain::from_centreline(&[Vector::ZERO, Vector::X], &[0.5])?;

@@ -10,8 +10,8 @@
 //! # Algorithm
 //! 1. **Begin** with pieces that turn by at most 1 rad, and measure them.
 //! 2. **Take** the measured piece of least rank. Its `found` may improve `upper`.
-//! 3. **Stop** if its `lower` + `direction_gap` is at least `upper - aim`. Otherwise divide it and measure
-//!    its halves. Repeat from 2.
+//! 3. **Stop** if its `lower` + `direction_gap` is at least `upper - aim`. Otherwise divide it and
+//!    measure its halves. Repeat from 2.
 //! 4. **Answer.** The lower bound is the least `lower` of all pieces.
 //!
 //! **Warm start.** Bodies are first searched within `hint`. A body without a result is searched
@@ -38,17 +38,16 @@ use parry3d_f64::math::Real;
 /// found so far. Limits the time, far above the need of any tolerance that the samples allow.
 pub(super) const MOST_DIVISIONS: u32 = 1 << 15;
 
-/// Returns bounds on the clearance that are at most `tolerance` apart if the tube allows it.
-///
-/// The pieces, each with a lower bound on its clearance, remain in `memory`.
+/// Returns bounds on the clearance that are at most `tolerance` apart if the tube allows it, and
+/// the pieces of the tube, each with a lower bound on its clearance.
 ///
 /// # Errors
 /// The curve of the tube is not finite.
-pub(crate) fn clearance(
+pub(crate) fn clearance<'m>(
     tube: &mut TubeInMesh,
-    memory: &mut TubeMemory,
+    memory: &'m mut TubeMemory,
     tolerance: Real,
-) -> Result<Clearance, ProximityError> {
+) -> Result<(Clearance, &'m MeshPieces), ProximityError> {
     let mut hint = Hint { upper: Real::INFINITY, triangle: memory.last.map(|last| last.triangle) };
     // If the mesh is much larger than the tube, a near mesh allows a smaller `slack`. The bound for
     // it must not depend on earlier queries.
@@ -74,8 +73,12 @@ pub(crate) fn clearance(
     let BoundedClearance { lower, resolved, uncertainty } = bounds.answer(best.upper);
     memory.last = Some((&best).into());
     let MeshUpperBound { upper, section, witness } = best;
-    Ok(Clearance { lower, upper, resolved, uncertainty, section, witness })
+    let answer = Clearance { lower, upper, resolved, uncertainty, section, witness };
+    Ok((answer, &memory.pieces))
 }
+
+/// The undivided pieces of a tube in a mesh.
+pub(crate) type MeshPieces = PendingPieces<Piece, BoundingBody, MeshUpperBound>;
 
 /// An upper bound on the clearance from any source, and a triangle that is probably near.
 #[derive(Clone, Copy)]
@@ -243,7 +246,7 @@ impl From<&MeshUpperBound> for LastPlace {
 /// The state that warm-starts the next query about a tube.
 #[derive(Clone, Default)]
 pub(crate) struct TubeMemory {
-    pub pieces: PendingPieces<Piece, BoundingBody, MeshUpperBound>,
+    pub pieces: MeshPieces,
     /// The initial pieces of a query.
     pub begun: Vec<Piece>,
     pub last: Option<LastPlace>,

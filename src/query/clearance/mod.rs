@@ -3,5 +3,5 @@
 mod bounds;
 mod decision;
 
-pub(crate) use bounds::{BoundedClearance, BoundsSearch, Hint, TubeMemory, clearance};
+pub(crate) use bounds::{BoundedClearance, BoundsSearch, Hint, MeshPieces, TubeMemory, clearance};
 pub(crate) use decision::{Wanted, clears_pieces, clears_tube};

@@ -8,20 +8,29 @@ use parry3d_f64::math::Real;
 /// rounding of a time, 2^-53, is far smaller, and more shapes would take too long.
 const MAX_INTERVALS: Real = (1_u64 << 24) as Real;
 
-/// The motion of a piece in an interval of time, relative to its midpoint.
+/// The motion in an interval of time, relative to its midpoint.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ApproachBound {
     /// Half of the length of the interval, rounded up.
     half_length: Real,
     /// How far the flat ends that may become round move in that time.
     pub cap_change: Real,
-    /// An upper bound on the speed of approach of the current piece.
-    pub speed: Real,
-    /// How much more the current piece may turn than the middle shape shows; 0 where turns do not
-    /// matter.
-    pub growth: Real,
     /// How long before and after the middle shape the unresolved pieces are decided.
     pub hold: Real,
+}
+
+/// The motion of one piece, or one pair of pieces, in an interval of time.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Approach {
+    /// The two speeds that the [relative motion](super::relative_motion::RelativeMotion::speeds)
+    /// states.
+    pub speeds: [Real; 2],
+    /// V: an upper bound on the speed of approach, the sum of both.
+    pub speed: Real,
+    /// tau V: how much nearer the piece may come than in the middle shape.
+    pub reach: Real,
+    /// How much more the piece may turn than the middle shape shows; 0 where turns do not matter.
+    pub extra_turn: Real,
 }
 
 /// Checks that time can be divided into intervals in which a point of this speed moves by the
@@ -61,18 +70,13 @@ pub(super) fn remaining_parts(times: [Real; 2], hold: Real) -> [Option<[Real; 2]
 
 impl ApproachBound {
     pub(super) fn new(times: [Real; 2], cap_change: Real) -> Self {
-        Self {
-            half_length: half_length(times),
-            cap_change,
-            speed: 0.0,
-            growth: 0.0,
-            hold: Real::INFINITY,
-        }
+        Self { half_length: half_length(times), cap_change, hold: Real::INFINITY }
     }
 
-    /// Returns how much nearer a piece may come than in the middle shape: tau V.
-    pub(super) fn max_approach(&self) -> Real {
-        self.half_length * self.speed
+    /// Returns the motion of a piece with these speeds.
+    pub(super) fn of_piece(&self, speeds: [Real; 2], extra_turn: Real) -> Approach {
+        let speed = (speeds[0] + speeds[1]) * (1.0 + 4.0 * Real::UNIT_ROUNDOFF);
+        Approach { speeds, speed, reach: self.half_length * speed, extra_turn }
     }
 
     /// Whether flat ends that may become round are so fast that no interval is short enough to show
@@ -82,9 +86,9 @@ impl ApproachBound {
     }
 
     /// Limits `hold` to the time in which a piece comes nearer by at most `room`.
-    pub(super) fn limit_hold(&mut self, room: Real) {
+    pub(super) fn limit_hold(&mut self, piece: &Approach, room: Real) {
         // The quotient is rounded, and so are times, which are at most 1.
-        let time = room.max(0.0) / self.speed * (1.0 - 8.0 * Real::UNIT_ROUNDOFF)
+        let time = room.max(0.0) / piece.speed * (1.0 - 8.0 * Real::UNIT_ROUNDOFF)
             - 8.0 * Real::UNIT_ROUNDOFF;
         self.hold = self.hold.min(time.max(0.0));
     }

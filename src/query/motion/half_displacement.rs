@@ -4,9 +4,9 @@
 //! # Definitions
 //! - A motion may bound the displacement of a piece (`motion::displacement_bound`). Relative to the
 //!   middle shape, every point moves by a vector in the triangle (0, a, b), up to an error of
-//!   `off`. Here a and b are the displacements of the ends of the piece: at the share s of the piece
-//!   and the fraction q of the time, the displacement is q ((1 - s) a + s b). Before the middle
-//!   shape a and b have the opposite sign.
+//!   `off`. Here a and b are the displacements of the ends of the piece: at the share s of the
+//!   piece and the fraction q of the time, the displacement is q ((1 - s) a + s b). Before the
+//!   middle shape a and b have the opposite sign.
 //! - n: the normal of a plane that separates the body in the middle shape from a triangle. gap: the
 //!   width of the separation along n.
 //! - **beside**: (radius x turn + mesh speed) x time. The body contains balls around the points, or

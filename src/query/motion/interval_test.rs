@@ -4,7 +4,7 @@
 //! # Definitions
 //! - d, upper: the lower and the upper bound on the clearance of a piece in the middle shape.
 //! - approach: tau V, how much nearer the piece may come in the interval
-//!   ([`ApproachBound::max_approach`]).
+//!   ([`Approach::reach`]).
 //! - **Fine**: approach <= resolution / 2, and the extra turn is at most [`MIN_EXTRA_TURN`]. The
 //!   middle shape then decides.
 //!
@@ -18,7 +18,7 @@
 //!    stated uncertainty.
 //! 4. **Halve** otherwise.
 
-use super::approach_bound::{ApproachBound, check_subdivision};
+use super::approach_bound::{Approach, ApproachBound, check_subdivision};
 use super::relative_motion::RelativeMotion;
 use crate::answer::ProximityError;
 use crate::refine::{
@@ -69,6 +69,8 @@ pub(crate) struct IntervalTest<V, F> {
 }
 
 impl<D: Refinable, P, V: RelativeMotion<D, P>> RefinePolicy<D, P> for IntervalTest<V, D::Upper> {
+    type OfPart = Approach;
+
     const NEARER_HALF_FIRST: bool = false;
 
     fn is_done(&self) -> bool {
@@ -81,20 +83,15 @@ impl<D: Refinable, P, V: RelativeMotion<D, P>> RefinePolicy<D, P> for IntervalTe
         part: &P,
         piece: &D::Piece,
         outer: &D::Body,
-    ) -> Result<BodyQuery, ProximityError> {
-        self.approach_bound.speed = self.moving.speed(part, piece, outer, tube)?;
-        self.approach_bound.growth = self.moving.extra_turn(part, tube);
-        let (reach, MarginQuery { margin, resolution }) =
-            (self.approach_bound.max_approach(), self.wanted);
+    ) -> Result<(BodyQuery, Approach), ProximityError> {
+        let speeds = self.moving.speeds(part, piece, outer, tube)?;
+        let approach = self.approach_bound.of_piece(speeds, self.moving.extra_turn(part, tube));
+        let (reach, MarginQuery { margin, resolution }) = (approach.reach, self.wanted);
         let is_wide = outer.excess() > 2.0 * reach.max(resolution)
             && outer.excess() > 0.5 * tube.radius(piece).max(margin);
         let aim = reach.max(0.5 * resolution);
-        Ok(BodyQuery {
-            bound: self.bound(tube.slack()),
-            is_wide,
-            aim,
-            start: self.moving.seed_triangle(),
-        })
+        let bound = self.bound(&approach, tube.slack());
+        Ok((BodyQuery { bound, is_wide, aim, start: self.moving.seed_triangle() }, approach))
     }
 
     fn on_cleared(&mut self, _: &D::Piece, _: &D::Body, _: Real) {}
@@ -103,28 +100,29 @@ impl<D: Refinable, P, V: RelativeMotion<D, P>> RefinePolicy<D, P> for IntervalTe
         &mut self,
         tube: &D,
         near: &BoundedPiece<D, P>,
+        approach: &Approach,
     ) -> Result<RefineAction, ProximityError> {
         self.moving.record(near);
         let upper = near.found.upper();
         // Step 1.
         if upper <= self.wanted.margin {
             self.result.contact = Some(*near.found);
-            self.result.is_fine = self.is_fine();
-            self.approach_bound.limit_hold(0.0);
-            self.moving.record_unresolved(near, &self.approach_bound);
+            self.result.is_fine = self.is_fine(approach);
+            self.approach_bound.limit_hold(approach, 0.0);
+            self.moving.record_unresolved(near, approach);
             return Ok(RefineAction::Answered);
         }
         // Step 2.
-        let is_time_to_blame = !self.is_fine()
-            && (upper <= self.bound(tube.slack())
-                || near.outer.excess() <= 0.25 * self.approach_bound.max_approach());
+        let is_time_to_blame = !self.is_fine(approach)
+            && (upper <= self.bound(approach, tube.slack())
+                || near.outer.excess() <= 0.25 * approach.reach);
         if is_time_to_blame {
-            self.record_unresolved(tube, near)?;
+            self.record_unresolved(tube, near, approach)?;
             return Ok(RefineAction::Settled);
         }
         // Step 3.
         let apart = upper - D::distance(near.nearest) - tube.uncertainty(near.piece);
-        if self.is_fine() && apart <= 0.5 * self.wanted.resolution {
+        if self.is_fine(approach) && apart <= 0.5 * self.wanted.resolution {
             self.result.is_undecided = true;
             return Ok(RefineAction::Settled);
         }
@@ -136,9 +134,10 @@ impl<D: Refinable, P, V: RelativeMotion<D, P>> RefinePolicy<D, P> for IntervalTe
         &mut self,
         tube: &D,
         near: &BoundedPiece<D, P>,
+        approach: &Approach,
     ) -> Result<(), ProximityError> {
         let (may_open, resolution) = (tube.may_become_round(near.piece), self.wanted.resolution);
-        if self.is_fine() && !may_open && tube.is_entirely_queried(near.piece, near.found) {
+        if self.is_fine(approach) && !may_open && tube.is_entirely_queried(near.piece, near.found) {
             let stated = tube.uncertainty(near.piece);
             let possible = near.found.upper() - D::distance(near.nearest) - stated;
             if let Err(error) = tube.check_resolved(possible, resolution) {
@@ -147,27 +146,26 @@ impl<D: Refinable, P, V: RelativeMotion<D, P>> RefinePolicy<D, P> for IntervalTe
                 return Ok(());
             }
         }
-        let moved = self.approach_bound.max_approach().max(self.approach_bound.cap_change);
+        let moved = approach.reach.max(self.approach_bound.cap_change);
         let is_open_end_decided =
             moved <= resolution / 128.0 || self.approach_bound.caps_change_too_fast(resolution);
-        if self.is_fine() && (!may_open || is_open_end_decided) {
+        if self.is_fine(approach) && (!may_open || is_open_end_decided) {
             self.result.is_undecided = true;
             return Ok(());
         }
-        self.record_unresolved(tube, near)
+        self.record_unresolved(tube, near, approach)
     }
 }
 
 impl<V, F> IntervalTest<V, F> {
     /// Returns the distance beyond which a body keeps the margin during the whole interval.
-    fn bound(&self, slack: Real) -> Real {
-        self.wanted.margin + self.approach_bound.max_approach() + slack
+    fn bound(&self, approach: &Approach, slack: Real) -> Real {
+        self.wanted.margin + approach.reach + slack
     }
 
     /// Whether the middle shape decides: the motion is smaller than the resolution allows.
-    fn is_fine(&self) -> bool {
-        self.approach_bound.max_approach() <= 0.5 * self.wanted.resolution
-            && self.approach_bound.growth <= MIN_EXTRA_TURN
+    fn is_fine(&self, approach: &Approach) -> bool {
+        approach.reach <= 0.5 * self.wanted.resolution && approach.extra_turn <= MIN_EXTRA_TURN
     }
 
     /// Records a piece that keeps the margin only for some time before and after the middle shape.
@@ -178,16 +176,19 @@ impl<V, F> IntervalTest<V, F> {
         &mut self,
         tube: &D,
         near: &BoundedPiece<D, P>,
+        approach: &Approach,
     ) -> Result<(), ProximityError>
     where
         V: RelativeMotion<D, P>,
     {
-        let (speed, MarginQuery { margin, resolution }) = (self.approach_bound.speed, self.wanted);
-        check_subdivision(speed, resolution, || self.moving.fastest_section(near, speed))?;
+        let MarginQuery { margin, resolution } = self.wanted;
+        let fastest = || self.moving.fastest_section(near, approach);
+        check_subdivision(approach.speed, resolution, fastest)?;
         self.result.is_near |=
             near.found.upper() <= margin + resolution + tube.uncertainty(near.piece);
-        self.approach_bound.limit_hold(D::distance(near.nearest) - margin - tube.slack());
-        self.moving.record_unresolved(near, &self.approach_bound);
+        let room = D::distance(near.nearest) - margin - tube.slack();
+        self.approach_bound.limit_hold(approach, room);
+        self.moving.record_unresolved(near, approach);
         Ok(())
     }
 }

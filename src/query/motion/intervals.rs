@@ -1,5 +1,5 @@
-//! Intervals of time, and the loops over them that decide about a margin: for a motion in a mesh, for
-//! two motions, and for self contact.
+//! Intervals of time, and the loops over them that decide about a margin: for a motion in a mesh,
+//! for two motions, and for self contact.
 
 use super::approach_bound::{midpoint, remaining_parts};
 use super::interval_test::{IntervalResult, MarginQuery};
@@ -97,7 +97,8 @@ impl MarginAnswer<PairUpperBound> {
     }
 }
 
-/// Decides whether a margin is kept in all intervals. `test_interval` tests the middle shape of one.
+/// Decides whether a margin is kept in all intervals. `test_interval` tests the middle shape of
+/// one.
 ///
 /// # Errors
 /// As `test_interval`; or the samples allow no decision.

@@ -10,11 +10,11 @@
 //! 1. **Settled** if `d - reach - slack >= wanted`.
 //! 2. **Settled** with a larger gap if only the unknown direction of a face prevents the decision.
 //! 3. **Unresolved** if the piece is not fine (`reach > aim / 4`) and the motion prevents the
-//!    decision. Shorter intervals test the piece again; around t it stays `wanted` away for the time
-//!    `hold`.
+//!    decision. Shorter intervals test the piece again; around t it stays `wanted` away for the
+//!    time `hold`.
 //! 4. **Halve** otherwise.
 
-use super::approach_bound::ApproachBound;
+use super::approach_bound::{Approach, ApproachBound};
 use super::minimum_rounds::{MinimumBounds, UnresolvedGap};
 use super::relative_motion::RelativeMotion;
 use crate::answer::ProximityError;
@@ -64,33 +64,39 @@ impl<'b, V, U: UpperBound> MinimumPolicy<'b, V, U> {
         self.known.upper() - self.aim
     }
 
-    /// Returns a lower bound on the clearance of a piece in the interval, from the distance of its
-    /// body.
-    fn at_least(&self, distance: Real, slack: Real) -> Real {
-        distance - self.approach_bound.max_approach() - slack
-    }
-
     pub fn settle(&mut self, lower: Real) {
         self.known.lower = self.known.lower.min(lower);
     }
 
     /// Records a piece that must be tested at other times.
-    fn record_unresolved<D: Refinable<Upper = U>, P>(&mut self, near: &BoundedPiece<D, P>, tube: &D)
-    where
+    fn record_unresolved<D: Refinable<Upper = U>, P>(
+        &mut self,
+        tube: &D,
+        near: &BoundedPiece<D, P>,
+        approach: &Approach,
+    ) where
         V: RelativeMotion<D, P>,
     {
-        let (wanted, distance) = (self.wanted(), D::distance(near.nearest));
-        self.nearest = self.nearest.min(self.at_least(distance, tube.slack()));
+        let wanted = self.wanted();
+        self.nearest = self.nearest.min(lower_bound(tube, near, approach));
         // During `hold` the piece stays at least this far away.
         self.settle(wanted);
-        self.approach_bound.limit_hold(distance - wanted - tube.slack());
-        self.moving.record_unresolved(near, &self.approach_bound);
+        let room = D::distance(near.nearest) - wanted - tube.slack();
+        self.approach_bound.limit_hold(approach, room);
+        self.moving.record_unresolved(near, approach);
     }
+}
+
+/// Returns a lower bound on the clearance of a piece in the interval: `d - reach - slack`.
+fn lower_bound<D: Refinable, P>(tube: &D, near: &BoundedPiece<D, P>, approach: &Approach) -> Real {
+    D::distance(near.nearest) - approach.reach - tube.slack()
 }
 
 impl<D: Refinable, P, V: RelativeMotion<D, P>> RefinePolicy<D, P>
     for MinimumPolicy<'_, V, D::Upper>
 {
+    type OfPart = Approach;
+
     const NEARER_HALF_FIRST: bool = true;
 
     /// A clearance below 0 does not exist.
@@ -104,21 +110,18 @@ impl<D: Refinable, P, V: RelativeMotion<D, P>> RefinePolicy<D, P>
         part: &P,
         piece: &D::Piece,
         outer: &D::Body,
-    ) -> Result<BodyQuery, ProximityError> {
+    ) -> Result<(BodyQuery, Approach), ProximityError> {
         self.left = self.left.saturating_sub(1);
-        self.approach_bound.speed = self.moving.speed(part, piece, outer, tube)?;
-        let (reach, upper) = (self.approach_bound.max_approach(), self.known.upper());
+        let approach =
+            self.approach_bound.of_piece(self.moving.speeds(part, piece, outer, tube)?, 0.0);
+        let (reach, upper) = (approach.reach, self.known.upper());
         let is_wide = self.left > 0
             && outer.excess() > 2.0 * self.aim.max(reach)
             && (outer.is_flat() || outer.excess() > 0.25 * upper);
         // Not `wanted`: a piece farther than `upper` is settled for all later rounds.
         let bound = upper + reach + tube.slack();
-        Ok(BodyQuery {
-            bound,
-            is_wide,
-            aim: self.aim.max(reach),
-            start: self.moving.seed_triangle(),
-        })
+        let (aim, start) = (self.aim.max(reach), self.moving.seed_triangle());
+        Ok((BodyQuery { bound, is_wide, aim, start }, approach))
     }
 
     fn on_cleared(&mut self, _: &D::Piece, _: &D::Body, _: Real) {
@@ -129,20 +132,19 @@ impl<D: Refinable, P, V: RelativeMotion<D, P>> RefinePolicy<D, P>
         &mut self,
         tube: &D,
         near: &BoundedPiece<D, P>,
+        approach: &Approach,
     ) -> Result<RefineAction, ProximityError> {
         self.moving.record(near);
         self.known.offer(*near.found, self.t);
         if self.is_done() {
             return Ok(RefineAction::Answered);
         }
-        let (lower, wanted) =
-            (self.at_least(D::distance(near.nearest), tube.slack()), self.wanted());
+        let (lower, wanted) = (lower_bound(tube, near, approach), self.wanted());
         if lower >= wanted || self.left == 0 {
             self.settle(lower);
             return Ok(RefineAction::Settled);
         }
-        let (reach, direction_gap) =
-            (self.approach_bound.max_approach(), tube.direction_uncertainty(near.piece));
+        let (reach, direction_gap) = (approach.reach, tube.direction_uncertainty(near.piece));
         if direction_gap > 0.0 && reach <= 0.25 * self.aim && lower >= wanted - direction_gap {
             let UnresolvedGap { lower: least, direction_gap: most } = self.known.unresolved;
             self.known.unresolved =
@@ -153,7 +155,7 @@ impl<D: Refinable, P, V: RelativeMotion<D, P>> RefinePolicy<D, P>
         if reach > 0.25 * self.aim
             && (near.found.upper() <= wanted + reach || near.outer.excess() <= 0.25 * reach)
         {
-            self.record_unresolved(near, tube);
+            self.record_unresolved(tube, near, approach);
             return Ok(RefineAction::Settled);
         }
         Ok(RefineAction::Halve(self.aim.max(0.25 * near.outer.excess())))
@@ -163,17 +165,18 @@ impl<D: Refinable, P, V: RelativeMotion<D, P>> RefinePolicy<D, P>
         &mut self,
         tube: &D,
         near: &BoundedPiece<D, P>,
+        approach: &Approach,
     ) -> Result<(), ProximityError> {
-        let reach = self.approach_bound.max_approach();
+        let reach = approach.reach;
         let is_fine = if tube.may_become_round(near.piece) {
             reach.max(self.approach_bound.cap_change) <= self.aim / 128.0
         } else {
             reach <= (0.25 * self.aim).max(near.found.upper() - D::distance(near.nearest))
         };
         if is_fine {
-            self.settle(self.at_least(D::distance(near.nearest), tube.slack()));
+            self.settle(lower_bound(tube, near, approach));
         } else {
-            self.record_unresolved(near, tube);
+            self.record_unresolved(tube, near, approach);
         }
         Ok(())
     }

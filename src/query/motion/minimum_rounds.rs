@@ -11,9 +11,9 @@
 //!
 //! # Algorithm
 //! 1. **Begin** with `upper` of one shape and `lower` = 0.
-//! 2. **Stop** if the bounds meet the tolerance, if `lower` reaches the limit beyond which the caller
-//!    needs no bounds, after [`MAX_SHAPES`] shapes, or if a round neither met its own tolerance nor
-//!    halved the gap.
+//! 2. **Stop** in any of four cases. The bounds meet the tolerance. `lower` reaches the limit
+//!    beyond which the caller needs no bounds. [`MAX_SHAPES`] shapes have been tested. The last
+//!    round missed its own tolerance and did not halve the gap.
 //! 3. **Round.** Its tolerance is [`SHARE`] of the gap. It takes over `upper` and the lower bounds
 //!    of the parts. Repeat from 2.
 //!
@@ -22,8 +22,9 @@
 //!    motions costs little more than its nearest parts; the parts farther away cost one shape each,
 //!    or a few, in the first round only.
 //! 2. **Seed** `upper` at the place of the nearest shape so far.
-//! 3. **Refine** the middle shape (`minimum_policy`). A piece is at least d - reach away in the whole interval. Unless
-//!    that settles it, it is tested at other times or halved along the curve.
+//! 3. **Refine** the middle shape (`minimum_policy`). A piece is at least d - reach away in the
+//!    whole interval. Unless that settles it, it is tested at other times or halved along the
+//!    curve.
 //! 4. **Displacements** settle pieces on one side of the middle shape, as for a margin.
 //! 5. **Divide** the interval as for a margin. The margin is `wanted`, which falls as nearer shapes
 //!    are found.

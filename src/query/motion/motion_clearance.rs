@@ -71,12 +71,12 @@ impl<M: Motion> Minimized for MotionSearch<'_, M> {
     ) -> Result<[Option<Interval>; 2], ProximityError> {
         let t = interval.midpoint();
         let ((nearest, hold, is_left), pieces) =
-            self.with_middle_shape(&interval, |tube, turn, moving, approach_bound| {
+            self.with_middle_shape(&interval, |tube, pending, moving, approach_bound| {
                 seed(known, tube, t);
-                turn.begin(tube, known.upper().max(known.tolerance));
+                pending.begin(tube, known.upper().max(known.tolerance));
                 let slack = tube.slack();
                 let mut policy = MinimumPolicy::new(moving, approach_bound, known, t, slack);
-                refine(tube, turn.pieces, &mut policy)?;
+                refine(tube, pending.pieces, &mut policy)?;
                 // A clearance below 0 does not exist.
                 let wanted = policy.wanted();
                 let is_left = if wanted < 0.0 {

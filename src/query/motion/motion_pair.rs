@@ -118,7 +118,7 @@ impl<A: Motion, B: Motion> MotionPair<'_, A, B> {
             check_subdivision(faster.speed, resolution, || (faster.fastest, faster.speed))?;
         }
         let approach_bound = ApproachBound::new(times, first.cap_change.max(second.cap_change));
-        let moving = MovingPair { motions, names, times, speeds: [0.0; 2], left };
+        let moving = MovingPair { motions, names, times, left };
         let mut test =
             IntervalTest { moving, approach_bound, wanted, result: IntervalResult::empty() };
         refine(&mut tubes, pairs, &mut test)?;
@@ -188,7 +188,7 @@ impl<A: Motion, B: Motion> Minimized for PairClearance<'_, '_, A, B> {
         let slack = tubes.slack();
         let upper = known.upper();
         let scale = upper.max(known.tolerance).max(0.25 * reach);
-        let moving = MovingPair { motions: *motions, names: *names, times, speeds: [0.0; 2], left };
+        let moving = MovingPair { motions: *motions, names: *names, times, left };
         let mut policy = MinimumPolicy::new(moving, approach_bound, known, t, slack);
         let most = if reach > policy.aim() { MAX_PAIRS_PER_INTERVAL } else { usize::MAX };
         let is_all = tubes.begin(scale, upper + reach + slack, most, beginning, pairs)?;

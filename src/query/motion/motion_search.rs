@@ -46,7 +46,7 @@ use super::intervals::{self, Interval, MarginAnswer, Sought, TestedInterval};
 use super::moving_tube::{MovingTube, SmallRooms};
 use super::pending_piece::PendingPiece;
 use super::separating_planes::SeparatingPlanes;
-use super::unresolved_piece::UnresolvedPiece;
+use super::unresolved_piece::{UnresolvedPiece, UnresolvedPieces};
 use crate::answer::{MotionAnswer, ProximityError, ShapeInContact};
 use crate::motion::Motion;
 use crate::refine::{MeshUpperBound, Piece, PlacedTube, Refinable, TubeInMesh, refine};
@@ -160,17 +160,17 @@ impl<M: Motion> MotionSearch<'_, M> {
         wanted: MarginQuery,
     ) -> Result<TestedInterval<MeshUpperBound>, ProximityError> {
         let ((result, hold, is_left), unresolved) =
-            self.with_middle_shape(interval, |tube, turn, moving, approach_bound| {
+            self.with_middle_shape(interval, |tube, pending, moving, approach_bound| {
                 // A finer resolution is below rounding.
                 tube.check_resolved(32.0 * tube.tube.slack(), wanted.resolution)?;
-                turn.begin(tube, wanted.margin.max(wanted.resolution));
+                pending.begin(tube, wanted.margin.max(wanted.resolution));
                 let mut test = IntervalTest {
                     moving,
                     approach_bound,
                     wanted,
                     result: IntervalResult::empty(),
                 };
-                refine(tube, turn.pieces, &mut test)?;
+                refine(tube, pending.pieces, &mut test)?;
                 let IntervalTest { mut moving, approach_bound, result, .. } = test;
                 let is_contact = result.contact.is_some();
                 let is_left = if is_contact {
@@ -232,19 +232,19 @@ impl<M: Motion> MotionSearch<'_, M> {
         let moving = MovingTube {
             motion,
             times,
-            t,
             mesh_speed,
-            unresolved: &mut *unresolved,
-            first,
-            unresolved_bodies,
+            unresolved: UnresolvedPieces {
+                pieces: &mut *unresolved,
+                first,
+                bodies: unresolved_bodies,
+            },
             last: &mut self.last,
-            beside: 0.0,
             planes,
             small_rooms,
         };
-        let mut turn =
+        let mut pending =
             PendingPieces { pieces, initial_pieces, is_whole: interval.pieces.is_none() };
-        let result = ask(&mut tube, &mut turn, moving, approach_bound)?;
+        let result = ask(&mut tube, &mut pending, moving, approach_bound)?;
         // A contact leaves pieces untested.
         unresolved.append(pieces);
         Ok((result, first..unresolved.len()))

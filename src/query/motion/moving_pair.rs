@@ -1,9 +1,9 @@
 //! Two moving robots in an interval of time, in their middle shapes.
 
+use super::approach_bound::Approach;
 use super::approach_speed::ApproachSpeed;
 use super::relative_motion::RelativeMotion;
 use crate::answer::ProximityError;
-use crate::distance::Scalar;
 use crate::motion::Motion;
 use crate::refine::{BoundedPiece, BoundingBody, PiecePair, TubePair};
 use crate::robot::RobotError;
@@ -15,32 +15,31 @@ pub(super) struct MovingPair<'a, A, B> {
     /// The names of the motions in error messages.
     pub names: [&'static str; 2],
     pub times: [Real; 2],
-    /// The speeds of the two pieces of the current pair.
-    pub speeds: [Real; 2],
     /// How many pairs of pieces may still be tested in this query.
     pub left: &'a mut u32,
 }
 
 impl<'t, A: Motion, B: Motion> RelativeMotion<TubePair<'t>, PiecePair> for MovingPair<'_, A, B> {
-    /// Returns the sum of both speeds: the pieces may move straight towards each other.
-    fn speed(
+    /// The speeds of both pieces, which may move straight towards each other.
+    fn speeds(
         &mut self,
         pair: &PiecePair,
         _: &PiecePair,
         _: &[BoundingBody; 2],
         tubes: &TubePair<'t>,
-    ) -> Result<Real, ProximityError> {
+    ) -> Result<[Real; 2], ProximityError> {
         *self.left = self.left.saturating_sub(1);
         let [first, second] = tubes.section_ranges(pair);
         let (a, b) = self.motions;
         let fast =
             [ApproachSpeed::of(a, self.times, &first), ApproachSpeed::of(b, self.times, &second)];
-        for ((speed, fast), name) in self.speeds.iter_mut().zip(fast).zip(self.names) {
+        let mut speeds = [0.0; 2];
+        for ((speed, fast), name) in speeds.iter_mut().zip(fast).zip(self.names) {
             let named = |error: RobotError| ProximityError::Motion(error).of_robot(name);
             let ApproachSpeed { centreline, rim } = fast.map_err(named)?;
             *speed = centreline + rim;
         }
-        Ok((self.speeds[0] + self.speeds[1]) * (1.0 + 4.0 * Real::UNIT_ROUNDOFF))
+        Ok(speeds)
     }
 
     fn is_exhausted(&self) -> bool {
@@ -50,8 +49,8 @@ impl<'t, A: Motion, B: Motion> RelativeMotion<TubePair<'t>, PiecePair> for Movin
     fn fastest_section(
         &self,
         near: &BoundedPiece<TubePair<'t>, PiecePair>,
-        _: Real,
+        approach: &Approach,
     ) -> (usize, Real) {
-        near.found.faster(self.speeds)
+        near.found.faster(approach.speeds)
     }
 }

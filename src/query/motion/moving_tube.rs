@@ -1,23 +1,19 @@
 //! The pieces of one moving robot in an interval of time: their speeds and displacements, relative
 //! to the middle shape.
 
-use super::approach_bound::{ApproachBound, half_length};
+use super::approach_bound::{Approach, half_length, midpoint};
 use super::approach_speed::ApproachSpeed;
 use super::half_displacement::HalfDisplacement;
 use super::pending_piece::PendingPiece;
 use super::relative_motion::RelativeMotion;
 use super::separating_planes::{PlaneTest, SeparatingPlanes};
-use super::unresolved_piece::UnresolvedPiece;
+use super::unresolved_piece::{MAX_PIECES, UnresolvedPiece, UnresolvedPieces};
 use crate::answer::ProximityError;
 use crate::distance::Scalar;
 use crate::motion::Motion;
 use crate::pair::Nearest;
 use crate::refine::{BoundedPiece, BoundingBody, Piece, Refinable, SectionRange, TubeInMesh};
 use parry3d_f64::math::Real;
-
-/// With more unresolved pieces in an interval, displacements are not tested: another shape is
-/// cheaper.
-const MAX_PIECES: usize = 8;
 
 /// A piece whose room is at most this share of its approach rarely passes the displacement test,
 /// unless it slides along the wall.
@@ -27,40 +23,30 @@ const MIN_ROOM: Real = 0.1;
 pub(crate) struct MovingTube<'a, M> {
     pub motion: &'a M,
     pub times: [Real; 2],
-    /// The time of the shape.
-    pub t: Real,
     /// An upper bound on the speed of the mesh.
     pub mesh_speed: Real,
-    /// The pieces that the shape does not decide for the whole interval, after those of earlier
-    /// intervals.
-    pub unresolved: &'a mut Vec<PendingPiece>,
-    /// The index of the first unresolved piece of this interval.
-    pub first: usize,
-    /// The bodies of the unresolved pieces of this interval, at most [`MAX_PIECES`] + 1.
-    pub unresolved_bodies: &'a mut Vec<UnresolvedPiece>,
+    pub unresolved: UnresolvedPieces<'a>,
     /// The last triangle found.
     pub last: &'a mut Option<u32>,
-    /// How much faster a point of the current body may be than the centreline, plus the speed of
-    /// the mesh.
-    pub beside: Real,
     pub planes: &'a mut SeparatingPlanes,
     pub small_rooms: &'a mut SmallRooms,
 }
 
 impl<'m, M: Motion> RelativeMotion<TubeInMesh<'m>, PendingPiece> for MovingTube<'_, M> {
-    fn speed(
+    /// The speed of the centreline; and how much faster a point of the body may be, plus the speed
+    /// of the mesh.
+    fn speeds(
         &mut self,
         pending: &PendingPiece,
         piece: &Piece,
         outer: &BoundingBody,
         tube: &TubeInMesh<'m>,
-    ) -> Result<Real, ProximityError> {
+    ) -> Result<[Real; 2], ProximityError> {
         let PendingPiece { section, shares, .. } = *pending;
         let stretch = SectionRange { section, shares, outer, radius: tube.radius(piece) };
         let ApproachSpeed { centreline, rim } =
             ApproachSpeed::of(self.motion, self.times, &stretch)?;
-        self.beside = (rim + self.mesh_speed) * (1.0 + 2.0 * Real::UNIT_ROUNDOFF);
-        Ok((centreline + self.beside) * (1.0 + 4.0 * Real::UNIT_ROUNDOFF))
+        Ok([centreline, (rim + self.mesh_speed) * (1.0 + 2.0 * Real::UNIT_ROUNDOFF)])
     }
 
     fn seed_triangle(&self) -> Option<u32> {
@@ -74,19 +60,20 @@ impl<'m, M: Motion> RelativeMotion<TubeInMesh<'m>, PendingPiece> for MovingTube<
     fn record_unresolved(
         &mut self,
         near: &BoundedPiece<TubeInMesh<'m>, PendingPiece>,
-        approach_bound: &ApproachBound,
+        approach: &Approach,
     ) {
-        self.unresolved.push(PendingPiece { is_left: [true; 2], ..*near.part });
-        if self.unresolved_bodies.len() <= MAX_PIECES {
+        let UnresolvedPieces { pieces, bodies, .. } = &mut self.unresolved;
+        pieces.push(PendingPiece { is_left: [true; 2], ..*near.part });
+        if bodies.len() <= MAX_PIECES {
             let Nearest { distance: away, on_robot, on_mesh, .. } = *near.nearest;
             let normal = (on_robot - on_mesh).normalize_or_zero();
-            let (body, beside) = (near.outer.body, self.beside * half_length(self.times));
-            self.unresolved_bodies.push(UnresolvedPiece {
-                body,
+            let [_, beside] = approach.speeds;
+            bodies.push(UnresolvedPiece {
+                body: near.outer.body,
                 away,
                 normal,
-                reach: approach_bound.max_approach(),
-                beside,
+                reach: approach.reach,
+                beside: beside * half_length(self.times),
             });
         }
     }
@@ -94,9 +81,9 @@ impl<'m, M: Motion> RelativeMotion<TubeInMesh<'m>, PendingPiece> for MovingTube<
     fn fastest_section(
         &self,
         near: &BoundedPiece<TubeInMesh<'m>, PendingPiece>,
-        speed: Real,
+        approach: &Approach,
     ) -> (usize, Real) {
-        (near.part.section as usize, speed)
+        (near.part.section as usize, approach.speed)
     }
 }
 
@@ -115,34 +102,33 @@ impl<M: Motion> MovingTube<'_, M> {
     /// The nearest piece is tested first. After the first failure on a side the other pieces are
     /// skipped: that side must be searched anyway.
     pub(crate) fn clear_by_displacement(&mut self, tube: &mut TubeInMesh, margin: Real) -> Left {
-        let nearest =
-            self.unresolved_bodies.iter().enumerate().min_by(|a, b| a.1.away.total_cmp(&b.1.away));
+        let UnresolvedPieces { pieces, first, bodies } = &mut self.unresolved;
+        let nearest = bodies.iter().enumerate().min_by(|a, b| a.1.away.total_cmp(&b.1.away));
         let mut left = Left { sides: [false; 2], is_any_settled: false };
         let Some((nearest, _)) = nearest else { return left };
-        if self.unresolved_bodies.len() > MAX_PIECES {
+        if bodies.len() > MAX_PIECES {
             left.sides = [true; 2];
             return left;
         }
         let slack = tube.tube.slack();
         let room = |failure: &UnresolvedPiece| failure.away - margin - slack;
         let is_small = |failure: &UnresolvedPiece| room(failure) <= MIN_ROOM * failure.reach;
-        let has_small = self.unresolved_bodies.iter().any(is_small);
-        let asks_small = has_small
-            && self.unresolved_bodies.iter().all(|it| room(it) > 0.0)
-            && self.small_rooms.is_due();
-        self.unresolved_bodies.swap(0, nearest);
-        self.unresolved.swap(self.first, self.first + nearest);
-        for (number, failure) in self.unresolved_bodies.iter().enumerate() {
+        let has_small = bodies.iter().any(is_small);
+        let asks_small =
+            has_small && bodies.iter().all(|it| room(it) > 0.0) && self.small_rooms.is_due();
+        bodies.swap(0, nearest);
+        let pieces = &mut pieces[*first..];
+        pieces.swap(0, nearest);
+        let t = midpoint(self.times);
+        for (part, failure) in pieces.iter_mut().zip(&**bodies) {
             if is_small(failure) && !asks_small {
                 left.sides = [true; 2];
                 return left;
             }
-            let part = &mut self.unresolved[self.first + number];
             for (side, is_left) in
                 left.sides.iter_mut().enumerate().filter(|(_, is_left)| !**is_left)
             {
-                let times =
-                    if side == 0 { [self.times[0], self.t] } else { [self.t, self.times[1]] };
+                let times = if side == 0 { [self.times[0], t] } else { [t, self.times[1]] };
                 let bound = self.motion.displacement(part.section as usize, part.shares, times);
                 let is_clear = bound
                     .and_then(|bound| HalfDisplacement::of(&bound, side, failure.beside))

@@ -1,9 +1,9 @@
 //! A moving robot beside itself in an interval of time, in its middle shape.
 
+use super::approach_bound::Approach;
 use super::approach_speed::ApproachSpeed;
 use super::relative_motion::RelativeMotion;
 use crate::answer::ProximityError;
-use crate::distance::Scalar;
 use crate::motion::Motion;
 use crate::refine::{BoundedPiece, SelfPair, TubeWithItself};
 use parry3d_f64::math::Real;
@@ -12,28 +12,27 @@ use parry3d_f64::math::Real;
 pub(super) struct MovingTubeWithItself<'a, M> {
     pub motion: &'a M,
     pub times: [Real; 2],
-    /// The speeds of the two pieces of the current pair.
-    pub speeds: [Real; 2],
     /// How many pairs of pieces may still be tested in this query.
     pub left: &'a mut u32,
 }
 
 impl<'t, M: Motion> RelativeMotion<TubeWithItself<'t>, SelfPair> for MovingTubeWithItself<'_, M> {
-    /// Returns the sum of both speeds: the pieces may move straight towards each other.
-    fn speed(
+    /// The speeds of both pieces, which may move straight towards each other.
+    fn speeds(
         &mut self,
         pair: &SelfPair,
         _: &SelfPair,
         _: &SelfPair,
         own: &TubeWithItself<'t>,
-    ) -> Result<Real, ProximityError> {
+    ) -> Result<[Real; 2], ProximityError> {
         *self.left = self.left.saturating_sub(1);
-        for (speed, stretch) in self.speeds.iter_mut().zip(own.section_ranges(pair)) {
+        let mut speeds = [0.0; 2];
+        for (speed, stretch) in speeds.iter_mut().zip(own.section_ranges(pair)) {
             let ApproachSpeed { centreline, rim } =
                 ApproachSpeed::of(self.motion, self.times, &stretch)?;
             *speed = centreline + rim;
         }
-        Ok((self.speeds[0] + self.speeds[1]) * (1.0 + 4.0 * Real::UNIT_ROUNDOFF))
+        Ok(speeds)
     }
 
     fn extra_turn(&self, pair: &SelfPair, own: &TubeWithItself<'t>) -> Real {
@@ -47,8 +46,8 @@ impl<'t, M: Motion> RelativeMotion<TubeWithItself<'t>, SelfPair> for MovingTubeW
     fn fastest_section(
         &self,
         near: &BoundedPiece<TubeWithItself<'t>, SelfPair>,
-        _: Real,
+        approach: &Approach,
     ) -> (usize, Real) {
-        near.found.faster(self.speeds)
+        near.found.faster(approach.speeds)
     }
 }

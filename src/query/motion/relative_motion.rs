@@ -1,23 +1,24 @@
 //! The trait of moving parts beside an obstacle or each other.
 
-use super::approach_bound::ApproachBound;
+use super::approach_bound::Approach;
 use crate::answer::ProximityError;
 use crate::refine::{BoundedPiece, Refinable};
 use parry3d_f64::math::Real;
 
 /// Parts that move in an interval of time.
 pub(crate) trait RelativeMotion<D: Refinable, P> {
-    /// Returns an upper bound on the speed at which a part and its obstacle approach each other.
+    /// Returns two speeds whose sum bounds the speed at which a part and its obstacle approach each
+    /// other: of both pieces; or of the centreline, and of the points beside it and the obstacle.
     ///
     /// # Errors
     /// A stated speed is negative or not finite.
-    fn speed(
+    fn speeds(
         &mut self,
         part: &P,
         piece: &D::Piece,
         body: &D::Body,
         divided: &D,
-    ) -> Result<Real, ProximityError>;
+    ) -> Result<[Real; 2], ProximityError>;
 
     /// Returns how much more a part may turn than its middle shape shows; 0 if turns do not matter.
     fn extra_turn(&self, _: &P, _: &D) -> Real {
@@ -39,9 +40,8 @@ pub(crate) trait RelativeMotion<D: Refinable, P> {
 
     /// Records a part that the middle shape does not decide for the whole interval, unless the
     /// common `hold` of the approach bound is enough.
-    fn record_unresolved(&mut self, _: &BoundedPiece<D, P>, _: &ApproachBound) {}
+    fn record_unresolved(&mut self, _: &BoundedPiece<D, P>, _: &Approach) {}
 
-    /// Returns the fastest section of a part that approaches at `speed`, and the speed of that
-    /// section.
-    fn fastest_section(&self, near: &BoundedPiece<D, P>, speed: Real) -> (usize, Real);
+    /// Returns the fastest section of a part, and the speed of that section.
+    fn fastest_section(&self, near: &BoundedPiece<D, P>, approach: &Approach) -> (usize, Real);
 }

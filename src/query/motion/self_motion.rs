@@ -92,7 +92,7 @@ fn test_interval<M: Motion>(
         let speed = points / half_length(times);
         check_subdivision(speed, resolution, || (fastest, speed))?;
     }
-    let moving = MovingTubeWithItself { motion, times, speeds: [0.0; 2], left };
+    let moving = MovingTubeWithItself { motion, times, left };
     let mut test = IntervalTest {
         moving,
         approach_bound: ApproachBound::new(times, cap_change),

@@ -1,9 +1,24 @@
-//! A piece that the middle shape of an interval does not decide by its speed.
+//! The pieces that the middle shape of an interval does not decide by their speed.
 
+use super::pending_piece::PendingPiece;
 use crate::pair::PlacedLink;
 use parry3d_f64::math::{Real, Vector};
 
-/// The body of such a piece, while its interval is tested.
+/// With more unresolved pieces in an interval, displacements are not tested: another shape is
+/// cheaper.
+pub(super) const MAX_PIECES: usize = 8;
+
+/// The unresolved pieces of the current interval.
+pub(crate) struct UnresolvedPieces<'a> {
+    /// The pieces of earlier intervals, then the pieces of this one.
+    pub pieces: &'a mut Vec<PendingPiece>,
+    /// The index of the first piece of this interval.
+    pub first: usize,
+    /// The bodies of the pieces of this interval, at most [`MAX_PIECES`] + 1.
+    pub bodies: &'a mut Vec<UnresolvedPiece>,
+}
+
+/// The body of an unresolved piece, while its interval is tested.
 #[derive(Clone)]
 pub(crate) struct UnresolvedPiece {
     pub body: PlacedLink,

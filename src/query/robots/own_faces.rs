@@ -8,8 +8,9 @@
 //!   the rule of `JoinedLink::face_counts`.
 //! - Two faces **look at one another** if the earlier one is the end of its link and the later one
 //!   the start of its link. They are queried at any turn.
-//! - **Node**: a run of links, the same as the node of the link tree with its number. It stores a ball around their axes, their largest radius, and a cone
-//!   that contains the directions of its links and of one more on either side.
+//! - **Node**: a run of links, the same as the node of the link tree with its number. It stores a
+//!   ball around their axes, their largest radius, and a cone that contains the directions of its
+//!   links and of one more on either side.
 //!
 //! # Pruning
 //! A pair of nodes is skipped in three cases:

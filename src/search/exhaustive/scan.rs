@@ -158,13 +158,13 @@ impl<E: Lane> Job<'_, E> {
             let best = Best::resume(bound, findings.nearest[link.place]);
             let best = best.touching_below(touching.saturating_add(1));
             let ThreadFindings { within, work, .. } = &mut *findings;
-            let mut turn =
+            let mut scan =
                 LinkScan { job: self, link: &link.link, place: link.place, best, within, work };
             match &link.searched {
-                Some(searched) => turn.scan::<L, CULLING>(token, searched, blocks.clone()),
-                None => turn.measure_all(blocks.clone()),
+                Some(searched) => scan.run::<L, CULLING>(token, searched, blocks.clone()),
+                None => scan.measure_all(blocks.clone()),
             }
-            let best = turn.best;
+            let best = scan.best;
             findings.nearest[link.place] = best.nearest();
             if self.stop_at_first && best.nearest().is_some() {
                 shared.end();
@@ -188,8 +188,9 @@ struct LinkScan<'a, E> {
 }
 
 impl<E: Lane> LinkScan<'_, E> {
+    /// Measures the triangles that may improve the best so far.
     #[inline(always)]
-    fn scan<L: Pack<Element = E>, const CULLING: bool>(
+    fn run<L: Pack<Element = E>, const CULLING: bool>(
         &mut self,
         token: L::Token,
         searched: &SearchLink<E>,

@@ -48,11 +48,6 @@ impl Answers {
         self.minimum.witness.arc_length
     }
 
-    /// The triangle that is closest, counted from 0.
-    pub fn triangle(&self) -> u32 {
-        self.minimum.witness.triangle
-    }
-
     /// What looks like a mistake in frame or unit: a line for each doubt.
     pub fn doubts(&self) -> Vec<String> {
         self.placement.doubts.clone()

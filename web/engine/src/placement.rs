@@ -37,7 +37,7 @@ pub fn place(robot: &Robot, wall: &mut Wall, matrix: &str) -> Result<Placement, 
     let pose = if turned.is_some() { half_turn } else { unturned };
     let may_turn = given.is_none() && line.frame.is_none();
     let around = |change: Change| {
-        let radius = if line.has_radii { change.scale * line.radius } else { line.radius };
+        let radius = line.scaled_radius(change.scale);
         let place = |point: &Vector| pose * Vector::from(change.apply(point.to_array()));
         Bounds::of_balls(line.points.iter().map(|point| (place(point).to_array(), radius)))
     };
@@ -74,8 +74,7 @@ fn turn(line: &Line, wall: &Wall) -> Result<Option<[Frame; 2]>, String> {
 
 /// Doubts the radius, as it would be after the robot is scaled.
 fn doubt_radius(line: &Line, scale: f64, wall: &Bounds) -> Option<String> {
-    let radius = if line.has_radii { scale * line.radius } else { line.radius };
-    let RadiusDoubt { doubt, factor } = radius_doubt(radius, wall)?;
+    let RadiusDoubt { doubt, factor } = radius_doubt(line.scaled_radius(scale), wall)?;
     let place = if line.has_radii { " in the file" } else { "" };
     Some(format!("{doubt}: a radius{place} {factor} times as large would be usual"))
 }

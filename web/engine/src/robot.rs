@@ -37,6 +37,13 @@ pub struct Line {
     skipped_points: usize,
 }
 
+impl Line {
+    /// Returns the radius after another factor of the file's lengths.
+    pub fn scaled_radius(&self, scale: Real) -> Real {
+        if self.has_radii { scale * self.radius } else { self.radius }
+    }
+}
+
 #[wasm_bindgen]
 impl Robot {
     /// Three concentric tubes, each so far out of the one around it and turned by an angle (rad).

@@ -159,7 +159,7 @@ impl Wall {
         Ok(Answers { links, minimum, base, robot: chain.links().to_vec(), placement })
     }
 
-    /// The answers with all digits, as JSON: mesh, base, links, minimum and warnings.
+    /// The answers with all digits, as JSON: mesh, base, links and minimum.
     pub fn report(&self, answers: &Answers) -> String {
         let bounds = self.bounds().map(|Bounds { low, high }| [low, high]);
         let report = json!({
@@ -173,7 +173,6 @@ impl Wall {
             "base": answers.base(),
             "links": answers.links,
             "minimum": answers.minimum,
-            "warnings": answers.placement.doubts,
         });
         report.to_string()
     }

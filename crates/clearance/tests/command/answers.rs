@@ -399,8 +399,8 @@ fn the_last_line_names_the_place() {
         let shape = file(&format!("last_{name}.csv"), &shape(scale));
         assert_eq!(last(&wall, &shape), expected);
     }
-    // A voxel of 20 mm around the origin: its surface reaches at most 10 mm from the centre, and the
-    // robot's side is 29 mm from it.
+    // A voxel of 20 mm around the origin: its surface reaches at most 10 mm from the centre, and
+    // the robot's side is 29 mm from it.
     let organ = "NRRD0004\ntype: uchar\ndimension: 3\nspace: left-posterior-superior\nsizes: 1 1 1\n\
                  space directions: (20,0,0) (0,20,0) (0,0,20)\nspace units: \"mm\" \"mm\" \"mm\"\n\
                  space origin: (0,0,0)\nencoding: ascii\n\n1\n";

@@ -46,7 +46,8 @@ fn fault<T>(line: usize, problem: String) -> Result<T, Fault> {
 /// `expected` names the columns to write, for the error message.
 ///
 /// # Errors
-/// The file cannot be read, a line has another number of columns than `COLUMNS`, or a word is not a number.
+/// The file cannot be read, a line has another number of columns than `COLUMNS`, or a word is not a
+/// number.
 pub fn load_table<const COLUMNS: usize>(
     path: impl AsRef<Path>,
     expected: &'static str,

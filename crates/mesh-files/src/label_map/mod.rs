@@ -214,7 +214,8 @@ impl Volume<'_> {
         })
     }
 
-    /// Returns the labels except 0 with their volumes, the lowest [`MOST_LABELS`] if there are more.
+    /// Returns the labels except 0 with their volumes, the lowest [`MOST_LABELS`] if there are
+    /// more.
     pub fn label_volumes(&self, scale: f64) -> Result<Vec<LabelVolume>, Fault> {
         let mut counts = LabelCounts::default();
         self.each_run(&mut |label, run| {

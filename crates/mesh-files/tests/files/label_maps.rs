@@ -598,7 +598,8 @@ fn labels_are_listed_with_the_volume_of_their_voxels() {
     refused("a.nii", list("a.nii", &nifti, -1.0), "the scale is -1");
 }
 
-/// The lowest labels are kept and counted in full, for every order of the voxels.
+/// Of more labels than `MOST_LABELS`, the lowest are listed with all their voxels, in any order of
+/// the voxels.
 #[test]
 fn of_many_labels_the_lowest_are_listed() {
     let count = 1500_usize;

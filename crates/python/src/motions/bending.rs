@@ -36,7 +36,7 @@ use pyo3::prelude::*;
 /// >>> import numpy as np
 /// >>> from parry_continuum import BendingMotion, Mesh
 /// >>> wall = Mesh([[9, -90, -90], [9, 90, -90], [9, 0, 90]], [[0, 1, 2]])
-/// >>> motion = BendingMotion([[30, 0, 0]], [[30, 0.01, 0]], 0.5)  # from straight to an arc towards x
+/// >>> motion = BendingMotion([[30, 0, 0]], [[30, 0.01, 0]], 0.5)  # straight, then an arc in x
 /// >>> found = wall.clearance_of_motion(motion, tolerance=0.001)
 /// >>> tip = (1 - np.cos(0.3)) / 0.01 + 0.5 * np.cos(0.3)
 /// >>> bool(found.lower <= 9 - tip <= found.upper)

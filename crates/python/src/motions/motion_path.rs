@@ -28,8 +28,8 @@ use pyo3::types::PyList;
 /// >>> from parry_continuum import LinearMotion, Mesh, MotionPath
 /// >>> floor = Mesh([[-9, -9, 0], [9, -9, 0], [0, 9, 0]], [[0, 1, 2]])
 /// >>> robot = np.array([[0, 0, 4.0], [1, 0, 4]])
-/// >>> heights = [0, -2, -1]
-/// >>> steps = [LinearMotion(robot + [0, 0, a], robot + [0, 0, b], 0.5) for a, b in zip(heights, heights[1:])]
+/// >>> low, middle = robot - [0, 0, 2], robot - [0, 0, 1]
+/// >>> steps = [LinearMotion(robot, low, 0.5), LinearMotion(low, middle, 0.5)]
 /// >>> found = floor.clearance_of_motion(MotionPath(steps), tolerance=0.001)
 /// >>> bool(found.lower <= 1.5 <= found.upper), bool(abs(found.t - 0.5) < 0.001)
 /// (True, True)

@@ -28,14 +28,14 @@ use pyo3::prelude::*;
 /// >>> import numpy as np
 /// >>> from parry_continuum import BendingMotion, Mesh, MovingBase
 /// >>> floor = Mesh([[-90, -90, 0], [90, -90, 0], [0, 90, 0]], [[0, 1, 2]])
-/// >>> bending = BendingMotion([[30, 0, 0]], [[32, 0.03, 0.01]], 1.0)  # straight, then longer and bent
+/// >>> bending = BendingMotion([[30, 0, 0]], [[32, 0.03, 0.01]], 1.0)  # lengthens and bends
 /// >>> start = np.eye(4)
 /// >>> start[2, 3] = 2
 /// >>> end = start.copy()
 /// >>> end[:2, :2] = [[np.cos(1), -np.sin(1)], [np.sin(1), np.cos(1)]]  # rolled by 1 rad
 /// >>> end[2, 3] = 7                                                    # and pushed by 5
 /// >>> found = floor.clearance_of_motion(MovingBase(bending, start, end), tolerance=0.001)
-/// >>> bool(found.lower <= 2 <= found.upper), bool(found.t < 0.001)     # its base is a flat disc, 2 above the floor
+/// >>> bool(found.lower <= 2 <= found.upper), bool(found.t < 0.001)     # its base is flat, 2 above
 /// (True, True)
 #[pyclass(frozen, extends = Motion, module = "parry_continuum")]
 pub(crate) struct MovingBase;

@@ -125,7 +125,8 @@ impl Mesh {
     /// >>> import numpy as np
     /// >>> from parry_continuum import Mesh
     /// >>> floor = Mesh([[-9, -9, 0], [9, -9, 0], [0, 9, 0]], [[0, 1, 2]])
-    /// >>> found = floor.distance_and_gradient([[0, 0, 4], [0, 0, 3], [1, 0, 2]], 0.5, caps="capsules")
+    /// >>> robot = [[0, 0, 4], [0, 0, 3], [1, 0, 2]]
+    /// >>> found = floor.distance_and_gradient(robot, 0.5, caps="capsules")
     /// >>> found.value, found.points[2], found.radii
     /// (1.5, array([0., 0., 1.]), array([ 0., -1.]))
     #[pyo3(signature = (points, radii, *, pose = None, caps = Caps::Fitted), text_signature = "($self, points, radii, *, pose=None, caps=\"fitted\")")]

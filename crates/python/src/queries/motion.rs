@@ -83,7 +83,8 @@ impl Mesh {
     /// >>> floor = Mesh([[-9, -9, 0], [9, -9, 0], [0, 9, 0]], [[0, 1, 2]])
     /// >>> above = np.array([[0, 0, 2], [1, 0, 2]])
     /// >>> below = above - [0, 0, 4]
-    /// >>> floor.clears_motion(above, below, 0.1, margin=0, resolution=1e-3).decision is Decision.CONTACT
+    /// >>> answer = floor.clears_motion(above, below, 0.1, margin=0, resolution=1e-3)
+    /// >>> answer.decision is Decision.CONTACT
     /// True
     #[pyo3(signature = (start, end = None, radii = None, *, margin, resolution, caps = None), text_signature = "($self, start, end=None, radii=None, *, margin, resolution, caps=\"fitted\")")]
     #[allow(clippy::too_many_arguments)] // they are named in Python

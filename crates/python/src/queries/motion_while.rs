@@ -63,9 +63,11 @@ impl Mesh {
     /// >>> floor = Mesh([[-90, -90, 0], [90, -90, 0], [0, 90, 0]], [[0, 1, 2]])
     /// >>> at_rest = RigidMotion([[0, 0, 5], [4, 0, 5]], 0.5, np.eye(4), np.eye(4))
     /// >>> risen = floor.vertices + [0, 0, 3]
-    /// >>> floor.clears_motion_while(risen, at_rest, margin=1, resolution=1e-3).decision is Decision.CLEAR
+    /// >>> answer = floor.clears_motion_while(risen, at_rest, margin=1, resolution=1e-3)
+    /// >>> answer.decision is Decision.CLEAR
     /// True
-    /// >>> floor.clears_motion_while(risen, at_rest, margin=2, resolution=1e-3).decision is Decision.CONTACT
+    /// >>> answer = floor.clears_motion_while(risen, at_rest, margin=2, resolution=1e-3)
+    /// >>> answer.decision is Decision.CONTACT
     /// True
     #[pyo3(signature = (to, start, end = None, radii = None, *, margin, resolution, caps = None), text_signature = "($self, to, start, end=None, radii=None, *, margin, resolution, caps=\"fitted\")")]
     #[allow(clippy::too_many_arguments)] // they are named in Python

@@ -58,7 +58,8 @@ impl Mesh {
     /// >>> floor = Mesh([[-90, -90, 0], [90, -90, 0], [0, 90, 0]], [[0, 1, 2]])
     /// >>> needle = np.array([[0, 0, 9.0], [0, 4, 9]])
     /// >>> steps = np.stack([needle - [0, 0, depth] for depth in range(7)])  # to a height of 3
-    /// >>> floor.clears_path(steps, 0.5, deviation=0.1, margin=2.0, resolution=0.01).decision is Decision.CLEAR
+    /// >>> answer = floor.clears_path(steps, 0.5, deviation=0.1, margin=2.0, resolution=0.01)
+    /// >>> answer.decision is Decision.CLEAR
     /// True
     #[pyo3(signature = (shapes, radii, deviation, *, margin, resolution))]
     fn clears_path<'py>(

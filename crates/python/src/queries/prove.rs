@@ -85,7 +85,7 @@ impl Mesh {
     /// Returns
     /// -------
     /// str or None
-    ///     None if the robot does not keep the margin, or by no more than rounding.
+    ///     None if the robot does not keep the margin, or exceeds it by at most rounding.
     ///
     /// Raises
     /// ------
@@ -136,7 +136,7 @@ impl Mesh {
     /// Returns
     /// -------
     /// str or None
-    ///     None if the tube does not keep the margin, or by no more than the resolution.
+    ///     None if the tube does not keep the margin, or exceeds it by at most the resolution.
     ///
     /// Raises
     /// ------

@@ -37,7 +37,7 @@ impl Mesh {
     /// Returns
     /// -------
     /// Contacts
-    ///     Arrays of one length, with a row for each contact. Those of robot k are
+    ///     Arrays of one length, with a row for each contact. The rows of robot k are
     ///     ``offsets[k]:offsets[k + 1]``.
     ///
     /// Raises
@@ -49,7 +49,8 @@ impl Mesh {
     /// --------
     /// >>> from parry_continuum import Mesh
     /// >>> floor = Mesh([[-9, -9, 0], [9, -9, 0], [0, 9, 0]], [[0, 1, 2]])
-    /// >>> contacts = floor.contacts_within([[0, 0, 4], [0, 0, 3], [0, 0, 1]], 0.5, margin=1, caps="capsules")
+    /// >>> robot = [[0, 0, 4], [0, 0, 3], [0, 0, 1]]
+    /// >>> contacts = floor.contacts_within(robot, 0.5, margin=1, caps="capsules")
     /// >>> contacts.segment, contacts.distance, contacts.normal
     /// (array([1]), array([0.5]), array([[0., 0., 1.]]))
     #[pyo3(signature = (points, radii, *, margin, prominence = 0.0, pose = None, caps = Caps::Fitted), text_signature = "($self, points, radii, *, margin, prominence=0.0, pose=None, caps=\"fitted\")")]

@@ -35,8 +35,8 @@ use std::sync::Arc;
 ///     The distance that robots keep from one another. Without it the scene does not compare robots
 ///     with one another.
 /// self_margin : float, optional
-///     The distance that each robot keeps from itself, as for `SelfQuery`. `clears`, `clears_tube` and
-///     `clears_motion` test it.
+///     The distance that each robot keeps from itself, as for `SelfQuery`. `clears`, `clears_tube`
+///     and `clears_motion` test it.
 /// nested : sequence of (int, int), optional
 ///     Pairs of robots where one is inside the other, as a tube in the tube that guides it. Such
 ///     robots touch, and the scene does not compare them with one another. The numbers are places
@@ -284,8 +284,7 @@ impl Scene {
     /// Raises
     /// ------
     /// ContinuumError
-    ///     The list is empty, or something in it is no robot. Neither a structure nor the robots
-    ///     have a margin.
+    ///     The list is empty, or something in it is no robot. Nothing in the scene has a margin.
     #[pyo3(signature = (robots, *, caps = Caps::Fitted), text_signature = "($self, robots, *, caps=\"fitted\")")]
     fn clears<'py>(
         &self,

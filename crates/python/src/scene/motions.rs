@@ -45,11 +45,11 @@ impl Scene {
     /// Whether robots that move at the same time keep all margins, at every time from 0 to 1: from
     /// structures, from one another, and each from itself. A planner asks this for each edge.
     ///
-    /// ``Decision.CLEAR`` is proven for every instant, from the speeds of the motions. The query tests
-    /// robots against structures, beginning with the pairs that seem nearest. Then it tests pairs of
-    /// robots, then each robot against itself, and returns the first contact that it finds. Another
-    /// contact may be earlier in time: see `time_of_contact`. A set that is refused does not fail its
-    /// batch: it is undecided, and its ``status`` is the ``kind`` of its error.
+    /// ``Decision.CLEAR`` is proven for every instant, from the speeds of the motions. The query
+    /// tests robots against structures, beginning with the pairs that seem nearest. Then it tests
+    /// pairs of robots, then each robot against itself, and returns the first contact that it
+    /// finds. Another contact may be earlier in time: see `time_of_contact`. A set that is refused
+    /// does not fail its batch: it is undecided, and its ``status`` is the ``kind`` of its error.
     ///
     /// Parameters
     /// ----------
@@ -57,20 +57,21 @@ impl Scene {
     ///     A motion for each robot, in the scene's frame; each one motion or a batch of as many. A
     ///     robot at rest is a `RigidMotion` from a pose to the same pose.
     /// resolution : float
-    ///     A length. The answer is undecided only where robots come within this of a margin, where
-    ///     an end turns from flat to round there, or at a limit of work: ``reason`` says which.
+    ///     A length. The answer is undecided only if a distance is within the resolution of its
+    ///     margin, if an end near a margin turns from flat to round, or if the query reaches a
+    ///     limit of work. ``reason`` says which.
     ///
     /// Returns
     /// -------
     /// SceneMotionAnswer
-    ///     Of one set of motions, or arrays with one entry for each.
+    ///     The answer for one set of motions. For a batch, arrays with one entry per set.
     ///
     /// Raises
     /// ------
     /// ContinuumError
     ///     The list is empty, batches differ in size, nothing has a margin, or the resolution is
-    ///     negative or NaN. Of one set: a shape is no robot, a robot bends too sharply for a margin to
-    ///     itself, or the resolution is finer than rounding. The text names the robot.
+    ///     negative or NaN. Of one set: a shape is no robot, a robot bends too sharply for a margin
+    ///     to itself, or the resolution is finer than rounding. The text names the robot.
     ///
     /// Examples
     /// --------
@@ -81,7 +82,8 @@ impl Scene {
     /// >>> scene.add("floor", floor, margin=1.0)
     /// 0
     /// >>> high = np.array([[0, 0, 4], [1, 0, 4]])
-    /// >>> falls, waits = LinearMotion(high, high - [0, 0, 3], 0.2), LinearMotion(high + 2, high + 2, 0.2)
+    /// >>> falls = LinearMotion(high, high - [0, 0, 3], 0.2)
+    /// >>> waits = LinearMotion(high + 2, high + 2, 0.2)
     /// >>> found = scene.clears_motion([falls, waits], resolution=1e-3)
     /// >>> found.decision, found.structure, found.robots
     /// (<Decision.CONTACT: -1>, 0, array([ 0, -1]))
@@ -134,10 +136,10 @@ impl Scene {
     /// Parameters
     /// ----------
     /// ends : dict of int to array
-    ///     For the number of a structure, where it is at the time 1: a pose, (4, 4), from its mesh's
-    ///     frame to the scene's, or its vertices, (V, 3), in the mesh's frame. With a pose it moves as
-    ///     a whole, straight and evenly, and turns evenly by the smaller angle. With vertices each
-    ///     vertex moves straight and evenly. Other structures rest.
+    ///     For the number of a structure, where it is at the time 1: a pose, (4, 4), from its
+    ///     mesh's frame to the scene's, or its vertices, (V, 3), in the mesh's frame. With a pose
+    ///     it moves as a whole, straight and evenly, and turns evenly by the smaller angle. With
+    ///     vertices each vertex moves straight and evenly. Other structures rest.
     /// motions, resolution
     ///     As for `clears_motion`.
     ///
@@ -149,8 +151,8 @@ impl Scene {
     /// Raises
     /// ------
     /// ContinuumError
-    ///     There is no such structure, a pose is not rigid, the number of vertices differs, or as for
-    ///     `clears_motion`.
+    ///     There is no such structure, a pose is not rigid, the number of vertices differs, or as
+    ///     for `clears_motion`.
     ///
     /// Examples
     /// --------
@@ -165,7 +167,8 @@ impl Scene {
     /// >>> risen[2, 3] = 3.0
     /// >>> scene.clears_motion_while({0: risen}, [waits], resolution=1e-3).is_clear
     /// True
-    /// >>> scene.clears_motion_while({0: floor.vertices + [0, 0, 4]}, [waits], resolution=1e-3).is_clear
+    /// >>> moved = floor.vertices + [0, 0, 4]
+    /// >>> scene.clears_motion_while({0: moved}, [waits], resolution=1e-3).is_clear
     /// False
     #[pyo3(signature = (ends, motions, *, resolution))]
     fn clears_motion_while<'py>(
@@ -206,7 +209,7 @@ impl Scene {
     /// Returns
     /// -------
     /// SceneMotionClearance
-    ///     Of one set of motions, or arrays with one entry for each.
+    ///     The answer for one set of motions. For a batch, arrays with one entry per set.
     ///
     /// Raises
     /// ------
@@ -223,7 +226,8 @@ impl Scene {
     /// >>> scene.add("floor", floor, margin=1.0)
     /// 0
     /// >>> high = np.array([[0, 0, 4], [1, 0, 4]])
-    /// >>> found = scene.clearance_of_motion([LinearMotion(high, high - [0, 0, 2], 0.5)], tolerance=0.01)
+    /// >>> falls = LinearMotion(high, high - [0, 0, 2], 0.5)
+    /// >>> found = scene.clearance_of_motion([falls], tolerance=0.01)
     /// >>> bool(found.lower <= 0.5 <= found.upper), bool(found.t > 0.99)
     /// (True, True)
     #[pyo3(signature = (motions, *, tolerance))]

@@ -6,7 +6,8 @@ use parry_continuum::parry::math::Vector;
 use parry_continuum::proximity::{PairWitness, Witness};
 use pyo3::prelude::*;
 
-/// A place between a robot and a structure, or between two robots. What it lacks is -1 or NaN.
+/// A place between a robot and a structure, or between two robots. Missing numbers are -1,
+/// missing lengths NaN.
 #[derive(Clone, Copy)]
 pub(super) struct Place {
     structure: i64,

@@ -33,19 +33,20 @@ impl Scene {
     /// robots
     ///     As for `clears`.
     /// resolution : float
-    ///     A length. The answer is undecided only where a clearance is within this of its margin, or
-    ///     at a limit of work.
+    ///     A length. The answer is undecided only where a clearance is within this of its margin,
+    ///     or at a limit of work.
     ///
     /// Returns
     /// -------
     /// Decision or Decisions
-    ///     1 clear, -1 contact, both proven, and 0 undecided. A batch returns an array of int8, (B,).
+    ///     1 clear, -1 contact, both proven, and 0 undecided. A batch returns an array of int8,
+    ///     (B,).
     ///
     /// Raises
     /// ------
     /// ContinuumError
-    ///     Nothing has a margin, the resolution is negative or NaN, or finer than the points allow; a
-    ///     tube bends within its radius and has a margin to itself; or as for `clears`.
+    ///     Nothing has a margin, the resolution is negative or NaN, or finer than the points allow;
+    ///     a tube bends within its radius and has a margin to itself; or as for `clears`.
     #[pyo3(signature = (robots, *, resolution))]
     fn clears_tube<'py>(
         &self,
@@ -72,7 +73,8 @@ impl Scene {
     /// Parameters
     /// ----------
     /// robots
-    ///     As for `clears`. Each robot is a smooth tube with flat ends, as `Mesh.clearance` takes it.
+    ///     As for `clears`. Each robot is a smooth tube with flat ends, as `Mesh.clearance` takes
+    ///     it.
     /// tolerance : float
     ///     How far apart the bounds may be, at least 0.
     ///
@@ -84,8 +86,8 @@ impl Scene {
     /// Raises
     /// ------
     /// ContinuumError
-    ///     The tolerance is negative or NaN. Of one set: points turn too sharply for a tube, or as for
-    ///     `tightest`.
+    ///     The tolerance is negative or NaN. Of one set: points turn too sharply for a tube, or as
+    ///     for `tightest`.
     ///
     /// Examples
     /// --------

@@ -2,7 +2,7 @@
 
 use dashu_float::FBig;
 use dashu_float::round::mode::HalfEven;
-use polynomial_roots::{Complex, Real};
+use real_polynomial_roots::{Complex, Real};
 
 pub type Big = FBig<HalfEven>;
 

@@ -6,7 +6,7 @@
 //! |p^(m)(r)|)^(1/m): the most that rounding allows.
 
 use crate::exact::{self, Big, Z, big, ratio};
-use polynomial_roots::*;
+use real_polynomial_roots::*;
 
 /// A polynomial with integer coefficients, and its roots with their multiplicities.
 struct Known {

@@ -3,7 +3,7 @@
 
 use crate::exact::{self, Z};
 use continuum_testing::Random;
-use polynomial_roots::*;
+use real_polynomial_roots::*;
 
 /// What the roots of many polynomials of one degree came to; errors in units of roundoff.
 #[derive(Debug, Default)]

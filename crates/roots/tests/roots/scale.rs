@@ -2,7 +2,7 @@
 
 use crate::exact::{self, Z};
 use continuum_testing::Random;
-use polynomial_roots::*;
+use real_polynomial_roots::*;
 
 /// Coefficients whose exponents are uniform in +-`spread`, some of them 0.
 fn wild<T: Real, const M: usize>(random: &mut Random, spread: f64) -> [T; M] {

@@ -1,7 +1,7 @@
 //! Curves as they come: clean, joined, repeated, unevenly spaced, noisy. How many tubes are
 //! accepted, how close their bounds are, and how far from the truth; and how finely tubes are
-//! divided beside flat faces. Writes `docs/CURVES.md`, the table of `docs/book/tube.md` and the plot
-//! `docs/curves.svg`.
+//! divided beside flat faces. Writes `docs/CURVES.md`, the table of `docs/book/tube.md` and the
+//! plot `docs/curves.svg`.
 //!
 //! ```text
 //! cargo run --release -p continuum-studies --bin curves
@@ -16,6 +16,7 @@ use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{BvhSearch, Clearance};
 use parry_continuum::{RobotError, Tube, TubeSection};
 use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 use std::fs;
@@ -381,7 +382,7 @@ fn main() -> ExitCode {
          |---|---|---|---|---|---|---|---|---|\n",
     );
     let mut selection = table.clone();
-    let mut refused = Vec::new();
+    let mut counts = Vec::new();
     for (name, input, way, tolerance) in &rows {
         let Outcome { accepted, resolved, width, off, covered, times } = ask(
             if name.starts_with(VENTRICLE) { &ventricle } else { &scenes },
@@ -403,7 +404,7 @@ fn main() -> ExitCode {
             selection.push_str(&row);
         }
         if input.noise > 0.0 && input.spacing == Spacing::Even {
-            refused.push((matches!(way, Fit(_)), input.samples, input.noise, resolved));
+            counts.push((matches!(way, Fit(_)), input.samples, input.noise, resolved));
         }
     }
     print!("{table}");
@@ -415,7 +416,7 @@ fn main() -> ExitCode {
             .map_err(|error| error.to_string())
             .and_then(|()| quote::in_page(&selection, "curves", &page));
     let written = written.and_then(|()| {
-        plot(&refused, my.robots, &my.out.join("curves.svg")).map_err(|error| error.to_string())
+        plot(&counts, my.robots, &my.out.join("curves.svg")).map_err(|error| error.to_string())
     });
     match written {
         Ok(()) => ExitCode::SUCCESS,
@@ -502,83 +503,84 @@ fn number(value: f64, digits: usize) -> String {
 /// The fewest samples in the plot.
 const FEWEST: f64 = 50.0;
 
-/// Noise against density: how many are resolved.
+/// How many robots are resolved, against the number of noisy samples: a line for each noise of
+/// `from_samples`, and one for all noises of `fit`, which resolves as many at each.
 fn plot(
-    refused: &[(bool, usize, f64, usize)],
+    resolved: &[(bool, usize, f64, usize)],
     robots: u64,
     path: &Path,
 ) -> Result<(), Box<dyn std::error::Error>> {
-    let root = SVGBackend::new(path, (720, 360)).into_drawing_area();
-    root.fill(&WHITE)?;
-    let (left, right) = root.split_horizontally(540);
-    // Every tick has twice the samples of the one before.
-    let mut chart = ChartBuilder::on(&left)
-        .caption(format!("resolved within 0.1 mm, of {robots} robots of 80 mm"), ("sans-serif", 16))
-        .margin(12)
-        .x_label_area_size(40)
-        .y_label_area_size(44)
-        .build_cartesian_2d(-0.3..4.3, 0.0..1.03 * robots as f64)?;
+    let area = SVGBackend::new(path, (820, 400)).into_drawing_area();
+    area.fill(&WHITE)?;
+    // Every tick has twice the samples of the one before; on the right there is room for names.
+    let title = "Robots with noisy samples: fit resolves them all";
+    let mut chart = ChartBuilder::on(&area)
+        .caption(title, ("sans-serif", 20))
+        .margin(14)
+        .x_label_area_size(44)
+        .y_label_area_size(56)
+        .build_cartesian_2d(-0.3..5.7, -0.05 * robots as f64..1.1 * robots as f64)?;
     chart
         .configure_mesh()
-        .x_desc("samples")
-        .y_desc("resolved")
+        .x_desc("samples along 80 mm")
+        .y_desc(format!("resolved within 0.1 mm, of {robots}"))
+        .label_style(("sans-serif", 14))
         .light_line_style(TRANSPARENT)
-        .x_labels(5)
-        .y_labels(6)
-        .x_label_formatter(&|doubled: &f64| format!("{:.0}", FEWEST * doubled.exp2()))
+        .bold_line_style(BLACK.mix(0.15))
+        .disable_x_mesh()
+        .x_labels(7)
+        .y_labels(5)
+        .x_label_formatter(&|doubled: &f64| match doubled {
+            0.0..=4.0 => format!("{:.0}", FEWEST * doubled.exp2()),
+            _ => String::new(),
+        })
         .y_label_formatter(&|resolved| format!("{resolved:.0}"))
         .draw()?;
-    let colours = [
-        RGBColor(0, 114, 178),
-        RGBColor(213, 94, 0),
-        RGBColor(0, 158, 115),
-        RGBColor(204, 121, 167),
-        BLACK,
-    ];
-    let mut below = 60;
-    for (number, (noise, colour)) in
-        [0.01, 0.03, 0.1, 0.2, 0.5].into_iter().zip(colours).enumerate()
-    {
-        for fit in [true, false] {
-            let line: Vec<_> = refused
-                .iter()
-                .filter(|(by_fit, _, of, _)| *by_fit == fit && *of == noise)
-                .map(|&(_, samples, _, resolved)| {
-                    ((samples as f64 / FEWEST).log2(), resolved as f64)
-                })
-                .collect();
-            if line.is_empty() {
-                continue;
+    // At each number of samples the fewest of all its noises.
+    let line = |by_fit: bool, noises: &[f64]| {
+        let mut line: Vec<(f64, f64)> = Vec::new();
+        for &(_, samples, _, count) in
+            resolved.iter().filter(|&&(fit, _, noise, _)| fit == by_fit && noises.contains(&noise))
+        {
+            let (x, y) = ((samples as f64 / FEWEST).log2(), count as f64);
+            match line.iter_mut().find(|at| at.0 == x) {
+                Some(at) => at.1 = at.1.min(y),
+                None => line.push((x, y)),
             }
-            let style = ShapeStyle {
-                color: colour.to_rgba(),
-                filled: false,
-                stroke_width: if fit { 3 } else { 1 },
-            };
-            chart.draw_series(LineSeries::new(line.clone(), style))?;
-            chart.draw_series(
-                line.into_iter().map(|at| EmptyElement::at(at) + mark((0, 0), number, style)),
-            )?;
-            let name = format!("noise {noise}, {}", if fit { "fit" } else { "from_samples" });
-            right.draw(&PathElement::new([(0, below), (24, below)], style))?;
-            right.draw(&mark((12, below), number, style))?;
-            right.draw(&Text::new(name, (32, below - 6), ("sans-serif", 12)))?;
-            below += 24;
+        }
+        line.sort_by(|a, b| a.0.total_cmp(&b.0));
+        line
+    };
+    let (vermilion, blue) = (RGBColor(213, 94, 0), RGBColor(0, 114, 178));
+    // Each with its name beside one of its points: which, and on which side.
+    let lines = [
+        ("fit, noise up to 0.5 mm", BLACK, line(true, &[0.01, 0.03, 0.1, 0.2, 0.5]), 4, HPos::Left),
+        ("from_samples, noise 0.01 mm", blue, line(false, &[0.01]), 3, HPos::Left),
+        ("from_samples, noise 0.03 mm", vermilion, line(false, &[0.03]), 2, HPos::Right),
+        ("from_samples, noise 0.1 mm", RGBColor(100, 100, 100), line(false, &[0.1]), 0, HPos::Left),
+    ];
+    for (corners, (name, colour, points, named, side)) in lines.into_iter().enumerate() {
+        chart.draw_series(LineSeries::new(points.clone(), colour.stroke_width(2)))?;
+        chart.draw_series(
+            points.iter().map(|&at| EmptyElement::at(at) + mark(corners, colour.filled())),
+        )?;
+        if let Some(&at) = points.get(named) {
+            let style = ("sans-serif", 15).into_font().color(&colour);
+            let aside = if matches!(side, HPos::Left) { 12 } else { -12 };
+            let style = style.pos(Pos::new(side, VPos::Bottom));
+            chart.draw_series([EmptyElement::at(at) + Text::new(name, (aside, -4), style)])?;
         }
     }
-    root.present()?;
+    area.present()?;
     Ok(())
 }
 
-/// A shape for each noise, so that the plot needs no colours: a polygon with this many corners, or
-/// a star.
-fn mark(at: (i32, i32), number: usize, style: ShapeStyle) -> Polygon<(i32, i32)> {
-    let (corners, inner) = [(24, 1.0), (3, 1.0), (4, 1.0), (10, 0.4), (8, 0.3)][number];
-    let size = 2.0 + f64::from(style.stroke_width);
+/// A shape for each line, so that the plot needs no colours: a disc, a square, a triangle, a diamond.
+fn mark(number: usize, style: ShapeStyle) -> Polygon<(i32, i32)> {
+    let (corners, turn) = [(24, 0.0), (4, 0.125), (3, 0.0), (4, 0.0)][number];
     let corner = |k: i32| {
-        let (sine, cosine) = (TAU * f64::from(k) / f64::from(corners)).sin_cos();
-        let size = if k % 2 == 0 { size } else { size * inner };
-        (at.0 + (size * sine).round() as i32, at.1 - (size * cosine).round() as i32)
+        let (sine, cosine) = (TAU * (f64::from(k) / f64::from(corners) + turn)).sin_cos();
+        ((6.0 * sine).round() as i32, -(6.0 * cosine).round() as i32)
     };
-    Polygon::new((0..corners).map(corner).collect::<Vec<_>>(), style.filled())
+    Polygon::new((0..corners).map(corner).collect::<Vec<_>>(), style)
 }

@@ -2,7 +2,7 @@
 
 use gpu_batch::Precision;
 use parry_continuum::gpu::laboratory::CONVEX;
-use polynomial_roots::gpu::{Finder, approximate};
+use real_polynomial_roots::gpu::{Finder, approximate};
 
 /// A route to the disc of a flat cap: the paper's are there for comparison.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

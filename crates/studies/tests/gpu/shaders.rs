@@ -7,7 +7,7 @@ use naga::back::{PipelineConstants, hlsl, msl, pipeline_constants::process_overr
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use naga::{Expression, MathFunction, Module, ShaderStage};
 use parry_continuum::gpu::laboratory;
-use polynomial_roots::gpu::{self as roots, Finder};
+use real_polynomial_roots::gpu::{self as roots, Finder};
 use std::path::Path;
 
 const PRECISIONS: [Precision; 2] = [Precision::F32, Precision::F64];

@@ -10,8 +10,9 @@ use parry_continuum::proximity::{ProximityError, RobotPair, RobotProximity, Self
 use parry_continuum::{Cap, Chain, ModifiedCylinder, Tube};
 
 /// Asserts that each pair's distance is within 16 units of its extent; that `minimum`, `per_link`,
-/// `clears` and `contacts_within` agree with it and with one another, in both orders; and that the bounds of
-/// both robots as tubes contain it. For a robot with itself: the answer is a pair of its links.
+/// `clears` and `contacts_within` agree with it and with one another, in both orders; and that the
+/// bounds of both robots as tubes contain it. For a robot with itself: the answer is a pair of its
+/// links.
 pub fn robots(bytes: &[u8]) {
     let mut source = Source::new(bytes);
     let poses = [source.pose(), source.pose()];

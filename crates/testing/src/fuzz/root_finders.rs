@@ -1,7 +1,7 @@
 //! Any polynomial: each finder returns all roots, and each solves the polynomial, or an error.
 
 use super::source::Source;
-use polynomial_roots::{Bairstow, ClosedForm, Companion, JenkinsTraub, Real, RootFinder};
+use real_polynomial_roots::{Bairstow, ClosedForm, Companion, JenkinsTraub, Real, RootFinder};
 
 /// Asserts that the residual of each root, relative to the sum of the magnitudes of the terms,
 /// stays below the square root of the unit roundoff.

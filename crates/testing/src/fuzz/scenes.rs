@@ -1,4 +1,4 @@
-//! Two robots that move among two structures, one of which may move too.
+//! Two robots that move among two structures. One of the structures may move too.
 
 use super::source::Source;
 use parry_continuum::parry::math::{Pose, Rot3, Vector};

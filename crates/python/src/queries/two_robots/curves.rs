@@ -162,7 +162,8 @@ impl RobotPair {
     /// >>> from parry_continuum import RobotPair
     /// >>> angle = np.linspace(0, 1, 60)
     /// >>> arc = 30 * np.stack([np.cos(angle), 0 * angle, np.sin(angle)], axis=1)
-    /// >>> found = RobotPair().clearance(arc, 1.0, arc * [-1, 1, 1] + [65, 0, 0], 1.0, tolerance=0.1)
+    /// >>> other = arc * [-1, 1, 1] + [65, 0, 0]
+    /// >>> found = RobotPair().clearance(arc, 1.0, other, 1.0, tolerance=0.1)
     /// >>> bool(found.lower <= 3 <= found.upper), bool(found.resolved)
     /// (True, True)
     #[pyo3(signature = (points_a, radii_a, points_b, radii_b, *, tolerance, tangents_a = None, tangents_b = None, deviation_a = 0.0, deviation_b = 0.0, turn_a = None, turn_b = None, pose_a = None, pose_b = None))]

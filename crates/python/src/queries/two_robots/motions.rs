@@ -50,9 +50,11 @@ impl RobotPair {
     /// >>> first = LinearMotion(left, right, 1.0)
     /// >>> second = LinearMotion(right + [0, 3, 0], left + [0, 3, 0], 1.0)
     /// >>> pair = RobotPair()
-    /// >>> pair.clears_motions(first, second, margin=0.9, resolution=1e-3).decision is Decision.CLEAR
+    /// >>> answer = pair.clears_motions(first, second, margin=0.9, resolution=1e-3)
+    /// >>> answer.decision is Decision.CLEAR
     /// True
-    /// >>> pair.clears_motions(first, second, margin=1.5, resolution=1e-3).decision is Decision.CONTACT
+    /// >>> answer = pair.clears_motions(first, second, margin=1.5, resolution=1e-3)
+    /// >>> answer.decision is Decision.CONTACT
     /// True
     #[pyo3(signature = (a, b, *, margin, resolution))]
     fn clears_motions<'py>(

@@ -2,8 +2,8 @@
 //! configurations.
 //!
 //! A tube of half a millimetre, in metres, and a triangle beside it: from right to left the gap
-//! between them grows smaller, from the bottom up the triangle tilts away from the tube's axis.
-//! Every cell is one query.
+//! between them grows smaller, from the bottom up the triangle tilts away from the tube's axis; the
+//! tilt is a slope, in metres per metre. Every cell is one query.
 
 use crate::peers::parry_distance;
 use continuum_demo::canvas::{Align, Canvas, Colour, hex};
@@ -88,10 +88,16 @@ pub fn draw() -> Canvas {
     let cells: Vec<_> =
         (0..CELLS * CELLS).into_par_iter().map(|cell| errors(cell % CELLS, cell / CELLS)).collect();
     let panel = CELLS * CELL;
-    let (left, top, between) = (150, 150, 150);
+    let (left, top, between) = (150, 176, 150);
     let mut canvas = Canvas::new(2 * panel + left + between + 60, panel + top + 330, |_, _| PAPER);
-    let title = "The error of the clearance: a tube 0.5 mm thick and 10 mm long, in metres, beside a triangle";
-    canvas.text(title, [left as f32, 60.0], Align::Left, 24.0, INK);
+    let worst = [0, 1].map(|which| cells.iter().map(|cell| cell[which]).fold(0.0, f64::max));
+    let title = format!(
+        "In metres, parry errs by up to {:.0e} of the clearance, this crate by {:.0e}",
+        worst[0], worst[1]
+    );
+    canvas.text(&title, [left as f32, 54.0], Align::Left, 27.0, INK);
+    let scene = "a cylinder 0.5 mm thick and 10 mm long beside a triangle; each point is one query";
+    canvas.text(scene, [left as f32, 92.0], Align::Left, 19.0, PALE);
     let scale = Scale::new(cells.iter().flatten().copied());
     for (which, name) in ["parry, GJK on its Cylinder", "this crate"].into_iter().enumerate() {
         let x = left + which * (panel + between);
@@ -124,19 +130,24 @@ fn ticks(canvas: &mut Canvas, [x0, y0, x1, y1]: [f32; 4]) {
         mark(canvas, [x, y1], [x, y1 + 8.0]);
         canvas.text(&format!("1e{power}"), [x, y1 + 34.0], Align::Centre, 17.0, INK);
     }
-    canvas.text("gap before the tilt, m", [0.5 * (x0 + x1), y1 + 72.0], Align::Centre, 19.0, PALE);
+    canvas.text(
+        "gap before the triangle tilts, m",
+        [0.5 * (x0 + x1), y1 + 72.0],
+        Align::Centre,
+        19.0,
+        PALE,
+    );
     for (power, at) in decades(TILT).step_by(2) {
         let y = y1 - (y1 - y0) * at as f32;
         mark(canvas, [x0, y], [x0 - 8.0, y]);
         canvas.text(&format!("1e{power}"), [x0 - 16.0, y + 8.0], Align::Right, 17.0, INK);
     }
-    canvas.text(
-        "tilt",
-        [x0 - 16.0, 0.5 * (y0 + y1) + 8.0 - (y1 - y0) / 8.0],
-        Align::Right,
-        19.0,
-        PALE,
-    );
+    // Between two ticks.
+    let y = 0.5 * (y0 + y1) - (y1 - y0) / 8.0;
+    for (line, text) in ["tilt,", "m per m"].into_iter().enumerate() {
+        let at = [x0 - 16.0, y - 6.0 + 28.0 * line as f32];
+        canvas.text(text, at, Align::Right, 19.0, PALE);
+    }
 }
 
 /// The colours of the errors.

@@ -3,7 +3,7 @@
 use crate::timed::{medians, milliseconds};
 use crate::{Opened, text};
 use continuum_studies::long_table;
-use polynomial_roots::gpu::{Finder, GpuRoots};
+use real_polynomial_roots::gpu::{Finder, GpuRoots};
 use std::fmt::Write;
 use std::path::Path;
 use std::time::Duration;

@@ -10,8 +10,8 @@ use continuum_studies::models::models;
 use parry_continuum::Chain;
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{BvhSearch, Exhaustive, Proximity, SearchPrecision};
-use plotters::element::DashedPathElement;
 use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
 use std::fmt::Write;
 use std::path::Path;
 use std::time::Duration;
@@ -19,20 +19,27 @@ use std::time::Duration;
 /// Triangles of the mesh that is divided.
 const SMALLEST: usize = 10_000;
 
-/// Each with a dash of its own: the length of a stroke and of a gap. One stroke is longer than the
-/// picture.
-const ENGINES: [(&str, [i32; 2]); 4] = [
-    ("exhaustive f32", [9, 4]),
-    ("exhaustive f64", [2, 4]),
-    ("search, again", [10_000, 1]),
-    ("parry, link by link", [16, 6]),
+const ENGINES: [&str; 4] =
+    ["exhaustive f32", "exhaustive f64", "search, warm start", "parry, link by link"];
+
+/// The lines of the plot, all with cylinders, which parry has too: their place in [`ENGINES`], name,
+/// colour (Okabe and Ito) and mark.
+const PLOTTED: [(usize, &str, RGBColor, Mark); 3] = [
+    (3, "parry, link by link", RGBColor(0, 0, 0), Mark::Square),
+    (0, "every triangle, f32", RGBColor(213, 94, 0), Mark::Triangle),
+    (2, "search, warm start", RGBColor(0, 114, 178), Mark::Disc),
 ];
+/// The place of cylinders among the models.
+const CYLINDERS: usize = 2;
 
-/// Each model with a colour of its own, which colour-blind readers tell apart (Okabe and Ito).
-const COLOURS: [RGBColor; 3] =
-    [RGBColor(230, 159, 0), RGBColor(0, 158, 115), RGBColor(0, 114, 178)];
+#[derive(Clone, Copy)]
+enum Mark {
+    Disc,
+    Square,
+    Triangle,
+}
 
-/// A line of the plot.
+/// A row of the table.
 struct Series {
     name: String,
     /// By the order of the models and of [`ENGINES`].
@@ -74,7 +81,7 @@ pub fn chapter(effort: Effort, out: &Path) -> Result<String, String> {
                 {
                     Some(series) => series.points.push(point),
                     None => {
-                        let name = format!("{short}, {}", ENGINES[engine].0);
+                        let name = format!("{short}, {}", ENGINES[engine]);
                         all.push(Series { name, model, engine, points: vec![point] });
                     }
                 }
@@ -136,8 +143,10 @@ fn table(all: &[Series]) -> Result<String, String> {
     let mut page = String::from(
         "## Growth\n\n\
          A ventricle divided in four again and again and shuffled, 30 links, one thread: time of a per-link query \
-         against triangles. The search has the answers of the same query before.\n\n\
-         ![Time against triangles](speed.svg)\n\n| microseconds |",
+         against triangles. *Warm start*: the search has the answers of the same query before. The picture is of \
+         cylinders, which parry has too.\n\n\
+         ![Time against triangles, for cylinders: parry's line is steep, the line of the search rises slowly.](speed.svg)\n\n\
+         | microseconds |",
     );
     let write_all = |page: &mut String| -> std::fmt::Result {
         for (triangles, _) in &all[0].points {
@@ -166,50 +175,82 @@ fn draw(all: &[Series], path: &Path) -> Result<(), Box<dyn std::error::Error>> {
     if let Some(directory) = path.parent() {
         std::fs::create_dir_all(directory)?;
     }
-    // In microseconds.
-    let scaled =
-        |series: &Series| -> Vec<_> { series.points.iter().map(|p| (p.0, p.1 * 1e6)).collect() };
-    let points = || all.iter().flat_map(scaled);
+    let lines = PLOTTED.map(|(engine, name, colour, mark)| {
+        let of = |series: &&Series| (series.model, series.engine) == (CYLINDERS, engine);
+        let series = all.iter().filter(of).flat_map(|series| &series.points);
+        // In microseconds.
+        let points: Vec<_> =
+            series.map(|&(triangles, seconds)| (triangles, seconds * 1e6)).collect();
+        (name, colour, mark, points)
+    });
+    let points = || lines.iter().flat_map(|line| &line.3);
     let (low, high) =
         points().fold((f64::INFINITY, 0.0_f64), |(low, high), p| (low.min(p.1), high.max(p.1)));
     let (few, many) =
         points().fold((f64::INFINITY, 0.0_f64), |(few, many), p| (few.min(p.0), many.max(p.0)));
-    let area = SVGBackend::new(path, (900, 560)).into_drawing_area();
+    let area = SVGBackend::new(path, (900, 520)).into_drawing_area();
     area.fill(&WHITE)?;
+    let times = |k: usize| lines[k].3.iter().map(|point| point.1);
+    let ratios = times(0).zip(times(2)).map(|(parry, search)| parry / search);
+    let (least, most) =
+        ratios.fold((f64::INFINITY, 0.0_f64), |(least, most), x| (least.min(x), most.max(x)));
+    let title = format!(
+        "One query of 30 links: the search is {} to {} times as fast as parry",
+        number(least),
+        number(most)
+    );
     let mut chart = ChartBuilder::on(&area)
+        .caption(title, ("sans-serif", 20))
         .margin(16)
-        .x_label_area_size(40)
-        .y_label_area_size(70)
+        .x_label_area_size(44)
+        .y_label_area_size(76)
+        // Room for the names at the lines' ends.
         .build_cartesian_2d(
-            (few * 0.9..many * 1.1).log_scale(),
-            (low * 0.5..high * 2.0).log_scale(),
+            (few * 0.8..many * (many / few).powf(0.27)).log_scale(),
+            (low * 0.4..high * 2.5).log_scale(),
         )?;
     chart
         .configure_mesh()
-        .x_desc("triangles")
-        .y_desc("microseconds a query of 30 links")
-        .x_label_formatter(&|x| format!("{x:.0}"))
-        .y_label_formatter(&|y| format!("{y:.0}"))
+        .x_desc("triangles of the mesh")
+        .y_desc("microseconds")
+        .label_style(("sans-serif", 14))
+        .light_line_style(TRANSPARENT)
+        .bold_line_style(BLACK.mix(0.15))
+        .x_label_formatter(&|x| number(*x))
+        .y_label_formatter(&|y| number(*y))
         .draw()?;
-    for series in all {
-        let (colour, [stroke, gap]) = (COLOURS[series.model], ENGINES[series.engine].1);
-        let style = colour.stroke_width(2);
-        chart
-            .draw_series(DashedLineSeries::new(scaled(series), stroke, gap, style))?
-            .label(&series.name)
-            .legend(move |(x, y)| {
-                DashedPathElement::new([(x, y), (x + 40, y)], stroke, gap, style)
-            });
-        chart.draw_series(
-            scaled(series).into_iter().map(|at| Circle::new(at, 3, colour.filled())),
-        )?;
+    for (name, colour, mark, points) in lines {
+        chart.draw_series(LineSeries::new(points.clone(), colour.stroke_width(2)))?;
+        for &at in &points {
+            let style = colour.filled();
+            match mark {
+                Mark::Disc => chart.draw_series([Circle::new(at, 4, style)])?,
+                Mark::Triangle => chart.draw_series([TriangleMarker::new(at, 6, style)])?,
+                Mark::Square => {
+                    let square = Rectangle::new([(-4, -4), (4, 4)], style);
+                    chart.draw_series([EmptyElement::at(at) + square])?
+                }
+            };
+        }
+        if let Some(&end) = points.last() {
+            let place = Pos::new(HPos::Left, VPos::Center);
+            let style = ("sans-serif", 16).into_font().color(&colour).pos(place);
+            chart.draw_series([EmptyElement::at(end) + Text::new(name, (14, 0), style)])?;
+        }
     }
-    chart
-        .configure_series_labels()
-        .position(SeriesLabelPosition::UpperLeft)
-        .legend_area_size(48)
-        .background_style(WHITE.mix(0.8))
-        .draw()?;
     area.present()?;
     Ok(())
+}
+
+/// A number with commas between thousands.
+fn number(x: f64) -> String {
+    let digits = format!("{x:.0}");
+    let mut grouped = String::new();
+    for (index, digit) in digits.chars().enumerate() {
+        if index > 0 && (digits.len() - index).is_multiple_of(3) {
+            grouped.push(',');
+        }
+        grouped.push(digit);
+    }
+    grouped
 }

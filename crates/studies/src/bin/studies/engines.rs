@@ -14,7 +14,7 @@ use parry_continuum::distance::laboratory::{Convex, DiscSolver};
 use parry_continuum::parry::math::Pose;
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{Exhaustive, Proximity, SearchPrecision};
-use polynomial_roots::{ClosedForm, Companion};
+use real_polynomial_roots::{ClosedForm, Companion};
 use std::fmt::Write;
 use std::path::Path;
 use std::time::Instant;

@@ -3,8 +3,8 @@
 use super::turns::in_turns;
 use continuum_studies::long_table;
 use continuum_testing::Random;
-use polynomial_roots::*;
 use rayon::prelude::*;
+use real_polynomial_roots::*;
 use std::fmt::Write;
 use std::hint::black_box;
 use std::path::Path;

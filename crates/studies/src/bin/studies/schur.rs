@@ -6,7 +6,7 @@ use nalgebra::allocator::Allocator;
 use nalgebra::linalg::{Schur, balancing::balance_parlett_reinsch};
 use nalgebra::{Const, DefaultAllocator, DimDiff, DimSub, SMatrix, U1};
 use parry_continuum::distance::DoubleDouble;
-use polynomial_roots::{Companion, RootFinder, RootsError};
+use real_polynomial_roots::{Companion, RootFinder, RootsError};
 use std::fmt::Write;
 use std::hint::black_box;
 
@@ -144,7 +144,7 @@ fn write_page(
 ) -> Result<String, std::fmt::Error> {
     let mut page = format!(
         "## The companion matrix, ours and nalgebra's\n\n\
-         The eigenvalues of the companion matrix of {count} random polynomials of each degree in f64: by `polynomial-roots`, and by \
+         The eigenvalues of the companion matrix of {count} random polynomials of each degree in f64: by `real-polynomial-roots`, and by \
          nalgebra's real Schur decomposition, of the matrix as it is and balanced by nalgebra before. Coefficients are uniform in [-100, 100], or \
          of a magnitude from 1e-6 to 1e6 and either sign. Microseconds a polynomial on one thread (from the median of {TURNS} parts), each route \
          with a vector for its roots. Solved: the share of the roots that are exact for coefficients changed by at most \

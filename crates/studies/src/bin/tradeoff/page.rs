@@ -66,7 +66,7 @@ pub fn page(facts: &Facts) -> String {
          less the true one, over all free shapes: positive is over, the unsafe side. The links stay within {SHOWN} mm, and the bounds of the *tube* (`clearance`) are \
          at most as far apart: the lower one counts; \
          [tradeoff_links.csv](tradeoff_links.csv) has all tolerances from {} to {} mm.\n\n{}\n{}\n\n\
-         ![Error against time](tradeoff.svg)\n\n\
+         ![Worst error against the time of a query: the front, the tube with a warm start, and parry's shapes.](tradeoff.svg)\n\n\
          The front of the picture:\n\n{}\n\
          For an error that you can bear, the fastest row that stays within it:\n\n{}\n\
          ### What geometry predicts\n\n\

@@ -1,4 +1,4 @@
-//! The picture: error against time, one mark for each combination, and the front.
+//! The picture: error against time of the front, of tubes and of parry's shapes.
 
 use crate::front::{Combination, front};
 use crate::subject::Model;
@@ -12,6 +12,15 @@ type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<Log, Log>>;
 type Drawn = Result<(), Box<dyn std::error::Error>>;
 
 const SIZE: (u32, u32) = (1000, 680);
+/// The height of a label, in pixels.
+const LINE: i32 = 19;
+/// Of a series: what the legend calls it, its colour (Okabe and Ito) and its mark, which tells it
+/// from the others in grey too.
+type Style = (&'static str, RGBColor, fn((i32, i32), RGBColor) -> Polygon<(i32, i32)>);
+const FRONT: Style = ("front: nothing is both faster and more accurate", BLACK, disc);
+const TUBE: Style = ("tube, warm start", RGBColor(213, 94, 0), diamond);
+const PARRY_CYLINDER: Style = ("parry's Cylinder", RGBColor(0, 114, 178), square);
+const PARRY_CAPSULE: Style = ("parry's Capsule", RGBColor(86, 180, 233), triangle);
 
 /// Draws the combinations into an SVG file.
 pub fn draw(all: &[Combination], path: &Path) -> Result<(), String> {
@@ -24,184 +33,140 @@ fn draw_file(all: &[Combination], path: &Path) -> Drawn {
     area.fill(&WHITE)?;
     // A logarithmic axis has no place for an error of 0.
     let all: Vec<_> = all.iter().filter(|one| one.error > 0.0).cloned().collect();
-    if !all.is_empty() {
-        marks(&all, &area)?;
+    let line = front(&all);
+    let of = |model: Model, way: &str| -> Vec<_> {
+        let is_of = |one: &&Combination| one.model == model && one.way == way;
+        all.iter().filter(is_of).map(place).collect()
+    };
+    let series = [
+        (PARRY_CAPSULE, of(Model::ParryCapsule, "parry's search")),
+        (PARRY_CYLINDER, of(Model::ParryCylinder, "parry's search")),
+        (TUBE, of(Model::Tube, "search, again")),
+        (FRONT, line.iter().map(place).collect()),
+    ];
+    if !line.is_empty() {
+        marks(&line, &series, &area)?;
     }
     area.present()?;
     Ok(())
 }
 
-fn marks(all: &[Combination], area: &DrawingArea<SVGBackend, Shift>) -> Drawn {
-    let range = |of: fn(&Combination) -> f64| {
-        all.iter()
+/// Microseconds and millimetres.
+fn place(one: &Combination) -> (f64, f64) {
+    (one.time * 1e6, one.error)
+}
+
+fn marks(
+    line: &[Combination],
+    series: &[(Style, Vec<(f64, f64)>); 4],
+    area: &DrawingArea<SVGBackend, Shift>,
+) -> Drawn {
+    let range = |of: fn(&(f64, f64)) -> f64| {
+        series
+            .iter()
+            .flat_map(|(_, points)| points)
             .map(of)
             .fold((f64::INFINITY, 0.0_f64), |(low, high), value| (low.min(value), high.max(value)))
     };
-    let ((fast, slow), (good, bad)) = (range(|one| one.time * 1e6), range(|one| one.error));
+    let ((fast, slow), (good, bad)) = (range(|at| at.0), range(|at| at.1));
     let mut chart = ChartBuilder::on(area)
+        .caption("What accuracy costs: the fastest query for each error", ("sans-serif", 22))
         .margin(16)
-        .x_label_area_size(44)
-        .y_label_area_size(64)
-        // Room for the front's labels on the left, and for the legend on the right.
+        .x_label_area_size(48)
+        .y_label_area_size(72)
+        // Room for the legend below the points.
         .build_cartesian_2d(
-            (fast * 0.3..slow * 25.0).log_scale(),
-            (good * 0.4..bad * 2.0).log_scale(),
+            (fast * 0.6..slow * 1.8).log_scale(),
+            (good * 0.2..bad * 2.0).log_scale(),
         )?;
     chart
         .configure_mesh()
-        .x_desc("microseconds a query of the whole robot (median)")
+        .x_desc("microseconds for the clearance of the whole robot (median)")
         .y_desc("worst error of the clearance, mm")
+        .label_style(("sans-serif", 14))
         .x_label_formatter(&|x| number(*x))
         .y_label_formatter(&|y| number(*y))
-        .light_line_style(WHITE)
+        .light_line_style(TRANSPARENT)
+        .bold_line_style(BLACK.mix(0.15))
         .draw()?;
-
-    let line = front(all);
+    // The front is a staircase: up to the next error, the faster combination serves.
     let mut corners: Vec<(f64, f64)> = Vec::new();
-    for one in &line {
+    for at in line.iter().map(place) {
         if let Some(&(_, before)) = corners.last() {
-            corners.push((one.time * 1e6, before));
+            corners.push((at.0, before));
         }
-        corners.push((one.time * 1e6, one.error));
+        corners.push(at);
     }
-    chart
-        .draw_series(LineSeries::new(corners, BLACK.stroke_width(1)))?
-        .label("front: nothing is both faster and better")
-        .legend(|(x, y)| PathElement::new([(x, y), (x + 14, y)], BLACK.stroke_width(1)));
-    for one in all {
-        mark(&mut chart, (one.time * 1e6, one.error), one.way, colour(one.model))?;
+    chart.draw_series(LineSeries::new(corners, BLACK.stroke_width(2)))?;
+    for &((name, colour, mark), ref points) in series {
+        chart
+            .draw_series(points.iter().map(|&at| EmptyElement::at(at) + mark((0, 0), colour)))?
+            .label(name)
+            .legend(move |(x, y)| mark((x + 9, y), colour));
     }
-    // A label goes down, line by line, until it is on no other.
-    let mut labels: Vec<(i32, i32)> = Vec::new();
-    for one in &line {
-        let style =
-            ("sans-serif", 12).into_font().color(&BLACK).pos(Pos::new(HPos::Right, VPos::Top));
-        let label = format!("{}, {} mm", one.model.name().replace(',', ""), one.tolerance);
-        let at = (one.time * 1e6, one.error);
-        let (x, y) = chart.backend_coord(&at);
-        let is_taken = |down: &i32| {
-            labels
-                .iter()
-                .any(|label| (label.0 - x).abs() < 150 && (label.1 - y - down).abs() < LINE)
-        };
-        let down = (0..).map(|row| 4 + row * LINE).find(|down| !is_taken(down)).unwrap_or(4);
-        labels.push((x, y + down));
-        chart.draw_series([EmptyElement::at(at) + Text::new(label, (-7, down), style)])?;
-    }
-    legend(all, &mut chart)?;
+    labels(line, slow, &mut chart)?;
     chart
         .configure_series_labels()
-        .position(SeriesLabelPosition::UpperRight)
-        .background_style(WHITE.mix(0.9))
+        .position(SeriesLabelPosition::LowerLeft)
+        .label_font(("sans-serif", 15))
+        .background_style(WHITE)
         .border_style(RGBColor(190, 190, 190))
         .draw()?;
     Ok(())
 }
 
-/// The height of a label, in pixels.
-const LINE: i32 = 13;
-
-/// Every model by its colour, then every way by its mark.
-fn legend(all: &[Combination], chart: &mut Chart) -> Drawn {
-    let nothing = std::iter::empty::<Circle<(f64, f64), i32>>;
-    for model in Model::ALL {
-        let colour = colour(model);
+/// Names the combinations of the front in a column between the front and the slowest points, each at
+/// the end of a line from its mark. Labels keep [`LINE`] between them.
+fn labels(line: &[Combination], slow: f64, chart: &mut Chart) -> Drawn {
+    let slowest = line.last().map_or(slow, |one| place(one).0);
+    let column = chart.backend_coord(&((slowest.powi(2) * slow).cbrt(), 1.0)).0;
+    let mut lowest = i32::MIN;
+    for one in line {
+        let at = place(one);
+        let (x, y) = chart.backend_coord(&at);
+        let height = y.max(lowest + LINE);
+        lowest = height;
+        let (across, down) = (column - x, height - y);
+        let name = one.model.name().replace(',', "");
+        let label = format!("{name} within {} mm", one.tolerance);
+        let place = Pos::new(HPos::Left, VPos::Center);
+        let style = ("sans-serif", 14).into_font().color(&BLACK).pos(place);
+        let lead = PathElement::new([(7, 0), (across - 5, down)], BLACK.mix(0.3).stroke_width(1));
         chart
-            .draw_series(nothing())?
-            .label(model.name())
-            .legend(move |(x, y)| Rectangle::new([(x, y - 5), (x + 14, y + 5)], colour.filled()));
-    }
-    let mut ways: Vec<_> = all.iter().map(|one| one.way).collect();
-    ways.dedup();
-    ways.sort_unstable();
-    ways.dedup();
-    for way in ways {
-        let series = chart.draw_series(nothing())?.label(way);
-        match shape(way) {
-            Shape::Disc => series.legend(|(x, y)| Circle::new((x + 7, y), 4, BLACK.filled())),
-            Shape::Ring => {
-                series.legend(|(x, y)| Circle::new((x + 7, y), 4, BLACK.stroke_width(1)))
-            }
-            Shape::Triangle => {
-                series.legend(|(x, y)| TriangleMarker::new((x + 7, y), 5, BLACK.filled()))
-            }
-            Shape::Cross => {
-                series.legend(|(x, y)| Cross::new((x + 7, y), 4, BLACK.stroke_width(1)))
-            }
-            Shape::Square => series
-                .legend(|(x, y)| Rectangle::new([(x + 4, y - 3), (x + 10, y + 3)], BLACK.filled())),
-            Shape::Frame => series.legend(|(x, y)| {
-                Rectangle::new([(x + 3, y - 4), (x + 11, y + 4)], BLACK.stroke_width(1))
-            }),
-            Shape::Diamond => series.legend(|(x, y)| diamond((x + 7, y), BLACK.stroke_width(1))),
-        };
+            .draw_series([EmptyElement::at(at) + lead + Text::new(label, (across, down), style)])?;
     }
     Ok(())
 }
 
-#[derive(Clone, Copy)]
-enum Shape {
-    Disc,
-    Ring,
-    Triangle,
-    Cross,
-    Square,
-    Frame,
-    Diamond,
-}
-
-fn shape(way: &str) -> Shape {
-    match way {
-        "search, again" => Shape::Disc,
-        "search, first time" => Shape::Ring,
-        "exhaustive, f32" => Shape::Triangle,
-        "exhaustive, f64" => Shape::Cross,
-        "parry's search" => Shape::Square,
-        "GPU, f32" => Shape::Frame,
-        _ => Shape::Diamond,
-    }
-}
-
-/// Colours that people with and without colour blindness can tell apart (Okabe and Ito).
-fn colour(model: Model) -> RGBColor {
-    match model {
-        Model::Tube => RGBColor(213, 94, 0),
-        Model::Capsule => RGBColor(230, 159, 0),
-        Model::Cylinder => RGBColor(86, 180, 233),
-        Model::Modified => RGBColor(0, 158, 115),
-        Model::Faced => RGBColor(0, 114, 178),
-        Model::ParryCapsule => RGBColor(204, 121, 167),
-        Model::ParryCylinder => RGBColor(80, 80, 80),
-        Model::Spheres => RGBColor(160, 160, 160),
-    }
-}
-
-fn mark(chart: &mut Chart, at: (f64, f64), way: &str, colour: RGBColor) -> Drawn {
-    // What lies below shows through.
-    let colour = colour.mix(0.75);
-    match shape(way) {
-        Shape::Disc => chart.draw_series([Circle::new(at, 4, colour.filled())])?,
-        Shape::Ring => chart.draw_series([Circle::new(at, 4, colour.stroke_width(1))])?,
-        Shape::Triangle => chart.draw_series([TriangleMarker::new(at, 5, colour.filled())])?,
-        Shape::Cross => chart.draw_series([Cross::new(at, 4, colour.stroke_width(2))])?,
-        Shape::Square => {
-            let square = Rectangle::new([(-3, -3), (3, 3)], colour.filled());
-            chart.draw_series([EmptyElement::at(at) + square])?
-        }
-        Shape::Frame => {
-            let frame = Rectangle::new([(-4, -4), (4, 4)], colour.stroke_width(1));
-            chart.draw_series([EmptyElement::at(at) + frame])?
-        }
-        Shape::Diamond => {
-            chart.draw_series([EmptyElement::at(at) + diamond((0, 0), colour.stroke_width(1))])?
-        }
+fn polygon(
+    (x, y): (i32, i32),
+    colour: RGBColor,
+    corners: u32,
+    turn: f64,
+    size: f64,
+) -> Polygon<(i32, i32)> {
+    let corner = |k: u32| {
+        let turns = f64::from(k) / f64::from(corners) + turn;
+        let (sine, cosine) = (std::f64::consts::TAU * turns).sin_cos();
+        (x + (size * sine).round() as i32, y - (size * cosine).round() as i32)
     };
-    Ok(())
+    Polygon::new((0..corners).map(corner).collect::<Vec<_>>(), colour.filled())
 }
 
-/// A square that stands on a corner.
-fn diamond((x, y): (i32, i32), style: ShapeStyle) -> PathElement<(i32, i32)> {
-    PathElement::new([(x, y - 5), (x + 5, y), (x, y + 5), (x - 5, y), (x, y - 5)], style)
+fn disc(at: (i32, i32), colour: RGBColor) -> Polygon<(i32, i32)> {
+    polygon(at, colour, 24, 0.0, 4.0)
+}
+
+fn diamond(at: (i32, i32), colour: RGBColor) -> Polygon<(i32, i32)> {
+    polygon(at, colour, 4, 0.0, 8.0)
+}
+
+fn square(at: (i32, i32), colour: RGBColor) -> Polygon<(i32, i32)> {
+    polygon(at, colour, 4, 0.125, 7.0)
+}
+
+fn triangle(at: (i32, i32), colour: RGBColor) -> Polygon<(i32, i32)> {
+    polygon(at, colour, 3, 0.0, 7.0)
 }
 
 /// A number without needless digits.

@@ -1,5 +1,5 @@
-//! A planner's edges in a scene: `Scene::clears_motion` beside the single questions that it
-//! replaces, and beside one engine of all triangles.
+//! A planner's edges in a scene: compares `Scene::clears_motion` with the single queries that it
+//! replaces, and with one engine for all triangles.
 
 use super::{MARGIN, Surface, merged};
 use crate::Effort;
@@ -12,8 +12,9 @@ use parry_continuum::{BendingMotion, BendingSection, ConstantCurvature};
 use std::f64::consts::TAU;
 use std::fmt::Write;
 
-/// How many edges are asked about one after the other, and in a batch.
+/// The number of edges that are tested one after the other.
 const EDGES: usize = 200;
+/// The number of edges in a batch.
 const BATCH: usize = 1000;
 
 /// How far the tip moves along an edge, mm.
@@ -141,7 +142,7 @@ fn edges(count: usize) -> Result<Vec<BendingMotion>, String> {
             [size * angle.cos(), size * angle.sin()]
         };
         let (from, way) = ([(); 3].map(|()| bend(0.012)), [(); 3].map(|()| bend(1.0)));
-        // Scales the change until the tip moves as far as it should.
+        // Scales the bending until the tip moves by LENGTH.
         let from = from.map(section);
         let tip = tip(&from)?;
         let (mut to, mut share) = (from, 1e-3);
