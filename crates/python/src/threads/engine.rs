@@ -64,14 +64,14 @@ impl State {
     fn vertices(&self) -> Vertices {
         match &self.moved {
             Some(moved) => Vertices::Moved(Arc::clone(moved)),
-            None => Vertices::Of(self.base.clone()),
+            None => Vertices::Of(Box::new(self.base.clone())),
         }
     }
 }
 
 /// The vertices of a mesh, which stay as they are when the mesh moves.
 pub(crate) enum Vertices {
-    Of(BvhSearch),
+    Of(Box<BvhSearch>),
     Moved(Arc<Vec<Vector>>),
 }
 

@@ -80,7 +80,7 @@ pub(super) fn time(search: &Search) -> Option<Duration> {
 pub(crate) fn device_failure(error: &ProximityError) -> Option<Refused> {
     let ProximityError::Device(_) = error else { return None };
     let advice = "`Mesh(mesh.vertices, mesh.faces, device='gpu')` opens it anew, and `Mesh(mesh)` is on the CPU";
-    Some(Refused::from(error.clone()).with_advice(advice))
+    Some(Refused::from(*error).with_advice(advice))
 }
 
 fn refused(error: GpuError) -> Refused {
