@@ -251,7 +251,6 @@ fn speeds_scale_with_the_robot() {
             let radii = [random.between(0.1, 1.0), 0.0];
             let from: Vec<_> = (0..3).map(|k| random.point() + Vector::Z * f64::from(k)).collect();
             let to: Vec<_> = from.iter().map(|&point| point + random.point()).collect();
-            let bent = [sections(&mut random, &radii), sections(&mut random, &radii)];
             let poses = [random.pose(1.0), random.pose(1.0)];
             let speeds = |scale: Real| {
                 let scaled = |points: &[Vector]| points.iter().map(|p| *p * scale).collect();
@@ -260,25 +259,15 @@ fn speeds_scale_with_the_robot() {
                 let poses = poses.map(|pose| {
                     Pose::from_parts(pose.translation * scale, pose.rotation.normalize())
                 });
-                let bent = bent.each_ref().map(|sections| {
-                    let scaled = |section: &BendingSection| BendingSection {
-                        length: section.length * scale,
-                        radius: section.radius * scale,
-                        bend: section.bend.map(|bend| bend / scale),
-                    };
-                    sections.iter().map(scaled).collect::<Vec<_>>()
-                });
                 let linear = LinearMotion::chain(&from, &to, &radii).unwrap();
-                let bending = BendingMotion::new(&bent[0], &bent[1], poses[0]).unwrap();
                 let mut tube = Tube::empty();
                 linear.shape(0.0, &mut tube).unwrap();
                 let rigid = RigidMotion::new(tube, poses).unwrap();
                 let moving = MovingBase::new(linear.clone(), poses).unwrap();
-                let motions: [&dyn Motion; 4] = [&linear, &bending, &rigid, &moving];
+                let motions: [&dyn Motion; 3] = [&linear, &rigid, &moving];
                 motions.map(|motion| motion.speed(1, [0.25, 0.75], [0.125, 0.5]))
             };
             for (kind, (small, usual)) in speeds(scale).into_iter().zip(speeds(1.0)).enumerate() {
-                // Subnormal products of a bend may round.
                 let is_near = |a: Real, b: Real| (a - b).abs() <= 1e-12 * b;
                 let is_scaled = is_near(small.point / scale, usual.point);
                 assert!(
