@@ -2,7 +2,7 @@
 
 use super::{Centreline, Format};
 use crate::text::{lines, shown};
-use crate::{MeshFileError, Options, read_file};
+use crate::{Frame, MeshFileError, Options, read_file};
 use std::path::Path;
 
 /// The columns of a centreline, and of many shapes, for error messages.
@@ -11,8 +11,9 @@ const SHAPES: &str = "shape,x,y,z or shape,x,y,z,radius";
 
 /// The numbers of a text, line by line.
 struct Table {
-    /// The names of the columns, if the file has them, in lower case and without units.
-    heading: Option<Vec<String>>,
+    /// The line number and the names of the columns, if the file has them, in lower case and
+    /// without units.
+    heading: Option<(usize, Vec<String>)>,
     /// The line number and the numbers of each line.
     rows: Vec<(usize, Vec<f64>)>,
 }
@@ -130,37 +131,53 @@ fn read(
         let radii = columns.radii(rows).map_err(named)?;
         let radii =
             radii.map(|radii| radii.into_iter().map(|radius| radius * options.scale).collect());
-        let robot =
-            Centreline { points, radii, frame: None, states_unit: false, skipped_points: 0 };
+        let robot = Centreline {
+            points,
+            radii,
+            frame: columns.frame,
+            states_unit: false,
+            skipped_points: 0,
+        };
         robots.push((rows[0].1[0], robot));
     }
     Ok(robots)
 }
 
-/// The columns of the coordinates and of the radius.
+/// The columns of the coordinates and of the radius, and the frame that the coordinates' names state.
 struct Columns {
     axes: [usize; 3],
     radius: Option<usize>,
+    frame: Option<Frame>,
 }
 
 impl Columns {
     fn of(table: &Table, first: usize) -> Result<Self, Fault> {
         let plain = [first, first + 1, first + 2];
-        let Some(heading) = &table.heading else {
-            return Self::check(
-                table,
-                Self { axes: plain, radius: Some(first + 3) },
-                first + 4,
-                first,
-            );
+        let Some((line, heading)) = &table.heading else {
+            let columns = Self { axes: plain, radius: Some(first + 3), frame: None };
+            return Self::check(table, columns, first + 4, first);
         };
         let named = |name: &str| heading.iter().position(|own| own == name);
+        let stated = NAMED_AXES.into_iter().find_map(|(names, frame)| match names.map(named) {
+            [Some(x), Some(y), Some(z)] => Some(([x, y, z], frame)),
+            _ => None,
+        });
+        let (axes, frame) = stated.unwrap_or((plain, None));
+        if stated.is_none() {
+            for (column, axis) in axes.into_iter().zip(['x', 'y', 'z']) {
+                // A heading of fewer columns is refused where a line has fewer.
+                if let Some(name) = heading.get(column)
+                    && !(name.starts_with(axis) || name.ends_with(axis))
+                {
+                    let column = column + 1;
+                    let problem = format!("has '{}' in column {column}, not {axis}", shown(name));
+                    return fault(*line, problem);
+                }
+            }
+        }
         let radius = RADIUS.iter().find_map(|name| named(name));
-        let axes = match PARAVIEW.map(named) {
-            [Some(x), Some(y), Some(z)] => [x, y, z],
-            _ => plain,
-        };
-        Self::check(table, Self { axes, radius }, heading.len(), first)
+        let radius = radius.filter(|radius| !axes.contains(radius));
+        Self::check(table, Self { axes, radius, frame }, heading.len(), first)
     }
 
     /// Checks that every line has the coordinates, and no column without a name.
@@ -205,8 +222,11 @@ impl Columns {
 
 /// The names of a column of radii.
 const RADIUS: [&str; 4] = ["radius", "radii", "rad", "r"];
-/// ParaView's names of the coordinates. They may be in any columns.
+/// ParaView's names of the coordinates.
 const PARAVIEW: [&str; 3] = ["points:0", "points:1", "points:2"];
+/// Names of the coordinates that may be in any columns, and the frame that they state.
+const NAMED_AXES: [([&str; 3], Option<Frame>); 3] =
+    [(PARAVIEW, None), (["r", "a", "s"], Some(Frame::Ras)), (["l", "p", "s"], Some(Frame::Lps))];
 
 fn parse(bytes: &[u8]) -> Result<Table, Fault> {
     let mut table = Table { heading: None, rows: Vec::new() };
@@ -225,7 +245,7 @@ fn parse(bytes: &[u8]) -> Result<Table, Fault> {
                     format!("has '{}' in column {}", shown(columns[column]), column + 1),
                 );
             }
-            table.heading = Some(names);
+            table.heading = Some((line, names));
             continue;
         }
         let mut row = Vec::new();

@@ -277,6 +277,21 @@ fn texts_have_radii_where_they_say_so() {
         radii("x,y,z,distance_to_wall_mm,Radius (mm)\n0,0,0,9,2\n0,0,1,9,2\n"),
         Ok((2, two))
     );
+    // Names of a frame's axes, in any columns. The r of R,A,S is no radius.
+    for (text, frame, radii) in [
+        ("r,a,s\n1,2,3\n4,5,6\n", Frame::Ras, None),
+        ("R (mm),A (mm),S (mm)\n1,2,3\n4,5,6\n", Frame::Ras, None),
+        ("label,l,p,s\n7,1,2,3\n7,4,5,6\n", Frame::Lps, None),
+        ("L,P,S,radius\n1,2,3,2\n4,5,6,2\n", Frame::Lps, Some(vec![2.0])),
+    ] {
+        let read = lines("a.csv", text, None).unwrap();
+        assert_eq!(read.points, [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]], "{text}");
+        assert_eq!((read.frame, read.radii), (Some(frame), radii), "{text}");
+    }
+    for text in ["px,py,pz\n1,2,3\n4,5,6\n", "x_mm;y_mm;z_mm\n1;2;3\n4;5;6\n"] {
+        let read = lines("a.csv", text, None).unwrap();
+        assert_eq!((read.points[1], read.frame), ([4.0, 5.0, 6.0], None), "{text}");
+    }
     let report = lines(
         "a.csv",
         std::fs::read(crate::reports::report("A20_bom_heading_units.csv")).unwrap(),
@@ -292,6 +307,10 @@ fn texts_have_radii_where_they_say_so() {
         ("0,0,0,2\n0,0,1,-1\n", "line 2 of a.csv says that the radius of the last point is -1"),
         ("x,y,z\n0,0,0,2\n", "line 2 of a.csv has 4 columns, but the heading names 3"),
         ("z,y,x\n0,0,0\n", "line 1 of a.csv has 'z' in column 1"),
+        ("time,a,b\n0,0,0\n", "line 1 of a.csv has 'time' in column 1, not x; write x,y,z"),
+        ("label,px,py,pz\n1,0,0,0\n", "line 1 of a.csv has 'label' in column 1, not x"),
+        ("\nlat,lon,alt\n0,0,0\n", "line 2 of a.csv has 'lat' in column 1, not x"),
+        ("x,y,r\n0,0,0\n", "line 1 of a.csv has 'r' in column 3, not z"),
         ("0,0\n", "line 1 of a.csv has 2 columns"),
         ("0,0,\"\"\n", "has nothing in column 3"),
         ("0,0,0\n0,0,nan\n", "is not finite"),
