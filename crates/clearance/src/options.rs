@@ -25,8 +25,9 @@ pub struct Options {
     #[arg(long)]
     pub allow_no_position: bool,
     /// Points along the robot, from base to tip. A text file (.csv, .tsv, .txt, .dat) has a line
-    /// for each point: x,y,z and optionally the radius of the segment that begins there; a heading
-    /// and lines that begin with # are skipped. Or a .vtp, .vtk or .mrk.json file
+    /// for each point: x,y,z and optionally the radius of the segment that begins there. A heading
+    /// is optional: it names x,y,z, and r,a,s or l,p,s state the frame. Lines that begin with # are
+    /// skipped. Or a .vtp, .vtk or .mrk.json file
     #[arg(
         long,
         visible_alias = "centerline",

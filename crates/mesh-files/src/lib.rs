@@ -109,7 +109,11 @@ impl Options {
         Self { memory_limit, ..self }
     }
 
-    fn check_scale(&self) -> Result<(), MeshFileError> {
+    /// Checks the scale, as all functions that read a file do.
+    ///
+    /// # Errors
+    /// The scale is not positive, or not finite.
+    pub fn check_scale(&self) -> Result<(), MeshFileError> {
         let scale = self.scale;
         if scale > 0.0 && scale.is_finite() { Ok(()) } else { Err(MeshFileError::Scale { scale }) }
     }

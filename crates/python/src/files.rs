@@ -107,6 +107,7 @@ pub(crate) fn load(
         Options::scaled(scale).with_label(label).with_no_position_allowed(allow_no_position);
     let (path, bytes) = match Source::of(path)? {
         Source::Mesh(vertices, faces) if label.is_none() => {
+            options.check_scale().map_err(|error| refuse(py, &error))?;
             return Mesh::of_parts(&vertices, &faces, frame, scale, device);
         }
         Source::Mesh(..) => {
@@ -197,7 +198,8 @@ fn made(
 }
 
 /// The centreline in a file: VTK's .vtp or .vtk, 3D Slicer's .mrk.json, or a text (.csv, .tsv,
-/// .txt, .dat) with x,y,z and optionally the radius in its lines.
+/// .txt, .dat) with x,y,z and optionally the radius in its lines. A heading is optional: it names
+/// x,y,z, and r,a,s or l,p,s state the frame.
 ///
 /// Parameters
 /// ----------

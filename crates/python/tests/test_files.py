@@ -323,6 +323,8 @@ def test_doubts_about_frames(tmp_path: Path) -> None:
         (lambda f: load(f, label=1.5), TypeError, "`label` is 1.5; give a whole number"),
         (lambda f: load(f, scale="mm"), TypeError, "`scale` is 'mm'; give a number"),
         (lambda f: load(f, scale=-1.0), ContinuumError, "the scale is -1; give a positive number"),
+        (lambda f: load(load(f), scale=-1.0), ContinuumError, "the scale is -1; give a positive number"),
+        (lambda f: load(load(f), scale=0), ContinuumError, "the scale is 0; give a positive number"),
         (lambda f: load(f, label=2), ContinuumError, "holds triangles without labels"),
         (lambda f: load_centreline(f, line=-1), TypeError, "`line` is -1; give a whole number"),
         (lambda f: load_centreline(f), ContinuumError, "give a centreline that ends in"),
