@@ -9,7 +9,7 @@ use crate::threads::{
 };
 use parry_continuum::Chain;
 use parry_continuum::parry::math::Pose;
-use parry_continuum::proximity::{Proximity, ProximityError};
+use parry_continuum::proximity::{BvhSearch, LinkProximity, Proximity, ProximityError};
 use pyo3::prelude::*;
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -25,15 +25,14 @@ pub(super) trait ChainQuestion: Sync {
     /// An answer of the library.
     type Answer;
 
-    fn caps(&self) -> Caps;
-
-    /// Asks about one robot.
+    /// Asks about one robot. `links` is memory that is used again.
     fn ask(
         &self,
-        session: &mut Session,
-        robot: &Given<'_>,
+        search: &mut BvhSearch,
+        robot: (&Chain, &Pose),
+        links: &mut Vec<LinkProximity>,
         rows: &mut [Self::Row],
-    ) -> Result<(), Refused>;
+    ) -> Result<(), ProximityError>;
 
     /// Asks about many.
     ///
@@ -55,7 +54,7 @@ pub(super) fn ask_chains<Q: ChainQuestion>(
     py: Python<'_>,
     engine: &Arc<Engine>,
     robots: &Robots<'_>,
-    question: &Q,
+    (question, caps): (&Q, Caps),
     (empty, width): (Q::Row, usize),
     take: impl FnMut(usize, &[Q::Row]),
 ) -> PyResult<()> {
@@ -66,15 +65,18 @@ pub(super) fn ask_chains<Q: ChainQuestion>(
         DeviceKind::Gpu => Some((LINKS / robots.segments_each().max(1)).clamp(few, LARGEST_CHUNK)),
     };
     let answer = |session: &mut Session, robot: &Given<'_>, row: &mut [Q::Row]| {
-        question.ask(session, robot, row)
+        let Session { search, chain, links, .. } = session;
+        let chain = set_chain(chain, robot, caps)?;
+        Ok(question.ask(search, (chain, &robot.pose()?), links, row)?)
     };
     let ask = |block: &Block, rows: &mut [Q::Row]| {
         // After a move the search on the CPU may take long to refit, even for one robot.
         if largest.is_some() && (is_batch || engine.is_stale(py)) {
             let pool = pool(py)?;
             if let Some(mut session) = engine.lend_device(py)? {
-                let ask =
-                    || pool.install(|| ask_device(&mut session, question, block, width, rows));
+                let ask = || {
+                    pool.install(|| ask_device(&mut session, (question, caps), block, width, rows))
+                };
                 let answered = compute(py, ask);
                 engine.take_back_device(py, answered.is_ok().then_some(session));
                 return answered?.map_err(|refused| refused.raise(py, None));
@@ -92,7 +94,7 @@ pub(super) fn ask_chains<Q: ChainQuestion>(
 /// The device has failed.
 fn ask_device<Q: ChainQuestion>(
     session: &mut DeviceSession,
-    question: &Q,
+    (question, caps): (&Q, Caps),
     block: &Block,
     width: usize,
     rows: &mut [Q::Row],
@@ -105,7 +107,7 @@ fn ask_device<Q: ChainQuestion>(
     let chains = &mut chains[..count];
     let build = |(place, chain): (usize, &mut Option<Chain>)| -> Result<Pose, Refused> {
         let robot = block.robot(place);
-        set_chain(chain, &robot, question.caps())?;
+        set_chain(chain, &robot, caps)?;
         robot.pose()
     };
     let poses: Vec<_> = chains.par_iter_mut().enumerate().map(build).collect();

@@ -2,19 +2,17 @@
 
 use super::chains::{ChainQuestion, ask_chains};
 use super::distance::set_chain;
-use crate::error::Refused;
 use crate::input::{Caps, Given, of};
 use crate::mesh::Mesh;
 use crate::output::{Enumeration, answer, array_or_number, members, side_value};
 use crate::threads::{Asked, Session, ask_each};
 use parry_continuum::Chain;
 use parry_continuum::parry::math::Pose;
-use parry_continuum::proximity::{Proximity, ProximityError};
+use parry_continuum::proximity::{BvhSearch, LinkProximity, Proximity, ProximityError};
 use pyo3::prelude::*;
 
 /// Whether a margin is kept.
 struct Clears {
-    caps: Caps,
     margin: f64,
 }
 
@@ -22,18 +20,14 @@ impl ChainQuestion for Clears {
     type Row = bool;
     type Answer = bool;
 
-    fn caps(&self) -> Caps {
-        self.caps
-    }
-
     fn ask(
         &self,
-        session: &mut Session,
-        robot: &Given<'_>,
+        search: &mut BvhSearch,
+        (chain, pose): (&Chain, &Pose),
+        _: &mut Vec<LinkProximity>,
         rows: &mut [bool],
-    ) -> Result<(), Refused> {
-        let chain = set_chain(&mut session.chain, robot, self.caps)?;
-        rows[0] = session.search.clears(chain, &robot.pose()?, self.margin)?;
+    ) -> Result<(), ProximityError> {
+        rows[0] = search.clears(chain, pose, self.margin)?;
         Ok(())
     }
 
@@ -90,9 +84,9 @@ impl Mesh {
     ) -> PyResult<Bound<'py, PyAny>> {
         let robots = self.robots(points, radii, pose)?;
         let mut all: Vec<bool> = Vec::with_capacity(robots.len());
-        let question = Clears { caps, margin };
+        let question = (&Clears { margin }, caps);
         let keep = |_, found: &[bool]| all.extend(found);
-        ask_chains(py, &self.engine(py), &robots, &question, (false, 1), keep)?;
+        ask_chains(py, &self.engine(py), &robots, question, (false, 1), keep)?;
         array_or_number(py, robots.shape(&[]), all)
     }
 

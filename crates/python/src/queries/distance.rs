@@ -5,32 +5,27 @@ use crate::error::Refused;
 use crate::input::{Caps, Given};
 use crate::mesh::Mesh;
 use crate::output::{answer, array_or_number, flat};
-use crate::threads::{Asked, Session};
+use crate::threads::Asked;
 use parry_continuum::parry::math::{Pose, Vector};
-use parry_continuum::proximity::{LinkProximity, Proximity, ProximityError};
+use parry_continuum::proximity::{BvhSearch, LinkProximity, Proximity, ProximityError};
 use parry_continuum::{Chain, RobotError};
 use pyo3::prelude::*;
 
 /// The closest link and triangle.
-struct Minimum {
-    caps: Caps,
-}
+struct Minimum;
 
 impl ChainQuestion for Minimum {
     type Row = Option<LinkProximity>;
     type Answer = LinkProximity;
 
-    fn caps(&self) -> Caps {
-        self.caps
-    }
-
     fn ask(
         &self,
-        session: &mut Session,
-        robot: &Given<'_>,
+        search: &mut BvhSearch,
+        (chain, pose): (&Chain, &Pose),
+        _: &mut Vec<LinkProximity>,
         rows: &mut [Self::Row],
-    ) -> Result<(), Refused> {
-        rows[0] = Some(session.minimum(robot, self.caps)?);
+    ) -> Result<(), ProximityError> {
+        rows[0] = Some(search.minimum(chain, pose)?);
         Ok(())
     }
 
@@ -45,18 +40,6 @@ impl ChainQuestion for Minimum {
 
     fn keep(answer: &LinkProximity, rows: &mut [Self::Row]) {
         rows[0] = Some(*answer);
-    }
-}
-
-impl Session {
-    /// The closest link and triangle of a robot.
-    pub(crate) fn minimum(
-        &mut self,
-        robot: &Given<'_>,
-        caps: Caps,
-    ) -> Result<LinkProximity, Refused> {
-        let chain = set_chain(&mut self.chain, robot, caps)?;
-        Ok(self.search.minimum(chain, &robot.pose()?)?)
     }
 }
 
@@ -138,8 +121,7 @@ impl Mesh {
     ) -> PyResult<Bound<'py, PyAny>> {
         let robots = self.robots(points, radii, pose)?;
         let mut distances: Vec<f64> = Vec::with_capacity(robots.len());
-        let question = Minimum { caps };
-        ask_chains(py, &self.engine(py), &robots, &question, (None, 1), |_, found| {
+        ask_chains(py, &self.engine(py), &robots, (&Minimum, caps), (None, 1), |_, found| {
             distances.extend(found.iter().flatten().map(|found| found.distance))
         })?;
         array_or_number(py, robots.shape(&[]), distances)
@@ -181,8 +163,7 @@ impl Mesh {
     ) -> PyResult<Bound<'py, PyAny>> {
         let robots = self.robots(points, radii, pose)?;
         let mut all: Vec<LinkProximity> = Vec::with_capacity(robots.len());
-        let question = Minimum { caps };
-        ask_chains(py, &self.engine(py), &robots, &question, (None, 1), |_, found| {
+        ask_chains(py, &self.engine(py), &robots, (&Minimum, caps), (None, 1), |_, found| {
             all.extend(found.iter().flatten())
         })?;
         let shape = || robots.shape(&[]);

@@ -1,15 +1,13 @@
 //! How near each link of a robot is.
 
 use super::chains::{ChainQuestion, ask_chains};
-use super::distance::set_chain;
-use crate::error::Refused;
-use crate::input::{Caps, Given};
+use crate::input::Caps;
 use crate::mesh::Mesh;
 use crate::output::{answer, array};
-use crate::threads::{Asked, Session};
+use crate::threads::Asked;
 use parry_continuum::Chain;
 use parry_continuum::parry::math::{Pose, Vector};
-use parry_continuum::proximity::{LinkProximity, Proximity, ProximityError};
+use parry_continuum::proximity::{BvhSearch, LinkProximity, Proximity, ProximityError};
 use pyo3::prelude::*;
 
 /// What there is of a segment; of one without length, nothing.
@@ -31,27 +29,21 @@ const NOTHING: Row = Row {
 };
 
 /// The closest triangle of every link.
-struct PerLink {
-    caps: Caps,
-}
+struct PerLink;
 
 impl ChainQuestion for PerLink {
     type Row = Row;
     type Answer = Vec<LinkProximity>;
 
-    fn caps(&self) -> Caps {
-        self.caps
-    }
-
     fn ask(
         &self,
-        session: &mut Session,
-        robot: &Given<'_>,
+        search: &mut BvhSearch,
+        (chain, pose): (&Chain, &Pose),
+        links: &mut Vec<LinkProximity>,
         rows: &mut [Row],
-    ) -> Result<(), Refused> {
-        let chain = set_chain(&mut session.chain, robot, self.caps)?;
-        session.search.per_link(chain, &robot.pose()?, &mut session.links)?;
-        Self::keep(&session.links, rows);
+    ) -> Result<(), ProximityError> {
+        search.per_link(chain, pose, links)?;
+        Self::keep(links, rows);
         Ok(())
     }
 
@@ -121,8 +113,8 @@ impl Mesh {
         let (mut distance, mut arc_length) = (Vec::with_capacity(count), Vec::with_capacity(count));
         let (mut on_robot, mut on_mesh) = (Vec::with_capacity(count), Vec::with_capacity(count));
         let mut triangle = Vec::with_capacity(count);
-        let (question, empty) = (PerLink { caps }, (NOTHING, segments.max(1)));
-        ask_chains(py, &self.engine(py), &robots, &question, empty, |_, rows| {
+        let (question, empty) = ((&PerLink, caps), (NOTHING, segments.max(1)));
+        ask_chains(py, &self.engine(py), &robots, question, empty, |_, rows| {
             distance.extend(rows.iter().map(|row| row.distance));
             on_robot.extend(rows.iter().map(|row| row.on_robot.to_array()));
             on_mesh.extend(rows.iter().map(|row| row.on_mesh.to_array()));
