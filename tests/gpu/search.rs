@@ -4,9 +4,44 @@ use continuum_demo::steer::Random;
 use continuum_demo::{ctr, ventricle};
 use continuum_testing::{Random as Seeded, gpu, rounds};
 use parry_continuum::Chain;
+use parry_continuum::gpu::GpuSearch;
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::shape::{Ball, TriMesh};
-use parry_continuum::proximity::{BvhSearch, Proximity};
+use parry_continuum::proximity::{BvhSearch, LinkProximity, Proximity, ProximityError};
+
+/// Asserts that both engines have the same minima. Returns them.
+fn same_minima(
+    engine: &mut GpuSearch,
+    reference: &mut BvhSearch,
+    robots: &[(&Chain, Pose)],
+) -> Vec<Result<LinkProximity, ProximityError>> {
+    let (mut found, mut expected) = (Vec::new(), Vec::new());
+    engine.minimum_batch(robots, &mut found).unwrap();
+    reference.minimum_batch(robots, &mut expected).unwrap();
+    assert_eq!(found, expected);
+    expected
+}
+
+/// Asserts that both engines have the same answers for each link.
+fn same_links(engine: &mut GpuSearch, reference: &mut BvhSearch, robots: &[(&Chain, Pose)]) {
+    let (mut found, mut expected) = (Vec::new(), Vec::new());
+    engine.per_link_batch(robots, &mut found).unwrap();
+    reference.per_link_batch(robots, &mut expected).unwrap();
+    assert_eq!(found, expected);
+}
+
+/// Asserts that both engines decide alike about a margin.
+fn same_decisions(
+    engine: &mut GpuSearch,
+    reference: &mut BvhSearch,
+    robots: &[(&Chain, Pose)],
+    margin: f64,
+) {
+    let (mut found, mut expected) = (Vec::new(), Vec::new());
+    engine.clears_batch(robots, margin, &mut found).unwrap();
+    reference.clears_batch(robots, margin, &mut expected).unwrap();
+    assert_eq!(found, expected, "{margin}");
+}
 
 /// Random shapes of three tubes in a ventricle, with the caps that fit, as capsules and as
 /// cylinders; most of them touch the wall. PARRY_CONTINUUM_EFFORT=25 asks about 100,000.
@@ -30,22 +65,12 @@ fn random_robots_are_answered_as_on_the_cpu() {
             })
             .collect();
         let robots: Vec<_> = shapes.iter().map(|shape| (shape, ventricle::entry())).collect();
-        let (mut found, mut expected) = (Vec::new(), Vec::new());
-        engine.minimum_batch(&robots, &mut found).unwrap();
-        reference.minimum_batch(&robots, &mut expected).unwrap();
-        assert_eq!(found, expected);
-        for answer in &expected {
-            if answer.as_ref().unwrap().distance > 0.0 { apart += 1 } else { touching += 1 }
+        for answer in same_minima(&mut engine, &mut reference, &robots) {
+            if answer.unwrap().distance > 0.0 { apart += 1 } else { touching += 1 }
         }
-        let (mut found, mut expected) = (Vec::new(), Vec::new());
-        engine.per_link_batch(&robots, &mut found).unwrap();
-        reference.per_link_batch(&robots, &mut expected).unwrap();
-        assert_eq!(found, expected);
+        same_links(&mut engine, &mut reference, &robots);
         for margin in [0.0, 0.5] {
-            let (mut found, mut expected) = (Vec::new(), Vec::new());
-            engine.clears_batch(&robots, margin, &mut found).unwrap();
-            reference.clears_batch(&robots, margin, &mut expected).unwrap();
-            assert_eq!(found, expected, "{margin}");
+            same_decisions(&mut engine, &mut reference, &robots, margin);
         }
     }
     assert!(apart > count / 20 && touching > count / 20, "{apart} apart, {touching} touching");
@@ -74,14 +99,8 @@ fn loops_that_a_driver_stops_lose_no_answer() {
     let robots: Vec<_> = shapes.iter().map(|shape| (shape, Pose::IDENTITY)).collect();
     let mut reference = BvhSearch::new(&mesh).unwrap();
     for _ in 0..3 {
-        let (mut found, mut expected) = (Vec::new(), Vec::new());
-        engine.per_link_batch(&robots, &mut found).unwrap();
-        reference.per_link_batch(&robots, &mut expected).unwrap();
-        assert_eq!(found, expected);
-        let (mut found, mut expected) = (Vec::new(), Vec::new());
-        engine.minimum_batch(&robots, &mut found).unwrap();
-        reference.minimum_batch(&robots, &mut expected).unwrap();
-        assert_eq!(found, expected);
+        same_links(&mut engine, &mut reference, &robots);
+        same_minima(&mut engine, &mut reference, &robots);
     }
 }
 
@@ -102,20 +121,14 @@ fn a_batch_takes_several_chunks() {
             Chain::from_centreline(&points, &[0.2; 64]).unwrap()
         })
         .collect();
-    // Five chunks of 2^18 links, but for the last.
+    // Five chunks: four of 2^18 links, and a smaller one.
     let mut robots: Vec<_> = (0..20_000).map(|k| (&shapes[k % 64], random.pose(1.0))).collect();
     robots.iter_mut().step_by(4096).for_each(|(_, pose)| pose.translation.x = 1e9);
     robots[17_000].1.translation.x = f64::NAN;
     let mut reference = BvhSearch::new(&mesh).unwrap();
-    let (mut found, mut expected) = (Vec::new(), Vec::new());
-    engine.minimum_batch(&robots, &mut found).unwrap();
-    reference.minimum_batch(&robots, &mut expected).unwrap();
-    assert_eq!(found, expected);
+    same_minima(&mut engine, &mut reference, &robots);
     assert_eq!(engine.answered_on_cpu(), 5);
-    let (mut found, mut expected) = (Vec::new(), Vec::new());
-    engine.clears_batch(&robots, 0.5, &mut found).unwrap();
-    reference.clears_batch(&robots, 0.5, &mut expected).unwrap();
-    assert_eq!(found, expected);
+    same_decisions(&mut engine, &mut reference, &robots, 0.5);
 }
 
 /// The search goes on while the mesh moves, and batches of every size reuse its buffers.
