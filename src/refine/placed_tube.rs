@@ -254,6 +254,14 @@ pub(crate) struct Piece {
 /// would stick out of the face. 1/8 more than a ball needs, because a body is wider than the tube.
 const ROOM: Real = 1.125;
 
+/// Which ends of a piece are near one of the faces of its section.
+fn near_faces(faces: [Option<EndFace>; 2], section: &Section, arcs: [Real; 2]) -> [bool; 2] {
+    [
+        faces[0].is_some() && arcs[0] - section.start < ROOM * section.room(0),
+        faces[1].is_some() && section.end - arcs[1] < ROOM * section.room(1),
+    ]
+}
+
 /// The most pieces that a section starts with. Pieces near the wall are halved later; without the
 /// limit thin wires would start with millions.
 const MAX_PIECES: u32 = 1024;
@@ -279,11 +287,13 @@ impl PlacedTube<'_> {
 
     /// Which ends of a piece must end flat so that its body does not stick out of a nearby face.
     pub(crate) fn exposed(&self, section: &Section, arcs: [Real; 2]) -> [bool; 2] {
-        let faces = self.faces(section);
-        [
-            faces[0].is_some() && arcs[0] - section.start < ROOM * section.room(0),
-            faces[1].is_some() && section.end - arcs[1] < ROOM * section.room(1),
-        ]
+        near_faces(self.faces(section), section, arcs)
+    }
+
+    /// Whether a place of a piece may be a disc that is no ball, in this shape or another one of
+    /// its motion.
+    pub(super) fn may_have_discs(&self, section: &Section, arcs: [Real; 2]) -> bool {
+        near_faces(section.faces, section, arcs) != [false; 2]
     }
 
     /// Fills `pieces` with the initial pieces. A stack takes the last one first.

@@ -66,9 +66,10 @@
 //! excluded if the other body is entirely behind the plane of the face; the test allows for the
 //! uncertainty of the normal.
 //!
-//! A place counts if it is known to be ahead. So the query contains slightly more than the local
-//! minima. It includes places beside the rim, at the distance of a bend, and places beside the
-//! wider part of a step that the tube passes there.
+//! A place counts if it is known to be ahead, unless the robot certainly leads nearer from it. So
+//! the query contains slightly more than the local minima: places from which it leads nearer by
+//! less than is known of the curve there, and places beside the wider part of a step that the tube
+//! passes there.
 //!
 //! The body of a face is flat and goes a little into the tube, so that rounding does not turn it
 //! (`bounding_body`).
@@ -127,6 +128,10 @@ const INTO_TUBE: Real = 1.0 / 1024.0;
 /// The rounding error of the bodies of two faces, in slacks: `off_of_bodies` without tilt and
 /// stated error.
 const ROUNDING_OF_FACES: Real = 140.0;
+
+/// How far the piece reaches, in radii, in which it is tested whether the robot leads on from a
+/// place.
+const AROUND_PLACE: Real = 1.0 / 1024.0;
 
 /// How often a place of one part is moved to the nearest place of the other.
 const MAX_MOVES: u32 = 3;
@@ -493,6 +498,18 @@ impl<'a> TubeWithItself<'a> {
     /// If the lower bound is above 0, the robot leads nearer backwards. If the upper bound is below
     /// 0, it leads nearer forwards. A piece is excepted if the robot ends or becomes thinner there.
     /// Errors, displacements and turns are added.
+    ///
+    /// **Short pieces.** If all places are balls, p is the point of the face nearest to y. Let p0
+    /// be the point nearest to the middle of the chord. Then |p - p0| <= h + 2 s + (r + |y - c|) a,
+    /// where h bounds the distance of y from that middle, s the displacement of c, and a the turn
+    /// of the face. So c and r |n x m| may be replaced by p0 and that bound, which vanishes with
+    /// the length of the piece.
+    ///
+    /// **Proof.** The nearest point of a convex set moves by at most as much as y. A point of the
+    /// curve between two points is at most half of its length away from their middle. If a rigid
+    /// displacement T moves the face, the point nearest to y is T applied to the point of the old
+    /// face nearest to T^-1 y. T moves points of the face by at most s + r a, and T^-1 moves y by at
+    /// most s + |y - c| a.
     fn leads_on(&self, pair: &SelfPair, k: usize) -> bool {
         let (tube, piece) = (self.tube(), &pair.pieces[1 - k]);
         let Some(end) = pair.faces[k] else { return false };
@@ -526,19 +543,49 @@ impl<'a> TubeWithItself<'a> {
             (false, _) if self.moves.is_none() => 0.0,
             _ => at_face.radius,
         };
-        let away = ends.map(|end| (end - centre).length());
-        let away = away[0].max(away[1]) + length + moved[0].points;
-        let off = away * (tilt + moved[1 - k].turn) + side_excess + 4.0 * errors + moved[0].points;
-        let along = |place: Vector, direction: Vector| (place - centre).dot(direction);
-        if along(ends[0], chord_direction) > off {
-            piece.from > section.first
-                || self.goes_on(piece.section, 0, |axis| along(ends[0], axis) > off)
-        } else if along(ends[1], chord_direction) < -off {
-            piece.to < section.last
-                || self.goes_on(piece.section, 1, |axis| along(ends[1], axis) < -off)
-        } else {
-            false
+        let farthest = |from: Vector| {
+            let away = ends.map(|end| (end - from).length());
+            away[0].max(away[1]) + length + moved[0].points
+        };
+        let off = |from: Vector, on_face: Real| {
+            farthest(from) * (tilt + moved[1 - k].turn) + on_face + 4.0 * errors + moved[0].points
+        };
+        let leads_from = |from: Vector, off: Real| {
+            let along = |place: Vector, direction: Vector| (place - from).dot(direction);
+            if along(ends[0], chord_direction) > off {
+                piece.from > section.first
+                    || self.goes_on(piece.section, 0, |axis| along(ends[0], axis) > off)
+            } else if along(ends[1], chord_direction) < -off {
+                piece.to < section.last
+                    || self.goes_on(piece.section, 1, |axis| along(ends[1], axis) < -off)
+            } else {
+                false
+            }
+        };
+        if leads_from(centre, off(centre, side_excess)) {
+            return true;
         }
+        let Some(face) = self.face(&pair.pieces[k], end) else { return false };
+        if tube.may_have_discs(section, arcs) {
+            return false;
+        }
+        let nearest = point_of_face(&face, at_face.radius, 0.5 * (ends[0] + ends[1]));
+        let shift = errors + moved[0].points;
+        let turn_of_face = face.tilt + moved[k].turn;
+        let on_face =
+            0.5 * length + 3.0 * shift + (at_face.radius + farthest(centre)) * turn_of_face;
+        leads_from(nearest, off(nearest, on_face))
+    }
+
+    /// Whether the robot certainly leads nearer to a face of the tested shape from a place.
+    fn leads_on_from(&self, pair: &SelfPair, k: usize, arc: Real) -> bool {
+        let (tube, number) = (self.tube(), pair.pieces[1 - k].section);
+        let section = tube.section(number);
+        let (length, around) = (section.end - section.start, AROUND_PLACE * section.radius);
+        let shares = [arc - around, arc + around].map(|arc| (arc - section.start) / length);
+        let mut near = *pair;
+        near.pieces[1 - k] = tube.between(number, shares.map(|share| share.clamp(0.0, 1.0)));
+        Self { moves: None, ..*self }.leads_on(&near, k)
     }
 
     /// Whether the robot continues beyond an end of a section, no thinner, in a direction for which
@@ -845,6 +892,9 @@ impl<'a> TubeWithItself<'a> {
             }
             place += (point - place) * 1.125;
         }
+        if best.upper < Real::INFINITY && self.leads_on_from(pair, k, best.arcs[1 - k]) {
+            return self.nothing(sections, best.arcs);
+        }
         best
     }
 
@@ -857,15 +907,18 @@ impl<'a> TubeWithItself<'a> {
         if !is_before {
             return (Real::INFINITY, face.centre);
         }
-        let across = offset - face.outward * ahead;
-        let size = across.length();
-        let share = if size > radius { radius / size } else { 1.0 };
-        let beyond = (size - radius).max(0.0);
-        (
-            Vector::new(ahead, beyond, 0.0).length() + self.off(face, radius),
-            face.centre + across * share,
-        )
+        let on_face = point_of_face(face, radius, place);
+        let beyond = ((offset - face.outward * ahead).length() - radius).max(0.0);
+        (Vector::new(ahead, beyond, 0.0).length() + self.off(face, radius), on_face)
     }
+}
+
+/// Returns the point of a face that is nearest to a place.
+fn point_of_face(face: &EndFace, radius: Real, place: Vector) -> Vector {
+    let offset = place - face.centre;
+    let across = offset - face.outward * offset.dot(face.outward);
+    let size = across.length();
+    face.centre + across * if size > radius { radius / size } else { 1.0 }
 }
 
 impl Refinable for TubeWithItself<'_> {

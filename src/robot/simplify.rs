@@ -1,267 +1,415 @@
-//! The fewest links that replace a finely sampled centreline.
+//! Stations along a finely sampled centreline, as close together as its bends require.
 //!
 //! # Definitions
-//! - Run: the vertices between two vertices that must stay. Chord: a segment between two vertices
-//!   of a run; it replaces the part of the run between them.
-//! - A chord is *admissible* if it and the part that it replaces are within the tolerance of each
-//!   other (Hausdorff distance), and its length is not 0.
+//! - Run: the vertices between two changes of radius. Station: a vertex that stays.
+//! - *Probe*: the largest distance of three vertices of the part that a chord replaces from the
+//!   chord's line.
+//! - *Share* of a chord: `sqrt(probe / tolerance)`. It grows in proportion to the chord's length,
+//!   since a chord of length l deviates by `kappa l^2 / 8` from a curve of curvature kappa.
 //!
-//! # Claim
-//! A chord is admissible if every vertex between its ends is within the tolerance of the chord.
-//!
-//! # Proof
-//! 1. **From the run to the chord.** The distance to the chord is convex along each segment, so it
-//!    is largest at a vertex.
-//! 2. **From the chord to the run.** Let c be a point of the chord. The run connects the ends of
-//!    the chord without a gap. So a point q of the run lies in the plane through c perpendicular to
-//!    the chord. Then c is the point of the chord nearest to q, and `|q - c|` is within the
-//!    tolerance by 1.
-//!
-//! So hooks and parts that run backwards need no test of their own. The distance is to the chord,
-//! not to its line: a hook that overshoots the end must fail.
+//! All chords deviate equally if their lengths are proportional to `1 / sqrt(kappa)`. Curvature
+//! from neighbouring samples would be mostly noise, so it is measured over chords.
 //!
 //! # Algorithm
-//! If a long chord fails, a shorter one may hold, and the reverse. So no greedy choice is safe. The
-//! fewest links are a shortest path over admissible chords, found breadth first in each run. The
-//! first chord that reaches a vertex settles it. From most vertices no unsettled vertex can be
-//! reached; three tests find that out, cheapest first:
+//! 1. **Walk.** From each station, predict the next one from the last share, probe it and correct
+//!    it, until no later sample has a share within one. This gives the number of chords and their
+//!    density.
+//! 2. **Spread.** Place the same number of chords, each with the same share.
+//! 3. **Verify.** Compare every vertex with its chord, as in `simplify`. If a chord fails, verify
+//!    the walk's own stations instead. Divide each chord that fails: a chord grows from each
+//!    station, doubling its segments while it holds.
 //!
-//! 1. **Wall.** The wall (`sight.rs`) that ended the last walk usually holds for the next vertex
-//!    too: nothing behind it can be reached. Cost: one comparison.
-//! 2. **Obstacle.** Before the wall, the vertex that ruled out the last chord usually rules out the
-//!    next one. Cost: one comparison per target.
-//! 3. **Walk.** Otherwise a walk goes vertex by vertex to the wall and decides nearly all chords.
-//!    Chords left open are compared with each vertex in between.
+//! # Faces
+//! A flat face is perpendicular to the chord that ends in it. Let u be the direction of the input's
+//! first segment, v the chord's direction and r the radius.
+//!
+//! 1. **At the face.** The rim moves by at most `r |u - v|`, which must be within the tolerance.
+//! 2. **Chords behind it.** These too are flat where Algorithm 1 has no room for a ball. The rim at
+//!    a chord's start reaches `r |u x v|` ahead of its centre. This must be at most the tolerance
+//!    plus the depth of the centre behind the face.
+//!
+//! So stations come closer together towards a face, while the rim requires more than the deviation
+//! does, and at most to the depth r. A single segment of the input is always accepted; at the face
+//! itself it has the face's direction.
 //!
 //! # Cost
-//! Let n be the number of vertices of a run and m the number that a link replaces.
-//!
-//! - On a smooth curve: a few walks per link, and one or two comparisons per other vertex. Each
-//!   link adds a part of `m^2`, for chords that a walk leaves open and for targets before a wall.
-//!   This part dominates if m is in the hundreds.
-//! - With noise about as large as the tolerance, admissible and other chords alternate. Every
-//!   vertex then costs a walk: `n m` steps.
-//! - At worst every chord is compared with all its vertices: `n^3`.
+//! A probe reads three vertices, a station takes at most [`PROBES`] probes, and there are no more
+//! stations than samples. Every vertex is verified at most twice, and four more times where chords
+//! are divided. So the cost is at most proportional to the number of points.
 
 use super::RobotError;
+use super::chain::check_segments;
 use super::compare::ToleranceSegment;
-use super::sight::{Sight, SightLimit};
-use super::stations::RadiusRuns;
+use super::scale::direction;
+use crate::distance::Scalar;
 use parry3d_f64::math::{Real, Vector};
+use std::borrow::Cow;
 
-/// Finds the fewest links that follow a centreline within a tolerance.
+/// Finds stations that follow a centreline within a tolerance, spread evenly by its curvature.
 ///
-/// Returns points and segment radii, ready for any constructor of a [`Chain`](crate::Chain). The
-/// points are a subset of the input's, in order. Both ends stay, and so does every point at which
-/// the radius changes. Each new segment and the part of the input that it replaces are within
-/// `tolerance` of each other (Hausdorff distance). No other choice of points with these properties
-/// has fewer links.
+/// Returns points and segment radii, ready for any constructor of a [`Chain`](crate::Chain). For a
+/// control loop, unlike [`simplify`](crate::simplify): for every shape the time is at most
+/// proportional to the number of points. The points are a subset of the input's, in order. Both
+/// ends stay, and so does every point at which the radius changes. Each new segment and the part
+/// of the input that it replaces are within `tolerance` of each other (Hausdorff distance); this is
+/// verified. `tolerance` is in the unit of the points.
 ///
-/// - `points`, `segment_radii`: as for [`Chain::from_centreline`](crate::Chain::from_centreline).
-/// - `tolerance`: in the unit of the points. With 0, only points exactly on the new segments are
-///   removed. Rounded points of an oblique straight line are seldom exactly on it: use the rounding
-///   error as tolerance for such lines.
+/// **Faces** are followed too, unlike in `simplify`: both ends of the robot and the wider side of
+/// each step, where a [`Chain`](crate::Chain) ends flat. The first segment there is so short that
+/// no point of the face moves by more than `tolerance`. The input's face is perpendicular to its
+/// own last segment, so sample as closely there as the face matters. This takes up to one or two
+/// links per face more than the fewest. It is worth it: on a bent tube, a tilted face is the
+/// largest error of a fine chain.
 ///
-/// On a smooth curve the time is proportional to the number of points if links replace few points.
-/// It grows with the square of that number if links replace hundreds. At worst, with noise about as
-/// large as the tolerance or with loops, it grows with the cube of the points between two changes
-/// of radius. For bounded time use [`stations`](crate::stations): it takes a few more links and
-/// time proportional to the points.
-///
-/// Repeated points are removed first, with the radius of the segment between them. (If that radius
-/// differs from a neighbour's, the point counts as a change of radius.) A new segment always has a
-/// length: a loop is never replaced by the point where it closes.
+/// Repeated points are removed first, as in `simplify`.
 ///
 /// ```
-/// use parry_continuum::{parry::math::Vector, simplify};
+/// use parry_continuum::{parry::math::Vector, stations};
 ///
 /// let arc: Vec<_> = (0..=90).map(|i| f64::from(i).to_radians().sin_cos()).collect();
 /// let arc: Vec<_> = arc.iter().map(|&(sin, cos)| Vector::new(cos, sin, 0.0)).collect();
-/// let (points, radii) = simplify(&arc, &[0.1; 90], 0.01)?;
-/// assert_eq!(points.len(), 7);
-/// assert_eq!(radii, [0.1; 6]);
+/// let (points, radii) = stations(&arc, &[0.0; 90], 0.01)?;
+/// assert_eq!(points.len(), 7); // a wire has no faces: 15 degrees each
+/// let (points, radii) = stations(&arc, &[0.2; 90], 0.01)?;
+/// assert_eq!(points.len(), 8); // short links at the faces: one more in all
 /// # Ok::<(), parry_continuum::RobotError>(())
 /// ```
 ///
 /// # Errors
-/// As [`Chain::from_centreline`](crate::Chain::from_centreline); a tolerance that is negative or
-/// not finite.
-pub fn simplify(
+/// As [`simplify`](crate::simplify).
+pub fn stations(
     points: &[Vector],
     segment_radii: &[Real],
     tolerance: Real,
 ) -> Result<(Vec<Vector>, Vec<Real>), RobotError> {
     let stretches = RadiusRuns::of(points, segment_radii, tolerance)?;
-    let (mut kept, mut radii) = (vec![stretches.first_point()], vec![]);
-    for stretch in stretches.iter() {
-        let path = Search::new(stretch.points, tolerance).fewest_chords();
-        radii.resize(radii.len() + path.len(), stretch.radius);
-        kept.extend(path.into_iter().map(|vertex| stretch.points[vertex]));
+    let (mut kept, mut radii) = (Vec::with_capacity(ROOM), Vec::with_capacity(ROOM));
+    kept.push(stretches.first_point());
+    let mut found = Vec::with_capacity(ROOM);
+    let mut stretches = stretches.iter().peekable();
+    let mut radius_before = Real::NEG_INFINITY;
+    while let Some(stretch) = stretches.next() {
+        let radius_after = stretches.peek().map_or(Real::NEG_INFINITY, |next| next.radius);
+        let faces = [radius_before, radius_after].map(|beside| stretch.radius > beside);
+        found.clear();
+        StationRun::new(&stretch, tolerance, faces).divide(&mut found);
+        kept.extend(found.iter().map(|&vertex| stretch.points[vertex]));
+        radii.resize(radii.len() + found.len(), stretch.radius);
+        radius_before = stretch.radius;
     }
     Ok((kept, radii))
 }
 
-/// Breadth-first search for the fewest chords of a run.
-struct Search<'a> {
-    stretch: &'a [Vector],
+/// Initial capacity for stations.
+const ROOM: usize = 64;
+
+/// Most probes per station.
+const PROBES: usize = 8;
+
+/// A run of one radius in which stations are placed.
+struct StationRun<'a> {
+    points: &'a [Vector],
+    radius: Real,
     tolerance: Real,
-    /// The predecessor of each settled vertex. The first vertex has none.
-    previous: Vec<Option<usize>>,
-    /// The first vertex that is not settled.
-    first_open: usize,
-    /// The settled vertices, in the order of settling.
-    queue: Vec<usize>,
-    /// The vertex that last ruled out a chord (test 2).
-    obstacle: usize,
-    /// The wall that ended the last walk (test 1).
-    wall: Option<SightLimit>,
-    /// Number of comparisons of a vertex with a chord or a gate.
-    #[cfg(test)]
-    steps: std::cell::Cell<usize>,
+    /// A power of two that scales the run near one, so that squares neither overflow nor underflow.
+    scale: Real,
+    /// The input's directions at start and end, if a face there has a rim that can move too far.
+    faces: [Option<Vector>; 2],
 }
 
-impl<'a> Search<'a> {
-    fn new(stretch: &'a [Vector], tolerance: Real) -> Self {
-        Self {
-            stretch,
-            tolerance,
-            previous: vec![None; stretch.len()],
-            first_open: 1,
-            queue: vec![0],
-            obstacle: 0,
-            wall: None,
-            #[cfg(test)]
-            steps: Default::default(),
+impl<'a> StationRun<'a> {
+    fn new(stretch: &RadiusRun<'a>, tolerance: Real, is_face: [bool; 2]) -> Self {
+        let (points, radius) = (stretch.points, stretch.radius);
+        let start = points[0];
+        let extent = points.iter().fold(Vector::ZERO, |extent, &p| extent.max((p - start).abs()));
+        let scale = extent.max_element().power_of_two_to_unity();
+        // In every direction, a rim moves by at most the diameter.
+        let matters = 2.0 * radius > tolerance;
+        let last = points.len() - 1;
+        let faces = [
+            (is_face[0] && matters).then(|| direction(points[1] - start)),
+            (is_face[1] && matters).then(|| direction(points[last] - points[last - 1])),
+        ];
+        Self { points, radius, tolerance, scale, faces }
+    }
+
+    /// Appends the stations after the first vertex to `found`.
+    fn divide(&self, found: &mut Vec<usize>) {
+        let last = self.points.len() - 1;
+        let graded = |face: Option<Vector>, vertex: usize, end: usize| {
+            face.map_or(vec![], |direction| self.grade(vertex, end, direction))
+        };
+        let front = graded(self.faces[0], 0, last);
+        let from = front.last().copied().unwrap_or(0);
+        let back = graded(self.faces[1], last, from);
+        let to = back.last().copied().unwrap_or(last);
+
+        let ends = std::iter::once(0).chain(front.iter().copied());
+        ends.zip(&front).for_each(|(from, &to)| self.verify_and_add(from, to, found));
+        self.spread(from, to, found);
+        let ends = back.iter().rev().copied().chain([last]);
+        ends.clone().zip(ends.skip(1)).for_each(|(from, to)| self.verify_and_add(from, to, found));
+    }
+
+    /// Returns the stations next to a face while its rim requires closer ones than the deviation
+    /// (see **Faces**). They run from the face's vertex and stop before `end`.
+    fn grade(&self, face: usize, end: usize, direction: Vector) -> Vec<usize> {
+        let mut stations = vec![];
+        let vertex = |at: usize, steps: usize| if face < end { at + steps } else { at - steps };
+        let (mut at, mut guess) = (face, 2);
+        loop {
+            let depth = direction.dot(self.points[at] - self.points[face]).abs();
+            let share = |steps: usize| {
+                let (from, to) = (at.min(vertex(at, steps)), at.max(vertex(at, steps)));
+                let reach = if at == face {
+                    self.rim_moves(from, to, direction)
+                } else {
+                    self.rim_reaches(from, to, direction)
+                };
+                if reach > 0.0 { reach / (self.tolerance + depth) } else { 0.0 }
+            };
+            let (steps, _) = foresee(guess, at.abs_diff(end), share);
+            let next = vertex(at, steps);
+            if depth > self.radius || next == end || self.share(at.min(next), at.max(next)) > 1.0 {
+                return stations;
+            }
+            stations.push(next);
+            (at, guess) = (next, 2 * steps);
         }
     }
 
-    /// Returns the vertices of a shortest path of admissible chords, without the first vertex.
-    fn fewest_chords(mut self) -> Vec<usize> {
-        let last = self.stretch.len() - 1;
-        self.settle(last);
-        let mut path: Vec<_> =
-            std::iter::successors(Some(last), |&vertex| self.previous[vertex]).collect();
-        path.pop();
-        path.reverse();
-        path
+    /// Appends stations after `from`, up to `to` (steps 1 to 3).
+    fn spread(&self, from: usize, to: usize, found: &mut Vec<usize>) {
+        let mut chords: Vec<(usize, Real)> = Vec::with_capacity(ROOM);
+        let (mut at, mut guess) = (from, to - from);
+        while at < to {
+            let (steps, share) = foresee(guess, to - at, |steps| self.share(at, at + steps));
+            at += steps;
+            chords.push((at, share));
+            guess = steps;
+        }
+        let before = found.len();
+        if !self.spread_evenly(from, &chords, found) {
+            found.truncate(before);
+            let mut at = from;
+            for (next, _) in chords {
+                self.verify_and_add(at, next, found);
+                at = next;
+            }
+        }
     }
 
-    /// Settles vertices in order of their number of links, and farthest first among equals, until
-    /// `last` is settled.
-    fn settle(&mut self, last: usize) {
-        let sight = Sight::new(self.stretch, self.tolerance);
-        let mut targets = Vec::new();
-        let mut next = 0;
-        while self.previous[last].is_none() {
-            // The queue cannot run dry: each vertex reaches the next one.
-            let from = self.queue[next];
-            next += 1;
-            while self.previous[self.first_open].is_some() {
-                self.first_open += 1;
+    /// Appends one station per chord, each with an equal part of the sum of shares (step 2).
+    ///
+    /// Returns false if a chord fails.
+    fn spread_evenly(&self, from: usize, chords: &[(usize, Real)], found: &mut Vec<usize>) -> bool {
+        let whole: Real = chords.iter().map(|(_, share)| share).sum();
+        let part = whole / chords.len() as Real;
+        let mut ahead = chords.iter().scan((from, 0.0), |(start, passed), &(end, share)| {
+            let chord = (*start, end, *passed, share);
+            (*start, *passed) = (end, *passed + share);
+            Some(chord)
+        });
+        let mut at = from;
+        let Some(mut chord) = ahead.next() else { return true };
+        for number in 1..=chords.len() {
+            let target = number as Real * part;
+            while chord.2 + chord.3 < target
+                && let Some(next) = ahead.next()
+            {
+                chord = next;
             }
-            if self.sees_nothing_new(from, &sight) {
-                continue;
+            let (start, end, passed, share) = chord;
+            let is_last = number == chords.len();
+            let next = if is_last {
+                chords[number - 1].0
+            } else {
+                self.vertex_at((target - passed) / share, start, end)
+            };
+            if next <= at || !self.is_admissible(at, next) {
+                return false;
             }
-            let previous = &self.previous;
-            self.wall = sight.look(from, |vertex| previous[vertex].is_none(), &mut targets);
-            self.count(self.wall.map_or(last, SightLimit::vertex) - from);
-            for target in targets.iter().rev() {
-                let to = target.vertex;
-                if target.is_sure || self.is_admissible(from, to) {
-                    self.previous[to] = Some(from);
-                    self.queue.push(to);
-                    if to == last {
-                        return;
-                    }
+            found.push(next);
+            at = next;
+        }
+        true
+    }
+
+    /// Returns the first vertex after `start` beyond a fraction of the chord, at most `end`.
+    fn vertex_at(&self, fraction: Real, start: usize, end: usize) -> usize {
+        let chord = (self.points[end] - self.points[start]) * self.scale;
+        let length = fraction * chord.length_squared();
+        let is_before = |&p: &Vector| ((p - self.points[start]) * self.scale).dot(chord) < length;
+        start + 1 + self.points[start + 1..end].partition_point(is_before)
+    }
+
+    /// Returns the share of a chord, from three of the vertices between its ends.
+    fn share(&self, from: usize, to: usize) -> Real {
+        let start = self.points[from];
+        let chord = (self.points[to] - start) * self.scale;
+        let cross_squared = [1, 2, 3].map(|quarter| {
+            let vertex = self.points[from + (to - from) * quarter / 4];
+            ((vertex - start) * self.scale).cross(chord).length_squared()
+        });
+        let largest = cross_squared.into_iter().fold(0.0, Real::max);
+        let tolerance = self.tolerance * self.scale;
+        // A closed loop has no chord.
+        if chord == Vector::ZERO {
+            Real::INFINITY
+        } else if largest == 0.0 {
+            0.0
+        } else {
+            ((largest / chord.length_squared()).sqrt() / tolerance).sqrt()
+        }
+    }
+
+    /// Returns an upper bound on how far a face's rim moves if a chord replaces the input (case 1).
+    fn rim_moves(&self, from: usize, to: usize, face: Vector) -> Real {
+        self.radius * (direction(self.points[to] - self.points[from]) - face).length()
+    }
+
+    /// Returns how far the rim at a chord's end reaches ahead of its centre (case 2).
+    fn rim_reaches(&self, from: usize, to: usize, face: Vector) -> Real {
+        self.radius * direction(self.points[to] - self.points[from]).cross(face).length()
+    }
+
+    /// Appends the station `to`, preceded by as many others as needed (step 3).
+    fn verify_and_add(&self, from: usize, to: usize, found: &mut Vec<usize>) {
+        let mut at = from;
+        if self.is_admissible(from, to) {
+            at = to;
+            found.push(to);
+        }
+        while at < to {
+            let mut steps = 1;
+            while at + steps < to {
+                let twice = (2 * steps).min(to - at);
+                if !self.is_admissible(at, at + twice) {
+                    break;
+                }
+                steps = twice;
+            }
+            at += steps;
+            found.push(at);
+        }
+    }
+
+    /// Returns whether a chord, and the rim of a face at its end, are within the tolerance.
+    fn is_admissible(&self, from: usize, to: usize) -> bool {
+        let ends = [(0, from), (self.points.len() - 1, to)];
+        let is_face_fine = |(face, (vertex, end)): (&Option<Vector>, (usize, usize))| {
+            vertex != end
+                || face.is_none_or(|face| self.rim_moves(from, to, face) <= self.tolerance)
+        };
+        let (start, end) = (self.points[from], self.points[to]);
+        // A single segment replaces itself.
+        from + 1 == to
+            || start != end && self.faces.iter().zip(ends).all(is_face_fine) && {
+                let chord = ToleranceSegment::new(start, end, self.tolerance);
+                self.points[from + 1..to].iter().all(|&p| chord.has_near(p))
+            }
+    }
+}
+
+/// Returns the largest number of steps, from 1 to `most`, whose share is at most one, and that
+/// share. Exact if the share is proportional to the steps, and usually close otherwise.
+fn foresee(guess: usize, most: usize, share: impl Fn(usize) -> Real) -> (usize, Real) {
+    let (mut good, mut bad) = ((1, 0.0), (most + 1, 0.0));
+    // One step is always accepted, and its share of 0 carries no information.
+    let mut steps = guess.max(2).min(most);
+    for _ in 0..PROBES {
+        let probed = share(steps);
+        if probed <= 1.0 {
+            good = (steps, probed);
+        } else {
+            bad = (steps, probed);
+        }
+        // With tolerance 0 a share is infinite or 0: bisect.
+        let ideal = if probed < Real::INFINITY {
+            (steps as Real / probed) as usize
+        } else {
+            (good.0 + bad.0) / 2
+        };
+        steps = ideal.clamp(good.0, (bad.0 - 1).max(good.0));
+        if steps == good.0 {
+            break;
+        }
+    }
+    if good.0 == 1 { (1, (bad.1 / bad.0 as Real).min(1.0)) } else { good }
+}
+
+/// A centreline without repeated points, with the indices of the points that must stay.
+pub(super) struct RadiusRuns<'a> {
+    points: Cow<'a, [Vector]>,
+    /// The two ends and each change of radius, ascending.
+    must_stay: Vec<usize>,
+    /// The radius of each run between two points that must stay.
+    radii: Vec<Real>,
+}
+
+/// The points of one run. Both ends must stay, and no two consecutive points are equal.
+pub(crate) struct RadiusRun<'a> {
+    pub(super) points: &'a [Vector],
+    pub(super) radius: Real,
+}
+
+impl<'a> RadiusRuns<'a> {
+    /// Splits a centreline, to be simplified within a tolerance, into runs.
+    ///
+    /// A segment without length is removed with its radius. If that radius differs from a
+    /// neighbour's, the point counts as a change of radius.
+    ///
+    /// # Errors
+    /// As [`check_segments`]; a tolerance that is negative or not finite; all points equal.
+    pub(super) fn of(
+        points: &'a [Vector],
+        segment_radii: &'a [Real],
+        tolerance: Real,
+    ) -> Result<Self, RobotError> {
+        check_segments(points, segment_radii)?;
+        if !(0.0..Real::INFINITY).contains(&tolerance) {
+            return Err(RobotError::Negative { parameter: "tolerance", value: tolerance });
+        }
+        let has_repeats = points.windows(2).any(|ends| ends[0] == ends[1]);
+        let mut distinct = Vec::with_capacity(if has_repeats { points.len() } else { 0 });
+        distinct.extend_from_slice(if has_repeats { &points[..1] } else { &[] });
+        let (mut must_stay, mut radii) = (vec![0], vec![]);
+        // `here`: index of the last distinct point. `last_radius`: radius of the last segment.
+        // `radius_before`: radius of the last segment that has a length.
+        let (mut here, mut last_radius, mut radius_before) =
+            (0, segment_radii[0], segment_radii[0]);
+        for (ends, &radius) in points.windows(2).zip(segment_radii) {
+            if radius != last_radius && must_stay.last() != Some(&here) {
+                must_stay.push(here);
+                radii.push(radius_before);
+            }
+            last_radius = radius;
+            if ends[0] != ends[1] {
+                here += 1;
+                radius_before = radius;
+                if has_repeats {
+                    distinct.push(ends[1]);
                 }
             }
         }
-    }
-
-    /// Returns whether tests 1 and 2 rule out every unsettled vertex without a walk.
-    fn sees_nothing_new(&self, from: usize, sight: &Sight) -> bool {
-        let first = self.first_open.max(from + 1);
-        // On an arc, the nearest wall has distances in the ratio 1 : 1 + sqrt(2) (12 / 29).
-        let likely = SightLimit::new(from + (first - from) * 12 / 29, first);
-        // The known wall first, if it leaves no more vertices open.
-        let known = self.wall;
-        let order = match known {
-            Some(wall) if wall.vertex() <= first => [known, Some(likely)],
-            _ => [Some(likely), known],
-        };
-        let wall = order.into_iter().flatten().find(|&wall| {
-            self.count(1);
-            sight.is_wall(from, wall)
-        });
-        let end = wall.map_or(self.stretch.len() - 1, SightLimit::vertex) + 1;
-        // At most as many comparisons as a walk.
-        end < first + (first - from)
-            && (first..end).filter(|&to| self.previous[to].is_none()).all(|to| {
-                self.count(1);
-                self.stretch[from] == self.stretch[to]
-                    || from < self.obstacle
-                        && self.obstacle < to
-                        && !ToleranceSegment::new(
-                            self.stretch[from],
-                            self.stretch[to],
-                            self.tolerance,
-                        )
-                        .has_near(self.stretch[self.obstacle])
-            })
-    }
-
-    /// Returns whether a chord is admissible (see the claim above).
-    fn is_admissible(&mut self, from: usize, to: usize) -> bool {
-        if self.stretch[from] == self.stretch[to] {
-            return false;
+        if here == 0 {
+            return Err(RobotError::AllPointsEqual);
         }
-        let chord = ToleranceSegment::new(self.stretch[from], self.stretch[to], self.tolerance);
-        let is_off = |&vertex: &usize| {
-            self.count(1);
-            !chord.has_near(self.stretch[vertex])
-        };
-        let suspect = (from < self.obstacle && self.obstacle < to).then_some(self.obstacle);
-        let found = suspect.into_iter().chain(from + 1..to).find(is_off);
-        self.obstacle = found.unwrap_or(self.obstacle);
-        found.is_none()
-    }
-
-    #[cfg(test)]
-    fn count(&self, steps: usize) {
-        self.steps.set(self.steps.get() + steps);
-    }
-
-    #[cfg(not(test))]
-    fn count(&self, _: usize) {}
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Returns the comparisons and the links for a sine of `count` points within 1e-3.
-    fn steps(count: u32) -> (usize, usize) {
-        let point = |k| {
-            let x = 10.0 * Real::from(k) / Real::from(count);
-            Vector::new(x, x.sin(), 0.0)
-        };
-        let points: Vec<_> = (0..=count).map(point).collect();
-        let mut search = Search::new(&points, 1e-3);
-        search.settle(points.len() - 1);
-        let steps = search.steps.get();
-        (steps, search.fewest_chords().len())
-    }
-
-    /// With ever more points on one curve, the comparisons stay far below the pairs of vertices.
-    #[test]
-    fn most_pairs_are_never_compared() {
-        for count in [500, 1000, 2000, 4000, 8000] {
-            let (steps, links) = steps(count);
-            let count = count as usize;
-            assert!(links < 90, "{links}");
-            // Linear, plus a part of m^2 per link.
-            let limit = 12 * count + count * count / links / 3;
-            assert!(steps < limit, "{count}: {steps}, {limit}");
+        if must_stay.last() != Some(&here) {
+            must_stay.push(here);
+            radii.push(radius_before);
         }
+        let points = if has_repeats { Cow::Owned(distinct) } else { Cow::Borrowed(points) };
+        Ok(Self { points, must_stay, radii })
+    }
+
+    pub(super) fn first_point(&self) -> Vector {
+        self.points[0]
+    }
+
+    pub(super) fn iter(&self) -> impl ExactSizeIterator<Item = RadiusRun<'_>> {
+        let ends = self.must_stay.windows(2);
+        ends.zip(&self.radii)
+            .map(|(ends, &radius)| RadiusRun { points: &self.points[ends[0]..=ends[1]], radius })
     }
 }

@@ -6,7 +6,7 @@
 use super::own_tube::winding;
 use super::tube::all_ways;
 use continuum_testing::narrow_phase::disc_disc;
-use continuum_testing::{Arcs, Random};
+use continuum_testing::{Arcs, Random, rounds};
 use parry_continuum::distance::Vec3;
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::proximity::{Decision, ProximityError, SelfQuery};
@@ -270,6 +270,8 @@ struct Seen {
     contact: usize,
     undecided: usize,
     wide: usize,
+    /// Contacts of a curve with a place that is no local minimum, beyond the resolution.
+    beside: usize,
 }
 
 const RESOLUTION: f64 = 1e-3;
@@ -306,6 +308,7 @@ fn ask(query: &mut SelfQuery, arcs: Arcs, margins: &[f64], seen: &mut Seen, name
                 Decision::Contact => {
                     assert!(truth.all <= margin + 1e-6, "{}", told());
                     seen.contact += 1;
+                    seen.beside += usize::from(way == 0 && truth.minima > margin + RESOLUTION);
                 }
                 _ if margin > width - 2.0 * RESOLUTION => seen.wide += 1,
                 _ => {
@@ -380,4 +383,44 @@ fn aligned_tubes_are_as_near_to_themselves_as_their_discs() {
         );
     }
     assert!(seen.touching > 5 && seen.free > 10 && seen.none > 10, "{seen:?}");
+}
+
+/// Two bends that bring the tip back to the tube's side. The nearest place in front of the tip's
+/// face need not be a local minimum: from it the tube leads nearer to what is behind the face.
+fn tip_beside_bend(random: &mut Random) -> Arcs {
+    let mut arcs = Arcs::from_frame(random.pose(10.0));
+    let radii = [random.between(0.6, 1.0), random.between(0.4, 1.0)];
+    let mut way = random.direction();
+    for (k, radius) in radii.into_iter().enumerate() {
+        let curvature = random.between(0.3, 0.8) / 5.0 / radius;
+        let turn = [random.between(1.0, 2.5), random.between(2.5, 3.6)][k];
+        way = Vector::new(way.x, way.y, 0.0).normalize();
+        arcs.push(radius, &[(turn / curvature, way * curvature)]);
+        way = -way + 0.3 * random.direction();
+    }
+    arcs
+}
+
+#[test]
+fn beside_a_tip_only_local_minima_count() {
+    let (mut query, mut seen) = (SelfQuery::new(), Seen::default());
+    // Length and curvature of two bends, and their radii. In front of the face the first tube is at
+    // 8.37 and the second at 9.01; the local minima are at 10.48 and 9.03.
+    let bends = [
+        ([(24.2354, [-0.06605, 0.05248]), (22.2537, [0.069, -0.14808])], [0.6832, 0.564]),
+        ([(16.3030, [-0.04048, 0.09963]), (16.8159, [0.08321, -0.16271])], [1.0; 2]),
+    ];
+    for (bends, radii) in bends {
+        let mut arcs = Arcs::from_frame(Pose::IDENTITY);
+        for ((length, [x, y]), radius) in bends.into_iter().zip(radii) {
+            arcs.push(radius, &[(length, Vector::new(x, y, 0.0))]);
+        }
+        ask(&mut query, arcs, &[9.02, 10.2], &mut seen, "two bends");
+    }
+    let mut random = Random::new(3);
+    for round in 0..rounds(40) {
+        ask(&mut query, tip_beside_bend(&mut random), &[], &mut seen, &format!("{round}"));
+    }
+    assert_eq!(seen.beside, 0, "{seen:?}");
+    assert!(seen.contact > 40 && seen.clear > 40, "{seen:?}");
 }
