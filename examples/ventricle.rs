@@ -19,7 +19,7 @@ use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{
     BvhSearch, Clearance, Exhaustive, LinkProximity, Proximity, TubePiece,
 };
-use parry_continuum::{Cap, Chain, RobotError, stations};
+use parry_continuum::{Cap, Chain, RobotError, simplify};
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Duration;
@@ -191,7 +191,7 @@ fn chain(options: &Options, robot: &Robot, joints: &Joints) -> Result<Chain, Rob
         }
         Some(tolerance) => {
             let curve = robot.centreline(joints, CURVE);
-            stations(&curve.points, &curve.radii, tolerance)?
+            simplify(&curve.points, &curve.radii, tolerance)?
         }
     };
     match options.model {

@@ -32,8 +32,8 @@
 //! # The tour
 //! - **The robot.** A [`Chain`] is a sequence of [`ModifiedCylinder`]s: links whose two ends are
 //!   [`Cap::Flat`] or [`Cap::Round`]. [`Chain::from_centreline`] chooses the caps;
-//!   [`Chain::capsules`] and [`Chain::cylinders`] are the simpler models. [`simplify`] finds the
-//!   fewest links within a tolerance; [`stations`] finds nearly as few in far less time.
+//!   [`Chain::capsules`] and [`Chain::cylinders`] are the simpler models. [`simplify`] finds
+//!   few links within a tolerance of a sampled curve.
 //! - **The curve.** A [`Tube`] is the robot as a curve, without links: samples or a function. Each
 //!   query names its tolerance. [`BvhSearch::clearance`](proximity::BvhSearch::clearance) bounds
 //!   the clearance from both sides.
@@ -113,7 +113,7 @@ pub use motion::{
     RigidMotion, Speed, bending_displacement, bending_speed, verify_motion,
 };
 pub use robot::{
-    Cap, Chain, MatrixError, ModifiedCylinder, RobotError, pose_from_matrix, simplify, stations,
+    Cap, Chain, MatrixError, ModifiedCylinder, RobotError, pose_from_matrix, simplify,
 };
 
 /// Runs the code of the README as doc-tests. One example needs rapier.

@@ -37,7 +37,7 @@ pub struct BendingSection {
 /// count from the base.
 ///
 /// ```
-/// use parry_continuum::{BendingSection, Chain, ConstantCurvature, stations};
+/// use parry_continuum::{BendingSection, Chain, ConstantCurvature, simplify};
 ///
 /// // A tendon robot in mm. Its second section bends by 0.05 / mm, 30 degrees from x.
 /// let (sin, cos) = 30_f64.to_radians().sin_cos();
@@ -47,7 +47,7 @@ pub struct BendingSection {
 ///
 /// let tube = robot.tube()?; // the curve itself
 /// let (points, radii) = robot.points(100); // or points along it,
-/// let (few, radii) = stations(&points, &radii, 0.05)?; // few suffice for 0.05 mm
+/// let (few, radii) = simplify(&points, &radii, 0.05)?; // few suffice for 0.05 mm
 /// let chain = Chain::from_centreline(&few, &radii)?;
 /// # assert!(few.len() < points.len() / 2 && chain.links().len() + 1 == few.len());
 /// # let end = chain.links().last().map(|link| link.end()).unwrap_or_default();
@@ -108,7 +108,7 @@ impl ConstantCurvature {
     /// Returns points along the centreline and the radii of the segments between them.
     ///
     /// Each section is divided into `segments` segments of equal length, at least one. The result
-    /// fits every constructor of a [`Chain`](crate::Chain), and [`stations`](crate::stations). A
+    /// fits every constructor of a [`Chain`](crate::Chain), and [`simplify`](crate::simplify). A
     /// segment of length l deviates from an arc of curvature k by `k l^2 / 8`.
     pub fn points(&self, segments: usize) -> (Vec<Vector>, Vec<Real>) {
         let segments = segments.max(1);

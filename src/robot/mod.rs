@@ -11,9 +11,7 @@ mod registration;
 mod scale;
 #[cfg(feature = "serde-serialize")]
 mod serialised;
-mod sight;
 mod simplify;
-mod stations;
 mod to_trimesh;
 
 pub(crate) use algorithm_1::from_segment_radii;
@@ -28,4 +26,3 @@ pub use registration::{MatrixError, pose_from_matrix};
 pub(crate) use registration::{NotRigid, rigid, rotation_by};
 pub(crate) use scale::{direction, length};
 pub use simplify::simplify;
-pub use stations::stations;

@@ -1,7 +1,10 @@
-//! Stations along a finely sampled centreline, as close together as its bends require.
+//! Few links in place of a finely sampled centreline, as short as its bends require.
 //!
 //! # Definitions
-//! - Run: the vertices between two changes of radius. Station: a vertex that stays.
+//! - Run: the vertices between two changes of radius. Station: a vertex that stays. Chord: a segment
+//!   between two vertices of a run; it replaces the part of the run between them.
+//! - A chord *holds* if it and the part that it replaces are within the tolerance of each other
+//!   (Hausdorff distance), and its length is not 0.
 //! - *Probe*: the largest distance of three vertices of the part that a chord replaces from the
 //!   chord's line.
 //! - *Share* of a chord: `sqrt(probe / tolerance)`. It grows in proportion to the chord's length,
@@ -10,13 +13,27 @@
 //! All chords deviate equally if their lengths are proportional to `1 / sqrt(kappa)`. Curvature
 //! from neighbouring samples would be mostly noise, so it is measured over chords.
 //!
+//! # Claim
+//! A chord holds if every vertex between its ends is within the tolerance of the chord.
+//!
+//! # Proof
+//! 1. **From the run to the chord.** The distance to the chord is convex along each segment, so it
+//!    is largest at a vertex.
+//! 2. **From the chord to the run.** Let c be a point of the chord. The run connects the ends of
+//!    the chord without a gap. So a point q of the run lies in the plane through c perpendicular to
+//!    the chord. Then c is the point of the chord nearest to q, and `|q - c|` is within the
+//!    tolerance by 1.
+//!
+//! So hooks and parts that run backwards need no test of their own. The distance is to the chord,
+//! not to its line: a hook that overshoots the end must fail.
+//!
 //! # Algorithm
 //! 1. **Walk.** From each station, predict the next one from the last share, probe it and correct
 //!    it, until no later sample has a share within one. This gives the number of chords and their
 //!    density.
 //! 2. **Spread.** Place the same number of chords, each with the same share.
-//! 3. **Verify.** Compare every vertex with its chord, as in `simplify`. If a chord fails, verify
-//!    the walk's own stations instead. Divide each chord that fails: a chord grows from each
+//! 3. **Verify.** Compare every vertex with its chord. If a chord fails, verify the walk's own
+//!    stations instead. Divide each chord that fails: a chord grows from each
 //!    station, doubling its segments while it holds.
 //!
 //! # Faces
@@ -45,39 +62,47 @@ use crate::distance::Scalar;
 use parry3d_f64::math::{Real, Vector};
 use std::borrow::Cow;
 
-/// Finds stations that follow a centreline within a tolerance, spread evenly by its curvature.
+/// Replaces a finely sampled centreline by few links, within a tolerance of it.
 ///
-/// Returns points and segment radii, ready for any constructor of a [`Chain`](crate::Chain). For a
-/// control loop, unlike [`simplify`](crate::simplify): for every shape the time is at most
-/// proportional to the number of points. The points are a subset of the input's, in order. Both
-/// ends stay, and so does every point at which the radius changes. Each new segment and the part
-/// of the input that it replaces are within `tolerance` of each other (Hausdorff distance); this is
-/// verified. `tolerance` is in the unit of the points.
+/// Returns points and segment radii, ready for any constructor of a [`Chain`](crate::Chain). The
+/// points are a subset of the input's, in order. Both ends stay, and so does every point at which
+/// the radius changes. Each new segment and the part of the input that it replaces are within
+/// `tolerance` of each other (Hausdorff distance); this is verified. On a smooth curve there are
+/// nearly as few links as possible, and all of them deviate equally.
 ///
-/// **Faces** are followed too, unlike in `simplify`: both ends of the robot and the wider side of
-/// each step, where a [`Chain`](crate::Chain) ends flat. The first segment there is so short that
-/// no point of the face moves by more than `tolerance`. The input's face is perpendicular to its
-/// own last segment, so sample as closely there as the face matters. This takes up to one or two
-/// links per face more than the fewest. It is worth it: on a bent tube, a tilted face is the
-/// largest error of a fine chain.
+/// - `points`, `segment_radii`: as for [`Chain::from_centreline`](crate::Chain::from_centreline).
+/// - `tolerance`: in the unit of the points. With 0, only points exactly on the new segments are
+///   removed. Rounded points of an oblique straight line are seldom exactly on it: use the rounding
+///   error as tolerance for such lines.
 ///
-/// Repeated points are removed first, as in `simplify`.
+/// The time is at most proportional to the number of points, for every shape.
+///
+/// **Faces** are followed too: both ends of the robot and the wider side of each step, where a
+/// [`Chain`](crate::Chain) ends flat. The first segment there is so short that no point of the face
+/// moves by more than `tolerance`. The input's face is perpendicular to its own last segment, so
+/// sample as closely there as the face matters. This takes one or two links per face. It is worth
+/// it: on a bent tube, a tilted face is the largest error of a fine chain.
+///
+/// Repeated points are removed first, with the radius of the segment between them. (If that radius
+/// differs from a neighbour's, the point counts as a change of radius.) A new segment always has a
+/// length: a loop is never replaced by the point where it closes.
 ///
 /// ```
-/// use parry_continuum::{parry::math::Vector, stations};
+/// use parry_continuum::{parry::math::Vector, simplify};
 ///
 /// let arc: Vec<_> = (0..=90).map(|i| f64::from(i).to_radians().sin_cos()).collect();
 /// let arc: Vec<_> = arc.iter().map(|&(sin, cos)| Vector::new(cos, sin, 0.0)).collect();
-/// let (points, radii) = stations(&arc, &[0.0; 90], 0.01)?;
+/// let (points, radii) = simplify(&arc, &[0.0; 90], 0.01)?;
 /// assert_eq!(points.len(), 7); // a wire has no faces: 15 degrees each
-/// let (points, radii) = stations(&arc, &[0.2; 90], 0.01)?;
+/// let (points, radii) = simplify(&arc, &[0.2; 90], 0.01)?;
 /// assert_eq!(points.len(), 8); // short links at the faces: one more in all
 /// # Ok::<(), parry_continuum::RobotError>(())
 /// ```
 ///
 /// # Errors
-/// As [`simplify`](crate::simplify).
-pub fn stations(
+/// As [`Chain::from_centreline`](crate::Chain::from_centreline); a tolerance that is negative or
+/// not finite.
+pub fn simplify(
     points: &[Vector],
     segment_radii: &[Real],
     tolerance: Real,
@@ -226,7 +251,7 @@ impl<'a> StationRun<'a> {
             } else {
                 self.vertex_at((target - passed) / share, start, end)
             };
-            if next <= at || !self.is_admissible(at, next) {
+            if next <= at || !self.holds(at, next) {
                 return false;
             }
             found.push(next);
@@ -276,7 +301,7 @@ impl<'a> StationRun<'a> {
     /// Appends the station `to`, preceded by as many others as needed (step 3).
     fn verify_and_add(&self, from: usize, to: usize, found: &mut Vec<usize>) {
         let mut at = from;
-        if self.is_admissible(from, to) {
+        if self.holds(from, to) {
             at = to;
             found.push(to);
         }
@@ -284,7 +309,7 @@ impl<'a> StationRun<'a> {
             let mut steps = 1;
             while at + steps < to {
                 let twice = (2 * steps).min(to - at);
-                if !self.is_admissible(at, at + twice) {
+                if !self.holds(at, at + twice) {
                     break;
                 }
                 steps = twice;
@@ -295,7 +320,7 @@ impl<'a> StationRun<'a> {
     }
 
     /// Returns whether a chord, and the rim of a face at its end, are within the tolerance.
-    fn is_admissible(&self, from: usize, to: usize) -> bool {
+    fn holds(&self, from: usize, to: usize) -> bool {
         let ends = [(0, from), (self.points.len() - 1, to)];
         let is_face_fine = |(face, (vertex, end)): (&Option<Vector>, (usize, usize))| {
             vertex != end
@@ -339,7 +364,7 @@ fn foresee(guess: usize, most: usize, share: impl Fn(usize) -> Real) -> (usize, 
 }
 
 /// A centreline without repeated points, with the indices of the points that must stay.
-pub(super) struct RadiusRuns<'a> {
+struct RadiusRuns<'a> {
     points: Cow<'a, [Vector]>,
     /// The two ends and each change of radius, ascending.
     must_stay: Vec<usize>,
@@ -348,9 +373,9 @@ pub(super) struct RadiusRuns<'a> {
 }
 
 /// The points of one run. Both ends must stay, and no two consecutive points are equal.
-pub(crate) struct RadiusRun<'a> {
-    pub(super) points: &'a [Vector],
-    pub(super) radius: Real,
+struct RadiusRun<'a> {
+    points: &'a [Vector],
+    radius: Real,
 }
 
 impl<'a> RadiusRuns<'a> {
@@ -361,7 +386,7 @@ impl<'a> RadiusRuns<'a> {
     ///
     /// # Errors
     /// As [`check_segments`]; a tolerance that is negative or not finite; all points equal.
-    pub(super) fn of(
+    fn of(
         points: &'a [Vector],
         segment_radii: &'a [Real],
         tolerance: Real,
@@ -403,11 +428,11 @@ impl<'a> RadiusRuns<'a> {
         Ok(Self { points, must_stay, radii })
     }
 
-    pub(super) fn first_point(&self) -> Vector {
+    fn first_point(&self) -> Vector {
         self.points[0]
     }
 
-    pub(super) fn iter(&self) -> impl ExactSizeIterator<Item = RadiusRun<'_>> {
+    fn iter(&self) -> impl ExactSizeIterator<Item = RadiusRun<'_>> {
         let ends = self.must_stay.windows(2);
         ends.zip(&self.radii)
             .map(|(ends, &radius)| RadiusRun { points: &self.points[ends[0]..=ends[1]], radius })

@@ -1,4 +1,4 @@
-//! The robot: its caps, its boxes, its outline, the fewest links that do, and stations.
+//! The robot: its caps, its boxes, its outline, the links that suffice.
 
 mod aabb;
 mod algorithm_1;
@@ -6,6 +6,5 @@ mod constant_curvature;
 mod nalgebra_types;
 mod registration;
 mod simplify;
-mod stations;
 mod to_trimesh;
 mod tube;

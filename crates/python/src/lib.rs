@@ -32,7 +32,7 @@ mod _native {
     #[pymodule_export]
     use super::queries::two_robots::{RobotPair, SelfQuery};
     #[pymodule_export]
-    use super::robots::{link_surfaces, simplify, stations};
+    use super::robots::{link_surfaces, simplify};
     #[pymodule_export]
     use super::scene::Scene;
     use super::*;

@@ -7,19 +7,19 @@ use crate::queries::distance::set_chain;
 use crate::queries::two_robots::segment_of;
 use crate::threads::{Asked, compute};
 use numpy::PyArrayDyn;
-use parry_continuum::RobotError;
 use parry_continuum::parry::math::Vector;
 use pyo3::prelude::*;
 
 type Arrays<'py> = (Bound<'py, PyArrayDyn<f64>>, Bound<'py, PyArrayDyn<f64>>);
 type Surfaces<'py> =
     (Bound<'py, PyArrayDyn<f64>>, Bound<'py, PyArrayDyn<i64>>, Bound<'py, PyArrayDyn<i64>>);
-type Fewer = fn(&[Vector], &[f64], f64) -> Result<(Vec<Vector>, Vec<f64>), RobotError>;
 
-/// The fewest points that stay within a tolerance of a centreline.
+/// Few points that stay within a tolerance of a centreline.
 ///
 /// They are a subset of the given points, keep both ends and every change of radius, and their
-/// lines and the given ones lie within the tolerance of each other.
+/// lines and the given ones lie within the tolerance of each other. Flat faces, at both ends and on
+/// the wider side of each step, move by at most the tolerance too. The time is proportional to the
+/// number of points.
 ///
 /// Parameters
 /// ----------
@@ -53,44 +53,6 @@ pub(crate) fn simplify<'py>(
     radii: &Bound<'py, PyAny>,
     #[pyo3(from_py_with = of::tolerance)] tolerance: f64,
 ) -> PyResult<Arrays<'py>> {
-    fewer(py, points, radii, tolerance, parry_continuum::simplify)
-}
-
-/// Points set evenly along a centreline, within a tolerance of it: nearly as few as `simplify`
-/// leaves, in linear time.
-///
-/// Parameters
-/// ----------
-/// points, radii, tolerance
-///     As for `simplify`.
-///
-/// Returns
-/// -------
-/// (points, radii)
-///     Arrays of the shapes (M, 3) and (M - 1,).
-///
-/// Raises
-/// ------
-/// ContinuumError
-///     The tolerance is negative or NaN, or the points are no robot.
-#[pyfunction]
-#[pyo3(signature = (points, radii, *, tolerance))]
-pub(crate) fn stations<'py>(
-    py: Python<'py>,
-    points: &Bound<'py, PyAny>,
-    radii: &Bound<'py, PyAny>,
-    #[pyo3(from_py_with = of::tolerance)] tolerance: f64,
-) -> PyResult<Arrays<'py>> {
-    fewer(py, points, radii, tolerance, parry_continuum::stations)
-}
-
-fn fewer<'py>(
-    py: Python<'py>,
-    points: &Bound<'py, PyAny>,
-    radii: &Bound<'py, PyAny>,
-    tolerance: f64,
-    fewer: Fewer,
-) -> PyResult<Arrays<'py>> {
     let robots = Robots::new(Names::one("points"), points, radii, None)?;
     if robots.count.is_some() {
         let text = "`points` is a batch; give one robot, of the shape (N, 3)";
@@ -99,7 +61,7 @@ fn fewer<'py>(
     let mut block = Block::default();
     robots.copy(0..1, &mut block).map_err(|refused| refused.raise(py, None))?;
     let robot = block.robot(0);
-    let found = compute(py, || fewer(robot.points, robot.radii, tolerance))?;
+    let found = compute(py, || parry_continuum::simplify(robot.points, robot.radii, tolerance))?;
     let (points, radii) = found.map_err(|error| Refused::from(error).raise(py, None))?;
     Ok((array(py, vec![points.len(), 3], flat(points))?, array(py, vec![radii.len()], radii)?))
 }

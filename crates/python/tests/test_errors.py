@@ -21,7 +21,6 @@ from parry_continuum import (
     SelfQuery,
     load,
     simplify,
-    stations,
 )
 from shapes import poses, robots, sphere
 
@@ -185,7 +184,6 @@ SCALARS = {
         lambda x: MESH.clearance_of_motion(ONE, ONE, 0.1, tolerance=x),
         lambda x: PAIR.clearance(ONE, 0.1, ONE, 0.1, tolerance=x),
         lambda x: simplify(ONE, 0.1, tolerance=x),
-        lambda x: stations(ONE, 0.1, tolerance=x),
     ],
     "prominence": [lambda x: MESH.contacts_within(ONE, 0.1, margin=1.0, prominence=x)],
     "deviation": [lambda x: MESH.clearance(ONE, 0.1, tolerance=0.1, deviation=x), lambda x: RigidMotion.of_curve(ONE, 0.1, POSES[0], POSES[0], deviation=x)],

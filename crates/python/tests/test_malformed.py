@@ -18,7 +18,6 @@ from parry_continuum import (
     Scene,
     SelfQuery,
     simplify,
-    stations,
 )
 from shapes import poses, robots, soup, sphere
 
@@ -137,7 +136,6 @@ def test_five_thousand_inputs() -> None:
             lambda: Mesh(mesh.vertices, spoilt(random, faces)),
             lambda: Mesh(spoilt(random, mesh.vertices), random.integers(-3, 400, (5, 3))),
             lambda: simplify(tolerance=number, **plain),
-            lambda: stations(tolerance=number, **plain),
         ]
         try:
             ask[random.integers(len(ask))]()

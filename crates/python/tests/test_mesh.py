@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
 
-from parry_continuum import ContinuumError, Mesh, load, simplify, stations
+from parry_continuum import ContinuumError, Mesh, load, simplify
 from shapes import robots, sphere
 
 VERTICES, FACES = sphere()
@@ -108,11 +108,10 @@ def test_errors_are_sent() -> None:
 
 def test_fewer_points() -> None:
     straight = np.linspace([0, 0, 0], [0, 0, 9], 30)
-    for fewer in (simplify, stations):
-        points, radii = fewer(straight, 0.5, tolerance=0.01)
-        assert_array_equal(points, straight[[0, -1]])
-        assert radii.tolist() == [0.5]
-        with pytest.raises(ContinuumError):
-            fewer(straight, 0.5, tolerance=-1.0)
-        with pytest.raises(ContinuumError):
-            fewer(straight[None], 0.5, tolerance=0.01)
+    points, radii = simplify(straight, 0.5, tolerance=0.01)
+    assert_array_equal(points, straight[[0, -1]])
+    assert radii.tolist() == [0.5]
+    with pytest.raises(ContinuumError):
+        simplify(straight, 0.5, tolerance=-1.0)
+    with pytest.raises(ContinuumError):
+        simplify(straight[None], 0.5, tolerance=0.01)

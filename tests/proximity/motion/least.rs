@@ -454,7 +454,7 @@ fn an_insertion_costs_little_more_than_its_shapes() {
                 .joints(t);
             let line = robot.centreline(&joints, 100);
             let (points, radii) =
-                parry_continuum::stations(&line.points, &line.radii, 0.01).unwrap();
+                parry_continuum::simplify(&line.points, &line.radii, 0.01).unwrap();
             Chain::from_centreline(&points, &radii).unwrap()
         })
         .collect();

@@ -63,7 +63,6 @@ from ._native import (
     load,
     load_centreline,
     simplify,
-    stations,
     verify_motion,
 )
 from ._plot import plot_clearance
@@ -114,7 +113,6 @@ __all__ = [
     "load_centreline",
     "plot_clearance",
     "simplify",
-    "stations",
     "to_pyvista",
     "verify_motion",
     "write_proof",

@@ -52,7 +52,6 @@ __all__ = [
     "load",
     "load_centreline",
     "simplify",
-    "stations",
     "verify_motion",
 ]
 
@@ -492,5 +491,4 @@ def link_surfaces(
     points: ArrayLike, radii: ArrayLike, *, pose: _Poses | None = None, caps: _Caps = "fitted"
 ) -> tuple[Floats, Ints, Ints]: ...
 def simplify(points: ArrayLike, radii: ArrayLike, *, tolerance: float) -> tuple[Floats, Floats]: ...
-def stations(points: ArrayLike, radii: ArrayLike, *, tolerance: float) -> tuple[Floats, Floats]: ...
 def verify_motion(motion: Motion, steps: int) -> None: ...

@@ -43,7 +43,7 @@ pub struct Building {
 
 /// A curve, its directions at the ends, and the numbers of the points that fix the directions of
 /// faces.
-type Given = (Centreline, [Vector; 2], Vec<usize>);
+type Given = (Centreline, [Vector; 2]);
 
 /// Times the shapes on one thread.
 pub fn time(
@@ -58,15 +58,14 @@ pub fn time(
         let mut times = Times { queries: Vec::new(), building: Vec::new(), apart: 0.0 };
         let curve = |joints: &Joints| {
             let stations = Stations::even(robot, joints, INPUT_SPACING);
-            (stations.curve(robot, joints), stations.tangents(robot, joints), stations.at_faces)
+            (stations.curve(robot, joints), stations.tangents(robot, joints))
         };
         let curves: Vec<_> =
             shapes.iter().map(|joints| [curve(&step_before(joints)), curve(joints)]).collect();
         for tolerance in TOLERANCES {
             times.building.push(building(&curves, tolerance)?);
-            let subject = |(curve, tangents, at_faces): &Given| {
-                Subject::new(curve, *tangents, at_faces, tolerance).map_err(text)
-            };
+            let subject =
+                |(curve, tangents): &Given| Subject::new(curve, *tangents, tolerance).map_err(text);
             let subjects: Result<Vec<_>, String> =
                 curves.iter().map(|[before, now]| Ok([subject(before)?, subject(now)?])).collect();
             let (rows, apart) = queries(&subjects?, mesh, base, devices)?;
@@ -131,7 +130,7 @@ fn queries(
 /// From the curve to the links, and from the links to the chain.
 fn building(curves: &[[Given; 2]], tolerance: Real) -> Result<Building, String> {
     let (mut links, mut simplifying, mut chaining) = (Vec::new(), Vec::new(), Vec::new());
-    for [_, (curve, ..)] in curves {
+    for [_, (curve, _)] in curves {
         let begin = Instant::now();
         let (points, radii) = simplify(&curve.points, &curve.radii, tolerance).map_err(text)?;
         simplifying.push(begin.elapsed().as_secs_f64());

@@ -9,7 +9,7 @@ use continuum_studies::long_table;
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{BvhSearch, Decision, Proximity};
-use parry_continuum::{Chain, Tube, TubeSection, simplify, stations};
+use parry_continuum::{Chain, Tube, TubeSection, simplify};
 use std::fmt::Write;
 use std::hint::black_box;
 use std::path::Path;
@@ -69,7 +69,7 @@ impl Shape {
     }
 }
 
-/// Times from samples to a clearance within a tolerance, by a tube and by stations, in seconds.
+/// Times from samples to a clearance within a tolerance, by a tube and by links, in seconds.
 #[derive(Default)]
 pub struct FromSamples {
     pub triangles: usize,
@@ -97,15 +97,14 @@ pub fn chapter(
          touch the wall, on one thread, the first time unless it says *again* (after the same shape).\n\n\
          - *Tube*: `Tube::set_samples` and `clearance`, whose bounds are at most the tolerance apart and count everything.\n\
          - *Tube, function*: `Tube::from_function`, whose curve is computed where the query needs it.\n\
-         - *Stations*, *simplify*: the links by either, `Chain::set_centreline` and `minimum`. Flat faces are off by more \
-         than the tolerance after `simplify`.\n\
+         - *Simplify*: `simplify`, `Chain::set_centreline` and `minimum`.\n\
          - *Fixed*: links of the length sqrt(8 tolerance / curvature), taken from the curve and not from samples. Nothing \
          checks their error, and the faces are off as well.\n\n\
          [tradeoff_samples.csv](tradeoff_samples.csv) has the same for the mesh with each triangle divided in sixteen.\n\n"
     );
     let mut table = String::from(
-        "| triangles | shapes | tolerance | tube | tube, again | tube, function | stations | simplify | fixed | fixed, again |\n\
-         |---|---|---|---|---|---|---|---|---|---|\n",
+        "| triangles | shapes | tolerance | tube | tube, again | tube, function | simplify | fixed | fixed, again |\n\
+         |---|---|---|---|---|---|---|---|---|\n",
     );
     let mut clears = format!(
         "\nThe same for the question whether the shape keeps {MARGIN} mm: `clears_tube` with a resolution of {RESOLUTION} mm, \
@@ -220,17 +219,15 @@ fn clearances<'a>(
             Ok(())
         }))
     };
-    let chosen = |choose: Choose| -> Result<Way<'a>, String> {
-        let (mut search, mut chain) = (engine()?, empty_chain()?);
-        Ok(Box::new(move |shape: &Shape| {
-            search.forget();
-            let Centreline { points, radii } = &shape.samples;
-            let (points, radii) = choose(points, radii, tolerance).map_err(text)?;
-            chain.set_centreline(&points, &radii).map_err(text)?;
-            black_box(search.minimum(&chain, base).map_err(text)?);
-            Ok(())
-        }))
-    };
+    let (mut search, mut chain) = (engine()?, empty_chain()?);
+    let simplified: Way = Box::new(move |shape: &Shape| {
+        search.forget();
+        let Centreline { points, radii } = &shape.samples;
+        let (points, radii) = simplify(points, radii, tolerance).map_err(text)?;
+        chain.set_centreline(&points, &radii).map_err(text)?;
+        black_box(search.minimum(&chain, base).map_err(text)?);
+        Ok(())
+    });
     let mut search = engine()?;
     let function: Way = Box::new(move |shape: &Shape| {
         search.forget();
@@ -238,20 +235,8 @@ fn clearances<'a>(
         black_box(search.clearance(&tube, base, tolerance).map_err(text)?);
         Ok(())
     });
-    Ok(vec![
-        tube(true)?,
-        tube(false)?,
-        function,
-        chosen(stations)?,
-        chosen(simplify)?,
-        fixed(true)?,
-        fixed(false)?,
-    ])
+    Ok(vec![tube(true)?, tube(false)?, function, simplified, fixed(true)?, fixed(false)?])
 }
-
-/// What chooses links.
-type Choose =
-    fn(&[Vector], &[Real], Real) -> Result<(Vec<Vector>, Vec<Real>), parry_continuum::RobotError>;
 
 /// Every way to a decision, and building a tube alone.
 fn decisions<'a>(mesh: &TriMesh, base: &'a Pose) -> Result<Vec<Way<'a>>, String> {

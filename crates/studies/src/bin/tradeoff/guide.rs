@@ -46,10 +46,10 @@ pub fn text(facts: &Facts) -> String {
          {}\n\
          Links instead of a curve suit parry, rapier and robots that are made of rigid parts:\n\n\
          - The links decide the error, the engine only the time. `docs/TRADEOFF.md` has a table of links for an \
-         error. Links within 0.1 mm of the curve err by at most {} mm, as faces tilt, and a query takes {:.1} us in a loop. \
+         error. Links within 0.1 mm of the curve err by at most {} mm, and a query takes {:.1} us in a loop. \
          `Exhaustive::<f32>` takes {:.0} times as long, and parry's cylinders {:.0} times.\n\
          - Capsules cover the tube, but forbade {most:.1} % of the free shapes. Cylinders leave gaps at the bends.\n\
-         - `simplify` took {quick:.0} to {slow:.0} us for a free shape. In a control loop choose the links once.\n\
+         - `simplify` took {quick:.0} to {slow:.0} us for a free shape.\n\
          - Leaving out that tubes twist changed the clearance by {} mm in the median, at worst {} mm.\n",
         machine::description(),
         from_samples.first().map_or(0, |row| row.triangles),
@@ -66,7 +66,7 @@ pub fn text(facts: &Facts) -> String {
 /// From samples to a clearance: a tube beside links chosen for the same error.
 fn samples_table(rows: &[FromSamples]) -> String {
     let mut table = String::from(
-        "| error | free shape: `Tube` | `stations` and a chain | touching shape: `Tube` | `stations` and a chain |\n\
+        "| error | free shape: `Tube` | `simplify` and a chain | touching shape: `Tube` | `simplify` and a chain |\n\
          |---|---|---|---|---|\n",
     );
     for row in rows {
@@ -90,7 +90,7 @@ pub fn table(all: &[Combination]) -> String {
     );
     for error in ERRORS {
         // Cylinders have the errors of modified cylinders, and gaps.
-        let models = [Model::Capsule, Model::Modified, Model::Faced, Model::Tube];
+        let models = [Model::Capsule, Model::Modified, Model::Tube];
         let ours = |one: &&Combination| models.contains(&one.model) && one.error <= error;
         let best = all.iter().filter(ours).min_by(|a, b| a.time.total_cmp(&b.time));
         let Some(best) = best else { continue };

@@ -98,7 +98,6 @@ pub fn chapter(
         (Model::Capsule, 2),
         (Model::Cylinder, 2),
         (Model::Modified, 2),
-        (Model::Faced, 2),
         (Model::Modified, 4),
         (Model::Modified, 6),
     ] {

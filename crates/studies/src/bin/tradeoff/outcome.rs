@@ -93,8 +93,7 @@ fn outcome(
         metres: [0.0; 2],
     };
     for (index, (each, tolerance)) in outcome.each.iter_mut().zip(TOLERANCES).enumerate() {
-        let subject =
-            Subject::new(&curve, tangents, &stations.at_faces, tolerance).map_err(text)?;
+        let subject = Subject::new(&curve, tangents, tolerance).map_err(text)?;
         each.tilt = tilt(&subject, &faces);
         for (clearance, model) in each.clearances.iter_mut().zip(Model::ALL) {
             *clearance = if Model::OURS.contains(&model) {

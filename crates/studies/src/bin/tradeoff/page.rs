@@ -71,13 +71,11 @@ pub fn page(facts: &Facts) -> String {
          For an error that you can bear, the fastest row that stays within it:\n\n{}\n\
          ### What geometry predicts\n\n\
          `simplify` promises that the links' axis and the curve are within the tolerance of each other, and an error on \
-         the side of a tube is no larger. The ends add to it. A flat face follows the last link's direction, \
-         which a chord of sagitta t turns by sqrt(2 t kappa) from the curve's: at a radius r the rim is out of place by r \
-         sqrt(2 t kappa), here at most with r = {widest} mm and kappa = {CURVATURE} / mm. A capsule's end reaches r beyond a \
-         flat face: its clearance falls short by up to r, at any tolerance.\n\n\
-         *Short ends*: at each face two links more, whose ends are 0.3 and 0.01 mm before it. The last link is so \
-         short that the face has the curve's direction. The link before it ends so near the face that its tilted end \
-         does not stick out. The remaining error is the tolerance and a few micrometres.\n\n{}\n\
+         the side of a tube is no larger. A flat face follows the last link's direction. A chord of sagitta t turns by \
+         sqrt(2 t kappa) from the curve's direction, so at a radius r the rim would be out of place by r sqrt(2 t kappa), here \
+         at most with r = {widest} mm and kappa = {CURVATURE} / mm. The links at a face are therefore so short that its rim is \
+         within the tolerance, too. A capsule's end reaches r beyond a flat face: its clearance falls short by up to r, at any \
+         tolerance.\n\n{}\n\
          ### Before the query\n\n\
          From a curve with a point every {INPUT_SPACING} mm to the links, and from the links to the chain (medians):\n\n{}",
         machine::description(),
@@ -162,23 +160,21 @@ fn front_table(all: &[Combination]) -> String {
 /// What geometry predicts, beside what was measured.
 fn predictions(outcomes: &[Outcome], errors: &[[Errors; Model::ALL.len()]], widest: f64) -> String {
     let mut page = String::from(
-        "| within | face out of place: predicted | found | fitted caps: worst over | worst under | short ends: over | under | capsules: over | under |\n\
-         |---|---|---|---|---|---|---|---|---|\n",
+        "| within | face out of place: a chord of that sagitta | found | fitted caps: worst over | worst under | capsules: over | under |\n\
+         |---|---|---|---|---|---|---|\n",
     );
     for (index, tolerance) in TOLERANCES.into_iter().enumerate() {
         let found = outcomes.iter().map(|shape| shape.each[index].tilt).fold(0.0, f64::max);
-        let [k, _, modified, faced, ..] = &errors[index];
+        let [capsules, _, modified, ..] = &errors[index];
         let _ = writeln!(
             page,
-            "| {tolerance} mm | {} | {} | {} | {} | {} | {} | {} | {} |",
+            "| {tolerance} mm | {} | {} | {} | {} | {} | {} |",
             length(widest * (2.0 * tolerance * CURVATURE).sqrt()),
             length(found),
             signed(modified.over),
             signed(modified.under),
-            signed(faced.over),
-            signed(faced.under),
-            signed(k.over),
-            signed(k.under),
+            signed(capsules.over),
+            signed(capsules.under),
         );
     }
     page

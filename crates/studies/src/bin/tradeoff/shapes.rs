@@ -27,18 +27,13 @@ pub fn step_before(joints: &Joints) -> Joints {
     }
 }
 
-/// How far from a flat face the stations lie that fix its direction, mm. A link that ends at d
-/// before the face has its own end tilted by half its length times the curvature; its rim stays
-/// behind the face if it is no longer than 2 d / (radius x curvature), here 30 d. So the face
-/// follows the nearer one, and neither sticks out.
+/// How far from a flat face the samples lie that fix its direction, mm.
 const AT_FACE: [Real; 2] = [0.01, 0.3];
 
 /// Arc lengths along the robot, from 0 to its tip, and the radius between each two.
 pub struct Stations {
     pub arc_lengths: Vec<Real>,
     pub radii: Vec<Real>,
-    /// The indices of the samples that fix the directions of faces.
-    pub at_faces: Vec<usize>,
 }
 
 impl Stations {
@@ -54,13 +49,13 @@ impl Stations {
                 from += extension;
             }
         }
-        Self { arc_lengths, radii, at_faces: Vec::new() }
+        Self { arc_lengths, radii }
     }
 
     /// Even samples, at most `spacing` apart, and the samples that fix the directions of faces.
     pub fn even(robot: &Robot, joints: &Joints, spacing: Real) -> Self {
         let near = |extension: Real| AT_FACE.into_iter().filter(move |off| *off < 0.5 * extension);
-        let mut stations = Self::of(robot, joints, |extension| {
+        Self::of(robot, joints, |extension| {
             let count = (extension / spacing).ceil().max(1.0);
             let mut all: Vec<_> =
                 (1..=count as usize).map(|k| extension * k as Real / count).collect();
@@ -69,18 +64,7 @@ impl Stations {
             all.sort_by(Real::total_cmp);
             all.dedup();
             all
-        });
-        let (mut from, mut faces) = (0.0, Vec::new());
-        for (section, &extension) in joints.extensions.iter().enumerate() {
-            faces.extend(near(extension).map(|off| from + (extension - off)));
-            if section == 0 {
-                faces.extend(near(extension));
-            }
-            from += extension;
-        }
-        let is_one = |k: &usize| faces.contains(&stations.arc_lengths[*k]);
-        stations.at_faces = (0..stations.arc_lengths.len()).filter(is_one).collect();
-        stations
+        })
     }
 
     /// No further than `spacing` apart, and ever closer towards the flat faces at which sections

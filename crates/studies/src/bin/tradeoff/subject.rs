@@ -13,8 +13,6 @@ pub enum Model {
     Capsule,
     Cylinder,
     Modified,
-    /// With two short links more at each face, so that the face has the curve's direction.
-    Faced,
     ParryCapsule,
     ParryCylinder,
     Spheres,
@@ -23,11 +21,10 @@ pub enum Model {
 }
 
 impl Model {
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 7] = [
         Self::Capsule,
         Self::Cylinder,
         Self::Modified,
-        Self::Faced,
         Self::ParryCapsule,
         Self::ParryCylinder,
         Self::Spheres,
@@ -35,7 +32,7 @@ impl Model {
     ];
 
     /// The models of links by this crate.
-    pub const OURS: [Self; 4] = [Self::Capsule, Self::Cylinder, Self::Modified, Self::Faced];
+    pub const OURS: [Self; 3] = [Self::Capsule, Self::Cylinder, Self::Modified];
 
     /// Its place in [`Model::ALL`], and in [`Model::OURS`].
     pub fn index(self) -> usize {
@@ -47,7 +44,6 @@ impl Model {
             Self::Capsule => "capsules",
             Self::Cylinder => "cylinders",
             Self::Modified => "fitted caps",
-            Self::Faced => "fitted caps, short ends",
             Self::ParryCapsule => "parry's Capsule",
             Self::ParryCylinder => "parry's Cylinder",
             Self::Spheres => "7 spheres a link",
@@ -60,10 +56,10 @@ impl Model {
 /// axis, ends included.
 const SPHERES: usize = 7;
 
-/// The robot with the fewest links within a tolerance.
+/// The robot with few links within a tolerance.
 pub struct Subject {
     /// In the order of [`Model::OURS`].
-    chains: [Chain; 4],
+    chains: [Chain; 3],
     pub capsules: Vec<(Pose, Capsule)>,
     pub cylinders: Vec<(Pose, Cylinder)>,
     /// Centres and radii.
@@ -74,21 +70,17 @@ pub struct Subject {
 }
 
 impl Subject {
-    /// Of a curve, its directions at both ends, and the numbers of its points that fix the
-    /// directions of faces.
+    /// Of a curve and its directions at both ends.
     pub fn new(
         curve: &Centreline,
         tangents: [Vector; 2],
-        at_faces: &[usize],
         tolerance: Real,
     ) -> Result<Self, RobotError> {
         let (points, radii) = simplify(&curve.points, &curve.radii, tolerance)?;
-        let faced = keeping(curve, at_faces, tolerance)?;
         let chains = [
             Chain::capsules(&points, &radii)?,
             Chain::cylinders(&points, &radii)?,
             Chain::from_centreline(&points, &radii)?,
-            Chain::from_centreline(&faced.points, &faced.radii)?,
         ];
         let links = chains[0].links();
         let capsule = |link: &parry_continuum::ModifiedCylinder| {
@@ -127,25 +119,6 @@ impl Subject {
             Model::Capsule | Model::ParryCapsule | Model::Spheres => &self.chains[0],
             Model::Cylinder | Model::ParryCylinder => &self.chains[1],
             Model::Modified | Model::Tube => &self.chains[2],
-            Model::Faced => &self.chains[3],
         }
     }
-}
-
-/// The fewest links within a tolerance that keep some of the points.
-fn keeping(
-    curve: &Centreline,
-    points: &[usize],
-    tolerance: Real,
-) -> Result<Centreline, RobotError> {
-    let mut kept = Centreline { points: vec![curve.points[0]], radii: Vec::new() };
-    let mut from = 0;
-    for to in points.iter().copied().chain([curve.points.len() - 1]) {
-        let (points, radii) =
-            simplify(&curve.points[from..=to], &curve.radii[from..to], tolerance)?;
-        kept.points.extend(&points[1..]);
-        kept.radii.extend(radii);
-        from = to;
-    }
-    Ok(kept)
 }
