@@ -12,10 +12,10 @@ const MEMORY: u64 = 4 << 20;
 const TIME: Duration = Duration::from_secs(1);
 
 /// A fixed sequence (splitmix64).
-struct Draws(u64);
+pub struct Draws(pub u64);
 
 impl Draws {
-    fn below(&mut self, count: usize) -> usize {
+    pub fn below(&mut self, count: usize) -> usize {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);

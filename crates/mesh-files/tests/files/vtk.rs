@@ -41,7 +41,7 @@ fn places(indices: &[usize]) -> Vec<Vertex> {
 fn cells_are_joined_where_their_ends_meet() {
     // The cells, and the lines that they make: in the order and the direction of their first cells.
     type Lines<'a> = &'a [&'a [usize]];
-    let cases: [(Lines<'_>, Lines<'_>); 14] = [
+    let cases: [(Lines<'_>, Lines<'_>); 20] = [
         (&[&[0, 1], &[1, 2], &[2, 3], &[3, 4]], &[&[0, 1, 2, 3, 4]]),
         (&[&[2, 3], &[0, 1], &[3, 4], &[1, 2]], &[&[0, 1, 2, 3, 4]]),
         // Some are turned, and the first one too.
@@ -61,8 +61,16 @@ fn cells_are_joined_where_their_ends_meet() {
         (&[&[1, 2, 0], &[4, 3, 0]], &[&[1, 2, 0], &[4, 3, 0]]),
         // One that meets the middle of another.
         (&[&[0, 1, 2], &[1, 3], &[3, 4]], &[&[0, 1, 2], &[1, 3, 4]]),
-        // No length.
-        (&[&[0, 1], &[2, 2]], &[&[0, 1], &[2, 2]]),
+        // A cell without length is left out, unless there is no other; a repeated point stays.
+        (&[&[0, 1], &[2, 2]], &[&[0, 1]]),
+        (&[&[0, 0], &[0, 1], &[1, 1, 1], &[1, 2], &[2]], &[&[0, 1, 2]]),
+        (&[&[2, 2]], &[&[2, 2]]),
+        (&[&[0, 1, 1], &[1, 2]], &[&[0, 1, 1, 2]]),
+        // A cell that stands twice, or three times, in either direction.
+        (&[&[0, 1], &[0, 1], &[1, 2], &[2, 3]], &[&[0, 1, 2, 3]]),
+        (&[&[2, 3], &[0, 1], &[3, 2], &[1, 2], &[2, 3]], &[&[0, 1, 2, 3]]),
+        // Two longer ones that share their ends are two.
+        (&[&[0, 1, 4], &[0, 2, 4]], &[&[0, 1, 4], &[0, 2, 4]]),
     ];
     for (cut, expected) in cases {
         for (number, line) in expected.iter().enumerate() {
@@ -80,6 +88,83 @@ fn cells_are_joined_where_their_ends_meet() {
     let own = "POINTS 6 double\n0 0 0 0 0 10 1 0 20 3 0 29 0 0 10 1 0 20\nLINES 3 9\n2 2 3\n2 0 1\n2 4 5\n";
     let apart = text("").split("POINTS").next().unwrap().to_owned() + own;
     assert_eq!(lines("a.vtk", apart, None).unwrap().points, places(&[0, 1, 2, 3]));
+}
+
+/// A file of cells with points of their own: the coordinates of both ends, in order.
+fn own_cells(ends: &[[Vertex; 2]], kind: &str) -> String {
+    let count = ends.len();
+    let points: Vec<_> = ends.iter().flatten().flatten().map(|x| format!("{x:e}")).collect();
+    let cells: String =
+        (0..count).map(|cell| format!("2 {} {}\n", 2 * cell, 2 * cell + 1)).collect();
+    format!(
+        "# vtk DataFile Version 3.0\nx\nASCII\nDATASET POLYDATA\nPOINTS {} {kind}\n{}\nLINES {count} {}\n{cells}",
+        2 * count,
+        points.join(" "),
+        3 * count
+    )
+}
+
+#[test]
+fn ends_that_differ_by_rounding_meet() {
+    let mut draws = crate::mutations::Draws(3);
+    let mut draw = || draws.below(1 << 20) as f64 / f64::from(1 << 19) - 1.0;
+    for round in 0..200 {
+        // A walk of steps of about 1, whose coordinates are at most 100. Each cell has points of its
+        // own, rounded in another way, in any order and direction.
+        let mut places = vec![[70.0 * draw(), 70.0 * draw(), 70.0 * draw()]];
+        for _ in 0..20 {
+            let last = places[places.len() - 1];
+            places.push(last.map(|x| x + 0.5 + 0.4 * draw()));
+        }
+        let largest = places.iter().flatten().fold(0.0, |most: f64, x| most.max(x.abs()));
+        let error = [1e-14, 1e-12 / 30.0, f64::from(f32::EPSILON) / 2.0][round % 3] * largest;
+        let scale = 2_f64.powi([-300, 0, 300][round / 3 % 3]);
+        let mut rounded = |place: Vertex| place.map(|x| scale * (x + error * draw()));
+        let mut ends: Vec<[Vertex; 2]> =
+            places.windows(2).map(|pair| [rounded(pair[0]), rounded(pair[1])]).collect();
+        ends.iter_mut().for_each(|pair| pair.rotate_left(usize::from(draw() > 0.0)));
+        ends.sort_by_cached_key(|_| (1e6 * draw()) as i64);
+        let found = lines("a.vtk", own_cells(&ends, "double"), None)
+            .unwrap_or_else(|message| panic!("{round}: {message}"))
+            .points;
+        assert_eq!(found.len(), places.len(), "{round}");
+        let is_near = |places: &mut dyn Iterator<Item = &Vertex>| {
+            found.iter().zip(places).all(|(found, place)| {
+                (0..3).all(|axis| (found[axis] / scale - place[axis]).abs() <= 1.1 * error)
+            })
+        };
+        assert!(is_near(&mut places.iter()) || is_near(&mut places.iter().rev()), "{round}");
+    }
+    // Single precision: the same places, and the next numbers.
+    let single = |more: u32| {
+        let rounded = |x: f64| f32::from_bits((x as f32 / 3.0 + 70.0).to_bits() + more);
+        POINTS.map(|place| place.map(|x| f64::from(rounded(x))))
+    };
+    let (a, b) = (single(0), single(1));
+    let ends = [[a[0], a[1]], [b[2], b[1]], [a[2], a[3]], [b[3], a[4]]];
+    assert_eq!(lines("a.vtk", own_cells(&ends, "float"), None).unwrap().points.len(), 5);
+    // A cell without length but for rounding, and one that stands twice but for rounding.
+    let ends = [[a[0], a[1]], [a[1], b[1]], [b[1], b[0]], [a[1], a[2]]];
+    assert_eq!(lines("a.vtk", own_cells(&ends, "float"), None).unwrap().points, a[..3]);
+}
+
+#[test]
+fn ends_that_differ_by_more_than_rounding_stay_apart() {
+    // Coordinates of a map, in double precision: single precision does not tell its points apart.
+    let far = |i: f64| [5e6 + 0.1 * i, -4e6, 0.02 * i];
+    let ends: Vec<_> = (0..50).map(|i| [far(f64::from(i)), far(f64::from(i + 1))]).collect();
+    assert_eq!(lines("a.vtk", own_cells(&ends, "double"), None).unwrap().points.len(), 51);
+    for (gap, expected) in [(1e-9, true), (0.01, false)] {
+        let mut ends = ends.clone();
+        ends[25..].iter_mut().flatten().for_each(|p| p[1] += gap);
+        assert_eq!(lines("a.vtk", own_cells(&ends, "double"), None).is_ok(), expected, "{gap}");
+    }
+    // A gap of a thousandth beside a length of ten.
+    let ends = [[POINTS[0], POINTS[1]], [POINTS[1].map(|x| x + 1e-3), POINTS[2]]];
+    refused("gap", lines("a.vtk", own_cells(&ends, "double"), None), "holds 2 lines");
+    // What is not finite meets nothing, and is refused where it is chosen.
+    let ends = [[POINTS[0], [f64::NAN; 3]], [[f64::NAN; 3], POINTS[2]]];
+    refused("nan", lines("a.vtk", own_cells(&ends, "double"), Some(0)), "is not finite");
 }
 
 #[test]
