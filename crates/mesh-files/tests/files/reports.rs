@@ -315,6 +315,6 @@ mod centrelines {
             );
             assert_eq!(found.skipped_points, skipped, "{name}");
         }
-        refused("none", load("A19_no_control_points.mrk.json"), "no controlPoints");
+        refused("none", load("A19_no_control_points.mrk.json"), "no list 'controlPoints'");
     }
 }

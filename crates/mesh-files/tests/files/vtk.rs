@@ -168,6 +168,43 @@ fn ends_that_differ_by_more_than_rounding_stay_apart() {
 }
 
 #[test]
+fn files_of_carriage_returns_alone_are_read() {
+    let whole = cells(&[&[0, 1, 2], &[2, 3]]);
+    let field = "FIELD FieldData 1\nSPACE 1 1 string\nLPS\nMETADATA\nINFORMATION 0\n\nPOINTS";
+    let whole = whole.replace("POINTS", field);
+    let expected = lines("a.vtk", &whole, None);
+    assert_eq!(expected.as_ref().unwrap().frame, Some(Frame::Lps));
+    assert_eq!(lines("a.vtk", whole.replace('\n', "\r"), None), expected);
+    assert_eq!(lines("a.vtk", whole.replace('\n', "\r\n"), None), expected);
+    // In bytes, of which some are line feeds.
+    let head = "# vtk DataFile Version 5.1\rx\rBINARY\rDATASET POLYDATA\rPOINTS 2 float\r";
+    let mut bytes = head.as_bytes().to_vec();
+    [0.0_f32, 0.0, 10.0, f32::from_bits(0x4120_0a0a), 0.0, 0.0]
+        .iter()
+        .for_each(|x| bytes.extend(x.to_be_bytes()));
+    bytes.extend(b"\rLINES 2 2\rOFFSETS vtkIdType\r");
+    [0_i64, 2].iter().for_each(|x| bytes.extend(x.to_be_bytes()));
+    bytes.extend(b"\rCONNECTIVITY vtkIdType\r");
+    [0_i64, 1].iter().for_each(|x| bytes.extend(x.to_be_bytes()));
+    bytes.extend(b"\r");
+    let read = lines("a.vtk", &bytes, None).unwrap().points;
+    assert_eq!(read[1][0], f64::from(f32::from_bits(0x4120_0a0a)));
+}
+
+#[test]
+fn a_line_of_one_point_is_refused() {
+    let curve = r#"{"markups": [{"type": "Curve", "controlPoints": [{"position": [1, 2, 3]}]}]}"#;
+    for (name, text) in [
+        ("a.csv", "0,0,0\n".to_owned()),
+        ("a.csv", "x,y,z\n0,0,0\n".to_owned()),
+        ("a.mrk.json", curve.to_owned()),
+        ("a.vtk", text("LINES 1 2\n1 3\n")),
+    ] {
+        refused(name, lines(name, text, None), "holds a line of 1 point; give the points");
+    }
+}
+
+#[test]
 fn thousands_of_cells_are_one_line_soon() {
     let count = 20_000;
     let points: String = (0..count).map(|i| format!("{i} 0 0\n")).collect();
@@ -327,8 +364,62 @@ fn units_of_markups_are_brought_to_millimetres_and_unset_points_are_counted() {
     refused(
         "text",
         lines("a.mrk.json", none, None),
-        "control point 0 has the position 'here', not three numbers",
+        "control point 0 has the 'position' \"here\", not three numbers; draw a curve",
     );
+}
+
+#[test]
+fn what_is_wrong_with_markups_is_named_by_its_field() {
+    let curve = |points: &str| format!(r#"{{"markups": [{{"controlPoints": {points}}}]}}"#);
+    let set = r#"{"position": [1, 2, 3]}"#;
+    assert!(lines("a.mrk.json", curve(&format!("[{set}, {set}]")), None).is_ok());
+    for (text, expected) in [
+        ("{}".to_owned(), "it has no list 'markups'"),
+        ("[]".to_owned(), "it has no list 'markups'"),
+        (r#"{"markups": {}}"#.to_owned(), "it has no list 'markups'"),
+        (r#"{"markups": [7]}"#.to_owned(), "the entry 0 of its 'markups' is no object"),
+        (r#"{"markups": [{"type": 7}]}"#.to_owned(), "has the 'type' 7, which is no text"),
+        (r#"{"markups": [{"type": "Line"}]}"#.to_owned(), "its Line has no list 'controlPoints'"),
+        (curve("null"), "its Curve has no list 'controlPoints'"),
+        (curve("7"), "its Curve has no list 'controlPoints'"),
+        (curve("[]"), "the 'controlPoints' of its Curve are empty"),
+        (curve(r#"[{}, {"position": ""}]"#), "none of the 2 'controlPoints' of its Curve has"),
+        (curve("[7]"), "control point 0 is no object"),
+        (curve(&format!("[{set}, []]")), "control point 1 is no object"),
+        (curve(r#"[{"position": [1, 2]}]"#), "point 0 has the 'position' [1,2], not three numbers"),
+        (curve(r#"[{"position": [1, "2", 3]}]"#), "has the 'position' [1,\"2\",3], not three"),
+        (curve(r#"[{"position": {"x": 1}}]"#), "has the 'position' of named values, not three"),
+        (curve(r#"[{"positionStatus": 1}]"#), "has the 'positionStatus' 1, which is no text"),
+    ] {
+        refused(&text, lines("a.mrk.json", &text, None), expected);
+        refused(&text, lines("a.mrk.json", &text, None), "draw a curve in 3D Slicer and save it");
+    }
+    // An empty curve beside another one is left out.
+    let two = curve(&format!("[{set}, {set}]")).replace("[{\"c", "[{\"controlPoints\": []}, {\"c");
+    assert_eq!(lines("a.mrk.json", two, None).unwrap().points.len(), 2);
+}
+
+#[test]
+fn values_of_markups_take_no_more_memory_than_is_allowed() {
+    for element in ["[0],", "0,", "{},", "\"\","] {
+        let text = format!("{{\"markups\": [], \"other\": [{}0]}}", element.repeat(70_000));
+        let ask = |limit: u64| {
+            let options = Options::default().with_memory_limit(limit);
+            let mut answer = Ok(());
+            let taken = allocation_counter::measure(|| {
+                let read = centreline_from_bytes("a.mrk.json", text.as_bytes(), &options);
+                answer = read.map(drop).map_err(|error| error.to_string());
+            });
+            (answer, taken.bytes_max)
+        };
+        let limit = 64 * text.len() as u64;
+        let (answer, taken) = ask(limit);
+        refused(element, answer, "holds no line");
+        assert!(taken <= limit, "{element}: {taken} of {limit}");
+        let (answer, taken) = ask(limit - 1);
+        refused(element, answer, "its values take more memory than is allowed");
+        assert!(taken < 1 << 16, "{element}: {taken}");
+    }
 }
 
 #[test]
@@ -360,7 +451,7 @@ fn texts_have_radii_where_they_say_so() {
     assert_eq!(radii("x,y,z,distance_to_wall_mm\n0,0,0,2\n0,0,1,2\n"), Ok((2, None)));
     assert_eq!(
         radii("x,y,z,distance_to_wall_mm,Radius (mm)\n0,0,0,9,2\n0,0,1,9,2\n"),
-        Ok((2, two))
+        Ok((2, two.clone()))
     );
     // Names of a frame's axes, in any columns. The r of R,A,S is no radius.
     for (text, frame, radii) in [
@@ -373,10 +464,53 @@ fn texts_have_radii_where_they_say_so() {
         assert_eq!(read.points, [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]], "{text}");
         assert_eq!((read.frame, read.radii), (Some(frame), radii), "{text}");
     }
-    for text in ["px,py,pz\n1,2,3\n4,5,6\n", "x_mm;y_mm;z_mm\n1;2;3\n4;5;6\n"] {
+    for text in [
+        "px,py,pz\n1,2,3\n4,5,6\n",
+        "x_mm;y_mm;z_mm\n1;2;3\n4;5;6\n",
+        // Columns in front: an index as pandas writes it, without a name or saved again.
+        ",x,y,z\n0,1,2,3\n1,4,5,6\n",
+        "Unnamed: 0,x,y,z\n0,1,2,3\n1,4,5,6\n",
+        "index\tx\ty\tz\n0\t1\t2\t3\n1\t4\t5\t6\n",
+        "Points_0,Points_1,Points_2\n1,2,3\n4,5,6\n",
+        "\"vtkOriginal\",\"Points:0\",\"Points:1\",\"Points:2\"\n7,1,2,3\n7,4,5,6\n",
+    ] {
         let read = lines("a.csv", text, None).unwrap();
         assert_eq!((read.points[1], read.frame), ([4.0, 5.0, 6.0], None), "{text}");
+        assert_eq!(read.radii, None, "{text}");
+        // With the byte order marks of UTF-16.
+        for order in [u16::to_le_bytes, u16::to_be_bytes] {
+            let marked = "\u{feff}".to_owned() + text;
+            let bytes: Vec<u8> = marked.encode_utf16().flat_map(order).collect();
+            assert_eq!(lines("a.csv", bytes, None).as_ref(), Ok(&read), "{text}");
+        }
     }
+    for (text, radius) in [
+        ("x,y,z,MaximumInscribedSphereRadius\n0,0,0,2\n0,0,1,2\n", 2.0),
+        ("radius,x,y,z\n2,0,0,0\n2,0,0,1\n", 2.0),
+        (",Points_0,Points_1,Points_2,Radii\n0,0,0,0,2\n1,0,0,1,2\n", 2.0),
+        ("x,y,z,Diameter (mm)\n0,0,0,2\n0,0,1,2\n", 1.0),
+        ("r,a,s,diameter\n0,0,0,3\n0,0,1,3\n", 1.5),
+        ("x,y,z,diameter,radius\n0,0,0,3,1\n0,0,1,3,1\n", 1.0),
+    ] {
+        assert_eq!(radii(text), Ok((2, Some(vec![radius]))), "{text}");
+    }
+    refused("diameter", radii("x,y,z,diameter\n0,0,0,1\n0,0,1,-1\n"), "the radius of the last");
+    let shapes = |text: &str| {
+        let path = crate::file("shapes.csv", text.as_bytes());
+        mesh_files::load_shapes(path, &Options::default()).map_err(|error| error.to_string())
+    };
+    for text in [
+        "shape,x,y,z,diameter\n3,0,0,0,4\n3,0,0,1,4\n5,0,0,0,4\n5,0,0,2,4\n",
+        ",shape,x,y,z,r\n0,3,0,0,0,2\n1,3,0,0,1,2\n2,5,0,0,0,2\n3,5,0,0,2,2\n",
+    ] {
+        let found = shapes(text).unwrap();
+        let [(3.0, first), (5.0, second)] = &found[..] else { panic!("{found:?}") };
+        assert_eq!((first.points[1], second.points[1]), ([0.0, 0.0, 1.0], [0.0, 0.0, 2.0]));
+        assert_eq!((&first.radii, &second.radii), (&two, &two), "{text}");
+    }
+    refused("shapes", shapes("x,y,z,r\n0,0,0,4\n"), "has 'y' in column 2, not x");
+    refused("shapes", shapes("id,x,y,z,shape\n7,0,0,0\n"), "has 4 columns; write shape,x,y,z");
+    assert_eq!(radii("x,y,z,shape\n0,0,0\n0,0,1\n"), Ok((2, None)));
     let report = lines(
         "a.csv",
         std::fs::read(crate::reports::report("A20_bom_heading_units.csv")).unwrap(),
@@ -392,6 +526,9 @@ fn texts_have_radii_where_they_say_so() {
         ("0,0,0,2\n0,0,1,-1\n", "line 2 of a.csv says that the radius of the last point is -1"),
         ("x,y,z\n0,0,0,2\n", "line 2 of a.csv has 4 columns, but the heading names 3"),
         ("z,y,x\n0,0,0\n", "line 1 of a.csv has 'z' in column 1"),
+        ("x,z,y\n0,0,0\n", "line 1 of a.csv has 'z' in column 2"),
+        ("x,name,y,z\n0,0,0,0\n", "line 1 of a.csv has 'y' in column 3"),
+        (",,z\n0,0,0\n", "line 1 of a.csv has nothing in column 1"),
         ("time,a,b\n0,0,0\n", "line 1 of a.csv has 'time' in column 1, not x; write x,y,z"),
         ("label,px,py,pz\n1,0,0,0\n", "line 1 of a.csv has 'label' in column 1, not x"),
         ("\nlat,lon,alt\n0,0,0\n", "line 2 of a.csv has 'lat' in column 1, not x"),
