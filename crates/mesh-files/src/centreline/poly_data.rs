@@ -172,18 +172,18 @@ fn join(lines: &[Vec<usize>], points: &[Point]) -> Vec<Vec<Point>> {
 /// # Definitions
 /// - `largest`: the largest absolute coordinate of the lines' points.
 /// - `step`: the mean over all segments of the largest coordinate difference of their ends.
-/// - `width = min(2^-23 largest, step / 1024)`.
+/// - `width = min(10^-5 largest, step / 1024)`.
 ///
 /// # Claim
 /// A point gets the number of an earlier point if their coordinates differ by at most `width`. It
 /// gets no number of a point that is farther than `2 width`.
 ///
 /// # Choice
-/// - Programs write the same place twice with different rounding, or in single precision. A
-///   coordinate `x` in single precision errs by at most `2^-24 |x|`, so two of them differ by at most
-///   `2^-23 largest`.
-/// - Coordinates in double precision far from the origin can be finer than that. `step / 1024` keeps
-///   the points of a line apart.
+/// - Programs compute the same place twice with different rounding. VTK prints single precision with 6
+///   digits, so the two may be neighbouring numbers of 6 digits, which differ by at most
+///   `10^-5 largest`. Numbers in single precision are 100 times finer.
+/// - Coordinates far from the origin can be finer than that. `step / 1024` keeps the points of a line
+///   apart.
 /// - A `width` below the resolution of double precision, `2^-52 largest`, counts as 0: only equal
 ///   points are at one place.
 struct Places {
@@ -204,7 +204,7 @@ impl Places {
             length += differences.into_iter().fold(0.0, f64::max);
             count += 1.0;
         }
-        let width = (largest * f64::from(f32::EPSILON)).min(length / count / 1024.0);
+        let width = (largest * SIX_DIGITS).min(length / count / 1024.0);
         let is_resolved = width >= largest * f64::EPSILON;
         Self { width: if is_resolved { width } else { 0.0 }, cells: HashMap::new(), count: 0 }
     }
@@ -249,6 +249,9 @@ impl Places {
         if self.width > 0.0 { point.map(whole) } else { point }
     }
 }
+
+/// The largest relative difference of neighbouring numbers of 6 digits.
+const SIX_DIGITS: f64 = 1e-5;
 
 /// Returns the bits of three numbers. Adding 0 makes -0 and 0 the same.
 fn bits(numbers: [f64; 3]) -> [u64; 3] {
