@@ -20,8 +20,8 @@ pub struct Options {
     /// List the labels of the segmentation with their volumes, and stop
     #[arg(long, conflicts_with_all = ["centreline", "shapes"])]
     pub labels: bool,
-    /// Accept a segmentation that states the spacing of its voxels but not their position: its
-    /// first voxel becomes the origin
+    /// Accept a segmentation that does not state the position of its voxels: its first voxel
+    /// becomes the origin
     #[arg(long)]
     pub allow_no_position: bool,
     /// Points along the robot, from base to tip. A text file (.csv, .tsv, .txt, .dat) has a line

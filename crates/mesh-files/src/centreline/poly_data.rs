@@ -175,8 +175,14 @@ fn join(lines: &[Vec<usize>], points: &[Point]) -> Vec<Vec<Point>> {
 /// - `width = min(10^-5 largest, step / 1024)`.
 ///
 /// # Claim
-/// A point gets the number of an earlier point if their coordinates differ by at most `width`. It
-/// gets no number of a point that is farther than `2 width`.
+/// Let the points be in groups that are at most `width` wide along each axis, and more than
+/// `2 width` apart along some axis. Then the points of a group are at one place, and no two groups
+/// are.
+///
+/// # Proof
+/// A cell of the grid is `2 width` wide, so it has points of one group only. The first point of a
+/// group is stored. Any other point is in the same cell, or in a neighbouring one, where `find` sees
+/// the first point and compares the coordinates.
 ///
 /// # Choice
 /// - Programs compute the same place twice with different rounding. VTK prints single precision with 6
