@@ -20,14 +20,14 @@ pub struct Options {
     /// List the labels of the segmentation with their volumes, and stop
     #[arg(long, conflicts_with_all = ["centreline", "shapes"])]
     pub labels: bool,
-    /// Accept a segmentation that states the spacing of its voxels but not their position: its
-    /// first voxel becomes the origin
+    /// Accept a segmentation that does not state the position of its voxels: its first voxel
+    /// becomes the origin
     #[arg(long)]
     pub allow_no_position: bool,
     /// Points along the robot, from base to tip. A text file (.csv, .tsv, .txt, .dat) has a line
     /// for each point: x,y,z and optionally the radius of the segment that begins there. A heading
-    /// is optional: it names x,y,z, and r,a,s or l,p,s state the frame. Lines that begin with # are
-    /// skipped. Or a .vtp, .vtk or .mrk.json file
+    /// is optional: it names x,y,z, and r,a,s or l,p,s state the frame; radius or diameter name the
+    /// fourth column. Lines that begin with # are skipped. Or a .vtp, .vtk or .mrk.json file
     #[arg(
         long,
         visible_alias = "centerline",
@@ -47,7 +47,8 @@ pub struct Options {
         conflicts_with_all = ["centreline", "tolerance", "plot", "prove"]
     )]
     pub shapes: Option<PathBuf>,
-    /// The radius of all segments, in the unit of the mesh, if the file has none
+    /// The radius of all segments, in the unit of the mesh. A text file with a column of radii or
+    /// diameters states them itself: then leave this out, or the column
     #[arg(long, value_name = "LENGTH", allow_negative_numbers = true, value_parser = length)]
     pub radius: Option<f64>,
     /// Multiply the robot's coordinates and the radii in its file (not --radius), for example by

@@ -1,15 +1,19 @@
 //! Prints what is read from each file, a line of JSON each: `cargo run --example read -- wall.stl
-//! lines.vtp:0`. A colon and a number after the name choose a label or a line; `--line` before a
-//! file reads it as a centreline.
+//! lines.vtp:0`. A colon and a number after the name choose a label or a line. Before a file `--line`
+//! reads it as a centreline, and `--no-position` reads a label map without a position.
 
 use mesh_files::{Frame, Options, load_centreline, load_with};
 use serde_json::{Value, json};
 
 fn main() {
-    let mut is_line = false;
+    let (mut is_line, mut allow_no_position) = (false, false);
     for argument in std::env::args().skip(1) {
-        if argument == "--line" {
-            is_line = true;
+        match argument.as_str() {
+            "--line" => is_line = true,
+            "--no-position" => allow_no_position = true,
+            _ => {}
+        }
+        if argument.starts_with("--") {
             continue;
         }
         let (name, number) = match argument.rsplit_once(':') {
@@ -26,7 +30,10 @@ fn main() {
                 Err(error) => json!({ "error": error.to_string() }),
             }
         } else {
-            match load_with(name, &Options::default().with_label(number)) {
+            let options = Options::default()
+                .with_label(number)
+                .with_no_position_allowed(std::mem::take(&mut allow_no_position));
+            match load_with(name, &options) {
                 Ok(mesh) => json!({
                     "vertices": mesh.vertices, "triangles": mesh.triangles, "frame": frame(mesh.frame),
                     "skipped": mesh.skipped_faces,

@@ -38,6 +38,15 @@ pub enum MeshFileError {
         /// The file.
         file: PathBuf,
     },
+    /// The line in a centreline's file has fewer than two points.
+    #[error("{} holds a line of {count} point{}; give the points from base to tip, at least two", file.display(), if *count == 1 { "" } else { "s" })]
+    #[non_exhaustive]
+    TooFewPoints {
+        /// The file.
+        file: PathBuf,
+        /// The number of points.
+        count: usize,
+    },
     /// A line of a text file lacks the numbers that are needed.
     #[error("line {line} of {} {problem}; write {expected}", file.display())]
     #[non_exhaustive]

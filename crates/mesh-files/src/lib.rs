@@ -50,9 +50,9 @@ pub struct Options {
     /// The label whose surface is read from a label map. `None` takes all voxels that are not 0 as
     /// inside. For a file of triangles a label is an error.
     pub label: Option<u32>,
-    /// Whether to read a label map that states the spacing of its voxels but not their position.
-    /// Its first voxel is then the origin, and its axes are the axes of the voxels. Its frame is
-    /// unknown unless the file states it.
+    /// Whether to read a label map that does not state the position of its voxels. Its first voxel
+    /// is then the origin, its axes are the axes of the voxels, and a voxel without a stated spacing
+    /// has the sides 1. Its frame is unknown unless the file states it.
     pub allow_no_position: bool,
     /// The line to read from a centreline's file, counted from 0. A file with one line needs none.
     pub line: Option<usize>,
@@ -469,7 +469,7 @@ fn volume<'a>(
     options: &Options,
 ) -> Result<label_map::Volume<'a>, Fault> {
     match format {
-        Format::MetaImage => label_map::meta_image::read(bytes),
+        Format::MetaImage => label_map::meta_image::read(bytes, options.allow_no_position),
         Format::Nifti => label_map::nifti::read(bytes, options.allow_no_position),
         Format::Nrrd => label_map::nrrd::read(bytes, options.allow_no_position),
         _ => Err(Fault::NoLabels),

@@ -23,11 +23,23 @@ pub fn read(bytes: &[u8]) -> Result<Mesh, String> {
         _ if is_solid && !bytes[..bytes.len().min(1000)].contains(&0) => ascii(bytes)?,
         (Some(count), None) => {
             let there = body.len() / TRIANGLE;
+            let remedy = if body.len() % TRIANGLE == 0 {
+                format!("; if all are there, write {there} into its bytes 80 to 83")
+            } else if there < count {
+                "; it may be cut short".into()
+            } else {
+                format!(
+                    "; if these are no triangles, cut it after byte {}",
+                    HEAD + count * TRIANGLE
+                )
+            };
             return Err(if there < count {
-                format!("its header counts {count} triangles, but it ends after {there}")
+                format!("its header counts {count} triangles, but it ends after {there}{remedy}")
             } else {
                 let more = body.len() - count * TRIANGLE;
-                format!("its header counts {count} triangles, but {more} more bytes follow them")
+                format!(
+                    "its header counts {count} triangles, but {more} more bytes follow them{remedy}"
+                )
             });
         }
         (None, None) => {
@@ -81,8 +93,8 @@ fn binary(triangles: &[&[u8; TRIANGLE]]) -> Mesh {
     Mesh { vertices: merger.vertices, ..mesh }
 }
 
-/// Reads an ASCII file. Words are compared without case; the rest of a line after `solid` is its
-/// name.
+/// Reads an ASCII file. Words are compared without case. A name follows `solid`: to the end of the
+/// line, or to the first facet if all words are in one line.
 fn ascii(bytes: &[u8]) -> Result<Mesh, String> {
     let (mut mesh, mut merger) = (Mesh::default(), Merger::default());
     let mut corners = Vec::new();
@@ -98,7 +110,7 @@ fn ascii(bytes: &[u8]) -> Result<Mesh, String> {
             match word.as_str() {
                 "solid" | "endsolid" => {
                     is_open = word == "solid";
-                    break;
+                    while !begins_facet(words.clone()) && words.next().is_some() {}
                 }
                 // Skip "normal" and its three numbers: the vertices determine it.
                 "facet" => words.by_ref().take(4).for_each(drop),
@@ -125,4 +137,10 @@ fn ascii(bytes: &[u8]) -> Result<Mesh, String> {
         return Err("it ends without 'endsolid', so it may be cut short".into());
     }
     Ok(Mesh { vertices: merger.vertices, ..mesh })
+}
+
+/// Returns whether a facet begins with these words.
+fn begins_facet<'a>(mut words: impl Iterator<Item = &'a str>) -> bool {
+    let mut is_next = |word: &str| words.next().is_some_and(|own| own.eq_ignore_ascii_case(word));
+    is_next("facet") && is_next("normal")
 }

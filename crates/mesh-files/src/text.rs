@@ -8,6 +8,19 @@ pub fn without_mark(bytes: &[u8]) -> &[u8] {
     bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)
 }
 
+/// Converts UTF-16, which a byte order mark states, to UTF-8. Other bytes stay as they are.
+#[cfg(feature = "centrelines")]
+pub fn from_utf16(bytes: &[u8]) -> Cow<'_, [u8]> {
+    let (read, own): (fn([u8; 2]) -> u16, _) = match bytes {
+        [0xff, 0xfe, own @ ..] => (u16::from_le_bytes, own),
+        [0xfe, 0xff, own @ ..] => (u16::from_be_bytes, own),
+        _ => return bytes.into(),
+    };
+    let units = own.as_chunks().0.iter().copied().map(read);
+    let text = char::decode_utf16(units).map(|c| c.unwrap_or(char::REPLACEMENT_CHARACTER));
+    text.collect::<String>().into_bytes().into()
+}
+
 /// Returns the lines with their numbers, counted from 1.
 pub fn lines(bytes: &[u8]) -> impl Iterator<Item = (usize, Cow<'_, str>)> {
     // Old programs end lines with carriage returns only.

@@ -1,6 +1,6 @@
 """Reads what the field's own programs write, in every variant that they offer, and compares it with what they hold.
 
-    pip install trimesh scipy meshio pyvista nibabel pynrrd SimpleITK
+    pip install trimesh scipy meshio pyvista nibabel pynrrd SimpleITK pandas
     python tests/writers.py READ
 
 READ is the program of examples/read.rs. Triangles are compared corner by corner, label maps by the box around the label:
@@ -8,6 +8,7 @@ its middle is where nibabel, pynrrd and SimpleITK read the label's voxels. Fails
 written, or refused without being expected to be.
 """
 
+import gzip
 import itertools
 import json
 import subprocess
@@ -19,6 +20,7 @@ import meshio
 import nibabel
 import nrrd
 import numpy as np
+import pandas
 import pyvista
 import SimpleITK as sitk
 import trimesh
@@ -139,32 +141,71 @@ def write_vtk(data, file, version, binary, compressor=None, mode=None, header=No
     writer.Write()
 
 
-def check_line(name, file, refused=None):
+def check_line(name, file, refused=None, radii=None, expected=LINE):
     answer = ask("--line", file)
     if refused:
         return check(name, refused in answer.get("error", ""), answer)
-    check(name, "error" not in answer and np.allclose(answer["points"], LINE, atol=1e-6), answer)
+    is_right = "error" not in answer and np.shape(answer["points"]) == LINE.shape
+    is_right = is_right and np.allclose(answer["points"], expected, rtol=1e-5, atol=1e-6)
+    check(name, is_right and answer["radii"] == radii, answer)
 
 
 def lines():
     whole, cut = pyvista.MultipleLines(LINE), pyvista.lines_from_points(LINE)
     shuffled = pyvista.PolyData(LINE, lines=[2, 0, 1, 2, 2, 3, 2, 2, 1, 2, 4, 3])
-    for title, data in [("one cell", whole), ("cells of two", cut), ("in any order", shuffled)]:
+    repeated = pyvista.lines_from_points(np.repeat(LINE, [1, 2, 1, 3, 1], axis=0))
+    doubled = pyvista.PolyData(LINE, lines=[2, 0, 1, 2, 1, 0, 2, 1, 2, 2, 1, 2, 2, 2, 3, 2, 4, 3])
+    # Cells with points of their own, which differ by rounding; and every second one turned there and back by VTK.
+    draws = np.random.default_rng(5)
+    ends = np.repeat(LINE, 2, axis=0)[1:-1]
+    own = pyvista.line_segments_from_points(ends + draws.uniform(-1e-12, 1e-12, ends.shape))
+    parts = [pyvista.line_segments_from_points(pair.astype(np.float32)) for pair in ends.reshape(4, 2, 3) + 50]
+    turn = lambda part: part.rotate_vector((1, 2, 2), 70).rotate_vector((1, 2, 2), 60).rotate_vector((1, 2, 2), -130)
+    turned = parts[0].append_polydata(turn(parts[1]), parts[2], turn(parts[3]))
+    for title, data in [
+        ("one cell", whole), ("cells of two", cut), ("in any order", shuffled), ("repeated points", repeated),
+        ("repeated cells", doubled), ("points of each cell", own), ("turned there and back", turned),
+    ]:
         data = data.copy()
-        data.point_data["MaximumInscribedSphereRadius"] = np.arange(5.0)
-        data.point_data["normals"] = np.ones((5, 3))
+        expected = LINE + 50 if title == "turned there and back" else LINE
+        data.point_data["MaximumInscribedSphereRadius"] = np.arange(float(data.n_points))
+        data.point_data["normals"] = np.ones((data.n_points, 3))
         data.field_data["note"] = ["two words"]
         for version, binary in itertools.product([42, 51], [True, False]):
             file = path("a.vtk")
             write_vtk(data, file, version, binary)
-            check_line(f"{title} vtk {version} binary={binary}", file)
+            check_line(f"{title} vtk {version} binary={binary}", file, expected=expected)
         for mode, compressor, header in itertools.product(
             ["Ascii", "Binary", "Appended"], ["None", "ZLib", "LZ4", "LZMA"], ["UInt32", "UInt64"]
         ):
             file = path("a.vtp")
             write_vtk(data, file, 0, True, compressor, mode, header)
             refused = f"packed by {compressor}" if compressor in ["LZ4", "LZMA"] else None
-            check_line(f"{title} vtp {mode} {compressor} {header}", file, refused)
+            check_line(f"{title} vtp {mode} {compressor} {header}", file, refused, expected=expected)
+
+
+def tables():
+    table = pandas.DataFrame(LINE, columns=["x", "y", "z"])
+    radii = [1.5] * 4
+    for title, data, options, own in [
+        ("plain", table, {"index": False}, None), ("index", table, {}, None),
+        ("named index", table, {"index_label": "id"}, None), ("tabs", table, {"sep": "\t", "index": False}, None),
+        ("decimal commas", table, {"sep": ";", "decimal": ",", "index": False}, None),
+        ("no heading", table, {"header": False, "index": False}, None),
+        ("UTF-16", table, {"encoding": "utf-16"}, None), ("UTF-8 with a mark", table, {"encoding": "utf-8-sig"}, None),
+        ("quotes", table, {"quoting": 1, "index": False}, None), ("carriage returns", table, {"lineterminator": "\r"}, None),
+        ("radius", table.assign(radius=1.5), {}, radii), ("diameter", table.assign(Diameter=3.0), {}, radii),
+        ("VMTK", table.assign(MaximumInscribedSphereRadius=1.5, Abscissas=7), {"index": False}, radii),
+        ("ParaView", table.set_axis([f"Points:{axis}" for axis in range(3)], axis=1), {}, None),
+        ("ParaView, renamed", table.set_axis([f"Points_{axis}" for axis in range(3)], axis=1), {}, None),
+    ]:
+        file = path("a.csv")
+        data.to_csv(file, **options)
+        check_line(f"pandas {title}", file, radii=own)
+    for delimiter in [" ", ",", ";", "\t"]:
+        file = path("a.txt")
+        np.savetxt(file, LINE, delimiter=delimiter, header="x y z")
+        check_line(f"numpy {delimiter!r}", file)
 
 
 # --- Label maps
@@ -179,8 +220,8 @@ def box(corner_to_place):
     return np.array([corner_to_place(np.array(corner)) for corner in itertools.product((2, 4), (1, 3), (5, 7))])
 
 
-def check_map(name, file, places, frame, refused=None):
-    answer = ask(f"{file}:3")
+def check_map(name, file, places, frame, refused=None, label=3, options=()):
+    answer = ask(*options, f"{file}:{label}")
     if refused:
         return check(name, refused in answer.get("error", ""), answer)
     if "error" in answer:
@@ -201,6 +242,13 @@ def turned(mirror=1.0):
     return affine
 
 
+def edit(file, at, data):
+    """Replaces bytes of a header; nibabel writes its own affine into a form that does not fit."""
+    whole = bytearray(gzip.decompress(file.read_bytes()) if file.suffix == ".gz" else file.read_bytes())
+    whole[at:at + len(data)] = data
+    file.write_bytes(gzip.compress(whole) if file.suffix == ".gz" else whole)
+
+
 def label_maps():
     for klass, dtype, mirror, form, order in itertools.product(
         [nibabel.Nifti1Image, nibabel.Nifti2Image, nibabel.Nifti1Pair, nibabel.Nifti2Pair],
@@ -211,10 +259,11 @@ def label_maps():
         image.set_data_dtype(np.dtype(dtype).newbyteorder(order))
         image.set_sform(turned(mirror), code=0 if form == "q" else 1)
         image.set_qform(turned(mirror), code=0 if form == "s" else 1)
-        if form == "zero s":
-            image.header["srow_x"] = image.header["srow_y"] = image.header["srow_z"] = 0
         file = path("a.img" if "Pair" in klass.__name__ else "a.nii.gz" if dtype == np.uint8 else "a.nii")
         image.to_filename(file)
+        if form == "zero s":
+            at, size = (280, 48) if "1" in klass.__name__ else (400, 96)
+            edit(file.with_suffix(".hdr") if file.suffix == ".img" else file, at, bytes(size))
         affine = turned(mirror)
         check_map(f"nibabel {klass.__name__} {dtype.__name__} {mirror} {form} {order}", file,
                   box(lambda voxel: affine[:3, :3] @ voxel + affine[:3, 3]), "Ras")
@@ -227,6 +276,28 @@ def label_maps():
         affine = turned()
         check_map(f"nibabel scaled {dtype.__name__}", file, box(lambda v: affine[:3, :3] @ v + affine[:3, 3]), "Ras")
 
+    # A slope of nearly 1 and high labels.
+    for dtype, label, slope in itertools.product([np.uint16, np.int32], [200, 30000], [0.99999, 1.00001]):
+        image = nibabel.Nifti1Image(BLOCK.astype(dtype) // 3 * dtype(label), turned())
+        file = path("a.nii")
+        image.to_filename(file)
+        edit(file, 112, np.float32(slope).tobytes())
+        assert round(nibabel.load(file).get_fdata().max() / slope) == label
+        affine = turned()
+        check_map(f"nibabel label {label} slope {slope}", file, box(lambda v: affine[:3, :3] @ v + affine[:3, 3]), "Ras",
+                  label=label)
+
+    # A form of zeros alone: nibabel's affine is 0, SimpleITK refuses it.
+    image = nibabel.Nifti1Image(BLOCK, turned())
+    image.set_sform(turned(), code=1)
+    image.set_qform(None, code=0)
+    file = path("a.nii")
+    image.to_filename(file)
+    edit(file, 280, bytes(48))
+    check_map("zero sform alone", file, None, None, "its sform is zero and its qform unknown")
+    spacing = np.array(nibabel.load(file).header.get_zooms())
+    check_map("zero sform alone, allowed", file, box(lambda v: spacing * v), None, options=["--no-position"])
+
     # nibabel and SimpleITK read a negative spacing differently.
     for form in ["s", "q"]:
         image = nibabel.Nifti1Image(BLOCK, turned())
@@ -234,9 +305,7 @@ def label_maps():
         image.set_qform(turned(), code=int(form == "q"))
         file = path("a.nii")
         image.to_filename(file)
-        whole = bytearray(file.read_bytes())
-        whole[80:84] = np.float32(-2).tobytes()
-        file.write_bytes(whole)
+        edit(file, 80, np.float32(-2).tobytes())
         check_map(f"negative pixdim {form}", file, None, None, "pixdim[1] is -2")
 
     for space, encoding, dtype, apart in itertools.product(
@@ -283,9 +352,37 @@ def label_maps():
         check_map(f"SimpleITK {kind} {image.GetPixelIDTypeAsString()} packed={packed} {mirror}", file, box(place),
                   "Ras" if is_ras else "Lps")
 
+    # Headers of MetaImage that SimpleITK reads without a word, and names that it does not find.
+    image = sitk.GetImageFromArray(BLOCK.transpose(2, 1, 0))
+    image.SetSpacing([2.0, 3.0, 4.0])
+    image.SetOrigin([10.0, 20.0, 30.0])
+    for field, other, refused in [
+        ("Offset", "", "no field 'Offset'"), ("ElementSpacing", "", "no field 'ElementSpacing'"),
+        ("Offset", "Position = 1 2 3", None), ("ElementSpacing", "ElementSize = 1 2 3", None),
+        ("TransformMatrix", "", None), ("CenterOfRotation", "DistanceUnits = mm", None),
+    ]:
+        file = path("a.mha")
+        sitk.WriteImage(image, str(file), useCompression=False)
+        head, data = file.read_bytes().split(b"ElementDataFile", 1)
+        fields = [other if line.startswith(field) else line for line in head.decode().splitlines()]
+        head = "".join(line + "\n" for line in fields if line)
+        file.write_bytes(head.encode() + b"ElementDataFile" + data)
+        read = sitk.ReadImage(str(file))
+        places = box(lambda v: np.array(read.TransformContinuousIndexToPhysicalPoint(v.astype(float).tolist())))
+        check_map(f"MetaImage {field} {other!r}", file, places, "Lps", refused)
+        if refused:
+            check_map(f"MetaImage {field} allowed", file, places, "Lps", options=["--no-position"])
+    for name in ["./a.raw", ".\\a.raw", '"a.raw"', "LIST", "a%d.raw 1 2 1"]:
+        file = path("a.mhd")
+        sitk.WriteImage(image, str(file), useCompression=False)
+        file.write_text(file.read_text().replace("= a.raw", f"= {name}"))
+        refused = "several files" if name[-1] in "T1" else None
+        check_map(f"MetaImage {name}", file, box(lambda v: [2, 3, 4] * v + [10, 20, 30]), "Lps", refused)
+
 
 surfaces()
 lines()
+tables()
 label_maps()
 print(f"{count} files, {len(failed)} read otherwise")
 sys.exit(bool(failed))

@@ -89,6 +89,9 @@ fn points_are_read_as_people_write_them() {
         "x,y,z,r\r30,30,20,2\r30,30,40\r",
         "\"Radius\",\"Normals:0\",\"Points:0\",\"Points:1\",\"Points:2\"\n2,7,30,30,20\n2,7,30,30,40\n",
         "x [mm],y [mm],z [mm],radius [mm],distance_to_wall_mm\r\n30,30,20,2,9\r\n30,30,40,2,9\r\n",
+        "radius,X,Y,Z\n2,30,30,20\n2,30,30,40\n",
+        // A table of pandas with its index.
+        ",x,y,z,diameter\n0,30,30,20,4\n1,30,30,40,4\n",
     ] {
         assert_eq!(
             minimum(&["--mesh", room, "--centreline", &file("people.csv", text)]),
@@ -136,7 +139,13 @@ fn what_is_wrong_with_my_files_is_said_in_one_line() {
     refuse_shape("30,30,20,2\n30,30,30\n30,30,40\n", "line 2 of ");
     let radius = ["--mesh", room, "--centreline", shape, "--radius", "1"];
     refuse(&radius, "has a column of radii; leave out --radius");
-    refuse_shape("30,30,20,1\n", "point");
+    let diameters = &file("diameters.csv", "x,y,z,diameter\n30,30,20,2\n30,30,40,2\n");
+    let radius = ["--mesh", room, "--centreline", diameters, "--radius", "1"];
+    refuse(&radius, "has a column of radii; leave out --radius");
+    refuse_shape(
+        "30,30,20,1\n",
+        "bad.csv holds a line of 1 point; give the points from base to tip",
+    );
     refuse_shape("30,30,20,-1\n30,30,40\n", "radius 0 is -1");
     refuse_shape("30,30,20,1\n30,30,40,-1\n", "the radius of the last point is -1");
     refuse_shape("30,30,20,1\n30,30,40,nan\n", "the radius of the last point is NaN");
@@ -166,7 +175,7 @@ fn what_is_wrong_with_my_files_is_said_in_one_line() {
     }
     // Columns that their heading names otherwise.
     refuse_shape("z,y,x\n30,30,20,1\n30,30,40\n", "has 'z' in column 1");
-    refuse_shape("radius,X,Y,Z\n1,30,30,20\n1,30,30,40\n", "has 'X' in column 2");
+    refuse_shape("radius,X,Z,Y\n1,30,30,20\n1,30,30,40\n", "has 'Z' in column 3");
     // Decimal commas between spaces; two numbers in a column.
     refuse_shape("1,5 2,5\n3,5 4,5\n", "has '5 2' in column 2");
     refuse_shape("30 30,20\n30,30,40\n", "has '30 30' in column 1");
@@ -354,7 +363,7 @@ fn the_minimum_is_printed_whatever_becomes_of_the_curve() {
 #[test]
 fn a_line_of_vtk_is_a_robot() {
     let wall = &room("vtk.obj");
-    let vtk = "# vtk DataFile Version 5.1\nline\nASCII\nDATASET POLYDATA\nPOINTS 4 double\n30 30 20 30 30 40 30 30 10 30 30 40\n\
+    let vtk = "# vtk DataFile Version 5.1\nline\nASCII\nDATASET POLYDATA\nPOINTS 4 double\n30 30 20 30 30 40 31 30 10 31 30 40\n\
                LINES 3 4\nOFFSETS vtktypeint64\n0 2 4\nCONNECTIVITY vtktypeint64\n0 1 2 3\n";
     let line = &file("line.vtk", vtk);
     let asked = ["--mesh", wall, "--centreline", line, "--radius", "2"];

@@ -12,7 +12,7 @@ mod xml;
 use crate::mesh::{Frame, Mesh};
 use crate::{MeshFileError, Options, read_file, text};
 use poly_data::{JOINING, PolyData};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 pub use table::{load_shapes, load_table, table_from_bytes};
 
 /// Points along a line.
@@ -22,7 +22,7 @@ pub struct Centreline {
     /// The points in the file's order.
     pub points: Vec<[f64; 3]>,
     /// The radius of the segment that begins at each point but the last, if the file is a text with
-    /// a column for it.
+    /// a column for it. A column of diameters gives half of them.
     pub radii: Option<Vec<f64>>,
     /// The frame of the coordinates, if the file or its format states it.
     pub frame: Option<Frame>,
@@ -103,14 +103,15 @@ impl Format {
 /// - 3D Slicer's markups (`.mrk.json`): a curve.
 /// - Text (`.csv`, `.tsv`, `.txt`, `.dat`): points with x, y, z and optionally the radius.
 /// - VTK's PolyData (`.vtp`, `.vtk`), as VMTK, SimVascular and SOFA write it: a line. Cells whose
-///   ends meet are one line. Radii are not read: they belong to the vessel, not to the robot.
+///   ends meet are one line, where ends that differ by rounding meet too. Radii are not read: they
+///   belong to the vessel, not to the robot.
 ///
 /// A file with several lines needs [`Options::line`], and so does a markup that is not a curve,
 /// such as a list of fiducials.
 ///
 /// # Errors
-/// As [`load_with`](crate::load_with); there is no line, or several and none is chosen; or a line
-/// names a point that does not exist.
+/// As [`load_with`](crate::load_with); there is no line, or several and none is chosen; the line has
+/// fewer than two points; or a line names a point that does not exist.
 pub fn load_centreline(
     path: impl AsRef<Path>,
     options: &Options,
@@ -135,7 +136,11 @@ pub fn centreline_from_bytes(
     let file = path.to_owned();
     let read = match format {
         Format::Table => {
-            return one_line(&file, table::centreline(path, bytes, options)?, options.line);
+            let own = table::centreline(path, bytes, options)?;
+            return one_line(&file, own, options.line).and_then(|line| with_points(file, line));
+        }
+        Format::Markups if bytes.len() as u64 * markups::EACH > options.memory_limit => {
+            Err("its values take more memory than is allowed".into())
         }
         Format::Markups => markups::read(bytes),
         Format::VtkLegacy => vtk_legacy::read(bytes).and_then(Lines::of),
@@ -169,7 +174,15 @@ pub fn centreline_from_bytes(
     };
     let Line { mut points, skipped_points, .. } = lines.swap_remove(line);
     options.scale_all(&file, &mut points)?;
-    Ok(Centreline { points, radii: None, frame, states_unit, skipped_points })
+    with_points(file, Centreline { points, radii: None, frame, states_unit, skipped_points })
+}
+
+/// Returns a centreline if it has at least two points.
+fn with_points(file: PathBuf, line: Centreline) -> Result<Centreline, MeshFileError> {
+    match line.points.len() {
+        count @ ..2 => Err(MeshFileError::TooFewPoints { file, count }),
+        _ => Ok(line),
+    }
 }
 
 /// Returns the centreline of a file that has only one.

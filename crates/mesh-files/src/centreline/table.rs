@@ -1,7 +1,7 @@
 //! Reads points from lines of text, as spreadsheets, numpy, ParaView and people write them.
 
 use super::{Centreline, Format};
-use crate::text::{lines, shown};
+use crate::text::{from_utf16, lines, shown};
 use crate::{Frame, MeshFileError, Options, read_file};
 use std::path::Path;
 
@@ -125,7 +125,9 @@ fn read(
         return Err(MeshFileError::Broken { file, format, reason });
     }
     let mut robots = Vec::new();
-    for rows in table.rows.chunk_by(|(_, a), (_, b)| first == 0 || a[0].to_bits() == b[0].to_bits())
+    let shape = |row: &[f64]| row[columns.shape];
+    for rows in
+        table.rows.chunk_by(|(_, a), (_, b)| first == 0 || shape(a).to_bits() == shape(b).to_bits())
     {
         let points = rows.iter().map(|(_, row)| columns.axes.map(|axis| row[axis])).collect();
         let radii = columns.radii(rows).map_err(named)?;
@@ -138,7 +140,7 @@ fn read(
             states_unit: false,
             skipped_points: 0,
         };
-        robots.push((rows[0].1[0], robot));
+        robots.push((shape(&rows[0].1), robot));
     }
     Ok(robots)
 }
@@ -147,21 +149,23 @@ fn read(
 struct Columns {
     axes: [usize; 3],
     radius: Option<usize>,
+    /// The factor of the numbers in the column of the radius: 1/2 for diameters.
+    factor: f64,
+    /// The column of the number of the shape, in a table of shapes.
+    shape: usize,
     frame: Option<Frame>,
 }
 
 impl Columns {
     fn of(table: &Table, first: usize) -> Result<Self, Fault> {
         let plain = [first, first + 1, first + 2];
+        let columns =
+            Self { axes: plain, radius: Some(first + 3), factor: 1.0, shape: 0, frame: None };
         let Some((line, heading)) = &table.heading else {
-            let columns = Self { axes: plain, radius: Some(first + 3), frame: None };
-            return Self::check(table, columns, first + 4, first);
+            return Self::check(table, columns, first + 4);
         };
         let named = |name: &str| heading.iter().position(|own| own == name);
-        let stated = NAMED_AXES.into_iter().find_map(|(names, frame)| match names.map(named) {
-            [Some(x), Some(y), Some(z)] => Some(([x, y, z], frame)),
-            _ => None,
-        });
+        let stated = named_axes(heading).filter(|(axes, _)| axes.iter().all(|&axis| axis >= first));
         let (axes, frame) = stated.unwrap_or((plain, None));
         if stated.is_none() {
             for (column, axis) in axes.into_iter().zip(['x', 'y', 'z']) {
@@ -175,14 +179,17 @@ impl Columns {
                 }
             }
         }
-        let radius = RADIUS.iter().find_map(|name| named(name));
-        let radius = radius.filter(|radius| !axes.contains(radius));
-        Self::check(table, Self { axes, radius, frame }, heading.len(), first)
+        let is_free = |column: &usize| !axes.contains(column);
+        let own = |&(name, factor): &(&str, f64)| Some((named(name).filter(is_free)?, factor));
+        let (radius, factor) = RADIUS.iter().find_map(own).unzip();
+        let shape = named("shape").filter(|_| first > 0).unwrap_or(0);
+        let factor = factor.unwrap_or(1.0);
+        Self::check(table, Self { axes, radius, factor, shape, frame }, heading.len())
     }
 
-    /// Checks that every line has the coordinates, and no column without a name.
-    fn check(table: &Table, columns: Self, most: usize, first: usize) -> Result<Self, Fault> {
-        let last = columns.axes.into_iter().fold(first, usize::max);
+    /// Checks that every line has the coordinates and the shape, and no column without a name.
+    fn check(table: &Table, columns: Self, most: usize) -> Result<Self, Fault> {
+        let last = columns.axes.into_iter().fold(columns.shape, usize::max);
         for (line, row) in &table.rows {
             if row.len() <= last || (table.heading.is_none() && row.len() > most) {
                 return fault(*line, format!("has {} columns", row.len()));
@@ -201,7 +208,7 @@ impl Columns {
     /// radii.
     fn radii(&self, rows: &[(usize, Vec<f64>)]) -> Result<Option<Vec<f64>>, Fault> {
         let Some(column) = self.radius else { return Ok(None) };
-        let of = |(_, row): &(usize, Vec<f64>)| row.get(column).copied();
+        let of = |(_, row): &(usize, Vec<f64>)| row.get(column).map(|number| number * self.factor);
         let Some((last, others)) = rows.split_last() else { return Ok(None) };
         if rows.iter().all(|row| of(row).is_none()) {
             return Ok(None);
@@ -220,25 +227,48 @@ impl Columns {
     }
 }
 
-/// The names of a column of radii.
-const RADIUS: [&str; 4] = ["radius", "radii", "rad", "r"];
-/// ParaView's names of the coordinates.
-const PARAVIEW: [&str; 3] = ["points:0", "points:1", "points:2"];
-/// Names of the coordinates that may be in any columns, and the frame that they state.
-const NAMED_AXES: [([&str; 3], Option<Frame>); 3] =
-    [(PARAVIEW, None), (["r", "a", "s"], Some(Frame::Ras)), (["l", "p", "s"], Some(Frame::Lps))];
+/// The names of a column of radii, VMTK's included, or of diameters, and the factor to radii.
+const RADIUS: [(&str, f64); 7] = [
+    ("radius", 1.0),
+    ("radii", 1.0),
+    ("rad", 1.0),
+    ("r", 1.0),
+    ("maximuminscribedsphereradius", 1.0),
+    ("diameter", 0.5),
+    ("diameters", 0.5),
+];
+/// Names of the coordinates that may be in any columns, and the frame that they state. ParaView
+/// writes `Points:0`; other programs write `Points_0` for it.
+const NAMED_AXES: [([&str; 3], Option<Frame>); 5] = [
+    (["points:0", "points:1", "points:2"], None),
+    (["points_0", "points_1", "points_2"], None),
+    (["r", "a", "s"], Some(Frame::Ras)),
+    (["l", "p", "s"], Some(Frame::Lps)),
+    (["x", "y", "z"], None),
+];
+
+/// Returns the columns of the coordinates and the frame that their names state.
+fn named_axes(names: &[String]) -> Option<([usize; 3], Option<Frame>)> {
+    let named = |name: &str| names.iter().position(|own| own == name);
+    NAMED_AXES.into_iter().find_map(|(axes, frame)| match axes.map(named) {
+        [Some(x), Some(y), Some(z)] => Some(([x, y, z], frame)),
+        _ => None,
+    })
+}
 
 fn parse(bytes: &[u8]) -> Result<Table, Fault> {
     let mut table = Table { heading: None, rows: Vec::new() };
     let mut is_first = true;
-    for (line, text) in lines(bytes) {
+    for (line, text) in lines(&from_utf16(bytes)) {
         let text = bare(&text);
         if text.trim().is_empty() || text.starts_with('#') {
             continue;
         }
         let columns = columns(text);
-        if std::mem::take(&mut is_first) && is_heading(&columns) {
-            let names: Vec<_> = columns.iter().map(|word| name(word)).collect();
+        if std::mem::take(&mut is_first)
+            && let names = columns.iter().map(|word| name(word)).collect::<Vec<_>>()
+            && is_heading(&columns, &names)
+        {
             if let Some(column) = misplaced(&names) {
                 return fault(
                     line,
@@ -318,20 +348,19 @@ fn name(word: &str) -> String {
     ["_mm", "_m", " mm"].iter().find_map(|unit| bare.strip_suffix(unit)).unwrap_or(&bare).to_owned()
 }
 
-/// Returns whether a line is a heading: words without a digit, none of which is a number or
-/// missing; or ParaView's names.
-fn is_heading(columns: &[&str]) -> bool {
-    if PARAVIEW.iter().all(|axis| columns.iter().any(|word| name(word) == *axis)) {
-        return true;
-    }
+/// Returns whether a line is a heading: names of three coordinates; or words without a digit, none of
+/// which is a number or missing.
+fn is_heading(columns: &[&str], names: &[String]) -> bool {
     let is_name = |word: &&str| word.contains(char::is_alphabetic) && number(word).is_none();
-    columns.iter().all(is_name) && !columns.iter().any(|word| name(word).contains(char::is_numeric))
+    let has_digit = || names.iter().any(|name| name.contains(char::is_numeric));
+    named_axes(names).is_some() || columns.iter().all(is_name) && !has_digit()
 }
 
-/// Returns the column of a heading that names x, y or z out of order, or without a column of shapes
-/// in front.
+/// Returns the column of a heading that names x, y or z out of order. Without an x, y and z belong
+/// to the first columns, or those after a column of shapes.
 fn misplaced(names: &[String]) -> Option<usize> {
     let axis = |name: &str| ["x", "y", "z"].iter().position(|axis| *axis == name);
-    let first = usize::from(names.first().is_some_and(|name| name == "shape"));
+    let plain = usize::from(names.first().is_some_and(|name| name == "shape"));
+    let first = names.iter().position(|name| name == "x").unwrap_or(plain);
     (0..names.len()).find(|&column| axis(&names[column]).is_some_and(|axis| first + axis != column))
 }

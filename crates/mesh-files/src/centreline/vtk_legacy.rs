@@ -9,6 +9,8 @@ use crate::text::{frame_named, no_number, noted_frame, shown};
 /// The rest of the file.
 struct Reader<'a> {
     bytes: &'a [u8],
+    /// The last byte of each line: a carriage return if the first line ends with it alone.
+    line_end: u8,
     is_binary: bool,
 }
 
@@ -17,7 +19,8 @@ impl<'a> Reader<'a> {
         if self.bytes.is_empty() {
             return None;
         }
-        let end = self.bytes.iter().position(|&byte| byte == b'\n').unwrap_or(self.bytes.len());
+        let is_end = |&byte: &u8| byte == self.line_end;
+        let end = self.bytes.iter().position(is_end).unwrap_or(self.bytes.len());
         let line = &self.bytes[..end];
         self.bytes = self.bytes.get(end + 1..).unwrap_or_default();
         Some(std::str::from_utf8(line).unwrap_or("").trim())
@@ -262,7 +265,7 @@ const SECTIONS: [&str; 12] = [
 
 /// Returns whether the head of a section or of an array follows, or the end of the file.
 fn is_head(after: &[u8]) -> bool {
-    let line = after.split(|&byte| byte == b'\n').next().unwrap_or_default();
+    let line = after.split(|byte| b"\r\n".contains(byte)).next().unwrap_or_default();
     let Ok(line) = std::str::from_utf8(line) else { return false };
     match words(line)[..] {
         [] => after.is_empty(),
@@ -281,7 +284,11 @@ fn words(line: &str) -> Vec<&str> {
 }
 
 pub fn read(bytes: &[u8]) -> Result<PolyData, String> {
-    let mut file = Reader { bytes, is_binary: false };
+    let first_end = bytes.iter().position(|byte| b"\r\n".contains(byte)).unwrap_or(bytes.len());
+    let is_alone =
+        bytes[first_end..].first() == Some(&b'\r') && bytes.get(first_end + 1) != Some(&b'\n');
+    let line_end = if is_alone { b'\r' } else { b'\n' };
+    let mut file = Reader { bytes, line_end, is_binary: false };
     if !file.line().is_some_and(|line| line.starts_with("# vtk DataFile")) {
         return Err("it does not begin with '# vtk DataFile'".into());
     }

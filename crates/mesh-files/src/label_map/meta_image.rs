@@ -1,10 +1,10 @@
 //! Reads MetaImage label maps: `.mha`, and `.mhd` with its voxels in a second file. As in ITK,
-//! their frame is LPS, in millimetres.
+//! their frame is LPS, in millimetres unless `DistanceUnits` states another unit, which ITK ignores.
 
 use super::voxels::{Encoding, Kind, Voxels, last};
-use super::{Fault, Place, Volume, count, voxels_path};
+use super::{Fault, Place, Volume, count, elsewhere, voxels_path};
 use crate::mesh::Frame;
-use crate::text::shown;
+use crate::text::{shown, unit_in_mm};
 use std::collections::HashMap;
 use std::path::PathBuf;
 
@@ -82,15 +82,11 @@ pub fn in_one(header: &[u8], voxels: &[u8]) -> Vec<u8> {
     whole
 }
 
-pub fn read(bytes: &[u8]) -> Result<Volume<'_>, Fault> {
+pub fn read(bytes: &[u8], allow_no_position: bool) -> Result<Volume<'_>, Fault> {
     let file = File::new(bytes)?;
     let here = file.need(LAST)?;
     if !is_here(here) {
-        let other = shown(here);
-        return Err(format!(
-            "its voxels are in a second file, '{other}'; keep it beside, or save one .mha"
-        )
-        .into());
+        return Err(elsewhere(here, ".mha").into());
     }
     if file.need("NDims")? != "3"
         || file.get(&["ElementNumberOfChannels"]).is_some_and(|channels| channels != "1")
@@ -128,7 +124,8 @@ pub fn read(bytes: &[u8]) -> Result<Volume<'_>, Fault> {
     };
     let is_big_endian = file.says("BinaryDataByteOrderMSB") || file.says("ElementByteOrderMSB");
     let voxels = Voxels { data, encoding, skip, count, kind, is_big_endian, scaling: None };
-    Ok(Volume { sizes, voxels, place: place(&file)?, frame: Some(Frame::Lps), states_unit: true })
+    let (place, frame) = place(&file, allow_no_position)?;
+    Ok(Volume { sizes, voxels, place, frame, states_unit: true })
 }
 
 fn kind(name: &str) -> Result<Kind, String> {
@@ -147,16 +144,34 @@ fn kind(name: &str) -> Result<Kind, String> {
     })
 }
 
-/// Returns the map of the voxels. The matrix has the direction of each axis in turn, and the offset
-/// is the centre of the first voxel.
-fn place(file: &File) -> Result<Place, String> {
-    let spacing = file.numbers(&["ElementSpacing", "ElementSize"], [1.0; 3])?;
-    let origin = file.numbers(&["Offset", "Position", "Origin"], [0.0; 3])?;
+/// The names of each field, the first as ITK writes it.
+const SPACING: [&str; 2] = ["ElementSpacing", "ElementSize"];
+const OFFSET: [&str; 3] = ["Offset", "Position", "Origin"];
+const AXES: [&str; 3] = ["TransformMatrix", "Rotation", "Orientation"];
+
+/// Returns the map of the voxels, and their frame. The matrix has the direction of each axis in
+/// turn, and the offset is the centre of the first voxel.
+///
+/// ITK reads a file without spacing or offset as spacing 1 or offset 0; here this needs the option.
+/// The frame is then unknown if neither offset nor axes are stated.
+fn place(file: &File, allow_no_position: bool) -> Result<(Place, Option<Frame>), Fault> {
+    let missing = [&SPACING[..], &OFFSET].into_iter().find(|names| file.get(names).is_none());
+    if let Some(names) = missing.filter(|_| !allow_no_position) {
+        return Err(Fault::NoPosition(format!("its header has no field '{}'", names[0])));
+    }
+    // `?` is MetaIO's own mark of an unknown unit.
+    let unit = file.get(&["DistanceUnits"]).filter(|&unit| unit != "?").unwrap_or("mm");
+    let unit = unit_in_mm(&unit.to_ascii_lowercase()).ok_or_else(|| {
+        format!("its DistanceUnits '{}' cannot be read; save it in mm", shown(unit))
+    })?;
+    let spacing = file.numbers(&SPACING, [1.0; 3])?;
+    let origin = file.numbers(&OFFSET, [0.0; 3])?;
     let turned = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
-    let axes: [f64; 9] = file.numbers(&["TransformMatrix", "Rotation", "Orientation"], turned)?;
+    let axes: [f64; 9] = file.numbers(&AXES, turned)?;
     let rows = [0, 1, 2].map(|row| {
         let along = |axis: usize| axes[3 * axis + row] * spacing[axis];
-        [along(0), along(1), along(2), origin[row]]
+        [along(0), along(1), along(2), origin[row]].map(|x| x * unit)
     });
-    Place::new(rows, "TransformMatrix")
+    let is_placed = file.get(&OFFSET).or(file.get(&AXES)).is_some();
+    Ok((Place::new(rows, AXES[0])?, is_placed.then_some(Frame::Lps)))
 }

@@ -6,6 +6,7 @@ pub mod nrrd;
 mod voxels;
 
 use crate::mesh::{Frame, Mesh};
+use crate::text::shown;
 use fast_surface_nets::ndshape::RuntimeShape;
 use fast_surface_nets::{SignedDistance, SurfaceNetsBuffer, surface_nets};
 use std::collections::BTreeMap;
@@ -104,13 +105,35 @@ fn without_position([x, y, z]: [f64; 3]) -> [[f64; 4]; 3] {
 }
 
 /// Returns the path of a file of voxels relative to its header, if it is in the same folder or
-/// below it. Lists of files and patterns of names are refused.
+/// below it. The name may be quoted, and have the backslashes of Windows.
 fn voxels_path(name: &str) -> Option<PathBuf> {
-    let is_list = name.split_whitespace().next() == Some("LIST") || name.contains('%');
-    let path = PathBuf::from(name);
+    let quoted = ['"', '\''].iter().find_map(|&mark| name.strip_prefix(mark)?.strip_suffix(mark));
+    let path = PathBuf::from(quoted.unwrap_or(name).replace('\\', "/"));
     let is_below =
         path.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
-    (!name.is_empty() && !is_list && !name.contains('\\') && is_below).then_some(path)
+    (!path.as_os_str().is_empty() && !is_list(name) && is_below).then_some(path)
+}
+
+/// Returns whether a name stands for several files: `LIST`, or a pattern such as `slice%03d.raw`.
+fn is_list(name: &str) -> bool {
+    let is_number =
+        |rest: &str| rest.trim_start_matches(|c: char| c.is_ascii_digit()).starts_with('d');
+    name.split_whitespace().next() == Some("LIST") || name.split('%').skip(1).any(is_number)
+}
+
+/// Returns the message for voxels that are not in the file, with the extension of one that has
+/// them.
+fn elsewhere(name: &str, extension: &str) -> String {
+    let other = shown(name);
+    if is_list(name) {
+        format!(
+            "its voxels are in several files, '{other}', which cannot be read; save one {extension}"
+        )
+    } else {
+        format!(
+            "its voxels are in a second file, '{other}'; keep it beside, or save one {extension}"
+        )
+    }
 }
 
 /// Returns the number of voxels, if it is within the limit.

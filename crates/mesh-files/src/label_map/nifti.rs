@@ -175,14 +175,15 @@ pub fn read(bytes: &[u8], allow_no_position: bool) -> Result<Volume<'_>, Fault> 
         )
         .into());
     }
+    let kind = kind(&header)?;
     let voxels = Voxels {
         data: bytes,
         encoding: if is_packed { Encoding::Gzip } else { Encoding::Raw },
         skip: offset as usize,
         count: count(sizes)?,
-        kind: kind(&header)?,
+        kind,
         is_big_endian: header.is_big_endian,
-        scaling: scaling(&header)?,
+        scaling: scaling(&header, kind)?,
     };
     let (place, is_placed) = place(&header, allow_no_position)?;
     let frame = is_placed.then_some(Frame::Ras);
@@ -191,16 +192,24 @@ pub fn read(bytes: &[u8], allow_no_position: bool) -> Result<Volume<'_>, Fault> 
 
 /// Returns the scaling of the values, as nibabel reads it: none if the slope is 0, infinite or NaN,
 /// for every intercept; otherwise an intercept that is not finite is an error.
-fn scaling(header: &Header) -> Result<Option<[f64; 2]>, String> {
+///
+/// Some writers store the slope 1 as 0.99999, and 60000 times that is 59999.4. So a slope of nearly
+/// 1 is 1 for integers.
+fn scaling(header: &Header, kind: Kind) -> Result<Option<[f64; 2]>, String> {
     let [slope, intercept] = [[112, 176], [116, 184]].map(|places| header.real(places, 0));
+    let is_one = (slope - 1.0).abs() <= SLOPE_ERROR && !matches!(kind, Kind::F32 | Kind::F64);
     if slope == 0.0 || !slope.is_finite() {
         Ok(None)
     } else if intercept.is_finite() {
-        Ok(Some([slope, intercept]))
+        Ok(Some([if is_one { 1.0 } else { slope }, intercept]))
     } else {
         Err(format!("its numbers are multiplied by {slope}, but {intercept} is added to them"))
     }
 }
+
+/// The largest difference between 1 and a slope that stands for 1. It is the difference that label 1
+/// may have from a whole number.
+const SLOPE_ERROR: f64 = 1e-4;
 
 fn kind(header: &Header) -> Result<Kind, String> {
     Ok(match header.data_type() {
@@ -222,6 +231,9 @@ fn kind(header: &Header) -> Result<Kind, String> {
 ///
 /// The sform applies if there is one, otherwise the qform (methods 3 and 2 of nifti1.h). Method 1
 /// has no patient frame. An sform of zeros counts as absent.
+///
+/// # Errors
+/// A spacing is negative: nibabel takes its absolute value, ITK mirrors the axis in every method.
 fn place(header: &Header, allow_no_position: bool) -> Result<(Place, bool), Fault> {
     let unit = match header.unit() {
         0 | 2 => 1.0,
@@ -236,22 +248,24 @@ fn place(header: &Header, allow_no_position: bool) -> Result<(Place, bool), Faul
         [0, 1, 2].map(|row| [0, 1, 2, 3].map(|column| header.real([280, 400], 4 * row + column)));
     let is_zero = sform.iter().all(|row| row[..3] == [0.0; 3]);
     let spacing = [1, 2, 3].map(|index| header.spacing(index));
-    // Readers disagree: nibabel uses the form unchanged, ITK mirrors the axis.
     if let Some(axis) = (0..3).find(|&axis| spacing[axis] < 0.0) {
         let (name, value) = (axis + 1, spacing[axis]);
         let wrong = format!(
-            "its pixdim[{name}] is {value}, which some programs mirror; write a positive one"
+            "its pixdim[{name}] is {value}: ITK and 3D Slicer mirror that axis, nibabel does not; save \
+             it with the program that shows it right"
         );
         return Err(wrong.into());
     }
-    if s && !(is_zero && q) {
+    if s && !is_zero {
         return Ok((scaled(sform, "sform")?, true));
     }
     if q {
         return Ok((scaled(qform(header, spacing), "qform")?, true));
     }
     if !allow_no_position {
-        return Err(Fault::NoPosition("sform and qform are both unknown".into()));
+        let zero = "its sform is zero and its qform unknown";
+        let missing = if s { zero } else { "sform and qform are both unknown" };
+        return Err(Fault::NoPosition(missing.into()));
     }
     Ok((scaled(without_position(spacing), "pixdim")?, false))
 }

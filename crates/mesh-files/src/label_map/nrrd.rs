@@ -2,7 +2,7 @@
 //! header. The field `space` states their frame, RAS or LPS.
 
 use super::voxels::{Encoding, Kind, Voxels, last};
-use super::{Fault, Place, Volume, count, voxels_path, without_position};
+use super::{Fault, Place, Volume, count, elsewhere, voxels_path, without_position};
 use crate::mesh::Frame;
 use crate::text::{shown, unit_in_mm};
 use std::collections::HashMap;
@@ -155,11 +155,7 @@ fn axes(file: &File) -> Result<Axes, String> {
 pub fn read(bytes: &[u8], allow_no_position: bool) -> Result<Volume<'_>, Fault> {
     let file = File::new(bytes)?;
     if let Some(other) = ELSEWHERE.iter().find_map(|name| file.get(name)) {
-        let other = shown(other);
-        return Err(format!(
-            "its voxels are in a second file, '{other}'; keep it beside, or save one .nrrd"
-        )
-        .into());
+        return Err(elsewhere(other, ".nrrd").into());
     }
     let axes = axes(&file)?;
     let count = count(axes.sizes)?;

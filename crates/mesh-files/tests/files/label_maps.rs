@@ -427,6 +427,24 @@ fn labels_that_a_writer_scaled_are_rounded_and_images_refused() {
         let read = label("a.nrrd", &nrrd(&matrix, "float", "raw", "LPS", &bytes), 3);
         assert_eq!(read.is_ok(), expected, "{number}");
     }
+    // High labels times a slope of nearly 1: 199.998, 59999.4.
+    for high in [200_u16, 60_000] {
+        let bytes: Vec<_> = voxels
+            .iter()
+            .flat_map(|&voxel| (if voxel == 3 { high } else { 0 }).to_le_bytes())
+            .collect();
+        let scaled = |slope: f32, kind: i16| {
+            let mut file = Nifti::new(bytes.clone());
+            file.sform(&matrix).shorts(70, &[kind, 16]).floats(112, &[slope, 0.0]);
+            label("a.nii", &file.bytes(), high.into())
+        };
+        for slope in [1.0, 0.99999, 1.00001, 1.000_000_1, 0.99995, 1.00005] {
+            assert_eq!(scaled(slope, 512).unwrap().triangles.len(), plain.triangles.len());
+        }
+        for slope in [0.99971, 1.00029] {
+            refused("image", scaled(slope, 512), "holds an image, in which a voxel is");
+        }
+    }
     // A whole number that single precision cannot hold is no image.
     assert!(
         of(16_777_217.0 / 255.0, &sevens)
@@ -443,19 +461,31 @@ fn a_form_of_nifti_that_says_nothing_is_not_used() {
     let zeros = [[0.0; 4]; 3];
     let q = label("q.nii", &whole().sform(&zeros).qform(1.0).bytes(), 3).unwrap();
     assert_ball("q", &q, centre, 9.5, 1.0);
+    // Without one it says as little as no form.
+    let mut alone = whole();
+    alone.sform(&zeros).floats(76, &[1.0, 2.0, 3.0, 4.0]);
+    refused(
+        "zeros",
+        label("a.nii", &alone.bytes(), 3),
+        "voxels are (its sform is zero and its qform unknown); save it again with a position, or",
+    );
+    // Some of its numbers are no position.
+    let flat = [matrix[0], matrix[1], [0.0; 4]];
     refused(
         "plane",
-        label("a.nii", &whole().sform(&zeros).bytes(), 3),
+        label("a.nii", &whole().sform(&flat).bytes(), 3),
         "its sform brings all voxels into one plane",
     );
-    // Negative spacings: nibabel and ITK place the voxels differently, by an sform too.
+    // Negative spacings: SimpleITK 2.5 mirrors the axis and nibabel 5.4 does not, in either form.
     for (place, spacings, name) in
         [(80, [-1.0, 1.2, 0.8], 1), (80, [1.0, -1.2, 0.8], 2), (80, [1.0, 1.2, -0.8], 3)]
     {
         let mut negative = whole();
         negative.qform(1.0).floats(place, &spacings);
         for bytes in [negative.bytes(), negative.sform(&matrix).bytes()] {
-            refused("spacing", label("a.nii", &bytes, 3), &format!("its pixdim[{name}] is -"));
+            let read = label("a.nii", &bytes, 3);
+            refused("spacing", read.clone(), &format!("its pixdim[{name}] is -"));
+            refused("spacing", read, "save it with the program that shows it right");
         }
     }
     // Neither of them.
@@ -468,6 +498,7 @@ fn a_form_of_nifti_that_says_nothing_is_not_used() {
     );
     let options = Options::default().with_label(Some(7)).with_no_position_allowed(true);
     let corner = from_bytes("a.nii", &none.bytes(), &options).unwrap();
+    assert_eq!(from_bytes("a.nii", &alone.bytes(), &options).as_ref(), Ok(&corner));
     assert_eq!(corner.frame, None);
     // The corner has voxels 0 to 3 along each axis.
     let far =
@@ -552,8 +583,16 @@ fn voxels_in_a_file_beside_the_header_are_read() {
         assert_eq!(load(name).as_ref(), Ok(&expected), "{name}");
     }
     for (name, text, expected) in [
-        ("list.nhdr", apart("data file: LIST\na.raw\n"), "in a second file, 'LIST'"),
-        ("many.nhdr", apart("data file: a%03d.raw 1 9 1\n"), "in a second file"),
+        (
+            "list.nhdr",
+            apart("data file: LIST\na.raw\n"),
+            "in several files, 'LIST', which cannot be read; save one .nrrd",
+        ),
+        (
+            "many.nhdr",
+            apart("data file: a%03d.raw 1 9 1\n"),
+            "in several files, 'a%03d.raw 1 9 1', which cannot be read; save one .nrrd",
+        ),
         ("up.nhdr", apart("data file: ../ball.raw\n"), "in a second file"),
         ("gone.nhdr", apart("data file: gone.raw\n"), "gone.raw"),
         ("skip.nhdr", apart("data file: ball 1.raw\nbyte skip: -2\n"), "its 'byte skip' is -2"),

@@ -12,10 +12,10 @@ const MEMORY: u64 = 4 << 20;
 const TIME: Duration = Duration::from_secs(1);
 
 /// A fixed sequence (splitmix64).
-struct Draws(u64);
+pub struct Draws(pub u64);
 
 impl Draws {
-    fn below(&mut self, count: usize) -> usize {
+    pub fn below(&mut self, count: usize) -> usize {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -81,17 +81,25 @@ fn check(name: &str, whole: &[u8], read: impl Fn(&[u8]) -> Result<(), MeshFileEr
 
 fn check_meshes(files: &[(&str, &str)]) {
     for (name, file) in files {
-        let whole = std::fs::read(report(file)).unwrap();
-        check(name, &whole, |bytes| {
-            let mesh = from_bytes(name, bytes, &Options::default().with_memory_limit(MEMORY / 2))?;
-            let count = mesh.vertices.len();
-            assert!(
-                !mesh.triangles.is_empty() && mesh.vertices.iter().flatten().all(|x| x.is_finite())
-            );
-            assert!(mesh.triangles.iter().flatten().all(|&corner| (corner as usize) < count));
-            Ok(())
-        });
+        check_mesh(name, &std::fs::read(report(file)).unwrap());
     }
+}
+
+fn check_mesh(name: &str, whole: &[u8]) {
+    check(name, whole, |bytes| {
+        let mesh = from_bytes(name, bytes, &Options::default().with_memory_limit(MEMORY / 2))?;
+        let count = mesh.vertices.len();
+        assert!(
+            !mesh.triangles.is_empty() && mesh.vertices.iter().flatten().all(|x| x.is_finite())
+        );
+        assert!(mesh.triangles.iter().flatten().all(|&corner| (corner as usize) < count));
+        Ok(())
+    });
+}
+
+/// The same text with another end of each line.
+fn with_ends(file: &str, end: &str) -> Vec<u8> {
+    std::fs::read_to_string(report(file)).unwrap().replace('\n', end).into_bytes()
 }
 
 #[test]
@@ -105,6 +113,7 @@ fn spoilt_files_of_triangles_are_read_or_refused() {
         ("a.stl", "A07_end_solid.stl"),
         ("binary.stl", "A08_attribute_payload.stl"),
     ]);
+    check_mesh("line.stl", &with_ends("A07_end_solid.stl", " "));
 }
 
 #[cfg(feature = "label-maps")]
@@ -131,14 +140,22 @@ fn spoilt_centrelines_are_read_or_refused() {
         ("binary.vtk", "../lines_5_binary.vtk"),
         ("packed.vtp", "../lines_appended_packed_base64.vtp"),
     ] {
-        let whole = std::fs::read(report(file)).unwrap();
-        check(name, &whole, |bytes| {
-            let options = Options::default().with_line(Some(0)).with_memory_limit(MEMORY / 2);
-            let line = mesh_files::centreline_from_bytes(name, bytes, &options)?;
-            assert!(line.points.iter().flatten().all(|x| x.is_finite()));
-            Ok(())
-        });
+        check_line(name, &std::fs::read(report(file)).unwrap());
     }
+    check_line("returns.vtk", &with_ends("A15_field_before_points.vtk", "\r"));
+    let text = std::fs::read_to_string(report("A20_bom_heading_units.csv")).unwrap();
+    let utf16: Vec<_> = text.encode_utf16().flat_map(u16::to_le_bytes).collect();
+    check_line("utf16.csv", &utf16);
+}
+
+#[cfg(feature = "centrelines")]
+fn check_line(name: &str, whole: &[u8]) {
+    check(name, whole, |bytes| {
+        let options = Options::default().with_line(Some(0)).with_memory_limit(MEMORY / 2);
+        let line = mesh_files::centreline_from_bytes(name, bytes, &options)?;
+        assert!(line.points.len() > 1 && line.points.iter().flatten().all(|x| x.is_finite()));
+        Ok(())
+    });
 }
 
 /// XML that takes long where namespaces are resolved or attributes compared: a limit instead.

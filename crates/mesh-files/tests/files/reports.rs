@@ -193,19 +193,35 @@ fn stl_is_read_where_its_length_is_certain() {
     assert_tetrahedron("no count", counted(0, 284));
     assert_tetrahedron("no count", counted(u32::MAX, 284));
     assert_tetrahedron("a tail", counted(4, 333));
-    for (count, length, expected) in [
-        (4, 283, "counts 4 triangles, but it ends after 3"),
-        (5, 284, "counts 5 triangles, but it ends after 4"),
-        (u32::MAX, 283, "but it ends after 3"),
-        (3, 284, "counts 3 triangles, but 50 more bytes follow"),
+    for (count, length, expected, remedy) in [
+        (4, 283, "counts 4 triangles, but it ends after 3", "it may be cut short"),
+        (5, 284, "counts 5 triangles, but it ends after 4", "write 4 into its bytes 80 to 83"),
+        (u32::MAX, 283, "but it ends after 3", "it may be cut short"),
+        (3, 284, "counts 3 triangles, but 50 more bytes follow", "write 4 into its bytes 80 to 83"),
+        (3, 290, "counts 3 triangles, but 56 more bytes follow", "cut it after byte 234"),
     ] {
         refused("count", counted(count, length), expected);
+        refused("count", counted(count, length), remedy);
     }
+    // The remedies work: bytes 80 to 83 are the count.
+    assert_tetrahedron("count", counted(4, 284));
+    assert_eq!(counted(3, 234).unwrap().triangles.len(), 3);
     let text = std::fs::read_to_string(report("A07_end_solid.stl")).unwrap();
     for (from, to) in
         [("end solid", "END SOLID"), ("end loop", "endloop"), ("endfacet", "end facet")]
     {
         assert_tetrahedron(to, crate::read("a.stl", text.replace(from, to)));
+    }
+    // All words in one line, with a name, with the word that begins a facet as a name, and without.
+    for name in ["solid of one line", "solid facet", "SOLID facet of \u{e9}", "solid"] {
+        let line = text.replace('\n', " ");
+        let (_, rest) = line.split_once("facet ").unwrap();
+        let line = format!("{name} facet {rest}");
+        assert_tetrahedron(name, crate::read("a.stl", &line));
+        let two = line.clone() + &line;
+        assert_eq!(crate::read("a.stl", two).unwrap().triangles.len(), 8, "{name}");
+        let cut = line.split("end solid").next().unwrap();
+        refused(name, crate::read("a.stl", cut), "ends without 'endsolid'");
     }
 }
 
@@ -299,6 +315,6 @@ mod centrelines {
             );
             assert_eq!(found.skipped_points, skipped, "{name}");
         }
-        refused("none", load("A19_no_control_points.mrk.json"), "no controlPoints");
+        refused("none", load("A19_no_control_points.mrk.json"), "no list 'controlPoints'");
     }
 }

@@ -41,7 +41,7 @@ fn places(indices: &[usize]) -> Vec<Vertex> {
 fn cells_are_joined_where_their_ends_meet() {
     // The cells, and the lines that they make: in the order and the direction of their first cells.
     type Lines<'a> = &'a [&'a [usize]];
-    let cases: [(Lines<'_>, Lines<'_>); 14] = [
+    let cases: [(Lines<'_>, Lines<'_>); 20] = [
         (&[&[0, 1], &[1, 2], &[2, 3], &[3, 4]], &[&[0, 1, 2, 3, 4]]),
         (&[&[2, 3], &[0, 1], &[3, 4], &[1, 2]], &[&[0, 1, 2, 3, 4]]),
         // Some are turned, and the first one too.
@@ -61,8 +61,16 @@ fn cells_are_joined_where_their_ends_meet() {
         (&[&[1, 2, 0], &[4, 3, 0]], &[&[1, 2, 0], &[4, 3, 0]]),
         // One that meets the middle of another.
         (&[&[0, 1, 2], &[1, 3], &[3, 4]], &[&[0, 1, 2], &[1, 3, 4]]),
-        // No length.
-        (&[&[0, 1], &[2, 2]], &[&[0, 1], &[2, 2]]),
+        // A cell without length is left out, unless there is no other; a repeated point stays.
+        (&[&[0, 1], &[2, 2]], &[&[0, 1]]),
+        (&[&[0, 0], &[0, 1], &[1, 1, 1], &[1, 2], &[2]], &[&[0, 1, 2]]),
+        (&[&[2, 2]], &[&[2, 2]]),
+        (&[&[0, 1, 1], &[1, 2]], &[&[0, 1, 1, 2]]),
+        // A cell that stands twice, or three times, in either direction.
+        (&[&[0, 1], &[0, 1], &[1, 2], &[2, 3]], &[&[0, 1, 2, 3]]),
+        (&[&[2, 3], &[0, 1], &[3, 2], &[1, 2], &[2, 3]], &[&[0, 1, 2, 3]]),
+        // Two longer ones that share their ends are two.
+        (&[&[0, 1, 4], &[0, 2, 4]], &[&[0, 1, 4], &[0, 2, 4]]),
     ];
     for (cut, expected) in cases {
         for (number, line) in expected.iter().enumerate() {
@@ -80,6 +88,125 @@ fn cells_are_joined_where_their_ends_meet() {
     let own = "POINTS 6 double\n0 0 0 0 0 10 1 0 20 3 0 29 0 0 10 1 0 20\nLINES 3 9\n2 2 3\n2 0 1\n2 4 5\n";
     let apart = text("").split("POINTS").next().unwrap().to_owned() + own;
     assert_eq!(lines("a.vtk", apart, None).unwrap().points, places(&[0, 1, 2, 3]));
+}
+
+/// A file of cells with points of their own: the coordinates of both ends, in order.
+fn own_cells(ends: &[[Vertex; 2]], kind: &str) -> String {
+    let count = ends.len();
+    let points: Vec<_> = ends.iter().flatten().flatten().map(|x| format!("{x:e}")).collect();
+    let cells: String =
+        (0..count).map(|cell| format!("2 {} {}\n", 2 * cell, 2 * cell + 1)).collect();
+    format!(
+        "# vtk DataFile Version 3.0\nx\nASCII\nDATASET POLYDATA\nPOINTS {} {kind}\n{}\nLINES {count} {}\n{cells}",
+        2 * count,
+        points.join(" "),
+        3 * count
+    )
+}
+
+#[test]
+fn ends_that_differ_by_rounding_meet() {
+    let mut draws = crate::mutations::Draws(3);
+    let mut draw = || draws.below(1 << 20) as f64 / f64::from(1 << 19) - 1.0;
+    for round in 0..200 {
+        // A walk of steps of about 1, whose coordinates are at most 100. Each cell has points of its
+        // own, rounded in another way, in any order and direction.
+        let mut places = vec![[70.0 * draw(), 70.0 * draw(), 70.0 * draw()]];
+        for _ in 0..20 {
+            let last = places[places.len() - 1];
+            places.push(last.map(|x| x + 0.5 + 0.4 * draw()));
+        }
+        let largest = places.iter().flatten().fold(0.0, |most: f64, x| most.max(x.abs()));
+        let error = [1e-14, 1e-12 / 30.0, f64::from(f32::EPSILON), 4e-6][round % 4] * largest;
+        let scale = 2_f64.powi([-300, 0, 300][round / 4 % 3]);
+        let mut rounded = |place: Vertex| place.map(|x| scale * (x + error * draw()));
+        let mut ends: Vec<[Vertex; 2]> =
+            places.windows(2).map(|pair| [rounded(pair[0]), rounded(pair[1])]).collect();
+        ends.iter_mut().for_each(|pair| pair.rotate_left(usize::from(draw() > 0.0)));
+        ends.sort_by_cached_key(|_| (1e6 * draw()) as i64);
+        let found = lines("a.vtk", own_cells(&ends, "double"), None)
+            .unwrap_or_else(|message| panic!("{round}: {message}"))
+            .points;
+        assert_eq!(found.len(), places.len(), "{round}");
+        let is_near = |places: &mut dyn Iterator<Item = &Vertex>| {
+            found.iter().zip(places).all(|(found, place)| {
+                (0..3).all(|axis| (found[axis] / scale - place[axis]).abs() <= 1.1 * error)
+            })
+        };
+        assert!(is_near(&mut places.iter()) || is_near(&mut places.iter().rev()), "{round}");
+    }
+    // Single precision: the same places, and the next numbers.
+    let single = |more: u32| {
+        let rounded = |x: f64| f32::from_bits((x as f32 / 3.0 + 70.0).to_bits() + more);
+        POINTS.map(|place| place.map(|x| f64::from(rounded(x))))
+    };
+    let (a, b) = (single(0), single(1));
+    let ends = [[a[0], a[1]], [b[2], b[1]], [a[2], a[3]], [b[3], a[4]]];
+    assert_eq!(lines("a.vtk", own_cells(&ends, "float"), None).unwrap().points.len(), 5);
+    // Six digits, as VTK prints them: 100 and 99.9999, 70.3333 and 70.3334.
+    let printed = |more: f64| a.map(|p| p.map(|x| format!("{:.4}", x + more).parse().unwrap()));
+    let (c, d): ([Vertex; 5], [Vertex; 5]) = (printed(-0.0001), printed(0.0));
+    let ends = [[c[0], c[1]], [d[2], d[1]], [c[2], c[3]], [d[3], c[4]]];
+    assert_eq!(lines("a.vtk", own_cells(&ends, "float"), None).unwrap().points.len(), 5);
+    // A cell without length but for rounding, and one that stands twice but for rounding.
+    let ends = [[a[0], a[1]], [a[1], b[1]], [b[1], b[0]], [a[1], a[2]]];
+    assert_eq!(lines("a.vtk", own_cells(&ends, "float"), None).unwrap().points, a[..3]);
+}
+
+#[test]
+fn ends_that_differ_by_more_than_rounding_stay_apart() {
+    // Coordinates of a map, in double precision: single precision does not tell its points apart.
+    let far = |i: f64| [5e6 + 0.1 * i, -4e6, 0.02 * i];
+    let ends: Vec<_> = (0..50).map(|i| [far(f64::from(i)), far(f64::from(i + 1))]).collect();
+    assert_eq!(lines("a.vtk", own_cells(&ends, "double"), None).unwrap().points.len(), 51);
+    for (gap, expected) in [(1e-9, true), (0.01, false)] {
+        let mut ends = ends.clone();
+        ends[25..].iter_mut().flatten().for_each(|p| p[1] += gap);
+        assert_eq!(lines("a.vtk", own_cells(&ends, "double"), None).is_ok(), expected, "{gap}");
+    }
+    // A gap of a thousandth beside a length of ten.
+    let ends = [[POINTS[0], POINTS[1]], [POINTS[1].map(|x| x + 1e-3), POINTS[2]]];
+    refused("gap", lines("a.vtk", own_cells(&ends, "double"), None), "holds 2 lines");
+    // What is not finite meets nothing, and is refused where it is chosen.
+    let ends = [[POINTS[0], [f64::NAN; 3]], [[f64::NAN; 3], POINTS[2]]];
+    refused("nan", lines("a.vtk", own_cells(&ends, "double"), Some(0)), "is not finite");
+}
+
+#[test]
+fn files_of_carriage_returns_alone_are_read() {
+    let whole = cells(&[&[0, 1, 2], &[2, 3]]);
+    let field = "FIELD FieldData 1\nSPACE 1 1 string\nLPS\nMETADATA\nINFORMATION 0\n\nPOINTS";
+    let whole = whole.replace("POINTS", field);
+    let expected = lines("a.vtk", &whole, None);
+    assert_eq!(expected.as_ref().unwrap().frame, Some(Frame::Lps));
+    assert_eq!(lines("a.vtk", whole.replace('\n', "\r"), None), expected);
+    assert_eq!(lines("a.vtk", whole.replace('\n', "\r\n"), None), expected);
+    // In bytes, of which some are line feeds.
+    let head = "# vtk DataFile Version 5.1\rx\rBINARY\rDATASET POLYDATA\rPOINTS 2 float\r";
+    let mut bytes = head.as_bytes().to_vec();
+    [0.0_f32, 0.0, 10.0, f32::from_bits(0x4120_0a0a), 0.0, 0.0]
+        .iter()
+        .for_each(|x| bytes.extend(x.to_be_bytes()));
+    bytes.extend(b"\rLINES 2 2\rOFFSETS vtkIdType\r");
+    [0_i64, 2].iter().for_each(|x| bytes.extend(x.to_be_bytes()));
+    bytes.extend(b"\rCONNECTIVITY vtkIdType\r");
+    [0_i64, 1].iter().for_each(|x| bytes.extend(x.to_be_bytes()));
+    bytes.extend(b"\r");
+    let read = lines("a.vtk", &bytes, None).unwrap().points;
+    assert_eq!(read[1][0], f64::from(f32::from_bits(0x4120_0a0a)));
+}
+
+#[test]
+fn a_line_of_one_point_is_refused() {
+    let curve = r#"{"markups": [{"type": "Curve", "controlPoints": [{"position": [1, 2, 3]}]}]}"#;
+    for (name, text) in [
+        ("a.csv", "0,0,0\n".to_owned()),
+        ("a.csv", "x,y,z\n0,0,0\n".to_owned()),
+        ("a.mrk.json", curve.to_owned()),
+        ("a.vtk", text("LINES 1 2\n1 3\n")),
+    ] {
+        refused(name, lines(name, text, None), "holds a line of 1 point; give the points");
+    }
 }
 
 #[test]
@@ -242,8 +369,62 @@ fn units_of_markups_are_brought_to_millimetres_and_unset_points_are_counted() {
     refused(
         "text",
         lines("a.mrk.json", none, None),
-        "control point 0 has the position 'here', not three numbers",
+        "control point 0 has the 'position' \"here\", not three numbers; draw a curve",
     );
+}
+
+#[test]
+fn what_is_wrong_with_markups_is_named_by_its_field() {
+    let curve = |points: &str| format!(r#"{{"markups": [{{"controlPoints": {points}}}]}}"#);
+    let set = r#"{"position": [1, 2, 3]}"#;
+    assert!(lines("a.mrk.json", curve(&format!("[{set}, {set}]")), None).is_ok());
+    for (text, expected) in [
+        ("{}".to_owned(), "it has no list 'markups'"),
+        ("[]".to_owned(), "it has no list 'markups'"),
+        (r#"{"markups": {}}"#.to_owned(), "it has no list 'markups'"),
+        (r#"{"markups": [7]}"#.to_owned(), "the entry 0 of its 'markups' is no object"),
+        (r#"{"markups": [{"type": 7}]}"#.to_owned(), "has the 'type' 7, which is no text"),
+        (r#"{"markups": [{"type": "Line"}]}"#.to_owned(), "its Line has no list 'controlPoints'"),
+        (curve("null"), "its Curve has no list 'controlPoints'"),
+        (curve("7"), "its Curve has no list 'controlPoints'"),
+        (curve("[]"), "the 'controlPoints' of its Curve are empty"),
+        (curve(r#"[{}, {"position": ""}]"#), "none of the 2 'controlPoints' of its Curve has"),
+        (curve("[7]"), "control point 0 is no object"),
+        (curve(&format!("[{set}, []]")), "control point 1 is no object"),
+        (curve(r#"[{"position": [1, 2]}]"#), "point 0 has the 'position' [1,2], not three numbers"),
+        (curve(r#"[{"position": [1, "2", 3]}]"#), "has the 'position' [1,\"2\",3], not three"),
+        (curve(r#"[{"position": {"x": 1}}]"#), "has the 'position' of named values, not three"),
+        (curve(r#"[{"positionStatus": 1}]"#), "has the 'positionStatus' 1, which is no text"),
+    ] {
+        refused(&text, lines("a.mrk.json", &text, None), expected);
+        refused(&text, lines("a.mrk.json", &text, None), "draw a curve in 3D Slicer and save it");
+    }
+    // An empty curve beside another one is left out.
+    let two = curve(&format!("[{set}, {set}]")).replace("[{\"c", "[{\"controlPoints\": []}, {\"c");
+    assert_eq!(lines("a.mrk.json", two, None).unwrap().points.len(), 2);
+}
+
+#[test]
+fn values_of_markups_take_no_more_memory_than_is_allowed() {
+    for element in ["[0],", "0,", "{},", "\"\","] {
+        let text = format!("{{\"markups\": [], \"other\": [{}0]}}", element.repeat(70_000));
+        let ask = |limit: u64| {
+            let options = Options::default().with_memory_limit(limit);
+            let mut answer = Ok(());
+            let taken = allocation_counter::measure(|| {
+                let read = centreline_from_bytes("a.mrk.json", text.as_bytes(), &options);
+                answer = read.map(drop).map_err(|error| error.to_string());
+            });
+            (answer, taken.bytes_max)
+        };
+        let limit = 64 * text.len() as u64;
+        let (answer, taken) = ask(limit);
+        refused(element, answer, "holds no line");
+        assert!(taken <= limit, "{element}: {taken} of {limit}");
+        let (answer, taken) = ask(limit - 1);
+        refused(element, answer, "its values take more memory than is allowed");
+        assert!(taken < 1 << 16, "{element}: {taken}");
+    }
 }
 
 #[test]
@@ -275,7 +456,7 @@ fn texts_have_radii_where_they_say_so() {
     assert_eq!(radii("x,y,z,distance_to_wall_mm\n0,0,0,2\n0,0,1,2\n"), Ok((2, None)));
     assert_eq!(
         radii("x,y,z,distance_to_wall_mm,Radius (mm)\n0,0,0,9,2\n0,0,1,9,2\n"),
-        Ok((2, two))
+        Ok((2, two.clone()))
     );
     // Names of a frame's axes, in any columns. The r of R,A,S is no radius.
     for (text, frame, radii) in [
@@ -288,10 +469,53 @@ fn texts_have_radii_where_they_say_so() {
         assert_eq!(read.points, [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]], "{text}");
         assert_eq!((read.frame, read.radii), (Some(frame), radii), "{text}");
     }
-    for text in ["px,py,pz\n1,2,3\n4,5,6\n", "x_mm;y_mm;z_mm\n1;2;3\n4;5;6\n"] {
+    for text in [
+        "px,py,pz\n1,2,3\n4,5,6\n",
+        "x_mm;y_mm;z_mm\n1;2;3\n4;5;6\n",
+        // Columns in front: an index as pandas writes it, without a name or saved again.
+        ",x,y,z\n0,1,2,3\n1,4,5,6\n",
+        "Unnamed: 0,x,y,z\n0,1,2,3\n1,4,5,6\n",
+        "index\tx\ty\tz\n0\t1\t2\t3\n1\t4\t5\t6\n",
+        "Points_0,Points_1,Points_2\n1,2,3\n4,5,6\n",
+        "\"vtkOriginal\",\"Points:0\",\"Points:1\",\"Points:2\"\n7,1,2,3\n7,4,5,6\n",
+    ] {
         let read = lines("a.csv", text, None).unwrap();
         assert_eq!((read.points[1], read.frame), ([4.0, 5.0, 6.0], None), "{text}");
+        assert_eq!(read.radii, None, "{text}");
+        // With the byte order marks of UTF-16.
+        for order in [u16::to_le_bytes, u16::to_be_bytes] {
+            let marked = "\u{feff}".to_owned() + text;
+            let bytes: Vec<u8> = marked.encode_utf16().flat_map(order).collect();
+            assert_eq!(lines("a.csv", bytes, None).as_ref(), Ok(&read), "{text}");
+        }
     }
+    for (text, radius) in [
+        ("x,y,z,MaximumInscribedSphereRadius\n0,0,0,2\n0,0,1,2\n", 2.0),
+        ("radius,x,y,z\n2,0,0,0\n2,0,0,1\n", 2.0),
+        (",Points_0,Points_1,Points_2,Radii\n0,0,0,0,2\n1,0,0,1,2\n", 2.0),
+        ("x,y,z,Diameter (mm)\n0,0,0,2\n0,0,1,2\n", 1.0),
+        ("r,a,s,diameter\n0,0,0,3\n0,0,1,3\n", 1.5),
+        ("x,y,z,diameter,radius\n0,0,0,3,1\n0,0,1,3,1\n", 1.0),
+    ] {
+        assert_eq!(radii(text), Ok((2, Some(vec![radius]))), "{text}");
+    }
+    refused("diameter", radii("x,y,z,diameter\n0,0,0,1\n0,0,1,-1\n"), "the radius of the last");
+    let shapes = |text: &str| {
+        let path = crate::file("shapes.csv", text.as_bytes());
+        mesh_files::load_shapes(path, &Options::default()).map_err(|error| error.to_string())
+    };
+    for text in [
+        "shape,x,y,z,diameter\n3,0,0,0,4\n3,0,0,1,4\n5,0,0,0,4\n5,0,0,2,4\n",
+        ",shape,x,y,z,r\n0,3,0,0,0,2\n1,3,0,0,1,2\n2,5,0,0,0,2\n3,5,0,0,2,2\n",
+    ] {
+        let found = shapes(text).unwrap();
+        let [(3.0, first), (5.0, second)] = &found[..] else { panic!("{found:?}") };
+        assert_eq!((first.points[1], second.points[1]), ([0.0, 0.0, 1.0], [0.0, 0.0, 2.0]));
+        assert_eq!((&first.radii, &second.radii), (&two, &two), "{text}");
+    }
+    refused("shapes", shapes("x,y,z,r\n0,0,0,4\n"), "has 'y' in column 2, not x");
+    refused("shapes", shapes("id,x,y,z,shape\n7,0,0,0\n"), "has 4 columns; write shape,x,y,z");
+    assert_eq!(radii("x,y,z,shape\n0,0,0\n0,0,1\n"), Ok((2, None)));
     let report = lines(
         "a.csv",
         std::fs::read(crate::reports::report("A20_bom_heading_units.csv")).unwrap(),
@@ -307,6 +531,9 @@ fn texts_have_radii_where_they_say_so() {
         ("0,0,0,2\n0,0,1,-1\n", "line 2 of a.csv says that the radius of the last point is -1"),
         ("x,y,z\n0,0,0,2\n", "line 2 of a.csv has 4 columns, but the heading names 3"),
         ("z,y,x\n0,0,0\n", "line 1 of a.csv has 'z' in column 1"),
+        ("x,z,y\n0,0,0\n", "line 1 of a.csv has 'z' in column 2"),
+        ("x,name,y,z\n0,0,0,0\n", "line 1 of a.csv has 'y' in column 3"),
+        (",,z\n0,0,0\n", "line 1 of a.csv has nothing in column 1"),
         ("time,a,b\n0,0,0\n", "line 1 of a.csv has 'time' in column 1, not x; write x,y,z"),
         ("label,px,py,pz\n1,0,0,0\n", "line 1 of a.csv has 'label' in column 1, not x"),
         ("\nlat,lon,alt\n0,0,0\n", "line 2 of a.csv has 'lat' in column 1, not x"),
