@@ -9,7 +9,8 @@ mod tubes;
 
 use crate::error::Refused;
 use crate::input::{
-    Caps, Given, Robots, check_length, matrices, of, places, pose_if_one, shape_text,
+    Caps, Given, Robots, check_length, matrices, object_of, of, places, pose_if_one, shape_text,
+    stated_frame,
 };
 use crate::mesh::Mesh;
 use crate::output::{array, array_or_number};
@@ -39,13 +40,13 @@ use std::sync::Arc;
 ///     and `clears_motion` test it.
 /// nested : sequence of (int, int), optional
 ///     Pairs of robots where one is inside the other, as a tube in the tube that guides it. Such
-///     robots touch, and the scene does not compare them with one another. The numbers are places
-///     in the list of robots.
+///     robots touch, and the scene does not compare them with one another. The numbers are the
+///     places of two robots in the list of robots.
 ///
 /// Raises
 /// ------
 /// ContinuumError
-///     The margin is negative or NaN.
+///     The margin is negative or NaN, or a robot is nested in itself.
 ///
 /// Examples
 /// --------
@@ -132,16 +133,22 @@ impl Scene {
     /// pose state another frame.
     fn robots<'py>(&self, py: Python<'py>, given: Vec<Bound<'py, PyAny>>) -> PyResult<Robots<'py>> {
         let made = robots::robots(py, &given)?;
-        let meshes: Vec<_> = self.structures.with(py, |structures| {
+        for points in given.iter().filter_map(robots::points_without_pose) {
+            self.note_frame(py, "points", &points)?;
+        }
+        Ok(made)
+    }
+
+    /// A mesh in the scene's own frame warns once if points or a motion state another frame.
+    fn note_frame(&self, py: Python<'_>, name: &str, given: &Bound<'_, PyAny>) -> PyResult<()> {
+        if stated_frame(given)?.is_none() {
+            return Ok(());
+        }
+        let meshes: Vec<Arc<Py<Mesh>>> = self.structures.with(py, |structures| {
             let in_place = structures.iter().filter(|it| it.matrix.is_none());
             in_place.map(|it| Arc::clone(&it.mesh)).collect()
         });
-        for points in given.iter().filter_map(robots::points_without_pose) {
-            for mesh in &meshes {
-                mesh.get().note_frame("points", &points)?;
-            }
-        }
-        Ok(made)
+        meshes.iter().try_for_each(|mesh| mesh.get().note_frame(name, given))
     }
 
     fn snapshot(&self, py: Python<'_>) -> Snapshot {
@@ -194,8 +201,8 @@ impl Scene {
     fn add(
         &self,
         py: Python<'_>,
-        name: String,
-        mesh: Py<Mesh>,
+        #[pyo3(from_py_with = object_of::name)] name: String,
+        #[pyo3(from_py_with = object_of::mesh)] mesh: Py<Mesh>,
         #[pyo3(from_py_with = of::optional::margin)] margin: Option<f64>,
         pose: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<usize> {
@@ -289,7 +296,7 @@ impl Scene {
     fn clears<'py>(
         &self,
         py: Python<'py>,
-        robots: Vec<Bound<'py, PyAny>>,
+        #[pyo3(from_py_with = object_of::robots)] robots: Vec<Bound<'py, PyAny>>,
         caps: Caps,
     ) -> PyResult<Bound<'py, PyAny>> {
         let robots = self.robots(py, robots)?;
@@ -325,7 +332,7 @@ impl Scene {
     fn tightest<'py>(
         &self,
         py: Python<'py>,
-        robots: Vec<Bound<'py, PyAny>>,
+        #[pyo3(from_py_with = object_of::robots)] robots: Vec<Bound<'py, PyAny>>,
         caps: Caps,
     ) -> PyResult<Bound<'py, PyAny>> {
         let robots = self.robots(py, robots)?;
@@ -361,7 +368,7 @@ impl Scene {
     fn per_structure<'py>(
         &self,
         py: Python<'py>,
-        robots: Vec<Bound<'py, PyAny>>,
+        #[pyo3(from_py_with = object_of::robots)] robots: Vec<Bound<'py, PyAny>>,
         caps: Caps,
     ) -> PyResult<Bound<'py, PyAny>> {
         let (robots, snapshot) = (self.robots(py, robots)?, self.snapshot(py));
@@ -407,7 +414,7 @@ impl Scene {
     fn contacts_within<'py>(
         &self,
         py: Python<'py>,
-        robots: Vec<Bound<'py, PyAny>>,
+        #[pyo3(from_py_with = object_of::robots)] robots: Vec<Bound<'py, PyAny>>,
         #[pyo3(from_py_with = of::reach)] reach: f64,
         #[pyo3(from_py_with = of::prominence)] prominence: f64,
         caps: Caps,

@@ -1,11 +1,11 @@
 //! Proofs of answers about two robots.
 
 use super::answers::segment_of;
-use super::{Placed, RobotPair, Session, pairs};
+use super::{Placed, RobotPair, Session};
 use crate::error::Refused;
 use crate::input::{Caps, Given, vectors};
 use crate::output::{answer, array_or_number};
-use crate::queries::certify::answer_field;
+use crate::queries::certify::{answer_field, check_arc_length};
 use crate::threads::{Asked, ask_each};
 use parry_continuum::Chain;
 use parry_continuum::parry::math::Vector;
@@ -18,8 +18,8 @@ impl RobotPair {
     ///
     /// Each bounds the distance between the two segments that the answer names, as `Mesh.certify`
     /// does for a segment and a triangle: ``lower <= answer.distance <= upper`` up to the last bits
-    /// of the distance. The answer's distances and points are checked first: an answer for other
-    /// points, another radius or pose is an error.
+    /// of the distance. The answer's distances, points and arc lengths are checked first: an answer
+    /// for other points, another radius or pose is an error.
     ///
     /// Parameters
     /// ----------
@@ -37,8 +37,9 @@ impl RobotPair {
     /// Raises
     /// ------
     /// ContinuumError
-    ///     The answer does not fit robots and poses: a point is not where it says, the distance is
-    ///     another, or the shapes differ. Or as for `minimum`.
+    ///     The answer does not fit robots and poses: a point is not where it says, the distance or
+    ///     an arc length is another, it names no pair of links, or the shapes differ. Or as for
+    ///     `minimum`.
     ///
     /// Examples
     /// --------
@@ -61,7 +62,7 @@ impl RobotPair {
         pose_b: Option<&Bound<'py, PyAny>>,
         caps: Caps,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let robots = pairs([points_a, radii_a, points_b, radii_b], [pose_a, pose_b])?;
+        let robots = self.robots([points_a, radii_a, points_b, radii_b], [pose_a, pose_b])?;
         // One row a pair of robots, or one for each segment of the first.
         let each = robots.segments_each();
         let fields = |name: &str, last: &[usize]| {
@@ -89,8 +90,11 @@ impl RobotPair {
             for (row, bounds) in found.iter_mut().enumerate().take(rows) {
                 let row = robot.number * rows + row;
                 let at = 2 * row;
-                // Of a segment without length there is nothing to prove.
-                if named[at..at + 2].iter().all(|&segment| segment < 0.0) {
+                if named[at..at + 2] == [-1.0; 2] {
+                    // Of a segment of the first robot without length there is nothing to prove.
+                    let place = robot.number * rows;
+                    let is_link = kind == 0 || links[0].contains(&((row - place) as i64));
+                    check_nothing(is_link, distances[row], row - place)?;
                     continue;
                 }
                 answer.links =
@@ -101,6 +105,11 @@ impl RobotPair {
                 answer.witness.arc_lengths = [lengths[at], lengths[at + 1]];
                 let Certificate { lower, upper, .. } =
                     answer.certify(a, &poses[0], b, &poses[1])?;
+                let others = [on_second[row], on_first[row]];
+                for (k, chain) in [a, b].into_iter().enumerate() {
+                    let place = (chain, &poses[k], answer.links[k]);
+                    check_arc_length(place, others[k], lengths[at + k], "arc_lengths")?;
+                }
                 *bounds = [lower, upper];
             }
             Ok(())
@@ -112,6 +121,22 @@ impl RobotPair {
             |k: usize| array_or_number(py, shape.clone(), bounds.iter().map(|it| it[k]).collect());
         answer!(py, "Certificate", (side(0)?, side(1)?))
     }
+}
+
+/// Refuses a row that names no segments, except for a segment without length, whose distance is NaN.
+fn check_nothing(is_link: bool, distance: f64, row: usize) -> Result<(), Refused> {
+    let text = if is_link {
+        format!(
+            "`answer.segments` is -1 and -1 in row {row}, so it names no pair of links; there is nothing to certify"
+        )
+    } else if !distance.is_nan() {
+        format!(
+            "`answer.distance` is {distance:?} for segment {row}, which has no length; give what `per_link` returned: NaN"
+        )
+    } else {
+        return Ok(());
+    };
+    Err(Refused::other("answer_does_not_fit", text))
 }
 
 /// The segments that a robot's links are.
