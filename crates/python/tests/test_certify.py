@@ -166,7 +166,14 @@ def test_each_field_of_a_pair_counts(field: str) -> None:
         (lambda: MESH.certify(MANY, 0.2, ANSWER._replace(triangle=ANSWER.triangle + 10**9), pose=POSES), "triangle"),
         (lambda: PAIR.certify(MANY, 0.2, SECOND, 0.1, None), "`answer` has no `segments`; give what `minimum` returned"),
         (lambda: PAIR.certify(MANY, 0.2, SECOND, 0.1, BETWEEN._replace(distance=1.0)), r"`answer.distance` has the shape \(\)"),
-        (lambda: PAIR.certify(MANY, 0.2, SECOND, 0.1, BETWEEN._replace(segments=BETWEEN.segments + 99)), "link"),
+        (
+            lambda: PAIR.certify(MANY, 0.2, SECOND, 0.1, BETWEEN._replace(segments=BETWEEN.segments * 0 + 99)),
+            "`answer.segments` names the segment 99 of `points_a`, which is no link",
+        ),
+        (
+            lambda: PAIR.certify(MANY, 0.2, SECOND, 0.1, BETWEEN._replace(segments=BETWEEN.segments * [1, 0] + [0, -1])),
+            "`answer.segments` names the segment -1 of `points_b`, which is no link",
+        ),
     ],
 )
 def test_no_answer(ask: Any, text: str) -> None:

@@ -327,6 +327,18 @@ def test_two_robots_of_two_frames_warn_once(tmp_path: Path) -> None:
     assert warned(AORTA, lambda _: LinearMotion(lps, ras, 0.1)) == ["`start` is in " + end.format("end")]
 
 
+def test_robots_of_a_scene_in_two_frames_warn_once(tmp_path: Path) -> None:
+    lps, ras = load_centreline(markups(tmp_path)).points, load_centreline(markups(tmp_path), frame="RAS").points
+    plain, end = np.asarray(lps), "RAS: x and y have opposite signs; load both with frame='RAS'"
+    scene = Scene(robot_margin=0.1)
+    found = warned(AORTA, lambda _: [scene.clears([(plain, 0.1), (lps, 0.1), (ras, 0.1)]) for _ in range(2)])
+    assert found == ["`robots[1]` is in the frame LPS, and `robots[2]` " + end]
+    assert warned(AORTA, lambda _: Scene(robot_margin=0.1).clears([(lps, 0.1), (plain, 0.1), (ras, 0.1, POSE)])) == []
+    a, b = (LinearMotion(points, points, 0.1) for points in (lps, ras))
+    found = warned(AORTA, lambda _: [Scene(robot_margin=0.1).clears_motion([a, b], resolution=0.5)])
+    assert found == ["`motions[0]` is in the frame LPS, and `motions[1]` " + end]
+
+
 def test_a_pose_leads_to_the_mesh(tmp_path: Path) -> None:
     lps = load_centreline(markups(tmp_path)).points
     mesh = Mesh(VERTICES, FACES, frame="RAS")

@@ -131,6 +131,10 @@ def _no_truth(what: str, instead: str) -> TypeError:
     return TypeError(f"the truth value of {what} is ambiguous; {instead}")
 
 
+def _name(member: object) -> str:
+    return str(member.name) if isinstance(member, _Member) else repr(member)
+
+
 class _Members(np.ndarray[Any, np.dtype[np.object_]]):
     """An array of the members of an enumeration. It has no truth value, and neither have its items.
 
@@ -168,7 +172,7 @@ class _Members(np.ndarray[Any, np.dtype[np.object_]]):
         raise _no_truth(f"an item of {type(self).__name__}", self._instead)
 
     def __repr__(self) -> str:
-        names = np.array2string(np.asarray(self), threshold=20, separator=", ", formatter={"all": lambda it: str(it.name)})
+        names = np.array2string(np.asarray(self), threshold=20, separator=", ", formatter={"object": _name})
         shape = f", shape={self.shape}" if self.size == 0 or self.size > 20 else ""
         return f"{type(self).__name__}({names}{shape})"
 
@@ -835,8 +839,7 @@ class FramedPoints(np.ndarray[Any, np.dtype[np.float64]]):
             if len(frames) > 1:
                 text = f"points of the frames {' and '.join(frames)} are joined: x and y have opposite signs; load all with one frame"
                 warnings.warn(text, stacklevel=_callers_level())
-            found = found.view(FramedPoints)
-            found.frame = frames[0] if len(frames) == 1 else None
+            return _framed(found, frames[0] if len(frames) == 1 else None)
         return found
 
     def __reduce__(self) -> tuple[Any, ...]:

@@ -85,7 +85,7 @@ def _ears(points: Any, polygons: Any) -> Any:
     lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in np.asarray(points, float).tolist()]
     lines += ["f " + " ".join(str(corner + 1) for corner in np.asarray(polygon).tolist()) for polygon in polygons]
     file = io.BytesIO("\n".join(lines).encode())
-    file.name = "polygons.obj"  # type: ignore[misc]
+    file.name = "polygons.obj"
     return load(file).faces
 
 

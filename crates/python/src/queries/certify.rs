@@ -194,7 +194,7 @@ impl Mesh {
                 // The same check as that of `LinkProximity::certify`.
                 session.search.contact_of(chain, &pose, found)?;
                 let Witness { on_mesh, arc_length, .. } = found.witness;
-                let place = (&*chain, &pose, found.link);
+                let place = (chain, &pose, found.link);
                 check_arc_length(place, on_mesh, arc_length, "arc_length")?;
                 let corners = session.search.triangles()[found.witness.triangle as usize]
                     .map(|corner| session.search.vertices()[corner as usize]);

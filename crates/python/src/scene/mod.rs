@@ -9,13 +9,14 @@ mod tubes;
 
 use crate::error::Refused;
 use crate::input::{
-    Caps, Given, Robots, check_length, matrices, object_of, of, places, pose_if_one, shape_text,
-    stated_frame,
+    Caps, Given, HasWarned, Robots, check_length, matrices, object_of, of, places, pose_if_one,
+    shape_text, stated_frame,
 };
 use crate::mesh::Mesh;
 use crate::output::{array, array_or_number};
 use crate::threads::{self, Asked, Engine, Held, Lender, ask_each};
 use answers::{NOTHING, Row, contacts, per_structure, tightest};
+use mesh_files::Frame;
 use parry_continuum::Chain;
 use parry_continuum::parry::math::Pose;
 use parry_continuum::proximity::{self, SceneContact, StructureProximity};
@@ -64,6 +65,8 @@ pub(crate) struct Scene {
     robot_margin: Option<f64>,
     self_margin: Option<f64>,
     nested: Vec<[usize; 2]>,
+    /// Whether it has warned of robots in different frames.
+    has_warned: HasWarned,
 }
 
 #[derive(Clone)]
@@ -133,10 +136,26 @@ impl Scene {
     /// pose state another frame.
     fn robots<'py>(&self, py: Python<'py>, given: Vec<Bound<'py, PyAny>>) -> PyResult<Robots<'py>> {
         let made = robots::robots(py, &given)?;
-        for points in given.iter().filter_map(robots::points_without_pose) {
-            self.note_frame(py, "points", &points)?;
+        let points: Vec<_> = given.iter().map(robots::points_without_pose).collect();
+        for points in points.iter().flatten() {
+            self.note_frame(py, "points", points)?;
         }
+        let frame =
+            |points: &Option<Bound<'py, PyAny>>| points.as_ref().map_or(Ok(None), stated_frame);
+        let frames = points.iter().map(frame).collect::<PyResult<Vec<_>>>()?;
+        self.note_frames(py, "robots", &frames)?;
         Ok(made)
+    }
+
+    /// Warns once if robots of a list, or motions, state different frames.
+    fn note_frames(&self, py: Python<'_>, list: &str, frames: &[Option<Frame>]) -> PyResult<()> {
+        let Some(first) = frames.iter().position(Option::is_some) else { return Ok(()) };
+        for (place, frame) in frames.iter().enumerate().skip(first + 1) {
+            let names = [format!("{list}[{first}]"), format!("{list}[{place}]")];
+            let names = [names[0].as_str(), names[1].as_str()];
+            self.has_warned.note_pair(py, names, [frames[first], *frame])?;
+        }
+        Ok(())
     }
 
     /// A mesh in the scene's own frame warns once if points or a motion state another frame.
@@ -177,7 +196,13 @@ impl Scene {
     ) -> PyResult<Self> {
         check_length(py, "robot_margin", robot_margin)?;
         check_length(py, "self_margin", self_margin)?;
-        Ok(Self { structures: Held::new(Vec::new()), robot_margin, self_margin, nested })
+        Ok(Self {
+            structures: Held::new(Vec::new()),
+            robot_margin,
+            self_margin,
+            nested,
+            has_warned: HasWarned::default(),
+        })
     }
 
     /// Adds a structure, and returns its number: structures count from 0.
@@ -236,6 +261,7 @@ impl Scene {
             robot_margin: self.robot_margin,
             self_margin: self.self_margin,
             nested: self.nested.clone(),
+            has_warned: HasWarned::default(),
         }
     }
 

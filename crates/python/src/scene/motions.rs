@@ -31,6 +31,8 @@ impl Scene {
         for (place, motion) in given.iter().enumerate() {
             self.note_frame(py, &format!("motions[{place}]"), motion.as_any())?;
         }
+        let frames: Vec<_> = given.iter().map(|motion| motion.get().stated_frame()).collect();
+        self.note_frames(py, "motions", &frames)?;
         Ok(made)
     }
 

@@ -9,7 +9,7 @@ use crate::queries::certify::{answer_field, check_arc_length};
 use crate::threads::{Asked, ask_each};
 use parry_continuum::Chain;
 use parry_continuum::parry::math::Vector;
-use parry_continuum::proximity::{Certificate, ProximityError};
+use parry_continuum::proximity::Certificate;
 use pyo3::prelude::*;
 
 #[pymethods]
@@ -97,8 +97,10 @@ impl RobotPair {
                     check_nothing(is_link, distances[row], row - place)?;
                     continue;
                 }
-                answer.links =
-                    [link_of(a, &links[0], named[at])?, link_of(b, &links[1], named[at + 1])?];
+                answer.links = [
+                    link_of(&links[0], named[at], "points_a")?,
+                    link_of(&links[1], named[at + 1], "points_b")?,
+                ];
                 answer.distance = distances[row];
                 (answer.witness.on_first, answer.witness.on_second) =
                     (on_first[row], on_second[row]);
@@ -145,11 +147,13 @@ fn in_order(chain: &Chain, points: &[Vector]) -> Vec<i64> {
 }
 
 /// The number of the link that a segment is.
-fn link_of(chain: &Chain, segments: &[i64], segment: f64) -> Result<u32, ProximityError> {
+fn link_of(segments: &[i64], segment: f64, points: &str) -> Result<u32, Refused> {
     // Positions of segments are whole numbers far below 2^53.
     let link = segments.iter().position(|&other| other as f64 == segment);
-    link.map(|link| link as u32).ok_or(ProximityError::NoSuchLink {
-        link: segment.max(0.0) as usize,
-        links: chain.links().len(),
+    link.map(|link| link as u32).ok_or_else(|| {
+        let text = format!(
+            "`answer.segments` names the segment {segment} of `{points}`, which is no link; give the robots that were asked about"
+        );
+        Refused::other("no_such_link", text)
     })
 }
