@@ -212,7 +212,7 @@ pub enum ProximityError {
     /// A direction turns so fast that time cannot be divided finely enough.
     #[error(
         "section {section} turns at {turn} rad, more than {limit:e}, in the motion's time; state a smaller turn, or give links that \
-         turn less",
+         turn less and keep their length",
         turn = number(.turn)
     )]
     TurnsTooFast {

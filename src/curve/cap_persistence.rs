@@ -1,9 +1,12 @@
 //! Which flat ends stay flat while the robot moves.
 //!
-//! An end is flat for one of two reasons (`algorithm_1`, `faces`):
+//! An end is flat for one of three reasons (`algorithm_1`, `section`):
 //!
 //! 1. The radii: it is a limit of the walks of Algorithm 1. Radii are constant during a motion.
 //! 2. Its distance to the last limit is less than a radius.
+//! 3. The robot has flat caps at all links ([`Chain::cylinders`](crate::Chain::cylinders)).
+//!
+//! Only the second one changes with the shape. In a motion of one shape all flat ends stay flat.
 //!
 //! # Reason 2 over time
 //! A distance changes by at most the movement of its two points. Let D be the distance at one time
@@ -38,7 +41,8 @@ use parry3d_f64::math::Real;
 /// Whether a flat end is flat in other shapes of the robot, too.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum CapPersistence {
-    /// Flat by the radii: the robot's two ends, and the wider side of each step in radius.
+    /// In every shape: the robot's two ends, the wider side of each step in radius, all ends of
+    /// links with flat caps, and all flat ends of a motion of one shape.
     Always,
     /// At a joint of a curve, where flat and round describe the same tube.
     Either,
@@ -91,6 +95,20 @@ impl Tube {
                     face.persistence = CapPersistence::Always;
                 }
             });
+        }
+    }
+
+    /// Marks all flat ends of a tube that keeps its shape.
+    pub(crate) fn mark_constant_faces(&mut self) {
+        for section in &mut self.sections {
+            for face in section.faces.iter_mut().flatten() {
+                if matches!(
+                    face.persistence,
+                    CapPersistence::WhileNear | CapPersistence::WhileAllNear
+                ) {
+                    face.persistence = CapPersistence::Always;
+                }
+            }
         }
     }
 

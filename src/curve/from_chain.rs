@@ -35,7 +35,9 @@ impl Tube {
             caps: link.caps(),
             segment: chain.segment_of(number) as u32,
         });
-        self.set_straight(links, CapPersistence::WhileAllNear);
+        let persistence =
+            if chain.is_uniform() { CapPersistence::Always } else { CapPersistence::WhileAllNear };
+        self.set_straight(links, persistence);
     }
 
     /// Replaces this tube by the links between `points`, as capsules or with caps by Algorithm 1.

@@ -92,7 +92,10 @@ impl LinearMotion {
     /// ```
     ///
     /// # Errors
-    /// As [`Chain::capsules`](crate::Chain::capsules) for either end; different numbers of points.
+    /// - different numbers of points;
+    /// - a point or a radius that [`Chain::capsules`](crate::Chain::capsules) refuses;
+    /// - no segment has a length at the start or at the end of the motion. At one of the two all
+    ///   points may be equal: a robot that grows out of a point is a ball there.
     pub fn capsules(
         from: &[Vector],
         to: &[Vector],
@@ -118,8 +121,7 @@ impl LinearMotion {
     /// [`Tube::set_chain`](crate::Tube::set_chain), which accepts both kinds of chain.
     ///
     /// # Errors
-    /// As [`Chain::from_centreline`](crate::Chain::from_centreline) for either end; different
-    /// numbers of points.
+    /// As [`capsules`](Self::capsules).
     pub fn chain(
         from: &[Vector],
         to: &[Vector],

@@ -50,7 +50,8 @@ impl RigidMotion {
     ///
     /// # Errors
     /// A pose is not finite or out of range, or its quaternion is not of unit length.
-    pub fn new(tube: Tube, poses: [Pose; 2]) -> Result<Self, RobotError> {
+    pub fn new(mut tube: Tube, poses: [Pose; 2]) -> Result<Self, RobotError> {
+        tube.mark_constant_faces();
         Ok(Self { tube, path: RigidPath::new(poses)? })
     }
 }

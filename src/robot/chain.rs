@@ -73,6 +73,9 @@ pub struct Chain {
     bvh: OnceLock<Bvh>,
     /// The caps of the input's segments. Kept to reuse the memory.
     caps: Vec<[Cap; 2]>,
+    /// Whether all links have one cap by definition. Otherwise Algorithm 1 may have decided the
+    /// caps, and decides anew in another shape of the robot.
+    is_uniform: bool,
 }
 
 impl Chain {
@@ -142,7 +145,9 @@ impl Chain {
     ) -> Result<(), RobotError> {
         check_segments(points, segment_radii)?;
         algorithm_1::from_segment_radii(points, segment_radii, &mut self.caps);
-        self.assemble(points, segment_radii, "segment_radii")
+        self.assemble(points, segment_radii, "segment_radii")?;
+        self.is_uniform = false;
+        Ok(())
     }
 
     /// Builds the robot from one radius per point, with caps by Algorithm 1 as the paper prints it.
@@ -246,6 +251,11 @@ impl Chain {
         })
     }
 
+    /// Whether the robot has the same caps in every shape: all links have one cap by definition.
+    pub(crate) fn is_uniform(&self) -> bool {
+        self.is_uniform
+    }
+
     /// Returns the tree of bounding capsules over the links, in preorder.
     pub(crate) fn link_tree(&self) -> &[LinkNode] {
         &self.link_tree
@@ -298,12 +308,14 @@ impl Chain {
             lengths_before: Vec::new(),
             bvh: OnceLock::new(),
             caps: Vec::new(),
+            is_uniform: false,
         }
     }
 
     fn uniform(points: &[Vector], segment_radii: &[Real], cap: Cap) -> Result<Self, RobotError> {
         check_segments(points, segment_radii)?;
-        let mut chain = Self { caps: vec![[cap; 2]; segment_radii.len()], ..Self::empty() };
+        let caps = vec![[cap; 2]; segment_radii.len()];
+        let mut chain = Self { caps, is_uniform: true, ..Self::empty() };
         chain.assemble(points, segment_radii, "segment_radii")?;
         Ok(chain)
     }
@@ -356,7 +368,8 @@ impl Chain {
     }
 }
 
-/// Compares links and segments. All other fields follow from them.
+/// Compares links and segments, which are the robot's shape. The caps may be equal by different
+/// rules; all other fields follow from links and segments.
 impl PartialEq for Chain {
     fn eq(&self, other: &Self) -> bool {
         self.links == other.links

@@ -34,20 +34,34 @@
 //!    enough to it; then `1 - r < w <= z1 < 0`. Between its two poles `X^2 + Y^2` is convex, and
 //!    its largest root is the minimum. Newton's steps from `z1` decrease to it and never pass it.
 //!    If there is no root, the slope changes its sign on the way, or a step passes the pole.
+//! 4. **Edge-on**, `b = 0` within rounding: the limit of the cases above. The ellipse is the segment
+//!    from -1 to 1 on the x-axis. Its inner points have the normal `y`. Its ends have all normals
+//!    between `x` and `y`, so `p` beyond an end needs `y >= 0`, and the normal leads from the end to
+//!    `p`. Normals that differ by b move the surface by b at most.
 
+use crate::distance::Scalar;
 use parry3d_f64::math::{Real, Vector2};
 
 /// Returns the direction, not of unit length, of the outward normal at the point of the upper half
 /// that is closest to `point`.
 ///
-/// The ellipse has the half axes 1 and `b` in (0, 1]. Returns `None` if no point of the half is a
+/// The ellipse has the half axes 1 and `b` in [0, 1]. Returns `None` if no point of the half is a
 /// local minimum of the distance.
 pub(super) fn way_out_above(point: Vector2, b: Real) -> Option<Vector2> {
-    let r = 1.0 / (b * b);
-    let (z0, z1) = (point.x.abs(), point.y / b);
-    if !(r.is_finite() && z0.is_finite() && z1.is_finite()) {
+    if !point.is_finite() {
         return None;
     }
+    if b <= Real::UNIT_ROUNDOFF {
+        // Case 4.
+        let beyond = point.x - point.x.clamp(-1.0, 1.0);
+        return if beyond == 0.0 {
+            Some(Vector2::Y)
+        } else {
+            (point.y >= 0.0).then_some(Vector2::new(beyond, point.y))
+        };
+    }
+    let r = 1.0 / (b * b);
+    let (z0, z1) = (point.x.abs(), point.y / b);
     let across = |w: Real| r * z0 / (w + (r - 1.0));
     let excess = |w: Real| across(w).powi(2) + (z1 / w).powi(2) - 1.0;
     let slope = |w: Real| -2.0 * (across(w).powi(2) / (w + (r - 1.0)) + (z1 / w).powi(2) / w);
@@ -136,6 +150,27 @@ mod tests {
             }
         }
         assert!(found.iter().all(|&n| n > 200), "{found:?}");
+    }
+
+    /// A disc seen edge-on is the limit of narrower ellipses.
+    #[test]
+    fn edge_on_is_the_limit() {
+        let places = [[1.1, 0.3], [-1.1, 0.3], [2.0, 0.0], [1.1, -0.3], [0.4, 0.3], [0.4, -0.3]];
+        let [mut beyond, mut without] = [0; 2];
+        for [x, y] in places {
+            let point = Vector2::new(x, y);
+            let [limit, near] = [0.0, 1e-9].map(|b| way_out_above(point, b));
+            match (limit, near) {
+                (Some(limit), Some(near)) => {
+                    let off = limit.normalize() - near.normalize();
+                    assert!(off.length() < 1e-6, "{point}: {limit} and {near}");
+                    beyond += usize::from(limit.x != 0.0);
+                }
+                (None, None) => without += 1,
+                other => panic!("{point}: {other:?}"),
+            }
+        }
+        assert_eq!([beyond, without], [3, 1]);
     }
 
     #[test]

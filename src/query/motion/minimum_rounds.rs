@@ -18,9 +18,9 @@
 //!    of the parts. Repeat from 2.
 //!
 //! A round begins with one interval per part.
-//! 1. **Take** the interval with the least lower bound. Stop if it is settled. So a path of many
-//!    motions costs little more than its nearest parts; the parts farther away cost one shape each,
-//!    or a few, in the first round only.
+//! 1. **Take** the interval with the least lower bound, the earliest of equals. Stop if it is
+//!    settled. So a path of many motions costs little more than its nearest parts; the parts farther
+//!    away cost one shape each, or a few, in the first round only.
 //! 2. **Seed** `upper` at the place of the nearest shape so far.
 //! 3. **Refine** the middle shape (`minimum_policy`). A piece is at least d - reach away in the
 //!    whole interval. Unless that settles it, it is tested at other times or halved along the
@@ -45,7 +45,8 @@ use super::progress::MAX_SHAPES;
 use crate::answer::ProximityError;
 use crate::refine::UpperBound;
 use parry3d_f64::math::Real;
-use std::collections::VecDeque;
+use std::cmp::Ordering;
+use std::collections::{BinaryHeap, VecDeque};
 
 /// The tolerance of a round, as a share of the gap before it. A smaller share takes fewer rounds,
 /// but the last one may be that much finer than the query needs. Measured: twice the time of a
@@ -54,12 +55,40 @@ const SHARE: Real = 0.25;
 
 /// The intervals of a round and the bounds of the parts; memory that the next query reuses.
 pub(super) struct RoundMemory<'a> {
+    /// The intervals that a round begins with.
     pub intervals: &'a mut VecDeque<Interval>,
+    /// The intervals of the round.
+    pub queue: &'a mut BinaryHeap<NearestFirst>,
     /// The lower bound on the clearance of each part of the motion's time.
     pub part_bounds: &'a mut Vec<Real>,
     /// The bound on each part that the current round proves.
     pub settled: &'a mut Vec<Real>,
 }
+
+/// An interval in the order of a round: the least lower bound is the largest, then the earliest.
+#[derive(Clone, Debug)]
+pub(super) struct NearestFirst(Interval);
+
+impl Ord for NearestFirst {
+    fn cmp(&self, other: &Self) -> Ordering {
+        let by_bound = other.0.lower.total_cmp(&self.0.lower);
+        by_bound.then_with(|| other.0.times[0].total_cmp(&self.0.times[0]))
+    }
+}
+
+impl PartialOrd for NearestFirst {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for NearestFirst {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for NearestFirst {}
 
 /// One motion or two, in intervals of time.
 pub(super) trait Minimized {
@@ -144,30 +173,34 @@ fn run_round<S: Minimized>(
 ) -> Result<(), ProximityError> {
     known.unresolved = UnresolvedGap { lower: Real::INFINITY, direction_gap: 0.0 };
     search.begin();
-    let RoundMemory { intervals, part_bounds, settled } = search.memory();
-    for (interval, lower) in intervals.iter_mut().zip(&*part_bounds) {
-        interval.lower = *lower;
-    }
+    let RoundMemory { intervals, queue, part_bounds, settled } = search.memory();
+    queue.clear();
+    queue.extend(
+        intervals
+            .drain(..)
+            .zip(&*part_bounds)
+            .map(|(interval, &lower)| NearestFirst(Interval { lower, ..interval })),
+    );
     // The least lower bound of all pieces of each part that this round settles.
     settled.clear();
     settled.resize(part_bounds.len(), Real::INFINITY);
-    while let Some(interval) = pop_nearest(search.memory().intervals) {
+    while let Some(NearestFirst(interval)) = search.memory().queue.pop() {
         // Step 1.
         if known.is_settled(interval.lower) || search.is_exhausted(*shapes) {
             // All other intervals have larger lower bounds.
-            search.memory().intervals.push_back(interval);
+            search.memory().queue.push(NearestFirst(interval));
             break;
         }
         *shapes += 1;
         known.lower = Real::INFINITY;
         let part = interval.part;
         let rest = search.refine(interval, known)?;
-        let RoundMemory { intervals, settled, .. } = search.memory();
+        let RoundMemory { queue, settled, .. } = search.memory();
         settled[part] = settled[part].min(known.lower);
-        intervals.extend(rest.into_iter().flatten());
+        queue.extend(rest.into_iter().flatten().map(NearestFirst));
     }
-    let RoundMemory { intervals, part_bounds, settled } = search.memory();
-    for interval in &*intervals {
+    let RoundMemory { queue, part_bounds, settled, .. } = search.memory();
+    for NearestFirst(interval) in &*queue {
         settled[interval.part] = settled[interval.part].min(interval.lower);
     }
     known.lower = Real::INFINITY;
@@ -176,13 +209,6 @@ fn run_round<S: Minimized>(
         known.lower = known.lower.min(*bound);
     }
     Ok(())
-}
-
-/// Removes the interval with the least lower bound.
-fn pop_nearest(intervals: &mut VecDeque<Interval>) -> Option<Interval> {
-    let all = intervals.iter().enumerate();
-    let (place, _) = all.min_by(|a, b| a.1.lower.total_cmp(&b.1.lower))?;
-    intervals.swap_remove_back(place)
 }
 
 /// The bounds on the least clearance so far.

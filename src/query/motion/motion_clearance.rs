@@ -43,6 +43,7 @@ impl<M: Motion> Minimized for MotionSearch<'_, M> {
         let memory = &mut *self.memory;
         RoundMemory {
             intervals: &mut memory.intervals,
+            queue: &mut memory.queue,
             part_bounds: &mut memory.part_bounds,
             settled: &mut memory.settled,
         }

@@ -18,7 +18,9 @@ use super::current_shape::CurrentShape;
 use super::interval_test::{IntervalResult, IntervalTest, MarginQuery};
 use super::intervals::{self, Interval, MarginAnswer, Sought, TestedInterval};
 use super::minimum_policy::MinimumPolicy;
-use super::minimum_rounds::{Minimized, Minimum, MinimumBounds, RoundMemory, minimum};
+use super::minimum_rounds::{
+    Minimized, Minimum, MinimumBounds, NearestFirst, RoundMemory, minimum,
+};
 use super::moving_pair::MovingPair;
 use super::progress::MAX_SHAPES;
 use super::relative_motion::RelativeMotion;
@@ -29,7 +31,7 @@ use crate::refine::{
     PairQueue, PairUpperBound, PiecePair, PlacedTube, Refinable, TubePair, refine,
 };
 use parry3d_f64::math::Real;
-use std::collections::VecDeque;
+use std::collections::{BinaryHeap, VecDeque};
 
 /// The most pairs of pieces tested in all shapes together.
 const MAX_PAIRS: u32 = 1 << 24;
@@ -42,6 +44,7 @@ pub(crate) struct MotionsMemory {
     pairs: Vec<PiecePair>,
     intervals: VecDeque<Interval>,
     /// For bounds on the least clearance (`minimum_rounds`).
+    queue: BinaryHeap<NearestFirst>,
     part_bounds: Vec<Real>,
     settled: Vec<Real>,
 }
@@ -148,8 +151,8 @@ impl<A: Motion, B: Motion> Minimized for PairClearance<'_, '_, A, B> {
     type Upper = PairUpperBound;
 
     fn memory(&mut self) -> RoundMemory<'_> {
-        let MotionsMemory { intervals, part_bounds, settled, .. } = &mut *self.pair.memory;
-        RoundMemory { intervals, part_bounds, settled }
+        let MotionsMemory { intervals, queue, part_bounds, settled, .. } = &mut *self.pair.memory;
+        RoundMemory { intervals, queue, part_bounds, settled }
     }
 
     fn begin(&mut self) {

@@ -43,6 +43,7 @@ use super::approach_bound::ApproachBound;
 use super::current_shape::CurrentShape;
 use super::interval_test::{IntervalResult, IntervalTest, MarginQuery};
 use super::intervals::{self, Interval, MarginAnswer, Sought, TestedInterval};
+use super::minimum_rounds::NearestFirst;
 use super::moving_tube::{MovingTube, SmallRooms};
 use super::pending_piece::PendingPiece;
 use super::separating_planes::SeparatingPlanes;
@@ -52,7 +53,7 @@ use crate::motion::Motion;
 use crate::refine::{MeshUpperBound, Piece, PlacedTube, Refinable, TubeInMesh, refine};
 use crate::search::hierarchy::{MeshAt, MeshSearch, MovingMesh, PlacedMeshSearch};
 use parry3d_f64::math::{Real, Vector};
-use std::collections::VecDeque;
+use std::collections::{BinaryHeap, VecDeque};
 use std::ops::Range;
 
 /// State and memory that the next query reuses.
@@ -73,8 +74,8 @@ pub(crate) struct MotionMemory {
     planes: SeparatingPlanes,
     /// Reset by each query, so that answers do not depend on earlier ones.
     small_rooms: SmallRooms,
-    /// The lower bound on the clearance of each part of the motion's time, and the bound that the
-    /// current round proves.
+    /// For bounds on the least clearance (`minimum_rounds`).
+    pub(super) queue: BinaryHeap<NearestFirst>,
     pub(super) part_bounds: Vec<Real>,
     pub(super) settled: Vec<Real>,
 }

@@ -1,6 +1,7 @@
 //! Motions against the truth: their shapes in steps so fine that nothing fits between.
 
 mod chains;
+mod cylinders;
 mod displacement_bounds;
 mod edges;
 mod fading;

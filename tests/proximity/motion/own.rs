@@ -423,6 +423,20 @@ impl Motion for Any {
     }
 }
 
+/// The turn of a link that loses its length is infinite: no mistake of the caller, but too fast.
+#[test]
+fn a_link_that_passes_through_length_0_turns_too_fast() {
+    let from = [0.0, 10.0, 12.0, 20.0].map(|z| Vector::Z * z);
+    let to = [0.0, 12.0, 10.0, 20.0].map(|z| Vector::Z * z);
+    let radii = [1.0, 0.5, 0.25];
+    for motion in
+        [LinearMotion::chain(&from, &to, &radii), LinearMotion::capsules(&from, &to, &radii)]
+    {
+        let error = SelfQuery::new().clears_motion(&motion.unwrap(), 0.1, 1e-3).unwrap_err();
+        assert_eq!(error.kind(), "turns_too_fast", "{error}");
+    }
+}
+
 #[test]
 fn what_is_wrong_is_told() {
     let mut query = SelfQuery::new();
@@ -436,9 +450,13 @@ fn what_is_wrong_is_told() {
     };
     for wrong in [Real::NAN, Real::INFINITY, -1.0] {
         assert_eq!(kind(&any(wrong, 0.0), 1.0, 1e-3), "bad_speed");
+    }
+    for wrong in [Real::NAN, -1.0] {
         assert_eq!(kind(&any(0.0, wrong), 1.0, 1e-3), "bad_speed");
     }
-    assert_eq!(kind(&any(0.0, 1e6), 1.0, 1e-3), "turns_too_fast");
+    for fast in [1e6, Real::INFINITY] {
+        assert_eq!(kind(&any(0.0, fast), 1.0, 1e-3), "turns_too_fast");
+    }
     assert_eq!(kind(&any(1e12, 0.0), 3.9, 1e-9), "too_fast");
     assert_eq!(kind(&any(0.0, 0.0), -1.0, 1e-3), "negative");
     assert_eq!(kind(&any(0.0, 0.0), 1.0, Real::NAN), "negative");

@@ -41,7 +41,8 @@ pub(crate) fn maker(py: Python<'_>, caps: Caps) -> PyResult<Maker> {
 /// Raises
 /// ------
 /// ContinuumError
-///     One of the shapes is no robot, or the two differ in their number of points.
+///     A point or a radius is no robot's, the two shapes differ in their number of points, or no
+///     segment has a length at the start or the end. (A robot may grow out of a single point.)
 ///
 /// Examples
 /// --------
