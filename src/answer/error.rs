@@ -1,7 +1,7 @@
 //! Errors of meshes and queries. Each message names the value at fault and what to change.
 
 use crate::curve::TooSharp;
-use crate::robot::RobotError;
+use crate::robot::{RobotError, number};
 #[cfg(feature = "gpu")]
 use gpu_batch::DeviceFailure;
 use parry3d_f64::math::Real;
@@ -15,7 +15,8 @@ use thiserror::Error;
 pub enum MeshError {
     /// A vertex has a coordinate that is NaN or infinite.
     #[error(
-        "vertex {vertex} of the mesh has a coordinate that is not finite ({value}); repair its vertices"
+        "vertex {vertex} of the mesh has a coordinate that is not finite ({value}); repair its vertices",
+        value = number(.value)
     )]
     NotFinite {
         /// The vertex's index in the mesh.
@@ -25,7 +26,8 @@ pub enum MeshError {
     },
     /// A vertex is so far out that squares of coordinates could overflow.
     #[error(
-        "vertex {vertex} of the mesh has the coordinate {value}, beyond +-{limit:e}; choose a larger unit for its vertices"
+        "vertex {vertex} of the mesh has the coordinate {value}, beyond +-{limit:e}; choose a larger unit for its vertices",
+        value = number(.value)
     )]
     OutOfRange {
         /// The vertex's index in the mesh.
@@ -72,7 +74,10 @@ pub enum ProximityError {
     PoseNotFinite,
     /// The rotation of the robot's pose scales: the length of its quaternion is not 1, even within
     /// single precision.
-    #[error("the robot's pose has a quaternion of length {length}; normalise its rotation")]
+    #[error(
+        "the robot's pose has a quaternion of length {length}; normalise its rotation",
+        length = number(.length)
+    )]
     PoseNotRigid {
         /// The length of the quaternion.
         length: Real,
@@ -97,7 +102,10 @@ pub enum ProximityError {
     /// Neighbouring parts of the robot then cannot be identified.
     #[error(
         "joint {joint} bends by {angle} rad between links of radius {radius}, the shorter of which has the length {length}; \
-         make the radius smaller, or spread the bend over more points"
+         make the radius smaller, or spread the bend over more points",
+        angle = number(.angle),
+        radius = number(.radius),
+        length = number(.length)
     )]
     JointTooSharp {
         /// The joint before the link of this index.
@@ -114,7 +122,10 @@ pub enum ProximityError {
     #[error(
         "near the arc length {arc_length} the tube has the curvature {curvature} and the radius {radius}; their product must be \
          below 1, so check the unit of length; if the points are measured, fit them with a `deviation` as large as their noise \
-         (`Tube::fit`)"
+         (`Tube::fit`)",
+        arc_length = number(.arc_length),
+        curvature = number(.curvature),
+        radius = number(.radius)
     )]
     BendsWithinRadius {
         /// The arc length from which the tube may bend so sharply.
@@ -131,7 +142,7 @@ pub enum ProximityError {
         limit: Real,
     },
     /// A margin, a tolerance or a resolution is negative or NaN.
-    #[error("`{parameter}` is {value}; it must be at least 0")]
+    #[error("`{parameter}` is {value}; it must be at least 0", value = number(.value))]
     Negative {
         /// The parameter, in the words of the function that was called.
         parameter: &'static str,
@@ -147,7 +158,9 @@ pub enum ProximityError {
     /// The bounds of a tube cannot meet the tolerance.
     #[error(
         "the bounds are {possible} apart at best, not {tolerance}; give a larger {parameter}; of a curve through samples, give more of \
-         them and the tangents at the ends; if coordinates are so large that rounding is {possible}, move the origin to the robot"
+         them and the tangents at the ends; if coordinates are so large that rounding is {possible}, move the origin to the robot",
+        tolerance = number(.tolerance),
+        possible = number(.possible)
     )]
     ToleranceTooFine {
         /// The parameter, in the words of the function that was called: a tolerance or a
@@ -162,7 +175,10 @@ pub enum ProximityError {
     #[error("the motion gave a tube without points; fill the tube in `Motion::shape`")]
     EmptyTube,
     /// The curve of a tube has a coordinate that is NaN or infinite.
-    #[error("the tube's curve is not finite near the arc length {arc_length}; repair the function")]
+    #[error(
+        "the tube's curve is not finite near the arc length {arc_length}; repair the function",
+        arc_length = number(.arc_length)
+    )]
     CurveNotFinite {
         /// The arc length near which the curve is not finite.
         arc_length: Real,
@@ -181,7 +197,9 @@ pub enum ProximityError {
     /// A motion is so fast that time cannot be divided finely enough.
     #[error(
         "section {section} moves at the speed {speed}: time cannot be divided so finely that it moves by {resolution} \
-         alone; ask for a coarser resolution"
+         alone; ask for a coarser resolution",
+        speed = number(.speed),
+        resolution = number(.resolution)
     )]
     TooFast {
         /// The section, counted from the base.
@@ -194,7 +212,8 @@ pub enum ProximityError {
     /// A direction turns so fast that time cannot be divided finely enough.
     #[error(
         "section {section} turns at {turn} rad, more than {limit:e}, in the motion's time; state a smaller turn, or give links that \
-         turn less and keep their length"
+         turn less and keep their length",
+        turn = number(.turn)
     )]
     TurnsTooFast {
         /// The section, counted from the base.
@@ -274,7 +293,10 @@ pub enum PlacementFault {
     #[error("the pose is not finite; check its translation and rotation")]
     PoseNotFinite,
     /// The rotation scales: the length of its quaternion is not 1, even within single precision.
-    #[error("the pose has a quaternion of length {length}; normalise its rotation")]
+    #[error(
+        "the pose has a quaternion of length {length}; normalise its rotation",
+        length = number(.length)
+    )]
     PoseNotRigid {
         /// The length of the quaternion.
         length: Real,

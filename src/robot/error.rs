@@ -1,4 +1,5 @@
 use parry3d_f64::math::{Real, Vector};
+use std::fmt::{self, Display, Formatter};
 use strum::IntoStaticStr;
 use thiserror::Error;
 
@@ -10,7 +11,8 @@ use thiserror::Error;
 pub enum RobotError {
     /// A point has a coordinate that is NaN or infinite.
     #[error(
-        "point {index} has a coordinate that is not finite ({value}); remove or repair it in `{parameter}`"
+        "point {index} has a coordinate that is not finite ({value}); remove or repair it in `{parameter}`",
+        value = number(.value)
     )]
     PointNotFinite {
         /// The parameter's name in the function that was called.
@@ -22,7 +24,8 @@ pub enum RobotError {
     },
     /// A coordinate is so large that differences of coordinates could overflow.
     #[error(
-        "point {index} in `{parameter}` has the coordinate {value}, beyond +-{limit:e}; choose a larger unit of length"
+        "point {index} in `{parameter}` has the coordinate {value}, beyond +-{limit:e}; choose a larger unit of length",
+        value = number(.value)
     )]
     PointOutOfRange {
         /// The parameter's name in the function that was called.
@@ -36,7 +39,8 @@ pub enum RobotError {
     },
     /// A radius is NaN, infinite, negative or too large.
     #[error(
-        "radius {index} is {value}; `{parameter}` must be finite, at least 0 and at most {limit:e}"
+        "radius {index} is {value}; `{parameter}` must be finite, at least 0 and at most {limit:e}",
+        value = number(.value)
     )]
     BadRadius {
         /// The parameter's name in the function that was called.
@@ -103,7 +107,8 @@ pub enum RobotError {
     },
     /// A pose has a component that is NaN, infinite or too large.
     #[error(
-        "the pose `{parameter}` has the component {value}; it must be finite and within +-{limit:e}"
+        "the pose `{parameter}` has the component {value}; it must be finite and within +-{limit:e}",
+        value = number(.value)
     )]
     BadPose {
         /// The parameter's name in the function that was called.
@@ -115,7 +120,10 @@ pub enum RobotError {
     },
     /// The rotation of a pose scales: its quaternion's length differs from 1 by more than
     /// single-precision rounding.
-    #[error("the pose `{parameter}` has a quaternion of length {length}; normalise its rotation")]
+    #[error(
+        "the pose `{parameter}` has a quaternion of length {length}; normalise its rotation",
+        length = number(.length)
+    )]
     PoseNotRigid {
         /// The parameter's name in the function that was called.
         parameter: &'static str,
@@ -125,7 +133,11 @@ pub enum RobotError {
     /// A point of a motion's centreline moves faster than the motion states.
     #[error(
         "around t = {t} the centreline at share {share} of section {section} moves at {found}, more than the {stated} \
-         stated; state more"
+         stated; state more",
+        t = number(.t),
+        share = number(.share),
+        found = number(.found),
+        stated = number(.stated)
     )]
     FasterThanStated {
         /// The time.
@@ -142,7 +154,11 @@ pub enum RobotError {
     /// The direction of a motion's centreline turns faster than the motion states.
     #[error(
         "around t = {t} the centreline at share {share} of section {section} turns at {found} rad, more than the \
-         {stated} stated; state more"
+         {stated} stated; state more",
+        t = number(.t),
+        share = number(.share),
+        found = number(.found),
+        stated = number(.stated)
     )]
     TurnsFasterThanStated {
         /// The time.
@@ -159,7 +175,11 @@ pub enum RobotError {
     /// A motion's centreline is farther from its stated displacement than the motion states.
     #[error(
         "around t = {t} the centreline at share {share} of section {section} is {found} off its stated course, more \
-         than the {stated} stated; state more"
+         than the {stated} stated; state more",
+        t = number(.t),
+        share = number(.share),
+        found = number(.found),
+        stated = number(.stated)
     )]
     FartherOffThanStated {
         /// The time.
@@ -175,7 +195,8 @@ pub enum RobotError {
     },
     /// A motion must keep its sections, with the same radii and faces, at all times.
     #[error(
-        "at t = {t} the motion has other sections, radii or faces than before; keep them the same"
+        "at t = {t} the motion has other sections, radii or faces than before; keep them the same",
+        t = number(.t)
     )]
     SectionsChange {
         /// The time.
@@ -193,7 +214,7 @@ pub enum RobotError {
     },
     /// The kinematics behind a motion has no shape: return it from
     /// [`Motion::shape`](crate::Motion::shape).
-    #[error("the kinematics has no shape at t = {t}: {reason}")]
+    #[error("the kinematics has no shape at t = {t}: {reason}", t = number(.t))]
     NoShape {
         /// The time.
         t: Real,
@@ -209,7 +230,10 @@ pub enum RobotError {
     /// A motion of a path does not begin where the previous one ends.
     #[error(
         "motion {index} of `motions` begins {off} away from the end of the motion before it, turned by {turn} rad, at share \
-         {share} of section {section}; let each motion begin where the previous one ends"
+         {share} of section {section}; let each motion begin where the previous one ends",
+        share = number(.share),
+        off = number(.off),
+        turn = number(.turn)
     )]
     MotionsApart {
         /// Index of the motion that begins elsewhere.
@@ -225,7 +249,8 @@ pub enum RobotError {
     },
     /// A stated speed is NaN, infinite or negative.
     #[error(
-        "the motion states the speed {value} for section {section}; it must be finite and at least 0"
+        "the motion states the speed {value} for section {section}; it must be finite and at least 0",
+        value = number(.value)
     )]
     BadSpeed {
         /// The section, counted from the base.
@@ -239,7 +264,9 @@ pub enum RobotError {
     /// A segment is so short beside its radius that its length underflows in computations.
     #[error(
         "radius {index} is {value}, beside which the length {length} of its segment is lost; check the unit of \
-         `{parameter}`"
+         `{parameter}`",
+        value = number(.value),
+        length = number(.length)
     )]
     HidesLength {
         /// The parameter's name in the function that was called.
@@ -252,7 +279,7 @@ pub enum RobotError {
         length: Real,
     },
     /// A number is NaN, infinite or negative.
-    #[error("`{parameter}` is {value}; it must be finite and at least 0")]
+    #[error("`{parameter}` is {value}; it must be finite and at least 0", value = number(.value))]
     Negative {
         /// The parameter's name in the function that was called.
         parameter: &'static str,
@@ -267,7 +294,8 @@ pub enum RobotError {
     },
     /// A section's length is not a positive number.
     #[error(
-        "section {index} in `{parameter}` has the length {value}; it must be finite and more than 0"
+        "section {index} in `{parameter}` has the length {value}; it must be finite and more than 0",
+        value = number(.value)
     )]
     BadLength {
         /// The parameter's name in the function that was called.
@@ -279,7 +307,8 @@ pub enum RobotError {
     },
     /// A section's curvature is NaN, infinite or negative.
     #[error(
-        "section {index} in `{parameter}` has the curvature {value}; it must be finite and at least 0"
+        "section {index} in `{parameter}` has the curvature {value}; it must be finite and at least 0",
+        value = number(.value)
     )]
     BadCurvature {
         /// The parameter's name in the function that was called.
@@ -291,7 +320,8 @@ pub enum RobotError {
     },
     /// A direction of the centreline is zero or not finite.
     #[error(
-        "tangent {index} in `{parameter}` is {value}; give the direction of the centreline there"
+        "tangent {index} in `{parameter}` is {value}; give the direction of the centreline there",
+        value = vector(.value)
     )]
     BadTangent {
         /// The parameter's name in the function that was called.
@@ -306,7 +336,8 @@ pub enum RobotError {
         "the centreline turns so sharply at point {index} that it may turn by {turn} rad between point {after} and the next; if the \
          robot bends so, give more points there; if the points are measured, fit them with a `deviation` as large as their noise \
          (`Tube::fit`); check the end tangents if there are any; give frames at one place one direction; for a robot of straight \
-         links use a Chain"
+         links use a Chain",
+        turn = number(.turn)
     )]
     TurnsTooSharply {
         /// Index in the input of the point at which the curve turns most.
@@ -320,7 +351,9 @@ pub enum RobotError {
     #[error(
         "the section from {index} has a flat end, the curvature {curvature} and the radius {radius}; their product must \
          be below 1, so check the unit of length; if the points are measured, fit them with a `deviation` as large as their noise \
-         (`Tube::fit`)"
+         (`Tube::fit`)",
+        curvature = number(.curvature),
+        radius = number(.radius)
     )]
     BendsWithinRadius {
         /// Index of the section's first point; for a function, index of the section.
@@ -331,14 +364,19 @@ pub enum RobotError {
         radius: Real,
     },
     /// The curve of a function has a coordinate that is NaN or infinite.
-    #[error("the curve is not finite near the arc length {arc_length}; repair the function")]
+    #[error(
+        "the curve is not finite near the arc length {arc_length}; repair the function",
+        arc_length = number(.arc_length)
+    )]
     CurveNotFinite {
         /// The arc length of the place.
         arc_length: Real,
     },
     /// The argument of a function is not its arc length.
     #[error(
-        "at {arc_length} the curve advances by {speed} for each unit of its argument; give it by arc length"
+        "at {arc_length} the curve advances by {speed} for each unit of its argument; give it by arc length",
+        arc_length = number(.arc_length),
+        speed = number(.speed)
     )]
     NotByArcLength {
         /// The arc length of the place.
@@ -348,7 +386,10 @@ pub enum RobotError {
     },
     /// A function bends more than the curvature stated for its section.
     #[error(
-        "at {arc_length} the curve has the curvature {found}, more than the {stated} stated; state more"
+        "at {arc_length} the curve has the curvature {found}, more than the {stated} stated; state more",
+        arc_length = number(.arc_length),
+        found = number(.found),
+        stated = number(.stated)
     )]
     BendsMoreThanStated {
         /// The arc length of the place.
@@ -360,7 +401,9 @@ pub enum RobotError {
     },
     /// A function's tangent differs from the direction in which its points advance.
     #[error(
-        "at {arc_length} the tangent differs by {off} from the direction in which the points go; repair it"
+        "at {arc_length} the tangent differs by {off} from the direction in which the points go; repair it",
+        arc_length = number(.arc_length),
+        off = number(.off)
     )]
     TangentOff {
         /// The arc length of the place.
@@ -374,5 +417,48 @@ impl RobotError {
     /// Returns the variant's name in snake case, the same in Rust and Python.
     pub fn kind(&self) -> &'static str {
         self.into()
+    }
+}
+
+/// A number in a message: with an exponent if it would have many digits without one.
+struct Number(Real);
+
+impl Display for Number {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let Self(value) = *self;
+        if value == 0.0 || !value.is_finite() || (1e-5..1e16).contains(&value.abs()) {
+            write!(f, "{value}")
+        } else {
+            write!(f, "{value:e}")
+        }
+    }
+}
+
+/// Returns a number as messages write it.
+pub(crate) fn number(value: &Real) -> impl Display + use<> {
+    Number(*value)
+}
+
+/// Returns a vector as messages write it.
+fn vector(value: &Vector) -> impl Display + use<> {
+    let [x, y, z] = value.to_array().map(Number);
+    format!("[{x}, {y}, {z}]")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_short_and_exact() {
+        let texts = [1e300, -1e-300, -1.0, 0.1, 0.0, 1e16, 123456.75, f64::INFINITY, f64::NAN];
+        let texts = texts.map(|value| number(&value).to_string());
+        assert_eq!(
+            texts,
+            ["1e300", "-1e-300", "-1", "0.1", "0", "1e16", "123456.75", "inf", "NaN"]
+        );
+        let value = Vector::new(1e-200, 0.0, 2.0);
+        let error = RobotError::BadTangent { parameter: "tangents", index: 0, value };
+        assert!(error.to_string().contains("is [1e-200, 0, 2];"), "{error}");
     }
 }

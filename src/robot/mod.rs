@@ -18,6 +18,7 @@ pub(crate) use algorithm_1::from_segment_radii;
 pub use chain::Chain;
 pub(crate) use chain::{check_chain, check_segments, radius_for_all, without_length};
 pub use error::RobotError;
+pub(crate) use error::number;
 pub(crate) use link_tree::{BoundingCapsule, LinkNode, distance_to_segment, place_of_leaf};
 pub(crate) use modified_cylinder::{COORDINATE_LIMIT, check_place, check_radii, has_direction};
 pub use modified_cylinder::{Cap, ModifiedCylinder};

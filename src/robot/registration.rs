@@ -9,6 +9,7 @@
 //! counts as rounding and q is normalised. A larger deviation has no clear meaning and is refused.
 //! Chains, tubes and motions all use this rule.
 
+use super::error::number;
 use super::scale::length;
 use crate::distance::Scalar;
 use parry3d_f64::math::{Mat3, Pose, Real, Rot3, Rotation, Vector};
@@ -26,7 +27,8 @@ const ROUNDED: Real = 1e-5;
 pub enum MatrixError {
     /// An entry is NaN or infinite.
     #[error(
-        "row {row}, column {column} of the matrix is {value}; give finite numbers (rows and columns count from 1)"
+        "row {row}, column {column} of the matrix is {value}; give finite numbers (rows and columns count from 1)",
+        value = number(.value)
     )]
     NotFinite {
         /// Row, counted from 1.
@@ -38,14 +40,15 @@ pub enum MatrixError {
     },
     /// The last row is not 0 0 0 1.
     #[error("the last row of the matrix is {} {} {} {}, not 0 0 0 1; transpose it if the shift is there",
-            row[0], row[1], row[2], row[3])]
+            number(&row[0]), number(&row[1]), number(&row[2]), number(&row[3]))]
     LastRow {
         /// The last row.
         row: [Real; 4],
     },
     /// All axes are scaled alike.
     #[error(
-        "the matrix scales by {factor}; scale the mesh or the robot instead, and give a rotation and a shift alone"
+        "the matrix scales by {factor}; scale the mesh or the robot instead, and give a rotation and a shift alone",
+        factor = number(.factor)
     )]
     Scales {
         /// The factor.

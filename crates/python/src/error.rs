@@ -6,6 +6,19 @@ use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{IntoPyDict, PyType};
 
+/// What the library's messages call its own things, and what Python calls them.
+const OF_RUST: [(&str, &str); 6] = [
+    (" (`Tube::fit`)", ""),
+    (
+        "give frames at one place one direction; for a robot of straight links use a Chain",
+        "give a point that stands twice one tangent; for a robot of straight links ask `distance` or `clears`",
+    ),
+    ("build a new engine for a new mesh", "give as many, or make a new `Mesh`"),
+    ("in `from` and `to`", "in `start` and `end`"),
+    ("fill the tube in `Motion::shape`", "give points"),
+    ("an engine on the CPU", "`device=\"cpu\"`"),
+];
+
 /// Why an input has no answer, before it becomes a Python exception.
 #[derive(Clone, Debug)]
 pub(crate) enum Refused {
@@ -18,24 +31,48 @@ pub(crate) enum Refused {
         kind: &'static str,
         text: String,
         index: Option<usize>,
+        possible: Option<f64>,
     },
 }
 
 impl Refused {
     pub(crate) fn other(kind: &'static str, text: impl Into<String>) -> Self {
-        Self::Other { kind, text: text.into(), index: None }
+        Self::Other { kind, text: text.into(), index: None, possible: None }
     }
 
     /// The same, about the parameter of this name.
     pub(crate) fn of(self, parameter: &str) -> Self {
-        let (kind, index) = (self.kind(), self.index());
-        Self::Other { kind, text: format!("`{parameter}`: {}", self.text()), index }
+        let text = format!("`{parameter}`: {}", self.text());
+        self.with_text(text)
     }
 
     /// The same, with what to do.
     pub(crate) fn with_advice(self, advice: &str) -> Self {
-        let (kind, index) = (self.kind(), self.index());
-        Self::Other { kind, text: format!("{}; {advice}", self.text()), index }
+        let text = format!("{}; {advice}", self.text());
+        self.with_text(text)
+    }
+
+    /// The same with another text.
+    fn with_text(self, text: String) -> Self {
+        Self::Other { kind: self.kind(), text, index: self.index(), possible: self.possible() }
+    }
+
+    /// The error of a scene. The robots of the query are the entries of the parameter `list`.
+    pub(crate) fn of_scene(error: SceneError, list: &str) -> Self {
+        match error {
+            SceneError::Structure { name, error } => {
+                let refused = Self::from(error);
+                let text = format!("structure `{name}`: {}", refused.text());
+                refused.with_text(text)
+            }
+            SceneError::Robot { robot, error } => Self::from(error).of(&format!("{list}[{robot}]")),
+            SceneError::Robots { robots: [one, other], error } => {
+                Self::from(error).of(&format!("{list}[{one}]` and `{list}[{other}]"))
+            }
+            SceneError::BetweenRobots(error) => Self::from(error).of("robot_margin"),
+            SceneError::Query(error) => error.into(),
+            error => Self::other(error.kind(), error.to_string()),
+        }
     }
 
     /// The parameter that a robot's error names.
@@ -54,13 +91,14 @@ impl Refused {
     }
 
     fn text(&self) -> String {
-        match self {
+        let text = match self {
             Self::Robot(error) => error.to_string(),
             Self::Query(error) => error.to_string(),
             Self::Mesh(error) => error.to_string(),
             Self::Matrix(error) => error.to_string(),
             Self::Other { text, .. } => text.clone(),
-        }
+        };
+        OF_RUST.iter().fold(text, |text, (rust, python)| text.replace(rust, python))
     }
 
     /// The point, radius, vertex, face or the like that is at fault, counted from 0.
@@ -82,6 +120,7 @@ impl Refused {
     fn possible(&self) -> Option<f64> {
         match self {
             Self::Query(ProximityError::ToleranceTooFine { possible, .. }) => Some(*possible),
+            Self::Other { possible, .. } => *possible,
             _ => None,
         }
     }
@@ -224,12 +263,9 @@ impl From<MatrixError> for Refused {
     }
 }
 
-/// Its text names the structure, or the entry of the list of robots.
+/// Its text names the structure, or the entry of the parameter `robots`.
 impl From<SceneError> for Refused {
     fn from(error: SceneError) -> Self {
-        match error {
-            SceneError::Robot { robot, error } => Self::from(error).of(&format!("robots[{robot}]")),
-            error => Self::other(error.kind(), error.to_string()),
-        }
+        Self::of_scene(error, "robots")
     }
 }

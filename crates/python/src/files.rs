@@ -2,7 +2,7 @@
 
 use crate::error::Refused;
 use crate::input::{DeviceName, FrameName, of, vectors};
-use crate::mesh::{Mesh, Origin, is_file, parts};
+use crate::mesh::{Mesh, Origin, Parts, is_file, parts};
 use crate::output::{answer, array};
 use crate::threads::interruptible;
 use mesh_files::{Frame, MeshFileError, Options};
@@ -21,7 +21,7 @@ fn half_turn(points: &mut [[f64; 3]]) {
 
 /// The frame of what was read, in the frame that was asked for: `points` are turned if the file
 /// states another one.
-fn in_frame(
+pub(crate) fn in_frame(
     points: &mut [[f64; 3]],
     stated: Option<Frame>,
     asked: Option<FrameName>,
@@ -106,9 +106,9 @@ pub(crate) fn load(
     let options =
         Options::scaled(scale).with_label(label).with_no_position_allowed(allow_no_position);
     let (path, bytes) = match Source::of(path)? {
-        Source::Mesh(vertices, faces) if label.is_none() => {
+        Source::Mesh(parts) if label.is_none() => {
             options.check_scale().map_err(|error| refuse(py, &error))?;
-            return Mesh::of_parts(&vertices, &faces, frame, scale, device);
+            return Mesh::of_parts(&parts, frame, scale, device);
         }
         Source::Mesh(..) => {
             let text = "`label` is given beside a mesh, which has no labels; leave it out";
@@ -130,8 +130,8 @@ enum Source<'py> {
     Path(PathBuf),
     /// The content of a file object, and its name.
     File(PathBuf, Vec<u8>),
-    /// Vertices and faces of a mesh of another package.
-    Mesh(Bound<'py, PyAny>, Bound<'py, PyAny>),
+    /// A mesh of another package.
+    Mesh(Parts<'py>),
 }
 
 impl<'py> Source<'py> {
@@ -144,8 +144,7 @@ impl<'py> Source<'py> {
             return Ok(Self::Path(decoded(given)?));
         }
         if !is_file(given)? {
-            let (vertices, faces) = parts(given, "path")?;
-            return Ok(Self::Mesh(vertices, faces));
+            return Ok(Self::Mesh(parts(given, "path")?));
         }
         let name = given.getattr_opt("name")?.filter(|name| !name.is_instance_of::<PyInt>());
         let name = name.filter(|name| !name.is_none()).ok_or_else(|| {
@@ -159,8 +158,19 @@ impl<'py> Source<'py> {
             // A file that was opened as text.
             Err(_) => content.extract::<String>()?.into_bytes(),
         };
+        if bytes.is_empty() && is_past_its_start(given)? {
+            let text = "`path` is a file object at its end; call its `seek(0)` first";
+            return Err(Refused::other("bad_type", text).raise(py, None));
+        }
         Ok(Self::File(decoded(&name)?, bytes))
     }
+}
+
+/// Whether a file object has been read, or written, before.
+fn is_past_its_start(file: &Bound<'_, PyAny>) -> PyResult<bool> {
+    let Some(tell) = file.getattr_opt("tell")? else { return Ok(false) };
+    // A stream such as a pipe has no position.
+    Ok(tell.call0().and_then(|position| position.extract::<u64>()).is_ok_and(|it| it > 0))
 }
 
 /// A path of any type that Python has for paths.

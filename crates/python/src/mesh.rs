@@ -1,24 +1,27 @@
 //! The class `Mesh`: how it is made and how it moves. Its queries are in `queries`.
 
 use crate::error::Refused;
-use crate::files::warn;
-use crate::input::{DeviceName, FrameName, Names, Numbers, Robots, faces, shape_text, vectors};
+use crate::files::in_frame;
+use crate::input::{
+    DeviceName, FrameName, HasWarned, Names, Numbers, Robots, faces, mesh_text, object_of,
+    shape_text, stated_frame, vectors,
+};
+use crate::motions::Motion;
 use crate::output::{array, flat};
 use crate::threads::{DeviceKind, Engine, Held, alone, is_available};
 use mesh_files::Frame;
-use numpy::{PyArrayDyn, PyUntypedArray};
+use numpy::PyArrayDyn;
 use parry_continuum::parry::math::Vector;
 use parry_continuum::proximity::Proximity;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyString, PyTuple};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 /// A triangle mesh that is asked how near robots are to it.
 ///
 /// ``Mesh(vertices, faces)`` copies both. ``Mesh(other)`` takes a mesh of trimesh (or a scene),
-/// pyvista, meshio or Open3D, or what else has ``.vertices`` and ``.faces``. Lengths are in one
-/// unit of your choice, the same for mesh and robots. `load` reads a file.
+/// pyvista, meshio or Open3D, or what else has ``.vertices`` and ``.faces``; polygons are cut into
+/// triangles, and lines and points are left out. Lengths are in one unit of your choice, the same for mesh and robots. `load` reads a file.
 ///
 /// Any number of threads may ask one mesh at the same time: queries run without the GIL.
 /// `set_vertices` moves the vertices for all queries that begin later. A mesh can be copied and
@@ -42,7 +45,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// faces : (F, 3) array of any integer type
 ///     Three positions among the vertices for each triangle, counted from 0.
 /// frame : {"RAS", "LPS"}, optional
-///     The frame of the vertices, for warnings about centrelines in the other one.
+///     The frame of the vertices, for warnings about centrelines in the other one. Without it, that
+///     of a mesh of pyvista whose field data has an array ``SPACE``, as 3D Slicer writes it.
 /// unit : str, optional
 ///     The unit of the vertices, such as "mm". Nothing is computed from it.
 /// device : {"cpu", "gpu"}
@@ -72,7 +76,7 @@ pub(crate) struct Mesh {
     engine: Held<Arc<Engine>>,
     origin: Origin,
     /// Whether it has warned of points in another frame.
-    has_warned: AtomicBool,
+    has_warned: HasWarned,
 }
 
 /// The frame and unit of a mesh, if known, and the number of faces left out of its file.
@@ -88,7 +92,7 @@ type Reduced<'py> = (Bound<'py, PyAny>, Bound<'py, PyTuple>);
 
 impl Mesh {
     fn of(engine: Arc<Engine>, origin: Origin) -> Self {
-        Self { engine: Held::new(engine), origin, has_warned: AtomicBool::new(false) }
+        Self { engine: Held::new(engine), origin, has_warned: HasWarned::default() }
     }
 
     /// A new mesh with the given triangles.
@@ -102,20 +106,20 @@ impl Mesh {
         Ok(Self::of(Arc::new(Engine::new(py, vertices, triangles, device)?), origin))
     }
 
-    /// A mesh of arrays, scaled.
+    /// A mesh of another package, scaled, and turned into a frame.
     pub(crate) fn of_parts(
-        vertices: &Bound<'_, PyAny>,
-        faces: &Bound<'_, PyAny>,
+        parts: &Parts<'_>,
         frame: Option<FrameName>,
         scale: f64,
         device: DeviceName,
     ) -> PyResult<Self> {
-        let py = vertices.py();
-        let mut vertices = vectors(rows(vertices, "vertices")?.points());
-        let faces = self::faces(faces, vertices.len())?;
-        vertices.iter_mut().for_each(|vertex| *vertex *= scale);
-        let frame = frame.map(|FrameName(frame)| frame);
-        Self::new_from(py, vertices, faces, Origin { frame, ..Origin::default() }, device)
+        let py = parts.vertices.py();
+        let mut vertices = rows(&parts.vertices, "vertices")?.points().to_vec();
+        let faces = self::faces(&parts.faces, vertices.len())?;
+        vertices.as_flattened_mut().iter_mut().for_each(|coordinate| *coordinate *= scale);
+        let frame = in_frame(&mut vertices, parts.frame, frame);
+        let origin = Origin { frame, ..Origin::default() };
+        Self::new_from(py, vectors(&vertices), faces, origin, device)
     }
 
     /// The engine of the mesh as it is now.
@@ -138,46 +142,57 @@ impl Mesh {
         Ok(robots)
     }
 
-    /// Warns once if points state another frame than the mesh.
-    pub(crate) fn note_frame(&self, name: &str, points: &Bound<'_, PyAny>) -> PyResult<()> {
-        match self.frames(points)? {
-            Some(frames) if !self.has_warned.swap(true, Ordering::Relaxed) => {
-                warn(points.py(), &frames_text(name, frames))
-            }
-            _ => Ok(()),
-        }
+    /// Warns once if points or a motion state another frame than the mesh.
+    pub(crate) fn note_frame(&self, name: &str, given: &Bound<'_, PyAny>) -> PyResult<()> {
+        let Some(frames) = self.frames(given)? else { return Ok(()) };
+        let is_motion = given.is_instance_of::<Motion>();
+        self.has_warned.warn(given.py(), &mesh_text(name, is_motion, frames))
     }
 
-    /// The frame of points and that of the mesh, if both are stated and differ.
-    pub(crate) fn frames(&self, points: &Bound<'_, PyAny>) -> PyResult<Option<[Frame; 2]>> {
-        let Some(mesh) = self.origin.frame else { return Ok(None) };
-        // A plain array has no frame, and is what most queries get.
-        if points.cast_exact::<PyUntypedArray>().is_ok() {
-            return Ok(None);
+    /// As many vertices as the mesh has; `name` is the parameter's.
+    pub(crate) fn moved_vertices(
+        &self,
+        given: &Bound<'_, PyAny>,
+        name: &str,
+    ) -> PyResult<Vec<Vector>> {
+        let py = given.py();
+        let vertices = vectors(rows(given, name)?.points());
+        let (got, expected) = (vertices.len(), self.engine(py).vertices(py).as_slice().len());
+        if got == expected {
+            return Ok(vertices);
         }
-        let Some(stated) = points.getattr_opt("frame")? else { return Ok(None) };
-        let stated = stated.extract::<FrameName>().ok().map(|FrameName(frame)| frame);
+        let text = format!(
+            "`{name}` has {got} vertices, but the mesh has {expected}; give as many, in its order, or make a new `Mesh`"
+        );
+        Err(Refused::other("vertex_count", text).raise(py, None))
+    }
+
+    /// The frame of points or of a motion, and that of the mesh, if both are stated and differ.
+    pub(crate) fn frames(&self, given: &Bound<'_, PyAny>) -> PyResult<Option<[Frame; 2]>> {
+        let Some(mesh) = self.origin.frame else { return Ok(None) };
+        let stated = stated_frame(given)?;
         Ok(stated.filter(|stated| *stated != mesh).map(|stated| [stated, mesh]))
     }
 }
 
-/// That points and mesh are in different frames, and what to do.
-pub(crate) fn frames_text(name: &str, frames: [Frame; 2]) -> String {
-    let [points, mesh] = frames.map(Frame::name);
-    format!(
-        "`{name}` state the frame {points}, and the mesh {mesh}: x and y have opposite signs; load both with frame='{mesh}', or \
-         give `{name} * [-1, -1, 1]`"
-    )
+/// What a mesh of another package holds.
+pub(crate) struct Parts<'py> {
+    vertices: Bound<'py, PyAny>,
+    faces: Bound<'py, PyAny>,
+    frame: Option<Frame>,
 }
 
-/// The vertices and faces of a mesh of another package; `name` is the parameter's.
-pub(crate) fn parts<'py>(
-    given: &Bound<'py, PyAny>,
-    name: &str,
-) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+/// The parts of a mesh of another package; `name` is the parameter's.
+pub(crate) fn parts<'py>(given: &Bound<'py, PyAny>, name: &str) -> PyResult<Parts<'py>> {
+    type Found<'py> = (Bound<'py, PyAny>, Bound<'py, PyAny>, Option<FrameName>);
     let py = given.py();
     let found = py.import("parry_continuum._meshes")?.call_method1("parts", (given,))?;
-    found.extract::<Option<(Bound<'py, PyAny>, Bound<'py, PyAny>)>>()?.ok_or_else(|| {
+    let parts = found.extract::<Option<Found<'py>>>()?.map(|(vertices, faces, frame)| Parts {
+        vertices,
+        faces,
+        frame: frame.map(|FrameName(frame)| frame),
+    });
+    parts.ok_or_else(|| {
         let text = match name {
             "vertices" => {
                 "`faces` is missing; give vertices and faces, or a mesh of trimesh, pyvista, meshio or Open3D"
@@ -231,7 +246,7 @@ impl Mesh {
         vertices: &Bound<'_, PyAny>,
         faces: Option<&Bound<'_, PyAny>>,
         frame: Option<FrameName>,
-        unit: Option<String>,
+        #[pyo3(from_py_with = object_of::unit)] unit: Option<String>,
         device: DeviceName,
     ) -> PyResult<Self> {
         let py = vertices.py();
@@ -245,16 +260,17 @@ impl Mesh {
             let engine = mesh.engine(py).on(py, device.0)?;
             return Ok(Self::of(engine, known(mesh.origin.clone())));
         }
-        let (vertices, triangles) = match faces {
-            Some(faces) => (vertices.clone(), faces.clone()),
+        let parts = match faces {
+            Some(faces) => Parts { vertices: vertices.clone(), faces: faces.clone(), frame: None },
             None => {
                 refuse_path(vertices)?;
                 parts(vertices, "vertices")?
             }
         };
-        let vertices = vectors(rows(&vertices, "vertices")?.points());
-        let triangles = self::faces(&triangles, vertices.len())?;
-        Self::new_from(py, vertices, triangles, known(Origin::default()), device)
+        let vertices = vectors(rows(&parts.vertices, "vertices")?.points());
+        let triangles = self::faces(&parts.faces, vertices.len())?;
+        let stated = Origin { frame: parts.frame, ..Origin::default() };
+        Self::new_from(py, vertices, triangles, known(stated), device)
     }
 
     /// The frame of the vertices, "RAS" or "LPS": that of the file, or the one that was asked for;
@@ -334,7 +350,7 @@ impl Mesh {
     /// 0.5
     fn set_vertices(&self, vertices: &Bound<'_, PyAny>) -> PyResult<()> {
         let py = vertices.py();
-        let vertices = vectors(rows(vertices, "vertices")?.points());
+        let vertices = self.moved_vertices(vertices, "vertices")?;
         let moved = Arc::new(self.engine(py).moved(py, vertices)?);
         let before = self.engine.with(py, |engine| std::mem::replace(engine, moved));
         drop(before); // not under the lock

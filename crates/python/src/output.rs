@@ -129,7 +129,7 @@ pub(crate) enum Enumeration {
     UndecidedReason,
 }
 
-/// A member of an enumeration, or an array of the values of its members.
+/// A member of an enumeration, or an array of members; of reasons, an array of their values.
 pub(crate) fn members<'py>(
     py: Python<'py>,
     of: Enumeration,
@@ -146,7 +146,7 @@ pub(crate) fn members<'py>(
     }
     let values = array(py, shape, values)?;
     match many {
-        Some(class) => values.call_method1("view", (answers(py)?.getattr(class)?,)),
+        Some(class) => answers(py)?.getattr(class)?.call_method1("_from_values", (values,)),
         None => Ok(values.into_any()),
     }
 }

@@ -123,7 +123,7 @@ ONE, MANY = ROBOTS[0], ROBOTS
         (lambda: MESH.clearance(MANY, 0.1, tolerance=np.nan), "negative", "`tolerance`"),
         (lambda: MESH.clearance(ONE, 0.1, tolerance=0.1, tangents=np.ones((3, 3))), "bad_shape", "two directions"),
         (lambda: MESH.clearance(ONE, 0.1, tolerance=0.1, tangents=np.zeros((2, 3))), "bad_tangent", "`tangents`"),
-        (lambda: MESH.clears_motion(ONE, MANY, 0.1, margin=0.1, resolution=0.1), "bad_shape", "same shape"),
+        (lambda: MESH.clears_motion(ONE, MANY[:, 1:], 0.1, margin=0.1, resolution=0.1), "bad_shape", "same shape"),
         (lambda: MESH.clears_motion(ONE, ONE, 0.1, margin=0.1, resolution=0.1, caps="cylinders"), "bad_caps", "'fitted'"),
         (lambda: MESH.clears_motion(ONE, ONE, 0.1, margin=0.1, resolution=-0.1), "negative", "`resolution`"),
         (lambda: MESH.clears_motion(ONE, ONE * np.nan, 0.1, margin=0.1, resolution=0.1), "point_not_finite", "`end`"),

@@ -93,8 +93,36 @@ def test_curves() -> None:
         for one in (ONE, ONE[None]):
             found = MESH.clearance(one, 0.1, tolerance=0.5, tangents=tangents, pose=POSES)
             same(found, MESH.clearance(REPEATED, 0.1, tolerance=0.5, tangents=np.stack([TANGENTS] * B), pose=POSES))
+    each = np.stack([TANGENTS] * B)
+    expected = MESH.clearance(REPEATED, 0.1, tolerance=0.5, tangents=each, pose=POSES)
+    same(MESH.clearance(ONE, 0.1, tolerance=0.5, tangents=each, pose=POSES), expected)
+    same(MESH.clearance(REPEATED, 0.1, tolerance=0.5, tangents=TANGENTS[None], pose=POSES), expected)
+    same(MESH.clearance(REPEATED, 0.1, tolerance=0.5, tangents=TANGENTS, pose=POSES), expected)
+    along = np.gradient(ONE, axis=0)
+    assert MESH.clearance(ONE, 0.1, tolerance=0.5, tangents=along[None]).lower.shape == (1,)
+    same(MESH.clearance(REPEATED, 0.1, tolerance=0.5, tangents=along[None]), MESH.clearance(REPEATED, 0.1, tolerance=0.5, tangents=np.stack([along] * B)))
+    pair = PAIR.clearance(ONE, 0.1, MANY, 0.1, tolerance=0.5, tangents_a=TANGENTS)
+    same(pair, PAIR.clearance(REPEATED, 0.1, MANY, 0.1, tolerance=0.5, tangents_a=each))
     with pytest.raises(ContinuumError, match="`tangents` has the shape"):
-        MESH.clearance(ONE, 0.1, tolerance=0.5, tangents=np.stack([TANGENTS] * B), pose=POSES)
+        MESH.clearance(MANY, 0.1, tolerance=0.5, tangents=each[1:])
+
+
+def test_one_end_for_many() -> None:
+    many = LinearMotion(MANY, REPEATED, 0.1)
+    for start, end, expected in (
+        (MANY, ONE[None], many),
+        (MANY, ONE, many),
+        (ONE, MANY, LinearMotion(REPEATED, MANY, 0.1)),
+        (ONE[None], MANY, LinearMotion(REPEATED, MANY, 0.1)),
+    ):
+        found = MESH.clearance_of_motion(LinearMotion(start, end, 0.1), tolerance=0.5)
+        same(found, MESH.clearance_of_motion(expected, tolerance=0.5))
+        same(MESH.clearance_of_motion(start, end, 0.1, tolerance=0.5), found)
+    same(MESH.clearance_of_motion(ONE, MANY, RADII, tolerance=0.5), MESH.clearance_of_motion(REPEATED, MANY, RADII, tolerance=0.5))
+    with pytest.raises(ContinuumError, match=r"`end` has the shape \(20, 12, 3\), and `start` has \(21, 12, 3\); give both the same"):
+        LinearMotion(MANY, MANY[1:], 0.1)
+    with pytest.raises(ContinuumError, match="`end` has the shape"):
+        LinearMotion(MANY, MANY[:, :5], 0.1)
 
 
 def test_motions() -> None:

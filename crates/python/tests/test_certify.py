@@ -97,6 +97,53 @@ def test_each_field_counts(field: str) -> None:
             MESH.certify(MANY, 0.2, ANSWER._replace(**{field: values}), pose=POSES)
 
 
+@pytest.mark.parametrize("off", [1e-9, 3.0, np.nan])
+def test_arc_lengths_count(off: float) -> None:
+    for one, proof in ((ANSWER._replace(arc_length=ANSWER.arc_length * 0), "arc_length"), (ANSWER, "")):
+        values = one.arc_length.copy()
+        values[3, 7] += 0 if proof else off
+        with pytest.raises(ContinuumError, match=r"robot \d: `answer.arc_length` is .* for link \d+, where the place is at") as raised:
+            MESH.certify(MANY, 0.2, one._replace(arc_length=values), pose=POSES)
+        assert raised.value.kind == "answer_does_not_fit"
+    for answer in (BETWEEN, LINKS):
+        for which in (0, 1):
+            lengths = answer.arc_lengths.copy()
+            lengths[1, ..., which] += off
+            with pytest.raises(ContinuumError, match="robot 1: `answer.arc_lengths` is"):
+                PAIR.certify(MANY, 0.2, SECOND, 0.1, answer._replace(arc_lengths=lengths), pose_a=POSES)
+
+
+def test_segments_without_length_have_no_numbers() -> None:
+    for field in ("distance", "arc_length", "on_robot", "on_mesh", "triangle"):
+        values = getattr(ANSWER, field).copy()
+        values[2, 4] = 3
+        with pytest.raises(ContinuumError, match="robot 2: `answer` has numbers for segment 4, which has no length") as raised:
+            MESH.certify(MANY, 0.2, ANSWER._replace(**{field: values}), pose=POSES)
+        assert raised.value.kind == "answer_does_not_fit"
+    triangles = ANSWER.triangle.copy()
+    triangles[1, 3] = -1
+    with pytest.raises(ContinuumError, match="robot 1: `answer.triangle` is -1 for segment 3, which has a length"):
+        MESH.certify(MANY, 0.2, ANSWER._replace(triangle=triangles), pose=POSES)
+
+
+def test_no_segments_are_no_proof() -> None:
+    for distance in (164.0, np.inf, np.nan):
+        nowhere = PAIR.minimum(MANY[0], 0.2, SECOND[0], 0.1)._replace(distance=distance, segments=np.array([-1, -1]))
+        with pytest.raises(ContinuumError, match="names no pair of links; there is nothing to certify") as raised:
+            PAIR.certify(MANY[0], 0.2, SECOND[0], 0.1, nowhere)
+        assert raised.value.kind == "answer_does_not_fit"
+    with pytest.raises(ContinuumError, match="names no pair of links"):
+        PAIR.certify(HOOK[:3], 0.5, HOOK[:3], 0.5, SelfQuery().minimum(HOOK[:3], 0.5))
+    segments = LINKS.segments.copy()
+    segments[1, 6] = -1
+    with pytest.raises(ContinuumError, match="robot 1: .*row 6.* names no pair of links"):
+        PAIR.certify(MANY, 0.2, SECOND, 0.1, LINKS._replace(segments=segments), pose_a=POSES)
+    distances = LINKS.distance.copy()
+    distances[2, 4] = 3.0
+    with pytest.raises(ContinuumError, match="robot 2: `answer.distance` is 3.0 for segment 4, which has no length"):
+        PAIR.certify(MANY, 0.2, SECOND, 0.1, LINKS._replace(distance=distances), pose_a=POSES)
+
+
 @pytest.mark.parametrize("field", ["distance", "on_first", "on_second"])
 def test_each_field_of_a_pair_counts(field: str) -> None:
     values = getattr(BETWEEN, field).copy()
@@ -112,11 +159,21 @@ def test_each_field_of_a_pair_counts(field: str) -> None:
         (lambda: MESH.certify(MANY, 0.2, MESH.minimum(MANY, 0.2)), r"`answer.triangle` has the shape \(4,\), but .* \(4, 11\)"),
         (lambda: MESH.certify(MANY, 0.2, ANSWER._replace(distance=[1.0])), r"`answer.distance` has the shape \(1,\)"),
         (lambda: MESH.certify(MANY, 0.2, ANSWER._replace(on_mesh="x")), "`answer.on_mesh`"),
-        (lambda: MESH.certify(MANY, 0.2, ANSWER._replace(triangle=ANSWER.triangle * 0 - 1)), "link"),
+        (
+            lambda: MESH.certify(MANY, 0.2, ANSWER._replace(triangle=ANSWER.triangle * 0 - 1)),
+            "robot 0: `answer.triangle` is -1 for segment 0, which has a length; give what `per_link` returned",
+        ),
         (lambda: MESH.certify(MANY, 0.2, ANSWER._replace(triangle=ANSWER.triangle + 10**9), pose=POSES), "triangle"),
         (lambda: PAIR.certify(MANY, 0.2, SECOND, 0.1, None), "`answer` has no `segments`; give what `minimum` returned"),
         (lambda: PAIR.certify(MANY, 0.2, SECOND, 0.1, BETWEEN._replace(distance=1.0)), r"`answer.distance` has the shape \(\)"),
-        (lambda: PAIR.certify(MANY, 0.2, SECOND, 0.1, BETWEEN._replace(segments=BETWEEN.segments + 99)), "link"),
+        (
+            lambda: PAIR.certify(MANY, 0.2, SECOND, 0.1, BETWEEN._replace(segments=BETWEEN.segments * 0 + 99)),
+            "`answer.segments` names the segment 99 of `points_a`, which is no link",
+        ),
+        (
+            lambda: PAIR.certify(MANY, 0.2, SECOND, 0.1, BETWEEN._replace(segments=BETWEEN.segments * [1, 0] + [0, -1])),
+            "`answer.segments` names the segment -1 of `points_b`, which is no link",
+        ),
     ],
 )
 def test_no_answer(ask: Any, text: str) -> None:

@@ -15,12 +15,16 @@ from parry_continuum import (
     ContinuumError,
     LinearMotion,
     Mesh,
+    MotionPath,
+    MovingBase,
     RigidMotion,
     RobotPair,
     Scene,
     SelfQuery,
     load,
+    load_centreline,
     simplify,
+    verify_motion,
 )
 from shapes import poses, robots, sphere
 
@@ -195,7 +199,9 @@ SCALARS = {
 
 
 @pytest.mark.parametrize("name", SCALARS)
-@pytest.mark.parametrize("wrong", ["far", HUGE, [0.1, 0.2], np.ones(2), np.array("x"), 1j, object(), b"1"])
+@pytest.mark.parametrize(
+    "wrong", ["far", HUGE, [0.1, 0.2], np.ones(2), np.array("x"), 1j, object(), b"1", True, False, np.True_, np.array(True)]
+)
 def test_wrong_scalars(name: str, wrong: Any) -> None:
     for ask in SCALARS[name]:
         with pytest.raises(TypeError, match=f"`{name}` is .*; give a number"):
@@ -214,6 +220,121 @@ def test_scalars_of_numpy(name: str) -> None:
 def test_wrong_places(nested: Any) -> None:
     with pytest.raises(TypeError, match="`nested`"):
         Scene(nested=nested)
+
+
+MOTION = LinearMotion(ONE, ONE, 0.1)
+ARC = np.stack([3 * np.cos(np.linspace(0, 2, 41)), 3 * np.sin(np.linspace(0, 2, 41)), np.zeros(41)], axis=1)
+OBJECTS: list[tuple[Any, str]] = [
+    (lambda: MotionPath([MOTION, None]), "`motions[1]` is None; give a Motion, such as a LinearMotion"),
+    (lambda: MotionPath(MOTION), "`motions` is of the type LinearMotion; give a list of motions"),
+    (lambda: MotionPath(None), "`motions` is None; give a list of motions"),
+    (lambda: MovingBase(ONE, POSES[0], POSES[0]), "`motion` is of the type ndarray; give a Motion"),
+    (lambda: verify_motion(ONE, 10), "`motion` is of the type ndarray; give a Motion"),
+    (lambda: verify_motion(MOTION, True), "`steps` is True; give a whole number from 1"),
+    (lambda: PAIR.clears_motions(MOTION, 3, margin=1, resolution=1), "`b` is of the type int; give a Motion"),
+    (lambda: PAIR.time_of_contact(ONE, MOTION, margin=1, resolution=1), "`a` is of the type ndarray; give a Motion"),
+    (lambda: QUERY.clears_motion(ONE, margin=1, resolution=1), "`motion` is of the type ndarray; give a Motion"),
+    (lambda: SCENE.clears_motion([MOTION, None], resolution=1), "`motions[1]` is None; give a Motion"),
+    (lambda: SCENE.time_of_contact([ONE], resolution=1), "`motions[0]` is of the type ndarray; give a Motion"),
+    (lambda: SCENE.clearance_of_motion(MOTION, tolerance=1), "`motions` is of the type LinearMotion; give a list of motions"),
+    (lambda: SCENE.clears_motion_while([], [MOTION], resolution=1), "`ends` is of the type list; give a dict"),
+    (lambda: SCENE.clears(None), "`robots` is None; give a list of tuples (points, radii) or (points, radii, pose)"),
+    (lambda: SCENE.clears("ab"), "`robots` is of the type str; give a list of tuples"),
+    (lambda: SCENE.tightest({0: (ONE, 0.1)}), "`robots` is of the type dict; give a list of tuples"),
+    (lambda: Scene().add("x", ONE, margin=1), "`mesh` is of the type ndarray; give a Mesh"),
+    (lambda: Scene().add(3, MESH, margin=1), "`name` is of the type int; give a text"),
+    (lambda: Mesh(VERTICES, FACES, unit=3), "`unit` is of the type int; give a text"),
+    (lambda: load("a.nii", label=True), "`label` is True; give a whole number from 0"),
+    (lambda: load_centreline("a.vtk", line=True), "`line` is True; give a whole number from 0"),
+    (lambda: Scene(nested=[(True, False)]), "`nested` is no list of pairs of places"),
+]
+
+
+@pytest.mark.parametrize(("ask", "text"), OBJECTS)
+def test_objects_of_another_type(ask: Any, text: str) -> None:
+    with pytest.raises(TypeError) as raised:
+        ask()
+    assert str(raised.value).startswith(text)
+
+
+def test_an_end_of_no_structure() -> None:
+    for key in (True, "wall", -1):
+        with pytest.raises(ContinuumError, match=f"`ends` has the key {key!r}; give the numbers that `add` returned"):
+            SCENE.clears_motion_while({key: POSES[0]}, [MOTION], resolution=1)
+
+
+def test_a_robot_is_not_nested_in_itself() -> None:
+    with pytest.raises(ContinuumError, match=r"`nested\[1\]` names robot 2 twice; give the places of two robots"):
+        Scene(nested=[(0, 1), (2, 2)])
+
+
+@pytest.mark.parametrize(
+    ("ask", "text"),
+    [
+        (lambda: MESH.clearance(FOLDED, 0.1, tolerance=0.1), "as large as their noise; check"),
+        (lambda: RigidMotion.of_curve(FOLDED, 0.1, POSES[0], POSES[0]), "for a robot of straight links ask `distance` or `clears`"),
+        (lambda: BendingMotion([[1, 0, 0]], [[1, 3, 0]], 0.5), "their product must be below 1"),
+        (lambda: QUERY.clears_tube(ARC, 5.0, margin=0.1, resolution=0.1), "as large as their noise"),
+        (lambda: Mesh(MESH).set_vertices(VERTICES[:2]), f"`vertices` has 2 vertices, but the mesh has {len(VERTICES)}; give as many, in its order"),
+        (
+            lambda: MESH.clears_motion_while(VERTICES[:2], ONE, ONE, 0.1, margin=1, resolution=1),
+            f"`to` has 2 vertices, but the mesh has {len(VERTICES)}; give as many, in its order, or make a new `Mesh`",
+        ),
+        (lambda: SCENE.clears_motion_while({0: VERTICES[:2]}, [MOTION], resolution=1), "structure `wall`: "),
+    ],
+)
+def test_texts_are_about_python(ask: Any, text: str) -> None:
+    with pytest.raises(ContinuumError) as raised:
+        ask()
+    assert text in str(raised.value)
+    for word in ("::", "engine", "Chain", "`from`", "frames at one place"):
+        assert word not in str(raised.value)
+
+
+def test_numbers_in_texts_are_short() -> None:
+    for ask in (
+        lambda: MESH.clears(ONE, 0.1, margin=-1e300),
+        lambda: MESH.distance(ONE, -1e-300),
+        lambda: MESH.distance(ONE * 1e300, 0.1),
+        lambda: MESH.distance(ONE, 0.1, pose=np.diag([1e200, 1e200, 1e200, 1])),
+        lambda: MESH.distance(ONE, 0.1, pose=np.diag([1, 1, 1, 1e-300])),
+        lambda: Mesh(VERTICES * 1e300, FACES),
+        lambda: MESH.clears_motion(ONE, ONE + 1, 0.1, margin=1, resolution=1e-300),
+        lambda: MESH.clearance(ONE, 0.1, tolerance=0.1, tangents=np.full((2, 3), 1e-320)),
+        lambda: BendingMotion([[-1e300, 0, 0]], [[1, 0, 0]], 0.5),
+    ):
+        with pytest.raises(ContinuumError) as raised:
+            ask()
+        assert len(str(raised.value)) < 400 and "00000000" not in str(raised.value)
+
+
+def test_errors_of_scenes_have_all_attributes() -> None:
+    moves = LinearMotion(ONE, 1.5 * ONE, 0.1)
+    touching = MESH.clearance_of_motion(MOTION, tolerance=0).lower
+    for margin, ask, name in (
+        (touching, lambda scene: scene.clears_motion([MOTION, moves], resolution=1e-300), "motions[1]"),
+        (touching, lambda scene: scene.time_of_contact([MOTION, moves], resolution=1e-300), "motions[1]"),
+        (touching, lambda scene: scene.clears_motion_while({0: VERTICES}, [MOTION, moves], resolution=1e-300), "motions[1]"),
+        (MESH.clearance(ONE, 0.1, tolerance=0).lower, lambda scene: scene.clears_tube([(ONE, 0.1)], resolution=1e-300), "robots[0]"),
+    ):
+        scene = Scene()
+        scene.add("wall", MESH, margin=margin)
+        with pytest.raises(ContinuumError) as raised:
+            ask(scene)
+        assert str(raised.value).startswith(f"`{name}`: the bounds are")
+        assert raised.value.kind == "tolerance_too_fine" and raised.value.possible is not None and raised.value.possible > 1e-300
+    with pytest.raises(ContinuumError, match=r"^`robots\[1\]`: point 2 has") as raised:
+        SCENE.clears([(ONE, 0.1), (spoilt(0, 2)[0], 0.1)])
+    assert raised.value.index == 2
+
+
+def test_the_motion_of_a_scene_is_named() -> None:
+    sharp = np.array([[0, 0, 0], [0, 0, 1], [0, 0.01, 0.0]])
+    scene = Scene(self_margin=0.01)
+    folds = LinearMotion(sharp, sharp, 0.4)
+    with pytest.raises(ContinuumError, match=r"^`motions\[1\]`: ") as raised:
+        scene.clears_motion([LinearMotion(ONE, ONE, 0.01), folds], resolution=0.1)
+    assert "robots" not in str(raised.value)
 
 
 class Raises:

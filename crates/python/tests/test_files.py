@@ -14,7 +14,18 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
-from parry_continuum import ContinuumError, Mesh, RobotPair, Scene, load, load_centreline
+from parry_continuum import (
+    ContinuumError,
+    LinearMotion,
+    Mesh,
+    MotionPath,
+    MovingBase,
+    RigidMotion,
+    RobotPair,
+    Scene,
+    load,
+    load_centreline,
+)
 from shapes import Array, sphere
 
 VERTICES, FACES = sphere()
@@ -191,8 +202,17 @@ def test_centrelines(tmp_path: Path) -> None:
 def test_points_of_files_are_arrays(tmp_path: Path) -> None:
     points = load_centreline(markups(tmp_path)).points
     assert points[1:].frame == points.copy().frame == "LPS"  # type: ignore[attr-defined]
-    for computed in (points * HALF_TURN, points + 1, np.concatenate([points, points]), np.asarray(points)):
+    for computed in (points * HALF_TURN, points + 1, np.asarray(points), np.linalg.norm(points, axis=1), np.cross(points, [0, 0, 1])):
         assert type(computed) is np.ndarray
+    joined = [np.stack([points] * 2), np.concatenate([points, np.zeros((1, 3))]), np.tile(points, (2, 1, 1)), np.append(points, [[0, 0, 0]], axis=0)]
+    joined += [np.vstack([points, points]), np.broadcast_to(points, (2, *points.shape)), copy.deepcopy(points)]
+    assert [made.frame for made in joined] == ["LPS"] * 7  # type: ignore[attr-defined]
+    assert pickle.loads(pickle.dumps(points)).frame == "LPS"
+    assert Mesh(VERTICES, FACES, frame="LPS").distance(joined[0], 0.1).shape == (2,)
+    turned = load_centreline(markups(tmp_path), frame="RAS").points
+    with pytest.warns(UserWarning, match="points of the frames LPS and RAS are joined") as caught:
+        mixed = np.stack([points, turned])
+    assert mixed.frame is None and caught[0].filename == __file__  # type: ignore[attr-defined]
     assert isinstance(points.sum(), float)
     assert_array_equal(pickle.loads(pickle.dumps(points)), points)
 
@@ -222,6 +242,8 @@ QUESTIONS = {
     "distance_and_gradient": lambda mesh, p: mesh.distance_and_gradient(p, 0.1),
     "certify": lambda mesh, p: mesh.certify(p, 0.1, mesh.per_link(np.asarray(p), 0.1)),
     "prove": lambda mesh, p: mesh.prove(p, 0.1, margin=0.1),
+    "stack": lambda mesh, p: mesh.distance(np.stack([p, p]), 0.1),
+    "list": lambda mesh, p: mesh.distance([p, p], 0.1),
 }
 
 
@@ -239,6 +261,82 @@ def test_other_frames_warn_once(name: str, tmp_path: Path) -> None:
     assert warned(mesh, lambda mesh: ask(mesh, ras)) == []
     assert warned(mesh, lambda mesh: ask(mesh, lps * HALF_TURN)) == []
     assert warned(Mesh(VERTICES, FACES), lambda mesh: ask(mesh, lps)) == []
+
+
+def scene_of(mesh: Mesh) -> Scene:
+    scene = Scene()
+    scene.add("wall", mesh, margin=0.1)
+    return scene
+
+
+MOTIONS = {
+    "linear": lambda p: LinearMotion(p, p, 0.1),
+    "end": lambda p: LinearMotion(np.asarray(p), p, 0.1),
+    "rigid": lambda p: RigidMotion(p, 0.1, POSE, MOVED),
+    "rigid to the frame": lambda p: RigidMotion(p, 0.1, MOVED, POSE),
+    "curve": lambda p: RigidMotion.of_curve(p, 0.1, POSE, POSE),
+    "base": lambda p: MovingBase(LinearMotion(p, p, 0.1), POSE, MOVED),
+    "path": lambda p: MotionPath([LinearMotion(np.asarray(p), np.asarray(p), 0.1), LinearMotion(p, p, 0.1)]),
+    "pickle": lambda p: pickle.loads(pickle.dumps(LinearMotion(p, p, 0.1))),
+}
+MOVED = np.eye(4)
+MOVED[0, 3] = 0.5
+OF_MOTIONS = {
+    "start": lambda mesh, m: mesh.clears_motion(m, margin=0.1, resolution=0.5),
+    "motions[0]": lambda mesh, m: scene_of(mesh).clears_motion([m], resolution=0.5),
+    "motions[1]": lambda mesh, m: scene_of(mesh).clearance_of_motion([LinearMotion(ROBOT, ROBOT, 0.1), m], tolerance=0.5),
+}
+
+
+@pytest.mark.parametrize("question", OF_MOTIONS)
+@pytest.mark.parametrize("name", MOTIONS)
+def test_motions_keep_the_frame(name: str, question: str, tmp_path: Path) -> None:
+    lps, ras = load_centreline(markups(tmp_path)).points, load_centreline(markups(tmp_path), frame="RAS").points
+    make, ask = MOTIONS[name], OF_MOTIONS[question]
+    mesh = Mesh(VERTICES, FACES, frame="RAS")
+    assert make(lps).frame == "LPS" and make(np.asarray(lps)).frame is None
+    assert warned(mesh, lambda mesh: [ask(mesh, make(lps)) for _ in range(2)]) == [
+        f"`{question}` states the frame LPS, and the mesh RAS: x and y have opposite signs; load both with frame='RAS'"
+    ]
+    assert warned(mesh, lambda mesh: ask(mesh, make(ras))) == []
+
+
+def test_poses_of_motions_lead_to_the_mesh(tmp_path: Path) -> None:
+    lps = load_centreline(markups(tmp_path)).points
+    turned = np.diag([-1.0, -1, 1, 1])
+    assert RigidMotion(lps, 0.1, turned, turned).frame is None
+    assert MovingBase(LinearMotion(lps, lps, 0.1), turned, turned).frame is None
+
+
+def test_two_robots_of_two_frames_warn_once(tmp_path: Path) -> None:
+    lps, ras = load_centreline(markups(tmp_path)).points, load_centreline(markups(tmp_path), frame="RAS").points
+    end = "the frame LPS, and `{}` RAS: x and y have opposite signs; load both with frame='RAS'"
+    for ask, names in (
+        (lambda pair, a, b, **more: pair.minimum(a, 0.1, b, 0.1, **more), ("points_a", "points_b")),
+        (lambda pair, a, b, **more: pair.clears(a, 0.1, b, 0.1, margin=0.1, **more), ("points_a", "points_b")),
+        (lambda pair, a, b, **more: pair.clearance(a, 0.1, b, 0.1, tolerance=1.0, **more), ("points_a", "points_b")),
+    ):
+        pair = RobotPair()
+        found = warned(AORTA, lambda _: [ask(pair, lps, ras) for _ in range(2)])
+        assert found == [f"`{names[0]}` is in " + end.format(names[1])]
+        pair = RobotPair()
+        assert warned(AORTA, lambda _: (ask(pair, lps, lps), ask(pair, lps, np.asarray(ras)), ask(pair, lps, ras, pose_a=POSE))) == []
+    pair, (a, b) = RobotPair(), (LinearMotion(points, points, 0.1) for points in (lps, ras))
+    found = warned(AORTA, lambda _: [pair.clears_motions(a, b, margin=0.1, resolution=0.5) for _ in range(2)])
+    assert found == ["`a` is in " + end.format("b")]
+    assert warned(AORTA, lambda _: LinearMotion(lps, ras, 0.1)) == ["`start` is in " + end.format("end")]
+
+
+def test_robots_of_a_scene_in_two_frames_warn_once(tmp_path: Path) -> None:
+    lps, ras = load_centreline(markups(tmp_path)).points, load_centreline(markups(tmp_path), frame="RAS").points
+    plain, end = np.asarray(lps), "RAS: x and y have opposite signs; load both with frame='RAS'"
+    scene = Scene(robot_margin=0.1)
+    found = warned(AORTA, lambda _: [scene.clears([(plain, 0.1), (lps, 0.1), (ras, 0.1)]) for _ in range(2)])
+    assert found == ["`robots[1]` is in the frame LPS, and `robots[2]` " + end]
+    assert warned(AORTA, lambda _: Scene(robot_margin=0.1).clears([(lps, 0.1), (plain, 0.1), (ras, 0.1, POSE)])) == []
+    a, b = (LinearMotion(points, points, 0.1) for points in (lps, ras))
+    found = warned(AORTA, lambda _: [Scene(robot_margin=0.1).clears_motion([a, b], resolution=0.5)])
+    assert found == ["`motions[0]` is in the frame LPS, and `motions[1]` " + end]
 
 
 def test_a_pose_leads_to_the_mesh(tmp_path: Path) -> None:
@@ -298,6 +396,23 @@ def test_doubts(points: Array, radii: Any, expected: list[str]) -> None:
         assert "they fit" not in found[-1]
 
 
+@pytest.mark.parametrize("name", ["RAS", "LPS"])
+def test_surfaces_of_pyvista_state_their_frame(name: str) -> None:
+    pyvista = pytest.importorskip("pyvista")
+    surface = pyvista.PolyData(VERTICES, np.insert(FACES, 0, 3, axis=1).ravel())
+    assert Mesh(surface).frame is None
+    surface.field_data["SPACE"] = [name]
+    other = {"RAS": "LPS", "LPS": "RAS"}[name]
+    assert (Mesh(surface).frame, load(surface).frame, Mesh(surface, frame=other).frame) == (name, name, other)
+    assert Mesh(surface.cast_to_unstructured_grid()).frame == name
+    turned = load(surface, frame=other)
+    assert turned.frame == other
+    assert_array_equal(turned.vertices, VERTICES * HALF_TURN)
+    assert_array_equal(load(surface, frame=name).vertices, VERTICES)
+    surface.field_data["SPACE"] = ["scanner"]
+    assert Mesh(surface).frame is None
+
+
 def test_doubts_about_frames(tmp_path: Path) -> None:
     lps = load_centreline(markups(tmp_path)).points
     mesh = Mesh(VERTICES, FACES, frame="RAS")
@@ -318,7 +433,7 @@ def test_doubts_about_frames(tmp_path: Path) -> None:
         (lambda f: load(f, frame=3), ContinuumError, "`frame` is 3"),
         (lambda f: load_centreline(f, frame=""), ContinuumError, "`frame` is ''"),
         (lambda f: Mesh(VERTICES, FACES, frame="XYZ"), ContinuumError, "`frame` is 'XYZ'"),
-        (lambda f: Mesh(VERTICES, FACES, unit=3), TypeError, "str"),
+        (lambda f: Mesh(VERTICES, FACES, unit=3), TypeError, "`unit` is of the type int; give a text"),
         (lambda f: load(f, label=-1), TypeError, "`label` is -1; give a whole number from 0 to 4294967295"),
         (lambda f: load(f, label=1.5), TypeError, "`label` is 1.5; give a whole number"),
         (lambda f: load(f, scale="mm"), TypeError, "`scale` is 'mm'; give a number"),

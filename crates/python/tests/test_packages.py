@@ -61,6 +61,10 @@ def test_pyvista(take: Any) -> None:
     box = pyvista.Box()  # of quadrilaterals
     assert len(take(box).faces) == 12
     assert len(take(surface.cast_to_unstructured_grid()).faces) == len(FACES)
+    with pytest.raises(ContinuumError, match=r"the mesh is a MultiBlock; give one of its blocks, .*combine\(\)") as raised:
+        take(pyvista.MultiBlock([surface, box]))
+    assert raised.value.kind == "bad_type"
+    assert len(take(pyvista.MultiBlock([surface, box]).combine().extract_surface()).faces) == len(FACES) + 12
 
 
 @pytest.mark.parametrize("take", [Mesh, load])
@@ -74,6 +78,31 @@ def test_meshio(take: Any) -> None:
     with pytest.raises(ContinuumError) as raised:
         take(meshio.Mesh(VERTICES, [("line", [[0, 1]])]))
     assert raised.value.kind == "empty"
+
+
+def area(mesh: Mesh) -> float:
+    a, b, c = mesh.vertices[mesh.faces].transpose(1, 0, 2)
+    return float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2)
+
+
+@pytest.mark.parametrize("take", [Mesh, load])
+def test_polygons_of_meshio(take: Any) -> None:
+    meshio = pytest.importorskip("meshio")
+    square = np.array([[0, 0, 0], [2, 0, 0], [2, 2, 0], [0, 2, 0.0]])
+    for turn in range(4):
+        quads = take(meshio.Mesh(square, [("quad", [np.roll([0, 1, 2, 3], turn)])]))
+        assert (len(quads.faces), area(quads)) == (2, 4.0)
+        dart = square.copy()
+        dart[2] = [0.5, 0.5, 0]  # concave there: one diagonal is outside
+        assert area(take(meshio.Mesh(dart, [("quad", [np.roll([0, 1, 2, 3], turn)])]))) == pytest.approx(1.0)
+    corner = np.array([[0, 0, 0], [4, 0, 0], [4, 1, 0], [1, 1, 0], [1, 4, 0], [0, 4, 0.0]])  # an L
+    found = take(meshio.Mesh(corner, [("polygon", [[0, 1, 2, 3, 4, 5]])]))
+    assert_array_equal(found.vertices, corner)
+    assert (len(found.faces), area(found)) == (4, pytest.approx(7.0))
+    normals = np.cross(*(corner[found.faces[:, k]] - corner[found.faces[:, 0]] for k in (1, 2)))
+    assert (normals[:, 2] > 0).all()
+    mixed = [("vertex", [[0]]), ("line", [[0, 1]]), ("triangle", [[0, 1, 3]]), ("quad", [[0, 3, 4, 5]]), ("triangle", [[1, 2, 3]])]
+    assert len(take(meshio.Mesh(corner, mixed)).faces) == 4
 
 
 @pytest.mark.parametrize("take", [Mesh, load])
@@ -120,6 +149,12 @@ def test_paths_and_files(tmp_path: Path) -> None:
     empty.name = "wall.obj"  # type: ignore[misc]
     with pytest.raises(ContinuumError, match="wall.obj holds no triangles"):
         load(empty)
+    named.name = "wall.obj"  # type: ignore[misc]
+    named.seek(0, io.SEEK_END)
+    for read in (load, load_centreline):
+        with pytest.raises(ContinuumError, match=r"`path` is a file object at its end; call its `seek\(0\)` first") as raised:
+            read(named)
+        assert raised.value.kind == "bad_type"
 
 
 def test_centrelines_of_files(tmp_path: Path) -> None:
@@ -201,6 +236,21 @@ def test_rotations(count: int | None) -> None:
         scene = Scene()
         scene.add("wall", MESH, margin=0.1, pose=rotations)
         assert scene.tightest([(ONE, 0.1)]).structure == 0
+
+
+@pytest.mark.parametrize("kind", ["Rotation", "RigidTransform"])
+def test_lists_of_transforms(kind: str) -> None:
+    rotations, matrices = transforms(4)
+    spatial = pytest.importorskip("scipy.spatial.transform")
+    if kind == "RigidTransform":
+        if not hasattr(spatial, kind):
+            pytest.skip("an older scipy")
+        rotations = spatial.RigidTransform.from_rotation(rotations)
+    for given in ([rotations[k] for k in range(4)], tuple(rotations[k] for k in range(4))):
+        assert_allclose(MESH.distance(ONE, 0.1, pose=given), MESH.distance(ONE, 0.1, pose=matrices), atol=1e-15)
+        assert RigidMotion(ONE, 0.1, given, np.eye(4)).count == 4
+    with pytest.raises(ContinuumError, match="`pose`"):
+        MESH.distance(ONE, 0.1, pose=[rotations[0], np.eye(4)])
 
 
 def test_lists_are_poses() -> None:

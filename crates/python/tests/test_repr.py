@@ -42,6 +42,15 @@ def test_arrays_are_short() -> None:
     assert "on_mesh=<float64 array (500, 11, 3)>" in repr(MESH.per_link(MANY, 0.1))
 
 
+def test_decisions_and_sides_are_short() -> None:
+    decided = MESH.clears_tube(MANY, 0.1, margin=0.1, resolution=1.0)
+    assert len(repr(decided)) < 120 and repr(decided).startswith("Decisions([") and repr(decided).endswith("shape=(500,))")
+    assert "decision=<Decisions (40,)>" in repr(MESH.clears_motion(LinearMotion(MANY[:40], MANY[:40], 0.1), margin=0.1, resolution=1.0))
+    sides = MESH.side([[0, 0, 0], [0, 0, 90]])
+    assert repr(sides) == str(sides) == "Sides([INSIDE, OUTSIDE])"
+    assert repr(sides[:0]) == "Sides([], shape=(0,))"
+
+
 def test_one_answer_is_whole() -> None:
     floor = Mesh([[-9, -9, 0], [9, -9, 0], [0, 9, 0]], [[0, 1, 2]])
     assert repr(floor.minimum([[0, 0, 2], [0, 0, 4]], 0.5)) == (

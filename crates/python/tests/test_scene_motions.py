@@ -116,7 +116,7 @@ def test_a_batch_answers_as_one_by_one_and_names_what_is_refused() -> None:
         one = LinearMotion(start, start + [0, 0, 0.2], 0.3)
         if place == 5:
             assert found.status[place] == "joint_too_sharp" and found.decision[place] is Decision.UNDECIDED
-            with pytest.raises(ContinuumError, match=r"robots\[0\]") as refused:
+            with pytest.raises(ContinuumError, match=r"^`motions\[0\]`: ") as refused:
                 asked.clears_motion([one, a[0]], resolution=RESOLUTION)
             assert refused.value.kind == "joint_too_sharp"
             continue

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import copy
 import pickle
+from typing import Any
 
 import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
 
-from parry_continuum import Decision, LinearMotion, Mesh, RobotPair, Scene, SelfQuery, Side, UndecidedReason
+from parry_continuum import Decision, Decisions, LinearMotion, Mesh, RobotPair, Scene, SelfQuery, Side, UndecidedReason
 from shapes import sphere
 
 MESH = Mesh(*sphere())
@@ -122,9 +123,78 @@ def test_inside_holds() -> None:
     assert none.holds.shape == none.is_clear.shape == (0,)
 
 
+DECISIONS = MESH.clears_tube(BOTH, 0.1, margin=0.5, resolution=0.01)
+
+
+@pytest.mark.parametrize(
+    "ask",
+    [
+        lambda d: np.where(d, 1, 0),
+        lambda d: np.where(d.tolist(), 1, 0),
+        lambda d: np.count_nonzero(d),
+        lambda d: d.astype(bool),
+        lambda d: np.array(d, dtype=bool),
+        lambda d: np.asarray(d).astype(bool),
+        lambda d: np.array(list(d)).any(),
+        lambda d: np.logical_and.reduce(d),
+        lambda d: np.logical_or(d, d),
+        lambda d: np.logical_not(d),
+        lambda d: d.nonzero(),
+        lambda d: np.flatnonzero(d),
+        lambda d: np.argwhere(d),
+        lambda d: np.extract(d, [1, 2]),
+        lambda d: np.compress(d, [1, 2]),
+        lambda d: np.zeros(2, bool).__setitem__(slice(None), d),
+        lambda d: any(d),
+        lambda d: np.any(d),
+        lambda d: np.all(d),
+    ],
+)
+def test_numpy_takes_no_decision_for_true(ask: Any) -> None:
+    for decisions in (DECISIONS, MESH.clears_motion(motion(BOTH), margin=0.5, resolution=0.01).decision):
+        with pytest.raises(TypeError, match=r"use `\.is_clear`"):
+            ask(decisions)
+    with pytest.raises(TypeError, match=r"use `\.is_inside`"):
+        ask(MESH.side([[0, 0, 0], [0, 0, 50]]))
+
+
+def test_decisions_are_no_index() -> None:
+    for index in (DECISIONS, DECISIONS[1], DECISIONS.tolist(), np.asarray(DECISIONS)):
+        with pytest.raises(IndexError):
+            BOTH[index]
+    assert_array_equal(BOTH[DECISIONS.is_clear], BOTH[:1])
+    assert_array_equal(BOTH[DECISIONS == Decision.CONTACT], BOTH[1:])
+
+
+def test_what_decisions_are() -> None:
+    assert Decision.CONTACT == -1 and int(Decision.CLEAR) == 1 and Decision(0) is Decision.UNDECIDED
+    assert Decision.CONTACT != Side.INSIDE and Decision.CLEAR > Decision.UNDECIDED >= 0 > Decision.CONTACT <= -1
+    assert {Decision.CLEAR: 2}[DECISIONS[0]] == 2
+    assert_array_equal(DECISIONS.astype(int), [1, -1])
+    assert_array_equal(np.asarray(DECISIONS, float), [1, -1])
+    assert type(DECISIONS.astype(int)) is np.ndarray
+    assert_array_equal(DECISIONS < 0, [False, True])
+    assert_array_equal(np.unique(DECISIONS), [Decision.CONTACT, Decision.CLEAR])
+    with pytest.raises(TypeError):
+        assert Decision.CLEAR < "x"  # type: ignore[operator]
+    for again in (copy.copy(DECISIONS), pickle.loads(pickle.dumps(DECISIONS)), DECISIONS[:], DECISIONS.copy()):
+        assert type(again) is Decisions and again[1] is Decision.CONTACT
+    table = MESH.clears_motion(motion(BOTH), margin=0.5, resolution=0.01).to_dict()
+    assert table["decision"].dtype == np.int8 and table["decision"].tolist() == [1, -1]
+
+
+def test_sides_have_what_a_side_has() -> None:
+    points = [[0, 0, 0], [0, 0, 50], MESH.vertices[0]]
+    sides = MESH.side(points)
+    for name in ("is_inside", "is_outside"):
+        assert_array_equal(getattr(sides, name), [getattr(MESH.side(point), name) for point in points])
+        assert getattr(sides, name).dtype == bool and type(getattr(MESH.side(points[0]), name)) is bool
+    assert_array_equal(sides.is_inside, [True, False, False])
+    assert_array_equal(sides.is_outside, [False, True, False])
+
+
 def test_items_of_batches_have_no_truth_value_either() -> None:
-    decisions = MESH.clears_tube(BOTH, 0.1, margin=0.5, resolution=0.01)
-    assert decisions.dtype == np.int8
+    decisions = DECISIONS
     assert list(decisions) == [Decision.CLEAR, Decision.CONTACT] and decisions[1] is Decision.CONTACT
     for ask in (lambda: bool(decisions[:1]), lambda: bool(decisions[1]), decisions.all, lambda: np.any(decisions)):
         with pytest.raises(TypeError, match="is_clear"):

@@ -12,7 +12,10 @@ A type checker cannot tell one robot from many by their shape, so what is a numb
 
 from __future__ import annotations
 
-from enum import IntEnum
+import sys
+import warnings
+from collections.abc import Iterator
+from enum import Enum, IntEnum
 from typing import Any, NamedTuple, NoReturn, Optional
 
 import numpy as np
@@ -30,18 +33,68 @@ DecisionOrDecisions = Any
 ReasonOrReasons = Any
 
 
-class Side(IntEnum):
-    """On which side of a mesh a point is. It has no truth value: compare it, as in ``side is Side.INSIDE``."""
+class _Member(Enum):
+    """A member of an enumeration of int8. It equals its value and is ordered by it, and ``int()`` is its value.
+
+    It is no int itself: numpy then makes no numbers of a list of members, which would all be true but 0.
+    """
+
+    def __eq__(self, other: object) -> bool:
+        if isinstance(other, type(self)):
+            return self is other
+        if isinstance(other, (int, np.number)):
+            return bool(self.value == other)
+        return NotImplemented
+
+    def __lt__(self, other: Any) -> bool:
+        if isinstance(other, (int, np.number, type(self))):
+            return bool(self.value < int(other))
+        return NotImplemented
+
+    def __le__(self, other: Any) -> bool:
+        if isinstance(other, (int, np.number, type(self))):
+            return bool(self.value <= int(other))
+        return NotImplemented
+
+    def __gt__(self, other: Any) -> bool:
+        return NotImplemented if (less := self.__le__(other)) is NotImplemented else not less
+
+    def __ge__(self, other: Any) -> bool:
+        return NotImplemented if (less := self.__lt__(other)) is NotImplemented else not less
+
+    def __hash__(self) -> int:
+        return hash(self.value)
+
+    def __int__(self) -> int:
+        return int(self.value)
+
+    def __float__(self) -> float:
+        return float(self.value)
+
+
+class Side(_Member):
+    """On which side of a mesh a point is. It has no truth value: use ``is_inside`` or ``is_outside``, or compare it, as
+    in ``side is Side.INSIDE``."""
 
     INSIDE = -1
     UNDECIDED = 0
     OUTSIDE = 1
 
+    @property
+    def is_inside(self) -> bool:
+        """Whether the point is proven to be inside."""
+        return self is Side.INSIDE
+
+    @property
+    def is_outside(self) -> bool:
+        """Whether the point is proven to be outside."""
+        return self is Side.OUTSIDE
+
     def __bool__(self) -> NoReturn:
-        raise _no_truth("a Side", "compare it, as in `side is Side.INSIDE`, or take `.is_clear` of an answer about a margin")
+        raise _no_truth("a Side", _INSTEAD_OF_SIDES.format("side is Side.INSIDE"))
 
 
-class Decision(IntEnum):
+class Decision(_Member):
     """Whether a margin is kept. ``CLEAR`` and ``CONTACT`` are proven.
 
     It has no truth value: use ``is_clear``, or compare it, as in ``decision is Decision.CLEAR``.
@@ -60,6 +113,9 @@ class Decision(IntEnum):
         raise _no_truth("a Decision", "use `.is_clear`, or compare it, as in `decision is Decision.CLEAR`")
 
 
+_INSTEAD_OF_SIDES = "use `.is_inside` or `.is_outside`, compare it, as in `{}`, or take `.is_clear` of an answer about a margin"
+
+
 class UndecidedReason(IntEnum):
     """Why it stays open whether a motion keeps a margin."""
 
@@ -75,22 +131,36 @@ def _no_truth(what: str, instead: str) -> TypeError:
     return TypeError(f"the truth value of {what} is ambiguous; {instead}")
 
 
-class _Members(np.ndarray[Any, np.dtype[np.int8]]):
-    """An array of int8, the values of members of an enumeration. Its items are members, and it has no truth value.
+def _name(member: object) -> str:
+    return str(member.name) if isinstance(member, _Member) else repr(member)
 
-    What is computed from it is a plain array or number.
+
+class _Members(np.ndarray[Any, np.dtype[np.object_]]):
+    """An array of the members of an enumeration. It has no truth value, and neither have its items.
+
+    Its items are objects and no numbers: whatever takes them for true or false asks each of them, which raises. Nor can
+    they be an index. What is computed from it is a plain array or number.
     """
 
-    _of: type[IntEnum]
+    _of: type[_Member]
     _instead: str
 
-    def __getitem__(self, key: Any) -> Any:
-        found = super().__getitem__(key)
-        return self._of(int(found)) if isinstance(found, np.int8) else found
+    @classmethod
+    def _from_values(cls, values: NDArray[np.int8]) -> _Members:
+        """The members of these values."""
+        members = np.empty(len(cls._of), object)
+        for member in cls._of:
+            members[member.value] = member  # -1 is the last place
+        found: _Members = members[values].view(cls)
+        return found
 
     def __array_wrap__(self, array: Any, context: Any = None, return_scalar: bool = False) -> Any:
         plain = np.asarray(array)
         return plain[()] if plain.ndim == 0 else plain
+
+    def astype(self, dtype: Any, *more: Any, **named: Any) -> Any:
+        """Their values as a plain array of numbers. ``bool`` is refused."""
+        return np.asarray(self).astype(dtype, *more, **named)
 
     def __bool__(self) -> NoReturn:
         raise _no_truth(f"{type(self).__name__}", self._instead)
@@ -101,10 +171,18 @@ class _Members(np.ndarray[Any, np.dtype[np.int8]]):
     def any(self, *_: Any, **__: Any) -> NoReturn:
         raise _no_truth(f"an item of {type(self).__name__}", self._instead)
 
+    def __repr__(self) -> str:
+        names = np.array2string(np.asarray(self), threshold=20, separator=", ", formatter={"object": _name})
+        shape = f", shape={self.shape}" if self.size == 0 or self.size > 20 else ""
+        return f"{type(self).__name__}({names}{shape})"
+
+    def __str__(self) -> str:
+        return repr(self)
+
 
 class Decisions(_Members):
-    """An array of int8 whose items are ``Decision``: 1 clear, -1 contact, 0 undecided. It has no truth value: use
-    ``is_clear``."""
+    """An array whose items are ``Decision``. It has no truth value: use ``is_clear``, or compare it, as in
+    ``decisions == Decision.CLEAR``. ``decisions.astype(int)`` is 1 for clear, -1 for contact and 0 for undecided."""
 
     _of = Decision
     _instead = "use `.is_clear`, or compare it, as in `decisions == Decision.CLEAR`"
@@ -112,16 +190,25 @@ class Decisions(_Members):
     @property
     def is_clear(self) -> NDArray[np.bool_]:
         """Of each, whether the margin is proven to be kept."""
-        is_clear: NDArray[np.bool_] = np.asarray(self) == Decision.CLEAR
-        return is_clear
+        return np.asarray(self == Decision.CLEAR, bool)
 
 
 class Sides(_Members):
-    """An array of int8 whose items are ``Side``: -1 inside, 1 outside, 0 undecided. It has no truth value: compare it,
-    as in ``sides == Side.INSIDE``."""
+    """An array whose items are ``Side``. It has no truth value: use ``is_inside`` or ``is_outside``, or compare it, as in
+    ``sides == Side.INSIDE``. ``sides.astype(int)`` is -1 for inside, 1 for outside and 0 for undecided."""
 
     _of = Side
-    _instead = "compare it, as in `sides == Side.INSIDE`, or take `.is_clear` of an answer about a margin"
+    _instead = _INSTEAD_OF_SIDES.format("sides == Side.INSIDE")
+
+    @property
+    def is_inside(self) -> NDArray[np.bool_]:
+        """Of each, whether the point is proven to be inside."""
+        return np.asarray(self == Side.INSIDE, bool)
+
+    @property
+    def is_outside(self) -> NDArray[np.bool_]:
+        """Of each, whether the point is proven to be outside."""
+        return np.asarray(self == Side.OUTSIDE, bool)
 
 
 def _short(answer: Any) -> str:
@@ -129,6 +216,8 @@ def _short(answer: Any) -> str:
     most = 9
 
     def text(value: Any) -> str:
+        if isinstance(value, _Members) and value.size > most:
+            return f"<{type(value).__name__} {value.shape}>"
         if isinstance(value, np.ndarray) and value.size > most:
             return f"<{value.dtype} array {value.shape}>"
         return repr(value).replace("\n", "").replace("       ", " ")
@@ -147,7 +236,8 @@ def _columns(answer: Any, axes: tuple[str, str]) -> dict[str, NDArray[Any]]:
     for name, value in zip(answer._fields, answer):
         if name == "offsets":
             continue
-        values = np.asarray(value)
+        is_of_members = isinstance(value, (_Member, _Members))
+        values = np.asarray(value, np.int8 if is_of_members else None)
         further = values.shape[len(rows) :]
         values = values.reshape(-1 if 0 not in rows else 0, *further)
         for place in np.ndindex(*further):
@@ -175,6 +265,7 @@ class _Answer:
         """Columns of equal length, as ``pandas.DataFrame`` takes them: a row for each robot, contact or segment.
 
         A point has a column for each coordinate, ``on_mesh_x``, and other numbers a column for each place, ``segments_0``.
+        A `Decision` or a `Side` is its value, -1, 0 or 1.
         Segments of a batch are rows too, with columns that say of which robot and which segment. ``offsets`` is left out,
         since each contact names its robot. ``_asdict()`` has the fields as they are.
         """
@@ -728,7 +819,8 @@ class Tightest(_Answer, _TightestFields):
 
 
 class FramedPoints(np.ndarray[Any, np.dtype[np.float64]]):
-    """Points as they were read from a file that states their frame. What is computed from them is a plain array."""
+    """Points as they were read from a file that states their frame. Copies, parts and joined arrays of them keep the
+    frame. What is computed from them is a plain array."""
 
     frame: Optional[str] = None
     """The frame: "RAS" or "LPS"."""
@@ -739,6 +831,50 @@ class FramedPoints(np.ndarray[Any, np.dtype[np.float64]]):
     def __array_wrap__(self, array: Any, context: Any = None, return_scalar: bool = False) -> Any:
         plain = np.asarray(array)
         return plain[()] if plain.ndim == 0 else plain
+
+    def __array_function__(self, function: Any, types: Any, args: Any, kwargs: Any) -> Any:
+        found = super().__array_function__(function, types, args, kwargs)
+        if function in _JOINING and isinstance(found, np.ndarray) and found.dtype == np.float64:
+            frames = sorted({given.frame for given in _points_in((args, kwargs)) if given.frame is not None})
+            if len(frames) > 1:
+                text = f"points of the frames {' and '.join(frames)} are joined: x and y have opposite signs; load all with one frame"
+                warnings.warn(text, stacklevel=_callers_level())
+            return _framed(found, frames[0] if len(frames) == 1 else None)
+        return found
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _framed, (np.asarray(self), self.frame)
+
+    def __deepcopy__(self, memo: Any) -> FramedPoints:
+        return _framed(np.asarray(self).copy(), self.frame)
+
+
+# Others, such as `np.stack`, call one of these.
+_JOINING = (np.concatenate, np.insert, np.tile, np.broadcast_to)
+
+
+def _callers_level() -> int:
+    """The level of the stack at which neither this package nor numpy is."""
+    level, frame = 0, sys._getframe()
+    while frame.f_back is not None and frame.f_globals.get("__name__", "").partition(".")[0] in ("numpy", "parry_continuum"):
+        level, frame = level + 1, frame.f_back
+    return level
+
+
+def _points_in(given: Any) -> Iterator[FramedPoints]:
+    """The points with a frame among arguments, and in their lists."""
+    if isinstance(given, FramedPoints):
+        yield given
+    elif isinstance(given, (list, tuple, dict)):
+        for part in given.values() if isinstance(given, dict) else given:
+            yield from _points_in(part)
+
+
+def _framed(points: Floats, frame: Optional[str]) -> FramedPoints:
+    """Points with their frame."""
+    found = points.view(FramedPoints)
+    found.frame = frame
+    return found
 
 
 class Centreline(NamedTuple):

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import io
 from collections.abc import Callable
 from typing import Any, Optional
 
 import numpy as np
 
 from ._errors import ContinuumError
+from ._native import load
 
-Parts = tuple[Any, Any]
+Parts = tuple[Any, Any, Optional[str]]
+"""Vertices, triangles, and the frame "RAS" or "LPS" if it is stated."""
 
 
 def _attribute(given: Any, name: str) -> Any:
@@ -32,45 +35,75 @@ def _refuse(text: str) -> ContinuumError:
 
 def _open3d(given: Any) -> Optional[Parts]:
     if _has(given, "vertices", "triangles"):
-        return np.asarray(given.vertices), np.asarray(given.triangles)
+        return np.asarray(given.vertices), np.asarray(given.triangles), None
     if _has(given, "vertex", "triangle") and _has(given.vertex, "positions") and _has(given.triangle, "indices"):
-        return given.vertex.positions.cpu().numpy(), given.triangle.indices.cpu().numpy()
+        return given.vertex.positions.cpu().numpy(), given.triangle.indices.cpu().numpy(), None
     return None
 
 
 def _trimesh(given: Any) -> Optional[Parts]:
     if _has(given, "vertices", "faces"):
-        return given.vertices, given.faces
+        return given.vertices, given.faces, None
     if _has(given, "geometry", "graph"):  # a scene, whose parts have places of their own
         whole = given.to_mesh() if _has(given, "to_mesh") else given.dump(concatenate=True)
         if not _has(whole, "vertices", "faces"):
             raise _refuse("the scene holds no mesh; give a scene with triangles")
-        return whole.vertices, whole.faces
+        return whole.vertices, whole.faces, None
     return None
 
 
 def _meshio(given: Any) -> Optional[Parts]:
     if not _has(given, "points", "cells", "cells_dict"):
         return None
-    others = sorted(set(given.cells_dict) - {"triangle", "vertex", "line"})
-    if others:
-        raise _refuse(f"the mesh has cells of the type {others[0]}; give its surface, cut into triangles")
     points = np.asarray(given.points)
     if points.ndim == 2 and points.shape[1] == 2:
         points = np.column_stack([points, np.zeros(len(points))])
-    return points, given.cells_dict.get("triangle", np.zeros((0, 3), int))
+    faces = [np.zeros((0, 3), np.int64)]
+    for block in given.cells:
+        if block.type == "triangle":
+            faces.append(np.asarray(block.data))
+        elif block.type == "quad":
+            faces.append(_halves(points, np.asarray(block.data)))
+        elif block.type.startswith("polygon"):
+            faces.append(_ears(points, block.data))
+        elif block.type not in ("vertex", "line", "line3"):
+            raise _refuse(f"the mesh has cells of the type {block.type}; give its surface, cut into triangles")
+    return points, np.concatenate(faces), None
+
+
+def _halves(points: Any, quads: Any) -> Any:
+    """Both halves of each quadrilateral, along the diagonal that is inside: their normals do not oppose one another."""
+    a, b, c, d = (points[quads[:, corner]] for corner in range(4))
+    along = np.sum(np.cross(b - a, c - a) * np.cross(c - a, d - a), axis=1) >= 0
+    first, second = np.where(along[:, None], quads[:, [0, 1, 2]], quads[:, [0, 1, 3]]), quads[:, [1, 2, 3]].copy()
+    second[along, 0] = quads[along, 0]
+    return np.stack([first, second], axis=1).reshape(-1, 3)
+
+
+def _ears(points: Any, polygons: Any) -> Any:
+    """The triangles of polygons, which need not be convex: those of an OBJ file with the same faces."""
+    lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in np.asarray(points, float).tolist()]
+    lines += ["f " + " ".join(str(corner + 1) for corner in np.asarray(polygon).tolist()) for polygon in polygons]
+    file = io.BytesIO("\n".join(lines).encode())
+    file.name = "polygons.obj"
+    return load(file).faces
 
 
 def _pyvista(given: Any) -> Optional[Parts]:
+    if _has(given, "n_blocks", "combine"):
+        raise _refuse("the mesh is a MultiBlock; give one of its blocks, `blocks[0]`, or the surface of all of them, "
+                      "`blocks.combine().extract_surface()`")  # fmt: skip
     if not _has(given, "points", "n_cells"):
         return None
     surface = given if hasattr(type(given), "verts") else given.extract_surface()
-    return surface.points, np.asarray(surface.triangulate().faces).reshape(-1, 4)[:, 1:]
+    stated = np.asarray(given.field_data["SPACE"]).ravel() if "SPACE" in given.field_data else ()
+    frame = next((str(name) for name in stated if name in ("RAS", "LPS")), None)
+    return surface.points, np.asarray(surface.triangulate().faces).reshape(-1, 4)[:, 1:], frame
 
 
 KINDS: tuple[Callable[[Any], Optional[Parts]], ...] = (_pyvista, _meshio, _trimesh, _open3d)
 
 
 def parts(given: Any) -> Optional[Parts]:
-    """Vertices and faces, or None if it is no mesh."""
+    """Vertices, faces and frame, or None if it is no mesh."""
     return next((found for found in (kind(given) for kind in KINDS) if found is not None), None)

@@ -40,7 +40,12 @@ pub(crate) fn faces(given: &Bound<'_, PyAny>, count: usize) -> PyResult<Vec<[u32
                     let text = format!(
                         "face {face} names vertex {number}, but there are {count} vertices, counted from 0; repair `faces`"
                     );
-                    let error = Refused::Other { kind: "no_such_vertex", text, index: Some(face) };
+                    let error = Refused::Other {
+                        kind: "no_such_vertex",
+                        text,
+                        index: Some(face),
+                        possible: None,
+                    };
                     return Err(error.raise(py, None));
                 }
             }

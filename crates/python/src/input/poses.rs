@@ -8,6 +8,7 @@ use numpy::PyUntypedArray;
 use parry_continuum::parry::math::Pose;
 use parry_continuum::pose_from_matrix;
 use pyo3::prelude::*;
+use pyo3::types::{PyList, PySequence, PyTuple};
 use std::ops::Range;
 
 /// The poses of a batch.
@@ -91,10 +92,13 @@ pub(crate) fn matrices<'py>(given: &Bound<'py, PyAny>, name: &str) -> PyResult<N
     if given.cast_exact::<PyUntypedArray>().is_ok() {
         return Numbers::new(given, name);
     }
-    let Some(as_matrix) = given.getattr_opt("as_matrix")? else {
-        return Numbers::new(given, name);
+    let found = match given.getattr_opt("as_matrix")? {
+        Some(as_matrix) => as_matrix.call0()?,
+        None => match matrices_in(given)? {
+            Some(list) => list.into_any(),
+            None => return Numbers::new(given, name),
+        },
     };
-    let found = as_matrix.call0()?;
     let numbers = Numbers::new(&found, name)?;
     let [before @ .., 3, 3] = numbers.shape() else { return Ok(numbers) };
     let shape: Vec<_> = before.iter().copied().chain([4, 4]).collect();
@@ -103,6 +107,20 @@ pub(crate) fn matrices<'py>(given: &Bound<'py, PyAny>, name: &str) -> PyResult<N
         [a, b, c, 0.0, d, e, f, 0.0, g, h, i, 0.0, 0.0, 0.0, 0.0, 1.0]
     });
     Numbers::new(array(given.py(), shape, whole.collect())?.as_any(), name)
+}
+
+/// The matrices of a list that has a transform of scipy's in each entry.
+fn matrices_in<'py>(given: &Bound<'py, PyAny>) -> PyResult<Option<Bound<'py, PyList>>> {
+    let Ok(entries) = given.cast::<PySequence>() else { return Ok(None) };
+    if !given.is_instance_of::<PyList>() && !given.is_instance_of::<PyTuple>() {
+        return Ok(None);
+    }
+    let list = PyList::empty(given.py());
+    for entry in entries.try_iter()? {
+        let Some(as_matrix) = entry?.getattr_opt("as_matrix")? else { return Ok(None) };
+        list.append(as_matrix.call0()?)?;
+    }
+    Ok((!list.is_empty()).then_some(list))
 }
 
 /// The pose of one matrix, (4, 4), beside its numbers; none of another shape.

@@ -23,6 +23,8 @@ pub(crate) struct Robots<'py> {
     points: Numbers<'py>,
     /// More points: where a motion ends, or the directions of a curve.
     more: Option<Numbers<'py>>,
+    /// Whether those of one robot stand for all robots of a batch.
+    more_is_one: bool,
     radii: Radii<'py>,
     poses: Poses<'py>,
     /// Whether the points of one robot stand for all robots of a batch.
@@ -41,6 +43,7 @@ enum Radii<'py> {
 #[derive(Clone, Copy, Default)]
 struct Shared {
     points: bool,
+    more: bool,
     radii: bool,
     pose: bool,
 }
@@ -133,6 +136,7 @@ impl<'py> Robots<'py> {
             points_each,
             points,
             more: None,
+            more_is_one: false,
             radii,
             poses,
             is_one: own != count,
@@ -178,6 +182,7 @@ impl<'py> Robots<'py> {
             points_each,
             points,
             more: None,
+            more_is_one: false,
             radii,
             poses,
             is_one: own != count,
@@ -185,23 +190,24 @@ impl<'py> Robots<'py> {
         })
     }
 
-    /// The same with as many points more, such as those at which a motion ends.
+    /// The same with as many points more, such as those at which a motion ends. Of a batch and one,
+    /// the one stands for all.
     pub(crate) fn with_as_many(
         mut self,
         name: &'static str,
         given: &Bound<'py, PyAny>,
         other: &str,
     ) -> PyResult<Self> {
-        let (more, ..) = points(given, name)?;
-        if more.shape() != self.points.shape() {
+        let (more, count, each) = points(given, name)?;
+        if each != self.points_each || broadcast(self.count, count).is_none() {
             let text = format!(
-                "`{name}` has the shape {}, and `{other}` has {}; give both the same shape",
+                "`{name}` has the shape {}, and `{other}` has {}; give both the same shape, or a batch and one",
                 shape_text(more.shape()),
                 shape_text(self.points.shape())
             );
             return Err(refuse(given.py(), text));
         }
-        (self.more, self.more_name) = (Some(more), name);
+        self.set_more(name, more, count);
         Ok(self)
     }
 
@@ -214,7 +220,7 @@ impl<'py> Robots<'py> {
     ) -> PyResult<Self> {
         let Some(given) = given else { return Ok(self) };
         let (tangents, count, each) = points(given, name)?;
-        let fits = if self.is_one { matches!(count, None | Some(1)) } else { count == self.count };
+        let fits = broadcast(self.count, count).is_some();
         if !fits || !(each == 2 || each == self.points_each) {
             let text = format!(
                 "`{name}` has the shape {} beside points of {}; give two directions for each robot, at its ends, or one for \
@@ -224,8 +230,16 @@ impl<'py> Robots<'py> {
             );
             return Err(refuse(given.py(), text));
         }
-        (self.more, self.more_name) = (Some(tangents), name);
+        self.set_more(name, tangents, count);
         Ok(self)
+    }
+
+    /// Keeps more points, of as many robots or of one.
+    fn set_more(&mut self, name: &'static str, more: Numbers<'py>, count: Option<usize>) {
+        let all = broadcast(self.count, count).unwrap_or(self.count);
+        self.is_one |= self.count != all;
+        self.count = all;
+        (self.more, self.more_name, self.more_is_one) = (Some(more), name, count != all);
     }
 
     /// These robots, each beside one of the others. Where there is one of either, it stands for as
@@ -247,6 +261,7 @@ impl<'py> Robots<'py> {
 
     fn stand_for(&mut self, count: Option<usize>) {
         self.is_one |= self.count != count;
+        self.more_is_one |= self.count != count;
         self.count = count;
         if let Some(others) = &mut self.others {
             others.stand_for(count);
@@ -282,18 +297,18 @@ impl<'py> Asked for Robots<'py> {
         }
         self.poses.check_unchanged(pose)?;
         (block.first, block.names) = (robots.start, self.names);
-        let copy_points = |from: &Numbers<'_>, to: &mut Vec<Vector>| {
-            let each = from.points().len() / if self.is_one { 1 } else { self.len().max(1) };
+        let copy_points = |from: &Numbers<'_>, is_one: bool, to: &mut Vec<Vector>| {
+            let each = from.points().len() / if is_one { 1 } else { self.len().max(1) };
             to.clear();
-            let range = if self.is_one { 0..each } else { each * robots.start..each * robots.end };
+            let range = if is_one { 0..each } else { each * robots.start..each * robots.end };
             to.extend(from.points()[range].iter().map(|&point| Vector::from_array(point)));
             each
         };
-        block.points_each = copy_points(&self.points, &mut block.points);
+        block.points_each = copy_points(&self.points, self.is_one, &mut block.points);
         (block.more_each, block.segments_each) = (0, self.segments_each());
         block.more.clear();
         if let Some(more) = &self.more {
-            block.more_each = copy_points(more, &mut block.more);
+            block.more_each = copy_points(more, self.more_is_one, &mut block.more);
         }
         block.radii.clear();
         match &self.radii {
@@ -311,6 +326,7 @@ impl<'py> Asked for Robots<'py> {
         }
         block.shared = Shared {
             points: self.is_one,
+            more: self.more_is_one,
             radii: !matches!(self.radii, Radii::Each(_)),
             pose: self.poses.is_one(),
         };
@@ -379,12 +395,12 @@ impl Block {
     pub(crate) fn robot(&self, place: usize) -> Given<'_> {
         let of = |each: usize| each * place..each * (place + 1);
         let segments = of(self.segments_each);
-        let of = |each: usize| if self.shared.points { 0..each } else { of(each) };
+        let of = |each: usize, is_one: bool| if is_one { 0..each } else { of(each) };
         Given {
             names: self.names,
             number: self.first + place,
-            points: &self.points[of(self.points_each)],
-            more: &self.more[of(self.more_each)],
+            points: &self.points[of(self.points_each, self.shared.points)],
+            more: &self.more[of(self.more_each, self.shared.more)],
             radii: if self.shared.radii { &self.radii } else { &self.radii[segments] },
             matrix: self.matrices.get(if self.shared.pose { 0 } else { place }),
             others: self.others.as_deref().map(|block| (block, place)),

@@ -4,9 +4,11 @@
 use crate::error::Refused;
 use crate::threads::DeviceKind;
 use mesh_files::Frame;
+use numpy::{PyArrayDescr, PyArrayDescrMethods};
 use parry_continuum::proximity::ProximityError;
 use pyo3::exceptions::{PyOverflowError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
+use pyo3::types::{PyBool, PyFloat, PyInt};
 
 /// A frame, as the parameter `frame` names it.
 #[derive(Clone, Copy, Debug)]
@@ -51,21 +53,39 @@ impl<'a, 'py> FromPyObject<'a, 'py> for DeviceName {
     }
 }
 
-/// Pairs of places in the list of robots.
+/// Pairs of places in the list of robots, each of two robots.
 pub(crate) fn places(given: &Bound<'_, PyAny>) -> PyResult<Vec<[usize; 2]>> {
-    given.extract::<Vec<[usize; 2]>>().map_err(|error| {
-        if error.is_instance_of::<PyOverflowError>(given.py()) {
-            PyTypeError::new_err(
-                "`nested` has a place that is negative or too large; places count from 0",
-            )
-        } else if is_of_value(given.py(), &error) {
-            PyTypeError::new_err(
-                "`nested` is no list of pairs of places; give pairs of whole numbers",
-            )
-        } else {
-            error
-        }
-    })
+    let py = given.py();
+    let is_bool = |pair: &Bound<'_, PyAny>| -> PyResult<bool> {
+        let mut places = pair.try_iter()?;
+        places.try_fold(false, |any, place| Ok(any || self::is_bool(&place?)?))
+    };
+    let places = given.extract::<Vec<[usize; 2]>>().and_then(|places| {
+        let pairs = given.try_iter()?;
+        let any_bool = pairs.map(|pair| is_bool(&pair?)).try_fold(false, |any, it| Ok(any || it?));
+        any_bool.map(|any_bool| (!any_bool).then_some(places))
+    });
+    let no_pairs = || {
+        PyTypeError::new_err("`nested` is no list of pairs of places; give pairs of whole numbers")
+    };
+    match places {
+        Ok(Some(places)) => match places.iter().position(|[one, other]| one == other) {
+            None => Ok(places),
+            Some(pair) => {
+                let text = format!(
+                    "`nested[{pair}]` names robot {} twice; give the places of two robots",
+                    places[pair][0]
+                );
+                Err(Refused::other("bad_type", text).raise(py, None))
+            }
+        },
+        Ok(None) => Err(no_pairs()),
+        Err(error) if error.is_instance_of::<PyOverflowError>(py) => Err(PyTypeError::new_err(
+            "`nested` has a place that is negative or too large; places count from 0",
+        )),
+        Err(error) if is_of_value(py, &error) => Err(no_pairs()),
+        Err(error) => Err(error),
+    }
 }
 
 /// Refuses a length, if there is one, that is negative or NaN.
@@ -93,21 +113,37 @@ fn refuse(given: &Bound<'_, PyAny>, name: &str, what: &str) -> PyErr {
 }
 
 /// Whether the error is about the value, and not one of the value's own code.
-fn is_of_value(py: Python<'_>, error: &PyErr) -> bool {
+pub(super) fn is_of_value(py: Python<'_>, error: &PyErr) -> bool {
     error.is_instance_of::<PyTypeError>(py)
         || error.is_instance_of::<PyOverflowError>(py)
         || error.is_instance_of::<PyValueError>(py)
 }
 
+/// Whether it is True or False, of Python or of numpy. Python takes them for numbers.
+pub(crate) fn is_bool(given: &Bound<'_, PyAny>) -> PyResult<bool> {
+    if given.is_instance_of::<PyBool>() {
+        return Ok(true);
+    }
+    if given.is_exact_instance_of::<PyFloat>() || given.is_exact_instance_of::<PyInt>() {
+        return Ok(false);
+    }
+    let Some(dtype) = given.getattr_opt("dtype")? else { return Ok(false) };
+    Ok(dtype.cast::<PyArrayDescr>().is_ok_and(|dtype| dtype.kind() == b'b'))
+}
+
 fn number(given: &Bound<'_, PyAny>, name: &str) -> PyResult<f64> {
+    if is_bool(given)? {
+        return Err(refuse(given, name, "a number"));
+    }
     given.extract::<f64>().map_err(|error| {
         if is_of_value(given.py(), &error) { refuse(given, name, "a number") } else { error }
     })
 }
 
 fn whole(given: &Bound<'_, PyAny>, name: &str, least: u32) -> PyResult<u32> {
+    let is_bool = is_bool(given)?;
     match given.extract::<u32>() {
-        Ok(number) if number >= least => Ok(number),
+        Ok(number) if number >= least && !is_bool => Ok(number),
         Err(error) if !is_of_value(given.py(), &error) => Err(error),
         _ => Err(refuse(given, name, &format!("a whole number from {least} to {}", u32::MAX))),
     }

@@ -2,7 +2,7 @@
 
 use super::{Motion, Moving, Recipe};
 use crate::error::Refused;
-use crate::input::{Block, Caps, Names, Robots};
+use crate::input::{Block, Caps, HasWarned, Names, Robots, stated_frame};
 use crate::threads::Asked;
 use parry_continuum::RobotError;
 use parry_continuum::parry::math::Vector;
@@ -31,8 +31,9 @@ pub(crate) fn maker(py: Python<'_>, caps: Caps) -> PyResult<Maker> {
 ///
 /// Parameters
 /// ----------
-/// start, end : (N, 3) or (B, N, 3) arrays of one shape
-///     The centreline at the times 0 and 1, in the mesh's frame, or in that of a moving base.
+/// start, end : (N, 3) or (B, N, 3) arrays
+///     With as many points each; of a batch and one, the one stands for all. The centreline at the
+///     times 0 and 1, in the mesh's frame, or in that of a moving base.
 /// radii : float, (N - 1,) or (B, N - 1) array
 ///     One radius for each segment.
 /// caps : {"fitted", "capsules"}
@@ -75,6 +76,9 @@ impl LinearMotion {
             let robot = block.robot(place);
             Ok(Moving::Linear(make(robot.points, robot.more, robot.radii)?))
         })?;
+        let frames = [stated_frame(start)?, stated_frame(end)?];
+        HasWarned::default().note_pair(py, ["start", "end"], frames)?;
+        let motion = motion.with_frame(frames[0].or(frames[1]));
         let caps = caps.name().into_bound_py_any(py)?;
         let recipe = Recipe::new(py, None, &[start, end, radii], &[("caps", Some(caps))])?;
         Ok(motion.with_recipe(recipe).into_class(Self))

@@ -26,6 +26,7 @@ pub(crate) use verify::verify_motion;
 use crate::error::Refused;
 use crate::input::broadcast;
 use crate::threads::{Asked, compute};
+use mesh_files::Frame;
 use pyo3::PyClass;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
@@ -47,6 +48,8 @@ pub(crate) struct Motion {
     count: Option<usize>,
     /// The arguments of the motion's class.
     recipe: Option<Recipe>,
+    /// The frame that its points state.
+    frame: Option<Frame>,
 }
 
 #[pymethods]
@@ -55,6 +58,16 @@ impl Motion {
     #[getter]
     fn count(&self) -> Option<usize> {
         self.count
+    }
+
+    /// The frame that its points state, "RAS" or "LPS", or None.
+    ///
+    /// Poses may lead into another frame: points that poses move count as stating a frame only if
+    /// one of the poses is the identity. A query warns if a motion and a mesh, or two motions, state
+    /// different frames.
+    #[getter]
+    fn frame(&self) -> Option<&'static str> {
+        self.frame.map(Frame::name)
     }
 
     fn __copy__(slf: Bound<'_, Self>) -> Bound<'_, Self> {
@@ -108,7 +121,7 @@ impl Motion {
             }
             py.check_signals()?;
         }
-        Ok(Self { motions: Arc::new(motions), size: Size::ONE, count, recipe: None })
+        Ok(Self { motions: Arc::new(motions), size: Size::ONE, count, recipe: None, frame: None })
     }
 
     /// The same, made of others.
@@ -119,6 +132,16 @@ impl Motion {
     /// The same, with the arguments of its class.
     fn with_recipe(self, recipe: Recipe) -> Self {
         Self { recipe: Some(recipe), ..self }
+    }
+
+    /// The same, whose points state a frame.
+    fn with_frame(self, frame: Option<Frame>) -> Self {
+        Self { frame, ..self }
+    }
+
+    /// The frame that its points state.
+    pub(crate) fn stated_frame(&self) -> Option<Frame> {
+        self.frame
     }
 
     /// An object of a class of motions.

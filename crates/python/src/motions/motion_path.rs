@@ -1,6 +1,7 @@
 //! Motions one after another.
 
 use super::{Motion, Moving, Recipe, Size, at, together};
+use crate::input::object_of;
 use pyo3::prelude::*;
 use pyo3::types::PyList;
 
@@ -39,7 +40,10 @@ pub(crate) struct MotionPath;
 #[pymethods]
 impl MotionPath {
     #[new]
-    fn new(py: Python<'_>, motions: Vec<Bound<'_, Motion>>) -> PyResult<PyClassInitializer<Self>> {
+    fn new(
+        py: Python<'_>,
+        #[pyo3(from_py_with = object_of::motions)] motions: Vec<Bound<'_, Motion>>,
+    ) -> PyResult<PyClassInitializer<Self>> {
         let parts: Vec<_> = motions.iter().map(|motion| motion.get().parts()).collect();
         let count = together(py, parts.iter().map(|(count, _)| ("motions", *count)))?;
         let size = Size::of(py, motions.iter().map(|motion| motion.get().size))?;
@@ -47,6 +51,8 @@ impl MotionPath {
             let legs = parts.iter().map(|(_, motions)| at(motions, place).clone());
             Ok(Moving::Path(parry_continuum::MotionPath::new(legs.collect())?))
         })?;
+        let frame = motions.iter().find_map(|motion| motion.get().stated_frame());
+        let motion = motion.with_frame(frame);
         let given = PyList::new(py, &motions)?;
         let recipe = Recipe::new(py, None, &[given.as_any()], &[])?;
         Ok(motion.of(size).with_recipe(recipe).into_class(Self))

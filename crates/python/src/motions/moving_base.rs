@@ -2,6 +2,7 @@
 
 use super::way::Way;
 use super::{Motion, Moving, Recipe, Size, at};
+use crate::input::object_of;
 use pyo3::prelude::*;
 
 /// A motion whose base is moved at the same time, evenly from one pose to another: a robot that is
@@ -45,7 +46,7 @@ impl MovingBase {
     #[new]
     fn new(
         py: Python<'_>,
-        motion: &Bound<'_, Motion>,
+        #[pyo3(from_py_with = object_of::motion)] motion: Bound<'_, Motion>,
         start_pose: &Bound<'_, PyAny>,
         end_pose: &Bound<'_, PyAny>,
     ) -> PyResult<PyClassInitializer<Self>> {
@@ -58,6 +59,7 @@ impl MovingBase {
             let moved = parry_continuum::MovingBase::new(motion, way.poses(place)?)?;
             Ok(Moving::OnBase(Box::new(moved)))
         })?;
+        let moved = moved.with_frame(way.frame(motion.get().stated_frame()));
         let given = [motion.as_any(), start_pose, end_pose];
         let recipe = Recipe::new(py, None, &given, &[])?;
         Ok(moved.of(size).with_recipe(recipe).into_class(Self))

@@ -3,7 +3,7 @@
 use super::way::Way;
 use super::{Motion, Moving, Recipe, place_in};
 use crate::error::Refused;
-use crate::input::{Block, Caps, Given, Names, Robots, of};
+use crate::input::{Block, Caps, Given, Names, Robots, of, stated_frame};
 use crate::queries::clearance::{Stated, tube, tubes};
 use crate::queries::distance::set_chain;
 use crate::threads::Asked;
@@ -59,9 +59,11 @@ impl RigidMotion {
         caps: Caps,
     ) -> PyResult<PyClassInitializer<Self>> {
         let robots = Robots::new(Names::one("points"), points, radii, None)?;
-        let motion = rigid(points.py(), &robots, &Way::new(start_pose, end_pose)?, |robot| {
+        let way = Way::new(start_pose, end_pose)?;
+        let motion = rigid(points.py(), &robots, &way, |robot| {
             Ok(Tube::from(set_chain(&mut None, robot, caps)?))
         })?;
+        let motion = motion.with_frame(way.frame(stated_frame(points)?));
         let py = points.py();
         let caps = caps.name().into_bound_py_any(py)?;
         let given = [points, radii, start_pose, end_pose];
@@ -102,6 +104,7 @@ impl RigidMotion {
         )?;
         let way = Way::new(start_pose, end_pose)?;
         let motion = rigid(points.py(), &robots, &way, |robot| tube(robot, stated))?;
+        let motion = motion.with_frame(way.frame(stated_frame(points)?));
         let py = points.py();
         let more = [
             ("tangents", tangents.cloned()),

@@ -2,7 +2,7 @@
 
 use super::Motion;
 use crate::error::Refused;
-use crate::input::of;
+use crate::input::{object_of, of};
 use crate::threads::compute;
 use pyo3::prelude::*;
 
@@ -34,7 +34,7 @@ use pyo3::prelude::*;
 #[pyfunction]
 pub(crate) fn verify_motion(
     py: Python<'_>,
-    motion: &Bound<'_, Motion>,
+    #[pyo3(from_py_with = object_of::motion)] motion: Bound<'_, Motion>,
     #[pyo3(from_py_with = of::steps)] steps: u32,
 ) -> PyResult<()> {
     let (count, motions) = motion.get().parts();

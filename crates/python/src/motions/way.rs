@@ -3,6 +3,7 @@
 use super::{place_in, together};
 use crate::error::Refused;
 use crate::input::{Poses, pose_of};
+use mesh_files::Frame;
 use parry_continuum::parry::math::Pose;
 use pyo3::prelude::*;
 
@@ -36,6 +37,14 @@ impl Way {
     ) -> PyResult<Option<usize>> {
         let [start, end] = self.counts;
         together(py, [(robots, count), (NAMES[0], start), (NAMES[1], end)])
+    }
+
+    /// The frame that points state in the frame of a base which the poses move. Other poses than the
+    /// identity may lead into another frame.
+    pub(super) fn frame(&self, stated: Option<Frame>) -> Option<Frame> {
+        const IDENTITY: [f64; 16] =
+            [1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1.];
+        stated.filter(|_| self.ends.iter().flatten().any(|matrix| *matrix == IDENTITY))
     }
 
     /// The two poses at a place of the batch.

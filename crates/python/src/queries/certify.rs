@@ -6,8 +6,9 @@ use crate::input::{Caps, Given, Numbers, Robots, shape_text, vectors};
 use crate::mesh::Mesh;
 use crate::output::array;
 use crate::threads::{Asked, Session, ask_each};
-use parry_continuum::parry::math::Vector;
-use parry_continuum::proximity::{Certificate, LinkProximity, Proximity, ProximityError};
+use parry_continuum::parry::math::{Pose, Vector};
+use parry_continuum::proximity::{Certificate, LinkProximity, Proximity, Witness};
+use parry_continuum::{Chain, ModifiedCylinder};
 use pyo3::prelude::*;
 
 /// The fields of a `PerLink` answer, a row for each segment of each robot.
@@ -35,6 +36,30 @@ impl Answers {
         })
     }
 
+    /// Refuses an answer about a row whose segment has no length and so is no link, and one that is
+    /// missing where the segment is a link.
+    fn check_row(&self, row: usize, segment: usize, is_link: bool) -> Result<(), Refused> {
+        let points = [self.on_robot[row], self.on_mesh[row]];
+        let numbers = [self.distance[row], self.arc_length[row]];
+        let (triangle, is_named) = (self.triangle[row], self.triangle[row] >= 0.0);
+        let text = if is_link && !is_named {
+            format!(
+                "`answer.triangle` is {triangle} for segment {segment}, which has a length; give what `per_link` returned"
+            )
+        } else if !is_link
+            && (is_named
+                || numbers.into_iter().chain(points.map(Vector::length)).any(|it| !it.is_nan()))
+        {
+            format!(
+                "`answer` has numbers for segment {segment}, which has no length; give what `per_link` returned: NaN, and the \
+                 triangle -1"
+            )
+        } else {
+            return Ok(());
+        };
+        Err(Refused::other("answer_does_not_fit", text))
+    }
+
     /// Writes the fields of one row into an answer of the library's.
     fn write(&self, row: usize, found: &mut LinkProximity) {
         found.distance = self.distance[row];
@@ -43,6 +68,34 @@ impl Answers {
         found.witness.arc_length = self.arc_length[row];
         found.witness.triangle = self.triangle[row] as u32;
     }
+}
+
+/// Refuses an arc length that is not that of the place on a link's axis which is closest to the
+/// other point of the answer.
+pub(crate) fn check_arc_length(
+    (chain, pose, link): (&Chain, &Pose, u32),
+    other: Vector,
+    given: f64,
+    field: &str,
+) -> Result<(), Refused> {
+    let (before, along) = chain.links().split_at(link as usize);
+    let Some(axis) = along.first().map(|link| link.transformed(pose)) else { return Ok(()) };
+    let (direction, offset) = (axis.end() - axis.start(), other - axis.start());
+    let share = (offset.dot(direction) / direction.length_squared()).clamp(0.0, 1.0);
+    let length = |link: &ModifiedCylinder| (link.end() - link.start()).length();
+    let before = before.iter().map(length).sum::<f64>();
+    let expected = before + share * direction.length();
+    // Rounding: each link adds one to the sum, and the points are rounded to the mesh's frame.
+    let size = expected + direction.length() + other.abs().max_element();
+    let limit = (chain.links().len() + 64) as f64 * f64::EPSILON * size;
+    if (given - expected).abs() <= limit {
+        return Ok(());
+    }
+    let text = format!(
+        "`answer.{field}` is {given:?} for link {link}, where the place is at {expected:?}; ask again where robot or pose have \
+         changed"
+    );
+    Err(Refused::other("answer_does_not_fit", text))
 }
 
 /// A field of an answer that `function` returned, and the place of the field's shape in `shapes`.
@@ -79,8 +132,8 @@ impl Mesh {
     /// Each bounds the distance between a segment's link and the triangle that the answer names, of
     /// the mesh as it is now. The bounds are computed in twice the digits, without trust in the
     /// code that answered: ``lower <= answer.distance <= upper`` up to the last bits of the
-    /// distance. The answer's distances and points are checked first: an answer for other points,
-    /// another radius, pose or mesh is an error.
+    /// distance. The answer's distances, points and arc lengths are checked first: an answer for
+    /// other points, another radius, pose or mesh is an error.
     ///
     /// Parameters
     /// ----------
@@ -98,7 +151,8 @@ impl Mesh {
     /// ------
     /// ContinuumError
     ///     The answer does not fit robot, pose and mesh: a point is not where it says, the distance
-    ///     is another, or the shapes differ. Or as for `distance`.
+    ///     or the arc length is another, a segment without length has numbers, or the shapes differ.
+    ///     Or as for `distance`.
     ///
     /// Examples
     /// --------
@@ -127,18 +181,21 @@ impl Mesh {
             let chain = set_chain(&mut session.chain, robot, caps)?;
             let pose = robot.pose()?;
             let first = segments * robot.number;
-            let named = (first..first + segments).filter(|&row| given.triangle[row] >= 0.0).count();
-            let links = chain.links().len();
-            if named != links {
-                return Err(ProximityError::NoSuchLink { link: named, links }.into());
-            }
             // Takes an answer of the library's own, and overwrites its fields with the given ones.
             session.search.per_link(chain, &pose, &mut session.links)?;
+            let mut links = session.links.iter().map(|it| it.witness.segment as usize).peekable();
+            for segment in 0..segments {
+                let is_link = links.next_if_eq(&segment).is_some();
+                given.check_row(first + segment, segment, is_link)?;
+            }
             for found in &mut session.links {
                 let segment = found.witness.segment as usize;
                 given.write(first + segment, found);
                 // The same check as that of `LinkProximity::certify`.
                 session.search.contact_of(chain, &pose, found)?;
+                let Witness { on_mesh, arc_length, .. } = found.witness;
+                let place = (chain, &pose, found.link);
+                check_arc_length(place, on_mesh, arc_length, "arc_length")?;
                 let corners = session.search.triangles()[found.witness.triangle as usize]
                     .map(|corner| session.search.vertices()[corner as usize]);
                 let proof =

@@ -85,7 +85,7 @@ impl Mesh {
     ///     One radius for each segment between two points.
     /// pose : (4, 4) or (B, 4, 4) array, optional
     ///     From the robot's frame to the mesh's: a rotation, a shift in the last column, and
-    ///     0 0 0 1. Or scipy's `RigidTransform` or `Rotation`.
+    ///     0 0 0 1. Or scipy's `RigidTransform` or `Rotation`, or a list of them.
     /// caps : {"fitted", "capsules", "cylinders"}
     ///     How links end: flat at the robot's ends and at steps in radius, and round at bends; all
     ///     round; or all flat.

@@ -1,8 +1,8 @@
 //! What looks like a mistake, though an answer exists: a robot in another frame or unit than the
 //! mesh, or a radius in another unit.
 
-use crate::input::{Block, Given};
-use crate::mesh::{Mesh, frames_text};
+use crate::input::{Block, Given, mesh_text};
+use crate::mesh::Mesh;
 use crate::threads::{Asked, alone, compute};
 use mesh_files::{Bounds, Change, Frame, RadiusDoubt, misfits, radius_doubt};
 use parry_continuum::proximity::Proximity;
@@ -38,7 +38,7 @@ fn doubts(
             format!("{doubt}: `radii * {}` would be usual", scale * factor)
         },
     );
-    let frames = frames.into_iter().map(|frames| frames_text("points", frames));
+    let frames = frames.into_iter().map(|frames| mesh_text("points", false, frames));
     frames.chain(misfits.with_remedy(words)).chain(radius).collect()
 }
 

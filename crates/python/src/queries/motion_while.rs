@@ -2,8 +2,8 @@
 
 use super::motion_answer::motion_answer;
 use super::way::{Arguments, Question};
-use crate::input::{Caps, of, vectors};
-use crate::mesh::{Mesh, rows};
+use crate::input::{Caps, of};
+use crate::mesh::Mesh;
 use crate::threads::Session;
 use parry_continuum::Motion;
 use parry_continuum::parry::math::Vector;
@@ -83,7 +83,7 @@ impl Mesh {
         caps: Option<Caps>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let way = self.way(&Arguments { start, end, radii, caps })?;
-        let question = While { to: vectors(rows(to, "to")?.points()), margin, resolution };
+        let question = While { to: self.moved_vertices(to, "to")?, margin, resolution };
         motion_answer(py, way.count(), &way.ask(py, &self.engine(py), &question)?)
     }
 }

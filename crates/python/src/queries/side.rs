@@ -22,9 +22,8 @@ impl Mesh {
     /// Returns
     /// -------
     /// Side or Sides
-    ///     The side of one point, or an array of int8 of the shape of `points` without its last
-    ///     axis: -1 inside, 1 outside, 0 undecided. Neither has a truth value: compare with
-    ///     ``Side.INSIDE``.
+    ///     The side of one point, or an array of `Side` of the shape of `points` without its last
+    ///     axis. Neither has a truth value: ask for ``is_inside`` or ``is_outside``.
     ///
     /// Raises
     /// ------
@@ -33,13 +32,13 @@ impl Mesh {
     ///
     /// Examples
     /// --------
-    /// >>> from parry_continuum import Mesh, Side
+    /// >>> from parry_continuum import Mesh
     /// >>> corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
     /// >>> tetrahedron = Mesh(corners, [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
-    /// >>> tetrahedron.side([0.1, 0.1, 0.1]) is Side.INSIDE
+    /// >>> tetrahedron.side([0.1, 0.1, 0.1]).is_inside
     /// True
     /// >>> tetrahedron.side([[0.1, 0.1, 0.1], [2, 2, 2], [0, 0, 0]])
-    /// Sides([-1,  1,  0], dtype=int8)
+    /// Sides([INSIDE, OUTSIDE, UNDECIDED])
     fn side<'py>(
         &self,
         py: Python<'py>,

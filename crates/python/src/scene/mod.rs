@@ -9,12 +9,14 @@ mod tubes;
 
 use crate::error::Refused;
 use crate::input::{
-    Caps, Given, Robots, check_length, matrices, of, places, pose_if_one, shape_text,
+    Caps, Given, HasWarned, Robots, check_length, matrices, object_of, of, places, pose_if_one,
+    shape_text, stated_frame,
 };
 use crate::mesh::Mesh;
 use crate::output::{array, array_or_number};
 use crate::threads::{self, Asked, Engine, Held, Lender, ask_each};
 use answers::{NOTHING, Row, contacts, per_structure, tightest};
+use mesh_files::Frame;
 use parry_continuum::Chain;
 use parry_continuum::parry::math::Pose;
 use parry_continuum::proximity::{self, SceneContact, StructureProximity};
@@ -39,13 +41,13 @@ use std::sync::Arc;
 ///     and `clears_motion` test it.
 /// nested : sequence of (int, int), optional
 ///     Pairs of robots where one is inside the other, as a tube in the tube that guides it. Such
-///     robots touch, and the scene does not compare them with one another. The numbers are places
-///     in the list of robots.
+///     robots touch, and the scene does not compare them with one another. The numbers are the
+///     places of two robots in the list of robots.
 ///
 /// Raises
 /// ------
 /// ContinuumError
-///     The margin is negative or NaN.
+///     The margin is negative or NaN, or a robot is nested in itself.
 ///
 /// Examples
 /// --------
@@ -63,6 +65,8 @@ pub(crate) struct Scene {
     robot_margin: Option<f64>,
     self_margin: Option<f64>,
     nested: Vec<[usize; 2]>,
+    /// Whether it has warned of robots in different frames.
+    has_warned: HasWarned,
 }
 
 #[derive(Clone)]
@@ -132,16 +136,38 @@ impl Scene {
     /// pose state another frame.
     fn robots<'py>(&self, py: Python<'py>, given: Vec<Bound<'py, PyAny>>) -> PyResult<Robots<'py>> {
         let made = robots::robots(py, &given)?;
-        let meshes: Vec<_> = self.structures.with(py, |structures| {
+        let points: Vec<_> = given.iter().map(robots::points_without_pose).collect();
+        for points in points.iter().flatten() {
+            self.note_frame(py, "points", points)?;
+        }
+        let frame =
+            |points: &Option<Bound<'py, PyAny>>| points.as_ref().map_or(Ok(None), stated_frame);
+        let frames = points.iter().map(frame).collect::<PyResult<Vec<_>>>()?;
+        self.note_frames(py, "robots", &frames)?;
+        Ok(made)
+    }
+
+    /// Warns once if robots of a list, or motions, state different frames.
+    fn note_frames(&self, py: Python<'_>, list: &str, frames: &[Option<Frame>]) -> PyResult<()> {
+        let Some(first) = frames.iter().position(Option::is_some) else { return Ok(()) };
+        for (place, frame) in frames.iter().enumerate().skip(first + 1) {
+            let names = [format!("{list}[{first}]"), format!("{list}[{place}]")];
+            let names = [names[0].as_str(), names[1].as_str()];
+            self.has_warned.note_pair(py, names, [frames[first], *frame])?;
+        }
+        Ok(())
+    }
+
+    /// A mesh in the scene's own frame warns once if points or a motion state another frame.
+    fn note_frame(&self, py: Python<'_>, name: &str, given: &Bound<'_, PyAny>) -> PyResult<()> {
+        if stated_frame(given)?.is_none() {
+            return Ok(());
+        }
+        let meshes: Vec<Arc<Py<Mesh>>> = self.structures.with(py, |structures| {
             let in_place = structures.iter().filter(|it| it.matrix.is_none());
             in_place.map(|it| Arc::clone(&it.mesh)).collect()
         });
-        for points in given.iter().filter_map(robots::points_without_pose) {
-            for mesh in &meshes {
-                mesh.get().note_frame("points", &points)?;
-            }
-        }
-        Ok(made)
+        meshes.iter().try_for_each(|mesh| mesh.get().note_frame(name, given))
     }
 
     fn snapshot(&self, py: Python<'_>) -> Snapshot {
@@ -170,7 +196,13 @@ impl Scene {
     ) -> PyResult<Self> {
         check_length(py, "robot_margin", robot_margin)?;
         check_length(py, "self_margin", self_margin)?;
-        Ok(Self { structures: Held::new(Vec::new()), robot_margin, self_margin, nested })
+        Ok(Self {
+            structures: Held::new(Vec::new()),
+            robot_margin,
+            self_margin,
+            nested,
+            has_warned: HasWarned::default(),
+        })
     }
 
     /// Adds a structure, and returns its number: structures count from 0.
@@ -194,8 +226,8 @@ impl Scene {
     fn add(
         &self,
         py: Python<'_>,
-        name: String,
-        mesh: Py<Mesh>,
+        #[pyo3(from_py_with = object_of::name)] name: String,
+        #[pyo3(from_py_with = object_of::mesh)] mesh: Py<Mesh>,
         #[pyo3(from_py_with = of::optional::margin)] margin: Option<f64>,
         pose: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<usize> {
@@ -229,6 +261,7 @@ impl Scene {
             robot_margin: self.robot_margin,
             self_margin: self.self_margin,
             nested: self.nested.clone(),
+            has_warned: HasWarned::default(),
         }
     }
 
@@ -289,7 +322,7 @@ impl Scene {
     fn clears<'py>(
         &self,
         py: Python<'py>,
-        robots: Vec<Bound<'py, PyAny>>,
+        #[pyo3(from_py_with = object_of::robots)] robots: Vec<Bound<'py, PyAny>>,
         caps: Caps,
     ) -> PyResult<Bound<'py, PyAny>> {
         let robots = self.robots(py, robots)?;
@@ -325,7 +358,7 @@ impl Scene {
     fn tightest<'py>(
         &self,
         py: Python<'py>,
-        robots: Vec<Bound<'py, PyAny>>,
+        #[pyo3(from_py_with = object_of::robots)] robots: Vec<Bound<'py, PyAny>>,
         caps: Caps,
     ) -> PyResult<Bound<'py, PyAny>> {
         let robots = self.robots(py, robots)?;
@@ -361,7 +394,7 @@ impl Scene {
     fn per_structure<'py>(
         &self,
         py: Python<'py>,
-        robots: Vec<Bound<'py, PyAny>>,
+        #[pyo3(from_py_with = object_of::robots)] robots: Vec<Bound<'py, PyAny>>,
         caps: Caps,
     ) -> PyResult<Bound<'py, PyAny>> {
         let (robots, snapshot) = (self.robots(py, robots)?, self.snapshot(py));
@@ -407,7 +440,7 @@ impl Scene {
     fn contacts_within<'py>(
         &self,
         py: Python<'py>,
-        robots: Vec<Bound<'py, PyAny>>,
+        #[pyo3(from_py_with = object_of::robots)] robots: Vec<Bound<'py, PyAny>>,
         #[pyo3(from_py_with = of::reach)] reach: f64,
         #[pyo3(from_py_with = of::prominence)] prominence: f64,
         caps: Caps,

@@ -4,7 +4,7 @@ use super::bounds::{Bounds, bounds};
 use super::place::{Place, place_fields};
 use super::{Scene, Session};
 use crate::error::Refused;
-use crate::input::{check_length, matrices, of, pose_if_one, vectors};
+use crate::input::{check_length, is_bool, matrices, object_of, of, pose_if_one, vectors};
 use crate::mesh::rows;
 use crate::motions::{Motion, MotionList, Moving};
 use crate::output::{
@@ -25,6 +25,17 @@ enum End {
 }
 
 impl Scene {
+    /// The motions of a question, with the warning of their frames.
+    fn motions(&self, py: Python<'_>, given: &[Bound<'_, Motion>]) -> PyResult<MotionList> {
+        let made = MotionList::new(py, given)?;
+        for (place, motion) in given.iter().enumerate() {
+            self.note_frame(py, &format!("motions[{place}]"), motion.as_any())?;
+        }
+        let frames: Vec<_> = given.iter().map(|motion| motion.get().stated_frame()).collect();
+        self.note_frames(py, "motions", &frames)?;
+        Ok(made)
+    }
+
     /// Asks about each set of motions. One that is refused does not fail its batch.
     fn decide<'py>(
         &self,
@@ -32,9 +43,10 @@ impl Scene {
         motions: &[Bound<'py, Motion>],
         ask: impl Fn(&mut proximity::Scene, &[&Moving]) -> Result<SceneMotionAnswer, SceneError> + Sync,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let motions = MotionList::new(py, motions)?;
-        let ask =
-            |session: &mut Session, motions: &Vec<&Moving>| Ok(ask(&mut session.scene, motions)?);
+        let motions = self.motions(py, motions)?;
+        let ask = |session: &mut Session, motions: &Vec<&Moving>| {
+            ask(&mut session.scene, motions).map_err(of_motions)
+        };
         let all = answer_each_or_kind(py, &self.snapshot(py), &motions, ask)?;
         motion_answers(py, &motions, &all)
     }
@@ -93,7 +105,7 @@ impl Scene {
     fn clears_motion<'py>(
         &self,
         py: Python<'py>,
-        motions: Vec<Bound<'py, Motion>>,
+        #[pyo3(from_py_with = object_of::motions)] motions: Vec<Bound<'py, Motion>>,
         #[pyo3(from_py_with = of::resolution)] resolution: f64,
     ) -> PyResult<Bound<'py, PyAny>> {
         check_length(py, "resolution", resolution)?;
@@ -122,7 +134,7 @@ impl Scene {
     fn time_of_contact<'py>(
         &self,
         py: Python<'py>,
-        motions: Vec<Bound<'py, Motion>>,
+        #[pyo3(from_py_with = object_of::motions)] motions: Vec<Bound<'py, Motion>>,
         #[pyo3(from_py_with = of::resolution)] resolution: f64,
     ) -> PyResult<Bound<'py, PyAny>> {
         check_length(py, "resolution", resolution)?;
@@ -174,8 +186,8 @@ impl Scene {
     fn clears_motion_while<'py>(
         &self,
         py: Python<'py>,
-        ends: &Bound<'py, PyDict>,
-        motions: Vec<Bound<'py, Motion>>,
+        #[pyo3(from_py_with = object_of::ends)] ends: Bound<'py, PyDict>,
+        #[pyo3(from_py_with = object_of::motions)] motions: Vec<Bound<'py, Motion>>,
         #[pyo3(from_py_with = of::resolution)] resolution: f64,
     ) -> PyResult<Bound<'py, PyAny>> {
         check_length(py, "resolution", resolution)?;
@@ -234,13 +246,14 @@ impl Scene {
     fn clearance_of_motion<'py>(
         &self,
         py: Python<'py>,
-        motions: Vec<Bound<'py, Motion>>,
+        #[pyo3(from_py_with = object_of::motions)] motions: Vec<Bound<'py, Motion>>,
         #[pyo3(from_py_with = of::tolerance)] tolerance: f64,
     ) -> PyResult<Bound<'py, PyAny>> {
         check_length(py, "tolerance", tolerance)?;
-        let motions = MotionList::new(py, &motions)?;
+        let motions = self.motions(py, &motions)?;
         let ask = |session: &mut Session, motions: &Vec<&Moving>| {
-            let found = session.scene.clearance_of_motion(motions, tolerance)?;
+            let found = session.scene.clearance_of_motion(motions, tolerance);
+            let found = found.map_err(of_motions)?;
             Ok(found.map_or(Bounds::WITHOUT_MARGIN, Bounds::of_motion))
         };
         let all = answer_each_or_kind(py, &self.snapshot(py), &motions, ask)?;
@@ -252,7 +265,8 @@ impl Scene {
     /// The end of a structure: a pose, or the vertices of its mesh.
     fn end(&self, number: &Bound<'_, PyAny>, end: &Bound<'_, PyAny>) -> PyResult<(usize, End)> {
         let py = number.py();
-        let Ok(structure) = number.extract::<usize>() else {
+        let structure = if is_bool(number)? { None } else { number.extract::<usize>().ok() };
+        let Some(structure) = structure else {
             let text = format!(
                 "`ends` has the key {}; give the numbers that `add` returned",
                 number.repr()?
@@ -266,6 +280,11 @@ impl Scene {
         };
         Ok((structure, end))
     }
+}
+
+/// The error of a query whose robots are the entries of `motions`.
+fn of_motions(error: SceneError) -> Refused {
+    Refused::of_scene(error, "motions")
 }
 
 fn place_of(contact: &SceneMotionContact) -> Place {

@@ -3,7 +3,7 @@
 use super::bounds::{Bounds, bounds};
 use super::{Scene, Session};
 use crate::error::Refused;
-use crate::input::{Given, check_length, of};
+use crate::input::{Given, check_length, object_of, of};
 use crate::output::{Enumeration, decision_value, members};
 use crate::queries::clearance::{Stated, tube};
 use crate::threads::{Asked, answer_each, answer_each_or_kind};
@@ -39,8 +39,7 @@ impl Scene {
     /// Returns
     /// -------
     /// Decision or Decisions
-    ///     1 clear, -1 contact, both proven, and 0 undecided. A batch returns an array of int8,
-    ///     (B,).
+    ///     Clear, contact, both proven, or undecided. A batch returns an array of `Decision`, (B,).
     ///
     /// Raises
     /// ------
@@ -51,7 +50,7 @@ impl Scene {
     fn clears_tube<'py>(
         &self,
         py: Python<'py>,
-        robots: Vec<Bound<'py, PyAny>>,
+        #[pyo3(from_py_with = object_of::robots)] robots: Vec<Bound<'py, PyAny>>,
         #[pyo3(from_py_with = of::resolution)] resolution: f64,
     ) -> PyResult<Bound<'py, PyAny>> {
         check_length(py, "resolution", resolution)?;
@@ -103,7 +102,7 @@ impl Scene {
     fn clearance<'py>(
         &self,
         py: Python<'py>,
-        robots: Vec<Bound<'py, PyAny>>,
+        #[pyo3(from_py_with = object_of::robots)] robots: Vec<Bound<'py, PyAny>>,
         #[pyo3(from_py_with = of::tolerance)] tolerance: f64,
     ) -> PyResult<Bound<'py, PyAny>> {
         check_length(py, "tolerance", tolerance)?;

@@ -1,15 +1,15 @@
 //! Proofs of answers about two robots.
 
 use super::answers::segment_of;
-use super::{Placed, RobotPair, Session, pairs};
+use super::{Placed, RobotPair, Session};
 use crate::error::Refused;
 use crate::input::{Caps, Given, vectors};
 use crate::output::{answer, array_or_number};
-use crate::queries::certify::answer_field;
+use crate::queries::certify::{answer_field, check_arc_length};
 use crate::threads::{Asked, ask_each};
 use parry_continuum::Chain;
 use parry_continuum::parry::math::Vector;
-use parry_continuum::proximity::{Certificate, ProximityError};
+use parry_continuum::proximity::Certificate;
 use pyo3::prelude::*;
 
 #[pymethods]
@@ -18,8 +18,8 @@ impl RobotPair {
     ///
     /// Each bounds the distance between the two segments that the answer names, as `Mesh.certify`
     /// does for a segment and a triangle: ``lower <= answer.distance <= upper`` up to the last bits
-    /// of the distance. The answer's distances and points are checked first: an answer for other
-    /// points, another radius or pose is an error.
+    /// of the distance. The answer's distances, points and arc lengths are checked first: an answer
+    /// for other points, another radius or pose is an error.
     ///
     /// Parameters
     /// ----------
@@ -37,8 +37,9 @@ impl RobotPair {
     /// Raises
     /// ------
     /// ContinuumError
-    ///     The answer does not fit robots and poses: a point is not where it says, the distance is
-    ///     another, or the shapes differ. Or as for `minimum`.
+    ///     The answer does not fit robots and poses: a point is not where it says, the distance or
+    ///     an arc length is another, it names no pair of links, or the shapes differ. Or as for
+    ///     `minimum`.
     ///
     /// Examples
     /// --------
@@ -61,7 +62,7 @@ impl RobotPair {
         pose_b: Option<&Bound<'py, PyAny>>,
         caps: Caps,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let robots = pairs([points_a, radii_a, points_b, radii_b], [pose_a, pose_b])?;
+        let robots = self.robots([points_a, radii_a, points_b, radii_b], [pose_a, pose_b])?;
         // One row a pair of robots, or one for each segment of the first.
         let each = robots.segments_each();
         let fields = |name: &str, last: &[usize]| {
@@ -89,18 +90,28 @@ impl RobotPair {
             for (row, bounds) in found.iter_mut().enumerate().take(rows) {
                 let row = robot.number * rows + row;
                 let at = 2 * row;
-                // Of a segment without length there is nothing to prove.
-                if named[at..at + 2].iter().all(|&segment| segment < 0.0) {
+                if named[at..at + 2] == [-1.0; 2] {
+                    // Of a segment of the first robot without length there is nothing to prove.
+                    let place = robot.number * rows;
+                    let is_link = kind == 0 || links[0].contains(&((row - place) as i64));
+                    check_nothing(is_link, distances[row], row - place)?;
                     continue;
                 }
-                answer.links =
-                    [link_of(a, &links[0], named[at])?, link_of(b, &links[1], named[at + 1])?];
+                answer.links = [
+                    link_of(&links[0], named[at], "points_a")?,
+                    link_of(&links[1], named[at + 1], "points_b")?,
+                ];
                 answer.distance = distances[row];
                 (answer.witness.on_first, answer.witness.on_second) =
                     (on_first[row], on_second[row]);
                 answer.witness.arc_lengths = [lengths[at], lengths[at + 1]];
                 let Certificate { lower, upper, .. } =
                     answer.certify(a, &poses[0], b, &poses[1])?;
+                let others = [on_second[row], on_first[row]];
+                for (k, chain) in [a, b].into_iter().enumerate() {
+                    let place = (chain, &poses[k], answer.links[k]);
+                    check_arc_length(place, others[k], lengths[at + k], "arc_lengths")?;
+                }
                 *bounds = [lower, upper];
             }
             Ok(())
@@ -114,17 +125,35 @@ impl RobotPair {
     }
 }
 
+/// Refuses a row that names no segments, except for a segment without length, whose distance is NaN.
+fn check_nothing(is_link: bool, distance: f64, row: usize) -> Result<(), Refused> {
+    let text = if is_link {
+        format!(
+            "`answer.segments` is -1 and -1 in row {row}, so it names no pair of links; there is nothing to certify"
+        )
+    } else if !distance.is_nan() {
+        format!(
+            "`answer.distance` is {distance:?} for segment {row}, which has no length; give what `per_link` returned: NaN"
+        )
+    } else {
+        return Ok(());
+    };
+    Err(Refused::other("answer_does_not_fit", text))
+}
+
 /// The segments that a robot's links are.
 fn in_order(chain: &Chain, points: &[Vector]) -> Vec<i64> {
     (0..chain.links().len()).map(|link| segment_of(chain, points, link)).collect()
 }
 
 /// The number of the link that a segment is.
-fn link_of(chain: &Chain, segments: &[i64], segment: f64) -> Result<u32, ProximityError> {
+fn link_of(segments: &[i64], segment: f64, points: &str) -> Result<u32, Refused> {
     // Positions of segments are whole numbers far below 2^53.
     let link = segments.iter().position(|&other| other as f64 == segment);
-    link.map(|link| link as u32).ok_or(ProximityError::NoSuchLink {
-        link: segment.max(0.0) as usize,
-        links: chain.links().len(),
+    link.map(|link| link as u32).ok_or_else(|| {
+        let text = format!(
+            "`answer.segments` names the segment {segment} of `{points}`, which is no link; give the robots that were asked about"
+        );
+        Refused::other("no_such_link", text)
     })
 }

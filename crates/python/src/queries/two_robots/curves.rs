@@ -195,6 +195,7 @@ impl RobotPair {
                 Stated { deviation: deviation_b, turn: turn_b },
             ],
         };
+        self.note_frames(given.points, given.poses)?;
         self.0.clearance(py, &given.robots()?, given.stated, tolerance)
     }
 
@@ -252,6 +253,7 @@ impl RobotPair {
                 Stated { deviation: deviation_b, turn: turn_b },
             ],
         };
+        self.note_frames(given.points, given.poses)?;
         self.0.clears_tubes(py, &given.robots()?, given.stated, [margin, resolution])
     }
 }

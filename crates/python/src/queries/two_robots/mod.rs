@@ -13,7 +13,7 @@ pub(crate) use self_query::SelfQuery;
 
 use super::distance::set_chain;
 use crate::error::Refused;
-use crate::input::{Caps, Given, Names, Robots};
+use crate::input::{Caps, Given, Names, Robots, stated_frame};
 use crate::output::array_or_number;
 use crate::threads::{Asked, Held, Lender, ask_each};
 use answers::{Row, proximities, proximities_of_segments, proximities_within};
@@ -91,13 +91,35 @@ fn second<'a>(robot: &Given<'a>) -> Result<Given<'a>, Refused> {
     })
 }
 
-/// Two robots or two batches, or one robot and a batch.
-fn pairs<'py>(
-    [points_a, radii_a, points_b, radii_b]: [&Bound<'py, PyAny>; 4],
-    [pose_a, pose_b]: [Option<&Bound<'py, PyAny>>; 2],
-) -> PyResult<Robots<'py>> {
-    let others = Robots::new(Names::PAIR[1], points_b, radii_b, pose_b)?;
-    Robots::new(Names::PAIR[0], points_a, radii_a, pose_a)?.with_others(points_a.py(), others)
+impl RobotPair {
+    /// Two robots or two batches, or one robot and a batch. Warns once if they state different
+    /// frames.
+    fn robots<'py>(
+        &self,
+        [points_a, radii_a, points_b, radii_b]: [&Bound<'py, PyAny>; 4],
+        [pose_a, pose_b]: [Option<&Bound<'py, PyAny>>; 2],
+    ) -> PyResult<Robots<'py>> {
+        let py = points_a.py();
+        let others = Robots::new(Names::PAIR[1], points_b, radii_b, pose_b)?;
+        let robots =
+            Robots::new(Names::PAIR[0], points_a, radii_a, pose_a)?.with_others(py, others)?;
+        self.note_frames([points_a, points_b], [pose_a, pose_b])?;
+        Ok(robots)
+    }
+
+    /// Warns once if the points of two robots state different frames. A pose may lead into another
+    /// frame.
+    fn note_frames(
+        &self,
+        [points_a, points_b]: [&Bound<'_, PyAny>; 2],
+        poses: [Option<&Bound<'_, PyAny>>; 2],
+    ) -> PyResult<()> {
+        if poses.iter().any(Option::is_some) {
+            return Ok(());
+        }
+        let frames = [stated_frame(points_a)?, stated_frame(points_b)?];
+        self.1.note_pair(points_a.py(), Names::PAIR.map(|names| names.points), frames)
+    }
 }
 
 impl Pairs {

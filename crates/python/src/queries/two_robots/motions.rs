@@ -1,7 +1,7 @@
 //! Decisions about two robots that move at the same time.
 
 use super::{RobotPair, Session};
-use crate::input::of;
+use crate::input::{object_of, of};
 use crate::motions::{Motion, MotionPair, Moving};
 use crate::output::{
     Enumeration, answer, array, array_or_number, decision_value, flat, members, reason_value,
@@ -60,15 +60,15 @@ impl RobotPair {
     fn clears_motions<'py>(
         &self,
         py: Python<'py>,
-        a: &Bound<'py, Motion>,
-        b: &Bound<'py, Motion>,
+        #[pyo3(from_py_with = object_of::a)] a: Bound<'py, Motion>,
+        #[pyo3(from_py_with = object_of::b)] b: Bound<'py, Motion>,
         #[pyo3(from_py_with = of::margin)] margin: f64,
         #[pyo3(from_py_with = of::resolution)] resolution: f64,
     ) -> PyResult<Bound<'py, PyAny>> {
         let ask = move |session: &mut Session, a: &Moving, b: &Moving| {
             session.pair.clears_motions(a, b, margin, resolution)
         };
-        self.decide(py, [a, b], ask)
+        self.decide(py, [&a, &b], ask)
     }
 
     /// When two robots that move at the same time first come as close to each other as a margin.
@@ -103,15 +103,15 @@ impl RobotPair {
     fn time_of_contact<'py>(
         &self,
         py: Python<'py>,
-        a: &Bound<'py, Motion>,
-        b: &Bound<'py, Motion>,
+        #[pyo3(from_py_with = object_of::a)] a: Bound<'py, Motion>,
+        #[pyo3(from_py_with = object_of::b)] b: Bound<'py, Motion>,
         #[pyo3(from_py_with = of::margin)] margin: f64,
         #[pyo3(from_py_with = of::resolution)] resolution: f64,
     ) -> PyResult<Bound<'py, PyAny>> {
         let ask = move |session: &mut Session, a: &Moving, b: &Moving| {
             session.pair.time_of_contact(a, b, margin, resolution)
         };
-        self.decide(py, [a, b], ask)
+        self.decide(py, [&a, &b], ask)
     }
 
     /// How near two robots that move at the same time come to each other, between proven bounds,
@@ -149,11 +149,11 @@ impl RobotPair {
     fn clearance_of_motion<'py>(
         &self,
         py: Python<'py>,
-        a: &Bound<'py, Motion>,
-        b: &Bound<'py, Motion>,
+        #[pyo3(from_py_with = object_of::a)] a: Bound<'py, Motion>,
+        #[pyo3(from_py_with = object_of::b)] b: Bound<'py, Motion>,
         #[pyo3(from_py_with = of::tolerance)] tolerance: f64,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let motions = MotionPair::new(a, b)?;
+        let motions = self.motions(py, [&a, &b])?;
         let all = answer_each(py, &self.0, &motions, |session: &mut Session, [a, b]| {
             Ok(session.pair.clearance_of_motion(*a, *b, tolerance)?)
         })?;
@@ -179,6 +179,14 @@ impl RobotPair {
 }
 
 impl RobotPair {
+    /// The motions of a question. Warns once if they state different frames.
+    fn motions(&self, py: Python<'_>, [a, b]: [&Bound<'_, Motion>; 2]) -> PyResult<MotionPair> {
+        let motions = MotionPair::new(a, b)?;
+        let frames = [a, b].map(|motion| motion.get().stated_frame());
+        self.1.note_pair(py, ["a", "b"], frames)?;
+        Ok(motions)
+    }
+
     fn decide<'py>(
         &self,
         py: Python<'py>,
@@ -186,7 +194,7 @@ impl RobotPair {
         decide: impl Fn(&mut Session, &Moving, &Moving) -> Result<RobotMotionAnswer, ProximityError>
         + Sync,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let motions = MotionPair::new(a, b)?;
+        let motions = self.motions(py, [a, b])?;
         let ask = |session: &mut Session, [a, b]: &[&Moving; 2]| Ok(decide(session, a, b)?);
         let all = answer_each(py, &self.0, &motions, ask)?;
         motion_answers(py, &all, |further| motions.shape(further))

@@ -1,7 +1,7 @@
 //! The class `RobotPair`: queries about two robots.
 
-use super::{Pairs, pairs};
-use crate::input::{Caps, of};
+use super::Pairs;
+use crate::input::{Caps, HasWarned, of};
 use pyo3::prelude::*;
 use pyo3::types::{PyTuple, PyType};
 
@@ -23,13 +23,13 @@ use pyo3::types::{PyTuple, PyType};
 /// >>> pair.contacts_within(a, 0.5, b, 0.5, margin=3).segments
 /// array([[0, 0]])
 #[pyclass(frozen, module = "parry_continuum", weakref)]
-pub(crate) struct RobotPair(pub(super) Pairs);
+pub(crate) struct RobotPair(pub(super) Pairs, pub(super) HasWarned);
 
 #[pymethods]
 impl RobotPair {
     #[new]
     fn new() -> Self {
-        Self(Pairs::default())
+        Self(Pairs::default(), HasWarned::default())
     }
 
     /// The copy has no warm start, which only makes answers faster.
@@ -91,7 +91,7 @@ impl RobotPair {
         pose_b: Option<&Bound<'py, PyAny>>,
         caps: Caps,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let robots = pairs([points_a, radii_a, points_b, radii_b], [pose_a, pose_b])?;
+        let robots = self.robots([points_a, radii_a, points_b, radii_b], [pose_a, pose_b])?;
         self.0.minimum(py, &robots, caps)
     }
 
@@ -125,7 +125,7 @@ impl RobotPair {
         pose_b: Option<&Bound<'py, PyAny>>,
         caps: Caps,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let robots = pairs([points_a, radii_a, points_b, radii_b], [pose_a, pose_b])?;
+        let robots = self.robots([points_a, radii_a, points_b, radii_b], [pose_a, pose_b])?;
         self.0.per_link(py, &robots, caps)
     }
 
@@ -166,7 +166,7 @@ impl RobotPair {
         pose_b: Option<&Bound<'py, PyAny>>,
         caps: Caps,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let robots = pairs([points_a, radii_a, points_b, radii_b], [pose_a, pose_b])?;
+        let robots = self.robots([points_a, radii_a, points_b, radii_b], [pose_a, pose_b])?;
         self.0.contacts_within(py, &robots, margin, caps)
     }
 
@@ -210,7 +210,7 @@ impl RobotPair {
         pose_b: Option<&Bound<'py, PyAny>>,
         caps: Caps,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let robots = pairs([points_a, radii_a, points_b, radii_b], [pose_a, pose_b])?;
+        let robots = self.robots([points_a, radii_a, points_b, radii_b], [pose_a, pose_b])?;
         self.0.clears(py, &robots, margin, caps)
     }
 }

@@ -3,7 +3,7 @@
 use super::Sessions;
 use super::answers::{Row, proximities};
 use super::motions::motion_answers;
-use crate::input::{Caps, Given, Names, Robots, of};
+use crate::input::{Caps, Given, Names, Robots, object_of, of};
 use crate::motions::{Motion, Moving};
 use crate::output::{Enumeration, array_or_number, decision_value, members};
 use crate::queries::clearance::{Stated, tube, tubes};
@@ -273,7 +273,7 @@ impl SelfQuery {
     fn clears_motion<'py>(
         &self,
         py: Python<'py>,
-        motion: &Bound<'py, Motion>,
+        #[pyo3(from_py_with = object_of::motion)] motion: Bound<'py, Motion>,
         #[pyo3(from_py_with = of::margin)] margin: f64,
         #[pyo3(from_py_with = of::resolution)] resolution: f64,
     ) -> PyResult<Bound<'py, PyAny>> {
