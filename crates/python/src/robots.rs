@@ -7,7 +7,6 @@ use crate::queries::distance::set_chain;
 use crate::queries::two_robots::segment_of;
 use crate::threads::{Asked, compute};
 use numpy::PyArrayDyn;
-use parry_continuum::parry::math::Vector;
 use pyo3::prelude::*;
 
 type Arrays<'py> = (Bound<'py, PyArrayDyn<f64>>, Bound<'py, PyArrayDyn<f64>>);
