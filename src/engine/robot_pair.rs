@@ -335,8 +335,8 @@ impl RobotPair {
     /// The answer always has bounds; [`resolved`](RobotMotionClearance::resolved) says whether they
     /// meet the tolerance. They may not for the reasons of
     /// [`BvhSearch::clearance_of_motion`](crate::proximity::BvhSearch::clearance_of_motion), or
-    /// because the query ends after 16 million pairs of pieces. A finer tolerance never gives
-    /// looser bounds.
+    /// because the query ends after a million pairs of pieces. A finer tolerance never gives looser
+    /// bounds.
     ///
     /// ```
     /// use parry_continuum::{LinearMotion, parry::math::Vector, proximity::RobotPair};

@@ -34,10 +34,10 @@
 //!    enough to it; then `1 - r < w <= z1 < 0`. Between its two poles `X^2 + Y^2` is convex, and
 //!    its largest root is the minimum. Newton's steps from `z1` decrease to it and never pass it.
 //!    If there is no root, the slope changes its sign on the way, or a step passes the pole.
-//! 4. **Edge-on**, `b = 0` within rounding: the limit of the cases above. The ellipse is the segment
-//!    from -1 to 1 on the x-axis. Its inner points have the normal `y`. Its ends have all normals
-//!    between `x` and `y`, so `p` beyond an end needs `y >= 0`, and the normal leads from the end to
-//!    `p`. Normals that differ by b move the surface by b at most.
+//! 4. **Edge-on**, `b = 0` within rounding: the limit of the cases above. The ellipse is the
+//!    segment from -1 to 1 on the x-axis. Its inner points have the normal `y`. Its ends have all
+//!    normals between `x` and `y`, so `p` beyond an end needs `y >= 0`, and the normal leads from
+//!    the end to `p`. Normals that differ by b move the surface by b at most.
 
 use crate::distance::Scalar;
 use parry3d_f64::math::{Real, Vector2};
