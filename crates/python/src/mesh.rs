@@ -45,8 +45,9 @@ use std::sync::Arc;
 /// faces : (F, 3) array of any integer type
 ///     Three positions among the vertices for each triangle, counted from 0.
 /// frame : {"RAS", "LPS"}, optional
-///     The frame of the vertices, for warnings about centrelines in the other one. Without it, that
-///     of a mesh of pyvista whose field data has an array ``SPACE``, as 3D Slicer writes it.
+///     The frame of the vertices, for warnings about centrelines in the other one. A mesh that
+///     states the other frame is turned, as by `load`: a `Mesh`, or one of pyvista whose field data
+///     has an array ``SPACE``, as 3D Slicer writes it. Without ``frame`` the mesh keeps its own.
 /// unit : str, optional
 ///     The unit of the vertices, such as "mm". Nothing is computed from it.
 /// device : {"cpu", "gpu"}
@@ -187,10 +188,11 @@ pub(crate) fn parts<'py>(given: &Bound<'py, PyAny>, name: &str) -> PyResult<Part
     type Found<'py> = (Bound<'py, PyAny>, Bound<'py, PyAny>, Option<FrameName>);
     let py = given.py();
     let found = py.import("parry_continuum._meshes")?.call_method1("parts", (given,))?;
+    let own = given.cast::<Mesh>().ok().and_then(|mesh| mesh.get().origin.frame);
     let parts = found.extract::<Option<Found<'py>>>()?.map(|(vertices, faces, frame)| Parts {
         vertices,
         faces,
-        frame: frame.map(|FrameName(frame)| frame),
+        frame: frame.map(|FrameName(frame)| frame).or(own),
     });
     parts.ok_or_else(|| {
         let text = match name {
@@ -250,15 +252,15 @@ impl Mesh {
         device: DeviceName,
     ) -> PyResult<Self> {
         let py = vertices.py();
-        let known = |origin: Origin| Origin {
-            frame: frame.map(|FrameName(frame)| frame).or(origin.frame),
-            unit: unit.or(origin.unit),
-            ..origin
-        };
-        if let (Ok(mesh), None) = (vertices.cast::<Self>(), faces) {
-            let mesh = mesh.get();
-            let engine = mesh.engine(py).on(py, device.0)?;
-            return Ok(Self::of(engine, known(mesh.origin.clone())));
+        let own = if faces.is_none() { vertices.cast::<Self>().ok() } else { None };
+        let origin = own.map_or_else(Origin::default, |mesh| mesh.get().origin.clone());
+        let unit = unit.or(origin.unit);
+        let asked = frame.as_ref().map(|FrameName(frame)| *frame);
+        let is_turned = origin.frame.zip(asked).is_some_and(|(stated, asked)| stated != asked);
+        if let Some(mesh) = own.filter(|_| !is_turned) {
+            let engine = mesh.get().engine(py).on(py, device.0)?;
+            let frame = asked.or(origin.frame);
+            return Ok(Self::of(engine, Origin { frame, unit, ..origin }));
         }
         let parts = match faces {
             Some(faces) => Parts { vertices: vertices.clone(), faces: faces.clone(), frame: None },
@@ -267,10 +269,11 @@ impl Mesh {
                 parts(vertices, "vertices")?
             }
         };
-        let vertices = vectors(rows(&parts.vertices, "vertices")?.points());
+        let mut vertices = rows(&parts.vertices, "vertices")?.points().to_vec();
         let triangles = self::faces(&parts.faces, vertices.len())?;
-        let stated = Origin { frame: parts.frame, ..Origin::default() };
-        Self::new_from(py, vertices, triangles, known(stated), device)
+        let frame = in_frame(&mut vertices, parts.frame, frame);
+        let origin = Origin { frame, unit, ..origin };
+        Self::new_from(py, vectors(&vertices), triangles, origin, device)
     }
 
     /// The frame of the vertices, "RAS" or "LPS": that of the file, or the one that was asked for;

@@ -53,6 +53,20 @@ def test_trimesh(take: Any) -> None:
 
 
 @pytest.mark.parametrize("take", [Mesh, load])
+def test_a_mesh_that_states_another_frame_is_turned(take: Any) -> None:
+    mesh = Mesh(VERTICES + [1, 2, 3], FACES, frame="RAS", unit="mm")
+    turned = take(mesh, frame="LPS")
+    assert turned.frame == "LPS"
+    assert_allclose(turned.vertices, mesh.vertices * [-1, -1, 1])
+    same = take(mesh, frame="RAS")
+    assert same.frame == take(mesh).frame == "RAS"
+    assert_allclose(same.vertices, mesh.vertices)
+    assert Mesh(mesh, frame="LPS").unit == "mm"
+    # A mesh that states none takes the frame as it is.
+    assert_allclose(take(MESH, frame="LPS").vertices, MESH.vertices)
+
+
+@pytest.mark.parametrize("take", [Mesh, load])
 def test_pyvista(take: Any) -> None:
     pyvista = pytest.importorskip("pyvista")
     flat = np.column_stack([np.full(len(FACES), 3), FACES]).ravel()

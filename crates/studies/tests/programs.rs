@@ -50,7 +50,7 @@ fn the_trade_is_measured_drawn_and_quoted() {
     }
     for (head, file, shown, all) in [
         ("| triangles | shapes | tolerance |", "samples", 8, 16),
-        ("| model | within | margin |", "decisions", 8, 36),
+        ("| model | within | margin |", "decisions", 7, 30),
     ] {
         let file = read(&format!("trade/docs/tradeoff_{file}.csv"));
         assert_eq!((table(&page, head).len(), file.lines().count()), (shown, 1 + all), "{file}");

@@ -214,7 +214,7 @@ impl Scene {
     /// mesh : Mesh
     /// margin : float or None
     ///     The distance that robots keep from it. A structure with None may be touched, such as a
-    ///     target: `per_structure` and `contacts` measure it, and the others ignore it.
+    ///     target: `per_structure` and `contacts_within` measure it, and the others ignore it.
     /// pose : (4, 4) array, optional
     ///     From the mesh's frame to the scene's.
     ///
