@@ -228,7 +228,7 @@ impl View {
     }
 
     /// Where the edges' shadows are to the halves of the flat caps' shadows, seen along the edges:
-    /// if link and triangle overlap, and if the cap's shadow is an ellipse.
+    /// if link and triangle overlap.
     fn ellipses(&self, mut seen: impl FnMut(&str, &str)) {
         let (Self { triangle, start, end, .. }, radius) = (self, exact(self.radius));
         let flat = triangle_modified_cylinder(*triangle, *start, *end, radius, [true; 2]);
@@ -241,7 +241,11 @@ impl View {
                 let (point, edge) =
                     (triangle[corner] - centre, triangle[(corner + 1) % 3] - triangle[corner]);
                 let (lean, across) = (outward.dot(edge), outward.cross(edge));
-                if lean.rounded() == 0.0 || is_zero(across) {
+                if is_zero(across) {
+                    continue;
+                }
+                if lean.rounded() == 0.0 {
+                    seen("ellipse", "Edge-on");
                     continue;
                 }
                 // In the plane of both, perpendicular to the edge, as far from it as the cap faces.
