@@ -402,7 +402,7 @@ fn bad_input_is_an_error() {
         ));
         for margin in [-1e-300, f64::NAN, f64::NEG_INFINITY] {
             let error = engine.clears(&robot, &Pose::IDENTITY, margin).unwrap_err();
-            assert!(error.to_string().contains(&margin.to_string()), "{name}: {error}");
+            assert!(error.to_string().contains(&format!("{margin:?}")), "{name}: {error}");
         }
         engine.per_link(&robot, &Pose::IDENTITY, &mut out).unwrap();
         assert_eq!(out.len(), 12);
