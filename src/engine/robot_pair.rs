@@ -243,7 +243,7 @@ impl RobotPair {
     ///   margin apart.
     /// - `Undecided`: the robots come within `resolution` of the margin, beyond the errors that
     ///   they state of themselves. Or an end that comes near turns from flat to round. Or the query
-    ///   ends after 65,536 shapes of each robot, or after a million pairs of pieces in total. The
+    ///   ends after 65,536 shapes of each robot, or after 16 million pairs of pieces in total. The
     ///   [reason](RobotMotionAnswer::reason) says which.
     ///
     /// The work is one query about two tubes for each time that the proof needs. Slow robots with a

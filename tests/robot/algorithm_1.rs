@@ -338,7 +338,7 @@ fn bad_input_is_named() {
         (straight(1.0, 0), vec![], vec!["at least 2", "1"]),
         (with(Real::NAN), vec![0.1; 3], vec!["point 2", "NaN"]),
         (with(Real::NEG_INFINITY), vec![0.1; 3], vec!["point 2", "-inf"]),
-        (with(2e150), vec![0.1; 3], vec!["point 2", "2000000", "1e150"]),
+        (with(2e150), vec![0.1; 3], vec!["point 2", "2e150", "1e150"]),
         (good.clone(), vec![0.1, -0.5, 0.1], vec!["radius 1", "-0.5"]),
         (good.clone(), vec![0.1, Real::NAN, 0.1], vec!["radius 1", "NaN"]),
         (good.clone(), vec![0.1, 0.1, Real::INFINITY], vec!["radius 2", "inf"]),

@@ -33,9 +33,13 @@ use crate::refine::{
 use parry3d_f64::math::Real;
 use std::collections::{BinaryHeap, VecDeque};
 
-/// The most pairs of pieces tested in all shapes together: a few seconds. Bounds on a distance that
-/// stays nearly constant need 50 to 100 times as many for a tenth of the tolerance.
-const MAX_PAIRS: u32 = 1 << 20;
+/// The most pairs of pieces that a query about a margin tests in all shapes together. Two long
+/// robots side by side need 160,000 for each shape.
+const MAX_PAIRS: u32 = 1 << 24;
+
+/// The same for bounds on the least clearance: a few seconds. A distance that stays nearly constant
+/// needs 50 to 100 times as many for a tenth of the tolerance.
+const MAX_PAIRS_FOR_BOUNDS: u32 = 1 << 20;
 
 /// State and memory that the next query reuses.
 #[derive(Clone, Debug, Default)]
@@ -89,7 +93,7 @@ impl<A: Motion, B: Motion> MotionPair<'_, A, B> {
         tolerance: Real,
         limit: Real,
     ) -> Result<RobotMotionClearance, ProximityError> {
-        let mut search = PairClearance { pair: self, left: MAX_PAIRS };
+        let mut search = PairClearance { pair: self, left: MAX_PAIRS_FOR_BOUNDS };
         let Minimum { lower, uncertainty, resolved, best, t } =
             minimum(&mut search, tolerance, limit)?;
         let PairUpperBound { upper, sections, arcs, points: [on_first, on_second] } = best;
