@@ -224,9 +224,10 @@ fn made(
 /// Returns
 /// -------
 /// Centreline
-///     ``points`` (N, 3); ``radii`` (N - 1,), or None; ``frame`` and ``unit``, or None where the
-///     file does not state them; and ``skipped``, the number of points that have no position yet. A
-///     query of a `Mesh` in another frame warns about these points.
+///     ``points`` (N, 3); ``radii`` (N - 1,), or None: a segment has the radius of its first point;
+///     ``frame`` and ``unit``, or None where the file does not state them; and ``skipped``, the
+///     number of points that have no position yet. A query of a `Mesh` in another frame warns about
+///     these points.
 ///
 /// Raises
 /// ------
