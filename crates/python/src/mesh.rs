@@ -143,6 +143,11 @@ impl Mesh {
         Ok(robots)
     }
 
+    /// The frame that the mesh states.
+    pub(crate) fn stated_frame(&self) -> Option<Frame> {
+        self.origin.frame
+    }
+
     /// Warns once if points or a motion state another frame than the mesh.
     pub(crate) fn note_frame(&self, name: &str, given: &Bound<'_, PyAny>) -> PyResult<()> {
         let Some(frames) = self.frames(given)? else { return Ok(()) };

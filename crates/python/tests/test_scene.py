@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
@@ -59,6 +60,19 @@ def test_scenes(robot_margin: float | None) -> None:
         for field, fields in zip(one, found):
             assert_array_equal(field, fields[k])
         assert scene.clears([(A[k], 0.1, POSES[k]), (B[k], 0.1)]) is bool(found.slack[k] > 0)
+
+
+def test_structures_in_two_frames_warn() -> None:
+    meshes = [Mesh(*sphere(1.0), frame=frame) for frame in ("RAS", "LPS")]  # type: ignore[arg-type]
+    scene = Scene()
+    scene.add("bone", meshes[0], margin=1.0)
+    with pytest.warns(UserWarning, match="`vessel` is in the frame LPS, and `bone` RAS: x and y have opposite signs"):
+        scene.add("vessel", meshes[1], margin=1.0)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        # One that has a pose is placed on purpose, and one that states none may be anywhere.
+        scene.add("placed", meshes[1], margin=1.0, pose=np.diag([-1.0, -1, 1, 1]))
+        scene.add("unknown", VESSEL, margin=1.0)
 
 
 def test_a_tube_inside_another_does_not_collide_with_it() -> None:

@@ -205,7 +205,8 @@ impl Scene {
         })
     }
 
-    /// Adds a structure, and returns its number: structures count from 0.
+    /// Adds a structure, and returns its number: structures count from 0. Warns if its mesh and an
+    /// earlier one state different frames, and neither has a pose.
     ///
     /// Parameters
     /// ----------
@@ -246,6 +247,17 @@ impl Scene {
                 (pose, Some(matrix))
             }
         };
+        // A pose leads into the scene's frame.
+        if let (None, Some(frame)) = (&matrix, mesh.get().stated_frame()) {
+            let before = self.structures.with(py, |structures| {
+                let at_rest = structures.iter().filter(|structure| structure.matrix.is_none());
+                let mut stated = at_rest.map(|it| (it.name.clone(), it.mesh.get().stated_frame()));
+                stated.find(|(_, frame)| frame.is_some())
+            });
+            if let Some((first, other)) = before {
+                HasWarned::default().note_pair(py, [&name, &first], [Some(frame), other])?;
+            }
+        }
         let structure = Structure { name, mesh: Arc::new(mesh), margin, pose, matrix };
         Ok(self.structures.with(py, |structures| {
             structures.push(structure);
