@@ -342,7 +342,7 @@ fn bad_input_is_named() {
         (good.clone(), vec![0.1, -0.5, 0.1], vec!["radius 1", "-0.5"]),
         (good.clone(), vec![0.1, Real::NAN, 0.1], vec!["radius 1", "NaN"]),
         (good.clone(), vec![0.1, 0.1, Real::INFINITY], vec!["radius 2", "inf"]),
-        (good.clone(), vec![0.1, 0.1, 1.5e150], vec!["radius 2", "1500000", "1e150"]),
+        (good.clone(), vec![0.1, 0.1, 1.5e150], vec!["radius 2", "1.5e150", "1e150"]),
         (vec![Vector::X; 4], vec![0.1; 3], vec!["all points"]),
     ] {
         for error in all_errors(&points, &radii) {
