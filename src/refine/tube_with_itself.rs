@@ -129,8 +129,8 @@ const INTO_TUBE: Real = 1.0 / 1024.0;
 /// stated error.
 const ROUNDING_OF_FACES: Real = 140.0;
 
-/// How far the piece reaches, in radii, in which it is tested whether the robot leads on from a
-/// place.
+/// The half length, in radii, of the piece around a place that tells whether the robot leads nearer
+/// from there.
 const AROUND_PLACE: Real = 1.0 / 1024.0;
 
 /// How often a place of one part is moved to the nearest place of the other.

@@ -1,8 +1,8 @@
 //! Few links in place of a finely sampled centreline, as short as its bends require.
 //!
 //! # Definitions
-//! - Run: the vertices between two changes of radius. Station: a vertex that stays. Chord: a segment
-//!   between two vertices of a run; it replaces the part of the run between them.
+//! - Run: the vertices between two changes of radius. Station: a vertex that stays.
+//! - Chord: a segment between two vertices of a run; it replaces the part of the run between them.
 //! - A chord *holds* if it and the part that it replaces are within the tolerance of each other
 //!   (Hausdorff distance), and its length is not 0.
 //! - *Probe*: the largest distance of three vertices of the part that a chord replaces from the
@@ -136,7 +136,7 @@ struct StationRun<'a> {
     points: &'a [Vector],
     radius: Real,
     tolerance: Real,
-    /// A power of two that scales the run near one, so that squares neither overflow nor underflow.
+    /// A power of two that scales the run near one. Squares then stay in the range of numbers.
     scale: Real,
     /// The input's directions at start and end, if a face there has a rim that can move too far.
     faces: [Option<Vector>; 2],

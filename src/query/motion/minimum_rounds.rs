@@ -19,8 +19,8 @@
 //!
 //! A round begins with one interval per part.
 //! 1. **Take** the interval with the least lower bound, the earliest of equals. Stop if it is
-//!    settled. So a path of many motions costs little more than its nearest parts; the parts farther
-//!    away cost one shape each, or a few, in the first round only.
+//!    settled. So a path of many motions costs little more than its nearest parts; the parts
+//!    farther away cost one shape each, or a few, in the first round only.
 //! 2. **Seed** `upper` at the place of the nearest shape so far.
 //! 3. **Refine** the middle shape (`minimum_policy`). A piece is at least d - reach away in the
 //!    whole interval. Unless that settles it, it is tested at other times or halved along the

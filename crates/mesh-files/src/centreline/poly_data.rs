@@ -112,7 +112,7 @@ fn join(lines: &[Vec<usize>], points: &[Point]) -> Vec<Vec<Point>> {
                 None => *more += 1,
             }
         }
-        // The points between the ends, without those that repeat an end.
+        // The points between the ends. Points that repeat an end are left out.
         let line = &lines[number];
         let is_at = |&point: &usize, place| places.find(points[point]) == Some(place);
         let from = line.iter().take_while(|point| is_at(point, first)).count();

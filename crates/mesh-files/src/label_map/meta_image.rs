@@ -153,7 +153,7 @@ const AXES: [&str; 3] = ["TransformMatrix", "Rotation", "Orientation"];
 /// turn, and the offset is the centre of the first voxel.
 ///
 /// ITK reads a file without spacing or offset as spacing 1 or offset 0; here this needs the option.
-/// The frame is then unknown if neither offset nor axes are stated.
+/// The frame is then unknown unless the file states offset or axes.
 fn place(file: &File, allow_no_position: bool) -> Result<(Place, Option<Frame>), Fault> {
     let missing = [&SPACING[..], &OFFSET].into_iter().find(|names| file.get(names).is_none());
     if let Some(names) = missing.filter(|_| !allow_no_position) {

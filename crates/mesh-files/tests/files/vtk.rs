@@ -148,7 +148,7 @@ fn ends_that_differ_by_rounding_meet() {
     let (c, d): ([Vertex; 5], [Vertex; 5]) = (printed(-0.0001), printed(0.0));
     let ends = [[c[0], c[1]], [d[2], d[1]], [c[2], c[3]], [d[3], c[4]]];
     assert_eq!(lines("a.vtk", own_cells(&ends, "float"), None).unwrap().points.len(), 5);
-    // A cell without length but for rounding, and one that stands twice but for rounding.
+    // Within rounding, one cell has no length and another one stands twice.
     let ends = [[a[0], a[1]], [a[1], b[1]], [b[1], b[0]], [a[1], a[2]]];
     assert_eq!(lines("a.vtk", own_cells(&ends, "float"), None).unwrap().points, a[..3]);
 }
@@ -167,7 +167,7 @@ fn ends_that_differ_by_more_than_rounding_stay_apart() {
     // A gap of a thousandth beside a length of ten.
     let ends = [[POINTS[0], POINTS[1]], [POINTS[1].map(|x| x + 1e-3), POINTS[2]]];
     refused("gap", lines("a.vtk", own_cells(&ends, "double"), None), "holds 2 lines");
-    // What is not finite meets nothing, and is refused where it is chosen.
+    // A point that is not finite meets nothing, and is refused where it is chosen.
     let ends = [[POINTS[0], [f64::NAN; 3]], [[f64::NAN; 3], POINTS[2]]];
     refused("nan", lines("a.vtk", own_cells(&ends, "double"), Some(0)), "is not finite");
 }
@@ -181,7 +181,7 @@ fn files_of_carriage_returns_alone_are_read() {
     assert_eq!(expected.as_ref().unwrap().frame, Some(Frame::Lps));
     assert_eq!(lines("a.vtk", whole.replace('\n', "\r"), None), expected);
     assert_eq!(lines("a.vtk", whole.replace('\n', "\r\n"), None), expected);
-    // In bytes, of which some are line feeds.
+    // Binary numbers, which contain line feeds.
     let head = "# vtk DataFile Version 5.1\rx\rBINARY\rDATASET POLYDATA\rPOINTS 2 float\r";
     let mut bytes = head.as_bytes().to_vec();
     [0.0_f32, 0.0, 10.0, f32::from_bits(0x4120_0a0a), 0.0, 0.0]

@@ -23,7 +23,7 @@ pub(crate) struct Robots<'py> {
     points: Numbers<'py>,
     /// More points: where a motion ends, or the directions of a curve.
     more: Option<Numbers<'py>>,
-    /// Whether those of one robot stand for all robots of a batch.
+    /// Whether the points of one robot stand for all robots of a batch.
     more_is_one: bool,
     radii: Radii<'py>,
     poses: Poses<'py>,

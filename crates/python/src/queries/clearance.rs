@@ -118,7 +118,7 @@ impl Mesh {
     ///     length. Directions at the ends state how the flat ends are turned. Directions at all
     ///     points also state how the curve bends between the points. Without tangents the bounds
     ///     are as wide as the points leave these directions open. A point that is given twice needs
-    ///     one direction. Those of one robot stand for all.
+    ///     one direction. The directions of one robot stand for all.
     /// deviation : float
     ///     How far a point may be from the curve, for points that are measured: a smooth curve is
     ///     fitted within that, and the bounds hold for every tube whose centreline is so near to
