@@ -1,7 +1,7 @@
 //! The programs that measure and write pages, each rehearsed: what they write is whole, and its
 //! numbers are numbers. Times are not judged.
 
-use continuum_testing::programs::*;
+use continuum_programs::*;
 
 const ACCURACY: &str = env!("CARGO_BIN_EXE_accuracy");
 const CURVES: &str = env!("CARGO_BIN_EXE_curves");

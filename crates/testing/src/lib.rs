@@ -8,8 +8,7 @@
 //! - Effort: [`rounds`], the number of rounds of a random test.
 //! - Checks: [`certificate`], proofs in double-double arithmetic; [`rotation`]s without rounding.
 //! - The fuzzer: `fuzz`, bodies that accept any bytes (feature `fuzz`).
-//! - Environment: `programs`, run as a user runs them (feature `programs`); `gpu`, opened once
-//!   (feature `gpu`).
+//! - Environment: `gpu`, opened once (feature `gpu`).
 
 mod arcs;
 mod cases;
@@ -26,8 +25,6 @@ pub mod narrow_phase;
 pub mod placements;
 pub mod precision;
 pub mod problems;
-#[cfg(feature = "programs")]
-pub mod programs;
 mod random;
 pub mod rotation;
 

@@ -1,7 +1,7 @@
 //! Every program: its errors, its output and its pictures.
 
 use crate::{refuse, succeed};
-use continuum_testing::programs::{colours, file, place, read, room};
+use continuum_programs::{colours, file, place, read, room};
 
 /// A place for a picture in a directory that is a file.
 fn beside(file: &str) -> String {

@@ -3,7 +3,7 @@
 
 mod all;
 
-use continuum_testing::programs::{self, example};
+use continuum_programs::{self as programs, example};
 
 /// The output of an example that succeeds.
 fn succeed(name: &str, arguments: &[&str]) -> String {

@@ -2,7 +2,7 @@
 //! change.
 
 use crate::{minimum, refuse, run, succeed};
-use continuum_testing::programs::{file, room};
+use continuum_programs::{file, room};
 
 /// A quarter turn that brings x to y and y to -x, and a shift.
 const TURNED: &str = "0 -1 0 60\n1 0 0 0\n0 0 1 0\n0 0 0 1\n";

@@ -1,7 +1,7 @@
 //! The files that the command writes: `--csv`, `--plot` and `--prove`.
 
 use crate::{refuse, run, succeed};
-use continuum_testing::programs::{file, place, read, room};
+use continuum_programs::{file, place, read, room};
 use std::process::Command;
 
 /// A box of 60, and a needle of two radii: 20 from both ends, 28 and 29 from the sides.

@@ -1,7 +1,7 @@
 //! `--labels`, and what is said of labels that are read as one wall.
 
 use crate::{refuse, run, succeed};
-use continuum_testing::programs::{file, room};
+use continuum_programs::{file, room};
 
 /// Voxels of 2 x 2 x 2 mm: three of label 1, one of label 7, two of none.
 fn segmentation(name: &str, labels: &str) -> String {

@@ -7,7 +7,7 @@ mod labels;
 mod margin;
 mod readme;
 
-use continuum_testing::programs;
+use continuum_programs as programs;
 
 const COMMAND: &str = env!("CARGO_BIN_EXE_clearance");
 

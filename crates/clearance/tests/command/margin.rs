@@ -1,7 +1,7 @@
 //! `--margin`: a line with the verdict, and the exit status.
 
 use crate::{refuse, run};
-use continuum_testing::programs::{file, room};
+use continuum_programs::{file, room};
 
 /// The line with the verdict, in the output or beside it.
 fn verdict(text: &str) -> &str {

@@ -1,7 +1,7 @@
 //! The README's command and its Rust snippet, and what they print.
 
 use crate::run;
-use continuum_testing::programs;
+use continuum_programs as programs;
 use std::path::Path;
 use std::process::Command;
 

@@ -1,7 +1,7 @@
 //! A rehearsal of the program `gpu_speed` on the machine's GPU.
 
+use continuum_programs::*;
 use continuum_testing::gpu;
-use continuum_testing::programs::*;
 use parry_continuum::gpu::Precision;
 
 #[test]
