@@ -282,7 +282,7 @@ impl RobotPair {
         resolution: Real,
     ) -> Result<RobotMotionAnswer, ProximityError> {
         check_decision(margin, resolution)?;
-        self.ask_motions(a, b, MarginQuery { margin, resolution }, Sought::Any)
+        self.ask_motions([a, b], MarginQuery { margin, resolution }, Sought::Any)
     }
 
     /// Bounds the time at which two robots that move at the same time first come within `margin` of
@@ -321,7 +321,7 @@ impl RobotPair {
         resolution: Real,
     ) -> Result<RobotMotionAnswer, ProximityError> {
         check_decision(margin, resolution)?;
-        self.ask_motions(a, b, MarginQuery { margin, resolution }, Sought::First)
+        self.ask_motions([a, b], MarginQuery { margin, resolution }, Sought::First)
     }
 
     /// Bounds the least clearance of two robots that move at the same time, over all times from 0
@@ -363,7 +363,7 @@ impl RobotPair {
         tolerance: Real,
     ) -> Result<RobotMotionClearance, ProximityError> {
         check_not_negative("tolerance", tolerance)?;
-        self.ask_clearance_of_motion(a, b, tolerance, Real::INFINITY)
+        self.ask_clearance_of_motion([a, b], tolerance, Real::INFINITY)
     }
 
     /// [`minimum`](Self::minimum) for many pairs of robots, on all cores.
@@ -436,28 +436,26 @@ impl RobotPair {
     /// numbers are checked.
     pub(crate) fn ask_motions(
         &mut self,
-        a: &impl Motion,
-        b: &impl Motion,
+        motions: [&dyn Motion; 2],
         wanted: MarginQuery,
         sought: Sought,
     ) -> Result<RobotMotionAnswer, ProximityError> {
-        self.motions(a, b).decide(wanted, sought)
+        self.motions(motions).decide(wanted, sought)
     }
 
     /// [`clearance_of_motion`](Self::clearance_of_motion); or a lower bound of at least `limit`.
     /// The tolerance is checked.
     pub(crate) fn ask_clearance_of_motion(
         &mut self,
-        a: &impl Motion,
-        b: &impl Motion,
+        motions: [&dyn Motion; 2],
         tolerance: Real,
         limit: Real,
     ) -> Result<RobotMotionClearance, ProximityError> {
-        self.motions(a, b).clearance(tolerance, limit)
+        self.motions(motions).clearance(tolerance, limit)
     }
 
-    fn motions<'a, A, B>(&'a mut self, a: &'a A, b: &'a B) -> MotionPair<'a, A, B> {
-        MotionPair { memory: &mut self.motions, motions: (a, b), names: MOTIONS }
+    fn motions<'a>(&'a mut self, motions: [&'a dyn Motion; 2]) -> MotionPair<'a> {
+        MotionPair { memory: &mut self.motions, motions, names: MOTIONS }
     }
 
     /// Answers many pairs of robots on all cores.

@@ -224,7 +224,7 @@ impl SelfQuery {
     /// checked.
     pub(crate) fn ask_motion(
         &mut self,
-        motion: &impl Motion,
+        motion: &dyn Motion,
         wanted: MarginQuery,
         sought: Sought,
     ) -> Result<RobotMotionAnswer, ProximityError> {

@@ -5,10 +5,9 @@ use parry3d_f64::math::{Real, Vector};
 /// A bound on the displacement of a piece of the centreline from one time to another.
 ///
 /// # Definitions
-/// - The displacement of a point at a share of the piece is interpolated linearly between the
+/// - d: the displacement of a point at its share of the piece, interpolated linearly between the
 ///   displacements `ways` of the piece's two ends.
-/// - Let a point be at `p0` at the first time and at `p1` at the last, and let `d` be its
-///   displacement. At the fraction q of the time it is within `off` of `p0 + q d`, and also within
+/// - The point is at `p0` at the first time and at `p1` at the last. At the fraction q of the time it is within `off` of `p0 + q d`, and also within
 ///   `off` of `p1 - (1 - q) d`.
 ///
 /// # How to state it

@@ -44,8 +44,9 @@ use parry3d_f64::math::{Pose, Real};
 ///   has a tiny length.
 /// - A point of the centreline is identified at all times by its section and its share of the
 ///   section's length.
-/// - Flat ends stay flat: the robot's two ends, and the wider side of each step in radius. So the
-///   cap model must stay the same; a change from capsules to fitted caps, for example, is refused.
+/// - Ends that are flat because of the radii stay flat: the robot's two ends, and the wider side of
+///   each step in radius. So the cap model must stay the same; a change from capsules to fitted caps,
+///   for example, is refused. Other ends may become flat or round.
 /// ```
 /// use parry_continuum::parry::math::{Pose, Real, Vector};
 /// use parry_continuum::{Motion, RobotError, Speed, Tube, verify_motion};
@@ -121,6 +122,30 @@ pub trait Motion {
     /// of several motions. A motion that wraps another passes its value on.
     fn time_parts(&self) -> usize {
         1
+    }
+}
+
+/// A reference to a motion is that motion.
+impl<M: Motion + ?Sized> Motion for &M {
+    fn shape(&self, t: Real, tube: &mut Tube) -> Result<Pose, RobotError> {
+        (**self).shape(t, tube)
+    }
+
+    fn speed(&self, section: usize, shares: [Real; 2], times: [Real; 2]) -> Speed {
+        (**self).speed(section, shares, times)
+    }
+
+    fn displacement(
+        &self,
+        section: usize,
+        shares: [Real; 2],
+        times: [Real; 2],
+    ) -> Option<DisplacementBound> {
+        (**self).displacement(section, shares, times)
+    }
+
+    fn time_parts(&self) -> usize {
+        (**self).time_parts()
     }
 }
 

@@ -59,8 +59,8 @@ impl SectionSignature {
 const FASTEST_TURN: Real = (1_u64 << 24) as Real;
 
 /// An interval of time around a shape.
-pub(crate) struct MotionDrift<'a, M> {
-    pub motion: &'a M,
+pub(crate) struct MotionDrift<'a> {
+    pub motion: &'a dyn Motion,
     pub times: [Real; 2],
     /// The time of the shape.
     pub t: Real,
@@ -68,7 +68,7 @@ pub(crate) struct MotionDrift<'a, M> {
     pub half_length: Real,
 }
 
-impl<M: Motion> Drift for MotionDrift<'_, M> {
+impl Drift for MotionDrift<'_> {
     fn moves(&self, section: usize, end: usize) -> Real {
         // An invalid speed bounds nothing here; `check_speed` refuses it elsewhere.
         let speed = self.motion.speed(section, [end as Real; 2], self.times).point;

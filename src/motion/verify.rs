@@ -77,6 +77,10 @@ use parry3d_f64::math::Real;
 /// ));
 /// ```
 pub fn verify_motion(motion: &impl Motion, steps: u32) -> Result<(), RobotError> {
+    verify(motion, steps)
+}
+
+fn verify(motion: &dyn Motion, steps: u32) -> Result<(), RobotError> {
     let steps = steps.max(1);
     let (mut tube, mut sections, mut here) =
         (Tube::empty(), SectionSignature::default(), SampledShape::default());
@@ -158,7 +162,7 @@ impl Ranges {
     /// ranges that contain it.
     fn ways_and_angles(
         &self,
-        motion: &impl Motion,
+        motion: &dyn Motion,
         places: &[SampledPlace],
         times: [Real; 2],
         out: &mut Vec<[Real; 2]>,
@@ -253,7 +257,7 @@ fn check_courses(
     [before, here]: [&SampledShape; 2],
     middle: Option<&SampledShape>,
     places: &[SampledPlace],
-    motion: &impl Motion,
+    motion: &dyn Motion,
     ranges: &Ranges,
 ) -> Result<(), RobotError> {
     let times = [before.t, here.t];

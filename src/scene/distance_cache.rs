@@ -31,9 +31,10 @@
 //! If coordinates are so large that a place in a mesh's frame could be out of range, r is infinite.
 //! The lower bound is then -infinity, and the engine is asked.
 
+use super::odometer::Odometer;
 use crate::distance::Scalar;
 use crate::pair::PlacedRobot;
-use crate::query::nearest::{Odometer, PlacedOutline};
+use crate::query::nearest::PlacedOutline;
 use crate::robot::COORDINATE_LIMIT;
 use parry3d_f64::math::Real;
 

@@ -6,6 +6,7 @@ mod distance_cache;
 mod least_slack;
 mod motions;
 mod moving_robot;
+mod odometer;
 mod queries;
 mod scene_bounds;
 mod structure;

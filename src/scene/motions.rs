@@ -229,9 +229,9 @@ impl Scene {
         }))
     }
 
-    fn least_slack<M: Motion + ?Sized>(
+    fn least_slack(
         &mut self,
-        robots: &[MovingRobot<M>],
+        robots: &[MovingRobot],
         tolerance: Real,
     ) -> Result<LeastSlack<(Real, ScenePlace)>, SceneError> {
         let mut least = LeastSlack::new();
@@ -260,7 +260,7 @@ impl Scene {
             let limit = least.limit(margin);
             let RobotMotionClearance { lower, upper, uncertainty, t, sections, witness, .. } = self
                 .pair
-                .ask_clearance_of_motion(&a, &b, tolerance, limit)
+                .ask_clearance_of_motion([&a, &b], tolerance, limit)
                 .map_err(|error| of_motions(pair, [&a, &b], error))?;
             let robots = pair.map(|robot| robot as u32);
             let place = ScenePlace::Robots { robots, sections, witness };
@@ -298,7 +298,7 @@ impl Scene {
     fn with_moving_robots<M: Motion + ?Sized, T>(
         &mut self,
         motions: &[&M],
-        ask: impl FnOnce(&mut Self, &[MovingRobot<M>]) -> Result<T, SceneError>,
+        ask: impl FnOnce(&mut Self, &[MovingRobot]) -> Result<T, SceneError>,
     ) -> Result<T, SceneError> {
         let mut memory = std::mem::take(&mut self.moving);
         if memory.len() < motions.len() {
@@ -306,7 +306,7 @@ impl Scene {
         }
         let (mut robots, mut failed) = (Vec::with_capacity(motions.len()), None);
         for (number, (motion, memory)) in motions.iter().zip(&mut memory).enumerate() {
-            match MovingRobot::new(*motion, memory) {
+            match MovingRobot::new(motion, memory) {
                 Ok(robot) => robots.push(robot),
                 Err(error) => {
                     failed = Some(of_robot(number)(error));
@@ -323,9 +323,9 @@ impl Scene {
     }
 
     /// Asks all queries in order, until the answer is known.
-    fn decide_each<M: Motion + ?Sized>(
+    fn decide_each(
         &mut self,
-        robots: &[MovingRobot<M>],
+        robots: &[MovingRobot],
         moving: &[(usize, MovingStructure)],
         resolution: Real,
         found: &mut Findings,
@@ -367,7 +367,7 @@ impl Scene {
                 let [a, b] = pair.map(|robot| robots[robot].in_scene());
                 let answer = self
                     .pair
-                    .ask_motions(&a, &b, MarginQuery { margin, resolution }, sought)
+                    .ask_motions([&a, &b], MarginQuery { margin, resolution }, sought)
                     .map(|answer| {
                         let robots = pair.map(|robot| robot as u32);
                         Finding::new(&answer, |shapes| SceneMotionContact::Robots {
@@ -471,8 +471,8 @@ impl Findings {
 
 /// Decides about one robot and one structure, which moves if it has an `end`. The points of the
 /// answer are in the scene's frame.
-fn decide_structure<M: Motion + ?Sized>(
-    robot: &MovingRobot<M>,
+fn decide_structure(
+    robot: &MovingRobot,
     structure: &mut Structure,
     end: Option<&MovingStructure>,
     wanted: MarginQuery,
@@ -505,7 +505,7 @@ fn decide_structure<M: Motion + ?Sized>(
 }
 
 /// Attributes an error of two motions to the robot that causes it.
-fn of_motions(robots: [usize; 2], motions: [&impl Motion; 2], error: ProximityError) -> SceneError {
+fn of_motions(robots: [usize; 2], motions: [&dyn Motion; 2], error: ProximityError) -> SceneError {
     let ProximityError::TooFast { section, .. } = error else { return of_pair(robots)(error) };
     let [first, second] = motions.map(|motion| motion.speed(section, [0.0, 1.0], [0.0, 1.0]).point);
     of_robot(robots[usize::from(second > first)])(error)

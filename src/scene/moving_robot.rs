@@ -161,18 +161,21 @@ fn at_least(swept: &[SweptBody], structure: &Structure) -> Real {
 }
 
 /// A motion of a robot in a scene.
-pub(super) struct MovingRobot<'a, M: ?Sized> {
-    motion: &'a M,
+pub(super) struct MovingRobot<'a> {
+    motion: &'a dyn Motion,
     shapes: RefCell<KnownShapes>,
     swept: Vec<SweptBody>,
 }
 
-impl<'a, M: Motion + ?Sized> MovingRobot<'a, M> {
+impl<'a> MovingRobot<'a> {
     /// Bounds where the robot goes.
     ///
     /// # Errors
     /// The motion has no shape in the middle of a part, or the shape cannot be placed.
-    pub fn new(motion: &'a M, memory: &mut MovingRobotMemory) -> Result<Self, ProximityError> {
+    pub fn new(
+        motion: &'a dyn Motion,
+        memory: &mut MovingRobotMemory,
+    ) -> Result<Self, ProximityError> {
         let MovingRobotMemory { shapes, tube, pieces, swept } = memory;
         let mut shapes = std::mem::take(shapes);
         let mut swept = std::mem::take(swept);
@@ -232,12 +235,12 @@ impl<'a, M: Motion + ?Sized> MovingRobot<'a, M> {
     }
 
     /// The motion in the scene's frame.
-    pub fn in_scene(&self) -> PlacedMotion<'_, 'a, M> {
+    pub fn in_scene(&self) -> PlacedMotion<'_, 'a> {
         PlacedMotion { robot: self, scene_to_mesh: None }
     }
 
     /// The motion in the frame of a structure's mesh.
-    pub fn in_mesh(&self, structure: &Structure) -> PlacedMotion<'_, 'a, M> {
+    pub fn in_mesh(&self, structure: &Structure) -> PlacedMotion<'_, 'a> {
         PlacedMotion { robot: self, scene_to_mesh: structure.scene_to_mesh() }
     }
 
@@ -255,13 +258,13 @@ impl<'a, M: Motion + ?Sized> MovingRobot<'a, M> {
 }
 
 /// A robot's motion in some frame.
-pub(super) struct PlacedMotion<'r, 'a, M: ?Sized> {
-    robot: &'r MovingRobot<'a, M>,
+pub(super) struct PlacedMotion<'r, 'a> {
+    robot: &'r MovingRobot<'a>,
     /// Maps the scene's frame to that frame; `None` if they are the same.
     scene_to_mesh: Option<Pose>,
 }
 
-impl<M: Motion + ?Sized> Motion for PlacedMotion<'_, '_, M> {
+impl Motion for PlacedMotion<'_, '_> {
     fn shape(&self, t: Real, tube: &mut Tube) -> Result<Pose, RobotError> {
         let pose = self.robot.shape(t, tube)?;
         Ok(self.scene_to_mesh.map_or(pose, |scene_to_mesh| scene_to_mesh * pose))

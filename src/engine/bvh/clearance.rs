@@ -1,7 +1,8 @@
 //! Queries about tubes, as [`BvhSearch`] answers them.
 //!
 //! # Algorithm
-//! A tube may state no more of its flat ends than a turn. For such a tube:
+//! For some tubes a stated turn is all that is known of their flat ends
+//! (`is_turn_all_that_is_known`). For such a tube:
 //!
 //! 1. Answer the query as if the turn had not been stated ([`clearance_without_turn`]).
 //! 2. Answer the query with the turn.
@@ -34,7 +35,7 @@ impl BvhSearch {
     ///
     /// The answer always has bounds, and [`resolved`](Clearance::resolved) says whether they meet
     /// the tolerance. They may not, because samples are too coarse, because rounding hides more, or
-    /// because the query ends after 65,536 pieces. Both bounds allow for the error that the tube
+    /// because the query ends after 32,768 divisions. Both bounds allow for the error that the tube
     /// states of itself. This error is no part of the tolerance; the answer's
     /// [`uncertainty`](Clearance::uncertainty) reports it.
     ///
@@ -64,7 +65,7 @@ impl BvhSearch {
     /// `lower` is the least `lower` of the pieces, or else the answer's `upper`. For a tube that
     /// states a turn the answer combines two queries: the pieces come from the query with the
     /// larger `lower`. Once the query finds a common point with the mesh, it divides no further.
-    /// The `lower` of a farther piece depends on earlier queries. `out` is cleared first.
+    /// The `lower` of a piece farther than `upper` depends on earlier queries. `out` is cleared first.
     ///
     /// ```
     /// use parry_continuum::{Tube, parry::{math::{Pose, Vector}, shape::{Ball, TriMesh}}};

@@ -21,7 +21,9 @@ impl BvhSearch {
     ///   wall is never `Clear`, however far from the wall it is on both sides.
     /// - `Contact`: the answer names a shape that is at most the margin away, and its time.
     /// - `Undecided` with the reason [`Near`](crate::proximity::UndecidedReason::Near): the
-    ///   distance of some shape exceeds the margin by at most `resolution`. Two other cases have
+    ///   distance of some shape exceeds the margin by at most `resolution`, beside what the motion
+    ///   states as uncertain. The query tests 256 more shapes for a contact, then it ends. Two other
+    ///   cases have
     ///   this reason. An end of a link or section lies one radius behind a flat face, turns from
     ///   flat to round, and is the part that comes near. Or the length of a link vanishes for an
     ///   instant, and the ball that the link then is comes near.
@@ -295,8 +297,8 @@ impl BvhSearch {
 }
 
 /// A motion in a structure of a scene. The numbers of the queries are checked.
-pub(crate) struct SceneMotion<'a, M> {
-    pub motion: &'a M,
+pub(crate) struct SceneMotion<'a> {
+    pub motion: &'a dyn Motion,
     /// As in [`MotionSearch`].
     pub frame: Option<Real>,
     /// The vertices at the end of the motion, if they move.
@@ -308,7 +310,7 @@ impl BvhSearch {
     /// scene.
     pub(crate) fn ask_margin(
         &mut self,
-        asked: SceneMotion<impl Motion>,
+        asked: SceneMotion,
         wanted: MarginQuery,
         sought: Sought,
     ) -> Result<MotionAnswer, ProximityError> {
@@ -319,17 +321,17 @@ impl BvhSearch {
     /// `limit`.
     pub(crate) fn ask_clearance_of_motion(
         &mut self,
-        asked: SceneMotion<impl Motion>,
+        asked: SceneMotion,
         tolerance: Real,
         limit: Real,
     ) -> Result<MotionClearance, ProximityError> {
         self.scene_motion(asked).clearance(tolerance, limit)
     }
 
-    fn scene_motion<'a, M: Motion>(
+    fn scene_motion<'a>(
         &'a mut self,
-        SceneMotion { motion, frame, to }: SceneMotion<'a, M>,
-    ) -> MotionSearch<'a, M> {
+        SceneMotion { motion, frame, to }: SceneMotion<'a>,
+    ) -> MotionSearch<'a> {
         let mut search = self.context().motion(motion);
         search.frame = frame;
         if let Some(to) = to {
@@ -341,7 +343,7 @@ impl BvhSearch {
 
 impl<'a> Context<'a> {
     /// A search along a motion, with the warm start of the last one.
-    fn motion<M: Motion>(self, motion: &'a M) -> MotionSearch<'a, M> {
+    fn motion(self, motion: &'a dyn Motion) -> MotionSearch<'a> {
         let (search, Remembered { motion: memory, .. }) = self.search();
         MotionSearch { search, memory, motion, last: None, does_mesh_move: false, frame: None }
     }

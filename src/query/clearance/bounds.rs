@@ -2,28 +2,30 @@
 //!
 //! # Definitions
 //! - `lower`, `direction_gap`, `found` and rank of a piece: see `refine::best_first`.
-//! - `upper`: the least `found` of all pieces that step 2 took.
+//! - `upper`: the least `found` of all pieces that step 4 took.
 //! - `aim`: the permitted gap between the bounds.
 //! - `hint`: an upper bound on the clearance, from a place of an earlier query or from any measured
 //!   piece.
 //!
 //! # Algorithm
-//! 1. **Begin** with pieces that turn by at most 1 rad, and measure them.
-//! 2. **Take** the measured piece of least rank. Its `found` may improve `upper`.
-//! 3. **Stop** if its `lower` + `direction_gap` is at least `upper - aim`. Otherwise divide it and
-//!    measure its halves. Repeat from 2.
-//! 4. **Answer.** The lower bound is the least `lower` of all pieces.
+//! 1. **Begin** with pieces that turn by at most 1 rad.
+//! 2. **Measure** the first piece, if it is unmeasured, and begin step 2 again.
+//! 3. **Stop** if its `lower` + `direction_gap` is at least `upper - aim`. Its `found` is then not
+//!    used.
+//! 4. **Take** it: its `found` may improve `upper`. Stop if step 3 now holds. Otherwise divide it,
+//!    and go back to step 2.
+//! 5. **Answer.** The lower bound is the least `lower` of all pieces, at most `upper`.
 //!
-//! **Warm start.** Bodies are first searched within `hint`. A body without a result is searched
-//! again, farther away, before its rank is reached. So the hint only saves work: the upper bound of
-//! the answer comes from step 2 alone.
+//! **Warm start.** Bodies are first searched within `hint`. A body without a result is *distant*: its
+//! `lower` becomes the bound of that search, and when it is first it is searched again, within
+//! `upper`. So the hint only saves work: the upper bound of the answer comes from step 4 alone.
 //!
 //! # Claim
 //! The answer depends neither on the hint nor on start triangles. A finer tolerance never gives
 //! looser bounds.
 //!
-//! **Proof.** Steps 2 to 4 depend only on the sequence of divisions, which is the same for every
-//! hint (`refine::best_first`). The tolerance decides only when step 3 stops. A piece that cannot
+//! **Proof.** Steps 2 to 5 depend only on the sequence of divisions, which is the same for every
+//! hint (`refine::best_first`). The tolerance decides only when the query stops. A piece that cannot
 //! be divided keeps its `lower` and never stops the sequence. Along the sequence no `lower` falls
 //! and `upper` never rises.
 
@@ -34,7 +36,7 @@ use crate::refine::{
 };
 use parry3d_f64::math::Real;
 
-/// The most divisions of a query; each makes two pieces. After it the query returns the bounds
+/// The most divisions of a query; each adds one piece. After them the query returns the bounds
 /// found so far. Limits the time, far above the need of any tolerance that the samples allow.
 pub(super) const MOST_DIVISIONS: u32 = 1 << 15;
 
@@ -51,7 +53,7 @@ pub(crate) fn clearance<'m>(
     let mut hint = Hint { upper: Real::INFINITY, triangle: memory.last.map(|last| last.triangle) };
     // If the mesh is much larger than the tube, a near mesh allows a smaller `slack`. The bound for
     // it must not depend on earlier queries.
-    if tube.gains_from_sharpening() {
+    if tube.gains_from_tightening() {
         let first = tube.first_bound();
         tube.tighten_slack(first.upper);
         hint.take(&tube.bound_at(first.section, first.witness.arc_length, first.witness.triangle));
@@ -110,7 +112,7 @@ pub(crate) struct BoundsSearch<'a, T: Refinable> {
     tolerance: Real,
     /// The permitted gap between the bounds.
     aim: Real,
-    /// The upper bound of step 2.
+    /// The upper bound of step 4.
     pub best: Option<T::Upper>,
     /// How many pieces may still be divided.
     left: u32,
@@ -147,7 +149,8 @@ impl<'a, T: Refinable> BoundsSearch<'a, T> {
     pub(crate) fn run(&mut self, limit: Real) -> Result<bool, ProximityError> {
         while let Some(first) = self.pieces.first() {
             let upper = self.upper();
-            // An unmeasured piece may still have the least lower bound.
+            // An unmeasured piece may rank lower than it will when it is measured. It ends the loop
+            // only if even its `lower` is at least `upper`.
             let can_wait = first.is_measured || first.least >= upper;
             if can_wait && first.least >= upper - self.aim {
                 return Ok(true);
@@ -160,11 +163,10 @@ impl<'a, T: Refinable> BoundsSearch<'a, T> {
                 self.measure(piece)?;
                 continue;
             };
-            // Step 2.
+            // Step 4.
             if self.improves(found) {
                 self.best = Some(*found);
             }
-            // Step 3.
             if first.least >= self.upper() - self.aim || self.left == 0 {
                 self.pieces.push(self.tube, piece);
                 return Ok(true);
@@ -184,8 +186,8 @@ impl<'a, T: Refinable> BoundsSearch<'a, T> {
         })
     }
 
-    /// Measures a piece within the hint; a piece known to be farther, within the upper bound. This
-    /// query never divides a piece before it is measured.
+    /// Measures an open piece within the hint. A piece that is distant, or whose `lower` exceeds the
+    /// hint, is measured within `upper`.
     fn measure(
         &mut self,
         piece: PendingPiece<T::Piece, T::Body, T::Upper>,
@@ -198,6 +200,7 @@ impl<'a, T: Refinable> BoundsSearch<'a, T> {
                 let (lower, state) = (piece.lower.max(bound), PieceState::Distant);
                 self.pieces.push(self.tube, PendingPiece { lower, state, ..piece });
             }
+            // This query divides no piece before it is measured.
             Examined::Divided => {}
             Examined::Measured(found) => self.hint.take(&found),
         }
@@ -243,7 +246,7 @@ impl From<&MeshUpperBound> for LastPlace {
     }
 }
 
-/// The state that warm-starts the next query about a tube.
+/// The place that warm-starts the next query about a tube, and memory that is reused.
 #[derive(Clone, Default)]
 pub(crate) struct TubeMemory {
     pub pieces: MeshPieces,

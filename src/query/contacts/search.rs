@@ -58,7 +58,7 @@ impl ContactSearch<'_> {
     /// Adds to `found` the triangles that may be at most `bound` from a link.
     fn near(&mut self, link: &PlacedLink, bound: Real, found: &mut TriangleCandidates) {
         let hierarchy = self.search.hierarchy;
-        match hierarchy.searched(self.search.level, link) {
+        match hierarchy.in_resolving_precision(self.search.level, link) {
             Searched::Single(searched) => {
                 let across = self.across.get_or_build(|| OppositeCorners::new(hierarchy.single()));
                 gather(self.search.single(), &searched, bound, Some(across), found);
@@ -126,7 +126,7 @@ impl<E: Lane> LeafVisitor<E> for CandidateGather<'_, E> {
             (L::splat(token, self.limit), L::splat(token, self.searched.error));
         for lane in (0..BLOCK).step_by(L::LANES) {
             let vertices = load_vertices::<L>(token, &leaf.rows, lane);
-            let near = lanes.not_behind_plane(vertices, limit_of_all);
+            let near = lanes.not_excluded_by_plane(vertices, limit_of_all);
             in_question |= near << lane;
             if near != 0
                 && let Some(across) = across

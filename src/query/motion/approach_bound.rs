@@ -13,9 +13,10 @@ const MAX_INTERVALS: Real = (1_u64 << 24) as Real;
 pub(crate) struct ApproachBound {
     /// Half of the length of the interval, rounded up.
     half_length: Real,
-    /// How far the flat ends that may become round move in that time.
+    /// How far the ends that may become round, and the rims of links that may lose their direction,
+    /// move in that time; the larger of both.
     pub cap_change: Real,
-    /// How long before and after the middle shape the unresolved pieces are decided.
+    /// How long before and after the middle shape the unresolved pieces provably keep the margin.
     pub hold: Real,
 }
 
@@ -28,7 +29,7 @@ pub(crate) struct Approach {
     /// V: an upper bound on the speed of approach, the sum of both.
     pub speed: Real,
     /// tau V: how much nearer the piece may come than in the middle shape.
-    pub reach: Real,
+    pub distance: Real,
     /// How much more the piece may turn than the middle shape shows; 0 where turns do not matter.
     pub extra_turn: Real,
 }
@@ -55,8 +56,8 @@ pub(crate) fn midpoint(times: [Real; 2]) -> Real {
     0.5 * times[0] + 0.5 * times[1]
 }
 
-/// Returns half of an interval, rounded up. The midpoint is rounded, and so is a motion's own time
-/// in a path: by less than 4 u, however short the interval.
+/// Returns half of an interval, rounded up. The midpoint is rounded, and so is the time that a path
+/// of motions passes to one of them: by less than 4 u, however short the interval.
 pub(crate) fn half_length(times: [Real; 2]) -> Real {
     0.5 * (times[1] - times[0]) * (1.0 + 4.0 * Real::UNIT_ROUNDOFF) + 4.0 * Real::UNIT_ROUNDOFF
 }
@@ -76,7 +77,7 @@ impl ApproachBound {
     /// Returns the motion of a piece with these speeds.
     pub(super) fn of_piece(&self, speeds: [Real; 2], extra_turn: Real) -> Approach {
         let speed = (speeds[0] + speeds[1]) * (1.0 + 4.0 * Real::UNIT_ROUNDOFF);
-        Approach { speeds, speed, reach: self.half_length * speed, extra_turn }
+        Approach { speeds, speed, distance: self.half_length * speed, extra_turn }
     }
 
     /// Whether flat ends that may become round are so fast that no interval is short enough to show

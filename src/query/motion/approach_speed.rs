@@ -7,9 +7,9 @@
 //!    of the centreline, and so the discs in every direction. V is the speed of the centreline.
 //! 2. **Flat ends.** A body with a flat end contains discs. Their points are faster by at most
 //!    radius x turn.
-//! 3. **Round end of a section.** Only the front half of its ball counts. The other half lies in
-//!    the discs behind it, or beyond a face, where it is no part of the tube. The front half turns
-//!    like a disc.
+//! 3. **Round end of a section.** It needs no term of its own. Only the front half of its ball
+//!    counts: the other half lies in the discs behind it, or beyond a face, where it is no part of
+//!    the tube. The front half turns like a disc, so case 2 covers it.
 
 use crate::distance::Scalar;
 use crate::motion::{Motion, check_speed};
@@ -31,8 +31,8 @@ impl ApproachSpeed {
     ///
     /// # Errors
     /// A stated speed is negative or not finite.
-    pub(super) fn of<M: Motion>(
-        motion: &M,
+    pub(super) fn of(
+        motion: &dyn Motion,
         times: [Real; 2],
         &SectionRange { section, shares, outer, radius }: &SectionRange,
     ) -> Result<Self, RobotError> {

@@ -29,7 +29,7 @@ impl CurrentShape {
     ///
     /// # Errors
     /// The motion has no shape at `t`, or its sections differ from earlier ones.
-    pub(super) fn set_time<M: Motion>(&mut self, motion: &M, t: Real) -> Result<Pose, RobotError> {
+    pub(super) fn set_time(&mut self, motion: &dyn Motion, t: Real) -> Result<Pose, RobotError> {
         // Only an error stated by this shape counts.
         self.tube.forget_error();
         let pose = motion.shape(t, &mut self.tube)?;
@@ -39,9 +39,9 @@ impl CurrentShape {
 
     /// Marks the flat ends that stay flat between two times, whose middle shape this is. Returns
     /// how far the other flat ends move.
-    pub(super) fn mark_lasting_faces_between<M: Motion>(
+    pub(super) fn mark_lasting_faces_between(
         &mut self,
-        motion: &M,
+        motion: &dyn Motion,
         times: [Real; 2],
     ) -> Real {
         self.tube.mark_lasting_faces_between(&MotionDrift {

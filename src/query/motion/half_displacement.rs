@@ -6,7 +6,8 @@
 //!   middle shape, every point moves by a vector in the triangle (0, a, b), up to an error of
 //!   `off`. Here a and b are the displacements of the ends of the piece: at the share s of the
 //!   piece and the fraction q of the time, the displacement is q ((1 - s) a + s b). Before the
-//!   middle shape a and b have the opposite sign.
+//!   middle shape, a and b are the negatives of the displacements up to it, and q runs backwards
+//!   from it.
 //! - n: the normal of a plane that separates the body in the middle shape from a triangle. gap: the
 //!   width of the separation along n.
 //! - **beside**: (radius x turn + mesh speed) x time. The body contains balls around the points, or
@@ -17,8 +18,8 @@
 //!
 //! `gap - (max(0, -n . a, -n . b) + off + beside)`.
 //!
-//! So motion along the wall or away from it needs no gap. Every n is valid, and each triangle may
-//! have its own.
+//! So motion along the wall or away from it needs no gap. Every unit vector n is valid, and each
+//! triangle may have its own.
 //!
 //! **Rounding.** The gap and the sum use the same n. All coordinates and lengths are at most
 //! `reach`. Each loses less than 32 u reach; the slack of a placed tube is 128 u reach, more than
@@ -35,7 +36,7 @@ pub(super) struct HalfDisplacement {
     /// The displacements a and b relative to the middle shape.
     pub ways: [Vector; 2],
     /// How much nearer it may come in addition, in any direction: off + beside.
-    pub off: Real,
+    pub any_direction: Real,
 }
 
 /// Covers fewer than 16 roundings.
@@ -48,11 +49,14 @@ impl HalfDisplacement {
         let is_known = bound.ways.iter().all(|way| way.is_finite())
             && (0.0..Real::INFINITY).contains(&bound.off);
         let sign = if side == 0 { -1.0 } else { 1.0 };
-        is_known.then(|| Self { ways: bound.ways.map(|way| way * sign), off: bound.off + beside })
+        is_known.then(|| Self {
+            ways: bound.ways.map(|way| way * sign),
+            any_direction: bound.off + beside,
+        })
     }
 
-    /// Returns a body that contains the body at every displacement in the triangle (0, a, b). The
-    /// error `off` is not included: the caller searches that much farther.
+    /// Returns a body that contains the body at every displacement in the triangle (0, a, b).
+    /// `any_direction` is not included: the caller searches that much farther.
     ///
     /// All displacements lie in the triangle (0, a, b). Along the axis the body becomes longer by
     /// their range. Let a' and b' be the components across the axis. The body moves by (a' + b') /
@@ -61,20 +65,19 @@ impl HalfDisplacement {
         let axis = Vector::from(body.axis());
         let along = self.ways.map(|way| way.dot(axis));
         let across = [0, 1].map(|end| self.ways[end] - axis * along[end]);
-        let midpoint = (across[0] + across[1]) * 0.25;
-        let wider = [-midpoint, across[0] - midpoint, across[1] - midpoint].map(Vector::length);
+        let shift = (across[0] + across[1]) * 0.25;
+        let wider = [-shift, across[0] - shift, across[1] - shift].map(Vector::length);
         let back = along[0].min(along[1]).min(0.0);
         let ahead = along[0].max(along[1]).max(0.0);
         let radius = body.radius() + wider[0].max(wider[1]).max(wider[2]);
-        let (start, end) =
-            (body.start() + midpoint + axis * back, body.end() + midpoint + axis * ahead);
+        let (start, end) = (body.start() + shift + axis * back, body.end() + shift + axis * ahead);
         PlacedLink::between(start, end, radius, body.flat())
     }
 
     /// Returns the gap that the displacement uses up along a normal from the triangle to the piece.
     pub(super) fn gap_loss(&self, normal: Vector) -> Real {
         let against = (-normal.dot(self.ways[0])).max(-normal.dot(self.ways[1])).max(0.0);
-        (against + self.off) * UP
+        (against + self.any_direction) * UP
     }
 }
 
@@ -86,8 +89,9 @@ pub(super) fn gap(body: &PlacedLink, corners: [Vector; 3], normal: Vector) -> Re
     let size = normal.length();
     // A flat end extends along the normal only by its disc.
     let across = normal.cross(axis).length();
-    let [first, last] = body.flat().map(|flat| body.radius() * if flat { across } else { size });
-    let least = (-first).min(normal.dot(body.along()) - last);
+    let [at_start, at_end] =
+        body.flat().map(|flat| body.radius() * if flat { across } else { size });
+    let least = (-at_start).min(normal.dot(body.along()) - at_end);
     let most = corners.map(|corner| normal.dot(corner - start));
     least - most[0].max(most[1]).max(most[2])
 }
@@ -125,8 +129,10 @@ mod tests {
         let (mut least, mut flat, mut away) = (Real::INFINITY, 0, 0);
         for _ in 0..400 {
             let body = body(&mut random);
-            let side =
-                HalfDisplacement { ways: [random.point(), random.point()], off: random.unit() };
+            let side = HalfDisplacement {
+                ways: [random.point(), random.point()],
+                any_direction: random.unit(),
+            };
             let (corners, normal) =
                 ([random.point(), random.point(), random.point()], random.direction());
             let stated = gap(&body, corners, normal) - side.gap_loss(normal);
@@ -139,7 +145,7 @@ mod tests {
                     ways.into_iter()
                         .fold(nearest, |nearest, way| nearest.min(normal.dot(point + way)))
                 });
-            let left = nearest - side.off - beyond;
+            let left = nearest - side.any_direction - beyond;
             assert!(left >= stated - 1e-12, "{left} {stated} {body:?} {side:?}");
             least = least.min(left - stated);
             flat += usize::from(body.flat() != [false; 2] && left - stated < 0.01);
@@ -158,7 +164,7 @@ mod tests {
             let scale = random.between(0.0, 1.0);
             let side = HalfDisplacement {
                 ways: [random.point() * scale, random.point() * scale],
-                off: 0.0,
+                any_direction: 0.0,
             };
             let swept = side.swept_body(&body);
             for point in points(&mut random, &body) {

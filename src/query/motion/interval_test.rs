@@ -4,9 +4,9 @@
 //! # Definitions
 //! - d, upper: the lower and the upper bound on the clearance of a piece in the middle shape.
 //! - approach: tau V, how much nearer the piece may come in the interval
-//!   ([`Approach::reach`]).
+//!   ([`Approach::distance`]).
 //! - **Fine**: approach <= resolution / 2, and the extra turn is at most [`MIN_EXTRA_TURN`]. The
-//!   middle shape then decides.
+//!   middle shape then decides. (The extra turn is 0 beside a mesh: it matters in self contact.)
 //!
 //! # Algorithm
 //! A body beyond margin + approach + slack is cleared. Otherwise:
@@ -42,9 +42,10 @@ pub(crate) struct IntervalResult<F> {
     pub contact: Option<F>,
     /// Whether the place moves by at most half of the resolution in the interval.
     pub is_fine: bool,
-    /// Whether some piece is within the resolution of the margin.
+    /// Whether a piece was given up, because no shorter interval decides it.
     pub is_undecided: bool,
-    /// Whether the clearance of the shape exceeds the margin by at most the resolution.
+    /// Whether the upper bound of this shape exceeds the margin by at most the resolution and
+    /// stated uncertainty. It limits the number of further shapes.
     pub is_near: bool,
     /// Whether a limit of work stopped the test, and with it the query.
     pub gives_up: bool,
@@ -86,10 +87,10 @@ impl<D: Refinable, P, V: RelativeMotion<D, P>> RefinePolicy<D, P> for IntervalTe
     ) -> Result<(BodyQuery, Approach), ProximityError> {
         let speeds = self.moving.speeds(part, piece, outer, tube)?;
         let approach = self.approach_bound.of_piece(speeds, self.moving.extra_turn(part, tube));
-        let (reach, MarginQuery { margin, resolution }) = (approach.reach, self.wanted);
-        let is_wide = outer.excess() > 2.0 * reach.max(resolution)
+        let (nearer, MarginQuery { margin, resolution }) = (approach.distance, self.wanted);
+        let is_wide = outer.excess() > 2.0 * nearer.max(resolution)
             && outer.excess() > 0.5 * tube.radius(piece).max(margin);
-        let aim = reach.max(0.5 * resolution);
+        let aim = nearer.max(0.5 * resolution);
         let bound = self.bound(&approach, tube.slack());
         Ok((BodyQuery { bound, is_wide, aim, start: self.moving.seed_triangle() }, approach))
     }
@@ -115,7 +116,7 @@ impl<D: Refinable, P, V: RelativeMotion<D, P>> RefinePolicy<D, P> for IntervalTe
         // Step 2.
         let is_time_to_blame = !self.is_fine(approach)
             && (upper <= self.bound(approach, tube.slack())
-                || near.outer.excess() <= 0.25 * approach.reach);
+                || near.outer.excess() <= 0.25 * approach.distance);
         if is_time_to_blame {
             self.record_unresolved(tube, near, approach)?;
             return Ok(RefineAction::Settled);
@@ -146,7 +147,7 @@ impl<D: Refinable, P, V: RelativeMotion<D, P>> RefinePolicy<D, P> for IntervalTe
                 return Ok(());
             }
         }
-        let moved = approach.reach.max(self.approach_bound.cap_change);
+        let moved = approach.distance.max(self.approach_bound.cap_change);
         let is_open_end_decided =
             moved <= resolution / 128.0 || self.approach_bound.caps_change_too_fast(resolution);
         if self.is_fine(approach) && (!may_open || is_open_end_decided) {
@@ -160,12 +161,12 @@ impl<D: Refinable, P, V: RelativeMotion<D, P>> RefinePolicy<D, P> for IntervalTe
 impl<V, F> IntervalTest<V, F> {
     /// Returns the distance beyond which a body keeps the margin during the whole interval.
     fn bound(&self, approach: &Approach, slack: Real) -> Real {
-        self.wanted.margin + approach.reach + slack
+        self.wanted.margin + approach.distance + slack
     }
 
     /// Whether the middle shape decides: the motion is smaller than the resolution allows.
     fn is_fine(&self, approach: &Approach) -> bool {
-        approach.reach <= 0.5 * self.wanted.resolution && approach.extra_turn <= MIN_EXTRA_TURN
+        approach.distance <= 0.5 * self.wanted.resolution && approach.extra_turn <= MIN_EXTRA_TURN
     }
 
     /// Records a piece that keeps the margin only for some time before and after the middle shape.

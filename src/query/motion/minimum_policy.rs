@@ -2,14 +2,14 @@
 //! shape.
 //!
 //! # Definitions
-//! See `minimum_rounds` for `upper`, aim, `wanted`, d, reach and direction gap.
+//! See `minimum_rounds` for `upper`, aim, `wanted`, d, nearer and direction gap.
 //!
 //! # Algorithm
-//! A body beyond `upper + reach + slack` is settled. Otherwise its upper bound may lower `upper`,
+//! A body beyond `upper + nearer + slack` is settled. Otherwise its upper bound may lower `upper`,
 //! and then:
-//! 1. **Settled** if `d - reach - slack >= wanted`.
+//! 1. **Settled** if `d - nearer - slack >= wanted`.
 //! 2. **Settled** with a larger gap if only the unknown direction of a face prevents the decision.
-//! 3. **Unresolved** if the piece is not fine (`reach > aim / 4`) and the motion prevents the
+//! 3. **Unresolved** if the piece is not fine (`nearer > aim / 4`) and the motion prevents the
 //!    decision. Shorter intervals test the piece again; around t it stays `wanted` away for the
 //!    time `hold`.
 //! 4. **Halve** otherwise.
@@ -24,7 +24,7 @@ use crate::refine::{
 use parry3d_f64::math::Real;
 
 /// The most pieces processed per shape; after them no piece is halved.
-const MAX_PIECES: u32 = 1 << 16;
+const MAX_PIECES_PER_INTERVAL: u32 = 1 << 16;
 
 /// The policy for the middle shape of an interval.
 pub(super) struct MinimumPolicy<'b, V, U> {
@@ -51,7 +51,15 @@ impl<'b, V, U: UpperBound> MinimumPolicy<'b, V, U> {
     ) -> Self {
         // The bounds of the answer must meet the tolerance after rounding.
         let aim = (known.tolerance + known.uncertainty - 4.0 * slack).max(0.0);
-        Self { moving, approach_bound, known, t, aim, nearest: Real::INFINITY, left: MAX_PIECES }
+        Self {
+            moving,
+            approach_bound,
+            known,
+            t,
+            aim,
+            nearest: Real::INFINITY,
+            left: MAX_PIECES_PER_INTERVAL,
+        }
     }
 
     /// The permitted gap between the bounds.
@@ -87,9 +95,9 @@ impl<'b, V, U: UpperBound> MinimumPolicy<'b, V, U> {
     }
 }
 
-/// Returns a lower bound on the clearance of a piece in the interval: `d - reach - slack`.
+/// Returns a lower bound on the clearance of a piece in the interval: `d - nearer - slack`.
 fn lower_bound<D: Refinable, P>(tube: &D, near: &BoundedPiece<D, P>, approach: &Approach) -> Real {
-    D::distance(near.nearest) - approach.reach - tube.slack()
+    D::distance(near.nearest) - approach.distance - tube.slack()
 }
 
 impl<D: Refinable, P, V: RelativeMotion<D, P>> RefinePolicy<D, P>
@@ -114,13 +122,13 @@ impl<D: Refinable, P, V: RelativeMotion<D, P>> RefinePolicy<D, P>
         self.left = self.left.saturating_sub(1);
         let approach =
             self.approach_bound.of_piece(self.moving.speeds(part, piece, outer, tube)?, 0.0);
-        let (reach, upper) = (approach.reach, self.known.upper());
+        let (nearer, upper) = (approach.distance, self.known.upper());
         let is_wide = self.left > 0
-            && outer.excess() > 2.0 * self.aim.max(reach)
+            && outer.excess() > 2.0 * self.aim.max(nearer)
             && (outer.is_flat() || outer.excess() > 0.25 * upper);
         // Not `wanted`: a piece farther than `upper` is settled for all later rounds.
-        let bound = upper + reach + tube.slack();
-        let (aim, start) = (self.aim.max(reach), self.moving.seed_triangle());
+        let bound = upper + nearer + tube.slack();
+        let (aim, start) = (self.aim.max(nearer), self.moving.seed_triangle());
         Ok((BodyQuery { bound, is_wide, aim, start }, approach))
     }
 
@@ -144,16 +152,16 @@ impl<D: Refinable, P, V: RelativeMotion<D, P>> RefinePolicy<D, P>
             self.settle(lower);
             return Ok(RefineAction::Settled);
         }
-        let (reach, direction_gap) = (approach.reach, tube.direction_uncertainty(near.piece));
-        if direction_gap > 0.0 && reach <= 0.25 * self.aim && lower >= wanted - direction_gap {
+        let (nearer, direction_gap) = (approach.distance, tube.direction_uncertainty(near.piece));
+        if direction_gap > 0.0 && nearer <= 0.25 * self.aim && lower >= wanted - direction_gap {
             let UnresolvedGap { lower: least, direction_gap: most } = self.known.unresolved;
             self.known.unresolved =
                 UnresolvedGap { lower: least.min(lower), direction_gap: most.max(direction_gap) };
             self.settle(lower);
             return Ok(RefineAction::Settled);
         }
-        if reach > 0.25 * self.aim
-            && (near.found.upper() <= wanted + reach || near.outer.excess() <= 0.25 * reach)
+        if nearer > 0.25 * self.aim
+            && (near.found.upper() <= wanted + nearer || near.outer.excess() <= 0.25 * nearer)
         {
             self.record_unresolved(tube, near, approach);
             return Ok(RefineAction::Settled);
@@ -167,11 +175,11 @@ impl<D: Refinable, P, V: RelativeMotion<D, P>> RefinePolicy<D, P>
         near: &BoundedPiece<D, P>,
         approach: &Approach,
     ) -> Result<(), ProximityError> {
-        let reach = approach.reach;
+        let nearer = approach.distance;
         let is_fine = if tube.may_become_round(near.piece) {
-            reach.max(self.approach_bound.cap_change) <= self.aim / 128.0
+            nearer.max(self.approach_bound.cap_change) <= self.aim / 128.0
         } else {
-            reach <= (0.25 * self.aim).max(near.found.upper() - D::distance(near.nearest))
+            nearer <= (0.25 * self.aim).max(near.found.upper() - D::distance(near.nearest))
         };
         if is_fine {
             self.settle(lower_bound(tube, near, approach));

@@ -9,11 +9,10 @@ use super::minimum_rounds::{Minimized, Minimum, MinimumBounds, RoundMemory, mini
 use super::motion_search::MotionSearch;
 use super::moving_tube::Left;
 use crate::answer::{MotionClearance, ProximityError};
-use crate::motion::Motion;
 use crate::refine::{MeshUpperBound, Refinable, TubeInMesh, refine};
 use parry3d_f64::math::Real;
 
-impl<M: Motion> MotionSearch<'_, M> {
+impl MotionSearch<'_> {
     /// Returns bounds on the least clearance that are at most `tolerance` apart if possible; or a
     /// lower bound of at least `limit`.
     pub(crate) fn clearance(
@@ -36,7 +35,7 @@ fn seed(known: &mut MinimumBounds<MeshUpperBound>, tube: &mut TubeInMesh, t: Rea
     });
 }
 
-impl<M: Motion> Minimized for MotionSearch<'_, M> {
+impl Minimized for MotionSearch<'_> {
     type Upper = MeshUpperBound;
 
     fn memory(&mut self) -> RoundMemory<'_> {
@@ -85,9 +84,9 @@ impl<M: Motion> Minimized for MotionSearch<'_, M> {
                     [true; 2]
                 } else {
                     // `wanted` may have fallen since a piece was recorded.
-                    let Left { sides, is_any_settled } =
+                    let Left { sides, is_any_cleared } =
                         policy.moving.clear_by_displacement(tube, wanted);
-                    if is_any_settled {
+                    if is_any_cleared {
                         policy.settle(wanted);
                     }
                     sides

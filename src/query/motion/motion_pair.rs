@@ -55,14 +55,14 @@ pub(crate) struct MotionsMemory {
 }
 
 /// Two motions beside one another.
-pub(crate) struct MotionPair<'a, A, B> {
+pub(crate) struct MotionPair<'a> {
     pub memory: &'a mut MotionsMemory,
-    pub motions: (&'a A, &'a B),
+    pub motions: [&'a dyn Motion; 2],
     /// The names of the motions in error messages.
     pub names: [&'static str; 2],
 }
 
-impl<A: Motion, B: Motion> MotionPair<'_, A, B> {
+impl MotionPair<'_> {
     /// Decides whether the margin is kept at all times.
     pub(crate) fn decide(
         &mut self,
@@ -83,7 +83,7 @@ impl<A: Motion, B: Motion> MotionPair<'_, A, B> {
     fn begin(&mut self) {
         let MotionsMemory { current, intervals, .. } = &mut *self.memory;
         current.iter_mut().for_each(CurrentShape::forget);
-        intervals::begin(intervals, [self.motions.0.time_parts(), self.motions.1.time_parts()]);
+        intervals::begin(intervals, self.motions.map(|motion| motion.time_parts()));
     }
 
     /// Returns bounds on the least clearance that are at most `tolerance` apart if possible; or a
@@ -139,8 +139,8 @@ impl<A: Motion, B: Motion> MotionPair<'_, A, B> {
 }
 
 /// A search for the least clearance of two motions.
-struct PairClearance<'s, 'a, A, B> {
-    pair: &'s mut MotionPair<'a, A, B>,
+struct PairClearance<'s, 'a> {
+    pair: &'s mut MotionPair<'a>,
     /// How many pairs of pieces may still be tested.
     left: u32,
 }
@@ -152,7 +152,7 @@ fn seed(known: &mut MinimumBounds<PairUpperBound>, tubes: &TubePair, t: Real) {
     });
 }
 
-impl<A: Motion, B: Motion> Minimized for PairClearance<'_, '_, A, B> {
+impl Minimized for PairClearance<'_, '_> {
     type Upper = PairUpperBound;
 
     fn memory(&mut self) -> RoundMemory<'_> {
@@ -227,13 +227,13 @@ impl<A: Motion, B: Motion> Minimized for PairClearance<'_, '_, A, B> {
 const MAX_PAIRS_PER_INTERVAL: usize = 1 << 16;
 
 /// Places both robots in their middle shapes.
-fn shapes<'p, A: Motion, B: Motion>(
-    motions: (&A, &B),
+fn shapes<'p>(
+    motions: [&dyn Motion; 2],
     names: [&'static str; 2],
     [first, second]: &'p mut [CurrentShape; 2],
     times: [Real; 2],
 ) -> Result<[PlacedShape<'p>; 2], ProximityError> {
-    let [first, second] = [shape(motions.0, first, times), shape(motions.1, second, times)];
+    let [first, second] = [shape(motions[0], first, times), shape(motions[1], second, times)];
     let first = first.map_err(|error| error.of_robot(names[0]))?;
     Ok([first, second.map_err(|error| error.of_robot(names[1]))?])
 }
@@ -247,8 +247,8 @@ struct PlacedShape<'a> {
     fastest: usize,
 }
 
-fn shape<'p, M: Motion>(
-    motion: &M,
+fn shape<'p>(
+    motion: &dyn Motion,
     current: &'p mut CurrentShape,
     times: [Real; 2],
 ) -> Result<PlacedShape<'p>, ProximityError> {

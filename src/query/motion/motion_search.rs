@@ -10,7 +10,7 @@
 //!
 //! # Claim
 //! If d > margin + tau V, the piece keeps the margin during the whole interval. Otherwise it keeps
-//! the margin for (d - margin) / V before and after t.
+//! the margin for max(0, d - margin) / V before and after t.
 //!
 //! **Proof.** Points of the piece are within tau V of where they are at t. Which points of the
 //! piece a body contains is derived in `refine::bounding_body` and `approach_speed`.
@@ -20,14 +20,15 @@
 //! 2. **Test** the pieces of an interval in its middle shape (`interval_test`). If the width of a
 //!    body prevents the decision, and not the motion, the piece is halved in the same shape.
 //! 3. **Displacements.** A speed bounds how far a piece moves, not in which direction. If few
-//!    pieces are unresolved and the motion bounds their displacements, each is tested on both sides
-//!    of t. The test separates it from every triangle that is near enough (`half_displacement`,
+//!    pieces are unresolved and the motion bounds their displacements, each is tested on the sides
+//!    of t where no piece before it failed. The test separates it from every triangle that is near enough (`half_displacement`,
 //!    `separating_planes`). A cleared piece is dropped on that side. If all are cleared, the side
 //!    is done. A piece with little room rarely passes this test, so it is tested rarely, unless it
 //!    passes.
 //! 4. **Divide.** The remaining parts of the interval, before and after t, become intervals with
 //!    the unresolved pieces.
-//! 5. **Stop** when no interval is left, at a contact, or after [`MAX_SHAPES`] shapes (`progress`).
+//! 5. **Stop** when no interval is left, at a contact, after [`MAX_SHAPES`] shapes, or a fixed number
+//!    of shapes after the first one near the margin (`progress`).
 //!
 //! **Moving mesh.** The mesh has a place at each time (`search::hierarchy::moving_mesh`). V is then
 //! the speed of the piece plus the speed of the fastest vertex, since no point of a triangle is
@@ -101,10 +102,10 @@ impl PendingPieces<'_> {
 }
 
 /// A motion in a mesh.
-pub(crate) struct MotionSearch<'a, M> {
+pub(crate) struct MotionSearch<'a> {
     pub search: MeshSearch<'a>,
     pub memory: &'a mut MotionMemory,
-    pub motion: &'a M,
+    pub motion: &'a dyn Motion,
     /// The last triangle found: it starts the next search.
     pub last: Option<u32>,
     /// Whether the mesh moves too, as stored in the memory.
@@ -114,7 +115,7 @@ pub(crate) struct MotionSearch<'a, M> {
     pub frame: Option<Real>,
 }
 
-impl<M: Motion> MotionSearch<'_, M> {
+impl MotionSearch<'_> {
     /// Decides whether the margin is kept at all times.
     pub(crate) fn decide(
         &mut self,
@@ -192,7 +193,7 @@ impl<M: Motion> MotionSearch<'_, M> {
         ask: impl FnOnce(
             &mut TubeInMesh,
             &mut PendingPieces,
-            MovingTube<M>,
+            MovingTube,
             ApproachBound,
         ) -> Result<T, ProximityError>,
     ) -> Result<(T, Range<usize>), ProximityError> {
@@ -224,10 +225,10 @@ impl<M: Motion> MotionSearch<'_, M> {
         let tube = self.frame.map_or(tube, |size| tube.posed(size));
         let mut tube = TubeInMesh { search, tube };
         pieces.clear();
-        let failing = interval.pieces.clone().map_or(&[][..], |failing| &unresolved[failing]);
-        let failing = failing.iter().filter(|piece| piece.is_left[usize::from(interval.is_after)]);
+        let left = interval.pieces.clone().map_or(&[][..], |left| &unresolved[left]);
+        let left = left.iter().filter(|piece| piece.is_left[usize::from(interval.is_after)]);
         // They are unresolved on both sides of the new middle shape.
-        pieces.extend(failing.map(|piece| PendingPiece { is_left: [true; 2], ..*piece }));
+        pieces.extend(left.map(|piece| PendingPiece { is_left: [true; 2], ..*piece }));
         let first = unresolved.len();
         unresolved_bodies.clear();
         let moving = MovingTube {

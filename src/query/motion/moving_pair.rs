@@ -10,8 +10,8 @@ use crate::robot::RobotError;
 use parry3d_f64::math::Real;
 
 /// Pairs of pieces of two moving robots in an interval of time.
-pub(super) struct MovingPair<'a, A, B> {
-    pub motions: (&'a A, &'a B),
+pub(super) struct MovingPair<'a> {
+    pub motions: [&'a dyn Motion; 2],
     /// The names of the motions in error messages.
     pub names: [&'static str; 2],
     pub times: [Real; 2],
@@ -19,7 +19,7 @@ pub(super) struct MovingPair<'a, A, B> {
     pub left: &'a mut u32,
 }
 
-impl<'t, A: Motion, B: Motion> RelativeMotion<TubePair<'t>, PiecePair> for MovingPair<'_, A, B> {
+impl<'t> RelativeMotion<TubePair<'t>, PiecePair> for MovingPair<'_> {
     /// The speeds of both pieces, which may move straight towards each other.
     fn speeds(
         &mut self,
@@ -30,7 +30,7 @@ impl<'t, A: Motion, B: Motion> RelativeMotion<TubePair<'t>, PiecePair> for Movin
     ) -> Result<[Real; 2], ProximityError> {
         *self.left = self.left.saturating_sub(1);
         let [first, second] = tubes.section_ranges(pair);
-        let (a, b) = self.motions;
+        let [a, b] = self.motions;
         let fast =
             [ApproachSpeed::of(a, self.times, &first), ApproachSpeed::of(b, self.times, &second)];
         let mut speeds = [0.0; 2];

@@ -7,7 +7,7 @@ use super::half_displacement::HalfDisplacement;
 use super::pending_piece::PendingPiece;
 use super::relative_motion::RelativeMotion;
 use super::separating_planes::{PlaneTest, SeparatingPlanes};
-use super::unresolved_piece::{MAX_PIECES, UnresolvedPiece, UnresolvedPieces};
+use super::unresolved_piece::{MAX_DISPLACED_PIECES, UnresolvedPiece, UnresolvedPieces};
 use crate::answer::ProximityError;
 use crate::distance::Scalar;
 use crate::motion::Motion;
@@ -16,12 +16,12 @@ use crate::refine::{BoundedPiece, BoundingBody, Piece, Refinable, SectionRange, 
 use parry3d_f64::math::Real;
 
 /// A piece whose room is at most this share of its approach rarely passes the displacement test,
-/// unless it slides along the wall.
+/// unless it slides along the wall. Such pieces are tested only when [`SmallRooms`] is due.
 const MIN_ROOM: Real = 0.1;
 
 /// The pieces of a moving robot in an interval of time.
-pub(crate) struct MovingTube<'a, M> {
-    pub motion: &'a M,
+pub(crate) struct MovingTube<'a> {
+    pub motion: &'a dyn Motion,
     pub times: [Real; 2],
     /// An upper bound on the speed of the mesh.
     pub mesh_speed: Real,
@@ -32,7 +32,7 @@ pub(crate) struct MovingTube<'a, M> {
     pub small_rooms: &'a mut SmallRooms,
 }
 
-impl<'m, M: Motion> RelativeMotion<TubeInMesh<'m>, PendingPiece> for MovingTube<'_, M> {
+impl<'m> RelativeMotion<TubeInMesh<'m>, PendingPiece> for MovingTube<'_> {
     /// The speed of the centreline; and how much faster a point of the body may be, plus the speed
     /// of the mesh.
     fn speeds(
@@ -64,7 +64,7 @@ impl<'m, M: Motion> RelativeMotion<TubeInMesh<'m>, PendingPiece> for MovingTube<
     ) {
         let UnresolvedPieces { pieces, bodies, .. } = &mut self.unresolved;
         pieces.push(PendingPiece { is_left: [true; 2], ..*near.part });
-        if bodies.len() <= MAX_PIECES {
+        if bodies.len() <= MAX_DISPLACED_PIECES {
             let Nearest { distance: away, on_robot, on_mesh, .. } = *near.nearest;
             let normal = (on_robot - on_mesh).normalize_or_zero();
             let [_, beside] = approach.speeds;
@@ -72,7 +72,7 @@ impl<'m, M: Motion> RelativeMotion<TubeInMesh<'m>, PendingPiece> for MovingTube<
                 body: near.outer.body,
                 away,
                 normal,
-                reach: approach.reach,
+                approach: approach.distance,
                 beside: beside * half_length(self.times),
             });
         }
@@ -92,27 +92,28 @@ pub(crate) struct Left {
     /// Before the shape, and after it.
     pub sides: [bool; 2],
     /// Whether a piece was cleared on some side.
-    pub is_any_settled: bool,
+    pub is_any_cleared: bool,
 }
 
-impl<M: Motion> MovingTube<'_, M> {
+impl MovingTube<'_> {
     /// Tests the displacements of the unresolved pieces on both sides of the middle shape, and
     /// drops the pieces that keep the margin there.
     ///
-    /// The nearest piece is tested first. After the first failure on a side the other pieces are
+    /// The nearest piece is tested first. After the first unresolved on a side the other pieces are
     /// skipped: that side must be searched anyway.
     pub(crate) fn clear_by_displacement(&mut self, tube: &mut TubeInMesh, margin: Real) -> Left {
         let UnresolvedPieces { pieces, first, bodies } = &mut self.unresolved;
         let nearest = bodies.iter().enumerate().min_by(|a, b| a.1.away.total_cmp(&b.1.away));
-        let mut left = Left { sides: [false; 2], is_any_settled: false };
+        let mut left = Left { sides: [false; 2], is_any_cleared: false };
         let Some((nearest, _)) = nearest else { return left };
-        if bodies.len() > MAX_PIECES {
+        if bodies.len() > MAX_DISPLACED_PIECES {
             left.sides = [true; 2];
             return left;
         }
         let slack = tube.tube.slack();
-        let room = |failure: &UnresolvedPiece| failure.away - margin - slack;
-        let is_small = |failure: &UnresolvedPiece| room(failure) <= MIN_ROOM * failure.reach;
+        let room = |unresolved: &UnresolvedPiece| unresolved.away - margin - slack;
+        let is_small =
+            |unresolved: &UnresolvedPiece| room(unresolved) <= MIN_ROOM * unresolved.approach;
         let has_small = bodies.iter().any(is_small);
         let asks_small =
             has_small && bodies.iter().all(|it| room(it) > 0.0) && self.small_rooms.is_due();
@@ -120,8 +121,8 @@ impl<M: Motion> MovingTube<'_, M> {
         let pieces = &mut pieces[*first..];
         pieces.swap(0, nearest);
         let t = midpoint(self.times);
-        for (part, failure) in pieces.iter_mut().zip(&**bodies) {
-            if is_small(failure) && !asks_small {
+        for (part, unresolved) in pieces.iter_mut().zip(&**bodies) {
+            if is_small(unresolved) && !asks_small {
                 left.sides = [true; 2];
                 return left;
             }
@@ -131,14 +132,15 @@ impl<M: Motion> MovingTube<'_, M> {
                 let times = if side == 0 { [self.times[0], t] } else { [t, self.times[1]] };
                 let bound = self.motion.displacement(part.section as usize, part.shares, times);
                 let is_clear = bound
-                    .and_then(|bound| HalfDisplacement::of(&bound, side, failure.beside))
+                    .and_then(|bound| HalfDisplacement::of(&bound, side, unresolved.beside))
                     .is_some_and(|side| {
-                        let asked = PlaneTest { body: &failure.body, side: &side, margin, slack };
-                        self.planes.clears(&mut tube.search, &asked, failure)
+                        let asked =
+                            PlaneTest { body: &unresolved.body, side: &side, margin, slack };
+                        self.planes.clears(&mut tube.search, &asked, unresolved)
                     });
                 part.is_left[side] = !is_clear;
                 *is_left = !is_clear;
-                left.is_any_settled |= is_clear;
+                left.is_any_cleared |= is_clear;
             }
             if left.sides == [true; 2] {
                 break;
@@ -151,7 +153,7 @@ impl<M: Motion> MovingTube<'_, M> {
     }
 }
 
-/// Decides when pieces with little room are tested: rarely after failures.
+/// Decides when pieces with little room are tested: rarely after unresolveds.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct SmallRooms {
     /// How many shapes are skipped after the last test.

@@ -9,14 +9,14 @@ use crate::refine::{BoundedPiece, SelfPair, TubeWithItself};
 use parry3d_f64::math::Real;
 
 /// Pairs of pieces of a moving robot in an interval of time.
-pub(super) struct MovingTubeWithItself<'a, M> {
-    pub motion: &'a M,
+pub(super) struct MovingTubeWithItself<'a> {
+    pub motion: &'a dyn Motion,
     pub times: [Real; 2],
     /// How many pairs of pieces may still be tested in this query.
     pub left: &'a mut u32,
 }
 
-impl<'t, M: Motion> RelativeMotion<TubeWithItself<'t>, SelfPair> for MovingTubeWithItself<'_, M> {
+impl<'t> RelativeMotion<TubeWithItself<'t>, SelfPair> for MovingTubeWithItself<'_> {
     /// The speeds of both pieces, which may move straight towards each other.
     fn speeds(
         &mut self,

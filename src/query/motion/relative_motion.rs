@@ -20,7 +20,8 @@ pub(crate) trait RelativeMotion<D: Refinable, P> {
         divided: &D,
     ) -> Result<[Real; 2], ProximityError>;
 
-    /// Returns how much more a part may turn than its middle shape shows; 0 if turns do not matter.
+    /// Returns how much more a part may turn than its middle shape shows. 0 if turns do not matter:
+    /// only self contact asks for them.
     fn extra_turn(&self, _: &P, _: &D) -> Real {
         0.0
     }
@@ -38,8 +39,9 @@ pub(crate) trait RelativeMotion<D: Refinable, P> {
     /// Records what was found.
     fn record(&mut self, _: &BoundedPiece<D, P>) {}
 
-    /// Records a part that the middle shape does not decide for the whole interval, unless the
-    /// common `hold` of the approach bound is enough.
+    /// Records a part that the middle shape does not decide for the whole interval. A motion that
+    /// records none tests all its parts again, in the time that the `hold` of the approach bound
+    /// leaves.
     fn record_unresolved(&mut self, _: &BoundedPiece<D, P>, _: &Approach) {}
 
     /// Returns the fastest section of a part, and the speed of that section.

@@ -47,8 +47,8 @@ pub(crate) struct SelfMotionMemory {
 /// - The motion has no shape at some time, or one that bends too sharply, or changes its sections.
 /// - A stated speed is not finite or too large.
 /// - The samples allow no decision at that resolution.
-pub(crate) fn self_decides_motion<M: Motion>(
-    motion: &M,
+pub(crate) fn self_decides_motion(
+    motion: &dyn Motion,
     memory: &mut SelfMotionMemory,
     wanted: MarginQuery,
     sought: Sought,
@@ -65,8 +65,8 @@ pub(crate) fn self_decides_motion<M: Motion>(
 }
 
 /// Tests the middle shape of an interval.
-fn test_interval<M: Motion>(
-    motion: &M,
+fn test_interval(
+    motion: &dyn Motion,
     memory: &mut SelfMotionMemory,
     interval: &Interval,
     wanted @ MarginQuery { margin, resolution }: MarginQuery,
@@ -111,8 +111,8 @@ fn test_interval<M: Motion>(
 }
 
 /// Computes how far all sections move and turn from the midpoint of an interval.
-fn measure_moves<M: Motion>(
-    motion: &M,
+fn measure_moves(
+    motion: &dyn Motion,
     sections: &[Section],
     times: [Real; 2],
     moves: &mut SectionMotions,

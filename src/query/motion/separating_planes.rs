@@ -6,10 +6,11 @@
 //! that is near enough. Each gap must exceed what the displacement uses up. The normal of the
 //! nearest triangle alone is not enough: a piece that leaves one wall may approach another.
 //!
-//! **Claim.** A triangle that is more than margin + `off` + 2 slack from the swept body never comes
-//! within the margin. **Proof.** The swept body contains the piece at every displacement in the
-//! triangle (0, a, b); the true displacement is at most `off` from there. So only the triangles
-//! within that distance of the swept body are gathered, and each of them must be separated.
+//! **Claim.** A triangle that is more than margin + `any_direction` + 2 slack from the swept body
+//! never comes within the margin. **Proof.** The swept body contains the piece at every displacement
+//! in the triangle (0, a, b). Relative to the mesh, every point of the piece stays within
+//! `any_direction` of the swept body. So only the triangles within that distance of it are gathered,
+//! and each of them must be separated.
 //!
 //! A plane's normal leads from the nearest point of the triangle to that of the body. Normals found
 //! before are tried first, the latest one first: one normal separates most triangles of a wall.
@@ -64,15 +65,17 @@ impl SeparatingPlanes {
         &mut self,
         search: &mut PlacedMeshSearch,
         asked: &PlaneTest,
-        failure: &UnresolvedPiece,
+        unresolved: &UnresolvedPiece,
     ) -> bool {
         let mut normals = [Vector::ZERO; NORMALS];
-        normals[0] = failure.normal;
-        // Along the normal of the nearest triangle the gap is the distance.
-        if failure.away - asked.margin - 2.0 * asked.slack <= asked.side.gap_loss(failure.normal) {
+        normals[0] = unresolved.normal;
+        // Cheap: the nearest triangle must pass too. Along its normal the gap is the distance.
+        if unresolved.away - asked.margin - 2.0 * asked.slack
+            <= asked.side.gap_loss(unresolved.normal)
+        {
             return false;
         }
-        let bound = asked.margin + asked.side.off + 2.0 * asked.slack;
+        let bound = asked.margin + asked.side.any_direction + 2.0 * asked.slack;
         if !search.gather(
             &asked.side.swept_body(asked.body),
             bound,

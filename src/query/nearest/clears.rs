@@ -394,7 +394,7 @@ impl<E: Lane> DualTraversal<'_, E> {
             if link.is_some() && lanes.has_centre_within(vertices, certain) {
                 return true;
             }
-            if lanes.not_behind_plane(vertices, limit) == 0 {
+            if lanes.not_excluded_by_plane(vertices, limit) == 0 {
                 continue;
             }
             if is_long {

@@ -16,8 +16,8 @@
 //! for the capsule around all links. The capsule answers for a robot far from the wall in one step.
 //!
 //! **Rounding.** `ROUNDING (reach + 2 extent)` is subtracted from `d`, and `m` is multiplied by
-//! `1 + ROUNDING`. The factor 2 is for the link then and now. The link now reaches at most
-//! `extent + m`; the factor `1 + ROUNDING` covers m.
+//! `1 + ROUNDING`. The link then reaches at most `extent`, and the link now `extent + m`: the sum is
+//! `2 extent`, and the factor `1 + ROUNDING` covers the rest.
 //!
 //! # Look-ahead
 //! [`LookAhead`] decides how much farther than its bound a query searches, so that later queries
@@ -30,7 +30,7 @@
 //! - *trial*: a run of consecutive queries with look-ahead.
 //! - *rest*: queries until look-ahead is tried again; 1, 3, 7, .. after consecutive failures.
 
-use super::odometer::{PlacedOutline, ROUNDING, ReferenceOutline};
+use super::outline::{PlacedOutline, ROUNDING, ReferenceOutline};
 use crate::pair::PlacedRobot;
 use parry3d_f64::math::Real;
 use std::ops::Range;
@@ -47,13 +47,14 @@ const LINKS_PER_NODE: usize = 4;
 pub(crate) struct LinkLowerBounds {
     /// The bound of each link at its reference placement; empty if unknown.
     links: Vec<LinkLowerBound>,
-    /// The bound of the capsule around all links, if one is known.
+    /// The bound of the capsule around all links, if `clears` proved one.
     capsule: Option<LinkLowerBound>,
     /// The bound of each link of the current robot, set by `refresh`; empty if unknown.
     now: Vec<Real>,
-    widening: LookAhead,
-    /// Whether the last call of `look_ahead` returned a radius.
-    is_new: bool,
+    look_ahead: LookAhead,
+    /// Whether the last call of `look_ahead` returned a radius. Until that call this is of the query
+    /// before.
+    has_looked_ahead: bool,
 }
 
 /// A link at its reference placement, and a lower bound on its distance, rounding subtracted.
@@ -70,8 +71,8 @@ impl LinkLowerBounds {
         self.links.clear();
         self.capsule = None;
         self.now.clear();
-        self.widening = LookAhead::default();
-        self.is_new = false;
+        self.look_ahead = LookAhead::default();
+        self.has_looked_ahead = false;
     }
 
     /// Returns true if every link is proven farther than `margin` from the mesh.
@@ -118,32 +119,32 @@ impl LinkLowerBounds {
         most: Real,
         reach: Real,
     ) -> Option<Real> {
-        let wider = self.widening.next(robot, reach);
-        let wider = wider.filter(|&wider| wider < most && bound + wider < Real::INFINITY);
-        self.is_new = wider.is_some();
-        wider
+        let extra = self.look_ahead.next(robot, reach);
+        let extra = extra.filter(|&extra| extra < most && bound + extra < Real::INFINITY);
+        self.has_looked_ahead = extra.is_some();
+        extra
     }
 
     /// Clears the cached bounds if the last query looked ahead and its bounds exclude fewer than
     /// 1/4 of the `count` links.
     pub(crate) fn drop_if_useless(&mut self, count: usize, bound: Real) {
-        if self.is_new
+        if self.has_looked_ahead
             && MIN_SKIPPED_SHARE * self.count_open(0..count, bound)
                 > (MIN_SKIPPED_SHARE - 1) * count
         {
             self.links.clear();
-            self.widening.record_failure();
+            self.look_ahead.record_failure();
         }
     }
 
     /// Records how many nodes and leaves this query visited for `links` links.
     pub(crate) fn record_cost(&mut self, visited: u64, links: usize) {
-        if self.is_new {
-            if !self.widening.record_wide_cost(visited + (links / LINKS_PER_NODE) as u64) {
+        if self.has_looked_ahead {
+            if !self.look_ahead.record_trial_cost(visited + (links / LINKS_PER_NODE) as u64) {
                 self.links.clear();
             }
         } else if self.now.is_empty() {
-            self.widening.record_plain_cost(visited);
+            self.look_ahead.record_baseline_cost(visited);
         } else {
             // This query used earlier bounds, so its cost is no baseline. Clearing them makes the
             // next one so.
@@ -202,14 +203,14 @@ impl LinkLowerBounds {
                 self.links.reverse();
             }
         }
-        self.widening.record_success();
+        self.look_ahead.record_success();
     }
 
     /// Records that a search with look-ahead met the mesh, and clears the bounds.
     pub(crate) fn record_miss(&mut self) {
         self.links.clear();
         self.capsule = None;
-        self.widening.shrink();
+        self.look_ahead.shrink();
     }
 }
 
@@ -232,9 +233,10 @@ impl LinkLowerBound {
 /// How many queries the look-ahead covers at first. Each search that meets the mesh halves the
 /// number.
 const QUERIES: Real = 8.0;
-/// Queries of one trial. After `TRIALS` successful trials, one query re-measures the baseline cost.
-const TRIAL: u32 = 16;
-const TRIALS: u32 = 16;
+/// Queries of one trial.
+const QUERIES_PER_TRIAL: u32 = 16;
+/// After this many successful trials one query measures the baseline cost again.
+const TRIALS_PER_BASELINE: u32 = 16;
 /// The longest rest after a search that met the mesh, and after one that did not pay. The second is
 /// longer, because a failed trial costs as much as several queries.
 const REST_AFTER_MEETING: u32 = 63;
@@ -251,7 +253,7 @@ struct LookAhead {
     rest: u32,
     last_rest: u32,
     /// The baseline cost, if one was measured.
-    plain_cost: Option<u64>,
+    baseline_cost: Option<u64>,
     /// The cost of this trial without its first query, the number of its queries, and the number of
     /// successful trials.
     trial_cost: u64,
@@ -266,7 +268,7 @@ impl Default for LookAhead {
             queries: QUERIES,
             rest: 0,
             last_rest: 0,
-            plain_cost: None,
+            baseline_cost: None,
             trial_cost: 0,
             tried: 0,
             trials: 0,
@@ -284,13 +286,15 @@ impl LookAhead {
             self.rest -= 1;
             return None;
         }
+        // Rounding alone must not use up the look-ahead.
         let rounding = ROUNDING * (reach + 2.0 * now.extent());
         Some(self.queries * ReferenceOutline::new(before, reach).moved_to(&now) + 4.0 * rounding)
     }
 
     /// Records the cost of a query without look-ahead.
-    fn record_plain_cost(&mut self, cost: u64) {
-        self.plain_cost = Some(self.plain_cost.map_or(cost, |before| (3 * before + cost) / 4));
+    fn record_baseline_cost(&mut self, cost: u64) {
+        self.baseline_cost =
+            Some(self.baseline_cost.map_or(cost, |before| (3 * before + cost) / 4));
     }
 
     /// Records the cost of a query with look-ahead. Returns false if the next query should search
@@ -298,20 +302,20 @@ impl LookAhead {
     ///
     /// The first query of a trial fills the bounds for the others, so its cost does not count. The
     /// trial fails once its n - 1 later queries cost more than n queries at the baseline cost.
-    fn record_wide_cost(&mut self, cost: u64) -> bool {
+    fn record_trial_cost(&mut self, cost: u64) -> bool {
         if self.tried > 0 {
             self.trial_cost += cost;
         }
         self.tried += 1;
-        if self.plain_cost.is_some_and(|plain| self.trial_cost > plain * u64::from(self.tried)) {
+        if self.baseline_cost.is_some_and(|plain| self.trial_cost > plain * u64::from(self.tried)) {
             self.record_failure();
             return false;
         }
-        if self.tried > TRIAL {
+        if self.tried > QUERIES_PER_TRIAL {
             self.record_success();
             (self.trial_cost, self.tried, self.trials) = (0, 1, self.trials + 1);
         }
-        if self.trials == TRIALS {
+        if self.trials == TRIALS_PER_BASELINE {
             (self.rest, self.tried, self.trials) = (1, 0, 0);
             return false;
         }
@@ -329,7 +333,8 @@ impl LookAhead {
         self.extend_rest(REST_WITHOUT_PAY);
     }
 
-    /// Records that a search met the mesh within its look-ahead: halves the look-ahead and rests.
+    /// Records that a search of `clears` met the mesh within its look-ahead: halves the look-ahead and
+    /// rests.
     pub(crate) fn shrink(&mut self) {
         self.queries = (0.5 * self.queries).max(1.0);
         self.extend_rest(REST_AFTER_MEETING);
@@ -341,7 +346,7 @@ impl LookAhead {
     }
 }
 
-/// The shape that is proven farther than the margin from the mesh.
+/// The shape that `clears` proved farther than the margin from the mesh.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum ClearedBy {
     /// Every link by itself.
@@ -356,34 +361,34 @@ mod tests {
 
     /// Counts the queries with look-ahead, out of `queries`. The first of a run costs `first`, each
     /// other one `later`, and one without look-ahead 100.
-    fn wider_of(queries: u32, first: u64, later: u64) -> u32 {
-        let (mut widening, mut is_first, mut wider) = (LookAhead::default(), true, 0);
-        widening.record_plain_cost(100);
+    fn queries_that_look_ahead(queries: u32, first: u64, later: u64) -> u32 {
+        let (mut look_ahead, mut is_first, mut count) = (LookAhead::default(), true, 0);
+        look_ahead.record_baseline_cost(100);
         for _ in 0..queries {
-            if widening.rest > 0 {
-                widening.rest -= 1;
-                widening.record_plain_cost(100);
+            if look_ahead.rest > 0 {
+                look_ahead.rest -= 1;
+                look_ahead.record_baseline_cost(100);
                 is_first = true;
             } else {
-                wider += 1;
-                widening.record_wide_cost(if is_first { first } else { later });
+                count += 1;
+                look_ahead.record_trial_cost(if is_first { first } else { later });
                 is_first = false;
             }
         }
-        wider
+        count
     }
 
     #[test]
-    fn wider_searches_are_made_where_they_cost_less() {
+    fn queries_look_ahead_where_it_costs_less() {
         // All except the few that re-measure the baseline cost.
         for later in [0, 20, 90] {
-            let wider = wider_of(10_000, 400, later);
-            assert!((9_900..10_000).contains(&wider), "{wider} where another costs {later}");
+            let count = queries_that_look_ahead(10_000, 400, later);
+            assert!((9_900..10_000).contains(&count), "{count} where another costs {later}");
         }
         // Hardly any: one trial in 256 queries.
         for (later, most) in [(500, 2), (200, 3), (130, 6)] {
-            let wider = wider_of(25_600, 400, later);
-            assert!((100..110 * most).contains(&wider), "{wider} where another costs {later}");
+            let count = queries_that_look_ahead(25_600, 400, later);
+            assert!((100..110 * most).contains(&count), "{count} where another costs {later}");
         }
     }
 }

@@ -3,25 +3,30 @@
 //! # Definitions
 //! - `upper`: the caller's bound or the best distance so far, whichever is smaller.
 //! - `lower[k]`: a lower bound on the distance of link k ([`LinkLowerBounds`]).
-//! - `look_ahead`: extra search radius that yields `lower[k]` for later queries; 0 if it does not
-//!   pay.
+//! - `look_ahead`: extra search radius that yields `lower[k]` for later queries. None if it does not
+//!   pay; then no new bounds are recorded.
 //! - Link k is *open* if `lower[k] <= upper` or if `lower[k]` is unknown.
 //!
 //! # Algorithm
 //! 1. **Reuse.** Subtract the displacement of link k from `lower[k]`. Stop if no link is open.
-//! 2. **Seed.** Search the closest link of the last query, or a guess. Its distance lowers `upper`.
-//! 3. **Prune.** Walk the link tree in preorder. Skip a subtree if none of its links is open, or if
-//!    its capsule is farther than `upper + look_ahead` from the mesh.
-//! 4. **Search** the mesh from each link that is left. Update `upper` and `lower[k]`.
+//! 2. **Seed.** Search the closest link of the last query, or a guess, if it is open. Its distance
+//!    lowers `upper`.
+//! 3. **Prune.** Walk the link tree in preorder. Skip a subtree if none of its links is open. If
+//!    more than half of them are, also skip it if its capsule is farther than `upper + look_ahead`
+//!    from the mesh.
+//! 4. **Search** the mesh from each link that is left and open. Update `upper` and `lower[k]`.
 //!
 //! # Correctness
 //! **Claim.** The answer is the least (distance, triangle, link) among the links at most the
 //! caller's bound from the mesh. The warm start and the seed never change it.
 //!
 //! **Proof.** `upper` never grows. Steps 1 and 3 skip a link only if its distance exceeds `upper`.
-//! One other case skips a link: at `upper = 0`, every triangle that it may touch is higher than the
-//! best one. Such a link loses the tie. So steps 2 and 4 search every link at the final distance,
-//! ties included; [`closer`] orders ties.
+//! One other case skips a link: at `upper = 0`, every triangle that it may touch has a higher number
+//! than the best one. Such a link loses the tie. So steps 2 and 4 search every link at the final
+//! distance, ties included; [`closer`] orders ties.
+//!
+//! **Recorded bounds.** A radius is recorded as `lower[k]` only where the search of link k, or the
+//! test of a capsule around it, reached that radius.
 //!
 //! **Rounding.** `lower[k]` is rounded down and the capsule test is conservative: both can only
 //! search a link too many.
@@ -128,7 +133,7 @@ impl<'a> BranchAndBound<'a> {
             self.offer(first, nearest);
         }
         self.lower_bounds.drop_if_useless(count, self.upper);
-        // A robot that jumps would make the look-ahead so wide that nothing is pruned.
+        // As wide as the robot or the mesh, a look-ahead would prune nothing: the robot jumped.
         let (last, before) = (&robot.links()[count - 1], robot.length_before(count - 1));
         let size = before + last.length() + 2.0 * last.radius();
         self.look_ahead = self.lower_bounds.look_ahead(robot, self.upper, size.min(reach), reach);
@@ -160,6 +165,7 @@ impl<'a> BranchAndBound<'a> {
     }
 
     /// Step 3: returns true if no link of a subtree can improve on the best. False proves nothing.
+    /// Records the search radius for links that the capsule proves farther away.
     fn can_prune(&mut self, capsule: &BoundingCapsule, links: Range<usize>) -> bool {
         let open = self.lower_bounds.count_open(links.clone(), self.upper);
         // The capsule of many links is a weak bound on a few of them.
@@ -167,32 +173,32 @@ impl<'a> BranchAndBound<'a> {
             return open == 0;
         }
         let capsule = self.robot.bound(capsule);
-        let Some(far) = self.search_radius() else {
+        let Some(radius) = self.search_radius() else {
             return !self.search.may_meet_below(&capsule, self.upper, self.triangle_limit());
         };
-        let keep_away = !self.search.may_meet(&capsule, far);
-        if keep_away {
-            self.lower_bounds.set(self.robot, links, far, None, self.search.hierarchy.reach);
+        let is_beyond = !self.search.may_meet(&capsule, radius);
+        if is_beyond {
+            self.lower_bounds.set(self.robot, links, radius, None, self.search.hierarchy.reach);
         }
-        keep_away
+        is_beyond
     }
 
     /// Step 4: searches the triangle nearest to a link.
     fn search_link(&mut self, number: usize) {
         let link = self.robot.link(number);
         let wanted = Best::within(self.upper).touching_below(self.triangle_limit());
-        let found = if let Some(far) = self.search_radius() {
-            let (best, apart, about) = self.search.nearest_with_lower_bound(
+        let found = if let Some(radius) = self.search_radius() {
+            let (best, lower, triangle) = self.search.nearest_with_lower_bound(
                 &link,
                 wanted,
-                far,
+                radius,
                 [self.lower_bounds.approximate_nearest(number), None],
             );
             self.lower_bounds.set(
                 self.robot,
                 number..number + 1,
-                apart,
-                about,
+                lower,
+                triangle,
                 self.search.hierarchy.reach,
             );
             best

@@ -3,12 +3,12 @@
 mod clears;
 mod link_lower_bounds;
 mod minimum;
-mod odometer;
+mod outline;
 mod per_link;
 mod side_grid;
 
 pub(crate) use clears::{ClearsMemory, ClearsSearch};
 pub(crate) use minimum::{WarmStart, minimum_within};
-pub(crate) use odometer::{Odometer, PlacedOutline};
+pub(crate) use outline::{PlacedOutline, ROUNDING};
 pub(crate) use per_link::{PerLinkMemory, per_link};
 pub(crate) use side_grid::SideGrid;

@@ -29,7 +29,7 @@ const MOST_BYTES: usize = 1 << 24;
 pub(crate) fn motion_proof(
     plane_search: &mut PlaneSearch,
     reach: Real,
-    motion: &impl Motion,
+    motion: &dyn Motion,
     margin: Real,
     resolution: Real,
 ) -> Result<Option<Vec<ProvenShape>>, ProximityError> {
