@@ -108,7 +108,7 @@ pub(crate) fn load(
     let (path, bytes) = match Source::of(path)? {
         Source::Mesh(parts) if label.is_none() => {
             options.check_scale().map_err(|error| refuse(py, &error))?;
-            return Mesh::of_parts(&parts, frame, scale, device);
+            return Mesh::of_parts(&parts, frame, scale, Origin::default(), device);
         }
         Source::Mesh(..) => {
             let text = "`label` is given beside a mesh, which has no labels; leave it out";

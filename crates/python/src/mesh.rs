@@ -112,6 +112,7 @@ impl Mesh {
         parts: &Parts<'_>,
         frame: Option<FrameName>,
         scale: f64,
+        origin: Origin,
         device: DeviceName,
     ) -> PyResult<Self> {
         let py = parts.vertices.py();
@@ -119,8 +120,7 @@ impl Mesh {
         let faces = self::faces(&parts.faces, vertices.len())?;
         vertices.as_flattened_mut().iter_mut().for_each(|coordinate| *coordinate *= scale);
         let frame = in_frame(&mut vertices, parts.frame, frame);
-        let origin = Origin { frame, ..Origin::default() };
-        Self::new_from(py, vectors(&vertices), faces, origin, device)
+        Self::new_from(py, vectors(&vertices), faces, Origin { frame, ..origin }, device)
     }
 
     /// The engine of the mesh as it is now.
@@ -274,11 +274,7 @@ impl Mesh {
                 parts(vertices, "vertices")?
             }
         };
-        let mut vertices = rows(&parts.vertices, "vertices")?.points().to_vec();
-        let triangles = self::faces(&parts.faces, vertices.len())?;
-        let frame = in_frame(&mut vertices, parts.frame, frame);
-        let origin = Origin { frame, unit, ..origin };
-        Self::new_from(py, vectors(&vertices), triangles, origin, device)
+        Self::of_parts(&parts, frame, 1.0, Origin { unit, ..origin }, device)
     }
 
     /// The frame of the vertices, "RAS" or "LPS": that of the file, or the one that was asked for;
