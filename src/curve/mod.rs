@@ -259,7 +259,7 @@ impl Tube {
         self.curve.share(section, tick)
     }
 
-    /// Returns the nearest ticks that enclose two shares of a section.
+    /// Returns the smallest range of ticks that contains two shares of a section.
     pub(crate) fn ticks_around(&self, section: &Section, shares: [Real; 2]) -> [u32; 2] {
         self.curve.ticks_around(section, shares)
     }

@@ -127,11 +127,11 @@ impl Section {
         self.shown_at = self.curvature_at;
     }
 
-    /// Returns the arc length from a flat end behind which a ball on the centreline cannot reach
-    /// the face.
+    /// Returns an arc length from a flat end at which, and beyond which, a ball of the tube's radius
+    /// does not cross the face.
     ///
     /// A disc at arc length s from the face lies at least `sin(k s) / k` behind its plane, for the
-    /// curvature k. This equals the radius r at `s = asin(k r) / k`, which is at most `pi / 2 r`.
+    /// curvature k. This equals the radius r at `s = asin(k r) / k`, which is at most `(pi / 2) r`.
     pub(crate) fn room(&self, end: usize) -> Real {
         let curvature = self.curvature_at[end];
         let bend = (curvature * self.radius).min(1.0);

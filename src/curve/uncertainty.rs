@@ -77,8 +77,12 @@ impl Tube {
         section.faces.map(|face| face.map(|face| EndFace { tilt: tilt(face), ..face }))
     }
 
-    /// Returns how far apart the two bounds near a flat end must stay because its direction is
-    /// uncertain by `turn`, or unknown.
+    /// Returns how far apart the two bounds near a flat end stay because its direction is uncertain
+    /// by `turn`, or unknown.
+    ///
+    /// The rim of the face may be off by r `turn` to either side, and never by more than r: the
+    /// face's centre lies in the tube for every direction. The tilt that the samples alone leave
+    /// shrinks with finer samples, so it is not counted.
     pub(crate) fn direction_uncertainty(
         &self,
         section: &Section,

@@ -30,7 +30,7 @@
 //!
 //! # Proof
 //! Case 1. `K` contains `Z`, so `d >= max(0, F - r)`. The point of `K` nearest to `p*` belongs to
-//! `Z`.
+//! `Z`; if `F <= r`, that is `p*` itself.
 //!
 //! Case 2. Place the flat end at `z = 0`, with `Z` in `z <= 0`; then `z(p*) >= 0`. Let the point
 //! `p` of `T` attain `d`.
@@ -301,7 +301,7 @@ impl<T: Scalar> Axial<T> {
     }
 
     /// Returns the centre and the outward normal of the cap that `p*` lies beyond, or of the start
-    /// cap if `p*` lies beyond neither.
+    /// cap if `p*` lies beyond neither; then nothing uses it.
     #[inline(always)]
     pub(crate) fn cap(&self, link: &Link<T>) -> (Vec3<T>, Vec3<T>) {
         let at_end = self.at_flat[1];

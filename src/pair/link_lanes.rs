@@ -20,7 +20,8 @@ pub(crate) struct Nearer<L> {
     /// Which triangles may be nearer than the limit, one bit per lane.
     pub nearer: u64,
     /// A lower and an upper bound, before the link's `error`. Both equal the axis distance if no
-    /// flat cap decides. `upper` is at least the radius if a flat cap may decide in this precision.
+    /// flat cap decides. `upper` is at least the radius if a flat cap may decide in this precision:
+    /// such a triangle never counts as certainly overlapping.
     pub lower: L,
     pub upper: L,
 }
@@ -88,7 +89,7 @@ impl<L: Pack> LinkLanes<L> {
     /// Returns the triangles that one separating plane cannot exclude, one bit per lane. The
     /// plane's normal points from the axis to the triangle's centre.
     #[inline(always)]
-    pub(crate) fn not_behind_plane(&self, [a, b, c]: [Vec3<L>; 3], limit: L) -> u64 {
+    pub(crate) fn not_excluded_by_plane(&self, [a, b, c]: [Vec3<L>; 3], limit: L) -> u64 {
         let centre = (a + b + c) * self.length.lit(1.0 / 3.0);
         let v = self.offset_from_axis(centre);
         let axis = v.dot(self.start) + self.link.reach_along(v);
@@ -232,7 +233,7 @@ impl<E: Lane> SearchLink<E> {
         Some(Self {
             start: round(start),
             along: round(along),
-            // Without a direction the flat caps count as round, which bounds them too.
+            // Without a direction the flat caps count as round: the capsule contains the link.
             axis: round(axis),
             length: E::round(length),
             radius: E::round(radius),

@@ -1,14 +1,14 @@
 //! The pending pieces of a query, in a priority queue: best first.
 //!
 //! # Definitions
-//! - `lower` of a piece: a lower bound on its clearance: max(distance of its body, `lower` of its
-//!   parent).
-//! - `direction_gap` of a piece: the gap between its bounds that the unknown direction of a face
-//!   causes ([`Refinable::direction_uncertainty`]).
+//! - `lower` of a piece: a lower bound on its clearance. Of a measured piece it is max(distance of
+//!   its body, `lower` of its parent).
+//! - `direction_gap` of a piece: the gap between its bounds that the unknown or uncertain direction
+//!   of a face causes ([`Refinable::direction_uncertainty`]).
 //! - `found` of a piece: the upper bound on the clearance that the piece yields.
 //! - A **measured** piece has its distance and its `found`. An **open** piece has the `lower` of
 //!   its parent. A **distant** piece was searched within its `lower`, without a result: its
-//!   distance is larger.
+//!   distance is strictly larger.
 //! - The **rank** of a measured piece: (`lower` + `direction_gap`, upper bound of `found`, place
 //!   along the tube). An open piece ranks by (`lower`, 0, place), a distant piece by (`lower`,
 //!   infinity, place).
@@ -20,7 +20,7 @@
 //!
 //! **Proof.** Distance, `found`, `direction_gap` and place are functions of the piece. By induction
 //! over its parents, so is the `lower` of a measured piece. Measuring a piece never lowers its
-//! rank. So if a measured piece is the first of all, it would also be the first if all pieces were
+//! rank: an open piece has the least second part, and a distant piece gets a larger `lower`. So if a measured piece is the first of all, it would also be the first if all pieces were
 //! measured.
 //!
 //! Two consequences:
@@ -37,8 +37,8 @@ use std::collections::BinaryHeap;
 /// The body of a half at a face exceeds the tube by at most this share of its parent's excess.
 const AIM_OF_HALVES: Real = 1.0 / 8.0;
 
-/// How often a piece may be halved before it is measured. Each halving makes its body narrower by a
-/// factor of four.
+/// How often a piece may be halved before it is measured. Each halving divides the excess of a body
+/// along its chord by about four.
 pub(crate) const MOST_LEVELS: u8 = 2;
 
 /// The state of a pending piece.

@@ -6,7 +6,7 @@
 //! - **Piece**: the union of the discs of radius r perpendicular to c, and of a ball at a round end
 //!   of the section.
 //! - x = c(s) + w: a point of a disc; w is perpendicular to t(s) and |w| <= r.
-//! - d: the direction of the chord between the ends of the piece.
+//! - d: the direction of the chord between the ends of the piece. u: the unit roundoff.
 //!
 //! # Claim
 //! Each of the following bodies contains the piece.
@@ -20,21 +20,23 @@
 //! is the longer of the two parts that c(m) separates. (m is a tick; ticks may be unevenly spaced.)
 //! 1. In a part, at the share q of the way to c(m), the curve deviates from q e by at most D q (1 -
 //!    q).
-//! 2. Let u = |q - 1/2|. The distance of the curve from the chord moved by e / 2 is at most `|q -
-//!    1/2| |e| + D q (1 - q) = u |e| + D (1/4 - u^2)`.
-//! 3. The maximum over u is D / 4 + |e|^2 / (4 D) if |e| <= D, and |e| / 2 otherwise.
+//! 2. Let v = |q - 1/2|. The distance of the curve from the chord moved by e / 2 is at most `|q -
+//!    1/2| |e| + D q (1 - q) = v |e| + D (1/4 - v^2)`.
+//! 3. The maximum over v is D / 4 + |e|^2 / (4 D) if |e| <= D, and |e| / 2 otherwise.
 //!
 //! ## Case 2: along the chord, flat ends
-//! 1. For k l <= pi / 2, the angle between t(s) and d is at most k l / 2. Seen from t(s), the two
-//!    parts p + q = l of the curve add up to at most (2 - cos kp - cos kq) / k across and at least
-//!    (sin kp + sin kq) / k along. Their quotient is at most tan(k l / 2).
+//! 1. For k l <= pi / 2, the angle between t(s) and d is at most k l / 2: let the curve be p behind
+//!    and q ahead of s, p + q = l. Seen along t(s), the chord reaches at most (2 - cos kp - cos kq) /
+//!    k across and at least (sin kp + sin kq) / k along. The quotient is largest for p = 0 or q = 0,
+//!    where it is tan(k l / 2).
 //! 2. So the component of c(s) along d increases with s, and w reaches at most r sin(k l / 2) along
 //!    d. So x is behind the plane that is this far beyond the end.
-//! 3. A flat end in that plane cuts off no x, since x is also within the capsule's radius of the
-//!    longer axis.
+//! 3. The axis is extended to that plane. x is behind the plane, and within the capsule's radius of
+//!    the extended axis, so the flat end cuts off no x.
 //!
 //! ## Case 3: at a face
-//! Let T be the tangent at the face and s the arc length from the face.
+//! Let T be the tangent at the face and s the arc length from the face. Let k r < 1, and let k l + a
+//! (3.) be at most pi / 2.
 //! 1. The angle between t(s) and T is at most k s. So c(s) is at least sin(k s) / k behind the
 //!    face's plane, and at most (1 - cos ks) / k <= k l^2 / 2 beside its normal.
 //! 2. The vector w reaches at most r sin ks ahead. Since k r < 1, x is behind the plane. It is
@@ -49,15 +51,16 @@
 //!    coordinate. So it turns the axis by up to 4 u (reach / A + 1), and the flat ends dip by r
 //!    times that.
 //! 2. `slack` covers 4 u r, and 4 u reach < slack / 16.
-//! 3. For the rest, both ends are moved outwards by x = min(e / A, sqrt(e)) with e = r slack / 16.
-//!    The body is then longer than A + x, and e / (A + x) <= x. The back moves sideways by less
+//! 3. For the rest, both ends are moved outwards by m = min(b / A, sqrt(b)) with b = r slack / 16.
+//!    The body is then longer than A + m, and b / (A + m) <= m. The back moves sideways by less
 //!    than a slack.
 //!
 //! ## Errors
 //! The points of the discs are known to `error`, so everything is wider by `error`. The ends of a
 //! chord may be off to either side, which turns the chord by up to 2 error / |chord|. The wall of a
-//! flat body is then off by `error` once more. So a flat body can be the wider one: queries that
-//! know a turn also ask as if it were not stated, and return the better of both.
+//! flat body is then off by `error` once more. So a flat body can be the wider one. If the stated
+//! turn is all that is known of the flat ends, queries also ask as if it were not stated, and return
+//! the better of both (`engine::bvh::clearance`).
 //!
 //! If directions may be off by a stated turn, w reaches farther along d by r times that turn.
 
@@ -77,7 +80,8 @@ pub(crate) struct BoundingBody {
     /// By about how much the body is larger than the piece. A heuristic: correctness does not
     /// depend on it.
     pub excess: Real,
-    /// By about how much the bodies of the halves are narrower. A heuristic, too.
+    /// By about how much the bodies of the halves are narrower. It decides whether the piece is
+    /// divided; soundness does not depend on it.
     pub narrows: Real,
 }
 
@@ -191,8 +195,8 @@ impl PlacedTube<'_> {
         // Case 3.
         for (end, face) in ends.into_iter().enumerate() {
             let Some(face) = face else { continue };
-            // Without a face at the other end, the body's flat back ends inside the tube, which is
-            // harmless.
+            // A heuristic, as all of `excess`: a back that is not at a face does not stick out of the
+            // tube.
             let other =
                 if ends[1 - end].is_some() { section.radius * (bend + face.tilt) } else { 0.0 };
             let excess = sideways + face.tilt * (length + section.radius) + other;
@@ -276,10 +280,10 @@ impl PlacedTube<'_> {
         // Case 2.
         if flat != [false; 2] {
             let unit = along / chord;
-            let bend = 0.5 * curvature * length;
-            let tilt = bend + 2.0 * (error + self.slack) / chord + self.turn();
+            let half_bend = 0.5 * curvature * length;
+            let tilt = half_bend + 2.0 * (error + self.slack) / chord + self.turn();
             // The halves bend half as much; rounding turns their chords twice as far.
-            narrows += section.radius * (0.5 * bend - 2.0 * self.slack / chord);
+            narrows += section.radius * (0.5 * half_bend - 2.0 * self.slack / chord);
             let beyond = section.radius * tilt + error + self.slack;
             wider += section.radius * tilt;
             if flat[0] {

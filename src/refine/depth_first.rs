@@ -12,8 +12,8 @@
 //! # Algorithm
 //! [`refine`] takes parts from a stack until it is empty or the policy is done.
 //! 1. **Query.** Compute the body of the part. The policy gives the bound.
-//! 2. **Halve early.** If the body is wide and can be halved, push its halves. A body farther than
-//!    the bound is cleared instead.
+//! 2. **Halve early.** If the body is wide and can be halved: clear it if it is farther than the
+//!    bound, otherwise push its halves.
 //! 3. **Measure.** Find the nearest triangle or link. A body farther than the bound is cleared.
 //! 4. **Bound from above.** The point nearest to the body yields an upper bound on the clearance of
 //!    the part. The distance of the body is a lower bound.
@@ -59,7 +59,7 @@ pub(crate) struct BoundedPiece<'a, T: Refinable, P> {
 
 /// What happens to a part whose body is within the bound.
 pub(crate) enum RefineAction {
-    /// The part needs no more work.
+    /// The part needs no more work in this shape.
     Settled,
     /// Process the halves. Their bodies at a face exceed the tube by about this length.
     Halve(Real),

@@ -28,8 +28,9 @@ pub(crate) struct PlacedTube<'a> {
     /// lengths whose squares vanish.
     ///
     /// **Near triangles only.** If only triangles within a distance matter, the mesh's reach may be
-    /// replaced by the tube's reach + the distance + the longest edge. A farther triangle may
-    /// appear nearer only by the error that it would have at that distance.
+    /// replaced by the tube's reach + the distance + the longest edge. The computed distance of a
+    /// farther triangle errs more, but not by so much that it falls below that distance less the
+    /// slack.
     pub(crate) slack: Real,
     /// An upper bound on the largest coordinate of the tube after the pose.
     reach: Real,
@@ -78,7 +79,7 @@ impl<'a> PlacedTube<'a> {
     }
 
     /// Whether a near mesh allows a smaller `slack`.
-    pub(super) fn gains_from_sharpening(&self) -> bool {
+    pub(super) fn gains_from_tightening(&self) -> bool {
         slack_for(2.0 * self.reach) < 0.5 * self.slack
     }
 
@@ -101,8 +102,8 @@ impl<'a> PlacedTube<'a> {
         Self { is_moving: true, ..self }
     }
 
-    /// The same tube without its stated turn, if that leaves less known of it. All bounds of that
-    /// tube hold for this one.
+    /// The same tube without its stated turn, if that leaves less known of it. All bounds of the
+    /// result hold for `self`.
     pub(crate) fn without_turn(self) -> Option<Self> {
         self.tube.is_turn_all_that_is_known().then_some(Self { turn: None, ..self })
     }
@@ -264,7 +265,7 @@ fn near_faces(faces: [Option<EndFace>; 2], section: &Section, arcs: [Real; 2]) -
 
 /// The most pieces that a section starts with. Pieces near the wall are halved later; without the
 /// limit thin wires would start with millions.
-const MAX_PIECES: u32 = 1024;
+const MAX_INITIAL_PIECES: u32 = 1024;
 
 impl PlacedTube<'_> {
     /// Returns the arc lengths of a piece's ends.
@@ -300,7 +301,7 @@ impl PlacedTube<'_> {
     ///
     /// 1. The pieces near faces come first, so they are processed last. They cost most, and an
     ///    upper bound from the other pieces prunes most of them.
-    /// 2. The other pieces deviate from their chords by about `coarse`, at most [`MAX_PIECES`] per
+    /// 2. The other pieces deviate from their chords by about `coarse`, at most [`MAX_INITIAL_PIECES`] per
     ///    section.
     pub(crate) fn begin(&self, coarse: Real, pieces: &mut Vec<Piece>) {
         pieces.clear();
@@ -324,7 +325,8 @@ impl PlacedTube<'_> {
             let curvature = section.mean_curvature;
             let longest = (8.0 * coarse / curvature).sqrt().min(1.0 / curvature);
             // The cast saturates, and NaN becomes 0.
-            let count = ((length / longest).ceil() as u32).clamp(1, MAX_PIECES).min(to - from);
+            let count =
+                ((length / longest).ceil() as u32).clamp(1, MAX_INITIAL_PIECES).min(to - from);
             let tick = |k: u32| {
                 (u64::from(from) + u64::from(to - from) * u64::from(k) / u64::from(count)) as u32
             };
@@ -348,7 +350,7 @@ impl PlacedTube<'_> {
         }
         let from =
             if first { self.tube.tick(section, section.start + room[0]) } else { section.first };
-        // One tick before the first tick within the room.
+        // The last tick before the room.
         let to = if last {
             self.tube.tick(section, section.end - room[1]).saturating_sub(1).max(section.first)
         } else {
@@ -360,7 +362,7 @@ impl PlacedTube<'_> {
     /// Returns the two halves of a piece; `None` for a piece of one tick.
     ///
     /// At a face the part at the face has the length l with `k l^2 = aim`, if that is shorter than
-    /// half.
+    /// half: its body in case 3 exceeds the tube by `aim / 2` then.
     pub(crate) fn halves(&self, piece: &Piece, aim: Real) -> Option<[Piece; 2]> {
         if piece.to - piece.from < 2 {
             return None;

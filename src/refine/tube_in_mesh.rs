@@ -95,8 +95,8 @@ impl Refinable for TubeInMesh<'_> {
             return found;
         }
         // A triangle that crosses the body may touch it at a boundary point that is outside the
-        // tube. A point 1/8 of the way to the body's middle shows whether the triangle also crosses
-        // the tube.
+        // tube. The triangle's point nearest to a place 1/8 of the way to the body's middle shows
+        // whether it also crosses the tube.
         let middle = outer.body.start() + outer.body.along() * 0.5;
         let deeper = nearest.on_mesh + (middle - nearest.on_mesh) * 0.125;
         let deeper = self.found_at(piece.section, arc, &self.nearest_to(deeper, nearest.triangle));
@@ -141,8 +141,8 @@ impl TubeInMesh<'_> {
     }
 
     /// Whether a near mesh allows a smaller `slack`.
-    pub(crate) fn gains_from_sharpening(&self) -> bool {
-        self.tube.gains_from_sharpening()
+    pub(crate) fn gains_from_tightening(&self) -> bool {
+        self.tube.gains_from_tightening()
     }
 
     /// Reduces `slack`, given that only triangles within `away` matter.

@@ -9,7 +9,7 @@
 //!
 //! # Claim
 //! The distance of x from the tube is at most max(0, |x - q| - r), unless x lies ahead of a flat
-//! face (case 2).
+//! face (case 2) or near a round end that the face cuts off (case 4).
 //!
 //! **Proof.**
 //! 1. **Disc or ball.** Let c(s) be inside the section. Then x - c(s) is perpendicular to the
@@ -25,14 +25,15 @@
 //!    (`recedes_between`). The part of the section on q's side of m has no such face, so case 1
 //!    applies to it.
 //! 4. **Overhanging cap.** The section's own face cuts off the ball at its round end if the ball
-//!    sticks out of it. Where both are near, case 1 needs one of two conditions:
+//!    sticks out of it. Where face and round end are both near x, case 1 needs one of two
+//!    conditions:
 //!    - x is nearer to q than to the round end (`distance_to_overhanging_cap`);
 //!    - x is behind the face: then the segment from x to the ball is behind it, too.
 //! 5. **Part of a section**, cut anywhere. Let some place between q and a cut be farther from x
 //!    than q. Then the nearest place of the part up to there is not that cut, and cases 1 to 4
 //!    apply to it.
 //!
-//! **Rounding and errors.** q is known to the deviation of the curve from its samples (`foot.off`).
+//! **Rounding and errors.** q is known to the deviation of the curve from its samples (`near.off`).
 //! The normal of a face is known to its tilt, which moves the rim by at most r tilt. If the normal
 //! of a face is unknown, its centre still lies in the tube.
 //!
@@ -87,7 +88,7 @@ struct NearPlace {
 impl NearPlace {
     /// The point of the tube on the way from the place to `x`, if the tube has all points within
     /// the radius of the place. `reach` is an upper bound on the distance of the place from `x`.
-    fn less_radius(&self, radius: Real, reach: Real, x: Vector) -> TubePoint {
+    fn minus_radius(&self, radius: Real, reach: Real, x: Vector) -> TubePoint {
         // NaN means unknown, not contact.
         let upper = if reach.is_nan() { Real::INFINITY } else { (reach - radius).max(0.0) };
         let point = if upper > 0.0 { x + self.way * (upper / self.away).min(1.0) } else { x };
@@ -138,12 +139,12 @@ impl PlacedTube<'_> {
             let ahead = offset.dot(face.outward);
             let from_centre = offset.length();
             let is_behind = ahead + from_centre * face.tilt + rounding <= 0.0;
-            let crowded = self.distance_to_overhanging_cap(section, 1 - end, x);
-            if is_behind || reach < from_centre.min(crowded) - rounding {
+            let to_cut_cap = self.distance_to_overhanging_cap(section, 1 - end, x);
+            if is_behind || reach < from_centre.min(to_cut_cap) - rounding {
                 continue;
             }
             let face_arc = if end == 0 { section.start } else { section.end };
-            if reach < crowded - rounding
+            if reach < to_cut_cap - rounding
                 && self.recedes_between(section, [near.arc, face_arc], x, reach + rounding)
             {
                 continue;
@@ -155,12 +156,12 @@ impl PlacedTube<'_> {
                 + section.radius * face.tilt;
             // The face's centre and `place` belong to the tube for every normal. (The tilt may be
             // infinite; infinity times 0 is NaN.)
-            let beside = near.away + near.off;
-            let least = if rim <= from_centre { rim } else { from_centre }.min(beside);
+            let to_place = near.away + near.off;
+            let least = if rim <= from_centre { rim } else { from_centre }.min(to_place);
             let upper = least + rounding;
             if upper < best.upper {
                 best = TubePoint { upper, arc: face_arc, point: face.centre };
-                if least == beside {
+                if least == to_place {
                     best = TubePoint { upper, arc: near.arc, point: near.place };
                 } else if least == rim {
                     let share = if size > section.radius { section.radius / size } else { 1.0 };
@@ -170,7 +171,7 @@ impl PlacedTube<'_> {
         }
         // Case 1.
         if is_beside {
-            best = near.less_radius(section.radius, reach, x);
+            best = near.minus_radius(section.radius, reach, x);
         }
         best
     }
@@ -229,7 +230,7 @@ impl PlacedTube<'_> {
         let near = self.near_place(section, arc, x);
         let reach = near.away + rounding;
         if [0, 1].into_iter().all(|end| self.is_before_end(number, end, x, reach + rounding)) {
-            return near.less_radius(section.radius, reach, x);
+            return near.minus_radius(section.radius, reach, x);
         }
         TubePoint { upper: reach, arc: near.arc, point: near.place }
     }

@@ -908,8 +908,7 @@ impl<'a> TubeWithItself<'a> {
             return (Real::INFINITY, face.centre);
         }
         let on_face = point_of_face(face, radius, place);
-        let beyond = ((offset - face.outward * ahead).length() - radius).max(0.0);
-        (Vector::new(ahead, beyond, 0.0).length() + self.off(face, radius), on_face)
+        ((place - on_face).length() + self.off(face, radius), on_face)
     }
 }
 

@@ -46,17 +46,17 @@ impl<L: Pack> NodeBounds<L> {
     /// **Proof.**
     /// 1. Each gap is at most the part of the distance along that axis. The three parts are
     ///    perpendicular.
-    /// 2. The plane through the nearest point of the axis with normal v has the whole axis behind
-    ///    it. Its distance from c is `|v|`. The box reaches from c towards it by at most the
-    ///    fraction.
+    /// 2. The plane through the nearest point of the axis with normal v has the whole axis on the
+    ///    side opposite to c. Its distance from c is `|v|`. The box reaches from c towards it by at
+    ///    most the fraction.
     ///
     /// Bound 2 is sharper where the link is longer than the box, because the link may pass beside
-    /// the box slantwise. `plane_tells` is false where bound 2 excludes nothing.
+    /// the box slantwise. `plane_may_exclude` is false where bound 2 excludes nothing.
     ///
     /// **Rounding**, in units of `u reach`, where reach is at least 1 and bounds all coordinates.
     /// The axes are of length one within `10 u` and perpendicular within `7 u`, so a length is that
     /// of its parts within `17 u`.
-    /// 1. The gaps: 60 for the axes, as lengths are at most 3.5; 18 for three products with
+    /// 1. The gaps: 60 for the axes (17 times lengths of at most 3.5); 18 for three products with
     ///    `middle`, which itself errs by 5; 9 for the products with half the link's axis; 9 for the
     ///    differences.
     /// 2. The plane: 102 for the axes, as a box reaches at most 3 from its centre; 25 for products
@@ -66,10 +66,10 @@ impl<L: Pack> NodeBounds<L> {
     /// So neither bound errs by more than three times the link's `error`, which is 64: see
     /// [`SearchLink::limit_of_bounds`](crate::pair::SearchLink::limit_of_bounds).
     #[inline(always)]
-    pub(crate) fn squared_distances(&self, link: &LinkLanes<L>, plane_tells: bool) -> L {
+    pub(crate) fn squared_distances(&self, link: &LinkLanes<L>, plane_may_exclude: bool) -> L {
         let third = self.normal.cross(self.tangent);
         let gaps = self.squared_gaps(link, third);
-        if !plane_tells {
+        if !plane_may_exclude {
             return gaps;
         }
         let (ahead, squared) = self.ahead_of_plane(link, third);

@@ -39,7 +39,7 @@ pub(crate) struct PlacedMeshSearch<'a> {
 /// neither precision does.
 macro_rules! resolved {
     ($search:ident, $link:expr, |$traversal:ident, $searched:ident| $ask:expr, $out_of_reach:expr) => {
-        match $search.hierarchy.searched($search.level, $link) {
+        match $search.hierarchy.in_resolving_precision($search.level, $link) {
             Searched::Single($searched) => {
                 let mut $traversal = $search.single();
                 $ask
@@ -60,8 +60,8 @@ impl<'a> MeshSearch<'a> {
 }
 
 impl MeshSearch<'_> {
-    /// Returns the nearest triangle of a link, or `best` if no triangle improves on it. The `start`
-    /// triangles are tested first.
+    /// Returns the nearest triangle of a link, or `best` if no triangle improves on it. The leaves
+    /// of the `start` triangles are visited first.
     pub(crate) fn nearest(
         &mut self,
         link: &PlacedLink,
@@ -104,7 +104,8 @@ impl MeshSearch<'_> {
     }
 
     /// Returns the nearest triangle as [`MeshSearch::nearest`] does, and a lower bound on the
-    /// distance of all triangles. Also returns a triangle at about that bound, if one was met.
+    /// distance of every triangle, at most about `far`. Also returns a triangle at about that bound,
+    /// if one was met.
     ///
     /// No triangle farther than `far` is searched; `far` is at least the bound of `best`.
     pub(crate) fn nearest_with_lower_bound(
@@ -135,7 +136,7 @@ impl MeshSearch<'_> {
     }
 
     /// Returns true if any triangle may be at most `bound` from a capsule around links.
-    /// Conservative: false is exact.
+    /// False is a proof, true is not.
     pub(crate) fn may_meet(&mut self, capsule: &PlacedLink, bound: Real) -> bool {
         self.may_meet_below(capsule, bound, u32::MAX)
     }
@@ -215,8 +216,8 @@ impl PlacedMeshSearch<'_> {
         moved.nearest(&hierarchy.mesh, hierarchy.single(), link, best, start, &mut scratch.work)
     }
 
-    /// Returns true if any triangle may be at most `bound` from a capsule. Conservative: false is
-    /// exact.
+    /// Returns true if any triangle may be at most `bound` from a capsule. False is a proof, true is
+    /// not.
     pub(crate) fn may_meet(&mut self, capsule: &PlacedLink, bound: Real) -> bool {
         match &mut self.moved {
             Some(moved) => moved.may_meet(self.search.hierarchy.single(), capsule, bound),
@@ -302,7 +303,7 @@ impl Hierarchy {
     }
 
     /// Returns the link in the precision that resolves it.
-    pub(crate) fn searched(&self, level: Level, link: &PlacedLink) -> Searched {
+    pub(crate) fn in_resolving_precision(&self, level: Level, link: &PlacedLink) -> Searched {
         let single = SearchLink::new(link, &self.single.frame);
         if let Some(single) = single.filter(|single| single.is_resolved(&self.single.frame)) {
             return Searched::Single(single);
@@ -350,6 +351,6 @@ fn longest(mesh: &Mesh) -> Real {
 pub(crate) enum Searched {
     Single(SearchLink<f32>),
     Double(SearchLink<f64>),
-    /// Too far out even for double precision, beside a mesh so small.
+    /// Too far out even for double precision, in units of a mesh so small.
     OutOfReach,
 }

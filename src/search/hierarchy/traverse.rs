@@ -26,9 +26,9 @@
 //! # Correctness
 //! **Claim.** The answer is the least (distance, triangle) within the bound, for every start.
 //!
-//! **Proof.** Let a triangle have `lower >= upper' + 2 e`, where `upper'` belongs to another
-//! candidate at distance d'. Then `d > lower - r - e >= upper' - r + e >= d'`, since candidates
-//! have `upper' + e >= r`. So such a triangle is strictly farther, and all ties are measured. A
+//! **Proof.** A triangle that does not certainly overlap has `upper' + e >= r`, so its distance is
+//! `d' <= upper' - r + e`. Let another triangle have `lower >= upper' + 2 e`. Then
+//! `d > lower - r - e >= upper' - r + e >= d'`. So such a triangle is strictly farther, and all ties are measured. A
 //! triangle at the initial `limit` or beyond is farther than the bound. A triangle numbered `below`
 //! or higher loses the tie at distance 0. A node's bound is compared conservatively: see
 //! [`SearchLink::limit_of_bounds`].
@@ -77,14 +77,14 @@ struct Target<'a, E> {
     limit: E,
     /// A wanted triangle has a number below this.
     below: u32,
-    aim: Goal<'a>,
+    goal: Goal<'a>,
 }
 
 enum Goal<'a> {
     /// The nearest triangle of a link, if it improves on the best so far.
     Nearest(&'a PlacedLink, Best),
     /// A triangle about nearest, and how many leaves may still be visited.
-    About(Option<u32>, u32),
+    Guess(Option<u32>, u32),
     /// Whether any triangle may be within the limit.
     Any(bool),
 }
@@ -98,10 +98,10 @@ impl<E: Lane> Target<'_, E> {
 
     /// Returns true if nothing can change the answer any more.
     fn is_settled(&self) -> bool {
-        match &self.aim {
+        match &self.goal {
             Goal::Nearest(..) => self.below == 0,
             // Once a triangle meets the axis, the limit is 0 and no bound is below it.
-            Goal::About(_, leaves) => *leaves == 0,
+            Goal::Guess(_, leaves) => *leaves == 0,
             Goal::Any(found) => *found,
         }
     }
@@ -119,10 +119,10 @@ impl<E: Lane> Traversal<'_, E> {
     ) -> Best {
         let limit = searched.axis_limit(best.bound());
         let below = best.triangle_limit();
-        let mut target = Target { searched, limit, below, aim: Goal::Nearest(link, best) };
+        let mut target = Target { searched, limit, below, goal: Goal::Nearest(link, best) };
         self.search(&mut target, start);
         self.settle(&mut target);
-        if let Goal::Nearest(_, best) = target.aim { best } else { best }
+        if let Goal::Nearest(_, best) = target.goal { best } else { best }
     }
 
     /// Returns the nearest triangle at any distance, if a triangle overlaps or many candidates
@@ -139,11 +139,11 @@ impl<E: Lane> Traversal<'_, E> {
     ) -> Option<Best> {
         let (limit, best) = (searched.axis_limit(f64::INFINITY), Best::within(f64::INFINITY));
         let mut target =
-            Target { searched, limit, below: u32::MAX, aim: Goal::Nearest(link, best) };
+            Target { searched, limit, below: u32::MAX, goal: Goal::Nearest(link, best) };
         self.search(&mut target, start);
         self.drop_candidates(&target);
         let candidates = &mut self.stack.candidates;
-        if matches!(target.aim, Goal::Nearest(_, best) if best.nearest().is_none())
+        if matches!(target.goal, Goal::Nearest(_, best) if best.nearest().is_none())
             && (1..=FEW).contains(&candidates.len())
         {
             select_least(candidates, 1);
@@ -151,18 +151,19 @@ impl<E: Lane> Traversal<'_, E> {
             return None;
         }
         self.measure_candidates(&mut target);
-        if let Goal::Nearest(_, best) = target.aim { Some(best) } else { None }
+        if let Goal::Nearest(_, best) = target.goal { Some(best) } else { None }
     }
 
     /// Returns the nearest triangle as [`Traversal::nearest`] does, and a lower bound on the
-    /// distance of all triangles. Also returns the triangle with that bound, if one was met.
+    /// distance of all triangles. Also returns a triangle at about that bound, if one was met.
     ///
     /// No triangle farther than `far` is searched; `far` is at least the bound of `best`.
     ///
     /// **Proof of the lower bound.** A pruned triangle had a lower bound of at least `limit` at
     /// that time. The final `limit` is not larger. The other triangles are candidates, or were
-    /// measured. So no triangle is nearer than the least of three: the final `limit`, the
-    /// candidates' bounds and the measured distance (0 for a triangle that overlaps).
+    /// measured, or have the number `below` or a higher one. The last happens only once a triangle
+    /// overlaps, at distance 0. So no triangle is nearer than the least of three: the final `limit`,
+    /// the candidates' bounds and the measured distance.
     pub(crate) fn nearest_with_lower_bound(
         &mut self,
         link: &PlacedLink,
@@ -172,7 +173,7 @@ impl<E: Lane> Traversal<'_, E> {
         start: [Option<u32>; 2],
     ) -> (Best, f64, Option<u32>) {
         let (limit, below) = (searched.axis_limit(far), best.triangle_limit());
-        let mut target = Target { searched, limit, below, aim: Goal::Nearest(link, best) };
+        let mut target = Target { searched, limit, below, goal: Goal::Nearest(link, best) };
         self.search(&mut target, start);
         let mut least = (target.limit, None);
         for &(lower, triangle) in &self.stack.candidates {
@@ -182,7 +183,7 @@ impl<E: Lane> Traversal<'_, E> {
         }
         target.limit = target.limit.min(searched.axis_limit(best.bound()));
         self.settle(&mut target);
-        let best = if let Goal::Nearest(_, best) = target.aim { best } else { best };
+        let best = if let Goal::Nearest(_, best) = target.goal { best } else { best };
         let apart = searched.at_least(least.0.into());
         (best, best.nearest().map_or(apart, |nearest| apart.min(nearest.distance)), least.1)
     }
@@ -192,18 +193,18 @@ impl<E: Lane> Traversal<'_, E> {
         let limit = searched.axis_limit(f64::INFINITY);
         let below = u32::MAX;
         let mut target =
-            Target { searched, limit, below, aim: Goal::About(None, LEAVES_FOR_A_GUESS) };
+            Target { searched, limit, below, goal: Goal::Guess(None, LEAVES_FOR_A_GUESS) };
         self.search(&mut target, [None; 2]);
-        if let Goal::About(found, _) = target.aim { found } else { None }
+        if let Goal::Guess(found, _) = target.goal { found } else { None }
     }
 
     /// Returns true if a triangle with a number less than `below` may be at most `bound` from the
-    /// link. Conservative: false is exact.
+    /// link. False is a proof, true is not: in a leaf, triangles count whatever their number.
     pub(crate) fn may_meet(&mut self, searched: &SearchLink<E>, bound: f64, below: u32) -> bool {
         let limit = searched.axis_limit(bound);
-        let mut target = Target { searched, limit, below, aim: Goal::Any(false) };
+        let mut target = Target { searched, limit, below, goal: Goal::Any(false) };
         self.search(&mut target, [None; 2]);
-        matches!(target.aim, Goal::Any(true))
+        matches!(target.goal, Goal::Any(true))
     }
 
     /// Adds to `found` all triangles that may be at most `bound` from the link, in no order.
@@ -276,10 +277,10 @@ impl<E: Lane> Traversal<'_, E> {
         self.stack.waiting.clear();
         self.stack.waiting.push((zero, Child::Node(0).pack()));
         // Marks the start leaves with a negative bound, so that they are skipped when met again.
-        let first = zero - zero.one();
-        self.stack
-            .waiting
-            .extend(start.iter().rev().flatten().map(|&leaf| (first, Child::Leaf(leaf).pack())));
+        let start_mark = zero - zero.one();
+        self.stack.waiting.extend(
+            start.iter().rev().flatten().map(|&leaf| (start_mark, Child::Leaf(leaf).pack())),
+        );
         while let Some((squared, child)) = self.stack.waiting.pop() {
             if target.is_settled() {
                 break;
@@ -348,7 +349,7 @@ impl<E: Lane> Traversal<'_, E> {
         let limit = L::splat(token, target.limit);
         for lane in (0..BLOCK).step_by(L::LANES) {
             let vertices = load_vertices::<L>(token, &leaf.rows, lane);
-            if lanes.not_behind_plane(vertices, limit) == 0 {
+            if lanes.not_excluded_by_plane(vertices, limit) == 0 {
                 continue;
             }
             self.work.axis_distances += L::LANES as u64;
@@ -357,13 +358,13 @@ impl<E: Lane> Traversal<'_, E> {
             bounds.upper.store(&mut upper[lane..]);
             near |= bounds.nearer << lane;
         }
-        match &mut target.aim {
+        match &mut target.goal {
             Goal::Any(found) => {
-                // Conservative: `below` is ignored here.
+                // `below` is ignored here.
                 *found = near != 0;
                 return;
             }
-            Goal::About(_, leaves) => *leaves -= 1,
+            Goal::Guess(_, leaves) => *leaves -= 1,
             Goal::Nearest(..) => {}
         }
         let (error, radius) = (target.searched.error, target.searched.radius);
@@ -376,7 +377,7 @@ impl<E: Lane> Traversal<'_, E> {
             if lower[lane] >= target.limit || triangle >= target.below {
                 continue;
             }
-            if let Goal::About(found, _) = &mut target.aim {
+            if let Goal::Guess(found, _) = &mut target.goal {
                 *found = Some(triangle);
                 target.limit = upper[lane];
             } else if upper[lane] + error < radius {
@@ -409,7 +410,7 @@ impl<E: Lane> Traversal<'_, E> {
     /// most probably exclude others.
     #[inline(never)] // the same code on every instruction set
     fn measure_candidates(&mut self, target: &mut Target<E>) {
-        let Goal::Nearest(link, best) = &mut target.aim else { return };
+        let Goal::Nearest(link, best) = &mut target.goal else { return };
         let candidates = &mut self.stack.candidates;
         select_least(candidates, BATCH);
         let (mut limit, mut place) = (target.limit, 0);
@@ -431,7 +432,7 @@ impl<E: Lane> Traversal<'_, E> {
 
     /// Measures one triangle in double precision.
     fn measure(&mut self, target: &mut Target<E>, triangle: u32) {
-        let Goal::Nearest(link, best) = &mut target.aim else { return };
+        let Goal::Nearest(link, best) = &mut target.goal else { return };
         self.work.measured += 1;
         if best.measure(link, triangle, self.mesh.corners(triangle)) {
             target.limit = target.limit.min(target.searched.axis_limit(best.bound()));
@@ -455,11 +456,11 @@ where
 {
     let limit = L::splat(token, squared_limit);
     // The plane test gains nothing for a link that is shorter than the children.
-    let plane_tells = node.largest < searched.length;
+    let plane_may_exclude = node.largest < searched.length;
     let mut bounds = [L::Element::default(); WIDTH];
     let mut near = 0;
     for lane in (0..WIDTH).step_by(L::LANES) {
-        let squared = node.bounds::<L>(token, lane).squared_distances(lanes, plane_tells);
+        let squared = node.bounds::<L>(token, lane).squared_distances(lanes, plane_may_exclude);
         squared.store(&mut bounds[lane..]);
         near |= L::bits(squared.lt(limit)) << lane;
     }
@@ -532,7 +533,7 @@ impl<E: Lane> LeafVisitor<E> for CappedGather<'_, E> {
         let limit = L::splat(token, self.limit);
         for lane in (0..BLOCK).step_by(L::LANES) {
             let vertices = load_vertices::<L>(token, &leaf.rows, lane);
-            if lanes.not_behind_plane(vertices, limit) == 0 {
+            if lanes.not_excluded_by_plane(vertices, limit) == 0 {
                 continue;
             }
             let mut near = lanes.may_be_nearer(&Face::in_order(vertices), limit).nearer;
