@@ -2,8 +2,8 @@
 //!
 //! An end is flat for one of three reasons (`algorithm_1`, `section`):
 //!
-//! 1. The radii: it is a limit of the walks of Algorithm 1, which is an end of the robot or a step in
-//!    radius. Radii are constant during a motion.
+//! 1. The radii: it is a limit of the walks of Algorithm 1, which is an end of the robot or a step
+//!    in radius. Radii are constant during a motion.
 //! 2. Its distance to the last limit is less than a radius.
 //! 3. The robot has flat caps at all links ([`Chain::cylinders`](crate::Chain::cylinders)).
 //!
@@ -133,8 +133,9 @@ impl Tube {
     /// Marks the ends that stay flat in an interval, and the sections that may lose their
     /// direction.
     ///
-    /// Returns the larger of two upper bounds: on the movement, relative to their limits, of the ends
-    /// that may not stay flat; and on the movement of the rims of sections that may turn too far.
+    /// Returns the larger of two upper bounds: on the movement, relative to their limits, of the
+    /// ends that may not stay flat; and on the movement of the rims of sections that may turn too
+    /// far.
     pub(crate) fn mark_lasting_faces_between(&mut self, drift: &impl Drift) -> Real {
         let rounding = 16.0 * Real::UNIT_ROUNDOFF * self.reach;
         let mut opening = self.mark_lost_directions(drift, rounding);

@@ -127,8 +127,8 @@ impl Section {
         self.shown_at = self.curvature_at;
     }
 
-    /// Returns an arc length from a flat end at which, and beyond which, a ball of the tube's radius
-    /// does not cross the face.
+    /// Returns an arc length from a flat end at which, and beyond which, a ball of the tube's
+    /// radius does not cross the face.
     ///
     /// A disc at arc length s from the face lies at least `sin(k s) / k` behind its plane, for the
     /// curvature k. This equals the radius r at `s = asin(k r) / k`, which is at most `(pi / 2) r`.

@@ -7,8 +7,8 @@ use parry3d_f64::math::{Real, Vector};
 /// # Definitions
 /// - d: the displacement of a point at its share of the piece, interpolated linearly between the
 ///   displacements `ways` of the piece's two ends.
-/// - The point is at `p0` at the first time and at `p1` at the last. At the fraction q of the time it is within `off` of `p0 + q d`, and also within
-///   `off` of `p1 - (1 - q) d`.
+/// - The point is at `p0` at the first time and at `p1` at the last. At the fraction q of the time
+///   it is within `off` of `p0 + q d`, and also within `off` of `p1 - (1 - q) d`.
 ///
 /// # How to state it
 /// A point with acceleration at most a leaves the straight motion at constant speed between its

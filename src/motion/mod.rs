@@ -45,8 +45,8 @@ use parry3d_f64::math::{Pose, Real};
 /// - A point of the centreline is identified at all times by its section and its share of the
 ///   section's length.
 /// - Ends that are flat because of the radii stay flat: the robot's two ends, and the wider side of
-///   each step in radius. So the cap model must stay the same; a change from capsules to fitted caps,
-///   for example, is refused. Other ends may become flat or round.
+///   each step in radius. So the cap model must stay the same; a change from capsules to fitted
+///   caps, for example, is refused. Other ends may become flat or round.
 /// ```
 /// use parry_continuum::parry::math::{Pose, Real, Vector};
 /// use parry_continuum::{Motion, RobotError, Speed, Tube, verify_motion};

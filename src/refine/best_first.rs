@@ -20,8 +20,8 @@
 //!
 //! **Proof.** Distance, `found`, `direction_gap` and place are functions of the piece. By induction
 //! over its parents, so is the `lower` of a measured piece. Measuring a piece never lowers its
-//! rank: an open piece has the least second part, and a distant piece gets a larger `lower`. So if a measured piece is the first of all, it would also be the first if all pieces were
-//! measured.
+//! rank: an open piece has the least second part, and a distant piece gets a larger `lower`. So if
+//! a measured piece is the first of all, it would also be the first if all pieces were measured.
 //!
 //! Two consequences:
 //! - An upper bound of an earlier query may save searches. It never enters a result.

@@ -26,17 +26,17 @@
 //!
 //! ## Case 2: along the chord, flat ends
 //! 1. For k l <= pi / 2, the angle between t(s) and d is at most k l / 2: let the curve be p behind
-//!    and q ahead of s, p + q = l. Seen along t(s), the chord reaches at most (2 - cos kp - cos kq) /
-//!    k across and at least (sin kp + sin kq) / k along. The quotient is largest for p = 0 or q = 0,
-//!    where it is tan(k l / 2).
+//!    and q ahead of s, p + q = l. Seen along t(s), the chord reaches at most (2 - cos kp - cos kq)
+//!    / k across and at least (sin kp + sin kq) / k along. The quotient is largest for p = 0 or q =
+//!    0, where it is tan(k l / 2).
 //! 2. So the component of c(s) along d increases with s, and w reaches at most r sin(k l / 2) along
 //!    d. So x is behind the plane that is this far beyond the end.
 //! 3. The axis is extended to that plane. x is behind the plane, and within the capsule's radius of
 //!    the extended axis, so the flat end cuts off no x.
 //!
 //! ## Case 3: at a face
-//! Let T be the tangent at the face and s the arc length from the face. Let k r < 1, and let k l + a
-//! (3.) be at most pi / 2.
+//! Let T be the tangent at the face and s the arc length from the face. Let k r < 1, and let k l +
+//! a (3.) be at most pi / 2.
 //! 1. The angle between t(s) and T is at most k s. So c(s) is at least sin(k s) / k behind the
 //!    face's plane, and at most (1 - cos ks) / k <= k l^2 / 2 beside its normal.
 //! 2. The vector w reaches at most r sin ks ahead. Since k r < 1, x is behind the plane. It is
@@ -59,8 +59,8 @@
 //! The points of the discs are known to `error`, so everything is wider by `error`. The ends of a
 //! chord may be off to either side, which turns the chord by up to 2 error / |chord|. The wall of a
 //! flat body is then off by `error` once more. So a flat body can be the wider one. If the stated
-//! turn is all that is known of the flat ends, queries also ask as if it were not stated, and return
-//! the better of both (`engine::bvh::clearance`).
+//! turn is all that is known of the flat ends, queries also ask as if it were not stated, and
+//! return the better of both (`engine::bvh::clearance`).
 //!
 //! If directions may be off by a stated turn, w reaches farther along d by r times that turn.
 
@@ -195,8 +195,8 @@ impl PlacedTube<'_> {
         // Case 3.
         for (end, face) in ends.into_iter().enumerate() {
             let Some(face) = face else { continue };
-            // A heuristic, as all of `excess`: a back that is not at a face does not stick out of the
-            // tube.
+            // A heuristic, as all of `excess`: a back that is not at a face does not stick out of
+            // the tube.
             let other =
                 if ends[1 - end].is_some() { section.radius * (bend + face.tilt) } else { 0.0 };
             let excess = sideways + face.tilt * (length + section.radius) + other;

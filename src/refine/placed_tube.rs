@@ -301,8 +301,8 @@ impl PlacedTube<'_> {
     ///
     /// 1. The pieces near faces come first, so they are processed last. They cost most, and an
     ///    upper bound from the other pieces prunes most of them.
-    /// 2. The other pieces deviate from their chords by about `coarse`, at most [`MAX_INITIAL_PIECES`] per
-    ///    section.
+    /// 2. The other pieces deviate from their chords by about `coarse`, at most
+    ///    [`MAX_INITIAL_PIECES`] per section.
     pub(crate) fn begin(&self, coarse: Real, pieces: &mut Vec<Piece>) {
         pieces.clear();
         for number in (0..self.sections().len() as u32).rev() {

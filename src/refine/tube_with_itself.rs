@@ -508,8 +508,8 @@ impl<'a> TubeWithItself<'a> {
     /// **Proof.** The nearest point of a convex set moves by at most as much as y. A point of the
     /// curve between two points is at most half of its length away from their middle. If a rigid
     /// displacement T moves the face, the point nearest to y is T applied to the point of the old
-    /// face nearest to T^-1 y. T moves points of the face by at most s + r a, and T^-1 moves y by at
-    /// most s + |y - c| a.
+    /// face nearest to T^-1 y. T moves points of the face by at most s + r a, and T^-1 moves y by
+    /// at most s + |y - c| a.
     fn leads_on(&self, pair: &SelfPair, k: usize) -> bool {
         let (tube, piece) = (self.tube(), &pair.pieces[1 - k]);
         let Some(end) = pair.faces[k] else { return false };

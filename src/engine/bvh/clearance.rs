@@ -65,7 +65,8 @@ impl BvhSearch {
     /// `lower` is the least `lower` of the pieces, or else the answer's `upper`. For a tube that
     /// states a turn the answer combines two queries: the pieces come from the query with the
     /// larger `lower`. Once the query finds a common point with the mesh, it divides no further.
-    /// The `lower` of a piece farther than `upper` depends on earlier queries. `out` is cleared first.
+    /// The `lower` of a piece farther than `upper` depends on earlier queries. `out` is cleared
+    /// first.
     ///
     /// ```
     /// use parry_continuum::{Tube, parry::{math::{Pose, Vector}, shape::{Ball, TriMesh}}};
@@ -229,8 +230,8 @@ impl BvhSearch {
     }
 }
 
-/// Step 1: the clearance of a tube as if no turn had been stated, and its pieces. `None` if none was
-/// stated.
+/// Step 1: the clearance of a tube as if no turn had been stated, and its pieces. `None` if none
+/// was stated.
 fn clearance_without_turn<'m>(
     tube: &mut TubeInMesh,
     memory: &'m mut TubeMemory,

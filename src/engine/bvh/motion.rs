@@ -22,11 +22,10 @@ impl BvhSearch {
     /// - `Contact`: the answer names a shape that is at most the margin away, and its time.
     /// - `Undecided` with the reason [`Near`](crate::proximity::UndecidedReason::Near): the
     ///   distance of some shape exceeds the margin by at most `resolution`, beside what the motion
-    ///   states as uncertain. The query tests 256 more shapes for a contact, then it ends. Two other
-    ///   cases have
-    ///   this reason. An end of a link or section lies one radius behind a flat face, turns from
-    ///   flat to round, and is the part that comes near. Or the length of a link vanishes for an
-    ///   instant, and the ball that the link then is comes near.
+    ///   states as uncertain. The query tests 256 more shapes for a contact, then it ends. Two
+    ///   other cases have this reason. An end of a link or section lies one radius behind a flat
+    ///   face, turns from flat to round, and is the part that comes near. Or the length of a link
+    ///   vanishes for an instant, and the ball that the link then is comes near.
     /// - `Undecided` with the reason [`Work`](crate::proximity::UndecidedReason::Work): the query
     ///   ends after 65,536 shapes.
     ///

@@ -16,8 +16,8 @@
 //!    and go back to step 2.
 //! 5. **Answer.** The lower bound is the least `lower` of all pieces, at most `upper`.
 //!
-//! **Warm start.** Bodies are first searched within `hint`. A body without a result is *distant*: its
-//! `lower` becomes the bound of that search, and when it is first it is searched again, within
+//! **Warm start.** Bodies are first searched within `hint`. A body without a result is *distant*:
+//! its `lower` becomes the bound of that search, and when it is first it is searched again, within
 //! `upper`. So the hint only saves work: the upper bound of the answer comes from step 4 alone.
 //!
 //! # Claim
@@ -25,9 +25,9 @@
 //! looser bounds.
 //!
 //! **Proof.** Steps 2 to 5 depend only on the sequence of divisions, which is the same for every
-//! hint (`refine::best_first`). The tolerance decides only when the query stops. A piece that cannot
-//! be divided keeps its `lower` and never stops the sequence. Along the sequence no `lower` falls
-//! and `upper` never rises.
+//! hint (`refine::best_first`). The tolerance decides only when the query stops. A piece that
+//! cannot be divided keeps its `lower` and never stops the sequence. Along the sequence no `lower`
+//! falls and `upper` never rises.
 
 use crate::answer::{Clearance, ProximityError};
 use crate::refine::{
@@ -186,8 +186,8 @@ impl<'a, T: Refinable> BoundsSearch<'a, T> {
         })
     }
 
-    /// Measures an open piece within the hint. A piece that is distant, or whose `lower` exceeds the
-    /// hint, is measured within `upper`.
+    /// Measures an open piece within the hint. A piece that is distant, or whose `lower` exceeds
+    /// the hint, is measured within `upper`.
     fn measure(
         &mut self,
         piece: PendingPiece<T::Piece, T::Body, T::Upper>,

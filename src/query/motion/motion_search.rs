@@ -21,14 +21,14 @@
 //!    body prevents the decision, and not the motion, the piece is halved in the same shape.
 //! 3. **Displacements.** A speed bounds how far a piece moves, not in which direction. If few
 //!    pieces are unresolved and the motion bounds their displacements, each is tested on the sides
-//!    of t where no piece before it failed. The test separates it from every triangle that is near enough (`half_displacement`,
-//!    `separating_planes`). A cleared piece is dropped on that side. If all are cleared, the side
-//!    is done. A piece with little room rarely passes this test, so it is tested rarely, unless it
-//!    passes.
+//!    of t where no piece before it failed. The test separates it from every triangle that is near
+//!    enough (`half_displacement`, `separating_planes`). A cleared piece is dropped on that side.
+//!    If all are cleared, the side is done. A piece with little room rarely passes this test, so it
+//!    is tested rarely, unless it passes.
 //! 4. **Divide.** The remaining parts of the interval, before and after t, become intervals with
 //!    the unresolved pieces.
-//! 5. **Stop** when no interval is left, at a contact, after [`MAX_SHAPES`] shapes, or a fixed number
-//!    of shapes after the first one near the margin (`progress`).
+//! 5. **Stop** when no interval is left, at a contact, after [`MAX_SHAPES`] shapes, or a fixed
+//!    number of shapes after the first one near the margin (`progress`).
 //!
 //! **Moving mesh.** The mesh has a place at each time (`search::hierarchy::moving_mesh`). V is then
 //! the speed of the piece plus the speed of the fastest vertex, since no point of a triangle is

@@ -7,10 +7,10 @@
 //! nearest triangle alone is not enough: a piece that leaves one wall may approach another.
 //!
 //! **Claim.** A triangle that is more than margin + `any_direction` + 2 slack from the swept body
-//! never comes within the margin. **Proof.** The swept body contains the piece at every displacement
-//! in the triangle (0, a, b). Relative to the mesh, every point of the piece stays within
-//! `any_direction` of the swept body. So only the triangles within that distance of it are gathered,
-//! and each of them must be separated.
+//! never comes within the margin. **Proof.** The swept body contains the piece at every
+//! displacement in the triangle (0, a, b). Relative to the mesh, every point of the piece stays
+//! within `any_direction` of the swept body. So only the triangles within that distance of it are
+//! gathered, and each of them must be separated.
 //!
 //! A plane's normal leads from the nearest point of the triangle to that of the body. Normals found
 //! before are tried first, the latest one first: one normal separates most triangles of a wall.

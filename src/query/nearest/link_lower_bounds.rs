@@ -15,8 +15,8 @@
 //! The claim holds for any link, so the robot may be another one with as many links. It also holds
 //! for the capsule around all links. The capsule answers for a robot far from the wall in one step.
 //!
-//! **Rounding.** `ROUNDING (reach + 2 extent)` is subtracted from `d`, and `m` is multiplied by
-//! `1 + ROUNDING`. The link then reaches at most `extent`, and the link now `extent + m`: the sum is
+//! **Rounding.** `ROUNDING (reach + 2 extent)` is subtracted from `d`, and `m` is multiplied by `1
+//! + ROUNDING`. The link then reaches at most `extent`, and the link now `extent + m`: the sum is
 //! `2 extent`, and the factor `1 + ROUNDING` covers the rest.
 //!
 //! # Look-ahead
@@ -52,8 +52,8 @@ pub(crate) struct LinkLowerBounds {
     /// The bound of each link of the current robot, set by `refresh`; empty if unknown.
     now: Vec<Real>,
     look_ahead: LookAhead,
-    /// Whether the last call of `look_ahead` returned a radius. Until that call this is of the query
-    /// before.
+    /// Whether the last call of `look_ahead` returned a radius. Until that call this is of the
+    /// query before.
     has_looked_ahead: bool,
 }
 
@@ -333,8 +333,8 @@ impl LookAhead {
         self.extend_rest(REST_WITHOUT_PAY);
     }
 
-    /// Records that a search of `clears` met the mesh within its look-ahead: halves the look-ahead and
-    /// rests.
+    /// Records that a search of `clears` met the mesh within its look-ahead: halves the look-ahead
+    /// and rests.
     pub(crate) fn shrink(&mut self) {
         self.queries = (0.5 * self.queries).max(1.0);
         self.extend_rest(REST_AFTER_MEETING);

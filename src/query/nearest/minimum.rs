@@ -3,8 +3,8 @@
 //! # Definitions
 //! - `upper`: the caller's bound or the best distance so far, whichever is smaller.
 //! - `lower[k]`: a lower bound on the distance of link k ([`LinkLowerBounds`]).
-//! - `look_ahead`: extra search radius that yields `lower[k]` for later queries. None if it does not
-//!   pay; then no new bounds are recorded.
+//! - `look_ahead`: extra search radius that yields `lower[k]` for later queries. None if it does
+//!   not pay; then no new bounds are recorded.
 //! - Link k is *open* if `lower[k] <= upper` or if `lower[k]` is unknown.
 //!
 //! # Algorithm
@@ -21,9 +21,9 @@
 //! caller's bound from the mesh. The warm start and the seed never change it.
 //!
 //! **Proof.** `upper` never grows. Steps 1 and 3 skip a link only if its distance exceeds `upper`.
-//! One other case skips a link: at `upper = 0`, every triangle that it may touch has a higher number
-//! than the best one. Such a link loses the tie. So steps 2 and 4 search every link at the final
-//! distance, ties included; [`closer`] orders ties.
+//! One other case skips a link: at `upper = 0`, every triangle that it may touch has a higher
+//! number than the best one. Such a link loses the tie. So steps 2 and 4 search every link at the
+//! final distance, ties included; [`closer`] orders ties.
 //!
 //! **Recorded bounds.** A radius is recorded as `lower[k]` only where the search of link k, or the
 //! test of a capsule around it, reached that radius.

@@ -104,8 +104,8 @@ impl MeshSearch<'_> {
     }
 
     /// Returns the nearest triangle as [`MeshSearch::nearest`] does, and a lower bound on the
-    /// distance of every triangle, at most about `far`. Also returns a triangle at about that bound,
-    /// if one was met.
+    /// distance of every triangle, at most about `far`. Also returns a triangle at about that
+    /// bound, if one was met.
     ///
     /// No triangle farther than `far` is searched; `far` is at least the bound of `best`.
     pub(crate) fn nearest_with_lower_bound(
@@ -216,8 +216,8 @@ impl PlacedMeshSearch<'_> {
         moved.nearest(&hierarchy.mesh, hierarchy.single(), link, best, start, &mut scratch.work)
     }
 
-    /// Returns true if any triangle may be at most `bound` from a capsule. False is a proof, true is
-    /// not.
+    /// Returns true if any triangle may be at most `bound` from a capsule. False is a proof, true
+    /// is not.
     pub(crate) fn may_meet(&mut self, capsule: &PlacedLink, bound: Real) -> bool {
         match &mut self.moved {
             Some(moved) => moved.may_meet(self.search.hierarchy.single(), capsule, bound),

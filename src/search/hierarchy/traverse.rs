@@ -27,8 +27,8 @@
 //! **Claim.** The answer is the least (distance, triangle) within the bound, for every start.
 //!
 //! **Proof.** A triangle that does not certainly overlap has `upper' + e >= r`, so its distance is
-//! `d' <= upper' - r + e`. Let another triangle have `lower >= upper' + 2 e`. Then
-//! `d > lower - r - e >= upper' - r + e >= d'`. So such a triangle is strictly farther, and all ties are measured. A
+//! `d' <= upper' - r + e`. Let another triangle have `lower >= upper' + 2 e`. Then `d > lower - r -
+//! e >= upper' - r + e >= d'`. So such a triangle is strictly farther, and all ties are measured. A
 //! triangle at the initial `limit` or beyond is farther than the bound. A triangle numbered `below`
 //! or higher loses the tie at distance 0. A node's bound is compared conservatively: see
 //! [`SearchLink::limit_of_bounds`].
@@ -162,8 +162,8 @@ impl<E: Lane> Traversal<'_, E> {
     /// **Proof of the lower bound.** A pruned triangle had a lower bound of at least `limit` at
     /// that time. The final `limit` is not larger. The other triangles are candidates, or were
     /// measured, or have the number `below` or a higher one. The last happens only once a triangle
-    /// overlaps, at distance 0. So no triangle is nearer than the least of three: the final `limit`,
-    /// the candidates' bounds and the measured distance.
+    /// overlaps, at distance 0. So no triangle is nearer than the least of three: the final
+    /// `limit`, the candidates' bounds and the measured distance.
     pub(crate) fn nearest_with_lower_bound(
         &mut self,
         link: &PlacedLink,
