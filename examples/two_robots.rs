@@ -3,9 +3,9 @@
 //! `cargo run --release --example two_robots` sends a robot through either frontal horn. At every
 //! step one scene is asked: whether each robot keeps its margin from the wall and from the other
 //! one, and where the slack (distance less margin) is least. At the end there are the time per
-//! question, and a picture of the last step at which all is clear, with the closest points. `--mesh` takes real anatomy
-//! instead (in millimetres, or with `--scale`); `--base` and `--axis` place the first robot in it,
-//! and the second stands `--beside` it.
+//! question, and a picture of the last step at which all is clear, with the closest points.
+//! `--mesh` takes real anatomy instead (in millimetres, or with `--scale`); `--base` and `--axis`
+//! place the first robot in it, and the second stands `--beside` it.
 
 use clap::Parser;
 use continuum_demo::anatomy::{Anatomy, no_goal};

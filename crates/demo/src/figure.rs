@@ -154,7 +154,8 @@ pub fn ring(canvas: &mut Canvas, [x, y]: [f32; 2], radius: f32) {
     canvas.frame(around, radius, 4.5, MARK);
 }
 
-/// The legend of the ring, the lines and the tinted triangles; `at` is the left end of the base line.
+/// The legend of the ring, the lines and the tinted triangles; `at` is the left end of the base
+/// line.
 fn legend(canvas: &mut Canvas, at: [f32; 2], tint: Colour, closest: &str) {
     let [x, y] = at;
     ring(canvas, [x + 25.0, y - 8.0], 11.0);

@@ -1,6 +1,6 @@
 //! Prints what is read from each file, a line of JSON each: `cargo run --example read -- wall.stl
-//! lines.vtp:0`. A colon and a number after the name choose a label or a line. Before a file `--line`
-//! reads it as a centreline, and `--no-position` reads a label map without a position.
+//! lines.vtp:0`. A colon and a number after the name choose a label or a line. Before a file
+//! `--line` reads it as a centreline, and `--no-position` reads a label map without a position.
 
 use mesh_files::{Frame, Options, load_centreline, load_with};
 use serde_json::{Value, json};

@@ -51,8 +51,8 @@ pub struct Options {
     /// inside. For a file of triangles a label is an error.
     pub label: Option<u32>,
     /// Whether to read a label map that does not state the position of its voxels. Its first voxel
-    /// is then the origin, its axes are the axes of the voxels, and a voxel without a stated spacing
-    /// has the sides 1. Its frame is unknown unless the file states it.
+    /// is then the origin, its axes are the axes of the voxels, and a voxel without a stated
+    /// spacing has the sides 1. Its frame is unknown unless the file states it.
     pub allow_no_position: bool,
     /// The line to read from a centreline's file, counted from 0. A file with one line needs none.
     pub line: Option<usize>,

@@ -21,7 +21,8 @@ use std::sync::Arc;
 ///
 /// ``Mesh(vertices, faces)`` copies both. ``Mesh(other)`` takes a mesh of trimesh (or a scene),
 /// pyvista, meshio or Open3D, or what else has ``.vertices`` and ``.faces``; polygons are cut into
-/// triangles, and lines and points are left out. Lengths are in one unit of your choice, the same for mesh and robots. `load` reads a file.
+/// triangles, and lines and points are left out. Lengths are in one unit of your choice, the same
+/// for mesh and robots. `load` reads a file.
 ///
 /// Any number of threads may ask one mesh at the same time: queries run without the GIL.
 /// `set_vertices` moves the vertices for all queries that begin later. A mesh can be copied and
@@ -29,8 +30,8 @@ use std::sync::Arc;
 ///
 /// A mesh with ``device="gpu"`` answers large batches of `distance`, `minimum`, `per_link` and
 /// `clears` on the GPU, and the last bit of an answer is that of the CPU. The size from which on a
-/// batch counts as large depends on the question and on the number of threads; `gpu_seconds` changes
-/// if one ran there. All other questions, smaller batches and single robots are answered on
+/// batch counts as large depends on the question and on the number of threads; `gpu_seconds`
+/// changes if one ran there. All other questions, smaller batches and single robots are answered on
 /// the CPU. `set_vertices` moves the vertices on the GPU, and the search on the CPU follows at the
 /// next question that needs it, or at `prepare`. With 65,536 faces or more, those four questions
 /// are asked of the GPU until then, about one robot too. One thread at a time uses the GPU for a

@@ -84,8 +84,8 @@ fn the_trade_is_measured_drawn_and_quoted() {
     );
     assert!(after[1].contains(" 2 of each length"), "{again}");
     refuse(TRADEOFF, &["--only", "motions", "--out", "trade/nowhere"], "has no such chapter");
-    // Marks of parry's two shapes and of the tube at seven tolerances each, and in the legend; a label
-    // for each row of the front.
+    // Marks of parry's two shapes and of the tube at seven tolerances each, and in the legend; a
+    // label for each row of the front.
     let picture = read("trade/docs/tradeoff.svg");
     for colour in ["#0072B2", "#56B4E9", "#D55E00"] {
         let marks = picture.matches(&format!("<polygon opacity=\"1\" fill=\"{colour}\"")).count();

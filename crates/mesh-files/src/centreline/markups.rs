@@ -8,8 +8,8 @@ use serde::de::DeserializeOwned;
 use serde_json::Value;
 
 /// An upper bound on the memory of the values of a file, for each of its bytes. `[0],` becomes a
-/// [`Value`] of 32 bytes with room for four others, in a list that has room for as many again and is
-/// copied as it grows.
+/// [`Value`] of 32 bytes with room for four others, in a list that has room for as many again and
+/// is copied as it grows.
 pub const EACH: u64 = 64;
 
 #[derive(Default, Deserialize)]

@@ -110,8 +110,8 @@ impl Format {
 /// such as a list of fiducials.
 ///
 /// # Errors
-/// As [`load_with`](crate::load_with); there is no line, or several and none is chosen; the line has
-/// fewer than two points; or a line names a point that does not exist.
+/// As [`load_with`](crate::load_with); there is no line, or several and none is chosen; the line
+/// has fewer than two points; or a line names a point that does not exist.
 pub fn load_centreline(
     path: impl AsRef<Path>,
     options: &Options,

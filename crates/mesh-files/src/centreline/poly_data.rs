@@ -181,15 +181,15 @@ fn join(lines: &[Vec<usize>], points: &[Point]) -> Vec<Vec<Point>> {
 ///
 /// # Proof
 /// A cell of the grid is `2 width` wide, so it has points of one group only. The first point of a
-/// group is stored. Any other point is in the same cell, or in a neighbouring one, where `find` sees
-/// the first point and compares the coordinates.
+/// group is stored. Any other point is in the same cell, or in a neighbouring one, where `find`
+/// sees the first point and compares the coordinates.
 ///
 /// # Choice
-/// - Programs compute the same place twice with different rounding. VTK prints single precision with 6
-///   digits, so the two may be neighbouring numbers of 6 digits, which differ by at most
+/// - Programs compute the same place twice with different rounding. VTK prints single precision
+///   with 6 digits, so the two may be neighbouring numbers of 6 digits, which differ by at most
 ///   `10^-5 largest`. Numbers in single precision are 100 times finer.
-/// - Coordinates far from the origin can be finer than that. `step / 1024` keeps the points of a line
-///   apart.
+/// - Coordinates far from the origin can be finer than that. `step / 1024` keeps the points of a
+///   line apart.
 /// - A `width` below the resolution of double precision, `2^-52 largest`, counts as 0: only equal
 ///   points are at one place.
 struct Places {

@@ -145,7 +145,8 @@ fn read(
     Ok(robots)
 }
 
-/// The columns of the coordinates and of the radius, and the frame that the coordinates' names state.
+/// The columns of the coordinates and of the radius, and the frame that the coordinates' names
+/// state.
 struct Columns {
     axes: [usize; 3],
     radius: Option<usize>,
@@ -348,8 +349,8 @@ fn name(word: &str) -> String {
     ["_mm", "_m", " mm"].iter().find_map(|unit| bare.strip_suffix(unit)).unwrap_or(&bare).to_owned()
 }
 
-/// Returns whether a line is a heading: names of three coordinates; or words without a digit, none of
-/// which is a number or missing.
+/// Returns whether a line is a heading: names of three coordinates; or words without a digit, none
+/// of which is a number or missing.
 fn is_heading(columns: &[&str], names: &[String]) -> bool {
     let is_name = |word: &&str| word.contains(char::is_alphabetic) && number(word).is_none();
     let has_digit = || names.iter().any(|name| name.contains(char::is_numeric));

@@ -1,5 +1,6 @@
 //! Reads MetaImage label maps: `.mha`, and `.mhd` with its voxels in a second file. As in ITK,
-//! their frame is LPS, in millimetres unless `DistanceUnits` states another unit, which ITK ignores.
+//! their frame is LPS, in millimetres unless `DistanceUnits` states another unit, which ITK
+//! ignores.
 
 use super::voxels::{Encoding, Kind, Voxels, last};
 use super::{Fault, Place, Volume, count, elsewhere, voxels_path};

@@ -207,8 +207,8 @@ fn scaling(header: &Header, kind: Kind) -> Result<Option<[f64; 2]>, String> {
     }
 }
 
-/// The largest difference between 1 and a slope that stands for 1. It is the difference that label 1
-/// may have from a whole number.
+/// The largest difference between 1 and a slope that stands for 1. It is the difference that label
+/// 1 may have from a whole number.
 const SLOPE_ERROR: f64 = 1e-4;
 
 fn kind(header: &Header) -> Result<Kind, String> {

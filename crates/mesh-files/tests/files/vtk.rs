@@ -109,8 +109,8 @@ fn ends_that_differ_by_rounding_meet() {
     let mut draws = crate::mutations::Draws(3);
     let mut draw = || draws.below(1 << 20) as f64 / f64::from(1 << 19) - 1.0;
     for round in 0..200 {
-        // A walk of steps of about 1, whose coordinates are at most 100. Each cell has points of its
-        // own, rounded in another way, in any order and direction.
+        // A walk of steps of about 1, whose coordinates are at most 100. Each cell has points of
+        // its own, rounded in another way, in any order and direction.
         let mut places = vec![[70.0 * draw(), 70.0 * draw(), 70.0 * draw()]];
         for _ in 0..20 {
             let last = places[places.len() - 1];

@@ -1,5 +1,5 @@
-//! Objects of this package, and lists of them. The error of another type names the parameter and, in
-//! a list, the entry.
+//! Objects of this package, and lists of them. The error of another type names the parameter and,
+//! in a list, the entry.
 
 use super::scalars::is_of_value;
 use pyo3::PyTypeInfo;

@@ -63,8 +63,8 @@ impl Motion {
     /// The frame that its points state, "RAS" or "LPS", or None.
     ///
     /// Poses may lead into another frame: points that poses move count as stating a frame only if
-    /// one of the poses is the identity. A query warns if a motion and a mesh, or two motions, state
-    /// different frames.
+    /// one of the poses is the identity. A query warns if a motion and a mesh, or two motions,
+    /// state different frames.
     #[getter]
     fn frame(&self) -> Option<&'static str> {
         self.frame.map(Frame::name)

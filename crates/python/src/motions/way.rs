@@ -39,8 +39,8 @@ impl Way {
         together(py, [(robots, count), (NAMES[0], start), (NAMES[1], end)])
     }
 
-    /// The frame that points state in the frame of a base which the poses move. Other poses than the
-    /// identity may lead into another frame.
+    /// The frame that points state in the frame of a base which the poses move. Other poses than
+    /// the identity may lead into another frame.
     pub(super) fn frame(&self, stated: Option<Frame>) -> Option<Frame> {
         const IDENTITY: [f64; 16] =
             [1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1.];

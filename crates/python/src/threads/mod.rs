@@ -10,8 +10,8 @@
 //! - The threads of a pool do not live on in a child, so a child has a pool of its own (`pool`).
 //!   What another thread was in the middle of building in the library stays half built for ever in
 //!   the child, so the child builds it again (`engine`).
-//! - One thread at a time has a mesh's search on the GPU; the others ask the CPU (`device`). A child
-//!   has no GPU of its parent's.
+//! - One thread at a time has a mesh's search on the GPU; the others ask the CPU (`device`). A
+//!   child has no GPU of its parent's.
 
 mod compute;
 mod device;

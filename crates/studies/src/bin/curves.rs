@@ -575,7 +575,8 @@ fn plot(
     Ok(())
 }
 
-/// A shape for each line, so that the plot needs no colours: a disc, a square, a triangle, a diamond.
+/// A shape for each line, so that the plot needs no colours: a disc, a square, a triangle, a
+/// diamond.
 fn mark(number: usize, style: ShapeStyle) -> Polygon<(i32, i32)> {
     let (corners, turn) = [(24, 0.0), (4, 0.125), (3, 0.0), (4, 0.0)][number];
     let corner = |k: i32| {

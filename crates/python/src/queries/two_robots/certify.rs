@@ -125,7 +125,8 @@ impl RobotPair {
     }
 }
 
-/// Refuses a row that names no segments, except for a segment without length, whose distance is NaN.
+/// Refuses a row that names no segments, except for a segment without length, whose distance is
+/// NaN.
 fn check_nothing(is_link: bool, distance: f64, row: usize) -> Result<(), Refused> {
     let text = if is_link {
         format!(

@@ -22,8 +22,8 @@ const SMALLEST: usize = 10_000;
 const ENGINES: [&str; 4] =
     ["exhaustive f32", "exhaustive f64", "search, warm start", "parry, link by link"];
 
-/// The lines of the plot, all with cylinders, which parry has too: their place in [`ENGINES`], name,
-/// colour (Okabe and Ito) and mark.
+/// The lines of the plot, all with cylinders, which parry has too: their place in [`ENGINES`],
+/// name, colour (Okabe and Ito) and mark.
 const PLOTTED: [(usize, &str, RGBColor, Mark); 3] = [
     (3, "parry, link by link", RGBColor(0, 0, 0), Mark::Square),
     (0, "every triangle, f32", RGBColor(213, 94, 0), Mark::Triangle),

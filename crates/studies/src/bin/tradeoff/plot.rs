@@ -115,8 +115,8 @@ fn marks(
     Ok(())
 }
 
-/// Names the combinations of the front in a column between the front and the slowest points, each at
-/// the end of a line from its mark. Labels keep [`LINE`] between them.
+/// Names the combinations of the front in a column between the front and the slowest points, each
+/// at the end of a line from its mark. Labels keep [`LINE`] between them.
 fn labels(line: &[Combination], slow: f64, chart: &mut Chart) -> Drawn {
     let slowest = line.last().map_or(slow, |one| place(one).0);
     let column = chart.backend_coord(&((slowest.powi(2) * slow).cbrt(), 1.0)).0;
