@@ -162,11 +162,8 @@ struct Counts {
 
 type Robot = (&'static str, f64, fn(&mut Random) -> Shape);
 
-const ROBOTS: [Robot; 3] = [
-    ("tendons", 5.0, tendon_robot),
-    ("tubes", 1.25, tubes),
-    ("snake", 9.0, snake),
-];
+const ROBOTS: [Robot; 3] =
+    [("tendons", 5.0, tendon_robot), ("tubes", 1.25, tubes), ("snake", 9.0, snake)];
 
 fn counted(my: &Options, shape: fn(&mut Random) -> Shape, margin: f64) -> Result<Counts, String> {
     let (mut random, mut counts, mut query) = (Random::new(7), Counts::default(), SelfQuery::new());
