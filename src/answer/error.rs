@@ -39,7 +39,7 @@ pub enum MeshError {
     },
     /// The number of new vertices differs from the number of old ones.
     #[error(
-        "the mesh has {expected} vertices but {got} were given; build a new engine for a new mesh"
+        "the mesh has {expected} vertices but {got} were given; give as many, or build a new engine for a new mesh"
     )]
     VertexCount {
         /// The number of vertices of the mesh.
@@ -69,13 +69,13 @@ pub enum MeshError {
 #[strum(serialize_all = "snake_case")]
 #[non_exhaustive]
 pub enum ProximityError {
-    /// The robot's pose has a component that is NaN or infinite.
-    #[error("the robot's pose is not finite; check its translation and rotation")]
+    /// The pose of a robot or a structure has a component that is NaN or infinite.
+    #[error("the pose is not finite; check its translation and rotation")]
     PoseNotFinite,
-    /// The rotation of the robot's pose scales: the length of its quaternion is not 1, even within
-    /// single precision.
+    /// The rotation of the pose scales: the length of its quaternion is not 1, even within single
+    /// precision.
     #[error(
-        "the robot's pose has a quaternion of length {length}; normalise its rotation",
+        "the pose has a quaternion of length {length}; normalise its rotation",
         length = number(.length)
     )]
     PoseNotRigid {
@@ -245,8 +245,8 @@ pub enum ProximityError {
     },
     /// An answer does not fit the link and the triangle that it names, as they are now.
     #[error(
-        "the answer about link {link} and triangle {triangle} does not fit them: its `{field}` is off by {off:e}, of which \
-         rounding explains {limit:e}; ask again where robot, pose or mesh have changed"
+        "the answer about link {link} and triangle {triangle} does not fit them: its `{field}` is off by {off:.1e}, of which \
+         rounding explains {limit:.1e}; ask again where robot, pose or mesh have changed"
     )]
     AnswerDoesNotFit {
         /// The answer's link.
@@ -262,8 +262,8 @@ pub enum ProximityError {
     },
     /// An answer about two robots does not fit the links that it names, as they are now.
     #[error(
-        "the answer about the links {links:?} does not fit them: its `{field}` is off by {off:e}, of which rounding explains \
-         {limit:e}; ask again where robots or poses have changed"
+        "the answer about the links {links:?} does not fit them: its `{field}` is off by {off:.1e}, of which rounding explains \
+         {limit:.1e}; ask again where robots or poses have changed"
     )]
     LinksDoNotFit {
         /// The answer's links.

@@ -70,7 +70,10 @@ pub enum RobotError {
         count: usize,
     },
     /// The number of radii does not fit the number of points.
-    #[error("{points} points need {expected} radii, got {radii} in `{parameter}`")]
+    #[error(
+        "{points} points need {expected} radii, got {radii} in `{parameter}`{rule}",
+        rule = radii_rule(*.points, *.expected, *.radii)
+    )]
     LengthsDiffer {
         /// The parameter's name in the function that was called.
         parameter: &'static str,
@@ -222,7 +225,7 @@ pub enum RobotError {
         reason: &'static str,
     },
     /// A path needs at least one motion.
-    #[error("there are no motions in `{parameter}`; a path needs at least one motion")]
+    #[error("`{parameter}` is empty; a path needs at least one")]
     NoMotions {
         /// The parameter's name in the function that was called.
         parameter: &'static str,
@@ -437,6 +440,17 @@ impl Display for Number {
 /// Returns a number as messages write it.
 pub(crate) fn number(value: &Real) -> impl Display + use<> {
     Number(*value)
+}
+
+/// Returns what to say if radii are given for segments but needed for points, or the reverse.
+fn radii_rule(points: usize, expected: usize, radii: usize) -> &'static str {
+    if expected < points && radii == points {
+        "; give one for each segment between two points"
+    } else if expected == points && radii + 1 == points {
+        "; give one for each point"
+    } else {
+        ""
+    }
 }
 
 /// Returns a vector as messages write it.

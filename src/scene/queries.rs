@@ -131,7 +131,7 @@ impl Scene {
 
     /// Adds a structure and returns its number.
     ///
-    /// Structures count from 0 in the order in which they are added.
+    /// Structures count from 0 in the order in which they are added. Two may have the same name.
     ///
     /// # Errors
     /// The margin is negative or NaN. The message names the structure.

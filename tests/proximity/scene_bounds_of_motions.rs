@@ -271,14 +271,10 @@ fn an_organ_that_passes_in_between_is_found() {
     // Half a turn about an axis through the mesh's own origin sweeps nothing.
     let turned = Pose::from_parts(Vector::new(0.0, 1.0, 0.5), Rotation::from_rotation_x(3.1));
     assert_eq!(ask(at(0.0, 1.0), turned), Decision::Clear);
-    assert!(matches!(
-        scene.clears_motion_while(
-            &[(0, StructureEnd::Pose(at(Real::NAN, 0.0)))],
-            &[&at_rest],
-            1e-3
-        ),
-        Err(SceneError::Structure { .. })
-    ));
+    let nowhere = [(0, StructureEnd::Pose(at(Real::NAN, 0.0)))];
+    let error = scene.clears_motion_while(&nowhere, &[&at_rest], 1e-3).unwrap_err();
+    assert!(matches!(error, SceneError::Structure { .. }));
+    assert!(error.to_string().contains("`: the pose is not finite"), "{error}");
     assert!(matches!(
         scene.clears_motion_while(&[(0, StructureEnd::Vertices(&[]))], &[&at_rest], 1e-3),
         Err(SceneError::Structure { .. })

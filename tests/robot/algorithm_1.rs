@@ -353,12 +353,15 @@ fn bad_input_is_named() {
             );
         }
     }
-    for (points, expected, radii, error) in [
-        (4, 3, 4, Chain::from_centreline(&good, &[0.1; 4]).unwrap_err()),
-        (4, 3, 2, Chain::capsules(&good, &[0.1; 2]).unwrap_err()),
-        (4, 3, 0, Chain::cylinders(&good, &[]).unwrap_err()),
-        (4, 4, 3, Chain::from_vertex_radii(&good, &[0.1; 3]).unwrap_err()),
+    let per_segment = "; give one for each segment between two points";
+    let per_point = "; give one for each point";
+    for (points, expected, radii, end, error) in [
+        (4, 3, 4, per_segment, Chain::from_centreline(&good, &[0.1; 4]).unwrap_err()),
+        (4, 3, 2, "`segment_radii`", Chain::capsules(&good, &[0.1; 2]).unwrap_err()),
+        (4, 3, 0, "`segment_radii`", Chain::cylinders(&good, &[]).unwrap_err()),
+        (4, 4, 3, per_point, Chain::from_vertex_radii(&good, &[0.1; 3]).unwrap_err()),
     ] {
+        assert!(error.to_string().ends_with(end), "{error}");
         let parameter = if expected == 4 { "vertex_radii" } else { "segment_radii" };
         assert_eq!(error, RobotError::LengthsDiffer { parameter, points, expected, radii });
     }

@@ -180,7 +180,7 @@ def main(count=500):
         "## What Python adds",
         "",
         "Microseconds of processor time for a robot, the least of several rounds in turns: arrays in, a chain made of them, the answer,",
-        "arrays out. A batch runs on one thread in Rust, and on all cores in Python.",
+        "arrays out. For the times of a batch, the Rust program uses one thread, and Python all cores.",
         "",
         "| question | Rust | Python | more |",
         "|---|---|---|---|",

@@ -13,7 +13,7 @@ const OF_RUST: [(&str, &str); 6] = [
         "give frames at one place one direction; for a robot of straight links use a Chain",
         "give a point that stands twice one tangent; for a robot of straight links ask `distance` or `clears`",
     ),
-    ("build a new engine for a new mesh", "give as many, or make a new `Mesh`"),
+    ("build a new engine for a new mesh", "make a new `Mesh`"),
     ("in `from` and `to`", "in `start` and `end`"),
     ("fill the tube in `Motion::shape`", "give points"),
     ("an engine on the CPU", "`device=\"cpu\"`"),

@@ -162,11 +162,8 @@ struct Counts {
 
 type Robot = (&'static str, f64, fn(&mut Random) -> Shape);
 
-const ROBOTS: [Robot; 3] = [
-    ("tendon robot, 3 sections of 60 mm, radius 5 mm", 5.0, tendon_robot),
-    ("concentric tubes, radius 1.25 to 0.5 mm", 1.25, tubes),
-    ("snake of 20 links of 20 mm, radius 9 mm", 9.0, snake),
-];
+const ROBOTS: [Robot; 3] =
+    [("tendons", 5.0, tendon_robot), ("tubes", 1.25, tubes), ("snake", 9.0, snake)];
 
 fn counted(my: &Options, shape: fn(&mut Random) -> Shape, margin: f64) -> Result<Counts, String> {
     let (mut random, mut counts, mut query) = (Random::new(7), Counts::default(), SelfQuery::new());
@@ -199,7 +196,8 @@ fn counted(my: &Options, shape: fn(&mut Random) -> Shape, margin: f64) -> Result
 
 fn table(my: &Options) -> Result<String, String> {
     let mut page = format!(
-        "{} random shapes of each robot (`{}`), each searched among samples. A shape is near itself if the distance of two places, \
+        "{} random shapes of each robot (`{}`), each searched among samples. *Tendons*: 3 sections of 60 mm, radius 5 mm. *Tubes*: \
+         concentric, radius 1.25 to 0.5 mm. *Snake*: 20 links of 20 mm, radius 9 mm. A shape is near itself if the distance of two places, \
          less both radii, is a local minimum and within the margin. Shapes that the samples leave unclear do not count. The \
          planner's rule takes all pairs of samples more than 3 radii apart along the robot, or more than 3 radii and the \
          margin.\n\n\
