@@ -21,8 +21,8 @@ const AROUND: [u32; 5] = [32, 128, 256, 447, 1414];
 const MAIN: u32 = 128;
 /// Robots of the largest batch on the other vessels.
 const MOST_ELSEWHERE: usize = 100_000;
-/// Robots of the largest batch of the exhaustive engine, which takes a fixed time for each.
-const MOST_EXHAUSTIVE: usize = 1000;
+/// Robots of the largest batch of the exhaustive engine, on a GPU and on one in software.
+const MOST_EXHAUSTIVE: [usize; 2] = [1000, 20];
 /// Robots whose work is counted.
 const COUNTED: usize = 1000;
 /// Shapes of robots. A larger batch repeats them in other poses.
@@ -177,16 +177,19 @@ struct Engines {
     cpu: BvhSearch,
     gpu: GpuSearch,
     exhaustive: GpuExhaustive,
+    most_exhaustive: usize,
 }
 
 impl Engines {
     fn new(opened: &Opened, mesh: &TriMesh) -> Result<Self, String> {
-        let mut cpu = BvhSearch::new(mesh).map_err(text)?;
+        let cpu = BvhSearch::new(mesh).map_err(text)?;
         cpu.prepare();
         let mut gpu = GpuSearch::on(&opened.gpu, mesh).map_err(text)?;
         gpu.set_min_links(Some(0));
         let exhaustive = GpuExhaustive::on(&opened.gpu, mesh).map_err(text)?;
-        Ok(Self { cpu, gpu, exhaustive })
+        let [real, in_software] = MOST_EXHAUSTIVE;
+        let most_exhaustive = if gpu.adapter().is_software { in_software } else { real };
+        Ok(Self { cpu, gpu, exhaustive, most_exhaustive })
     }
 
     /// The times of a batch, and whether both searches have the same answers.
@@ -196,7 +199,7 @@ impl Engines {
         question: usize,
         enough: Duration,
     ) -> Result<(String, bool), String> {
-        let Self { cpu, gpu, exhaustive } = self;
+        let Self { cpu, gpu, exhaustive, most_exhaustive } = self;
         let [mut on_cpu, mut on_gpu, mut of_all] = [(); 3].map(|()| Answers::default());
         let mut ask_cpu = || on_cpu.ask(cpu, robots, question).map(|()| None);
         let mut ask_gpu = || {
@@ -205,7 +208,7 @@ impl Engines {
         };
         let mut ask_exhaustive = || of_all.ask(exhaustive, robots, question).map(|()| None);
         let mut jobs: Vec<Job> = vec![&mut ask_cpu, &mut ask_gpu];
-        if robots.len() <= MOST_EXHAUSTIVE {
+        if robots.len() <= *most_exhaustive {
             jobs.push(&mut ask_exhaustive);
         }
         let timed = medians(&mut jobs, enough)?;
