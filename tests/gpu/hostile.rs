@@ -105,7 +105,7 @@ fn links_have_any_length() {
     let (mesh, mut random) = (ball(40, 20), Random::new(55));
     let robots: Vec<_> = (0..90)
         .map(|number| {
-            let mut points = vec![random.point() * 6.0];
+            let mut points = vec![random.direction() * random.between(7.0, 10.5)];
             for k in 0..20 {
                 let length = [0.5, 0.0, 1e-2, 1e-4, 1e-6, 1e-8, 1e-12][(number + k) % 7];
                 points.push(points[k] + random.direction() * length);
