@@ -17,7 +17,7 @@ use std::time::Duration;
 
 /// Triangles around the vessels: meshes of 5, 82 and 328 thousand, 1 and 10 million triangles.
 const AROUND: [u32; 5] = [32, 128, 256, 447, 1414];
-/// The vessel of the largest batch, and of the prototype's figures.
+/// The vessel of the largest batch.
 const MAIN: u32 = 128;
 /// Robots of the largest batch on the other vessels.
 const MOST_ELSEWHERE: usize = 100_000;
@@ -30,8 +30,15 @@ const SHAPES: usize = 4096;
 /// The margin of `clears_batch`.
 const MARGIN: f64 = 0.0;
 
-/// The nodes that a prototype visits for a link: a binary tree of boxes, capsules, [`MAIN`].
-const PROTOTYPE: [&str; 3] = ["7", "40", "153"];
+/// The nodes that a prototype visits for a link of such robots (capsules), by the triangles around
+/// the vessel and the question: the same tree, 32 threads in step, and a bound that no rounding
+/// widens.
+const PROTOTYPE: [(u32, [&str; 3]); 4] = [
+    (32, ["2.8", "28.3", "77.4"]),
+    (128, ["2.9", "50.8", "268.6"]),
+    (256, ["3.0", "76.6", "570.6"]),
+    (447, ["3.0", "122.0", "1135.8"]),
+];
 
 const QUESTIONS: [&str; 3] = ["`clears_batch`", "`minimum_batch`", "`per_link_batch`"];
 
@@ -70,10 +77,8 @@ pub fn chapter(
             let robots = self::robots(shapes, &poses[..poses.len().min(COUNTED)]);
             for (question, name) in QUESTIONS.iter().enumerate() {
                 let [nodes, leaves, left] = engines.work(&robots, question)?;
-                let prototype = match (around, model) {
-                    (MAIN, "capsules") => PROTOTYPE[question],
-                    _ => "-",
-                };
+                let row = PROTOTYPE.iter().find(|row| row.0 == around && model == "capsules");
+                let prototype = row.map_or("-", |row| row.1[question]);
                 writeln!(
                     work,
                     "| {triangles} | {model} | {name} | {nodes:.1} | {leaves:.1} | {prototype} | {left} |"
