@@ -249,7 +249,7 @@ from parry_continuum import Mesh
 from shapes import robots, sphere
 mesh = Mesh(*sphere(), device="gpu")
 many = robots(np.random.default_rng(0), 40 * 15_000 // 2 + 1, points=3)
-found = mesh.clears(many, 0.1, margin=0.1)
+found = mesh.clears(many, 0.1, margin=4.0)
 assert mesh.gpu_seconds is not None or not IS_REQUIRED
 assert 0 < found.sum() < len(found)
 """
@@ -412,6 +412,41 @@ def test_a_mesh_that_does_not_fit() -> None:
         assert caught.value.kind == "mesh_too_large"
         assert bits(on_gpu(mesh, lambda it: it.minimum(many, 0.1))) == expected
     assert bits(on_gpu(Mesh(VERTICES, FACES, device="gpu"), lambda it: it.minimum(many, 0.1))) == expected
+
+
+@needs_gpu
+@pytest.mark.skipif(not IS_REQUIRED or sys.platform != "linux", reason="limits the memory of Mesa's GPU, which is the process's own")
+def test_the_gpu_runs_out_of_memory() -> None:
+    """It is an error of that batch; the next batch is answered on the GPU."""
+    program = """
+import resource
+from pathlib import Path
+import numpy as np
+from parry_continuum import ContinuumError, Mesh
+from shapes import robots, sphere
+mesh = Mesh(*sphere(), device="gpu")
+many = robots(np.random.default_rng(0), 2**18, points=2)
+few = many[:20_000]
+expected = Mesh(mesh).minimum(few, 0.1)
+# Too few links of 40 threads for the GPU: makes the robots, so that the next batch needs memory for its buffers alone.
+mesh.clears(many, 0.1, margin=0.1)
+assert mesh.gpu_seconds is None
+used = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
+_, most = resource.getrlimit(resource.RLIMIT_AS)
+resource.setrlimit(resource.RLIMIT_AS, (used + (100 << 20), most))
+try:
+    mesh.minimum(many, 0.1)
+except ContinuumError as error:
+    print(error.kind, error)
+resource.setrlimit(resource.RLIMIT_AS, (most, most))
+found = mesh.minimum(few, 0.1)
+assert mesh.gpu_seconds is not None
+assert all(np.array_equal(one, other) for one, other in zip(found, expected))
+"""
+    forty = {**os.environ, "RAYON_NUM_THREADS": "40"}
+    done = subprocess.run([sys.executable, "-c", program], cwd=TESTS, env=forty, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.startswith("out_of_memory the GPU is out of memory; ask for less at once"), done.stdout
 
 
 # Threads and processes.
