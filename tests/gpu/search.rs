@@ -10,7 +10,7 @@ use parry_continuum::parry::shape::{Ball, TriMesh};
 use parry_continuum::proximity::{BvhSearch, LinkProximity, Proximity, ProximityError};
 
 /// Asserts that both engines have the same minima. Returns them.
-fn same_minima(
+pub fn same_minima(
     engine: &mut GpuSearch,
     reference: &mut BvhSearch,
     robots: &[(&Chain, Pose)],
@@ -23,7 +23,7 @@ fn same_minima(
 }
 
 /// Asserts that both engines have the same answers for each link.
-fn same_links(engine: &mut GpuSearch, reference: &mut BvhSearch, robots: &[(&Chain, Pose)]) {
+pub fn same_links(engine: &mut GpuSearch, reference: &mut BvhSearch, robots: &[(&Chain, Pose)]) {
     let (mut found, mut expected) = (Vec::new(), Vec::new());
     engine.per_link_batch(robots, &mut found).unwrap();
     reference.per_link_batch(robots, &mut expected).unwrap();
@@ -31,7 +31,7 @@ fn same_links(engine: &mut GpuSearch, reference: &mut BvhSearch, robots: &[(&Cha
 }
 
 /// Asserts that both engines decide alike about a margin.
-fn same_decisions(
+pub fn same_decisions(
     engine: &mut GpuSearch,
     reference: &mut BvhSearch,
     robots: &[(&Chain, Pose)],

@@ -241,6 +241,25 @@ def test_more_links_than_a_chunk() -> None:
 
 
 @needs_gpu
+def test_as_many_threads_as_a_large_machine_has() -> None:
+    """Of more threads a batch must be larger, and no chunk of it may be too small for the GPU."""
+    program = """
+import numpy as np
+from parry_continuum import Mesh
+from shapes import robots, sphere
+mesh = Mesh(*sphere(), device="gpu")
+many = robots(np.random.default_rng(0), 40 * 15_000 // 2 + 1, points=3)
+found = mesh.clears(many, 0.1, margin=4.0)
+assert mesh.gpu_seconds is not None or not IS_REQUIRED
+assert 0 < found.sum() < len(found)
+"""
+    program = program.replace("IS_REQUIRED", str(IS_REQUIRED))
+    many = {**os.environ, "RAYON_NUM_THREADS": "40"}
+    done = subprocess.run([sys.executable, "-c", program], cwd=TESTS, env=many, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+
+
+@needs_gpu
 def test_small_batches_and_other_questions_are_on_the_cpu() -> None:
     mesh, cpu = Mesh(VERTICES, FACES, device="gpu"), Mesh(VERTICES, FACES)
     many = robots(np.random.default_rng(9), 20)
@@ -377,6 +396,57 @@ def test_meshes_that_are_none() -> None:
                 Mesh(vertices, faces, device=device)  # type: ignore[arg-type]
             texts.append((str(caught.value), caught.value.kind, caught.value.index))
         assert texts[0] == texts[1]
+
+
+@needs_gpu
+@pytest.mark.skipif(not IS_REQUIRED, reason="may fit into a GPU that is none in software")
+def test_a_mesh_that_does_not_fit() -> None:
+    """It is an error, before and after which the GPU answers."""
+    mesh = Mesh(VERTICES, FACES, device="gpu")
+    many = robots(np.random.default_rng(6), counted(12))
+    expected = bits(Mesh(VERTICES, FACES).minimum(many, 0.1))
+    large = np.tile(FACES, (5500, 1))
+    for make in (lambda: Mesh(VERTICES, large, device="gpu"), lambda: Mesh(Mesh(VERTICES, large), device="gpu")):
+        with pytest.raises(ContinuumError, match=r'triangles do not fit into the memory of .*device="cpu"') as caught:
+            make()
+        assert caught.value.kind == "mesh_too_large"
+        assert bits(on_gpu(mesh, lambda it: it.minimum(many, 0.1))) == expected
+    assert bits(on_gpu(Mesh(VERTICES, FACES, device="gpu"), lambda it: it.minimum(many, 0.1))) == expected
+
+
+@needs_gpu
+@pytest.mark.skipif(not IS_REQUIRED or sys.platform != "linux", reason="limits the memory of Mesa's GPU, which is the process's own")
+def test_the_gpu_runs_out_of_memory() -> None:
+    """It is an error of that batch; the next batch is answered on the GPU."""
+    program = """
+import resource
+from pathlib import Path
+import numpy as np
+from parry_continuum import ContinuumError, Mesh
+from shapes import robots, sphere
+mesh = Mesh(*sphere(), device="gpu")
+many = robots(np.random.default_rng(0), 2**18, points=2)
+few = many[:20_000]
+expected = Mesh(mesh).minimum(few, 0.1)
+# Too few links of 40 threads for the GPU: makes the robots, so that the next batch needs memory for its buffers alone.
+mesh.clears(many, 0.1, margin=0.1)
+assert mesh.gpu_seconds is None
+used = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
+_, most = resource.getrlimit(resource.RLIMIT_AS)
+resource.setrlimit(resource.RLIMIT_AS, (used + (100 << 20), most))
+try:
+    mesh.minimum(many, 0.1)
+except ContinuumError as error:
+    print(error.kind, error)
+resource.setrlimit(resource.RLIMIT_AS, (most, most))
+found = mesh.minimum(few, 0.1)
+assert mesh.gpu_seconds is not None
+assert all(np.array_equal(one, other) for one, other in zip(found, expected))
+"""
+    forty = {**os.environ, "RAYON_NUM_THREADS": "40"}
+    done = subprocess.run([sys.executable, "-c", program], cwd=TESTS, env=forty, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.startswith("out_of_memory the GPU is out of memory; ask for less at once"), done.stdout
 
 
 # Threads and processes.

@@ -69,9 +69,11 @@ const HEAD: u64 = 8;
 const ENTRY: u64 = 8;
 const COUNTERS: u64 = 16;
 const LIMITS: u64 = 8 * PART as u64;
-/// The initial room for entries: per link if the query answers each link, else per part.
-const ENTRIES_PER_LINK: u64 = 4;
-const ENTRIES_PER_PART: u64 = 16;
+/// The least room for entries, for each kind of question: per link if the query answers each link,
+/// else per part. The room of a chunk follows what the chunks before needed.
+const LEAST_ROOM: [u64; Question::KINDS] = [4, 16, 16];
+/// The most links of a robot on the device. Twice as many could have 2^32 candidates.
+const MOST_LINKS: usize = 1 << 21;
 
 /// The robots of a query.
 #[derive(Clone, Copy)]
@@ -127,8 +129,8 @@ pub(super) struct Batches {
     watch: Watch,
     /// Two chunks in turn.
     slots: [Slot; 2],
-    /// How often the room for entries has been doubled, for each kind of question.
-    doubled: [u32; Question::KINDS],
+    /// The room for entries, for each kind of question: see [`LEAST_ROOM`].
+    room: [u64; Question::KINDS],
     /// The robots of the last batch that the device left to the CPU.
     pub left: Vec<usize>,
     /// The time of the kernels of the last batch, if the device keeps time.
@@ -143,7 +145,9 @@ struct Slot {
     robots: Range<usize>,
     layouts: Vec<Layout>,
     parts: u32,
-    links: usize,
+    links: u64,
+    /// What the room for entries is in proportion to: links or parts.
+    items: u64,
     room: u32,
     part_bytes: Vec<u8>,
     numbers: Vec<u8>,
@@ -185,7 +189,7 @@ impl Batches {
         Self {
             watch,
             slots: Default::default(),
-            doubled: [0; Question::KINDS],
+            room: LEAST_ROOM,
             left: Vec::new(),
             device_time: None,
             work: [0; 3],
@@ -219,8 +223,8 @@ impl Batches {
             let chunk = chunk_from(robots, next);
             next = chunk.end;
             self.slots[turn].pack(searched, robots, chunk, out);
-            let doubled = self.doubled[question.kind()];
-            self.slots[turn].submit(searched, question, doubled, &mut self.watch)?;
+            let room = self.room[question.kind()];
+            self.slots[turn].submit(searched, question, room, &mut self.watch)?;
             if let Some(before) = pending.replace(turn) {
                 self.finish(before, searched, robots, question, out, &answer)?;
             }
@@ -239,14 +243,15 @@ impl Batches {
         out: &mut [Result<A, ProximityError>],
         answer: &(impl Fn(&PlacedRobot, Found, &mut Result<A, ProximityError>) -> bool + Sync),
     ) -> Result<(), DeviceFailure> {
-        let Self { watch, slots, doubled, left, device_time, work } = self;
+        let Self { watch, slots, room, left, device_time, work } = self;
         let slot = &mut slots[slot];
         let (first, device) = (slot.robots.start, &searched.gpu.device);
         left.extend((first..).zip(&slot.layouts).filter(|(_, layout)| layout.is_left).map(|x| x.0));
         let Some((submitted, buffers)) = slot.submitted.take().zip(slot.buffers.as_ref()) else {
             return Ok(());
         };
-        let (parts, room, layouts) = (slot.parts as usize, slot.room, &slot.layouts);
+        let (parts, layouts) = (slot.parts as usize, &slot.layouts);
+        let (room, items, kind) = (&mut room[question.kind()], slot.items, question.kind());
         let out = &mut out[slot.robots.clone()];
         device.read(watch, submitted, &buffers.readback, |bytes| {
             let (readings, bytes) = bytes.split_at(READINGS as usize);
@@ -254,33 +259,33 @@ impl Batches {
                 .zip(Clock::time_between(device, readings))
                 .map(|(sum, more)| sum + more);
             let (counters, bytes) = bytes.split_at(COUNTERS as usize);
-            for (sum, more) in work.iter_mut().zip(words(counters).skip(1)) {
-                *sum += u64::from(more);
-            }
+            let mut counters = words(counters).map(u64::from);
+            *room = next_room(*room, LEAST_ROOM[kind], counters.next().unwrap_or(0), items);
+            work.iter_mut().zip(counters).for_each(|(sum, more)| *sum += more);
             let (heads, entries) = bytes.split_at(parts * HEAD as usize);
-            let heads = Heads { heads, entries, room };
+            let heads = Heads { heads, entries, room: slot.room };
             let shares = out.chunks_mut(TASK_SIZE).zip(layouts.chunks(TASK_SIZE)).enumerate();
             let mut shares: Vec<_> = shares
                 .map(|(share, (out, layouts))| {
-                    (first + share * TASK_SIZE, layouts, out, Ok((Vec::new(), false)))
+                    (first + share * TASK_SIZE, layouts, out, Ok(Vec::new()))
                 })
                 .collect();
             each(&mut shares, |_, (first, layouts, out, left)| {
                 *left = heads.answer(robots, *first, layouts, out, answer);
             });
-            let mut is_full = false;
             for (.., share) in shares {
-                let (robots, full) = share?;
-                left.extend(robots);
-                is_full |= full;
-            }
-            if is_full {
-                let doubled = &mut doubled[question.kind()];
-                *doubled = (*doubled + 1).min(8);
+                left.extend(share?);
             }
             Ok(())
         })
     }
+}
+
+/// The room for entries of each item after a chunk of `items` that needed `needed` entries. The room
+/// grows at once and shrinks slowly, because whatever a chunk has room for is read back.
+fn next_room(room: u64, least: u64, needed: u64, items: u64) -> u64 {
+    let each = (needed + needed / 8).div_ceil(items.max(1));
+    each.max(room - room / 8).max(least)
 }
 
 /// The chunk of robots from `first` on.
@@ -319,8 +324,7 @@ struct Heads<'a> {
 }
 
 impl Heads<'_> {
-    /// Answers robots from the number `first` on. Returns the robots that are left to the CPU, and
-    /// whether some robots had too little room.
+    /// Answers robots from the number `first` on. Returns the robots that are left to the CPU.
     ///
     /// # Errors
     /// A part was not answered.
@@ -331,8 +335,8 @@ impl Heads<'_> {
         layouts: &[Layout],
         out: &mut [Result<A, ProximityError>],
         answer: &impl Fn(&PlacedRobot, Found, &mut Result<A, ProximityError>) -> bool,
-    ) -> Result<(Vec<usize>, bool), DeviceFailure> {
-        let (mut left, mut is_full, mut candidates) = (Vec::new(), false, Vec::new());
+    ) -> Result<Vec<usize>, DeviceFailure> {
+        let (mut left, mut candidates) = (Vec::new(), Vec::new());
         for ((number, layout), out) in (first..).zip(layouts).zip(out) {
             if layout.links == 0 {
                 continue;
@@ -346,8 +350,7 @@ impl Heads<'_> {
             {
                 match status {
                     HIT => is_hit = true,
-                    FULL => (is_left, is_full) = (true, true),
-                    STOPPED => is_left = true,
+                    FULL | STOPPED => is_left = true,
                     FOUND.. => {
                         let (begin, count) = (begin as usize, (status - FOUND) as usize);
                         if begin + count > self.room as usize {
@@ -376,7 +379,7 @@ impl Heads<'_> {
                 left.push(number);
             }
         }
-        Ok((left, is_full))
+        Ok(left)
     }
 }
 
@@ -397,7 +400,8 @@ impl Slot {
         each(&mut shares, |share, layouts| {
             for (robot, layout) in (first + share * TASK_SIZE..).zip(layouts.iter_mut()) {
                 let links = robots.links(robot);
-                layout.links = links.len() as u32;
+                layout.is_left = links.len() > MOST_LINKS;
+                layout.links = if layout.is_left { 0 } else { links.len() as u32 };
                 layout.is_alike = robot > first && are_alike(links, robots.links(robot - 1));
             }
         });
@@ -407,7 +411,7 @@ impl Slot {
             points += 3 * (layout.links + 1);
             parts += layout.links.div_ceil(PART);
         }
-        self.links = self.layouts.iter().map(|layout| layout.links as usize).sum();
+        self.links = self.layouts.iter().map(|layout| u64::from(layout.links)).sum();
         let mut before = points;
         for layout in &mut self.layouts {
             if !layout.is_alike {
@@ -442,8 +446,11 @@ impl Slot {
             for ((robot, layout), out) in
                 robots_of_share.zip(layouts.iter_mut()).zip(out.iter_mut())
             {
+                let points = take_front(points, 12 * (layout.links as usize + 1));
+                if layout.is_left {
+                    continue;
+                }
                 let links = robots.links(robot);
-                let points = take_front(points, 12 * (links.len() + 1));
                 let own = if layout.is_alike { 0 } else { 8 * links.len() };
                 write_radii(take_front(radii, own), searched.frame, links);
                 let parts =
@@ -473,7 +480,7 @@ impl Slot {
         &mut self,
         searched: Searched,
         question: Question,
-        doubled: u32,
+        room: u64,
         watch: &mut Watch,
     ) -> Result<(), DeviceFailure> {
         let Searched { gpu, kernels, frame, .. } = searched;
@@ -482,12 +489,12 @@ impl Slot {
             return Ok(());
         }
         let parts = u64::from(self.parts);
-        let room = match question {
-            Question::PerLink => ENTRIES_PER_LINK * self.links as u64,
-            Question::Minimum | Question::Clears(_) => ENTRIES_PER_PART * parts,
+        self.items = match question {
+            Question::PerLink => self.links,
+            Question::Minimum | Question::Clears(_) => parts,
         };
         // No rank of a candidate or a byte exceeds a word.
-        let room = (room << doubled).min(device.largest_binding() / ENTRY).min(1 << 28);
+        let room = (room * self.items).min(device.largest_binding() / ENTRY).min(1 << 28);
         let sizes = [parts, self.numbers.len() as u64, room].map(u64::next_power_of_two);
         let buffers = match self.buffers.take() {
             Some(buffers) if fits(buffers.sizes, sizes) => buffers,
@@ -654,5 +661,25 @@ impl SlotBuffers {
             clock: Clock::new(device),
             group,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_room_grows_at_once_and_shrinks_slowly() {
+        for (needed, items) in [(0, 1), (400, 100), (1000, 100), (102_400, 100)] {
+            let room = next_room(4, 4, needed, items);
+            assert!(room >= 4 && room * items >= needed, "{needed}: {room}");
+        }
+        let mut room = next_room(4, 4, 102_400, 100);
+        let after = next_room(room, 4, 100, 100);
+        assert!(room / 2 < after && after < room, "{room} {after}");
+        for _ in 0..100 {
+            room = next_room(room, 4, 100, 100);
+        }
+        assert!(room < 8, "{room}");
     }
 }

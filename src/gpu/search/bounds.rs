@@ -12,7 +12,7 @@
 //!   5 u (2.5 ULP), a square root by 10 u (it may be a division by an inverse square root). A
 //!   device may add the terms of a sum in any order and fuse a product with a sum. A named value
 //!   has one value wherever it is used. Numbers below 2^-126 may count as 0.
-//! - e: the link's `error`. It is `128 u R` for a link with round caps and `512 u R (1 + r / l)`
+//! - e: the link's `error`. It is `128 u R` for a link with round caps and `u R (512 + 4 r / l)`
 //!   for one with a flat cap.
 //!
 //! # Claim
@@ -46,26 +46,28 @@
 //!
 //! | step | round | flat cap |
 //! |---|---|---|
-//! | rounded input: vertices, ends, radius; an axis turns by `3.5 u R / l` | 5 | 5 (1 + r / l) |
+//! | rounded input: vertices, ends, radius; an axis turns by `3.5 u R / l` | 5 | 5 + 3.5 r / l |
 //! | **Lower:** `<n, T_i> - <n, E_j>`: 6 terms, magnitudes `2 sqrt(3)` | 21 | 21 |
-//! | `r k_j`: the part across the axis errs by 53 | - | 53 |
+//! | `r k_j`: the part across the axis errs by 61 | - | 61 |
 //! | the length of n and the division: 16 of a distance up to 3.5 | 56 | 56 |
 //! | minus r | 2 | 2 |
-//! | **sum** | 84 | 137 (1 + r / l) |
+//! | **sum** | 84 | 145 + 3.5 r / l |
 //! | **Upper:** q - p: 5 terms, magnitudes up to 10.4, each of 2 roundings | 62 | 62 |
-//! | its length: 12 of a distance up to 3.5 | 42 | 42 |
-//! | height over a cap (7 of `2 sqrt(3)`, and 22 for the axis, of 3.5) | - | 102 |
-//! | distance from the axis' line, as much and 78 for its parts | - | 180 |
+//! | its length: 12 of a distance up to 3.5 | 42 | - |
+//! | height over a cap: 7 of `2 sqrt(3)`; 22 for the axis, 13 for its length, of 3.5 | - | 147 |
+//! | distance from the axis' line: 102 of the height, 22 and 2 for its parts, 12 for its length | - | 231 |
 //! | both together (at most their sum), the root: 13 of 3.5 | - | 46 |
-//! | **sum** | 109 | 437 (1 + r / l) |
+//! | **sum** | 109 | 491 + 3.5 r / l |
 //! | **Box:** 9 terms, magnitudes `3 sqrt(3)`, each of 4 roundings | 62 | |
 //! | squares and division: 12 of 3.5, and the limit `(D + r + e)^2`: 3 of 3.5 | 53 | |
 //! | vertices and ends | 5 | |
 //! | **sum** | 120 | |
 //!
 //! The comparisons with `D + e` and `D + r + e` round by 2 of 3.5, and the measured distance itself
-//! errs by less than 2^-20. The sums stay below 128 and 512. Guards keep every denominator above
-//! 2^-80, where the bound 0 is taken instead: that moves no bound by more than 2^-40.
+//! errs by less than 2^-20. The sums stay below 128 and `512 + 4 r / l`. Only the rounded ends turn
+//! the axis by more the shorter it is: the axis of the rounded ends errs by 22 for every length.
+//! Guards keep every denominator above 2^-80, where the bound 0 is taken instead: that moves no
+//! bound by more than 2^-40.
 
 use crate::distance::Vec3;
 #[cfg(doc)]
@@ -76,8 +78,9 @@ use std::fmt::Write;
 pub(super) const FAR: f32 = f32::from_bits((127 + 60) << 23);
 /// `e / R` of a link with round caps.
 pub(super) const ROUND_ERROR: f32 = 128.0 * UNIT;
-/// `e / (R (1 + r / l))` of a link with a flat cap.
+/// `e / R` of a link with a flat cap is `FLAT_ERROR + TURN_ERROR r / l`.
 pub(super) const FLAT_ERROR: f32 = 512.0 * UNIT;
+const TURN_ERROR: f32 = 4.0 * UNIT;
 const UNIT: f32 = f32::EPSILON / 2.0;
 /// A link with flat caps that is shorter than this, relative to R, has no direction.
 const THIN: f32 = f32::from_bits((127 - 16) << 23);
@@ -94,6 +97,7 @@ pub(super) fn constants() -> String {
         ("FAR", FAR),
         ("ROUND_ERROR", ROUND_ERROR),
         ("FLAT_ERROR", FLAT_ERROR),
+        ("TURN_ERROR", TURN_ERROR),
         ("THIN", THIN),
         ("TINY", TINY),
         ("SMALL", SMALL),
@@ -175,7 +179,7 @@ impl<const FUSED: bool> SearchedLink<FUSED> {
         let is_thin = has_flat && length < THIN * reach;
         let short = 1.0 / length.max(TINY);
         let error = if has_flat && !is_thin {
-            FLAT_ERROR * reach * (1.0 + radius * short)
+            reach * (FLAT_ERROR + TURN_ERROR * radius * short)
         } else {
             ROUND_ERROR * reach
         };

@@ -76,6 +76,12 @@ pub(super) struct DeviceTree {
 }
 
 impl DeviceTree {
+    /// Whether the device has buffers for the triangles and the vertices.
+    pub(super) fn has_room(gpu: &Opened, mesh: &Mesh) -> bool {
+        let sizes = [mesh.len() as u64 * TRIANGLE, mesh.vertices().len() as u64 * VERTEX];
+        sizes.iter().all(|&size| size <= gpu.device.largest_binding())
+    }
+
     /// Uploads a tree. `None` if the device has no buffer that large. If memory runs out, the
     /// device's failures report it.
     pub(super) fn new(
@@ -90,7 +96,7 @@ impl DeviceTree {
             mesh.len() as u64 * TRIANGLE,
             mesh.vertices().len() as u64 * VERTEX,
         ];
-        if nodes.max(triangles).max(vertices) > device.largest_binding() {
+        if nodes > device.largest_binding() || !Self::has_room(gpu, mesh) {
             return None;
         }
         let uploaded = BufferUsages::STORAGE | BufferUsages::COPY_DST;

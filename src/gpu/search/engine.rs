@@ -1,9 +1,9 @@
 //! The engine that searches on the GPU.
 //!
 //! # The choice between CPU and device
-//! A batch of at least [`MIN_LINKS`] links per core of the CPU runs on the device. The rest goes to a [`BvhSearch`] on the CPU. After a move
-//! that search must be refitted first, so a large mesh is then searched on the device however small
-//! the batch is.
+//! A batch of at least [`MIN_LINKS`] links per core of the CPU runs on the device. The rest goes to
+//! a [`BvhSearch`] on the CPU. After a move that search must be refitted first, so a large mesh is
+//! then searched on the device however small the batch is.
 
 use super::batch::{Batches, Found, Robots, Searched};
 use super::device::{DeviceTree, SearchKernels};
@@ -47,11 +47,12 @@ const MANY_TRIANGLES: usize = 1 << 16;
 ///   query uploads them, and the device refits its hierarchy. From 65,536 triangles on, every query
 ///   after a move runs on the device until [`prepare`](Self::prepare) has refitted the hierarchy of
 ///   the CPU.
-/// - **Contacts** ([`contacts_within`](Proximity::contacts_within)) run on the CPU. For tubes, motions and sides
-///   [`cpu`](Self::cpu) returns the search on the CPU.
+/// - **Contacts** ([`contacts_within`](Proximity::contacts_within)) run on the CPU. For tubes,
+///   motions and sides [`cpu`](Self::cpu) returns the search on the CPU.
 ///
 /// Robots that single precision does not resolve are searched on the CPU. So are robots with very
-/// many equally near triangles, and robots for which the driver stops a long loop.
+/// many equally near triangles or with more than two million links, and robots for which the driver
+/// stops a long loop.
 /// [`answered_on_cpu`](Self::answered_on_cpu) counts them.
 ///
 /// ```no_run
@@ -161,7 +162,8 @@ impl GpuSearch {
 
     fn of(gpu: &Gpu, mesh: Mesh) -> Result<Self, GpuError> {
         let too_large = || gpu.too_large(mesh.len());
-        if mesh.len() > MOST_TRIANGLES {
+        // Before the tree is built, which takes seconds.
+        if mesh.len() > MOST_TRIANGLES || !DeviceTree::has_room(&gpu.0, &mesh) {
             return Err(too_large());
         }
         let kernels = gpu.0.search()?;
@@ -193,9 +195,9 @@ impl GpuSearch {
 
     /// Sets from how many links on a batch goes to the device; `None` restores the default.
     ///
-    /// With 0 all queries but [`contacts_within`](Proximity::contacts_within) run on the device, with [`usize::MAX`]
-    /// on the CPU. The answers are the same. The default depends on the question and on the number
-    /// of cores.
+    /// With 0 all queries but [`contacts_within`](Proximity::contacts_within) run on the device, with
+    /// [`usize::MAX`] on the CPU. The answers are the same. The default depends on the question and
+    /// on the number of cores.
     pub fn set_min_links(&mut self, links: Option<usize>) {
         self.min_links = links;
     }

@@ -14,9 +14,11 @@ use pyo3::prelude::*;
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// The most links of a chunk for the GPU, whose search divides them into parts of 2^18 links that
+/// The links of a chunk for the GPU, whose search divides them into parts of 2^18 links that
 /// overlap. Not measured: more would take more memory, fewer would wait more often.
 const LINKS: usize = 1 << 19;
+/// A chunk of so many links for each thread goes to the GPU, whatever the question.
+const LINKS_PER_THREAD: usize = 15_000;
 
 /// A question about chains.
 pub(super) trait ChainQuestion: Sync {
@@ -62,7 +64,10 @@ pub(super) fn ask_chains<Q: ChainQuestion>(
     let is_batch = robots.len() >= few;
     let largest = match engine.device() {
         DeviceKind::Cpu => None,
-        DeviceKind::Gpu => Some((LINKS / robots.segments_each().max(1)).clamp(few, LARGEST_CHUNK)),
+        DeviceKind::Gpu => {
+            let links = LINKS.max(LINKS_PER_THREAD * pool(py)?.current_num_threads());
+            Some(links.div_ceil(robots.segments_each().max(1)).max(few))
+        }
     };
     let answer = |session: &mut Session, robot: &Given<'_>, row: &mut [Q::Row]| {
         let Session { search, chain, links, .. } = session;

@@ -221,6 +221,7 @@ fn every_twin_is_there() {
     let mut twins = 0;
     for (shaders, sources) in [
         ("src/gpu/shaders/kernels", "src"),
+        ("src/gpu/shaders/search", "src"),
         ("src/gpu/shaders/shared", "src"),
         ("crates/roots/src/gpu/shaders", "crates/roots/src"),
         ("crates/studies/src/gpu/shaders", "crates/studies/src"),

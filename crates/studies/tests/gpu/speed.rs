@@ -31,8 +31,11 @@ fn the_speed_of_the_gpu_is_measured_and_written() {
     ] {
         assert_eq!(table(&page, head).len(), 1, "{head}: {page}");
     }
-    for head in ["| triangles | question | robots |", "| triangles | question | nodes |"] {
-        assert_eq!(table(&page, head).len(), 3, "{head}: {page}");
+    // Three questions; the work for two models.
+    for (head, rows) in
+        [("| triangles | question | robots |", 3), ("| triangles | model | question | nodes |", 6)]
+    {
+        assert_eq!(table(&page, head).len(), rows, "{head}: {page}");
     }
     let studies = read("gpu_speed/internals/gpu_studies.md");
     assert_finite(&studies);
@@ -60,6 +63,10 @@ fn the_speed_of_the_gpu_is_measured_and_written() {
     if adapter.is_software {
         assert!(page.contains("This is a GPU in software"), "{page}");
         refuse(gpu_speed, arguments, "choose another --out");
+        let _ = std::fs::remove_dir_all(place("gpu_speed_alone"));
+        let elsewhere = ["--out", "gpu_speed_alone", "--without-studies"];
+        succeed(gpu_speed, &[&arguments[..8], &elsewhere].concat());
+        assert_eq!(std::fs::read_dir(place("gpu_speed_alone")).unwrap().count(), 1);
     }
     refuse(gpu_speed, &["--tflops", "1"], "66.9,33.5");
 }

@@ -48,7 +48,7 @@ fn link_new(start: vec3<f32>, end: vec3<f32>, radius: f32, caps: f32) -> Searche
     let short = 1.0 / max(length, TINY);
     var error = ROUND_ERROR * reach;
     if (has_flat && !is_thin) {
-        error = FLAT_ERROR * reach * (1.0 + radius * short);
+        error = reach * (FLAT_ERROR + TURN_ERROR * radius * short);
     }
     return SearchedLink(
         start,

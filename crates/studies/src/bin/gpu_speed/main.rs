@@ -1,15 +1,15 @@
-//! How fast on the GPU: single queries, batches and moving anatomy against the engines on the CPU,
+//! How fast on the GPU: batches, moving anatomy and single queries against the engines on the CPU,
 //! exhaustive and by search.
 //! Writes `docs/GPU_SPEED.md`. The paper's Figure 9 and Tables II to V on the GPU go to
-//! `docs/internals/gpu_studies.md`.
+//! `docs/internals/gpu_studies.md`, unless `--without-studies` leaves them out.
 //!
 //! ```text
 //! cargo run --release -p continuum-studies --features gpu --bin gpu_speed -- --tflops 66.9,33.5
 //! ```
 //!
 //! The program needs nothing but itself: built here, it can be carried to the machine with the GPU.
-//! Meshes grow to ten million triangles, which takes minutes and 16 GB; `--largest 100000` is a
-//! rehearsal.
+//! It writes each chapter as soon as it is measured. Meshes grow to ten million triangles, which
+//! takes minutes and 16 GB; `--largest 100000 --robots 10000` is a rehearsal.
 
 mod chains;
 mod engines;
@@ -43,13 +43,17 @@ struct Options {
     #[arg(long, value_name = "COUNT", default_value_t = 1_000_000)]
     every_pair: u32,
 
-    /// Robots of the largest batch
+    /// Robots of the largest batch, on the mesh of 82,000 triangles; the others take up to 100,000
     #[arg(long, value_name = "COUNT", default_value_t = 1_000_000, value_parser = command::whole(1..=10_000_000))]
     robots: u32,
 
     /// Polynomials of each degree, and problems of Tables II and III
     #[arg(long, value_name = "COUNT", default_value_t = 1_000_000, value_parser = command::whole(1..=10_000_000))]
     problems: u32,
+
+    /// Leave out the paper's studies
+    #[arg(long)]
+    without_studies: bool,
 
     /// Seconds for each group of jobs that take turns
     #[arg(long, value_name = "SECONDS", default_value_t = 1.0)]
@@ -127,45 +131,72 @@ fn measure(options: &Options) -> Result<(), String> {
         remarks.push_str(&format!("\n{missing}.\n"));
     }
     let enough = Duration::from_secs_f64(options.enough.clamp(0.0, 60.0));
-    let add = |page: &mut String, name: &str, chapter: String| {
-        page.push('\n');
-        page.push_str(&chapter);
+    let add = |page: &mut Page, name: &str, chapter: String| {
         println!("{:6.1} s: {name}", begin.elapsed().as_secs_f64());
+        page.add(&chapter)
     };
-    let internals = options.out.join("internals");
+    let mut defects = Vec::new();
+    let mut page = Page::new(
+        path,
+        format!(
+            "# Speed on the GPU\n\n\
+             {written} A time is that of the whole call, with transfers and what the CPU measures again.\n{remarks}"
+        ),
+    );
+    let robots = options.robots as usize;
+    let search = search::chapter(&opened[0], options.largest, robots, enough, &mut defects)?;
+    add(&mut page, "search", search)?;
     let meshes = meshes::meshes(options.largest)?;
     let models = models().map_err(text)?;
     let [_, (_, robot), _] = &models;
-    let mut page = format!(
-        "# Speed on the GPU\n\n\
-         {written} A time is that of the whole call, with transfers and what the CPU measures again.\n{remarks}"
-    );
-    add(&mut page, "engines", engines::chapter(&opened, &meshes, robot, enough)?);
-    let robots = options.robots as usize;
-    add(&mut page, "search", search::chapter(&opened[0], &meshes, robots, enough)?);
-    add(&mut page, "moving", moving::chapter(&opened, &meshes, robot, enough)?);
-    let mut studies = format!(
-        "# The paper's studies on the GPU\n\n\
-         {written} Device: the GPU's own clock, from the first kernel to the last. End to end: the whole call, with transfers \
-         and what the CPU measures again.\n{remarks}"
-    );
-    let chains =
-        chains::chapter(&opened, &meshes, options.every_pair, &models, enough, &internals)?;
-    add(&mut studies, "chains", chains);
-    add(&mut studies, "forms", forms::chapter(&opened, options.problems as usize, enough)?);
-    let roots = roots::chapter(&opened, options.problems as usize, enough / 4, &internals)?;
-    add(&mut studies, "roots", roots);
-    write(&path, &page)?;
-    write(&internals.join("gpu_studies.md"), &studies)
+    add(&mut page, "moving", moving::chapter(&opened, &meshes, robot, enough)?)?;
+    add(&mut page, "engines", engines::chapter(&opened, &meshes, robot, enough)?)?;
+    println!("{}", page.path.display());
+    if !options.without_studies {
+        let internals = options.out.join("internals");
+        let mut studies = Page::new(
+            internals.join("gpu_studies.md"),
+            format!(
+                "# The paper's studies on the GPU\n\n\
+                 {written} Device: the GPU's own clock, from the first kernel to the last. End to end: the whole call, with \
+                 transfers and what the CPU measures again.\n{remarks}"
+            ),
+        );
+        let chains =
+            chains::chapter(&opened, &meshes, options.every_pair, &models, enough, &internals)?;
+        add(&mut studies, "chains", chains)?;
+        let problems = options.problems as usize;
+        add(&mut studies, "forms", forms::chapter(&opened, problems, enough)?)?;
+        add(&mut studies, "roots", roots::chapter(&opened, problems, enough / 4, &internals)?)?;
+        println!("{}", studies.path.display());
+    }
+    match defects.as_slice() {
+        [] => Ok(()),
+        defects => Err(format!("the GPU's answers differ from the CPU's: {}", defects.join("; "))),
+    }
 }
 
-fn write(path: &Path, page: &str) -> Result<(), String> {
-    let directory = path.parent().unwrap_or(Path::new("."));
-    fs::create_dir_all(directory).and_then(|()| fs::write(path, page)).map_err(|error| {
-        format!("cannot write {} ({error}); choose another --out", path.display())
-    })?;
-    println!("{}", path.display());
-    Ok(())
+/// A page that is written anew with each chapter, so that a failure loses only what comes after it.
+struct Page {
+    path: PathBuf,
+    text: String,
+}
+
+impl Page {
+    fn new(path: PathBuf, head: String) -> Self {
+        Self { path, text: head }
+    }
+
+    fn add(&mut self, chapter: &str) -> Result<(), String> {
+        self.text.push('\n');
+        self.text.push_str(chapter);
+        let directory = self.path.parent().unwrap_or(Path::new("."));
+        let written =
+            fs::create_dir_all(directory).and_then(|()| fs::write(&self.path, &self.text));
+        written.map_err(|error| {
+            format!("cannot write {} ({error}); choose another --out", self.path.display())
+        })
+    }
 }
 
 /// An error as a line.
