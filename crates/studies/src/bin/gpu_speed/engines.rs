@@ -11,8 +11,8 @@ use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{BvhSearch, Exhaustive, Proximity};
 use std::time::Duration;
 
-/// Robots of a batch.
-const BATCH: u32 = 256;
+/// Robots of a batch, on a GPU and on one in software.
+const BATCH: [u32; 2] = [256, 16];
 
 /// The chapter of the page.
 pub fn chapter(
@@ -26,9 +26,11 @@ pub fn chapter(
     let head_without_pause: String =
         opened.iter().map(|opened| format!(" GPU {}, no pause |", opened.name)).collect();
     let line = "---|".repeat(opened.len());
+    let is_software = opened.iter().any(|opened| opened.gpu.adapter().is_software);
+    let robots = BATCH[usize::from(is_software)];
     for mesh in meshes {
         one.push_str(&one_robot(opened, mesh, robot, enough)?);
-        many.push_str(&batch(opened, mesh, robot, enough)?);
+        many.push_str(&batch(opened, mesh, &samples(robot, robots), enough)?);
     }
     Ok(format!(
         "## Beside the engines on the CPU\n\n\
@@ -37,7 +39,7 @@ pub fn chapter(
          without a pause.\n\n\
          | triangles | search, first time | search, again | exhaustive f32, CPU |{head}{head_without_pause}\n\
          |---|---|---|---|{line}{line}\n{one}\n\
-         A batch of {BATCH} robots: milliseconds for each of them.\n\n\
+         A batch of {robots} robots: milliseconds for each of them.\n\n\
          | triangles | search |{head}\n|---|---|{line}\n{many}"
     ))
 }
@@ -83,16 +85,15 @@ fn one_robot(
 fn batch(
     opened: &[Opened],
     mesh: &TriMesh,
-    robot: &Chain,
+    samples: &[(&Chain, Pose)],
     enough: Duration,
 ) -> Result<String, String> {
-    let samples = samples(robot);
     let mut engines: Vec<Box<dyn Proximity>> = vec![Box::new(BvhSearch::new(mesh).map_err(text)?)];
     engines.extend(on_gpus(opened, mesh)?);
     let mut jobs: Vec<_> = engines
         .iter_mut()
         .map(|engine| {
-            let (mut out, samples) = (Vec::new(), &samples);
+            let mut out = Vec::new();
             move || {
                 engine.per_link_batch(samples, &mut out).map_err(text)?;
                 Ok(None)
@@ -100,13 +101,13 @@ fn batch(
         })
         .collect();
     let mut jobs: Vec<Job> = jobs.iter_mut().map(|job| job as Job).collect();
-    Ok(format!("| {} |{}\n", mesh.num_triangles(), times(&mut jobs, enough, BATCH)?))
+    Ok(format!("| {} |{}\n", mesh.num_triangles(), times(&mut jobs, enough, samples.len() as u32)?))
 }
 
 /// The robot in poses around its own, as a planner would try them.
-fn samples(robot: &Chain) -> Vec<(&Chain, Pose)> {
+fn samples(robot: &Chain, count: u32) -> Vec<(&Chain, Pose)> {
     let base = ventricle::entry();
-    (0..BATCH)
+    (0..count)
         .map(|sample| {
             let angle = f64::from(sample) * 0.1;
             let turn =
