@@ -140,8 +140,9 @@ pub(super) struct Smoother<'a> {
     knots: &'a Knots,
     weight: Real,
     factors: Option<Factors>,
-    /// The columns of Q.
+    /// The columns of Q, and of weight M^-1 Q.
     columns: Vec<[Real; 3]>,
+    pulls: Vec<[Real; 3]>,
 }
 
 impl<'a> Smoother<'a> {
@@ -149,8 +150,12 @@ impl<'a> Smoother<'a> {
         let places = &knots.places;
         // Two points are on a line.
         let factors = (places.len() > 2).then(|| Factors::new(knots, weight));
-        let columns = (2..places.len()).map(|k| differences(places, k - 2)).collect();
-        Self { knots, weight, factors, columns }
+        let columns: Vec<_> = (2..places.len()).map(|k| differences(places, k - 2)).collect();
+        let pull = |(column, counts): (&[Real; 3], &[Real])| {
+            [0, 1, 2].map(|point: usize| weight * column[point] / counts[point])
+        };
+        let pulls = columns.iter().zip(knots.counts.windows(3)).map(pull).collect();
+        Self { knots, weight, factors, columns, pulls }
     }
 
     /// Returns the spline near `points` (step 1).
@@ -181,10 +186,9 @@ impl<'a> Smoother<'a> {
             *bend = points[0] * *a + points[1] * *b + points[2] * *c;
         }
         factors.solve(bends);
-        for (k, (&bend, column)) in bends.iter().zip(&self.columns).enumerate() {
-            let counts = &self.knots.counts[k..];
-            for ((value, factor), count) in values[k..].iter_mut().zip(column).zip(counts) {
-                *value -= bend * (self.weight * factor / count);
+        for (k, (&bend, pull)) in bends.iter().zip(&self.pulls).enumerate() {
+            for (value, pull) in values[k..k + 3].iter_mut().zip(pull) {
+                *value -= bend * *pull;
             }
         }
     }
@@ -219,6 +223,7 @@ impl SmoothingSpline {
 
     /// Returns the largest distance of the spline from the points.
     pub(super) fn largest_residual(&self, points: &[Vector]) -> Real {
-        points.iter().zip(&self.values).fold(0.0, |most: Real, (a, b)| most.max((*a - *b).length()))
+        let squares = points.iter().zip(&self.values).map(|(a, b)| (*a - *b).length_squared());
+        squares.fold(0.0, Real::max).sqrt()
     }
 }

@@ -66,6 +66,10 @@ impl PairLimit {
         Self { distance, links: None }
     }
 
+    pub fn distance(&self) -> Real {
+        self.distance
+    }
+
     /// Returns the limit at a pair that was found.
     pub fn at(found: &RobotProximity) -> Self {
         Self { distance: found.distance, links: Some(found.links.map(|link| link as usize)) }
@@ -78,7 +82,7 @@ impl PairLimit {
 
     /// Whether all pairs can be skipped that are at least `at_least` apart and whose lowest links
     /// are `firsts`.
-    fn excludes(&self, at_least: Real, firsts: [usize; 2]) -> bool {
+    pub fn excludes(&self, at_least: Real, firsts: [usize; 2]) -> bool {
         at_least > self.distance
             || (self.distance <= 0.0 && self.links.is_some_and(|links| firsts >= links))
     }

@@ -9,11 +9,12 @@
 //! - Two faces **look at one another** if the earlier one is the end of its link and the later one
 //!   the start of its link. They are queried at any turn.
 //! - **Node**: a run of links, the same as the node of the link tree with its number. It stores a
-//!   ball around their axes, their largest radius, and a cone that contains the directions of its
-//!   links and of one more on either side.
+//!   ball around their axes, the segment of the tree's capsule and how far the axes are from it,
+//!   their largest radius, and a cone that contains the directions of its links and of one more on
+//!   either side.
 //!
 //! # Pruning
-//! A pair of nodes is skipped in three cases:
+//! A pair of nodes is skipped in four cases:
 //! 1. Neither node has a face; or no pair is in the band and no two faces look at one another.
 //! 2. The balls, each wider by its largest radius, are farther apart than the bound; or the
 //!    capsules of the link tree are. A capsule is much narrower around links that lie in a row.
@@ -23,6 +24,7 @@
 //!      there. So no link of the node may be the robot's first one, or have a thinner one before
 //!      it.
 //!    - If all `w . t < 0`, it leads nearer forwards in the same way.
+//! 4. A pair was found at distance 0, and all links of the nodes are higher: no pair is better.
 //!
 //! **Claim.** If case 3 holds for the faces of either node beside the other, no pair of the two
 //! nodes counts whose faces are queried.
@@ -40,20 +42,38 @@
 //! **Covered shoulders.** A shoulder that the segment reaches does not count if the adjoining link
 //! contains its point (`least_covered`). The same holds for two faces that look at one another.
 //!
-//! **Bounds.** Let `C` and `D` be the centres of the balls, and `a` and `b` their radii. Let `m` be
-//! the axis of the cone, `e` the largest distance of a direction from `m`, and `n` any normal of
-//! the face. A point of a flat face is at most `f` from its centre and perpendicular to `n`. So `w
-//! . t >= (D - C) . m - a - b - |D - C| e - f |t x n|`, and `w . t` is at most the same with
-//! opposite signs. `|t x n|` is at most `|m x m'|` plus the two largest distances from the axes.
+//! **Flat faces that look at one another** are at least `w . t` apart: the later face lies in the
+//! plane through its centre with the normal `t`. The same holds for the plane of the earlier face.
+//! So they are skipped if the least `w . t` exceeds the bound, in either direction.
+//!
+//! # Bounds on `w . t`
+//! Let `m` be the axis of the cone, `e` the largest distance of a direction from `m`, and `n` any
+//! normal of the face. A point of a flat face is at most `f` from its centre and perpendicular to
+//! `n`. So `w . t` is at least `v . t - f |t x n|`, where `v` leads between two places of the axes.
+//! `|t x n|` is at most `|m x m'|` plus the two largest distances from the axes.
+//!
+//! **From balls.** Let `C` and `D` be the centres of the balls, and `a` and `b` their radii. Then
+//! `v . t >= (D - C) . m - |D - C| e - a - b`.
+//!
+//! **From segments.** Let all places of the axes be at most `p` and `q` from the two segments. Then
+//! `v = x + d` with `|d| <= p + q`, and `x` lies in the convex hull of the four vectors `x_k`
+//! between the ends of the segments. For any `c >= 0`,
+//! `v . t - c |v| >= x . m - (e + c) |x| - (1 + c) (p + q)`. The right side is a concave function of
+//! `x`. So it is least at one of the `x_k`. `c = 0` gives the sign of `w . t`, and the cosine of
+//! `least_covered` gives covered shoulders. For links in a row `p` and `q` are almost 0, where the
+//! balls are as long as the row.
+//!
+//! Upper bounds are the same with opposite signs.
 //!
 //! **Rounding.** Unit vectors err by 4 u, and sums of few lengths by few u of the reach: 64 u of
 //! the largest coordinate covers all. Pairs that `JoinedLink` accepts as local minima within the
 //! error of the segment are visited, too.
 
+use super::descent::PairLimit;
 use super::pair_frame::{NodeCapsule, PairFrame};
 use super::robot_with_itself::TurnSums;
 use crate::distance::Scalar;
-use crate::pair::{PlacedRobot, Tolerance};
+use crate::pair::{PlacedEnds, PlacedRobot, Tolerance};
 use crate::robot::{ModifiedCylinder, is_step};
 use parry3d_f64::math::{Real, Vector};
 
@@ -65,8 +85,13 @@ struct Node {
     centre: Vector,
     /// The largest distance of a point of the axes from the centre.
     reach: Real,
-    /// The largest radius.
+    /// The start of the first link and the end of the last one.
+    ends: [Vector; 2],
+    /// The largest distance of a point of the axes from the segment between `ends`.
+    aside: Real,
+    /// The largest and the least radius.
     radius: Real,
+    thinnest: Real,
     /// The largest radius of a flat face.
     flat: Real,
     direction: Vector,
@@ -74,6 +99,8 @@ struct Node {
     spread: Real,
     /// Whether some link has a face at its start, and at its end.
     some: [bool; 2],
+    /// Whether one of these faces is round.
+    round: [bool; 2],
     /// Whether the robot ends or is thinner before some link, and behind some link.
     stops: [bool; 2],
     /// Whether all links are wider than the neighbour at their start, and at their end.
@@ -89,6 +116,8 @@ struct Node {
 struct Seen {
     /// Whether places of the node may be local minima.
     may_be_local: bool,
+    /// Bounds on `w . t`.
+    along: [Real; 2],
     /// Whether the segment to all places of the node leads forwards, or backwards; `None` if
     /// unknown.
     forwards: Option<bool>,
@@ -116,6 +145,9 @@ pub(super) struct OwnFaces {
     rounding: Tolerance,
     #[cfg(test)]
     looked_at: usize,
+    /// Visit every pair in the band and all faces that look at one another.
+    #[cfg(test)]
+    every_pair: bool,
 }
 
 /// Which pairs are visited.
@@ -154,8 +186,8 @@ impl OwnFaces {
         &self,
         robot: &PlacedRobot,
         turns: &TurnSums,
-        mut bound: Real,
-        mut visit: impl FnMut([usize; 2], [bool; 2]) -> Option<Real>,
+        mut limit: PairLimit,
+        mut visit: impl FnMut([usize; 2], [bool; 2]) -> Option<PairLimit>,
     ) -> bool {
         let links = robot.links();
         let ball = |link: usize| {
@@ -178,11 +210,12 @@ impl OwnFaces {
                 }
                 let (there, extent) = ball(other);
                 let largest = centre.abs().max(there.abs()).max_element() + reach + extent;
-                if (there - centre).length() - reach - extent - rounding * largest > bound {
+                let at_least = (there - centre).length() - reach - extent - rounding * largest;
+                if limit.excludes(at_least, pair) {
                     continue;
                 }
                 match visit(pair, [in_band, look]) {
-                    Some(next) => bound = next,
+                    Some(next) => limit = next,
                     None => return false,
                 }
             }
@@ -200,24 +233,30 @@ impl OwnFaces {
         self.add(robot, turns, first, count / 2);
         let second = self.nodes.len();
         self.add(robot, turns, first + count / 2, count - count / 2);
-        self.nodes[place] = Node::around(&self.nodes[place + 1], &self.nodes[second], turns);
+        let capsule = robot.outline(&robot.link_tree()[place]);
+        let halves = [&self.nodes[place + 1], &self.nodes[second]];
+        self.nodes[place] = Node::around(halves, capsule, turns);
     }
 
     /// Calls `visit` with pairs of links, the lower first, and two flags: whether the pair is in
     /// the band, and whether faces look at one another.
     ///
-    /// Each call returns the next bound, beyond which pairs may be skipped, or `None` to stop.
+    /// Each call returns the next limit, beyond which pairs may be skipped, or `None` to stop.
     /// Returns false if it was stopped.
     pub fn run(
         &mut self,
         robot: &PlacedRobot,
         turns: &TurnSums,
         band: Band,
-        mut bound: Real,
-        mut visit: impl FnMut([usize; 2], [bool; 2]) -> Option<Real>,
+        mut limit: PairLimit,
+        mut visit: impl FnMut([usize; 2], [bool; 2]) -> Option<PairLimit>,
     ) -> bool {
+        #[cfg(test)]
+        if self.every_pair {
+            return run_of_all(robot, turns, band, visit);
+        }
         if band == Band::Faces && self.with_faces.len() <= FEW {
-            return self.run_of_few(robot, turns, bound, visit);
+            return self.run_of_few(robot, turns, limit, visit);
         }
         self.add(robot, turns, 0, robot.links().len());
         let root = &self.nodes[0];
@@ -231,7 +270,7 @@ impl OwnFaces {
         self.stack.push([0, 0]);
         while let Some(pair) = self.stack.pop() {
             let [one, two] = pair.map(|place| &self.nodes[place]);
-            let kinds = self.asks(turns, band, bound, pair);
+            let kinds = self.asks(turns, band, limit, pair);
             #[cfg(test)]
             {
                 self.looked_at += 1;
@@ -241,7 +280,7 @@ impl OwnFaces {
             }
             if one.count == 1 && two.count == 1 {
                 match visit([one.first, two.first], kinds) {
-                    Some(next) => bound = next,
+                    Some(next) => limit = next,
                     None => return false,
                 }
                 continue;
@@ -270,19 +309,21 @@ impl OwnFaces {
 
     /// Whether pairs of two nodes that are in the band may count, and whether faces that look at
     /// one another may.
-    fn asks(&self, turns: &TurnSums, band: Band, bound: Real, pair: [usize; 2]) -> [bool; 2] {
+    fn asks(&self, turns: &TurnSums, band: Band, limit: PairLimit, pair: [usize; 2]) -> [bool; 2] {
         let [one, two] = pair.map(|place| &self.nodes[place]);
         let last = two.first + two.count - 1;
-        if last < one.first + 2 {
+        // Case 4.
+        if last < one.first + 2 || limit.excludes(Real::NEG_INFINITY, [one.first, two.first]) {
             return [false; 2];
         }
+        let bound = limit.distance();
         // Case 1.
         let mut in_band = last >= turns.quarter_from[one.first];
         if band == Band::Faces {
             let has_face = one.has_face() || two.has_face();
             in_band &= has_face && two.first < turns.queried_from[one.first + one.count - 1];
         }
-        let look = one.some[1] && two.some[0];
+        let mut look = one.some[1] && two.some[0];
         if !in_band && !look {
             return [false; 2];
         }
@@ -296,9 +337,22 @@ impl OwnFaces {
             return [in_band, look];
         }
         let [capsule, other] = pair.map(|place| &self.capsules[place]);
+        let is_beyond = |at_least: Real| self.frame.outside(at_least) - self.rounding.0 > bound;
         // Capsules are hardly farther apart than the centres.
-        if away > bound && self.frame.outside(capsule.at_least(other)) - self.rounding.0 > bound {
+        if away > bound && is_beyond(capsule.at_least(other)) {
             return [false; 2];
+        }
+        let is_half_turn = || two.first >= turns.queried_from[one.first];
+        if one.count == 1 && two.count == 1 && !(band == Band::All && is_half_turn()) {
+            // Balls around the faces contain them.
+            look &= !is_beyond(capsule.ball(1).at_least(&other.ball(0)));
+            in_band &= [0, 1].into_iter().any(|end: usize| {
+                one.some[end] && !is_beyond(capsule.ball(end).at_least(other))
+                    || two.some[end] && !is_beyond(other.ball(end).at_least(capsule))
+            });
+            if !in_band && !look {
+                return [false; 2];
+            }
         }
         // Case 3.
         let from_one = two.seen_from(one, way, away, self.rounding);
@@ -310,7 +364,9 @@ impl OwnFaces {
         in_band &= may_count || band == Band::All && !at_shoulders;
         let is_covered = from_one.forwards == Some(true) && from_one.is_covered
             || from_two.forwards == Some(false) && from_two.is_covered;
-        [in_band, look && !is_covered]
+        let are_flat = !one.round[1] && !two.round[0];
+        let is_ahead = are_flat && from_one.along[0].max(-from_two.along[1]) > bound;
+        [in_band, look && !is_covered && !is_ahead]
     }
 }
 
@@ -325,6 +381,7 @@ impl Node {
         };
         let some = faces(robot, link);
         let flat = placed.flat();
+        let round = [0, 1].map(|end: usize| some[end] && !flat[end]);
         let has_flat = (0..2).any(|end| some[end] && flat[end]);
         let (mut covered, mut adjoining) = ([Real::NEG_INFINITY; 2], Real::INFINITY);
         for end in [0, 1] {
@@ -342,11 +399,15 @@ impl Node {
             count: 1,
             centre: start + (end - start) * 0.5,
             reach: 0.5 * (end - start).length(),
+            ends: [start, end],
+            aside: 0.0,
             radius: placed.radius(),
+            thinnest: placed.radius(),
             flat: if has_flat { placed.radius() } else { 0.0 },
             direction,
             spread: spread(turns, link, 1, direction),
             some,
+            round,
             stops: beside.map(|neighbour| neighbour.is_none() || is_wider(neighbour)),
             all: beside.map(is_wider),
             covered,
@@ -354,7 +415,11 @@ impl Node {
         }
     }
 
-    fn around(one: &Self, two: &Self, turns: &TurnSums) -> Self {
+    /// Returns the node of two halves. `capsule` is the node's outline in the link tree.
+    ///
+    /// The capsule contains a ball with the link's radius around each place of the axes. So no place
+    /// is farther from its segment than the capsule's radius minus the least radius.
+    fn around([one, two]: [&Self; 2], capsule: PlacedEnds, turns: &TurnSums) -> Self {
         let upwards = 1.0 + 16.0 * Real::UNIT_ROUNDOFF;
         let way = two.centre - one.centre;
         let away = way.length();
@@ -368,6 +433,7 @@ impl Node {
             (one.centre + way * ((reach - one.reach) / away), reach)
         };
         let direction = (one.direction + two.direction).normalize_or_zero();
+        let thinnest = one.thinnest.min(two.thinnest);
         let either =
             |of: fn(&Self) -> [bool; 2]| [0, 1].map(|end: usize| of(one)[end] || of(two)[end]);
         Self {
@@ -375,11 +441,15 @@ impl Node {
             count: one.count + two.count,
             centre,
             reach: reach * upwards,
+            ends: capsule.0,
+            aside: capsule.1 - thinnest,
             radius: one.radius.max(two.radius),
+            thinnest,
             flat: one.flat.max(two.flat),
             direction,
             spread: spread(turns, one.first, one.count + two.count, direction),
             some: either(|node| node.some),
+            round: either(|node| node.round),
             stops: either(|node| node.stops),
             all: [0, 1].map(|end: usize| one.all[end] && two.all[end]),
             covered: [0, 1].map(|end: usize| one.covered[end].max(two.covered[end])),
@@ -407,16 +477,70 @@ impl Node {
         let aside = other.flat * sine.min(1.0);
         let far = away + self.reach + other.reach + other.radius;
         let slack = rounding.of_way(far);
-        let off = self.reach + other.reach + away * self.spread + aside + rounding.0 + slack;
-        let along = way.dot(self.direction);
-        if along.abs() <= off {
-            return Seen { may_be_local: true, forwards: None, is_covered: false };
+        let doubt = rounding.0 + slack;
+        // From balls.
+        let middle = way.dot(self.direction);
+        let off = self.reach + other.reach + away * self.spread + aside + doubt;
+        let mut along = [middle - off, middle + off];
+        let mut hull = None;
+        if along[0] <= 0.0 && along[1] >= 0.0 {
+            let vectors = hull.insert(Hull::between(other, self));
+            let off = aside + doubt;
+            along = [vectors.least_along(1.0, 0.0) - off, off - vectors.least_along(-1.0, 0.0)];
         }
-        let forwards = along > 0.0;
-        let end = usize::from(!forwards);
+        let forwards = match along {
+            [least, _] if least > 0.0 => true,
+            [_, most] if most < 0.0 => false,
+            _ => return Seen { may_be_local: true, along, forwards: None, is_covered: false },
+        };
+        let (end, sign) = if forwards { (0, 1.0) } else { (1, -1.0) };
         let is_known = slack <= THINNER * self.adjoining;
-        let is_covered = is_known && along.abs() - off >= self.covered[end] * far;
-        Seen { may_be_local: self.stops[end] && !is_covered, forwards: Some(forwards), is_covered }
+        let cosine = self.covered[end].max(0.0);
+        let is_covered = is_known
+            && cosine < 1.0
+            && (sign * middle - off >= cosine * far || {
+                let vectors = hull.unwrap_or_else(|| Hull::between(other, self));
+                vectors.least_along(sign, cosine) - aside - cosine * other.flat
+                    >= (1.0 + cosine) * doubt
+            });
+        Seen {
+            may_be_local: self.stops[end] && !is_covered,
+            along,
+            forwards: Some(forwards),
+            is_covered,
+        }
+    }
+}
+
+/// The vectors from the axes of one node to those of another, from their segments (module head).
+#[derive(Clone, Copy)]
+struct Hull {
+    /// `x_k . m` and `|x_k|` of the four vectors.
+    vectors: [[Real; 2]; 4],
+    /// `e`.
+    spread: Real,
+    /// `p + q`.
+    aside: Real,
+}
+
+impl Hull {
+    /// Returns the vectors to the axes of `to`, with the cone of `to`.
+    fn between(from: &Node, to: &Node) -> Self {
+        let vector = |k: usize| {
+            let way = to.ends[k / 2] - from.ends[k % 2];
+            [way.dot(to.direction), way.length()]
+        };
+        let vectors = [0, 1, 2, 3].map(vector);
+        Self { vectors, spread: to.spread, aside: from.aside + to.aside }
+    }
+
+    /// Returns a lower bound on `sign v . t - cosine |v|`.
+    fn least_along(&self, sign: Real, cosine: Real) -> Real {
+        let share = self.spread + cosine;
+        let least = self.vectors.iter().fold(Real::INFINITY, |least, [along, length]| {
+            least.min(sign * along - share * length)
+        });
+        least - (1.0 + cosine) * self.aside
     }
 }
 
@@ -462,11 +586,33 @@ pub(super) fn faces(robot: &PlacedRobot, link: usize) -> [bool; 2] {
     })
 }
 
+/// As [`OwnFaces::run`], without pruning.
+#[cfg(test)]
+fn run_of_all(
+    robot: &PlacedRobot,
+    turns: &TurnSums,
+    band: Band,
+    mut visit: impl FnMut([usize; 2], [bool; 2]) -> Option<PairLimit>,
+) -> bool {
+    let count = robot.links().len();
+    (0..count).flat_map(|one| (one + 2..count).map(move |two| [one, two])).all(|pair| {
+        let [one, two] = pair.map(|link| faces(robot, link));
+        let mut in_band = pair[1] >= turns.quarter_from[pair[0]];
+        if band == Band::Faces {
+            let has_face = one != [false; 2] || two != [false; 2];
+            in_band &= has_face && pair[1] < turns.queried_from[pair[0]];
+        }
+        let look = one[1] && two[0];
+        !(in_band || look) || visit(pair, [in_band, look]).is_some()
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use crate::query::robots::SelfMemory;
     use crate::query::robots::robot_with_itself::RobotWithItself;
     use crate::robot::Chain;
+    use continuum_testing::Random;
     use parry3d_f64::math::{Real, Vector};
 
     /// Returns the direction of a link; `share` is the part of the robot behind it.
@@ -494,6 +640,7 @@ mod tests {
         shape: Shape,
         radius: impl Fn(Real, usize) -> Real,
         is_flat: bool,
+        scale: Real,
         count: usize,
     ) -> (usize, bool) {
         let (mut at, mut points) = (Vector::ZERO, vec![Vector::ZERO]);
@@ -501,10 +648,8 @@ mod tests {
             at += shape(link as Real / count as Real, link).normalize() * (100.0 / count as Real);
             points.push(at);
         }
-        // Thin enough for the joints of the zigzags.
-        let radii: Vec<_> = (0..count)
-            .map(|link| radius(link as Real / count as Real, link) * 50.0 / count as Real)
-            .collect();
+        let radii: Vec<_> =
+            (0..count).map(|link| radius(link as Real / count as Real, link) * scale).collect();
         let robot = if is_flat {
             Chain::from_centreline(&points, &radii)
         } else {
@@ -528,8 +673,9 @@ mod tests {
                         (1.0 - 0.3 * share)
                             * if link.is_multiple_of(2) { 1.0 } else { 1.0 - corrugated }
                     };
-                    let [(few, _), (many, found)] =
-                        [250, 1000].map(|count| work(shape, radius, is_flat, count));
+                    // Thin enough for the joints of the zigzags.
+                    let [(few, _), (many, found)] = [250, 1000]
+                        .map(|count| work(shape, radius, is_flat, 50.0 / count as Real, count));
                     println!("{name}, flat {is_flat}, {corrugated}: {few} {many} {found}");
                     // All pairs are half a million.
                     assert!(
@@ -539,5 +685,93 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// The same for links that are many times shorter than their radius: flat faces are far apart
+    /// along the robot although the links around them overlap, and touching robots have one answer.
+    #[test]
+    fn the_work_grows_as_n_log_n_for_links_shorter_than_their_radius() {
+        for (name, shape) in &SHAPES[..3] {
+            for (is_flat, thinner) in [(true, 0.99), (true, 0.5), (false, 0.5)] {
+                let radius =
+                    |_: Real, link: usize| if link.is_multiple_of(2) { 1.0 } else { thinner };
+                let [(few, _), (many, found)] =
+                    [1000, 4000].map(|count| work(*shape, radius, is_flat, 0.4, count));
+                println!("{name}, flat {is_flat}, {thinner}: {few} {many} {found}");
+                // All pairs are 8 million.
+                assert!(many < 6 * few + 20_000, "{name}, flat {is_flat}, {thinner}: {few} {many}");
+            }
+        }
+    }
+
+    /// Pruning changes no answer: random robots beside the same search over every pair.
+    #[test]
+    fn pruning_changes_no_answer() {
+        let mut random = Random::new(17);
+        let (mut apart, mut touching, mut free) = (0, 0, 0);
+        for round in 0..3000 {
+            let count = 6 + random.below(60) as usize;
+            let bend = [0.0, 0.02, 0.2, 0.6][random.below(4) as usize];
+            let alternate = [0.0, 0.1, 0.4][random.below(3) as usize];
+            let axis = random.direction();
+            let (mut way, mut at, mut points) = (Vector::Z, Vector::ZERO, vec![Vector::ZERO]);
+            for link in 0..count {
+                // Arcs and helices, zigzags, random walks.
+                way = match round % 3 {
+                    0 => (way + (axis.cross(way) + axis * 0.1) * bend).normalize_or(Vector::Z),
+                    1 => (Vector::Z
+                        + Vector::X * if link.is_multiple_of(2) { alternate } else { -alternate })
+                    .normalize(),
+                    _ => (way + random.point() * bend).normalize_or(Vector::Z),
+                };
+                at += way * random.between(0.9, 1.1);
+                points.push(at);
+            }
+            let widest = [0.1, 0.5, 2.0, 8.0][random.below(4) as usize];
+            let step = [1e-3, 0.01, 0.1, 0.5, 0.9][random.below(5) as usize];
+            let kind = random.below(4);
+            let radii: Vec<_> = (0..count)
+                .map(|link| {
+                    let share = link as Real / count as Real;
+                    widest
+                        * match kind {
+                            0 => 1.0 - step * Real::from(u8::from(link.is_multiple_of(2))),
+                            1 => 1.0 - step * share,
+                            2 => 1.0 - step * random.unit(),
+                            _ => 1.0 - step * Real::from(u8::from(share > 0.3 && share < 0.7)),
+                        }
+                })
+                .collect();
+            let robot = if random.below(2) == 0 {
+                Chain::from_centreline(&points, &radii)
+            } else {
+                Chain::capsules(&points, &radii)
+            };
+            let Ok(robot) = robot else { continue };
+            let mut memory = SelfMemory::default();
+            let Ok(itself) = RobotWithItself::new(&robot, &mut memory) else { continue };
+            let found = itself.minimum(&mut memory);
+            let mut all = SelfMemory::default();
+            all.faces_mut().every_pair = true;
+            let Ok(itself) = RobotWithItself::new(&robot, &mut all) else { continue };
+            let expected = itself.minimum(&mut all);
+            assert_eq!(
+                found.map(|found| (found.links, found.distance.to_bits())),
+                expected.map(|found| (found.links, found.distance.to_bits())),
+                "round {round}: {points:?} {radii:?}"
+            );
+            match found {
+                Some(found) if found.distance > 0.0 => apart += 1,
+                Some(_) => touching += 1,
+                None => free += 1,
+            }
+            let distance = found.map_or(1.0, |found| found.distance);
+            for margin in [0.0, 0.5 * distance, distance, 2.0 * distance] {
+                let clears = found.is_none_or(|found| found.distance > margin);
+                assert_eq!(itself.clears(margin, &mut memory), clears, "round {round}, {margin}");
+            }
+        }
+        println!("{apart} {touching} {free}");
+        assert!(apart > 500 && touching > 100 && free > 300, "{apart} {touching} {free}");
     }
 }

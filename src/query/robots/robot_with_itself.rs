@@ -108,6 +108,10 @@ impl SelfMemory {
     pub(super) fn faces(&self) -> &OwnFaces {
         &self.faces
     }
+
+    pub(super) fn faces_mut(&mut self) -> &mut OwnFaces {
+        &mut self.faces
+    }
 }
 
 /// The turns of a chain's centreline.
@@ -232,13 +236,12 @@ impl<'a> RobotWithItself<'a> {
         });
         // Faces come last because they cost most: the bound so far prunes most of them.
         let band = if refused < MOST_REFUSED { Band::Faces } else { Band::All };
-        let bound = best.map_or(Real::INFINITY, |best| best.distance);
-        self.beside_faces(turns, faces, band, bound, |found| {
+        self.beside_faces(turns, faces, band, PairLimit::at_best(&best), |found| {
             let links = found.links.map(|link| link as usize);
             if PairLimit::at_best(&best).admits(found.distance, links) {
                 best = Some(found);
             }
-            best.map(|best| best.distance)
+            Some(PairLimit::at_best(&best))
         });
         *nearest = best.map(|best| best.links.map(|link| link as usize));
         best
@@ -258,8 +261,9 @@ impl<'a> RobotWithItself<'a> {
             }
         });
         let band = if refused < MOST_REFUSED { Band::Faces } else { Band::All };
-        let keep = |found: RobotProximity| (found.distance > margin).then_some(margin);
-        is_clear && self.beside_faces(turns, faces, band, margin, keep)
+        let limit = PairLimit::of(margin);
+        let keep = |found: RobotProximity| (found.distance > margin).then_some(limit);
+        is_clear && self.beside_faces(turns, faces, band, limit, keep)
     }
 
     /// Whether two links with a turn of pi between them count.
@@ -280,67 +284,68 @@ impl<'a> RobotWithItself<'a> {
         JoinedLink { link: self.robot.link(link), beyond: [before, behind] }
     }
 
-    /// Calls `keep` with the pairs beside faces that count and are at most `bound` apart. Each call
-    /// returns the next bound, or `None` to stop. Returns false if it was stopped.
+    /// Calls `keep` with the pairs beside faces that count and are within `limit`. Each call returns
+    /// the next limit, or `None` to stop. Returns false if it was stopped.
     fn beside_faces(
         &self,
         turns: &TurnSums,
         faces: &mut OwnFaces,
         band: Band,
-        bound: Real,
-        mut keep: impl FnMut(RobotProximity) -> Option<Real>,
+        limit: PairLimit,
+        mut keep: impl FnMut(RobotProximity) -> Option<PairLimit>,
     ) -> bool {
         if !faces.begin(&self.robot, turns) {
             return true;
         }
-        let mut now = bound;
-        faces.run(&self.robot, turns, band, bound, |links, [in_band, look]| {
+        let mut limit = limit;
+        faces.run(&self.robot, turns, band, limit, |links, [in_band, look]| {
             let is_half_turn = links[1] >= turns.queried_from[links[0]];
             if in_band && is_half_turn && band == Band::All {
                 let [one, two] = links.map(|link| self.robot.link(link));
-                if let Some(nearest) = one.measure_link_within(now, &two)
+                if let Some(nearest) = one.measure_link_within(limit.distance(), &two)
                     && self.counts(links)
                 {
-                    now = keep(nearest.answer(links, [&one, &two]))?;
+                    limit = keep(nearest.answer(links, [&one, &two]))?;
                 }
             }
             let is_at_face = in_band && !is_half_turn && links[1] >= turns.quarter_from[links[0]];
             if !look && !is_at_face {
-                return Some(now);
+                return Some(limit);
             }
             let joined = links.map(|link| self.joined(link));
             let [one, two] = &joined;
             let tolerance = one.tolerance(two);
+            let bound = |limit: PairLimit| limit.distance() + tolerance.0;
             if look && one.is_face(1) && two.is_face(0) {
-                let may = one.face_gap(1, two, 0) <= now + tolerance.0
-                    && one.ball(1).may_be_within(now + tolerance.0, &two.ball(0));
+                let may = one.face_gap(1, two, 0) <= bound(limit)
+                    && one.ball(1).may_be_within(bound(limit), &two.ball(0));
                 if may {
                     let nearest = one.face_to_face(1, two, 0);
                     if one.faces_count(1, two, 0, &nearest, tolerance) {
-                        now = keep(nearest.answer(links, [&one.link, &two.link]))?;
+                        limit = keep(nearest.answer(links, [&one.link, &two.link]))?;
                     }
                 }
             }
             if !is_at_face {
-                return Some(now);
+                return Some(limit);
             }
             for (on_face, other) in [(0, 1), (1, 0)] {
                 let [face, beside] = [&joined[on_face], &joined[other]];
                 for end in [0, 1] {
                     // The ball around a face contains it: the test excludes most links.
                     if !face.is_face(end)
-                        || !face.ball(end).may_be_within(now + tolerance.0, &beside.link)
+                        || !face.ball(end).may_be_within(bound(limit), &beside.link)
                     {
                         continue;
                     }
                     let nearest = face.face_to_link(end, &beside.link);
                     if face.face_counts(end, beside, &nearest, tolerance) {
                         let places = [links[on_face], links[other]];
-                        now = keep(in_order(places, [&face.link, &beside.link], &nearest))?;
+                        limit = keep(in_order(places, [&face.link, &beside.link], &nearest))?;
                     }
                 }
             }
-            Some(now)
+            Some(limit)
         })
     }
 }
