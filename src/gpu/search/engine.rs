@@ -23,8 +23,8 @@ use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::shape::TriMesh;
 use std::time::Duration;
 
-/// The least number of links per core of the CPU for which a batch runs on the device, for each kind
-/// of question. Estimates: they were not measured with this engine.
+/// The least number of links per core of the CPU for which a batch runs on the device, for each
+/// kind of question. Estimates: they were not measured with this engine.
 const MIN_LINKS: [usize; Question::KINDS] = [240, 480, 15_000];
 /// From this number of triangles on, a refit after a move takes longer on the CPU than on the
 /// device.
@@ -195,9 +195,9 @@ impl GpuSearch {
 
     /// Sets from how many links on a batch goes to the device; `None` restores the default.
     ///
-    /// With 0 all queries but [`contacts_within`](Proximity::contacts_within) run on the device, with
-    /// [`usize::MAX`] on the CPU. The answers are the same. The default depends on the question and
-    /// on the number of cores.
+    /// With 0 all queries but [`contacts_within`](Proximity::contacts_within) run on the device,
+    /// with [`usize::MAX`] on the CPU. The answers are the same. The default depends on the
+    /// question and on the number of cores.
     pub fn set_min_links(&mut self, links: Option<usize>) {
         self.min_links = links;
     }

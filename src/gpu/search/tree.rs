@@ -327,8 +327,8 @@ mod tests {
         // All alike, so that no split tells them apart.
         let (tree, count) = tree_of(vec![Vector::X; 3000]);
         assert_eq!(check(&tree, count), 9);
-        // Ever smaller and nearer to the centre: each split takes off the largest alone. Without the
-        // limit the leaves of the many in the centre would be too deep.
+        // Ever smaller and nearer to the centre: each split takes off the largest alone. Without
+        // the limit the leaves of the many in the centre would be too deep.
         let at = |triangle: u32| match triangle {
             0 => -1.0,
             1..38 => 17.0_f64.powi(1 - triangle as i32),

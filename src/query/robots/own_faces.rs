@@ -57,11 +57,10 @@
 //!
 //! **From segments.** Let all places of the axes be at most `p` and `q` from the two segments. Then
 //! `v = x + d` with `|d| <= p + q`, and `x` lies in the convex hull of the four vectors `x_k`
-//! between the ends of the segments. For any `c >= 0`,
-//! `v . t - c |v| >= x . m - (e + c) |x| - (1 + c) (p + q)`. The right side is a concave function of
-//! `x`. So it is least at one of the `x_k`. `c = 0` gives the sign of `w . t`, and the cosine of
-//! `least_covered` gives covered shoulders. For links in a row `p` and `q` are almost 0, where the
-//! balls are as long as the row.
+//! between the ends of the segments. For any `c >= 0`, `v . t - c |v| >= x . m - (e + c) |x| - (1 +
+//! c) (p + q)`. The right side is a concave function of `x`. So it is least at one of the `x_k`. `c
+//! = 0` gives the sign of `w . t`, and the cosine of `least_covered` gives covered shoulders. For
+//! links in a row `p` and `q` are almost 0, where the balls are as long as the row.
 //!
 //! Upper bounds are the same with opposite signs.
 //!
@@ -417,8 +416,8 @@ impl Node {
 
     /// Returns the node of two halves. `capsule` is the node's outline in the link tree.
     ///
-    /// The capsule contains a ball with the link's radius around each place of the axes. So no place
-    /// is farther from its segment than the capsule's radius minus the least radius.
+    /// The capsule contains a ball with the link's radius around each place of the axes. So no
+    /// place is farther from its segment than the capsule's radius minus the least radius.
     fn around([one, two]: [&Self; 2], capsule: PlacedEnds, turns: &TurnSums) -> Self {
         let upwards = 1.0 + 16.0 * Real::UNIT_ROUNDOFF;
         let way = two.centre - one.centre;

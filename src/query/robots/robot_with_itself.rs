@@ -109,6 +109,7 @@ impl SelfMemory {
         &self.faces
     }
 
+    #[cfg(test)]
     pub(super) fn faces_mut(&mut self) -> &mut OwnFaces {
         &mut self.faces
     }
@@ -284,8 +285,8 @@ impl<'a> RobotWithItself<'a> {
         JoinedLink { link: self.robot.link(link), beyond: [before, behind] }
     }
 
-    /// Calls `keep` with the pairs beside faces that count and are within `limit`. Each call returns
-    /// the next limit, or `None` to stop. Returns false if it was stopped.
+    /// Calls `keep` with the pairs beside faces that count and are within `limit`. Each call
+    /// returns the next limit, or `None` to stop. Returns false if it was stopped.
     fn beside_faces(
         &self,
         turns: &TurnSums,
