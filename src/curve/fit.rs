@@ -55,7 +55,7 @@ const MAX_SOFTENED: u32 = 32;
 /// Forces draw a point to this share of the deviation.
 const WANTED: Real = 1.0 - 1.0 / 64.0;
 
-/// The pace of the search for forces is judged after each so many steps. Measured on noisy lines
+/// The steps of the search for forces after which its pace is judged. Measured on noisy lines
 /// and helices: 8 steps are as fast, 32 steps are 20 % slower.
 const STEPS_OF_PACE: u32 = 16;
 

@@ -28,9 +28,9 @@ pub(crate) struct PlacedTube<'a> {
     /// lengths whose squares vanish.
     ///
     /// **Near triangles only.** If only triangles within a distance matter, the mesh's reach may be
-    /// replaced by the tube's reach + the distance + the longest edge. The computed distance of a
-    /// farther triangle errs more, but not by so much that it falls below that distance less the
-    /// slack.
+    /// replaced by the tube's reach + the distance + the longest edge. Errors grow more
+    /// slowly than distances, so the computed distance of a farther triangle is at least that
+    /// distance less the slack.
     pub(crate) slack: Real,
     /// An upper bound on the largest coordinate of the tube after the pose.
     reach: Real,

@@ -11,11 +11,10 @@
 //! **Proof.** Triangle inequality, step by step.
 //!
 //! # The step
-//! The bound of a single link is proven at
-//! `ReferenceOutline::moved_to`:
-//! `s + 2 r x (1 + 2 x) + g`. Here s bounds the displacement of the ends of the axis, and g is the
-//! growth of the radius. A flat cap of radius r turns with its axis by at most `2 r x (1 + 2 x)`
-//! for `x <= 1/2`. For larger x that expression exceeds `2 r`, which bounds every turn.
+//! The bound of a single link, `s + 2 r x (1 + 2 x) + g`, is proven in `query/nearest/outline.rs`
+//! (`ReferenceOutline::moved_to`). Here s bounds the displacement of the ends of the axis, and g is
+//! the growth of the radius. A flat cap of radius r turns with its axis by at most `2 r x (1 + 2
+//! x)` for `x <= 1/2`. For larger x that expression exceeds `2 r`, which bounds every turn.
 //!
 //! The maximum of each term over all links gives one step: `s + 2 (r x) (1 + 2 x) + g`. It is at
 //! least the step of each link, and takes three square roots for all links together. If the caps or

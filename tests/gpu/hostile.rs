@@ -51,7 +51,7 @@ fn robots_have_any_number_of_links() {
     }
 }
 
-/// No buffer of a device is that large, and no word counts so many candidates.
+/// No buffer of a device holds such a robot, and no word counts its candidates.
 #[test]
 fn a_robot_of_millions_of_links_is_left_to_the_cpu() {
     let mesh = ball(8, 4);

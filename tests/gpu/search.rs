@@ -78,8 +78,8 @@ fn random_robots_are_answered_as_on_the_cpu() {
     assert!(engine.answered_on_cpu() < count as u64 / 4, "{}", engine.answered_on_cpu());
 }
 
-/// From the centre of a ball nearly all triangles are equally near. Mesa's GPU in software stops the
-/// loops of such a search, and the robot is left to the CPU.
+/// From the centre of a ball nearly all triangles are equally near. Mesa's GPU in software stops
+/// the loops of such a search, and the robot is left to the CPU.
 #[test]
 fn loops_that_a_driver_stops_lose_no_answer() {
     let (vertices, indices) = Ball::new(10.0).to_trimesh(60, 60);
@@ -104,8 +104,8 @@ fn loops_that_a_driver_stops_lose_no_answer() {
     }
 }
 
-/// A batch of more links than the device gets at once: chunks take turns in two sets of buffers, the
-/// last one smaller, and a robot that is left to the CPU stands in each.
+/// A batch of more links than the device gets at once: chunks take turns in two sets of buffers,
+/// the last one smaller, and a robot that is left to the CPU stands in each.
 #[test]
 fn a_batch_takes_several_chunks() {
     let (vertices, indices) = Ball::new(10.0).to_trimesh(8, 4);

@@ -282,7 +282,7 @@ impl Batches {
 }
 
 /// The room for entries of each item after a chunk of `items` that needed `needed` entries. The
-/// room grows at once and shrinks slowly, because whatever a chunk has room for is read back.
+/// room grows at once and shrinks slowly, because all room of a chunk is read back.
 fn next_room(room: u64, least: u64, needed: u64, items: u64) -> u64 {
     let each = (needed + needed / 8).div_ceil(items.max(1));
     each.max(room - room / 8).max(least)

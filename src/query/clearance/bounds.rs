@@ -149,8 +149,8 @@ impl<'a, T: Refinable> BoundsSearch<'a, T> {
     pub(crate) fn run(&mut self, limit: Real) -> Result<bool, ProximityError> {
         while let Some(first) = self.pieces.first() {
             let upper = self.upper();
-            // An unmeasured piece may rank lower than it will when it is measured. It ends the loop
-            // only if even its `lower` is at least `upper`.
+            // Measuring a piece may raise its rank. An unmeasured piece ends the loop only if even
+            // its `lower` is at least `upper`.
             let can_wait = first.is_measured || first.least >= upper;
             if can_wait && first.least >= upper - self.aim {
                 return Ok(true);

@@ -98,7 +98,7 @@ struct Node {
     spread: Real,
     /// Whether some link has a face at its start, and at its end.
     some: [bool; 2],
-    /// Whether one of these faces is round.
+    /// Whether some link has a round face at its start, and at its end.
     round: [bool; 2],
     /// Whether the robot ends or is thinner before some link, and behind some link.
     stops: [bool; 2],
@@ -511,7 +511,7 @@ impl Node {
     }
 }
 
-/// The vectors from the axes of one node to those of another, from their segments (module head).
+/// The vectors from the axes of one node to the axes of another, from their segments (module head).
 #[derive(Clone, Copy)]
 struct Hull {
     /// `x_k . m` and `|x_k|` of the four vectors.

@@ -199,7 +199,7 @@ impl<E: Lane> Traversal<'_, E> {
     }
 
     /// Returns true if a triangle with a number less than `below` may be at most `bound` from the
-    /// link. False is a proof, true is not: in a leaf, triangles count whatever their number.
+    /// link. False is a proof, true is not: leaves do not compare the numbers.
     pub(crate) fn may_meet(&mut self, searched: &SearchLink<E>, bound: f64, below: u32) -> bool {
         let limit = searched.axis_limit(bound);
         let mut target = Target { searched, limit, below, goal: Goal::Any(false) };

@@ -17,7 +17,7 @@ use std::sync::Arc;
 /// The links of a chunk for the GPU, whose search divides them into parts of 2^18 links that
 /// overlap. Not measured: more would take more memory, fewer would wait more often.
 const LINKS: usize = 1 << 19;
-/// A chunk of so many links for each thread goes to the GPU, whatever the question.
+/// The links for each thread from which a batch of any question runs on the GPU.
 const LINKS_PER_THREAD: usize = 15_000;
 
 /// A question about chains.
