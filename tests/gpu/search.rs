@@ -43,6 +43,22 @@ pub fn same_decisions(
     assert_eq!(found, expected, "{margin}");
 }
 
+/// Asserts that both engines have the same contacts. Returns their number.
+pub fn same_contacts(
+    engine: &mut GpuSearch,
+    reference: &mut BvhSearch,
+    (robot, pose): (&Chain, Pose),
+    margin: f64,
+) -> usize {
+    let (mut found, mut expected) = (Vec::new(), Vec::new());
+    for prominence in [0.0, 0.2] {
+        engine.contacts_within(robot, &pose, margin, prominence, &mut found).unwrap();
+        reference.contacts_within(robot, &pose, margin, prominence, &mut expected).unwrap();
+        assert_eq!(found, expected, "{margin}, {prominence}");
+    }
+    found.len()
+}
+
 /// Random shapes of three tubes in a ventricle, with the caps that fit, as capsules and as
 /// cylinders; most of them touch the wall. PARRY_CONTINUUM_EFFORT=25 asks about 100,000.
 #[test]
@@ -52,7 +68,7 @@ fn random_robots_are_answered_as_on_the_cpu() {
     let Some(mut engine) = gpu::search(&mesh) else { return };
     let mut reference = BvhSearch::new(&mesh).unwrap();
     let (tubes, mut random) = (ctr::three_tubes(), Random(17));
-    let (mut touching, mut apart, count) = (0, 0, rounds(4000_usize));
+    let (mut touching, mut apart, mut contacts, count) = (0, 0, 0, rounds(4000_usize));
     let mut left = count;
     while left > 0 {
         let now = left.min(5000);
@@ -72,7 +88,11 @@ fn random_robots_are_answered_as_on_the_cpu() {
         for margin in [0.0, 0.5] {
             same_decisions(&mut engine, &mut reference, &robots, margin);
         }
+        for &robot in robots.iter().step_by(50) {
+            contacts += same_contacts(&mut engine, &mut reference, robot, 1.0);
+        }
     }
+    assert!(contacts > count / 50, "{contacts} contacts");
     assert!(apart > count / 20 && touching > count / 20, "{apart} apart, {touching} touching");
     // Of all four questions.
     assert!(engine.answered_on_cpu() < count as u64 / 4, "{}", engine.answered_on_cpu());
@@ -129,6 +149,30 @@ fn a_batch_takes_several_chunks() {
     same_minima(&mut engine, &mut reference, &robots);
     assert_eq!(engine.answered_on_cpu(), 5);
     same_decisions(&mut engine, &mut reference, &robots, 0.5);
+}
+
+/// After a move of a large mesh the contacts come from the device, until the CPU has refitted.
+#[test]
+fn contacts_follow_a_large_mesh_that_moves() {
+    let (vertices, indices) = Ball::new(10.0).to_trimesh(260, 130);
+    let mesh = TriMesh::new(vertices, indices).unwrap();
+    assert!(mesh.num_triangles() > 1 << 16);
+    let Some(mut engine) = gpu::search(&mesh) else { return };
+    engine.set_min_links(None);
+    let points = [0.0, 1.0, 2.0].map(|x| Vector::new(4.0 * x, x, 0.0));
+    let robot = Chain::from_centreline(&points, &[0.6, 0.4]).unwrap();
+    let mut reference = BvhSearch::new(&mesh).unwrap();
+    assert!(same_contacts(&mut engine, &mut reference, (&robot, Pose::IDENTITY), 4.0) > 0);
+    let at_rest = engine.device_time();
+    for turn in [0.9, 0.7] {
+        let moved: Vec<_> =
+            mesh.vertices().iter().map(|v| Vector::new(v.x * turn, v.y, v.z)).collect();
+        engine.set_vertices(&moved).unwrap();
+        reference.set_vertices(&moved).unwrap();
+        assert!(same_contacts(&mut engine, &mut reference, (&robot, Pose::IDENTITY), 1.0) > 0);
+    }
+    assert!(at_rest.is_none() && engine.device_time().is_some());
+    assert_eq!(engine.answered_on_cpu(), 0);
 }
 
 /// The search goes on while the mesh moves, and batches of every size reuse its buffers.

@@ -5,9 +5,10 @@
 //! - d(t): the distance of triangle t from a link. `lower`, `upper`, e: its bounds on the device
 //!   and their error (see the module `bounds`), `lower - e <= d <= max(upper + e, 0)`.
 //! - D: an upper bound on the distance that is wanted: `max(upper + e, 0)` of some triangle of the
-//!   link (per link) or of the part (minimum), or the margin, rounded up (clears). D never grows.
-//! - T: the lowest triangle with `upper + e < 0` so far, of the link or the part; none at first.
-//!   Such a triangle certainly touches.
+//!   link (per link) or of the part (minimum), or the margin, rounded up (clears, within). D never
+//!   grows.
+//! - T: the lowest triangle with `upper + e < 0` so far, of the link or the part; none at first,
+//!   and never for a margin. Such a triangle certainly touches.
 //! - t is **wanted** if `lower <= D + e` and `t <= T`.
 //!
 //! # Algorithm
@@ -17,9 +18,12 @@
 //!    end it keeps only the triangles that are still wanted. For a margin, a triangle with
 //!    `upper + e <= margin` settles the robot.
 //! 3. **Second pass**, on the device (`gather`): the parts in which a wanted triangle found no room
-//!    gather all wanted triangles for the final D and T.
-//! 4. **Measure**, on the CPU: all candidates, in double precision. The best is the answer.
-//! 5. **Remainder**, on the CPU: robots that the device cannot represent, whose candidates do not
+//!    gather all wanted triangles for the final D and T. For all triangles within a margin this is
+//!    the only pass.
+//! 4. **Repeat**: if all candidates of a chunk need more room than it has, the chunk is searched
+//!    once more, with that room.
+//! 5. **Measure**, on the CPU: all candidates, in double precision. The best is the answer.
+//! 6. **Remainder**, on the CPU: robots that the device cannot represent, whose candidates do not
 //!    fit, or whose loops the driver stopped take the search on the CPU. They are counted.
 //!
 //! Chunks overlap: the CPU packs a chunk and measures the chunk before while the device works.
@@ -35,14 +39,14 @@
 //! The same holds for every link of the part that has t. Boxes are left out only if they hold no
 //! wanted triangle: claim 1 of `bounds`. So t is among the candidates, unless it found no room in
 //! the first pass; then the part takes the second pass, where t is wanted too. The CPU measures all
-//! candidates with the function that measures in every engine. For a margin: a robot is settled
-//! early only if it is certainly within; otherwise every triangle within the margin is wanted.
+//! candidates with the function that measures in every engine. For a margin, every triangle within
+//! it is wanted, and a decision is settled early only if a link is certainly within it.
 
 use super::bounds::{FAR, error_of};
 use super::device::{DeviceTree, SearchKernels};
 #[cfg(doc)]
 use super::kernels::ROOM;
-use super::kernels::{FOUND, FULL, HIT, PART, Question, STOPPED, SearchQuery};
+use super::kernels::{FOUND, FULL, HIT, MOST_GATHERED, PART, Question, STOPPED, SearchQuery};
 use crate::answer::ProximityError;
 use crate::distance::Vec3;
 use crate::distance::lanes::Lane;
@@ -52,7 +56,7 @@ use crate::pair::PlacedRobot;
 use crate::robot::{Chain, ModifiedCylinder};
 use crate::threads::each;
 use gpu_batch::wgpu::{BindGroup, Buffer, BufferUsages, ComputePassDescriptor};
-use gpu_batch::{Clock, DeviceFailure, READINGS, Record, Submitted, Watch};
+use gpu_batch::{Clock, Device, DeviceFailure, READINGS, Record, Submitted, Watch};
 use parry3d_f64::math::{Pose, Real};
 use std::mem::take;
 use std::ops::Range;
@@ -70,10 +74,15 @@ const ENTRY: u64 = 8;
 const COUNTERS: u64 = 16;
 const LIMITS: u64 = 8 * PART as u64;
 /// The least room for entries, for each kind of question: per link if the query answers each link,
-/// else per part. The room of a chunk follows what the chunks before needed.
-const LEAST_ROOM: [u64; Question::KINDS] = [4, 16, 16];
-/// The most links of a robot on the device. Twice as many could have 2^32 candidates.
-const MOST_LINKS: usize = 1 << 21;
+/// else per part. The room of a chunk follows what the chunks before needed, and all of it is read
+/// back: few robots that are asked about a margin have a candidate.
+const LEAST_ROOM: [u64; Question::KINDS] = [4, 16, 1, 32];
+/// The least room for entries of a chunk.
+const LEAST_ENTRIES: u64 = 1 << 10;
+/// The most links of a robot on the device.
+const MOST_LINKS: usize = 1 << 19;
+/// The number of all candidates of a chunk fits into a word.
+const _: () = assert!(MOST_LINKS as u64 * (MOST_GATHERED as u64) < 1 << 32 && CHUNK <= MOST_LINKS);
 
 /// The robots of a query.
 #[derive(Clone, Copy)]
@@ -233,7 +242,7 @@ impl Batches {
         pending.map_or(Ok(()), |last| self.finish(last, searched, robots, question, out, &answer))
     }
 
-    /// Step 4, for the chunk in a slot.
+    /// Steps 4 and 5, for the chunk in a slot.
     fn finish<A: Send>(
         &mut self,
         slot: usize,
@@ -247,37 +256,50 @@ impl Batches {
         let slot = &mut slots[slot];
         let (first, device) = (slot.robots.start, &searched.gpu.device);
         left.extend((first..).zip(&slot.layouts).filter(|(_, layout)| layout.is_left).map(|x| x.0));
-        let Some((submitted, buffers)) = slot.submitted.take().zip(slot.buffers.as_ref()) else {
-            return Ok(());
-        };
-        let (parts, layouts) = (slot.parts as usize, &slot.layouts);
-        let (room, items, kind) = (&mut room[question.kind()], slot.items, question.kind());
+        let (room, least) = (&mut room[question.kind()], LEAST_ROOM[question.kind()]);
         let out = &mut out[slot.robots.clone()];
-        device.read(watch, submitted, &buffers.readback, |bytes| {
-            let (readings, bytes) = bytes.split_at(READINGS as usize);
-            *device_time = device_time
-                .zip(Clock::time_between(device, readings))
-                .map(|(sum, more)| sum + more);
-            let (counters, bytes) = bytes.split_at(COUNTERS as usize);
-            let mut counters = words(counters).map(u64::from);
-            *room = next_room(*room, LEAST_ROOM[kind], counters.next().unwrap_or(0), items);
-            work.iter_mut().zip(counters).for_each(|(sum, more)| *sum += more);
-            let (heads, entries) = bytes.split_at(parts * HEAD as usize);
-            let heads = Heads { heads, entries, room: slot.room };
-            let shares = out.chunks_mut(TASK_SIZE).zip(layouts.chunks(TASK_SIZE)).enumerate();
-            let mut shares: Vec<_> = shares
-                .map(|(share, (out, layouts))| {
-                    (first + share * TASK_SIZE, layouts, out, Ok(Vec::new()))
-                })
-                .collect();
-            each(&mut shares, |_, (first, layouts, out, left)| {
-                *left = heads.answer(robots, *first, layouts, out, answer);
-            });
-            for (.., share) in shares {
-                left.extend(share?);
+        // With too little room the chunk is searched once more.
+        let mut is_last = false;
+        while let Some((submitted, buffers)) = slot.submitted.take().zip(slot.buffers.as_ref()) {
+            let (parts, layouts) = (slot.parts as usize, &slot.layouts);
+            let mut is_read = false;
+            device.read(watch, submitted, &buffers.readback, |bytes| {
+                let (readings, bytes) = bytes.split_at(READINGS as usize);
+                *device_time = device_time
+                    .zip(Clock::time_between(device, readings))
+                    .map(|(sum, more)| sum + more);
+                let (counters, bytes) = bytes.split_at(COUNTERS as usize);
+                let mut counters = words(counters).map(u64::from);
+                let needed = counters.next().unwrap_or(0);
+                *room = next_room(*room, least, needed, slot.items);
+                let has_room = needed <= slot.room.into();
+                is_read = is_last || has_room || slot.room_of(device, *room) <= slot.room;
+                if !is_read {
+                    return Ok(());
+                }
+                work.iter_mut().zip(counters).for_each(|(sum, more)| *sum += more);
+                let (heads, entries) = bytes.split_at(parts * HEAD as usize);
+                let heads = Heads { heads, entries, room: slot.room };
+                let shares = out.chunks_mut(TASK_SIZE).zip(layouts.chunks(TASK_SIZE)).enumerate();
+                let mut shares: Vec<_> = shares
+                    .map(|(share, (out, layouts))| {
+                        (first + share * TASK_SIZE, layouts, out, Ok(Vec::new()))
+                    })
+                    .collect();
+                each(&mut shares, |_, (first, layouts, out, left)| {
+                    *left = heads.answer(robots, *first, layouts, out, answer);
+                });
+                for (.., share) in shares {
+                    left.extend(share?);
+                }
+                Ok(())
+            })?;
+            if !is_read {
+                is_last = true;
+                slot.submit(searched, question, *room, watch)?;
             }
-            Ok(())
-        })
+        }
+        Ok(())
     }
 }
 
@@ -472,6 +494,13 @@ impl Slot {
         });
     }
 
+    /// The room for the entries of the chunk, for this room for each item.
+    fn room_of(&self, device: &Device, room: u64) -> u32 {
+        let room = (room * self.items).max(LEAST_ENTRIES);
+        // No rank of a candidate or a byte exceeds a word.
+        room.min(device.largest_binding() / ENTRY).min(1 << 28) as u32
+    }
+
     /// Steps 2 and 3.
     ///
     /// # Errors
@@ -489,18 +518,14 @@ impl Slot {
             return Ok(());
         }
         let parts = u64::from(self.parts);
-        self.items = match question {
-            Question::PerLink => self.links,
-            Question::Minimum | Question::Clears(_) => parts,
-        };
-        // No rank of a candidate or a byte exceeds a word.
-        let room = (room * self.items).min(device.largest_binding() / ENTRY).min(1 << 28);
+        self.items = if question.is_about_links() { self.links } else { parts };
+        self.room = self.room_of(device, room);
+        let room = u64::from(self.room);
         let sizes = [parts, self.numbers.len() as u64, room].map(u64::next_power_of_two);
         let buffers = match self.buffers.take() {
             Some(buffers) if fits(buffers.sizes, sizes) => buffers,
             _ => SlotBuffers::new(searched, sizes),
         };
-        self.room = room as u32;
         let (margin, certain) = margins(question, frame);
         let record = SearchQuery { parts: self.parts, margin, certain, room: self.room };
         let mut bytes = Vec::new();
@@ -609,7 +634,7 @@ fn write_parts(bytes: &mut [u8], layout: &Layout) {
 
 /// The margin in the search frame, rounded up and rounded down, as bits.
 fn margins(question: Question, frame: &SearchFrame) -> (u32, u32) {
-    let Question::Clears(margin) = question else { return (FAR.to_bits(), 0) };
+    let Some(margin) = question.margin() else { return (FAR.to_bits(), 0) };
     let nearest = (margin * frame.scale).min(FAR.into()) as f32;
     let (up, down) = (nearest.next_up().min(FAR), nearest.next_down().max(0.0));
     (up.to_bits(), if nearest < FAR { down } else { FAR }.to_bits())

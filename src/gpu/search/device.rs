@@ -30,8 +30,8 @@ pub(in crate::gpu) struct SearchKernels {
     pub query_layout: BindGroupLayout,
     corners: ComputePipeline,
     refit: ComputePipeline,
-    /// The two passes of each kind of question.
-    pub passes: [[ComputePipeline; 2]; Question::KINDS],
+    /// The passes of each kind of question.
+    pub passes: Vec<Vec<ComputePipeline>>,
 }
 
 impl SearchKernels {
@@ -46,14 +46,13 @@ impl SearchKernels {
         let compile = |kernel: Shader, layout: &BindGroupLayout| {
             device.compile(kernel.entry_point, &kernel, layout, &[])
         };
-        let passes_of = |kind| -> Result<[ComputePipeline; 2], DeviceError> {
-            let [search, gather] = passes(kind, counts_work);
-            Ok([compile(search, &query_layout)?, compile(gather, &query_layout)?])
+        let passes_of = |kind| {
+            passes(kind, counts_work).into_iter().map(|pass| compile(pass, &query_layout)).collect()
         };
         Ok(Self {
             corners: compile(corners(), &corners_layout)?,
             refit: compile(refit(), &refit_layout)?,
-            passes: [passes_of(0)?, passes_of(1)?, passes_of(2)?],
+            passes: (0..Question::KINDS).map(passes_of).collect::<Result<_, _>>()?,
             corners_layout,
             refit_layout,
             query_layout,

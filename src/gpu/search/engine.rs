@@ -14,7 +14,7 @@ use crate::engine::{BvhSearch, Engine, Proximity};
 use crate::gpu::{Adapter, Gpu, GpuError, Precision};
 use crate::mesh::{Mesh, SearchFrame};
 use crate::pair::{Best, Nearest, PlacedRobot, rank_each};
-use crate::query::contacts::ContactQuery;
+use crate::query::contacts::{ContactCollector, ContactQuery, LocalMinima, Wall};
 use crate::robot::Chain;
 use crate::threads::threads;
 use fearless_simd::Level;
@@ -24,8 +24,8 @@ use parry3d_f64::shape::TriMesh;
 use std::time::Duration;
 
 /// The least number of links per core of the CPU for which a batch runs on the device, for each
-/// kind of question. Estimates: they were not measured with this engine.
-const MIN_LINKS: [usize; Question::KINDS] = [240, 480, 15_000];
+/// kind of question. Estimates: they were not measured with this engine. Contacts have no batch.
+const MIN_LINKS: [usize; Question::KINDS] = [240, 480, 15_000, usize::MAX];
 /// From this number of triangles on, a refit after a move takes longer on the CPU than on the
 /// device.
 const MANY_TRIANGLES: usize = 1 << 16;
@@ -47,12 +47,14 @@ const MANY_TRIANGLES: usize = 1 << 16;
 ///   query uploads them, and the device refits its hierarchy. From 65,536 triangles on, every query
 ///   after a move runs on the device until [`prepare`](Self::prepare) has refitted the hierarchy of
 ///   the CPU.
-/// - **Contacts** ([`contacts_within`](Proximity::contacts_within)) run on the CPU. For tubes,
-///   motions and sides [`cpu`](Self::cpu) returns the search on the CPU.
+/// - **Contacts** ([`contacts_within`](Proximity::contacts_within)) run on the CPU while the mesh
+///   rests. After a move of a large mesh the device finds the triangles within the margin.
+/// - **Other queries.** For tubes, motions and sides [`cpu`](Self::cpu) returns the search on the
+///   CPU.
 ///
-/// Robots that single precision does not resolve are searched on the CPU. So are robots with very
-/// many equally near triangles or with more than two million links, and robots for which the driver
-/// stops a long loop.
+/// Robots that single precision does not resolve are searched on the CPU. So are robots with a link
+/// that has more than 4,096 candidates, with more than 524,288 links, and robots for which the
+/// driver stops a long loop.
 /// [`answered_on_cpu`](Self::answered_on_cpu) counts them.
 ///
 /// ```no_run
@@ -107,6 +109,8 @@ pub struct GpuSearch {
     /// The search on the CPU. Its mesh is stale after a move, until it is needed.
     cpu: BvhSearch,
     is_cpu_stale: bool,
+    /// Memory of the contacts.
+    minima: LocalMinima,
     min_links: Option<usize>,
     answered_on_cpu: u64,
     /// Kernels that count their work, if they are selected.
@@ -182,6 +186,7 @@ impl GpuSearch {
             on_device: Some(on_device),
             batches: Batches::new(watch),
             is_cpu_stale: false,
+            minima: LocalMinima::default(),
             min_links: None,
             answered_on_cpu: 0,
             counting: None,
@@ -195,9 +200,8 @@ impl GpuSearch {
 
     /// Sets from how many links on a batch goes to the device; `None` restores the default.
     ///
-    /// With 0 all queries but [`contacts_within`](Proximity::contacts_within) run on the device,
-    /// with [`usize::MAX`] on the CPU. The answers are the same. The default depends on the
-    /// question and on the number of cores.
+    /// With 0 all queries run on the device, with [`usize::MAX`] on the CPU. The answers are the
+    /// same. The default depends on the question and on the number of cores.
     pub fn set_min_links(&mut self, links: Option<usize>) {
         self.min_links = links;
     }
@@ -257,7 +261,7 @@ impl GpuSearch {
         let min = match self.min_links {
             Some(links) => links,
             None if self.is_cpu_stale && self.mesh.len() >= MANY_TRIANGLES => 0,
-            None => MIN_LINKS[question.kind()] * threads(),
+            None => MIN_LINKS[question.kind()].saturating_mul(threads()),
         };
         let mut links = 0;
         min == 0
@@ -471,13 +475,34 @@ impl Engine for GpuSearch {
         self.refitted().ask_clears(robot, margin)
     }
 
-    /// Runs on the CPU: the contacts of a robot need the neighbours of its candidates.
+    /// The device finds the triangles within the margin. The CPU finds the contacts among them.
     fn ask_contacts(
         &mut self,
         robot: PlacedRobot,
         query: ContactQuery,
         out: &mut Vec<Contact>,
     ) -> Result<(), ProximityError> {
+        let question = Question::Within(query.margin);
+        if self.is_for_device(Robots::One(&robot), question)
+            && let Some(mut near) =
+                self.search_one(&robot, question, Vec::new(), |_, found, out| {
+                    *out = Ok(found.candidates.to_vec());
+                    true
+                })?
+        {
+            // The threads of the device write in any order; a tree of a single leaf has it twice.
+            near.sort_unstable();
+            near.dedup();
+            let Self { level, mesh, minima, .. } = self;
+            let wall = Wall::of(mesh);
+            let mut contacts = ContactCollector::new(*level, wall, robot, query, minima, out);
+            for of_link in near.chunk_by(|one, other| one.0 == other.0) {
+                let triangles = of_link.iter().map(|candidate| candidate.1);
+                contacts.add(of_link[0].0 as usize, |_, near| near.add_unclassified(triangles));
+            }
+            contacts.finish();
+            return Ok(());
+        }
         self.refitted().ask_contacts(robot, query, out)
     }
 

@@ -10,8 +10,8 @@ use parry3d_f64::math::Real;
 pub(super) const PART: u32 = 32;
 /// Candidates that a thread has room for in the first pass. More take a second pass.
 pub(super) const ROOM: u32 = 8;
-/// The most candidates of a link that the second pass gathers.
-pub(super) const MOST_GATHERED: u32 = 1024;
+/// The most candidates of a link that are gathered.
+pub(super) const MOST_GATHERED: u32 = 1 << 12;
 /// Threads per workgroup of a refit.
 pub(super) const REFIT_THREADS: u32 = 64;
 /// No triangle, and no node.
@@ -33,18 +33,36 @@ pub(super) enum Question {
     Minimum,
     /// Is the robot farther than this margin?
     Clears(Real),
+    /// Which triangles are within this margin of each link?
+    Within(Real),
 }
+
+/// The kind of [`Question::Within`].
+const WITHIN: usize = 3;
 
 impl Question {
     /// The kinds of questions. Each has its own kernels.
-    pub(super) const KINDS: usize = 3;
+    pub(super) const KINDS: usize = 4;
 
     pub(super) fn kind(self) -> usize {
         match self {
             Self::PerLink => 0,
             Self::Minimum => 1,
             Self::Clears(_) => 2,
+            Self::Within(_) => WITHIN,
         }
+    }
+
+    pub(super) fn margin(self) -> Option<Real> {
+        match self {
+            Self::PerLink | Self::Minimum => None,
+            Self::Clears(margin) | Self::Within(margin) => Some(margin),
+        }
+    }
+
+    /// Whether the room for candidates is in proportion to the links, not to the parts.
+    pub(super) fn is_about_links(self) -> bool {
+        matches!(self, Self::PerLink | Self::Within(_))
     }
 }
 
@@ -101,8 +119,9 @@ pub(super) fn refit() -> Shader {
     Shader::new("refit", tree() + &RefitLevel::wgsl() + text!("refit"))
 }
 
-/// The two passes of a kind of question. If `counts_work`, they count nodes, leaves and links.
-pub(super) fn passes(kind: usize, counts_work: bool) -> [Shader; 2] {
+/// The passes of a kind of question. If `counts_work`, the first pass of a search counts nodes,
+/// leaves and links.
+pub(super) fn passes(kind: usize, counts_work: bool) -> Vec<Shader> {
     let sizes = [
         ("PART", PART),
         ("ROOM", ROOM),
@@ -115,6 +134,7 @@ pub(super) fn passes(kind: usize, counts_work: bool) -> [Shader; 2] {
         ("FOUND", FOUND),
         ("MINIMUM", Question::Minimum.kind() as u32),
         ("CLEARS", Question::Clears(0.0).kind() as u32),
+        ("WITHIN", WITHIN as u32),
         ("QUESTION", kind as u32),
     ];
     let values = sizes.iter().map(|(name, value)| constant(name, format_args!("{value}u")));
@@ -124,10 +144,10 @@ pub(super) fn passes(kind: usize, counts_work: bool) -> [Shader; 2] {
         + &SearchQuery::wgsl()
         + text!("bounds")
         + text!("robots");
-    [
-        Shader::new("search", shared.clone() + text!("search")),
-        Shader::new("gather", shared + text!("gather")),
-    ]
+    let search = Shader::new("search", shared.clone() + text!("search"));
+    let gather = Shader::new("gather", shared + text!("gather"));
+    // All triangles within a margin are gathered at once: no bound is to be found first.
+    if kind == WITHIN { vec![gather] } else { vec![search, gather] }
 }
 
 /// Every kernel, for tests.

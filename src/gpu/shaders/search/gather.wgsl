@@ -1,11 +1,25 @@
-// The second pass: all candidates of the parts whose links had more than found room, within the
-// bounds that the first pass has found. The twin of Twin::gather in gpu/search/twin.rs.
+// Gathers all candidates of a link within a bound. The second pass of a search: for the parts with
+// more candidates than room, within the bounds that the first pass has found. The only pass of
+// WITHIN: for all parts, within the margin. The twin of TwinTree::gather in gpu/search/twin.rs.
 
 var<workgroup> part_count: atomic<u32>;
 var<workgroup> part_full: atomic<u32>;
 var<workgroup> part_first: u32;
 
 var<private> stack: array<u32, DEPTH>;
+
+// Whether the candidates of a part are to be gathered.
+fn is_asked(number: u32) -> bool {
+    return number < query.parts && (QUESTION == WITHIN || heads[number].y == SECOND);
+}
+
+// The bound of a link, and its lowest triangle that certainly touches.
+fn limit_of(number: u32, lane: u32) -> vec2<u32> {
+    if (QUESTION == WITHIN) {
+        return vec2<u32>(query.margin, NOTHING);
+    }
+    return limits[number * PART + lane];
+}
 
 // Visits the candidates of a link. Counts them; or, from `first` on, writes them.
 fn gather_link(link: SearchedLink, lane: u32, bound: f32, below: u32, first: u32) -> u32 {
@@ -57,11 +71,11 @@ fn gather(
     workgroupBarrier();
     var is_link = false;
     var own_first = 0u;
-    if (number < query.parts && heads[number].y == SECOND) {
+    if (is_asked(number)) {
         let part = parts[number];
         is_link = lane < part.links;
         if (is_link) {
-            let limit = limits[number * PART + lane];
+            let limit = limit_of(number, lane);
             let bound = bitcast<f32>(limit.x);
             let found = gather_link(robot_link(part, lane), lane, bound, limit.y, NOTHING);
             own_first = atomicAdd(&part_count, found);
@@ -71,7 +85,7 @@ fn gather(
         }
     }
     workgroupBarrier();
-    if (lane == 0u && number < query.parts && heads[number].y == SECOND) {
+    if (lane == 0u && is_asked(number)) {
         let total = atomicLoad(&part_count);
         heads[number] = vec2<u32>(0u, FULL);
         if (atomicLoad(&part_full) == 0u) {
@@ -85,7 +99,7 @@ fn gather(
     workgroupBarrier();
     storageBarrier();
     if (is_link && part_first != NOTHING) {
-        let limit = limits[number * PART + lane];
+        let limit = limit_of(number, lane);
         let bound = bitcast<f32>(limit.x);
         let link = robot_link(parts[number], lane);
         gather_link(link, lane, bound, limit.y, part_first + own_first);
