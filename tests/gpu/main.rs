@@ -1,6 +1,7 @@
 //! The engine on the GPU. tests/proximity also tests it with the questions of all engines.
 #![cfg(feature = "gpu")]
 
+mod bending;
 mod hostile;
 mod search;
 

@@ -42,22 +42,21 @@
 //! candidates with the function that measures in every engine. For a margin, every triangle within
 //! it is wanted, and a decision is settled early only if a link is certainly within it.
 
-use super::bounds::{FAR, error_of};
+use super::bending::BendingQuery;
+use super::bounds::FAR;
 use super::device::{DeviceTree, SearchKernels};
 #[cfg(doc)]
 use super::kernels::ROOM;
-use super::kernels::{FOUND, FULL, HIT, MOST_GATHERED, PART, Question, STOPPED, SearchQuery};
+use super::kernels::{
+    BENDING_THREADS, FOUND, FULL, HIT, MOST_GATHERED, PART, Question, STOPPED, SearchQuery,
+};
+use super::robots::Packed;
 use crate::answer::ProximityError;
-use crate::distance::Vec3;
-use crate::distance::lanes::Lane;
 use crate::gpu::opened::Opened;
 use crate::mesh::SearchFrame;
-use crate::pair::PlacedRobot;
-use crate::robot::{Chain, ModifiedCylinder};
 use crate::threads::each;
 use gpu_batch::wgpu::{BindGroup, Buffer, BufferUsages, ComputePassDescriptor};
 use gpu_batch::{Clock, Device, DeviceFailure, READINGS, Record, Submitted, Watch};
-use parry3d_f64::math::{Pose, Real};
 use std::mem::take;
 use std::ops::Range;
 use std::time::Duration;
@@ -83,38 +82,6 @@ const LEAST_ENTRIES: u64 = 1 << 10;
 const MOST_LINKS: usize = 1 << 19;
 /// The number of all candidates of a chunk fits into a word.
 const _: () = assert!(MOST_LINKS as u64 * (MOST_GATHERED as u64) < 1 << 32 && CHUNK <= MOST_LINKS);
-
-/// The robots of a query.
-#[derive(Clone, Copy)]
-pub(super) enum Robots<'a> {
-    Batch(&'a [(&'a Chain, Pose)]),
-    One(&'a PlacedRobot<'a>),
-}
-
-impl<'a> Robots<'a> {
-    pub(super) fn len(self) -> usize {
-        match self {
-            Self::Batch(robots) => robots.len(),
-            Self::One(_) => 1,
-        }
-    }
-
-    pub(super) fn links(self, robot: usize) -> &'a [ModifiedCylinder] {
-        match self {
-            Self::Batch(robots) => robots[robot].0.links(),
-            Self::One(placed) => placed.links(),
-        }
-    }
-
-    /// # Errors
-    /// The error of a bad robot.
-    fn placed(self, robot: usize) -> Result<PlacedRobot<'a>, ProximityError> {
-        match self {
-            Self::Batch(robots) => PlacedRobot::new(robots[robot].0, &robots[robot].1),
-            Self::One(placed) => Ok(*placed),
-        }
-    }
-}
 
 /// What the device has found about a robot.
 pub(super) struct Found<'a> {
@@ -159,7 +126,11 @@ struct Slot {
     items: u64,
     room: u32,
     part_bytes: Vec<u8>,
-    numbers: Vec<u8>,
+    /// The numbers of all points.
+    points: u32,
+    shapes: Vec<u8>,
+    radii: Vec<u8>,
+    bending: Option<BendingQuery>,
     buffers: Option<SlotBuffers>,
     submitted: Option<Submitted>,
 }
@@ -171,6 +142,8 @@ struct Layout {
     /// The number of links, or 0 if the device is not asked about the robot.
     links: u32,
     is_left: bool,
+    /// The error of its points beside rounding.
+    more_error: f32,
     /// Where its points and its radii begin, in numbers.
     points: u32,
     radii: u32,
@@ -178,9 +151,10 @@ struct Layout {
     is_alike: bool,
 }
 
-/// The buffers of a chunk, for a number of parts, of numbers and of entries.
+/// The buffers of a chunk, for a number of parts, of bytes of numbers, of entries, and of bytes of
+/// shapes.
 struct SlotBuffers {
-    sizes: [u64; 3],
+    sizes: [u64; 4],
     query: Buffer,
     parts: Buffer,
     numbers: Buffer,
@@ -189,6 +163,14 @@ struct SlotBuffers {
     counters: Buffer,
     readback: Buffer,
     clock: Option<Clock>,
+    group: BindGroup,
+    /// If the device computes the points.
+    bending: Option<BendingBuffers>,
+}
+
+struct BendingBuffers {
+    query: Buffer,
+    shapes: Buffer,
     group: BindGroup,
 }
 
@@ -211,17 +193,17 @@ impl Batches {
     }
 
     /// Answers all robots except the robots in [`Batches::left`]. `answer` writes the answer of a
-    /// robot from what was found; if it returns false, the robot is left to the CPU.
+    /// robot, by its number, from what was found; if it returns false, the robot is left to the CPU.
     ///
     /// # Errors
     /// The device has failed since the last batch, or did not answer.
     pub(super) fn run<A: Send>(
         &mut self,
         searched: Searched,
-        robots: Robots,
+        robots: impl Packed,
         question: Question,
         out: &mut [Result<A, ProximityError>],
-        answer: impl Fn(&PlacedRobot, Found, &mut Result<A, ProximityError>) -> bool + Sync,
+        answer: impl Fn(usize, Found, &mut Result<A, ProximityError>) -> bool + Sync,
     ) -> Result<(), DeviceFailure> {
         self.left.clear();
         self.work = [0; 3];
@@ -235,11 +217,11 @@ impl Batches {
             let room = self.room[question.kind()];
             self.slots[turn].submit(searched, question, room, &mut self.watch)?;
             if let Some(before) = pending.replace(turn) {
-                self.finish(before, searched, robots, question, out, &answer)?;
+                self.finish(before, searched, question, out, &answer)?;
             }
             turn = 1 - turn;
         }
-        pending.map_or(Ok(()), |last| self.finish(last, searched, robots, question, out, &answer))
+        pending.map_or(Ok(()), |last| self.finish(last, searched, question, out, &answer))
     }
 
     /// Steps 4 and 5, for the chunk in a slot.
@@ -247,10 +229,9 @@ impl Batches {
         &mut self,
         slot: usize,
         searched: Searched,
-        robots: Robots,
         question: Question,
         out: &mut [Result<A, ProximityError>],
-        answer: &(impl Fn(&PlacedRobot, Found, &mut Result<A, ProximityError>) -> bool + Sync),
+        answer: &(impl Fn(usize, Found, &mut Result<A, ProximityError>) -> bool + Sync),
     ) -> Result<(), DeviceFailure> {
         let Self { watch, slots, room, left, device_time, work } = self;
         let slot = &mut slots[slot];
@@ -287,7 +268,7 @@ impl Batches {
                     })
                     .collect();
                 each(&mut shares, |_, (first, layouts, out, left)| {
-                    *left = heads.answer(robots, *first, layouts, out, answer);
+                    *left = heads.answer(*first, layouts, out, answer);
                 });
                 for (.., share) in shares {
                     left.extend(share?);
@@ -311,10 +292,10 @@ fn next_room(room: u64, least: u64, needed: u64, items: u64) -> u64 {
 }
 
 /// The chunk of robots from `first` on.
-fn chunk_from(robots: Robots, first: usize) -> Range<usize> {
+fn chunk_from(robots: impl Packed, first: usize) -> Range<usize> {
     let (mut end, mut links) = (first, 0);
     while end < robots.len() {
-        links += robots.links(end).len();
+        links += robots.links(end);
         if links > CHUNK && end > first {
             break;
         }
@@ -352,11 +333,10 @@ impl Heads<'_> {
     /// A part was not answered.
     fn answer<A>(
         self,
-        robots: Robots,
         first: usize,
         layouts: &[Layout],
         out: &mut [Result<A, ProximityError>],
-        answer: &impl Fn(&PlacedRobot, Found, &mut Result<A, ProximityError>) -> bool,
+        answer: &impl Fn(usize, Found, &mut Result<A, ProximityError>) -> bool,
     ) -> Result<Vec<usize>, DeviceFailure> {
         let (mut left, mut candidates) = (Vec::new(), Vec::new());
         for ((number, layout), out) in (first..).zip(layouts).zip(out) {
@@ -389,15 +369,7 @@ impl Heads<'_> {
             }
             let found = Found { is_hit, candidates: &candidates };
             // A hit settles a robot, regardless of its other parts.
-            let is_answered = (is_hit || !is_left)
-                && match robots.placed(number) {
-                    Ok(robot) => answer(&robot, found, out),
-                    Err(error) => {
-                        *out = Err(error);
-                        true
-                    }
-                };
-            if !is_answered {
+            if is_left && !is_hit || !answer(number, found, out) {
                 left.push(number);
             }
         }
@@ -410,11 +382,11 @@ impl Slot {
     fn pack<A: Send>(
         &mut self,
         searched: Searched,
-        robots: Robots,
+        robots: impl Packed,
         chunk: Range<usize>,
         out: &mut [Result<A, ProximityError>],
     ) {
-        let first = chunk.start;
+        let (first, frame) = (chunk.start, searched.frame);
         self.layouts.clear();
         self.layouts.resize(chunk.len(), Layout::default());
         self.robots = chunk.clone();
@@ -422,9 +394,9 @@ impl Slot {
         each(&mut shares, |share, layouts| {
             for (robot, layout) in (first + share * TASK_SIZE..).zip(layouts.iter_mut()) {
                 let links = robots.links(robot);
-                layout.is_left = links.len() > MOST_LINKS;
-                layout.links = if layout.is_left { 0 } else { links.len() as u32 };
-                layout.is_alike = robot > first && are_alike(links, robots.links(robot - 1));
+                layout.is_left = links > MOST_LINKS;
+                layout.links = if layout.is_left { 0 } else { links as u32 };
+                layout.is_alike = robot > first && robots.is_like_before(robot);
             }
         });
         let (mut points, mut radii, mut parts) = (0, 0, 0);
@@ -442,54 +414,60 @@ impl Slot {
             }
             layout.radii = before;
         }
-        self.parts = parts;
-        self.part_bytes.clear();
-        self.part_bytes.resize(parts as usize * PART_SIZE as usize, 0);
-        self.numbers.clear();
-        self.numbers.resize(4 * (points + radii) as usize, 0);
+        (self.parts, self.points) = (parts, points);
+        self.bending = robots.bending(chunk.len());
+        self.shapes.clear();
+        robots.write_base(frame, &mut self.shapes);
+        let base = self.shapes.len();
+        let shapes: usize = self.layouts.iter().map(|one| robots.shape_size(one.links)).sum();
+        for (bytes, size) in [
+            (&mut self.part_bytes, parts as usize * PART_SIZE as usize),
+            (&mut self.radii, 4 * radii as usize),
+        ] {
+            bytes.clear();
+            bytes.resize(size, 0);
+        }
+        self.shapes.resize(base + shapes, 0);
 
-        // Each task writes the parts, the points and the radii of its robots.
-        let (mut all_points, mut all_radii) = self.numbers.split_at_mut(4 * points as usize);
+        // Each task writes the parts, the shapes and the radii of its robots.
+        let (mut all_shapes, mut all_radii) = (&mut self.shapes[base..], &mut self.radii[..]);
         let mut all_parts = &mut self.part_bytes[..];
         let mut shares = Vec::with_capacity(chunk.len().div_ceil(TASK_SIZE));
         let outs = out[chunk].chunks_mut(TASK_SIZE);
         for (layouts, out) in self.layouts.chunks_mut(TASK_SIZE).zip(outs) {
             let count = |of: &dyn Fn(&Layout) -> u32| layouts.iter().map(|l| of(l) as usize).sum();
-            let points: usize = count(&|layout| 3 * (layout.links + 1));
+            let shapes = layouts.iter().map(|layout| robots.shape_size(layout.links)).sum();
             let radii: usize = count(&|layout| if layout.is_alike { 0 } else { 2 * layout.links });
             let parts: usize = count(&|layout| layout.links.div_ceil(PART));
-            let points = take_front(&mut all_points, 4 * points);
+            let shapes = take_front(&mut all_shapes, shapes);
             let radii = take_front(&mut all_radii, 4 * radii);
             let parts = take_front(&mut all_parts, PART_SIZE as usize * parts);
-            shares.push((layouts, out, points, radii, parts));
+            shares.push((layouts, out, shapes, radii, parts));
         }
-        each(&mut shares, |share, (layouts, out, points, radii, parts)| {
+        each(&mut shares, |share, (layouts, out, shapes, radii, parts)| {
             let robots_of_share = first + share * TASK_SIZE..;
             for ((robot, layout), out) in
                 robots_of_share.zip(layouts.iter_mut()).zip(out.iter_mut())
             {
-                let points = take_front(points, 12 * (layout.links as usize + 1));
+                let shape = take_front(shapes, robots.shape_size(layout.links));
                 if layout.is_left {
                     continue;
                 }
-                let links = robots.links(robot);
-                let own = if layout.is_alike { 0 } else { 8 * links.len() };
-                write_radii(take_front(radii, own), searched.frame, links);
-                let parts =
-                    take_front(parts, PART_SIZE as usize * links.len().div_ceil(PART as usize));
-                let is_resolved = match robots.placed(robot) {
-                    Ok(placed) => write_points(points, searched.frame, &placed),
+                let links = layout.links as usize;
+                let own = if layout.is_alike { 0 } else { 8 * links };
+                robots.write_radii(robot, frame, take_front(radii, own));
+                let parts = take_front(parts, PART_SIZE as usize * links.div_ceil(PART as usize));
+                match robots.write_shape(robot, frame, shape) {
+                    Ok(Some(error)) => {
+                        layout.more_error = error;
+                        write_parts(parts, layout);
+                    }
+                    Ok(None) => (layout.links, layout.is_left) = (0, true),
                     Err(error) => {
                         *out = Err(error);
                         layout.links = 0;
-                        continue;
                     }
-                };
-                if !is_resolved {
-                    (layout.links, layout.is_left) = (0, true);
-                    continue;
                 }
-                write_parts(parts, layout);
             }
         });
     }
@@ -521,7 +499,12 @@ impl Slot {
         self.items = if question.is_about_links() { self.links } else { parts };
         self.room = self.room_of(device, room);
         let room = u64::from(self.room);
-        let sizes = [parts, self.numbers.len() as u64, room].map(u64::next_power_of_two);
+        let points = 4 * u64::from(self.points);
+        let numbers = points + self.radii.len() as u64;
+        let [parts_size, numbers, room_size, shapes] =
+            [parts, numbers, room, self.shapes.len() as u64].map(u64::next_power_of_two);
+        let shapes = if self.bending.is_some() { shapes } else { 0 };
+        let sizes = [parts_size, numbers, room_size, shapes];
         let buffers = match self.buffers.take() {
             Some(buffers) if fits(buffers.sizes, sizes) => buffers,
             _ => SlotBuffers::new(searched, sizes),
@@ -532,7 +515,10 @@ impl Slot {
         record.write(device.precision(), &mut bytes);
         device.queue().write_buffer(&buffers.query, 0, &bytes);
         device.queue().write_buffer(&buffers.parts, 0, &self.part_bytes);
-        device.queue().write_buffer(&buffers.numbers, 0, &self.numbers);
+        device.queue().write_buffer(&buffers.numbers, points, &self.radii);
+        let bending = self.bending.zip(buffers.bending.as_ref());
+        let shapes = bending.map_or(&buffers.numbers, |(_, buffers)| &buffers.shapes);
+        device.queue().write_buffer(shapes, 0, &self.shapes);
 
         let mut encoder = device.raw().create_command_encoder(&Default::default());
         encoder.clear_buffer(&buffers.heads, 0, Some(parts * HEAD));
@@ -540,6 +526,14 @@ impl Slot {
         let timestamp_writes = buffers.clock.as_ref().map(Clock::writes);
         let mut pass =
             encoder.begin_compute_pass(&ComputePassDescriptor { label: None, timestamp_writes });
+        if let Some((query, buffers)) = bending {
+            bytes.clear();
+            query.write(device.precision(), &mut bytes);
+            device.queue().write_buffer(&buffers.query, 0, &bytes);
+            pass.set_pipeline(&kernels.bend);
+            pass.set_bind_group(0, &buffers.group, &[0]);
+            device.dispatch(&mut pass, (self.points / 3).div_ceil(BENDING_THREADS));
+        }
         pass.set_bind_group(0, &buffers.group, &[0]);
         for kernel in &kernels.passes[question.kind()] {
             pass.set_pipeline(kernel);
@@ -565,16 +559,10 @@ impl Slot {
 }
 
 /// Whether buffers are large enough, and not far too large.
-fn fits(have: [u64; 3], need: [u64; 3]) -> bool {
-    have.into_iter().zip(need).all(|(have, need)| need <= have && have <= 16 * need.max(1 << 10))
-}
-
-/// Whether two robots have the same radii and caps.
-fn are_alike(one: &[ModifiedCylinder], other: &[ModifiedCylinder]) -> bool {
-    let shape = |link: &ModifiedCylinder| (link.radius(), link.flat());
-    std::ptr::eq(one, other)
-        || (one.len() == other.len()
-            && one.iter().zip(other).all(|(one, other)| shape(one) == shape(other)))
+fn fits(have: [u64; 4], need: [u64; 4]) -> bool {
+    have.into_iter()
+        .zip(need)
+        .all(|(have, need)| need <= have && (need == 0 || have <= 16 * need.max(1 << 10)))
 }
 
 /// Takes the front off a slice.
@@ -584,50 +572,13 @@ fn take_front<'a>(slice: &mut &'a mut [u8], count: usize) -> &'a mut [u8] {
     front
 }
 
-fn write_radii(bytes: &mut [u8], frame: &SearchFrame, links: &[ModifiedCylinder]) {
-    for (bytes, link) in bytes.chunks_exact_mut(8).zip(links) {
-        let [start, end] = link.flat().map(|is_flat| f32::from(u8::from(is_flat)));
-        let pair = [radius_of(link, frame), start + 2.0 * end];
-        bytes.copy_from_slice(pair.map(f32::to_ne_bytes).as_flattened());
-    }
-}
-
-fn radius_of(link: &ModifiedCylinder, frame: &SearchFrame) -> f32 {
-    (link.radius() * frame.scale) as f32
-}
-
-/// Writes the points of a robot. Returns whether the device can search for it: all numbers are in
-/// range, and the error of its bounds is small beside a triangle.
-fn write_points(bytes: &mut [u8], frame: &SearchFrame, robot: &PlacedRobot) -> bool {
-    // The least numbers of the mesh's unit must not show in the search frame.
-    let mut is_resolved = frame.least < Real::from(f32::EPSILON) * 1e-3;
-    let mut bytes = bytes.chunks_exact_mut(12);
-    let mut write = |point: Vec3<f32>| {
-        if let Some(bytes) = bytes.next() {
-            bytes.copy_from_slice(<[f32; 3]>::from(point).map(f32::to_ne_bytes).as_flattened());
-        }
-    };
-    let [base, _] = robot.ends();
-    let mut start = frame.point(base);
-    write(start);
-    for (link, end) in robot.links().iter().zip(robot.link_ends()) {
-        let end = frame.point(end);
-        let radius = radius_of(link, frame);
-        let reach = start.largest().max(end.largest()).max(radius);
-        let error = Real::from(error_of([start, end], radius, link.flat()));
-        is_resolved &= Real::from(reach) <= <f32 as Lane>::FARTHEST && 4.0 * error <= frame.typical;
-        write(end);
-        start = end;
-    }
-    is_resolved
-}
-
 fn write_parts(bytes: &mut [u8], layout: &Layout) {
     for (bytes, first) in
         bytes.chunks_exact_mut(PART_SIZE as usize).zip((0..).step_by(PART as usize))
     {
         let links = (layout.links - first).min(PART);
-        let words = [layout.points + 3 * first, layout.radii + 2 * first, links, 0];
+        let error = layout.more_error.to_bits();
+        let words = [layout.points + 3 * first, layout.radii + 2 * first, links, error];
         bytes.copy_from_slice(words.map(u32::to_ne_bytes).as_flattened());
     }
 }
@@ -641,9 +592,9 @@ fn margins(question: Question, frame: &SearchFrame) -> (u32, u32) {
 }
 
 impl SlotBuffers {
-    fn new(searched: Searched, sizes: [u64; 3]) -> Self {
+    fn new(searched: Searched, sizes: [u64; 4]) -> Self {
         let Searched { gpu, kernels, tree, .. } = searched;
-        let (device, [parts, numbers, entries]) = (&gpu.device, sizes);
+        let (device, [parts, numbers, entries, shapes]) = (&gpu.device, sizes);
         let up = BufferUsages::STORAGE | BufferUsages::COPY_DST;
         let down = BufferUsages::STORAGE | BufferUsages::COPY_SRC | BufferUsages::COPY_DST;
         let query = device.buffer(
@@ -674,8 +625,25 @@ impl SlotBuffers {
                 limits.as_entire_binding(),
             ],
         );
+        let bending = (shapes > 0).then(|| {
+            let query = device.buffer(
+                device.uniform_stride::<BendingQuery>(),
+                BufferUsages::UNIFORM | BufferUsages::COPY_DST,
+            );
+            let shapes = device.buffer(shapes, up);
+            let group = device.group(
+                &kernels.bending_layout,
+                &[
+                    device.uniform_binding::<BendingQuery>(&query),
+                    shapes.as_entire_binding(),
+                    number_buffer.as_entire_binding(),
+                ],
+            );
+            BendingBuffers { query, shapes, group }
+        });
         Self {
             sizes,
+            bending,
             query,
             parts: part_buffer,
             numbers: number_buffer,

@@ -30,12 +30,14 @@
 //!   and the axis' ends `E_j`. At a round cap `k_j = |n|`. At a flat cap `k_j` is the length of the
 //!   part of n across the axis. For a box, `min_i` becomes the centre's value minus `<|n|, h>`,
 //!   with h the half extents. Taking `k_j = |n|` at flat caps too is a bound on the capsule around
-//!   the link.
+//!   the link. A cap that may be round or flat ([`SearchCap::Either`]) counts as round here, where
+//!   the larger body bounds the smaller.
 //! - **The gaps of two boxes bound from below**: the box, and the box around the axis.
 //! - **A pair of points bounds from above.** Any point of the triangle and any point of the axis
 //!   give `F`, and `d <= F`. A point with height h over a flat cap and distance rho from the axis'
 //!   line is at most `hypot(h, max(rho - r, 0))` from the cap. Below all flat caps it is at most
-//!   `F - r` from the link, and inside if that and all heights are negative.
+//!   `F - r` from the link, and inside if that and all heights are negative. A cap that may be
+//!   round or flat counts as flat here, where the smaller body bounds the larger.
 //! - A link too short for a direction (`l < 2^-16 R`, `is_thin`) is bounded by its capsule from
 //!   below and by its axis from above.
 //!
@@ -80,8 +82,8 @@ pub(super) const FAR: f32 = f32::from_bits((127 + 60) << 23);
 pub(super) const ROUND_ERROR: f32 = 128.0 * UNIT;
 /// `e / R` of a link with a flat cap is `FLAT_ERROR + TURN_ERROR r / l`.
 pub(super) const FLAT_ERROR: f32 = 512.0 * UNIT;
-const TURN_ERROR: f32 = 4.0 * UNIT;
-const UNIT: f32 = f32::EPSILON / 2.0;
+pub(super) const TURN_ERROR: f32 = 4.0 * UNIT;
+pub(super) const UNIT: f32 = f32::EPSILON / 2.0;
 /// A link with flat caps that is shorter than this, relative to R, has no direction.
 const THIN: f32 = f32::from_bits((127 - 16) << 23);
 /// Denominators, and lengths.
@@ -90,9 +92,36 @@ const SMALL: f32 = f32::from_bits((127 - 40) << 23);
 /// The squared sine below which two segments count as parallel when closest places are guessed.
 const PARALLEL: f32 = 1e-7;
 
+/// A cap as the device knows it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum SearchCap {
+    Round,
+    Flat,
+    /// The bounds hold for both.
+    Either,
+}
+
+impl SearchCap {
+    const ALL: [(&str, Self); 3] =
+        [("ROUND", Self::Round), ("FLAT", Self::Flat), ("EITHER", Self::Either)];
+
+    pub(super) fn of(flat: [bool; 2]) -> [Self; 2] {
+        flat.map(|is_flat| if is_flat { Self::Flat } else { Self::Round })
+    }
+
+    /// The number that stands for the caps of a link.
+    pub(super) fn code([start, end]: [Self; 2]) -> f32 {
+        f32::from(start as u8 + 3 * end as u8)
+    }
+}
+
 /// The constants in WGSL.
 pub(super) fn constants() -> String {
     let mut text = String::new();
+    for (name, cap) in SearchCap::ALL {
+        // Writing to a string does not fail.
+        let _ = writeln!(text, "const {name} = {}u;", cap as u8);
+    }
     for (name, value) in [
         ("FAR", FAR),
         ("ROUND_ERROR", ROUND_ERROR),
@@ -103,7 +132,6 @@ pub(super) fn constants() -> String {
         ("SMALL", SMALL),
         ("PARALLEL", PARALLEL),
     ] {
-        // Writing to a string does not fail.
         let _ = writeln!(text, "const {name} = {value:e}f;");
     }
     text
@@ -159,23 +187,27 @@ pub(super) struct SearchedLink<const FUSED: bool = false> {
     length: f32,
     inverse: f32,
     pub error: f32,
+    /// Whether a cap is flat or may be.
     flat_start: bool,
     flat_end: bool,
+    /// Whether a cap is round or may be.
+    round_start: bool,
+    round_end: bool,
     is_thin: bool,
 }
 
-/// The `error` of a link with these ends, this radius and these flat caps.
-pub(super) fn error_of(ends: [Point; 2], radius: f32, flat: [bool; 2]) -> f32 {
-    SearchedLink::<false>::new(ends, radius, flat).error
+/// The `error` of a link with these ends, this radius and these caps.
+pub(super) fn error_of(ends: [Point; 2], radius: f32, caps: [SearchCap; 2]) -> f32 {
+    SearchedLink::<false>::new(ends, radius, caps).error
 }
 
 impl<const FUSED: bool> SearchedLink<FUSED> {
-    pub(super) fn new([start, end]: [Point; 2], radius: f32, flat: [bool; 2]) -> Self {
+    pub(super) fn new([start, end]: [Point; 2], radius: f32, caps: [SearchCap; 2]) -> Self {
         let along = end - start;
         let squared = dot::<FUSED>(along, along);
         let length = squared.sqrt();
         let reach = start.largest().max(end.largest()).max(radius.max(1.0));
-        let has_flat = flat[0] || flat[1];
+        let has_flat = caps != [SearchCap::Round; 2];
         let is_thin = has_flat && length < THIN * reach;
         let short = 1.0 / length.max(TINY);
         let error = if has_flat && !is_thin {
@@ -193,8 +225,10 @@ impl<const FUSED: bool> SearchedLink<FUSED> {
             length,
             inverse: 1.0 / squared.max(TINY),
             error,
-            flat_start: flat[0] && !is_thin,
-            flat_end: flat[1] && !is_thin,
+            flat_start: !is_thin && caps[0] != SearchCap::Round,
+            flat_end: !is_thin && caps[1] != SearchCap::Round,
+            round_start: is_thin || caps[0] != SearchCap::Flat,
+            round_end: is_thin || caps[1] != SearchCap::Flat,
             is_thin,
         }
     }
@@ -270,8 +304,8 @@ impl<const FUSED: bool> SearchedLink<FUSED> {
         let across = normal - self.axis * dot::<FUSED>(normal, self.axis);
         let flat_reach = self.radius * dot::<FUSED>(across, across).sqrt();
         let round_reach = self.radius * length;
-        let caps = [self.flat_start, self.flat_end]
-            .map(|is_flat| if is_flat { flat_reach } else { round_reach });
+        let caps = [self.round_start, self.round_end]
+            .map(|is_round| if is_round { round_reach } else { flat_reach });
         if length > SMALL {
             let lower = self.ahead_of_plane(corners, normal, caps) / length;
             bounds.lower = bounds.lower.max(lower);

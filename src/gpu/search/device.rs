@@ -6,7 +6,7 @@
 //!    frame; fill the triangles (`corners`); fit the boxes of the nodes level by level, the lowest
 //!    first (`refit`). A level reads boxes of lower levels only.
 
-use super::kernels::{Question, REFIT_THREADS, RefitLevel, corners, passes, refit};
+use super::kernels::{Question, REFIT_THREADS, RefitLevel, bend, corners, passes, refit};
 use super::tree::SearchTree;
 use crate::distance::Vec3;
 use crate::gpu::opened::Opened;
@@ -28,6 +28,8 @@ pub(in crate::gpu) struct SearchKernels {
     corners_layout: BindGroupLayout,
     refit_layout: BindGroupLayout,
     pub query_layout: BindGroupLayout,
+    pub bending_layout: BindGroupLayout,
+    pub bend: ComputePipeline,
     corners: ComputePipeline,
     refit: ComputePipeline,
     /// The passes of each kind of question.
@@ -43,6 +45,7 @@ impl SearchKernels {
         let refit_layout = device.layout(&[Uniform, Read, Read, Write]);
         let query_layout =
             device.layout(&[Uniform, Read, Read, Read, Read, Write, Write, Write, Write]);
+        let bending_layout = device.layout(&[Uniform, Read, Write]);
         let compile = |kernel: Shader, layout: &BindGroupLayout| {
             device.compile(kernel.entry_point, &kernel, layout, &[])
         };
@@ -53,9 +56,11 @@ impl SearchKernels {
             corners: compile(corners(), &corners_layout)?,
             refit: compile(refit(), &refit_layout)?,
             passes: (0..Question::KINDS).map(passes_of).collect::<Result<_, _>>()?,
+            bend: compile(bend(), &bending_layout)?,
             corners_layout,
             refit_layout,
             query_layout,
+            bending_layout,
         })
     }
 }

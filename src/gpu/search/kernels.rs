@@ -1,7 +1,8 @@
 //! The text of the kernels, and the constants and records that they share with the host.
 
-use super::bounds;
+use super::bending::BendingQuery;
 use super::tree::{LEAF, LEAF_SIZE, MAX_DEPTH};
+use super::{bending, bounds};
 use gpu_batch::wgsl::constant;
 use gpu_batch::{Record, Shader, record};
 use parry3d_f64::math::Real;
@@ -14,6 +15,8 @@ pub(super) const ROOM: u32 = 8;
 pub(super) const MOST_GATHERED: u32 = 1 << 12;
 /// Threads per workgroup of a refit.
 pub(super) const REFIT_THREADS: u32 = 64;
+/// Threads per workgroup where points are computed.
+pub(super) const BENDING_THREADS: u32 = 64;
 /// No triangle, and no node.
 pub(super) const NOTHING: u32 = u32::MAX;
 
@@ -119,6 +122,15 @@ pub(super) fn refit() -> Shader {
     Shader::new("refit", tree() + &RefitLevel::wgsl() + text!("refit"))
 }
 
+/// Computes the points of robots of sections.
+pub(super) fn bend() -> Shader {
+    let text = constant("BENDING_THREADS", format_args!("{BENDING_THREADS}u"))
+        + &bending::constants()
+        + &BendingQuery::wgsl()
+        + text!("bending");
+    Shader::new("bend", text)
+}
+
 /// The passes of a kind of question. If `counts_work`, the first pass of a search counts nodes,
 /// leaves and links.
 pub(super) fn passes(kind: usize, counts_work: bool) -> Vec<Shader> {
@@ -153,7 +165,7 @@ pub(super) fn passes(kind: usize, counts_work: bool) -> Vec<Shader> {
 /// Every kernel, for tests.
 #[cfg(feature = "laboratory")]
 pub(in crate::gpu) fn all() -> Vec<Shader> {
-    let mut all = vec![corners(), refit()];
+    let mut all = vec![corners(), refit(), bend()];
     for kind in 0..Question::KINDS {
         all.extend([false, true].into_iter().flat_map(|counts_work| passes(kind, counts_work)));
     }

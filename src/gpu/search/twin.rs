@@ -166,7 +166,7 @@ impl<'a> TwinTree<'a> {
 }
 
 mod tests {
-    use super::super::bounds;
+    use super::super::bounds::{self, SearchCap};
     use super::super::device::DeviceTree;
     use super::super::kernels::text_of_bounds;
     use super::*;
@@ -217,6 +217,7 @@ mod tests {
     }
 
     impl Tally {
+        /// `d`: the distance of the link with the caps that it has.
         fn check(
             &mut self,
             d: Real,
@@ -253,6 +254,26 @@ mod tests {
         (ends, link.radius() as f32, corners.map(round::<f32>))
     }
 
+    /// The caps of a link as the device may know them.
+    fn known(random: &mut Random, link: &ModifiedCylinder) -> [SearchCap; 2] {
+        SearchCap::of(link.flat())
+            .map(|cap| if random.below(3) == 0 { SearchCap::Either } else { cap })
+    }
+
+    /// The links that fit these caps.
+    fn choices(link: &ModifiedCylinder, caps: [SearchCap; 2]) -> Vec<ModifiedCylinder> {
+        let of = |cap| match cap {
+            SearchCap::Round => vec![Cap::Round],
+            SearchCap::Flat => vec![Cap::Flat],
+            SearchCap::Either => vec![Cap::Round, Cap::Flat],
+        };
+        let (start, end, radius) = (link.start(), link.end(), link.radius());
+        let pairs = of(caps[0])
+            .into_iter()
+            .flat_map(|first| of(caps[1]).into_iter().map(move |last| [first, last]));
+        pairs.filter_map(|caps| ModifiedCylinder::new(start, end, radius, caps).ok()).collect()
+    }
+
     fn measured(link: &ModifiedCylinder, corners: [Vector; 3]) -> Real {
         PlacedLink::new(link, &Pose::IDENTITY).measure(0, corners).distance
     }
@@ -260,18 +281,27 @@ mod tests {
     #[test]
     fn the_bounds_hold_fused_or_not() {
         let mut random = Random::new(29);
-        let (mut plain, mut fused) = (Tally::default(), Tally::default());
+        let [mut plain, mut fused, mut either] = [(); 3].map(|()| Tally::default());
         for kind in 0..200_000 {
             let (link, corners) = pair(&mut random, kind);
             let d = measured(&link, corners);
             let (ends, radius, triangle) = in_frame(&link, corners);
             let what = || format!("{kind}: {link:?}, {corners:?}");
-            let one = SearchedLink::<false>::new(ends, radius, link.flat());
+            let one = SearchedLink::<false>::new(ends, radius, SearchCap::of(link.flat()));
             let found = one.bounds(triangle);
             plain.check(d, found.lower, found.upper, one.error, &what);
-            let other = SearchedLink::<true>::new(ends, radius, link.flat());
+            let other = SearchedLink::<true>::new(ends, radius, SearchCap::of(link.flat()));
             let found = other.bounds(triangle);
             fused.check(d, found.lower, found.upper, other.error, &what);
+            // Caps that may be round or flat: one bound for all links that fit.
+            let caps = known(&mut random, &link);
+            let known = SearchedLink::<false>::new(ends, radius, caps);
+            let found = known.bounds(triangle);
+            for link in choices(&link, caps) {
+                let d = measured(&link, corners);
+                let what = || format!("{kind}: {link:?}, {caps:?}, {corners:?}");
+                either.check(d, found.lower, found.upper, known.error, &what);
+            }
             // A box around the triangle.
             let [a, b, c] = triangle;
             let (low, high) = (low_of(a, low_of(b, c)), high_of(a, high_of(b, c)));
@@ -282,7 +312,8 @@ mod tests {
                 assert!(Real::from(squared).sqrt() <= limit, "{}", what());
             }
         }
-        assert!(plain.is_telling() && fused.is_telling(), "{plain:?} {fused:?}");
+        let all = [&plain, &fused, &either];
+        assert!(all.iter().all(|tally| tally.is_telling()), "{all:?}");
     }
 
     #[test]
@@ -304,29 +335,39 @@ mod tests {
         let text = text_of_bounds() + solve;
         let mut batch = Batch::new(&gpu.0.device, &Kernel::new("bounds", &text, 17, 4)).unwrap();
         let mut random = Random::new(31);
-        let problems: Vec<_> = (0..50_000).map(|kind| pair(&mut random, kind)).collect();
-        let numbers = problems.iter().flat_map(|(link, corners)| {
+        let problems: Vec<_> = (0..50_000)
+            .map(|kind| {
+                let (link, corners) = pair(&mut random, kind);
+                let caps = known(&mut random, &link);
+                (link, corners, caps)
+            })
+            .collect();
+        let numbers = problems.iter().flat_map(|(link, corners, caps)| {
             let (ends, radius, triangle) = in_frame(link, *corners);
-            let caps = u8::from(link.flat()[0]) + 2 * u8::from(link.flat()[1]);
+            let caps = SearchCap::code(*caps);
             let mut numbers: Vec<f64> = Vec::new();
             let mut add = |point: Point| numbers.extend([point.x, point.y, point.z].map(f64::from));
             ends.into_iter().for_each(&mut add);
             let rest =
                 triangle.into_iter().flat_map(|point| [point.x, point.y, point.z].map(f64::from));
-            let rest: Vec<_> = [f64::from(radius), caps.into()].into_iter().chain(rest).collect();
+            let rest: Vec<_> =
+                [f64::from(radius), f64::from(caps)].into_iter().chain(rest).collect();
             numbers.into_iter().chain(rest).collect::<Vec<_>>()
         });
         let (mut tally, mut place) = (Tally::default(), 0);
         batch
             .run(numbers, |found| {
-                let (link, corners) = &problems[place];
-                let d = measured(link, *corners);
-                let what = || format!("{place}: {link:?}, {corners:?}");
-                tally.check(d, found[0] as f32, found[1] as f32, found[2] as f32, &what);
+                let (link, corners, caps) = &problems[place];
+                let what = || format!("{place}: {link:?}, {caps:?}, {corners:?}");
+                let mut d = 0.0;
+                for link in choices(link, *caps) {
+                    d = measured(&link, *corners);
+                    tally.check(d, found[0] as f32, found[1] as f32, found[2] as f32, &what);
+                }
                 let limit = d + link.radius() + found[2];
                 assert!(found[3].sqrt() <= limit * (1.0 + 1e-6), "{}", what());
                 let (ends, radius, _) = in_frame(link, *corners);
-                let error = bounds::error_of(ends, radius, link.flat());
+                let error = bounds::error_of(ends, radius, *caps);
                 assert!((found[2] / f64::from(error) - 1.0).abs() < 1e-5, "{}", what());
                 place += 1;
             })
@@ -374,7 +415,7 @@ mod tests {
                 let searched = SearchedLink::<false>::new(
                     ends,
                     (link.radius() * frame.scale) as f32,
-                    link.flat(),
+                    SearchCap::of(link.flat()),
                 );
                 let mut work = TwinWork::default();
                 let (mut found, wanted, is_lost) = twin.search(&searched, Wanted::ANY, &mut work);

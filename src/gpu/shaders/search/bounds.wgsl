@@ -14,8 +14,12 @@ struct SearchedLink {
     high: vec3<f32>,
     // 1 / length^2.
     inverse: f32,
+    // Whether a cap is flat or may be.
     flat_start: bool,
     flat_end: bool,
+    // Whether a cap is round or may be.
+    round_start: bool,
+    round_end: bool,
     // A link with flat caps that is too short for a direction.
     is_thin: bool,
 }
@@ -37,13 +41,15 @@ fn largest(v: vec3<f32>) -> f32 {
     return max(v.x, max(v.y, v.z));
 }
 
-// `caps`: 1 for a flat start, plus 2 for a flat end.
+// `caps`: ROUND, FLAT or EITHER for the start, plus 3 times the same for the end.
 fn link_new(start: vec3<f32>, end: vec3<f32>, radius: f32, caps: f32) -> SearchedLink {
+    let start_cap = u32(caps) % 3u;
+    let end_cap = u32(caps) / 3u;
     let along = end - start;
     let squared = dot(along, along);
     let length = sqrt(squared);
     let reach = max(max(largest(abs(start)), largest(abs(end))), max(radius, 1.0));
-    let has_flat = caps > 0.5;
+    let has_flat = start_cap != ROUND || end_cap != ROUND;
     let is_thin = has_flat && length < THIN * reach;
     let short = 1.0 / max(length, TINY);
     var error = ROUND_ERROR * reach;
@@ -60,8 +66,10 @@ fn link_new(start: vec3<f32>, end: vec3<f32>, radius: f32, caps: f32) -> Searche
         min(start, end),
         max(start, end),
         1.0 / max(squared, TINY),
-        !is_thin && (caps == 1.0 || caps == 3.0),
-        !is_thin && caps >= 2.0,
+        !is_thin && start_cap != ROUND,
+        !is_thin && end_cap != ROUND,
+        is_thin || start_cap != FLAT,
+        is_thin || end_cap != FLAT,
         is_thin,
     );
 }
@@ -211,8 +219,8 @@ fn triangle_bounds(link: SearchedLink, a: vec3<f32>, b: vec3<f32>, c: vec3<f32>)
     let flat_reach = link.radius * sqrt(dot(across, across));
     let round_reach = link.radius * length;
     let caps = vec2<f32>(
-        select(round_reach, flat_reach, link.flat_start),
-        select(round_reach, flat_reach, link.flat_end),
+        select(flat_reach, round_reach, link.round_start),
+        select(flat_reach, round_reach, link.round_end),
     );
     if (length > SMALL) {
         bounds.lower = max(bounds.lower, ahead_of_plane(link, a, b, c, normal, caps) / length);

@@ -6,14 +6,15 @@ struct Part {
     points: u32,
     radii: u32,
     links: u32,
-    unused: u32,
+    // The error of its points.
+    more_error: f32,
 }
 
 @group(0) @binding(0) var<uniform> query: SearchQuery;
 @group(0) @binding(1) var<storage, read> nodes: array<Node>;
 @group(0) @binding(2) var<storage, read> triangles: array<Triangle>;
 @group(0) @binding(3) var<storage, read> parts: array<Part>;
-// Points; and for each link its radius and which caps are flat.
+// Points; and for each link its radius and its caps.
 @group(0) @binding(4) var<storage, read> robots: array<f32>;
 // For each part its first entry, and a status or FOUND plus the number of its entries.
 @group(0) @binding(5) var<storage, read_write> heads: array<vec2<u32>>;
@@ -33,7 +34,9 @@ fn robot_link(part: Part, link: u32) -> SearchedLink {
     let radius = part.radii + 2u * link;
     let start = robot_point(place);
     let end = robot_point(place + 3u);
-    return link_new(start, end, robots[radius], robots[radius + 1u]);
+    var searched = link_new(start, end, robots[radius], robots[radius + 1u]);
+    searched.error += part.more_error;
+    return searched;
 }
 
 // The limit on the squared distance of a box from the axis.

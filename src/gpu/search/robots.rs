@@ -1,0 +1,158 @@
+//! The robots of a batch in the form that the device gets.
+
+use super::bending::BendingQuery;
+use super::bounds::{SearchCap, error_of};
+use crate::answer::ProximityError;
+use crate::distance::Vec3;
+use crate::distance::lanes::Lane;
+use crate::mesh::SearchFrame;
+use crate::pair::PlacedRobot;
+use crate::robot::{Chain, ModifiedCylinder};
+use parry3d_f64::math::{Pose, Real};
+
+/// The robots of a batch. A **shape** is what the device gets of a robot beside its radii and caps.
+pub(super) trait Packed: Copy + Sync {
+    fn len(self) -> usize;
+
+    /// The number of links of a robot.
+    fn links(self, robot: usize) -> usize;
+
+    /// Whether a robot has the radii and caps of the robot before.
+    fn is_like_before(self, robot: usize) -> bool;
+
+    /// Writes the radius and the caps of each link.
+    fn write_radii(self, robot: usize, frame: &SearchFrame, bytes: &mut [u8]);
+
+    /// The parameters with which the device computes the points of so many robots; `None` if the
+    /// shapes are the points.
+    fn bending(self, robots: usize) -> Option<BendingQuery>;
+
+    /// Appends what comes before all shapes.
+    fn write_base(self, frame: &SearchFrame, bytes: &mut Vec<u8>);
+
+    /// The bytes of a shape of so many links.
+    fn shape_size(self, links: u32) -> usize;
+
+    /// Writes a shape. Returns the error of its points beside rounding; `None` if the device cannot
+    /// search for the robot.
+    ///
+    /// # Errors
+    /// The error of a bad robot.
+    fn write_shape(
+        self,
+        robot: usize,
+        frame: &SearchFrame,
+        bytes: &mut [u8],
+    ) -> Result<Option<f32>, ProximityError>;
+}
+
+/// The robots of a query, as chains. A shape is the points.
+#[derive(Clone, Copy)]
+pub(super) enum Robots<'a> {
+    Batch(&'a [(&'a Chain, Pose)]),
+    One(&'a PlacedRobot<'a>),
+}
+
+impl<'a> Robots<'a> {
+    fn links_of(self, robot: usize) -> &'a [ModifiedCylinder] {
+        match self {
+            Self::Batch(robots) => robots[robot].0.links(),
+            Self::One(placed) => placed.links(),
+        }
+    }
+
+    /// # Errors
+    /// The error of a bad robot.
+    pub(super) fn placed(self, robot: usize) -> Result<PlacedRobot<'a>, ProximityError> {
+        match self {
+            Self::Batch(robots) => PlacedRobot::new(robots[robot].0, &robots[robot].1),
+            Self::One(placed) => Ok(*placed),
+        }
+    }
+}
+
+impl Packed for Robots<'_> {
+    fn len(self) -> usize {
+        match self {
+            Self::Batch(robots) => robots.len(),
+            Self::One(_) => 1,
+        }
+    }
+
+    fn links(self, robot: usize) -> usize {
+        self.links_of(robot).len()
+    }
+
+    fn is_like_before(self, robot: usize) -> bool {
+        let [one, other] = [robot - 1, robot].map(|robot| self.links_of(robot));
+        let shape = |link: &ModifiedCylinder| (link.radius(), link.flat());
+        std::ptr::eq(one, other)
+            || (one.len() == other.len()
+                && one.iter().zip(other).all(|(one, other)| shape(one) == shape(other)))
+    }
+
+    fn write_radii(self, robot: usize, frame: &SearchFrame, bytes: &mut [u8]) {
+        for (bytes, link) in bytes.chunks_exact_mut(8).zip(self.links_of(robot)) {
+            let caps = SearchCap::of(link.flat());
+            write_numbers(bytes, &[radius_of(link, frame), SearchCap::code(caps)]);
+        }
+    }
+
+    fn bending(self, _: usize) -> Option<BendingQuery> {
+        None
+    }
+
+    fn write_base(self, _: &SearchFrame, _: &mut Vec<u8>) {}
+
+    fn shape_size(self, links: u32) -> usize {
+        12 * (links as usize + 1)
+    }
+
+    /// The device can search for the robot if all numbers are in range, and if the error of its
+    /// bounds is small beside a triangle.
+    fn write_shape(
+        self,
+        robot: usize,
+        frame: &SearchFrame,
+        bytes: &mut [u8],
+    ) -> Result<Option<f32>, ProximityError> {
+        let robot = self.placed(robot)?;
+        let mut is_resolved = is_fine(frame);
+        let mut bytes = bytes.chunks_exact_mut(12);
+        let mut write = |point: Vec3<f32>| {
+            if let Some(bytes) = bytes.next() {
+                write_numbers(bytes, &<[f32; 3]>::from(point));
+            }
+        };
+        let [base, _] = robot.ends();
+        let mut start = frame.point(base);
+        write(start);
+        for (link, end) in robot.links().iter().zip(robot.link_ends()) {
+            let end = frame.point(end);
+            let radius = radius_of(link, frame);
+            let reach = start.largest().max(end.largest()).max(radius);
+            let error = error_of([start, end], radius, SearchCap::of(link.flat()));
+            is_resolved &= Real::from(reach) <= <f32 as Lane>::FARTHEST
+                && 4.0 * Real::from(error) <= frame.typical;
+            write(end);
+            start = end;
+        }
+        Ok(is_resolved.then_some(0.0))
+    }
+}
+
+/// Whether the least numbers of the mesh's unit do not show in the search frame.
+pub(super) fn is_fine(frame: &SearchFrame) -> bool {
+    frame.least < Real::from(f32::EPSILON) * 1e-3
+}
+
+/// Writes numbers as the device reads them.
+pub(super) fn write_numbers(bytes: &mut [u8], numbers: &[f32]) {
+    for (bytes, number) in bytes.chunks_exact_mut(4).zip(numbers) {
+        bytes.copy_from_slice(&number.to_ne_bytes());
+    }
+}
+
+fn radius_of(link: &ModifiedCylinder, frame: &SearchFrame) -> f32 {
+    (link.radius() * frame.scale) as f32
+}
