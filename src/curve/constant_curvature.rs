@@ -14,7 +14,7 @@
 //! "Design and kinematic modeling of constant curvature continuum robots", 2010, equation 1.
 
 use super::{Tube, TubeSection, check_sections};
-use crate::robot::{RobotError, rotation_by};
+use crate::robot::{Chain, RobotError, rotation_by};
 use parry3d_f64::math::{Pose, Real, Vector};
 
 /// A section of constant curvature, for [`ConstantCurvature`] and
@@ -122,6 +122,15 @@ impl ConstantCurvature {
         let radii =
             self.arcs.iter().flat_map(|arc| std::iter::repeat_n(arc.section.radius, segments));
         (points.collect(), radii.collect())
+    }
+
+    /// Returns the robot as a chain through [`points`](Self::points).
+    ///
+    /// # Errors
+    /// As [`Chain::from_centreline`].
+    pub(crate) fn chain(&self, segments: usize) -> Result<Chain, RobotError> {
+        let (points, radii) = self.points(segments);
+        Chain::from_centreline(&points, &radii)
     }
 
     /// Returns the robot as a curve.

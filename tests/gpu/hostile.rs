@@ -60,7 +60,7 @@ fn a_robot_of_very_many_links_is_left_to_the_cpu() {
     let mesh = ball(8, 4);
     let Some(mut engine) = gpu::search(&mesh) else { return };
     let mut random = Random::new(52);
-    let (long, short) = (robot(&mut random, (1 << 19) + 1), robot(&mut random, 5));
+    let (long, short) = (robot(&mut random, (1 << 20) + 1), robot(&mut random, 5));
     let robots = [&short, &long, &short].map(|robot| (robot, Pose::IDENTITY));
     same_minima(&mut engine, &mut BvhSearch::new(&mesh).unwrap(), &robots);
     assert_eq!(engine.answered_on_cpu(), 1);

@@ -74,7 +74,17 @@ fn programs_answer_bad_input_with_one_line_and_an_error_code() {
     ] {
         refuse("two_robots", arguments, expected);
     }
-    for name in ["ventricle", "rapier_ventricle", "plan", "two_robots"] {
+    for (arguments, expected) in [
+        (&["--mesh", "nowhere.stl"][..], "check the path"),
+        (&["--margin", "-1"], "at least 0"),
+        (&["--shapes", "0"], "write a whole number of at least 1"),
+        (&["--links", "0"], "write a whole number from 1 to 1000"),
+    ] {
+        refuse("design", arguments, expected);
+    }
+    #[cfg(not(feature = "gpu"))]
+    refuse("design", &["--engine", "gpu"], "--features gpu");
+    for name in ["design", "ventricle", "rapier_ventricle", "plan", "two_robots"] {
         assert!(succeed(name, &["--help"]).contains("--mesh"));
     }
 }

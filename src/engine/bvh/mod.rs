@@ -5,6 +5,7 @@ mod motion;
 mod prepared_mesh;
 mod proof;
 mod search;
+mod sections;
 mod side;
 
 pub(crate) use motion::SceneMotion;

@@ -275,7 +275,7 @@ impl<'a> Context<'a> {
         Some(robot.link(link).answer(link, &nearest))
     }
 
-    fn clears(self, robot: PlacedRobot, margin: Real) -> bool {
+    pub fn clears(self, robot: PlacedRobot, margin: Real) -> bool {
         let sides = Some(self.mesh.sides());
         let (search, last) = self.search();
         ClearsSearch { search, sides, robot, memory: &mut last.clears }.clears(margin)

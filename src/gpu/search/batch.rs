@@ -61,9 +61,6 @@ use std::mem::take;
 use std::ops::Range;
 use std::time::Duration;
 
-/// Links of a chunk at most, but at least a robot. Larger chunks overlap less, smaller ones wait
-/// more often.
-const CHUNK: usize = 1 << 18;
 /// Robots that one task of the CPU takes.
 const TASK_SIZE: usize = 64;
 /// Bytes of a part, a head, an entry, the counters, and the limits of a part.
@@ -79,9 +76,9 @@ const LEAST_ROOM: [u64; Question::KINDS] = [4, 16, 1, 32];
 /// The least room for entries of a chunk.
 const LEAST_ENTRIES: u64 = 1 << 10;
 /// The most links of a robot on the device.
-const MOST_LINKS: usize = 1 << 19;
+const MOST_LINKS: usize = 1 << 20;
 /// The number of all candidates of a chunk fits into a word.
-const _: () = assert!(MOST_LINKS as u64 * (MOST_GATHERED as u64) < 1 << 32 && CHUNK <= MOST_LINKS);
+const _: () = assert!(MOST_LINKS as u64 * (MOST_GATHERED as u64) < 1 << 32);
 
 /// What the device has found about a robot.
 pub(super) struct Found<'a> {
@@ -292,11 +289,12 @@ fn next_room(room: u64, least: u64, needed: u64, items: u64) -> u64 {
 }
 
 /// The chunk of robots from `first` on.
-fn chunk_from(robots: impl Packed, first: usize) -> Range<usize> {
+fn chunk_from<R: Packed>(robots: R, first: usize) -> Range<usize> {
+    const { assert!(R::CHUNK <= MOST_LINKS) };
     let (mut end, mut links) = (first, 0);
     while end < robots.len() {
         links += robots.links(end);
-        if links > CHUNK && end > first {
+        if links > R::CHUNK && end > first {
             break;
         }
         end += 1;

@@ -83,21 +83,30 @@ record! {
 
 /// Robots of sections of constant curvature, in one pose. Each section has as many links as there
 /// are segments.
-#[derive(Clone, Copy)]
-pub(super) struct BentRobots<'a> {
-    pub count: usize,
-    /// The sections of all robots.
-    pub sections: &'a [BendingSection],
+pub(super) struct BentRobots<'a, S> {
+    robots: &'a [S],
     /// The sections of a robot.
     pub each: usize,
     pub segments: usize,
     /// A rigid pose.
-    pub pose: &'a Pose,
+    pub pose: Pose,
 }
 
-impl<'a> BentRobots<'a> {
-    fn sections(self, robot: usize) -> &'a [BendingSection] {
-        &self.sections[robot * self.each..][..self.each]
+impl<S> Copy for BentRobots<'_, S> {}
+impl<S> Clone for BentRobots<'_, S> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<'a, S: AsRef<[BendingSection]>> BentRobots<'a, S> {
+    pub(super) fn new(robots: &'a [S], segments: usize, pose: Pose) -> Self {
+        let each = robots.first().map_or(0, |first| first.as_ref().len());
+        Self { robots, each, segments: segments.max(1), pose }
+    }
+
+    pub(super) fn sections(self, robot: usize) -> &'a [BendingSection] {
+        self.robots[robot].as_ref()
     }
 
     /// The robot as a chain.
@@ -105,13 +114,16 @@ impl<'a> BentRobots<'a> {
     /// # Errors
     /// A section is invalid, or its points make no chain.
     pub(super) fn chain(self, robot: usize) -> Result<Chain, RobotError> {
-        let (points, radii) = ConstantCurvature::new(self.sections(robot))?.points(self.segments);
-        Chain::from_centreline(&points, &radii)
+        ConstantCurvature::new(self.sections(robot))?.chain(self.segments)
     }
 
-    /// `more_error` of the links of a robot. `None` if the device cannot search for the robot: a
-    /// number is invalid, a section bends too much, or the bounds would be loose.
+    /// `more_error` of the links of a robot. `None` if the device cannot search for the robot: the
+    /// number of its sections differs, a number is invalid, a section bends too much, or the bounds
+    /// would be loose.
     fn more_error(self, sections: &[BendingSection], frame: &SearchFrame) -> Option<f32> {
+        if sections.len() != self.each || sections.is_empty() {
+            return None;
+        }
         let [unit, flat_error, turn_error] = [UNIT, FLAT_ERROR, TURN_ERROR].map(Real::from);
         let base = ((self.pose.translation - frame.centre) * frame.scale).length();
         let all: Real = sections.iter().map(|section| section.length).sum();
@@ -143,8 +155,7 @@ impl<'a> BentRobots<'a> {
         let more = delta * (1.0 + 4.0 * thickness);
         let reach = reach.max(thickest).max(1.0);
         let bounds = reach * (flat_error + turn_error * thickness / 0.6);
-        let is_resolved = !sections.is_empty()
-            && is_fine(frame)
+        let is_resolved = is_fine(frame)
             && reach <= Real::from(<f32 as Lane>::FARTHEST)
             && 16.0 * delta <= shortest
             && 4.0 * (bounds + more) <= frame.typical;
@@ -164,9 +175,12 @@ impl<'a> BentRobots<'a> {
     }
 }
 
-impl Packed for BentRobots<'_> {
+impl<S: AsRef<[BendingSection]> + Sync> Packed for BentRobots<'_, S> {
+    /// The device gets a twentieth of what it gets of a chain.
+    const CHUNK: usize = 1 << 20;
+
     fn len(self) -> usize {
-        self.count
+        self.robots.len()
     }
 
     fn links(self, _: usize) -> usize {
@@ -181,7 +195,8 @@ impl Packed for BentRobots<'_> {
     fn write_radii(self, robot: usize, frame: &SearchFrame, bytes: &mut [u8]) {
         let sections = self.sections(robot);
         for (link, bytes) in bytes.chunks_exact_mut(8).enumerate() {
-            let radius = (sections[link / self.segments].radius * frame.scale) as f32;
+            let Some(section) = sections.get(link / self.segments) else { return };
+            let radius = (section.radius * frame.scale) as f32;
             write_numbers(bytes, &[radius, SearchCap::code(self.caps(sections, link))]);
         }
     }

@@ -9,6 +9,9 @@ use continuum_testing::Random;
 use gpu_batch::Record;
 use gpu_batch::wgpu::BufferUsages;
 use parry3d_f64::math::{Pose, Real, Vector};
+
+type Bent<'a> = BentRobots<'a, Vec<BendingSection>>;
+
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Two large triangles around a place, in metres, millimetres or micrometres.
@@ -60,10 +63,10 @@ fn sections(
 
 /// The numbers that the device gets, base first, and the errors of the robots; `None` if one of
 /// them is left to the CPU.
-fn packed(robots: BentRobots, frame: &SearchFrame) -> Option<(Vec<f32>, Vec<Real>)> {
+fn packed(robots: Bent, frame: &SearchFrame) -> Option<(Vec<f32>, Vec<Real>)> {
     let (mut bytes, mut errors) = (Vec::new(), Vec::new());
     robots.write_base(frame, &mut bytes);
-    for robot in 0..robots.count {
+    for robot in 0..robots.len() {
         let first = bytes.len();
         bytes.resize(first + robots.shape_size(0), 0);
         errors.push(robots.write_shape(robot, frame, &mut bytes[first..]).unwrap()?.into());
@@ -73,10 +76,10 @@ fn packed(robots: BentRobots, frame: &SearchFrame) -> Option<(Vec<f32>, Vec<Real
 }
 
 /// The points of a robot in double precision.
-fn exact(robots: BentRobots, robot: usize, frame: &SearchFrame) -> Vec<Vector> {
-    let sections = &robots.sections[robot * robots.each..][..robots.each];
-    let (points, _) = ConstantCurvature::new(sections).unwrap().points(robots.segments);
-    points.iter().map(|point| (*robots.pose * *point - frame.centre) * frame.scale).collect()
+fn exact(robots: Bent, robot: usize, frame: &SearchFrame) -> Vec<Vector> {
+    let sections = ConstantCurvature::new(robots.sections(robot)).unwrap();
+    let (points, _) = sections.points(robots.segments);
+    points.iter().map(|point| (robots.pose * *point - frame.centre) * frame.scale).collect()
 }
 
 /// A product and a sum, as devices may compute them.
@@ -89,12 +92,7 @@ fn cross<const FUSED: bool>(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
 }
 
 /// bending.wgsl for one point.
-fn twin<const FUSED: bool>(
-    numbers: &[f32],
-    robots: BentRobots,
-    robot: usize,
-    point: usize,
-) -> Vector {
+fn twin<const FUSED: bool>(numbers: &[f32], robots: Bent, robot: usize, point: usize) -> Vector {
     let [cosines, sincs] = coefficients();
     let horner = |terms: &[f32], t: f32| {
         terms.iter().rev().copied().reduce(|sum, term| plus::<FUSED>(t, sum, term)).unwrap_or(0.0)
@@ -130,11 +128,7 @@ fn twin<const FUSED: bool>(
 }
 
 /// Calls `check` with random robots of radius 0, whose error is that of their points.
-fn for_robots(
-    seed: u64,
-    rounds: u32,
-    mut check: impl FnMut(BentRobots, &SearchFrame, &[f32], &[Real]),
-) {
+fn for_robots(seed: u64, rounds: u32, mut check: impl FnMut(Bent, &SearchFrame, &[f32], &[Real])) {
     let mut random = Random::new(seed);
     let mut computed = 0;
     for _ in 0..rounds {
@@ -147,9 +141,9 @@ fn for_robots(
         if random.below(4) == 0 {
             pose.rotation = Pose::IDENTITY.rotation;
         }
-        let sections: Vec<_> =
-            (0..5).flat_map(|_| sections(&mut random, each, segments, unit, 0.0)).collect();
-        let robots = BentRobots { count: 5, sections: &sections, each, segments, pose: &pose };
+        let robots: Vec<_> =
+            (0..5).map(|_| sections(&mut random, each, segments, unit, 0.0)).collect();
+        let robots = BentRobots::new(&robots, segments, pose);
         if let Some((numbers, errors)) = packed(robots, &frame) {
             computed += 1;
             check(robots, &frame, &numbers, &errors);
@@ -170,7 +164,7 @@ fn points_err_by_less_than_the_bound() {
                 ];
                 for found in found {
                     let off = (found - exact).length();
-                    assert!(off <= error, "{off} {error}: {:?}", &robots.sections);
+                    assert!(off <= error, "{off} {error}: {:?}", robots.sections(robot));
                     worst = worst.max(off / error);
                 }
             }
@@ -188,11 +182,11 @@ fn points_of_the_device_err_by_less_than_the_bound() {
     let mut points = 0;
     for_robots(73, 100, |robots, frame, numbers, errors| {
         let of_robot = robots.each * robots.segments + 1;
-        let query = robots.bending(robots.count).unwrap();
+        let query = robots.bending(robots.len()).unwrap();
         let mut record = Vec::new();
         query.write(device.precision(), &mut record);
         let bytes: Vec<_> = numbers.iter().flat_map(|number| number.to_ne_bytes()).collect();
-        let size = (12 * of_robot * robots.count) as u64;
+        let size = (12 * of_robot * robots.len()) as u64;
         let uniform = BufferUsages::UNIFORM | BufferUsages::COPY_DST;
         let up = BufferUsages::STORAGE | BufferUsages::COPY_DST;
         let query_buffer = device.buffer(record.len() as u64, uniform);
@@ -213,7 +207,7 @@ fn points_of_the_device_err_by_less_than_the_bound() {
         let mut pass = encoder.begin_compute_pass(&Default::default());
         pass.set_pipeline(&kernels.bend);
         pass.set_bind_group(0, &group, &[0]);
-        device.dispatch(&mut pass, ((of_robot * robots.count) as u32).div_ceil(BENDING_THREADS));
+        device.dispatch(&mut pass, ((of_robot * robots.len()) as u32).div_ceil(BENDING_THREADS));
         drop(pass);
         encoder.copy_buffer_to_buffer(&found, 0, &readback, 0, Some(size));
         let mut numbers = Vec::new();
@@ -228,7 +222,7 @@ fn points_of_the_device_err_by_less_than_the_bound() {
             for (point, exact) in exact(robots, robot, frame).into_iter().enumerate() {
                 let found = &numbers[first + 3 * point..][..3];
                 let off = (Vector::new(found[0], found[1], found[2]) - exact).length();
-                assert!(off <= error, "{off} {error}: {:?}", &robots.sections);
+                assert!(off <= error, "{off} {error}: {:?}", robots.sections(robot));
                 points += 1;
             }
         }
@@ -248,7 +242,7 @@ fn caps_that_are_certain_are_those_of_the_chain() {
         for section in &mut all {
             section.radius = radii[random.below(5) as usize];
         }
-        let robots = BentRobots { count: 1, sections: &all, each, segments, pose: &Pose::IDENTITY };
+        let robots = BentRobots::new(std::slice::from_ref(&all), segments, Pose::IDENTITY);
         let chain = robots.chain(0).unwrap();
         assert_eq!(chain.links().len(), each * segments);
         for (number, link) in chain.links().iter().enumerate() {

@@ -6,23 +6,18 @@
 //! then searched on the device however small the batch is.
 
 use super::batch::{Batches, Found, Searched};
-use super::bending::BentRobots;
 use super::device::{DeviceTree, SearchKernels};
 use super::kernels::Question;
 use super::robots::{Packed, Robots};
 use super::tree::{MOST_TRIANGLES, SearchTree};
 use crate::answer::{Contact, LinkProximity, ProximityError};
-use crate::curve::BendingSection;
-#[cfg(doc)]
-use crate::curve::ConstantCurvature;
 use crate::engine::{BvhSearch, Engine, Proximity};
 use crate::gpu::{Adapter, Gpu, GpuError, Precision};
 use crate::mesh::{Mesh, SearchFrame};
-use crate::pair::{Best, Nearest, PlacedRobot, rank_each, rigid_pose};
-use crate::query::check_margin;
+use crate::pair::{Best, Nearest, PlacedRobot, rank_each};
 use crate::query::contacts::{ContactCollector, ContactQuery, LocalMinima, Wall};
 use crate::robot::Chain;
-use crate::threads::{each, threads};
+use crate::threads::threads;
 use fearless_simd::Level;
 use gpu_batch::DeviceFailure;
 use parry3d_f64::math::{Pose, Real, Vector};
@@ -32,10 +27,6 @@ use std::time::Duration;
 /// The least number of links per core of the CPU for which a batch runs on the device, for each
 /// kind of question. Estimates: they were not measured with this engine. Contacts have no batch.
 const MIN_LINKS: [usize; Question::KINDS] = [240, 480, 15_000, usize::MAX];
-/// The same for robots of sections, whose chains the CPU would have to build.
-const MIN_BENT_LINKS: usize = 240;
-/// Chains that are built at once for the CPU.
-const CHAINS: usize = 1 << 12;
 /// From this number of triangles on, a refit after a move takes longer on the CPU than on the
 /// device.
 const MANY_TRIANGLES: usize = 1 << 16;
@@ -57,13 +48,15 @@ const MANY_TRIANGLES: usize = 1 << 16;
 ///   query uploads them, and the device refits its hierarchy. From 65,536 triangles on, every query
 ///   after a move runs on the device until [`prepare`](Self::prepare) has refitted the hierarchy of
 ///   the CPU.
+/// - **Sections.** [`clears_sections_batch`](Self::clears_sections_batch) is about robots of
+///   sections of constant curvature, whose points the device computes.
 /// - **Contacts** ([`contacts_within`](Proximity::contacts_within)) run on the CPU while the mesh
 ///   rests. After a move of a large mesh the device finds the triangles within the margin.
 /// - **Other queries.** For tubes, motions and sides [`cpu`](Self::cpu) returns the search on the
 ///   CPU.
 ///
 /// Robots that single precision does not resolve are searched on the CPU. So are robots with a link
-/// that has more than 4,096 candidates, with more than 524,288 links, and robots for which the
+/// that has more than 2,048 candidates, with more than a million links, and robots for which the
 /// driver stops a long loop.
 /// [`answered_on_cpu`](Self::answered_on_cpu) counts them.
 ///
@@ -203,112 +196,6 @@ impl GpuSearch {
         })
     }
 
-    /// Decides for many robots of sections of constant curvature whether they are farther than
-    /// `margin` from the mesh.
-    ///
-    /// Each robot is `N` sections, base to tip; see [`ConstantCurvature`]. `segments` is the number
-    /// of links of each section, at least 1. `pose` maps the frame of the robots to the mesh's.
-    /// Writes one result per robot to `out`, in order.
-    ///
-    /// The robots are those that [`ConstantCurvature::points`] and [`Chain::from_centreline`] build,
-    /// and the decisions are those of [`clears_batch`](Proximity::clears_batch) about these chains.
-    /// The device computes the points itself: the sections are uploaded, not the chains. For a
-    /// robot that is farther or nearer than the margin by more than the rounding of single
-    /// precision, the CPU builds no chain.
-    ///
-    /// ```no_run
-    /// use parry_continuum::gpu::GpuSearch;
-    /// use parry_continuum::parry::{math::Pose, shape::{Ball, TriMesh}};
-    /// use parry_continuum::BendingSection;
-    ///
-    /// let (vertices, triangles) = Ball::new(40.0).to_trimesh(64, 32);
-    /// let mut search = GpuSearch::new(&TriMesh::new(vertices, triangles)?)?;
-    /// // Two sections of 30 mm that bend towards x, up to 0.05 / mm.
-    /// let section = |bend| BendingSection { length: 30.0, radius: 1.0, bend: [bend, 0.0] };
-    /// let bends = || (0..1000).map(|k| 5e-5 * f64::from(k));
-    /// let robots: Vec<_> =
-    ///     bends().flat_map(|first| bends().map(move |next| [section(first), section(next)])).collect();
-    /// let mut clear = Vec::new();
-    /// search.clears_sections_batch(&robots, 15, &Pose::IDENTITY, 0.5, &mut clear)?;
-    /// println!("{} of a million fit", clear.iter().filter(|clear| matches!(clear, Ok(true))).count());
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    ///
-    /// # Errors
-    /// - The margin is negative or NaN, the pose is not finite or not rigid, or the device failed.
-    ///   `out` is then empty.
-    /// - In `out`: a section is invalid, or `clears` refuses the chain.
-    pub fn clears_sections_batch<const N: usize>(
-        &mut self,
-        robots: &[[BendingSection; N]],
-        segments: usize,
-        pose: &Pose,
-        margin: Real,
-        out: &mut Vec<Result<bool, ProximityError>>,
-    ) -> Result<(), ProximityError> {
-        out.clear();
-        check_margin(margin)?;
-        let pose = rigid_pose(pose)?;
-        out.resize(robots.len(), Ok(false));
-        let robots = BentRobots {
-            count: robots.len(),
-            sections: robots.as_flattened(),
-            each: N,
-            segments: segments.max(1),
-            pose: &pose,
-        };
-        self.decide_bent(robots, margin, out).inspect_err(|_| out.clear())
-    }
-
-    fn decide_bent(
-        &mut self,
-        robots: BentRobots,
-        margin: Real,
-        out: &mut [Result<bool, ProximityError>],
-    ) -> Result<(), ProximityError> {
-        let left = if self.are_enough(robots, MIN_BENT_LINKS) {
-            let answer = |level, mesh: &Mesh, robot, found: Found, out: &mut _| {
-                if found.is_hit || found.candidates.is_empty() {
-                    *out = Ok(!found.is_hit);
-                    return true;
-                }
-                let Ok(chain) = robots.chain(robot) else { return false };
-                // Otherwise a segment has lost its length, and links have other numbers.
-                let is_whole = chain.links().len() == robots.links(robot);
-                is_whole
-                    && PlacedRobot::new(&chain, robots.pose).is_ok_and(|robot| {
-                        let measure = Measure { level, mesh, robot: &robot };
-                        *out = Ok(measure.clears(found, margin));
-                        true
-                    })
-            };
-            self.search_packed(robots, Question::Clears(margin), out, answer)?;
-            std::mem::take(&mut self.batches.left)
-        } else {
-            (0..out.len()).collect()
-        };
-        let (mut chains, mut answers) = (Vec::new(), Vec::new());
-        for left in left.chunks(CHAINS) {
-            chains.clear();
-            chains.extend(left.iter().map(|&robot| (robot, None)));
-            each(&mut chains, |_, (robot, chain)| *chain = Some(robots.chain(*robot)));
-            let mut built = Vec::with_capacity(chains.len());
-            for (robot, chain) in &chains {
-                match chain {
-                    Some(Ok(chain)) => built.push((*robot, chain)),
-                    Some(Err(error)) => out[*robot] = Err((*error).into()),
-                    None => {}
-                }
-            }
-            let placed: Vec<_> = built.iter().map(|&(_, chain)| (chain, *robots.pose)).collect();
-            self.refitted().ask_clears_batch(&placed, margin, &mut answers)?;
-            for (&(robot, _), answer) in built.iter().zip(&answers) {
-                out[robot] = *answer;
-            }
-        }
-        Ok(())
-    }
-
     /// The GPU of this engine.
     pub fn adapter(&self) -> &Adapter {
         self.gpu.adapter()
@@ -366,7 +253,7 @@ impl GpuSearch {
     }
 
     /// The search on the CPU, refitted if the mesh has moved.
-    fn refitted(&mut self) -> &mut BvhSearch {
+    pub(super) fn refitted(&mut self) -> &mut BvhSearch {
         if std::mem::take(&mut self.is_cpu_stale) {
             Engine::move_vertices(&mut self.cpu, self.mesh.vertices());
         }
@@ -378,7 +265,7 @@ impl GpuSearch {
     }
 
     /// Whether robots have enough links for the device, of which `each` are the least for a core.
-    fn are_enough(&self, robots: impl Packed, each: usize) -> bool {
+    pub(super) fn are_enough(&self, robots: impl Packed, each: usize) -> bool {
         let min = match self.min_links {
             Some(links) => links,
             None if self.is_cpu_stale && self.mesh.len() >= MANY_TRIANGLES => 0,
@@ -418,7 +305,7 @@ impl GpuSearch {
     ///
     /// # Errors
     /// The device has failed.
-    fn search_packed<A: Send>(
+    pub(super) fn search_packed<A: Send>(
         &mut self,
         robots: impl Packed,
         question: Question,
@@ -448,6 +335,11 @@ impl GpuSearch {
         Ok(())
     }
 
+    /// The robots that the last batch left to the CPU.
+    pub(super) fn take_left(&mut self) -> Vec<usize> {
+        std::mem::take(&mut self.batches.left)
+    }
+
     /// Answers a batch on the device, and the remaining robots on the CPU.
     ///
     /// # Errors
@@ -467,7 +359,7 @@ impl GpuSearch {
     ) -> Result<(), ProximityError> {
         out.resize_with(robots.len(), || Ok(unanswered()));
         self.search(Robots::Batch(robots), question, out, answer)?;
-        let left = std::mem::take(&mut self.batches.left);
+        let left = self.take_left();
         if left.is_empty() {
             return Ok(());
         }
@@ -497,10 +389,10 @@ impl GpuSearch {
 }
 
 /// A robot whose candidates are measured.
-struct Measure<'a> {
-    level: Level,
-    mesh: &'a Mesh,
-    robot: &'a PlacedRobot<'a>,
+pub(super) struct Measure<'a> {
+    pub level: Level,
+    pub mesh: &'a Mesh,
+    pub robot: &'a PlacedRobot<'a>,
 }
 
 impl Measure<'_> {
@@ -553,7 +445,7 @@ impl Measure<'_> {
     }
 
     /// Returns whether every link is farther than the margin.
-    fn clears(self, found: Found, margin: Real) -> bool {
+    pub(super) fn clears(self, found: Found, margin: Real) -> bool {
         let Self { level, mesh, robot } = self;
         if found.is_hit {
             return false;

@@ -12,7 +12,7 @@ pub(super) const PART: u32 = 32;
 /// Candidates that a thread has room for in the first pass. More take a second pass.
 pub(super) const ROOM: u32 = 8;
 /// The most candidates of a link that are gathered.
-pub(super) const MOST_GATHERED: u32 = 1 << 12;
+pub(super) const MOST_GATHERED: u32 = 1 << 11;
 /// Threads per workgroup of a refit.
 pub(super) const REFIT_THREADS: u32 = 64;
 /// Threads per workgroup where points are computed.

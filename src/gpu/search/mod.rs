@@ -5,7 +5,7 @@
 //! | `engine` | the engine: [`GpuSearch`] |
 //! | `batch` | a batch: packing, the two passes, measuring, and the proof that no answer is lost |
 //! | `robots` | the robots of a batch, and how chains are packed |
-//! | `bending` | robots of sections of constant curvature, whose points the device computes |
+//! | `sections`, `bending` | robots of sections of constant curvature, whose points the device computes |
 //! | `bounds` | the bounds in single precision, with their rounding; `twin` repeats the kernels |
 //! | `tree` | the topology, built on the CPU |
 //! | `device` | the tree in the device's memory, and its refit |
@@ -20,6 +20,7 @@ mod device;
 mod engine;
 pub(super) mod kernels;
 mod robots;
+mod sections;
 mod tree;
 #[cfg(test)]
 mod twin;

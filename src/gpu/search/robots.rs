@@ -12,6 +12,10 @@ use parry3d_f64::math::{Pose, Real};
 
 /// The robots of a batch. A **shape** is what the device gets of a robot beside its radii and caps.
 pub(super) trait Packed: Copy + Sync {
+    /// Links of a chunk at most, but at least a robot. Larger chunks overlap less, smaller ones wait
+    /// more often.
+    const CHUNK: usize;
+
     fn len(self) -> usize;
 
     /// The number of links of a robot.
@@ -72,6 +76,8 @@ impl<'a> Robots<'a> {
 }
 
 impl Packed for Robots<'_> {
+    const CHUNK: usize = 1 << 18;
+
     fn len(self) -> usize {
         match self {
             Self::Batch(robots) => robots.len(),

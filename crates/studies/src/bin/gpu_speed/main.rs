@@ -18,6 +18,7 @@ mod meshes;
 mod moving;
 mod roots;
 mod search;
+mod sections;
 mod timed;
 
 use clap::Parser;
@@ -146,6 +147,8 @@ fn measure(options: &Options) -> Result<(), String> {
     let robots = options.robots as usize;
     let search = search::chapter(&opened[0], options.largest, robots, enough, &mut defects)?;
     add(&mut page, "search", search)?;
+    let sections = sections::chapter(&opened[0], options.largest, robots, enough, &mut defects)?;
+    add(&mut page, "sections", sections)?;
     let meshes = meshes::meshes(options.largest)?;
     let models = models().map_err(text)?;
     let [_, (_, robot), _] = &models;

@@ -58,8 +58,7 @@ pub fn chapter(
         let mesh = lumen::mesh(around);
         let triangles = mesh.num_triangles();
         let mut engines = Engines::new(opened, &mesh)?;
-        let largest_batch =
-            if around == MAIN { most_robots } else { most_robots.min(MOST_ELSEWHERE) };
+        let largest_batch = most_robots_of(around, most_robots);
         let (shapes, poses) = (shapes(&mesh, Chain::from_centreline)?, poses(&mesh, most_robots));
         let robots = robots(&shapes, &poses);
         for count in batches(largest_batch) {
@@ -101,13 +100,18 @@ pub fn chapter(
     ))
 }
 
+/// Robots of the largest batch on a vessel.
+pub fn most_robots_of(around: u32, most_robots: usize) -> usize {
+    if around == MAIN { most_robots } else { most_robots.min(MOST_ELSEWHERE) }
+}
+
 /// The vessels of at most `largest` triangles, at least one.
-fn vessels(largest: u32) -> Vec<u32> {
+pub fn vessels(largest: u32) -> Vec<u32> {
     let fit: Vec<_> = AROUND.into_iter().filter(|around| 5 * around * around <= largest).collect();
     if fit.is_empty() { vec![(largest / 5).isqrt()] } else { fit }
 }
 
-fn batches(most: usize) -> impl Iterator<Item = usize> {
+pub fn batches(most: usize) -> impl Iterator<Item = usize> {
     let smaller = [100, 1000, 10_000, 100_000].into_iter().filter(move |&count| count < most);
     smaller.chain([most])
 }

@@ -1,0 +1,91 @@
+//! Decisions about robots of sections of constant curvature: the device computes their points and
+//! decides about most of them; the CPU builds the chains of the others.
+
+use super::batch::Found;
+use super::bending::BentRobots;
+use super::engine::{GpuSearch, Measure};
+use super::kernels::Question;
+use super::robots::Packed;
+use crate::answer::ProximityError;
+use crate::curve::BendingSection;
+use crate::mesh::Mesh;
+use crate::pair::{PlacedRobot, rigid_pose};
+#[cfg(doc)]
+use crate::proximity::BvhSearch;
+use crate::query::check_margin;
+use parry3d_f64::math::{Pose, Real};
+
+/// The least number of links per core of the CPU for which a batch runs on the device. An estimate:
+/// it was not measured.
+const MIN_LINKS: usize = 240;
+
+impl GpuSearch {
+    /// Returns for many robots of sections of constant curvature whether they are farther than
+    /// `margin` from the mesh.
+    ///
+    /// The answers are those of [`BvhSearch::clears_sections_batch`]. The device computes the
+    /// points of the robots: only the sections are uploaded, and the CPU builds chains only where
+    /// single precision does not decide. Robots that have another number of sections than the
+    /// first, that bend by more than pi in a link or by more than 2 pi in a section are searched on
+    /// the CPU.
+    ///
+    /// ```no_run
+    /// use parry_continuum::BendingSection;
+    /// use parry_continuum::gpu::GpuSearch;
+    /// use parry_continuum::parry::{math::Pose, shape::{Ball, TriMesh}};
+    ///
+    /// let (vertices, triangles) = Ball::new(50.0).to_trimesh(64, 32);
+    /// let mut search = GpuSearch::new(&TriMesh::new(vertices, triangles)?)?;
+    /// let section = |bend| BendingSection { length: 30.0, radius: 1.0, bend: [bend, 0.0] };
+    /// let bends = || (0..1000).map(|k| section(5e-5 * f64::from(k)));
+    /// let robots: Vec<_> = bends().flat_map(|a| bends().map(move |b| [a, b])).collect();
+    /// let mut clear = Vec::new();
+    /// search.clears_sections_batch(&robots, 15, &Pose::IDENTITY, 0.5, &mut clear)?;
+    /// println!("{} of a million", clear.iter().filter(|clear| **clear == Ok(true)).count());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`BvhSearch::clears_sections_batch`]; or the device failed, and `out` is empty.
+    pub fn clears_sections_batch<S: AsRef<[BendingSection]> + Sync>(
+        &mut self,
+        robots: &[S],
+        segments: usize,
+        pose: &Pose,
+        margin: Real,
+        out: &mut Vec<Result<bool, ProximityError>>,
+    ) -> Result<(), ProximityError> {
+        out.clear();
+        check_margin(margin)?;
+        let bent = BentRobots::new(robots, segments, rigid_pose(pose)?);
+        if !self.are_enough(bent, MIN_LINKS) {
+            let cpu = self.refitted();
+            return cpu.clears_sections_batch(robots, segments, pose, margin, out);
+        }
+        out.resize(robots.len(), Ok(false));
+        let answer = |level, mesh: &Mesh, robot, found: Found, out: &mut _| {
+            if found.is_hit || found.candidates.is_empty() {
+                *out = Ok(!found.is_hit);
+                return true;
+            }
+            // Where a segment has lost its length, the links of the chain have other numbers.
+            let chain = bent.chain(robot).ok();
+            let Some(chain) = chain.filter(|chain| chain.links().len() == bent.links(robot)) else {
+                return false;
+            };
+            PlacedRobot::new(&chain, pose).is_ok_and(|robot| {
+                *out = Ok(Measure { level, mesh, robot: &robot }.clears(found, margin));
+                true
+            })
+        };
+        let question = Question::Clears(margin);
+        self.search_packed(bent, question, out, answer).inspect_err(|_| out.clear())?;
+        let left = self.take_left();
+        let some: Vec<_> = left.iter().map(|&robot| robots[robot].as_ref()).collect();
+        let mut answers = Vec::new();
+        let cpu = self.refitted();
+        cpu.clears_sections_batch(&some, segments, pose, margin, &mut answers)?;
+        left.into_iter().zip(answers).for_each(|(robot, answer)| out[robot] = answer);
+        Ok(())
+    }
+}
