@@ -1,9 +1,9 @@
 //! Compares designs of a tendon robot for a brain ventricle: how much of it can the tip reach?
 //!
 //! `cargo run --release --example design` draws random shapes of each design, decides which keep a
-//! margin from the wall, and counts the cubes of 1 mm that hold their tips. `--features gpu` and
-//! `--engine gpu` decide on the GPU, which computes the shapes itself; there
-//! `--shapes 100000000` is a matter of seconds to minutes.
+//! margin from the wall, and counts the cubes of 1 mm that hold their tips. With `--features gpu`
+//! and `--engine gpu` the GPU computes and decides the shapes, for studies of
+//! `--shapes 100000000`.
 
 use clap::{Parser, ValueEnum};
 use continuum_demo::anatomy::Anatomy;
@@ -61,10 +61,10 @@ struct Design {
 }
 
 const DESIGNS: [Design; 4] = [
-    Design { name: "even", lengths: [20.0, 20.0, 20.0], radii: [1.2, 1.0, 0.8] },
-    Design { name: "long base", lengths: [30.0, 20.0, 10.0], radii: [1.2, 1.0, 0.8] },
-    Design { name: "long tip", lengths: [10.0, 20.0, 30.0], radii: [1.2, 1.0, 0.8] },
-    Design { name: "slender", lengths: [20.0, 20.0, 20.0], radii: [0.9, 0.7, 0.5] },
+    Design { name: "even", lengths: [15.0, 15.0, 15.0], radii: [1.2, 1.0, 0.8] },
+    Design { name: "long base", lengths: [25.0, 12.0, 8.0], radii: [1.2, 1.0, 0.8] },
+    Design { name: "long tip", lengths: [8.0, 12.0, 25.0], radii: [1.2, 1.0, 0.8] },
+    Design { name: "slender", lengths: [15.0, 15.0, 15.0], radii: [0.9, 0.7, 0.5] },
 ];
 
 /// The largest curvature of a section, 1 / mm.
@@ -181,8 +181,8 @@ fn list(numbers: [Real; 3]) -> String {
     numbers.map(|number| number.to_string()).join(", ")
 }
 
-/// Random shapes of a design: every bend that the sections can take, and a first section that is
-/// out by 5 % to all of its length.
+/// Random shapes of a design: every bend that the sections can take, with 10 % to all of each
+/// section's length.
 fn draw(design: &Design, seed: u64, count: usize) -> Vec<Sections> {
     let task = |task: usize| {
         let mut random = Random(seed + (task * TASK) as u64);
@@ -193,9 +193,8 @@ fn draw(design: &Design, seed: u64, count: usize) -> Vec<Sections> {
 }
 
 fn shape(design: &Design, random: &mut Random) -> Sections {
-    let mut out = 0.05 + 0.95 * random.share();
     [0, 1, 2].map(|section| {
-        let length = design.lengths[section] * std::mem::replace(&mut out, 1.0);
+        let length = design.lengths[section] * (0.1 + 0.9 * random.share());
         // Even over the disc of all bends.
         let (curvature, angle) = (MOST_CURVED * random.share().sqrt(), TAU * random.share());
         let bend = [curvature * angle.cos(), curvature * angle.sin()];

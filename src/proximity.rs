@@ -94,6 +94,7 @@
 //! |---|---|
 //! | query many robots on all cores | [`per_link_batch`], [`minimum_batch`], [`clears_batch`] |
 //! | query tubes or motions | [`clearance_batch`], [`clears_tube_batch`], [`clears_motion_batch`] |
+//! | query many robots of sections | [`BvhSearch::clears_sections_batch`] |
 //! | query many pairs of robots | [`RobotPair::minimum_batch`], [`RobotPair::clears_batch`], [`RobotPair::clears_motions_batch`] |
 //! | query many sets of robots in a scene | [`Scene::clears_batch`], [`Scene::tightest_batch`] |
 //! | query many edges of a planner in a scene | [`Scene::clears_motion_batch`] |

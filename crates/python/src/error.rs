@@ -216,9 +216,9 @@ impl From<RobotError> for Refused {
     fn from(mut error: RobotError) -> Self {
         match &mut error {
             // Sections have their radii beside them in Python.
-            RobotError::BadRadius { parameter: parameter @ ("from" | "to"), .. } => {
-                *parameter = "radii"
-            }
+            RobotError::BadRadius {
+                parameter: parameter @ ("from" | "to" | "sections"), ..
+            } => *parameter = "radii",
             RobotError::BadPose { parameter, .. } | RobotError::PoseNotRigid { parameter, .. } => {
                 *parameter = match *parameter {
                     "from" => "start_pose",

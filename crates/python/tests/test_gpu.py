@@ -233,6 +233,26 @@ def test_a_height_that_is_known() -> None:
 
 
 @needs_gpu
+def test_sections() -> None:
+    random = np.random.default_rng(47)
+    mesh = Mesh(*sphere(10.0, 60, 30), device="gpu")
+    cpu, count = Mesh(mesh.vertices, mesh.faces), counted(31)
+    length, angle = random.uniform(1, 6, (count, 3)), random.uniform(-math.pi, math.pi, (count, 3))
+    bend = random.uniform(0, 2, (count, 3)) / length
+    sections = np.stack([length, bend * np.cos(angle), bend * np.sin(angle)], axis=2)
+    sections[5, 1, 1] = 7 / length[5, 1]  # more than a turn: left to the CPU
+    asks = [lambda it, margin=margin: it.clears_sections(sections, [0.5, 0.4, 0.3], segments=10, margin=margin) for margin in (0.0, 1.0, 1e9)]
+    for ask in asks:
+        assert bits(on_gpu(mesh, ask)) == bits(ask(cpu))
+    assert 0 < asks[1](mesh).sum() < count
+    sections[7, 0, 0] = -1
+    for it in (mesh, cpu):
+        with pytest.raises(ContinuumError) as caught:
+            it.clears_sections(sections, 0.1, segments=10, margin=0.0)
+        assert (caught.value.kind, caught.value.robot) == ("bad_length", 7)
+
+
+@needs_gpu
 def test_more_links_than_a_chunk() -> None:
     mesh, cpu = Mesh(VERTICES, FACES, device="gpu"), Mesh(VERTICES, FACES)
     many = robots(np.random.default_rng(8), 50_000)

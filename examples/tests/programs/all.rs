@@ -245,6 +245,21 @@ fn the_robot_is_pushed_recorded_and_filmed() {
 }
 
 #[test]
+fn designs_are_compared() {
+    let room = room("designed.obj");
+    let out = succeed("design", &["--mesh", &room, "--shapes", "3000", "--margin", "2"]);
+    let rows: Vec<_> = out.lines().filter(|line| line.contains("cm3 |")).collect();
+    assert_eq!(rows.len(), 4, "{out}");
+    for row in rows {
+        // Numbers of a row: lengths, radii, the share, the volume, the speed.
+        let numbers: Vec<f64> =
+            row.split([' ', ',']).filter_map(|word| word.parse().ok()).collect();
+        let [share, volume] = [numbers[6], numbers[7]];
+        assert!((1.0..100.0).contains(&share) && (0.1..30.0).contains(&volume), "{row}");
+    }
+}
+
+#[test]
 fn a_report_holds_all_digits_of_its_query() {
     let out = succeed("report", &[]);
     let (_, distances) = out.trim().split_once(": ").unwrap_or_else(|| panic!("{out}"));

@@ -167,6 +167,15 @@ class Mesh:
         pose: _Poses | None = None,
         caps: _Caps = "fitted",
     ) -> BoolOrBools: ...
+    def clears_sections(
+        self,
+        sections: ArrayLike,
+        radii: ArrayLike,
+        *,
+        segments: int,
+        margin: float,
+        pose: _Poses | None = None,
+    ) -> BoolOrBools: ...
     def clears_inside(
         self,
         points: ArrayLike,

@@ -10,9 +10,10 @@ mod objects;
 mod poses;
 mod robots;
 mod scalars;
+mod sections;
 
 pub(crate) use caps::Caps;
-pub(crate) use counts::broadcast;
+pub(crate) use counts::{place_in, together};
 pub(crate) use faces::faces;
 pub(crate) use frames::{HasWarned, mesh_text, stated_frame};
 pub(crate) use names::Names;
@@ -21,3 +22,4 @@ pub(crate) use objects::of as object_of;
 pub(crate) use poses::{Poses, matrices, pose_if_one, pose_of};
 pub(crate) use robots::{Block, Given, Robots};
 pub(crate) use scalars::{DeviceName, FrameName, check_length, is_bool, of, places};
+pub(crate) use sections::{SectionRadii, Sections};

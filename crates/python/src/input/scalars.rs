@@ -183,6 +183,10 @@ pub(crate) mod of {
         tolerance
     );
 
+    pub(crate) fn segments(given: &Bound<'_, PyAny>) -> PyResult<u32> {
+        super::whole(given, "segments", 1)
+    }
+
     pub(crate) fn steps(given: &Bound<'_, PyAny>) -> PyResult<u32> {
         super::whole(given, "steps", 1)
     }

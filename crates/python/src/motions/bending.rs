@@ -2,8 +2,7 @@
 
 use super::{Motion, Moving, Recipe, place_in, together};
 use crate::error::Refused;
-use crate::input::{Numbers, Poses, pose_of, shape_text};
-use parry_continuum::BendingSection;
+use crate::input::{Poses, SectionRadii, Sections, pose_of};
 use parry_continuum::parry::math::Pose;
 use pyo3::prelude::*;
 
@@ -64,7 +63,7 @@ impl BendingMotion {
             );
             return Err(Refused::other("sections_differ", text).raise(py, None));
         }
-        let radii = Radii::new(radii, start.each)?;
+        let radii = SectionRadii::new(radii, start.each)?;
         let (poses, pose_count) = match pose {
             Some(pose) => {
                 let (poses, count) = Poses::batch(pose, "pose")?;
@@ -87,89 +86,11 @@ impl BendingMotion {
                 None => poses.first().map_or(Ok(Pose::IDENTITY), pose_of),
             };
             let pose = pose.map_err(|refused| refused.of("pose"))?;
-            let [start, end] = [&start, &end].map(|sections| sections.at(place, &radii));
+            let [start, end] =
+                [&start, &end].map(|sections| sections.at(place, &radii).collect::<Vec<_>>());
             Ok(Moving::Bending(parry_continuum::BendingMotion::new(&start, &end, pose)?))
         })?;
         let recipe = Recipe::new(py, None, &given, &[("pose", given_pose)])?;
         Ok(motion.with_recipe(recipe).into_class(Self))
-    }
-}
-
-/// Lengths and curvatures of one robot, or of many.
-struct Sections {
-    rows: Vec<[f64; 3]>,
-    each: usize,
-    count: Option<usize>,
-}
-
-impl Sections {
-    fn new(given: &Bound<'_, PyAny>, name: &str) -> PyResult<Self> {
-        let numbers = Numbers::new(given, name)?;
-        let (count, each) = match *numbers.shape() {
-            [each, 3] => (None, each),
-            [(1..), 0, 3] => {
-                let text = format!(
-                    "`{name}` has the shape {}, no sections; give at least one",
-                    shape_text(numbers.shape())
-                );
-                return Err(Refused::other("no_sections", text).raise(given.py(), None));
-            }
-            [count, each, 3] => (Some(count), each),
-            ref shape => {
-                let text = format!(
-                    "`{name}` has the shape {}, not (S, 3) or (B, S, 3); give a row for each section: its length, and its curvature \
-                     towards x and y",
-                    shape_text(shape)
-                );
-                return Err(Refused::other("bad_shape", text).raise(given.py(), None));
-            }
-        };
-        Ok(Self { rows: numbers.points().to_vec(), each, count })
-    }
-
-    /// The sections at a place of the batch.
-    fn at(&self, place: usize, radii: &Radii) -> Vec<BendingSection> {
-        let first = self.each * place_in(self.count, place);
-        let rows = &self.rows[first..first + self.each];
-        let section = |(number, &[length, x, y]): (usize, &[f64; 3])| BendingSection {
-            length,
-            radius: radii.at(place, number),
-            bend: [x, y],
-        };
-        rows.iter().enumerate().map(section).collect()
-    }
-}
-
-/// A radius for each section, or one for all.
-struct Radii {
-    radii: Vec<f64>,
-    sections: usize,
-    count: Option<usize>,
-}
-
-impl Radii {
-    fn new(given: &Bound<'_, PyAny>, sections: usize) -> PyResult<Self> {
-        let numbers = Numbers::new(given, "radii")?;
-        let radii = numbers.values();
-        match *numbers.shape() {
-            [] => Ok(Self { radii: vec![radii[0]; sections], sections, count: None }),
-            [each] if each == sections => Ok(Self { radii: radii.to_vec(), sections, count: None }),
-            [count, each] if each == sections => {
-                Ok(Self { radii: radii.to_vec(), sections, count: Some(count) })
-            }
-            ref shape => {
-                let text = format!(
-                    "`radii` has the shape {}; give a number, or the shape ({sections},) or (B, {sections}): one radius for each \
-                     section",
-                    shape_text(shape)
-                );
-                Err(Refused::other("bad_shape", text).raise(given.py(), None))
-            }
-        }
-    }
-
-    fn at(&self, place: usize, section: usize) -> f64 {
-        let first = self.sections * place_in(self.count, place);
-        self.radii[first + section]
     }
 }

@@ -24,13 +24,12 @@ pub(crate) use rigid::RigidMotion;
 pub(crate) use verify::verify_motion;
 
 use crate::error::Refused;
-use crate::input::broadcast;
+use crate::input::{place_in, together};
 use crate::threads::{Asked, compute};
 use mesh_files::Frame;
 use pyo3::PyClass;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
-use std::fmt::Display;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -191,32 +190,6 @@ impl Size {
 /// The motion at an index of a batch. A single motion stands for the whole batch.
 fn at(motions: &[Moving], place: usize) -> &Moving {
     &motions[if motions.len() == 1 { 0 } else { place }]
-}
-
-/// The length of a batch. Each of its parts has that length, or is one for the whole batch.
-fn together<N: Default + Display>(
-    py: Python<'_>,
-    parts: impl IntoIterator<Item = (N, Option<usize>)>,
-) -> PyResult<Option<usize>> {
-    let (mut all, mut first) = (None, N::default());
-    for (name, count) in parts {
-        let Some(both) = broadcast(all, count) else {
-            let [one, other] = [all, count].map(Option::unwrap_or_default);
-            let text = format!(
-                "`{first}` has {one} and `{name}` {other}; give as many of both, or one of either"
-            );
-            return Err(Refused::other("bad_shape", text).raise(py, None));
-        };
-        if both != all {
-            (all, first) = (both, name);
-        }
-    }
-    Ok(all)
-}
-
-/// The place of one for all, or of one of as many as there are.
-fn place_in(count: Option<usize>, place: usize) -> usize {
-    if matches!(count, None | Some(1)) { 0 } else { place }
 }
 
 /// Some motions of a batch, which share its memory.

@@ -4,6 +4,7 @@ pub(crate) mod certify;
 mod chains;
 pub(crate) mod clearance;
 mod clears;
+mod clears_sections;
 pub(crate) mod distance;
 mod doubts;
 mod gradient;
