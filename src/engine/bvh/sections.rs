@@ -1,5 +1,4 @@
-//! Decisions about robots of sections of constant curvature, as [`BvhSearch`] makes them: each robot
-//! becomes a chain.
+//! Decisions about robots of sections of constant curvature: [`BvhSearch`] builds a chain of each.
 
 use super::search::BvhSearch;
 use crate::answer::ProximityError;
@@ -14,12 +13,12 @@ impl BvhSearch {
     /// Returns for many robots of sections of constant curvature whether they are farther than
     /// `margin` from the mesh, on all cores.
     ///
-    /// Each robot is its sections, base to tip. `segments` is the number of links of each section;
-    /// 0 counts as 1. `pose` maps the frame of the robots to the mesh's frame. Writes one result per
+    /// Each robot is its sections, base to tip. `segments` is the number of links of each section; 0
+    /// counts as 1. `pose` maps the frame of the robots to the mesh's frame. Writes one result per
     /// robot to `out`, in order.
     ///
-    /// The answers are those of [`clears`](Proximity::clears) for the chains that
-    /// [`ConstantCurvature::points`] and [`Chain::from_centreline`] build from the sections.
+    /// [`ConstantCurvature::points`] and [`Chain::from_centreline`] build a chain of each robot. The
+    /// answers equal the answers of [`clears`](Proximity::clears) for these chains.
     ///
     /// ```
     /// use parry_continuum::BendingSection;

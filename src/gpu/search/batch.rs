@@ -20,8 +20,8 @@
 //! 3. **Second pass**, on the device (`gather`): the parts in which a wanted triangle found no room
 //!    gather all wanted triangles for the final D and T. For all triangles within a margin this is
 //!    the only pass.
-//! 4. **Repeat**: if all candidates of a chunk need more room than it has, the chunk is searched
-//!    once more, with that room.
+//! 4. **Repeat**: if the candidates of a chunk find too little room, the chunk is searched once
+//!    more, with the room that they need.
 //! 5. **Measure**, on the CPU: all candidates, in double precision. The best is the answer.
 //! 6. **Remainder**, on the CPU: robots that the device cannot represent, whose candidates do not
 //!    fit, or whose loops the driver stopped take the search on the CPU. They are counted.
@@ -71,7 +71,7 @@ const COUNTERS: u64 = 16;
 const LIMITS: u64 = 8 * PART as u64;
 /// The least room for entries, for each kind of question: per link if the query answers each link,
 /// else per part. The room of a chunk follows what the chunks before needed, and all of it is read
-/// back: few robots that are asked about a margin have a candidate.
+/// back. For a margin, few robots have a candidate.
 const LEAST_ROOM: [u64; Question::KINDS] = [4, 16, 1, 32];
 /// The least room for entries of a chunk.
 const LEAST_ENTRIES: u64 = 1 << 10;
@@ -189,8 +189,8 @@ impl Batches {
         self.slots = Default::default();
     }
 
-    /// Answers all robots except the robots in [`Batches::left`]. `answer` writes the answer of a
-    /// robot, by its number, from what was found; if it returns false, the robot is left to the CPU.
+    /// Answers all robots except the robots in [`Batches::left`]. `answer` gets a robot's number and
+    /// what was found, and writes the answer. If it returns false, the robot is left to the CPU.
     ///
     /// # Errors
     /// The device has failed since the last batch, or did not answer.

@@ -24,7 +24,8 @@
 //! Every computed point is within
 //!
 //! ```text
-//! delta = u (2 R + sum_i (l_i (90 e^h_i + 7 D_i + 40) + 2 R)),   D_i = 1 + sum_(j < i) (40 e^h_j + 8)
+//! delta = u (2 R + sum_i (l_i (90 e^h_i + 7 D_i + 40) + 2 R)),
+//! D_i = 1 + sum_(j < i) (40 e^h_j + 8)
 //! ```
 //!
 //! of the robot's point, with h of the whole section. So every bound of a link errs by at most
@@ -162,7 +163,8 @@ impl<'a, S: AsRef<[BendingSection]>> BentRobots<'a, S> {
         is_resolved.then(|| (more as f32).next_up())
     }
 
-    /// The caps of a link that every chain from these points has. Algorithm 1 may choose the others.
+    /// The caps of a link: flat at both ends of the robot and at the wider side of a step in radius.
+    /// Algorithm 1 may choose either cap elsewhere.
     pub(super) fn caps(self, sections: &[BendingSection], link: usize) -> [SearchCap; 2] {
         let (section, segment) = (link / self.segments, link % self.segments);
         let is_wider = |other: Option<&BendingSection>| {

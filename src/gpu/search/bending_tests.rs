@@ -30,7 +30,7 @@ fn mesh(random: &mut Random) -> Mesh {
     Mesh::of(corners.to_vec(), vec![[0, 1, 2], [3, 4, 5]])
 }
 
-/// Sections whose angles are those that break formulas: none, tiny, a quarter, a half, a turn.
+/// Sections with angles that break formulas: none, tiny, a quarter turn, a half, a whole.
 fn sections(
     random: &mut Random,
     count: usize,

@@ -264,7 +264,7 @@ impl GpuSearch {
         self.are_enough(robots, MIN_LINKS[question.kind()])
     }
 
-    /// Whether robots have enough links for the device, of which `each` are the least for a core.
+    /// Whether robots have enough links for the device, by default at least `each` for every core.
     pub(super) fn are_enough(&self, robots: impl Packed, each: usize) -> bool {
         let min = match self.min_links {
             Some(links) => links,

@@ -5,7 +5,7 @@
 //! | `engine` | the engine: [`GpuSearch`] |
 //! | `batch` | a batch: packing, the two passes, measuring, and the proof that no answer is lost |
 //! | `robots` | the robots of a batch, and how chains are packed |
-//! | `sections`, `bending` | robots of sections of constant curvature, whose points the device computes |
+//! | `sections`, `bending` | robots of sections of constant curvature: the device computes points |
 //! | `bounds` | the bounds in single precision, with their rounding; `twin` repeats the kernels |
 //! | `tree` | the topology, built on the CPU |
 //! | `device` | the tree in the device's memory, and its refit |

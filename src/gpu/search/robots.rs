@@ -12,8 +12,8 @@ use parry3d_f64::math::{Pose, Real};
 
 /// The robots of a batch. A **shape** is what the device gets of a robot beside its radii and caps.
 pub(super) trait Packed: Copy + Sync {
-    /// Links of a chunk at most, but at least a robot. Larger chunks overlap less, smaller ones wait
-    /// more often.
+    /// Links of a chunk at most, but at least a robot. Larger chunks overlap less; smaller chunks
+    /// wait more often.
     const CHUNK: usize;
 
     fn len(self) -> usize;
@@ -27,14 +27,14 @@ pub(super) trait Packed: Copy + Sync {
     /// Writes the radius and the caps of each link.
     fn write_radii(self, robot: usize, frame: &SearchFrame, bytes: &mut [u8]);
 
-    /// The parameters with which the device computes the points of so many robots; `None` if the
+    /// The parameters with which the device computes the points of a chunk of robots; `None` if the
     /// shapes are the points.
     fn bending(self, robots: usize) -> Option<BendingQuery>;
 
     /// Appends what comes before all shapes.
     fn write_base(self, frame: &SearchFrame, bytes: &mut Vec<u8>);
 
-    /// The bytes of a shape of so many links.
+    /// The bytes of the shape of a robot with this number of links.
     fn shape_size(self, links: u32) -> usize;
 
     /// Writes a shape. Returns the error of its points beside rounding; `None` if the device cannot

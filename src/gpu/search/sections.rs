@@ -23,11 +23,12 @@ impl GpuSearch {
     /// Returns for many robots of sections of constant curvature whether they are farther than
     /// `margin` from the mesh.
     ///
-    /// The answers are those of [`BvhSearch::clears_sections_batch`]. The device computes the
-    /// points of the robots: only the sections are uploaded, and the CPU builds chains only where
-    /// single precision does not decide. Robots that have another number of sections than the
-    /// first, that bend by more than pi in a link or by more than 2 pi in a section are searched on
-    /// the CPU.
+    /// The answers equal the answers of [`BvhSearch::clears_sections_batch`]. The device computes
+    /// the points of the robots: only the sections are uploaded, and the CPU builds chains only
+    /// where single precision does not decide.
+    ///
+    /// The CPU searches for robots that have another number of sections than the first, or bend by
+    /// more than pi in a link or by more than 2 pi in a section.
     ///
     /// ```no_run
     /// use parry_continuum::BendingSection;

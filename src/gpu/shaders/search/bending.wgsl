@@ -1,5 +1,5 @@
-// Computes the points of robots of sections of constant curvature. gpu/search/bending.rs derives the
-// formulas and their errors, and has the twin.
+// Computes the points of robots of sections of constant curvature. gpu/search/bending.rs derives
+// the formulas and their errors; gpu/search/bending_tests.rs has the twin.
 
 @group(0) @binding(0) var<uniform> bending: BendingQuery;
 // The place and the quaternion (x, y, z, w) of the base; then for each section of each robot its
