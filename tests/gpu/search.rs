@@ -3,11 +3,11 @@
 use continuum_demo::steer::Random;
 use continuum_demo::{ctr, ventricle};
 use continuum_testing::{Random as Seeded, gpu, rounds};
-use parry_continuum::Chain;
 use parry_continuum::gpu::GpuSearch;
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::shape::{Ball, TriMesh};
 use parry_continuum::proximity::{BvhSearch, LinkProximity, Proximity, ProximityError};
+use parry_continuum::{BendingSection, Chain};
 
 /// Asserts that both engines have the same minima. Returns them.
 pub fn same_minima(
@@ -149,6 +149,42 @@ fn a_batch_takes_several_chunks() {
     same_minima(&mut engine, &mut reference, &robots);
     assert_eq!(engine.answered_on_cpu(), 5);
     same_decisions(&mut engine, &mut reference, &robots, 0.5);
+}
+
+/// The search computes in single precision on a GPU of either precision.
+#[test]
+fn a_gpu_of_double_precision_has_the_same_answers() {
+    let (vertices, indices) = Ball::new(10.0).to_trimesh(40, 20);
+    let mesh = TriMesh::new(vertices, indices).unwrap();
+    let mut random = Seeded::new(37);
+    let shapes: Vec<_> = (0..100)
+        .map(|shape| {
+            let mut points = vec![random.point() * 5.0];
+            for k in 0..20 {
+                points.push(points[k] + random.direction() * 0.4);
+            }
+            let build = [Chain::from_centreline, Chain::capsules, Chain::cylinders][shape % 3];
+            build(&points, &[random.between(0.05, 0.6); 20]).unwrap()
+        })
+        .collect();
+    let robots: Vec<_> = shapes.iter().map(|shape| (shape, Pose::IDENTITY)).collect();
+    let section = |bend| BendingSection { length: 6.0, radius: 0.5, bend: [bend, 0.1] };
+    let bent: Vec<_> = (0..100).map(|k| [section(0.003 * f64::from(k)); 2]).collect();
+    for (_, precision) in gpu::PRECISIONS {
+        let Some(gpu) = gpu::open(precision) else { continue };
+        let mut engine = GpuSearch::on(gpu, &mesh).unwrap();
+        engine.set_min_links(Some(0));
+        let mut reference = BvhSearch::new(&mesh).unwrap();
+        same_minima(&mut engine, &mut reference, &robots);
+        same_links(&mut engine, &mut reference, &robots);
+        same_decisions(&mut engine, &mut reference, &robots, 0.5);
+        same_contacts(&mut engine, &mut reference, robots[7], 2.0);
+        let (mut found, mut expected) = (Vec::new(), Vec::new());
+        engine.clears_sections_batch(&bent, 9, &Pose::IDENTITY, 0.3, &mut found).unwrap();
+        reference.clears_sections_batch(&bent, 9, &Pose::IDENTITY, 0.3, &mut expected).unwrap();
+        assert_eq!(found, expected);
+        assert_eq!(engine.answered_on_cpu(), 0);
+    }
 }
 
 /// After a move of a large mesh the contacts come from the device, until the CPU has refitted.
