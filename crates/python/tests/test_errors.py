@@ -166,6 +166,7 @@ SCALARS = {
     "margin": [
         lambda x: MESH.clears(ONE, 0.1, margin=x),
         lambda x: MESH.clears_inside(ONE, 0.1, margin=x),
+        lambda x: MESH.clears_sections([[1, 0, 0]], 0.1, segments=3, margin=x),
         lambda x: MESH.contacts_within(ONE, 0.1, margin=x),
         lambda x: MESH.clears_tube(ONE, 0.1, margin=x, resolution=0.1),
         lambda x: MESH.clears_motion(ONE, ONE, 0.1, margin=x, resolution=0.1),

@@ -110,6 +110,7 @@ def test_five_thousand_inputs() -> None:
             lambda: mesh.per_link(**given),
             lambda: mesh.clears(margin=number, **given),
             lambda: mesh.clears_inside(margin=number, **given),
+            lambda: mesh.clears_sections(spoilt(random, np.abs(robot)), 0.01, segments=3, margin=number, pose=given["pose"]),
             lambda: mesh.contacts_within(margin=number, prominence=0.0, **given),
             lambda: mesh.distance_and_gradient(**given),
             lambda: mesh.certify(answer=mesh.per_link(robot, 0.1), **given),
