@@ -184,10 +184,10 @@ fn a_batch_of_sections_takes_several_chunks() {
     let mesh = TriMesh::new(vertices, indices).unwrap();
     let Some((mut engine, mut reference)) = engines(&mesh) else { return };
     let mut random = Random::new(97);
-    let robots: Vec<[_; 2]> = robots(&mut random, 15_000, 12.0, 2.0);
+    let robots: Vec<[_; 2]> = robots(&mut random, 40_000, 12.0, 2.0);
     let chain = Chain::from_centreline(&[Vector::ZERO, Vector::Z], &[0.5]).unwrap();
     for _ in 0..2 {
-        // Three chunks: two of 2^18 links, and a smaller one.
+        // Three chunks: two of 2^15 parts, and a smaller one.
         check((&mut engine, &mut reference), &robots, 20, &Pose::IDENTITY, 0.5);
         let pose = Pose::IDENTITY;
         assert_eq!(engine.minimum(&chain, &pose), reference.minimum(&chain, &pose));

@@ -141,7 +141,7 @@ fn a_batch_takes_several_chunks() {
             Chain::from_centreline(&points, &[0.2; 64]).unwrap()
         })
         .collect();
-    // Five chunks: four of 2^18 links, and a smaller one.
+    // Five chunks: four of 2^13 parts, and a smaller one.
     let mut robots: Vec<_> = (0..20_000).map(|k| (&shapes[k % 64], random.pose(1.0))).collect();
     robots.iter_mut().step_by(4096).for_each(|(_, pose)| pose.translation.x = 1e9);
     robots[17_000].1.translation.x = f64::NAN;

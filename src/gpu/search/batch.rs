@@ -290,11 +290,11 @@ fn next_room(room: u64, least: u64, needed: u64, items: u64) -> u64 {
 
 /// The chunk of robots from `first` on.
 fn chunk_from<R: Packed>(robots: R, first: usize) -> Range<usize> {
-    const { assert!(R::CHUNK <= MOST_LINKS) };
-    let (mut end, mut links) = (first, 0);
+    const { assert!(R::CHUNK * PART as usize <= MOST_LINKS) };
+    let (mut end, mut parts) = (first, 0);
     while end < robots.len() {
-        links += robots.links(end);
-        if links > R::CHUNK && end > first {
+        parts += robots.links(end).div_ceil(PART as usize);
+        if parts > R::CHUNK && end > first {
             break;
         }
         end += 1;

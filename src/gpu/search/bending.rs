@@ -180,7 +180,7 @@ impl<'a, S: AsRef<[BendingSection]>> BentRobots<'a, S> {
 impl<S: AsRef<[BendingSection]> + Sync> Packed for BentRobots<'_, S> {
     /// The device gets three numbers of a section where it gets three of each point of a chain, so
     /// small chunks would mostly wait.
-    const CHUNK: usize = 1 << 20;
+    const CHUNK: usize = 1 << 15;
 
     fn len(self) -> usize {
         self.robots.len()

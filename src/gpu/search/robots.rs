@@ -12,7 +12,7 @@ use parry3d_f64::math::{Pose, Real};
 
 /// The robots of a batch. A **shape** is what the device gets of a robot beside its radii and caps.
 pub(super) trait Packed: Copy + Sync {
-    /// Links of a chunk at most, but at least a robot. Larger chunks overlap less; smaller chunks
+    /// Parts of a chunk at most, but at least a robot. Larger chunks overlap less; smaller chunks
     /// wait more often.
     const CHUNK: usize;
 
@@ -76,7 +76,7 @@ impl<'a> Robots<'a> {
 }
 
 impl Packed for Robots<'_> {
-    const CHUNK: usize = 1 << 18;
+    const CHUNK: usize = 1 << 13;
 
     fn len(self) -> usize {
         match self {

@@ -14,7 +14,7 @@ use pyo3::prelude::*;
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// The links of a chunk for the GPU, whose search divides them into parts of 2^18 links that
+/// The links of a chunk for the GPU, whose search divides them into chunks of up to 2^18 links that
 /// overlap. Not measured: more would take more memory, fewer would wait more often.
 const LINKS: usize = 1 << 19;
 /// The links for each thread from which a batch of any question runs on the GPU.
