@@ -4,6 +4,8 @@ use super::answer_check::{check_range, rigid_pose};
 use super::placed_link::PlacedLink;
 use crate::answer::ProximityError;
 use crate::distance::Scalar;
+#[cfg(feature = "gpu")]
+use crate::mesh::SearchFrame;
 use crate::robot::{BoundingCapsule, Chain, LinkNode, ModifiedCylinder};
 use parry3d_f64::math::{Pose, Real, Vector};
 
@@ -62,10 +64,19 @@ impl<'a> PlacedRobot<'a> {
         (0..self.robot.links().len()).map(|link| self.link(link))
     }
 
-    /// Returns the end of every link in the mesh's frame.
+    /// Returns the robot's axes and its origin in a search frame.
     #[cfg(feature = "gpu")]
-    pub(crate) fn link_ends(&self) -> impl Iterator<Item = Vector> {
-        self.robot.links().iter().map(|link| self.pose * link.end())
+    pub(crate) fn axes_in(&self, frame: &SearchFrame) -> ([Vector; 3], Vector) {
+        let axes = Vector::AXES.map(|axis| self.pose.rotation * axis * frame.scale);
+        (axes, (self.pose.translation - frame.centre) * frame.scale)
+    }
+
+    /// Returns an upper bound on the rounding error of a link's place, also where it is placed by
+    /// its axes and its origin: less than 20 u of the sum of the magnitudes of three products and
+    /// of the origin, which is within the derivation of `slack`.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn rounding(&self) -> Real {
+        self.slack
     }
 
     /// Returns the total length of the links before a link.

@@ -42,50 +42,36 @@
 //! candidates with the function that measures in every engine. For a margin, every triangle within
 //! it is wanted, and a decision is settled early only if a link is certainly within it.
 
-use super::bending::BendingQuery;
-use super::bounds::FAR;
+use super::chunk::{COUNTERS, Chunk, ENTRY, HEAD, Layout, TASK_SIZE, chunk_from};
 use super::device::{DeviceTree, SearchKernels};
 #[cfg(doc)]
 use super::kernels::ROOM;
-use super::kernels::{
-    BENDING_THREADS, FOUND, FULL, HIT, MOST_GATHERED, PART, Question, STOPPED, SearchQuery,
-};
+use super::kernels::{FOUND, FULL, HIT, PART, Question, STOPPED};
 use super::robots::Packed;
 use crate::answer::ProximityError;
 use crate::gpu::opened::Opened;
 use crate::mesh::SearchFrame;
 use crate::threads::each;
-use gpu_batch::wgpu::{BindGroup, Buffer, BufferUsages, ComputePassDescriptor};
-use gpu_batch::{Clock, Device, DeviceFailure, READINGS, Record, Submitted, Watch};
-use std::mem::take;
-use std::ops::Range;
+use gpu_batch::{Clock, DeviceFailure, READINGS, Watch};
 use std::time::Duration;
 
-/// Robots that one task of the CPU takes.
-const TASK_SIZE: usize = 64;
-/// Bytes of a part, a head, an entry, the counters, and the limits of a part.
-const PART_SIZE: u64 = 16;
-const HEAD: u64 = 8;
-const ENTRY: u64 = 8;
-const COUNTERS: u64 = 16;
-const LIMITS: u64 = 8 * PART as u64;
 /// The least room for entries, for each kind of question: per link if the query answers each link,
 /// else per part. The room of a chunk follows what the chunks before needed, and all of it is read
 /// back. For a margin, few robots have a candidate.
 const LEAST_ROOM: [u64; Question::KINDS] = [4, 16, 1, 32];
-/// The least room for entries of a chunk.
-const LEAST_ENTRIES: u64 = 1 << 10;
-/// The most links of a robot on the device.
-const MOST_LINKS: usize = 1 << 20;
-/// The number of all candidates of a chunk fits into a word.
-const _: () = assert!(MOST_LINKS as u64 * (MOST_GATHERED as u64) < 1 << 32);
-
 /// What the device has found about a robot.
 pub(super) struct Found<'a> {
     /// A link is certainly within the margin.
     pub is_hit: bool,
     /// The links and triangles that may be the answer.
     pub candidates: &'a [(u32, u32)],
+}
+
+impl Found<'_> {
+    /// Whether the robot clears the margin of the question, if that is certain.
+    pub(super) fn decision(&self) -> Option<bool> {
+        (self.is_hit || self.candidates.is_empty()).then_some(!self.is_hit)
+    }
 }
 
 /// The mesh as a batch needs it.
@@ -101,7 +87,7 @@ pub(super) struct Searched<'a> {
 pub(super) struct Batches {
     watch: Watch,
     /// Two chunks in turn.
-    slots: [Slot; 2],
+    slots: [Chunk; 2],
     /// The room for entries, for each kind of question: see [`LEAST_ROOM`].
     room: [u64; Question::KINDS],
     /// The robots of the last batch that the device left to the CPU.
@@ -110,65 +96,6 @@ pub(super) struct Batches {
     pub device_time: Option<Duration>,
     /// Nodes, leaves and links of the last batch, if the kernels count them.
     pub work: [u64; 3],
-}
-
-/// A chunk of robots.
-#[derive(Default)]
-struct Slot {
-    robots: Range<usize>,
-    layouts: Vec<Layout>,
-    parts: u32,
-    links: u64,
-    /// What the room for entries is in proportion to: links or parts.
-    items: u64,
-    room: u32,
-    part_bytes: Vec<u8>,
-    /// The numbers of all points.
-    points: u32,
-    shapes: Vec<u8>,
-    radii: Vec<u8>,
-    bending: Option<BendingQuery>,
-    buffers: Option<SlotBuffers>,
-    submitted: Option<Submitted>,
-}
-
-/// Where a robot of a chunk is.
-#[derive(Clone, Copy, Default)]
-struct Layout {
-    first_part: u32,
-    /// The number of links, or 0 if the device is not asked about the robot.
-    links: u32,
-    is_left: bool,
-    /// The error of its points beside rounding.
-    more_error: f32,
-    /// Where its points and its radii begin, in numbers.
-    points: u32,
-    radii: u32,
-    /// Whether the radii equal the radii of the robot before.
-    is_alike: bool,
-}
-
-/// The buffers of a chunk, for a number of parts, of bytes of numbers, of entries, and of bytes of
-/// shapes.
-struct SlotBuffers {
-    sizes: [u64; 4],
-    query: Buffer,
-    parts: Buffer,
-    numbers: Buffer,
-    heads: Buffer,
-    entries: Buffer,
-    counters: Buffer,
-    readback: Buffer,
-    clock: Option<Clock>,
-    group: BindGroup,
-    /// If the device computes the points.
-    bending: Option<BendingBuffers>,
-}
-
-struct BendingBuffers {
-    query: Buffer,
-    shapes: Buffer,
-    group: BindGroup,
 }
 
 impl Batches {
@@ -210,9 +137,9 @@ impl Batches {
         while next < robots.len() {
             let chunk = chunk_from(robots, next);
             next = chunk.end;
-            self.slots[turn].pack(searched, robots, chunk, out);
             let room = self.room[question.kind()];
-            self.slots[turn].submit(searched, question, room, &mut self.watch)?;
+            let slot = &mut self.slots[turn];
+            slot.submit(searched, robots, chunk, question, room, out, &mut self.watch)?;
             if let Some(before) = pending.replace(turn) {
                 self.finish(before, searched, question, out, &answer)?;
             }
@@ -238,10 +165,10 @@ impl Batches {
         let out = &mut out[slot.robots.clone()];
         // With too little room the chunk is searched once more.
         let mut is_last = false;
-        while let Some((submitted, buffers)) = slot.submitted.take().zip(slot.buffers.as_ref()) {
+        while let Some((submitted, readback)) = slot.submitted.take().zip(slot.readback()) {
             let (parts, layouts) = (slot.parts as usize, &slot.layouts);
             let mut is_read = false;
-            device.read(watch, submitted, &buffers.readback, |bytes| {
+            device.read(watch, submitted, readback, |bytes| {
                 let (readings, bytes) = bytes.split_at(READINGS as usize);
                 *device_time = device_time
                     .zip(Clock::time_between(device, readings))
@@ -274,7 +201,7 @@ impl Batches {
             })?;
             if !is_read {
                 is_last = true;
-                slot.submit(searched, question, *room, watch)?;
+                slot.search(searched, question, *room, watch)?;
             }
         }
         Ok(())
@@ -286,20 +213,6 @@ impl Batches {
 fn next_room(room: u64, least: u64, needed: u64, items: u64) -> u64 {
     let each = (needed + needed / 8).div_ceil(items.max(1));
     each.max(room - room / 8).max(least)
-}
-
-/// The chunk of robots from `first` on.
-fn chunk_from<R: Packed>(robots: R, first: usize) -> Range<usize> {
-    const { assert!(R::CHUNK * PART as usize <= MOST_LINKS) };
-    let (mut end, mut parts) = (first, 0);
-    while end < robots.len() {
-        parts += robots.links(end).div_ceil(PART as usize);
-        if parts > R::CHUNK && end > first {
-            break;
-        }
-        end += 1;
-    }
-    first..end
 }
 
 /// The words in some bytes of the device.
@@ -372,286 +285,6 @@ impl Heads<'_> {
             }
         }
         Ok(left)
-    }
-}
-
-impl Slot {
-    /// Step 1. Writes the errors of bad robots to `out`.
-    fn pack<A: Send>(
-        &mut self,
-        searched: Searched,
-        robots: impl Packed,
-        chunk: Range<usize>,
-        out: &mut [Result<A, ProximityError>],
-    ) {
-        let (first, frame) = (chunk.start, searched.frame);
-        self.layouts.clear();
-        self.layouts.resize(chunk.len(), Layout::default());
-        self.robots = chunk.clone();
-        let mut shares: Vec<_> = self.layouts.chunks_mut(TASK_SIZE).collect();
-        each(&mut shares, |share, layouts| {
-            for (robot, layout) in (first + share * TASK_SIZE..).zip(layouts.iter_mut()) {
-                let links = robots.links(robot);
-                layout.is_left = links > MOST_LINKS;
-                layout.links = if layout.is_left { 0 } else { links as u32 };
-                layout.is_alike = robot > first && robots.is_like_before(robot);
-            }
-        });
-        let (mut points, mut radii, mut parts) = (0, 0, 0);
-        for layout in &mut self.layouts {
-            (layout.points, layout.first_part) = (points, parts);
-            points += 3 * (layout.links + 1);
-            parts += layout.links.div_ceil(PART);
-        }
-        self.links = self.layouts.iter().map(|layout| u64::from(layout.links)).sum();
-        let mut before = points;
-        for layout in &mut self.layouts {
-            if !layout.is_alike {
-                before = points + radii;
-                radii += 2 * layout.links;
-            }
-            layout.radii = before;
-        }
-        (self.parts, self.points) = (parts, points);
-        self.bending = robots.bending(chunk.len());
-        self.shapes.clear();
-        robots.write_base(frame, &mut self.shapes);
-        let base = self.shapes.len();
-        let shapes: usize = self.layouts.iter().map(|one| robots.shape_size(one.links)).sum();
-        for (bytes, size) in [
-            (&mut self.part_bytes, parts as usize * PART_SIZE as usize),
-            (&mut self.radii, 4 * radii as usize),
-        ] {
-            bytes.clear();
-            bytes.resize(size, 0);
-        }
-        self.shapes.resize(base + shapes, 0);
-
-        // Each task writes the parts, the shapes and the radii of its robots.
-        let (mut all_shapes, mut all_radii) = (&mut self.shapes[base..], &mut self.radii[..]);
-        let mut all_parts = &mut self.part_bytes[..];
-        let mut shares = Vec::with_capacity(chunk.len().div_ceil(TASK_SIZE));
-        let outs = out[chunk].chunks_mut(TASK_SIZE);
-        for (layouts, out) in self.layouts.chunks_mut(TASK_SIZE).zip(outs) {
-            let count = |of: &dyn Fn(&Layout) -> u32| layouts.iter().map(|l| of(l) as usize).sum();
-            let shapes = layouts.iter().map(|layout| robots.shape_size(layout.links)).sum();
-            let radii: usize = count(&|layout| if layout.is_alike { 0 } else { 2 * layout.links });
-            let parts: usize = count(&|layout| layout.links.div_ceil(PART));
-            let shapes = take_front(&mut all_shapes, shapes);
-            let radii = take_front(&mut all_radii, 4 * radii);
-            let parts = take_front(&mut all_parts, PART_SIZE as usize * parts);
-            shares.push((layouts, out, shapes, radii, parts));
-        }
-        each(&mut shares, |share, (layouts, out, shapes, radii, parts)| {
-            let robots_of_share = first + share * TASK_SIZE..;
-            for ((robot, layout), out) in
-                robots_of_share.zip(layouts.iter_mut()).zip(out.iter_mut())
-            {
-                let shape = take_front(shapes, robots.shape_size(layout.links));
-                if layout.is_left {
-                    continue;
-                }
-                let links = layout.links as usize;
-                let own = if layout.is_alike { 0 } else { 8 * links };
-                robots.write_radii(robot, frame, take_front(radii, own));
-                let parts = take_front(parts, PART_SIZE as usize * links.div_ceil(PART as usize));
-                match robots.write_shape(robot, frame, shape) {
-                    Ok(Some(error)) => {
-                        layout.more_error = error;
-                        write_parts(parts, layout);
-                    }
-                    Ok(None) => (layout.links, layout.is_left) = (0, true),
-                    Err(error) => {
-                        *out = Err(error);
-                        layout.links = 0;
-                    }
-                }
-            }
-        });
-    }
-
-    /// The room for the entries of the chunk, for this room for each item.
-    fn room_of(&self, device: &Device, room: u64) -> u32 {
-        let room = (room * self.items).max(LEAST_ENTRIES);
-        // No rank of a candidate or a byte exceeds a word.
-        room.min(device.largest_binding() / ENTRY).min(1 << 28) as u32
-    }
-
-    /// Steps 2 and 3.
-    ///
-    /// # Errors
-    /// The device has failed since it was asked last.
-    fn submit(
-        &mut self,
-        searched: Searched,
-        question: Question,
-        room: u64,
-        watch: &mut Watch,
-    ) -> Result<(), DeviceFailure> {
-        let Searched { gpu, kernels, frame, .. } = searched;
-        let device = &gpu.device;
-        if self.parts == 0 {
-            return Ok(());
-        }
-        let parts = u64::from(self.parts);
-        self.items = if question.is_about_links() { self.links } else { parts };
-        self.room = self.room_of(device, room);
-        let room = u64::from(self.room);
-        let points = 4 * u64::from(self.points);
-        let numbers = points + self.radii.len() as u64;
-        let [parts_size, numbers, room_size, shapes] =
-            [parts, numbers, room, self.shapes.len() as u64].map(u64::next_power_of_two);
-        let shapes = if self.bending.is_some() { shapes } else { 0 };
-        let sizes = [parts_size, numbers, room_size, shapes];
-        let buffers = match self.buffers.take() {
-            Some(buffers) if fits(buffers.sizes, sizes) => buffers,
-            _ => SlotBuffers::new(searched, sizes),
-        };
-        let (margin, certain) = margins(question, frame);
-        let record = SearchQuery { parts: self.parts, margin, certain, room: self.room };
-        let mut bytes = Vec::new();
-        record.write(device.precision(), &mut bytes);
-        device.queue().write_buffer(&buffers.query, 0, &bytes);
-        device.queue().write_buffer(&buffers.parts, 0, &self.part_bytes);
-        device.queue().write_buffer(&buffers.numbers, points, &self.radii);
-        let bending = self.bending.zip(buffers.bending.as_ref());
-        let shapes = bending.map_or(&buffers.numbers, |(_, buffers)| &buffers.shapes);
-        device.queue().write_buffer(shapes, 0, &self.shapes);
-
-        let mut encoder = device.raw().create_command_encoder(&Default::default());
-        encoder.clear_buffer(&buffers.heads, 0, Some(parts * HEAD));
-        encoder.clear_buffer(&buffers.counters, 0, None);
-        let timestamp_writes = buffers.clock.as_ref().map(Clock::writes);
-        let mut pass =
-            encoder.begin_compute_pass(&ComputePassDescriptor { label: None, timestamp_writes });
-        if let Some((query, buffers)) = bending {
-            bytes.clear();
-            query.write(device.precision(), &mut bytes);
-            device.queue().write_buffer(&buffers.query, 0, &bytes);
-            pass.set_pipeline(&kernels.bend);
-            pass.set_bind_group(0, &buffers.group, &[0]);
-            device.dispatch(&mut pass, (self.points / 3).div_ceil(BENDING_THREADS));
-        }
-        pass.set_bind_group(0, &buffers.group, &[0]);
-        for kernel in &kernels.passes[question.kind()] {
-            pass.set_pipeline(kernel);
-            device.dispatch(&mut pass, self.parts);
-        }
-        drop(pass);
-        let (to, mut end) = (&buffers.readback, READINGS);
-        for (from, size) in [
-            (&buffers.counters, COUNTERS),
-            (&buffers.heads, parts * HEAD),
-            (&buffers.entries, room * ENTRY),
-        ] {
-            encoder.copy_buffer_to_buffer(from, 0, to, end, Some(size));
-            end += size;
-        }
-        if let Some(clock) = &buffers.clock {
-            clock.copy(&mut encoder, to);
-        }
-        self.submitted = Some(device.submit(watch, encoder.finish(), to, end)?);
-        self.buffers = Some(buffers);
-        Ok(())
-    }
-}
-
-/// Whether buffers are large enough, and not far too large.
-fn fits(have: [u64; 4], need: [u64; 4]) -> bool {
-    have.into_iter()
-        .zip(need)
-        .all(|(have, need)| need <= have && (need == 0 || have <= 16 * need.max(1 << 10)))
-}
-
-/// Takes the front off a slice.
-fn take_front<'a>(slice: &mut &'a mut [u8], count: usize) -> &'a mut [u8] {
-    let (front, rest) = take(slice).split_at_mut(count);
-    *slice = rest;
-    front
-}
-
-fn write_parts(bytes: &mut [u8], layout: &Layout) {
-    for (bytes, first) in
-        bytes.chunks_exact_mut(PART_SIZE as usize).zip((0..).step_by(PART as usize))
-    {
-        let links = (layout.links - first).min(PART);
-        let error = layout.more_error.to_bits();
-        let words = [layout.points + 3 * first, layout.radii + 2 * first, links, error];
-        bytes.copy_from_slice(words.map(u32::to_ne_bytes).as_flattened());
-    }
-}
-
-/// The margin in the search frame, rounded up and rounded down, as bits.
-fn margins(question: Question, frame: &SearchFrame) -> (u32, u32) {
-    let Some(margin) = question.margin() else { return (FAR.to_bits(), 0) };
-    let nearest = (margin * frame.scale).min(FAR.into()) as f32;
-    let (up, down) = (nearest.next_up().min(FAR), nearest.next_down().max(0.0));
-    (up.to_bits(), if nearest < FAR { down } else { FAR }.to_bits())
-}
-
-impl SlotBuffers {
-    fn new(searched: Searched, sizes: [u64; 4]) -> Self {
-        let Searched { gpu, kernels, tree, .. } = searched;
-        let (device, [parts, numbers, entries, shapes]) = (&gpu.device, sizes);
-        let up = BufferUsages::STORAGE | BufferUsages::COPY_DST;
-        let down = BufferUsages::STORAGE | BufferUsages::COPY_SRC | BufferUsages::COPY_DST;
-        let query = device.buffer(
-            device.uniform_stride::<SearchQuery>(),
-            BufferUsages::UNIFORM | BufferUsages::COPY_DST,
-        );
-        let part_buffer = device.buffer(parts * PART_SIZE, up);
-        let number_buffer = device.buffer(numbers, up);
-        let heads = device.buffer(parts * HEAD, down);
-        let entry_buffer = device.buffer(entries * ENTRY, down);
-        let counters = device.buffer(COUNTERS, down);
-        let limits = device.buffer(parts * LIMITS, BufferUsages::STORAGE);
-        let readback = device.buffer(
-            READINGS + COUNTERS + parts * HEAD + entries * ENTRY,
-            BufferUsages::MAP_READ | BufferUsages::COPY_DST,
-        );
-        let group = device.group(
-            &kernels.query_layout,
-            &[
-                device.uniform_binding::<SearchQuery>(&query),
-                tree.nodes.as_entire_binding(),
-                tree.triangles.as_entire_binding(),
-                part_buffer.as_entire_binding(),
-                number_buffer.as_entire_binding(),
-                heads.as_entire_binding(),
-                entry_buffer.as_entire_binding(),
-                counters.as_entire_binding(),
-                limits.as_entire_binding(),
-            ],
-        );
-        let bending = (shapes > 0).then(|| {
-            let query = device.buffer(
-                device.uniform_stride::<BendingQuery>(),
-                BufferUsages::UNIFORM | BufferUsages::COPY_DST,
-            );
-            let shapes = device.buffer(shapes, up);
-            let group = device.group(
-                &kernels.bending_layout,
-                &[
-                    device.uniform_binding::<BendingQuery>(&query),
-                    shapes.as_entire_binding(),
-                    number_buffer.as_entire_binding(),
-                ],
-            );
-            BendingBuffers { query, shapes, group }
-        });
-        Self {
-            sizes,
-            bending,
-            query,
-            parts: part_buffer,
-            numbers: number_buffer,
-            heads,
-            entries: entry_buffer,
-            counters,
-            readback,
-            clock: Clock::new(device),
-            group,
-        }
     }
 }
 

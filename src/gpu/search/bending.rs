@@ -56,12 +56,13 @@
 //! the rim of a flat cap moves by less than `4 delta r / c` with it.
 
 use super::bounds::{FLAT_ERROR, SearchCap, TURN_ERROR, UNIT};
-use super::robots::{Packed, is_fine, write_numbers};
+use super::robots::{Packed, bytes_of, is_fine};
 use crate::answer::ProximityError;
 use crate::curve::{BendingSection, ConstantCurvature};
 use crate::distance::lanes::Lane;
 use crate::mesh::SearchFrame;
 use crate::robot::{Chain, RobotError};
+use gpu_batch::wgpu::WriteOnly;
 use gpu_batch::{record, wgsl};
 use parry3d_f64::math::{Pose, Real, Vector};
 use std::f64::consts::{PI, TAU};
@@ -141,7 +142,7 @@ impl<'a, S: AsRef<[BendingSection]>> BentRobots<'a, S> {
                 && angle <= PI * self.segments as Real
                 && arc > 0.0
                 && radius >= 0.0
-                && radius <= Real::from(<f32 as Lane>::FARTHEST);
+                && radius <= <f32 as Lane>::FARTHEST;
             if !is_computed {
                 return None;
             }
@@ -157,7 +158,7 @@ impl<'a, S: AsRef<[BendingSection]>> BentRobots<'a, S> {
         let reach = reach.max(thickest).max(1.0);
         let bounds = reach * (flat_error + turn_error * thickness / 0.6);
         let is_resolved = is_fine(frame)
-            && reach <= Real::from(<f32 as Lane>::FARTHEST)
+            && reach <= <f32 as Lane>::FARTHEST
             && 16.0 * delta <= shortest
             && 4.0 * (bounds + more) <= frame.typical;
         is_resolved.then(|| (more as f32).next_up())
@@ -195,12 +196,13 @@ impl<S: AsRef<[BendingSection]> + Sync> Packed for BentRobots<'_, S> {
         radii(robot).eq(radii(robot - 1))
     }
 
-    fn write_radii(self, robot: usize, frame: &SearchFrame, bytes: &mut [u8]) {
+    fn write_radii(self, robot: usize, frame: &SearchFrame, bytes: WriteOnly<[u8]>) {
         let sections = self.sections(robot);
-        for (link, bytes) in bytes.chunks_exact_mut(8).enumerate() {
+        let (pairs, _) = bytes.into_chunks::<8>();
+        for (link, pair) in pairs.into_iter().enumerate() {
             let Some(section) = sections.get(link / self.segments) else { return };
             let radius = (section.radius * frame.scale) as f32;
-            write_numbers(bytes, &[radius, SearchCap::code(self.caps(sections, link))]);
+            pair.write(bytes_of([radius, SearchCap::code(self.caps(sections, link))]));
         }
     }
 
@@ -213,33 +215,33 @@ impl<S: AsRef<[BendingSection]> + Sync> Packed for BentRobots<'_, S> {
     }
 
     fn write_base(self, frame: &SearchFrame, bytes: &mut Vec<u8>) {
-        let first = bytes.len();
-        bytes.resize(first + 4 * BASE_SIZE as usize, 0);
         let place = frame.point::<f32>(self.pose.translation);
         let turn = self.pose.rotation;
         let [x, y, z, w] = [turn.x, turn.y, turn.z, turn.w].map(|number| number as f32);
-        write_numbers(&mut bytes[first..], &[place.x, place.y, place.z, x, y, z, w, 0.0]);
+        let base = [place.x, place.y, place.z, x, y, z, w, 0.0];
+        bytes.extend::<[u8; 4 * BASE_SIZE as usize]>(bytes_of(base));
     }
 
-    fn shape_size(self, _: u32) -> usize {
-        12 * self.each
+    fn shape_size(self, links: u32) -> usize {
+        if links == 0 { 0 } else { 12 * self.each }
     }
 
     fn write_shape(
         self,
         robot: usize,
         frame: &SearchFrame,
-        bytes: &mut [u8],
+        bytes: WriteOnly<[u8]>,
     ) -> Result<Option<f32>, ProximityError> {
         let sections = self.sections(robot);
         let Some(error) = self.more_error(sections, frame) else {
             ConstantCurvature::new(sections)?;
             return Ok(None);
         };
-        for (bytes, section) in bytes.chunks_exact_mut(12).zip(sections) {
+        let (rows, _) = bytes.into_chunks::<12>();
+        for (row, section) in rows.into_iter().zip(sections) {
             let BendingSection { length, bend: [x, y], .. } = *section;
             let numbers = [length * frame.scale, x * length, y * length];
-            write_numbers(bytes, &numbers.map(|number| number as f32));
+            row.write(bytes_of(numbers.map(|number| number as f32)));
         }
         Ok(Some(error))
     }

@@ -7,7 +7,7 @@ use crate::gpu::tests::gpu;
 use crate::mesh::{Mesh, SearchFrame};
 use continuum_testing::Random;
 use gpu_batch::Record;
-use gpu_batch::wgpu::BufferUsages;
+use gpu_batch::wgpu::{BufferUsages, WriteOnly};
 use parry3d_f64::math::{Pose, Real, Vector};
 
 type Bent<'a> = BentRobots<'a, Vec<BendingSection>>;
@@ -68,8 +68,9 @@ fn packed(robots: Bent, frame: &SearchFrame) -> Option<(Vec<f32>, Vec<Real>)> {
     robots.write_base(frame, &mut bytes);
     for robot in 0..robots.len() {
         let first = bytes.len();
-        bytes.resize(first + robots.shape_size(0), 0);
-        errors.push(robots.write_shape(robot, frame, &mut bytes[first..]).unwrap()?.into());
+        bytes.resize(first + robots.shape_size(1), 0);
+        let shape = WriteOnly::from_mut(&mut bytes[first..]);
+        errors.push(robots.write_shape(robot, frame, shape).unwrap()?.into());
     }
     let words = bytes.as_chunks::<4>().0.iter();
     Some((words.map(|word| f32::from_ne_bytes(*word)).collect(), errors))

@@ -148,6 +148,7 @@ fn dot<const FUSED: bool>(a: Point, b: Point) -> f32 {
 }
 
 /// The function `op` of each coordinate.
+#[cfg(test)]
 fn map2(a: Point, b: Point, op: impl Fn(f32, f32) -> f32) -> Point {
     Vec3::new(op(a.x, b.x), op(a.y, b.y), op(a.z, b.z))
 }
@@ -175,8 +176,8 @@ struct Places {
 }
 
 /// A link as the device sees it. `FUSED`: whether products are fused with sums.
+#[cfg(test)]
 #[derive(Clone, Copy, Debug)]
-#[cfg_attr(not(test), expect(dead_code, reason = "the host needs the error alone"))]
 pub(super) struct SearchedLink<const FUSED: bool = false> {
     start: Point,
     end: Point,
@@ -196,11 +197,44 @@ pub(super) struct SearchedLink<const FUSED: bool = false> {
     is_thin: bool,
 }
 
-/// The `error` of a link with these ends, this radius and these caps.
-pub(super) fn error_of(ends: [Point; 2], radius: f32, caps: [SearchCap; 2]) -> f32 {
-    SearchedLink::<false>::new(ends, radius, caps).error
+/// An upper bound on the `error` of every link that was added.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct ErrorBound {
+    reach: f32,
+    /// The largest `(r / l)^2` of a link that has a flat cap and a direction; with room for the
+    /// rounding of both.
+    thickness: f32,
+    has_flat: bool,
 }
 
+impl ErrorBound {
+    #[inline(always)]
+    pub(super) fn add(&mut self, [start, end]: [Point; 2], radius: f32, flat: [bool; 2]) {
+        let reach = start.largest().max(end.largest()).max(radius.max(1.0));
+        self.reach = self.reach.max(reach);
+        let squared = dot::<false>(end - start, end - start);
+        let least = THIN * reach;
+        if (flat[0] || flat[1]) && squared >= 0.99 * least * least {
+            self.has_flat = true;
+            self.thickness = self.thickness.max(1.01 * radius * radius / squared);
+        }
+    }
+
+    /// R of all links.
+    pub(super) fn reach(&self) -> f32 {
+        self.reach
+    }
+
+    pub(super) fn error(&self) -> f32 {
+        if self.has_flat {
+            self.reach * (FLAT_ERROR + TURN_ERROR * self.thickness.sqrt())
+        } else {
+            self.reach * ROUND_ERROR
+        }
+    }
+}
+
+#[cfg(test)]
 impl<const FUSED: bool> SearchedLink<FUSED> {
     pub(super) fn new([start, end]: [Point; 2], radius: f32, caps: [SearchCap; 2]) -> Self {
         let along = end - start;

@@ -279,33 +279,12 @@ impl GpuSearch {
             })
     }
 
-    /// Answers all robots on the device except the robots in [`Batches::left`].
+    /// Answers all robots on the device except the robots in [`Batches::left`]. `answer` gets the
+    /// number of a robot.
     ///
     /// # Errors
     /// The device has failed.
-    fn search<A: Send>(
-        &mut self,
-        robots: Robots,
-        question: Question,
-        out: &mut [Result<A, ProximityError>],
-        answer: impl Fn(Measure, Found, &mut Result<A, ProximityError>) -> bool + Sync,
-    ) -> Result<(), ProximityError> {
-        self.search_packed(robots, question, out, |level, mesh, robot, found, out| {
-            match robots.placed(robot) {
-                Ok(robot) => answer(Measure { level, mesh, robot: &robot }, found, out),
-                Err(error) => {
-                    *out = Err(error);
-                    true
-                }
-            }
-        })
-    }
-
-    /// Same as [`search`](Self::search), for robots of any form. `answer` gets the robot's number.
-    ///
-    /// # Errors
-    /// The device has failed.
-    pub(super) fn search_packed<A: Send>(
+    pub(super) fn search<A: Send>(
         &mut self,
         robots: impl Packed,
         question: Question,
@@ -350,7 +329,7 @@ impl GpuSearch {
         question: Question,
         out: &mut Vec<Result<A, ProximityError>>,
         unanswered: impl Fn() -> A,
-        answer: impl Fn(Measure, Found, &mut Result<A, ProximityError>) -> bool + Sync,
+        answer: impl Fn(Level, &Mesh, usize, Found, &mut Result<A, ProximityError>) -> bool + Sync,
         on_cpu: impl FnOnce(
             &mut BvhSearch,
             &[(&Chain, Pose)],
@@ -379,7 +358,7 @@ impl GpuSearch {
         robot: &PlacedRobot,
         question: Question,
         unanswered: A,
-        answer: impl Fn(Measure, Found, &mut Result<A, ProximityError>) -> bool + Sync,
+        answer: impl Fn(Level, &Mesh, usize, Found, &mut Result<A, ProximityError>) -> bool + Sync,
     ) -> Result<Option<A>, ProximityError> {
         let mut out = [Ok(unanswered)];
         self.search(Robots::One(robot), question, &mut out, answer)?;
@@ -470,11 +449,10 @@ impl Engine for GpuSearch {
         robot: PlacedRobot,
         out: &mut Vec<LinkProximity>,
     ) -> Result<(), ProximityError> {
-        if self.is_for_device(Robots::One(&robot), Question::PerLink)
+        let one = Robots::One(&robot);
+        if self.is_for_device(one, Question::PerLink)
             && let Some(answers) =
-                self.search_one(&robot, Question::PerLink, Vec::new(), |measure, found, out| {
-                    measure.per_link(found, out)
-                })?
+                self.search_one(&robot, Question::PerLink, Vec::new(), per_link_of(one))?
         {
             *out = answers;
             return Ok(());
@@ -487,12 +465,13 @@ impl Engine for GpuSearch {
         robot: PlacedRobot,
         bound: Real,
     ) -> Result<Option<LinkProximity>, ProximityError> {
-        if self.is_for_device(Robots::One(&robot), Question::Minimum)
+        let one = Robots::One(&robot);
+        if self.is_for_device(one, Question::Minimum)
             && let Some(least) = self.search_one(
                 &robot,
                 Question::Minimum,
                 LinkProximity::placeholder(),
-                minimum_of,
+                minimum_of(one),
             )?
         {
             return Ok((least.distance <= bound).then_some(least));
@@ -501,9 +480,10 @@ impl Engine for GpuSearch {
     }
 
     fn ask_clears(&mut self, robot: PlacedRobot, margin: Real) -> Result<bool, ProximityError> {
-        let question = Question::Clears(margin);
-        if self.is_for_device(Robots::One(&robot), question)
-            && let Some(clears) = self.search_one(&robot, question, false, clears_of(margin))?
+        let (question, one) = (Question::Clears(margin), Robots::One(&robot));
+        if self.is_for_device(one, question)
+            && let Some(clears) =
+                self.search_one(&robot, question, false, clears_of(one, margin))?
         {
             return Ok(clears);
         }
@@ -520,7 +500,7 @@ impl Engine for GpuSearch {
         let question = Question::Within(query.margin);
         if self.is_for_device(Robots::One(&robot), question)
             && let Some(mut near) =
-                self.search_one(&robot, question, Vec::new(), |_, found, out| {
+                self.search_one(&robot, question, Vec::new(), |_, _, _, found, out| {
                     *out = Ok(found.candidates.to_vec());
                     true
                 })?
@@ -555,7 +535,7 @@ impl Engine for GpuSearch {
             question,
             out,
             Vec::new,
-            |measure, found, out| measure.per_link(found, out),
+            per_link_of(Robots::Batch(robots)),
             |cpu, robots, out| cpu.ask_per_link_batch(robots, out),
         )
     }
@@ -574,7 +554,7 @@ impl Engine for GpuSearch {
             question,
             out,
             LinkProximity::placeholder,
-            minimum_of,
+            minimum_of(Robots::Batch(robots)),
             |cpu, robots, out| cpu.ask_minimum_batch(robots, out),
         )
     }
@@ -594,7 +574,7 @@ impl Engine for GpuSearch {
             question,
             out,
             || false,
-            clears_of(margin),
+            clears_of(Robots::Batch(robots), margin),
             |cpu, robots, out| cpu.ask_clears_batch(robots, margin, out),
         )
     }
@@ -609,24 +589,47 @@ impl Engine for GpuSearch {
     }
 }
 
-/// Writes the answer of a robot's minimum. Returns false if it has no candidate.
-fn minimum_of(
-    measure: Measure,
-    found: Found,
-    out: &mut Result<LinkProximity, ProximityError>,
-) -> bool {
-    let Some(least) = measure.minimum(found) else { return false };
-    *out = Ok(least);
-    true
+/// Writes the nearest triangle of each link of a robot. The function returns false if a link has no
+/// candidate.
+fn per_link_of(
+    robots: Robots,
+) -> impl Fn(Level, &Mesh, usize, Found, &mut Result<Vec<LinkProximity>, ProximityError>) -> bool + Sync
+{
+    move |level, mesh, robot, found, out| {
+        let placed = robots.placed(robot);
+        placed.is_ok_and(|robot| Measure { level, mesh, robot: &robot }.per_link(found, out))
+    }
 }
 
-/// Writes whether a robot clears the margin.
+/// Writes the minimum of a robot. The function returns false if it has no candidate.
+fn minimum_of(
+    robots: Robots,
+) -> impl Fn(Level, &Mesh, usize, Found, &mut Result<LinkProximity, ProximityError>) -> bool + Sync
+{
+    move |level, mesh, robot, found, out| {
+        let Ok(robot) = robots.placed(robot) else { return false };
+        let least = Measure { level, mesh, robot: &robot }.minimum(found);
+        least.is_some_and(|least| {
+            *out = Ok(least);
+            true
+        })
+    }
+}
+
+/// Writes whether a robot clears the margin. Most robots need not be placed for that.
 fn clears_of(
+    robots: Robots,
     margin: Real,
-) -> impl Fn(Measure, Found, &mut Result<bool, ProximityError>) -> bool + Sync {
-    move |measure, found, out| {
-        *out = Ok(measure.clears(found, margin));
-        true
+) -> impl Fn(Level, &Mesh, usize, Found, &mut Result<bool, ProximityError>) -> bool + Sync {
+    move |level, mesh, robot, found, out| {
+        if let Some(decision) = found.decision() {
+            *out = Ok(decision);
+            return true;
+        }
+        robots.placed(robot).is_ok_and(|robot| {
+            *out = Ok(Measure { level, mesh, robot: &robot }.clears(found, margin));
+            true
+        })
     }
 }
 

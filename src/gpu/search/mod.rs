@@ -3,7 +3,8 @@
 //! | file | contents |
 //! |---|---|
 //! | `engine` | the engine: [`GpuSearch`] |
-//! | `batch` | a batch: packing, the two passes, measuring, and the proof that no answer is lost |
+//! | `batch` | a batch: the two passes, measuring, and the proof that no answer is lost |
+//! | `chunk` | a chunk of a batch: layout, upload and submission |
 //! | `robots` | the robots of a batch, and how chains are packed |
 //! | `sections`, `bending` | robots of sections of constant curvature: the device computes points |
 //! | `bounds` | the bounds in single precision, with their rounding; `twin` repeats the kernels |
@@ -16,6 +17,7 @@ mod bending;
 #[cfg(test)]
 mod bending_tests;
 mod bounds;
+mod chunk;
 mod device;
 mod engine;
 pub(super) mod kernels;

@@ -1,14 +1,15 @@
 //! The robots of a batch in the form that the device gets.
 
 use super::bending::BendingQuery;
-use super::bounds::{SearchCap, error_of};
+use super::bounds::{ErrorBound, SearchCap};
 use crate::answer::ProximityError;
 use crate::distance::Vec3;
 use crate::distance::lanes::Lane;
-use crate::mesh::SearchFrame;
+use crate::mesh::{SearchFrame, round};
 use crate::pair::PlacedRobot;
 use crate::robot::{Chain, ModifiedCylinder};
-use parry3d_f64::math::{Pose, Real};
+use gpu_batch::wgpu::WriteOnly;
+use parry3d_f64::math::{Pose, Real, Vector};
 
 /// The robots of a batch. A **shape** is what the device gets of a robot beside its radii and caps.
 pub(super) trait Packed: Copy + Sync {
@@ -24,8 +25,8 @@ pub(super) trait Packed: Copy + Sync {
     /// Whether a robot has the radii and caps of the robot before.
     fn is_like_before(self, robot: usize) -> bool;
 
-    /// Writes the radius and the caps of each link.
-    fn write_radii(self, robot: usize, frame: &SearchFrame, bytes: &mut [u8]);
+    /// Writes the radius and the caps of each link, or nothing into no bytes.
+    fn write_radii(self, robot: usize, frame: &SearchFrame, bytes: WriteOnly<[u8]>);
 
     /// The parameters with which the device computes the points of a chunk of robots; `None` if the
     /// shapes are the points.
@@ -34,7 +35,7 @@ pub(super) trait Packed: Copy + Sync {
     /// Appends what comes before all shapes.
     fn write_base(self, frame: &SearchFrame, bytes: &mut Vec<u8>);
 
-    /// The bytes of the shape of a robot with this number of links.
+    /// The bytes of the shape of a robot with this number of links; 0 for none.
     fn shape_size(self, links: u32) -> usize;
 
     /// Writes a shape. Returns the error of its points beside rounding; `None` if the device cannot
@@ -46,7 +47,7 @@ pub(super) trait Packed: Copy + Sync {
         self,
         robot: usize,
         frame: &SearchFrame,
-        bytes: &mut [u8],
+        bytes: WriteOnly<[u8]>,
     ) -> Result<Option<f32>, ProximityError>;
 }
 
@@ -97,10 +98,11 @@ impl Packed for Robots<'_> {
                 && one.iter().zip(other).all(|(one, other)| shape(one) == shape(other)))
     }
 
-    fn write_radii(self, robot: usize, frame: &SearchFrame, bytes: &mut [u8]) {
-        for (bytes, link) in bytes.chunks_exact_mut(8).zip(self.links_of(robot)) {
+    fn write_radii(self, robot: usize, frame: &SearchFrame, bytes: WriteOnly<[u8]>) {
+        let (pairs, _) = bytes.into_chunks::<8>();
+        for (pair, link) in pairs.into_iter().zip(self.links_of(robot)) {
             let caps = SearchCap::of(link.flat());
-            write_numbers(bytes, &[radius_of(link, frame), SearchCap::code(caps)]);
+            pair.write(bytes_of([radius_of(link, frame), SearchCap::code(caps)]));
         }
     }
 
@@ -111,7 +113,7 @@ impl Packed for Robots<'_> {
     fn write_base(self, _: &SearchFrame, _: &mut Vec<u8>) {}
 
     fn shape_size(self, links: u32) -> usize {
-        12 * (links as usize + 1)
+        if links == 0 { 0 } else { 12 * (links as usize + 1) }
     }
 
     /// The device can search for the robot if all numbers are in range, and if the error of its
@@ -120,29 +122,34 @@ impl Packed for Robots<'_> {
         self,
         robot: usize,
         frame: &SearchFrame,
-        bytes: &mut [u8],
+        bytes: WriteOnly<[u8]>,
     ) -> Result<Option<f32>, ProximityError> {
         let robot = self.placed(robot)?;
-        let mut is_resolved = is_fine(frame);
-        let mut bytes = bytes.chunks_exact_mut(12);
+        let links = robot.links();
+        let (points, _) = bytes.into_chunks::<12>();
+        let mut points = points.into_iter();
         let mut write = |point: Vec3<f32>| {
-            if let Some(bytes) = bytes.next() {
-                write_numbers(bytes, &<[f32; 3]>::from(point));
+            if let Some(bytes) = points.next() {
+                bytes.write(bytes_of(<[f32; 3]>::from(point)));
             }
         };
-        let [base, _] = robot.ends();
-        let mut start = frame.point(base);
+        let ([x, y, z], origin) = robot.axes_in(frame);
+        let place = |point: Vector| round(x * point.x + y * point.y + z * point.z + origin);
+        let mut start = place(links[0].start());
         write(start);
-        for (link, end) in robot.links().iter().zip(robot.link_ends()) {
-            let end = frame.point(end);
-            let radius = radius_of(link, frame);
-            let reach = start.largest().max(end.largest()).max(radius);
-            let error = error_of([start, end], radius, SearchCap::of(link.flat()));
-            is_resolved &= Real::from(reach) <= <f32 as Lane>::FARTHEST
-                && 4.0 * Real::from(error) <= frame.typical;
+        let mut bound = ErrorBound::default();
+        for link in links {
+            let end = place(link.end());
             write(end);
+            bound.add([start, end], radius_of(link, frame), link.flat());
             start = end;
         }
+        let reach = Real::from(bound.reach());
+        let is_resolved = is_fine(frame)
+            // The links are measured where another formula places them.
+            && robot.rounding() * frame.scale <= Real::from(f32::EPSILON) * 1e-3 * reach
+            && reach <= <f32 as Lane>::FARTHEST
+            && 4.0 * Real::from(bound.error()) <= frame.typical;
         Ok(is_resolved.then_some(0.0))
     }
 }
@@ -152,11 +159,11 @@ pub(super) fn is_fine(frame: &SearchFrame) -> bool {
     frame.least < Real::from(f32::EPSILON) * 1e-3
 }
 
-/// Writes numbers as the device reads them.
-pub(super) fn write_numbers(bytes: &mut [u8], numbers: &[f32]) {
-    for (bytes, number) in bytes.chunks_exact_mut(4).zip(numbers) {
-        bytes.copy_from_slice(&number.to_ne_bytes());
-    }
+/// Numbers as the device reads them.
+pub(super) fn bytes_of<const N: usize, const BYTES: usize>(numbers: [f32; N]) -> [u8; BYTES] {
+    let mut bytes = [0; BYTES];
+    bytes.copy_from_slice(numbers.map(f32::to_ne_bytes).as_flattened());
+    bytes
 }
 
 fn radius_of(link: &ModifiedCylinder, frame: &SearchFrame) -> f32 {

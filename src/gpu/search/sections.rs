@@ -65,8 +65,8 @@ impl GpuSearch {
         }
         out.resize(robots.len(), Ok(false));
         let answer = |level, mesh: &Mesh, robot, found: Found, out: &mut _| {
-            if found.is_hit || found.candidates.is_empty() {
-                *out = Ok(!found.is_hit);
+            if let Some(decision) = found.decision() {
+                *out = Ok(decision);
                 return true;
             }
             // Where a segment has lost its length, the links of the chain have other numbers.
@@ -80,7 +80,7 @@ impl GpuSearch {
             })
         };
         let question = Question::Clears(margin);
-        self.search_packed(bent, question, out, answer).inspect_err(|_| out.clear())?;
+        self.search(bent, question, out, answer).inspect_err(|_| out.clear())?;
         let left = self.take_left();
         let some: Vec<_> = left.iter().map(|&robot| robots[robot].as_ref()).collect();
         let mut answers = Vec::new();

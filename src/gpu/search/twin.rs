@@ -166,7 +166,7 @@ impl<'a> TwinTree<'a> {
 }
 
 mod tests {
-    use super::super::bounds::{self, SearchCap};
+    use super::super::bounds::{ErrorBound, SearchCap};
     use super::super::device::DeviceTree;
     use super::super::kernels::text_of_bounds;
     use super::*;
@@ -367,8 +367,14 @@ mod tests {
                 let limit = d + link.radius() + found[2];
                 assert!(found[3].sqrt() <= limit * (1.0 + 1e-6), "{}", what());
                 let (ends, radius, _) = in_frame(link, *corners);
-                let error = bounds::error_of(ends, radius, *caps);
+                let error = SearchedLink::<false>::new(ends, radius, *caps).error;
                 assert!((found[2] / f64::from(error) - 1.0).abs() < 1e-5, "{}", what());
+                // The host's bound, for the link as it is.
+                let error =
+                    SearchedLink::<false>::new(ends, radius, SearchCap::of(link.flat())).error;
+                let mut bound = ErrorBound::default();
+                bound.add(ends, radius, link.flat());
+                assert!(error <= bound.error() * (1.0 + 1e-5), "{}", what());
                 place += 1;
             })
             .unwrap();
