@@ -256,6 +256,26 @@ impl Device {
         pass.dispatch_workgroups(wide, workgroups.div_ceil(wide), 1);
     }
 
+    /// Memory of `size` bytes, at least one, that the device copies to a place in `buffer` before the
+    /// next submitted commands. The memory may be written on any thread, and counts once it is
+    /// dropped. Offset and size are multiples of 4.
+    ///
+    /// # Errors
+    /// The device has failed since `watch` was asked last, or does not have the memory.
+    pub fn upload(
+        &self,
+        watch: &mut Watch,
+        buffer: &wgpu::Buffer,
+        offset: u64,
+        size: wgpu::BufferSize,
+    ) -> Result<wgpu::QueueWriteBufferView, DeviceFailure> {
+        let view = self.queue().write_buffer_with(buffer, offset, size);
+        view.ok_or_else(|| {
+            self.poll(wgpu::PollType::Poll);
+            watch.check().err().unwrap_or(DeviceFailure::OutOfMemory)
+        })
+    }
+
     /// Submits commands and has `read` take `size` bytes of `from`, a buffer for reading, once they
     /// are done.
     ///
@@ -319,10 +339,13 @@ impl Device {
     }
 
     fn wait(&self, submission: wgpu::SubmissionIndex) {
+        self.poll(wgpu::PollType::Wait { submission_index: Some(submission), timeout: None });
+    }
+
+    fn poll(&self, how: wgpu::PollType) {
         // `wgpu` panics when it finds a device lost while it waits; here that is an error like any
         // other.
-        let wait = wgpu::PollType::Wait { submission_index: Some(submission), timeout: None };
-        if !matches!(catch_unwind(AssertUnwindSafe(|| self.raw().poll(wait))), Ok(Ok(_))) {
+        if !matches!(catch_unwind(AssertUnwindSafe(|| self.raw().poll(how))), Ok(Ok(_))) {
             self.0.failures.report(DeviceFailure::Lost);
         }
     }

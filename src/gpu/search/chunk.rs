@@ -198,18 +198,18 @@ impl Chunk {
             self.inputs = None;
         }
         let inputs = self.inputs.get_or_insert_with(|| Inputs::new(searched, sizes));
-        let queue = gpu.device.queue();
+        let (device, queue) = (&gpu.device, gpu.device.queue());
         let mut upload = |buffer: &Buffer, offset: &mut u64, size: usize| {
             let Some(size) = BufferSize::new(size as u64) else { return Ok(None) };
-            let view = queue.write_buffer_with(buffer, *offset, size);
+            let view = device.upload(watch, buffer, *offset, size)?;
             *offset += size.get();
-            view.map(Some).ok_or_else(|| watch.check().err().unwrap_or(DeviceFailure::OutOfMemory))
+            Ok(Some(view))
         };
         self.part_bytes.resize(self.parts as usize * PART_SIZE as usize, 0);
         let mut all_parts = &mut self.part_bytes[..];
         let (mut radii_at, mut shapes_at) = (points, 0);
         let mut shape_buffer = &inputs.numbers;
-        if let Some(bending) = &inputs.bending {
+        if let Some((_, bending)) = self.bending.zip(inputs.bending.as_ref()) {
             queue.write_buffer(&bending.sections, 0, &base);
             (shape_buffer, shapes_at) = (&bending.sections, base.len() as u64);
         }
