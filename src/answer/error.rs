@@ -183,7 +183,8 @@ pub enum ProximityError {
         /// The arc length near which the curve is not finite.
         arc_length: Real,
     },
-    /// A motion has no shape at some time, or violates one of its stated properties.
+    /// A motion has no shape at some time, or violates one of its stated properties; or sections of
+    /// constant curvature are no robot.
     #[error(transparent)]
     Motion(#[from] RobotError),
     /// One of two motions has no shape at some time, or violates one of its stated properties.

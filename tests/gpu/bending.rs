@@ -177,6 +177,39 @@ fn bad_sections_cost_the_others_nothing() {
     }
 }
 
+/// A mesh so far out that double precision rounds the chain's place, and lengths near the limit of
+/// coordinates: what the CPU rounds or refuses, the device must not decide.
+#[test]
+fn far_and_huge_robots_are_those_of_the_chains() {
+    let mut random = Random::new(98);
+    let (mut clear, mut all) = (0, 0);
+    for (far, size) in
+        [(0.0, 1.0), (1e9, 1.0), (1e12, 1.0), (1e14, 1.0), (0.0, 1e148), (0.0, 1e-140)]
+    {
+        let origin = random.direction() * far;
+        let (mut vertices, indices) = Ball::new(size).to_trimesh(12, 6);
+        vertices.iter_mut().for_each(|vertex| *vertex += origin);
+        let mesh = TriMesh::new(vertices, indices).unwrap();
+        let Some((mut engine, mut reference)) = engines(&mesh) else { return };
+        for _ in 0..8 {
+            let mut robots: Vec<[_; 2]> = robots(&mut random, 30, 1.5 * size, 2.0);
+            robots[7][1].length *= 1e3;
+            robots[8][0].radius *= 1e3;
+            let mut pose = random.pose(1.0);
+            let out = [0.3, 200.0][random.below(2) as usize];
+            pose.translation = origin + random.point() * (out * size);
+            let (points, radii) = ConstantCurvature::new(&robots[0]).unwrap().points(3);
+            let chain = Chain::from_centreline(&points, &radii).unwrap();
+            let least = reference.minimum(&chain, &pose).map_or(size, |found| found.distance);
+            for margin in [0.0, least, least * (1.0 + 1e-6), 0.1 * size] {
+                clear += check((&mut engine, &mut reference), &robots, 3, &pose, margin);
+                all += robots.len();
+            }
+        }
+    }
+    assert!(all / 10 < clear && clear < all * 9 / 10, "{clear} of {all}");
+}
+
 /// A batch of more links than the device gets at once, in turn with chains.
 #[test]
 fn a_batch_of_sections_takes_several_chunks() {

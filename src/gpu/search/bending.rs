@@ -50,6 +50,8 @@
 //! 6. **Q v Q\*** is computed as `v + 2 w (a x v) + 2 a x (a x v)` with `Q = (a, w)`. It errs by 40
 //!    of `|v| <= l` by rounding, and by `6 D_i |v|` with Q.
 //! 7. **P** is rounded by 2 R at the base, and at each sum.
+//! 8. The chain that the CPU builds is placed in double precision, far from the origin of the mesh
+//!    too. No robot is computed here whose places are rounded by more than 2^-8 u R there.
 //!
 //! A link is moved by delta at most, and its axis turns: a chord has at least 2 / pi of its arc,
 //! because no segment turns by more than pi. So the axis turns by at most `2 delta / (0.63 c)`, and
@@ -59,9 +61,10 @@ use super::bounds::{FLAT_ERROR, SearchCap, TURN_ERROR, UNIT};
 use super::robots::{Packed, bytes_of, is_fine};
 use crate::answer::ProximityError;
 use crate::curve::{BendingSection, ConstantCurvature};
+use crate::distance::Scalar;
 use crate::distance::lanes::Lane;
 use crate::mesh::SearchFrame;
-use crate::robot::{Chain, RobotError};
+use crate::robot::{COORDINATE_LIMIT, Chain, RobotError};
 use gpu_batch::wgpu::WriteOnly;
 use gpu_batch::{record, wgsl};
 use parry3d_f64::math::{Pose, Real, Vector};
@@ -120,8 +123,8 @@ impl<'a, S: AsRef<[BendingSection]>> BentRobots<'a, S> {
     }
 
     /// `more_error` of the links of a robot. `None` if the device cannot search for the robot: the
-    /// number of its sections differs, a number is invalid, a section bends too much, or the bounds
-    /// would be loose.
+    /// number of its sections differs, a number is invalid or nearly out of range, a section bends
+    /// too much, or the bounds would be loose.
     fn more_error(self, sections: &[BendingSection], frame: &SearchFrame) -> Option<f32> {
         if sections.len() != self.each || sections.is_empty() {
             return None;
@@ -130,6 +133,8 @@ impl<'a, S: AsRef<[BendingSection]>> BentRobots<'a, S> {
         let base = ((self.pose.translation - frame.centre) * frame.scale).length();
         let all: Real = sections.iter().map(|section| section.length).sum();
         let reach = base + all * frame.scale;
+        // The largest coordinate in the mesh's frame, where the chain is placed and measured.
+        let largest = self.pose.translation.abs().max_element() + all;
         let (mut error, mut turn) = (2.0 * reach, 1.0);
         // Of the link that is shortest beside its radius, and of the shortest and the thickest.
         let (mut thickness, mut shortest, mut thickest) = (0.0, Real::INFINITY, 0.0);
@@ -141,8 +146,7 @@ impl<'a, S: AsRef<[BendingSection]>> BentRobots<'a, S> {
             let is_computed = angle <= TAU
                 && angle <= PI * self.segments as Real
                 && arc > 0.0
-                && radius >= 0.0
-                && radius <= <f32 as Lane>::FARTHEST;
+                && (0.0..=<f32 as Lane>::FARTHEST).contains(&radius);
             if !is_computed {
                 return None;
             }
@@ -158,9 +162,14 @@ impl<'a, S: AsRef<[BendingSection]>> BentRobots<'a, S> {
         let reach = reach.max(thickest).max(1.0);
         let bounds = reach * (flat_error + turn_error * thickness / 0.6);
         let is_resolved = is_fine(frame)
+            && largest + thickest / frame.scale <= 0.5 * COORDINATE_LIMIT
+            // The rounding of a placed robot in double precision (`PlacedRobot`).
+            && 384.0 * Real::UNIT_ROUNDOFF * largest * frame.scale
+                <= Real::from(f32::EPSILON) * 1e-3 * reach.max(1.0)
             && reach <= <f32 as Lane>::FARTHEST
             && 16.0 * delta <= shortest
-            && 4.0 * (bounds + more) <= frame.typical;
+            // Few robots are so near the margin that the CPU must build their chains.
+            && bounds + more <= frame.typical;
         is_resolved.then(|| (more as f32).next_up())
     }
 

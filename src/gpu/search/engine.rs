@@ -27,6 +27,8 @@ use std::time::Duration;
 /// The least number of links per core of the CPU for which a batch runs on the device, for each
 /// kind of question. Estimates: they were not measured with this engine. Contacts have no batch.
 const MIN_LINKS: [usize; Question::KINDS] = [240, 480, 15_000, usize::MAX];
+/// Candidates that are measured at once for a decision.
+const AT_ONCE: usize = 64;
 /// From this number of triangles on, a refit after a move takes longer on the CPU than on the
 /// device.
 const MANY_TRIANGLES: usize = 1 << 16;
@@ -56,8 +58,8 @@ const MANY_TRIANGLES: usize = 1 << 16;
 ///   CPU.
 ///
 /// Robots that single precision does not resolve are searched on the CPU. So are robots with a link
-/// that has more than 2,048 candidates, with more than a million links, and robots for which the
-/// driver stops a long loop.
+/// that has more than 2,048 candidates, with more than a million links, robots whose candidates find
+/// no room in the device's largest buffer, and robots for which the driver stops a long loop.
 /// [`answered_on_cpu`](Self::answered_on_cpu) counts them.
 ///
 /// ```no_run
@@ -429,13 +431,15 @@ impl Measure<'_> {
         if found.is_hit {
             return false;
         }
-        let links: Vec<_> =
-            found.candidates.iter().map(|&(link, _)| robot.link(link as usize)).collect();
-        let pairs =
-            links.iter().zip(found.candidates).map(|(link, &(_, triangle))| (link, triangle));
-        let mut is_clear = true;
-        rank_each(level, mesh, pairs, |ranked| is_clear &= ranked.nearest.distance > margin);
-        is_clear
+        // A few at a time, because the first within the margin decides.
+        found.candidates.chunks(AT_ONCE).all(|candidates| {
+            let links: Vec<_> =
+                candidates.iter().map(|&(link, _)| robot.link(link as usize)).collect();
+            let pairs = links.iter().zip(candidates).map(|(link, &(_, triangle))| (link, triangle));
+            let mut is_clear = true;
+            rank_each(level, mesh, pairs, |ranked| is_clear &= ranked.nearest.distance > margin);
+            is_clear
+        })
     }
 }
 

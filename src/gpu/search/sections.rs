@@ -28,7 +28,10 @@ impl GpuSearch {
     /// where single precision does not decide.
     ///
     /// The CPU searches for robots that have another number of sections than the first, or bend by
-    /// more than pi in a link or by more than 2 pi in a section.
+    /// more than pi in a link or by more than 2 pi in a section; and for robots that single
+    /// precision does not resolve, because the mesh is fine beside the rounding of many sections or
+    /// of links that are short beside their radius. [`answered_on_cpu`](Self::answered_on_cpu)
+    /// counts them. Small batches run on the CPU: see [`set_min_links`](Self::set_min_links).
     ///
     /// ```no_run
     /// use parry_continuum::BendingSection;
