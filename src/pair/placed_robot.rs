@@ -71,9 +71,12 @@ impl<'a> PlacedRobot<'a> {
         (axes, (self.pose.translation - frame.centre) * frame.scale)
     }
 
-    /// Returns an upper bound on the rounding error of a link's place, also where it is placed by
-    /// its axes and its origin: less than 20 u of the sum of the magnitudes of three products and
-    /// of the origin, which is within the derivation of `slack`.
+    /// Returns an upper bound on the distance between a point placed by the pose and by
+    /// [`axes_in`](Self::axes_in), in the mesh's frame.
+    ///
+    /// By the axes a point p errs by less than 45 u |p| (an axis by 20 u, its product and the sums
+    /// by 4 u, times at most sqrt(3)) and u of the origin. With the error by the pose this is within
+    /// the 128 u of `slack`.
     #[cfg(feature = "gpu")]
     pub(crate) fn rounding(&self) -> Real {
         self.slack
