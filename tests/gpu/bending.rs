@@ -177,6 +177,27 @@ fn bad_sections_cost_the_others_nothing() {
     }
 }
 
+/// Robots with another number of sections than most are left to the CPU, wherever they stand.
+#[test]
+fn robots_may_have_different_numbers_of_sections() {
+    let (vertices, indices) = Ball::new(10.0).to_trimesh(40, 20);
+    let mesh = TriMesh::new(vertices, indices).unwrap();
+    let Some((mut engine, mut reference)) = engines(&mesh) else { return };
+    let mut random = Random::new(99);
+    let three: Vec<[BendingSection; 3]> = robots(&mut random, 60, 12.0, 2.0);
+    let mut batch: Vec<_> = three.iter().map(|robot| robot.to_vec()).collect();
+    for (number, left) in [(0, 2), (7, 1), (8, 0), (30, 1), (59, 2)] {
+        batch[number].truncate(left);
+    }
+    let (mut found, mut expected) = (Vec::new(), Vec::new());
+    engine.clears_sections_batch(&batch, 5, &Pose::IDENTITY, 0.5, &mut found).unwrap();
+    reference.clears_sections_batch(&batch, 5, &Pose::IDENTITY, 0.5, &mut expected).unwrap();
+    assert_eq!(found, expected);
+    assert_eq!(found.iter().filter(|answer| answer.is_err()).count(), 1);
+    // All but the robot without sections, which is refused before.
+    assert_eq!(engine.answered_on_cpu(), 4);
+}
+
 /// A mesh so far out that double precision rounds the chain's place, and lengths near the limit of
 /// coordinates: what the CPU rounds or refuses, the device must not decide.
 #[test]

@@ -6,7 +6,7 @@ use crate::curve::{BendingSection, ConstantCurvature};
 use crate::pair::{PlacedRobot, rigid_pose};
 use crate::query::check_margin;
 #[cfg(doc)]
-use crate::{proximity::Proximity, robot::Chain};
+use crate::{engine::Proximity, robot::Chain};
 use parry3d_f64::math::{Pose, Real};
 
 impl BvhSearch {

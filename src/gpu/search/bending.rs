@@ -90,7 +90,7 @@ record! {
 /// are segments.
 pub(super) struct BentRobots<'a, S> {
     robots: &'a [S],
-    /// The sections of a robot.
+    /// The number of sections of most robots. The device gets no others.
     pub each: usize,
     pub segments: usize,
     /// A rigid pose.
@@ -106,7 +106,7 @@ impl<S> Clone for BentRobots<'_, S> {
 
 impl<'a, S: AsRef<[BendingSection]>> BentRobots<'a, S> {
     pub(super) fn new(robots: &'a [S], segments: usize, pose: Pose) -> Self {
-        let each = robots.first().map_or(0, |first| first.as_ref().len());
+        let each = majority(robots.iter().map(|sections| sections.as_ref().len()));
         Self { robots, each, segments: segments.max(1), pose }
     }
 
@@ -254,6 +254,20 @@ impl<S: AsRef<[BendingSection]> + Sync> Packed for BentRobots<'_, S> {
         }
         Ok(Some(error))
     }
+}
+
+/// The number that more than half of all are, if there is one; else any of them. (Boyer and Moore:
+/// each number cancels another one.)
+fn majority(numbers: impl Iterator<Item = usize>) -> usize {
+    let (mut most, mut lead) = (0, 0_usize);
+    for number in numbers {
+        match lead.checked_sub(1) {
+            _ if number == most => lead += 1,
+            Some(less) => lead = less,
+            None => (most, lead) = (number, 1),
+        }
+    }
+    most
 }
 
 /// The coefficients of cos(h) and of sin(h) / h as polynomials of `h^2`, the constant first.

@@ -8,10 +8,10 @@ use super::kernels::Question;
 use super::robots::Packed;
 use crate::answer::ProximityError;
 use crate::curve::BendingSection;
+#[cfg(doc)]
+use crate::engine::BvhSearch;
 use crate::mesh::Mesh;
 use crate::pair::{PlacedRobot, rigid_pose};
-#[cfg(doc)]
-use crate::proximity::BvhSearch;
 use crate::query::check_margin;
 use parry3d_f64::math::{Pose, Real};
 
@@ -27,8 +27,8 @@ impl GpuSearch {
     /// the points of the robots: only the sections are uploaded, and the CPU builds chains only
     /// where single precision does not decide.
     ///
-    /// The CPU searches for robots that have another number of sections than the first, or bend by
-    /// more than pi in a link or by more than 2 pi in a section; and for robots that single
+    /// The CPU searches for robots that have another number of sections than most, or bend by more
+    /// than pi in a link or by more than 2 pi in a section; and for robots that single
     /// precision does not resolve, because the mesh is fine beside the rounding of many sections or
     /// of links that are short beside their radius. [`answered_on_cpu`](Self::answered_on_cpu)
     /// counts them. Small batches run on the CPU: see [`set_min_links`](Self::set_min_links).
