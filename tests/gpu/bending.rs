@@ -166,6 +166,9 @@ fn bad_sections_cost_the_others_nothing() {
         assert_eq!(bad.iter().filter(|answer| answer.is_err()).count(), 8);
         check::<2>((&mut engine, &mut reference), &[], segments, &pose, 0.5);
         check::<0>((&mut engine, &mut reference), &[[], []], segments, &pose, 0.5);
+        // No count of links overflows.
+        let none = [[BendingSection { length: f64::NAN, radius: 1.0, bend: [0.0; 2] }; 2]; 2];
+        check((&mut engine, &mut reference), &none, usize::MAX, &pose, 0.5);
         // Fewer than one segment count as one.
         check((&mut engine, &mut reference), &robots, 0, &pose, 0.5);
         let mut out = vec![Ok(true)];

@@ -273,10 +273,10 @@ impl GpuSearch {
             None if self.is_cpu_stale && self.mesh.len() >= MANY_TRIANGLES => 0,
             None => each.saturating_mul(threads()),
         };
-        let mut links = 0;
+        let mut links = 0_usize;
         min == 0
             || (0..robots.len()).any(|robot| {
-                links += robots.links(robot);
+                links = links.saturating_add(robots.links(robot));
                 links >= min
             })
     }
