@@ -443,9 +443,10 @@ import resource
 from pathlib import Path
 import numpy as np
 from parry_continuum import ContinuumError, Mesh
-from shapes import robots, sphere
-mesh = Mesh(*sphere(), device="gpu")
-many = robots(np.random.default_rng(0), 2**18, points=2)
+from test_gpu import fan
+# All triangles are equally near, and the room for candidates grows to more than 100 MB.
+mesh = Mesh(*fan(900), device="gpu")
+many = np.array([[0, 0, -1], [0, 0, -1.5]]) + np.random.default_rng(0).uniform(-0.1, 0.1, (40_000, 1, 3))
 few = many[:20_000]
 expected = Mesh(mesh).minimum(few, 0.1)
 # Too few links of 40 threads for the GPU: makes the robots, so that the next batch needs memory for its buffers alone.

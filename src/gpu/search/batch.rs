@@ -52,7 +52,7 @@ use crate::answer::ProximityError;
 use crate::gpu::opened::Opened;
 use crate::mesh::SearchFrame;
 use crate::threads::each;
-use gpu_batch::{Clock, DeviceFailure, READINGS, Watch};
+use gpu_batch::{Clock, Device, DeviceFailure, READINGS, Watch};
 use std::time::Duration;
 
 /// The least room for entries, for each kind of question: per link if the query answers each link,
@@ -122,6 +122,33 @@ impl Batches {
     /// # Errors
     /// The device has failed since the last batch, or did not answer.
     pub(super) fn run<A: Send>(
+        &mut self,
+        searched: Searched,
+        robots: impl Packed,
+        question: Question,
+        out: &mut [Result<A, ProximityError>],
+        answer: impl Fn(usize, Found, &mut Result<A, ProximityError>) -> bool + Sync,
+    ) -> Result<(), DeviceFailure> {
+        let done = self.run_chunks(searched, robots, question, out, answer);
+        if done.is_err() {
+            self.abandon(&searched.gpu.device);
+        }
+        done
+    }
+
+    /// Waits for the chunks that the device still has. A buffer that vanishes while it is waited for
+    /// would be reported as another failure.
+    fn abandon(&mut self, device: &Device) {
+        let Self { watch, slots, .. } = self;
+        for slot in slots {
+            if let Some((submitted, readback)) = slot.submitted.take().zip(slot.readback()) {
+                // The batch has failed already.
+                let _ = device.read(watch, submitted, readback, |_| Ok(()));
+            }
+        }
+    }
+
+    fn run_chunks<A: Send>(
         &mut self,
         searched: Searched,
         robots: impl Packed,
