@@ -75,8 +75,8 @@ impl<'a> PlacedRobot<'a> {
     /// [`axes_in`](Self::axes_in), in the mesh's frame.
     ///
     /// By the axes a point p errs by less than 45 u |p| (an axis by 20 u, its product and the sums
-    /// by 4 u, times at most sqrt(3)) and u of the origin. With the error by the pose this is within
-    /// the 128 u of `slack`.
+    /// by 4 u, times at most sqrt(3)) and u of the origin. With the error by the pose this is
+    /// within the 128 u of `slack`.
     #[cfg(feature = "gpu")]
     pub(crate) fn rounding(&self) -> Real {
         self.slack

@@ -256,8 +256,8 @@ impl Device {
         pass.dispatch_workgroups(wide, workgroups.div_ceil(wide), 1);
     }
 
-    /// Memory of `size` bytes, at least one, that the device copies to a place in `buffer` before the
-    /// next submitted commands. The memory may be written on any thread, and counts once it is
+    /// Memory of `size` bytes, at least one, that the device copies to a place in `buffer` before
+    /// the next submitted commands. The memory may be written on any thread, and counts once it is
     /// dropped. Offset and size are multiples of 4.
     ///
     /// # Errors

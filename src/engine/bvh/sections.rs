@@ -13,12 +13,12 @@ impl BvhSearch {
     /// Returns for many robots of sections of constant curvature whether they are farther than
     /// `margin` from the mesh, on all cores.
     ///
-    /// Each robot is its sections, base to tip. `segments` is the number of links of each section; 0
-    /// counts as 1. `pose` maps the frame of the robots to the mesh's frame. Writes one result per
-    /// robot to `out`, in order.
+    /// Each robot is its sections, base to tip. `segments` is the number of links of each section;
+    /// 0 counts as 1. `pose` maps the frame of the robots to the mesh's frame. Writes one result
+    /// per robot to `out`, in order.
     ///
-    /// [`ConstantCurvature::points`] and [`Chain::from_centreline`] build a chain of each robot. The
-    /// answers equal the answers of [`clears`](Proximity::clears) for these chains.
+    /// [`ConstantCurvature::points`] and [`Chain::from_centreline`] build a chain of each robot.
+    /// The answers equal the answers of [`clears`](Proximity::clears) for these chains.
     ///
     /// ```
     /// use parry_continuum::BendingSection;

@@ -116,8 +116,9 @@ impl Batches {
         self.slots = Default::default();
     }
 
-    /// Answers all robots except the robots in [`Batches::left`]. `answer` gets a robot's number and
-    /// what was found, and writes the answer. If it returns false, the robot is left to the CPU.
+    /// Answers all robots except the robots in [`Batches::left`]. `answer` gets a robot's number
+    /// and what was found, and writes the answer. If it returns false, the robot is left to the
+    /// CPU.
     ///
     /// # Errors
     /// The device has failed since the last batch, or did not answer.
@@ -136,8 +137,8 @@ impl Batches {
         done
     }
 
-    /// Waits for the chunks that the device still has. A buffer that vanishes while it is waited for
-    /// would be reported as another failure.
+    /// Waits for the chunks that the device still has. A buffer that vanishes while it is waited
+    /// for would be reported as another failure.
     fn abandon(&mut self, device: &Device) {
         let Self { watch, slots, .. } = self;
         for slot in slots {

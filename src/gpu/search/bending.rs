@@ -173,8 +173,8 @@ impl<'a, S: AsRef<[BendingSection]>> BentRobots<'a, S> {
         is_resolved.then(|| (more as f32).next_up())
     }
 
-    /// The caps of a link: flat at both ends of the robot and at the wider side of a step in radius.
-    /// Algorithm 1 may choose either cap elsewhere.
+    /// The caps of a link: flat at both ends of the robot and at the wider side of a step in
+    /// radius. Algorithm 1 may choose either cap elsewhere.
     pub(super) fn caps(self, sections: &[BendingSection], link: usize) -> [SearchCap; 2] {
         let (section, segment) = (link / self.segments, link % self.segments);
         let is_wider = |other: Option<&BendingSection>| {

@@ -2,8 +2,8 @@
 //!
 //! # Algorithm
 //! 1. **Lay out**: which parts, points and radii each robot has, and where they begin.
-//! 2. **Write** parts, shapes and radii, on all cores. Each core writes shapes and radii into memory
-//!    of its own from which the driver copies them to the device.
+//! 2. **Write** parts, shapes and radii, on all cores. Each core writes shapes and radii into
+//!    memory of its own from which the driver copies them to the device.
 //! 3. **Search**: compute the points if the shapes are sections; the passes of the question; copy
 //!    the results to where the CPU can read them.
 //!
@@ -336,7 +336,7 @@ impl Layout {
         if self.links == 0 { 0 } else { 3 * (self.links + 1) }
     }
 
-    /// Numbers of its radii and caps, unless they are those of the robot before.
+    /// Numbers of its radii and caps; 0 if they equal the radii and caps of the robot before.
     fn radii_size(&self) -> u32 {
         if self.is_alike { 0 } else { 2 * self.links }
     }

@@ -58,8 +58,8 @@ const MANY_TRIANGLES: usize = 1 << 16;
 ///   CPU.
 ///
 /// Robots that single precision does not resolve are searched on the CPU. So are robots with a link
-/// that has more than 2,048 candidates, with more than a million links, robots whose candidates find
-/// no room in the device's largest buffer, and robots for which the driver stops a long loop.
+/// that has more than 2,048 candidates, with more than a million links, robots whose candidates
+/// find no room in the device's largest buffer, and robots for which the driver stops a long loop.
 /// [`answered_on_cpu`](Self::answered_on_cpu) counts them.
 ///
 /// ```no_run
