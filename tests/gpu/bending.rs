@@ -242,12 +242,17 @@ fn a_batch_of_sections_takes_several_chunks() {
     let Some((mut engine, mut reference)) = engines(&mesh) else { return };
     let mut random = Random::new(97);
     let robots: Vec<[_; 2]> = robots(&mut random, 40_000, 12.0, 2.0);
-    let chain = Chain::from_centreline(&[Vector::ZERO, Vector::Z], &[0.5]).unwrap();
+    let chain = Chain::from_centreline(&[-Vector::X * 5.0, -Vector::X * 7.0], &[0.5]).unwrap();
     for _ in 0..2 {
         // Three chunks: two of 2^15 parts, and a smaller one.
         check((&mut engine, &mut reference), &robots, 20, &Pose::IDENTITY, 0.5);
         let pose = Pose::IDENTITY;
         assert_eq!(engine.minimum(&chain, &pose), reference.minimum(&chain, &pose));
+        // As few, so that the buffers are used again.
+        for _ in 0..2 {
+            check((&mut engine, &mut reference), &robots[..3], 20, &pose, 0.5);
+            assert_eq!(engine.minimum(&chain, &pose), reference.minimum(&chain, &pose));
+        }
     }
     assert_eq!(engine.answered_on_cpu(), 0);
 }
