@@ -48,6 +48,8 @@
 //! |---|---|
 //! | on which side of the mesh is a point? | [`side`] |
 //! | is the robot inside, and does it keep a margin? | [`clears_inside`] |
+//! | on which side is every link? | [`link_sides`] |
+//! | is the mesh open, and how wide? do its triangles face the same way? | [`surface`] |
 //!
 //! **Two robots**
 //!
@@ -153,6 +155,8 @@
 //! [`prove_motion`]: BvhSearch::prove_motion
 //! [`side`]: BvhSearch::side
 //! [`clears_inside`]: BvhSearch::clears_inside
+//! [`link_sides`]: BvhSearch::link_sides
+//! [`surface`]: BvhSearch::surface
 //! [`per_link_batch`]: Proximity::per_link_batch
 //! [`minimum_batch`]: Proximity::minimum_batch
 //! [`clears_batch`]: Proximity::clears_batch
@@ -169,11 +173,11 @@
 pub use crate::answer::DeviceFailure;
 pub use crate::answer::{
     Between, Certificate, Clearance, Contact, ContactFeature, Decision, Derivative, InsideAnswer,
-    LinkFeature, LinkProximity, MeshError, MotionAnswer, MotionClearance, PairWitness,
+    LinkFeature, LinkProximity, MeshError, MotionAnswer, MotionClearance, Opening, PairWitness,
     PlacementFault, Proof, ProximityError, RobotClearance, RobotMotionAnswer, RobotMotionClearance,
     RobotProximity, RobotsInContact, SceneClearance, SceneContact, SceneError, SceneMotionAnswer,
     SceneMotionClearance, SceneMotionContact, ScenePlace, ShapeInContact, Side, StructureProximity,
-    Tightest, TriangleFeature, TubePiece, UndecidedReason, Witness, Work,
+    SurfaceReport, Tightest, TriangleFeature, TubePiece, UndecidedReason, Witness, Work,
 };
 pub use crate::engine::{BvhSearch, Exhaustive, Proximity, RobotPair, SearchPrecision, SelfQuery};
 pub use crate::scene::{Scene, StructureEnd};

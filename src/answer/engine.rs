@@ -20,21 +20,29 @@ pub enum Side {
 }
 
 /// Whether a robot is inside a wall and keeps a margin to it: both, if [`holds`](Self::holds).
+///
+/// The side at the tip differs from the side at the base if the robot passes through the wall or
+/// leaves through an opening.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde-serialize", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct InsideAnswer {
     /// The side of the robot's base, the first point of its centreline.
     pub base: Side,
+    /// The side of the robot's tip, the last point of its centreline.
+    pub tip: Side,
+    /// Whether a link touches the lid of an [opening](super::Opening): the triangles between its
+    /// edges and its centre.
+    pub crosses_opening: bool,
     /// Whether every link is farther than the margin.
     pub clears: bool,
 }
 
 impl InsideAnswer {
-    /// Returns whether the base is inside and every link keeps the margin. In a closed mesh the
-    /// whole robot is then inside.
+    /// Returns whether the whole robot is inside and every link keeps the margin: base and tip are
+    /// inside, and no link touches the mesh or crosses an opening.
     pub fn holds(&self) -> bool {
-        self.base == Side::Inside && self.clears
+        [self.base, self.tip] == [Side::Inside; 2] && !self.crosses_opening && self.clears
     }
 }
 

@@ -8,6 +8,7 @@ mod motion;
 mod robots;
 mod scene;
 mod scene_motion;
+mod surface;
 mod tube;
 mod witness;
 
@@ -26,5 +27,6 @@ pub use scene::{Between, SceneContact, SceneError, StructureProximity, Tightest}
 pub use scene_motion::{
     SceneClearance, SceneMotionAnswer, SceneMotionClearance, SceneMotionContact, ScenePlace,
 };
+pub use surface::{Opening, SurfaceReport};
 pub use tube::{Clearance, Decision, TubePiece, UndecidedReason};
 pub use witness::{PairWitness, Witness};

@@ -36,6 +36,7 @@ mod scene_motions;
 mod scenes;
 mod side;
 mod structures;
+mod surface;
 mod thin_links;
 mod threads;
 mod ties;

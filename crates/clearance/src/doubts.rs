@@ -1,5 +1,6 @@
 //! What looks like a mistake, though an answer exists: a robot in another frame or unit than the
-//! wall, or a radius in another unit. The remedy is in the words of the options.
+//! wall, a radius in another unit, or a wall without an inside. The remedy is in the words of the
+//! options.
 
 use crate::number::short;
 use crate::options::Options;
@@ -24,6 +25,7 @@ pub fn doubts(my: &Options, robots: &[Robot], wall: &Wall, pose: &Pose) -> Vec<S
     let scale = misfits.remedy.map_or(1.0, |remedy| remedy.scale);
     let mut doubts = misfits.with_remedy(|change| options(change, my, wall));
     doubts.extend(radius_in_another_unit(my, robots, scale, &bounds));
+    doubts.extend(wall.search.surface().doubts());
     doubts
 }
 

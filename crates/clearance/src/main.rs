@@ -3,7 +3,8 @@
 //! # Algorithm
 //! 1. Read the wall (`wall`), the robots (`robot`) and the pose, and turn the robots into the
 //!    frame of the wall (`frames`).
-//! 2. Doubt a robot whose unit, radius or frame does not fit the wall (`doubts`).
+//! 2. Doubt a robot whose unit, radius or frame does not fit the wall, and a wall without an inside
+//!    (`doubts`).
 //! 3. Ask the engine for one robot (`single`) or for many (`shapes`).
 //! 4. Write the files (`plot`, `csv`, `proof`), then print the report (`report`).
 
@@ -20,6 +21,7 @@ mod proof;
 mod report;
 mod robot;
 mod shapes;
+mod sides;
 mod single;
 mod verdict;
 mod wall;
@@ -61,9 +63,9 @@ fn answer(my: &Options) -> Result<bool, String> {
     }
     let doubts = doubts::doubts(my, &robots, &wall, &pose);
     if my.shapes.is_some() {
-        shapes::answer(my, &robots, &mut wall, &pose, &doubts)
+        shapes::answer(my, &robots, &mut wall, &pose, doubts)
     } else {
-        single::answer(my, &robots[0], &mut wall, &pose, turned, &doubts)
+        single::answer(my, &robots[0], &mut wall, &pose, turned, doubts)
     }
 }
 

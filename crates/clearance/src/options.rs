@@ -18,7 +18,7 @@ pub struct Options {
     #[arg(long, value_name = "NUMBER", value_parser = |s: &str| whole::<u32>(s))]
     pub label: Option<u32>,
     /// List the labels of the segmentation with their volumes, and stop
-    #[arg(long, conflicts_with_all = ["centreline", "shapes"])]
+    #[arg(long, conflicts_with_all = ["centreline", "shapes", "inside"])]
     pub labels: bool,
     /// Accept a segmentation that does not state the position of its voxels: its first voxel
     /// becomes the origin
@@ -69,6 +69,11 @@ pub struct Options {
     /// verdict, and exit status 1 if it is not
     #[arg(long, value_name = "LENGTH", allow_negative_numbers = true, value_parser = length)]
     pub margin: Option<f64>,
+    /// Decide whether every link is inside the mesh, and keeps --margin if that is given: a line
+    /// with the verdict, and exit status 1 if not. A link that touches the mesh or crosses an
+    /// opening is not inside
+    #[arg(long)]
+    pub inside: bool,
     /// Also bound the clearance of the smooth curve through the points, between two bounds at most
     /// this far apart. --margin and --prove are then about the curve
     #[arg(long, value_name = "LENGTH", allow_negative_numbers = true, value_parser = positive)]
@@ -88,8 +93,8 @@ pub struct Options {
     pub json: bool,
 }
 
-const EXIT_STATUS: &str = "Exit status: 0, or 1 if --margin is not kept or cannot be proven, \
-                           or 2 after an error.";
+const EXIT_STATUS: &str = "Exit status: 0, or 1 if --margin is not kept or cannot be proven, or \
+                           if a link is not --inside, or 2 after an error.";
 
 impl Options {
     /// Reads the command line. Help goes to standard output; a usage error is one line on standard

@@ -1,18 +1,21 @@
 //! The report about one robot, as lines or as JSON.
 
 use crate::number::length;
+use crate::sides::{Sides, name, place};
 use crate::single::Proven;
-use crate::verdict::{Verdict, side};
+use crate::verdict::Verdict;
 use crate::wall::Wall;
 use mesh_files::Frame;
-use parry_continuum::proximity::{Clearance, LinkProximity, Proximity, Side, Witness};
+use parry_continuum::proximity::{Clearance, LinkProximity, Opening, Proximity, Witness};
 use serde_json::json;
 
 pub struct Report<'a> {
     pub wall: &'a Wall,
     /// The frames of robot and wall, if the robot was turned from one to the other.
     pub turned: Option<[Frame; 2]>,
-    pub base: Side,
+    pub sides: Sides,
+    /// Whether --inside asks for the sides.
+    pub asks_inside: bool,
     pub links: Vec<LinkProximity>,
     pub curve: Option<Clearance>,
     pub minimum: LinkProximity,
@@ -29,7 +32,11 @@ impl Report<'_> {
         if let Some([from, to]) = self.turned {
             lines.push(format!("robot: turned from {} to {}", from.name(), to.name()));
         }
-        lines.push(format!("base: {}", side(self.base)));
+        lines.push(format!("base: {}", place(self.sides.base)));
+        if !self.sides.is_one() {
+            lines.push(format!("tip: {}", place(self.sides.tip)));
+            lines.push(format!("sides: {}", self.sides.of_links()));
+        }
         let link = |found: &LinkProximity| {
             let Witness { on_robot, on_mesh, .. } = found.witness;
             let LinkProximity { link, distance, .. } = found;
@@ -52,7 +59,11 @@ impl Report<'_> {
                 }
             }
         }));
-        lines.extend(self.verdict.map(|verdict| verdict.describe(self.base, unit)));
+        if self.asks_inside {
+            let all = if self.sides.is_inside() { "every link" } else { "not every link" };
+            lines.push(format!("inside: {all}"));
+        }
+        lines.extend(self.verdict.map(|verdict| verdict.describe(&self.sides, unit)));
         lines.push(minimum(&format!("link {}", self.minimum.link), &self.minimum, self.wall));
         lines.join("\n") + "\n"
     }
@@ -60,19 +71,26 @@ impl Report<'_> {
     /// Returns the report as JSON, with all digits.
     pub fn json(&self) -> String {
         let Wall { search, bounds, frame, .. } = self.wall;
+        let surface = search.surface();
+        let opening = |opening: &Opening| {
+            let Opening { edges, width, centre, .. } = opening;
+            json!({ "edges": edges, "width": width, "centre": centre.to_array() })
+        };
         let report = json!({
             "mesh": {
                 "triangles": search.triangles().len(),
                 "bounds": [bounds.mins.to_array(), bounds.maxs.to_array()],
                 "frame": frame.map(Frame::name),
                 "unit": self.wall.unit(),
+                "openings": surface.openings.iter().map(opening).collect::<Vec<_>>(),
+                "nonmanifold_edges": surface.nonmanifold_edges,
+                "misoriented_edges": surface.misoriented_edges,
             },
             "turned": self.turned.map(|frames| frames.map(Frame::name)),
-            "base": match self.base {
-                Side::Inside => "inside",
-                Side::Outside => "outside",
-                Side::Undecided => "undecided",
-            },
+            "base": name(self.sides.base),
+            "tip": name(self.sides.tip),
+            "sides": self.sides.links.iter().map(|side| name(*side)).collect::<Vec<_>>(),
+            "inside": self.sides.is_inside(),
             "links": self.links,
             "curve": self.curve,
             "minimum": self.minimum,

@@ -2,19 +2,20 @@
 
 use crate::options::Options;
 use crate::robot::Robot;
+use crate::single::NOT_INSIDE;
 use crate::wall::Wall;
 use crate::{csv, messages, number, outputs, report};
 use parry_continuum::Chain;
 use parry_continuum::parry::math::Pose;
-use parry_continuum::proximity::{LinkProximity, Proximity};
+use parry_continuum::proximity::{InsideAnswer, LinkProximity, Proximity, ProximityError, Side};
 use serde_json::json;
 use std::path::Path;
 
 /// The number of shapes per batch.
 const AT_ONCE: usize = 4096;
 
-/// The answer about a shape, or a message.
-type Answer = Result<LinkProximity, String>;
+/// The answer about a shape: its closest link, and whether every link is inside; or a message.
+type Answer = Result<(LinkProximity, bool), String>;
 
 /// Answers about many robots, and returns whether all of them keep the margin.
 pub fn answer(
@@ -22,20 +23,27 @@ pub fn answer(
     robots: &[Robot],
     wall: &mut Wall,
     pose: &Pose,
-    doubts: &[String],
+    mut doubts: Vec<String>,
 ) -> Result<bool, String> {
     let file = my.shapes.as_deref().unwrap_or(&my.mesh);
     let answers = ask(robots, wall, pose, file)?;
+    let inside = answers.iter().filter(|answer| matches!(answer, Ok((_, true)))).count();
+    let is_inside = inside == answers.len();
     let table = || -> String {
         let lines = robots.iter().zip(&answers).map(|(robot, answer)| line(robot.number, answer));
-        format!("shape,{},error\n", csv::COLUMNS) + &lines.collect::<String>()
+        format!("shape,{},error,inside\n", csv::COLUMNS) + &lines.collect::<String>()
     };
     if let Some(path) = &my.csv {
         outputs::write("--csv", path, &table())?;
     }
     wall.notes.iter().for_each(|note| eprintln!("note: {note}"));
-    doubts.iter().for_each(|doubt| eprintln!("warning: {doubt}"));
     let verdict = my.margin.map(|margin| verdict(margin, &answers, wall));
+    if verdict.as_ref().is_some_and(|(_, is_kept)| *is_kept) && !is_inside && !my.inside {
+        doubts.push(NOT_INSIDE.to_owned());
+    }
+    doubts.iter().for_each(|doubt| eprintln!("warning: {doubt}"));
+    let of_inside = my.inside.then(|| format!("inside: {inside} of {} shapes", answers.len()));
+    let of_margin = verdict.as_ref().map(|(line, _)| line.clone());
     let mut text = String::new();
     if my.json {
         text = format!("{:#}\n", json!(objects(robots, &answers)));
@@ -43,18 +51,19 @@ pub fn answer(
         text = table();
     }
     // Standard output holds a table or JSON, or else the summary.
-    if let Some((line, _)) = &verdict {
-        if text.is_empty() {
-            text = format!("{line}\n");
-        } else {
+    let holds_table = !text.is_empty();
+    for line in of_inside.iter().chain(&of_margin) {
+        if holds_table {
             eprintln!("{line}");
+        } else {
+            text += &format!("{line}\n");
         }
     }
     if my.csv.is_some() && !my.json {
         text += &summary(robots, &answers, wall);
     }
     outputs::print(&text)?;
-    Ok(verdict.is_none_or(|(_, is_kept)| is_kept))
+    Ok(verdict.is_none_or(|(_, is_kept)| is_kept) && (is_inside || !my.inside))
 }
 
 /// Asks about the robots in batches.
@@ -74,21 +83,36 @@ fn ask(robots: &[Robot], wall: &mut Wall, pose: &Pose, file: &Path) -> Result<Ve
             .map_err(|error| messages::of_query(&error, file))?;
         let mut found = found.into_iter();
         for chain in &chains {
-            answers.push(match chain {
+            let answer = match chain {
                 Err(error) => Err(messages::of_robot(error, file)),
-                Ok(_) => found
-                    .next()
-                    .ok_or("no answer")?
-                    .map_err(|error| messages::of_query(&error, file)),
-            });
+                Ok(chain) => {
+                    let found = found.next().ok_or("no answer")?;
+                    let answer = found.and_then(|found| Ok((found, is_inside(chain, wall, pose)?)));
+                    answer.map_err(|error| messages::of_query(&error, file))
+                }
+            };
+            answers.push(answer);
         }
     }
     Ok(answers)
 }
 
+/// Returns whether every link is inside.
+fn is_inside(chain: &Chain, wall: &mut Wall, pose: &Pose) -> Result<bool, ProximityError> {
+    let answer = wall.search.clears_inside(chain, pose, 0.0)?;
+    let InsideAnswer { base, tip, crosses_opening, clears, .. } = answer;
+    if answer.holds() || !clears || crosses_opening || [base, tip].contains(&Side::Outside) {
+        return Ok(answer.holds());
+    }
+    // An end is near an opening: the links between may be decided.
+    let mut sides = Vec::new();
+    wall.search.link_sides(chain, pose, &mut sides)?;
+    Ok(sides.iter().all(|side| *side == Side::Inside))
+}
+
 /// Returns the line with the verdict, and whether all shapes keep the margin.
 fn verdict(margin: f64, answers: &[Answer], wall: &Wall) -> (String, bool) {
-    let keeps = |answer: &&Answer| answer.as_ref().is_ok_and(|found| found.distance > margin);
+    let keeps = |answer: &&Answer| answer.as_ref().is_ok_and(|(found, _)| found.distance > margin);
     let kept = answers.iter().filter(keeps).count();
     let (margin, count) = (number::as_written(margin, wall.unit()), answers.len());
     let decision = if kept == count { "kept" } else { "not kept" };
@@ -98,7 +122,7 @@ fn verdict(margin: f64, answers: &[Answer], wall: &Wall) -> (String, bool) {
 /// Returns the last line: the closest shape, the first of equals.
 fn summary(robots: &[Robot], answers: &[Answer], wall: &Wall) -> String {
     let answered = robots.iter().zip(answers);
-    let answered = answered.filter_map(|(robot, answer)| Some((robot, answer.as_ref().ok()?)));
+    let answered = answered.filter_map(|(robot, answer)| Some((robot, &answer.as_ref().ok()?.0)));
     let closest = answered.min_by(|(_, a), (_, b)| a.distance.total_cmp(&b.distance));
     closest.map_or_else(
         || "minimum: none, since every shape has an error\n".to_owned(),
@@ -111,7 +135,9 @@ fn summary(robots: &[Robot], answers: &[Answer], wall: &Wall) -> String {
 
 fn objects(robots: &[Robot], answers: &[Answer]) -> Vec<serde_json::Value> {
     let object = |(robot, answer): (&Robot, &Answer)| match answer {
-        Ok(answer) => json!({ "shape": robot.number, "minimum": answer }),
+        Ok((answer, is_inside)) => {
+            json!({ "shape": robot.number, "minimum": answer, "inside": is_inside })
+        }
         Err(error) => json!({ "shape": robot.number, "error": error }),
     };
     robots.iter().zip(answers).map(object).collect()
@@ -119,7 +145,7 @@ fn objects(robots: &[Robot], answers: &[Answer]) -> Vec<serde_json::Value> {
 
 fn line(number: f64, answer: &Answer) -> String {
     match answer {
-        Ok(found) => format!("{number},{},\n", csv::answer(found)),
-        Err(error) => format!("{number},,,,,,,,,,,\"{}\"\n", error.replace('"', "'")),
+        Ok((found, is_inside)) => format!("{number},{},,{is_inside}\n", csv::answer(found)),
+        Err(error) => format!("{number},,,,,,,,,,,\"{}\",\n", error.replace('"', "'")),
     }
 }

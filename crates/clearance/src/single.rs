@@ -3,6 +3,7 @@
 use crate::options::Options;
 use crate::report::Report;
 use crate::robot::Robot;
+use crate::sides::Sides;
 use crate::verdict::Verdict;
 use crate::wall::Wall;
 use crate::{csv, messages, outputs, plot, proof};
@@ -21,6 +22,10 @@ pub enum Proven {
     TooClose,
 }
 
+/// The warning beside a margin that is kept on an unknown side.
+pub const NOT_INSIDE: &str = "the margin is kept, but not every link is inside the mesh; \
+                              --inside decides by the side too";
+
 /// Answers about one robot, and returns whether the margin is kept and proven.
 pub fn answer(
     my: &Options,
@@ -28,7 +33,7 @@ pub fn answer(
     wall: &mut Wall,
     pose: &Pose,
     turned: Option<[Frame; 2]>,
-    doubts: &[String],
+    mut doubts: Vec<String>,
 ) -> Result<bool, String> {
     let Robot { points, radii, .. } = robot;
     let file = my.centreline.as_deref().unwrap_or(&my.mesh);
@@ -38,7 +43,11 @@ pub fn answer(
     let mut links = Vec::new();
     wall.search.per_link(&chain, pose, &mut links).map_err(asked)?;
     let minimum = wall.search.minimum(&chain, pose).map_err(asked)?;
-    let base = wall.search.side(*pose * points[0]);
+    let mut sides = Vec::new();
+    wall.search.link_sides(&chain, pose, &mut sides).map_err(asked)?;
+    let [base, tip] =
+        [points[0], points[points.len() - 1]].map(|end| wall.search.side(*pose * end));
+    let sides = Sides { base, tip, links: sides };
     let curve = my.tolerance.map(|tolerance| bound_curve(robot, wall, pose, tolerance));
     // Print the links even if the curve fails.
     let (curve, failure) = match curve.transpose() {
@@ -84,15 +93,31 @@ pub fn answer(
         )
     });
     wall.notes.iter().chain(&skipped).for_each(|note| eprintln!("note: {note}"));
-    doubts.iter().for_each(|doubt| eprintln!("warning: {doubt}"));
     let is_kept = verdict.is_none_or(|verdict| verdict.is_kept == Some(true));
     let is_proven = !matches!(proven, Some(Proven::TooClose));
+    let is_inside = sides.is_inside();
+    if verdict.is_some() && is_kept && !is_inside && !my.inside {
+        doubts.push(NOT_INSIDE.to_owned());
+    }
+    doubts.iter().for_each(|doubt| eprintln!("warning: {doubt}"));
     let curve = curve.map(|(_, bounds)| bounds);
-    let report = Report { wall, turned, base, links, curve, minimum, verdict, proven, doubts };
+    let asks_inside = my.inside;
+    let report = Report {
+        wall,
+        turned,
+        sides,
+        asks_inside,
+        links,
+        curve,
+        minimum,
+        verdict,
+        proven,
+        doubts: &doubts,
+    };
     outputs::print(&if my.json { report.json() } else { report.lines() })?;
     match failure {
         Some(failure) => Err(failure),
-        None => Ok(is_kept && is_proven),
+        None => Ok(is_kept && is_proven && (is_inside || !my.inside)),
     }
 }
 

@@ -1,7 +1,8 @@
 //! Whether a robot keeps a margin.
 
 use crate::number::as_written;
-use parry_continuum::proximity::{Clearance, Side};
+use crate::sides::Sides;
+use parry_continuum::proximity::Clearance;
 
 /// The decision about a margin.
 #[derive(Clone, Copy)]
@@ -25,9 +26,9 @@ impl Verdict {
         Self { margin, is_kept, curve: curve.map(|curve| curve.resolved) }
     }
 
-    /// Describes the decision in one line. Names the side of the wall, since distances are
+    /// Describes the decision in one line. Names the sides of the wall, since distances are
     /// unsigned.
-    pub fn describe(&self, base: Side, unit: Option<&str>) -> String {
+    pub fn describe(&self, sides: &Sides, unit: Option<&str>) -> String {
         let margin = as_written(self.margin, unit);
         let decision = match self.is_kept {
             Some(true) => "kept",
@@ -40,15 +41,6 @@ impl Verdict {
             (None, _) => "; write more points along the robot",
             (Some(_), _) => "",
         };
-        format!("margin {margin}: {decision}{subject}, base {}{advice}", side(base))
-    }
-}
-
-/// Names the side of the base.
-pub fn side(base: Side) -> &'static str {
-    match base {
-        Side::Inside => "inside the mesh",
-        Side::Outside => "outside the mesh",
-        Side::Undecided => "on the mesh, or the mesh is open there",
+        format!("margin {margin}: {decision}{subject}, {}{advice}", sides.ends())
     }
 }

@@ -3,7 +3,7 @@
 use crate::mesh::Mesh;
 use crate::query::contacts::OppositeCorners;
 use crate::query::nearest::SideGrid;
-use crate::query::side::FarFields;
+use crate::query::side::{FarFields, Surface};
 use crate::search::hierarchy::Hierarchy;
 use crate::threads::Lazy;
 use fearless_simd::Level;
@@ -20,12 +20,20 @@ pub(super) struct PreparedMesh {
     far_fields: Lazy<FarFields>,
     /// A coarse grid of the sides of the wall, for queries about a margin.
     sides: Lazy<SideGrid>,
+    /// The openings of the mesh, for the side of a robot.
+    surface: Lazy<Surface>,
 }
 
 impl PreparedMesh {
     pub(super) fn new(level: Level, mesh: Mesh) -> Self {
         let hierarchy = Hierarchy::new(level, mesh);
-        Self { hierarchy, across: Lazy::new(), far_fields: Lazy::new(), sides: Lazy::new() }
+        Self {
+            hierarchy,
+            across: Lazy::new(),
+            far_fields: Lazy::new(),
+            sides: Lazy::new(),
+            surface: Lazy::new(),
+        }
     }
 
     /// Builds every structure that a query would build at first use.
@@ -35,6 +43,9 @@ impl PreparedMesh {
         self.far_fields();
         let across = self.across.get_or_build(|| OppositeCorners::new(self.hierarchy.single()));
         across.prepare(self.hierarchy.single(), &self.hierarchy.mesh);
+        if let Some(lids) = &self.surface(level).lids {
+            lids.prepare(level);
+        }
     }
 
     /// For each edge of each triangle, the opposite corner of the neighbour.
@@ -55,10 +66,16 @@ impl PreparedMesh {
         self.sides.get_or_build(|| SideGrid::new(&self.hierarchy.mesh))
     }
 
+    /// The openings of the mesh, and its edges that make its sides doubtful.
+    pub(super) fn surface(&self, level: Level) -> &Surface {
+        self.surface.get_or_build(|| Surface::new(level, &self.hierarchy.mesh))
+    }
+
     /// Moves the vertices, which are checked, and drops the structures that no longer fit.
     pub(super) fn set_vertices(&mut self, level: Level, vertices: &[Vector]) {
         self.hierarchy.set_vertices(level, vertices);
         self.far_fields.take();
+        self.surface.take();
         let bounds = self.hierarchy.mesh.bounds();
         if self.sides.get().is_some_and(|sides| !sides.covers(bounds)) {
             self.sides.take();

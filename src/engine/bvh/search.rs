@@ -18,6 +18,7 @@ use crate::query::motion::MotionMemory;
 use crate::query::nearest::{
     ClearsMemory, ClearsSearch, PerLinkMemory, WarmStart, minimum_within, per_link,
 };
+use crate::query::side::Surface;
 use crate::robot::Chain;
 use crate::search::hierarchy::{MeshSearch, Scratch};
 use crate::threads::in_chunks;
@@ -84,6 +85,8 @@ pub(super) struct Remembered {
     pub per_link: PerLinkMemory,
     pub minimum: WarmStart,
     pub clears: ClearsMemory,
+    /// For the lids of openings.
+    pub lids: ClearsMemory,
     pub contacts: LocalMinima,
     pub tube: TubeMemory,
     pub motion: MotionMemory,
@@ -94,6 +97,7 @@ impl Remembered {
         self.per_link.forget();
         self.minimum.forget();
         self.clears.forget();
+        self.lids.forget();
         self.tube.forget();
     }
 
@@ -101,6 +105,7 @@ impl Remembered {
     fn forget_distances(&mut self) {
         self.minimum.forget_distances();
         self.clears.forget_distances();
+        self.lids.forget_distances();
     }
 }
 
@@ -177,6 +182,7 @@ impl BvhSearch {
     /// | [`clears`](Proximity::clears) | a coarse grid of the sides of the wall |
     /// | [`contacts_within`](Proximity::contacts_within) | which triangles share corners and edges |
     /// | [`side`](Self::side) | the far field of each node |
+    /// | [`surface`](Self::surface), [`clears_inside`](Self::clears_inside) | the openings of the mesh, with their lids |
     /// | any, if single precision is too coarse | a second hierarchy, in double precision |
     ///
     /// ```
@@ -245,6 +251,10 @@ impl BvhSearch {
         &self.mesh
     }
 
+    pub(super) fn surface_with_lids(&self) -> &Surface {
+        self.mesh.surface(self.level)
+    }
+
     pub(super) fn context(&mut self) -> Context<'_> {
         Context { level: self.level, mesh: &self.mesh, memory: &mut self.memory }
     }
@@ -279,6 +289,28 @@ impl<'a> Context<'a> {
         let sides = Some(self.mesh.sides());
         let (search, last) = self.search();
         ClearsSearch { search, sides, robot, memory: &mut last.clears }.clears(margin)
+    }
+
+    /// Returns the openings of the mesh, with their lids.
+    pub fn surface(&self) -> &'a Surface {
+        self.mesh.surface(self.level)
+    }
+
+    /// Returns whether the robot touches the lid of an opening.
+    pub fn touches_lid(self, robot: PlacedRobot) -> bool {
+        let Some(lids) = &self.surface().lids else { return false };
+        let Memory { scratch, answers } = self.memory;
+        let search = MeshSearch::new(self.level, lids, scratch);
+        !ClearsSearch { search, sides: None, robot, memory: &mut answers.lids }.clears(0.0)
+    }
+
+    /// Writes the distance of every link from the lids of openings to `out`; nothing without
+    /// openings.
+    pub fn per_link_of_lids(self, robot: PlacedRobot, out: &mut Vec<LinkProximity>) {
+        out.clear();
+        let Some(lids) = &self.surface().lids else { return };
+        let search = MeshSearch::new(self.level, lids, &mut self.memory.scratch);
+        per_link(search, robot, &mut PerLinkMemory::default(), out);
     }
 
     fn within(self, robot: PlacedRobot, query: ContactQuery, out: &mut Vec<Contact>) {

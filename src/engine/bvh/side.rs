@@ -1,15 +1,16 @@
 //! Inside or outside, as [`BvhSearch`] answers it.
 //!
-//! The side of a point is its winding number ([`Winding`]). The side of a robot is the side of its
-//! base.
+//! The side of a point is its winding number ([`Winding`]). Links that touch neither the mesh nor
+//! the lid of an opening ([`Surface`](crate::query::side::Surface)) are on the same side.
 
 use super::search::BvhSearch;
-use crate::answer::{InsideAnswer, ProximityError, Side};
+use crate::answer::{InsideAnswer, ProximityError, Side, SurfaceReport};
 use crate::engine::Proximity;
-use crate::pair::rigid_pose;
+use crate::pair::PlacedRobot;
 use crate::query::side::Winding;
 use crate::robot::Chain;
 use parry3d_f64::math::{Pose, Real, Vector};
+use std::ops::Range;
 
 impl BvhSearch {
     /// Returns the side of the mesh on which a point lies. The point is in the mesh's frame.
@@ -40,13 +41,36 @@ impl BvhSearch {
         Winding { mesh, tree, fields: prepared.far_fields(), point }.side()
     }
 
-    /// Returns whether every link is farther than `margin` from the mesh, and the side of the
-    /// robot's base.
+    /// Returns what the mesh is as a surface: its openings, the widest first, edges of more than
+    /// two triangles, and edges whose triangles face opposite ways.
+    ///
+    /// The first query builds it, and so does the first one after
+    /// [`set_vertices`](Proximity::set_vertices), unless [`prepare`](Self::prepare) has built it.
+    ///
+    /// ```
+    /// use parry_continuum::parry::{math::Vector, shape::Ball};
+    /// use parry_continuum::proximity::BvhSearch;
+    ///
+    /// let (vertices, mut triangles) = Ball::new(10.0).to_trimesh(64, 32);
+    /// assert!(BvhSearch::from_triangles(&vertices, &triangles)?.surface().is_sound());
+    /// triangles.retain(|triangle| triangle.iter().all(|&corner| vertices[corner as usize].y < 8.0));
+    /// let search = BvhSearch::from_triangles(&vertices, &triangles)?;
+    /// let [opening] = &search.surface().openings[..] else { panic!() };
+    /// assert!(opening.edges == 64 && 12.0 < opening.width && opening.width < 14.0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn surface(&self) -> &SurfaceReport {
+        &self.surface_with_lids().report
+    }
+
+    /// Returns whether every link is farther than `margin` from the mesh, the sides of the robot's
+    /// base and tip, and whether it crosses an opening.
     ///
     /// Distances are unsigned, so [`clears`](Proximity::clears) alone is true of a robot outside
-    /// the anatomy. In a closed mesh a robot that touches nothing and whose base is inside is
-    /// inside as a whole. It may leave through a hole of an open mesh: query the
-    /// [`side`](Self::side) of every point that matters there.
+    /// the anatomy. A robot whose base is inside is inside as a whole, unless it touches the mesh
+    /// or the lid of an opening: the triangles between the edges of the opening and its centre. A
+    /// mesh with edges of more than two triangles, or with triangles that face opposite ways, has
+    /// no reliable sides: see [`surface`](Self::surface).
     ///
     /// ```
     /// use parry_continuum::{Chain, proximity::{BvhSearch, Side}};
@@ -70,9 +94,72 @@ impl BvhSearch {
         margin: Real,
     ) -> Result<InsideAnswer, ProximityError> {
         let clears = self.clears(robot, pose, margin)?;
-        let pose = rigid_pose(pose)?;
-        let base =
-            robot.links().first().map_or(Side::Undecided, |link| self.side(pose * link.start()));
-        Ok(InsideAnswer { base, clears })
+        let placed = PlacedRobot::new(robot, pose)?;
+        let [base, tip] = placed.ends();
+        let base = self.side(base);
+        let is_closed = self.surface().openings.is_empty();
+        // Both ends of a robot that touches no closed mesh are on one side.
+        let tip = if clears && is_closed { base } else { self.side(tip) };
+        let crosses_opening = !is_closed && self.context().touches_lid(placed);
+        Ok(InsideAnswer { base, tip, crosses_opening, clears })
+    }
+
+    /// Writes the side of each link to `out`.
+    ///
+    /// A link that touches the mesh or the lid of an opening is [`Side::Undecided`]. The other
+    /// links lie on one side of the mesh and its lids from one such link to the next. Their side is
+    /// the [`side`](Self::side) of their ends that are decided; without any, or if two ends
+    /// contradict one another, it is [`Side::Undecided`]. See
+    /// [`clears_inside`](Self::clears_inside) for lids.
+    ///
+    /// ```
+    /// use parry_continuum::{Chain, proximity::{BvhSearch, Side}};
+    /// use parry_continuum::parry::{math::{Pose, Vector}, shape::Ball};
+    ///
+    /// let (vertices, triangles) = Ball::new(10.0).to_trimesh(64, 32);
+    /// let mut search = BvhSearch::from_triangles(&vertices, &triangles)?;
+    /// let points = [0.0, 6.0, 12.0, 18.0].map(|z| Vector::Z * z);
+    /// let mut sides = Vec::new();
+    /// let robot = Chain::with_constant_radius(&points, 0.5)?;
+    /// search.link_sides(&robot, &Pose::IDENTITY, &mut sides)?;
+    /// assert_eq!(sides, [Side::Inside, Side::Undecided, Side::Outside]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// The pose is not finite, or it moves a link out of range.
+    pub fn link_sides(
+        &mut self,
+        robot: &Chain,
+        pose: &Pose,
+        out: &mut Vec<Side>,
+    ) -> Result<(), ProximityError> {
+        let (mut links, mut lids) = (Vec::new(), Vec::new());
+        self.per_link(robot, pose, &mut links)?;
+        let placed = PlacedRobot::new(robot, pose)?;
+        self.context().per_link_of_lids(placed, &mut lids);
+        let mut touches = vec![false; links.len()];
+        for link in links.iter().chain(&lids) {
+            touches[link.link as usize] |= link.distance == 0.0;
+        }
+        out.clear();
+        for run in touches.chunk_by(|one, other| one == other) {
+            let links = out.len()..out.len() + run.len();
+            let side = if run[0] { Side::Undecided } else { self.side_of_run(placed, links) };
+            out.resize(out.len() + run.len(), side);
+        }
+        Ok(())
+    }
+
+    /// Returns the side of consecutive links that lie on one side.
+    fn side_of_run(&self, robot: PlacedRobot, links: Range<usize>) -> Side {
+        let ends = links.clone().map(|link| robot.link(link).end());
+        let mut sides = [robot.link(links.start).start()]
+            .into_iter()
+            .chain(ends)
+            .map(|end| self.side(end))
+            .filter(|side| *side != Side::Undecided);
+        let Some(side) = sides.next() else { return Side::Undecided };
+        if sides.all(|other| other == side) { side } else { Side::Undecided }
     }
 }

@@ -8,11 +8,14 @@
 //! - `solid_angle`: the solid angle of a triangle; of many triangles far away (after Barill et al.,
 //!   "Fast winding numbers for soups and clouds", 2018); their sum, and the side that it proves.
 //! - `winding`: the traversal of the hierarchy.
+//! - `surface`: the openings of a mesh, through which a robot changes sides without touching it.
 
 mod solid_angle;
+mod surface;
 #[cfg(test)]
 mod tests;
 mod winding;
 
 pub(crate) use solid_angle::SolidAngle;
+pub(crate) use surface::Surface;
 pub(crate) use winding::{FarFields, Winding};

@@ -5,6 +5,7 @@ mod answers;
 mod files;
 mod labels;
 mod margin;
+mod openings;
 mod readme;
 
 use continuum_programs as programs;

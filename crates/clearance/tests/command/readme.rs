@@ -80,6 +80,7 @@ fn help_names_every_option_and_the_exit_status() {
         "--mesh-frame",
         "--pose",
         "--margin",
+        "--inside",
         "--tolerance",
         "--plot",
         "--csv",

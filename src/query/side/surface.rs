@@ -1,0 +1,158 @@
+//! The openings of a mesh and their lids, and the edges that make its sides doubtful.
+//!
+//! # Definitions
+//! - *face*: a triangle whose corners are at three different places. Other triangles have no edges.
+//! - *boundary edge*: an edge of exactly one face.
+//! - *opening*: boundary edges that are connected by their corners, unless they are a seam.
+//! - *seam*: boundary edges within [`ROUNDING`] of one line, such as the three around a corner in
+//!   the middle of a longer edge. Nothing leaves through a seam.
+//! - *lid* of an opening: a triangle for each boundary edge, with the opening's centre.
+//!
+//! # What lids are for
+//! **Claim.** Let each edge of the mesh have one face or two, and let no opening be a seam. A curve
+//! that touches neither the mesh nor a lid stays on one side of the mesh with its lids.
+//!
+//! **Proof.** Each corner has an even number of boundary edges: each face at a corner has two edges
+//! there, and all edges but the boundary edges are counted twice. So each edge between a corner and
+//! the centre belongs to an even number of the lid's triangles, and each boundary edge to a face
+//! and to a triangle of a lid. Every edge thus has an even number of triangles. The number of
+//! crossings with a closed curve is then even, so the parity of crossings tells two sides apart.
+
+use crate::answer::{Opening, SurfaceReport};
+use crate::distance::Scalar;
+use crate::mesh::{Mesh, PARTS, SharedParts, ends_of};
+use crate::robot::{direction, length};
+use crate::search::hierarchy::Hierarchy;
+use fearless_simd::Level;
+use parry3d_f64::math::{Real, Vector};
+
+/// The width of a seam over its largest coordinate.
+///
+/// A coordinate is rounded by u of itself, so a corner is within `sqrt(3) u` of its place. Two
+/// corners on either side of a line between two others are then within `4 sqrt(3) u` of one
+/// another, beside the line. The width itself errs by less than `8 u`.
+const ROUNDING: Real = 16.0 * f64::UNIT_ROUNDOFF;
+
+/// A mesh as a surface.
+#[derive(Clone)]
+pub(crate) struct Surface {
+    pub report: SurfaceReport,
+    /// The lids of all openings. `None` for a closed mesh.
+    pub lids: Option<Hierarchy>,
+}
+
+impl Surface {
+    pub(crate) fn new(level: Level, mesh: &Mesh) -> Self {
+        let parts = mesh.parts();
+        let (mut report, edges) = classify_edges(mesh, parts);
+        let mut lids = Vec::new();
+        for edges in groups(edges, mesh.vertices().len()) {
+            let ends: Vec<_> = edges
+                .iter()
+                .map(|edge| edge.map(|place| mesh.vertices()[place as usize]))
+                .collect();
+            let corners = ends.as_flattened();
+            let share = 1.0 / corners.len() as Real;
+            let centre = corners.iter().map(|&corner| corner * share).sum();
+            let width = width(corners, centre);
+            if width <= ROUNDING * largest_coordinate(corners) {
+                continue;
+            }
+            report.openings.push(Opening { edges: edges.len(), width, centre });
+            lids.extend(ends.iter().flat_map(|&[from, to]| [from, to, centre]));
+        }
+        report.openings.sort_by(|one, other| other.width.total_cmp(&one.width));
+        let triangles = (0..lids.len() as u32 / 3).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]);
+        let triangles = triangles.collect();
+        let lids = (!lids.is_empty()).then(|| Hierarchy::new(level, Mesh::of(lids, triangles)));
+        Self { report, lids }
+    }
+}
+
+/// Counts the edges by their faces, and returns the boundary edges as pairs of places. Each ring of
+/// an edge is walked once.
+fn classify_edges(mesh: &Mesh, parts: &SharedParts) -> (SurfaceReport, Vec<[u32; 2]>) {
+    let places =
+        |triangle: u32| mesh.indices()[triangle as usize].map(|vertex| parts.first_at(vertex));
+    let mut is_counted = vec![[false; PARTS]; mesh.len()];
+    let (mut report, mut boundary) = (SurfaceReport::default(), Vec::new());
+    for triangle in 0..mesh.len() as u32 {
+        for edge in 3..PARTS {
+            if is_counted[triangle as usize][edge] {
+                continue;
+            }
+            // The faces at the edge, and how many of them have it from the lower place to the other.
+            let (mut faces, mut ascending) = (0, 0);
+            let mut ends = [0; 2];
+            for (triangle, edge) in parts.ring(triangle, edge) {
+                is_counted[triangle as usize][edge] = true;
+                let corners @ [a, b, c] = places(triangle);
+                if a != b && b != c && c != a {
+                    ends = ends_of(corners, edge);
+                    faces += 1;
+                    ascending += usize::from(ends[0] < ends[1]);
+                }
+            }
+            match (faces, ascending) {
+                (0, _) | (2, 1) => {}
+                (1, _) => boundary.push(ends),
+                (2, _) => report.misoriented_edges += 1,
+                _ => report.nonmanifold_edges += 1,
+            }
+        }
+    }
+    (report, boundary)
+}
+
+/// Returns the edges in groups that are connected by their ends. Ends are below `places`.
+fn groups(mut edges: Vec<[u32; 2]>, places: usize) -> Vec<Vec<[u32; 2]>> {
+    if edges.is_empty() {
+        return Vec::new();
+    }
+    // Union by path halving: each place leads to the root of its group.
+    let mut towards: Vec<_> = (0..places as u32).collect();
+    let root = |towards: &mut [u32], mut place: u32| {
+        while towards[place as usize] != place {
+            towards[place as usize] = towards[towards[place as usize] as usize];
+            place = towards[place as usize];
+        }
+        place
+    };
+    for &[from, to] in &edges {
+        let [from, to] = [from, to].map(|place| root(&mut towards, place));
+        towards[from.max(to) as usize] = from.min(to);
+    }
+    edges.sort_by_key(|edge| root(&mut towards, edge[0]));
+    let mut group = |edge: &[u32; 2]| root(&mut towards, edge[0]);
+    edges.chunk_by(|one, other| group(one) == group(other)).map(<[_]>::to_vec).collect()
+}
+
+/// Returns the extent of points across the line between two that are far apart: the one farthest
+/// from the centre, and the one farthest from it.
+fn width(points: &[Vector], centre: Vector) -> Real {
+    let farthest = |from: Vector| {
+        let distance = |point: &Vector| length(*point - from);
+        let farthest = points.iter().copied();
+        farthest.max_by(|one, other| distance(one).total_cmp(&distance(other))).unwrap_or(from)
+    };
+    let base = farthest(centre);
+    let along = direction(farthest(base) - base);
+    let across = |point: Vector| {
+        let offset = point - base;
+        offset - along * along.dot(offset)
+    };
+    let longest = points.iter().map(|&point| across(point));
+    let longest = longest.max_by(|one, other| length(*one).total_cmp(&length(*other)));
+    let sideways = direction(longest.unwrap_or(Vector::ZERO));
+    let extents = [sideways, along.cross(sideways)].map(|axis| {
+        let places = points.iter().map(|&point| axis.dot(across(point)));
+        let (low, high) = places
+            .fold((Real::INFINITY, Real::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
+        high - low
+    });
+    length(Vector::new(extents[0], extents[1], 0.0))
+}
+
+fn largest_coordinate(points: &[Vector]) -> Real {
+    points.iter().map(|point| point.abs().max_element()).fold(0.0, Real::max)
+}
