@@ -101,8 +101,8 @@ pub enum ProximityError {
     /// A joint is so sharp that its links overlap over more than half of the shorter one.
     /// Neighbouring parts of the robot then cannot be identified.
     #[error(
-        "joint {joint} bends by {angle} rad between links of radius {radius}, the shorter of which has the length {length}; \
-         make the radius smaller, or spread the bend over more points",
+        "joint {joint} bends by {angle} rad between links of which the thinner has the radius {radius} and the shorter the length {length}; \
+         make that radius smaller, or spread the bend over more points",
         angle = number(.angle),
         radius = number(.radius),
         length = number(.length)
@@ -112,7 +112,7 @@ pub enum ProximityError {
         joint: usize,
         /// The angle of the joint, rad.
         angle: Real,
-        /// The larger radius of its links.
+        /// The radius of the thinner link.
         radius: Real,
         /// The length of the shorter link.
         length: Real,

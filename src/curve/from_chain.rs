@@ -4,7 +4,7 @@ use super::Tube;
 use super::cap_persistence::CapPersistence;
 use super::centreline::{Curve, Samples};
 use super::section::{EndFace, Section};
-use crate::robot::{Cap, Chain, direction, from_segment_radii, has_direction, length};
+use crate::robot::{Cap, Chain, direction, from_link_radii, has_direction, length};
 use parry3d_f64::math::{Real, Vector};
 
 /// Makes each link a section with the link's caps. Queries err by rounding alone, so every
@@ -54,7 +54,7 @@ impl Tube {
         ends.clear();
         ends.extend(points);
         if by_algorithm_1 {
-            from_segment_radii(&ends, radii, &mut caps);
+            from_link_radii(&ends, radii, &mut caps);
         } else {
             caps.clear();
             caps.resize(radii.len(), [Cap::Round; 2]);

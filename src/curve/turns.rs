@@ -30,7 +30,7 @@ use super::Tube;
 use super::centreline::Curve;
 use super::frames::ONE_DIRECTION;
 use crate::distance::Scalar;
-use crate::robot::{direction, length};
+use crate::robot::{LEVEL, direction, length};
 use parry3d_f64::math::{Real, Vector};
 
 /// Extra turn of a segment between frames if directions were merged: four times their largest
@@ -113,11 +113,15 @@ impl Tube {
                 if let (Some((before, _)), Some(shorter)) = (last, before) {
                     turns.has_joints = true;
                     let angle = angle_between(before, axis);
-                    let radius = shorter.radius.max(section.radius);
+                    let wider = shorter.radius.max(section.radius);
+                    let radius = shorter.radius.min(section.radius);
                     let length = (shorter.end - shorter.start).min(section.end - section.start);
                     let (sine, cosine) = (before.cross(axis).length(), before.dot(axis));
                     let is_folded = 1.0 + cosine <= 16.0 * Real::UNIT_ROUNDOFF;
-                    if 2.0 * radius * sine > length * (1.0 + cosine) || is_folded {
+                    // As for a chain (`query::robots::robot_with_itself`).
+                    let is_wide = 2.0 * wider * sine > length * (1.0 + cosine);
+                    let is_thin = cosine > 0.0 && 2.0 * radius * sine <= length * cosine;
+                    if is_wide && !is_thin || is_folded {
                         return Err(TooSharp::Joint { joint: number, angle, radius, length });
                     }
                     most += angle;
@@ -188,7 +192,9 @@ impl Tube {
             }
         }
         let count = (turns.headings.len() + turns.before.len() + turns.at.len()) as Real;
-        turns.slack = (16.0 + count) * count * Real::UNIT_ROUNDOFF;
+        // Parallel legs of a chain may open by as much as runs level.
+        let level = if turns.has_joints { LEVEL } else { 0.0 };
+        turns.slack = (16.0 + count) * count * Real::UNIT_ROUNDOFF + level;
         Ok(())
     }
 

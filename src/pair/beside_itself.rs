@@ -15,7 +15,9 @@
 //!   ([`is_step`]). Otherwise the next link is **thinner** or **wider**.
 //! - A **shoulder** is an end beyond which the robot is thinner. A **face** is a shoulder, or a
 //!   flat end of the robot.
-//! - The **adjoining** link is the link beyond an end.
+//! - The **adjoining** link is the link beyond an end. Beyond a shoulder, the links that continue it
+//!   in a straight line with the same radius belong to it: where a straight link is cut changes
+//!   nothing.
 //! - `p`: the point of a face closest to the other link. `q`: that link's closest point. `y`: the
 //!   place of `q` on its axis. `w = q - p`. In overlap `q` is replaced by `y`, so that `w` has a
 //!   direction there too.
@@ -37,6 +39,22 @@
 //! is nearer.
 //!
 //! Two faces that face each other count if 1 and 3 hold for both.
+//!
+//! # Two links
+//! A pair of links with a turn of at least pi counts at the closest places of their axes:
+//!
+//! 1. If inner places of both axes are as near within rounding ([`JoinedLink::are_level`]), the
+//!    pair counts: there the way is perpendicular to both axes. Of parallel axes every place of the
+//!    common stretch is as near, and the closest places that the narrow phase returns are any of
+//!    them.
+//! 2. If the closest place of a link is at a face, the rule for faces decides.
+//! 3. Otherwise condition 2 must hold on both sides. If it fails, the robot comes nearer beyond
+//!    that place, so the place is no local minimum.
+//!
+//! **Level.** Axes run level if the way between them, at the middle of their common stretch, has a
+//! component of at most `e + |w| (2^-24 + 4 e / l)` along each axis. Here `e` is the rounding of
+//! the coordinates and `l` the length of the shorter link. The last term is the rounding of an
+//! axis; 2^-24 rad is the share that counts as parallel in every frame.
 //!
 //! # Claim
 //! A local minimum of the distance between two links, at a face of one of them, satisfies the rule.
@@ -69,7 +87,7 @@
 use super::placed_link::PlacedLink;
 use super::two_links::NearestOfLinks;
 use crate::distance::Scalar;
-use crate::robot::is_step;
+use crate::robot::{LEVEL, is_step};
 use parry3d_f64::math::{Real, Vector};
 
 /// A link and the links beyond its ends.
@@ -143,6 +161,16 @@ impl Way {
 }
 
 impl JoinedLink {
+    /// Joins a link with the links before it, nearest first, and the links behind it.
+    pub(crate) fn new(
+        link: PlacedLink,
+        before: impl Iterator<Item = PlacedLink>,
+        behind: impl Iterator<Item = PlacedLink>,
+    ) -> Self {
+        let beyond = [adjoining(&link, 0, before), adjoining(&link, 1, behind)];
+        Self { link, beyond }
+    }
+
     /// Returns whether the robot is thinner beyond an end.
     fn is_shoulder(&self, end: usize) -> bool {
         self.beyond[end].is_some_and(|next| is_step(next.radius(), self.link.radius()))
@@ -313,15 +341,16 @@ impl JoinedLink {
 
     /// Returns whether a pair that turns by pi or more may count at some time while both move.
     pub(crate) fn may_count_beside(&self, other: &Self, moved: &MovedLinks) -> bool {
-        let has_face = |joined: &Self| joined.is_face(0) || joined.is_face(1);
-        if !has_face(self) && !has_face(other) {
-            return true;
-        }
         let (feet, _) = self.link.nearest_on_axes(&other.link);
         let (way, tolerance) = (feet[1] - feet[0], self.tolerance(other));
         let slack = tolerance.of_way(way.length());
         let way = Way { from: feet[0], way, place: feet[1], slack, rounding: tolerance.0 };
+        let back = Way { from: feet[1], way: -way.way, place: feet[0], ..way };
         let least = way.doubt(moved.axes) + way.turning(moved);
+        let has_face = |joined: &Self| joined.is_face(0) || joined.is_face(1);
+        if !has_face(self) && !has_face(other) {
+            return !other.leads_nearer(&way, least) && !self.leads_nearer(&back, least);
+        }
         // The end of the axis that is closest at all times; `None` if unknown.
         let end_of = |joined: &Self, way: Vector| {
             let along = way.dot(Vector::from(joined.link.axis()));
@@ -367,9 +396,11 @@ impl JoinedLink {
         turned <= 1.0 && next.holds(way.from, &Way { slack: shift, rounding: -shift, ..*way })
     }
 
-    /// Returns whether a pair that turns by pi or more counts. If the axes are closest at a face,
-    /// the rule for faces decides.
+    /// Returns whether a pair that turns by pi or more counts (section "Two links").
     pub(crate) fn counts_beside(&self, other: &Self, tolerance: Tolerance) -> bool {
+        if self.are_level(other, tolerance) {
+            return true;
+        }
         let (feet, _) = self.link.nearest_on_axes(&other.link);
         let [one, two] = [(self, feet[0]), (other, feet[1])].map(|(joined, foot)| {
             let end = joined.end_at(foot, tolerance.0);
@@ -380,11 +411,52 @@ impl JoinedLink {
             joined.face_counts(end, other, &nearest, tolerance)
         };
         match (one, two) {
-            (None, None) => true,
+            (None, None) => {
+                let way = feet[1] - feet[0];
+                let slack = self.level_slack(other, way, tolerance);
+                let to = |from: Vector, way: Vector| Way {
+                    from,
+                    way,
+                    place: from + way,
+                    slack,
+                    rounding: tolerance.0,
+                };
+                other.stays(&to(feet[0], way)) && self.stays(&to(feet[1], -way))
+            }
             (Some(end), None) => of_face(self, end, other),
             (None, Some(end)) => of_face(other, end, self),
             (Some(one), Some(two)) => of_face(self, one, other) || of_face(other, two, self),
         }
+    }
+
+    /// Returns whether inner places of both axes are as near within rounding as any others.
+    ///
+    /// The squared distance is convex in both places. So where the way is perpendicular to both
+    /// axes, the distance is least.
+    fn are_level(&self, other: &Self, tolerance: Tolerance) -> bool {
+        let [one, two] = [&self.link, &other.link];
+        let axes = [one, two].map(|link| Vector::from(link.axis()));
+        let [from, to] = [two.start(), two.end()].map(|end| (end - one.start()).dot(axes[0]));
+        // The common stretch.
+        let (low, high) = (from.min(to).max(0.0), from.max(to).min(one.along().dot(axes[0])));
+        if high - low <= 8.0 * tolerance.0 {
+            return false;
+        }
+        let place = one.start() + axes[0] * (0.5 * (low + high));
+        let foot = two.start() + two.along() * two.share_of(place);
+        let way = foot - place;
+        let slack = self.level_slack(other, way, tolerance);
+        axes.iter().all(|axis| way.dot(*axis).abs() <= slack)
+            && other.end_at(foot, 2.0 * tolerance.0).is_none()
+    }
+
+    /// Returns the component along an axis that a way perpendicular to it may have; at most
+    /// [`Tolerance::of_way`], which bounds all components while the robot moves.
+    fn level_slack(&self, other: &Self, way: Vector, tolerance: Tolerance) -> Real {
+        let distance = way.length();
+        let shorter = self.link.along().length().min(other.link.along().length());
+        let turned = LEVEL + 4.0 * (tolerance.0 / shorter);
+        (tolerance.0 + distance * turned).min(tolerance.of_way(distance))
     }
 
     /// Returns the end that a place of the axis lies at, within `slack`.
@@ -406,7 +478,8 @@ impl JoinedLink {
         if nearest.distance > NEAR * tolerance.0 {
             let way = nearest.on_second - nearest.on_first;
             let place = other.start() + other.along() * other.share_of(nearest.on_second);
-            return Some(Way { from: nearest.on_first, way, place, slack, rounding: tolerance.0 });
+            let way = Way { from: nearest.on_first, way, place, slack, rounding: tolerance.0 };
+            return Some(self.in_the_middle(end, way, other));
         }
         let axis = PlacedLink::between(other.start(), other.end(), 0.0, [false; 2]);
         let (from, to) = if self.link.flat()[end] {
@@ -426,7 +499,27 @@ impl JoinedLink {
         // The point of a round face lies on its surface.
         let from =
             if self.link.flat()[end] { from } else { from + way * (self.link.radius() / distance) };
-        Some(Way { from, way, place: to, slack, rounding: tolerance.0 })
+        let way = Way { from, way, place: to, slack, rounding: tolerance.0 };
+        Some(self.in_the_middle(end, way, other))
+    }
+
+    /// Returns the two ends of the stretch of a flat face that is as near to another link, which
+    /// runs level with the face; `None` if one point is nearest.
+    fn level_stretch(&self, end: usize, way: &Way, other: &PlacedLink) -> Option<[Vector; 2]> {
+        let is_ahead = way.way.cross(self.outward(end)).length() <= way.slack;
+        let is_level = way.way.dot(Vector::from(other.axis())).abs() <= way.slack;
+        (self.link.flat()[end] && is_ahead && is_level).then(|| {
+            let shift = way.from - way.place;
+            [other.start(), other.end()].map(|to| self.on_face_towards(end, way.from, to + shift))
+        })
+    }
+
+    /// Returns the way from the middle of the points that are as near, so that the place is at an
+    /// end of the other link only if all of them are.
+    fn in_the_middle(&self, end: usize, way: Way, other: &PlacedLink) -> Way {
+        let Some([one, two]) = self.level_stretch(end, &way, other) else { return way };
+        let shift = 0.5 * ((one - way.from) + (two - way.from));
+        Way { from: way.from + shift, place: way.place + shift, ..way }
     }
 
     /// Returns the vector from a face to another face.
@@ -490,24 +583,21 @@ impl JoinedLink {
         if !self.link.flat()[end] {
             return true;
         }
-        let along = way.way.cross(self.outward(end)).length() <= way.slack;
-        let axis = Vector::from(other.axis());
-        if !along {
+        if let Some(ends) = self.level_stretch(end, way, other) {
+            // Points along the other link's axis, for the length of both.
+            return ends.into_iter().all(|point| next.holds(point, way));
+        }
+        let normal = self.outward(end);
+        if way.way.cross(normal).length() > way.slack {
             // One point of the rim.
             return true;
         }
-        if way.way.dot(axis).abs() > way.slack {
-            // The closest place is an end of the other link: one point, or all points ahead of its
-            // flat end.
-            let is_level = axis.cross(self.outward(end)).length() * other.radius() <= way.slack;
-            let is_flat = other.flat() != [false; 2];
-            return !(is_level && is_flat)
-                || self.is_area_covered(end, way, way.place, other.radius());
-        }
-        // Points along the other link's axis, for the length of both.
-        let ends = [other.start(), other.end()]
-            .map(|to| self.on_face_towards(end, way.from, to - way.way));
-        ends.into_iter().all(|point| next.holds(point, way))
+        // The closest place is an end of the other link: one point, or all points ahead of its flat
+        // end.
+        let axis = Vector::from(other.axis());
+        let is_level = axis.cross(normal).length() * other.radius() <= way.slack;
+        let is_flat = other.flat() != [false; 2];
+        !(is_level && is_flat) || self.is_area_covered(end, way, way.place, other.radius())
     }
 
     /// Returns whether the adjoining link contains all points of a flat face that lie ahead of a
@@ -525,16 +615,18 @@ impl JoinedLink {
         [far, -back].into_iter().all(|reach| next.holds(centre + outwards * reach, way))
     }
 
-    /// Returns where the line from a point of a face towards another point leaves the face, or that
-    /// point if it is on the face.
+    /// Returns where the line from a point of a flat face towards another point, moved into the
+    /// plane of the face, leaves the face, or that point if it is on the face.
     fn on_face_towards(&self, end: usize, from: Vector, to: Vector) -> Vector {
-        let (centre, radius) = (self.centre(end), self.link.radius());
+        let (centre, radius, normal) = (self.centre(end), self.link.radius(), self.outward(end));
+        let along = to - from;
+        let along = along - normal * along.dot(normal);
         // In units of the radius, so that all products stay in range.
-        let (offset, direction) = ((from - centre) / radius, (to - from) / radius);
+        let (offset, direction) = ((from - centre) / radius, along / radius);
         let (a, b) = (direction.length_squared(), offset.dot(direction));
         let root = (b * b - a * (offset.length_squared() - 1.0)).max(0.0).sqrt();
         let share = if a > 0.0 { ((root - b) / a).clamp(0.0, 1.0) } else { 0.0 };
-        from + (to - from) * share
+        from + along * share
     }
 
     /// Returns whether the adjoining link contains all points of a face that are closest to another
@@ -566,6 +658,36 @@ impl JoinedLink {
         });
         ends.into_iter().all(|point| next.holds(point, way))
     }
+}
+
+/// Returns the adjoining link at an end. `beyond` iterates over the links beyond that end.
+///
+/// A point of a shoulder is at most its radius away, so a longer run need not be continued.
+fn adjoining(
+    link: &PlacedLink,
+    end: usize,
+    mut beyond: impl Iterator<Item = PlacedLink>,
+) -> Option<PlacedLink> {
+    let mut run = beyond.next()?;
+    let far_end = |link: &PlacedLink| [link.start(), link.end()][end];
+    while is_step(run.radius(), link.radius()) && run.along().length() < link.radius() {
+        let Some(next) = beyond.next() else { break };
+        let (joint, radius) = (far_end(&run), run.radius());
+        let [near, far] = [[run.start(), run.end()][1 - end], far_end(&next)];
+        let ends = if end == 0 { [far, near] } else { [near, far] };
+        let flat =
+            [0, 1].map(|side: usize| if side == end { next.flat() } else { run.flat() }[side]);
+        let both = PlacedLink::between(ends[0], ends[1], radius, flat);
+        let largest = ends[0].abs().max(ends[1].abs()).max_element() + radius;
+        let aside = (joint - near).cross(Vector::from(both.axis())).length();
+        let is_straight =
+            aside <= 64.0 * Real::UNIT_ROUNDOFF * largest && run.along().dot(next.along()) > 0.0;
+        if is_step(radius, next.radius()) || is_step(next.radius(), radius) || !is_straight {
+            break;
+        }
+        run = both;
+    }
+    Some(run)
 }
 
 impl PlacedLink {

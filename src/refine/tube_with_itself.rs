@@ -474,14 +474,12 @@ impl<'a> TubeWithItself<'a> {
             let flat = section.faces.map(|face| face.is_some());
             PlacedLink::between(ends[0], ends[1], section.radius, flat)
         };
-        let beyond = [
-            number.checked_sub(1).and_then(|before| sections.get(before)),
-            sections.get(number + 1),
-        ];
-        JoinedLink {
-            link: link(&sections[number]),
-            beyond: beyond.map(|section| section.map(link)),
-        }
+        let (before, behind) = (&sections[..number], &sections[number + 1..]);
+        JoinedLink::new(
+            link(&sections[number]),
+            before.iter().rev().map(link),
+            behind.iter().map(link),
+        )
     }
 
     /// Whether the robot leads nearer to a face from all places of the other piece, at all times.

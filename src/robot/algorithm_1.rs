@@ -39,18 +39,37 @@
 
 use super::Cap;
 use super::compare::at_least_apart;
+use super::modified_cylinder::has_direction;
 use super::radius_steps::RadiusSteps;
 use parry3d_f64::math::{Real, Vector};
 
-/// Writes the caps of each link to `caps`, whose memory is reused.
+/// Writes the caps of each segment to `caps`, whose memory is reused.
 ///
-/// Takes one radius per segment: `points.len() == radii.len() + 1`.
-pub(crate) fn from_segment_radii(points: &[Vector], radii: &[Real], caps: &mut Vec<[Cap; 2]>) {
+/// Takes one radius per segment: `points.len() == radii.len() + 1`. A segment without length is no
+/// link of the robot: it makes no step, and its own caps are flat.
+pub(super) fn from_segment_radii(points: &[Vector], radii: &[Real], caps: &mut Vec<[Cap; 2]>) {
+    let is_link = |k: usize| has_direction(points[k], points[k + 1], radii[k]);
+    from_radii(points, radii, caps, is_link);
+}
+
+/// As [`from_segment_radii`], for segments that are all links. While a robot moves, a link may have
+/// no length at one instant.
+pub(crate) fn from_link_radii(points: &[Vector], radii: &[Real], caps: &mut Vec<[Cap; 2]>) {
+    from_radii(points, radii, caps, |_| true);
+}
+
+fn from_radii(
+    points: &[Vector],
+    radii: &[Real],
+    caps: &mut Vec<[Cap; 2]>,
+    is_link: impl Fn(usize) -> bool,
+) {
     reset(caps, radii.len());
-    let starts = points.iter().zip(radii);
-    let ends = points.iter().skip(1).zip(radii).rev();
-    walk(starts).zip(caps.iter_mut()).for_each(|(cap, caps)| caps[0] = cap);
-    walk(ends).zip(caps.iter_mut().rev()).for_each(|(cap, caps)| caps[1] = cap);
+    let links = || (0..radii.len()).filter(|&k| is_link(k));
+    let starts = links().map(|k| (&points[k], &radii[k]));
+    let ends = links().rev().map(|k| (&points[k + 1], &radii[k]));
+    walk(starts).zip(links()).for_each(|(cap, k)| caps[k][0] = cap);
+    walk(ends).zip(links().rev()).for_each(|(cap, k)| caps[k][1] = cap);
 }
 
 /// As [`from_segment_radii`], with one radius per vertex: `points.len() == radii.len()`.

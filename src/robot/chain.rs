@@ -36,11 +36,8 @@ use std::sync::OnceLock;
 ///
 /// # Repeated points
 /// Planners repeat centreline points. A segment without length has no direction and makes no link.
-/// Algorithm 1 still walks over it before it is removed:
-///
-/// - Repeating a point changes no link.
-/// - A segment without length but with its own radius counts as a step up and a step down.
-/// - The two ends of the robot stay flat.
+/// Its radius makes no step, whatever it is: repeating a point changes no link. The exception is
+/// [`from_vertex_radii`](Self::from_vertex_radii), whose printed rule has a radius per point.
 ///
 /// [`segments_of`](Self::segments_of) counts such a segment to the link before it, or to the first
 /// link.

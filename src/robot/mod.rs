@@ -14,7 +14,7 @@ mod serialised;
 mod simplify;
 mod to_trimesh;
 
-pub(crate) use algorithm_1::from_segment_radii;
+pub(crate) use algorithm_1::from_link_radii;
 pub use chain::Chain;
 pub(crate) use chain::{check_chain, check_segments, radius_for_all, without_length};
 pub use error::RobotError;
@@ -25,5 +25,5 @@ pub use modified_cylinder::{Cap, ModifiedCylinder};
 pub(crate) use radius_steps::{RadiusSteps, is_same, is_step};
 pub use registration::{MatrixError, pose_from_matrix};
 pub(crate) use registration::{NotRigid, rigid, rotation_by};
-pub(crate) use scale::{direction, length};
+pub(crate) use scale::{LEVEL, direction, length};
 pub use simplify::simplify;

@@ -8,6 +8,10 @@
 use crate::distance::{Scalar, Vec3};
 use parry3d_f64::math::{Real, Vector};
 
+/// Axes that open by less than this angle (rad) run level. It exceeds the rounding that a simulator
+/// leaves in the directions of parallel legs; intended angles are far larger.
+pub(crate) const LEVEL: Real = 1.0 / (1_u64 << 24) as Real;
+
 /// Squares of lengths in this range lose no significant bit.
 const PLAIN_SQUARES: std::ops::Range<Real> = 1.0e-270..1.0e270;
 

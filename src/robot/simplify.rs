@@ -1,7 +1,7 @@
 //! Few links in place of a finely sampled centreline, as short as its bends require.
 //!
 //! # Definitions
-//! - Run: the vertices between two changes of radius. Station: a vertex that stays.
+//! - Run: the vertices between two changes of radius; rounding is no change ([`is_same`]). Station: a vertex that stays.
 //! - Chord: a segment between two vertices of a run; it replaces the part of the run between them.
 //! - A chord *holds* if it and the part that it replaces are within the tolerance of each other
 //!   (Hausdorff distance), and its length is not 0.
@@ -57,6 +57,7 @@
 use super::RobotError;
 use super::chain::check_segments;
 use super::compare::ToleranceSegment;
+use super::radius_steps::{is_same, is_step};
 use super::scale::direction;
 use crate::distance::Scalar;
 use parry3d_f64::math::{Real, Vector};
@@ -66,7 +67,8 @@ use std::borrow::Cow;
 ///
 /// Returns points and segment radii, ready for any constructor of a [`Chain`](crate::Chain). The
 /// points are a subset of the input's, in order. Both ends stay, and so does every point at which
-/// the radius changes. Each new segment and the part of the input that it replaces are within
+/// the radius changes by more than a share of 2^-32; of radii that are equal so far, the largest is
+/// returned. Each new segment and the part of the input that it replaces are within
 /// `tolerance` of each other (Hausdorff distance); this is verified. On a smooth curve there are
 /// nearly as few links as possible, and all of them deviate equally.
 ///
@@ -83,9 +85,8 @@ use std::borrow::Cow;
 /// sample as closely there as the face matters. This takes one or two links per face. It is worth
 /// it: on a bent tube, a tilted face is the largest error of a fine chain.
 ///
-/// Repeated points are removed first, with the radius of the segment between them. (If that radius
-/// differs from a neighbour's, the point counts as a change of radius.) A new segment always has a
-/// length: a loop is never replaced by the point where it closes.
+/// Repeated points are removed first, with the radius of the segment between them. A new segment
+/// always has a length: a loop is never replaced by the point where it closes.
 ///
 /// ```
 /// use parry_continuum::{parry::math::Vector, simplify};
@@ -115,7 +116,7 @@ pub fn simplify(
     let mut radius_before = Real::NEG_INFINITY;
     while let Some(stretch) = stretches.next() {
         let radius_after = stretches.peek().map_or(Real::NEG_INFINITY, |next| next.radius);
-        let faces = [radius_before, radius_after].map(|beside| stretch.radius > beside);
+        let faces = [radius_before, radius_after].map(|beside| is_step(beside, stretch.radius));
         found.clear();
         StationRun::new(&stretch, tolerance, faces).divide(&mut found);
         kept.extend(found.iter().map(|&vertex| stretch.points[vertex]));
@@ -381,8 +382,7 @@ struct RadiusRun<'a> {
 impl<'a> RadiusRuns<'a> {
     /// Splits a centreline, to be simplified within a tolerance, into runs.
     ///
-    /// A segment without length is removed with its radius. If that radius differs from a
-    /// neighbour's, the point counts as a change of radius.
+    /// A segment without length is removed with its radius.
     ///
     /// # Errors
     /// As [`check_segments`]; a tolerance that is negative or not finite; all points equal.
@@ -399,31 +399,31 @@ impl<'a> RadiusRuns<'a> {
         let mut distinct = Vec::with_capacity(if has_repeats { points.len() } else { 0 });
         distinct.extend_from_slice(if has_repeats { &points[..1] } else { &[] });
         let (mut must_stay, mut radii) = (vec![0], vec![]);
-        // `here`: index of the last distinct point. `last_radius`: radius of the last segment.
-        // `radius_before`: radius of the last segment that has a length.
-        let (mut here, mut last_radius, mut radius_before) =
-            (0, segment_radii[0], segment_radii[0]);
+        // `here`: index of the last distinct point. `first`: the first radius of the run.
+        // `widest`: the largest radius of the run.
+        let (mut here, mut first, mut widest): (usize, Real, Real) = (0, 0.0, 0.0);
         for (ends, &radius) in points.windows(2).zip(segment_radii) {
-            if radius != last_radius && must_stay.last() != Some(&here) {
-                must_stay.push(here);
-                radii.push(radius_before);
+            if ends[0] == ends[1] {
+                continue;
             }
-            last_radius = radius;
-            if ends[0] != ends[1] {
-                here += 1;
-                radius_before = radius;
-                if has_repeats {
-                    distinct.push(ends[1]);
-                }
+            if here == 0 {
+                (first, widest) = (radius, radius);
+            } else if !is_same(first, radius) {
+                must_stay.push(here);
+                radii.push(widest);
+                (first, widest) = (radius, radius);
+            }
+            here += 1;
+            widest = widest.max(radius);
+            if has_repeats {
+                distinct.push(ends[1]);
             }
         }
         if here == 0 {
             return Err(RobotError::AllPointsEqual);
         }
-        if must_stay.last() != Some(&here) {
-            must_stay.push(here);
-            radii.push(radius_before);
-        }
+        must_stay.push(here);
+        radii.push(widest);
         let points = if has_repeats { Cow::Owned(distinct) } else { Cow::Borrowed(points) };
         Ok(Self { points, must_stay, radii })
     }

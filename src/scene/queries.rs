@@ -380,6 +380,10 @@ impl Scene {
         out: &mut Vec<StructureProximity>,
     ) -> Result<(), SceneError> {
         out.clear();
+        // A bad robot is an error in a scene without structures too.
+        for (robot, (chain, pose)) in robots.iter().enumerate() {
+            PlacedRobot::new(chain, pose).map_err(of_robot(robot))?;
+        }
         for (number, structure) in self.structures.iter_mut().enumerate() {
             let mut best: Option<StructureProximity> = None;
             for (robot, (chain, pose)) in robots.iter().enumerate() {

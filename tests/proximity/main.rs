@@ -19,6 +19,7 @@ mod motion;
 mod moved;
 mod own_minima;
 mod own_parts;
+mod own_shapes;
 mod own_tube;
 mod own_tube_sampled;
 mod parity;

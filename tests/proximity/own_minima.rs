@@ -514,6 +514,10 @@ fn judge(
             )
         };
         assert!(distance <= minima.sure + 1e-9 * unit, "missed: {}", says());
+        // Two flat faces that look at one another are left out by the oracle.
+        if found.is_some() && !is_flat && distance > 1e-9 * unit {
+            assert!(minima.possible <= distance + 1e-9 * unit, "no local minimum: {}", says());
+        }
         if round % 8 == 0 {
             let pass = robot.pass();
             assert!(distance <= pass + 1e-9 * unit, "a pass to {pass} is missed: {}", says());
@@ -562,12 +566,11 @@ fn free_robots_do_not_touch_themselves() {
     for (shape, is_flat) in rows {
         let counts = judge(&mut random, Some(shape), None, Some(is_flat), FREE);
         println!("{shape:?}, flat {is_flat}: {counts:?}");
-        // Of 250 two at most: a pair with a turn of pi counts, if it is no local minimum as well.
-        assert!(counts.free == FREE && counts.false_contacts <= FREE.div_ceil(125), "{counts:?}");
+        assert!(counts.free == FREE && counts.false_contacts == 0, "{counts:?}");
     }
     let counts = judge(&mut random, None, None, None, 4 * FREE);
     println!("{counts:?}");
-    assert!(counts.false_contacts <= FREE.div_ceil(30), "{counts:?}");
+    assert_eq!(counts.false_contacts, 0, "{counts:?}");
     assert!(counts.touching > 2 && counts.apart > 5, "{counts:?}");
 }
 

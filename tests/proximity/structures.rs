@@ -429,3 +429,16 @@ fn a_margin_counts_from_when_it_is_set() {
         }
     }
 }
+
+/// Robots are checked in a scene without structures as in every other.
+#[test]
+fn a_robot_out_of_range_is_an_error_in_an_empty_scene() {
+    let robot = Chain::from_centreline(&[Vector::ZERO, Vector::Z], &[0.1]).unwrap();
+    let away = (&robot, Pose::translation(1e200, 0.0, 0.0));
+    let mut scene = Scene::new();
+    let mut each = Vec::new();
+    let expected = scene.tightest(&[away]).unwrap_err();
+    assert_eq!(scene.per_structure(&[away], &mut each).unwrap_err(), expected);
+    scene.add("ball", ball(Vector::ZERO, 1.0), None).unwrap();
+    assert_eq!(scene.per_structure(&[away], &mut each).unwrap_err(), expected);
+}

@@ -292,9 +292,9 @@ fn repeating_points_changes_no_link() {
 }
 
 #[test]
-fn a_repeated_point_with_a_wider_radius_is_a_step() {
+fn a_repeated_point_with_a_wider_radius_is_no_step() {
     let points = [0.0, 2.0, 2.0, 4.0].map(|x| Vector::X * x);
-    assert_eq!(centreline(&points, &[1.0, 3.0, 1.0]), "FF FF");
+    assert_eq!(centreline(&points, &[1.0, 3.0, 1.0]), "FT TF");
     assert_eq!(centreline(&points, &[1.0, 1.0, 1.0]), "FT TF");
 }
 
@@ -394,4 +394,21 @@ fn radii_that_differ_by_rounding_are_no_steps() {
     let steps: Vec<_> = (0..39).map(|k| 0.5 * (1.0 + 1e-8 * f64::from(k * 7 % 5))).collect();
     let stepped = Chain::from_centreline(&points, &steps).unwrap();
     assert!(stepped.links().iter().zip(constant.links()).any(|(a, b)| a.caps() != b.caps()));
+}
+
+/// A segment without length is no link, so its radius makes no step.
+#[test]
+fn a_segment_without_length_makes_no_face() {
+    let points = [0.0, 1.0, 1.0, 2.0, 3.0].map(|z| Vector::Z * z);
+    let without = [0.0, 1.0, 2.0, 3.0].map(|z| Vector::Z * z);
+    for radius in [0.1, 0.2, 0.9] {
+        let chain = Chain::from_centreline(&points, &[0.2, radius, 0.2, 0.2]).unwrap();
+        let expected = Chain::from_centreline(&without, &[0.2; 3]).unwrap();
+        assert_eq!(chain.links(), expected.links(), "{radius}");
+    }
+    // At both ends of the robot too.
+    let points = [0.0, 0.0, 1.0, 2.0, 2.0].map(|z| Vector::Z * z);
+    let chain = Chain::from_centreline(&points, &[0.9, 0.2, 0.2, 0.9]).unwrap();
+    let expected = Chain::from_centreline(&without[..3], &[0.2; 2]).unwrap();
+    assert_eq!(chain.links(), expected.links());
 }

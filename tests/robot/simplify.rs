@@ -323,9 +323,9 @@ fn repeated_points() {
             (vec![Vector::ZERO, Vector::X, Vector::X * 2.0], vec![0.1, 0.2])
         );
     }
-    // A radius of its own on a segment without length is a change of radius too.
+    // A segment without length makes no change, whatever its radius is.
     let (kept, kept_radii) = simplify(&points, &[0.1, 0.1, 0.1, 0.5, 0.1, 0.1], 10.0).unwrap();
-    assert_eq!((kept.len(), kept_radii), (3, vec![0.1, 0.1]));
+    assert_eq!((kept.len(), kept_radii), (2, vec![0.1]));
 }
 
 #[test]
@@ -369,4 +369,34 @@ fn bad_input_is_named() {
     assert!(matches!(nan, RobotError::PointNotFinite { index: 1, .. }));
     let negative = simplify(&points, &[0.1, -2.0], 0.1).unwrap_err();
     assert!(matches!(negative, RobotError::BadRadius { index: 1, value: -2.0, .. }));
+}
+
+/// Radii that differ by rounding are one: as many links as of one radius, with the largest of them.
+#[test]
+fn rounding_of_the_radius_is_no_step() {
+    let mut random = Random::new(9);
+    let arc = |k: u32| {
+        let (sin, cos) = (f64::from(k) / 300.0).sin_cos();
+        Vector::new(30.0 * cos, 30.0 * sin, 0.0)
+    };
+    let points: Vec<_> = (0..=300).map(arc).collect();
+    let (expected, _) = simplify(&points, &[1.0; 300], 0.01).unwrap();
+    for noise in [1e-16, 3e-16, 1e-12, 1e-10] {
+        for kind in 0..3 {
+            let radius = |k: usize| match kind {
+                0 => 1.0 + noise * f64::from(u8::from(k >= 150)),
+                1 => 1.0 + noise * f64::from(u8::from(k % 2 == 0)),
+                _ => 1.0 + noise * random.unit(),
+            };
+            let radii: Vec<_> = (0..300).map(radius).collect();
+            let (kept, kept_radii) = simplify(&points, &radii, 0.01).unwrap();
+            assert_eq!(kept, expected, "{noise} {kind}");
+            let widest = radii.iter().copied().fold(0.0, Real::max);
+            assert!(kept_radii.iter().all(|&radius| radius == widest), "{noise} {kind}");
+        }
+    }
+    // A real step stays.
+    let radii: Vec<_> = (0..300).map(|k| if k < 150 { 1.0 } else { 1.0 + 1e-9 }).collect();
+    let (kept, _) = simplify(&points, &radii, 0.01).unwrap();
+    assert!(kept.contains(&points[150]));
 }

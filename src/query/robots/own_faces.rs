@@ -32,9 +32,11 @@
 //! **Proof.** If the nearest place is inside a link, `w . t` is 0 there. At an end, rule 2 of
 //! `JoinedLink` fails. □
 //!
-//! **All turns.** If all turns are queried, links count without a face too. They are skipped only
-//! if all places are at shoulders for which case 3 holds. That is, all links of one node have a
-//! shoulder at the end that the segment reaches.
+//! **All turns.** If all turns are queried, links with a turn of pi count without a face too. Their
+//! pair is skipped if case 3 holds for either node: from its places the robot leads nearer, so
+//! condition 2 of `JoinedLink` fails. It is also skipped if all links of one node have a shoulder at
+//! the end that the segment reaches: then the rule for faces decides. Where axes run level, `w . t`
+//! is 0 within rounding, and neither holds.
 //!
 //! **Facing.** If all `w . t > 0`, the faces at ends of links face away; if all `w . t < 0`, the
 //! faces at starts do.
@@ -160,7 +162,7 @@ pub(super) enum Band {
 
 impl OwnFaces {
     /// Prepares for a robot. Returns whether any pair may be queried.
-    pub fn begin(&mut self, robot: &PlacedRobot, turns: &TurnSums) -> bool {
+    pub fn begin(&mut self, robot: &PlacedRobot, turns: &TurnSums, band: Band) -> bool {
         self.nodes.clear();
         #[cfg(test)]
         {
@@ -177,7 +179,8 @@ impl OwnFaces {
             look |= start && link > first_end + 1;
             first_end = if end { first_end.min(link) } else { first_end };
         }
-        !self.with_faces.is_empty() && (look || turns.quarter_from[0] < count)
+        let has_face = !self.with_faces.is_empty();
+        has_face && look || (has_face || band == Band::All) && turns.quarter_from[0] < count
     }
 
     /// As [`run`](Self::run), for few faces: compares each link that has one with all other links.
@@ -356,11 +359,16 @@ impl OwnFaces {
         // Case 3.
         let from_one = two.seen_from(one, way, away, self.rounding);
         let from_two = one.seen_from(two, -way, away, self.rounding);
-        let may_count = one.may_see(&from_two) && from_one.may_be_local
+        let at_face = one.may_see(&from_two) && from_one.may_be_local
             || two.may_see(&from_one) && from_two.may_be_local;
-        let at_shoulders = one.all[1] && from_two.forwards == Some(false)
-            || two.all[0] && from_one.forwards == Some(true);
-        in_band &= may_count || band == Band::All && !at_shoulders;
+        let has_half_turn = last >= turns.queried_from[one.first];
+        let beside = band == Band::All
+            && has_half_turn
+            && from_one.may_be_local
+            && from_two.may_be_local
+            && !one.is_at_shoulders(&from_two)
+            && !two.is_at_shoulders(&from_one);
+        in_band &= at_face || beside;
         let is_covered = from_one.forwards == Some(true) && from_one.is_covered
             || from_two.forwards == Some(false) && from_two.is_covered;
         let are_flat = !one.round[1] && !two.round[0];
@@ -467,6 +475,11 @@ impl Node {
             Some(false) => self.some[1],
             None => self.has_face(),
         }
+    }
+
+    /// Whether all places of the node are at shoulders.
+    fn is_at_shoulders(&self, seen: &Seen) -> bool {
+        seen.forwards.is_some_and(|forwards| self.all[usize::from(!forwards)])
     }
 
     /// Returns how the node lies as seen from the faces of another. `way` leads from the other's
@@ -617,7 +630,7 @@ mod tests {
     /// Returns the direction of a link; `share` is the part of the robot behind it.
     type Shape = fn(share: Real, link: usize) -> Vector;
 
-    const SHAPES: [(&str, Shape); 5] = [
+    const SHAPES: [(&str, Shape); 7] = [
         ("straight", |_, _| Vector::Z),
         ("arc", |share, _| {
             let (sin, cos) = (3.0 * share).sin_cos();
@@ -632,6 +645,15 @@ mod tests {
         }),
         ("sharp zigzag", |_, link| {
             Vector::new(if link.is_multiple_of(2) { 0.5 } else { -0.5 }, 0.0, 1.0)
+        }),
+        ("nearly closed ring", |share, _| {
+            let (sin, cos) = (6.25 * share).sin_cos();
+            Vector::new(sin, 0.0, cos)
+        }),
+        // It turns by many times pi, and leads nowhere back.
+        ("long waves", |share, _| {
+            let (sin, cos) = (1.2 * (60.0 * share).sin()).sin_cos();
+            Vector::new(sin, 0.0, cos)
         }),
     ];
 
@@ -658,7 +680,9 @@ mod tests {
         let mut memory = SelfMemory::default();
         let found =
             RobotWithItself::new(&robot, &mut memory).expect("blunt joints").minimum(&mut memory);
-        (memory.faces().looked_at, found.is_some())
+        let looked_at = memory.faces().looked_at;
+        RobotWithItself::new(&robot, &mut memory).expect("blunt joints").clears(1e3, &mut memory);
+        (looked_at.max(memory.faces().looked_at), found.is_some())
     }
 
     /// With four times as many steps the number of visited node pairs grows as n log n, for every

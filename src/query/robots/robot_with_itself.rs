@@ -53,16 +53,24 @@
 //! reaches anyway. So the turn of pi / 2 remains.
 //!
 //! The turn only saves work. `pair::JoinedLink` decides whether a face counts beside a link or
-//! another face. It also decides two links with a turn of pi if they are nearest at a face of one.
+//! another face. It also decides whether two links with a turn of pi count: the robot must lead
+//! nowhere nearer from their closest places.
 //!
 //! # Restrictions
 //! Links that share a joint are never queried. This rule is for thin tubes. A joint is too sharp if
-//! its links overlap over more than half of the shorter one: r tan(angle / 2) > length / 2. Then
-//! neighbours cannot be identified, and the robot is refused.
+//! its links overlap over more than half of the shorter one. Then neighbours cannot be identified,
+//! and the robot is refused.
+//! - Two links of radius r overlap over r tan(angle / 2).
+//! - At a step the thinner link leaves from the centre of the wider one's face. Only the thinner
+//!   link leans over that face, so with its radius r they overlap over r tan(angle), for any radius
+//!   of the wider link.
+//!
+//! So a joint is accepted if either length is at most half of the shorter link, the first with the
+//! wider radius.
 //!
 //! # Algorithm
 //! 1. [`Descent`] searches the pairs with a turn of pi.
-//! 2. [`OwnFaces`] searches all others. If faces reject [`MOST_REFUSED`] pairs in step 1, nothing
+//! 2. [`OwnFaces`] searches all others. If [`MOST_REFUSED`] pairs of step 1 do not count, nothing
 //!    bounds that search. Then [`OwnFaces`] searches all pairs, since it knows where the robot
 //!    leads nearer.
 //!
@@ -79,14 +87,15 @@
 //! 3. The axes are unit vectors to 4 u, so both numbers err by 8 u. Their products over n joints
 //!    err by less than 20 n u of length, roundings included. A cosine of a quotient errs by twice
 //!    that and 3 u.
-//! 4. [`TurnSums`] therefore accepts cosines up to 128 n u above the required one.
+//! 4. [`TurnSums`] therefore accepts cosines up to 128 n u above the required one, and 2^-24 more:
+//!    parallel legs may open by as much (`pair::JoinedLink`).
 
 use super::descent::{Descent, PairLimit, measure_pair};
-use super::own_faces::{Band, OwnFaces, faces};
+use super::own_faces::{Band, OwnFaces};
 use crate::answer::{ProximityError, RobotProximity};
 use crate::distance::Scalar;
 use crate::pair::{JoinedLink, NearestOfLinks, PlacedLink, PlacedRobot};
-use crate::robot::{Chain, ModifiedCylinder};
+use crate::robot::{Chain, LEVEL, ModifiedCylinder};
 use parry3d_f64::math::{Pose, Real, Vector};
 use std::f64::consts::FRAC_1_SQRT_2;
 
@@ -150,10 +159,15 @@ impl TurnSums {
             // The cosine and the sine of half of the joint's angle.
             let (cosine, sine) =
                 (0.5 * (next.0 + last.0).length(), 0.5 * (next.0 - last.0).length());
-            let (length, radius) = (next.1.min(last.1), next.2.max(last.2));
+            let (length, wider, radius) =
+                (next.1.min(last.1), next.2.max(last.2), next.2.min(last.2));
             // If a link folds back along the one before, rounding leaves no valid cosine.
             let is_folded = cosine * cosine <= 8.0 * Real::UNIT_ROUNDOFF;
-            if 2.0 * radius * sine > length * cosine || is_folded {
+            // The cosine of the whole angle.
+            let ahead = (cosine - sine) * (cosine + sine);
+            let is_wide = 2.0 * wider * sine > length * cosine;
+            let is_thin = ahead > 0.0 && 4.0 * radius * sine * cosine <= length * ahead;
+            if is_wide && !is_thin || is_folded {
                 let angle = 2.0 * libm::atan2(sine, cosine);
                 return Err(ProximityError::JointTooSharp {
                     joint: joint + 1,
@@ -168,7 +182,7 @@ impl TurnSums {
             self.directions.push(next.0);
             last = next;
         }
-        self.slack = 128.0 * links.len() as Real * Real::UNIT_ROUNDOFF;
+        self.slack = 128.0 * links.len() as Real * Real::UNIT_ROUNDOFF + LEVEL;
         let (mut half, mut quarter) =
             (std::mem::take(&mut self.queried_from), std::mem::take(&mut self.quarter_from));
         self.find_queried(0.0, &mut half);
@@ -269,20 +283,15 @@ impl<'a> RobotWithItself<'a> {
 
     /// Whether two links with a turn of pi between them count.
     fn counts(&self, links: [usize; 2]) -> bool {
-        let has_face = |link: &usize| faces(&self.robot, *link) != [false; 2];
-        if !links.iter().any(has_face) {
-            return true;
-        }
         let [one, two] = links.map(|link| self.joined(link));
         one.counts_beside(&two, one.tolerance(&two))
     }
 
     /// Returns a link with its neighbours.
     fn joined(&self, link: usize) -> JoinedLink {
-        let last = self.robot.links().len() - 1;
-        let before = link.checked_sub(1).map(|before| self.robot.link(before));
-        let behind = (link < last).then(|| self.robot.link(link + 1));
-        JoinedLink { link: self.robot.link(link), beyond: [before, behind] }
+        let place = |link| self.robot.link(link);
+        let count = self.robot.links().len();
+        JoinedLink::new(place(link), (0..link).rev().map(place), (link + 1..count).map(place))
     }
 
     /// Calls `keep` with the pairs beside faces that count and are within `limit`. Each call
@@ -295,7 +304,7 @@ impl<'a> RobotWithItself<'a> {
         limit: PairLimit,
         mut keep: impl FnMut(RobotProximity) -> Option<PairLimit>,
     ) -> bool {
-        if !faces.begin(&self.robot, turns) {
+        if !faces.begin(&self.robot, turns, band) {
             return true;
         }
         let mut limit = limit;

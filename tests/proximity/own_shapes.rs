@@ -1,0 +1,229 @@
+//! A robot and itself does not depend on frame, order, unit and cuts of straight links.
+
+use continuum_testing::Random;
+use parry_continuum::parry::math::{Pose, Vector};
+use parry_continuum::proximity::{Decision, SelfQuery};
+use parry_continuum::{Chain, Tube};
+use std::f64::consts::PI;
+
+type Make = fn(&[Vector], &[f64]) -> Chain;
+
+const KINDS: [Make; 2] = [
+    |points, radii| Chain::from_centreline(points, radii).unwrap(),
+    |points, radii| Chain::capsules(points, radii).unwrap(),
+];
+
+/// Two legs from `y = 0` to `y = leg`, `width` apart at `y = 0`, that open by an angle, and the
+/// base of the U between them.
+fn hairpin(leg: f64, width: f64, opening: f64) -> [Vector; 4] {
+    let (sin, cos) = (0.5 * opening).sin_cos();
+    let half = 0.5 * width;
+    [
+        Vector::new(-half - leg * sin, leg * cos, 0.0),
+        Vector::new(-half, 0.0, 0.0),
+        Vector::new(half, 0.0, 0.0),
+        Vector::new(half + leg * sin, leg * cos, 0.0),
+    ]
+}
+
+/// The distance of a robot and itself, which the decisions about it and about its tube confirm.
+fn distance(query: &mut SelfQuery, chain: &Chain, unit: f64) -> Option<f64> {
+    let found = query.minimum(chain).unwrap().map(|found| found.distance);
+    let margin = found.map_or(5.0 * unit, |distance| distance + 0.01 * unit);
+    assert_eq!(query.clears(chain, margin).unwrap(), found.is_none(), "{chain:?}");
+    let decision = query.clears_tube(&Tube::from(chain), margin, 1e-3 * unit).unwrap();
+    let expected = if found.is_none() { Decision::Clear } else { Decision::Contact };
+    assert_eq!(decision, expected, "{found:?} {margin} {chain:?}");
+    if let Some(distance) = found
+        && distance > 0.01 * unit
+    {
+        let margin = distance - 0.01 * unit;
+        assert!(query.clears(chain, margin).unwrap());
+        let decision = query.clears_tube(&Tube::from(chain), margin, 1e-3 * unit).unwrap();
+        assert_eq!(decision, Decision::Clear, "{found:?} {margin} {chain:?}");
+    }
+    found
+}
+
+/// Legs of radius 4 that are 10 apart: a gap of 2, in every frame.
+#[test]
+fn parallel_legs_keep_their_gap_where_the_radius_steps() {
+    let mut query = SelfQuery::new();
+    let points = [
+        [-0.6980962574913405, 0.0, 39.99390780625565],
+        [0.0, 0.0, 0.0],
+        [9.998476951563912, 0.0, 0.17452406437283513],
+        [9.300380694072572, 0.0, 40.16843187062848],
+    ]
+    .map(Vector::from_array);
+    let turned = |degrees: i32| {
+        let (sin, cos) = (PI * f64::from(degrees) / 180.0).sin_cos();
+        points.map(|p| Vector::new(p.x * cos + p.z * sin, p.y, p.z * cos - p.x * sin))
+    };
+    for degrees in 0..360 {
+        let legs = turned(degrees);
+        let chain = Chain::from_centreline(&legs, &[4.0, 1.0, 4.0]).unwrap();
+        let found = query.minimum(&chain).unwrap().unwrap_or_else(|| panic!("{degrees}"));
+        assert!((found.distance - 2.0).abs() < 1e-12, "{degrees}: {found:?}");
+        assert!(!query.clears(&chain, 5.0).unwrap(), "{degrees}");
+        if degrees % 20 == 0 {
+            assert!(distance(&mut query, &chain, 1.0).is_some());
+        }
+    }
+}
+
+/// Legs that open by less than rounding in their directions are parallel, with and without steps,
+/// cut in one link a leg or in several.
+#[test]
+fn legs_keep_their_gap_in_every_frame_order_and_unit() {
+    let (mut random, mut query) = (Random::new(71), SelfQuery::new());
+    let mut tilted = 0;
+    for round in 0..600 {
+        let unit = [1.0, 1e-3, 1e-6, 1e4][random.below(4) as usize];
+        let opening = [0.0, 1e-15, 1e-12, 1e-9, -1e-9][random.below(5) as usize];
+        let (leg, width) = (random.between(5.0, 60.0), random.between(3.0, 12.0));
+        let wide = random.between(0.1, 0.48) * width;
+        let thin = [wide, 0.3 * wide][random.below(2) as usize].min(0.4 * width);
+        let pose = match random.below(3) {
+            0 => Pose::IDENTITY,
+            1 => random.pose(0.0),
+            _ => random.pose(100.0),
+        };
+        let corners = hairpin(leg, width, opening);
+        let cuts = 1 + random.below(3);
+        let mut points = Vec::new();
+        let mut radii = Vec::new();
+        for (number, pair) in corners.windows(2).enumerate() {
+            let parts = if number == 1 { 1 } else { cuts };
+            for k in 0..parts {
+                points.push(pair[0].lerp(pair[1], f64::from(k) / f64::from(parts)));
+                radii.push(if number == 1 { thin } else { wide } * unit);
+            }
+        }
+        points.push(corners[3]);
+        let mut points: Vec<_> = points.iter().map(|point| pose * *point * unit).collect();
+        if random.below(2) == 0 {
+            points.reverse();
+            radii.reverse();
+        }
+        let chain = KINDS[round % 2](&points, &radii);
+        // A square corner of links of one radius that are short is too sharp.
+        let Ok(found) = query.minimum(&chain) else { continue };
+        let found = found.unwrap_or_else(|| panic!("{round}, {opening}: {points:?} {radii:?}"));
+        let expected = width - 2.0 * wide;
+        assert!((found.distance / unit - expected).abs() < 1e-6, "{found:?} {expected}");
+        if round % 4 == 0 {
+            assert!(distance(&mut query, &chain, unit).is_some());
+        }
+        tilted += usize::from(opening != 0.0);
+    }
+    assert!(tilted > 200, "{tilted}");
+}
+
+/// Legs that open come nearest at the bend, and belong to it.
+#[test]
+fn legs_that_open_do_not_meet_however_they_are_cut() {
+    let mut query = SelfQuery::new();
+    for (cuts, opening) in [(1, 1e-3), (2, 1e-3), (7, 1e-3), (1, 0.1), (7, 0.1)] {
+        let corners = hairpin(30.0, 10.0, opening);
+        let mut points = Vec::new();
+        for (number, pair) in corners.windows(2).enumerate() {
+            let parts = if number == 1 { 1 } else { cuts };
+            points
+                .extend((0..parts).map(|k| pair[0].lerp(pair[1], f64::from(k) / f64::from(parts))));
+        }
+        points.push(corners[3]);
+        for make in KINDS {
+            let chain = make(&points, &vec![1.0; points.len() - 1]);
+            assert_eq!(distance(&mut query, &chain, 1.0), None, "{cuts} {opening}");
+        }
+    }
+}
+
+/// The noise of measured points turns a straight robot by more than pi.
+#[test]
+fn a_noisy_straight_robot_never_meets_itself() {
+    let (mut random, mut query) = (Random::new(72), SelfQuery::new());
+    let mut turned = 0;
+    for round in 0..150 {
+        let count = 50 + random.below(100);
+        let noise = [0.0, 0.02, 0.1, 0.2][random.below(4) as usize];
+        let pose = random.pose(3.0);
+        let points: Vec<_> = (0..=count)
+            .map(|k| pose * (Vector::Z * f64::from(k) + random.point() * noise))
+            .collect();
+        let ways: Vec<_> = points.windows(2).map(|pair| (pair[1] - pair[0]).normalize()).collect();
+        let turn: f64 = ways
+            .windows(2)
+            .map(|pair| pair[0].cross(pair[1]).length().atan2(pair[0].dot(pair[1])))
+            .sum();
+        let taper = if random.below(2) == 0 { 1.0 } else { 1.0 - 1e-3 };
+        let radii: Vec<_> = (0..count).map(|k| 0.5 * f64::powi(taper, k as i32)).collect();
+        let chain = KINDS[round % 2](&points, &radii);
+        assert_eq!(query.minimum(&chain).unwrap(), None, "{noise}");
+        assert!(query.clears(&chain, 1e3).unwrap());
+        if round % 10 == 0 {
+            let tube = Tube::from(&chain);
+            assert_eq!(query.clears_tube(&tube, 0.1, 1e-3).unwrap(), Decision::Clear);
+        }
+        turned += usize::from(turn > PI);
+    }
+    assert!(turned > 60, "{turned}");
+}
+
+/// Two disks on an arc of a thin backbone, `4 / theta` from its centre: the inner points of their
+/// rims are `2 (4 / theta - 5) sin(theta / 2)` apart.
+#[test]
+fn spacer_disks_on_a_thin_backbone_meet_at_their_rims() {
+    let mut query = SelfQuery::new();
+    for theta in [0.5, 0.7, 0.75] {
+        for (chords, thickness) in [(1, 1.0), (2, 0.5), (4, 1.0), (8, 0.1)] {
+            let radius = 4.0 / theta;
+            let on_arc = |angle: f64| {
+                Vector::new(radius * (1.0 - f64::cos(angle)), 0.0, radius * f64::sin(angle))
+            };
+            let mut points = vec![Vector::Z * -thickness];
+            points.extend((0..=chords).map(|k| on_arc(theta * f64::from(k) / f64::from(chords))));
+            let along = Vector::new(f64::sin(theta), 0.0, f64::cos(theta));
+            points.push(on_arc(theta) + along * thickness);
+            let mut radii = vec![0.5; points.len() - 1];
+            (radii[0], radii[chords as usize + 1]) = (5.0, 5.0);
+            let chain = Chain::from_centreline(&points, &radii).unwrap();
+            let gap = 2.0 * (radius - 5.0) * f64::sin(0.5 * theta);
+            let found = distance(&mut query, &chain, 1.0).unwrap();
+            assert!((found - gap).abs() < 1e-12, "{theta} {chords}: {found} {gap}");
+        }
+    }
+    // A sharp joint of the thin part itself is still refused, and the message names its radius.
+    let points = [[0.0, 0.0, -1.0], [0.0; 3], [0.0, 0.0, 2.0], [0.1, 0.0, 1.0]].map(Vector::from);
+    let error = query.minimum(&Chain::from_centreline(&points, &[5.0, 0.5, 0.5]).unwrap());
+    let error = error.unwrap_err();
+    assert!(error.kind() == "joint_too_sharp" && error.to_string().contains("0.5"), "{error}");
+}
+
+/// The thin part between two round shoulders is one body, however it is cut.
+#[test]
+fn a_thin_part_between_round_shoulders_may_be_cut() {
+    let mut query = SelfQuery::new();
+    for thin in [0.2, 0.46, 0.63, 1.2] {
+        let mut answers = Vec::new();
+        for parts in [1, 2, 3, 8, 50] {
+            let mut points = vec![Vector::ZERO];
+            points.extend(
+                (0..=parts).map(|k| Vector::Z * (1.0 + thin * f64::from(k) / f64::from(parts))),
+            );
+            points.push(Vector::Z * (2.0 + thin));
+            let mut radii = vec![0.06; points.len() - 1];
+            (radii[0], radii[parts as usize + 1]) = (0.45, 0.45);
+            let mut random = Random::new(73);
+            for round in 0..10 {
+                let pose = if round == 0 { Pose::IDENTITY } else { random.pose(2.0) };
+                let placed: Vec<_> = points.iter().map(|point| pose * *point).collect();
+                answers.push(distance(&mut query, &KINDS[1](&placed, &radii), 1.0));
+            }
+        }
+        // The shoulders are nearest inside of the thin part, if it is longer than their radius.
+        let expected = if thin > 0.45 { None } else { Some(0.0) };
+        assert!(answers.iter().all(|answer| *answer == expected), "{thin}: {answers:?}");
+    }
+}
