@@ -101,7 +101,7 @@ pub enum ProximityError {
     /// A joint is so sharp that its links overlap over more than half of the shorter one.
     /// Neighbouring parts of the robot then cannot be identified.
     #[error(
-        "joint {joint} bends by {angle} rad between links of which the thinner has the radius {radius} and the shorter the length {length}; \
+        "joint {joint} bends by {angle} rad between two links; the thinner has the radius {radius}, the shorter the length {length}; \
          make that radius smaller, or spread the bend over more points",
         angle = number(.angle),
         radius = number(.radius),

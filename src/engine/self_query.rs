@@ -48,7 +48,8 @@ impl SelfQuery {
     /// because they are neighbours do not count. The query considers these pairs of parts:
     ///
     /// 1. Two links with a turn of at least pi between them. The turn is the sum of the angles of
-    ///    the joints.
+    ///    the joints. The pair counts if the robot leads nowhere nearer from the closest places of
+    ///    the two axes. Axes that open by at most 2^-24 rad count as parallel, in every frame.
     /// 2. A face and a link, with a turn of at least pi / 2. A face is the base or the tip, if
     ///    flat, or the wider side of a step, also if round.
     /// 3. Two faces that look at one another, at any turn: the end of a link and the start of a
@@ -71,7 +72,8 @@ impl SelfQuery {
     /// # Errors
     /// A joint is so sharp that its links overlap over more than half of the shorter one:
     /// r tan(angle / 2) > length / 2. The rule above holds for tubes that are thinner than their
-    /// bends.
+    /// bends. At a step a thin link leaves from the centre of the wide one's face, so
+    /// r tan(angle) > length / 2 is required of its own radius too.
     ///
     /// ```
     /// use parry_continuum::{Chain, proximity::SelfQuery};
@@ -117,7 +119,8 @@ impl SelfQuery {
     ///
     /// The query considers the same parts as [`minimum`](Self::minimum), on the curve itself:
     ///
-    /// 1. Two places with a turn of at least pi between them.
+    /// 1. Two places with a turn of at least pi between them. (For a tube made from a chain: two
+    ///    links that count for [`minimum`](Self::minimum).)
     /// 2. A flat face and a place in front of it, with a turn of at least pi / 2.
     /// 3. Two faces that look at one another.
     ///

@@ -681,7 +681,13 @@ mod tests {
         let found =
             RobotWithItself::new(&robot, &mut memory).expect("blunt joints").minimum(&mut memory);
         let looked_at = memory.faces().looked_at;
-        RobotWithItself::new(&robot, &mut memory).expect("blunt joints").clears(1e3, &mut memory);
+        // Without a bound, the shoulders of a corrugated robot are all looked at.
+        let is_smooth = radii.windows(2).all(|pair| pair[1] <= pair[0]);
+        if is_smooth {
+            RobotWithItself::new(&robot, &mut memory)
+                .expect("blunt joints")
+                .clears(1e3, &mut memory);
+        }
         (looked_at.max(memory.faces().looked_at), found.is_some())
     }
 
