@@ -1,6 +1,6 @@
 //! Compares designs of a tendon robot for a brain ventricle: how much of it can the tip reach?
 //!
-//! `cargo run --release --example design` draws random shapes of each design, decides which keep a
+//! `cargo run --example design` draws random shapes of each design, decides which keep a
 //! margin from the wall, and counts the cubes of 1 mm that hold their tips. With `--features gpu`
 //! and `--engine gpu` the GPU computes and decides the shapes, for studies of
 //! `--shapes 100000000`.
@@ -105,7 +105,7 @@ impl Search {
             }
             #[cfg(not(feature = "gpu"))]
             Engine::Gpu => Err("this program was built without the GPU; run \
-                                `cargo run --release --features gpu --example design -- --engine gpu`"
+                                `cargo run --features gpu --example design -- --engine gpu`"
                 .into()),
         }
     }

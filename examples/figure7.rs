@@ -1,5 +1,5 @@
 //! Draws four rules for the caps of a chain on three robots (Fig. 7 of the paper):
-//! `cargo run --release --example figure7`.
+//! `cargo run --example figure7`.
 //!
 //! Cylinders leave a gap at every joint, capsules have round ends. Naive caps, round inside and
 //! flat at both ends, are right only while links are longer than the radius and the radius does not

@@ -1,4 +1,4 @@
-//! The closest place of a robot to a wall: `cargo run --release -p clearance --example quickstart`.
+//! The closest place of a robot to a wall: `cargo run -p clearance --example quickstart`.
 
 use parry_continuum::Chain;
 use parry_continuum::parry::math::{Pose, Vector};

@@ -1,6 +1,6 @@
 //! Two concentric tube robots in one brain ventricle: which is tightest, and where?
 //!
-//! `cargo run --release --example two_robots` sends a robot through either frontal horn. At every
+//! `cargo run --example two_robots` sends a robot through either frontal horn. At every
 //! step one scene is asked: whether each robot keeps its margin from the wall and from the other
 //! one, and where the slack (distance less margin) is least. At the end there are the time per
 //! question, and a picture of the last step at which all is clear, with the closest points.

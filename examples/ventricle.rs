@@ -1,7 +1,7 @@
 //! Steers a concentric tube robot into a brain ventricle and prints how far each of its links is
 //! from the wall.
 //!
-//! `cargo run --release --example ventricle` grows a ventricle and sends the robot through the
+//! `cargo run --example ventricle` grows a ventricle and sends the robot through the
 //! foramen of Monro into the third ventricle. At every step two engines find the closest points of
 //! every link; they must agree. At the end there are a table, the time per query, and a picture.
 //! `--tolerance 0.01` also bounds the clearance of the curve itself, and the picture then shows the
@@ -84,7 +84,7 @@ impl Engine {
             }
             #[cfg(not(feature = "gpu"))]
             Self::Gpu => Err("this program was built without the GPU; run \
-                              `cargo run --release --features gpu --example ventricle -- --engine gpu`"
+                              `cargo run --features gpu --example ventricle -- --engine gpu`"
                 .into()),
         }
     }

@@ -1,7 +1,7 @@
 //! Lets a concentric tube robot follow a target into the wall of a brain ventricle, and keeps it
 //! 0.5 mm away.
 //!
-//! `cargo run --release --example control` simulates a loop of 1 kHz twice: once the joints follow
+//! `cargo run -p control` simulates a loop of 1 kHz twice: once the joints follow
 //! the target as well as they can, and the robot touches; once each contact within 3 mm is one
 //! linear inequality in the joint speeds, and it does not. At the end there are the clearances, how
 //! long a tick takes, and a plot. `--latency` measures over 100,000 ticks.

@@ -1,6 +1,6 @@
 //! Plans the way of a concentric tube robot into a brain ventricle, every moment of it proven.
 //!
-//! `cargo run --release --example plan` grows a ventricle and looks for a way from the burr hole
+//! `cargo run --example plan` grows a ventricle and looks for a way from the burr hole
 //! through the foramen of Monro into the third ventricle, in the space of the robot's joints. The
 //! ventricle has a vein with a margin of its own, and an endoscope that rests. Whether an edge
 //! keeps all margins is proven by one call, `Scene::clears_motion`; the same planner is then run

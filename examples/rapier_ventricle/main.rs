@@ -1,6 +1,6 @@
 //! Pushes an elastic concentric tube robot into a brain ventricle, in a rapier world.
 //!
-//! `cargo run --release --example rapier_ventricle` lets the three tubes come out along the planned
+//! `cargo run --example rapier_ventricle` lets the three tubes come out along the planned
 //! way into the third ventricle, then pushes the base on. Where the robot touches the wall, contact
 //! forces bend it. At every step the crate's search finds the clearance of every link. Into
 //! `target/rapier_ventricle` (or `--out`) go `steps.csv` and `links.csv` with clearances, forces
