@@ -8,13 +8,14 @@
 //! points along a line in the same way.
 //!
 //! This crate parses the formats itself, because the files of medical and robotics programs differ
-//! from what the formats' crates accept. XML, JSON, base64, archives, surface nets and the
-//! triangulation of polygons are left to crates.
+//! from what the formats' crates accept. XML, JSON, base64, archives and surface nets are left
+//! to crates.
 #![warn(missing_debug_implementations, missing_docs)]
 
 #[cfg(feature = "centrelines")]
 mod centreline;
 mod doubts;
+mod ears;
 mod error;
 #[cfg(feature = "label-maps")]
 mod label_map;

@@ -1,15 +1,22 @@
-//! Triangulates faces: a fan about the first vertex if the face is convex, ear clipping otherwise.
+//! Triangulates faces. A face of n corners becomes n - 2 triangles whose common boundary is the
+//! outline of the face, so neighbouring faces stay connected.
+//!
+//! # Algorithm
+//! 1. Project the outline to the coordinate plane that is most parallel to the face.
+//! 2. Take the fan about the first corner if no triangle of it is turned over.
+//! 3. Otherwise clip ears ([`Ears`]). No ear is turned over.
+//! 4. If ears run out, the outline crosses itself: take the fan, as other programs do.
+//!
+//! # Correctness
+//! **Claim.** If no triangle is turned over, the triangles cover each point of the plane as often
+//! as the outline winds around it: once inside an outline without crossings, and never outside.
+//! **Proof.** The triangles form a disc whose boundary is the outline. A point that is on no edge
+//! is covered as often by triangles that turn left, minus those that turn right, as the boundary
+//! winds around it. No triangle turns right.
+//! **Rounding.** A triangle counts as turned over if its cross product is less than `-ROUNDING`.
 
+use crate::ears::{Ears, ROUNDING, turn};
 use crate::mesh::Mesh;
-use earcut::Earcut;
-
-/// The largest number of vertices of a face that is not convex. Ear clipping takes quadratic time
-/// at worst.
-const MOST_CORNERS: usize = 1 << 14;
-
-/// The rounding error of a cross product of coordinates up to 1: two products of differences up to
-/// 2, each with three roundings, and their difference.
-const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// Faces before the triangulation. They are collected first, because a face may name vertices that
 /// the file defines later.
@@ -42,10 +49,11 @@ impl Faces {
         }
     }
 
-    /// Adds the triangles of the faces to a mesh that has its vertices.
+    /// Adds the triangles of the faces to a mesh that has its vertices. Triangles that name a
+    /// vertex twice are left out.
     ///
     /// # Errors
-    /// A face that is not convex has too many vertices.
+    /// The outlines of faces are too intricate.
     pub fn cut(self, mesh: &mut Mesh) -> Result<(), String> {
         let mut cutter = Cutter::default();
         let mut from = 0;
@@ -61,18 +69,19 @@ impl Faces {
     }
 }
 
-/// Clips ears. Keeps its buffers from face to face.
+/// Cuts faces for which the fan is wrong. Keeps its buffers from face to face.
 #[derive(Default)]
 struct Cutter {
-    earcut: Earcut<f64>,
+    ears: Ears,
     /// The face without consecutive repeated vertices.
     corners: Vec<u32>,
+    places: Vec<[f64; 3]>,
     outline: Vec<[f64; 2]>,
-    ears: Vec<u32>,
 }
 
 impl Cutter {
-    /// Adds the triangles of a face. Returns false, without adding any, if a fan is right.
+    /// Adds the triangles of a face. Returns false, without adding any, if they are those of the
+    /// fan.
     fn cut_ears(&mut self, corners: &[u32], mesh: &mut Mesh) -> Result<bool, String> {
         self.corners.clear();
         self.corners.extend(corners);
@@ -80,24 +89,19 @@ impl Cutter {
         while self.corners.len() > 1 && self.corners.first() == self.corners.last() {
             self.corners.pop();
         }
-        if self.corners.len() < 4 || !self.project(&mesh.vertices) || is_convex(&self.outline) {
+        if self.corners.len() < 4 || !self.project(&mesh.vertices) || fan_covers(&self.outline) {
             return Ok(false);
         }
         let count = self.corners.len();
-        if count > MOST_CORNERS {
-            return Err(format!(
-                "a face of {count} corners is not convex; triangulate it before the export"
-            ));
-        }
-        self.earcut.earcut_slice::<u32>(&self.outline, &[], &mut self.ears);
+        let Some(ears) = self.ears.clip(&self.outline).map_err(|_| {
+            format!("the outline of a face of {count} corners is too intricate; triangulate it before the export")
+        })?
+        else {
+            return Ok(false);
+        };
+        let named = ears.iter().map(|ear| ear.map(|corner| self.corners[corner as usize]));
         let before = mesh.triangles.len();
-        for &ear in self.ears.as_chunks::<3>().0 {
-            let [a, b, c] = ear.map(|corner| self.outline[corner as usize]);
-            let [p, q, r] = ear.map(|corner| self.corners[corner as usize]);
-            if p != q && q != r && r != p {
-                mesh.triangles.push(if turn(a, b, c) < 0.0 { [p, r, q] } else { [p, q, r] });
-            }
-        }
+        mesh.triangles.extend(named.filter(|[a, b, c]| a != b && b != c && c != a));
         Ok(mesh.triangles.len() > before)
     }
 
@@ -105,50 +109,40 @@ impl Cutter {
     /// the face. Coordinates are relative to the first vertex, scaled by a power of two to at most
     /// 1.
     fn project(&mut self, vertices: &[[f64; 3]]) -> bool {
-        let corner = |&index: &u32| vertices.get(index as usize).copied();
-        let Some(places) = self.corners.iter().map(corner).collect::<Option<Vec<_>>>() else {
+        let Some(&first) = self.corners.first().and_then(|&first| vertices.get(first as usize))
+        else {
             return false;
         };
-        let away = |place: [f64; 3]| [0, 1, 2].map(|axis| place[axis] - places[0][axis]);
-        let largest = places
-            .iter()
-            .flat_map(|&place| away(place))
-            .fold(0.0, |most: f64, x| most.max(x.abs()));
+        self.places.clear();
+        let mut largest = 0.0_f64;
+        for &corner in &self.corners {
+            let Some(place) = vertices.get(corner as usize) else { return false };
+            let away = [0, 1, 2].map(|axis| place[axis] - first[axis]);
+            largest = away.iter().fold(largest, |most, x| most.max(x.abs()));
+            self.places.push(away);
+        }
         if !(f64::MIN_POSITIVE..f64::MAX).contains(&largest) {
             return false;
         }
         let scale = (-largest.log2().floor() - 1.0).exp2();
-        let places: Vec<_> = places.iter().map(|&place| away(place).map(|x| x * scale)).collect();
+        self.places.iter_mut().flatten().for_each(|x| *x *= scale);
         // Twice the area in each coordinate plane.
         let normal = [0, 1, 2].map(|axis| {
             let [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
-            let pairs = places.iter().zip(places.iter().cycle().skip(1));
+            let pairs = self.places.iter().zip(self.places.iter().cycle().skip(1));
             pairs.map(|(p, q)| p[u] * q[v] - p[v] * q[u]).sum::<f64>()
         });
-        let axis =
-            (0..3).fold(
-                0,
-                |best, axis| if normal[axis].abs() > normal[best].abs() { axis } else { best },
-            );
+        let is_larger = |a: usize, b: usize| normal[a].abs() > normal[b].abs();
+        let axis = (1..3).fold(0, |best, axis| if is_larger(axis, best) { axis } else { best });
         let [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
         let [u, v] = if normal[axis] < 0.0 { [v, u] } else { [u, v] };
         self.outline.clear();
-        self.outline.extend(places.iter().map(|place| [place[u], place[v]]));
+        self.outline.extend(self.places.iter().map(|place| [place[u], place[v]]));
         normal[axis] != 0.0 && normal[axis].is_finite()
     }
 }
 
-/// Returns whether the outline turns left at every vertex, and the fan about the first vertex as
-/// well. The second condition excludes outlines that wind twice.
-fn is_convex(outline: &[[f64; 2]]) -> bool {
-    let count = outline.len();
-    let at = |index: usize| outline[index % count];
-    (0..count).all(|i| {
-        let is_left = |a, b, c| turn(a, b, c) >= -ROUNDING;
-        is_left(at(i), at(i + 1), at(i + 2)) && is_left(at(0), at(i), at(i + 1))
-    })
-}
-
-fn turn(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
-    (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+/// Returns whether no triangle of the fan about the first corner is turned over.
+fn fan_covers(outline: &[[f64; 2]]) -> bool {
+    outline.windows(2).all(|edge| turn(outline[0], edge[0], edge[1]) >= -ROUNDING)
 }

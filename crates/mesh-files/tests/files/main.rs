@@ -10,6 +10,7 @@ mod limits;
 #[cfg(feature = "label-maps")]
 mod meta_image;
 mod mutations;
+mod polygons;
 mod reports;
 mod triangles;
 #[cfg(feature = "centrelines")]

@@ -184,41 +184,59 @@ fn hostile_xml_is_refused_at_once() {
     }
 }
 
-/// Faces that are cut by ears: their time is quadratic at worst, so that their corners are limited.
+/// Faces of very many corners: their time is in proportion to the file's size.
 #[test]
-fn faces_of_many_corners_are_cut_soon_or_refused() {
-    // A comb, and corners drawn at random, whose edges cross everywhere.
+fn faces_of_many_corners_are_cut_soon() {
+    // A comb, one that leans, a spiral, and corners drawn at random, whose edges cross everywhere.
+    type Corner = [f64; 2];
     let comb = |i: usize, count: usize| match i {
         0 => [0.0, -1e3],
         _ if i + 1 == count => [count as f64, -1e3],
         _ => [i as f64, if i.is_multiple_of(2) { 0.0 } else { 1e3 }],
     };
-    let mut draws = Draws(7);
-    let drawn: Vec<_> =
-        (0..20_000).map(|_| [draws.below(1 << 20) as f64, draws.below(1 << 20) as f64]).collect();
-    let obj = |corners: &[[f64; 2]]| {
-        let vertices: String = corners.iter().map(|[x, y]| format!("v {x} {y} 0\n")).collect();
-        let face: Vec<_> = (1..=corners.len()).map(|corner| corner.to_string()).collect();
-        format!("{vertices}f {}\n", face.join(" "))
+    let spiral = |i: usize, count: usize| {
+        let (step, width) = if 2 * i < count { (i, 0.0) } else { (count - 1 - i, 0.4) };
+        let (angle, r) = (step as f64 / 8.0, step as f64 / 50.0 + 1.0 - width);
+        [r * angle.cos(), r * angle.sin()]
     };
-    for count in [1000, 16_384, 20_000] {
-        for corners in
-            [(0..count).map(|i| comb(i, count)).collect::<Vec<_>>(), drawn[..count].to_vec()]
-        {
-            let text = obj(&corners);
-            let start = Instant::now();
-            let answer = crate::read("a.obj", &text);
-            assert!(start.elapsed() < 60 * TIME, "{count}: {:?}", start.elapsed());
-            println!("took {count}: {:?}", start.elapsed());
-            if count > 16_384 {
-                crate::refused(
-                    "a.obj",
-                    answer,
-                    "a face of 20000 corners is not convex; triangulate it before",
-                );
-            } else {
-                assert!(!answer.unwrap().triangles.is_empty());
+    let mut draws = Draws(7);
+    let mut drawn = |_: usize, _: usize| [0, 1].map(|_| draws.below(1 << 20) as f64);
+    let leaning = |i: usize, count: usize| {
+        let [x, y] = comb(i, count);
+        [x + 2.0 * y, y + 2.0 * x]
+    };
+    let outlines: [(&str, &mut dyn FnMut(usize, usize) -> Corner); 4] = [
+        ("comb", &mut { comb }),
+        ("leaning", &mut { leaning }),
+        ("spiral", &mut { spiral }),
+        ("drawn", &mut drawn),
+    ];
+    for (name, outline) in outlines {
+        for (faces, count) in [(20, 1000), (1, 20_000)] {
+            let mut text = String::new();
+            for face in 0..faces {
+                let corners: Vec<_> = (0..count).map(|i| outline(i, count)).collect();
+                text.extend(corners.iter().map(|[x, y]| format!("v {x} {y} 0\n")));
+                let words = (1..=count).map(|i| (face * count + i).to_string());
+                text += &format!("f {}\n", words.collect::<Vec<_>>().join(" "));
             }
+            let start = Instant::now();
+            let mesh = crate::read("a.obj", &text).unwrap();
+            assert!(start.elapsed() < TIME, "{name}, {count}: {:?}", start.elapsed());
+            assert_eq!(mesh.triangles.len(), faces * (count - 2), "{name}");
         }
     }
+    // A corner so far away that all others share a few cells: little time, and no surface.
+    let far = |i: usize, count: usize| if i == 0 { [5e5, -1e6] } else { comb(i, count) };
+    let corners: String =
+        (0..20_000).map(|i| far(i, 20_000)).map(|[x, y]| format!("v {x} {y} 0\n")).collect();
+    let face: Vec<_> = (1..=20_000).map(|corner| corner.to_string()).collect();
+    let start = Instant::now();
+    let answer = crate::read("a.obj", format!("{corners}f {}\n", face.join(" ")));
+    assert!(start.elapsed() < TIME, "{:?}", start.elapsed());
+    crate::refused(
+        "a.obj",
+        answer,
+        "a face of 20000 corners is too intricate; triangulate it before",
+    );
 }
