@@ -1,7 +1,7 @@
 //! Reads the vertices and faces of OBJ files, and writes triangles as OBJ.
 //!
 //! Polygons are triangulated, faces without area are left out, and all objects of the file form one
-//! mesh.
+//! mesh. A statement that is unknown, or that adds a surface in another way, is an error.
 
 use crate::mesh::Mesh;
 use crate::polygon::Faces;
@@ -20,18 +20,64 @@ pub fn to_obj<Vertex: Copy + Into<[f64; 3]>>(
     vertices.chain(faces).collect()
 }
 
+/// The statements that change no vertex and no face.
+const IGNORED: [&str; 37] = [
+    "vt",
+    "vn",
+    "vp",
+    "p",
+    "l",
+    "g",
+    "s",
+    "o",
+    "mg",
+    "usemtl",
+    "mtllib",
+    "usemap",
+    "maplib",
+    "lod",
+    "bevel",
+    "c_interp",
+    "d_interp",
+    "shadow_obj",
+    "trace_obj",
+    "ctech",
+    "stech",
+    "cstype",
+    "deg",
+    "bmat",
+    "step",
+    "curv",
+    "curv2",
+    "parm",
+    "trim",
+    "hole",
+    "scrv",
+    "sp",
+    "end",
+    "con",
+    "cdc",
+    "res",
+    "csh",
+];
+
+/// The statements that add a surface of another kind, and one that includes another file.
+const OTHER_SURFACES: [&str; 5] = ["surf", "bsp", "bzp", "cdp", "call"];
+
 /// The content so far.
 #[derive(Default)]
 struct Reader {
     vertices: Vec<[f64; 3]>,
     faces: Faces,
+    /// Whether the last line is ignored and ends in a backslash, so that numbers may follow.
+    may_go_on: bool,
     /// The highest vertex that a face names, and the line of that face: the vertex may be defined
     /// later.
     last: (u32, usize),
 }
 
 impl Reader {
-    /// Reads a vertex or a face, and ignores other statements.
+    /// Reads a vertex or a face, and ignores known statements of another kind.
     fn read_statement(&mut self, text: &str, line: usize) -> Result<(), String> {
         let mut words = text.split_whitespace();
         match words.next() {
@@ -45,10 +91,25 @@ impl Reader {
                 self.last = corners.iter().map(|&corner| (corner, line)).fold(self.last, Ord::max);
                 self.faces.push(corners);
             }
+            Some(word) if OTHER_SURFACES.contains(&word) => {
+                return Err(format!(
+                    "line {line} has the statement '{word}', whose surface is not read; export it as polygons"
+                ));
+            }
+            Some(word) if !IGNORED.contains(&word) && !(self.may_go_on && is_number(word)) => {
+                return Err(format!(
+                    "line {line} has the unknown statement '{}'; remove the line if it is no face",
+                    shown(word)
+                ));
+            }
             _ => {}
         }
         Ok(())
     }
+}
+
+fn is_number(word: &str) -> bool {
+    word.parse::<f64>().is_ok()
 }
 
 /// Returns whether a backslash joins the next line to this one. Names and comments may end in a
@@ -68,7 +129,10 @@ pub fn read(bytes: &[u8]) -> Result<Mesh, String> {
                 open += start;
                 open.push(' ');
             }
-            _ if open.is_empty() => reader.read_statement(text, line)?,
+            start if open.is_empty() => {
+                reader.read_statement(start.unwrap_or(text), line)?;
+                reader.may_go_on = start.is_some();
+            }
             _ => reader.read_statement(&(std::mem::take(&mut open) + text), line)?,
         }
     }

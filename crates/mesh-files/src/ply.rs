@@ -140,15 +140,25 @@ pub fn read(bytes: &[u8]) -> Result<Mesh, String> {
             read_element(element, index, &mut body, &mut mesh, &mut faces)?;
         }
     }
-    if let Body::Text(mut rest) = body
-        && let Some(word) = next_word(&mut rest)
-        && !word.iter().all(u8::is_ascii_control)
-    {
-        let word = String::from_utf8_lossy(word);
-        return Err(format!(
-            "it has more numbers than its header announces, the first one is '{}'",
-            shown(&word)
-        ));
+    // Blank bytes may follow the data.
+    let is_blank = |byte: &u8| byte.is_ascii_control() || is_space(byte);
+    match body {
+        Body::Text(mut rest) => {
+            if let Some(word) = next_word(&mut rest)
+                && !word.iter().all(is_blank)
+            {
+                return Err(format!(
+                    "it has more numbers than its header announces, the first one is '{}'",
+                    shown(&String::from_utf8_lossy(word))
+                ));
+            }
+        }
+        Body::Bytes { rest, .. } => {
+            if !rest.iter().all(is_blank) {
+                let more = rest.len();
+                return Err(format!("it has {more} more bytes than its header announces"));
+            }
+        }
     }
     faces.cut(&mut mesh)?;
     Ok(mesh)
@@ -184,7 +194,12 @@ fn read_element(
         if !(length >= 0.0 && length.fract() == 0.0) {
             return Err(format!("{index} of element '{name}' has a list of {length} numbers"));
         }
-        let is_needed = is_of_faces && CORNERS.contains(&property.name.as_str());
+        let is_of_corners = CORNERS.contains(&property.name.as_str());
+        let is_needed = is_of_faces && is_of_corners;
+        // Other elements, such as those of range grids, name at most one vertex.
+        if is_of_corners && !is_needed && length >= 3.0 {
+            return Err(format!("its element '{name}' has faces; name the element 'face'"));
+        }
         let mut numbers = Vec::new();
         for _ in 0..length as u64 {
             let number = body.next(property.kind).map_err(fault)?;

@@ -110,7 +110,16 @@ fn ascii(bytes: &[u8]) -> Result<Mesh, String> {
             match word.as_str() {
                 "solid" | "endsolid" => {
                     is_open = word == "solid";
-                    while !begins_facet(words.clone()) && words.next().is_some() {}
+                    let mut is_end = false;
+                    while !begins_facet(words.clone())
+                        && let Some(word) = words.next()
+                    {
+                        let word = word.to_ascii_lowercase();
+                        if word == "endfacet" || is_end && word == "facet" {
+                            return Err(format!("line {line} ends a facet that does not begin"));
+                        }
+                        is_end = word == "end";
+                    }
                 }
                 // Skip "normal" and its three numbers: the vertices determine it.
                 "facet" => words.by_ref().take(4).for_each(drop),

@@ -21,12 +21,21 @@ pub fn from_utf16(bytes: &[u8]) -> Cow<'_, [u8]> {
     text.collect::<String>().into_bytes().into()
 }
 
-/// Returns the lines with their numbers, counted from 1.
+/// The ends of lines. Programs that translate the ends of lines twice write the first one.
+const ENDS: [&[u8]; 4] = [b"\r\r\n", b"\r\n", b"\n", b"\r"];
+
+/// Returns the lines with their numbers, counted from 1. The ends of lines may differ in a file.
 pub fn lines(bytes: &[u8]) -> impl Iterator<Item = (usize, Cow<'_, str>)> {
-    // Old programs end lines with carriage returns only.
-    let end = if bytes.contains(&b'\n') { b'\n' } else { b'\r' };
-    let lines = without_mark(bytes).split(move |&byte| byte == end);
-    lines.map(String::from_utf8_lossy).enumerate().map(|(index, line)| (index + 1, line))
+    let mut rest = without_mark(bytes);
+    (1..).map_while(move |number| {
+        if rest.is_empty() {
+            return None;
+        }
+        let end = rest.iter().position(|byte| b"\r\n".contains(byte)).unwrap_or(rest.len());
+        let (line, after) = rest.split_at(end);
+        rest = ENDS.iter().find_map(|end| after.strip_prefix(*end)).unwrap_or_default();
+        Some((number, String::from_utf8_lossy(line)))
+    })
 }
 
 /// Parses a coordinate.

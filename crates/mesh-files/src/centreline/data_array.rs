@@ -119,6 +119,9 @@ impl<'a> Arrays<'a> {
             }
             other => return Err(format!("its format '{}' cannot be read", shown(other))),
         };
+        if bytes.len() % size != 0 {
+            return Err(SHORT.into());
+        }
         let wide = |bytes: &[u8]| {
             let add = |number: u64, &byte: &u8| number << 8 | u64::from(byte);
             if self.is_big_endian {

@@ -23,7 +23,7 @@ impl<'a> Reader<'a> {
         let end = self.bytes.iter().position(is_end).unwrap_or(self.bytes.len());
         let line = &self.bytes[..end];
         self.bytes = self.bytes.get(end + 1..).unwrap_or_default();
-        Some(std::str::from_utf8(line).unwrap_or("").trim())
+        Some(std::str::from_utf8(line).unwrap_or(NO_TEXT).trim())
     }
 
     /// Returns the words of the next line that is not empty.
@@ -108,7 +108,8 @@ impl<'a> Reader<'a> {
         Ok(Kind { class, size: size.unwrap_or(sizes[0]) })
     }
 
-    /// Returns the cells of a section, each as its points.
+    /// Returns the cells of a section, each as its points. `first` and `second` are the numbers in
+    /// its head: cells and numbers, or offsets and points.
     fn cells(&mut self, first: usize, second: usize) -> Result<Vec<Vec<u64>>, String> {
         let before = self.bytes;
         let ["OFFSETS", name] = self.line().map(words).unwrap_or_default()[..] else {
@@ -124,6 +125,9 @@ impl<'a> Reader<'a> {
                 cells.push(own.to_vec());
                 rest = next;
             }
+            if cells.len() != first {
+                return Err(format!("a section counts {first} cells, but has {}", cells.len()));
+            }
             return Ok(cells);
         };
         const NEXT: &str = "CONNECTIVITY";
@@ -137,6 +141,10 @@ impl<'a> Reader<'a> {
             }
             _ => return Err("its OFFSETS are not followed by CONNECTIVITY".into()),
         };
+        let ends = [offsets.first(), offsets.last()].map(|end| end.copied().unwrap_or_default());
+        if ends != [0, points.len() as u64] {
+            return Err("its OFFSETS do not fit its CONNECTIVITY".into());
+        }
         let cell = |ends: &[u64]| {
             let [from, to] =
                 [ends[0], ends[1]].map(|end| usize::try_from(end).unwrap_or(usize::MAX));
@@ -182,11 +190,7 @@ impl<'a> Reader<'a> {
                     let kind = self.sized(count, kind, is_head)?;
                     self.take(count, kind.size)?;
                 }
-                _ => {
-                    for _ in 0..count {
-                        self.word()?;
-                    }
-                }
+                _ => drop(self.numbers(count, Kind { class: Class::Float, size: 8 })?),
             }
         }
         Ok(frame)
@@ -206,9 +210,9 @@ impl<'a> Reader<'a> {
         self.take(usize::try_from(length).map_err(|_| SHORT)?, 1)
     }
 
-    /// Skips to the next empty line.
+    /// Skips to the next empty line, or to the next section if the line is missing.
     fn metadata(&mut self) {
-        while self.line().is_some_and(|line| !line.is_empty()) {}
+        while !starts_cells(self.bytes) && self.line().is_some_and(|line| !line.is_empty()) {}
     }
 }
 
@@ -247,15 +251,18 @@ impl Kind {
     }
 }
 
-/// The sections of a file.
+/// The number of sections with points or cells.
+const GEOMETRY: usize = 6;
+
+/// The sections of a file, those with points or cells first.
 const SECTIONS: [&str; 12] = [
     "POINTS",
     "LINES",
     "POLYGONS",
     "TRIANGLE_STRIPS",
-    "VERTICES",
     "CELLS",
     "CELL_TYPES",
+    "VERTICES",
     "METADATA",
     "FIELD",
     "POINT_DATA",
@@ -279,6 +286,20 @@ fn is_head(after: &[u8]) -> bool {
     }
 }
 
+/// Returns whether the head of a section of points or cells follows.
+fn starts_cells(after: &[u8]) -> bool {
+    let is_it = |name: &&str| {
+        after.get(..name.len()).is_some_and(|word| word.eq_ignore_ascii_case(name.as_bytes()))
+    };
+    let Some(name) = SECTIONS[..GEOMETRY].iter().find(|name| is_it(name)) else { return false };
+    let line = after[name.len()..].split(|byte| b"\r\n".contains(byte)).next();
+    let Ok(line) = std::str::from_utf8(line.unwrap_or_default()) else { return false };
+    let words = words(line);
+    line.starts_with([' ', '\t'])
+        && (1..=2).contains(&words.len())
+        && words[0].parse::<usize>().is_ok()
+}
+
 fn words(line: &str) -> Vec<&str> {
     line.split_whitespace().collect()
 }
@@ -299,9 +320,10 @@ pub fn read(bytes: &[u8]) -> Result<PolyData, String> {
         _ => return Err("its third line is neither ASCII nor BINARY".into()),
     }
     let mut found = PolyData::default();
-    let mut cells = Vec::new();
+    let mut cells = None;
     while let Some(line) = file.line() {
         let words = words(line);
+        let twice = || Err(format!("it has '{}', but another section of this kind", shown(line)));
         let number = |place: usize| -> Result<usize, String> {
             let word = words
                 .get(place)
@@ -322,6 +344,12 @@ pub fn read(bytes: &[u8]) -> Result<PolyData, String> {
                     );
                 }
             }
+            Some("POINTS" | "LINES" | "POLYGONS" | "TRIANGLE_STRIPS" | "CELLS" | "CELL_TYPES")
+                if words.len() > 3 =>
+            {
+                return Err(format!("it has '{}', which is no head of a section", shown(line)));
+            }
+            Some("POINTS") if !found.points.is_empty() => return twice(),
             Some("POINTS") => {
                 let count = number(1)?.checked_mul(3).ok_or(SHORT)?;
                 let kind = file.sized(count, words.get(2).copied().unwrap_or("float"), is_head)?;
@@ -332,19 +360,31 @@ pub fn read(bytes: &[u8]) -> Result<PolyData, String> {
             Some("POLYGONS") => found.polygons.extend(file.cells(number(1)?, number(2)?)?),
             Some("TRIANGLE_STRIPS") => found.strips.extend(file.cells(number(1)?, number(2)?)?),
             Some("VERTICES") => drop(file.cells(number(1)?, number(2)?)?),
-            Some("CELLS") => cells = file.cells(number(1)?, number(2)?)?,
+            Some("CELLS") if cells.is_some() => return twice(),
+            Some("CELLS") => cells = Some(file.cells(number(1)?, number(2)?)?),
             Some("CELL_TYPES") => {
                 let types = file.numbers(number(1)?, Kind { class: Class::Signed, size: 4 })?;
-                sort(&mut found, std::mem::take(&mut cells), &types)?;
+                sort(&mut found, cells.take().unwrap_or_default(), &types)?;
             }
             Some("METADATA") => file.metadata(),
             Some("FIELD") => found.frame = found.frame.or(file.field(number(2)?)?),
             // The rest are data of the points and cells.
-            Some("POINT_DATA" | "CELL_DATA") => break,
+            Some("POINT_DATA" | "CELL_DATA") => {
+                let rest = file.bytes;
+                let after_end = |(at, byte): (usize, &u8)| b"\r\n".contains(byte).then_some(at + 1);
+                let mut starts = rest.iter().enumerate().filter_map(after_end);
+                if starts_cells(rest) || starts.any(|start| starts_cells(&rest[start..])) {
+                    return Err("it has points or cells after their data; sort its sections".into());
+                }
+                break;
+            }
             Some(_) => {
                 return Err(format!("it has '{}' where a section should begin", shown(line)));
             }
         }
+    }
+    if cells.is_some() {
+        return Err("its CELLS have no CELL_TYPES".into());
     }
     found.frame = found.frame.or(noted_frame(bytes));
     Ok(found)
@@ -356,31 +396,27 @@ fn sort(found: &mut PolyData, cells: Vec<Vec<u64>>, types: &[f64]) -> Result<(),
         return Err(format!("it has {} cells, but {} types of cells", cells.len(), types.len()));
     }
     for (cell, &kind) in cells.into_iter().zip(types) {
-        match kind as u8 {
+        let wrong = |what: &str| {
+            Err(format!("it has cells of type {kind}, which {what}; extract the surface"))
+        };
+        // A fraction is no type.
+        match if kind.fract() == 0.0 { kind as u8 } else { 0 } {
             // Vertices.
             1 | 2 => {}
             3 | 4 => found.lines.push(cell),
             6 => found.strips.push(cell),
             5 | 7 | 9 => found.polygons.push(cell),
             // A pixel: row by row instead of around.
-            8 => found.polygons.push(
-                cell.iter()
-                    .enumerate()
-                    .map(|(k, &point)| match k {
-                        2 => cell.get(3).copied().unwrap_or(point),
-                        3 => cell[2],
-                        _ => point,
-                    })
-                    .collect(),
-            ),
-            _ => {
-                return Err(format!(
-                    "it has cells of type {kind}, which are no surface; extract the surface"
-                ));
-            }
+            8 => match cell[..] {
+                [a, b, c, d] => found.polygons.push(vec![a, b, d, c]),
+                _ => return wrong("have 4 points"),
+            },
+            _ => return wrong("are no surface"),
         }
     }
     Ok(())
 }
 
 const SHORT: &str = "it is shorter than it says";
+/// Stands for a line of bytes that are no text.
+const NO_TEXT: &str = "bytes";

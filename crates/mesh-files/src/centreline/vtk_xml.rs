@@ -42,8 +42,9 @@ fn noted_space(field: &Element, arrays: &Arrays) -> Option<Frame> {
     frame_named(letters?.split(|&letter| letter == 0).next()?)
 }
 
+/// Reads a piece, and compares the counts that it states with what it holds.
 fn piece(piece: &Element, arrays: &Arrays) -> Result<PolyData, String> {
-    let points = piece.child("Points").and_then(|points| points.child("DataArray"));
+    let points = only(piece, "Points")?.and_then(|points| points.child("DataArray"));
     let points = points.map(|points| arrays.read(points)).transpose()?;
     let points = points.map(DataArray::into_numbers).unwrap_or_default();
     if points.len() % 3 != 0 {
@@ -52,14 +53,43 @@ fn piece(piece: &Element, arrays: &Arrays) -> Result<PolyData, String> {
             shown(&points.len().to_string())
         ));
     }
-    let cells = |name: &str| cells(piece.child(name), arrays);
+    let points = points.as_chunks().0.to_vec();
+    compare(piece, "Points", points.len())?;
+    let cells = |name: &str| {
+        let cells = cells(only(piece, name)?, arrays)?;
+        compare(piece, name, cells.len())?;
+        Ok::<_, String>(cells)
+    };
     Ok(PolyData {
-        points: points.as_chunks().0.to_vec(),
+        points,
         lines: cells("Lines")?,
         polygons: cells("Polys")?,
         strips: cells("Strips")?,
         frame: None,
     })
+}
+
+/// Returns the child of this name.
+///
+/// # Errors
+/// There are several.
+fn only<'a>(piece: &'a Element, name: &'a str) -> Result<Option<&'a Element>, String> {
+    let mut all = piece.children(name);
+    match (all.next(), all.next()) {
+        (first, None) => Ok(first),
+        _ => Err(format!("a piece has the element {name} twice")),
+    }
+}
+
+/// Compares the count that a piece states, as in `NumberOfPolys="4"`, with the count that it has.
+fn compare(piece: &Element, name: &str, count: usize) -> Result<(), String> {
+    let attribute = format!("NumberOf{name}");
+    match piece.attribute(&attribute) {
+        Some(stated) if stated.trim().parse() != Ok(count) => {
+            Err(format!("its {attribute} is {}, but there are {count}", shown(stated)))
+        }
+        _ => Ok(()),
+    }
 }
 
 fn cells(parent: Option<&Element>, arrays: &Arrays) -> Result<Vec<Vec<u64>>, String> {
@@ -76,6 +106,9 @@ fn cells(parent: Option<&Element>, arrays: &Arrays) -> Result<Vec<Vec<u64>>, Str
         let cell = connectivity.get(from..to).ok_or("its offsets do not fit its connectivity")?;
         cells.push(cell.to_vec());
         from = to;
+    }
+    if from != connectivity.len() {
+        return Err("its offsets do not fit its connectivity".into());
     }
     Ok(cells)
 }

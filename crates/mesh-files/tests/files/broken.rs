@@ -43,7 +43,7 @@ fn what_is_wrong_with_a_file_is_said_in_one_line() {
         ("number.stl", text.replacen("vertex ", "vertex x", 1).into(), "line 4 has 'x"),
         ("corners.stl", text.replacen("endfacet", "", 1).into(), "has 6 vertices, not 3"),
         ("obj.stl", obj.into(), "holds OBJ, not STL"),
-        ("stl.obj", text.clone().into(), "holds no triangles"),
+        ("stl.obj", text.clone().into(), "holds STL, not OBJ"),
         ("stl.ply", text.into(), "holds STL, not PLY"),
         ("page.stl", b"<!doctype html>\n<p>Not found</p>\n".to_vec(), "holds XML or HTML"),
         ("points.obj", b"v 0 0 0\nv 1 0 0\n".to_vec(), "no triangles"),

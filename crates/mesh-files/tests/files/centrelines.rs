@@ -164,7 +164,7 @@ fn what_is_wrong_with_a_centreline_is_said_in_one_line() {
         ("a.vtp", vtp.replace("PolyData", "ImageData"), "export the centreline or the surface as"),
         ("a.vtp", vtp.replace("Int64", "Float64"), "by numbers that are no integers"),
         ("a.vtp", vtp.replace("Int64", "Bits"), "numbers of type 'Bits'"),
-        ("a.vtp", vtp.replace("Name=\"offsets\"", "Name=\"ends\""), "holds no line"),
+        ("a.vtp", vtp.replace("Name=\"offsets\"", "Name=\"ends\""), "offsets do not fit"),
         ("a.mrk.json", "{".into(), "is not a valid markups file"),
         ("a.mrk.json", r#"{"markups": []}"#.into(), "holds no line"),
         ("a.mrk.json", CURVE.replace("LPS", "XYZ"), "neither LPS nor RAS"),

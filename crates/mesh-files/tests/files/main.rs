@@ -7,6 +7,7 @@ mod doubts;
 #[cfg(feature = "label-maps")]
 mod label_maps;
 mod limits;
+mod losses;
 #[cfg(feature = "label-maps")]
 mod meta_image;
 mod mutations;

@@ -60,7 +60,7 @@ const TETRAHEDRON: &str =
 fn lines_of_obj_that_end_in_a_backslash_go_on_only_where_they_may() {
     assert_tetrahedron("A01", load("A01_backslash_comment.obj", &Options::default()));
     assert_tetrahedron("A02", load("A02_inline_comment.obj", &Options::default()));
-    for line in ["#", "g", "o", "usemtl", "mtllib", "s", "# C:\\anatomy\\", "vt", "l", "unknown"] {
+    for line in ["#", "g", "o", "usemtl", "mtllib", "s", "# C:\\anatomy\\", "vt", "l", "curv 0 1"] {
         for place in 0..8 {
             let mut lines: Vec<_> = TETRAHEDRON.lines().map(str::to_owned).collect();
             lines.insert(place, format!("{line} \\"));
