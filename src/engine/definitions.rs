@@ -73,7 +73,8 @@ impl Definition<'_> {
     /// robot that touches nothing.
     ///
     /// For each link k let c grow from 0. Triangle i appears at `c = d(k, i)`, as a piece of wall.
-    /// Two triangles with the same corner or edge f are one piece from `c = d(k, f)` on. When two
+    /// Two triangles with the same corner or edge f are one piece from `c = d(k, f)` on. (Walls
+    /// with seams have more such f, which the tests of seams derive.) When two
     /// pieces merge, the one that appeared later ends. A contact is a triangle within the margin
     /// whose piece has not ended at once, up to `rounding`.
     fn contacts_within(&self, margin: Real, rounding: Real) -> Vec<(usize, u32)> {

@@ -128,7 +128,10 @@ pub trait Proximity: Engine {
     ///   contact. An equally near place in the same region of the wall may replace it.
     ///
     /// Triangles are neighbours if they have corners at the same place, whether they share an index
-    /// or not.
+    /// or not. They are neighbours, too, where open edges touch within 32 u times the largest
+    /// coordinate (u is 2^-53): at a corner on an edge (a T-vertex), and at a seam of rounding. An
+    /// edge is open if no second triangle continues the wall there. The page on
+    /// [limits](crate::book::limits) has more.
     ///
     /// ```
     /// use parry_continuum::Chain;
@@ -399,8 +402,9 @@ pub trait Proximity: Engine {
     /// - [`clears`](Self::clears): the grid of the sides of the wall, only if the bounding box has
     ///   moved by several cells of the grid.
     /// - [`contacts_within`](Self::contacts_within): one pass over all vertices finds vertices that
-    ///   have met or parted. If there are any, the query also builds which triangles are joined.
-    ///   Near the robot it builds the neighbours of triangles.
+    ///   have met or parted, and one over open edges finds where they touch. If there are any, the
+    ///   query also builds which triangles are joined. Near the robot it builds the neighbours of
+    ///   triangles.
     /// - [`side`](super::BvhSearch::side), [`clears_inside`](super::BvhSearch::clears_inside): the
     ///   far field of each node.
     /// - Any query, if single precision is too coarse: nothing. The move itself refits the second

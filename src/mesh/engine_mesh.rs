@@ -115,10 +115,11 @@ impl Mesh {
     }
 
     /// For each edge of a triangle the opposite corner of another triangle at that edge; NaN if
-    /// there is none.
+    /// there is none. All are NaN for a loose triangle, which is never culled (`local_minima`).
     pub(crate) fn corners_across(&self, triangle: u32) -> [Vector; 3] {
+        let parts = self.parts();
         [3, 4, 5].map(|edge| {
-            let across = self.parts().across(triangle, edge);
+            let across = parts.across(triangle, edge).filter(|_| !parts.is_loose(triangle));
             across.map_or(Vector::NAN, |(other, corner)| self.corners(other)[corner])
         })
     }

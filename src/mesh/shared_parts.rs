@@ -1,21 +1,27 @@
 //! Which triangles share a corner or an edge, by place.
 //!
 //! # Definitions
+//! - *place* of a corner: its coordinates. Open corners within rounding of one another are at the
+//!   same place ([`seams`](super::seams)).
 //! - *part* of a triangle: one of its three corners or three edges. Two parts are the same if their
 //!   ends lie at the same places.
 //! - *ring* of a part: a circular list of all triangles with the same part, in which each names the
 //!   next. Around an edge there may be any number of triangles (Weiler's radial edge).
 //!
 //! Only corners are numbered, by their places; an edge is the pair of its ends. So the rings stay
-//! valid after a motion if the same vertices coincide as before.
+//! valid after a motion if the same vertices coincide as before, and if no open edges touch before
+//! or after it.
 //!
 //! # Algorithm
-//! 1. Number the places: a hash table gives each vertex the first vertex at its place.
+//! 1. Number the places: a hash table gives each vertex the first vertex with its coordinates.
 //! 2. Join the corners at each place to one ring.
 //! 3. For each place, walk its ring and join the edges that lead to the same other place.
+//! 4. Find the open edges, and where they touch. If open corners do, repeat steps 2 and 3 with the
+//!    places that they have in common.
 
+use super::seams::{Seam, Seams, Touching};
 use parry3d_f64::math::{Real, Vector};
-use std::iter::successors;
+use std::iter::{once, successors};
 
 /// The number of parts of a triangle. Parts 0 to 2 are the corners a, b and c; parts 3 to 5 are the
 /// edges ab, bc and ca.
@@ -35,6 +41,18 @@ pub(crate) struct SharedParts {
     /// For each vertex the first vertex at the same place.
     corners: Vec<u32>,
     rings: Rings,
+    open: Vec<OpenEdge>,
+    /// What triangles share within rounding only, if they share anything so.
+    seams: Option<Seams>,
+}
+
+/// An edge whose triangles all have the same third corner.
+#[derive(Clone, Copy)]
+pub(super) struct OpenEdge {
+    /// The lowest of its triangles.
+    pub triangle: u32,
+    /// The first vertices at its ends.
+    pub ends: [u32; 2],
 }
 
 /// A part of a triangle.
@@ -58,12 +76,80 @@ struct Rings(Vec<Next>);
 impl SharedParts {
     pub(crate) fn new(vertices: &[Vector], indices: &[[u32; 3]]) -> Self {
         let corners = first_at_same_place(vertices);
+        let rings = Rings::new(&corners, indices);
+        let open = rings.open_edges(&corners, indices);
+        let mut parts = Self { corners, rings, open, seams: None };
+        let touching = Touching::find(vertices, &parts.open);
+        if !touching.is_empty() {
+            if touching.unite_places(&mut parts.corners) {
+                parts.rings = Rings::new(&parts.corners, indices);
+            }
+            let Self { corners, open, .. } = &parts;
+            parts.seams = Some(Seams::new(vertices, indices, corners, open, &touching));
+        }
+        parts
+    }
+
+    /// Returns the first vertex at the place of a vertex.
+    #[inline(always)]
+    pub(crate) fn first_at(&self, vertex: u32) -> u32 {
+        self.corners[vertex as usize]
+    }
+
+    /// Returns true if the same vertices coincide at these places and no open edges touch, before
+    /// or now, so that the rings stay valid.
+    pub(crate) fn stay(&self, vertices: &[Vector]) -> bool {
+        self.seams.is_none()
+            && first_at_same_place(vertices) == self.corners
+            && Touching::find(vertices, &self.open).is_empty()
+    }
+
+    /// Returns true if a triangle shares a corner or a stretch only within rounding.
+    #[inline(always)]
+    pub(crate) fn is_loose(&self, triangle: u32) -> bool {
+        self.seams.as_ref().is_some_and(|seams| seams.is_loose(triangle))
+    }
+
+    /// Returns the seams of a triangle.
+    pub(crate) fn seams(&self, triangle: u32) -> &[Seam] {
+        self.seams.as_ref().map_or(&[], |seams| seams.of(triangle))
+    }
+
+    /// Returns a bound on the distance between two corners at the place of a vertex.
+    pub(crate) fn gap(&self, vertex: u32) -> Real {
+        self.seams.as_ref().map_or(0.0, |seams| seams.gap(vertex))
+    }
+
+    /// Returns the other triangles with the same part.
+    #[inline(always)]
+    pub(crate) fn others(&self, triangle: u32, part: usize) -> impl Iterator<Item = u32> {
+        self.rings.others(SharedPart { triangle, number: part as u8 }).map(|part| part.triangle)
+    }
+
+    /// Returns all triangles with the same part and the number of the part in each. The triangle
+    /// itself comes first.
+    pub(crate) fn ring(&self, triangle: u32, part: usize) -> impl Iterator<Item = (u32, usize)> {
+        let own = SharedPart { triangle, number: part as u8 };
+        let all = once(own).chain(self.rings.others(own));
+        all.map(|part| (part.triangle, usize::from(part.number)))
+    }
+
+    /// Returns another triangle at an edge, and its corner opposite to that edge.
+    pub(crate) fn across(&self, triangle: u32, edge: usize) -> Option<(u32, usize)> {
+        let next = self.rings.next(SharedPart { triangle, number: edge as u8 });
+        (next.triangle != triangle).then(|| (next.triangle, (usize::from(next.number) + 2) % 3))
+    }
+}
+
+impl Rings {
+    /// Joins the parts of all triangles whose corners have the same numbers.
+    fn new(corners: &[u32], indices: &[[u32; 3]]) -> Self {
         let corner = |part: SharedPart| {
             corners[indices[part.triangle as usize][usize::from(part.number)] as usize]
         };
-        let mut rings = Rings::of_one(indices.len() as u32);
+        let mut rings = Self::of_one(indices.len() as u32);
         // One part in the ring of each corner.
-        let mut around = vec![None; vertices.len()];
+        let mut around = vec![None; corners.len()];
         for triangle in 0..indices.len() as u32 {
             for number in 0..3 {
                 let part = SharedPart { triangle, number };
@@ -75,7 +161,7 @@ impl SharedParts {
             }
         }
         // For each corner the last corner from which an edge led to it, and that edge.
-        let mut edges = vec![(NONE, SharedPart { triangle: 0, number: 0 }); vertices.len()];
+        let mut edges = vec![(NONE, SharedPart { triangle: 0, number: 0 }); corners.len()];
         for (from, &first) in (0..).zip(&around) {
             let mut next = first;
             while let Some(part @ SharedPart { triangle, number }) = next {
@@ -96,42 +182,40 @@ impl SharedParts {
                 next = Some(rings.next(part)).filter(|next| Some(*next) != first);
             }
         }
-        Self { corners, rings }
+        rings
     }
 
-    /// Returns the first vertex at the place of a vertex.
-    #[inline(always)]
-    pub(crate) fn first_at(&self, vertex: u32) -> u32 {
-        self.corners[vertex as usize]
+    /// Returns the edges whose triangles all have the same third corner, each once. A triangle
+    /// that has an end of the edge twice does not count.
+    fn open_edges(&self, corners: &[u32], indices: &[[u32; 3]]) -> Vec<OpenEdge> {
+        let place =
+            |triangle: u32, corner: usize| corners[indices[triangle as usize][corner % 3] as usize];
+        let (mut open, mut is_seen) = (Vec::new(), vec![false; 3 * indices.len()]);
+        for triangle in 0..indices.len() as u32 {
+            for edge in 0..3 {
+                if is_seen[3 * triangle as usize + edge] {
+                    continue;
+                }
+                let ends = [place(triangle, edge), place(triangle, edge + 1)];
+                let (mut third, mut is_open) = (NONE, ends[0] != ends[1]);
+                let own = SharedPart { triangle, number: edge as u8 + 3 };
+                for part in once(own).chain(self.others(own)) {
+                    let number = usize::from(part.number) - 3;
+                    is_seen[3 * part.triangle as usize + number] = true;
+                    let opposite = place(part.triangle, number + 2);
+                    if !ends.contains(&opposite) {
+                        is_open &= third == NONE || third == opposite;
+                        third = opposite;
+                    }
+                }
+                if is_open {
+                    open.push(OpenEdge { triangle, ends });
+                }
+            }
+        }
+        open
     }
 
-    /// Returns true if the same vertices coincide at these places, so that the rings stay valid.
-    pub(crate) fn stay(&self, vertices: &[Vector]) -> bool {
-        first_at_same_place(vertices) == self.corners
-    }
-
-    /// Returns the other triangles with the same part.
-    #[inline(always)]
-    pub(crate) fn others(&self, triangle: u32, part: usize) -> impl Iterator<Item = u32> {
-        self.rings.others(SharedPart { triangle, number: part as u8 }).map(|part| part.triangle)
-    }
-
-    /// Returns all triangles with the same part and the number of the part in each. The triangle
-    /// itself comes first.
-    pub(crate) fn ring(&self, triangle: u32, part: usize) -> impl Iterator<Item = (u32, usize)> {
-        let own = SharedPart { triangle, number: part as u8 };
-        let all = std::iter::once(own).chain(self.rings.others(own));
-        all.map(|part| (part.triangle, usize::from(part.number)))
-    }
-
-    /// Returns another triangle at an edge, and its corner opposite to that edge.
-    pub(crate) fn across(&self, triangle: u32, edge: usize) -> Option<(u32, usize)> {
-        let next = self.rings.next(SharedPart { triangle, number: edge as u8 });
-        (next.triangle != triangle).then(|| (next.triangle, (usize::from(next.number) + 2) % 3))
-    }
-}
-
-impl Rings {
     /// Each part in a ring of its own.
     fn of_one(triangles: u32) -> Self {
         let alone = |triangle| Next { triangles: [triangle; PARTS], numbers: [0, 1, 2, 3, 4, 5] };

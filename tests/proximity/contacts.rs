@@ -2,6 +2,7 @@
 //! pairs of triangles; the minimum within a bound.
 
 use super::scenes::mesh_of;
+use super::seams::shared_stretches;
 use continuum_testing::Random;
 use continuum_testing::narrow_phase::{point_modified_cylinder, triangle_modified_cylinder};
 use parry_continuum::Chain;
@@ -110,21 +111,14 @@ impl Passes {
         let count = triangles.len();
         let distances: Vec<_> = triangles.iter().map(|&corners| to(corners)).collect();
         let mut heights = vec![vec![f64::INFINITY; count]; count];
+        let shared = shared_stretches(triangles);
         for one in 0..count {
             heights[one][one] = distances[one];
             for other in 0..one {
-                let shared: Vec<_> = triangles[one]
-                    .iter()
-                    .filter(|corner| triangles[other].contains(corner))
-                    .collect();
-                let mut least = f64::INFINITY;
-                for &&from in &shared {
-                    for &&along in &shared {
-                        least = least.min(to([from, along, along]));
-                    }
-                }
-                heights[one][other] = least;
-                heights[other][one] = least;
+                let stretches = shared[one][other].iter();
+                let least = stretches.map(|&[from, along]| to([from, along, along]));
+                heights[one][other] = least.fold(f64::INFINITY, f64::min);
+                heights[other][one] = heights[one][other];
             }
         }
         for through in 0..count {

@@ -35,6 +35,7 @@ mod scene_bounds_of_motions;
 mod scene_memory;
 mod scene_motions;
 mod scenes;
+mod seams;
 mod side;
 mod structures;
 mod surface;

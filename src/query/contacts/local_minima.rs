@@ -4,13 +4,17 @@
 //! # Definitions
 //! - d(x): the distance of a point x from the link. d(T), d(f): the least distance of a triangle T,
 //!   and of a corner or an edge f.
-//! - Two triangles *share* f if both have it, at the same place.
+//! - Two triangles *share* f if both have it, at the same place. f is a corner, an edge, or a
+//!   *seam*: a stretch in which open edges touch within the rounding of their coordinates
+//!   ([`SharedParts`](crate::mesh::SharedParts)).
+//! - gap(f): a bound on the distance between f and either triangle that shares it. It is 0 where
+//!   corners are equal. A triangle with an f of another gap, or with a seam, is *loose*.
 //! - The wall within c: all points x of the mesh with `d(x) <= c`. A *piece* is a connected
 //!   component of the wall within c. As c grows, pieces appear, grow and merge.
 //! - *Local minimum*: the nearest point of a piece, where the piece appears.
 //! - t: the rounding of a distance, `32 u extent` of the link and a triangle, edge or corner. It is
 //!   far above the error of a measurement. `2 t` stands for t of the triangle where a piece
-//!   appeared plus t of the f where the piece merges.
+//!   appeared, plus t and gap(f) of the f where the piece merges.
 //!
 //! If two pieces merge at most `2 t` above the farther of their minima, the farther piece *ends*:
 //! its minimum is not reported. So a flat wall along the link, whose triangles tie within rounding,
@@ -19,11 +23,19 @@
 //! margin is always reported.
 //!
 //! # Claim
+//! A path on the wall goes through triangles. It changes from one to another only at an f that both
+//! share, and may jump there by gap(f).
+//!
 //! 1. *None is missed*: from every point x of the wall a path on the wall leads to a reported
 //!    minimum. Along it d never exceeds `d(x) + 2 t`.
 //! 2. *None is found twice*: each path from one reported minimum to another exceeds the farther of
 //!    the two by more than `2 t`.
-//! 3. *Each is a minimum*: no point of a triangle that contains it is nearer, beyond rounding.
+//! 3. *Each is a minimum*: let T' be a triangle that contains it, or that shares an f within gap(f)
+//!    of it with the minimum's triangle. No point of T' is nearer, beyond `2 t`.
+//!
+//! Coincident triangles share their corners and edges, but not their faces. So a minimum between
+//! their edges is reported once for each. Closed surfaces that touch one another share only equal
+//! corners, because neither has an open edge.
 //!
 //! # Reduction to a graph
 //! The link is convex, so d is a convex function. So the part of a triangle with `d <= c` is
@@ -32,11 +44,15 @@
 //! nearest point of f.
 //!
 //! So the pieces are the components of a graph. Its nodes are the triangles; T exists from d(T) on.
-//! It has an edge for each shared f, from `d(f) >= max(d(T), d(T'))` on.
+//! It has an edge for each shared f, from `d(f) >= max(d(T), d(T'))` on. With a gap, d(f) is
+//! measured at one side, and `d(f) + gap(f)` is not less than either distance.
+//!
+//! Of all triangles around a place or an edge, one pair joined by a seam is enough: each of the
+//! others shares with one of the two a corner or edge that contains the seam.
 //!
 //! # Algorithm
 //! 1. **Cull** triangles that certainly hold no reported minimum (see below).
-//! 2. **Measure** the others and sort them, nearest first.
+//! 2. **Measure** the others and sort them, nearest first; ties by the triangle's number.
 //! 3. **Sweep.** Each triangle T in turn starts a piece. It meets a piece at each f that it shares
 //!    with an earlier, nearer triangle. If d(f) is at most `2 t` above the farther of the two
 //!    minima, the piece with that minimum ends. (This is the elder rule of persistent homology.)
@@ -64,6 +80,9 @@
 //!   so no piece ever ends in favour of D.
 //! - Its nearest point is on an f that it shares with a culled triangle. At d(f) it joins that
 //!   triangle, which is in such a piece from a distance on that is not greater.
+//!
+//! A loose triangle is never culled, since the proofs need the nearest point of D to lie exactly on
+//! f. So gaps occur only between triangles that are measured.
 //!
 //! Culled triangles still count where other pieces meet them. If a piece shares f with D, and d(f)
 //! is at most `2 t` above the minimum of that piece, the piece ends. For `d(f) >= d(D)`, so the
@@ -256,6 +275,9 @@ impl LocalMinima {
                 let Some(foot) = known.nearest_feature().filter(|_| places[place] != CULLED) else {
                     continue;
                 };
+                if shared.is_loose(known.triangle) {
+                    continue;
+                }
                 let mut others = shared.others(known.triangle, foot);
                 let leaves_out = |other: u32| match near.index(&self.index, other) {
                     Some(index) => {

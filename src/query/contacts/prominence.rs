@@ -23,8 +23,8 @@
 //!
 //! # Passes
 //! The part of a triangle within a distance c is convex, because the link is. So two triangles are
-//! joined by a shared corner or edge f exactly from `c = d(f)` on (see `local_minima`). A path
-//! within c can follow a chain of triangles in which each shares with the next an f with
+//! joined by a shared corner, edge or seam f exactly from `c = d(f)` on (see `local_minima`). A
+//! path within c can follow a chain of triangles in which each shares with the next an f with
 //! `d(f) <= c`. The least distance of f is a *pass*. The pieces of wall within c are joined by the
 //! passes up to c. If an edge is nearer between its ends than at both, the edge itself is a pass;
 //! otherwise the nearer of its ends is.
@@ -33,9 +33,10 @@
 //! nearest first. So a piece for one minimum is part of one piece for all later minima. All
 //! triangles that may be within the margin take part, culled ones too.
 //!
-//! **Determinism.** Passes are measured in double precision, an edge always from the same end. So
-//! they are the same bit for bit in all engines. A pass f counts as within the margin only if it is
-//! so by more than the rounding of its distance. Then every engine finds every triangle that has f.
+//! **Determinism.** Passes are measured in double precision, an edge always from the same end, and
+//! at the first vertices of its places. So they are the same bit for bit in all engines. A pass f
+//! counts as within the margin only if it is so by more than the rounding of its distance and its
+//! gap. Then every engine finds every triangle that has f.
 //!
 //! # Cost
 //! - A minimum is kept at once if no kept minimum has a similar normal.
@@ -64,6 +65,7 @@
 //! 2. If a kept minimum of the piece represents the query's minimum, it is reached.
 //! 3. Otherwise take the open triangles as a *wave*. Reach all triangles around each of their
 //!    corners that is a pass. A triangle with a corner that is no pass is *closed*.
+//!    So is a triangle with a seam; its seams that are passes are followed at once.
 //! 4. If there is no open triangle left, follow those edges of the closed triangles that are passes
 //!    although both ends are none.
 //! 5. Repeat from step 2. If no step reaches anything, the minimum is not reached. The closed
@@ -72,7 +74,7 @@
 use super::triangle_candidates::{CandidateIndex, LinkCandidates, Wall};
 use super::wall_components::{NONE, find_root, unite};
 use crate::answer::Contact;
-use crate::mesh::ends_of;
+use crate::mesh::{Seam, ends_of};
 use crate::pair::{Height, PlacedLink, measure_points, measure_segments};
 use fearless_simd::Level;
 use parry3d_f64::math::{Real, Vector};
@@ -168,6 +170,8 @@ struct Flood {
     closed: Vec<u32>,
     /// Edges to be measured: a triangle that has the edge, and the number of the part.
     edges: Vec<(u32, usize)>,
+    /// Seams to be measured: a triangle that has the seam, and the seam.
+    seams: Vec<(u32, Seam)>,
 }
 
 #[derive(Clone, Copy)]
@@ -277,22 +281,27 @@ impl Flood {
     fn follow(&mut self, around: LinkNeighbourhood, triangle: u32, part: usize) {
         let own = self.reach(around, triangle);
         for other in around.wall.mesh.parts().others(triangle, part) {
-            if self.place(other).is_none() && !around.holds(other) {
-                continue;
-            }
-            let place = self.reach(around, other);
-            let [first, second] = unite(&mut self.joined, own, place);
-            if first != second {
-                self.open.append(second, first);
-                self.kept.append(second, first);
-            }
+            self.unite_with(around, own, other);
+        }
+    }
+
+    /// Reaches a triangle if it is near, and unites its piece with the piece of a reached one.
+    fn unite_with(&mut self, around: LinkNeighbourhood, own: u32, other: u32) {
+        if self.place(other).is_none() && !around.holds(other) {
+            return;
+        }
+        let place = self.reach(around, other);
+        let [first, second] = unite(&mut self.joined, own, place);
+        if first != second {
+            self.open.append(second, first);
+            self.kept.append(second, first);
         }
     }
 
     /// Step 3: follows the corners of the wave that are passes below a distance, and closes
     /// triangles with a corner that is no pass.
     fn follow_corners(&mut self, level: Level, around: LinkNeighbourhood, below: Real) {
-        let vertices = around.wall.mesh.vertices();
+        let (vertices, parts) = (around.wall.mesh.vertices(), around.wall.mesh.parts());
         let unknown = self.corners[self.heights.len()..].iter();
         let points = unknown.map(|corner| vertices[corner.vertex as usize]);
         measure_points(level, around.link, points, |height| self.heights.push(height));
@@ -304,18 +313,44 @@ impl Flood {
                 if self.corners[corner].is_followed {
                     continue;
                 }
-                if around.is_pass(&self.heights[corner], below) {
+                let gap = parts.gap(self.corners[corner].vertex);
+                if around.is_pass(&self.heights[corner], gap, below) {
                     self.corners[corner].is_followed = true;
                     self.follow(around, triangle, part);
                 } else {
                     is_closed = true;
                 }
             }
+            if parts.is_loose(triangle) {
+                self.seams.extend(parts.seams(triangle).iter().map(|&seam| (place, seam)));
+                is_closed = true;
+            }
             if is_closed {
                 self.closed.push(place);
             }
         }
         self.wave = wave;
+        if !self.seams.is_empty() {
+            self.follow_seams(level, around, below);
+        }
+    }
+
+    /// Follows the seams of the wave that are passes below a distance.
+    fn follow_seams(&mut self, level: Level, around: LinkNeighbourhood, below: Real) {
+        let vertices = around.wall.mesh.vertices();
+        let seams = std::mem::take(&mut self.seams);
+        let segments =
+            seams.iter().map(|(_, seam)| in_order(seam.ends.map(|end| vertices[end as usize])));
+        let mut of_heights = seams.iter();
+        measure_segments(level, around.link, segments, |height| {
+            if let Some(&(own, seam)) = of_heights.next()
+                && around.is_pass(&height, seam.gap, below)
+            {
+                self.unite_with(around, own, seam.other);
+            }
+        });
+        self.seams = seams;
+        self.seams.clear();
     }
 
     /// Step 4: follows the edges of the closed triangles, from one of them on, that are passes
@@ -344,13 +379,18 @@ impl Flood {
         }
         self.closed = closed;
         let edges = std::mem::take(&mut self.edges);
-        let segments =
-            edges.iter().map(|&(triangle, part)| in_order(ends_of(mesh.corners(triangle), part)));
+        let parts = mesh.parts();
+        let segments = edges.iter().map(|&(triangle, part)| {
+            let ends = ends_of(mesh.indices()[triangle as usize], part);
+            in_order(ends.map(|end| mesh.vertices()[parts.first_at(end) as usize]))
+        });
         let mut of_heights = edges.iter();
         measure_segments(level, around.link, segments, |height| {
             let Some(&(triangle, part)) = of_heights.next() else { return };
+            let gaps = ends_of(mesh.indices()[triangle as usize], part).map(|end| parts.gap(end));
+            let is_pass = around.is_pass(&height, gaps[0].max(gaps[1]), below);
             // Another triangle with this edge may have been followed already.
-            if around.is_pass(&height, below) && self.reaches_other_piece(around, triangle, part) {
+            if is_pass && self.reaches_other_piece(around, triangle, part) {
                 self.follow(around, triangle, part);
             }
         });
@@ -473,10 +513,11 @@ impl LinkNeighbourhood<'_> {
             || self.near.is_culled(self.index, self.wall.place_of(), triangle)
     }
 
-    /// Returns true if a corner or edge at this distance is a pass below `below`.
+    /// Returns true if a corner, edge or seam at this distance is a pass below `below`. `gap` is
+    /// the distance by which its triangles may miss it.
     #[inline(always)]
-    fn is_pass(&self, height: &Height, below: Real) -> bool {
-        height.distance < below && height.distance + height.rounding <= self.margin
+    fn is_pass(&self, height: &Height, gap: Real, below: Real) -> bool {
+        height.distance < below && height.distance + height.rounding + gap <= self.margin
     }
 
     /// Returns true if an edge may be a pass below `below` although neither of its ends is. `along`

@@ -53,9 +53,10 @@ impl WallComponents<'_> {
         let Some(index) = self.near.index(self.index, nearest.triangle) else { return };
         let (known, shared) = (self.near.in_question[index], self.wall.mesh.parts());
         let corners = self.wall.mesh.corners(nearest.triangle);
+        let is_loose = shared.is_loose(nearest.triangle);
         // Which piece it meets at which part, and whether its least point is on that part.
         let (mut met, mut count) = ([(0, CULLED, false); 2 * PARTS], 0);
-        for part in (0..PARTS).filter(|&part| !known.is_beyond(part)) {
+        for part in (0..PARTS).filter(|&part| is_loose || !known.is_beyond(part)) {
             let add = |around: &mut IncidentTriangles, other: u32, index: Option<usize>| match index
             {
                 Some(index) => around.add(self.places[index], self.near.in_question[index].lower),
@@ -85,26 +86,64 @@ impl WallComponents<'_> {
                 count += 1;
             }
         }
+        let gaps = match is_loose {
+            true => self.wall.mesh.indices()[nearest.triangle as usize].map(|end| shared.gap(end)),
+            false => [0.0; 3],
+        };
         // Parts with the least point come first: they are met at the triangle's own distance.
         for met_there in [true, false] {
             for &(part, with, holds_least_point) in &met[..count] {
-                if holds_least_point != met_there {
-                    continue;
-                }
-                let [mine, other] = [place, with].map(|place| find_root(self.piece, place));
-                if mine == other {
-                    continue;
-                }
-                let [from, to] = ends_of(corners, part);
-                let farther = self.grown(mine).max(self.grown(other))
-                    + rounding(self.link.extent_with([from, to, to]));
-                if nearest.distance <= farther
-                    && (met_there || self.link.comes_within(farther, from, to))
-                {
-                    // The merged piece appeared with the nearer of the two.
-                    self.piece[mine.max(other) as usize] = mine.min(other);
+                if holds_least_point == met_there {
+                    let [one, other] = ends_of(gaps, part);
+                    let gap = one.max(other);
+                    self.meet([place, with], ends_of(corners, part), gap, holds_least_point);
                 }
             }
+            if is_loose {
+                self.meet_across_seams(place, met_there);
+            }
+        }
+    }
+
+    /// Merges a triangle with the pieces of nearer triangles beyond its seams; those that hold its
+    /// least point, or the others.
+    fn meet_across_seams(&mut self, place: u32, met_there: bool) {
+        let Ranked { nearest, rounding: own_rounding, .. } = self.ranked[place as usize - 1];
+        let mesh = self.wall.mesh;
+        for seam in mesh.parts().seams(nearest.triangle) {
+            // A triangle with a seam is never culled.
+            let index = self.near.index(self.index, seam.other);
+            let with = index.map_or(NONE, |index| self.places[index]);
+            let ends = seam.ends.map(|end| mesh.vertices()[end as usize]);
+            let holds_least_point = is_on(nearest.on_mesh, ends, own_rounding + 2.0 * seam.gap);
+            if with < place && holds_least_point == met_there {
+                self.meet([place, with], ends, seam.gap, holds_least_point);
+            }
+        }
+    }
+
+    /// Merges the pieces of two triangles if a part that both share is at most `2 t` above the
+    /// farther of the two minima.
+    #[inline(always)]
+    fn meet(
+        &mut self,
+        places: [u32; 2],
+        [from, to]: [Vector; 2],
+        gap: Real,
+        holds_least_point: bool,
+    ) {
+        let [mine, other] = places.map(|place| find_root(self.piece, place));
+        if mine == other {
+            return;
+        }
+        let farther = self.grown(mine).max(self.grown(other))
+            + rounding(self.link.extent_with([from, to, to]))
+            + gap;
+        if self.ranked[places[0] as usize - 1].nearest.distance <= farther
+            && (holds_least_point || self.link.comes_within(farther, from, to))
+        {
+            // The merged piece appeared with the nearer of the two.
+            self.piece[mine.max(other) as usize] = mine.min(other);
         }
     }
 
