@@ -6,21 +6,36 @@
 //! set compiles the narrow phase and the searches again, for both precisions. One without a gain
 //! only makes the library larger and slower to compile.
 
+/// Runs `work` with the token of the widest instruction set that `level` proves to be present.
+///
+/// A constant in front says whether instruction sets above the baseline are compiled at all.
 #[cfg(not(all(target_arch = "x86_64", target_feature = "sse2")))]
-pub(crate) use fearless_simd::dispatch;
+macro_rules! dispatch {
+    ($level:expr, $token:ident => $work:expr) => {
+        fearless_simd::dispatch!($level, $token => $work)
+    };
+    ($is_wide:expr, $level:expr, $token:ident => $work:expr) => {
+        fearless_simd::dispatch!($level, $token => $work)
+    };
+}
 
 /// Runs `work` with the token of the widest instruction set that `level` proves to be present.
+///
+/// A constant in front says whether instruction sets above the baseline are compiled at all.
 #[cfg(all(target_arch = "x86_64", target_feature = "sse2"))]
 macro_rules! dispatch {
-    ($level:expr, $token:ident => $work:expr) => {{
+    ($level:expr, $token:ident => $work:expr) => {
+        $crate::distance::dispatch!(true, $level, $token => $work)
+    };
+    ($is_wide:expr, $level:expr, $token:ident => $work:expr) => {{
         use fearless_simd::{Level, Simd};
         let level: Level = $level;
-        if let Some($token) = level.as_avx512() {
+        if $is_wide && let Some($token) = level.as_avx512() {
             $token.vectorize(
                 #[inline(always)]
                 || $work,
             )
-        } else if let Some($token) = level.as_avx2() {
+        } else if $is_wide && let Some($token) = level.as_avx2() {
             $token.vectorize(
                 #[inline(always)]
                 || $work,
@@ -37,5 +52,4 @@ macro_rules! dispatch {
         }
     }};
 }
-#[cfg(all(target_arch = "x86_64", target_feature = "sse2"))]
 pub(crate) use dispatch;

@@ -14,7 +14,7 @@ pub(crate) trait Pack: Scalar {
     /// The number in one lane.
     type Element: Scalar<Mask = bool> + Send + Sync + 'static;
     /// The proof that the instruction set is present.
-    type Token: Copy;
+    type Token: Simd;
     /// The number of lanes.
     const LANES: usize;
 
@@ -218,6 +218,10 @@ pub(crate) trait Lane:
     /// The largest length whose products stay finite in the bounds and distances of a search.
     const FARTHEST: f64;
 
+    /// Whether the search by the hierarchy is compiled for every instruction set, and not for the
+    /// baseline alone. Double precision searches only links that single precision cannot resolve.
+    const HAS_WIDE_SEARCH: bool;
+
     /// Rounds to the nearest number of this precision.
     fn round(value: f64) -> Self;
 }
@@ -225,6 +229,7 @@ pub(crate) trait Lane:
 impl Lane for f32 {
     type Pack<S: Simd> = F32s<S>;
     const FARTHEST: f64 = 1.0e6;
+    const HAS_WIDE_SEARCH: bool = true;
 
     #[inline(always)]
     fn round(value: f64) -> Self {
@@ -235,6 +240,7 @@ impl Lane for f32 {
 impl Lane for f64 {
     type Pack<S: Simd> = F64s<S>;
     const FARTHEST: f64 = 1.0e30;
+    const HAS_WIDE_SEARCH: bool = false;
 
     #[inline(always)]
     fn round(value: f64) -> Self {

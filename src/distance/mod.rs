@@ -42,6 +42,7 @@ mod scalar;
 mod segment_disc;
 mod segment_segment;
 mod segment_triangle;
+pub(crate) mod single;
 mod touching;
 mod triangle_disc;
 mod triangle_modified_cylinder;

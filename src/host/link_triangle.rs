@@ -22,7 +22,7 @@
 use super::axial::{AxisFoot, power_of_two, unit};
 pub(super) use crate::distance::depth::face_normal;
 use crate::distance::depth::{self, ROUNDING};
-use crate::distance::{Link, Vec3, segment_triangle, triangle_modified_cylinder};
+use crate::distance::{Link, Vec3, segment_triangle, single};
 use crate::robot::{Cap, ModifiedCylinder};
 use parry3d_f64::math::{Real, Vector};
 use parry3d_f64::query::Unsupported;
@@ -83,8 +83,7 @@ pub(super) struct LinkContact {
 pub(super) fn closest(link: &ModifiedCylinder, triangle: [Vector; 3]) -> (Real, Vector, Vector) {
     let flat = link.flat();
     let (start, end) = (Vec3::from(link.start()), Vec3::from(link.end()));
-    let closest =
-        triangle_modified_cylinder(triangle.map(Vec3::from), start, end, link.radius(), flat);
+    let closest = single::triangle_link(triangle.map(Vec3::from), start, end, link.radius(), flat);
     (closest.distance, Vector::from(closest.point2), Vector::from(closest.point1))
 }
 

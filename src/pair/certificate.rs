@@ -57,8 +57,7 @@ use super::answer_check::{check_ends, corners, link_of, placed_link, rigid_pose}
 use super::placed_link::PlacedLink;
 use crate::answer::{Certificate, LinkProximity, ProximityError, RobotProximity};
 use crate::distance::{
-    DoubleDouble, Link, Scalar, TwoLinks, Vec3, gives_direction, triangle_disc,
-    triangle_modified_cylinder,
+    DoubleDouble, Link, Scalar, TwoLinks, Vec3, gives_direction, single, triangle_disc,
 };
 use crate::mesh::check_vertex;
 use crate::robot::{Chain, ModifiedCylinder, distance_to_segment};
@@ -203,7 +202,7 @@ struct ExactLinkTriangle {
 impl ExactLinkTriangle {
     fn bounds(&self) -> (Number, Number) {
         let ExactLink { start, along, axis, radius, flat } = self.link;
-        let closest = triangle_modified_cylinder(self.triangle, start, along, radius, flat);
+        let closest = single::triangle_link(self.triangle, start, along, radius, flat);
         let between = (closest.point1 - closest.point2).norm();
         let off = self.triangle_to(closest.point1) + self.link.distance_to(closest.point2);
         // If two cases of the narrow phase tie, the direction of another candidate may be better.
@@ -387,7 +386,7 @@ impl ExactLinkPair {
             second: second.seen_from_start(),
             second_start: second.start,
         };
-        let closest = pair.closest(&pair.axes(), |mask| mask);
+        let closest = single::two_links(&pair, &pair.axes());
         let points = [closest.point1, closest.point2];
         let upper = (points[1] - points[0]).norm()
             + first.distance_to(points[0])

@@ -54,7 +54,7 @@ use super::placed_link::{PlacedLink, place_exactly};
 use crate::answer::{LinkFeature, TriangleFeature};
 use crate::distance::depth::{LinkTriangle, ROUNDING, WayOut};
 use crate::distance::{
-    Axial, Closest, DoubleDouble, Face, Link, Mask, Scalar, Vec3, point_triangle,
+    Axial, Closest, DoubleDouble, Face, Link, Mask, Scalar, Vec3, point_triangle, single,
 };
 use parry3d_f64::math::{Real, Vector};
 
@@ -321,9 +321,9 @@ impl<T: Scalar<Mask = bool> + PartialEq> NearPair<T> {
     /// triangle.
     fn new(triangle: [Vec3<T>; 3], link: Link<T>) -> (Self, Closest<T>, T) {
         let face = Face::new(triangle);
-        let axial = Axial::new(&link, &face);
+        let axial = single::axial(&link, &face);
         let closest = if axial.beyond_flat_cap() {
-            axial.with_caps(&link, &face)
+            single::with_caps(&axial, &link, &face)
         } else {
             axial.without_caps(&link)
         };

@@ -6,6 +6,7 @@ use super::placed_link::PlacedLink;
 use crate::distance::lanes::Pack;
 use crate::distance::{Axial, Closest, Face, Scalar, Vec3};
 use crate::mesh::splat;
+use fearless_simd::Simd;
 use parry3d_f64::math::{Real, Vector};
 
 /// The number of pairs that are computed together: the lanes of the widest pack of `f64`.
@@ -170,6 +171,15 @@ impl<L: Pack<Element = f64>> PairLanes<L> {
     /// Measures pairs of links and triangles in the mesh's frame.
     #[inline(always)]
     pub(super) fn between(placed: &Placed<L>, corners: [Vec3<L>; 3]) -> Self {
+        // A function of the instruction set: compiled once for it, not once for each kernel.
+        placed.radius.token().vectorize(
+            #[inline(always)]
+            || Self::measure(placed, corners),
+        )
+    }
+
+    #[inline(always)]
+    fn measure(placed: &Placed<L>, corners: [Vec3<L>; 3]) -> Self {
         let pair = placed.with(corners);
         let face = Face::new(pair.triangle);
         let axial = Axial::new(&pair.link, &face);

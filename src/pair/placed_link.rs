@@ -2,7 +2,7 @@
 
 use super::coordinates::{Nearest, Pair, Placed, SLACK, offset_from_axis};
 use crate::answer::{LinkProximity, Witness};
-use crate::distance::{Axial, DoubleDouble, Face, Link, Scalar, Vec3, segment_segment};
+use crate::distance::{DoubleDouble, Face, Link, Scalar, Vec3, segment_segment, single};
 use crate::robot::ModifiedCylinder;
 use parry3d_f64::math::{Pose, Real, Vector};
 
@@ -110,7 +110,7 @@ impl PlacedLink {
             pair.unit,
             self.start,
             triangle,
-            Axial::new(&pair.link, &face).with_caps(&pair.link, &face),
+            single::with_caps(&single::axial(&pair.link, &face), &pair.link, &face),
         )
     }
 
@@ -136,13 +136,13 @@ impl PlacedLink {
             return None;
         }
         let face = Face::new(pair.triangle);
-        let axial = Axial::new(&pair.link, &face);
+        let axial = single::axial(&pair.link, &face);
         let closest = if !axial.beyond_flat_cap() {
             axial.without_caps(&pair.link)
         } else if (axial.cap_bounds(&pair.link, &face).0 - SLACK) * pair.unit > bound {
             return None;
         } else {
-            axial.with_caps(&pair.link, &face)
+            single::with_caps(&axial, &pair.link, &face)
         };
         let nearest = Pair::report(pair.unit, self.start, triangle, closest);
         (nearest.distance <= bound).then_some(nearest)
@@ -158,7 +158,8 @@ impl PlacedLink {
             return false;
         }
         let edge = Face::new(pair.triangle);
-        Axial::new(&pair.link, &edge).with_caps(&pair.link, &edge).distance * pair.unit <= bound
+        let axial = single::axial(&pair.link, &edge);
+        single::with_caps(&axial, &pair.link, &edge).distance * pair.unit <= bound
     }
 
     /// Returns the largest coordinate of link and triangle relative to the link's start, or the

@@ -6,7 +6,7 @@
 use super::coordinates::{Placed, SLACK};
 use super::placed_link::PlacedLink;
 use crate::answer::{PairWitness, RobotProximity};
-use crate::distance::{Closest, Link, Scalar, TwoLinks, Vec3, gives_direction};
+use crate::distance::{Closest, Link, Scalar, TwoLinks, Vec3, gives_direction, single};
 use parry3d_f64::math::{Real, Vector};
 
 /// The distance of two links and their closest points; if they meet, one common point.
@@ -43,7 +43,7 @@ impl PlacedLink {
     /// Returns the closest points of two links.
     pub(crate) fn measure_link(&self, other: &Self) -> NearestOfLinks {
         let (pair, unit) = self.with_link(other);
-        self.nearest_of_links(unit, &pair.closest(&pair.axes(), |mask| mask))
+        self.nearest_of_links(unit, &single::two_links(&pair, &pair.axes()))
     }
 
     /// Returns the closest points of the flat face at an end of this link and another link.
@@ -55,7 +55,7 @@ impl PlacedLink {
         let closest = if has_direction {
             pair.closest_to_cap(end_of(&pair.first, end), |mask| mask)
         } else {
-            pair.closest(&pair.axes(), |mask| mask)
+            single::two_links(&pair, &pair.axes())
         };
         self.nearest_of_links(unit, &closest)
     }
@@ -92,7 +92,7 @@ impl PlacedLink {
         if capsules_apart(&pair, axes.gap.norm()) * unit > bound {
             return None;
         }
-        let nearest = self.nearest_of_links(unit, &pair.closest(&axes, |mask| mask));
+        let nearest = self.nearest_of_links(unit, &single::two_links(&pair, &axes));
         (nearest.distance <= bound).then_some(nearest)
     }
 

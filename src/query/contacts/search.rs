@@ -83,7 +83,7 @@ pub(super) fn gather<E: Lane>(
 ) {
     let limit = searched.axis_limit(bound);
     let mut gathering = CandidateGather::new(traversal.level, searched, limit, across, found);
-    dispatch!(traversal.level, simd => {
+    dispatch!(E::HAS_WIDE_SEARCH, traversal.level, simd => {
         traversal.visit_leaves::<E::Pack<_>>(simd, searched, limit, &mut gathering)
     });
     traversal.work.axis_distances += gathering.finish();
@@ -195,7 +195,7 @@ impl<'a, E: Lane> CandidateGather<'a, E> {
     /// Tests the pending triangles and adds each that may be within the limit.
     #[inline(never)] // compiled once for all searches
     fn measure_pending(&mut self) {
-        dispatch!(self.level, simd => self.take::<E::Pack<_>>(simd));
+        dispatch!(E::HAS_WIDE_SEARCH, self.level, simd => self.take::<E::Pack<_>>(simd));
         self.waiting = 0;
     }
 

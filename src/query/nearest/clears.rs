@@ -259,7 +259,7 @@ impl<E: Lane> DualTraversal<'_, E> {
                 apart: zero,
             });
         }
-        dispatch!(self.level, simd => self.descend::<E::Pack<_>>(simd))
+        dispatch!(E::HAS_WIDE_SEARCH, self.level, simd => self.descend::<E::Pack<_>>(simd))
     }
 
     #[inline(always)]

@@ -130,13 +130,13 @@ impl<T: Kernels> Pass<T> {
         // A single link keeps all its pairs; otherwise no pass could ever answer it.
         let most = if links > 1 { PAIRS_AT_ONCE / findings.len() } else { usize::MAX };
         let every = matches!(aim, PassGoal::Every(_)).then_some(most);
-        let job =
-            Job { mesh, blocks: &triangles.blocks, links: resolved, bounds, stop_at_first, every };
-        scan(level, culling, &job, findings);
+        let (blocks, is_culling) = (&triangles.blocks, culling);
+        let job = Job { mesh, blocks, links: resolved, bounds, is_culling, stop_at_first, every };
+        scan(level, &job, findings);
         if !double.is_empty() {
             let blocks = triangles.double(level);
-            let job = Job { mesh, blocks, links: double, bounds, stop_at_first, every };
-            scan(level, culling, &job, findings);
+            let job = Job { mesh, blocks, links: double, bounds, is_culling, stop_at_first, every };
+            scan(level, &job, findings);
         }
         *is_full = findings.iter().any(|findings| findings.within.len() >= most);
         let (first, others) = findings.split_at_mut(1);
@@ -245,8 +245,8 @@ fn threads_for(pairs: usize) -> usize {
 }
 
 /// Step 3: every thread takes the next chunk until none is left.
-fn scan<E: Kernels>(level: Level, culling: bool, job: &Job<E>, findings: &mut [ThreadFindings]) {
-    if culling && !job.stop_at_first && job.every.is_none() {
+fn scan<E: Kernels>(level: Level, job: &Job<E>, findings: &mut [ThreadFindings]) {
+    if job.is_culling && !job.stop_at_first && job.every.is_none() {
         E::first_bounds(level, job);
     }
     let next = AtomicUsize::new(0);
@@ -256,11 +256,7 @@ fn scan<E: Kernels>(level: Level, culling: bool, job: &Job<E>, findings: &mut [T
             if chunk >= job.chunks() {
                 break;
             }
-            if culling {
-                E::scan(level, job, chunk, findings);
-            } else {
-                E::scan_every_pair(level, job, chunk, findings);
-            }
+            E::scan(level, job, chunk, findings);
         }
     });
 }

@@ -28,6 +28,9 @@ pub(crate) struct Job<'a, E> {
     pub blocks: &'a Blocks<E>,
     pub links: &'a [JobLink<E>],
     pub bounds: &'a [SharedBound],
+    /// Whether exact lower bounds skip most pairs. Otherwise every pair costs its full distance,
+    /// discs included.
+    pub is_culling: bool,
     /// Whether any triangle within the bound answers the query.
     pub stop_at_first: bool,
     /// If every triangle that may be within the bound is wanted: the most pairs that one thread
@@ -138,10 +141,9 @@ impl<E: Lane> Job<'_, E> {
         }
     }
 
-    /// Scans one chunk of the mesh for all links. With `CULLING`, exact lower bounds skip most
-    /// pairs. Without it every pair costs its full distance, discs included.
+    /// Scans one chunk of the mesh for all links.
     #[inline(always)]
-    pub(crate) fn scan<L: Pack<Element = E>, const CULLING: bool>(
+    pub(crate) fn scan<L: Pack<Element = E>>(
         &self,
         token: L::Token,
         chunk: usize,
@@ -161,7 +163,7 @@ impl<E: Lane> Job<'_, E> {
             let mut scan =
                 LinkScan { job: self, link: &link.link, place: link.place, best, within, work };
             match &link.searched {
-                Some(searched) => scan.run::<L, CULLING>(token, searched, blocks.clone()),
+                Some(searched) => scan.run::<L>(token, searched, blocks.clone()),
                 None => scan.measure_all(blocks.clone()),
             }
             let best = scan.best;
@@ -190,7 +192,7 @@ struct LinkScan<'a, E> {
 impl<E: Lane> LinkScan<'_, E> {
     /// Measures the triangles that may improve the best so far.
     #[inline(always)]
-    fn run<L: Pack<Element = E>, const CULLING: bool>(
+    fn run<L: Pack<Element = E>>(
         &mut self,
         token: L::Token,
         searched: &SearchLink<E>,
@@ -203,7 +205,7 @@ impl<E: Lane> LinkScan<'_, E> {
         self.work.visited += (blocks.len() * BLOCK) as u64;
         for block in blocks {
             for lane in (0..BLOCK).step_by(L::LANES) {
-                if CULLING {
+                if self.job.is_culling {
                     let (centre, radius) = triangles.spheres::<L>(token, block, lane);
                     if lanes.meets_spheres(centre, radius, limit) == 0 {
                         continue;
@@ -211,7 +213,7 @@ impl<E: Lane> LinkScan<'_, E> {
                 }
                 self.work.axis_distances += L::LANES as u64;
                 let face = triangles.faces::<L>(token, block, lane);
-                let mut nearer = if CULLING {
+                let mut nearer = if self.job.is_culling {
                     lanes.may_be_nearer(&face, limit).nearer
                 } else {
                     L::bits((lanes.distances(&face) + radius).lt(limit))
@@ -259,10 +261,8 @@ pub(crate) trait Kernels: Lane {
     fn prepare(level: Level, faces: &mut [Self], spheres: &mut [Self]);
     /// [`Job::first_bounds`].
     fn first_bounds(level: Level, job: &Job<Self>);
-    /// [`Job::scan`] with culling.
+    /// [`Job::scan`].
     fn scan(level: Level, job: &Job<Self>, chunk: usize, findings: &mut ThreadFindings);
-    /// [`Job::scan`] without culling.
-    fn scan_every_pair(level: Level, job: &Job<Self>, chunk: usize, findings: &mut ThreadFindings);
 }
 
 macro_rules! kernels {
@@ -280,12 +280,7 @@ macro_rules! kernels {
 
             #[inline(never)]
             fn scan(level: Level, job: &Job<Self>, chunk: usize, findings: &mut ThreadFindings) {
-                dispatch!(level, simd => job.scan::<<Self as Lane>::Pack<_>, true>(simd, chunk, findings));
-            }
-
-            #[inline(never)]
-            fn scan_every_pair(level: Level, job: &Job<Self>, chunk: usize, findings: &mut ThreadFindings) {
-                dispatch!(level, simd => job.scan::<<Self as Lane>::Pack<_>, false>(simd, chunk, findings));
+                dispatch!(level, simd => job.scan::<<Self as Lane>::Pack<_>>(simd, chunk, findings));
             }
         }
     };

@@ -93,7 +93,7 @@ impl<E: Lane> WideBvh<E> {
         let leaves = &self.leaves;
         let below: Vec<_> = self.nodes.iter().map(|node| node.leaves.clone()).collect();
         each(&mut self.nodes.chunks_mut(TASK_SIZE / WIDTH).collect::<Vec<_>>(), |_, nodes| {
-            dispatch!(level, simd => bound_children::<E::Pack<_>>(simd, leaves, &below, nodes));
+            dispatch!(E::HAS_WIDE_SEARCH, level, simd => bound_children::<E::Pack<_>>(simd, leaves, &below, nodes));
         });
     }
 }

@@ -218,7 +218,7 @@ impl<E: Lane> Traversal<'_, E> {
     ) -> bool {
         let limit = searched.axis_limit(bound);
         let mut near = CappedGather { limit, most, found, is_overfull: false };
-        dispatch!(self.level, simd => self.visit_leaves::<E::Pack<_>>(simd, searched, limit, &mut near));
+        dispatch!(E::HAS_WIDE_SEARCH, self.level, simd => self.visit_leaves::<E::Pack<_>>(simd, searched, limit, &mut near));
         !near.is_overfull
     }
 
@@ -257,7 +257,7 @@ impl<E: Lane> Traversal<'_, E> {
 
     #[inline(never)] // compiled once per instruction set, not per goal
     fn search(&mut self, target: &mut Target<E>, start: [Option<u32>; 2]) {
-        dispatch!(self.level, simd => self.descend::<E::Pack<_>>(simd, target, start));
+        dispatch!(E::HAS_WIDE_SEARCH, self.level, simd => self.descend::<E::Pack<_>>(simd, target, start));
     }
 
     #[inline(always)]
