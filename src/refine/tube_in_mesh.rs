@@ -3,6 +3,7 @@
 use super::bounding_body::BoundingBody;
 use super::depth_first::{Refinable, UpperBound, WorkItem};
 use super::placed_tube::{Piece, PlacedTube};
+use super::tube_pair::MOST_CORES;
 use super::tube_point::TubePoint;
 use crate::answer::{ProximityError, Witness};
 use crate::pair::{Best, Nearest, PlacedLink};
@@ -21,6 +22,13 @@ pub(crate) struct MeshUpperBound {
     pub upper: Real,
     pub section: u32,
     pub witness: Witness,
+}
+
+impl MeshUpperBound {
+    /// Returns the smaller bound; ties return `self`.
+    fn nearer(self, other: Self) -> Self {
+        if other.upper < self.upper { other } else { self }
+    }
 }
 
 impl UpperBound for MeshUpperBound {
@@ -100,7 +108,23 @@ impl Refinable for TubeInMesh<'_> {
         let middle = outer.body.start() + outer.body.along() * 0.5;
         let deeper = nearest.on_mesh + (middle - nearest.on_mesh) * 0.125;
         let deeper = self.found_at(piece.section, arc, &self.nearest_to(deeper, nearest.triangle));
-        if deeper.upper < found.upper { deeper } else { found }
+        let mut found = found.nearer(deeper);
+        // At a flat end the triangle's point may lie in the plane of the face, where rounding
+        // decides on which side. The body without an outer layer gives points farther inside.
+        let (mut depth, corners) = (1.0, self.search.corners(nearest.triangle));
+        for _ in 0..MOST_CORES {
+            if found.upper <= 0.0 {
+                break;
+            }
+            let Some(core) = self.tube.core(piece, outer, depth) else { break };
+            let nearest = core.measure(nearest.triangle, corners);
+            if nearest.distance > 0.0 {
+                break;
+            }
+            found = found.nearer(self.found_at(piece.section, arc, &nearest));
+            depth *= 8.0;
+        }
+        found
     }
 
     fn is_in_first_half(&self, found: &MeshUpperBound, halves: &[Piece; 2]) -> bool {

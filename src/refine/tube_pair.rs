@@ -34,7 +34,7 @@ const MAX_MOVES: u32 = 4;
 const INTO: Real = 1.125;
 
 /// How many cores are tried for two overlapping bodies.
-const MOST_CORES: u32 = 4;
+pub(super) const MOST_CORES: u32 = 4;
 
 /// Two tubes in one frame.
 #[derive(Clone, Copy)]

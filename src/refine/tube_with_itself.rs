@@ -104,7 +104,7 @@ use super::bounding_body::{BoundingBody, SectionRange};
 use super::depth_first::{Body, Refinable, WorkItem};
 use super::placed_tube::{Piece, PlacedTube};
 use super::section_motions::{SectionMotion, SectionMotions};
-use super::tube_pair::{NearestPairs, PairUpperBound, TubePair, found_from, half_way};
+use super::tube_pair::{MOST_CORES, NearestPairs, PairUpperBound, TubePair, found_from, half_way};
 use super::tube_point::TubePoint;
 use crate::answer::ProximityError;
 use crate::curve::{EndFace, Section, Tube, TubeTurns};
@@ -751,9 +751,45 @@ impl<'a> TubeWithItself<'a> {
             } else {
                 pair.faces == [None; 2] || is_known && self.ways_surely_leave(pair, &nearest)
             };
-        let upper =
-            if counts { nearest.distance + self.off_of_bodies(pair) } else { Real::INFINITY };
-        PairUpperBound { upper, sections: pair.pieces.map(|piece| piece.section), arcs, points }
+        let sections = pair.pieces.map(|piece| piece.section);
+        if !counts {
+            return PairUpperBound { upper: Real::INFINITY, sections, arcs, points };
+        }
+        let off = self.off_of_bodies(pair);
+        if nearest.distance <= off
+            && let Some(common) = self.common_point(pair, arcs, [[None; 2]; 2])
+        {
+            return PairUpperBound { upper: 0.0, sections, arcs, points: [common; 2] };
+        }
+        PairUpperBound { upper: nearest.distance + off, sections, arcs, points }
+    }
+
+    /// Returns a point that certainly belongs to the tube on both sides of a pair whose bodies
+    /// overlap: in the given ranges of both sections (`limit`).
+    ///
+    /// The body of a face goes into the tube behind it. So the parts of two faces that overlap have
+    /// such a point, although the faces themselves have no thickness.
+    fn common_point(
+        &self,
+        pair: &SelfPair,
+        arcs: [Real; 2],
+        limits: [[Option<Real>; 2]; 2],
+    ) -> Option<Vector> {
+        let tube = self.tube();
+        let mut depth = 1.0;
+        for _ in 0..MOST_CORES {
+            let core = |k: usize| tube.core(&pair.pieces[k], &pair.outers[k], depth);
+            let point = core(0)?.measure_link_within(0.0, &core(1)?)?.on_first;
+            let is_within = |k: usize| {
+                let section = pair.pieces[k].section;
+                tube.near_between(section, arcs[k], point, limits[k]).upper <= 0.0
+            };
+            if is_within(0) && is_within(1) {
+                return Some(point);
+            }
+            depth *= 8.0;
+        }
+        None
     }
 
     /// Returns the range of arc lengths of a section that counts beside the other part of a pair;
@@ -892,6 +928,14 @@ impl<'a> TubeWithItself<'a> {
         }
         if best.upper < Real::INFINITY && self.leads_on_from(pair, k, best.arcs[1 - k]) {
             return self.nothing(sections, best.arcs);
+        }
+        // A place ahead of the face is at some distance from it. But if the tube around that place
+        // goes through the face, both have points in common.
+        if best.upper < Real::INFINITY && nearest.distance <= 0.0 {
+            let both = if k == 0 { [[None; 2], limits] } else { [limits, [None; 2]] };
+            if let Some(common) = self.common_point(pair, best.arcs, both) {
+                return PairUpperBound { upper: 0.0, points: [common; 2], ..best };
+            }
         }
         best
     }

@@ -11,6 +11,7 @@ mod depths;
 mod derivatives;
 mod discs;
 mod far_parts;
+mod flat_faces;
 mod fuzz;
 mod large;
 mod level_links;
