@@ -12,7 +12,7 @@
 //! A cluster is formed only around a sample that shows a sharp bend: the tube would be refused for
 //! it, or it exceeds every bend of samples farther apart by a quarter. All conditions must hold:
 //!
-//! 1. The samples are as close as that sample and its nearer neighbour, or up to
+//! 1. The samples are as close, up to rounding, as that sample and its nearer neighbour, or up to
 //!    2^[`MAX_DOUBLINGS`] times as far if there are more than two.
 //! 2. The samples before and behind are at least [`APART`] times as far from the first as the
 //!    farthest of the cluster is.
@@ -98,7 +98,8 @@ pub(super) fn find(
         clusters.iter().map(|cluster| cluster.last - cluster.first).sum::<usize>()
     };
     let known = left_out(clusters);
-    let mut within = closest;
+    // Gaps that differ by rounding alone are equal.
+    let mut within = closest + one_place;
     for _ in 0..=MAX_DOUBLINGS {
         find_within(samples, radii, tangents, [within, one_place], clusters);
         if left_out(clusters) > known {

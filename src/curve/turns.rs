@@ -41,10 +41,15 @@ const HIDDEN: Real = 4.0 * ONE_DIRECTION;
 /// most 1 / 64 rad.
 const MAX_DIRECTIONS: u32 = 4096;
 
-/// Chords of uncertain samples are extended until their direction is uncertain by at most this, or
-/// until the curve may turn by more than [`MAX_TURN`] along them.
+/// Chords of uncertain samples are extended until their direction is uncertain by at most this and
+/// by at most the share [`MAX_LOSS`] of the turn along them, or until the curve may turn by more
+/// than [`MAX_TURN`] along them.
 const MIN_DOUBT: Real = 1.0 / 1024.0;
 const MAX_TURN: Real = 0.25;
+
+/// Each chord loses up to twice its doubt. Doubt and turn change in proportion to 1 / length and to
+/// length, so few samples more make the lost share small.
+const MAX_LOSS: Real = 1.0 / 128.0;
 
 /// The turns of a tube. The memory is reused.
 #[derive(Clone, Debug, Default)]
@@ -140,7 +145,8 @@ impl Tube {
                 turns.headings.push(Heading { from, to, turned });
             };
             if let Some(samples) = samples {
-                let (mut start, mut off): (usize, Real) = (section.first as usize, 0.0);
+                let (mut start, mut off, mut bend): (usize, Real, Real) =
+                    (section.first as usize, 0.0, 0.0);
                 for tick in section.first..section.last {
                     let [from, to] = [tick, tick + 1].map(|tick| tick as usize);
                     let bound = self.bound(section, [tick, tick + 1]);
@@ -148,13 +154,15 @@ impl Tube {
                     let arcs = [samples.arcs[start], samples.arcs[to]];
                     let chord = samples.points[to] - samples.points[start];
                     let doubt = if off > 0.0 { 4.0 * off / length(chord) } else { 0.0 };
-                    let is_long =
-                        doubt <= MIN_DOUBT || bound.curvature * (arcs[1] - arcs[0]) > MAX_TURN;
+                    bend += bound.curvature * (arcs[1] - samples.arcs[from]);
+                    // A straight part has no turn to lose.
+                    let is_known = doubt <= MIN_DOUBT && (bend <= 0.0 || doubt <= MAX_LOSS * bend);
+                    let is_long = is_known || bend > MAX_TURN;
                     if is_long || tick + 1 == section.last {
                         if doubt <= 1.0 {
                             head(direction(chord), doubt, arcs[0], arcs[1]);
                         }
-                        (start, off) = (to, 0.0);
+                        (start, off, bend) = (to, 0.0, 0.0);
                     }
                     if section.is_even {
                         continue;

@@ -3,6 +3,7 @@
 use super::{EndFace, Section, Tube};
 use crate::robot::RobotError;
 use parry3d_f64::math::Real;
+use std::f64::consts::PI;
 
 impl Tube {
     /// States that each point of the tube may be off by up to `error`, in the unit of the points.
@@ -25,7 +26,8 @@ impl Tube {
     ///
     /// It applies to the centreline within two radii of the face, by arc length. For a tube by
     /// [`fit`](Self::fit), whose directions were unknown before, bounds become closer and never
-    /// looser. For any other tube the uncertainty of directions grows by `turn`.
+    /// looser. For any other tube the uncertainty of directions grows by `turn`. A turn of pi leaves
+    /// every direction open; more counts as pi.
     ///
     /// # Errors
     /// The turn is negative or not finite.
@@ -33,7 +35,7 @@ impl Tube {
         if !(0.0..Real::INFINITY).contains(&turn) {
             return Err(RobotError::Negative { parameter: "turn", value: turn });
         }
-        self.turn = Some(turn);
+        self.turn = Some(turn.min(PI));
         Ok(self)
     }
 

@@ -1,6 +1,7 @@
 //! A tube divided into pieces: bounding volumes, points inside the tube, and the two loops that
 //! divide it (`depth_first` and `best_first`).
 
+mod ball_tree;
 mod best_first;
 mod bounding_body;
 mod depth_first;

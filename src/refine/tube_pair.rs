@@ -11,13 +11,14 @@
 //!   long as the clearance. If both are 0, y is a common point and the tubes overlap.
 //!
 //! # Algorithm
-//! 1. **Begin** with the pairs that are at most `upper` apart. `upper` is the first upper bound or
+//! 1. **Begin** with the pairs that are at most `upper` apart (`ball_tree`). `upper` is the first upper bound or
 //!    the margin: farther pairs cannot change the answer.
 //! 2. **Upper bound of a pair** (`found_from`). Start with y between the bodies. Move y to the
 //!    middle of the two tube points found from it; repeat up to [`MAX_MOVES`] times while the sum
 //!    decreases.
 //! 3. **Halve** the piece whose body becomes narrower by more.
 
+use super::ball_tree::{BallTree, WaitingRuns, near_pairs, pays};
 use super::bounding_body::{BoundingBody, SectionRange};
 use super::depth_first::{Body, Refinable, UpperBound, WorkItem};
 use super::placed_tube::{Piece, PlacedTube};
@@ -112,6 +113,8 @@ impl WorkItem<TubePair<'_>> for PiecePair {
 pub(crate) struct PairQueue {
     pieces: Vec<Piece>,
     bodies: [Vec<(Piece, BoundingBody)>; 2],
+    trees: [BallTree; 2],
+    waiting: WaitingRuns,
     nearest: NearestPairs,
 }
 
@@ -179,7 +182,20 @@ impl<'a> TubePair<'a> {
         beginning: &mut PairQueue,
         pairs: &mut Vec<PiecePair>,
     ) -> Result<bool, ProximityError> {
-        let PairQueue { pieces, bodies, nearest } = beginning;
+        self.begin_bodies(scale, beginning)?;
+        Ok(self.begin_pairs(upper, most, beginning, pairs))
+    }
+
+    /// Fills `beginning` with the initial pieces and their bodies.
+    ///
+    /// # Errors
+    /// A curve is not finite.
+    pub(crate) fn begin_bodies(
+        &self,
+        scale: Real,
+        beginning: &mut PairQueue,
+    ) -> Result<(), ProximityError> {
+        let PairQueue { pieces, bodies, trees, .. } = beginning;
         for (tube, bodies) in self.tubes.iter().zip(&mut *bodies) {
             tube.begin(scale.max(0.25 * tube.widest()), pieces);
             bodies.clear();
@@ -189,15 +205,38 @@ impl<'a> TubePair<'a> {
                 bodies.push((*piece, outer));
             }
         }
-        nearest.begin(most);
-        let [first, second] = &*bodies;
-        for (i, (_, one)) in first.iter().enumerate() {
-            for (j, (_, two)) in second.iter().enumerate() {
-                let at_least = self.at_least(&[*one, *two]);
-                if at_least <= upper {
-                    nearest.push(at_least, [i, j]);
-                }
+        if pays(bodies.each_ref().map(Vec::len)) {
+            for (tree, bodies) in trees.iter_mut().zip(bodies) {
+                tree.build(bodies.iter().map(|(_, outer)| &outer.body));
             }
+        }
+        Ok(())
+    }
+
+    /// As [`begin`](Self::begin), for the bodies in `beginning`.
+    pub(crate) fn begin_pairs(
+        &self,
+        upper: Real,
+        most: usize,
+        beginning: &mut PairQueue,
+        pairs: &mut Vec<PiecePair>,
+    ) -> bool {
+        let PairQueue { bodies: [first, second], trees, waiting, nearest, .. } = beginning;
+        nearest.begin(most);
+        let mut offer = |[i, j]: [usize; 2]| {
+            let at_least = self.at_least(&[first[i].1, second[j].1]);
+            if at_least <= upper {
+                nearest.push(at_least, [i, j]);
+            }
+        };
+        if pays([first.len(), second.len()]) {
+            let bound = upper + 2.0 * self.slack();
+            near_pairs(trees.each_ref(), waiting, bound, |pair| {
+                offer(pair);
+                bound
+            });
+        } else {
+            (0..first.len()).for_each(|i| (0..second.len()).for_each(|j| offer([i, j])));
         }
         let (order, is_all) = nearest.farthest_first();
         pairs.clear();
@@ -205,7 +244,35 @@ impl<'a> TubePair<'a> {
             let ((one, outer), (two, beside)) = (first[i], second[j]);
             PiecePair { pieces: [one, two], outers: [outer, beside] }
         }));
-        Ok(is_all)
+        is_all
+    }
+
+    /// Returns the upper bound from the nearest bodies in `beginning`; `None` if there are so few
+    /// pairs that all can be begun.
+    pub(crate) fn bound_of_bodies(&self, beginning: &mut PairQueue) -> Option<PairUpperBound> {
+        let PairQueue { bodies: [first, second], trees, waiting, .. } = beginning;
+        if !pays([first.len(), second.len()]) {
+            return None;
+        }
+        let (mut best, mut nearest) = (Real::INFINITY, None);
+        near_pairs(trees.each_ref(), waiting, best, |[i, j]| {
+            let at_least = self.at_least(&[first[i].1, second[j].1]);
+            if at_least < best {
+                (best, nearest) = (at_least, Some([first[i], second[j]]));
+            }
+            best + 2.0 * self.slack()
+        });
+        nearest.map(|pair| {
+            let [one, two] = pair.map(|(_, outer)| outer.body);
+            let (feet, _) = one.nearest_on_axes(&two);
+            let arcs = [0, 1].map(|k: usize| {
+                let (piece, outer) = &pair[k];
+                let [start, end] = self.tubes[k].arcs(piece);
+                start + (end - start) * outer.body.share_of(feet[k])
+            });
+            let radii = [one.radius(), two.radius()];
+            self.found_from(pair.map(|(piece, _)| piece.section), arcs, half_way(feet, radii))
+        })
     }
 
     /// Returns a lower bound on the distance of two bodies: the distance of the capsules around

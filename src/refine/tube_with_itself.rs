@@ -100,6 +100,7 @@
 //! (`TubeTurns::room`). Each point between these two parts bounds the distance of both
 //! (`tube_point`).
 
+use super::ball_tree::{BallTree, WaitingRuns, near_pairs, pays};
 use super::bounding_body::{BoundingBody, SectionRange};
 use super::depth_first::{Body, Refinable, WorkItem};
 use super::placed_tube::{Piece, PlacedTube};
@@ -184,6 +185,8 @@ type SelfBody = (Piece, BoundingBody, Option<usize>);
 pub(crate) struct SelfPairQueue {
     pieces: Vec<Piece>,
     bodies: Vec<SelfBody>,
+    tree: BallTree,
+    waiting: WaitingRuns,
     nearest: NearestPairs,
 }
 
@@ -254,7 +257,7 @@ impl<'a> TubeWithItself<'a> {
         beginning: &mut SelfPairQueue,
         pairs: &mut Vec<SelfPair>,
     ) -> Result<bool, ProximityError> {
-        let SelfPairQueue { pieces, bodies, nearest } = beginning;
+        let SelfPairQueue { pieces, bodies, tree, waiting, nearest } = beginning;
         let tube = self.tube();
         tube.begin(scale.max(0.25 * tube.widest()), pieces);
         pieces.sort_unstable_by_key(|piece| (piece.section, piece.from));
@@ -266,17 +269,26 @@ impl<'a> TubeWithItself<'a> {
         }
         self.push_faces(bodies);
         nearest.begin(most);
-        for i in 0..bodies.len() {
-            for j in i..bodies.len() {
-                let pair = pair(&bodies[i], &bodies[j]);
-                if !self.turns_enough(&pair) {
-                    continue;
-                }
-                let at_least = self.both.at_least(&pair.outers);
-                if at_least <= upper && self.may_count(&pair) {
-                    nearest.push(at_least, [i, j]);
-                }
+        let mut offer = |[i, j]: [usize; 2]| {
+            let pair = pair(&bodies[i], &bodies[j]);
+            if !self.turns_enough(&pair) {
+                return;
             }
+            let at_least = self.both.at_least(&pair.outers);
+            if at_least <= upper && self.may_count(&pair) {
+                nearest.push(at_least, [i, j]);
+            }
+        };
+        if pays([bodies.len(); 2]) {
+            tree.build(bodies.iter().map(|(_, outer, _)| &outer.body));
+            let bound = upper + 2.0 * self.slack();
+            near_pairs([&*tree; 2], waiting, bound, |pair| {
+                offer(pair);
+                bound
+            });
+        } else {
+            let count = bodies.len();
+            (0..count).for_each(|i| (i..count).for_each(|j| offer([i, j])));
         }
         let (order, is_all) = nearest.farthest_first();
         pairs.clear();

@@ -15,6 +15,7 @@ mod flat_faces;
 mod fuzz;
 mod large;
 mod level_links;
+mod many_sections;
 mod measured;
 mod motion;
 mod moved;

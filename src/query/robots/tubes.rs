@@ -91,10 +91,14 @@ fn clearance_as_stated(
     let mut hint = Hint { upper: Real::INFINITY, triangle: None };
     hint.take(&memory.first_bound(tubes));
     let TubesMemory { beginning, pairs, pending, last } = memory;
+    tubes.begin_bodies(Real::INFINITY, beginning)?;
+    if let Some(bound) = tubes.bound_of_bodies(beginning) {
+        hint.take(&bound);
+    }
     let best = loop {
         // The margin keeps rounding of the bounds from requiring farther pairs.
         let limit = hint.upper + 4.0 * tubes.slack();
-        tubes.begin(Real::INFINITY, limit, usize::MAX, beginning, pairs)?;
+        tubes.begin_pairs(limit, usize::MAX, beginning, pairs);
         pending.clear();
         let mut bounds = BoundsSearch::new(tubes, pending, hint, tolerance);
         while let Some(pair) = pairs.pop() {

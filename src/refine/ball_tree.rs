@@ -1,0 +1,164 @@
+//! Which bodies of two lists are near one another: trees of balls over both lists.
+//!
+//! # Definitions
+//! - **Ball** of a body: the ball around the middle of its axis that contains the body.
+//! - **Node**: a run of consecutive bodies and a ball around theirs. The lists follow the tube, so a
+//!   run is compact. A tree over n bodies has 2 n - 1 nodes in preorder; the first half of a run
+//!   comes first.
+//!
+//! # Claim
+//! [`near_pairs`] visits all pairs whose bodies are at most `bound` apart.
+//!
+//! **Proof.** A node contains its bodies. So two nodes are no farther apart than any two bodies of
+//! them, and a pair is skipped only if nodes that contain it are farther apart than `bound`.
+//!
+//! **Rounding.** Centres and radii err by few u of the largest coordinate. `bound` includes the
+//! slack of the tubes, which is 128 u of it.
+
+use crate::distance::Scalar;
+use crate::pair::PlacedLink;
+use parry3d_f64::math::{Real, Vector};
+
+/// Below this number of pairs two plain loops are cheaper.
+const FEW: usize = 1 << 12;
+
+#[derive(Clone, Copy, Debug, Default)]
+struct Ball {
+    centre: Vector,
+    radius: Real,
+}
+
+impl Ball {
+    fn around(body: &PlacedLink) -> Self {
+        let half = body.along() * 0.5;
+        Self { centre: body.start() + half, radius: half.length() + body.radius() }
+    }
+
+    fn around_both(&self, other: &Self) -> Self {
+        let way = other.centre - self.centre;
+        let away = way.length();
+        if away + other.radius <= self.radius {
+            return *self;
+        }
+        if away + self.radius <= other.radius {
+            return *other;
+        }
+        let radius = 0.5 * (away + self.radius + other.radius);
+        let centre = self.centre + way * ((radius - self.radius) / away);
+        Self { centre, radius: radius * (1.0 + 16.0 * Real::UNIT_ROUNDOFF) }
+    }
+
+    fn apart(&self, other: &Self) -> Real {
+        (other.centre - self.centre).length() - self.radius - other.radius
+    }
+}
+
+/// A tree of balls over a list of bodies.
+#[derive(Clone, Debug, Default)]
+pub(super) struct BallTree {
+    nodes: Vec<Ball>,
+    count: usize,
+}
+
+/// A node and its run of bodies.
+#[derive(Clone, Copy, Debug)]
+struct Run {
+    node: usize,
+    first: usize,
+    count: usize,
+}
+
+impl Run {
+    fn halves(self) -> [Self; 2] {
+        let Self { node, first, count } = self;
+        let half = count / 2;
+        [
+            Self { node: node + 1, first, count: half },
+            Self { node: node + 2 * half, first: first + half, count: count - half },
+        ]
+    }
+}
+
+impl BallTree {
+    /// Replaces the tree by one over these bodies.
+    pub(super) fn build<'b>(&mut self, bodies: impl ExactSizeIterator<Item = &'b PlacedLink>) {
+        self.count = bodies.len();
+        self.nodes.clear();
+        self.nodes.resize((2 * self.count).saturating_sub(1), Ball::default());
+        let mut bodies = bodies.map(Ball::around);
+        if self.count > 0 {
+            self.fill(self.root(), &mut bodies);
+        }
+    }
+
+    fn fill(&mut self, run: Run, balls: &mut impl Iterator<Item = Ball>) -> Ball {
+        let ball = if run.count == 1 {
+            balls.next().unwrap_or_default()
+        } else {
+            let [low, high] = run.halves();
+            let low = self.fill(low, balls);
+            low.around_both(&self.fill(high, balls))
+        };
+        self.nodes[run.node] = ball;
+        ball
+    }
+
+    fn root(&self) -> Run {
+        Run { node: 0, first: 0, count: self.count }
+    }
+}
+
+/// Whether two lists of these lengths have so many pairs that trees pay.
+pub(super) fn pays(counts: [usize; 2]) -> bool {
+    counts[0].saturating_mul(counts[1]) > FEW
+}
+
+/// The pairs of nodes that wait. A later search reuses the memory.
+#[derive(Clone, Debug, Default)]
+pub(super) struct WaitingRuns(Vec<[Run; 2]>);
+
+/// Calls `visit` with the pairs of bodies that may be at most `bound` apart; each call returns the
+/// next bound. For a tree and itself the first index is at most the second.
+///
+/// The nearer of two pairs of nodes comes first.
+pub(super) fn near_pairs(
+    trees: [&BallTree; 2],
+    WaitingRuns(stack): &mut WaitingRuns,
+    mut bound: Real,
+    mut visit: impl FnMut([usize; 2]) -> Real,
+) {
+    let is_same = std::ptr::eq(trees[0], trees[1]);
+    if trees.iter().any(|tree| tree.count == 0) {
+        return;
+    }
+    let apart = |runs: &[Run; 2]| {
+        let [one, two] = [0, 1].map(|k: usize| &trees[k].nodes[runs[k].node]);
+        one.apart(two)
+    };
+    stack.clear();
+    stack.push(trees.map(BallTree::root));
+    while let Some(runs) = stack.pop() {
+        let [one, two] = runs;
+        // This form keeps pairs whose distance is NaN.
+        if apart(&runs) > bound {
+            continue;
+        }
+        if one.count == 1 && two.count == 1 {
+            bound = visit([one.first, two.first]);
+        } else if is_same && one.node == two.node {
+            let [low, high] = one.halves();
+            stack.extend([[low, low], [high, high], [low, high]]);
+        } else {
+            let k = usize::from(two.count > one.count);
+            let mut halves = runs[k].halves().map(|half| {
+                let mut runs = runs;
+                runs[k] = half;
+                runs
+            });
+            if apart(&halves[0]) <= apart(&halves[1]) {
+                halves.reverse();
+            }
+            stack.extend(halves);
+        }
+    }
+}
