@@ -21,7 +21,8 @@ pub struct Witness {
     /// The triangle's index in the mesh.
     pub triangle: u32,
     /// The place along the robot's centreline, from the base: the point nearest to `on_mesh` on the
-    /// axis of the link, or of the tube.
+    /// axis of the link, or of the tube's section of constant radius, to which `on_robot` belongs.
+    /// Beside a step the axis of the next section may be nearer.
     pub arc_length: Real,
     /// The segment of the robot's input at this place, between the points `segment` and `segment +
     /// 1`. For a tube without points, the section of constant radius.
@@ -95,7 +96,7 @@ pub struct PairWitness {
     /// The second robot's point; equal to `on_first` if the robots touch or overlap.
     pub on_second: Vector,
     /// The places along each robot's centreline, from the base: on the axis of the link, or of the
-    /// tube, nearest to the other robot's point.
+    /// tube's section of constant radius, nearest to the other robot's point.
     pub arc_lengths: [Real; 2],
 }
 

@@ -2,8 +2,8 @@
 //!
 //! # Definitions
 //! - **Ball** of a body: the ball around the middle of its axis that contains the body.
-//! - **Node**: a run of consecutive bodies and a ball around theirs. The lists follow the tube, so a
-//!   run is compact. A tree over n bodies has 2 n - 1 nodes in preorder; the first half of a run
+//! - **Node**: a run of consecutive bodies and a ball around theirs. The lists follow the tube, so
+//!   a run is compact. A tree over n bodies has 2 n - 1 nodes in preorder; the first half of a run
 //!   comes first.
 //!
 //! # Claim
