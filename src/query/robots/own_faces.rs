@@ -34,9 +34,9 @@
 //!
 //! **All turns.** If all turns are queried, links with a turn of pi count without a face too. Their
 //! pair is skipped if case 3 holds for either node: from its places the robot leads nearer, so
-//! condition 2 of `JoinedLink` fails. It is also skipped if all links of one node have a shoulder at
-//! the end that the segment reaches: then the rule for faces decides. Where axes run level, `w . t`
-//! is 0 within rounding, and neither holds.
+//! condition 2 of `JoinedLink` fails. It is also skipped if all links of one node have a shoulder
+//! at the end that the segment reaches: then the rule for faces decides. Where axes run level,
+//! `w . t` is 0 within rounding, and neither holds.
 //!
 //! **Facing.** If all `w . t > 0`, the faces at ends of links face away; if all `w . t < 0`, the
 //! faces at starts do.
@@ -54,15 +54,21 @@
 //! `n`. So `w . t` is at least `v . t - f |t x n|`, where `v` leads between two places of the axes.
 //! `|t x n|` is at most `|m x m'|` plus the two largest distances from the axes.
 //!
+//! **From the cone.** Let `least(x)` be the least `x . t` for all unit vectors `t` at most `e` from
+//! `m`. Let `x . m > 0` and `e^2 <= 2`. The angles of `x` and of `t` from `m` add up to at most pi,
+//! so `least(x) = (x . m) (1 - e^2 / 2) - |x cross m| e sqrt(1 - e^2 / 4)`, the cosine of a sum.
+//! Always `least(x) >= x . m - |x| e`.
+//!
 //! **From balls.** Let `C` and `D` be the centres of the balls, and `a` and `b` their radii. Then
-//! `v . t >= (D - C) . m - |D - C| e - a - b`.
+//! `v . t >= least(D - C) - a - b`.
 //!
 //! **From segments.** Let all places of the axes be at most `p` and `q` from the two segments. Then
 //! `v = x + d` with `|d| <= p + q`, and `x` lies in the convex hull of the four vectors `x_k`
-//! between the ends of the segments. For any `c >= 0`, `v . t - c |v| >= x . m - (e + c) |x| - (1 +
-//! c) (p + q)`. The right side is a concave function of `x`. So it is least at one of the `x_k`. `c
-//! = 0` gives the sign of `w . t`, and the cosine of `least_covered` gives covered shoulders. For
-//! links in a row `p` and `q` are almost 0, where the balls are as long as the row.
+//! between the ends of the segments. For any `c >= 0`, `v . t - c |v| >= least(x) - c |x| - (1 + c)
+//! (p + q)`. The right side is a concave function of `x`, since `least` is a minimum of linear
+//! functions. So it is least at one of the `x_k`. `c = 0` gives the sign of `w . t`, and the cosine
+//! of `least_covered` gives covered shoulders. For links in a row `p` and `q` are almost 0, where
+//! the balls are as long as the row.
 //!
 //! Upper bounds are the same with opposite signs.
 //!
@@ -491,9 +497,10 @@ impl Node {
         let slack = rounding.of_way(far);
         let doubt = rounding.0 + slack;
         // From balls.
-        let middle = way.dot(self.direction);
-        let off = self.reach + other.reach + away * self.spread + aside + doubt;
-        let mut along = [middle - off, middle + off];
+        let middle = Projection::of(way, self.direction);
+        let least = [1.0, -1.0].map(|sign| middle.least_in_cone(sign, self.spread));
+        let off = self.reach + other.reach + aside + doubt;
+        let mut along = [least[0] - off, off - least[1]];
         let mut hull = None;
         if along[0] <= 0.0 && along[1] >= 0.0 {
             let vectors = hull.insert(Hull::between(other, self));
@@ -510,7 +517,7 @@ impl Node {
         let cosine = self.covered[end].max(0.0);
         let is_covered = is_known
             && cosine < 1.0
-            && (sign * middle - off >= cosine * far || {
+            && (least[end] - off >= cosine * far || {
                 let vectors = hull.unwrap_or_else(|| Hull::between(other, self));
                 vectors.least_along(sign, cosine) - aside - cosine * other.flat
                     >= (1.0 + cosine) * doubt
@@ -524,11 +531,42 @@ impl Node {
     }
 }
 
+/// A vector as seen along a direction `m`.
+#[derive(Clone, Copy)]
+struct Projection {
+    along: Real,
+    across: Real,
+    length: Real,
+}
+
+impl Projection {
+    fn of(vector: Vector, direction: Vector) -> Self {
+        Self {
+            along: vector.dot(direction),
+            across: vector.cross(direction).length(),
+            length: vector.length(),
+        }
+    }
+
+    /// Returns a lower bound on the component of `sign` times the vector along all directions at
+    /// most `spread` from `m` (`least` of the module head).
+    fn least_in_cone(&self, sign: Real, spread: Real) -> Real {
+        let along = sign * self.along;
+        let loose = along - self.length * spread;
+        let squared = spread * spread;
+        if along <= 0.0 || squared > 2.0 {
+            return loose;
+        }
+        let sine = spread * (1.0 - 0.25 * squared).sqrt();
+        loose.max(along * (1.0 - 0.5 * squared) - self.across * sine)
+    }
+}
+
 /// The vectors from the axes of one node to the axes of another, from their segments (module head).
 #[derive(Clone, Copy)]
 struct Hull {
-    /// `x_k . m` and `|x_k|` of the four vectors.
-    vectors: [[Real; 2]; 4],
+    /// The four vectors `x_k`.
+    vectors: [Projection; 4],
     /// `e`.
     spread: Real,
     /// `p + q`.
@@ -538,19 +576,15 @@ struct Hull {
 impl Hull {
     /// Returns the vectors to the axes of `to`, with the cone of `to`.
     fn between(from: &Node, to: &Node) -> Self {
-        let vector = |k: usize| {
-            let way = to.ends[k / 2] - from.ends[k % 2];
-            [way.dot(to.direction), way.length()]
-        };
+        let vector = |k: usize| Projection::of(to.ends[k / 2] - from.ends[k % 2], to.direction);
         let vectors = [0, 1, 2, 3].map(vector);
         Self { vectors, spread: to.spread, aside: from.aside + to.aside }
     }
 
     /// Returns a lower bound on `sign v . t - cosine |v|`.
     fn least_along(&self, sign: Real, cosine: Real) -> Real {
-        let share = self.spread + cosine;
-        let least = self.vectors.iter().fold(Real::INFINITY, |least, [along, length]| {
-            least.min(sign * along - share * length)
+        let least = self.vectors.iter().fold(Real::INFINITY, |least, vector| {
+            least.min(vector.least_in_cone(sign, self.spread) - cosine * vector.length)
         });
         least - (1.0 + cosine) * self.aside
     }
