@@ -21,10 +21,6 @@ pub struct Robot {
 
 /// Reads one robot.
 pub fn centreline(path: &Path, my: &Options) -> Result<Robot, String> {
-    let name = path.to_string_lossy().to_ascii_lowercase();
-    if my.line.is_some() && ![".vtp", ".vtk", ".json"].iter().any(|end| name.ends_with(end)) {
-        return Err(format!("{} holds one robot; leave out --line", path.display()));
-    }
     let options = mesh_files::Options::scaled(my.scale.unwrap_or(1.0)).with_line(my.line);
     let line =
         mesh_files::load_centreline(path, &options).map_err(|error| messages::of_file(&error))?;

@@ -33,6 +33,7 @@ impl Wall {
         if mesh.skipped_faces > 0 {
             notes.push(format!("left out of {file}: {} faces without area", mesh.skipped_faces));
         }
+        notes.extend(mesh.doubts.iter().map(|doubt| format!("{file}: {doubt}")));
         let states_unit = mesh.states_unit;
         let frame =
             Frame::resolve(mesh.frame, my.mesh_frame.map(Frame::from)).map_err(|stated| {

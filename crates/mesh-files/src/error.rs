@@ -192,8 +192,7 @@ pub enum MeshFileError {
         file: PathBuf,
     },
     /// The voxels are the values of an image, not labels.
-    #[error("{} holds an image, in which a voxel is {number}, and not labels; give the segmentation of the image",
-            file.display())]
+    #[error("{} holds {}; give the segmentation of the image", file.display(), no_labels(*number))]
     #[non_exhaustive]
     NotLabels {
         /// The file.
@@ -230,6 +229,15 @@ pub enum MeshFileError {
 
 /// Bytes of a mebibyte.
 const MIB: u64 = 1 << 20;
+
+/// Describes the voxels of a file that has this value.
+fn no_labels(number: f64) -> String {
+    if number < 0.0 && number.fract() == 0.0 {
+        format!("a voxel of {number}, and labels are at least 0 (-1 is read as background)")
+    } else {
+        format!("an image, in which a voxel is {number}, and not labels")
+    }
+}
 
 /// Explains why a file with faces has no triangles.
 fn without_area(skipped_faces: usize) -> String {

@@ -59,6 +59,9 @@ pub struct Mesh {
     /// The labels of a label map that was read as one surface, without a requested label: all that
     /// are not 0, in ascending order; the lowest 1000 if there are more. Otherwise empty.
     pub labels: Vec<u32>,
+    /// What other programs read differently: one sentence each, without a full stop, whose subject
+    /// is the file. A NIfTI label map is doubtful if its sform and qform place it differently.
+    pub doubts: Vec<String>,
 }
 
 impl Mesh {

@@ -103,6 +103,13 @@ pub fn frame_named(name: &[u8]) -> Option<Frame> {
     }
 }
 
+/// Converts a length to millimetres. `unit` is the number of millimetres of its unit.
+#[cfg(feature = "centrelines")]
+pub fn to_mm(length: f64, unit: f64) -> f64 {
+    // Division by a whole number is exact; multiplication by its inverse is not.
+    if unit < 1.0 { length / (1.0 / unit).round() } else { length * unit }
+}
+
 /// Returns the number of millimetres of a unit of length, by its name.
 #[cfg(any(feature = "centrelines", feature = "label-maps"))]
 pub fn unit_in_mm(name: &str) -> Option<f64> {

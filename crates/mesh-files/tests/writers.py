@@ -195,7 +195,7 @@ def tables():
         ("UTF-16", table, {"encoding": "utf-16"}, None), ("UTF-8 with a mark", table, {"encoding": "utf-8-sig"}, None),
         ("quotes", table, {"quoting": 1, "index": False}, None), ("carriage returns", table, {"lineterminator": "\r"}, None),
         ("radius", table.assign(radius=1.5), {}, radii), ("diameter", table.assign(Diameter=3.0), {}, radii),
-        ("VMTK", table.assign(MaximumInscribedSphereRadius=1.5, Abscissas=7), {"index": False}, radii),
+        ("VMTK", table.assign(MaximumInscribedSphereRadius=1.5, Abscissas=7), {"index": False}, None),
         ("ParaView", table.set_axis([f"Points:{axis}" for axis in range(3)], axis=1), {}, None),
         ("ParaView, renamed", table.set_axis([f"Points_{axis}" for axis in range(3)], axis=1), {}, None),
     ]:

@@ -63,8 +63,8 @@ fn refuse(py: Python<'_>, error: &MeshFileError) -> PyErr {
 /// NRRD or MetaImage, by the file's extension.
 ///
 /// What the file states of its coordinates is kept: `Mesh.frame` and `Mesh.unit`. A warning says if
-/// faces without area are left out (`Mesh.skipped_faces`), and if several labels are read as one
-/// surface.
+/// faces without area are left out (`Mesh.skipped_faces`), if several labels are read as one
+/// surface, and if the sform and the qform of a NIfTI label map place it differently.
 ///
 /// Parameters
 /// ----------
@@ -200,6 +200,9 @@ fn made(
             ),
         )?;
     }
+    for doubt in &file.doubts {
+        warn(py, &format!("{name}: {doubt}"))?;
+    }
     let frame = in_frame(&mut file.vertices, file.frame, frame);
     let origin =
         Origin { frame, unit: unit(file.states_unit, scale), skipped_faces: file.skipped_faces };
@@ -209,7 +212,8 @@ fn made(
 
 /// The centreline in a file: VTK's .vtp or .vtk, 3D Slicer's .mrk.json, or a text (.csv, .tsv,
 /// .txt, .dat) with x,y,z and optionally the radius in its lines. A heading is optional: it names
-/// x,y,z, and r,a,s or l,p,s state the frame.
+/// x,y,z, and r,a,s or l,p,s state the frame. Units in its names, such as ``x [m]``, are converted
+/// to millimetres.
 ///
 /// Parameters
 /// ----------

@@ -72,6 +72,11 @@ def test_pyvista(take: Any) -> None:
     flat = np.column_stack([np.full(len(FACES), 3), FACES]).ravel()
     surface = pyvista.PolyData(VERTICES, flat)
     is_sphere(take(surface))
+    is_sphere(take(surface.strip()))
+    # Polygons whose outlines cross keep all their triangles, in faces of one size and of several.
+    crossed = np.array([[0, 0, 0], [4, 0, 0], [1, 3, 0], [6, 3, 0.0]])
+    for more in ([], [3, 0, 1, 2]):
+        assert len(take(pyvista.PolyData(crossed, [4, 0, 1, 2, 3, *more])).faces) == 2 + bool(more)
     box = pyvista.Box()  # of quadrilaterals
     assert len(take(box).faces) == 12
     assert len(take(surface.cast_to_unstructured_grid()).faces) == len(FACES)

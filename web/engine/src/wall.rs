@@ -77,6 +77,7 @@ impl Wall {
             let count = labels.len();
             notes.push(format!("{name} has {count} labels, read as one surface; choose a label"));
         }
+        notes.extend(mesh.doubts.iter().map(|doubt| format!("{name}: {doubt}")));
         let (stated_frame, is_millimetres) = (mesh.frame, mesh.states_unit && scale == 1.0);
         let (vertices, triangles) = mesh.into_parts::<Vector>();
         let search = BvhSearch::from_triangles(&vertices, &triangles)

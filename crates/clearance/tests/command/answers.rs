@@ -371,7 +371,12 @@ fn a_line_of_vtk_is_a_robot() {
     assert_eq!(minimum(&[&asked[..], &["--line", "1"]].concat()), 10.0);
     refuse(&["--mesh", wall, "--centreline", line, "--line", "1"], "give --radius");
     let shape = &file("line.csv", "30,30,20,2\n30,30,40\n");
-    refuse(&["--mesh", wall, "--centreline", shape, "--line", "1"], "leave out --line");
+    let asked = ["--mesh", wall, "--centreline", shape, "--line", "1"];
+    refuse(&asked, "has no line 1, but 1, counted from 0; choose one of them with --line");
+    let branches = &file("branches.csv", "30,30,20\n30,30,40\n\n31,30,10\n31,30,40\n");
+    let asked = ["--mesh", wall, "--centreline", branches, "--radius", "2"];
+    refuse(&asked, "holds 2 lines; choose one from 0 to 1 with --line");
+    assert_eq!(minimum(&[&asked[..], &["--line", "1"]].concat()), 10.0);
 }
 
 /// The last line names the link, its place and the triangle, with the unit if a file states it.

@@ -2,7 +2,7 @@
 
 use super::{Line, Lines};
 use crate::mesh::Frame;
-use crate::text::{shown, unit_in_mm, without_mark};
+use crate::text::{shown, to_mm, unit_in_mm, without_mark};
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
@@ -153,6 +153,5 @@ fn own_unit(units: &Value) -> Result<impl Fn(f64) -> f64 + Copy + use<>, String>
     let factor = unit_in_mm(name).ok_or_else(|| {
         format!("its coordinateUnits are '{}', not mm; save it in mm", shown(name))
     })?;
-    // Division by a whole number is exact; multiplication by its inverse is not.
-    Ok(move |x: f64| if factor < 1.0 { x / (1.0 / factor).round() } else { x * factor })
+    Ok(move |x: f64| to_mm(x, factor))
 }

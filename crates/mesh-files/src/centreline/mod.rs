@@ -2,6 +2,7 @@
 //! extract them.
 
 mod data_array;
+mod heading;
 mod markups;
 mod poly_data;
 mod table;
@@ -26,8 +27,8 @@ pub struct Centreline {
     pub radii: Option<Vec<f64>>,
     /// The frame of the coordinates, if the file or its format states it.
     pub frame: Option<Frame>,
-    /// Whether the unit of length is stated. Markups state it, and are converted to millimetres
-    /// before they are scaled.
+    /// Whether the unit of length is stated. Markups state it, and the heading of a text may. Such
+    /// points are converted to millimetres before they are scaled.
     pub states_unit: bool,
     /// The number of points that are left out because they have no position yet.
     pub skipped_points: usize,
@@ -101,7 +102,8 @@ impl Format {
 /// Reads the centreline in a file.
 ///
 /// - 3D Slicer's markups (`.mrk.json`): a curve.
-/// - Text (`.csv`, `.tsv`, `.txt`, `.dat`): points with x, y, z and optionally the radius.
+/// - Text (`.csv`, `.tsv`, `.txt`, `.dat`): points with x, y, z and optionally the radius. Units in
+///   the heading are converted to millimetres.
 /// - VTK's PolyData (`.vtp`, `.vtk`), as VMTK, SimVascular and SOFA write it: a line. Cells whose
 ///   ends meet are one line, where ends that differ by rounding meet too. Radii are not read: they
 ///   belong to the vessel, not to the robot.
@@ -136,8 +138,11 @@ pub fn centreline_from_bytes(
     let file = path.to_owned();
     let read = match format {
         Format::Table => {
-            let own = table::centreline(path, bytes, options)?;
-            return one_line(&file, own, options.line).and_then(|line| with_points(file, line));
+            let mut lines = table::centrelines(path, bytes, options)?;
+            let line = choose(&file, lines.len(), options.line)?;
+            let mut line = lines.swap_remove(line);
+            options.scale_all(path, &mut line.points)?;
+            return with_points(file, line);
         }
         Format::Markups if bytes.len() as u64 * markups::EACH > options.memory_limit => {
             Err("its values take more memory than is allowed".into())
@@ -161,17 +166,12 @@ pub fn centreline_from_bytes(
             _ => MeshFileError::Broken { file, format, reason },
         }
     })?;
-    let count = lines.len();
-    let line = match (options.line, count) {
-        (_, 0) => return Err(MeshFileError::NoLine { file }),
-        (None, 1) => match lines[0].other.take() {
-            Some(found) => return Err(MeshFileError::NotACurve { file, found }),
-            None => 0,
-        },
-        (None, _) => return Err(MeshFileError::SeveralLines { file, count }),
-        (Some(line), _) if line < count => line,
-        (Some(line), _) => return Err(MeshFileError::NoSuchLine { file, line, count }),
-    };
+    let line = choose(&file, lines.len(), options.line)?;
+    if options.line.is_none()
+        && let Some(found) = lines[line].other.take()
+    {
+        return Err(MeshFileError::NotACurve { file, found });
+    }
     let Line { mut points, skipped_points, .. } = lines.swap_remove(line);
     options.scale_all(&file, &mut points)?;
     with_points(file, Centreline { points, radii: None, frame, states_unit, skipped_points })
@@ -185,14 +185,14 @@ fn with_points(file: PathBuf, line: Centreline) -> Result<Centreline, MeshFileEr
     }
 }
 
-/// Returns the centreline of a file that has only one.
-fn one_line(
-    file: &Path,
-    own: Centreline,
-    line: Option<usize>,
-) -> Result<Centreline, MeshFileError> {
-    match line {
-        None | Some(0) => Ok(own),
-        Some(line) => Err(MeshFileError::NoSuchLine { file: file.to_owned(), line, count: 1 }),
+/// Returns the index of the chosen line, or of the only one.
+fn choose(file: &Path, count: usize, line: Option<usize>) -> Result<usize, MeshFileError> {
+    let file = file.to_owned();
+    match (line, count) {
+        (_, 0) => Err(MeshFileError::NoLine { file }),
+        (None, 1) => Ok(0),
+        (None, _) => Err(MeshFileError::SeveralLines { file, count }),
+        (Some(line), _) if line < count => Ok(line),
+        (Some(line), _) => Err(MeshFileError::NoSuchLine { file, line, count }),
     }
 }

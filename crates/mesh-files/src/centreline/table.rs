@@ -1,28 +1,26 @@
 //! Reads points from lines of text, as spreadsheets, numpy, ParaView and people write them.
+//!
+//! # Several lines in a file
+//! The points of a centreline's file are split
+//! 1. by the first column that numbers lines, if two numbers occur, and one of them twice;
+//! 2. at empty lines and repeated headings, unless each part is one point;
+//! 3. at a step back: a point that repeats an earlier one, after a step of more than twice the mean
+//!    step since. No robot returns to its own point by such a step, but the next branch of a tree
+//!    begins where an earlier one does.
 
+use super::heading::{Columns, Fault, Heading, Name, fault, has_coordinates, is_units, names};
 use super::{Centreline, Format};
 use crate::text::{from_utf16, lines, shown};
 use crate::{Frame, MeshFileError, Options, read_file};
+use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
 /// The columns of a centreline, and of many shapes, for error messages.
 const POINTS: &str = "x,y,z or x,y,z,radius";
 const SHAPES: &str = "shape,x,y,z or shape,x,y,z,radius";
 
-/// The numbers of a text, line by line.
-struct Table {
-    /// The line number and the names of the columns, if the file has them, in lower case and
-    /// without units.
-    heading: Option<(usize, Vec<String>)>,
-    /// The line number and the numbers of each line.
-    rows: Vec<(usize, Vec<f64>)>,
-}
-
-/// What is wrong with a line.
-struct Fault {
-    line: usize,
-    problem: String,
-}
+/// The maximum number of columns of a line.
+const MOST_COLUMNS: usize = 4096;
 
 impl Fault {
     fn named(self, file: &Path, expected: &'static str) -> MeshFileError {
@@ -33,10 +31,6 @@ impl Fault {
             expected,
         }
     }
-}
-
-fn fault<T>(line: usize, problem: String) -> Result<T, Fault> {
-    Err(Fault { line, problem })
 }
 
 /// Returns the numbers of each line of a text file.
@@ -67,12 +61,27 @@ pub fn table_from_bytes<const COLUMNS: usize>(
     bytes: &[u8],
     expected: &'static str,
 ) -> Result<Vec<[f64; COLUMNS]>, MeshFileError> {
-    let numbers = |(line, row): (usize, Vec<f64>)| {
-        let problem = format!("has {} columns", row.len());
-        row.try_into().map_err(|_| Fault { line, problem })
+    let mut rows = Vec::new();
+    let mut add = |line: usize, words: &[&str]| -> Result<(), Fault> {
+        let mut row = [0.0; COLUMNS];
+        for (column, _) in words.iter().enumerate() {
+            let number = cell(line, words, column)?;
+            row.get_mut(column).into_iter().for_each(|own| *own = number);
+        }
+        if words.len() != COLUMNS {
+            return fault(line, format!("has {} columns", words.len()));
+        }
+        rows.push(row);
+        Ok(())
     };
-    let rows = parse(bytes).and_then(|table| table.rows.into_iter().map(numbers).collect());
-    rows.map_err(|fault| fault.named(path.as_ref(), expected))
+    let mut is_first = true;
+    let read = each_line(&from_utf16(bytes), &mut |line, text| {
+        let Text::Row(text) = text else { return Ok(()) };
+        let words = columns(line, text, None)?;
+        let is_heading = std::mem::take(&mut is_first) && heading(line, &words).is_some();
+        if is_heading { Ok(()) } else { add(line, &words) }
+    });
+    read.map(|()| rows).map_err(|fault| fault.named(path.as_ref(), expected))
 }
 
 /// Reads many robots from a text file with lines of shape,x,y,z and optionally the radius of the
@@ -86,255 +95,390 @@ pub fn load_shapes(
 ) -> Result<Vec<(f64, Centreline)>, MeshFileError> {
     let path = path.as_ref();
     options.check_scale()?;
-    let mut shapes = read(path, &read_file(path, options)?, 1, SHAPES, options)?;
-    // Points that are not finite are left to the robot's constructor: one bad shape does not fail
-    // the others.
-    for (_, shape) in &mut shapes {
-        shape.points.iter_mut().flatten().for_each(|x| *x *= options.scale);
-    }
-    Ok(shapes)
+    let Table { columns, rows, .. } = read(path, &read_file(path, options)?, 1, SHAPES, options)?;
+    let robots = rows.chunk_by(|a, b| a.shape.to_bits() == b.shape.to_bits());
+    let shapes = robots.map(|rows| {
+        let mut line = columns.centreline(rows, options.scale)?;
+        // Points that are not finite are left to the robot's constructor: one bad shape does not
+        // fail the others.
+        line.points.iter_mut().flatten().for_each(|x| *x *= options.scale);
+        Ok((rows[0].shape, line))
+    });
+    shapes.collect::<Result<_, Fault>>().map_err(|fault| fault.named(path, SHAPES))
 }
 
-/// Reads one robot.
-pub fn centreline(
+/// Reads the robots of a file, before their points are scaled.
+pub fn centrelines(
     path: &Path,
     bytes: &[u8],
     options: &Options,
-) -> Result<Centreline, MeshFileError> {
-    let mut robots = read(path, bytes, 0, POINTS, options)?;
-    let (_, mut robot) = robots.swap_remove(0);
-    options.scale_all(path, &mut robot.points)?;
-    Ok(robot)
+) -> Result<Vec<Centreline>, MeshFileError> {
+    let mut table = read(path, bytes, 0, POINTS, options)?;
+    let ends = table.split();
+    let starts = [0].into_iter().chain(ends.iter().copied());
+    let lines = starts
+        .zip(&ends)
+        .map(|(start, &end)| table.columns.centreline(&table.rows[start..end], options.scale));
+    lines.collect::<Result<_, Fault>>().map_err(|fault| fault.named(path, POINTS))
 }
 
-/// Returns the robots of a table before their points are scaled. Coordinates begin in the column
-/// `first` unless the heading states otherwise.
+/// Returns the points of a file. `first` is 1 in a table of shapes, 0 otherwise.
 fn read(
     path: &Path,
     bytes: &[u8],
     first: usize,
     expected: &'static str,
     options: &Options,
-) -> Result<Vec<(f64, Centreline)>, MeshFileError> {
+) -> Result<Table, MeshFileError> {
     let named = |fault: Fault| fault.named(path, expected);
-    let table = parse(bytes).map_err(named)?;
-    let columns = Columns::of(&table, first).map_err(named)?;
-    if table.rows.is_empty() {
+    let Some(table) = parse(bytes, first).map_err(named)? else {
         let (file, format, reason) =
             (path.to_owned(), Format::Table.name(), format!("it has no points; write {expected}"));
         return Err(MeshFileError::Broken { file, format, reason });
+    };
+    if table.columns.states_radius_only() && options.scale != 1.0 {
+        let problem = format!(
+            "names the unit of the radius, but not that of the coordinates, so the scale {} is ambiguous",
+            options.scale
+        );
+        return Err(named(Fault { line: table.columns.line, problem }));
     }
-    let mut robots = Vec::new();
-    let shape = |row: &[f64]| row[columns.shape];
-    for rows in
-        table.rows.chunk_by(|(_, a), (_, b)| first == 0 || shape(a).to_bits() == shape(b).to_bits())
-    {
-        let points = rows.iter().map(|(_, row)| columns.axes.map(|axis| row[axis])).collect();
-        let radii = columns.radii(rows).map_err(named)?;
-        let radii =
-            radii.map(|radii| radii.into_iter().map(|radius| radius * options.scale).collect());
-        let robot = Centreline {
-            points,
-            radii,
-            frame: columns.frame,
-            states_unit: false,
-            skipped_points: 0,
-        };
-        robots.push((shape(&rows[0].1), robot));
-    }
-    Ok(robots)
+    Ok(table)
 }
 
-/// The columns of the coordinates and of the radius, and the frame that the coordinates' names
-/// state.
-struct Columns {
-    axes: [usize; 3],
-    radius: Option<usize>,
-    /// The factor of the numbers in the column of the radius: 1/2 for diameters.
-    factor: f64,
-    /// The column of the number of the shape, in a table of shapes.
-    shape: usize,
-    frame: Option<Frame>,
+/// The points of a table.
+struct Table {
+    columns: Columns,
+    rows: Vec<Row>,
+    /// Numbers for the words in each of `columns.lines`, row by row.
+    words: Vec<u32>,
+}
+
+struct Row {
+    /// The line of the file, counted from 1.
+    line: u32,
+    /// The part of the file between empty lines; then the line of the robot.
+    part: u32,
+    /// The number of the shape, in a table of shapes.
+    shape: f64,
+    point: [f64; 3],
+    /// Whether the point has a position.
+    is_defined: bool,
+    radius: Option<f64>,
+}
+
+/// Returns the points of a file, if it has any.
+fn parse(bytes: &[u8], first: usize) -> Result<Option<Table>, Fault> {
+    let mut table: Option<Table> = None;
+    // The heading, the separator of its columns, and the last comment before the points.
+    let (mut named, mut mark): (Option<(Heading, String)>, _) = (None, None);
+    let mut comment = None;
+    let (mut frame, mut part, mut is_apart) = (None, 0, false);
+    let mut known = HashMap::new();
+    each_line(&from_utf16(bytes), &mut |line, text| {
+        let text = match text {
+            Text::Empty => {
+                is_apart = true;
+                return Ok(());
+            }
+            Text::Comment(text) => {
+                frame = frame.or_else(|| noted_frame(text));
+                if table.is_none() {
+                    let words = columns(line, text, None)?;
+                    comment = heading(line, &words).or(comment.take());
+                }
+                return Ok(());
+            }
+            Text::Row(text) => text,
+        };
+        // The heading again begins another part.
+        if table.is_some() && named.as_ref().is_some_and(|(_, heading)| heading == text) {
+            is_apart = true;
+            return Ok(());
+        }
+        let words = columns(line, text, mark)?;
+        if table.is_none() {
+            match &mut named {
+                None => {
+                    if let Some(heading) = heading(line, &words) {
+                        mark = separator(text);
+                        named = Some((heading, text.to_owned()));
+                        return Ok(());
+                    }
+                }
+                Some((heading, _)) if is_units(&words) => {
+                    let names = heading.names.iter_mut().zip(&words);
+                    names.for_each(|(name, word)| name.set_unit(word));
+                    return Ok(());
+                }
+                Some(_) => {}
+            }
+            // A row may lack the last column, the radius.
+            let fits = |heading: &Heading| {
+                let count = heading.names.len();
+                (words.len()..=words.len() + 1).contains(&count) && has_coordinates(&heading.names)
+            };
+            let heading = named.as_ref().map(|(heading, _)| heading);
+            let columns = match heading.or(comment.as_ref().filter(|comment| fits(comment))) {
+                Some(heading) => Columns::named(heading, first)?,
+                None => Columns::plain(first),
+            };
+            table = Some(Table { columns, rows: Vec::new(), words: Vec::new() });
+        }
+        let Some(table) = &mut table else { return Ok(()) };
+        part += u32::from(std::mem::take(&mut is_apart) && !table.rows.is_empty());
+        let row = table.columns.row(line, &words)?;
+        table.rows.push(Row { part, ..row });
+        for &column in &table.columns.lines {
+            let next = known.len() as u32;
+            let word = words.get(column).copied().unwrap_or_default().to_owned();
+            table.words.push(*known.entry((column, word)).or_insert(next));
+        }
+        Ok(())
+    })?;
+    // A heading alone may be wrong, too.
+    if let (None, Some((heading, _))) = (&table, &named) {
+        Columns::named(heading, first)?;
+    }
+    Ok(table.map(|mut table| {
+        table.columns.frame = table.columns.frame.or(frame);
+        table
+    }))
 }
 
 impl Columns {
-    fn of(table: &Table, first: usize) -> Result<Self, Fault> {
-        let plain = [first, first + 1, first + 2];
-        let columns =
-            Self { axes: plain, radius: Some(first + 3), factor: 1.0, shape: 0, frame: None };
-        let Some((line, heading)) = &table.heading else {
-            return Self::check(table, columns, first + 4);
+    /// Reads a line. Columns that are not needed may contain any text.
+    fn row(&self, line: usize, words: &[&str]) -> Result<Row, Fault> {
+        let count = words.len();
+        let is_defined = match self.defined.map(|column| words.get(column).copied().unwrap_or("")) {
+            None | Some("1" | "true" | "True") => true,
+            Some("0" | "false" | "False") => false,
+            Some(other) => {
+                let other = shown(other);
+                return fault(line, format!("has '{other}' in the column 'defined', not 0 or 1"));
+            }
         };
-        let named = |name: &str| heading.iter().position(|own| own == name);
-        let stated = named_axes(heading).filter(|(axes, _)| axes.iter().all(|&axis| axis >= first));
-        let (axes, frame) = stated.unwrap_or((plain, None));
-        if stated.is_none() {
-            for (column, axis) in axes.into_iter().zip(['x', 'y', 'z']) {
-                // A heading of fewer columns is refused where a line has fewer.
-                if let Some(name) = heading.get(column)
-                    && !(name.starts_with(axis) || name.ends_with(axis))
-                {
-                    let column = column + 1;
-                    let problem = format!("has '{}' in column {column}, not {axis}", shown(name));
-                    return fault(*line, problem);
-                }
+        let is_needed = |column: &usize| {
+            !self.has_heading
+                || self.shape == Some(*column)
+                || is_defined && (self.axes.contains(column) || self.radius == Some(*column))
+        };
+        for column in (0..count).filter(is_needed) {
+            cell(line, words, column)?;
+        }
+        if count <= self.last() || !self.has_heading && count > self.most {
+            return fault(line, format!("has {count} columns"));
+        }
+        if count > self.most {
+            let most = self.most;
+            return fault(line, format!("has {count} columns, but the heading names {most}"));
+        }
+        let shape = self.shape.map_or(Ok(0.0), |column| cell(line, words, column))?;
+        let (mut point, mut radius) = ([0.0; 3], None);
+        if is_defined {
+            for (x, column) in point.iter_mut().zip(self.axes) {
+                *x = self.coordinate(cell(line, words, column)?);
+            }
+            if let Some(column) = self.radius.filter(|column| *column < count) {
+                radius = Some(self.radius_of(cell(line, words, column)?));
             }
         }
-        let is_free = |column: &usize| !axes.contains(column);
-        let own = |&(name, factor): &(&str, f64)| Some((named(name).filter(is_free)?, factor));
-        let (radius, factor) = RADIUS.iter().find_map(own).unzip();
-        let shape = named("shape").filter(|_| first > 0).unwrap_or(0);
-        let factor = factor.unwrap_or(1.0);
-        Self::check(table, Self { axes, radius, factor, shape, frame }, heading.len())
+        Ok(Row { line: line as u32, part: 0, shape, point, is_defined, radius })
     }
 
-    /// Checks that every line has the coordinates and the shape, and no column without a name.
-    fn check(table: &Table, columns: Self, most: usize) -> Result<Self, Fault> {
-        let last = columns.axes.into_iter().fold(columns.shape, usize::max);
-        for (line, row) in &table.rows {
-            if row.len() <= last || (table.heading.is_none() && row.len() > most) {
-                return fault(*line, format!("has {} columns", row.len()));
-            }
-            if row.len() > most {
-                return fault(
-                    *line,
-                    format!("has {} columns, but the heading names {most}", row.len()),
-                );
-            }
-        }
-        Ok(columns)
+    /// Returns a robot before its points are scaled.
+    fn centreline(&self, rows: &[Row], scale: f64) -> Result<Centreline, Fault> {
+        let set = || rows.iter().filter(|row| row.is_defined);
+        let radii = radii(&set().collect::<Vec<_>>())?;
+        Ok(Centreline {
+            points: set().map(|row| row.point).collect(),
+            radii: radii.map(|radii| radii.into_iter().map(|radius| radius * scale).collect()),
+            frame: self.frame,
+            states_unit: self.states_unit(),
+            skipped_points: rows.len() - set().count(),
+        })
     }
+}
 
-    /// Returns the radius of the segment that begins at each point but the last, if the file has
-    /// radii.
-    fn radii(&self, rows: &[(usize, Vec<f64>)]) -> Result<Option<Vec<f64>>, Fault> {
-        let Some(column) = self.radius else { return Ok(None) };
-        let of = |(_, row): &(usize, Vec<f64>)| row.get(column).map(|number| number * self.factor);
-        let Some((last, others)) = rows.split_last() else { return Ok(None) };
-        if rows.iter().all(|row| of(row).is_none()) {
-            return Ok(None);
+/// Returns the radius of the segment that begins at each point but the last, if the file has radii.
+fn radii(rows: &[&Row]) -> Result<Option<Vec<f64>>, Fault> {
+    let Some((last, others)) = rows.split_last() else { return Ok(None) };
+    if rows.iter().all(|row| row.radius.is_none()) {
+        return Ok(None);
+    }
+    // No segment begins at the last point, but an invalid radius there indicates a mistake.
+    if let Some(unused) = last.radius
+        && !(0.0..f64::INFINITY).contains(&unused)
+    {
+        let problem = format!("says that the radius of the last point is {unused}");
+        return fault(last.line as usize, problem);
+    }
+    let radius = |row: &&Row| match row.radius {
+        Some(radius) => Ok(radius),
+        None => fault(row.line as usize, "has no radius, but other lines have".into()),
+    };
+    others.iter().map(radius).collect::<Result<_, _>>().map(Some)
+}
+
+impl Table {
+    /// Sorts the rows by the lines of the file. Returns the end of each line.
+    fn split(&mut self) -> Vec<usize> {
+        let count = self.rows.len();
+        let is_number = |different: usize| (2..count).contains(&different);
+        let each = self.columns.lines.len();
+        let numbers = (0..each).find_map(|column| {
+            let own = || self.words.iter().skip(column).step_by(each);
+            is_number(own().collect::<HashSet<_>>().len())
+                .then(|| own().copied().collect::<Vec<_>>())
+        });
+        let has_parts = self.rows.last().is_some_and(|row| is_number(row.part as usize + 1));
+        let mut lines = HashMap::new();
+        for (index, row) in self.rows.iter_mut().enumerate() {
+            let part = if has_parts { row.part } else { 0 };
+            let number = numbers.as_ref().map_or(0, |numbers| numbers[index]);
+            let next = lines.len() as u32;
+            row.part = *lines.entry((part, number)).or_insert(next);
         }
-        // No segment begins at the last point, but an invalid radius there indicates a mistake.
-        if let Some(unused) = of(last)
-            && !(0.0..f64::INFINITY).contains(&unused)
+        self.rows.sort_by_key(|row| row.part);
+        let mut ends = Vec::new();
+        for line in self.rows.chunk_by(|a, b| a.part == b.part) {
+            let start = ends.last().copied().unwrap_or(0);
+            ends.extend(steps_back(line).into_iter().map(|end| start + end));
+            ends.push(start + line.len());
+        }
+        ends
+    }
+}
+
+/// Returns the indices of points that repeat an earlier point after a long step.
+fn steps_back(rows: &[Row]) -> Vec<usize> {
+    let mut found = Vec::new();
+    // The last index at each place, and the way to it.
+    let mut places = HashMap::new();
+    let (mut way, mut before) = (0.0, None);
+    for (index, row) in rows.iter().enumerate().filter(|(_, row)| row.is_defined) {
+        let place = row.point.map(|x| (x + 0.0).to_bits());
+        let step = before.map_or(0.0, |before: [f64; 3]| {
+            let away = [0, 1, 2].map(|axis| row.point[axis] - before[axis]);
+            away.iter().fold(0.0, |length: f64, x| length.hypot(*x))
+        });
+        if let Some(&(earlier, start)) = places.get(&place)
+            && index > earlier + 1
+            && step * (index - 1 - earlier) as f64 > LONG * (way - start)
         {
-            return fault(last.0, format!("says that the radius of the last point is {unused}"));
+            found.push(index);
         }
-        let radius = |row: &(usize, Vec<f64>)| match of(row) {
-            Some(radius) => Ok(radius),
-            None => fault(row.0, "has no radius, but other lines have".into()),
-        };
-        others.iter().map(radius).collect::<Result<_, _>>().map(Some)
+        way += step;
+        places.insert(place, (index, way));
+        before = Some(row.point);
     }
+    found
 }
 
-/// The names of a column of radii, VMTK's included, or of diameters, and the factor to radii.
-const RADIUS: [(&str, f64); 7] = [
-    ("radius", 1.0),
-    ("radii", 1.0),
-    ("rad", 1.0),
-    ("r", 1.0),
-    ("maximuminscribedsphereradius", 1.0),
-    ("diameter", 0.5),
-    ("diameters", 0.5),
-];
-/// Names of the coordinates that may be in any columns, and the frame that they state. ParaView
-/// writes `Points:0`; other programs write `Points_0` for it.
-const NAMED_AXES: [([&str; 3], Option<Frame>); 5] = [
-    (["points:0", "points:1", "points:2"], None),
-    (["points_0", "points_1", "points_2"], None),
-    (["r", "a", "s"], Some(Frame::Ras)),
-    (["l", "p", "s"], Some(Frame::Lps)),
-    (["x", "y", "z"], None),
-];
+/// A step back is longer than this times the mean step. The steps of a robot that ends at its
+/// beginning are about equal; the first step of a branch of three points is about twice the mean.
+const LONG: f64 = 2.0;
 
-/// Returns the columns of the coordinates and the frame that their names state.
-fn named_axes(names: &[String]) -> Option<([usize; 3], Option<Frame>)> {
-    let named = |name: &str| names.iter().position(|own| own == name);
-    NAMED_AXES.into_iter().find_map(|(axes, frame)| match axes.map(named) {
-        [Some(x), Some(y), Some(z)] => Some(([x, y, z], frame)),
-        _ => None,
-    })
+/// A line of a text file.
+enum Text<'a> {
+    Empty,
+    /// The text behind the mark of a comment.
+    Comment(&'a str),
+    Row(&'a str),
 }
 
-fn parse(bytes: &[u8]) -> Result<Table, Fault> {
-    let mut table = Table { heading: None, rows: Vec::new() };
-    let mut is_first = true;
-    for (line, text) in lines(&from_utf16(bytes)) {
+fn each_line(
+    bytes: &[u8],
+    see: &mut dyn FnMut(usize, Text<'_>) -> Result<(), Fault>,
+) -> Result<(), Fault> {
+    for (line, text) in lines(bytes) {
         let text = bare(&text);
-        if text.trim().is_empty() || text.starts_with('#') {
-            continue;
-        }
-        let columns = columns(text);
-        if std::mem::take(&mut is_first)
-            && let names = columns.iter().map(|word| name(word)).collect::<Vec<_>>()
-            && is_heading(&columns, &names)
-        {
-            if let Some(column) = misplaced(&names) {
-                return fault(
-                    line,
-                    format!("has '{}' in column {}", shown(columns[column]), column + 1),
-                );
-            }
-            table.heading = Some((line, names));
-            continue;
-        }
-        let mut row = Vec::new();
-        for (column, word) in (1..).zip(&columns) {
-            let wrong = || match word.is_empty() {
-                true => format!("has nothing in column {column}"),
-                false => format!("has '{}' in column {column}", shown(word)),
-            };
-            row.push(number(word).ok_or_else(|| Fault { line, problem: wrong() })?);
-        }
-        table.rows.push((line, row));
+        let text = match text.strip_prefix('#') {
+            Some(comment) => Text::Comment(comment.trim_start_matches(['#', ' '])),
+            None if text.trim().is_empty() => Text::Empty,
+            None => Text::Row(text),
+        };
+        see(line, text)?;
     }
-    Ok(table)
+    Ok(())
+}
+
+/// Returns the frame that 3D Slicer notes in a comment, as in `CoordinateSystem = LPS`.
+fn noted_frame(comment: &str) -> Option<Frame> {
+    let (name, value) = comment.split_once('=')?;
+    let is_frame = name.trim().eq_ignore_ascii_case("CoordinateSystem");
+    match value.trim() {
+        "LPS" | "1" if is_frame => Some(Frame::Lps),
+        "RAS" | "0" if is_frame => Some(Frame::Ras),
+        _ => None,
+    }
 }
 
 /// Returns the line without the brackets and the comma in which numpy prints matrices.
 fn bare(line: &str) -> &str {
     let inside = line.trim_matches([' ', '\r']);
     let inside = inside.strip_suffix("],").unwrap_or(inside);
-    if inside.starts_with('[') || inside.ends_with(']') {
-        inside.trim_matches(['[', ']', ' '])
-    } else {
-        inside
-    }
+    let bare = inside.trim_matches(['[', ']', ' ']);
+    // More brackets are those of units.
+    if bare.contains('[') { inside } else { bare }
 }
 
 /// The characters that separate columns, the first that a line has.
 const MARKS: [char; 3] = [';', '\t', ','];
 
-/// Splits a line at semicolons if it has any, else at tabs, else at commas; empty words count.
-/// Without any of these, splits at spaces. Quoted text is not split.
-fn columns(line: &str) -> Vec<&str> {
+/// Returns the characters outside quotes.
+fn outside(line: &str) -> impl Iterator<Item = (usize, char)> {
     let mut is_quoted = false;
-    let is_outside = |&(_, c): &(usize, char)| {
+    line.char_indices().filter(move |&(_, c)| {
         is_quoted ^= c == '"';
-        !is_quoted && (c.is_whitespace() || MARKS.contains(&c))
-    };
-    // The separators outside quotes.
-    let outside: Vec<_> = line.char_indices().filter(is_outside).collect();
-    let split = |is_mark: &dyn Fn(char) -> bool| -> Vec<&str> {
-        let mut from = 0;
-        let marks = outside.iter().filter(|(_, c)| is_mark(*c));
-        let ends = marks.map(|&(end, c)| [end, end + c.len_utf8()]).chain([[line.len(); 2]]);
-        ends.map(|[end, next]| {
-            let word = &line[std::mem::replace(&mut from, next)..end];
-            word.trim().trim_matches('"').trim()
-        })
-        .collect()
-    };
-    let has = |mark: char| outside.iter().any(|(_, c)| *c == mark);
-    // With both tabs and commas, commas are decimal commas only if the words between tabs are
-    // numbers.
-    let is_decimal = || split(&|c| c == '\t').into_iter().all(|word| number(word).is_some());
-    let is_mark = |mark: char| has(mark) && (mark != '\t' || !has(',') || is_decimal());
-    match MARKS.into_iter().find(|&mark| is_mark(mark)) {
-        Some(mark) => split(&|c| c == mark),
-        None => split(&char::is_whitespace).into_iter().filter(|word| !word.is_empty()).collect(),
+        !is_quoted
+    })
+}
+
+fn has(line: &str, mark: char) -> bool {
+    outside(line).any(|(_, c)| c == mark)
+}
+
+/// Returns the words between marks, or between spaces. Empty words count between marks.
+fn split(line: &str, mark: Option<char>) -> impl Iterator<Item = &str> {
+    let is_mark = move |c: char| mark.map_or(c.is_whitespace(), |mark| c == mark);
+    let marks = outside(line).filter(move |&(_, c)| is_mark(c));
+    let ends = marks.map(|(end, c)| [end, end + c.len_utf8()]).chain([[line.len(); 2]]);
+    let mut from = 0;
+    let words = ends.map(move |[end, next]| {
+        let word = &line[std::mem::replace(&mut from, next)..end];
+        word.trim().trim_matches('"').trim()
+    });
+    words.filter(move |word| mark.is_some() || !word.is_empty())
+}
+
+/// Returns the character that separates the columns of a line: a semicolon, else a tab, else a
+/// comma; `None` for spaces. With both tabs and commas, commas are decimal commas only if the words
+/// between tabs are numbers.
+fn separator(line: &str) -> Option<char> {
+    let is_decimal = || split(line, Some('\t')).all(|word| number(word).is_some());
+    let is_mark = |mark: char| has(line, mark) && (mark != '\t' || !has(line, ',') || is_decimal());
+    MARKS.into_iter().find(|&mark| is_mark(mark))
+}
+
+/// Returns the words of a line. `mark` is the separator of the heading.
+fn columns<'a>(line: usize, text: &'a str, mark: Option<char>) -> Result<Vec<&'a str>, Fault> {
+    let mark = mark.filter(|&mark| has(text, mark)).or_else(|| separator(text));
+    let words: Vec<_> = split(text, mark).take(MOST_COLUMNS + 1).collect();
+    if words.len() > MOST_COLUMNS {
+        return fault(line, format!("has more than {MOST_COLUMNS} columns"));
     }
+    Ok(words)
+}
+
+/// Returns the number in a column.
+fn cell(line: usize, words: &[&str], column: usize) -> Result<f64, Fault> {
+    let word = words.get(column).copied().unwrap_or_default();
+    let wrong = || match word.is_empty() {
+        true => format!("has nothing in column {}", column + 1),
+        false => format!("has '{}' in column {}", shown(word), column + 1),
+    };
+    number(word).ok_or_else(|| Fault { line, problem: wrong() })
 }
 
 /// Parses a number with a decimal point or comma.
@@ -343,25 +487,12 @@ fn number(word: &str) -> Option<f64> {
     if is_comma { word.replace(',', ".").parse().ok() } else { word.parse().ok() }
 }
 
-/// Returns a name in lower case, without its unit.
-fn name(word: &str) -> String {
-    let bare = word.split(['[', '(']).next().unwrap_or_default().trim().to_lowercase();
-    ["_mm", "_m", " mm"].iter().find_map(|unit| bare.strip_suffix(unit)).unwrap_or(&bare).to_owned()
-}
-
-/// Returns whether a line is a heading: names of three coordinates; or words without a digit, none
-/// of which is a number or missing.
-fn is_heading(columns: &[&str], names: &[String]) -> bool {
+/// Returns the heading in a line: names of three coordinates; or words without a digit, none of
+/// which is a number or missing.
+fn heading(line: usize, words: &[&str]) -> Option<Heading> {
     let is_name = |word: &&str| word.contains(char::is_alphabetic) && number(word).is_none();
-    let has_digit = || names.iter().any(|name| name.contains(char::is_numeric));
-    named_axes(names).is_some() || columns.iter().all(is_name) && !has_digit()
-}
-
-/// Returns the column of a heading that names x, y or z out of order. Without an x, y and z belong
-/// to the first columns, or those after a column of shapes.
-fn misplaced(names: &[String]) -> Option<usize> {
-    let axis = |name: &str| ["x", "y", "z"].iter().position(|axis| *axis == name);
-    let plain = usize::from(names.first().is_some_and(|name| name == "shape"));
-    let first = names.iter().position(|name| name == "x").unwrap_or(plain);
-    (0..names.len()).find(|&column| axis(&names[column]).is_some_and(|axis| first + axis != column))
+    let names = names(words);
+    let is_heading =
+        has_coordinates(&names) || words.iter().all(is_name) && !names.iter().any(Name::has_digit);
+    is_heading.then_some(Heading { line, names })
 }

@@ -126,7 +126,7 @@ pub fn read(bytes: &[u8], allow_no_position: bool) -> Result<Volume<'_>, Fault> 
     let is_big_endian = file.says("BinaryDataByteOrderMSB") || file.says("ElementByteOrderMSB");
     let voxels = Voxels { data, encoding, skip, count, kind, is_big_endian, scaling: None };
     let (place, frame) = place(&file, allow_no_position)?;
-    Ok(Volume { sizes, voxels, place, frame, states_unit: true })
+    Ok(Volume { sizes, voxels, place, frame, states_unit: true, doubt: None })
 }
 
 fn kind(name: &str) -> Result<Kind, String> {

@@ -68,6 +68,8 @@ pub struct Volume<'a> {
     place: Place,
     frame: Option<Frame>,
     states_unit: bool,
+    /// Why the position is doubtful.
+    doubt: Option<String>,
 }
 
 /// The map from a voxel's three indices to its centre in millimetres: the rows of a 3x4 matrix.
@@ -234,6 +236,7 @@ impl Volume<'_> {
             states_unit: self.states_unit,
             skipped_faces: 0,
             labels,
+            doubts: self.doubt.iter().cloned().collect(),
         })
     }
 

@@ -187,7 +187,8 @@ pub fn read(bytes: &[u8], allow_no_position: bool) -> Result<Volume<'_>, Fault> 
     };
     let (place, is_placed) = place(&header, allow_no_position)?;
     let frame = is_placed.then_some(Frame::Ras);
-    Ok(Volume { sizes, voxels, place, frame, states_unit: header.unit() != 0 })
+    let doubt = forms_apart(&header, sizes);
+    Ok(Volume { sizes, voxels, place, frame, states_unit: header.unit() != 0, doubt })
 }
 
 /// Returns the scaling of the values, as nibabel reads it: none if the slope is 0, infinite or NaN,
@@ -235,18 +236,12 @@ fn kind(header: &Header) -> Result<Kind, String> {
 /// # Errors
 /// A spacing is negative: nibabel takes its absolute value, ITK mirrors the axis in every method.
 fn place(header: &Header, allow_no_position: bool) -> Result<(Place, bool), Fault> {
-    let unit = match header.unit() {
-        0 | 2 => 1.0,
-        1 => 1000.0,
-        3 => 1e-3,
-        code => return Err(format!("its unit of length has the unknown code {code}").into()),
-    };
+    let unit = unit(header)?;
     let scaled =
         |rows: [[f64; 4]; 3], name| Place::new(rows.map(|row| row.map(|x| x * unit)), name);
-    let [q, s] = [[252, 344], [254, 348]].map(|places| header.short_or_int(places) > 0);
-    let sform =
-        [0, 1, 2].map(|row| [0, 1, 2, 3].map(|column| header.real([280, 400], 4 * row + column)));
-    let is_zero = sform.iter().all(|row| row[..3] == [0.0; 3]);
+    let [q, s] = codes(header).map(|code| code > 0);
+    let sform = sform(header);
+    let is_zero = is_zero(&sform);
     let spacing = [1, 2, 3].map(|index| header.spacing(index));
     if let Some(axis) = (0..3).find(|&axis| spacing[axis] < 0.0) {
         let (name, value) = (axis + 1, spacing[axis]);
@@ -269,6 +264,74 @@ fn place(header: &Header, allow_no_position: bool) -> Result<(Place, bool), Faul
     }
     Ok((scaled(without_position(spacing), "pixdim")?, false))
 }
+
+/// Returns the number of millimetres of the unit of length.
+fn unit(header: &Header) -> Result<f64, String> {
+    match header.unit() {
+        0 | 2 => Ok(1.0),
+        1 => Ok(1000.0),
+        3 => Ok(1e-3),
+        code => Err(format!("its unit of length has the unknown code {code}")),
+    }
+}
+
+/// Returns the codes of the qform and of the sform: 0 if unknown.
+fn codes(header: &Header) -> [i64; 2] {
+    [[252, 344], [254, 348]].map(|places| header.short_or_int(places))
+}
+
+fn sform(header: &Header) -> [[f64; 4]; 3] {
+    [0, 1, 2].map(|row| [0, 1, 2, 3].map(|column| header.real([280, 400], 4 * row + column)))
+}
+
+fn is_zero(sform: &[[f64; 4]; 3]) -> bool {
+    sform.iter().all(|row| row[..3] == [0.0; 3])
+}
+
+/// Returns the doubt about a file whose sform and qform place the corners of the image differently,
+/// by more than rounding.
+///
+/// **Rounding.** Each component b, c, d of the quaternion is rounded to single precision, so
+/// `a = sqrt(1 - b^2 - c^2 - d^2)` has an error of at most `min(sqrt(e), e / a)` with `e = 2^-22`.
+/// An entry of the rotation changes by at most 4 times as much, and moves corners in proportion to
+/// the size of the image. Other numbers may be written with 6 digits.
+fn forms_apart(header: &Header, sizes: [usize; 3]) -> Option<String> {
+    let ([q, s], sform) = (codes(header), sform(header));
+    if q <= 0 || s <= 0 || is_zero(&sform) {
+        return None;
+    }
+    let forms = [sform, qform(header, [1, 2, 3].map(|index| header.spacing(index)))].map(Place);
+    let length = |a: [f64; 3], b: [f64; 3]| {
+        let squares = [0, 1, 2].map(|axis| (a[axis] - b[axis]).powi(2));
+        let length = squares.iter().sum::<f64>().sqrt();
+        if length.is_nan() { f64::INFINITY } else { length }
+    };
+    let [mut apart, mut extent, mut largest] = [0.0_f64; 3];
+    for corner in 0..8 {
+        let end =
+            |axis: usize| if corner >> axis & 1 == 1 { sizes[axis] as f64 - 1.0 } else { 0.0 };
+        let [a, b] = forms.map(|form| form.apply([end(0), end(1), end(2)]));
+        apart = apart.max(length(a, b));
+        extent = extent.max(length(a, forms[0].apply([0.0; 3])));
+        largest = a.iter().chain(&b).fold(largest, |most, x| most.max(x.abs()));
+    }
+    let squares = [0, 1, 2].map(|index| header.real([256, 352], index).powi(2));
+    let rest = (1.0 - squares.iter().sum::<f64>()).max(0.0);
+    let e = 2_f64.powi(-22);
+    let rounding = e.sqrt().min(e / rest.sqrt());
+    if apart <= 4.0 * rounding * extent + 2.0 * SIX_DIGITS * largest {
+        return None;
+    }
+    let apart = apart * unit(header).ok()?;
+    // ITK takes the sform if its code is that of a scanner.
+    let itk = if s == 1 { "and ITK do" } else { "does; ITK and 3D Slicer take the qform" };
+    Some(format!(
+        "its sform and its qform place it {apart:.3} mm apart; the sform is read, as nibabel {itk}"
+    ))
+}
+
+/// The largest relative difference of neighbouring numbers of 6 digits.
+const SIX_DIGITS: f64 = 1e-5;
 
 /// Returns the quaternion's rotation times the spacings, with the third axis mirrored if the header
 /// says so.

@@ -201,6 +201,7 @@ pub fn read(bytes: &[u8], allow_no_position: bool) -> Result<Volume<'_>, Fault> 
         place,
         frame,
         states_unit: file.get("space units").is_some(),
+        doubt: None,
     })
 }
 

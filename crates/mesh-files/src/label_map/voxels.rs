@@ -40,14 +40,18 @@ fn tolerance(number: f64) -> f64 {
     (number * f64::from(f32::EPSILON)).clamp(1e-4, 1e-2)
 }
 
-/// Returns a voxel's value as a label.
+/// Returns a voxel's value as a label. -1 stands for voxels that are ignored or outside, and is
+/// read as background.
 ///
 /// # Errors
 /// The value is not a label: the file is an image and not a segmentation.
 pub fn label(number: f64) -> Result<u32, Fault> {
     let whole = number.round();
-    if (whole - number).abs() <= tolerance(number) && (0.0..=f64::from(u32::MAX)).contains(&whole) {
+    let is_whole = (whole - number).abs() <= tolerance(number);
+    if is_whole && (0.0..=f64::from(u32::MAX)).contains(&whole) {
         Ok(whole as u32)
+    } else if is_whole && whole == -1.0 {
+        Ok(0)
     } else {
         Err(Fault::NotALabel(number))
     }

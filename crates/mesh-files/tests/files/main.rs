@@ -13,7 +13,11 @@ mod meta_image;
 mod mutations;
 mod polygons;
 mod reports;
+#[cfg(feature = "centrelines")]
+mod tables;
 mod triangles;
+#[cfg(feature = "label-maps")]
+mod volumes;
 #[cfg(feature = "centrelines")]
 mod vtk;
 

@@ -98,7 +98,39 @@ def _pyvista(given: Any) -> Optional[Parts]:
     surface = given if hasattr(type(given), "verts") else given.extract_surface()
     stated = np.asarray(given.field_data["SPACE"]).ravel() if "SPACE" in given.field_data else ()
     frame = next((str(name) for name in stated if name in ("RAS", "LPS")), None)
-    return surface.points, np.asarray(surface.triangulate().faces).reshape(-1, 4)[:, 1:], frame
+    return surface.points, np.concatenate([_padded(surface.points, surface.faces), _strips(surface.strips)]), frame
+
+
+def _padded(points: Any, padded: Any) -> Any:
+    """The triangles of faces in one line, each after the number of its corners. VTK's own triangulation loses faces."""
+    padded = np.asarray(padded)
+    for count in (3, 4):
+        # If each row begins with its count, all faces have this many corners.
+        if len(padded) % (count + 1) == 0 and (padded.reshape(-1, count + 1)[:, 0] == count).all():
+            faces = padded.reshape(-1, count + 1)[:, 1:]
+            return faces if count == 3 else _halves(points, faces)
+    return _ears(points, _cells(padded))
+
+
+def _cells(padded: Any) -> list[Any]:
+    """Cells in one line, each after the number of its corners."""
+    padded, cells, start = np.asarray(padded), [], 0
+    while start < len(padded):
+        end = start + 1 + int(padded[start])
+        cells.append(padded[start + 1 : end])
+        start = end
+    return cells
+
+
+def _strips(padded: Any) -> Any:
+    """The triangles of strips: every second one is turned."""
+    faces = [np.zeros((0, 3), np.int64)]
+    for strip in _cells(padded):
+        triangles = np.column_stack([strip[:-2], strip[1:-1], strip[2:]])
+        triangles[1::2] = triangles[1::2, [1, 0, 2]]
+        first, second, third = triangles.T
+        faces.append(triangles[(first != second) & (second != third) & (third != first)])
+    return np.concatenate(faces)
 
 
 KINDS: tuple[Callable[[Any], Optional[Parts]], ...] = (_pyvista, _meshio, _trimesh, _open3d)
