@@ -84,6 +84,10 @@ impl Reader {
             Some("v") => {
                 let mut next = || number(words.next(), line);
                 self.vertices.push([next()?, next()?, next()?]);
+                // A weight and a colour may follow, but no statement of a line that is joined.
+                for word in words {
+                    number(Some(word), line)?;
+                }
             }
             Some("f" | "fo") => {
                 let corner = |word| corner(word, self.vertices.len(), line);

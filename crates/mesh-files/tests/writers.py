@@ -1,13 +1,15 @@
 """Reads what the field's own programs write, in every variant that they offer, and compares it with what they hold.
 
     pip install trimesh scipy meshio pyvista nibabel pynrrd SimpleITK pandas
-    python tests/writers.py READ
+    python tests/writers.py READ [ROUNDS]
 
 READ is the program of examples/read.rs. Triangles are compared corner by corner, label maps by the box around the label:
 its middle is where nibabel, pynrrd and SimpleITK read the label's voxels. Fails if a file is read otherwise than it was
-written, or refused without being expected to be.
+written, or refused without being expected to be. ROUNDS damaged files of each format must be refused, or have at least the faces
+that trimesh, meshio or VTK find.
 """
 
+import contextlib
 import gzip
 import itertools
 import json
@@ -27,6 +29,7 @@ import trimesh
 import vtk
 
 READ = sys.argv[1]
+ROUNDS = int(sys.argv[2]) if len(sys.argv) > 2 else 100
 FOLDER = Path(tempfile.mkdtemp())
 failed, count = [], 0
 
@@ -380,9 +383,98 @@ def label_maps():
         check_map(f"MetaImage {name}", file, box(lambda v: [2, 3, 4] * v + [10, 20, 30]), "Lps", refused)
 
 
+# --- Damaged surfaces
+
+
+def damaged(whole, draws):
+    """One to four changes: a bit, a byte, an end, a line that is lost, twice, or elsewhere, another end of a line, a digit."""
+    data = bytearray(whole)
+    for _ in range(draws.integers(1, 5)):
+        at, kind = int(draws.integers(len(data))), draws.integers(7)
+        if kind == 0:
+            data[at] ^= 1 << int(draws.integers(8))
+        elif kind == 1:
+            data[at] = int(draws.integers(256))
+        elif kind == 2:
+            del data[at + 1:]
+        elif kind == 3:
+            ends = [place for place, byte in enumerate(data) if byte == 10]
+            if ends:
+                data[draws.choice(ends)] = 13
+        elif kind == 4:
+            digits = [place for place, byte in enumerate(data) if 48 <= byte < 58]
+            if digits:
+                data[draws.choice(digits)] = int(draws.integers(48, 58))
+        else:
+            rows = data.split(b"\n")
+            a, b = draws.integers(len(rows), size=2)
+            if kind == 5:
+                rows[a], rows[b] = rows[b], rows[a]
+            else:
+                rows[a:a + int(draws.integers(2))] = [rows[b]] * int(draws.integers(2))
+            data = bytearray(b"\n".join(rows)) or bytearray(b"\n")
+    return bytes(data)
+
+
+def faces_of(file):
+    """The most triangles with three different corners that another reader finds."""
+    readers = {
+        "trimesh": lambda: trimesh.load(file, process=False, force="mesh").faces,
+        "meshio": lambda: [face for block in meshio.read(file).cells if block.type in ("triangle", "quad", "polygon")
+                           for face in block.data],
+        "vtk": lambda: pyvista.read(file).extract_surface().triangulate().faces.reshape(-1, 4)[:, 1:],
+    }
+    most, finder = 0, ""
+    for name, reader in readers.items():
+        try:
+            with contextlib.redirect_stdout(None), contextlib.redirect_stderr(None):
+                found = sum(len(set(np.asarray(face).tolist())) - 2 for face in reader() if len(set(np.asarray(face).tolist())) > 2)
+        except BaseException as error:  # What a reader raises for a damaged file is of any kind.
+            if isinstance(error, KeyboardInterrupt):
+                raise
+            continue
+        if found > most:
+            most, finder = found, name
+    return most, finder
+
+
+def damaged_surfaces():
+    vtk.vtkObject.GlobalWarningDisplayOff()
+    small = trimesh.creation.icosphere(subdivisions=1, radius=7.25)
+    data = pyvista.wrap(small)
+    data.point_data["ids"] = np.arange(data.n_points)
+    wholes = []
+    for kind, binary in itertools.product(["stl", "ply", "vtk", "vtp"], [False, True]):
+        file = path("a." + kind)
+        data.save(file, binary=binary)
+        wholes.append((kind, file.read_bytes()))
+    wholes.append(("obj", small.export(file_type="obj").encode()))
+    draws = np.random.default_rng(66)
+    for number, (kind, whole) in enumerate(wholes):
+        folder = FOLDER / f"damaged{number}"
+        folder.mkdir()
+        files = [folder / f"{k}.{kind}" for k in range(ROUNDS)]
+        for file in files:
+            file.write_bytes(damaged(whole, draws))
+        read = 0
+        for start in range(0, ROUNDS, 100):
+            some = files[start:start + 100]
+            done = subprocess.run([READ, *map(str, some)], capture_output=True, text=True, check=True)
+            for file, line in zip(some, done.stdout.splitlines(), strict=True):
+                answer = json.loads(line)
+                if "error" in answer:
+                    continue
+                read += 1
+                most, finder = faces_of(file)
+                own = len(answer["triangles"]) + answer["skipped"]
+                check(f"{file}: {finder} finds {most} faces, not {own}", own >= most, answer)
+        print(f"{kind}: {read} of {ROUNDS} damaged files are read")
+
+
 surfaces()
 lines()
 tables()
 label_maps()
+damaged_surfaces()
 print(f"{count} files, {len(failed)} read otherwise")
 sys.exit(bool(failed))

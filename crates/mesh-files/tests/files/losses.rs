@@ -39,6 +39,7 @@ fn statements_of_obj_that_are_not_read_are_refused() {
         ("f 1 3 2", "1 3 2", "unknown statement '1'"),
         ("f 1 3 2", "g a\nb\\\n1 3 2", "unknown statement 'b'"),
         ("f 1 3 2", "l 1 2 \\\nf1 3 2", "unknown statement 'f1'"),
+        ("v 0 0 1\n", "v 0 0 1 \\\n", "'f' where a number should be"),
         ("f 1 3 2", "surf 0 1 0 1 1 2 3", "line 5 has the statement 'surf', whose surface is not"),
         ("f 1 3 2", "call other.obj", "line 5 has the statement 'call', whose surface is not read"),
     ] {

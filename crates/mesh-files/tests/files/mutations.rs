@@ -89,12 +89,39 @@ fn check_mesh(name: &str, whole: &[u8]) {
     check(name, whole, |bytes| {
         let mesh = from_bytes(name, bytes, &Options::default().with_memory_limit(MEMORY / 2))?;
         let count = mesh.vertices.len();
+        let (read, stated) = (mesh.triangles.len() + mesh.skipped_faces, stated_faces(name, bytes));
+        assert!(read >= stated, "{name}: {read} of {stated} in {}", bytes.escape_ascii());
         assert!(
             !mesh.triangles.is_empty() && mesh.vertices.iter().flatten().all(|x| x.is_finite())
         );
         assert!(mesh.triangles.iter().flatten().all(|&corner| (corner as usize) < count));
         Ok(())
     });
+}
+
+/// The number of faces that a file states, as a simple reader sees it: lines of OBJ with three
+/// corners, triangles of text in STL, and counts in the heads of PLY, VTK and VTK XML.
+fn stated_faces(name: &str, bytes: &[u8]) -> usize {
+    let text = String::from_utf8_lossy(bytes);
+    let lines = || text.split(['\n', '\r']);
+    let after = |head: &str| {
+        let count = lines()
+            .find_map(|line| line.split_once(head)?.1.split([' ', '"']).next()?.parse().ok());
+        count.unwrap_or(0)
+    };
+    match name.rsplit_once('.').map_or("", |(_, extension)| extension) {
+        "obj" => {
+            let words =
+                |line: &str| line.split('#').next().unwrap_or_default().split_whitespace().count();
+            lines().filter(|line| line.starts_with("f ") && words(line) > 3).count()
+        }
+        "stl" if bytes.contains(&0) => 0,
+        "stl" => text.matches("endfacet").count(),
+        "ply" => after("element face "),
+        "vtk" => after("POLYGONS "),
+        "vtp" => after("NumberOfPolys=\""),
+        _ => 0,
+    }
 }
 
 /// The same text with another end of each line.
@@ -114,6 +141,21 @@ fn spoilt_files_of_triangles_are_read_or_refused() {
         ("binary.stl", "A08_attribute_payload.stl"),
     ]);
     check_mesh("line.stl", &with_ends("A07_end_solid.stl", " "));
+}
+
+/// Surfaces of VTK, in which all cells are stated twice: by a count, and by themselves.
+#[cfg(feature = "centrelines")]
+#[test]
+fn spoilt_surfaces_of_vtk_are_read_or_refused() {
+    let head = "# vtk DataFile Version 3.0\nx\nASCII\nDATASET POLYDATA\nPOINTS 4 float\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n";
+    let polygons = "METADATA\nINFORMATION 0\n\nPOLYGONS 4 16\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n";
+    let data = "POINT_DATA 4\nSCALARS s float\nLOOKUP_TABLE default\n1\n2\n3\n4\n";
+    check_mesh("surface.vtk", format!("{head}{polygons}{data}").as_bytes());
+    let vtp = "<VTKFile type=\"PolyData\">\n<PolyData>\n<Piece NumberOfPoints=\"4\" NumberOfPolys=\"4\">\n<Points>\n\
+        <DataArray type=\"Float64\" NumberOfComponents=\"3\">\n0 0 0 1 0 0 0 1 0 0 0 1\n</DataArray>\n</Points>\n\
+        <Polys>\n<DataArray type=\"Int64\" Name=\"connectivity\">\n0 2 1\n0 1 3\n1 2 3\n2 0 3\n</DataArray>\n\
+        <DataArray type=\"Int64\" Name=\"offsets\">\n3 6 9 12\n</DataArray>\n</Polys>\n</Piece>\n</PolyData>\n</VTKFile>\n";
+    check_mesh("surface.vtp", vtp.as_bytes());
 }
 
 #[cfg(feature = "label-maps")]
