@@ -19,14 +19,16 @@ use crate::robot::{Chain, ModifiedCylinder};
 use parry3d_f64::bounding_volume::{Aabb, BoundingSphere, BoundingVolume};
 use parry3d_f64::mass_properties::MassProperties;
 use parry3d_f64::math::{Pose, Real, Vector};
-use parry3d_f64::partitioning::Bvh;
+use parry3d_f64::partitioning::{Bvh, BvhNode};
 use parry3d_f64::query::details::NormalConstraints;
 use parry3d_f64::query::{PointProjection, PointQuery, Ray, RayCast, RayIntersection};
 use parry3d_f64::shape::{
-    CompositeShape, CompositeShapeRef, FeatureId, Shape, ShapeType, SubShapeId,
-    TypedCompositeShape, TypedShape,
+    CompositeShape, FeatureId, Shape, ShapeType, SubShapeId, TypedCompositeShape, TypedShape,
 };
 use std::f64::consts::FRAC_PI_2;
+
+/// Rounding error of a ray's hit, relative to the largest coordinate.
+const ROUNDING: Real = 64.0 * Real::EPSILON;
 
 /// A composite custom shape; part i is link i.
 impl Shape for Chain {
@@ -75,8 +77,18 @@ impl Shape for Chain {
         TypedShape::Custom(self)
     }
 
+    /// Returns the least radius of a link, or half of the chain's length if that is less. A joint
+    /// is no end: a disc inside the chain is as thick as its neighbours. (rapier sweeps a body that
+    /// moves by half of this in a step.)
     fn ccd_thickness(&self) -> Real {
-        self.links().iter().map(Shape::ccd_thickness).fold(Real::INFINITY, Real::min)
+        match self.links() {
+            [link] => link.ccd_thickness(),
+            links => {
+                let length = links.iter().map(ModifiedCylinder::length).sum::<Real>();
+                let radii = links.iter().map(ModifiedCylinder::radius);
+                radii.fold(0.5 * length, Real::min)
+            }
+        }
     }
 
     fn ccd_angular_thickness(&self) -> Real {
@@ -202,8 +214,27 @@ impl RayCast for Chain {
         solid: bool,
     ) -> Option<RayIntersection> {
         // The search returns hits strictly before its bound.
-        let bound = max_time_of_impact.next_up();
-        let hit = CompositeShapeRef(self).cast_local_ray_and_get_normal(ray, bound, solid);
-        hit.map(|(link, hit)| hit.with_subshape(link))
+        let bound = max_time_of_impact.next_up().min(Real::MAX);
+        let first = self.bvh().find_best(
+            bound,
+            |node: &BvhNode, _| earliest(node, ray),
+            |link, _| {
+                let link = self.links().get(link as usize)?;
+                let hit = link.cast_local_ray_and_get_normal(ray, max_time_of_impact, solid)?;
+                Some((hit.time_of_impact, hit))
+            },
+        );
+        first.map(|(link, (_, hit))| hit.with_subshape(link))
     }
+}
+
+/// Returns a time before which the ray hits no link in the node: a lower bound on the computed
+/// times, too. A flat end may lie in a face of its box, so the box is loosened by the rounding
+/// error of a hit.
+fn earliest(node: &BvhNode, ray: &Ray) -> Real {
+    let bounds = Aabb { mins: node.mins(), maxs: node.maxs() };
+    let places = [bounds.mins, bounds.maxs, ray.origin].map(|place| place.abs().max_element());
+    let rounding = ROUNDING * places.into_iter().fold(0.0, Real::max);
+    let entry = bounds.loosened(rounding).cast_local_ray(ray, Real::MAX, true);
+    entry.map_or(Real::MAX, |time| time * (1.0 - ROUNDING))
 }

@@ -115,13 +115,13 @@ impl<'a, L: QueryDispatcher> ConvexPair<'a, L> {
         let [g1, g2] = self.shapes;
         // Find an overlap first, then measure it.
         let within = prediction.max(0.0);
-        let mut found = self.inner.contact(self.pos12, g1, g2, within)?;
+        let mut found = self.inner.contact(self.pos12, g1, g2, within)?.filter(is_sound);
         if found.is_none() {
             let rounding = ROUNDING * largest(self.pos12, g1, g2);
             if self.are_apart_by(within + rounding) {
                 return Ok(None);
             }
-            found = self.inner.contact(self.pos12, g1, g2, Real::MAX)?;
+            found = self.inner.contact(self.pos12, g1, g2, Real::MAX)?.filter(is_sound);
         }
         let found = match found {
             Some(contact) if self.is_plain(contact.normal1, contact.dist) => Some(contact),
@@ -277,6 +277,17 @@ impl<'a, L: QueryDispatcher> ConvexPair<'a, L> {
     fn placed(&self, direction: Vector) -> Vector {
         if self.link_is_first { direction } else { self.pos12.rotation * direction }
     }
+}
+
+/// Returns whether the numbers of a contact are finite and its normals have a direction. EPA may
+/// return NaN or normals of 0 for shapes without height, and for shapes with one centre.
+pub(super) fn is_sound(contact: &Contact) -> bool {
+    let is_unit = |normal: Vector| (normal.length_squared() - 1.0).abs() < 1e-3;
+    let points = [contact.point1, contact.point2];
+    contact.dist.is_finite()
+        && points.iter().all(|point| point.is_finite())
+        && is_unit(contact.normal1)
+        && is_unit(contact.normal2)
 }
 
 /// Returns the closest points of a contact within `max_dist`.

@@ -20,23 +20,25 @@
 //! their own (`manifold.rs`).
 
 use super::composite::CompositePair;
-use super::convex::ConvexPair;
-use super::height_field::{self, HeightFieldPair};
+use super::convex::{ConvexPair, is_sound};
+use super::height_field::HeightFieldPair;
 use super::iterated::IteratedPair;
+use super::link_cast::StartContact;
 use super::link_pair::LinkPair;
 use super::link_triangle::LinkTrianglePair;
+use super::nonlinear_cast::{self, MovingShape};
 use super::range::{self, check_margin, check_pose, in_range};
 use super::robot_halfspace::RobotHalfSpace;
 use super::robot_surface::{RobotSurface, links_of};
+use super::straight_cast;
 use super::strict_dispatcher::StrictDispatcher;
 use super::thin_shape::ThinShape;
-use super::{link_cast, straight_cast, voxels};
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::query::{
     ClosestPoints, Contact, DefaultQueryDispatcher, NonlinearRigidMotion, QueryDispatcher,
     ShapeCastHit, ShapeCastOptions, ShapeDistance, ShapeIntersection, Unsupported, details,
 };
-use parry3d_f64::shape::{CompositeShape, HeightField, Shape, Voxels};
+use parry3d_f64::shape::{CompositeShape, Compound, HeightField, Shape};
 
 /// Answers parry's queries for links and chains, and passes all other pairs to `L`.
 ///
@@ -89,7 +91,7 @@ use parry3d_f64::shape::{CompositeShape, HeightField, Shape, Voxels};
 /// core would meet the other shape. At that time half of the depth that keeps the link from passing
 /// through is left.
 ///
-/// **Composite shapes** (`Compound`, `TriMesh`, `Polyline`, `HeightField`, `Voxels`,
+/// **Composite shapes** (`Compound`, `TriMesh`, `Polyline`, `HeightField`,
 /// [`Chain`](crate::Chain)) are split by this dispatcher at each level. `L` sees only pairs that
 /// cannot be split. The sub-shape ids of an answer name the link, the triangle or the part of each
 /// side.
@@ -100,8 +102,8 @@ use parry3d_f64::shape::{CompositeShape, HeightField, Shape, Voxels};
 ///
 /// - a pose, a velocity or a visited triangle is not finite or beyond 1e150;
 /// - a rotation is not of unit length, or a margin is NaN;
-/// - a height field or voxels have a negative scale;
-/// - parry has no such query for voxels.
+/// - a height field has a negative scale;
+/// - a link meets `Voxels`: parry's routines for them depend on the unit of length.
 ///
 /// ```
 /// use parry_continuum::{ContinuumDispatcher, ModifiedCylinder};
@@ -154,9 +156,6 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
             ShapePair::Parts(Decomposition::Field(field)) => {
                 HeightFieldPair { dispatcher: self, field, pos12, other: g2 }.intersection_test()
             }
-            ShapePair::Parts(Decomposition::Voxels(cells)) => {
-                voxels::intersection_test(self, pos12, cells, g2)
-            }
             ShapePair::Parts(Decomposition::OfSecond) => {
                 self.intersection_test(&pos12.inverse(), g2, g1).map(ShapeIntersection::swapped)
             }
@@ -190,7 +189,6 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
             ShapePair::Parts(Decomposition::Field(field)) => {
                 HeightFieldPair { dispatcher: self, field, pos12, other: g2 }.distance()
             }
-            ShapePair::Parts(Decomposition::Voxels(_)) => Err(Unsupported),
             ShapePair::Parts(Decomposition::OfSecond) => {
                 self.distance(&pos12.inverse(), g2, g1).map(ShapeDistance::swapped)
             }
@@ -227,7 +225,6 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
             ShapePair::Parts(Decomposition::Field(field)) => {
                 HeightFieldPair { dispatcher: self, field, pos12, other: g2 }.contact(prediction)
             }
-            ShapePair::Parts(Decomposition::Voxels(_)) => Err(Unsupported),
             ShapePair::Parts(Decomposition::OfSecond) => {
                 let contact = self.contact(&pos12.inverse(), g2, g1, prediction)?;
                 Ok(contact.map(Contact::flipped))
@@ -261,7 +258,6 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
                 HeightFieldPair { dispatcher: self, field, pos12, other: g2 }
                     .closest_points(max_dist)
             }
-            ShapePair::Parts(Decomposition::Voxels(_)) => Err(Unsupported),
             ShapePair::Parts(Decomposition::OfSecond) => self
                 .closest_points(&pos12.inverse(), g2, g1, max_dist)
                 .map(|points| points.flipped()),
@@ -303,9 +299,6 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
                 HeightFieldPair { dispatcher: self, field, pos12, other: g2 }
                     .cast_shapes(local_vel12, options)
             }
-            Some(Decomposition::Voxels(cells)) => {
-                voxels::cast(self, (pos12, local_vel12), cells, g2, options)
-            }
             Some(Decomposition::OfSecond) => {
                 let local_vel21 = -(pos12.rotation.inverse() * local_vel12);
                 let hit = self.cast_shapes(&pos12.inverse(), local_vel21, g2, g1, options)?;
@@ -341,80 +334,13 @@ impl<L: QueryDispatcher> QueryDispatcher for ContinuumDispatcher<L> {
         end_time: Real,
         stop_at_penetration: bool,
     ) -> Result<Option<ShapeCastHit>, Unsupported> {
-        for motion in [motion1, motion2] {
-            check_pose(&motion.position_at_time(start_time))?;
-            check_pose(&motion.position_at_time(end_time))?;
-        }
-        // parry's tolerances are absolute in time too, and late times could never meet them.
-        if (start_time, end_time) != (0.0, 1.0) {
-            let duration = end_time - start_time;
-            if duration < 0.0 {
-                return Ok(None);
-            }
-            let [from1, from2] = [motion1, motion2].map(|motion| NonlinearRigidMotion {
-                start: motion.position_at_time(start_time),
-                linvel: motion.linvel * duration,
-                angvel: motion.angvel * duration,
-                ..*motion
-            });
-            let hit =
-                self.cast_shapes_nonlinear(&from1, g1, &from2, g2, 0.0, 1.0, stop_at_penetration)?;
-            let at = |share: Real| start_time + share * duration;
-            return Ok(
-                hit.map(|hit| ShapeCastHit { time_of_impact: at(hit.time_of_impact), ..hit })
-            );
-        }
-        let thin = ThinShape::of(g1, g2);
-        let [g1, g2] = thin.pair(g1, g2);
+        let sides = [
+            MovingShape { motion: motion1, shape: g1 },
+            MovingShape { motion: motion2, shape: g2 },
+        ];
         let times = (start_time, end_time);
-        let moving = ((motion1, g1), (motion2, g2));
-        if let Some(hit) = link_cast::cast(self, moving.0, moving.1, times, stop_at_penetration)? {
-            return Ok(hit);
-        }
-        match Decomposition::of(g1, g2)? {
-            Some(Decomposition::Composite(parts)) => height_field::cast_parts_nonlinear(
-                self,
-                (motion1, parts),
-                (motion2, g2),
-                (start_time, end_time),
-                stop_at_penetration,
-            ),
-            Some(Decomposition::Field(field)) => height_field::cast_nonlinear(
-                self,
-                (motion1, field),
-                (motion2, g2),
-                (start_time, end_time),
-                stop_at_penetration,
-            ),
-            Some(Decomposition::Voxels(cells)) => voxels::cast_nonlinear(
-                self,
-                (motion1, cells),
-                (motion2, g2),
-                (start_time, end_time),
-                stop_at_penetration,
-            ),
-            Some(Decomposition::OfSecond) => {
-                let hit = self.cast_shapes_nonlinear(
-                    motion2,
-                    g2,
-                    motion1,
-                    g1,
-                    start_time,
-                    end_time,
-                    stop_at_penetration,
-                )?;
-                Ok(hit.map(ShapeCastHit::swapped))
-            }
-            None => self.0.cast_shapes_nonlinear(
-                motion1,
-                g1,
-                motion2,
-                g2,
-                start_time,
-                end_time,
-                stop_at_penetration,
-            ),
-        }
+        let start = if stop_at_penetration { StartContact::Stops } else { StartContact::Core };
+        nonlinear_cast::cast((self, &self.0), sides, times, start)
     }
 }
 
@@ -490,20 +416,20 @@ impl<'a> ShapePair<'a> {
 /// Returns the contact if it is within the prediction.
 ///
 /// # Errors
-/// [`Unsupported`] for a contact whose `dist` is NaN.
+/// [`Unsupported`] for a contact with numbers that are not finite, or without a direction.
 fn within(prediction: Real, contact: Option<Contact>) -> Result<Option<Contact>, Unsupported> {
-    check_margin(contact.map_or(0.0, |contact| contact.dist))?;
+    if contact.is_some_and(|contact| !is_sound(&contact)) {
+        return Err(Unsupported);
+    }
     Ok(contact.filter(|contact| contact.dist <= prediction))
 }
 
 /// Which shape of a pair is split.
-enum Decomposition<'a> {
+pub(super) enum Decomposition<'a> {
     /// The first shape is a composite: a chain, a mesh, a polyline, a compound.
     Composite(&'a (dyn CompositeShape + Sync)),
     /// The first shape is a height field.
     Field(&'a HeightField),
-    /// The first shape is made of voxels.
-    Voxels(&'a Voxels),
     /// Only the second shape has parts.
     OfSecond,
 }
@@ -512,38 +438,41 @@ impl<'a> Decomposition<'a> {
     /// Splits the first shape first. `None` if neither shape has parts.
     ///
     /// # Errors
-    /// As [`check_scale`].
-    fn of(g1: &'a dyn Shape, g2: &'a dyn Shape) -> Result<Option<Self>, Unsupported> {
-        check_scale(g1)?;
-        check_scale(g2)?;
+    /// As [`check_pair`].
+    pub fn of(g1: &'a dyn Shape, g2: &'a dyn Shape) -> Result<Option<Self>, Unsupported> {
+        check_pair(g1, g2)?;
         Ok(if let Some(composite) = g1.as_composite_shape() {
             Some(Self::Composite(composite))
         } else if let Some(field) = g1.as_heightfield() {
             Some(Self::Field(field))
-        } else if let Some(voxels) = g1.as_voxels() {
-            Some(Self::Voxels(voxels))
         } else {
             has_parts(g2).then_some(Self::OfSecond)
         })
     }
 }
 
-/// Checks that parry finds the cells of a shape.
+/// Checks that a pair can be split.
 ///
 /// # Errors
-/// [`Unsupported`] for height fields and voxels that a negative scale mirrors. parry searches their
-/// cells from a box's upper corner to its lower one, where there are none.
-pub(super) fn check_scale(shape: &dyn Shape) -> Result<(), Unsupported> {
-    let scale = shape
-        .as_heightfield()
-        .map(HeightField::scale)
-        .or_else(|| shape.as_voxels().map(Voxels::voxel_size));
-    if scale.is_some_and(|scale| scale.min_element() < 0.0) { Err(Unsupported) } else { Ok(()) }
+/// - [`Unsupported`] for a link and voxels: parry's routines for voxels have absolute tolerances.
+/// - [`Unsupported`] for a height field that a negative scale mirrors. parry searches its cells from
+///   a box's upper corner to its lower one, where there are none.
+pub(super) fn check_pair(g1: &dyn Shape, g2: &dyn Shape) -> Result<(), Unsupported> {
+    let has_link = |shape: &dyn Shape| {
+        let parts = shape.as_compound().map(Compound::shapes).unwrap_or_default();
+        links_of(shape).is_some() || parts.iter().any(|(_, part)| links_of(&**part).is_some())
+    };
+    let is_mirrored = |shape: &dyn Shape| {
+        shape.as_heightfield().is_some_and(|field| field.scale().min_element() < 0.0)
+    };
+    let is_refused = is_mirrored(g1)
+        || is_mirrored(g2)
+        || g1.as_voxels().is_some() && has_link(g2)
+        || g2.as_voxels().is_some() && has_link(g1);
+    if is_refused { Err(Unsupported) } else { Ok(()) }
 }
 
 /// Returns whether `shape` has parts.
 pub(super) fn has_parts(shape: &dyn Shape) -> bool {
-    shape.as_composite_shape().is_some()
-        || shape.as_heightfield().is_some()
-        || shape.as_voxels().is_some()
+    shape.as_composite_shape().is_some() || shape.as_heightfield().is_some()
 }

@@ -16,6 +16,7 @@ use parry3d_f64::query::{
     ShapeDistance, ShapeIntersection, Unsupported,
 };
 use parry3d_f64::shape::{CompositeShape, HeightField, Shape, Triangle};
+use std::collections::HashSet;
 
 /// A height field and another shape, whose pose is in the field's frame.
 pub(super) struct HeightFieldPair<'a, D> {
@@ -98,13 +99,13 @@ impl<D: QueryDispatcher> HeightFieldPair<'_, D> {
 
 /// Returns the first hit of a moving shape on a moving height field.
 pub(super) fn cast_nonlinear(
-    dispatcher: &impl QueryDispatcher,
+    dispatcher: &dyn QueryDispatcher,
     (motion1, field): (&NonlinearRigidMotion, &HeightField),
     (motion2, other): (&NonlinearRigidMotion, &dyn Shape),
     (start_time, end_time): (Real, Real),
     stop_at_penetration: bool,
 ) -> Result<Option<ShapeCastHit>, Unsupported> {
-    let bounds = reached(motion1, (motion2, other), (start_time, end_time))?;
+    let (bounds, _) = reached(motion1, (motion2, other), (start_time, end_time))?;
     let first = least_element(field, &bounds, |element| {
         let hit = dispatcher.cast_shapes_nonlinear(
             motion1,
@@ -140,69 +141,133 @@ pub(super) fn swept(start: &Aabb, root: &Aabb, path: Vector) -> Aabb {
     swept
 }
 
-/// Returns a box in the first shape's frame that contains the second shape at all times. In that
-/// frame the centre of the second shape's bounding ball travels at most as far as both motions move
-/// and turn it in sum.
+/// Returns a box in the first shape's frame that contains the second shape at all times, and how far
+/// the second shape moves from the middle of the time.
+///
+/// **Definitions.** c: the centre of the second shape's bounding ball. h: half of the time.
+///
+/// **Claim.** In the first shape's frame c travels at most `shift + h w lever` from its place at the
+/// middle of the time. **Proof.** The relative speed of c is at most the difference of both linear
+/// velocities, plus the swing of c about its own centre, plus w times the distance of c from the
+/// first shape's centre. The first two are constant and sum up to `shift`; the distance is at most
+/// the one in the middle plus `shift`.
 pub(super) fn reached(
     motion1: &NonlinearRigidMotion,
     (motion2, other): (&NonlinearRigidMotion, &dyn Shape),
     (start_time, end_time): (Real, Real),
-) -> Result<Aabb, Unsupported> {
-    let (pos1, pos2) = (motion1.position_at_time(start_time), motion2.position_at_time(start_time));
+) -> Result<(Aabb, Real), Unsupported> {
+    let (middle, half) = (0.5 * start_time + 0.5 * end_time, 0.5 * (end_time - start_time));
+    let (pos1, pos2) = (motion1.position_at_time(middle), motion2.position_at_time(middle));
     let ball = other.compute_local_bounding_sphere();
     let centre = pos2 * ball.center;
-    let duration = end_time - start_time;
     let swing = motion2.angvel.length() * (ball.center - motion2.local_center).length();
-    let shift = duration * (motion1.linvel.length() + motion2.linvel.length() + swing);
+    let shift = half * ((motion1.linvel - motion2.linvel).length() + swing);
     let lever = (centre - pos1 * motion1.local_center).length() + shift;
-    let reach = ball.radius + shift + duration * motion1.angvel.length() * lever;
+    let travel = shift + half * motion1.angvel.length() * lever;
     let local = pos1.inverse_transform_point(centre);
+    let reach = ball.radius + travel;
     let rounding = 16.0 * Real::EPSILON * (local.abs().max_element() + lever + reach);
     let bounds = Aabb::new(local, local).loosened((reach + rounding).max(0.0));
     if !(bounds.mins.is_finite() && bounds.maxs.is_finite()) {
         return Err(Unsupported);
     }
-    Ok(bounds)
+    Ok((bounds, travel))
 }
 
 /// Returns the first hit of a moving shape on the moving parts of a composite.
 pub(super) fn cast_parts_nonlinear(
-    dispatcher: &impl QueryDispatcher,
+    dispatcher: &dyn QueryDispatcher,
     (motion1, parts): (&NonlinearRigidMotion, &dyn CompositeShape),
     (motion2, other): (&NonlinearRigidMotion, &dyn Shape),
-    (start_time, end_time): (Real, Real),
+    times: (Real, Real),
     stop_at_penetration: bool,
 ) -> Result<Option<ShapeCastHit>, Unsupported> {
-    // A shape without bounds, such as a half-space, may meet any part.
-    let bounds = reached(motion1, (motion2, other), (start_time, end_time))
-        .unwrap_or(parts.bvh().root_aabb());
-    let mut first: Result<Option<ShapeCastHit>, Unsupported> = Ok(None);
-    for id in parts.bvh().intersect_aabb(&bounds) {
-        parts.map_part_at(id, &mut |place, part, _| {
-            let Ok(so_far) = first else { return };
-            let motion1 = place.map_or(*motion1, |place| motion1.prepend(*place));
-            let end_time = so_far.map_or(end_time, |hit| hit.time_of_impact);
-            first = dispatcher
-                .cast_shapes_nonlinear(
-                    &motion1,
-                    part,
-                    motion2,
-                    other,
-                    start_time,
-                    end_time,
-                    stop_at_penetration,
-                )
-                .map(|hit| {
-                    let hit = hit.map(|hit| place.map_or(hit, |place| hit.transform1_by(place)));
-                    let hit = hit.map(|hit| ShapeCastHit { subshape1: id, ..hit });
-                    let is_first = |hit: &ShapeCastHit| {
-                        so_far.is_none_or(|so_far| hit.time_of_impact < so_far.time_of_impact)
-                    };
-                    hit.filter(is_first).or(so_far)
-                });
-        });
+    let size = other.compute_local_bounding_sphere().radius;
+    let mut cast = PartsCast {
+        dispatcher,
+        sides: ((motion1, parts), (motion2, other)),
+        times,
+        stop_at_penetration,
+        size,
+        tried: HashSet::new(),
+        first: None,
+    };
+    cast.search(times, MOST_HALVINGS)?;
+    Ok(cast.first)
+}
+
+/// How often the time of a cast is halved. A thin shape on a long path meets fewer parts in each
+/// part of the time.
+const MOST_HALVINGS: u32 = 12;
+
+/// A moving composite and another moving shape.
+struct PartsCast<'a> {
+    dispatcher: &'a dyn QueryDispatcher,
+    sides: (
+        (&'a NonlinearRigidMotion, &'a dyn CompositeShape),
+        (&'a NonlinearRigidMotion, &'a dyn Shape),
+    ),
+    times: (Real, Real),
+    stop_at_penetration: bool,
+    /// The radius of the other shape's bounding ball.
+    size: Real,
+    /// The parts that have been cast, over the whole time until the first hit then known.
+    tried: HashSet<u32>,
+    first: Option<ShapeCastHit>,
+}
+
+impl PartsCast<'_> {
+    /// Casts the parts that may be met between two times.
+    fn search(&mut self, (from, to): (Real, Real), halvings: u32) -> Result<(), Unsupported> {
+        if self.first.is_some_and(|first| first.time_of_impact <= from) {
+            return Ok(());
+        }
+        let ((motion1, parts), (motion2, other)) = self.sides;
+        // A shape without bounds, such as a half-space, may meet any part.
+        let (bounds, travel) = reached(motion1, (motion2, other), (from, to))
+            .unwrap_or((parts.bvh().root_aabb(), 0.0));
+        if halvings > 0 && travel > self.size {
+            if parts.bvh().intersect_aabb(&bounds).next().is_some() {
+                let middle = 0.5 * from + 0.5 * to;
+                self.search((from, middle), halvings - 1)?;
+                self.search((middle, to), halvings - 1)?;
+            }
+            return Ok(());
+        }
+        for id in parts.bvh().intersect_aabb(&bounds) {
+            if self.tried.insert(id) {
+                self.cast(id)?;
+            }
+        }
+        Ok(())
     }
-    first
+
+    /// Casts one part.
+    fn cast(&mut self, id: u32) -> Result<(), Unsupported> {
+        let ((motion1, parts), (motion2, other)) = self.sides;
+        let end = self.first.map_or(self.times.1, |first| first.time_of_impact);
+        let mut found = Ok(None);
+        parts.map_part_at(id, &mut |place, part, _| {
+            let motion1 = place.map_or(*motion1, |place| motion1.prepend(*place));
+            let hit = self.dispatcher.cast_shapes_nonlinear(
+                &motion1,
+                part,
+                motion2,
+                other,
+                self.times.0,
+                end,
+                self.stop_at_penetration,
+            );
+            found =
+                hit.map(|hit| hit.map(|hit| place.map_or(hit, |place| hit.transform1_by(place))));
+        });
+        if let Some(hit) = found?
+            && self.first.is_none_or(|first| hit.time_of_impact < first.time_of_impact)
+        {
+            self.first = Some(ShapeCastHit { subshape1: id, ..hit });
+        }
+        Ok(())
+    }
 }
 
 /// Returns the element in `bounds` of least cost, its id, and the rest of the result of `cost`.

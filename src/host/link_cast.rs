@@ -20,6 +20,18 @@
 //! is clear at the start, unless the link has passed through already. When the core meets the wall,
 //! half of that distance is left. (parry's cast reports that the link is held at the start, which
 //! frees it: it then passes a mesh with the end that did not touch.)
+//!
+//! # Sweeps of a physics engine
+//! A solver lets bodies overlap by its allowed error without an impulse. If a sweep stopped there,
+//! a body that slides along a wall, or even leaves it, would stop at each step and hang in the air.
+//! So a [`StartContact::Skin`] cast ignores the link's outermost layer, its *skin*:
+//!
+//! 1. The link without its skin is cast, if that is clear at the start by half of the skin.
+//! 2. Otherwise the core is cast.
+//!
+//! **Claim.** No place holds a link for two steps. **Proof.** A cast in case 1 stops only after the
+//! link has come nearer by half of the skin, and the next step has case 2. A cast in case 2 stops
+//! only after half of the room is used.
 
 use super::axial::unit;
 use super::link_pair::{LinkPair, links_of_pair};
@@ -41,6 +53,9 @@ use parry3d_f64::shape::{Shape, SupportMap, Triangle};
 const TOUCHING: Real = 1e-9;
 /// The same for other shapes, whose contacts come from iterations.
 const ITERATED: Real = 1e-5;
+/// The thickness of the skin, as a share of the radius: the error that rapier's solver allows for
+/// bodies of the thickness of the link.
+const SKIN: Real = 0.01;
 /// Rounding error relative to the largest coordinate.
 const ROUNDING: Real = 64.0 * Real::EPSILON;
 /// Most steps: more than any motion needs, except a grazing one. Then the current time is the
@@ -55,23 +70,34 @@ const MAX_STEPS: usize = 200;
 /// # Errors
 /// [`Unsupported`] for numbers that are not finite or out of range, or if the dispatcher refuses.
 pub(super) fn cast(
-    dispatcher: &impl QueryDispatcher,
+    dispatcher: &dyn QueryDispatcher,
     (motion1, g1): (&NonlinearRigidMotion, &dyn Shape),
     (motion2, g2): (&NonlinearRigidMotion, &dyn Shape),
     (start_time, end_time): (Real, Real),
-    stop_at_penetration: bool,
+    start: StartContact,
 ) -> Result<Option<Option<ShapeCastHit>>, Unsupported> {
     let Some((links, wall, robot_is_first)) = pair(g1, g2)? else { return Ok(None) };
     let (robot, motion) = if robot_is_first { (motion1, motion2) } else { (motion2, motion1) };
     let cast = Cast { dispatcher, robot, wall, motion, start_time, end_time };
     let mut first: Option<ShapeCastHit> = None;
     for (index, link) in links.iter().enumerate() {
-        let Some(hit) = cast.of(link, stop_at_penetration)? else { continue };
+        let Some(hit) = cast.of(link, start)? else { continue };
         if first.is_none_or(|first| hit.time_of_impact < first.time_of_impact) {
             first = Some(ShapeCastHit { subshape1: index as u32, ..hit });
         }
     }
     Ok(Some(first.map(|hit| if robot_is_first { hit } else { hit.swapped() })))
+}
+
+/// What a cast does with a contact at the start.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum StartContact {
+    /// It is the hit.
+    Stops,
+    /// The core is cast.
+    Core,
+    /// The link's skin does not count, and the core is cast if that touches.
+    Skin,
 }
 
 /// The links of the robot, the wall, and whether the robot is first.
@@ -102,6 +128,16 @@ fn pair<'a>(g1: &'a dyn Shape, g2: &'a dyn Shape) -> Result<Option<RobotAndWall<
     Ok(None)
 }
 
+/// Returns the link without its outermost layer.
+fn without_skin(link: &ModifiedCylinder, skin: Real) -> Result<ModifiedCylinder, Unsupported> {
+    let inset = skin.min(0.25 * link.length());
+    let [start, end] = [0, 1].map(|end| match link.caps()[end] {
+        Cap::Round => centre(link, end),
+        Cap::Flat => centre(link, end) - outward(link, end) * inset,
+    });
+    ModifiedCylinder::new(start, end, link.radius() - skin, link.caps()).map_err(|_| Unsupported)
+}
+
 enum MovingWall<'a> {
     Triangle(&'a Triangle),
     /// The half-space's unit normal.
@@ -111,8 +147,8 @@ enum MovingWall<'a> {
 }
 
 /// A moving robot and a moving wall.
-struct Cast<'a, D> {
-    dispatcher: &'a D,
+struct Cast<'a> {
+    dispatcher: &'a dyn QueryDispatcher,
     robot: &'a NonlinearRigidMotion,
     wall: MovingWall<'a>,
     motion: &'a NonlinearRigidMotion,
@@ -135,23 +171,25 @@ struct CastMoment {
     normal: Vector,
 }
 
-impl<D: QueryDispatcher> Cast<'_, D> {
+impl Cast<'_> {
     /// Returns the first hit, the link's side first.
     fn of(
         &self,
         link: &ModifiedCylinder,
-        stop_at_start: bool,
+        start: StartContact,
     ) -> Result<Option<ShapeCastHit>, Unsupported> {
-        let start = self.at(self.start_time, link)?;
-        if start.distance > start.touching {
-            return self.advance(link, start);
+        let skin = if start == StartContact::Skin { SKIN * link.radius() } else { 0.0 };
+        let swept = if skin > 0.0 { without_skin(link, skin)? } else { *link };
+        let now = self.at(self.start_time, &swept)?;
+        if now.distance > now.touching + 0.5 * skin {
+            return self.advance(&swept, now);
         }
-        if stop_at_start {
-            return Ok(Some(start.hit(ShapeCastStatus::PenetratingOrWithinTargetDist)));
+        if start == StartContact::Stops {
+            return Ok(Some(now.hit(ShapeCastStatus::PenetratingOrWithinTargetDist)));
         }
-        let Some(core) = self.core(link, start.touching)? else { return Ok(None) };
-        let start = self.at(self.start_time, &core)?;
-        self.advance(&core, start)
+        let Some(core) = self.core(link, now.touching)? else { return Ok(None) };
+        let now = self.at(self.start_time, &core)?;
+        self.advance(&core, now)
     }
 
     /// Returns the core of a link that touches the wall at the start; `None` if the link has passed

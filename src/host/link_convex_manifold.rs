@@ -4,6 +4,9 @@
 //! the normal of the dispatcher's contact for the pair. A point is as deep as the contact, and no
 //! point is deeper: the polygons only approximate round surfaces. (parry's routine runs GJK and
 //! EPA again from the state of the last step, and may find a different contact.)
+//!
+//! The clipping divides by lengths of edges. A shape without height has edges without length, whose
+//! points are NaN. They are dropped; the contact's own point remains.
 
 use super::iterated::IteratedPair;
 use parry3d_f64::math::Real;
@@ -58,6 +61,7 @@ pub(super) fn update<M, C: Default + Copy>(
         manifold,
         false,
     );
+    manifold.points.retain(is_finite);
     for point in &mut manifold.points {
         point.local_p1 += normal1 * border1;
         point.local_p2 += normal2 * border2;
@@ -79,4 +83,9 @@ pub(super) fn update<M, C: Default + Copy>(
     (manifold.local_n1, manifold.local_n2) = (normal1, normal2);
     manifold.match_contacts(&before);
     Ok(true)
+}
+
+/// Returns whether all numbers of a point are finite.
+pub(super) fn is_finite<C>(point: &TrackedContact<C>) -> bool {
+    point.local_p1.is_finite() && point.local_p2.is_finite() && point.dist.is_finite()
 }

@@ -24,8 +24,9 @@
 //! 2. If the constraints reject a normal, it comes *from behind* a one-sided surface. It is passed
 //!    through the mirrored constraints, as parry does for a two-sided surface.
 //! 3. If a constraint has turned the normal, all points along it may lie beyond the contact, or
-//!    there may be none. Then the closest points are appended with the contact's distance. The
-//!    caller knows the contacts with other triangles and decides whether they count ([`Met`]).
+//!    there may be none. Then the link's closest point is appended with the contact's distance,
+//!    and the point that far along the turned normal. The caller knows the contacts with other
+//!    triangles and decides whether they count ([`Met`]).
 
 use super::axial::unit;
 use super::link_triangle::{LinkTrianglePair, Local};
@@ -63,13 +64,26 @@ pub(super) struct Met {
     pub is_from_behind: bool,
     /// Whether the constraints have turned it; then the last point of the manifold is the closest.
     pub is_turned: bool,
+    /// Whether the link is the first shape.
+    pub link_is_first: bool,
 }
 
 impl Met {
-    /// Keeps the closest points of a contact with a turned normal. Limits all depths to `deepest`.
+    /// Keeps the closest points of a contact with a turned normal. Limits all depths to `deepest`:
+    /// along a turned normal the way out of a deep overlap may be much longer than the shortest.
     pub fn keep_closest<M, C>(&self, deepest: Real, manifold: &mut ContactManifold<M, C>) {
+        let (normal1, normal2) = (manifold.local_n1, manifold.local_n2);
         for point in manifold.points.iter_mut().filter(|_| self.is_turned) {
-            point.dist = point.dist.max(deepest);
+            let less_deep = deepest - point.dist;
+            if less_deep > 0.0 {
+                // The triangle's point follows along the normal, so that the pair stays together.
+                if self.link_is_first {
+                    point.local_p2 -= normal2 * less_deep;
+                } else {
+                    point.local_p1 -= normal1 * less_deep;
+                }
+                point.dist = deepest;
+            }
         }
     }
 
@@ -158,7 +172,7 @@ pub(super) fn update<M, C: Default + Copy>(
     if is_turned {
         manifold.points.push(TrackedContact::flipped(
             place(found.on_link),
-            to_triangle(place(found.on_other)),
+            to_triangle(place(found.on_link + normal * found.distance)),
             PackedFeatureId::UNKNOWN,
             PackedFeatureId::UNKNOWN,
             dist,
@@ -167,7 +181,7 @@ pub(super) fn update<M, C: Default + Copy>(
     }
     (manifold.local_n1, manifold.local_n2) = normals;
     manifold.match_contacts(&before);
-    Ok(Some(Met { dist, is_from_behind, is_turned }))
+    Ok(Some(Met { dist, is_from_behind, is_turned, link_is_first }))
 }
 
 /// A normal after constraints.

@@ -15,6 +15,11 @@ use parry3d_f64::shape::PackedFeatureId;
 /// Covers rounding, so that no point is lost between two triangles.
 const ON_EDGE: Real = 1e-9;
 
+/// A triangle less high than this share of the largest coordinate is only a line: rounding decides
+/// its normal, and nearly any point would count as above it. Its edges make its contacts, and they
+/// are at most this far from its inside.
+const FLAT: Real = 1e-9;
+
 /// Rounding error of the distance of a pair, relative to the largest coordinate.
 pub(super) const ROUNDING: Real = 64.0 * Real::EPSILON;
 
@@ -32,7 +37,7 @@ pub(super) struct Meeting<'a> {
     pub link: &'a ModifiedCylinder,
     pub triangle: [Vector; 3],
     pub normal: Vector,
-    /// The triangle's unit normal; `None` without an area.
+    /// The triangle's unit normal; `None` for a triangle that is only a line.
     face: Option<Vector>,
     /// Length and radius of the link.
     pub size: Real,
@@ -54,7 +59,7 @@ impl<'a> Meeting<'a> {
             link,
             triangle,
             normal,
-            face: face_normal(triangle),
+            face: face_normal(triangle).filter(|_| height(triangle) > FLAT * extent),
             size,
             rounding,
             points: Vec::new(),
@@ -118,4 +123,10 @@ impl<'a> Meeting<'a> {
         let [a, b, c] = self.triangle;
         [(a, b), (b, c), (c, a)]
     }
+}
+
+/// Returns the height of a triangle above its longest edge.
+fn height([a, b, c]: [Vector; 3]) -> Real {
+    let longest = [b - a, c - b, a - c].map(Vector::length).into_iter().fold(0.0, Real::max);
+    if longest > 0.0 { (b - a).cross(c - a).length() / longest } else { 0.0 }
 }

@@ -36,7 +36,7 @@
 //! order. Points at most `rounding` less deep than the deepest remaining one count as equally deep;
 //! the lowest link goes first. So the same points stay while the placement changes by rounding.
 
-use super::dispatcher::{ContinuumDispatcher, check_scale, has_parts};
+use super::dispatcher::{ContinuumDispatcher, check_pair, has_parts};
 use super::feature::SAME_POINT;
 use super::iterated::IteratedPair;
 use super::link_triangle::LinkTrianglePair;
@@ -74,8 +74,10 @@ where
     ) -> Result<(), Unsupported> {
         check_pose(pos12)?;
         check_margin(prediction)?;
-        check_scale(g1)?;
-        check_scale(g2)?;
+        check_pair(g1, g2)?;
+        if g1.as_voxels().or(g2.as_voxels()).is_some() {
+            return self.0.contact_manifolds(pos12, g1, g2, prediction, manifolds, workspace);
+        }
         let is_robot = [g1, g2].into_iter().any(|shape| links_of(shape).is_some());
         // Boxes are loosened by the prediction, which parry expects to be positive, and by the
         // rounding error of a test of two boxes that touch.
@@ -115,6 +117,7 @@ where
     ) -> Result<(), Unsupported> {
         check_pose(pos12)?;
         check_margin(prediction)?;
+        check_pair(g1, g2)?;
         let thin = ThinShape::of(g1, g2);
         let [g1, g2] = thin.pair(g1, g2);
         let constraints = (normal_constraints1, normal_constraints2);
@@ -156,12 +159,28 @@ where
                 within,
                 manifold,
             )?;
+            keep_finite(manifold)?;
         }
         if prediction < 0.0 {
             drop_beyond(prediction, std::slice::from_mut(manifold));
         }
         Ok(())
     }
+}
+
+/// Removes the points with numbers that are not finite.
+///
+/// # Errors
+/// [`Unsupported`] if no point remains.
+fn keep_finite<M, C>(manifold: &mut ContactManifold<M, C>) -> Result<(), Unsupported> {
+    let had_points = !manifold.points.is_empty();
+    manifold.points.retain(link_convex_manifold::is_finite);
+    let has_normals = manifold.local_n1.is_finite() && manifold.local_n2.is_finite();
+    if had_points && manifold.points.is_empty() || !has_normals {
+        manifold.points.clear();
+        return Err(Unsupported);
+    }
+    Ok(())
 }
 
 /// Clears the manifolds whose nearest point is beyond the prediction.
@@ -221,9 +240,6 @@ impl<L> ContinuumDispatcher<L> {
                         watched, pos12, g1, g2, prediction, manifolds, workspace,
                     )
                 }
-                _ if is_either(ShapeType::Voxels) => {
-                    voxels(watched, pos12, g1, g2, prediction, manifolds, workspace);
-                }
                 ((Some(parts1), _), _) => details::contact_manifolds_composite_shape_shape(
                     watched, pos12, parts1, g2, prediction, manifolds, workspace, false,
                 ),
@@ -242,37 +258,6 @@ impl<L> ContinuumDispatcher<L> {
             }
             Ok(())
         })?
-    }
-}
-
-/// Calls parry's routines for voxels.
-fn voxels<M, C>(
-    dispatcher: &dyn PersistentQueryDispatcher<M, C>,
-    pos12: &Pose,
-    g1: &dyn Shape,
-    g2: &dyn Shape,
-    prediction: Real,
-    manifolds: &mut Vec<ContactManifold<M, C>>,
-    workspace: &mut Option<ContactManifoldsWorkspace>,
-) where
-    M: Default + Clone + Send + Sync,
-    C: Default + Copy + Send + Sync,
-{
-    let has_parts = |shape: &dyn Shape| shape.as_composite_shape().is_some();
-    if g1.as_voxels().is_some() && g2.as_voxels().is_some() {
-        details::contact_manifolds_voxels_voxels_shapes(
-            dispatcher, pos12, g1, g2, prediction, manifolds, workspace,
-        );
-    } else if g1.as_ball().is_some() || g2.as_ball().is_some() {
-        details::contact_manifolds_voxels_ball_shapes(pos12, g1, g2, prediction, manifolds);
-    } else if has_parts(g1) || has_parts(g2) {
-        details::contact_manifolds_voxels_composite_shape_shapes(
-            dispatcher, pos12, g1, g2, prediction, manifolds, workspace,
-        );
-    } else {
-        details::contact_manifolds_voxels_shape_shapes(
-            dispatcher, pos12, g1, g2, prediction, manifolds, workspace,
-        );
     }
 }
 

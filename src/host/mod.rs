@@ -22,6 +22,7 @@ mod link_triangle_manifold;
 mod link_triangle_points;
 mod manifold;
 mod mass;
+mod nonlinear_cast;
 mod plane_gap;
 mod point;
 mod range;
@@ -38,6 +39,7 @@ mod strict_dispatcher;
 mod support_map;
 mod support_points;
 mod thin_shape;
-mod voxels;
+#[cfg(feature = "rapier")]
+mod world_dispatcher;
 
 pub use dispatcher::ContinuumDispatcher;

@@ -43,7 +43,7 @@
 //! |---|---|---|
 //! | save a `ColliderSet` or `PhysicsWorld` | parry's serialiser returns an error for custom shapes | save links and chains on their own (feature `serde-serialize`), with balls in their place in the world, and restore them to their colliders after loading: [below](#saving-a-world-with-robots) |
 //! | load a `NarrowPhase` | it is loaded with parry's dispatcher, whose answers for links are approximate, and wrong for a half-space | call [`install`] after loading |
-//! | `KinematicCharacterController` | it always uses parry's dispatcher | move a kinematic body and query the free path with [`ContinuumDispatcher`] |
+//! | `KinematicCharacterController` | it always uses parry's dispatcher | move a kinematic body and query the free path with [`ContinuumDispatcher`](crate::ContinuumDispatcher) |
 //! | draw in the debug renderer | it draws boxes and contacts, but no custom shape | draw [`to_trimesh`](crate::ModifiedCylinder::to_trimesh) of each link through the same backend: `tests/rapier/drawn.rs` |
 //!
 //! A query pipeline takes its dispatcher when it is built:
@@ -55,7 +55,7 @@
 #![cfg_attr(feature = "serde-serialize", doc = "")]
 #![cfg_attr(feature = "serde-serialize", doc = include_str!("../../docs/book/saving.md"))]
 
-use super::ContinuumDispatcher;
+pub use super::world_dispatcher::WorldDispatcher;
 use parry3d_f64::math::Real;
 use rapier3d_f64::dynamics::IntegrationParameters;
 use rapier3d_f64::geometry::NarrowPhase;
@@ -66,7 +66,7 @@ use thiserror::Error;
 /// `size` is the thickness of a link in the world's unit of length: for a robot of one millimetre,
 /// 1e-3 in metres and 1 in millimetres.
 ///
-/// - The narrow phase gets a [`ContinuumDispatcher`].
+/// - The narrow phase gets a [`WorldDispatcher`].
 /// - `length_unit` becomes `size`. rapier is tuned for bodies of size 1: prediction, slop, the
 ///   speed at which overlaps are resolved and the speed below which bodies fall asleep are
 ///   multiples of `length_unit`.
@@ -87,7 +87,7 @@ pub fn install(
     if !(size.is_finite() && size > 0.0) {
         return Err(BadSize { size });
     }
-    narrow_phase.set_query_dispatcher(ContinuumDispatcher::default());
+    narrow_phase.set_query_dispatcher(WorldDispatcher::default());
     parameters.length_unit = size;
     parameters.contact_recycling = false;
     parameters.normalized_max_linear_velocity = Real::MAX;

@@ -205,7 +205,7 @@ impl<D: QueryDispatcher> CastWall for ConvexWall<'_, D> {
 /// # Errors
 /// [`Unsupported`] if the dispatcher refuses.
 pub(super) fn iterated_contact(
-    dispatcher: &impl QueryDispatcher,
+    dispatcher: &dyn QueryDispatcher,
     link: &ModifiedCylinder,
     (shape, support): (&dyn Shape, &dyn SupportMap),
     pose: &Pose,

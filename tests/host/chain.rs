@@ -233,6 +233,19 @@ fn a_chain_is_a_composite_of_its_links() {
         assert_eq!(leaf, link.compute_local_aabb());
     }
     composite.map_part_at(99, &mut |_, _, _| panic!("there is no link 99"));
-    let thinnest = chain.links().iter().map(Shape::ccd_thickness).fold(Real::MAX, Real::min);
+    let thinnest = chain.links().iter().map(ModifiedCylinder::radius).fold(Real::MAX, Real::min);
     assert_eq!(chain.ccd_thickness(), thinnest);
+}
+
+/// A joint is no end: how often a chain is divided does not change its thickness.
+#[test]
+fn a_chain_of_discs_is_as_thick_as_one_of_long_links() {
+    for (length, thickness) in [(3.0, 0.25), (0.1, 0.05)] {
+        for count in [1, 3, 300] {
+            let point = |k: usize| Vector::X * (length * k as Real / count as Real);
+            let points: Vec<_> = (0..=count).map(point).collect();
+            let chain = Chain::cylinders(&points, &vec![0.25; count]).unwrap();
+            assert!((chain.ccd_thickness() - thickness).abs() < 1e-15, "{length} {count}");
+        }
+    }
 }

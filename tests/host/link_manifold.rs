@@ -350,3 +350,77 @@ fn points_are_named_after_features() {
     assert_eq!(point.fid2.unpack(), FeatureId::Vertex(0));
     assert_eq!(point.fid1.unpack(), FeatureId::Face(1));
 }
+
+/// Under the flags that fix internal edges, too, a pair of points is as far apart along the normal as
+/// its `dist` says, for links deeper than their radius.
+#[test]
+fn points_of_deep_links_stay_together_under_every_flag() {
+    let mut random = Random::new(92);
+    let corner = |k: u32| {
+        let (x, z) = (Real::from(k % 5) - 2.0, Real::from(k / 5) - 2.0);
+        Vector::new(x, 0.0, z)
+    };
+    let cell = |k: u32| {
+        let a = 5 * (k / 4) + k % 4;
+        [[a, a + 5, a + 1], [a + 1, a + 5, a + 6]]
+    };
+    let triangles: Vec<_> = (0..16).flat_map(cell).collect();
+    for flags in [TriMeshFlags::FIX_INTERNAL_EDGES, TriMeshFlags::FIX_INTERNAL_EDGES_TWO_SIDED] {
+        let floor = TriMesh::with_flags((0..25).map(corner).collect(), triangles.clone(), flags);
+        let floor = floor.unwrap();
+        let (mut deep, mut points) = (0, 0);
+        for _ in 0..1500 {
+            let link = random.link();
+            let place = Vector::new(random.between(-2.0, 2.0), 0.0, random.between(-2.0, 2.0));
+            let pose = Pose::new(place + random.vector(0.3), random.direction() * 2.0);
+            for (pos12, g1, g2) in
+                [(pose, &floor as &dyn Shape, &link as &dyn Shape), (pose.inverse(), &link, &floor)]
+            {
+                for manifold in manifolds(&pos12, g1, g2, 0.05) {
+                    for point in &manifold.points {
+                        points += 1;
+                        deep += usize::from(point.dist < -link.radius());
+                        let apart = pos12 * point.local_p2 - point.local_p1;
+                        let off = (apart - manifold.local_n1 * point.dist).length();
+                        assert!(off < 1e-6, "{off} {flags:?} {link:?} {pose:?} {point:?}");
+                    }
+                }
+            }
+        }
+        assert!(deep > 200 && points > 2000, "{flags:?}: {deep} deep of {points}");
+    }
+}
+
+/// A triangle that fills a crack, with corners on a line but for rounding, makes contacts on itself.
+#[test]
+fn points_of_filler_triangles_lie_on_them() {
+    let mut random = Random::new(93);
+    let mut points = 0;
+    for _ in 0..4000 {
+        let way = random.direction() * random.between(0.5, 3.0);
+        let from = random.vector(1.0);
+        let noise = random.vector(1e-15);
+        let triangle = Triangle::new(from, from + way * random.unit() + noise, from + way);
+        let link = random.link();
+        let pose = Pose::new(random.vector(0.5), random.direction());
+        for (pos12, g1, g2, is_second) in [
+            (pose, &link as &dyn Shape, &triangle as &dyn Shape, true),
+            (pose.inverse(), &triangle, &link, false),
+        ] {
+            for point in manifolds(&pos12, g1, g2, 0.3).iter().flat_map(|found| &found.points) {
+                let on_triangle = if is_second { point.local_p2 } else { point.local_p1 };
+                // (parry's distance from such a triangle is off.)
+                let edges =
+                    triangle.edges().map(|edge| edge.distance_to_local_point(on_triangle, true));
+                let off = edges.into_iter().fold(Real::INFINITY, Real::min);
+                // The points of an overlap may lie beyond either, by at most its depth.
+                assert!(
+                    off < 1e-5 - point.dist.min(0.0),
+                    "{off} {point:?} {link:?} {triangle:?} {pose:?}"
+                );
+                points += 1;
+            }
+        }
+    }
+    assert!(points > 1000, "{points}");
+}

@@ -8,6 +8,7 @@ mod contact;
 mod depths;
 mod dispatcher;
 mod draw;
+mod finite;
 mod flat_caps;
 mod free_edges;
 mod halfspace;

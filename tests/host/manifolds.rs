@@ -129,7 +129,6 @@ fn every_other_shape_answers_or_is_refused() {
         SharedShape::round_cuboid(0.4, 0.4, 0.4, 0.1),
         SharedShape::round_cylinder(0.4, 0.3, 0.1),
         SharedShape::polyline(vec![-Vector::X, Vector::ZERO, Vector::Z], None),
-        SharedShape::voxels_from_points(Vector::splat(0.3), &[0.1 * Vector::ONE, 0.4 * Vector::X]),
         SharedShape::new(ModifiedCylinder::cylinder(-Vector::X, Vector::X, 0.3).unwrap()),
     ];
     let mut answered = BTreeSet::new();
@@ -159,7 +158,7 @@ fn every_other_shape_answers_or_is_refused() {
         }
     }
     // parry has no contacts for segments in three dimensions... and says so.
-    assert!(answered.len() >= 11, "{answered:?}");
+    assert!(answered.len() >= 10, "{answered:?}");
 }
 
 /// Knows nothing.

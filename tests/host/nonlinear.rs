@@ -6,7 +6,7 @@ use continuum_testing::Random;
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::query::{NonlinearRigidMotion, QueryDispatcher, ShapeCastStatus};
 use parry_continuum::parry::shape::{HalfSpace, Shape, SharedShape, Triangle};
-use parry_continuum::{Cap, ContinuumDispatcher, ModifiedCylinder};
+use parry_continuum::{Cap, Chain, ContinuumDispatcher, ModifiedCylinder};
 
 /// A motion from a place to near another, sometimes straight, sometimes still, sometimes spinning
 /// fast.
@@ -181,6 +181,51 @@ fn a_ball_whose_centre_is_on_a_wall_is_not_refused() {
             }
         }
     }
+}
+
+/// The first hit of two chains is the first of all pairs of their links, whatever their speeds.
+#[test]
+fn chains_meet_where_the_first_of_their_links_do() {
+    let (mut random, dispatcher) = (Random::new(123), ContinuumDispatcher::default());
+    let (mut hits, mut misses) = (0, 0);
+    for round in 0..60 {
+        let winding = |random: &mut Random| {
+            let bend = random.vector(0.3);
+            let point = |k: u32| {
+                let t = Real::from(k) / 8.0;
+                Vector::new(2.0 * t, (3.0 * t).sin() * bend.x, t * t * bend.y)
+            };
+            let points: Vec<_> = (0..=16).map(point).collect();
+            Chain::from_centreline(&points, &[0.03; 16]).unwrap()
+        };
+        let chains = [winding(&mut random), winding(&mut random)];
+        let first = random.pose(1.0);
+        let second = Pose::from_parts(random.vector(2.5), random.pose(1.0).rotation);
+        // Slow, fast and spinning, or both alike.
+        let speed = [0.05, 1.0, 8.0][round % 3];
+        let common = random.vector(20.0);
+        let ways = [common, common + random.vector(speed)];
+        let motions = [motion(&mut random, first, ways[0]), motion(&mut random, second, ways[1])];
+        let [m1, m2] = &motions;
+        let pairs =
+            chains[0].links().iter().flat_map(|a| chains[1].links().iter().map(move |b| (a, b)));
+        let each = pairs.filter_map(|(a, b)| {
+            let hit = dispatcher.cast_shapes_nonlinear(m1, a, m2, b, 0.0, 1.0, true).unwrap();
+            hit.map(|hit| hit.time_of_impact)
+        });
+        let expected = each.fold(Real::INFINITY, Real::min);
+        let hit = dispatcher
+            .cast_shapes_nonlinear(m1, &chains[0], m2, &chains[1], 0.0, 1.0, true)
+            .unwrap();
+        let time = hit.map_or(Real::INFINITY, |hit| hit.time_of_impact);
+        if expected.is_finite() {
+            hits += 1
+        } else {
+            misses += 1
+        }
+        assert!(time == expected || (time - expected).abs() < 1e-9, "{round}: {time} {expected}");
+    }
+    assert!(hits > 8 && misses > 15, "{hits} hits, {misses} misses");
 }
 
 /// How far the link reaches below the origin, by its definition.

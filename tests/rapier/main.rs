@@ -11,4 +11,5 @@ mod rest;
 mod robots;
 mod setup;
 mod soft;
+mod throws;
 mod units;

@@ -8,6 +8,7 @@
 //! - Effort: [`rounds`], the number of rounds of a random test.
 //! - Checks: [`certificate`], proofs in double-double arithmetic; [`rotation`]s without rounding.
 //! - The fuzzer: `fuzz`, bodies that accept any bytes (feature `fuzz`).
+//! - In rapier: `throws`, bodies thrown onto walls (feature `rapier`).
 //! - Environment: `gpu`, opened once (feature `gpu`).
 
 mod arcs;
@@ -27,6 +28,8 @@ pub mod precision;
 pub mod problems;
 mod random;
 pub mod rotation;
+#[cfg(feature = "rapier")]
+pub mod throws;
 
 pub use arcs::{Arcs, Stretch};
 pub use cases::{Case, LinkCase, distance_cases, link_cases, read_lines};

@@ -10,7 +10,7 @@
 //! 4. Half of the pairs are moved as a whole, by any pose.
 
 use crate::Random;
-use parry_continuum::parry::math::{IVector, Pose, Rot3, Vector};
+use parry_continuum::parry::math::{Pose, Rot3, Vector};
 use parry_continuum::parry::shape::{
     HalfSpace, HeightField, SharedShape, TriMesh, TriMeshFlags, Triangle,
 };
@@ -39,11 +39,10 @@ pub enum Wall {
     Chain,
     /// Boxes and a ball.
     Compound,
-    Voxels,
 }
 
 impl Wall {
-    pub const ALL: [Self; 17] = [
+    pub const ALL: [Self; 16] = [
         Self::Triangle,
         Self::Plate,
         Self::BoxMesh,
@@ -60,7 +59,6 @@ impl Wall {
         Self::Link,
         Self::Chain,
         Self::Compound,
-        Self::Voxels,
     ];
 }
 
@@ -332,12 +330,6 @@ impl Random {
                     part(-8.0 * Vector::Y, SharedShape::ball(radius)),
                 ];
                 (SharedShape::compound(parts), self.on_box(half))
-            }
-            Wall::Voxels => {
-                let cells = [IVector::new(0, 0, 0), IVector::new(1, 0, 0)];
-                let spot = self.on_box(half);
-                // The first voxel is the box from the origin to twice `half`.
-                (SharedShape::voxels(2.0 * half, &cells), Spot { at: spot.at + half, ..spot })
             }
         }
     }

@@ -28,10 +28,6 @@ struct Pair<'a> {
 pub fn touching(bytes: &[u8]) {
     let mut source = Source::new(bytes);
     let kind = Wall::ALL[source.below(Wall::ALL.len() as u8)];
-    // parry computes no distance from voxels.
-    if kind == Wall::Voxels {
-        return;
-    }
     let Placement { robot, wall, pose, .. } = Random::new(source.bits()).placement(kind);
     let pose = source.nudged(pose);
     let is_exact =

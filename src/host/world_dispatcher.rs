@@ -1,0 +1,157 @@
+//! The dispatcher for a rapier world: the exact one, except for the sweeps of fast bodies.
+//!
+//! rapier sweeps each fast body by a nonlinear cast that does not stop at the start. This dispatcher
+//! casts links without their skin then ([`link_cast`](super::link_cast)). rapier does the same with
+//! its own shapes: it sweeps them to a place inside their surface.
+
+use super::ContinuumDispatcher;
+use super::link_cast::StartContact;
+use super::nonlinear_cast::{self, MovingShape};
+use parry3d_f64::math::{Pose, Real, Vector};
+use parry3d_f64::query::details::NormalConstraints;
+use parry3d_f64::query::{
+    ClosestPoints, Contact, ContactManifold, ContactManifoldsWorkspace, DefaultQueryDispatcher,
+    NonlinearRigidMotion, PersistentQueryDispatcher, QueryDispatcher, ShapeCastHit,
+    ShapeCastOptions, ShapeDistance, ShapeIntersection, Unsupported,
+};
+use parry3d_f64::shape::Shape;
+
+/// A [`ContinuumDispatcher`] for the narrow phase of a rapier world.
+///
+/// Its answers are those of the dispatcher inside, except for `cast_shapes_nonlinear` that does not
+/// stop at the start: rapier's sweep of a fast body. It ignores the outermost layer of a link, 1 %
+/// of its radius. A solver lets bodies overlap by its allowed error; an exact sweep would hold them
+/// there, step after step, in the air.
+///
+/// [`install`](super::rapier::install) puts one with parry's dispatcher inside into the world. For a
+/// dispatcher of your own:
+/// ```
+/// use parry_continuum::{ContinuumDispatcher, rapier};
+/// use parry_continuum::parry::query::DefaultQueryDispatcher;
+/// use rapier3d_f64::prelude::PhysicsWorld;
+///
+/// let (mut world, yours) = (PhysicsWorld::default(), DefaultQueryDispatcher);
+/// rapier::install(&mut world.narrow_phase, &mut world.integration_parameters, 1.0)?;
+/// let dispatcher = rapier::WorldDispatcher(ContinuumDispatcher(yours));
+/// world.narrow_phase.set_query_dispatcher(dispatcher);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct WorldDispatcher<L = DefaultQueryDispatcher>(pub ContinuumDispatcher<L>);
+
+/// Has parry's own dispatcher inside.
+impl Default for WorldDispatcher {
+    fn default() -> Self {
+        Self(ContinuumDispatcher::default())
+    }
+}
+
+impl<L: QueryDispatcher> QueryDispatcher for WorldDispatcher<L> {
+    fn intersection_test(
+        &self,
+        pos12: &Pose,
+        g1: &dyn Shape,
+        g2: &dyn Shape,
+    ) -> Result<ShapeIntersection, Unsupported> {
+        self.0.intersection_test(pos12, g1, g2)
+    }
+
+    fn distance(
+        &self,
+        pos12: &Pose,
+        g1: &dyn Shape,
+        g2: &dyn Shape,
+    ) -> Result<ShapeDistance, Unsupported> {
+        self.0.distance(pos12, g1, g2)
+    }
+
+    fn contact(
+        &self,
+        pos12: &Pose,
+        g1: &dyn Shape,
+        g2: &dyn Shape,
+        prediction: Real,
+    ) -> Result<Option<Contact>, Unsupported> {
+        self.0.contact(pos12, g1, g2, prediction)
+    }
+
+    fn closest_points(
+        &self,
+        pos12: &Pose,
+        g1: &dyn Shape,
+        g2: &dyn Shape,
+        max_dist: Real,
+    ) -> Result<ClosestPoints, Unsupported> {
+        self.0.closest_points(pos12, g1, g2, max_dist)
+    }
+
+    fn cast_shapes(
+        &self,
+        pos12: &Pose,
+        local_vel12: Vector,
+        g1: &dyn Shape,
+        g2: &dyn Shape,
+        options: ShapeCastOptions,
+    ) -> Result<Option<ShapeCastHit>, Unsupported> {
+        self.0.cast_shapes(pos12, local_vel12, g1, g2, options)
+    }
+
+    fn cast_shapes_nonlinear(
+        &self,
+        motion1: &NonlinearRigidMotion,
+        g1: &dyn Shape,
+        motion2: &NonlinearRigidMotion,
+        g2: &dyn Shape,
+        start_time: Real,
+        end_time: Real,
+        stop_at_penetration: bool,
+    ) -> Result<Option<ShapeCastHit>, Unsupported> {
+        let sides = [
+            MovingShape { motion: motion1, shape: g1 },
+            MovingShape { motion: motion2, shape: g2 },
+        ];
+        let start = if stop_at_penetration { StartContact::Stops } else { StartContact::Skin };
+        nonlinear_cast::cast((self, &self.0.0), sides, (start_time, end_time), start)
+    }
+}
+
+impl<M, C, L> PersistentQueryDispatcher<M, C> for WorldDispatcher<L>
+where
+    M: Default + Clone + Send + Sync,
+    C: Default + Copy + Send + Sync,
+    L: PersistentQueryDispatcher<M, C>,
+{
+    fn contact_manifolds(
+        &self,
+        pos12: &Pose,
+        g1: &dyn Shape,
+        g2: &dyn Shape,
+        prediction: Real,
+        manifolds: &mut Vec<ContactManifold<M, C>>,
+        workspace: &mut Option<ContactManifoldsWorkspace>,
+    ) -> Result<(), Unsupported> {
+        self.0.contact_manifolds(pos12, g1, g2, prediction, manifolds, workspace)
+    }
+
+    fn contact_manifold_convex_convex(
+        &self,
+        pos12: &Pose,
+        g1: &dyn Shape,
+        g2: &dyn Shape,
+        normal_constraints1: Option<&dyn NormalConstraints>,
+        normal_constraints2: Option<&dyn NormalConstraints>,
+        prediction: Real,
+        manifold: &mut ContactManifold<M, C>,
+    ) -> Result<(), Unsupported> {
+        let constraints = (normal_constraints1, normal_constraints2);
+        self.0.contact_manifold_convex_convex(
+            pos12,
+            g1,
+            g2,
+            constraints.0,
+            constraints.1,
+            prediction,
+            manifold,
+        )
+    }
+}
