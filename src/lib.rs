@@ -109,8 +109,8 @@ pub use host::ContinuumDispatcher;
 #[cfg(feature = "rapier")]
 pub use host::rapier;
 pub use motion::{
-    BendingMotion, BendingRates, DisplacementBound, LinearMotion, Motion, MotionPath, MovingBase,
-    RigidMotion, Speed, bending_displacement, bending_speed, verify_motion,
+    BendingMotion, BendingRates, CommonFrame, DisplacementBound, LinearMotion, Motion, MotionPath,
+    MovingBase, RigidMotion, Speed, bending_displacement, bending_speed, verify_motion,
 };
 pub use robot::{
     Cap, Chain, MatrixError, ModifiedCylinder, RobotError, pose_from_matrix, simplify,

@@ -208,6 +208,33 @@ class Shape:
                 return False
         return True
 
+    def radii(self):
+        """The radii along the robot, each one once where it repeats."""
+        radii = [piece[0] for piece in self.pieces]
+        return [radius for k, radius in enumerate(radii) if k == 0 or radius != radii[k - 1]]
+
+    def places(self, scale):
+        """For each piece its radius, its two ends, how far they move until the interval ends or are
+        off, and how far the centreline may be beside the line between them, in whole numbers."""
+        points = [whole(point, scale) for point in self.points]
+        for (radius, _, rest), *ends in zip(self.pieces, points, points[1:]):
+            moves = self.half * Fraction(rest["speed"]) + Fraction(rest["off"])
+            bow = Fraction(rest["curvature"]) * Fraction(rest["length"]) ** 2 / 8
+            yield radius, ends, up(moves * scale), up(bow * scale)
+
+    def joins(self, other, scale):
+        """Whether both ends of each piece are near enough to a piece of the same radius in the
+        neighbouring shape, in the same order along the robot."""
+        others = iter(list(other.places(scale)))
+        there = next(others)
+        for radius, ends, moves, _ in self.places(scale):
+            for point in ends:
+                while radius != there[0] or not is_near(point, there[1], moves + sum(there[2:])):
+                    there = next(others, None)
+                    if there is None:
+                        return False
+        return True
+
     def bodies(self, scale, margin):
         """For each piece its two ends, which of them are flat, the radius of both, and how far
         around all of it must be free, in whole numbers. src/query/proof/mod.rs derives why such
@@ -231,6 +258,19 @@ class Shape:
                 around += off + radius * off * Fraction(22, 7) / chord
             bodies.append((start, end, flat, up(radius * scale), up(around * scale)))
         return bodies
+
+
+def is_near(point, ends, most):
+    """Whether a point is at most so far from the line between two others."""
+    start, end = ends
+    axis = tuple(b - a for a, b in zip(start, end))
+    way = tuple(b - a for a, b in zip(start, point))
+    along, length = dot(way, axis), dot(axis, axis)
+    if along <= 0:
+        return dot(way, way) <= most**2
+    if along >= length:
+        return sum((b - a) ** 2 for a, b in zip(end, point)) <= most**2
+    return dot(way, way) * length - along**2 <= most**2 * length
 
 
 def is_below(q, level, body):
@@ -306,6 +346,8 @@ def main(mesh_path, proof_path):
         need(all(shape.half > 0 for shape in shapes), "an interval of time has no length")
         follow = all(shape.leads_to(later) for shape, later in zip(shapes, shapes[1:]))
         need(follow, "the robot jumps between two shapes: it is faster than is stated")
+        same = all(shape.radii() == shapes[0].radii() for shape in shapes)
+        need(same, "the radii differ between two shapes")
     else:
         need(len(shapes) == 1, "there is not one shape")
     doubles = [x for vertex in mesh.vertices for x in vertex] + [margin]
@@ -314,6 +356,10 @@ def main(mesh_path, proof_path):
     # Coordinates become whole numbers so, and what is rounded up to one is rounded by little.
     scale = max(x.as_integer_ratio()[1] for x in doubles) * 2**64
     mesh.whole = [whole(vertex, scale) for vertex in mesh.vertices]
+    if kind == "motion":
+        pairs = list(zip(shapes, shapes[1:]))
+        joined = all(a.joins(b, scale) and b.joins(a, scale) for a, b in pairs)
+        need(joined, "a part of the robot jumps between two shapes: it is faster than is stated")
     bodies = (shape.bodies(scale, Fraction(margin)) for shape in shapes)
     planes = sum(check(mesh, all_of, shape.steps) for all_of, shape in zip(bodies, shapes))
     print(f"This {kind} keeps more than {margin} from {counts[1]} triangles, by {planes} planes.")

@@ -9,7 +9,7 @@ use crate::answer::{
 };
 use crate::curve::Tube;
 use crate::motion::Motion;
-use crate::query::motion::{MarginQuery, MotionPair, MotionsMemory, Sought};
+use crate::query::motion::{MAX_PAIRS_FOR_BOUNDS, MarginQuery, MotionPair, MotionsMemory, Sought};
 use crate::query::robots::{
     PairMemory, TubesMemory, TwoRobots, clearance_between, clears_tubes, place_tubes,
 };
@@ -363,7 +363,8 @@ impl RobotPair {
         tolerance: Real,
     ) -> Result<RobotMotionClearance, ProximityError> {
         check_not_negative("tolerance", tolerance)?;
-        self.ask_clearance_of_motion([a, b], tolerance, Real::INFINITY)
+        let mut left = MAX_PAIRS_FOR_BOUNDS;
+        self.ask_clearance_of_motion([a, b], tolerance, Real::INFINITY, &mut left)
     }
 
     /// [`minimum`](Self::minimum) for many pairs of robots, on all cores.
@@ -444,14 +445,15 @@ impl RobotPair {
     }
 
     /// [`clearance_of_motion`](Self::clearance_of_motion); or a lower bound of at least `limit`.
-    /// The tolerance is checked.
+    /// The tolerance is checked. `left`: how many pairs of pieces may be tested.
     pub(crate) fn ask_clearance_of_motion(
         &mut self,
         motions: [&dyn Motion; 2],
         tolerance: Real,
         limit: Real,
+        left: &mut u32,
     ) -> Result<RobotMotionClearance, ProximityError> {
-        self.motions(motions).clearance(tolerance, limit)
+        self.motions(motions).clearance(tolerance, limit, left)
     }
 
     fn motions<'a>(&'a mut self, motions: [&'a dyn Motion; 2]) -> MotionPair<'a> {

@@ -29,7 +29,7 @@
 //! It is marked. In an interval in which its length may vanish, queries treat its flat ends as
 //! round. A round end contains both (`cap_persistence`).
 
-use super::{DisplacementBound, Motion, Speed};
+use super::{CommonFrame, DisplacementBound, Motion, Speed};
 use crate::curve::Tube;
 use crate::distance::Scalar;
 use crate::robot::{RobotError, check_chain, direction, has_direction, length, without_length};
@@ -64,6 +64,8 @@ pub struct LinearMotion {
     fading: Option<Vec<usize>>,
     /// The largest absolute coordinate.
     reach: Real,
+    /// The velocity that all vertices share within rounding, and the largest difference from it.
+    shared: Option<(Vector, Real)>,
 }
 
 impl LinearMotion {
@@ -150,7 +152,20 @@ impl LinearMotion {
         let (from, to): (Vec<_>, Vec<_>) = vertices().map(|k| (from[k], to[k])).unzip();
         let reach =
             from.iter().chain(&to).fold(0.0, |most: Real, p| most.max(p.abs().max_element()));
+        // Differences of rounded points are off by u each.
+        let (low, high) = from
+            .iter()
+            .zip(&to)
+            .map(|(from, to)| *to - *from)
+            .fold((Vector::INFINITY, Vector::NEG_INFINITY), |(low, high), way| {
+                (low.min(way), high.max(way))
+            });
+        let middle = 0.5 * low + 0.5 * high;
+        let most =
+            length(high - middle).max(length(middle - low)) + 4.0 * Real::UNIT_ROUNDOFF * reach;
+        let shared = (most <= 16.0 * Real::UNIT_ROUNDOFF * reach).then_some((middle, most));
         Ok(Self {
+            shared,
             radii: segments.iter().map(|&k| radii[k]).collect(),
             segments: segments.iter().map(|&k| k as u32).collect(),
             fading: None,
@@ -249,6 +264,19 @@ impl Motion for LinearMotion {
         let ways = shares.map(|share| (start + (end - start) * share) * apart);
         // Two places and a displacement, each off by a few roundings.
         Some(DisplacementBound { ways, off: 8.0 * self.rounding() })
+    }
+
+    /// A shift that all vertices share.
+    fn common_frame(&self, _: [Real; 2]) -> Option<CommonFrame> {
+        self.shared.map(|(velocity, _)| CommonFrame::shifting(velocity))
+    }
+
+    fn speed_in_frame(&self, section: usize, _: [Real; 2], times: [Real; 2]) -> Speed {
+        let Some((_, most)) = self.shared else {
+            return Speed { point: Real::INFINITY, turn: Real::INFINITY };
+        };
+        let turn = if section < self.radii.len() { self.turn(section, times) } else { 0.0 };
+        Speed { point: most + self.rounding(), turn }
     }
 }
 

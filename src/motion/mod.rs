@@ -1,6 +1,7 @@
 //! Motions: a robot whose shape depends on time, with bounds on how fast its points move.
 
 mod bending;
+mod common_frame;
 mod displacement_bound;
 #[cfg(test)]
 mod displacement_bound_tests;
@@ -16,6 +17,8 @@ mod tests;
 mod verify;
 
 pub use bending::{BendingMotion, BendingRates, bending_displacement, bending_speed};
+pub use common_frame::CommonFrame;
+pub(crate) use common_frame::{CarriedMotion, CarriedPiece};
 pub use displacement_bound::DisplacementBound;
 pub use linear::LinearMotion;
 pub use motion_path::MotionPath;
@@ -118,6 +121,32 @@ pub trait Motion {
         None
     }
 
+    /// Returns a rigid frame that carries the whole robot from one time to another, if the motion
+    /// knows one. The default is `None`.
+    ///
+    /// Two robots that move in the same way, or a robot and its mesh, are then compared in that
+    /// frame: what they do together brings them no nearer. A motion that states a frame also states
+    /// its speed relative to the frame ([`speed_in_frame`](Self::speed_in_frame)). For the same
+    /// times it always states the same frame.
+    ///
+    /// [`RigidMotion`] and [`MovingBase`] state the frame that they move, [`LinearMotion`] a shift
+    /// that all its points share, and [`MotionPath`] what the current motion states.
+    fn common_frame(&self, times: [Real; 2]) -> Option<CommonFrame> {
+        let _ = times;
+        None
+    }
+
+    /// Returns upper bounds on the speed relative to [`common_frame`](Self::common_frame) of the
+    /// same times; arguments as for [`speed`](Self::speed).
+    ///
+    /// `point` bounds the velocity of the centreline less the velocity of the frame at the same
+    /// place, `turn` the angular speed of its direction seen from the frame. Asked only if there is
+    /// a frame. The default is infinite, which queries refuse.
+    fn speed_in_frame(&self, section: usize, shares: [Real; 2], times: [Real; 2]) -> Speed {
+        let _ = (section, shares, times);
+        Speed { point: Real::INFINITY, turn: Real::INFINITY }
+    }
+
     /// Returns the number of equal parts into which queries divide time first: 1, except for a path
     /// of several motions. A motion that wraps another passes its value on.
     fn time_parts(&self) -> usize {
@@ -142,6 +171,14 @@ impl<M: Motion + ?Sized> Motion for &M {
         times: [Real; 2],
     ) -> Option<DisplacementBound> {
         (**self).displacement(section, shares, times)
+    }
+
+    fn common_frame(&self, times: [Real; 2]) -> Option<CommonFrame> {
+        (**self).common_frame(times)
+    }
+
+    fn speed_in_frame(&self, section: usize, shares: [Real; 2], times: [Real; 2]) -> Speed {
+        (**self).speed_in_frame(section, shares, times)
     }
 
     fn time_parts(&self) -> usize {

@@ -1,7 +1,7 @@
 //! Motions in sequence, as one motion.
 
 use super::sampled_shape::{PlaceMotion, SampledPlace, SampledShape, places};
-use super::{DisplacementBound, Motion, SectionSignature, Speed, rigid_pose};
+use super::{CommonFrame, DisplacementBound, Motion, SectionSignature, Speed, rigid_pose};
 use crate::curve::{CapPersistence, Section, Tube};
 use crate::distance::Scalar;
 use crate::robot::RobotError;
@@ -70,7 +70,22 @@ impl<M: Motion> MotionPath<M> {
         let within = (t * self.motions.len() as Real - leg as Real).max(0.0);
         within.min(1.0)
     }
+
+    /// Returns an upper bound on the rounding error of a motion's own time.
+    fn unsure(&self) -> Real {
+        8.0 * ROUNDING * self.motions.len() as Real
+    }
+
+    /// Returns the motion whose part contains the times within rounding, and its own times; `None`
+    /// across a joint.
+    fn leg_of(&self, times: [Real; 2]) -> Option<(usize, [Real; 2])> {
+        let [first, last] = [times[0] + ROUNDING, times[1] - ROUNDING].map(|t| self.part_at(t).0);
+        (first == last).then(|| (last, times.map(|t| self.time_in(last, t))))
+    }
 }
+
+/// Rounding may assign a time to a neighbouring motion up to this far beyond a joint.
+const ROUNDING: Real = 4.0 * Real::UNIT_ROUNDOFF;
 
 impl<M: Motion> Motion for MotionPath<M> {
     fn shape(&self, t: Real, tube: &mut Tube) -> Result<Pose, RobotError> {
@@ -80,11 +95,10 @@ impl<M: Motion> Motion for MotionPath<M> {
 
     fn speed(&self, section: usize, shares: [Real; 2], times: [Real; 2]) -> Speed {
         // Rounding may assign the time of one motion to its neighbour.
-        let rounding = 4.0 * Real::UNIT_ROUNDOFF;
-        let [first, last] = [times[0] + rounding, times[1] - rounding].map(|t| self.part_at(t).0);
+        let [first, last] = [times[0] + ROUNDING, times[1] - ROUNDING].map(|t| self.part_at(t).0);
         let up = self.motions.len() as Real * (1.0 + 4.0 * Real::UNIT_ROUNDOFF);
         let all = (first.min(last)..=last).map(|leg| {
-            let own = [-rounding, rounding];
+            let own = [-ROUNDING, ROUNDING];
             let times = [0, 1].map(|end| self.time_in(leg, times[end] + own[end]));
             self.motions[leg].speed(section, shares, times)
         });
@@ -101,20 +115,30 @@ impl<M: Motion> Motion for MotionPath<M> {
         shares: [Real; 2],
         times: [Real; 2],
     ) -> Option<DisplacementBound> {
-        let rounding = 4.0 * Real::UNIT_ROUNDOFF;
-        let [first, last] = [times[0] + rounding, times[1] - rounding].map(|t| self.part_at(t).0);
-        if first != last {
-            return None;
-        }
-        let inner = times.map(|t| self.time_in(last, t));
+        let (last, inner) = self.leg_of(times)?;
         let DisplacementBound { ways, off } =
             self.motions[last].displacement(section, shares, inner)?;
         // A motion's time errs by less than `rounding` times the number of motions, and so do the
         // two ends of the interval. A time of a neighbouring motion counts as this motion's end.
-        let unsure = 8.0 * rounding * self.motions.len() as Real;
+        let unsure = self.unsure();
         let around = [(inner[0] - unsure).max(0.0), (inner[1] + unsure).min(1.0)];
         let speed = self.motions[last].speed(section, shares, around);
         Some(DisplacementBound { ways, off: off + unsure * speed.point })
+    }
+
+    /// The frame of the current motion; `None` across a joint.
+    fn common_frame(&self, times: [Real; 2]) -> Option<CommonFrame> {
+        let (leg, inner) = self.leg_of(times)?;
+        let frame = self.motions[leg].common_frame(inner)?.at_unsure_time(self.unsure());
+        Some(frame.sped_up(self.motions.len() as Real))
+    }
+
+    fn speed_in_frame(&self, section: usize, shares: [Real; 2], times: [Real; 2]) -> Speed {
+        let none = Speed { point: Real::INFINITY, turn: Real::INFINITY };
+        let Some((leg, inner)) = self.leg_of(times) else { return none };
+        let Speed { point, turn } = self.motions[leg].speed_in_frame(section, shares, inner);
+        let up = self.motions.len() as Real * (1.0 + 4.0 * Real::UNIT_ROUNDOFF);
+        Speed { point: point * up, turn: turn * up }
     }
 
     fn time_parts(&self) -> usize {

@@ -29,7 +29,7 @@
 //!    of p0 counts s times.
 
 use super::rigid::RigidPath;
-use super::{DisplacementBound, Motion, Speed, rigid_pose};
+use super::{CommonFrame, DisplacementBound, Motion, Speed, rigid_pose};
 use crate::curve::Tube;
 use crate::distance::Scalar;
 use crate::robot::{RobotError, length};
@@ -152,6 +152,23 @@ impl<M: Motion> Motion for MovingBase<M> {
         let rounding = 64.0 * Real::UNIT_ROUNDOFF * reach;
         let off = inner.off * (1.0 + 2.0 * turn) + bow + turn * since + rounding;
         Some(DisplacementBound { ways, off: off * (1.0 + 16.0 * Real::UNIT_ROUNDOFF) })
+    }
+
+    fn common_frame(&self, times: [Real; 2]) -> Option<CommonFrame> {
+        let t = 0.5 * times[0] + 0.5 * times[1];
+        let base = CommonFrame::of_path(&self.path, t);
+        let half = 0.5 * (times[1] - times[0]) + 4.0 * Real::UNIT_ROUNDOFF;
+        let inner = self.motion.common_frame(times);
+        Some(inner.map_or(base, |inner| inner.on_base(&base, &self.path.pose(t), half)))
+    }
+
+    /// The speed in the frame of the base, or in the inner motion's own frame.
+    fn speed_in_frame(&self, section: usize, shares: [Real; 2], times: [Real; 2]) -> Speed {
+        if self.motion.common_frame(times).is_some() {
+            self.motion.speed_in_frame(section, shares, times)
+        } else {
+            self.motion.speed(section, shares, times)
+        }
     }
 
     fn time_parts(&self) -> usize {

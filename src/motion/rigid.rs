@@ -16,7 +16,7 @@
 //! the point moves by `v T + (R' - R) p`, which is linear in p, and `R' - R` turns by at most
 //! `w T`. So the distance of p from the chord adds at most `w T` times itself.
 
-use super::{DisplacementBound, Motion, Speed, rigid_pose};
+use super::{CommonFrame, DisplacementBound, Motion, Speed, rigid_pose};
 use crate::curve::{Section, Tube};
 use crate::distance::Scalar;
 use crate::robot::{RobotError, length, rotation_by};
@@ -74,6 +74,15 @@ impl Motion for RigidMotion {
     ) -> Option<DisplacementBound> {
         self.path.displacement(&self.tube, section, shares, times)
     }
+
+    fn common_frame(&self, times: [Real; 2]) -> Option<CommonFrame> {
+        Some(CommonFrame::of_path(&self.path, 0.5 * times[0] + 0.5 * times[1]))
+    }
+
+    /// The tube is at rest in its frame.
+    fn speed_in_frame(&self, _: usize, _: [Real; 2], _: [Real; 2]) -> Speed {
+        Speed { point: 0.0, turn: 0.0 }
+    }
 }
 
 /// A moving frame.
@@ -107,6 +116,11 @@ impl RigidPath {
     pub(crate) fn pose(&self, t: Real) -> Pose {
         let rotation = self.from.rotation * rotation_by(self.turn * t);
         Pose::from_parts(self.from.translation + self.shift * t, rotation.normalize())
+    }
+
+    /// Returns v, and the angular velocity in the frame in which the path moves.
+    pub(super) fn velocities(&self) -> (Vector, Vector) {
+        (self.shift, self.from.rotation * self.turn)
     }
 
     /// Returns an upper bound on w.

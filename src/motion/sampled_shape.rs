@@ -1,5 +1,6 @@
 //! Sampled places of a shape: their points and directions, with the errors of both.
 
+use super::CommonFrame;
 use crate::curve::Tube;
 use crate::distance::Scalar;
 use crate::robot::{direction, length};
@@ -142,15 +143,39 @@ impl SampledShape {
         Some((there.point - from.point, self.rounding + to.rounding + from.error + there.error))
     }
 
+    /// Returns the point of a place.
+    pub(super) fn point(&self, place: usize) -> Option<Vector> {
+        Some(self.samples.get(place)?.point)
+    }
+
     /// Returns lower bounds on the displacement and the turn of a place to another shape.
     pub(super) fn moved(&self, to: &Self, place: usize) -> Option<PlaceMotion> {
+        self.moved_in(None, to, place)
+    }
+
+    /// [`moved`](Self::moved), seen from a frame that a motion states for the time between the two
+    /// shapes.
+    pub(super) fn moved_in(
+        &self,
+        frame: Option<&CommonFrame>,
+        to: &Self,
+        place: usize,
+    ) -> Option<PlaceMotion> {
         let (from, there) = (self.samples.get(place)?, to.samples.get(place)?);
-        let (way, off) = self.way(to, place)?;
+        let (mut way, mut off) = self.way(to, place)?;
+        let mut direction = from.direction;
+        if let Some(frame) = frame {
+            let (turn, [before, after]) = frame.carries(to.t - self.t);
+            let lever = from.point - before;
+            way = there.point - (after + turn * lever);
+            direction = turn * direction;
+            let reach = before.abs().max(after.abs()).max_element() + lever.abs().max_element();
+            off += 64.0 * Real::UNIT_ROUNDOFF * reach;
+        }
         let way = length(way) - off;
         // Without length there is no direction.
         let has_direction = from.direction != Vector::ZERO && there.direction != Vector::ZERO;
-        let turned =
-            (there.direction - from.direction).length() * (from.shrink * there.shrink).sqrt();
+        let turned = (there.direction - direction).length() * (from.shrink * there.shrink).sqrt();
         let angle =
             if has_direction { turned - from.tilt - there.tilt } else { Real::NEG_INFINITY };
         Some(PlaceMotion { way, angle })

@@ -1,7 +1,7 @@
 //! The properties of a robot that must stay constant during a motion, and bounds on its drift from
 //! the middle of an interval of time.
 
-use super::Motion;
+use super::CarriedMotion;
 use crate::curve::{CapPersistence, Drift, Tube};
 use crate::robot::{RobotError, length};
 use parry3d_f64::math::Real;
@@ -59,31 +59,34 @@ impl SectionSignature {
 const FASTEST_TURN: Real = (1_u64 << 24) as Real;
 
 /// An interval of time around a shape.
+///
+/// Ends and limits belong to one robot, so only speeds relative to its frame matter for distances.
 pub(crate) struct MotionDrift<'a> {
-    pub motion: &'a dyn Motion,
-    pub times: [Real; 2],
+    pub motion: &'a CarriedMotion<'a>,
     /// The time of the shape.
     pub t: Real,
-    /// Half of the interval's length, rounded up.
-    pub half_length: Real,
 }
 
 impl Drift for MotionDrift<'_> {
     fn moves(&self, section: usize, end: usize) -> Real {
         // An invalid speed bounds nothing here; `check_speed` refuses it elsewhere.
-        let speed = self.motion.speed(section, [end as Real; 2], self.times).point;
-        self.half_length * if speed >= 0.0 { speed } else { Real::INFINITY }
+        let speed = self.motion.stated(section, [end as Real; 2]).point;
+        self.motion.half * if speed >= 0.0 { speed } else { Real::INFINITY }
     }
 
     /// Uses the displacements of both ends if they are known, otherwise their speeds.
     fn stretches(&self, section: usize) -> Real {
-        let [from, to] = self.times;
+        let by_speed = self.moves(section, 0) + self.moves(section, 1);
+        if self.motion.has_frame() {
+            // Seen from the frame.
+            return by_speed;
+        }
+        let [from, to] = self.motion.times;
         let sides = [[from, self.t], [self.t, to]].map(|times| {
-            let bound = self.motion.displacement(section, [0.0, 1.0], times)?;
+            let bound = self.motion.motion.displacement(section, [0.0, 1.0], times)?;
             let change = length(bound.ways[1] - bound.ways[0]) + 2.0 * bound.off;
             (change >= 0.0).then_some(change)
         });
-        let by_speed = self.moves(section, 0) + self.moves(section, 1);
         match sides {
             [Some(before), Some(after)] => before.max(after).min(by_speed),
             _ => by_speed,
@@ -91,11 +94,11 @@ impl Drift for MotionDrift<'_> {
     }
 
     fn turns(&self, section: usize) -> Real {
-        let turn = self.motion.speed(section, [0.0, 1.0], self.times).turn;
-        self.half_length * if turn >= 0.0 { turn } else { Real::INFINITY }
+        let turn = self.motion.stated(section, [0.0, 1.0]).turn + self.motion.turning();
+        self.motion.half * if turn >= 0.0 { turn } else { Real::INFINITY }
     }
 
     fn can_follow(&self, turn: Real) -> bool {
-        turn <= FASTEST_TURN * self.half_length
+        turn <= FASTEST_TURN * self.motion.half
     }
 }

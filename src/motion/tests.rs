@@ -1,6 +1,9 @@
 //! Stated speeds against dense sampling, for any two shares and any two times.
 
-use super::{BendingMotion, LinearMotion, Motion, MotionPath, MovingBase, RigidMotion, Speed};
+use super::{
+    BendingMotion, CarriedMotion, CarriedPiece, CommonFrame, LinearMotion, Motion, MotionPath,
+    MovingBase, RigidMotion, RigidPath, Speed,
+};
 use crate::curve::{BendingSection, Tube};
 use crate::robot::RobotError;
 use continuum_testing::Random;
@@ -88,6 +91,79 @@ fn stated_speeds_hold_between_any_shares_and_times() {
     // No bound is so loose that it could never fail; a moving base's bound is a sum of others.
     assert!(used.iter().take(3).flatten().all(|used| *used > 0.8), "{used:?}");
     assert!(used[3].iter().all(|used| *used > 0.5), "{used:?}");
+}
+
+/// The speeds that a middle shape gives, relative to the frame at rest and to the frame of another
+/// motion, against differences in that frame.
+#[test]
+fn carried_speeds_hold_in_any_frame() {
+    let mut random = Random::new(8);
+    let mut used = [[0.0_f64; 2]; 4];
+    for round in 0..200 {
+        let start = random.point();
+        let points: Vec<_> = (0..3).map(|k| start + Vector::Z * Real::from(k)).collect();
+        let to: Vec<_> = points.iter().map(|&point| point + random.point()).collect();
+        let shift = random.point() * 4.0;
+        let shifted: Vec<_> = points.iter().map(|&point| point + shift).collect();
+        let radii = [0.5, 0.4];
+        let linear = LinearMotion::chain(&points, &to, &radii).unwrap();
+        let together = LinearMotion::chain(&points, &shifted, &radii).unwrap();
+        let mut tube = Tube::empty();
+        linear.shape(0.5, &mut tube).unwrap();
+        let mut poses = || [random.pose(3.0), random.pose(3.0)];
+        let rigid = RigidMotion::new(tube.clone(), poses()).unwrap();
+        let on_base = MovingBase::new(linear.clone(), poses()).unwrap();
+        let nested =
+            MovingBase::new(MovingBase::new(together.clone(), poses()).unwrap(), poses()).unwrap();
+        let other = RigidMotion::new(tube.clone(), poses()).unwrap();
+        let motions: [&dyn Motion; 4] = [&together, &rigid, &on_base, &nested];
+        for (motion, used) in motions.into_iter().zip(&mut used) {
+            let middle = random.between(0.2, 0.8);
+            let half = [0.2, 0.02, 1e-3][round % 3] * random.unit().max(0.1);
+            let times = [middle - half, middle + half];
+            let carried = CarriedMotion::new(motion, times, half * (1.0 + 1e-12));
+            assert!(carried.has_frame());
+            let pose = motion.shape(0.5 * times[0] + 0.5 * times[1], &mut tube).unwrap();
+            let section = random.below(2) as usize;
+            let (a, b) = (random.unit(), random.unit());
+            let shares = [a.min(b), a.max(b)];
+            let piece = CarriedPiece::new(&tube, &pose, &tube.sections()[section], shares);
+            let stated = carried.stated(section, shares);
+            let beside =
+                CommonFrame::of_path(&RigidPath::new(other_poses(&other)).unwrap(), middle);
+            for (kind, frame) in [CommonFrame::REST, beside].into_iter().enumerate() {
+                let speed = carried.speeds(stated, &piece, &frame).seen;
+                let step = 2.0 * half / 8.0;
+                for (k, share) in (0..8).flat_map(|k| shares.map(|share| (k, share))) {
+                    let t = times[0] + step * Real::from(k);
+                    let [before, behind] = [t, t + step].map(|t| {
+                        let (point, way) = at(motion, t, section, share);
+                        let seen = if kind == 0 {
+                            Pose::IDENTITY
+                        } else {
+                            other.shape(t, &mut Tube::empty()).unwrap().inverse()
+                        };
+                        (seen * point, seen.rotation * way)
+                    });
+                    let moved = (behind.0 - before.0).length() / step;
+                    let turned = (behind.1 - before.1).length() / step;
+                    let rounding = 1e-13 / step;
+                    assert!(moved <= speed.point + rounding, "{moved} {speed:?} {kind}");
+                    assert!(turned <= speed.turn + rounding, "{turned} {speed:?} {kind}");
+                    used[0] = used[0].max(moved / speed.point);
+                    used[1] = used[1].max(turned / speed.turn);
+                }
+            }
+        }
+    }
+    // Each bound is reached within a tenth by some sample.
+    assert!(used.iter().all(|used| used[0] > 0.9), "{used:?}");
+    assert!(used.iter().skip(1).all(|used| used[1] > 0.9), "{used:?}");
+}
+
+/// The poses at both ends of a rigid motion.
+fn other_poses(motion: &RigidMotion) -> [Pose; 2] {
+    [0.0, 1.0].map(|t| motion.shape(t, &mut Tube::empty()).unwrap())
 }
 
 /// The largest used share of a stated speed at the tip, in fine steps of a part of the time.

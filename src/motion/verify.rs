@@ -10,11 +10,13 @@
 //!    is compared with the least bound over many ranges that contain it: the place alone, `[0, s]`,
 //!    `[s, 1]`, the dyadic ranges at [`LEVELS`] levels, and one drawn range per step. A bound that
 //!    considers one end of its range only is too low for some of them.
-//! 4. **Displacements.** A stated displacement is compared with three shapes: at both ends of its
+//! 4. **Common frame.** If the motion states a frame, each shape is also compared with the earlier one
+//!    that the frame carries along. Only the speeds that are stated relative to the frame may remain.
+//! 5. **Displacements.** A stated displacement is compared with three shapes: at both ends of its
 //!    time, and at the middle, where a point of constant acceleration is farthest from it.
 
 use super::sampled_shape::{PlaceMotion, SampledPlace, SampledShape, places};
-use super::{Motion, SectionSignature, rigid_pose};
+use super::{CommonFrame, Motion, SectionSignature, Speed, rigid_pose};
 use crate::curve::Tube;
 use crate::distance::Scalar;
 use crate::robot::RobotError;
@@ -38,6 +40,9 @@ use parry3d_f64::math::Real;
 /// A stated displacement ([`Motion::displacement`]) is compared with the shapes at the ends of its
 /// time and at its middle. The ranges are the same as for speeds; the shapes are 1, 2, 4, 8 and
 /// more steps apart.
+///
+/// A stated frame ([`Motion::common_frame`]) is tested like a speed: relative to the frame no place
+/// may move or turn faster than [`Motion::speed_in_frame`] states.
 ///
 /// Part of a measured displacement may be an error of the shapes. It does not count against the
 /// motion:
@@ -105,8 +110,14 @@ fn verify(motion: &dyn Motion, steps: u32) -> Result<(), RobotError> {
             // The first shape, and one for each power of two that divides the step.
             let met = 2 + step.trailing_zeros() as usize;
             for before in kept.iter().take(met) {
-                ranges.ways_and_angles(motion, &all, [before.t, t], &mut stated);
+                let times = [before.t, t];
+                ranges.ways_and_angles(motion, &all, times, &mut stated);
                 check(before, &here, &all, &stated)?;
+                if let Some(frame) = motion.common_frame(times) {
+                    let in_frame = |section, shares| motion.speed_in_frame(section, shares, times);
+                    ranges.least(in_frame, &all, 1.0, &mut stated);
+                    check_in_frame(&frame, before, &here, &all, &stated)?;
+                }
             }
             for steps in 1..met {
                 let middle = (steps > 1).then(|| &kept[steps - 1]);
@@ -167,9 +178,20 @@ impl Ranges {
         times: [Real; 2],
         out: &mut Vec<[Real; 2]>,
     ) {
-        let apart = times[1] - times[0];
+        let speed = |section, shares| motion.speed(section, shares, times);
+        self.least(speed, places, times[1] - times[0], out);
+    }
+
+    /// [`ways_and_angles`](Self::ways_and_angles) for a stated speed, times `apart`.
+    fn least(
+        &self,
+        speed: impl Fn(usize, [Real; 2]) -> Speed,
+        places: &[SampledPlace],
+        apart: Real,
+        out: &mut Vec<[Real; 2]>,
+    ) {
         let stated = |section: usize, shares: [Real; 2]| {
-            let speed = motion.speed(section, shares, times);
+            let speed = speed(section, shares);
             [speed.point * apart, speed.turn * apart]
         };
         out.clear();
@@ -248,7 +270,40 @@ fn check(
     Ok(())
 }
 
-/// Compares stated displacements with the shapes at the end and in the middle (step 4).
+/// Compares an earlier shape, carried along by a frame, with a later one (step 4).
+///
+/// # Errors
+/// A place moved or turned relative to the frame faster than stated.
+fn check_in_frame(
+    frame: &CommonFrame,
+    before: &SampledShape,
+    here: &SampledShape,
+    places: &[SampledPlace],
+    stated: &[[Real; 2]],
+) -> Result<(), RobotError> {
+    let (t, apart) = (0.5 * (before.t + here.t), here.t - before.t);
+    for (number, (place, &[point, turn])) in places.iter().zip(stated).enumerate() {
+        let Some(PlaceMotion { way, angle }) = before.moved_in(Some(frame), here, number) else {
+            continue;
+        };
+        let Some(from) = before.point(number) else { continue };
+        let most = frame.stray(from, apart, Speed { point, turn });
+        let up = 1.0 + 64.0 * Real::UNIT_ROUNDOFF;
+        for (found, stated, is_turn) in
+            [(way / apart, most.point, false), (angle / apart, most.turn, true)]
+        {
+            // Written so that NaN is too low. A link that loses its length turns at any rate.
+            let is_kept = found <= stated * up && (is_turn || point < Real::INFINITY);
+            if !is_kept {
+                let &SampledPlace { section, shares: [share, _] } = place;
+                return Err(RobotError::LeavesFrame { t, section, share, found, stated, is_turn });
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Compares stated displacements with the shapes at the end and in the middle (step 5).
 ///
 /// # Errors
 /// A place is farther from its stated displacement than stated, at the last shape or at the one

@@ -141,6 +141,11 @@ impl<'a> TubePair<'a> {
         [0, 1].map(|k: usize| self.tubes[k].section_range(&pair.pieces[k], &pair.outers[k]))
     }
 
+    /// Returns one of the two tubes.
+    pub(crate) fn tube(&self, number: usize) -> &PlacedTube<'a> {
+        &self.tubes[number]
+    }
+
     /// Whether these section numbers exist in the two tubes.
     pub(crate) fn have(&self, sections: [u32; 2]) -> bool {
         sections

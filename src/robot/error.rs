@@ -175,6 +175,30 @@ pub enum RobotError {
         /// The angular speed that the motion states, rad per unit of time.
         stated: Real,
     },
+    /// A motion's centreline leaves the frame that the motion states, faster than it states.
+    #[error(
+        "around t = {t} the centreline at share {share} of section {section} {} at {found} relative to the common \
+         frame, more than the {stated} stated; state another frame, or more",
+        if *.is_turn { "turns" } else { "moves" },
+        t = number(.t),
+        share = number(.share),
+        found = number(.found),
+        stated = number(.stated)
+    )]
+    LeavesFrame {
+        /// The time.
+        t: Real,
+        /// The section, counted from the base.
+        section: usize,
+        /// The place in the section, from 0 to 1.
+        share: Real,
+        /// A lower bound on the speed of the place relative to the frame.
+        found: Real,
+        /// The speed that the motion states.
+        stated: Real,
+        /// Whether both are angular speeds, in rad.
+        is_turn: bool,
+    },
     /// A motion's centreline is farther from its stated displacement than the motion states.
     #[error(
         "around t = {t} the centreline at share {share} of section {section} is {found} off its stated course, more \

@@ -40,6 +40,16 @@ impl BoundingBox {
         Self { low: self.low.min(other.low), high: self.high.max(other.high) }
     }
 
+    /// This box with a rim of a width.
+    pub fn grown(self, width: Real) -> Self {
+        Self { low: self.low - Vector::splat(width), high: self.high + Vector::splat(width) }
+    }
+
+    /// The distance from another box, without the rounding of both.
+    pub fn gap(&self, other: &Self) -> Real {
+        length((self.low - other.high).max(other.low - self.high).max(Vector::ZERO))
+    }
+
     /// The largest magnitude of a coordinate.
     pub fn size(&self) -> Real {
         self.low.abs().max(self.high.abs()).max_element()

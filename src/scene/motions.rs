@@ -12,8 +12,8 @@
 //!    earliest contact. Without a contact the answer is the first error, or else the earliest
 //!    undecided interval.
 //!
-//! The least slack combines the slacks of the structures, nearest first by their bounds, and of the
-//! pairs of robots ([`LeastSlack`]).
+//! The least slack combines the slacks of the structures, then of the pairs of robots, each nearest
+//! first by their bounds ([`LeastSlack`]). All pairs of robots share one limit of work.
 //!
 //! The queries share the shapes of their first intervals. They share nothing else, so each decides
 //! as if it were the only one.
@@ -21,7 +21,7 @@
 use super::Scene;
 use super::least_slack::{BoundedSlack, LeastSlack};
 use super::moving_robot::{MovingRobot, MovingRobotMemory};
-use super::queries::{of_pair, of_robot, of_structure, pairs_apart};
+use super::queries::{nearest_first, of_pair, of_robot, of_structure, pairs_apart};
 use super::structure::{Structure, place_witness};
 use super::structure_end::{MovingStructure, StructureEnd, seen_from};
 use crate::answer::{
@@ -32,7 +32,7 @@ use crate::answer::{
 use crate::engine::SceneMotion;
 use crate::motion::Motion;
 use crate::query::check_not_negative;
-use crate::query::motion::{MarginQuery, Sought};
+use crate::query::motion::{MAX_PAIRS_FOR_BOUNDS, MarginQuery, Sought};
 use parry3d_f64::math::Real;
 
 impl Scene {
@@ -192,8 +192,9 @@ impl Scene {
     ///
     /// Returns `None` if there is no robot or no such margin. `lower` <= least slack <= `upper`.
     /// `tolerance` is a length: the bounds differ by at most the tolerance if the motions' shapes
-    /// allow that ([`resolved`](SceneMotionClearance::resolved)). The margins of robots to
-    /// themselves do not count.
+    /// allow that ([`resolved`](SceneMotionClearance::resolved)), and all pairs of robots together
+    /// need no more than a million pairs of pieces. The margins of robots to themselves do not
+    /// count.
     ///
     /// ```
     /// use parry_continuum::{LinearMotion, parry::{math::Vector, shape::Ball}};
@@ -255,12 +256,24 @@ impl Scene {
             least.offer([0, number, robot], margin, [lower, upper], uncertainty, (t, place));
         }
         let Some(margin) = self.robot_margin else { return Ok(least) };
-        for pair in pairs_apart(robots.len(), &self.nested) {
+        let mut order: Vec<_> = pairs_apart(robots.len(), &self.nested)
+            .map(|pair| {
+                let slack = robots[pair[0]].at_least_from(&robots[pair[1]]) - margin;
+                // An infinite margin and an infinite bound.
+                (if slack.is_nan() { Real::NEG_INFINITY } else { slack.next_down() }, pair)
+            })
+            .collect();
+        order.sort_unstable_by(nearest_first);
+        let mut left = MAX_PAIRS_FOR_BOUNDS;
+        for (bound, pair) in order {
+            if bound > least.upper() {
+                break;
+            }
             let [a, b] = pair.map(|robot| robots[robot].in_scene());
             let limit = least.limit(margin);
             let RobotMotionClearance { lower, upper, uncertainty, t, sections, witness, .. } = self
                 .pair
-                .ask_clearance_of_motion([&a, &b], tolerance, limit)
+                .ask_clearance_of_motion([&a, &b], tolerance, limit, &mut left)
                 .map_err(|error| of_motions(pair, [&a, &b], error))?;
             let robots = pair.map(|robot| robot as u32);
             let place = ScenePlace::Robots { robots, sections, witness };

@@ -39,7 +39,7 @@ use super::structure_end::MovingStructure;
 use crate::answer::ProximityError;
 use crate::curve::Tube;
 use crate::distance::Scalar;
-use crate::motion::{DisplacementBound, Motion, Speed, check_speed};
+use crate::motion::{CarriedMotion, CommonFrame, DisplacementBound, Motion, Speed, check_speed};
 use crate::pair::PlacedLink;
 use crate::query::motion::{half_length, midpoint};
 use crate::refine::{Piece, PlacedTube};
@@ -203,9 +203,10 @@ impl<'a> MovingRobot<'a> {
             tube.forget_error();
             let pose = self.shape(midpoint(times), tube)?;
             let placed = PlacedTube::new(tube, &pose, 0.0)?;
+            let carried = CarriedMotion::new(self.motion, times, half_length(times));
             sweep(&placed, times, pieces, &mut self.swept, |piece| {
-                let section = piece.section as usize;
-                let speed = self.motion.speed(section, placed.shares(piece), times).point;
+                let (section, shares) = (piece.section as usize, placed.shares(piece));
+                let speed = carried.speed((placed.tube, &placed.pose), section, shares).point;
                 // An invalid speed bounds nothing here; the queries return it as an error.
                 let speed = check_speed(section, speed).unwrap_or(Real::INFINITY);
                 half_length(times) * speed * (1.0 + 8.0 * Real::UNIT_ROUNDOFF)
@@ -229,6 +230,39 @@ impl<'a> MovingRobot<'a> {
                 let bound = body.at_least(&around, size) - way;
                 // Written so that NaN is near.
                 least = if bound >= least { least } else { bound };
+            }
+        }
+        least
+    }
+
+    /// A lower bound on the distance from another robot that moves at the same time: by the boxes
+    /// around the bodies of the parts that share a time. It errs as that from a structure does.
+    pub fn at_least_from(&self, other: &Self) -> Real {
+        let boxes = |robot: &Self| -> Vec<_> {
+            let around = |part: &[SweptBody]| {
+                let parts = part.iter().map(|SweptBody { body, way, .. }| {
+                    let ends = [body.start(), body.end()].into_iter();
+                    BoundingBox::points(ends).grown(body.radius() + way)
+                });
+                let reach = part.iter().fold(0.0, |most: Real, body| most.max(body.reach));
+                (part[0].times, parts.fold(BoundingBox::default(), BoundingBox::and), reach)
+            };
+            robot.swept.chunk_by(|one, other| one.times == other.times).map(around).collect()
+        };
+        let (here, there) = (boxes(self), boxes(other));
+        let mut least = Real::INFINITY;
+        for (times, around, reach) in &here {
+            for (others, beside, size) in &there {
+                if times[0] >= others[1] || others[0] >= times[1] {
+                    continue;
+                }
+                let largest = reach + size;
+                if largest < COORDINATE_LIMIT / 16.0 {
+                    let rounding = 1024.0 * Real::UNIT_ROUNDOFF * largest;
+                    least = least.min(around.gap(beside) - rounding);
+                } else {
+                    return Real::NEG_INFINITY;
+                }
             }
         }
         least
@@ -297,6 +331,16 @@ impl Motion for PlacedMotion<'_, '_> {
             ways: ways.map(|way| scene_to_mesh.rotation * way),
             off: off * (1.0 + 16.0 * Real::UNIT_ROUNDOFF) + rounding,
         })
+    }
+
+    fn common_frame(&self, times: [Real; 2]) -> Option<CommonFrame> {
+        let frame = self.robot.motion.common_frame(times)?;
+        Some(self.scene_to_mesh.map_or(frame, |scene_to_mesh| frame.seen_from(&scene_to_mesh)))
+    }
+
+    fn speed_in_frame(&self, section: usize, shares: [Real; 2], times: [Real; 2]) -> Speed {
+        let Speed { point, turn } = self.robot.motion.speed_in_frame(section, shares, times);
+        Speed { point: point * (1.0 + 16.0 * Real::UNIT_ROUNDOFF), turn }
     }
 
     fn time_parts(&self) -> usize {

@@ -724,6 +724,53 @@ fn what_is_believed_of_a_changed_text_is_true() {
     assert!(believed > 8 && refused > 80, "{believed} {refused}");
 }
 
+/// The shapes of a motion are one robot: its radii stay, and no part of it jumps between two
+/// shapes. The plane alone separates each of these shapes from the wall.
+#[test]
+fn a_motion_whose_parts_jump_is_refused() {
+    let wall = [[-50.0, -50.0, 100.0], [50.0, -50.0, 100.0], [0.0, 50.0, 100.0]];
+    let search = BvhSearch::from_triangles(&wall.map(Vector::from), &[[0, 1, 2]]).unwrap();
+    // The head of a proof has the digest of the mesh.
+    let robot = Chain::capsules(&[Vector::ZERO, Vector::Z], &[1.0]).unwrap();
+    let still = RigidMotion::new(Tube::from(&robot), [Pose::IDENTITY; 2]).unwrap();
+    let proof = search.clone().prove_motion(&still, 1.0, 1e-3).unwrap().unwrap().to_string();
+    let head: Vec<_> = proof.lines().take(3).collect();
+    let shape = |times: [f64; 2], points: &[[f64; 2]], radii: &[f64]| {
+        let mut text = format!("shape {:?} {:?} {}\n", times[0], times[1], radii.len());
+        points.iter().for_each(|[y, z]| text += &format!("0.0 {y:?} {z:?}\n"));
+        // 10 long, and 0.125 further after a quarter of the time.
+        radii.iter().for_each(|radius| text += &format!("{radius:?} rr 0.0 10.0 0.0 0.5 0.0\n"));
+        text + "steps 1\n0,0,1\n"
+    };
+    let first = [[0.0, 0.0], [0.0, 10.0], [0.0, 20.0]];
+    let second = |y: f64, z: f64| [[0.1, 0.0], [y, z], [0.1, 20.0]];
+    let cases: [(&[[f64; 2]], [&[f64]; 2], &str); 8] = [
+        (&second(0.2, 10.0), [&[1.0; 2], &[1.0; 2]], "yes"),
+        // The same in other pieces, and a joint that moves along the robot where no radius shows it.
+        (&[[0.1, 0.0], [0.2, 5.0], [0.2, 10.0], [0.1, 20.0]], [&[1.0; 2], &[1.0; 3]], "yes"),
+        (&second(0.1, 12.0), [&[1.0; 2], &[1.0; 2]], "does not reach"),
+        (&second(0.2, 10.0), [&[1.0, 2.0], &[1.0, 2.0]], "yes"),
+        (&second(0.2, 10.0), [&[1.0; 2], &[0.001; 2]], "radii differ"),
+        (&second(0.2, 10.0), [&[1.0, 2.0], &[2.0, 1.0]], "radii differ"),
+        (&second(0.6, 10.0), [&[1.0; 2], &[1.0; 2]], "jumps"),
+        (
+            &[[0.1, 0.0], [0.2, 9.9], [0.2, 9.3], [0.1, 19.2]],
+            [&[1.0, 2.0], &[1.0, 1.0, 2.0]],
+            "jump",
+        ),
+    ];
+    let mut checks = Checks::new("jumps");
+    for (points, radii, _) in cases {
+        let shapes = [shape([0.0, 0.5], &first, radii[0]), shape([0.5, 1.0], points, radii[1])];
+        let text = format!("{}\nmotion 2\n{}{}end\n", head.join("\n"), shapes[0], shapes[1]);
+        checks.add(&obj(&search), &text);
+    }
+    let Some(said) = checks.run() else { return };
+    for (said, (points, radii, expected)) in said.iter().zip(cases) {
+        assert!(said.text.contains(expected), "{}: {points:?} {radii:?}", said.text);
+    }
+}
+
 /// Tubes and motions, beside and through what the library itself decides.
 #[test]
 fn tubes_and_motions_that_keep_a_margin_are_proven() {

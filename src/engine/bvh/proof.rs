@@ -14,7 +14,10 @@ use crate::engine::Proximity;
 use crate::motion::Motion;
 use crate::pair::PlacedRobot;
 use crate::query::check_decision;
-use crate::query::proof::{Kind, PlaneSearch, Shape, motion_proof, tube_shape, write_proof};
+use crate::query::proof::{
+    Kind, MAX_BYTES, MIN_PIECE_BYTES, PlaneSearch, Shape, motion_proof, size_of, tube_shape,
+    write_proof,
+};
 use crate::refine::PlacedTube;
 use crate::robot::Chain;
 use fearless_simd::Level;
@@ -71,7 +74,7 @@ impl BvhSearch {
     ///
     /// The checking program prints the premises about the curve: points, and upper bounds on its
     /// length and bend between them. `None` if the tube does not keep the margin, or keeps it by at
-    /// most `resolution`.
+    /// most `resolution`. Also `None` if the proof would be longer than 16 MiB.
     ///
     /// # Errors
     /// As [`clears_tube`](Self::clears_tube).
@@ -92,13 +95,15 @@ impl BvhSearch {
         let mut over = tube.length() / 16.0;
         loop {
             let (shape, _) = tube_shape(&placed, over, false);
+            // Finer pieces only make the proof longer.
+            if shape.pieces.len() > MAX_BYTES / MIN_PIECE_BYTES {
+                return Ok(None);
+            }
             if let Some(steps) = plane_search.steps(&shape.bodies(margin)) {
-                return Ok(Some(write_proof(
-                    plane_search.mesh(),
-                    margin,
-                    Kind::Tube,
-                    &[(shape, steps)],
-                )));
+                let parted = (shape, steps);
+                let is_short = size_of(Kind::Tube, &parted) <= MAX_BYTES;
+                let write = || write_proof(plane_search.mesh(), margin, Kind::Tube, &[parted]);
+                return Ok(is_short.then(write));
             }
             if over <= finest {
                 return Ok(None);

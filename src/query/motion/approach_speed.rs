@@ -12,7 +12,7 @@
 //!    the tube. The front half turns like a disc, so case 2 covers it.
 
 use crate::distance::Scalar;
-use crate::motion::{Motion, check_speed};
+use crate::motion::{Speed, check_speed};
 use crate::refine::{Body, SectionRange};
 use crate::robot::RobotError;
 use parry3d_f64::math::Real;
@@ -27,17 +27,15 @@ pub(super) struct ApproachSpeed {
 }
 
 impl ApproachSpeed {
-    /// Returns the speed that a motion states for a range of a section whose body is known.
+    /// Returns the speed of a range of a section whose body is known, from the stated one.
     ///
     /// # Errors
     /// A stated speed is negative or not finite.
     pub(super) fn of(
-        motion: &dyn Motion,
-        times: [Real; 2],
-        &SectionRange { section, shares, outer, radius }: &SectionRange,
+        stated: Speed,
+        &SectionRange { section, outer, radius, .. }: &SectionRange,
     ) -> Result<Self, RobotError> {
         let section = section as usize;
-        let stated = motion.speed(section, shares, times);
         // A section of radius 0 has no rim.
         let turn = if outer.is_flat() && radius > 0.0 { stated.turn } else { 0.0 };
         let centreline = check_speed(section, stated.point)?;

@@ -1,8 +1,8 @@
 //! The shape of a moving robot at the current time.
 
-use super::approach_bound::{half_length, midpoint};
+use super::approach_bound::midpoint;
 use crate::curve::Tube;
-use crate::motion::{Motion, MotionDrift, SectionSignature};
+use crate::motion::{CarriedMotion, Motion, MotionDrift, SectionSignature};
 use crate::robot::RobotError;
 use parry3d_f64::math::{Pose, Real};
 
@@ -37,18 +37,9 @@ impl CurrentShape {
         Ok(pose)
     }
 
-    /// Marks the flat ends that stay flat between two times, whose middle shape this is. Returns
-    /// how far the other flat ends move.
-    pub(super) fn mark_lasting_faces_between(
-        &mut self,
-        motion: &dyn Motion,
-        times: [Real; 2],
-    ) -> Real {
-        self.tube.mark_lasting_faces_between(&MotionDrift {
-            motion,
-            times,
-            t: midpoint(times),
-            half_length: half_length(times),
-        })
+    /// Marks the flat ends that stay flat in an interval, whose middle shape this is. Returns how
+    /// far the other flat ends move.
+    pub(super) fn mark_lasting_faces_in(&mut self, motion: &CarriedMotion) -> Real {
+        self.tube.mark_lasting_faces_between(&MotionDrift { motion, t: midpoint(motion.times) })
     }
 }

@@ -24,6 +24,6 @@ mod unresolved_piece;
 pub(crate) use approach_bound::{half_length, midpoint};
 pub(crate) use interval_test::MarginQuery;
 pub(crate) use intervals::Sought;
-pub(crate) use motion_pair::{MotionPair, MotionsMemory};
+pub(crate) use motion_pair::{MAX_PAIRS_FOR_BOUNDS, MotionPair, MotionsMemory};
 pub(crate) use motion_search::{MotionMemory, MotionSearch};
 pub(crate) use self_motion::{SelfMotionMemory, self_decides_motion};

@@ -3,8 +3,9 @@
 //!
 //! # Algorithm
 //! 1. Test an interval by the two shapes at its middle, as for one motion (`motion_search`). Let
-//!    tau be half of the interval and V1, V2 the speeds of two pieces. Then the pieces come nearer
-//!    by at most tau (V1 + V2).
+//!    tau be half of the interval and V1, V2 the speeds of two pieces, seen from one frame. Then the
+//!    pieces come nearer by at most tau (V1 + V2). The frame is at rest, or carries one of the robots
+//!    (`motion::common_frame`): for each interval the one with the least speeds.
 //! 2. Pairs for which that is too much are tested again in the remaining parts of the interval.
 //! 3. Each shape starts with all pairs that may reach the margin in its interval, not with a list
 //!    of unresolved pairs. Such pairs are few, and their bodies show at once which pieces are near
@@ -21,15 +22,16 @@ use super::minimum_policy::MinimumPolicy;
 use super::minimum_rounds::{
     Minimized, Minimum, MinimumBounds, NearestFirst, RoundMemory, minimum,
 };
-use super::moving_pair::MovingPair;
+use super::moving_pair::{MovingPair, SeenFrom};
 use super::progress::MAX_SHAPES;
 use super::relative_motion::RelativeMotion;
 use crate::answer::{PairWitness, ProximityError, RobotMotionAnswer, RobotMotionClearance};
 use crate::distance::Scalar;
-use crate::motion::{Motion, check_speed};
+use crate::motion::{CarriedMotion, CarriedPiece, Motion, check_speed};
 use crate::refine::{
     PairQueue, PairUpperBound, PiecePair, PlacedTube, Refinable, TubePair, refine,
 };
+use crate::robot::RobotError;
 use parry3d_f64::math::Real;
 use std::collections::{BinaryHeap, VecDeque};
 
@@ -39,7 +41,7 @@ const MAX_PAIRS: u32 = 1 << 24;
 
 /// The same for bounds on the least clearance: a few seconds. A distance that stays nearly constant
 /// needs 50 to 100 times as many for a tenth of the tolerance.
-const MAX_PAIRS_FOR_BOUNDS: u32 = 1 << 20;
+pub(crate) const MAX_PAIRS_FOR_BOUNDS: u32 = 1 << 20;
 
 /// State and memory that the next query reuses.
 #[derive(Clone, Debug, Default)]
@@ -87,13 +89,14 @@ impl MotionPair<'_> {
     }
 
     /// Returns bounds on the least clearance that are at most `tolerance` apart if possible; or a
-    /// lower bound of at least `limit`.
+    /// lower bound of at least `limit`. Tests at most `left` pairs of pieces, and subtracts them.
     pub(crate) fn clearance(
         &mut self,
         tolerance: Real,
         limit: Real,
+        left: &mut u32,
     ) -> Result<RobotMotionClearance, ProximityError> {
-        let mut search = PairClearance { pair: self, left: MAX_PAIRS_FOR_BOUNDS };
+        let mut search = PairClearance { pair: self, left };
         let Minimum { lower, uncertainty, resolved, best, t } =
             minimum(&mut search, tolerance, limit)?;
         let PairUpperBound { upper, sections, arcs, points: [on_first, on_second] } = best;
@@ -110,23 +113,24 @@ impl MotionPair<'_> {
     ) -> Result<TestedInterval<PairUpperBound>, ProximityError> {
         let (motions, names, times) = (self.motions, self.names, interval.times);
         let MotionsMemory { current, beginning, pairs, .. } = &mut *self.memory;
-        let [first, second] = shapes(motions, names, current, times)?;
-        let mut tubes = TubePair::new([first.tube, second.tube]);
+        let shapes = shapes(motions, names, current, times)?;
+        let speeds = PairSpeeds::new(&shapes, names)?;
+        let PlacedShapes { tubes, cap_change, carried } = shapes;
+        let mut tubes = TubePair::new(tubes);
         // A finer resolution is below rounding.
         tubes.check_resolved(32.0 * tubes.slack(), wanted.resolution)?;
-        let reach =
-            half_length(times) * (first.speed + second.speed) * (1.0 + 4.0 * Real::UNIT_ROUNDOFF);
+        let reach = half_length(times) * speeds.sum();
         let MarginQuery { margin, resolution } = wanted;
         let (scale, upper) =
             (margin.max(resolution).max(0.25 * reach), margin + reach + tubes.slack());
         let is_all =
             tubes.begin(scale, upper, intervals::most_pairs(reach, wanted), beginning, pairs)?;
         if !is_all {
-            let faster = if second.speed > first.speed { &second } else { &first };
-            check_subdivision(faster.speed, resolution, || (faster.fastest, faster.speed))?;
+            let (fastest, speed) = speeds.fastest();
+            check_subdivision(speed, resolution, || (fastest, speed))?;
         }
-        let approach_bound = ApproachBound::new(times, first.cap_change.max(second.cap_change));
-        let moving = MovingPair { motions, names, times, left };
+        let approach_bound = ApproachBound::new(times, cap_change);
+        let moving = MovingPair { motions: carried, seen_from: speeds.seen_from, names, left };
         let mut test =
             IntervalTest { moving, approach_bound, wanted, result: IntervalResult::empty() };
         refine(&mut tubes, pairs, &mut test)?;
@@ -142,7 +146,7 @@ impl MotionPair<'_> {
 struct PairClearance<'s, 'a> {
     pair: &'s mut MotionPair<'a>,
     /// How many pairs of pieces may still be tested.
-    left: u32,
+    left: &'s mut u32,
 }
 
 fn seed(known: &mut MinimumBounds<PairUpperBound>, tubes: &TubePair, t: Real) {
@@ -165,7 +169,7 @@ impl Minimized for PairClearance<'_, '_> {
     }
 
     fn is_exhausted(&self, shapes: u64) -> bool {
-        shapes >= MAX_SHAPES || self.left == 0
+        shapes >= MAX_SHAPES || *self.left == 0
     }
 
     fn seed(
@@ -175,7 +179,7 @@ impl Minimized for PairClearance<'_, '_> {
     ) -> Result<(), ProximityError> {
         let MotionPair { memory, motions, names } = &mut *self.pair;
         let placed = shapes(*motions, *names, &mut memory.current, interval.times)?;
-        seed(known, &TubePair::new(placed.map(|shape| shape.tube)), interval.midpoint());
+        seed(known, &TubePair::new(placed.tubes), interval.midpoint());
         Ok(())
     }
 
@@ -184,19 +188,22 @@ impl Minimized for PairClearance<'_, '_> {
         interval: Interval,
         known: &mut MinimumBounds<PairUpperBound>,
     ) -> Result<[Option<Interval>; 2], ProximityError> {
-        let Self { pair: MotionPair { memory, motions, names }, left } = self;
+        let left = &mut *self.left;
+        let MotionPair { memory, motions, names } = &mut *self.pair;
         let MotionsMemory { current, beginning, pairs, .. } = &mut **memory;
         let (times, t) = (interval.times, interval.midpoint());
-        let [first, second] = shapes(*motions, *names, current, times)?;
-        let approach_bound = ApproachBound::new(times, first.cap_change.max(second.cap_change));
-        let reach =
-            half_length(times) * (first.speed + second.speed) * (1.0 + 4.0 * Real::UNIT_ROUNDOFF);
-        let mut tubes = TubePair::new([first.tube, second.tube]);
+        let shapes = shapes(*motions, *names, current, times)?;
+        let speeds = PairSpeeds::new(&shapes, *names)?;
+        let PlacedShapes { tubes, cap_change, carried } = shapes;
+        let approach_bound = ApproachBound::new(times, cap_change);
+        let reach = half_length(times) * speeds.sum();
+        let mut tubes = TubePair::new(tubes);
         seed(known, &tubes, t);
         let slack = tubes.slack();
         let upper = known.upper();
         let scale = upper.max(known.tolerance).max(0.25 * reach);
-        let moving = MovingPair { motions: *motions, names: *names, times, left };
+        let moving =
+            MovingPair { motions: carried, seen_from: speeds.seen_from, names: *names, left };
         let mut policy = MinimumPolicy::new(moving, approach_bound, known, t, slack);
         let most = if reach > policy.aim() { MAX_PAIRS_PER_INTERVAL } else { usize::MAX };
         let is_all = tubes.begin(scale, upper + reach + slack, most, beginning, pairs)?;
@@ -226,38 +233,105 @@ impl Minimized for PairClearance<'_, '_> {
 /// bounds: a shorter interval has fewer pairs.
 const MAX_PAIRS_PER_INTERVAL: usize = 1 << 16;
 
+/// Both robots in their middle shapes.
+struct PlacedShapes<'p> {
+    tubes: [PlacedTube<'p>; 2],
+    /// How far ends that may become round move.
+    cap_change: Real,
+    carried: [CarriedMotion<'p>; 2],
+}
+
 /// Places both robots in their middle shapes.
 fn shapes<'p>(
-    motions: [&dyn Motion; 2],
+    motions: [&'p dyn Motion; 2],
     names: [&'static str; 2],
     [first, second]: &'p mut [CurrentShape; 2],
     times: [Real; 2],
-) -> Result<[PlacedShape<'p>; 2], ProximityError> {
-    let [first, second] = [shape(motions[0], first, times), shape(motions[1], second, times)];
-    let first = first.map_err(|error| error.of_robot(names[0]))?;
-    Ok([first, second.map_err(|error| error.of_robot(names[1]))?])
+) -> Result<PlacedShapes<'p>, ProximityError> {
+    let carried = motions.map(|motion| CarriedMotion::new(motion, times, half_length(times)));
+    let [first, second] = [shape(&carried[0], first), shape(&carried[1], second)];
+    let (first, change) = first.map_err(|error| error.of_robot(names[0]))?;
+    let (second, other) = second.map_err(|error| error.of_robot(names[1]))?;
+    Ok(PlacedShapes { tubes: [first, second], cap_change: change.max(other), carried })
 }
 
-/// A robot in its middle shape.
-struct PlacedShape<'a> {
-    tube: PlacedTube<'a>,
-    cap_change: Real,
-    /// An upper bound on the speed of its points, and the section where it occurs.
-    speed: Real,
-    fastest: usize,
-}
-
+/// Places a robot in its middle shape.
 fn shape<'p>(
-    motion: &dyn Motion,
+    carried: &CarriedMotion,
     current: &'p mut CurrentShape,
-    times: [Real; 2],
-) -> Result<PlacedShape<'p>, ProximityError> {
-    let pose = current.set_time(motion, midpoint(times))?;
-    let cap_change = current.mark_lasting_faces_between(motion, times);
-    let tube = PlacedTube::new(&current.tube, &pose, 0.0)?.moving();
+) -> Result<(PlacedTube<'p>, Real), ProximityError> {
+    let pose = current.set_time(carried.motion, midpoint(carried.times))?;
+    let cap_change = current.mark_lasting_faces_in(carried);
+    Ok((PlacedTube::new(&current.tube, &pose, 0.0)?.moving(), cap_change))
+}
+
+/// Upper bounds on the speeds of all points of two robots, in the frame in which their sum is least.
+struct PairSpeeds {
+    seen_from: SeenFrom,
+    /// For each robot the speed, and the section where it occurs.
+    speeds: [(usize, Real); 2],
+}
+
+impl PairSpeeds {
+    /// # Errors
+    /// A stated speed is negative or not finite.
+    fn new(shapes: &PlacedShapes, names: [&'static str; 2]) -> Result<Self, ProximityError> {
+        let mut best = Self::seen_from(SeenFrom::Rest, shapes, names)?;
+        for (number, carried) in shapes.carried.iter().enumerate() {
+            // Without a frame it is the frame at rest.
+            if carried.has_frame() {
+                let other = Self::seen_from(SeenFrom::Robot(number), shapes, names)?;
+                if other.sum() < best.sum() {
+                    best = other;
+                }
+            }
+        }
+        Ok(best)
+    }
+
+    fn seen_from(
+        seen_from: SeenFrom,
+        shapes: &PlacedShapes,
+        names: [&'static str; 2],
+    ) -> Result<Self, ProximityError> {
+        let mut speeds = [(0, 0.0); 2];
+        for (number, fastest) in speeds.iter_mut().enumerate() {
+            *fastest = fastest_section(seen_from, shapes, number)
+                .map_err(|error| ProximityError::Motion(error).of_robot(names[number]))?;
+        }
+        Ok(Self { seen_from, speeds })
+    }
+
+    /// The speed at which the robots approach one another at most.
+    fn sum(&self) -> Real {
+        let [(_, first), (_, second)] = self.speeds;
+        (first + second) * (1.0 + 4.0 * Real::UNIT_ROUNDOFF)
+    }
+
+    /// The section of the faster robot, and its speed.
+    fn fastest(&self) -> (usize, Real) {
+        let [first, second] = self.speeds;
+        if second.1 > first.1 { second } else { first }
+    }
+}
+
+/// Returns the fastest section of a robot, and an upper bound on the speed of its points.
+///
+/// # Errors
+/// A stated speed is negative or not finite.
+fn fastest_section(
+    seen_from: SeenFrom,
+    shapes: &PlacedShapes,
+    robot: usize,
+) -> Result<(usize, Real), RobotError> {
+    let (tube, carried) = (&shapes.tubes[robot], &shapes.carried[robot]);
     let (mut most, mut fastest) = (0.0, 0);
     for (number, section) in tube.sections().iter().enumerate() {
-        let stated = motion.speed(number, [0.0, 1.0], times);
+        let shares = [0.0, 1.0];
+        let stated = carried.stated(number, shares);
+        let stated = seen_from.speed(&shapes.carried, robot, stated, || {
+            CarriedPiece::new(tube.tube, &tube.pose, section, shares)
+        });
         check_speed(number, stated.point)?;
         // A body without a flat end needs no turn. The turn of a link of length 0 is infinite. A
         // turn that is no speed at all is an error in every body.
@@ -270,5 +344,5 @@ fn shape<'p>(
             (most, fastest) = (speed, number);
         }
     }
-    Ok(PlacedShape { tube, cap_change, speed: most * (1.0 + 4.0 * Real::UNIT_ROUNDOFF), fastest })
+    Ok((fastest, most * (1.0 + 4.0 * Real::UNIT_ROUNDOFF)))
 }

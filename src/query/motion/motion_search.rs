@@ -32,7 +32,11 @@
 //!
 //! **Moving mesh.** The mesh has a place at each time (`search::hierarchy::moving_mesh`). V is then
 //! the speed of the piece plus the speed of the fastest vertex, since no point of a triangle is
-//! faster than its vertices.
+//! faster than its vertices. If all vertices share a shift, V is also the speed of the piece
+//! relative to that shift, plus the largest difference of a vertex from it.
+//!
+//! **Common frame.** If the motion states a frame that carries the robot (`motion::common_frame`),
+//! V follows from the middle shape: the speed in the frame, and the frame's own speed at the piece.
 //!
 //! **Flat ends** that may become round during the interval count as round
 //! (`curve::cap_persistence`): the ball contains the disc at all times. The same holds for a
@@ -40,7 +44,7 @@
 //! until they isolate the instant at which it becomes round. The shape itself jumps there; if that
 //! is what comes near, the answer is undecided.
 
-use super::approach_bound::ApproachBound;
+use super::approach_bound::{ApproachBound, half_length};
 use super::current_shape::CurrentShape;
 use super::interval_test::{IntervalResult, IntervalTest, MarginQuery};
 use super::intervals::{self, Interval, MarginAnswer, Sought, TestedInterval};
@@ -50,9 +54,9 @@ use super::pending_piece::PendingPiece;
 use super::separating_planes::SeparatingPlanes;
 use super::unresolved_piece::{UnresolvedPiece, UnresolvedPieces};
 use crate::answer::{MotionAnswer, ProximityError, ShapeInContact};
-use crate::motion::Motion;
+use crate::motion::{CarriedMotion, Motion};
 use crate::refine::{MeshUpperBound, Piece, PlacedTube, Refinable, TubeInMesh, refine};
-use crate::search::hierarchy::{MeshAt, MeshSearch, MovingMesh, PlacedMeshSearch};
+use crate::search::hierarchy::{MeshAt, MeshSearch, MeshSpeed, MovingMesh, PlacedMeshSearch};
 use parry3d_f64::math::{Real, Vector};
 use std::collections::{BinaryHeap, VecDeque};
 use std::ops::Range;
@@ -210,16 +214,16 @@ impl MotionSearch<'_> {
             ..
         } = &mut *self.memory;
         let pose = current.set_time(motion, t)?;
-        let approach_bound =
-            ApproachBound::new(times, current.mark_lasting_faces_between(motion, times));
+        let carried = CarriedMotion::new(motion, times, half_length(times));
+        let approach_bound = ApproachBound::new(times, current.mark_lasting_faces_in(&carried));
         let MeshSearch { level, hierarchy, .. } = self.search;
         let search = MeshSearch::new(level, hierarchy, &mut *self.search.scratch);
         let (reach, mesh_speed, search) = if self.does_mesh_move {
-            let (reach, speed) = (hierarchy.reach.max(mesh.reach()), mesh.speed());
+            let (reach, speed) = (hierarchy.reach.max(mesh.reach()), mesh.speed);
             let moved = MeshAt { moving: mesh, share: t };
             (reach, speed, PlacedMeshSearch::moved(search, moved))
         } else {
-            (hierarchy.reach, 0.0, PlacedMeshSearch::at_rest(search))
+            (hierarchy.reach, MeshSpeed::default(), PlacedMeshSearch::at_rest(search))
         };
         let tube = PlacedTube::new(&current.tube, &pose, reach)?.moving();
         let tube = self.frame.map_or(tube, |size| tube.posed(size));
@@ -232,9 +236,8 @@ impl MotionSearch<'_> {
         let first = unresolved.len();
         unresolved_bodies.clear();
         let moving = MovingTube {
-            motion,
-            times,
-            mesh_speed,
+            motion: carried,
+            mesh: mesh_speed,
             unresolved: UnresolvedPieces {
                 pieces: &mut *unresolved,
                 first,

@@ -4,23 +4,54 @@ use super::approach_bound::Approach;
 use super::approach_speed::ApproachSpeed;
 use super::relative_motion::RelativeMotion;
 use crate::answer::ProximityError;
-use crate::motion::Motion;
-use crate::refine::{BoundedPiece, BoundingBody, PiecePair, TubePair};
+use crate::motion::{CarriedMotion, CarriedPiece, CommonFrame, Speed};
+use crate::refine::{BoundedPiece, BoundingBody, PiecePair, SectionRange, TubePair};
 use crate::robot::RobotError;
 use parry3d_f64::math::Real;
 
 /// Pairs of pieces of two moving robots in an interval of time.
 pub(super) struct MovingPair<'a> {
-    pub motions: [&'a dyn Motion; 2],
+    pub motions: [CarriedMotion<'a>; 2],
+    /// The frame in which speeds are added.
+    pub seen_from: SeenFrom,
     /// The names of the motions in error messages.
     pub names: [&'static str; 2],
-    pub times: [Real; 2],
     /// How many pairs of pieces may still be tested in this query.
     pub left: &'a mut u32,
 }
 
+/// The frame in which the speeds of two robots are bounded. Each is valid; which one is best depends
+/// on what both do together.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum SeenFrom {
+    /// The mesh's frame, or that of the scene.
+    Rest,
+    /// The frame that carries one of the robots.
+    Robot(usize),
+}
+
+impl SeenFrom {
+    /// The speed of a piece of the robot `number`, whose stated speed is `stated`.
+    pub(super) fn speed(
+        self,
+        motions: &[CarriedMotion; 2],
+        number: usize,
+        stated: Speed,
+        piece: impl FnOnce() -> CarriedPiece,
+    ) -> Speed {
+        let motion = &motions[number];
+        let frame = match self {
+            Self::Rest if motion.has_frame() => CommonFrame::REST,
+            Self::Robot(other) if other != number => motions[other].frame(),
+            _ if motion.is_exact() => return stated,
+            _ => return motion.speeds(stated, &piece(), &CommonFrame::REST).own,
+        };
+        motion.speeds(stated, &piece(), &frame).seen
+    }
+}
+
 impl<'t> RelativeMotion<TubePair<'t>, PiecePair> for MovingPair<'_> {
-    /// The speeds of both pieces, which may move straight towards each other.
+    /// The speeds of both pieces in one frame, in which they may move straight towards each other.
     fn speeds(
         &mut self,
         pair: &PiecePair,
@@ -29,14 +60,20 @@ impl<'t> RelativeMotion<TubePair<'t>, PiecePair> for MovingPair<'_> {
         tubes: &TubePair<'t>,
     ) -> Result<[Real; 2], ProximityError> {
         *self.left = self.left.saturating_sub(1);
-        let [first, second] = tubes.section_ranges(pair);
-        let [a, b] = self.motions;
-        let fast =
-            [ApproachSpeed::of(a, self.times, &first), ApproachSpeed::of(b, self.times, &second)];
         let mut speeds = [0.0; 2];
-        for ((speed, fast), name) in speeds.iter_mut().zip(fast).zip(self.names) {
-            let named = |error: RobotError| ProximityError::Motion(error).of_robot(name);
-            let ApproachSpeed { centreline, rim } = fast.map_err(named)?;
+        for (number, (speed, range)) in
+            speeds.iter_mut().zip(tubes.section_ranges(pair)).enumerate()
+        {
+            let SectionRange { section, shares, .. } = range;
+            let stated = self.motions[number].stated(section as usize, shares);
+            let seen = self.seen_from.speed(&self.motions, number, stated, || {
+                let placed = tubes.tube(number);
+                CarriedPiece::new(placed.tube, &placed.pose, placed.section(section), shares)
+            });
+            let named =
+                |error: RobotError| ProximityError::Motion(error).of_robot(self.names[number]);
+            let ApproachSpeed { centreline, rim } =
+                ApproachSpeed::of(seen, &range).map_err(named)?;
             *speed = centreline + rim;
         }
         Ok(speeds)

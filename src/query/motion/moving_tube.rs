@@ -1,7 +1,7 @@
 //! The pieces of one moving robot in an interval of time: their speeds and displacements, relative
 //! to the middle shape.
 
-use super::approach_bound::{Approach, half_length, midpoint};
+use super::approach_bound::{Approach, midpoint};
 use super::approach_speed::ApproachSpeed;
 use super::half_displacement::HalfDisplacement;
 use super::pending_piece::PendingPiece;
@@ -10,10 +10,11 @@ use super::separating_planes::{PlaneTest, SeparatingPlanes};
 use super::unresolved_piece::{MAX_DISPLACED_PIECES, UnresolvedPiece, UnresolvedPieces};
 use crate::answer::ProximityError;
 use crate::distance::Scalar;
-use crate::motion::Motion;
+use crate::motion::{CarriedMotion, CarriedPiece, CommonFrame, DisplacementBound};
 use crate::pair::Nearest;
 use crate::refine::{BoundedPiece, BoundingBody, Piece, Refinable, SectionRange, TubeInMesh};
-use parry3d_f64::math::Real;
+use crate::search::hierarchy::MeshSpeed;
+use parry3d_f64::math::{Real, Vector};
 
 /// A piece whose room is at most this share of its approach rarely passes the displacement test,
 /// unless it slides along the wall. Such pieces are tested only when [`SmallRooms`] is due.
@@ -21,10 +22,8 @@ const MIN_ROOM: Real = 0.1;
 
 /// The pieces of a moving robot in an interval of time.
 pub(crate) struct MovingTube<'a> {
-    pub motion: &'a dyn Motion,
-    pub times: [Real; 2],
-    /// An upper bound on the speed of the mesh.
-    pub mesh_speed: Real,
+    pub motion: CarriedMotion<'a>,
+    pub mesh: MeshSpeed,
     pub unresolved: UnresolvedPieces<'a>,
     /// The last triangle found.
     pub last: &'a mut Option<u32>,
@@ -33,8 +32,8 @@ pub(crate) struct MovingTube<'a> {
 }
 
 impl<'m> RelativeMotion<TubeInMesh<'m>, PendingPiece> for MovingTube<'_> {
-    /// The speed of the centreline; and how much faster a point of the body may be, plus the speed
-    /// of the mesh.
+    /// The speed of the centreline, with the shift of the mesh; and how much faster a point of the
+    /// body may be, plus the speed of the mesh beside its shift.
     fn speeds(
         &mut self,
         pending: &PendingPiece,
@@ -44,9 +43,19 @@ impl<'m> RelativeMotion<TubeInMesh<'m>, PendingPiece> for MovingTube<'_> {
     ) -> Result<[Real; 2], ProximityError> {
         let PendingPiece { section, shares, .. } = *pending;
         let stretch = SectionRange { section, shares, outer, radius: tube.radius(piece) };
-        let ApproachSpeed { centreline, rim } =
-            ApproachSpeed::of(self.motion, self.times, &stretch)?;
-        Ok([centreline, (rim + self.mesh_speed) * (1.0 + 2.0 * Real::UNIT_ROUNDOFF)])
+        let MeshSpeed { most, shift, apart } = self.mesh;
+        let mut speed = self.motion.stated(section as usize, shares);
+        let mut with_shift = Real::INFINITY;
+        if self.motion.has_frame() {
+            let placed = &tube.tube;
+            let of = CarriedPiece::new(placed.tube, &placed.pose, placed.section(section), shares);
+            let seen = |frame| self.motion.speeds(speed, &of, &frame).seen;
+            with_shift = seen(CommonFrame::shifting(shift)).point;
+            speed = seen(CommonFrame::REST);
+        }
+        let ApproachSpeed { centreline, rim } = ApproachSpeed::of(speed, &stretch)?;
+        let up = 1.0 + 2.0 * Real::UNIT_ROUNDOFF;
+        Ok([(centreline + (most - apart)).min(with_shift) * up, (rim + apart) * up])
     }
 
     fn seed_triangle(&self) -> Option<u32> {
@@ -73,7 +82,7 @@ impl<'m> RelativeMotion<TubeInMesh<'m>, PendingPiece> for MovingTube<'_> {
                 away,
                 normal,
                 approach: approach.distance,
-                beside: beside * half_length(self.times),
+                beside: beside * self.motion.half,
             });
         }
     }
@@ -120,7 +129,8 @@ impl MovingTube<'_> {
         bodies.swap(0, nearest);
         let pieces = &mut pieces[*first..];
         pieces.swap(0, nearest);
-        let t = midpoint(self.times);
+        let (motion, mesh, whole) = (self.motion.motion, self.mesh, self.motion.times);
+        let t = midpoint(whole);
         for (part, unresolved) in pieces.iter_mut().zip(&**bodies) {
             if is_small(unresolved) && !asks_small {
                 left.sides = [true; 2];
@@ -129,9 +139,10 @@ impl MovingTube<'_> {
             for (side, is_left) in
                 left.sides.iter_mut().enumerate().filter(|(_, is_left)| !**is_left)
             {
-                let times = if side == 0 { [self.times[0], t] } else { [t, self.times[1]] };
-                let bound = self.motion.displacement(part.section as usize, part.shares, times);
+                let times = if side == 0 { [whole[0], t] } else { [t, whole[1]] };
+                let bound = motion.displacement(part.section as usize, part.shares, times);
                 let is_clear = bound
+                    .map(|bound| beside_shift(bound, mesh.shift * (times[1] - times[0])))
                     .and_then(|bound| HalfDisplacement::of(&bound, side, unresolved.beside))
                     .is_some_and(|side| {
                         let asked =
@@ -151,6 +162,15 @@ impl MovingTube<'_> {
         }
         left
     }
+}
+
+/// Returns a displacement relative to a mesh that is shifted in the same time.
+fn beside_shift(bound: DisplacementBound, shift: Vector) -> DisplacementBound {
+    if shift == Vector::ZERO {
+        return bound;
+    }
+    let rounding = 16.0 * Real::UNIT_ROUNDOFF * shift.abs().max_element();
+    DisplacementBound { ways: bound.ways.map(|way| way - shift), off: bound.off + rounding }
 }
 
 /// Decides when pieces with little room are tested: rarely after unresolveds.

@@ -4,20 +4,20 @@ use super::approach_bound::Approach;
 use super::approach_speed::ApproachSpeed;
 use super::relative_motion::RelativeMotion;
 use crate::answer::ProximityError;
-use crate::motion::Motion;
+use crate::motion::CarriedMotion;
 use crate::refine::{BoundedPiece, SelfPair, TubeWithItself};
 use parry3d_f64::math::Real;
 
 /// Pairs of pieces of a moving robot in an interval of time.
 pub(super) struct MovingTubeWithItself<'a> {
-    pub motion: &'a dyn Motion,
-    pub times: [Real; 2],
+    pub motion: CarriedMotion<'a>,
     /// How many pairs of pieces may still be tested in this query.
     pub left: &'a mut u32,
 }
 
 impl<'t> RelativeMotion<TubeWithItself<'t>, SelfPair> for MovingTubeWithItself<'_> {
-    /// The speeds of both pieces, which may move straight towards each other.
+    /// The speeds of both pieces relative to the frame that carries both. They may move straight
+    /// towards each other.
     fn speeds(
         &mut self,
         pair: &SelfPair,
@@ -28,8 +28,8 @@ impl<'t> RelativeMotion<TubeWithItself<'t>, SelfPair> for MovingTubeWithItself<'
         *self.left = self.left.saturating_sub(1);
         let mut speeds = [0.0; 2];
         for (speed, stretch) in speeds.iter_mut().zip(own.section_ranges(pair)) {
-            let ApproachSpeed { centreline, rim } =
-                ApproachSpeed::of(self.motion, self.times, &stretch)?;
+            let stated = self.motion.stated(stretch.section as usize, stretch.shares);
+            let ApproachSpeed { centreline, rim } = ApproachSpeed::of(stated, &stretch)?;
             *speed = centreline + rim;
         }
         Ok(speeds)

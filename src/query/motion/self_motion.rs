@@ -14,7 +14,7 @@ use super::relative_motion::RelativeMotion;
 use crate::answer::{ProximityError, RobotMotionAnswer};
 use crate::curve::{Section, TubeTurns};
 use crate::distance::Scalar;
-use crate::motion::{Motion, check_speed};
+use crate::motion::{CarriedMotion, Motion, check_speed};
 use crate::refine::{
     MAX_EXTRA_TURN, PairUpperBound, Refinable, SectionMotion, SectionMotions, SelfPair,
     SelfPairQueue, TubeWithItself, refine,
@@ -75,8 +75,9 @@ fn test_interval(
     let times = interval.times;
     let SelfMotionMemory { current, turns, moves, beginning, pairs, .. } = memory;
     let pose = current.set_time(motion, midpoint(times))?;
-    let cap_change = current.mark_lasting_faces_between(motion, times);
-    measure_moves(motion, current.tube.sections(), times, moves)?;
+    let carried = CarriedMotion::new(motion, times, half_length(times));
+    let cap_change = current.mark_lasting_faces_in(&carried);
+    measure_moves(&carried, current.tube.sections(), moves)?;
     if moves.max_extra_turn() > MAX_EXTRA_TURN {
         return Ok((IntervalResult::empty(), interval.rest(0.0)));
     }
@@ -92,7 +93,7 @@ fn test_interval(
         let speed = points / half_length(times);
         check_subdivision(speed, resolution, || (fastest, speed))?;
     }
-    let moving = MovingTubeWithItself { motion, times, left };
+    let moving = MovingTubeWithItself { motion: carried, left };
     let mut test = IntervalTest {
         moving,
         approach_bound: ApproachBound::new(times, cap_change),
@@ -110,17 +111,17 @@ fn test_interval(
     Ok((result, interval.rest(if is_all { approach_bound.hold } else { 0.0 })))
 }
 
-/// Computes how far all sections move and turn from the midpoint of an interval.
+/// Computes how far all sections move and turn from the midpoint of an interval, relative to the
+/// frame that carries them all.
 fn measure_moves(
-    motion: &dyn Motion,
+    motion: &CarriedMotion,
     sections: &[Section],
-    times: [Real; 2],
     moves: &mut SectionMotions,
 ) -> Result<(), ProximityError> {
     moves.clear();
-    let half_length = half_length(times);
+    let half_length = motion.half;
     for (number, section) in sections.iter().enumerate() {
-        let stated = motion.speed(number, [0.0, 1.0], times);
+        let stated = motion.stated(number, [0.0, 1.0]);
         check_speed(number, stated.point)?;
         // Infinite for a link that loses its length, which is no mistake of the motion.
         if stated.turn > FASTEST_TURN {

@@ -85,4 +85,4 @@ mod text;
 
 pub(crate) use motion_proof::{motion_proof, tube_shape};
 pub(crate) use plane_search::PlaneSearch;
-pub(crate) use text::{Kind, Shape, write_proof};
+pub(crate) use text::{Kind, MAX_BYTES, MIN_PIECE_BYTES, Shape, size_of, write_proof};

@@ -3,19 +3,16 @@
 //! pieces ([`tube_shape`]).
 
 use super::plane_search::PlaneSearch;
-use super::text::{Kind, PiecePremises, ProvenShape, Shape, size_of};
+use super::text::{Kind, MAX_BYTES, PiecePremises, ProvenShape, Shape, size_of};
 use crate::answer::ProximityError;
 use crate::curve::{CapPersistence, Section, Tube};
 use crate::distance::Scalar;
-use crate::motion::{Motion, MotionDrift, SectionSignature, check_speed};
+use crate::motion::{CarriedMotion, Motion, MotionDrift, SectionSignature, check_speed};
 use crate::refine::{self, PlacedTube};
 use parry3d_f64::math::Real;
 
 /// The most shapes tested for a proof.
 const MAX_SHAPES: usize = 1 << 16;
-
-/// The longest text of a proof, in bytes: 16 MiB.
-const MOST_BYTES: usize = 1 << 24;
 
 /// Returns shapes in the order of time, each with the steps that separate it from the mesh during
 /// its interval. `reach` is the mesh's largest coordinate.
@@ -43,10 +40,11 @@ pub(crate) fn motion_proof(
         let pose = motion.shape(t, &mut tube)?;
         sections.check(t, &tube)?;
         shapes += 1;
-        tube.mark_lasting_faces_between(&MotionDrift { motion, times, t, half_length: half });
+        let carried = CarriedMotion::new(motion, times, half);
+        tube.mark_lasting_faces_between(&MotionDrift { motion: &carried, t });
         let placed = PlacedTube::new(&tube, &pose, reach)?.moving();
         let fastest = (0..placed.sections().len()).map(|section| {
-            let speed = motion.speed(section, [0.0, 1.0], times).point;
+            let speed = carried.speed((&tube, &placed.pose), section, [0.0, 1.0]).point;
             check_speed(section, speed)
         });
         let fastest = fastest.collect::<Result<Vec<_>, _>>()?.into_iter().fold(0.0, Real::max);
@@ -57,7 +55,7 @@ pub(crate) fn motion_proof(
         shape.times = times;
         for (piece, place) in shape.pieces.iter_mut().zip(&places) {
             let section = place.section as usize;
-            let speed = motion.speed(section, placed.shares(place), times);
+            let speed = carried.speed((&tube, &placed.pose), section, placed.shares(place));
             let rounded = 1.0 + 8.0 * Real::UNIT_ROUNDOFF;
             piece.speed = check_speed(section, speed.point)? * rounded;
             // Balls need no turn. The turn of a link that loses its length is infinite.
@@ -72,7 +70,7 @@ pub(crate) fn motion_proof(
         if let Some(steps) = plane_search.steps(&shape.bodies(margin)) {
             let parted = (shape, steps);
             bytes += size_of(Kind::Motion, &parted);
-            if bytes > MOST_BYTES {
+            if bytes > MAX_BYTES {
                 return Ok(None);
             }
             proven.push(parted);

@@ -59,6 +59,12 @@ impl Write for Size {
     }
 }
 
+/// The longest text of a proof, in bytes: 16 MiB.
+pub(crate) const MAX_BYTES: usize = 1 << 24;
+
+/// The least bytes of a piece of a tube: three coordinates and four premises, with their blanks.
+pub(crate) const MIN_PIECE_BYTES: usize = 32;
+
 /// Writes a shape and its steps. Returns the number of planes.
 fn write_shape(
     kind: Kind,

@@ -11,6 +11,6 @@ mod traverse;
 
 pub(crate) use build::WideBvh;
 pub(crate) use mesh_search::{Hierarchy, MeshSearch, PlacedMeshSearch, Scratch, Searched};
-pub(crate) use moving_mesh::{MeshAt, MovingMesh};
+pub(crate) use moving_mesh::{MeshAt, MeshSpeed, MovingMesh};
 pub(crate) use node::{Child, WIDTH};
 pub(crate) use traverse::{LeafVisitor, Traversal};

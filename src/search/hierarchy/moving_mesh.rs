@@ -49,6 +49,17 @@ impl CoordinateRange {
 /// The boxes around the triangles below a child at t = 0 and t = 1.
 type MovingBox = [CoordinateRange; 2];
 
+/// Bounds on the speeds of the vertices of a mesh.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct MeshSpeed {
+    /// An upper bound on the speed of every vertex of a triangle.
+    pub most: Real,
+    /// The velocity that all these vertices share.
+    pub shift: Vector,
+    /// An upper bound on the difference from it.
+    pub apart: Real,
+}
+
 /// The final vertices of a moving mesh, and boxes around its triangles.
 #[derive(Clone, Default)]
 pub(crate) struct MovingMesh {
@@ -56,8 +67,7 @@ pub(crate) struct MovingMesh {
     /// The boxes of the nodes; `leaves` has those around leaves.
     nodes: Vec<MovingBox>,
     leaves: Vec<MovingBox>,
-    /// An upper bound on the speed of every vertex of a triangle.
-    speed: Real,
+    pub(crate) speed: MeshSpeed,
     /// The largest coordinate of a triangle at either end.
     reach: Real,
     /// Scratch memory: children to visit, the nearest last.
@@ -70,19 +80,31 @@ impl MovingMesh {
         self.to.clear();
         self.to.extend_from_slice(to);
         self.leaves.clear();
-        (self.speed, self.reach) = (0.0, 0.0);
+        (self.speed, self.reach) = (MeshSpeed::default(), 0.0);
+        let mut ways = CoordinateRange::NOTHING;
         for leaf in &tree.leaves {
             let mut sides = [CoordinateRange::NOTHING; 2];
             for vertex in leaf.triangles().flat_map(|triangle| mesh.indices()[triangle as usize]) {
                 let ends = [mesh.vertices()[vertex as usize], to[vertex as usize]];
                 sides = [sides[0].with(ends[0]), sides[1].with(ends[1])];
-                self.speed = self.speed.max((ends[1] - ends[0]).length());
+                self.speed.most = self.speed.most.max((ends[1] - ends[0]).length());
+                ways = ways.with(ends[1] - ends[0]);
                 self.reach = self.reach.max(ends[0].abs().max(ends[1].abs()).max_element());
             }
             self.leaves.push(sides);
         }
         // Covers the rounding of differences and a length.
-        self.speed *= 1.0 + 8.0 * Real::UNIT_ROUNDOFF;
+        self.speed.most *= 1.0 + 8.0 * Real::UNIT_ROUNDOFF;
+        // The box around all ways is within half of its diagonal of its centre. Vertices are
+        // rounded by u at both ends.
+        let rounding = 8.0 * Real::UNIT_ROUNDOFF * (self.reach + self.speed.most);
+        let apart = (0.5 * (ways.high - ways.low)).length() + rounding;
+        // Otherwise the vertices share too little.
+        (self.speed.shift, self.speed.apart) = if apart <= 0.5 * self.speed.most {
+            (0.5 * ways.low + 0.5 * ways.high, apart)
+        } else {
+            (Vector::ZERO, self.speed.most)
+        };
         self.nodes.clear();
         self.nodes.resize(tree.nodes.len(), [CoordinateRange::NOTHING; 2]);
         // Children have higher numbers than their node.
@@ -94,10 +116,6 @@ impl MovingMesh {
             }
             self.nodes[number] = sides;
         }
-    }
-
-    pub(crate) fn speed(&self) -> Real {
-        self.speed
     }
 
     pub(crate) fn reach(&self) -> Real {

@@ -17,6 +17,7 @@ mod own;
 mod path;
 mod refused;
 mod speeds;
+mod together;
 mod two_robots;
 
 use continuum_demo::ctr::Robot;

@@ -2,7 +2,7 @@
 
 use parry_continuum::parry::math::Pose;
 use parry_continuum::{
-    BendingMotion, DisplacementBound, LinearMotion, Motion, MotionPath, MovingBase, RigidMotion,
+    BendingMotion, CommonFrame, DisplacementBound, LinearMotion, Motion, MotionPath, MovingBase, RigidMotion,
     RobotError, Speed, Tube,
 };
 
@@ -49,6 +49,26 @@ impl Motion for Moving {
             Self::Bending(motion) => motion.displacement(section, shares, times),
             Self::OnBase(motion) => motion.displacement(section, shares, times),
             Self::Path(motion) => motion.displacement(section, shares, times),
+        }
+    }
+
+    fn common_frame(&self, times: [f64; 2]) -> Option<CommonFrame> {
+        match self {
+            Self::Linear(motion) => motion.common_frame(times),
+            Self::Rigid(motion) => motion.common_frame(times),
+            Self::Bending(motion) => motion.common_frame(times),
+            Self::OnBase(motion) => motion.common_frame(times),
+            Self::Path(motion) => motion.common_frame(times),
+        }
+    }
+
+    fn speed_in_frame(&self, section: usize, shares: [f64; 2], times: [f64; 2]) -> Speed {
+        match self {
+            Self::Linear(motion) => motion.speed_in_frame(section, shares, times),
+            Self::Rigid(motion) => motion.speed_in_frame(section, shares, times),
+            Self::Bending(motion) => motion.speed_in_frame(section, shares, times),
+            Self::OnBase(motion) => motion.speed_in_frame(section, shares, times),
+            Self::Path(motion) => motion.speed_in_frame(section, shares, times),
         }
     }
 
