@@ -133,8 +133,9 @@ impl CommonFrame {
     }
 
     /// This frame, which carries a robot in the frame of a base, in the frame in which the base
-    /// moves. `pose`: the base in the middle of the interval. `half`: half of the interval.
-    pub(super) fn on_base(self, base: &Self, pose: &Pose, half: Real) -> Self {
+    /// moves. `pose`: the base in the middle of the interval. `half`: half of the interval. `None` if
+    /// the interval is so long that this frame is not known better than its own speed.
+    pub(super) fn on_base(self, base: &Self, pose: &Pose, half: Real) -> Option<Self> {
         let is_shift = self.turn == Vector::ZERO && self.turn_off == 0.0;
         let at = if is_shift { Vector::ZERO } else { self.at };
         let lever = pose.rotation * at;
@@ -148,11 +149,16 @@ impl CommonFrame {
         let inner = pose.rotation * self.turn;
         let rounding = 16.0 * Real::UNIT_ROUNDOFF * turning * length(inner);
         let twist = (length(base.turn.cross(inner)) + rounding) * half * UP;
+        let spins = length(inner);
+        if twist > 0.5 * spins || own > 0.5 * (speed + spins * length(at)) {
+            return None;
+        }
         let turn = base.turn + inner;
         let turn_off = self.turn_off + twist;
         let off = self.off + own + (length(turn) + turn_off + twist) * half * own * UP;
         let velocity = base.velocity + carried + pose.rotation * self.velocity;
-        Self { at: pose.translation + lever, velocity, turn, off, turn_off }.rounded(pose)
+        let frame = Self { at: pose.translation + lever, velocity, turn, off, turn_off };
+        Some(frame.rounded(pose))
     }
 
     /// This frame in another frame at rest, into which `pose` leads.
@@ -285,7 +291,9 @@ pub(crate) struct CarriedSpeed {
 
 impl<'a> CarriedMotion<'a> {
     pub(crate) fn new(motion: &'a dyn Motion, times: [Real; 2], half: Real) -> Self {
-        Self { motion, times, half, frame: motion.common_frame(times) }
+        // Claim 1 bounds no speed in a frame that is known less well.
+        let is_known = |frame: &CommonFrame| half * frame.turn_off <= 0.5;
+        Self { motion, times, half, frame: motion.common_frame(times).filter(is_known) }
     }
 
     /// Whether the motion states a frame.
@@ -328,13 +336,10 @@ impl<'a> CarriedMotion<'a> {
         let (frame, half) = (self.frame(), self.half);
         let [turning, beside] = [frame.turn, frame.turn - other.turn].map(length);
         let away = piece.most(1.0, |point| point - frame.at);
-        let is_known = half * frame.turn_off <= 0.5;
         let twist = if frame.turn_off == 0.0 {
             0.0
-        } else if is_known {
-            2.0 * frame.turn_off * (away + half * (stated.point + frame.off))
         } else {
-            Real::INFINITY
+            2.0 * frame.turn_off * (away + half * (stated.point + frame.off))
         };
         let own = stated.point + frame.off + twist;
         let carried = if turning == 0.0 {

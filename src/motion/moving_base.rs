@@ -85,6 +85,16 @@ impl<M: Motion> MovingBase<M> {
         Ok(Self { motion, path, known })
     }
 
+    /// Returns the frame of the base, and that of the inner motion on it if it is known.
+    fn frames(&self, times: [Real; 2]) -> (CommonFrame, Option<CommonFrame>) {
+        let t = 0.5 * times[0] + 0.5 * times[1];
+        let base = CommonFrame::of_path(&self.path, t);
+        let half = 0.5 * (times[1] - times[0]) + 4.0 * Real::UNIT_ROUNDOFF;
+        let inner = self.motion.common_frame(times);
+        let on_base = inner.and_then(|inner| inner.on_base(&base, &self.path.pose(t), half));
+        (base, on_base)
+    }
+
     /// Returns the speed bound of a piece due to the base alone.
     fn carried(&self, section: usize, shares: [Real; 2], times: [Real; 2]) -> Speed {
         let bounds = self.known.iter().map(|(at, tube, pose)| {
@@ -155,16 +165,13 @@ impl<M: Motion> Motion for MovingBase<M> {
     }
 
     fn common_frame(&self, times: [Real; 2]) -> Option<CommonFrame> {
-        let t = 0.5 * times[0] + 0.5 * times[1];
-        let base = CommonFrame::of_path(&self.path, t);
-        let half = 0.5 * (times[1] - times[0]) + 4.0 * Real::UNIT_ROUNDOFF;
-        let inner = self.motion.common_frame(times);
-        Some(inner.map_or(base, |inner| inner.on_base(&base, &self.path.pose(t), half)))
+        let (base, inner) = self.frames(times);
+        Some(inner.unwrap_or(base))
     }
 
     /// The speed in the frame of the base, or in the inner motion's own frame.
     fn speed_in_frame(&self, section: usize, shares: [Real; 2], times: [Real; 2]) -> Speed {
-        if self.motion.common_frame(times).is_some() {
+        if self.frames(times).1.is_some() {
             self.motion.speed_in_frame(section, shares, times)
         } else {
             self.motion.speed(section, shares, times)

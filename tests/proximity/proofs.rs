@@ -738,8 +738,8 @@ fn a_motion_whose_parts_jump_is_refused() {
     let shape = |times: [f64; 2], points: &[[f64; 2]], radii: &[f64]| {
         let mut text = format!("shape {:?} {:?} {}\n", times[0], times[1], radii.len());
         points.iter().for_each(|[y, z]| text += &format!("0.0 {y:?} {z:?}\n"));
-        // 10 long, and 0.125 further after a quarter of the time.
-        radii.iter().for_each(|radius| text += &format!("{radius:?} rr 0.0 10.0 0.0 0.5 0.0\n"));
+        // At most 10.5 long, and 0.125 further after a quarter of the time.
+        radii.iter().for_each(|radius| text += &format!("{radius:?} rr 0.0 10.5 0.0 0.5 0.0\n"));
         text + "steps 1\n0,0,1\n"
     };
     let first = [[0.0, 0.0], [0.0, 10.0], [0.0, 20.0]];
