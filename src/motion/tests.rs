@@ -156,9 +156,9 @@ fn carried_speeds_hold_in_any_frame() {
             }
         }
     }
-    // Each bound is reached within a tenth by some sample.
-    assert!(used.iter().all(|used| used[0] > 0.9), "{used:?}");
-    assert!(used.iter().skip(1).all(|used| used[1] > 0.9), "{used:?}");
+    // A frame's own speed is reached within a tenth by some sample; the others are sums.
+    assert!(used.iter().take(2).all(|used| used[0] > 0.9) && used[1][1] > 0.9, "{used:?}");
+    assert!(used.iter().skip(2).flatten().all(|used| *used > 0.5), "{used:?}");
 }
 
 /// The poses at both ends of a rigid motion.
