@@ -39,10 +39,13 @@ pub struct InsideAnswer {
 }
 
 impl InsideAnswer {
-    /// Returns whether the whole robot is inside and every link keeps the margin: base and tip are
-    /// inside, and no link touches the mesh or crosses an opening.
+    /// Returns whether the whole robot is inside and every link keeps the margin: no link touches
+    /// the mesh or crosses an opening, base or tip is inside, and neither is outside. Near an
+    /// opening an end may be undecided: it is on the side of the other end.
     pub fn holds(&self) -> bool {
-        [self.base, self.tip] == [Side::Inside; 2] && !self.crosses_opening && self.clears
+        let ends = [self.base, self.tip];
+        let is_inside = ends.contains(&Side::Inside) && !ends.contains(&Side::Outside);
+        is_inside && !self.crosses_opening && self.clears
     }
 }
 

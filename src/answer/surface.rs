@@ -75,7 +75,10 @@ impl SurfaceReport {
     }
 }
 
-/// Returns a number rounded to four significant digits.
-fn short(number: Real) -> Real {
-    format!("{number:.3e}").parse().unwrap_or(number)
+/// Returns a number rounded to four significant digits, with an exponent if it is very large or
+/// very small.
+fn short(number: Real) -> String {
+    let rounded: Real = format!("{number:.3e}").parse().unwrap_or(number);
+    let is_plain = rounded == 0.0 || (1e-6..1e15).contains(&rounded.abs());
+    if is_plain { rounded.to_string() } else { format!("{rounded:e}") }
 }

@@ -175,10 +175,14 @@ function show(warnings: string[]) {
   const base = answers.base();
   const side = base === "outside" ? "outside the wall" : "on the wall, or the wall is open";
   const links = `${near} ${near === 1 ? "link is" : "links are"} within it`;
-  const kept = base === "inside" ? "kept." : `kept, but the robot's base is ${side}.`;
+  // Links that leave through an opening keep the margin too.
+  const astray = answers.sides().filter((side) => side !== "inside").length;
+  const strays = `${astray} ${astray === 1 ? "link is" : "links are"} not inside the wall`;
+  const doubt = base === "inside" ? strays : `the robot's base is ${side}`;
+  const kept = answers.is_inside() ? "kept." : `kept, but ${doubt}.`;
   find("verdict").textContent = `Margin of ${margin} mm ${near === 0 ? kept : `not kept: ${links}.`}`;
   // Green only if the robot is where a robot belongs.
-  find("verdict").className = near > 0 ? "near" : base === "inside" ? "kept" : "";
+  find("verdict").className = near > 0 ? "near" : answers.is_inside() ? "kept" : "";
   const turned = answers.turned();
   find("details").textContent = [
     `Link ${answers.closest() + 1} of ${distances.length}, counted from the base, is closest, `
@@ -186,7 +190,9 @@ function show(warnings: string[]) {
     ...(turned ? [`The robot is turned from ${turned}.`] : []),
     ...(find<HTMLTextAreaElement>("pose").value.trim() ? ["The robot is placed by the pose."] : []),
   ].join(" ");
-  const outside = base === "inside" ? [] : [`The robot's base is ${side}; distances do not say on which side the robot is.`];
+  const unsigned = "distances do not say on which side the robot is.";
+  const outside = base !== "inside" ? [`The robot's base is ${side}; ${unsigned}`]
+    : answers.is_inside() ? [] : [`The robot's base is inside the wall, but ${strays} (its tip: ${answers.tip()}); ${unsigned}`];
   find("doubts").replaceChildren(
     ...[...warnings, ...outside].map((text) => {
       const item = document.createElement("li");

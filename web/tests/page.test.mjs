@@ -385,6 +385,21 @@ test("a dropped file is read like a chosen one, by what it holds", async () => {
   await answers(15);
 });
 
+test("a robot that leaves through an opening is not green", async () => {
+  // The cube without its last square, x = 60.
+  const open = cube(60).split("\n").filter((line) => !/^f 2 4 8 6\b/.test(line)).join("\n");
+  assert.notEqual(open, cube(60));
+  await page.setInputFiles("#wall-file", file("open.obj", open));
+  await page.fill("#radius", "");
+  await page.setInputFiles("#robot-file", file("leaves.csv", "x,y,z,radius\n30,30,30,1\n50,30,30,1\n70,30,30,1\n130,30,30,1\n"));
+  await shows("doubts", /open\.obj: the mesh is open: one opening 84\.85 wide at \(60, 30, 30\)/);
+  await page.fill("#margin", "2");
+  assert.match(await text("verdict"), /^Margin of 2 mm kept, but 2 links are not inside the wall\.$/);
+  assert.equal(await page.getAttribute("#verdict", "class"), "");
+  assert.match(await text("doubts"), /The robot's base is inside the wall, but 2 links are not inside the wall \(its tip: outside\)/);
+  await page.setInputFiles("#wall-file", file("cube.obj", cube(60)));
+});
+
 test("the answer stays in view at 1280 x 800 whatever has the focus", async () => {
   const inView = (id) => page.$eval(`#${id}`, (element) => {
     const { top, bottom, height } = element.getBoundingClientRect();

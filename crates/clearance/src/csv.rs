@@ -1,5 +1,6 @@
 //! Answers as CSV, with all digits.
 
+use crate::number::all_digits;
 use parry_continuum::proximity::{LinkProximity, Witness};
 
 /// The columns of an answer after its number.
@@ -15,6 +16,7 @@ pub fn links(links: &[LinkProximity]) -> String {
 /// Returns the columns of an answer.
 pub fn answer(found: &LinkProximity) -> String {
     let Witness { on_robot, on_mesh, triangle, arc_length, segment, .. } = found.witness;
-    let [robot, mesh] = [on_robot, on_mesh].map(|p| format!("{},{},{}", p.x, p.y, p.z));
-    format!("{},{arc_length},{segment},{triangle},{robot},{mesh}", found.distance)
+    let [robot, mesh] = [on_robot, on_mesh].map(|point| point.to_array().map(all_digits).join(","));
+    let [distance, arc_length] = [found.distance, arc_length].map(all_digits);
+    format!("{distance},{arc_length},{segment},{triangle},{robot},{mesh}")
 }

@@ -16,7 +16,7 @@ pub fn doubts(my: &Options, robots: &[Robot], wall: &Wall, pose: &Pose) -> Vec<S
     let around = |change: Change| {
         let points = robots.iter().flat_map(|robot| &robot.points);
         let placed = |point: &Vector| *pose * Vector::from(change.apply((*point).into()));
-        Bounds::of_balls(points.map(|point| (placed(point).into(), 0.0)))
+        Bounds::of_points(points.map(|point| placed(point).into()))
     };
     // A frame that is stated by file or option is not wrong.
     let states_frame = my.frame.is_some() || robots.iter().any(|robot| robot.frame.is_some());

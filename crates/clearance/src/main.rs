@@ -38,7 +38,7 @@ fn main() -> ExitCode {
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => ExitCode::from(1),
         Err(message) => {
-            eprintln!("error: {message}");
+            outputs::tell("error", &message);
             ExitCode::from(2)
         }
     }
@@ -46,7 +46,6 @@ fn main() -> ExitCode {
 
 /// Answers, and returns whether the margin is kept.
 fn answer(my: &Options) -> Result<bool, String> {
-    outputs::check(my)?;
     if my.labels {
         return labels::print(my).map(|()| true);
     }
@@ -57,6 +56,7 @@ fn answer(my: &Options) -> Result<bool, String> {
         (None, None) => return Err("give --centreline or --shapes".into()),
     };
     let mut wall = Wall::load(my)?;
+    outputs::check(my, &wall.files)?;
     let turned = frames::turn(my, &robots[0], &wall)?;
     if turned.is_some() {
         pose = frames::half_turn() * pose;

@@ -1,5 +1,6 @@
 //! The errors of the libraries in the words of the options. Each is one line.
 
+use crate::number::all_digits;
 use mesh_files::MeshFileError;
 use parry_continuum::RobotError;
 use parry_continuum::proximity::ProximityError;
@@ -45,11 +46,13 @@ pub fn of_robot(error: &RobotError, file: &Path) -> String {
             )
         }
         RobotError::PointOutOfRange { index, value, limit, .. } => format!(
-            "point {index} of {file} has the coordinate {value}, beyond +-{limit:e}; choose a \
-             smaller --scale"
+            "point {index} of {file} has the coordinate {}, beyond +-{limit:e}; choose a \
+             smaller --scale",
+            all_digits(*value)
         ),
         RobotError::BadRadius { index, value, limit, .. } => format!(
-            "radius {index} is {value} in {file}; write a number of at least 0 and at most {limit:e}"
+            "radius {index} is {} in {file}; write a number of at least 0 and at most {limit:e}",
+            all_digits(*value)
         ),
         RobotError::TooFewPoints { count, .. } => {
             format!("{file} has {count} point; a robot needs at least 2")
@@ -58,16 +61,19 @@ pub fn of_robot(error: &RobotError, file: &Path) -> String {
             format!("all points of {file} are the same; a robot needs two different points")
         }
         RobotError::HidesLength { index, value, length, .. } => format!(
-            "radius {index} of {file} is {value}, beside which the length {length} of its segment \
-             is lost; check the unit of the radii"
+            "radius {index} of {file} is {}, beside which the length {} of its segment is lost; \
+             check the unit of the radii",
+            all_digits(*value),
+            all_digits(*length)
         ),
         RobotError::TurnsTooSharply { index, .. } => format!(
             "the curve turns so sharply at point {index} of {file} that its samples do not bound \
              it; write more points there, or leave out --tolerance for a robot of straight links"
         ),
         RobotError::BendsWithinRadius { index, radius, .. } => format!(
-            "the curve bends within its radius {radius} at point {index} of {file}; check the unit \
-             of the radii, or leave out --tolerance"
+            "the curve bends within its radius {} at point {index} of {file}; check the unit of the \
+             radii, or leave out --tolerance",
+            all_digits(*radius)
         ),
         _ => error.to_string(),
     }
@@ -77,8 +83,10 @@ pub fn of_robot(error: &RobotError, file: &Path) -> String {
 pub fn of_query(error: &ProximityError, file: &Path) -> String {
     match error {
         ProximityError::ToleranceTooFine { tolerance, possible, .. } => format!(
-            "the bounds are {possible} apart at best, not {tolerance}; give a larger --tolerance, \
-             or more points in {}",
+            "the bounds are {} apart at best, not {}; give a larger --tolerance, or more points in \
+             {}",
+            all_digits(*possible),
+            all_digits(*tolerance),
             file.display()
         ),
         ProximityError::OutOfRange { limit, .. } | ProximityError::TubeOutOfRange { limit } => {

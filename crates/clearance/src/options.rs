@@ -2,6 +2,7 @@
 
 use crate::frames::Axes;
 use clap::Parser;
+use clap::builder::{PathBufValueParser, TypedValueParser};
 use std::path::PathBuf;
 
 /// How far is a continuum robot from a wall, link by link?
@@ -57,10 +58,10 @@ pub struct Options {
     pub scale: Option<f64>,
     /// The frame of the centreline, if it is not the frame of the mesh and the file does not state
     /// it. x and y change sign between the two
-    #[arg(long, conflicts_with = "pose")]
+    #[arg(long, conflicts_with = "pose", ignore_case = true)]
     pub frame: Option<Axes>,
     /// The frame of the mesh, if its file does not state it
-    #[arg(long, value_name = "FRAME")]
+    #[arg(long, value_name = "FRAME", ignore_case = true)]
     pub mesh_frame: Option<Axes>,
     /// A file with a 4x4 matrix, row by row, that brings the robot into the frame of the mesh
     #[arg(long, value_name = "FILE")]
@@ -79,14 +80,19 @@ pub struct Options {
     #[arg(long, value_name = "LENGTH", allow_negative_numbers = true, value_parser = positive)]
     pub tolerance: Option<f64>,
     /// Draw the clearance along the robot into an SVG file
-    #[arg(long, value_name = "FILE", value_parser = svg)]
+    #[arg(long, value_name = "FILE", value_parser = PathBufValueParser::new().try_map(svg))]
     pub plot: Option<PathBuf>,
     /// Write a CSV file with a line for each link, or for each shape of --shapes
     #[arg(long, value_name = "FILE")]
     pub csv: Option<PathBuf>,
     /// Write a proof that the robot keeps --margin, and beside it the mesh as FILE.obj. Prints the
     /// command that checks the two
-    #[arg(long, value_name = "FILE", requires = "margin", value_parser = proof)]
+    #[arg(
+        long,
+        value_name = "FILE",
+        requires = "margin",
+        value_parser = PathBufValueParser::new().try_map(proof)
+    )]
     pub prove: Option<PathBuf>,
     /// Print JSON, with all digits
     #[arg(long)]
@@ -102,7 +108,8 @@ impl Options {
     pub fn read() -> Self {
         Self::try_parse().unwrap_or_else(|error| {
             if error.use_stderr() {
-                eprintln!("{} (--help lists the options)", in_one_line(&error.to_string()));
+                let text = crate::outputs::in_one_line(&first_paragraph(&error.to_string()));
+                eprintln!("{text} (--help lists the options)");
                 std::process::exit(2);
             }
             error.exit()
@@ -111,7 +118,7 @@ impl Options {
 }
 
 /// Returns the first paragraph of an error of clap, and its tip.
-fn in_one_line(text: &str) -> String {
+fn first_paragraph(text: &str) -> String {
     let mut lines = text.lines().map(str::trim);
     let paragraph: Vec<_> = lines.by_ref().take_while(|line| !line.is_empty()).collect();
     let tip = lines.find_map(|line| line.strip_prefix("tip: ")).map(|tip| format!("; {tip}"));
@@ -132,14 +139,12 @@ fn positive(text: &str) -> Result<f64, &'static str> {
     number.ok_or("write a number greater than 0, with a point for decimals")
 }
 
-fn svg(text: &str) -> Result<PathBuf, &'static str> {
-    let path = PathBuf::from(text);
+fn svg(path: PathBuf) -> Result<PathBuf, &'static str> {
     let is_svg = path.extension().is_some_and(|end| end.eq_ignore_ascii_case("svg"));
     if is_svg { Ok(path) } else { Err("write a name that ends in .svg") }
 }
 
-fn proof(text: &str) -> Result<PathBuf, &'static str> {
-    let path = PathBuf::from(text);
+fn proof(path: PathBuf) -> Result<PathBuf, &'static str> {
     let is_mesh = path.extension().is_some_and(|end| end.eq_ignore_ascii_case("obj"));
     if path.file_stem().is_none() || is_mesh {
         Err("write the name of a file, such as proof.txt; the mesh is written beside it as .obj")

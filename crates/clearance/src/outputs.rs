@@ -5,10 +5,10 @@ use std::fs;
 use std::io::{ErrorKind, Write, stdout};
 use std::path::{Path, PathBuf};
 
-/// Checks that the outputs differ from the inputs and from one another.
-pub fn check(my: &Options) -> Result<(), String> {
+/// Checks that the outputs differ from the inputs and from one another. `wall` are the files of
+/// --mesh.
+pub fn check(my: &Options, wall: &[PathBuf]) -> Result<(), String> {
     let inputs = [
-        ("--mesh", Some(&my.mesh)),
         ("--centreline", my.centreline.as_ref()),
         ("--shapes", my.shapes.as_ref()),
         ("--pose", my.pose.as_ref()),
@@ -20,12 +20,13 @@ pub fn check(my: &Options) -> Result<(), String> {
         ("--prove", my.prove.as_ref()),
         ("--prove", mesh.as_ref()),
     ];
-    let mut taken: Vec<_> =
-        inputs.into_iter().filter_map(|(name, path)| Some((name, place(path?)))).collect();
+    let inputs = inputs.into_iter().filter_map(|(name, path)| Some((name, path?)));
+    let inputs = wall.iter().map(|path| ("--mesh", path)).chain(inputs);
+    let mut taken: Vec<_> = inputs.map(|(name, path)| (name, Place::of(path))).collect();
     for (option, path) in outputs {
         let Some(path) = path else { continue };
-        let place = place(path);
-        if let Some((other, _)) = taken.iter().find(|(_, taken)| *taken == place) {
+        let place = Place::of(path);
+        if let Some((other, _)) = taken.iter().find(|(_, taken)| taken.is(&place)) {
             return Err(format!(
                 "{option} would write {}, the file of {other}; choose another name for {option}",
                 path.display()
@@ -58,12 +59,50 @@ pub fn print(text: &str) -> Result<(), String> {
     }
 }
 
-/// Returns where a path leads, for comparison. The file itself may not exist yet.
-fn place(path: &Path) -> PathBuf {
-    let resolved = path.canonicalize().or_else(|_| {
-        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-        let folder = folder.unwrap_or(Path::new(".")).canonicalize()?;
-        Ok::<_, std::io::Error>(folder.join(path.file_name().unwrap_or_default()))
-    });
-    resolved.unwrap_or_else(|_| path.to_owned())
+/// Writes a line to standard error. Names of files may have control characters.
+pub fn tell(kind: &str, text: &str) {
+    eprintln!("{kind}: {}", in_one_line(text));
+}
+
+/// Returns a text whose control characters are escaped.
+pub fn in_one_line(text: &str) -> String {
+    let escaped = |c: char| match c.is_control() {
+        true => c.escape_default().collect::<String>(),
+        false => c.into(),
+    };
+    text.chars().map(escaped).collect()
+}
+
+/// Where a path leads, for comparison. The file itself may not exist yet.
+struct Place {
+    path: PathBuf,
+    /// The number of the file on its device. Hard links have the same.
+    number: Option<[u64; 2]>,
+}
+
+impl Place {
+    fn of(path: &Path) -> Self {
+        let resolved = path.canonicalize().or_else(|_| {
+            let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+            let folder = folder.unwrap_or(Path::new(".")).canonicalize()?;
+            Ok::<_, std::io::Error>(folder.join(path.file_name().unwrap_or_default()))
+        });
+        Self { path: resolved.unwrap_or_else(|_| path.to_owned()), number: number(path) }
+    }
+
+    fn is(&self, other: &Self) -> bool {
+        self.path == other.path || (self.number.is_some() && self.number == other.number)
+    }
+}
+
+#[cfg(unix)]
+fn number(path: &Path) -> Option<[u64; 2]> {
+    use std::os::unix::fs::MetadataExt;
+    let file = fs::metadata(path).ok()?;
+    Some([file.dev(), file.ino()])
+}
+
+#[cfg(not(unix))]
+fn number(_path: &Path) -> Option<[u64; 2]> {
+    None
 }

@@ -27,9 +27,22 @@ fn checker() -> PathBuf {
     }
 }
 
-/// Quotes a path for a shell, if it needs that.
+/// Quotes a path for a shell, if it needs that. A name that is not UTF-8 or has control characters
+/// is quoted byte by byte.
 fn quoted(path: &Path) -> String {
-    let text = path.display().to_string();
     let is_plain = |c: char| c.is_alphanumeric() || "/._-\\:".contains(c);
-    if text.chars().all(is_plain) { text } else { format!("'{}'", text.replace('\'', r"'\''")) }
+    match path.to_str() {
+        Some(text) if text.chars().all(is_plain) => text.to_owned(),
+        Some(text) if !text.contains(char::is_control) => {
+            format!("'{}'", text.replace('\'', r"'\''"))
+        }
+        _ => {
+            let byte = |byte: &u8| match byte {
+                b' '..=b'~' if !b"'\\".contains(byte) => char::from(*byte).to_string(),
+                _ => format!("\\x{byte:02x}"),
+            };
+            let bytes = path.as_os_str().as_encoded_bytes().iter().map(byte);
+            format!("$'{}'", bytes.collect::<String>())
+        }
+    }
 }

@@ -1,6 +1,6 @@
 //! The report about one robot, as lines or as JSON.
 
-use crate::number::length;
+use crate::number::{self, fixed, length};
 use crate::sides::{Sides, name, place};
 use crate::single::Proven;
 use crate::verdict::Verdict;
@@ -40,14 +40,17 @@ impl Report<'_> {
         let link = |found: &LinkProximity| {
             let Witness { on_robot, on_mesh, .. } = found.witness;
             let LinkProximity { link, distance, .. } = found;
-            format!("link {link}: {distance:.6}, from {on_robot:.6} to {on_mesh:.6}")
+            let [on_robot, on_mesh] = [on_robot, on_mesh].map(|point| number::place(point, 6));
+            format!("link {link}: {}, from {on_robot} to {on_mesh}", fixed(*distance, 6))
         };
         lines.extend(self.links.iter().map(link));
         if let Some(curve) = &self.curve {
             let doubt = if curve.resolved { "" } else { ", farther apart than --tolerance" };
             let Clearance { lower, upper, .. } = curve;
             let place = curve.witness.arc_length;
-            lines.push(format!("curve: {lower:.6} to {upper:.6}, {place:.3} along it{doubt}"));
+            let [lower, upper] = [lower, upper].map(|bound| fixed(*bound, 6));
+            let place = fixed(place, 3);
+            lines.push(format!("curve: {lower} to {upper}, {place} along it{doubt}"));
         }
         lines.extend(self.proven.as_ref().map(|proven| {
             match proven {

@@ -1,6 +1,7 @@
 //! The robot from a file: points, radii, and the frame if the file states it.
 
 use crate::messages;
+use crate::number::all_digits;
 use crate::options::Options;
 use mesh_files::{Centreline, Frame};
 use parry_continuum::parry::math::Vector;
@@ -33,7 +34,8 @@ pub fn shapes(path: &Path, my: &Options) -> Result<Vec<Robot>, String> {
     let shapes =
         mesh_files::load_shapes(path, &options).map_err(|error| messages::of_file(&error))?;
     let of = |(number, line)| {
-        robot(number, line, path, my).map_err(|error| format!("shape {number}: {error}"))
+        robot(number, line, path, my)
+            .map_err(|error| format!("shape {}: {error}", all_digits(number)))
     };
     shapes.into_iter().map(of).collect()
 }

@@ -1,5 +1,6 @@
 //! The answers about many robots: a line of CSV for each, or an object of JSON.
 
+use crate::number::all_digits;
 use crate::options::Options;
 use crate::robot::Robot;
 use crate::single::NOT_INSIDE;
@@ -36,12 +37,12 @@ pub fn answer(
     if let Some(path) = &my.csv {
         outputs::write("--csv", path, &table())?;
     }
-    wall.notes.iter().for_each(|note| eprintln!("note: {note}"));
+    wall.notes.iter().for_each(|note| outputs::tell("note", note));
     let verdict = my.margin.map(|margin| verdict(margin, &answers, wall));
     if verdict.as_ref().is_some_and(|(_, is_kept)| *is_kept) && !is_inside && !my.inside {
         doubts.push(NOT_INSIDE.to_owned());
     }
-    doubts.iter().for_each(|doubt| eprintln!("warning: {doubt}"));
+    doubts.iter().for_each(|doubt| outputs::tell("warning", doubt));
     let of_inside = my.inside.then(|| format!("inside: {inside} of {} shapes", answers.len()));
     let of_margin = verdict.as_ref().map(|(line, _)| line.clone());
     let mut text = String::new();
@@ -127,7 +128,7 @@ fn summary(robots: &[Robot], answers: &[Answer], wall: &Wall) -> String {
     closest.map_or_else(
         || "minimum: none, since every shape has an error\n".to_owned(),
         |(robot, found)| {
-            let subject = format!("shape {}, link {}", robot.number, found.link);
+            let subject = format!("shape {}, link {}", all_digits(robot.number), found.link);
             report::minimum(&subject, found, wall) + "\n"
         },
     )
@@ -145,7 +146,12 @@ fn objects(robots: &[Robot], answers: &[Answer]) -> Vec<serde_json::Value> {
 
 fn line(number: f64, answer: &Answer) -> String {
     match answer {
-        Ok((found, is_inside)) => format!("{number},{},,{is_inside}\n", csv::answer(found)),
-        Err(error) => format!("{number},,,,,,,,,,,\"{}\",\n", error.replace('"', "'")),
+        Ok((found, is_inside)) => {
+            format!("{},{},,{is_inside}\n", all_digits(number), csv::answer(found))
+        }
+        Err(error) => {
+            let error = outputs::in_one_line(error).replace('"', "'");
+            format!("{},,,,,,,,,,,\"{error}\",\n", all_digits(number))
+        }
     }
 }

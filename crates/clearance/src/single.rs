@@ -92,14 +92,14 @@ pub fn answer(
             robot.skipped_points
         )
     });
-    wall.notes.iter().chain(&skipped).for_each(|note| eprintln!("note: {note}"));
+    wall.notes.iter().chain(&skipped).for_each(|note| outputs::tell("note", note));
     let is_kept = verdict.is_none_or(|verdict| verdict.is_kept == Some(true));
     let is_proven = !matches!(proven, Some(Proven::TooClose));
     let is_inside = sides.is_inside();
     if verdict.is_some() && is_kept && !is_inside && !my.inside {
         doubts.push(NOT_INSIDE.to_owned());
     }
-    doubts.iter().for_each(|doubt| eprintln!("warning: {doubt}"));
+    doubts.iter().for_each(|doubt| outputs::tell("warning", doubt));
     let curve = curve.map(|(_, bounds)| bounds);
     let asks_inside = my.inside;
     let report = Report {

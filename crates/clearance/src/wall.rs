@@ -1,11 +1,13 @@
 //! The wall from a file, with its frame and unit.
 
 use crate::messages;
+use crate::number::place;
 use crate::options::Options;
 use mesh_files::Frame;
 use parry_continuum::parry::bounding_volume::Aabb;
 use parry_continuum::parry::math::Vector;
 use parry_continuum::proximity::{BvhSearch, Proximity};
+use std::path::PathBuf;
 
 pub struct Wall {
     pub search: BvhSearch,
@@ -13,6 +15,8 @@ pub struct Wall {
     /// As its file or --mesh-frame states it.
     pub frame: Option<Frame>,
     pub states_unit: bool,
+    /// The files that were read: one, or header and voxels.
+    pub files: Vec<PathBuf>,
     /// What was left out or merged, a line each.
     pub notes: Vec<String>,
 }
@@ -23,8 +27,8 @@ impl Wall {
         let options = mesh_files::Options::default()
             .with_label(my.label)
             .with_no_position_allowed(my.allow_no_position);
-        let mesh =
-            mesh_files::load_with(&my.mesh, &options).map_err(|error| messages::of_file(&error))?;
+        let (mesh, files) = mesh_files::load_with_files(&my.mesh, &options)
+            .map_err(|error| messages::of_file(&error))?;
         let mut notes = Vec::new();
         if mesh.labels.len() > 1 {
             let labels = mesh_files::list_labels(&mesh.labels);
@@ -43,7 +47,7 @@ impl Wall {
         let bounds = Aabb::from_points(vertices.iter().copied());
         let search = BvhSearch::from_triangles(&vertices, &triangles)
             .map_err(|error| format!("{file}: {error}"))?;
-        Ok(Self { search, bounds, frame, states_unit, notes })
+        Ok(Self { search, bounds, frame, states_unit, files, notes })
     }
 
     /// Returns the unit of length, if it is known.
@@ -57,6 +61,7 @@ impl Wall {
         let frame = self.frame.map_or("not stated", Frame::name);
         let unit = self.unit().unwrap_or("not stated");
         let count = self.search.triangles().len();
-        format!("{count} triangles from {low:.3} to {high:.3}, frame {frame}, unit {unit}")
+        let [low, high] = [low, high].map(|corner| place(corner, 3));
+        format!("{count} triangles from {low} to {high}, frame {frame}, unit {unit}")
     }
 }

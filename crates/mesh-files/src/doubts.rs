@@ -4,8 +4,11 @@
 //! 1. Compare the box around the robot with the box around the mesh: their sizes, and whether they
 //!    overlap.
 //! 2. If there is a misfit, try the usual mistakes in this order: the other frame, another unit,
-//!    both. The first change after which the boxes fit is the remedy.
+//!    both. The first change after which the boxes fit is the remedy. Another unit must bring the
+//!    sizes nearer to one another: otherwise it hides a wrong pose.
 //! 3. Compare the radius with the box around the mesh.
+//!
+//! The box of a robot is the box of its points, without the radii, whose unit may be another one.
 
 use std::ops::RangeInclusive;
 
@@ -35,17 +38,11 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// Returns the box around balls, each given as its centre and its radius. Balls that are not
-    /// finite are skipped. `None` if there is no other ball.
-    pub fn of_balls(balls: impl IntoIterator<Item = ([f64; 3], f64)>) -> Option<Self> {
-        let balls = balls
-            .into_iter()
-            .filter(|(centre, radius)| radius.is_finite() && centre.iter().all(|x| x.is_finite()));
-        let boxes = balls.map(|(centre, radius)| Self {
-            low: centre.map(|x| x - radius),
-            high: centre.map(|x| x + radius),
-        });
-        boxes.reduce(|a, b| Self {
+    /// Returns the box around points. Points that are not finite are skipped. `None` if there is no
+    /// other point.
+    pub fn of_points(points: impl IntoIterator<Item = [f64; 3]>) -> Option<Self> {
+        let points = points.into_iter().filter(|point| point.iter().all(|x| x.is_finite()));
+        points.map(|point| Self { low: point, high: point }).reduce(|a, b| Self {
             low: [0, 1, 2].map(|axis| a.low[axis].min(b.low[axis])),
             high: [0, 1, 2].map(|axis| a.high[axis].max(b.high[axis])),
         })
@@ -70,6 +67,11 @@ impl Bounds {
 
     fn is_alike(&self, other: &Self) -> bool {
         (1.0 / LARGEST_RATIO..=LARGEST_RATIO).contains(&(self.size() / other.size()))
+    }
+
+    /// Returns by how many powers of e the sizes of the boxes differ.
+    fn mismatch(&self, other: &Self) -> f64 {
+        (self.size() / other.size()).ln().abs()
     }
 }
 
@@ -116,21 +118,24 @@ impl Misfits {
 
 /// Compares the box of a robot with that of a mesh.
 ///
-/// - `robot`: returns the box around the robot after a change of its input.
+/// - `robot`: returns the box around the robot's points after a change of its input.
 /// - `may_turn`: whether the frame may be wrong. False if the caller stated a pose or both frames.
 pub fn misfits(robot: impl Fn(Change) -> Option<Bounds>, mesh: &Bounds, may_turn: bool) -> Misfits {
     let mut misfits = Misfits { doubts: Vec::new(), remedy: None };
     let Some(own) = robot(Change::NONE) else { return misfits };
     if !own.is_alike(mesh) {
         let sizes = [own.size(), mesh.size()];
-        misfits
-            .doubts
-            .push(format!("the robot's box measures {:.3}, the mesh's {:.3}", sizes[0], sizes[1]));
+        misfits.doubts.push(format!(
+            "the robot's box measures {}, the mesh's {}",
+            fixed(sizes[0]),
+            fixed(sizes[1])
+        ));
     }
     let gap = own.gap(mesh);
     if gap > 0.0 {
         misfits.doubts.push(format!(
-            "the robot's box and the mesh's do not overlap; they are {gap:.3} apart"
+            "the robot's box and the mesh's do not overlap; they are {} apart",
+            fixed(gap)
         ));
     }
     if misfits.doubts.is_empty() {
@@ -140,8 +145,16 @@ pub fn misfits(robot: impl Fn(Change) -> Option<Bounds>, mesh: &Bounds, may_turn
     let scaled = |turns: bool| UNITS.map(|scale| Change { scale, turns });
     let changes = turned.into_iter().chain(scaled(false)).chain(scaled(true));
     misfits.remedy = changes.filter(|change| may_turn || !change.turns).find(|change| {
-        robot(*change).is_some_and(|changed| changed.gap(mesh) <= 0.0 && changed.is_alike(mesh))
+        robot(*change).is_some_and(|changed| {
+            let is_nearer = change.scale == 1.0 || changed.mismatch(mesh) < own.mismatch(mesh);
+            is_nearer && changed.gap(mesh) <= 0.0 && changed.is_alike(mesh)
+        })
     });
+    if let (Some(last), None) = (misfits.doubts.last_mut(), misfits.remedy)
+        && gap > 0.0
+    {
+        last.push_str("; check the robot's pose");
+    }
     misfits
 }
 
@@ -157,7 +170,8 @@ pub struct RadiusDoubt {
 /// Doubts a robot's largest radius that is more than 1/10 or less than 1/5000 of the diagonal of
 /// the mesh's box. A radius of 0 is never doubted.
 ///
-/// If [`misfits`] names a scale that applies to the radius too, `radius` is the scaled radius.
+/// If [`misfits`] names a scale that applies to the radius too, `radius` is the scaled radius: see
+/// [`scales_radius`].
 pub fn radius_doubt(radius: f64, mesh: &Bounds) -> Option<RadiusDoubt> {
     let share = radius / mesh.size();
     if radius == 0.0 || !share.is_finite() || USUAL_RADII.contains(&share) {
@@ -165,16 +179,37 @@ pub fn radius_doubt(radius: f64, mesh: &Bounds) -> Option<RadiusDoubt> {
     }
     let size = if share > *USUAL_RADII.end() { "large" } else { "small" };
     let doubt = format!(
-        "the radius {} is {size} beside the mesh's box, which measures {:.3}; check its unit",
+        "the radius {} is {size} beside the mesh's box, which measures {}; check its unit",
         short(radius),
-        mesh.size()
+        fixed(mesh.size())
     );
     let off = |factor: &f64| (share * factor / TYPICAL_RADIUS).ln().abs();
     let factor = RADIUS_UNITS.into_iter().min_by(|a, b| off(a).total_cmp(&off(b)))?;
     Some(RadiusDoubt { doubt, factor })
 }
 
+/// Returns whether a radius is probably in the unit of the coordinates, so that `scale` applies to
+/// both: if the scaled radius is usual, or if neither is usual and the scaled one is nearer to it.
+pub fn scales_radius(radius: f64, scale: f64, mesh: &Bounds) -> bool {
+    let is_usual = |radius: f64| radius_doubt(radius, mesh).is_none();
+    let off = |radius: f64| (radius / mesh.size() / TYPICAL_RADIUS).ln().abs();
+    is_usual(radius * scale) || (!is_usual(radius) && off(radius * scale) < off(radius))
+}
+
+/// Numbers from here on are written with an exponent.
+const LARGE: f64 = 1e15;
+
+/// Returns a number with three decimals.
+fn fixed(number: f64) -> String {
+    if number.abs() < LARGE { format!("{number:.3}") } else { format!("{number:.3e}") }
+}
+
 /// Returns a number rounded to four significant digits.
-fn short(number: f64) -> f64 {
-    format!("{number:.3e}").parse().unwrap_or(number)
+fn short(number: f64) -> String {
+    let rounded: f64 = format!("{number:.3e}").parse().unwrap_or(number);
+    if (1e-6..LARGE).contains(&rounded.abs()) {
+        rounded.to_string()
+    } else {
+        format!("{rounded:e}")
+    }
 }

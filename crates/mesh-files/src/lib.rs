@@ -30,7 +30,7 @@ mod text;
 pub use centreline::{
     Centreline, centreline_from_bytes, load_centreline, load_shapes, load_table, table_from_bytes,
 };
-pub use doubts::{Bounds, Change, Misfits, RadiusDoubt, misfits, radius_doubt};
+pub use doubts::{Bounds, Change, Misfits, RadiusDoubt, misfits, radius_doubt, scales_radius};
 pub use error::{MeshFileError, list_labels};
 #[cfg(feature = "label-maps")]
 use label_map::Fault;
@@ -39,7 +39,8 @@ pub use label_map::LabelVolume;
 pub use mesh::{Frame, Mesh};
 pub use obj::to_obj;
 use std::borrow::Cow;
-use std::path::Path;
+use std::cell::RefCell;
+use std::path::{Path, PathBuf};
 
 /// The options for reading a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -261,6 +262,22 @@ pub fn load_from<'a>(
             Err(MeshFileError::Unreadable { file: file.to_owned(), reason })
         }
     })
+}
+
+/// Same as [`load_with`]. Also returns the files that were read: one, or header and voxels.
+///
+/// # Errors
+/// As [`load_with`].
+pub fn load_with_files(
+    path: impl AsRef<Path>,
+    options: &Options,
+) -> Result<(Mesh, Vec<PathBuf>), MeshFileError> {
+    let files = RefCell::new(Vec::new());
+    let mesh = load_by(path.as_ref(), options, &|file| {
+        files.borrow_mut().push(file.to_owned());
+        read_file(file, options).map(Cow::Owned)
+    })?;
+    Ok((mesh, files.into_inner()))
 }
 
 fn load_by(path: &Path, options: &Options, reader: Reader) -> Result<Mesh, MeshFileError> {

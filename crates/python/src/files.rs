@@ -40,10 +40,15 @@ fn unit(states_unit: bool, scale: f64) -> Option<String> {
     found.map(|(_, unit)| unit.to_owned())
 }
 
-/// Warns the caller of this package.
+/// Warns the caller of this package, in one line.
 pub(crate) fn warn(py: Python<'_>, text: &str) -> PyResult<()> {
-    let text = CString::new(text.replace('\0', " "))?;
+    let text = CString::new(in_one_line(text))?;
     PyErr::warn(py, &py.get_type::<PyUserWarning>(), &text, 1)
+}
+
+/// The text without control characters, which the name of a file may have.
+fn in_one_line(text: &str) -> String {
+    text.chars().map(|c| if c.is_control() { '?' } else { c }).collect()
 }
 
 /// The error of reading, in the words of the functions here.
@@ -56,7 +61,7 @@ fn refuse(py: Python<'_>, error: &MeshFileError) -> PyErr {
         ),
         error => error.to_string().replace(", or raise Options::memory_limit", ""),
     };
-    Refused::other("file", text).raise(py, None)
+    Refused::other("file", in_one_line(&text)).raise(py, None)
 }
 
 /// The mesh in a file: STL, OBJ, PLY, VTK's .vtp or .vtk, or the surface of a label map in NIfTI,
@@ -64,7 +69,8 @@ fn refuse(py: Python<'_>, error: &MeshFileError) -> PyErr {
 ///
 /// What the file states of its coordinates is kept: `Mesh.frame` and `Mesh.unit`. A warning says if
 /// faces without area are left out (`Mesh.skipped_faces`), if several labels are read as one
-/// surface, and if the sform and the qform of a NIfTI label map place it differently.
+/// surface, if the sform and the qform of a NIfTI label map place it differently, and if the mesh
+/// is open or badly joined (`Mesh.surface`).
 ///
 /// Parameters
 /// ----------
@@ -108,7 +114,9 @@ pub(crate) fn load(
     let (path, bytes) = match Source::of(path)? {
         Source::Mesh(parts) if label.is_none() => {
             options.check_scale().map_err(|error| refuse(py, &error))?;
-            return Mesh::of_parts(&parts, frame, scale, Origin::default(), device);
+            let mesh = Mesh::of_parts(&parts, frame, scale, Origin::default(), device)?;
+            mesh.warn_of_surface(py, "the mesh")?;
+            return Ok(mesh);
         }
         Source::Mesh(..) => {
             let text = "`label` is given beside a mesh, which has no labels; leave it out";
@@ -122,7 +130,9 @@ pub(crate) fn load(
         Some(bytes) => mesh_files::from_bytes(&file, &bytes, &options),
         None => mesh_files::load_with(&file, &options),
     })?;
-    made(py, &path, read.map_err(|error| refuse(py, &error))?, frame, scale, device)
+    let mesh = made(py, &path, read.map_err(|error| refuse(py, &error))?, frame, scale, device)?;
+    mesh.warn_of_surface(py, &path.display().to_string())?;
+    Ok(mesh)
 }
 
 /// Where a mesh or a centreline is.

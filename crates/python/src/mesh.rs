@@ -1,14 +1,14 @@
 //! The class `Mesh`: how it is made and how it moves. Its queries are in `queries`.
 
 use crate::error::Refused;
-use crate::files::in_frame;
+use crate::files::{in_frame, warn};
 use crate::input::{
     DeviceName, FrameName, HasWarned, Names, Numbers, Robots, faces, mesh_text, object_of,
     shape_text, stated_frame, vectors,
 };
 use crate::motions::Motion;
-use crate::output::{array, flat};
-use crate::threads::{DeviceKind, Engine, Held, alone, is_available};
+use crate::output::{array, flat, framed};
+use crate::threads::{DeviceKind, Engine, Held, alone, interruptible, is_available};
 use mesh_files::Frame;
 use numpy::PyArrayDyn;
 use parry_continuum::parry::math::Vector;
@@ -124,6 +124,13 @@ impl Mesh {
         Self::new_from(py, vectors(&vertices), faces, Origin { frame, ..origin }, device)
     }
 
+    /// Warns of an open or badly joined surface. `name` is the file's.
+    pub(crate) fn warn_of_surface(&self, py: Python<'_>, name: &str) -> PyResult<()> {
+        let search = self.engine(py).base(py);
+        let doubts = interruptible(py, move || search.surface().doubts())?;
+        doubts.iter().try_for_each(|doubt| warn(py, &format!("{name}: {doubt}")))
+    }
+
     /// The engine of the mesh as it is now.
     pub(crate) fn engine(&self, py: Python<'_>) -> Arc<Engine> {
         self.engine.with(py, |engine| Arc::clone(engine))
@@ -164,6 +171,7 @@ impl Mesh {
     ) -> PyResult<Vec<Vector>> {
         let py = given.py();
         let vertices = vectors(rows(given, name)?.points());
+        self.note_frame(name, given)?;
         let (got, expected) = (vertices.len(), self.engine(py).vertices(py).as_slice().len());
         if got == expected {
             return Ok(vertices);
@@ -236,6 +244,8 @@ pub(crate) fn rows<'py>(given: &Bound<'py, PyAny>, name: &str) -> PyResult<Numbe
         [_, 3] => Ok(numbers),
         ref shape => {
             let advice = match shape {
+                // It may be three points without z too.
+                [3, 2] => "give three coordinates for each vertex",
                 [3, _] => "give its transpose, `.T`",
                 _ => "give a row of three coordinates for each vertex",
             };
@@ -269,7 +279,10 @@ impl Mesh {
             return Ok(Self::of(engine, Origin { frame, unit, ..origin }));
         }
         let parts = match faces {
-            Some(faces) => Parts { vertices: vertices.clone(), faces: faces.clone(), frame: None },
+            Some(faces) => {
+                let frame = stated_frame(vertices)?;
+                Parts { vertices: vertices.clone(), faces: faces.clone(), frame }
+            }
             None => {
                 refuse_path(vertices)?;
                 parts(vertices, "vertices")?
@@ -312,12 +325,13 @@ impl Mesh {
         self.origin.skipped_faces
     }
 
-    /// The vertices as they are now, a (V, 3) array of your own.
+    /// The vertices as they are now, a (V, 3) array of your own. It has the frame of the mesh.
     #[getter]
-    fn vertices<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    fn vertices<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let vertices = self.engine(py).vertices(py);
         let vertices = vertices.as_slice();
-        array(py, vec![vertices.len(), 3], flat(vertices.iter().copied()))
+        let array = array(py, vec![vertices.len(), 3], flat(vertices.iter().copied()))?;
+        framed(array, self.frame())
     }
 
     /// The triangles, an (F, 3) array of int64 of your own.

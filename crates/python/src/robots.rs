@@ -1,15 +1,16 @@
 //! Fewer links for the same robot, and the surfaces of links.
 
 use crate::error::Refused;
-use crate::input::{Block, Caps, Names, Robots, of};
-use crate::output::{array, flat};
+use crate::input::{Block, Caps, Names, Robots, of, stated_frame};
+use crate::output::{array, flat, framed};
 use crate::queries::distance::set_chain;
 use crate::queries::two_robots::segment_of;
 use crate::threads::{Asked, compute};
+use mesh_files::Frame;
 use numpy::PyArrayDyn;
 use pyo3::prelude::*;
 
-type Arrays<'py> = (Bound<'py, PyArrayDyn<f64>>, Bound<'py, PyArrayDyn<f64>>);
+type Arrays<'py> = (Bound<'py, PyAny>, Bound<'py, PyArrayDyn<f64>>);
 type Surfaces<'py> =
     (Bound<'py, PyArrayDyn<f64>>, Bound<'py, PyArrayDyn<i64>>, Bound<'py, PyArrayDyn<i64>>);
 
@@ -30,7 +31,7 @@ type Surfaces<'py> =
 /// Returns
 /// -------
 /// (points, radii)
-///     Arrays of the shapes (M, 3) and (M - 1,).
+///     Arrays of the shapes (M, 3) and (M - 1,). The points have the frame of the given ones.
 ///
 /// Raises
 /// ------
@@ -61,8 +62,10 @@ pub(crate) fn simplify<'py>(
     robots.copy(0..1, &mut block).map_err(|refused| refused.raise(py, None))?;
     let robot = block.robot(0);
     let found = compute(py, || parry_continuum::simplify(robot.points, robot.radii, tolerance))?;
-    let (points, radii) = found.map_err(|error| Refused::from(error).raise(py, None))?;
-    Ok((array(py, vec![points.len(), 3], flat(points))?, array(py, vec![radii.len()], radii)?))
+    let (fewer, radii) = found.map_err(|error| Refused::from(error).raise(py, None))?;
+    let fewer = array(py, vec![fewer.len(), 3], flat(fewer))?;
+    let frame = stated_frame(points)?.map(Frame::name);
+    Ok((framed(fewer, frame)?, array(py, vec![radii.len()], radii)?))
 }
 
 /// The surfaces of a robot's links, each with 24 sides, in the mesh's frame.

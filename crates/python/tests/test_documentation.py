@@ -24,7 +24,7 @@ DOCUMENTED = {
     **{name: getattr(parry_continuum, name) for name in parry_continuum.__all__ if name != "__version__"},
     **METHODS,
 }
-WITHOUT_PARAMETERS = {"Mesh.prepare", "RobotPair.forget", "SelfQuery.forget"}
+WITHOUT_PARAMETERS = {"Mesh.prepare", "Mesh.surface", "RobotPair.forget", "SelfQuery.forget"}
 PAGE = Path(__file__).parent.parent / "README.md"
 README = PAGE.read_text()
 

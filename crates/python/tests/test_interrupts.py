@@ -1,4 +1,4 @@
-"""Ctrl-C ends what reads for long."""
+"""Ctrl-C ends what reads or computes for long."""
 
 from __future__ import annotations
 
@@ -59,4 +59,49 @@ def test_reading_ends_within_a_second(what: str, tmp_path: Path) -> None:
         child.send_signal(signal.SIGINT)
         assert child.stdout.readline() == "ended\n"
         assert time.monotonic() - begin < 1
+        child.kill()
+
+
+LONG = """
+import signal, sys
+signal.signal(signal.SIGINT, signal.default_int_handler)
+import numpy as np
+from parry_continuum import LinearMotion, Mesh, verify_motion
+sys.path.insert(0, {tests!r})
+from shapes import sphere
+random = np.random.default_rng(1)
+line = np.cumsum(random.normal(size=(100, 3)), axis=0)
+one = LinearMotion(line[:40], line[:40] + 1, 0.1)
+many = LinearMotion(np.stack([line[:40]] * 8), np.stack([line[:40] + 1] * 8), 0.1)
+mesh = Mesh(*sphere(10.0, 200, 100))
+# The first robots are far away, so that a chunk of many is begun; all others are in the mesh.
+robots = np.concatenate([np.stack([line + 1e4] * 400), np.stack([0.5 * line] * 2000)])
+asked = {{
+    "one": lambda: verify_motion(one, steps=400_000),
+    "many": lambda: verify_motion(many, steps=400_000),
+    "contacts": lambda: mesh.contacts_within(robots, 0.1, margin=10.0),
+    "few": lambda: mesh.contacts_within(robots[-15:], 0.1, margin=10.0),
+}}
+print("begins", flush=True)
+try:
+    for _ in range(1000):
+        asked[sys.argv[1]]()
+except KeyboardInterrupt:
+    print("ended", flush=True)
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="sends SIGINT")
+@pytest.mark.parametrize("what", ["one", "many", "contacts", "few"])
+def test_computing_ends_within_seconds(what: str) -> None:
+    program = LONG.format(tests=str(TESTS))
+    with subprocess.Popen([sys.executable, "-c", program, what], stdout=subprocess.PIPE, text=True) as child:
+        assert child.stdout is not None
+        assert child.stdout.readline() == "begins\n"
+        time.sleep(1.5)
+        begin = time.monotonic()
+        child.send_signal(signal.SIGINT)
+        assert child.stdout.readline() == "ended\n"
+        # A query about one robot is not interrupted.
+        assert time.monotonic() - begin < 4
         child.kill()

@@ -57,7 +57,7 @@ def test_one_answer_is_whole() -> None:
         "Minimum(distance=2.0, on_robot=array([0., 0., 2.]), on_mesh=array([0., 0., 0.]), segment=0, arc_length=0.0, triangle=0)"
     )
     answer = floor.clears_inside([[0, 0, 2], [0, 0, 4]], 0.5, margin=1)
-    assert repr(answer) == "InsideAnswer(clears=True, base=<Side.UNDECIDED: 0>)"
+    assert repr(answer) == "InsideAnswer(clears=True, base=<Side.UNDECIDED: 0>, tip=<Side.OUTSIDE: 1>, crosses_opening=False)"
     none = floor.minimum(MANY[:0], 0.1)
     assert "on_robot=array([], shape=(0, 3), dtype=float64)" in repr(none)
 

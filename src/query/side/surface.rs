@@ -28,10 +28,10 @@ use parry3d_f64::math::{Real, Vector};
 
 /// The width of a seam over its largest coordinate.
 ///
-/// A coordinate is rounded by u of itself, so a corner is within `sqrt(3) u` of its place. Two
-/// corners on either side of a line between two others are then within `4 sqrt(3) u` of one
-/// another, beside the line. The width itself errs by less than `8 u`.
-const ROUNDING: Real = 16.0 * f64::UNIT_ROUNDOFF;
+/// Corners and edges touch if no coordinate differs by more than `32 u` of the largest one
+/// (`mesh/seams.rs`). That is a distance of less than `56 u`. The width itself errs by less than
+/// `8 u`.
+const ROUNDING: Real = 64.0 * f64::UNIT_ROUNDOFF;
 
 /// A mesh as a surface.
 #[derive(Clone)]

@@ -14,6 +14,8 @@ pub struct Answers {
     pub(crate) links: Vec<LinkProximity>,
     pub(crate) minimum: LinkProximity,
     pub(crate) base: Side,
+    pub(crate) tip: Side,
+    pub(crate) sides: Vec<Side>,
     pub(crate) robot: Vec<ModifiedCylinder>,
     pub(crate) placement: Placement,
 }
@@ -60,12 +62,23 @@ impl Answers {
 
     /// Of the robot's base: `inside`, `outside` or `undecided`.
     pub fn base(&self) -> String {
-        match self.base {
-            Side::Inside => "inside",
-            Side::Outside => "outside",
-            Side::Undecided => "undecided",
-        }
-        .to_owned()
+        name(self.base).to_owned()
+    }
+
+    /// Of the robot's tip, in the same words.
+    pub fn tip(&self) -> String {
+        name(self.tip).to_owned()
+    }
+
+    /// Of each link, in the same words. A link that touches the wall or crosses an opening is
+    /// `undecided`.
+    pub fn sides(&self) -> Vec<String> {
+        self.sides.iter().map(|side| name(*side).to_owned()).collect()
+    }
+
+    /// Whether every link is inside.
+    pub fn is_inside(&self) -> bool {
+        self.sides.iter().all(|side| *side == Side::Inside)
     }
 
     /// The two ends of each link.
@@ -88,5 +101,13 @@ impl Answers {
     pub fn is_round(&self) -> Vec<u8> {
         let caps = self.robot.iter().flat_map(|link| link.caps());
         caps.map(|cap| u8::from(cap == Cap::Round)).collect()
+    }
+}
+
+fn name(side: Side) -> &'static str {
+    match side {
+        Side::Inside => "inside",
+        Side::Outside => "outside",
+        Side::Undecided => "undecided",
     }
 }

@@ -37,9 +37,8 @@ pub fn place(robot: &Robot, wall: &mut Wall, matrix: &str) -> Result<Placement, 
     let pose = if turned.is_some() { half_turn } else { unturned };
     let may_turn = given.is_none() && line.frame.is_none();
     let around = |change: Change| {
-        let radius = line.scaled_radius(change.scale);
         let place = |point: &Vector| pose * Vector::from(change.apply(point.to_array()));
-        Bounds::of_balls(line.points.iter().map(|point| (place(point).to_array(), radius)))
+        Bounds::of_points(line.points.iter().map(|point| place(point).to_array()))
     };
     let doubts = wall.bounds().map_or_else(Vec::new, |bounds| {
         let misfits = misfits(around, &bounds, may_turn);

@@ -7,7 +7,7 @@ use continuum_demo::{steer, ventricle};
 use mesh_files::{Bounds, Frame};
 use parry_continuum::parry::math::{Pose, Real, Rot3, Vector};
 use parry_continuum::parry::shape::TriMesh;
-use parry_continuum::proximity::{BvhSearch, Proximity, Side};
+use parry_continuum::proximity::{BvhSearch, Opening, Proximity};
 use serde_json::json;
 use wasm_bindgen::prelude::wasm_bindgen;
 
@@ -82,6 +82,7 @@ impl Wall {
         let (vertices, triangles) = mesh.into_parts::<Vector>();
         let search = BvhSearch::from_triangles(&vertices, &triangles)
             .map_err(|error| format!("{name}: {error}"))?;
+        notes.extend(search.surface().doubts().iter().map(|doubt| format!("{name}: {doubt}")));
         Ok(Self {
             search,
             name: name.to_owned(),
@@ -118,7 +119,7 @@ impl Wall {
         self.labels.clone()
     }
 
-    /// What was left out of the file, and what was merged.
+    /// What was left out of the file, what was merged, and why its inside may be doubtful.
     pub fn notes(&self) -> Vec<String> {
         self.notes.clone()
     }
@@ -153,25 +154,37 @@ impl Wall {
         let mut links = Vec::new();
         self.search.per_link(chain, &pose, &mut links).map_err(|error| error.to_string())?;
         let minimum = self.search.minimum(chain, &pose).map_err(|error| error.to_string())?;
-        let base = chain
-            .links()
-            .first()
-            .map_or(Side::Undecided, |link| self.search.side(pose * link.start()));
-        Ok(Answers { links, minimum, base, robot: chain.links().to_vec(), placement })
+        let mut sides = Vec::new();
+        self.search.link_sides(chain, &pose, &mut sides).map_err(|error| error.to_string())?;
+        let robot = chain.links().to_vec();
+        let ends = [robot[0].start(), robot[robot.len() - 1].end()];
+        let [base, tip] = ends.map(|end| self.search.side(pose * end));
+        Ok(Answers { links, minimum, base, tip, sides, robot, placement })
     }
 
     /// The answers with all digits, as JSON: mesh, base, links and minimum.
     pub fn report(&self, answers: &Answers) -> String {
         let bounds = self.bounds().map(|Bounds { low, high }| [low, high]);
+        let surface = self.search.surface();
+        let opening = |opening: &Opening| {
+            let Opening { edges, width, centre, .. } = opening;
+            json!({ "edges": edges, "width": width, "centre": centre.to_array() })
+        };
         let report = json!({
             "mesh": {
                 "triangles": self.search.triangles().len(),
                 "bounds": bounds,
                 "frame": self.frame().map(Frame::name),
                 "unit": self.is_millimetres.then_some("mm"),
+                "openings": surface.openings.iter().map(opening).collect::<Vec<_>>(),
+                "nonmanifold_edges": surface.nonmanifold_edges,
+                "misoriented_edges": surface.misoriented_edges,
             },
             "turned": answers.placement.turned.map(|frames| frames.map(Frame::name)),
             "base": answers.base(),
+            "tip": answers.tip(),
+            "sides": answers.sides(),
+            "inside": answers.is_inside(),
             "links": answers.links,
             "minimum": answers.minimum,
         });
@@ -211,7 +224,7 @@ impl Wall {
     }
 
     pub(crate) fn bounds(&self) -> Option<Bounds> {
-        Bounds::of_balls(self.search.vertices().iter().map(|vertex| (vertex.to_array(), 0.0)))
+        Bounds::of_points(self.search.vertices().iter().map(|vertex| vertex.to_array()))
     }
 
     /// Where tubes come in: the point deepest inside, along the longest free line.

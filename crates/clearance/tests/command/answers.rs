@@ -464,3 +464,59 @@ fn a_radius_in_another_unit_is_doubted_and_the_remedy_works() {
     assert!(said.len() == 1 && said[0].contains(expected), "{said:?}");
     assert_eq!(warnings(&["--mesh", wall, "--centreline", both, "--scale", "1000"]), [""; 0]);
 }
+
+/// Frames are named in any case.
+#[test]
+fn a_frame_is_named_in_any_case() {
+    let wall = &room("cases.obj");
+    let shape = &file("cases.csv", "-30,-30,20,2\n-30,-30,40\n");
+    for [frame, other] in [["LPS", "RAS"], ["Lps", "ras"], ["ras", "lPS"]] {
+        let asked =
+            ["--mesh", wall, "--centreline", shape, "--frame", frame, "--mesh-frame", other];
+        assert_eq!(minimum(&asked), 20.0);
+    }
+}
+
+/// Where sizes match, a change of unit that makes the boxes overlap would hide a wrong pose.
+#[test]
+fn a_shifted_robot_is_no_matter_of_units() {
+    let wall = &room("shifted.obj");
+    let shape = &file("shifted.csv", "90,90,20,2\n90,90,40\n");
+    let said = warnings(&["--mesh", wall, "--centreline", shape]).join("\n");
+    assert!(said.ends_with("they are 30.000 apart; check the robot's pose"), "{said}");
+}
+
+/// Nothing is printed with hundreds of digits.
+#[test]
+fn huge_numbers_are_short() {
+    let scaled = |name: &str, power: &str| {
+        let text = std::fs::read_to_string(room(name)).unwrap();
+        let far = |line: &str| match line.strip_prefix("v ") {
+            Some(place) => format!("v {}\n", place.replace("60", &format!("6{power}"))),
+            None => format!("{line}\n"),
+        };
+        file(name, &text.lines().map(far).collect::<String>())
+    };
+    let plain = &room("huge_plain.obj");
+    let huge = &scaled("huge.obj", "e149");
+    let far = &file("huge.csv", "3e149,3e149,2e149,1e148\n3e149,3e149,4e149\n");
+    let near = &file("huge_near.csv", "30,30,20,2\n30,30,40\n");
+    let shapes =
+        &file("huge_shapes.csv", "1e300,3e149,3e149,2e149,1e148\n1e300,3e149,3e149,4e149,1\n");
+    for arguments in [
+        &["--mesh", huge, "--centreline", far, "--tolerance", "1e147", "--margin", "1e300"][..],
+        &["--mesh", huge, "--centreline", far, "--csv", "huge_out.csv"],
+        &["--mesh", huge, "--shapes", shapes],
+        &["--mesh", plain, "--centreline", far],
+        &["--mesh", huge, "--centreline", near],
+        &["--mesh", plain, "--centreline", near, "--scale", "1e300"],
+        &["--mesh", plain, "--centreline", &file("huge_radius.csv", "3,3,2,1e300\n3,3,4\n")],
+        &["--mesh", plain, "--centreline", near, "--margin", "1e308"],
+    ] {
+        let (_, out, error) = run(arguments);
+        let table = std::fs::read_to_string(continuum_programs::place("huge_out.csv"));
+        let text = out + &error + &table.unwrap_or_default();
+        let longest = text.split(|c: char| !c.is_ascii_digit()).map(str::len).max();
+        assert!(longest.unwrap_or(0) <= 20, "{arguments:?}: {text}");
+    }
+}

@@ -162,3 +162,76 @@ fn no_file_that_is_read_is_replaced() {
     }
     assert_eq!([wall, shape].map(|path| std::fs::read_to_string(path).unwrap()), before);
 }
+
+/// Header and voxels are two files of one mesh; a hard link is the same file by another name.
+#[test]
+fn neither_voxels_nor_linked_files_are_replaced() {
+    let data =
+        |name: &str| format!("{}/../mesh-files/tests/data/{name}", env!("CARGO_MANIFEST_DIR"));
+    std::fs::create_dir_all(place("")).unwrap();
+    for name in ["ball.mhd", "ball.raw"] {
+        std::fs::copy(data(name), place(name)).unwrap();
+    }
+    let nrrd = "NRRD0004\ntype: uchar\ndimension: 3\nspace: left-posterior-superior\nsizes: 1 1 1\n\
+                space directions: (20,0,0) (0,20,0) (0,0,20)\nspace units: \"mm\" \"mm\" \"mm\"\n\
+                space origin: (0,0,0)\nencoding: ascii\ndata file: voxel.txt\n";
+    let (header, voxel) = (file("voxel.nhdr", nrrd), file("voxel.txt", "1\n"));
+    let shape = &file("voxel_shape.csv", "30,0,0,1\n40,0,0\n");
+    let ball = place("ball.mhd").to_str().unwrap().to_owned();
+    let before = std::fs::read(place("ball.raw")).unwrap();
+    for (mesh, output) in [(&ball, "ball.raw"), (&header, "voxel.txt"), (&header, "voxel.nhdr")] {
+        let asked = ["--mesh", mesh, "--centreline", shape, "--csv", output];
+        refuse(&asked, "the file of --mesh; choose another name for --csv");
+        succeed(&asked[..4]);
+    }
+    #[cfg(unix)]
+    {
+        let link = place("linked.csv");
+        let _ = std::fs::remove_file(&link);
+        std::fs::hard_link(shape, &link).unwrap();
+        let asked = ["--mesh", &ball, "--centreline", shape, "--csv", "linked.csv"];
+        refuse(&asked, "the file of --centreline; choose another name for --csv");
+        std::fs::remove_file(&link).unwrap();
+    }
+    assert_eq!(std::fs::read(place("ball.raw")).unwrap(), before);
+    assert_eq!(std::fs::read_to_string(voxel).unwrap(), "1\n");
+}
+
+/// Names of files may have any bytes but 0. They stay in one line, and the printed command works.
+#[cfg(unix)]
+#[test]
+fn any_name_of_a_file_is_taken() {
+    use std::ffi::OsStr;
+    use std::os::unix::ffi::OsStrExt;
+    let [wall, shape] = &needle("named");
+    let names =
+        [&b"proof\xff.txt"[..], b"line\nend.txt", b"it's one.txt", "pr\u{fc}fung.txt".as_bytes()];
+    for name in names {
+        let (proof, plot) = (OsStr::from_bytes(name), [name, b".svg"].concat());
+        let asked =
+            ["--mesh", wall, "--centreline", shape, "--margin", "1", "--prove"].map(OsStr::new);
+        let more = [proof, OsStr::new("--plot"), OsStr::from_bytes(&plot)];
+        let run =
+            Command::new(crate::COMMAND).args(asked).args(more).current_dir(place("")).output();
+        let run = run.unwrap();
+        let out = String::from_utf8(run.stdout).unwrap();
+        assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
+        let plot = std::fs::read_to_string(place("").join(OsStr::from_bytes(&plot))).unwrap();
+        assert!(plot.starts_with("<svg"));
+        assert_eq!(out.lines().filter(|line| !line.contains(": ")).count(), 0, "{out}");
+        let bash = Command::new("bash").args(["-c", command(&out)]).current_dir(place("")).output();
+        match bash {
+            Ok(checked) => {
+                let said = String::from_utf8_lossy(&checked.stdout).into_owned();
+                assert!(said.ends_with("\nyes\n"), "{said}{out}");
+            }
+            Err(error) if std::env::var_os("CI").is_none() => eprintln!("skipped: {error}"),
+            Err(error) => panic!("bash: {error}"),
+        }
+    }
+    // An error about such a file is one line.
+    let broken = file("broken\nname.csv", "30,zero,20\n");
+    refuse(&["--mesh", wall, "--centreline", &broken], "broken\\nname.csv");
+    refuse(&["--mesh", "no\nwall.obj", "--centreline", shape], "no\\nwall.obj");
+    refuse(&["--mesh", wall, "--centreline", shape, "--plot", "no\nplot.png"], "ends in .svg");
+}

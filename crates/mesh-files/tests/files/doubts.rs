@@ -1,6 +1,6 @@
 //! A robot that is in another frame or unit than the mesh is doubted, with the change that helps.
 
-use mesh_files::{Bounds, Change, RadiusDoubt, misfits, radius_doubt};
+use mesh_files::{Bounds, Change, RadiusDoubt, misfits, radius_doubt, scales_radius};
 
 /// A mesh between these corners.
 const MESH: Bounds = Bounds { low: [-60.0, 20.0, 100.0], high: [-20.0, 90.0, 150.0] };
@@ -10,9 +10,7 @@ const LINE: [[f64; 3]; 3] = [[-50.0, 30.0, 110.0], [-45.0, 60.0, 120.0], [-30.0,
 
 /// The box of the line, made wrong and then changed.
 fn around(wrong: Change, change: Change) -> Option<Bounds> {
-    Bounds::of_balls(
-        LINE.map(|point| (change.apply(wrong.apply(point)), 1.5 * wrong.scale * change.scale)),
-    )
+    Bounds::of_points(LINE.map(|point| change.apply(wrong.apply(point))))
 }
 
 #[test]
@@ -43,25 +41,25 @@ fn another_frame_or_unit_is_found() {
 
 #[test]
 fn doubts_state_sizes_and_gap() {
-    // The robot is 50 above the mesh along z; its box is 20 x 50 x 30, wider by the radius 1.5.
-    let above = |change: Change| {
-        Bounds::of_balls(LINE.map(|[x, y, z]| (change.apply([x, y, z + 91.5]), 1.5)))
-    };
+    // The robot is 50 above the mesh along z; its box is 20 x 50 x 30.
+    let above =
+        |change: Change| Bounds::of_points(LINE.map(|[x, y, z]| change.apply([x, y, z + 90.0])));
     let doubts = misfits(above, &MESH, false).with_remedy(|_| "no change".into());
-    assert_eq!(doubts, ["the robot's box and the mesh's do not overlap; they are 50.000 apart"]);
+    let expected = "the robot's box and the mesh's do not overlap; they are 50.000 apart; check the robot's pose";
+    assert_eq!(doubts, [expected]);
     let small = |change: Change| around(Change { scale: 1e-3, turns: false }, change);
     let doubts =
         misfits(small, &MESH, false).with_remedy(|change| format!("a scale of {}", change.scale));
-    // sqrt(23^2 + 53^2 + 33^2) / 1000 and sqrt(40^2 + 70^2 + 50^2).
-    assert_eq!(doubts[0], "the robot's box measures 0.067, the mesh's 94.868");
+    // sqrt(20^2 + 50^2 + 30^2) / 1000 and sqrt(40^2 + 70^2 + 50^2).
+    assert_eq!(doubts[0], "the robot's box measures 0.062, the mesh's 94.868");
     assert!(doubts[1].ends_with("apart; with a scale of 1000 they fit"), "{doubts:?}");
 }
 
 #[test]
 fn points_that_are_not_finite_are_skipped() {
-    assert_eq!(Bounds::of_balls([([f64::NAN, 0.0, 0.0], 1.0)]), None);
-    let bounds = Bounds::of_balls([([f64::INFINITY, 0.0, 0.0], 1.0), ([1.0, 2.0, 3.0], 1.0)]);
-    assert_eq!(bounds, Some(Bounds { low: [0.0, 1.0, 2.0], high: [2.0, 3.0, 4.0] }));
+    assert_eq!(Bounds::of_points([[f64::NAN, 0.0, 0.0]]), None);
+    let bounds = Bounds::of_points([[f64::INFINITY, 0.0, 0.0], [1.0, 2.0, 3.0], [2.0, 0.0, 3.0]]);
+    assert_eq!(bounds, Some(Bounds { low: [1.0, 0.0, 3.0], high: [2.0, 2.0, 3.0] }));
     let nothing = misfits(|_| None, &MESH, true);
     assert!(nothing.doubts.is_empty() && nothing.remedy.is_none());
 }
@@ -85,4 +83,44 @@ fn a_radius_in_another_unit_is_doubted() {
         assert_eq!((doubt, found), (expected, factor));
     }
     assert_eq!(radius_doubt(f64::INFINITY, &MESH), None);
+}
+
+/// A robot of the mesh's size that lies beside it has a wrong pose. A change of its unit that makes
+/// it overlap would hide that.
+#[test]
+fn a_shift_is_no_matter_of_units() {
+    // The mesh contains the origin, so that every shrunken robot overlaps it.
+    let mesh = Bounds { low: [0.0; 3], high: [60.0; 3] };
+    for (shift, length) in [(60.0, 20.0), (500.0, 50.0), (80.0, 5.0)] {
+        let line =
+            [[30.0 + shift, 30.0 + shift, 20.0], [30.0 + shift, 30.0 + shift, 20.0 + length]];
+        let robot = |change: Change| Bounds::of_points(line.map(|point| change.apply(point)));
+        let found = misfits(robot, &mesh, true);
+        assert_eq!(found.remedy, None, "{shift} {length}");
+        let doubts = found.with_remedy(|_| "no change".into());
+        assert!(doubts.len() == 1 && doubts[0].ends_with("; check the robot's pose"), "{doubts:?}");
+    }
+    // A robot in centimetres, ten times too small, is not shifted.
+    let line = [[3.0, 3.0, 8.0], [3.0, 3.0, 9.5]];
+    let mesh = Bounds { low: [10.0; 3], high: [100.0; 3] };
+    let robot = |change: Change| Bounds::of_points(line.map(|point| change.apply(point)));
+    assert_eq!(misfits(robot, &mesh, true).remedy, Some(Change { scale: 10.0, turns: false }));
+}
+
+#[test]
+fn a_radius_in_the_meshs_unit_is_not_scaled() {
+    // In metres: coordinates and radius, then coordinates alone.
+    assert!(scales_radius(0.0005, 1000.0, &MESH) && !scales_radius(0.5, 1000.0, &MESH));
+    // Usual both ways: it has the unit of the coordinates. Wrong both ways: the nearer one.
+    assert!(scales_radius(0.2, 10.0, &MESH) && scales_radius(0.0, 1000.0, &MESH));
+    assert!(!scales_radius(50.0, 1000.0, &MESH) && scales_radius(5e-6, 1000.0, &MESH));
+}
+
+#[test]
+fn huge_numbers_stay_short() {
+    let robot =
+        |change: Change| Bounds::of_points([[1e300, 0.0, 0.0], [0.0; 3]].map(|p| change.apply(p)));
+    let doubts = misfits(robot, &MESH, true).doubts;
+    assert!(doubts.iter().all(|doubt| doubt.len() < 120), "{doubts:?}");
+    assert!(radius_doubt(1e300, &MESH).unwrap().doubt.len() < 120);
 }

@@ -43,6 +43,7 @@ from ._answers import (
     SceneMotionClearance,
     Side,
     Sides,
+    Surface,
     Tightest,
     UndecidedReason,
 )
@@ -105,6 +106,7 @@ __all__ = [
     "SelfQuery",
     "Side",
     "Sides",
+    "Surface",
     "Tightest",
     "UndecidedReason",
     "__version__",

@@ -451,10 +451,14 @@ class _InsideAnswerFields(NamedTuple):
     """Whether every link keeps more than the margin."""
     base: SideOrSides
     """The side of the first point of the centreline."""
+    tip: SideOrSides
+    """The side of the last point of the centreline."""
+    crosses_opening: BoolOrBools
+    """Whether a link touches the lid of an opening of the mesh: the triangles between its edges and its centre."""
 
 
 class InsideAnswer(_Answer, _InsideAnswerFields):
-    """Whether a robot keeps a margin, and on which side its base is."""
+    """Whether a robot keeps a margin, and on which side it is."""
 
     __slots__ = ()
 
@@ -465,8 +469,43 @@ class InsideAnswer(_Answer, _InsideAnswerFields):
 
     @property
     def holds(self) -> BoolOrBools:
-        """Whether the base is inside and every link keeps the margin; in a closed mesh the whole robot is then inside."""
-        return (self.base == Side.INSIDE) & self.clears
+        """Whether the whole robot is inside and every link keeps the margin: no link touches the mesh or crosses an
+        opening, base or tip is inside, and neither is outside. Near an opening an end may be undecided: it is on the side
+        of the other end."""
+        base, tip = self.base, self.tip
+        is_inside = ((base == Side.INSIDE) | (tip == Side.INSIDE)) & (base != Side.OUTSIDE) & (tip != Side.OUTSIDE)
+        crosses = np.asarray(self.crosses_opening)
+        return is_inside & self.clears & (~crosses if crosses.ndim else not self.crosses_opening)
+
+
+class _SurfaceFields(NamedTuple):
+    width: Floats
+    """(K,): how wide each opening is, the widest first: its extent across the line between two corners far apart."""
+    centre: Floats
+    """(K, 3): the mean of the ends of its edges."""
+    edges: Ints
+    """(K,): the number of its edges."""
+    nonmanifold_edges: int
+    """The number of edges of more than two triangles."""
+    misoriented_edges: int
+    """The number of edges whose two triangles face opposite ways."""
+
+
+class Surface(_SurfaceFields):
+    """What a mesh is as a surface: its openings, and edges that make its sides doubtful."""
+
+    __slots__ = ()
+
+    def __bool__(self) -> NoReturn:
+        raise _no_truth("Surface", "use `.is_sound`")
+
+    def __repr__(self) -> str:
+        return _short(self)
+
+    @property
+    def is_sound(self) -> bool:
+        """Whether the mesh is closed, and all its triangles face the same way."""
+        return len(self.width) == 0 and self.nonmanifold_edges == 0 and self.misoriented_edges == 0
 
 
 class _CertificateFields(NamedTuple):

@@ -32,6 +32,8 @@ from ._answers import (
     SceneMotionAnswer,
     SceneMotionClearance,
     SideOrSides,
+    Sides,
+    Surface,
     Tightest,
 )
 
@@ -196,6 +198,10 @@ class Mesh:
         caps: _Caps = "fitted",
     ) -> Contacts: ...
     def side(self, points: ArrayLike) -> SideOrSides: ...
+    def link_sides(
+        self, points: ArrayLike, radii: ArrayLike, *, pose: _Poses | None = None, caps: _Caps = "fitted"
+    ) -> Sides: ...
+    def surface(self) -> Surface: ...
     def doubts(self, points: ArrayLike, radii: ArrayLike, *, pose: _Poses | None = None) -> list[str]: ...
     def clearance(
         self,

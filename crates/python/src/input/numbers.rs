@@ -119,29 +119,53 @@ pub(crate) fn shape_text(shape: &[usize]) -> String {
     }
 }
 
-/// Refuses a masked array, or a list of them: numpy would drop the mask.
-pub(super) fn refuse_masked(given: &Bound<'_, PyAny>, name: &str) -> PyResult<()> {
+/// Refuses a masked array, or one within lists: numpy would drop the mask.
+pub(super) fn refuse_masked<'py>(given: &Bound<'py, PyAny>, name: &str) -> PyResult<()> {
     static MASKED: PyOnceLock<Py<PyType>> = PyOnceLock::new();
-    let is_plain = |it: &Bound<'_, PyAny>| {
+    let is_plain = |it: &Bound<'py, PyAny>| {
         it.cast_exact::<PyUntypedArray>().is_ok() || it.cast::<PyUntypedArray>().is_err()
     };
-    let check = |it: &Bound<'_, PyAny>| -> PyResult<()> {
-        let py = it.py();
-        if is_plain(it) || !it.is_instance(MASKED.import(py, "numpy.ma", "MaskedArray")?)? {
-            return Ok(());
-        }
-        let text = format!(
-            "`{name}` is a masked array, and its mask would be lost; leave the masked rows out, or give `{name}.data` if they count"
-        );
-        Err(Refused::other("bad_type", text).raise(py, None))
+    let is_masked = |it: &Bound<'py, PyAny>| -> PyResult<bool> {
+        Ok(!is_plain(it) && it.is_instance(MASKED.import(it.py(), "numpy.ma", "MaskedArray")?)?)
     };
-    if let Ok(list) = given.cast_exact::<PyList>() {
-        return list.iter().try_for_each(|it| check(&it));
+    if !any_within(given, &mut Vec::new(), &is_masked)? {
+        return Ok(());
     }
-    if let Ok(tuple) = given.cast_exact::<PyTuple>() {
-        return tuple.iter().try_for_each(|it| check(&it));
+    let text = format!(
+        "`{name}` is a masked array, and its mask would be lost; leave the masked rows out, or give `{name}.data` if they count"
+    );
+    Err(Refused::other("bad_type", text).raise(given.py(), None))
+}
+
+/// The most dimensions of an array of numpy: deeper lists are no array.
+const DEEPEST: usize = 64;
+
+/// Whether a test holds for an object, or for one within its lists. `around` are the lists that
+/// hold the object: a list may hold itself.
+fn any_within<'py>(
+    given: &Bound<'py, PyAny>,
+    around: &mut Vec<Bound<'py, PyAny>>,
+    test: &impl Fn(&Bound<'py, PyAny>) -> PyResult<bool>,
+) -> PyResult<bool> {
+    let entries: Box<dyn Iterator<Item = Bound<'py, PyAny>>> =
+        if let Ok(list) = given.cast_exact::<PyList>() {
+            Box::new(list.clone().into_iter())
+        } else if let Ok(tuple) = given.cast_exact::<PyTuple>() {
+            Box::new(tuple.clone().into_iter())
+        } else {
+            return test(given);
+        };
+    if around.len() == DEEPEST || around.iter().any(|list| list.is(given)) {
+        return Ok(false);
     }
-    check(given)
+    around.push(given.clone());
+    for entry in entries {
+        if any_within(&entry, around, test)? {
+            return Ok(true);
+        }
+    }
+    around.pop();
+    Ok(false)
 }
 
 /// An argument of any type, converted by numpy.

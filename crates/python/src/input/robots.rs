@@ -102,6 +102,8 @@ fn points<'py>(
         [count, each, 3] => Ok((numbers, Some(count), each)),
         ref shape => {
             let advice = match *shape {
+                // It may be three points without z too.
+                [3, 2] | [_, 3, 2] => "give three coordinates for each point",
                 [3, _] => "give its transpose, `.T`",
                 [_, 3, _] => "give its transpose, `.swapaxes(1, 2)`",
                 _ => "give a row of three coordinates for each point",

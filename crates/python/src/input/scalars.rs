@@ -19,8 +19,8 @@ impl<'a, 'py> FromPyObject<'a, 'py> for FrameName {
 
     fn extract(given: Borrowed<'a, 'py, PyAny>) -> PyResult<Self> {
         match given.extract::<&str>() {
-            Ok("RAS") => Ok(Self(Frame::Ras)),
-            Ok("LPS") => Ok(Self(Frame::Lps)),
+            Ok(name) if name.eq_ignore_ascii_case("RAS") => Ok(Self(Frame::Ras)),
+            Ok(name) if name.eq_ignore_ascii_case("LPS") => Ok(Self(Frame::Lps)),
             _ => {
                 let text = format!("`frame` is {}; it must be 'RAS' or 'LPS'", given.repr()?);
                 Err(Refused::other("bad_frame", text).raise(given.py(), None))

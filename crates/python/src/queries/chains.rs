@@ -84,7 +84,8 @@ pub(super) fn ask_chains<Q: ChainQuestion>(
                 };
                 let answered = compute(py, ask);
                 engine.take_back_device(py, answered.is_ok().then_some(session));
-                return answered?.map_err(|refused| refused.raise(py, None));
+                let refused = answered?.map_err(|refused| refused.raise(py, None))?;
+                return Ok((rows.len() / width, refused));
             }
         }
         Rows::<Robots<'_>, _> { block, width, answer: &answer }.ask_lender(py, engine, robots, rows)

@@ -90,10 +90,12 @@ impl Mesh {
         array_or_number(py, robots.shape(&[]), all)
     }
 
-    /// Whether robots keep more than a margin away, and on which side their bases are.
+    /// Whether robots keep more than a margin away, on which side their bases and tips are, and
+    /// whether they cross an opening of the mesh.
     ///
-    /// A robot whose base is inside a closed mesh and which touches nothing is inside as a whole.
-    /// An open mesh has no inside: there ask for the `side` of every point that matters.
+    /// A robot whose base is inside and which touches neither the mesh nor the lid of an opening is
+    /// inside as a whole. A lid is made of the triangles between the edges of an opening and its
+    /// centre.
     ///
     /// Parameters
     /// ----------
@@ -105,8 +107,8 @@ impl Mesh {
     /// Returns
     /// -------
     /// InsideAnswer
-    ///     ``clears`` and ``base``: bool and `Side`, or arrays of them. ``holds`` says whether the
-    ///     base is inside and the margin is kept.
+    ///     ``clears`` and ``crosses_opening``, ``base`` and ``tip``: bool and `Side`, or arrays of
+    ///     them. ``holds`` says whether the whole robot is inside and the margin is kept.
     ///
     /// Raises
     /// ------
@@ -123,22 +125,24 @@ impl Mesh {
         caps: Caps,
     ) -> PyResult<Bound<'py, PyAny>> {
         let robots = self.robots(points, radii, pose)?;
-        let (mut clears, mut bases) = (Vec::new(), Vec::new());
-        let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [(bool, i8)]| {
+        let (mut clears, mut crosses) = (Vec::new(), Vec::new());
+        let (mut bases, mut tips) = (Vec::new(), Vec::new());
+        let ask = |session: &mut Session, robot: &Given<'_>, row: &mut [([bool; 2], [i8; 2])]| {
             let chain = set_chain(&mut session.chain, robot, caps)?;
             let found = session.search.clears_inside(chain, &robot.pose()?, margin)?;
-            row[0] = (found.clears, side_value(found.base));
+            let sides = [found.base, found.tip].map(side_value);
+            row[0] = ([found.clears, found.crosses_opening], sides);
             Ok(())
         };
-        ask_each(py, &self.engine(py), &robots, ((false, 0), 1), ask, |_, found| {
-            clears.extend(found.iter().map(|found| found.0));
-            bases.extend(found.iter().map(|found| found.1));
+        ask_each(py, &self.engine(py), &robots, (Default::default(), 1), ask, |_, found| {
+            clears.extend(found.iter().map(|found| found.0[0]));
+            crosses.extend(found.iter().map(|found| found.0[1]));
+            bases.extend(found.iter().map(|found| found.1[0]));
+            tips.extend(found.iter().map(|found| found.1[1]));
         })?;
-        let clears = array_or_number(py, robots.shape(&[]), clears)?;
-        answer!(
-            py,
-            "InsideAnswer",
-            (clears, members(py, Enumeration::Side, robots.shape(&[]), bases)?)
-        )
+        let numbers = |values| array_or_number(py, robots.shape(&[]), values);
+        let sides = |values| members(py, Enumeration::Side, robots.shape(&[]), values);
+        let values = (numbers(clears)?, sides(bases)?, sides(tips)?, numbers(crosses)?);
+        answer!(py, "InsideAnswer", values)
     }
 }

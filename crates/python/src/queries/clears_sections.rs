@@ -131,7 +131,8 @@ impl Mesh {
                     || search.clears_sections_batch(&robots, segments, &pose, margin, &mut out);
                 compute(py, || pool.install(ask))?
             };
-            keep(asked.map(|()| out), rows).map_err(|refused| refused.raise(py, None))
+            let refused = keep(asked.map(|()| out), rows);
+            Ok((rows.len(), refused.map_err(|refused| refused.raise(py, None))?))
         };
         let mut all = Vec::with_capacity(robots.len());
         in_chunks(py, &robots, (false, 1), sizes, ask, |_, found| all.extend_from_slice(found))?;

@@ -5,6 +5,7 @@ use super::pool::pool;
 use crate::error::Refused;
 use pyo3::prelude::*;
 use std::ops::{Range, RangeInclusive};
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -13,6 +14,9 @@ const SHARE: usize = 8;
 
 /// After about so long signals are looked at, and Python's other threads get their turn.
 const CHUNK: Duration = Duration::from_millis(50);
+
+/// A chunk that takes longer ends early: its robots may take much longer than those before it.
+const LONGEST: Duration = Duration::from_millis(250);
 
 /// The robots of a chunk are copied, so that there are no more of them than this.
 pub(crate) const LARGEST_CHUNK: usize = 1 << 16;
@@ -105,6 +109,10 @@ pub(crate) fn ask_each<T: Clone + Send, L: Lender, Q: Asked>(
 /// The first robot that is refused, by its place in the chunk, and why.
 pub(crate) type FirstRefused = Option<(usize, Refused)>;
 
+/// How many robots of a chunk are answered, from the first on, at least one; and the first that is
+/// refused.
+pub(crate) type Answered = (usize, FirstRefused);
+
 /// Has `ask` answer chunk after chunk. The first chunk has as many robots as `sizes` starts with;
 /// the next are as long as fits [`CHUNK`].
 pub(crate) fn in_chunks<T: Clone, Q: Asked>(
@@ -112,22 +120,24 @@ pub(crate) fn in_chunks<T: Clone, Q: Asked>(
     asked: &Q,
     (empty, width): (T, usize),
     sizes: RangeInclusive<usize>,
-    mut ask: impl FnMut(&Q::Block, &mut [T]) -> PyResult<FirstRefused>,
+    mut ask: impl FnMut(&Q::Block, &mut [T]) -> PyResult<Answered>,
     mut take: impl FnMut(usize, &[T]),
 ) -> PyResult<()> {
     let of_batch = |robot: usize| asked.count().map(|_| robot);
     let (count, mut block, mut answers) = (asked.len(), Q::Block::default(), Vec::new());
     let (mut start, mut chunk) = (0, *sizes.start());
     while start < count {
-        let end = count.min(start + chunk);
+        let wanted = count.min(start + chunk) - start;
         let begin = Instant::now();
         answers.clear();
-        answers.resize((end - start) * width, empty.clone());
-        asked.copy(start..end, &mut block).map_err(|refused| refused.raise(py, None))?;
-        if let Some((place, refused)) = ask(&block, &mut answers)? {
+        answers.resize(wanted * width, empty.clone());
+        asked.copy(start..start + wanted, &mut block).map_err(|refused| refused.raise(py, None))?;
+        let (done, refused) = ask(&block, &mut answers)?;
+        if let Some((place, refused)) = refused {
             return Err(refused.raise(py, of_batch(start + place)));
         }
-        take(start, &answers);
+        take(start, &answers[..done * width]);
+        let end = start + done;
         if asked.count().is_some() {
             py.check_signals()?;
         }
@@ -135,7 +145,7 @@ pub(crate) fn in_chunks<T: Clone, Q: Asked>(
             break;
         }
         let scale = CHUNK.as_secs_f64() / begin.elapsed().as_secs_f64().max(1e-9);
-        chunk = ((chunk as f64 * scale.min(8.0)) as usize).clamp(2, *sizes.end());
+        chunk = ((done as f64 * scale.min(8.0)) as usize).clamp(2, *sizes.end());
         start = end;
     }
     Ok(())
@@ -196,19 +206,33 @@ pub(crate) struct Rows<'a, Q: Asked, A> {
 }
 
 impl<Q: Asked, A> Rows<'_, Q, A> {
-    /// Asks about all robots of the block: a small batch on this thread, a large one on all cores.
+    /// Asks about the robots of the block: a small batch on this thread, a large one on all cores.
+    /// After [`LONGEST`] no more of them are begun.
     pub(crate) fn ask_lender<T: Send, L: Lender>(
         &self,
         py: Python<'_>,
         lender: &L,
         asked: &Q,
         answers: &mut [T],
-    ) -> PyResult<FirstRefused>
+    ) -> PyResult<Answered>
     where
         A: Fn(&mut L::Session, &Q::One<'_>, &mut [T]) -> Result<(), Refused> + Sync,
     {
         if asked.len() < Q::FEW {
-            alone(py, lender, |session| self.ask(session, 0, answers))
+            let begin = Instant::now();
+            alone(py, lender, |session| {
+                let mut done = 0;
+                for row in answers.chunks_mut(self.width) {
+                    if done > 0 && begin.elapsed() > LONGEST {
+                        break;
+                    }
+                    if let Some(found) = self.ask(session, done, row) {
+                        return (done, Some(found));
+                    }
+                    done += 1;
+                }
+                (done, None)
+            })
         } else {
             self.ask_on_all_cores(py, lender, answers)
         }
@@ -227,16 +251,18 @@ impl<Q: Asked, A> Rows<'_, Q, A> {
         })
     }
 
-    /// The same for all robots of the block, by a session on each core.
+    /// The same for the robots of the block, by a session on each core. Shares are taken in order
+    /// and completed, so the answered robots are the first ones.
     fn ask_on_all_cores<T: Send, L: Lender>(
         &self,
         py: Python<'_>,
         lender: &L,
         answers: &mut [T],
-    ) -> PyResult<FirstRefused>
+    ) -> PyResult<Answered>
     where
         A: Fn(&mut L::Session, &Q::One<'_>, &mut [T]) -> Result<(), Refused> + Sync,
     {
+        let begin = Instant::now();
         let pool = pool(py)?;
         let (threads, count) = (pool.current_num_threads(), answers.len() / self.width);
         // A few for each thread, because robots differ in the time they take.
@@ -245,11 +271,16 @@ impl<Q: Asked, A> Rows<'_, Q, A> {
         let mut sessions = (0..workers).map(|_| lender.lend(py)).collect::<PyResult<Vec<_>>>()?;
         let refused = Mutex::new(None::<(usize, Refused)>);
         let shares = Mutex::new(answers.chunks_mut(share * self.width).enumerate());
+        let taken = AtomicUsize::new(0);
         // Its locks are this call's own, so a fork leaves them to nobody.
         let work = |session: &mut L::Session| {
             loop {
+                if taken.load(Ordering::Relaxed) > 0 && begin.elapsed() > LONGEST {
+                    return;
+                }
                 let next = shares.lock().unwrap_or_else(PoisonError::into_inner).next();
                 let Some((number, answers)) = next else { return };
+                taken.fetch_add(1, Ordering::Relaxed);
                 let Some(found) = self.ask(session, share * number, answers) else { continue };
                 let mut refused = refused.lock().unwrap_or_else(PoisonError::into_inner);
                 if refused.as_ref().is_none_or(|(place, _)| found.0 < *place) {
@@ -268,6 +299,7 @@ impl<Q: Asked, A> Rows<'_, Q, A> {
         });
         lender.take_back(py, workers, done.is_ok().then_some(sessions).into_iter().flatten());
         done?;
-        Ok(refused.into_inner().unwrap_or_else(PoisonError::into_inner))
+        let done = count.min(share * taken.into_inner());
+        Ok((done, refused.into_inner().unwrap_or_else(PoisonError::into_inner)))
     }
 }
