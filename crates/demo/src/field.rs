@@ -46,7 +46,12 @@ impl Tube {
         let mut tube = Self { knots, samples: Vec::new(), middle: Vector::ZERO, reach: 0.0 };
         let count = (tube.knots.len() - 1) * SAMPLES;
         let parameters = (0..=count).map(|k| k as Real / SAMPLES as Real);
-        tube.samples = parameters.map(|s| (s, tube.mix(s, spline, |knot| knot.centre))).collect();
+        tube.samples = parameters
+            .map(|s| {
+                let (four, t) = tube.around(s);
+                (s, mix(four, spline(t), |knot| knot.centre))
+            })
+            .collect();
         tube.middle = tube.samples.iter().map(|(_, p)| *p).sum::<Vector>() / (count + 1) as Real;
         let wide =
             tube.knots.iter().map(|knot| knot.half[0].max(knot.half[1])).fold(0.0, Real::max);
@@ -56,13 +61,13 @@ impl Tube {
         tube
     }
 
-    /// A quantity of the four knots around parameter s (0 at the first, 1 at the second knot),
-    /// weighted.
-    fn mix(&self, s: Real, weights: fn(Real) -> [Real; 4], of: fn(&Knot) -> Vector) -> Vector {
+    /// The four knots around parameter s (0 at the first, 1 at the second knot), and how far s is
+    /// between the middle two.
+    fn around(&self, s: Real) -> ([&Knot; 4], Real) {
         let last = self.knots.len() - 1;
         let span = (s as usize).min(last - 1);
         let four = [span.saturating_sub(1), span, span + 1, (span + 2).min(last)];
-        four.iter().zip(weights(s - span as Real)).map(|(&k, w)| of(&self.knots[k]) * w).sum()
+        (four.map(|k| &self.knots[k]), s - span as Real)
     }
 
     /// The field of this tube alone; where that exceeds `limit`, it may be infinite.
@@ -82,19 +87,22 @@ impl Tube {
         }
         let end = (self.knots.len() - 1) as Real;
         for _ in 0..3 {
+            let (four, t) = self.around(s);
             let [off, along, turn] =
-                [spline, slope, bend].map(|weights| self.mix(s, weights, |k| k.centre));
+                [spline(t), slope(t), bend(t)].map(|weights| mix(four, weights, |k| k.centre));
             let off = p - off;
             // Newton's method, held back where the tube bends around p.
             let square = along.length_squared();
             s = (s + off.dot(along) / (square - off.dot(turn)).max(0.3 * square)).clamp(0.0, end);
         }
-        let along = self.mix(s, slope, |knot| knot.centre).normalize();
-        let across = self.mix(s, spline, |knot| knot.across);
+        let (four, t) = self.around(s);
+        let weights = spline(t);
+        let along = mix(four, slope(t), |knot| knot.centre).normalize();
+        let across = mix(four, weights, |knot| knot.across);
         let u = (across - along * across.dot(along)).normalize();
-        let half = self.mix(s, spline, |knot| Vector::new(knot.half[0], knot.half[1], 0.0));
+        let half = mix(four, weights, |knot| Vector::new(knot.half[0], knot.half[1], 0.0));
         let cap = half.x.min(half.y);
-        let q = p - self.mix(s, spline, |knot| knot.centre);
+        let q = p - mix(four, weights, |knot| knot.centre);
         let scale = Vector::new(1.0 / half.x, 1.0 / half.y, 1.0 / cap);
         let local = Vector::new(q.dot(u), q.dot(along.cross(u)), q.dot(along));
         let k = (local * scale).length();
@@ -103,6 +111,12 @@ impl Tube {
         }
         k * (k - 1.0) / (local * scale * scale).length()
     }
+}
+
+/// A quantity of four knots, weighted.
+#[inline]
+fn mix(four: [&Knot; 4], weights: [Real; 4], of: impl Fn(&Knot) -> Vector) -> Vector {
+    (0..4).fold(Vector::ZERO, |sum, k| sum + of(four[k]) * weights[k])
 }
 
 /// Weights of a Catmull-Rom spline at t in [0, 1] between its second and third knot, and their two
@@ -142,6 +156,11 @@ impl Body {
 /// The smaller of a and b, rounded where they differ by less than `blend` (a cubic, so that
 /// curvature is continuous).
 fn smooth_min(a: Real, b: Real, blend: Real) -> Real {
-    let h = (blend - (a - b).abs()).max(0.0) / blend;
+    let apart = (a - b).abs();
+    // Also for one infinity, or two, whose difference is no number.
+    if apart.is_nan() || apart >= blend {
+        return a.min(b);
+    }
+    let h = (blend - apart) / blend;
     a.min(b) - h * h * h * blend / 6.0
 }

@@ -9,8 +9,10 @@
 use crate::ctr::Joints;
 use crate::field::{Body, Tube, knot, round};
 use crate::remesh::remesh;
-use crate::surface::{Mesh, extract, subdivide};
+use crate::surface::{Field, Mesh, extract, subdivide};
 use parry_continuum::parry::math::{Pose, Real, Rot3, Vector};
+use std::collections::BTreeMap;
+use std::sync::Mutex;
 
 /// The default number of triangles of [`mesh`], and the fewest that give a good mesh.
 pub const DEFAULT_TRIANGLES: usize = 6000;
@@ -38,11 +40,26 @@ pub fn mesh(target_triangles: usize) -> Mesh {
         coarse = target_triangles >> (2 * (halvings + 1));
         halvings += 1;
     }
-    let mut mesh = remesh(&field, extract(&field, LOW, HIGH, SPACING), coarse, STEP);
+    let mut mesh = remeshed(&field, coarse);
     for _ in 0..halvings {
         mesh = subdivide(&field, mesh, STEP);
     }
     mesh
+}
+
+/// The surface remeshed to `triangles` triangles. A process grows each size only once.
+fn remeshed(field: Field, triangles: usize) -> Mesh {
+    static GROWN: Mutex<BTreeMap<usize, Mesh>> = Mutex::new(BTreeMap::new());
+    let grown = || GROWN.lock().expect("no holder of the lock panics");
+    // Other threads wait until the mesh is grown. Tasks of the pool never wait: the pool grows it.
+    static GROWING: Mutex<()> = Mutex::new(());
+    let is_task = rayon::current_thread_index().is_some();
+    let _growing = (!is_task).then(|| GROWING.lock().expect("growing does not panic"));
+    if let Some(mesh) = grown().get(&triangles) {
+        return mesh.clone();
+    }
+    let mesh = remesh(field, extract(field, LOW, HIGH, SPACING), triangles, STEP);
+    grown().entry(triangles).or_insert(mesh).clone()
 }
 
 /// The robot's pose at its entry: a burr hole over the right frontal horn, the base 3 mm inside the

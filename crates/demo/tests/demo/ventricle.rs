@@ -13,13 +13,6 @@ use parry_continuum::parry::shape::{SharedShape, TriMesh};
 use parry_continuum::proximity::{BvhSearch, Proximity};
 use parry_continuum::{Chain, ModifiedCylinder};
 use std::collections::{BTreeMap, BTreeSet};
-use std::sync::OnceLock;
-
-/// The default ventricle, grown once for all tests.
-fn small() -> &'static Mesh {
-    static MESH: OnceLock<Mesh> = OnceLock::new();
-    MESH.get_or_init(|| ventricle::mesh(ventricle::DEFAULT_TRIANGLES))
-}
 
 /// Asserts that a mesh is one closed surface: every edge has exactly two triangles, which run along
 /// it in opposite directions, those around a vertex form one ring, and Euler's characteristic is as
@@ -70,8 +63,7 @@ fn smallest_angle([a, b, c]: [Vector; 3]) -> Real {
 fn ventricle_is_closed_oriented_and_of_well_shaped_triangles_at_any_size() {
     let field = ventricle::Ventricle::grow();
     for wanted in [ventricle::DEFAULT_TRIANGLES, 50_000] {
-        let mesh =
-            if wanted == small().1.len() { small().clone() } else { ventricle::mesh(wanted) };
+        let mesh = ventricle::mesh(wanted);
         let (points, triangles) = &mesh;
         assert!(
             triangles.len().abs_diff(wanted) <= wanted / 1000,
@@ -117,7 +109,7 @@ fn coarsening_stops_before_it_closes_a_ring() {
 
 #[test]
 fn default_robot_starts_inside_a_burr_hole_and_keeps_clear_all_the_way() {
-    let (points, triangles) = small().clone();
+    let (points, triangles) = ventricle::mesh(ventricle::DEFAULT_TRIANGLES);
     let mesh = TriMesh::new(points, triangles).unwrap();
     let (base, robot, goal) = (ventricle::entry(), three_tubes(), ventricle::goal());
     assert!(steer::is_inside(&mesh, base.translation));
