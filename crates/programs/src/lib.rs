@@ -44,12 +44,16 @@ pub fn example(name: &str) -> PathBuf {
     program
 }
 
-/// Runs a program. Returns its exit status, its output and its errors.
+/// Runs a program. Returns its exit status, its output and its errors. Its pictures are rough,
+/// unless `PARRY_CONTINUUM_EFFORT` is set.
 pub fn run(program: impl AsRef<Path>, arguments: &[&str]) -> (Option<i32>, String, String) {
     let place = place("");
     std::fs::create_dir_all(&place).unwrap();
-    let output =
-        Command::new(program.as_ref()).args(arguments).current_dir(place).output().unwrap();
+    let mut command = Command::new(program.as_ref());
+    if std::env::var_os("PARRY_CONTINUUM_EFFORT").is_none() {
+        command.env("CONTINUUM_DEMO_ROUGH", "1");
+    }
+    let output = command.args(arguments).current_dir(place).output().unwrap();
     let text = |bytes| String::from_utf8(bytes).unwrap();
     (output.status.code(), text(output.stdout), text(output.stderr))
 }

@@ -129,7 +129,7 @@ fn a_way_is_planned_proven_and_drawn() {
     let out = succeed(
         "plan",
         &[
-            ["--plans", "2"],
+            ["--plans", "1"],
             ["--margin", "0.3"],
             ["--picture", "planned/way.png"],
             ["--clearance", "planned/clearance.png"],
@@ -180,7 +180,7 @@ fn the_robot_is_pushed_recorded_and_filmed() {
     let _ = std::fs::remove_dir_all(place("pushed"));
     let out = succeed(
         "rapier_ventricle",
-        &["--links", "5", "--push", "0.5", "--frames", "2", "--out", "pushed"],
+        &["--links", "5", "--push", "0.5", "--frames", "1", "--out", "pushed"],
     );
     let steps: usize = out.split(" steps: ").next().unwrap().parse().unwrap();
     let rows = |name: &str| -> Vec<Vec<f64>> {
@@ -215,7 +215,7 @@ fn the_robot_is_pushed_recorded_and_filmed() {
         .collect();
     let frames =
         pictures.iter().filter(|name| name.to_str().unwrap().starts_with("frame_")).count();
-    assert!((2..=3).contains(&frames), "{pictures:?}");
+    assert!((1..=2).contains(&frames), "{pictures:?}");
     for name in ["pushed/sheet.png", "pushed/frame_000.png"] {
         assert!(colours(name) > 1000, "{name} has {} colours", colours(name));
     }
