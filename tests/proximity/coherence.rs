@@ -1,6 +1,7 @@
-//! `clears` and `minimum` in a loop answer as a fresh engine, for any sequence of queries.
+//! `clears`, `minimum` and `minimum_within` in a loop answer as a fresh engine, for any sequence of
+//! queries.
 
-use continuum_testing::Random;
+use continuum_testing::{Random, WarmAndFresh, rounds};
 use parry_continuum::Chain;
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::shape::{Ball, TriMesh};
@@ -68,56 +69,6 @@ impl Scene {
     }
 }
 
-#[test]
-fn what_was_asked_before_changes_no_answer() {
-    let (mut clear, mut touching, mut by_heart, mut near) = (0, 0, 0, 0);
-    for (round, size) in [1.0, 1e-3, 2.0_f64.powi(200), 2.0_f64.powi(-560)].into_iter().enumerate()
-    {
-        let mut random = Random::new(round as u64);
-        let (vertices, triangles) = Ball::new(6.0).to_trimesh(24, 12);
-        let at_rest: Vec<_> = vertices.iter().map(|vertex| *vertex * size).collect();
-        let mesh = TriMesh::new(at_rest.clone(), triangles).unwrap();
-        let (mut kept, mut cold) = (BvhSearch::new(&mesh).unwrap(), BvhSearch::new(&mesh).unwrap());
-        let mut scene = Scene::new(size, 5);
-        for _ in 0..STEPS {
-            scene.step(&mut random);
-            if random.below(500) == 0 {
-                let breath = random.between(0.6, 1.2);
-                let moved: Vec<_> = at_rest.iter().map(|vertex| *vertex * breath).collect();
-                kept.set_vertices(&moved).unwrap();
-                cold.set_vertices(&moved).unwrap();
-            }
-            let robot = scene.robot();
-            cold.forget();
-            let distance = cold.minimum(&robot, &scene.pose).unwrap().distance;
-            // Often just below or above what is true.
-            let margin = match random.below(4) {
-                0 => {
-                    distance
-                        * (1.0
-                            + [-1e-15, 1e-15, -1e-9, 1e-9, -1e-3, 1e-3][random.below(6) as usize])
-                }
-                _ => scene.margin,
-            };
-            let before = kept.work().nodes;
-            let keeps = kept.clears(&robot, &scene.pose, margin).unwrap();
-            assert_eq!(keeps, distance > margin, "size {size:e}: {distance:e} and {margin:e}");
-            by_heart += u32::from(kept.work().nodes == before);
-            near += u32::from((distance - margin).abs() < 1e-2 * margin);
-            *if keeps { &mut clear } else { &mut touching } += 1;
-        }
-    }
-    let of = 4 * STEPS;
-    assert!(clear > of / 5 && touching > of / 5, "{clear} clear, {touching} touching");
-    assert!(
-        by_heart > of / 20 && near > of / 20,
-        "{by_heart} without a search, {near} near the margin of {of}"
-    );
-}
-
-/// As many as a debug build answers in a second or two.
-const STEPS: u32 = 25_000;
-
 /// The disc of a flat cap turns with its axis: the rim moves far although both ends stay.
 #[test]
 fn a_turning_cap_is_not_taken_for_a_still_one() {
@@ -131,53 +82,41 @@ fn turn_a_cap(size: f64) {
     let wall = TriMesh::new(corners.to_vec(), vec![[0, 1, 2]]).unwrap();
     let plate = [Vector::Z * (-0.01 * size), Vector::Z * (0.01 * size)];
     let plate = Chain::cylinders(&plate, &[3.0 * size]).unwrap();
-    let (mut kept, mut cold) = (BvhSearch::new(&wall).unwrap(), BvhSearch::new(&wall).unwrap());
+    let mut both = WarmAndFresh::new(BvhSearch::new(&wall).unwrap());
     let (mut by_heart, mut touches) = (0, 0);
     for step in 0..600 {
         let pose = Pose::new(Vector::Z * size, Vector::X * (1e-3 * f64::from(step)));
-        cold.forget();
-        let expected = cold.clears(&plate, &pose, 0.0).unwrap();
-        let before = kept.work().nodes;
-        assert_eq!(
-            kept.clears(&plate, &pose, 0.0).unwrap(),
-            expected,
-            "size {size:e}, step {step}"
-        );
-        by_heart += u32::from(kept.work().nodes == before);
-        touches += u32::from(!expected);
+        let before = both.warm.work().nodes;
+        let clears = both.ask((size, step), |search| search.clears(&plate, &pose, 0.0)).unwrap();
+        by_heart += u32::from(both.warm.work().nodes == before);
+        touches += u32::from(!clears);
     }
     // It touches at sin(turn) = 1 / 3, or 0.34 rad.
     assert!(by_heart > 20 && touches > 100, "{by_heart} without a search, {touches} touch");
 }
 
-/// All that an answer tells.
-fn bits(answer: &LinkProximity) -> (u32, u32, u64, [[u64; 3]; 2]) {
-    let points = [answer.witness.on_robot, answer.witness.on_mesh]
-        .map(|point| point.to_array().map(f64::to_bits));
-    (answer.link, answer.witness.triangle, answer.distance.to_bits(), points)
-}
-
-/// What a sequence of queries for the minimum has met.
+/// What a sequence of queries has met.
 #[derive(Debug, Default)]
 struct Met {
+    clear: u32,
     touching: u32,
     /// More than one link is as near as the nearest.
     tied: u32,
-    /// Less than a quarter of the nodes were visited that a cold engine visits.
+    /// Less than a quarter of the nodes were visited that a fresh engine visits.
     quick: u32,
-    /// Nothing is within the bound, and no node was visited to tell.
-    by_heart: u32,
-    /// The minimum is within a share 1e-9 of the bound.
-    near: u32,
+    /// The margin or the bound was decided without visiting a node.
+    by_heart: [u32; 2],
+    /// The minimum is within a share 1e-9 of the margin or the bound.
+    near: [u32; 2],
     moved_meshes: u32,
 }
 
-fn minima_in_a_row(size: f64, links: u32, steps: u32, seed: u64, met: &mut Met) {
+fn in_a_row(size: f64, links: u32, steps: u32, seed: u64, met: &mut Met) {
     let mut random = Random::new(seed);
     let (vertices, triangles) = Ball::new(6.0).to_trimesh(24, 12);
     let at_rest: Vec<_> = vertices.iter().map(|vertex| *vertex * size).collect();
     let mesh = TriMesh::new(at_rest.clone(), triangles).unwrap();
-    let (mut kept, mut cold) = (BvhSearch::new(&mesh).unwrap(), BvhSearch::new(&mesh).unwrap());
+    let mut both = WarmAndFresh::new(BvhSearch::new(&mesh).unwrap());
     let (mut scene, mut links) = (Scene::new(size, links), Vec::new());
     for step in 0..steps {
         // Most robots stay for a while; each comes to the wall. Three of four stretches are calm.
@@ -194,63 +133,65 @@ fn minima_in_a_row(size: f64, links: u32, steps: u32, seed: u64, met: &mut Met) 
         if random.below(500) == 0 {
             let breath = random.between(0.6, 1.2);
             let moved: Vec<_> = at_rest.iter().map(|vertex| *vertex * breath).collect();
-            kept.set_vertices(&moved).unwrap();
-            cold.set_vertices(&moved).unwrap();
+            both.change(|search| search.set_vertices(&moved).unwrap());
             met.moved_meshes += 1;
         }
         let (robot, pose) = (scene.robot(), scene.pose);
-        cold.forget();
-        let before = cold.work().nodes;
-        let expected = cold.minimum(&robot, &pose).unwrap();
-        let cold_nodes = cold.work().nodes - before;
-        met.touching += u32::from(expected.distance <= 0.0);
+        let mut fresh = both.fresh.clone();
+        let expected = fresh.minimum(&robot, &pose).unwrap();
+        let fresh_nodes = fresh.work().nodes - both.fresh.work().nodes;
         if step % 8 == 0 {
-            cold.per_link(&robot, &pose, &mut links).unwrap();
+            fresh.per_link(&robot, &pose, &mut links).unwrap();
             let as_near = links.iter().filter(|link| link.distance <= expected.distance).count();
             met.tied += u32::from(as_near > 1);
         }
-        let before = kept.work().nodes;
-        if random.below(3) > 0 {
-            let found = kept.minimum(&robot, &pose).unwrap();
-            assert_eq!(bits(&found), bits(&expected), "size {size:e}, step {step}");
-            met.quick += u32::from(4 * (kept.work().nodes - before) < cold_nodes);
-        } else {
-            let share = [0.0, 0.5, 1.0 - 1e-9, 1.0 - 1e-15, 1.0, 1.0 + 1e-15, 2.0]
-                [random.below(7) as usize];
-            let bound = expected.distance * share;
-            let found = kept.minimum_within(&robot, &pose, bound).unwrap();
-            let wanted = (expected.distance <= bound).then_some(expected);
-            assert_eq!(
-                found.as_ref().map(bits),
-                wanted.as_ref().map(bits),
-                "size {size:e}, step {step}"
-            );
-            met.by_heart += u32::from(found.is_none() && kept.work().nodes == before);
-            met.near += u32::from((share - 1.0).abs() < 1e-8);
+        let before = both.warm.work().nodes;
+        let share: f64 = [0.0, 0.5, 1.0 - 1e-9, 1.0 - 1e-15, 1.0, 1.0 + 1e-15, 1.0 + 1e-9, 2.0]
+            [random.below(8) as usize];
+        let is_near = u32::from((share - 1.0).abs() < 1e-8);
+        let context = (size, step, share);
+        match random.below(4) {
+            0 | 1 => {
+                both.ask(context, |search| search.minimum(&robot, &pose)).unwrap();
+                met.quick += u32::from(4 * (both.warm.work().nodes - before) < fresh_nodes);
+            }
+            2 => {
+                let bound = expected.distance * share;
+                let found = both
+                    .ask(context, |search| search.minimum_within(&robot, &pose, bound))
+                    .unwrap();
+                assert_eq!(found.is_some(), expected.distance <= bound, "{context:?}");
+                met.by_heart[0] += u32::from(found.is_none() && both.warm.work().nodes == before);
+                met.near[0] += is_near;
+            }
+            _ => {
+                let is_own = random.below(4) > 0;
+                let margin = if is_own { scene.margin } else { expected.distance * share };
+                let clears =
+                    both.ask(context, |search| search.clears(&robot, &pose, margin)).unwrap();
+                assert_eq!(clears, expected.distance > margin, "{context:?}");
+                met.by_heart[1] += u32::from(both.warm.work().nodes == before);
+                met.near[1] += u32::from(!is_own) * is_near;
+                *if clears { &mut met.clear } else { &mut met.touching } += 1;
+            }
         }
     }
 }
 
-fn many_minima_in_a_row(steps: u32) {
-    let (mut met, sizes) = (Met::default(), [1.0, 1e-3, 2.0_f64.powi(200), 2.0_f64.powi(-560)]);
+#[test]
+fn queries_in_a_row_are_answered_as_by_a_fresh_engine() {
+    let (steps, mut met) = (rounds(200_000), Met::default());
+    let sizes = [1.0, 1e-3, 2.0_f64.powi(200), 2.0_f64.powi(-560)];
     for (round, size) in sizes.into_iter().enumerate() {
-        minima_in_a_row(size, 16, steps / 4, round as u64, &mut met);
-        minima_in_a_row(size, 80, steps / 20, round as u64, &mut met);
+        in_a_row(size, 5, steps / 4, round as u64, &mut met);
+        in_a_row(size, 16, steps / 8, round as u64, &mut met);
+        in_a_row(size, 80, steps / 20, round as u64, &mut met);
     }
-    let Met { touching, tied, quick, by_heart, near, moved_meshes } = met;
-    assert!(touching > steps / 20 && tied > steps / 200 && near > steps / 20, "{met:?}");
-    assert!(quick > steps / 20 && by_heart > steps / 50 && moved_meshes > steps / 1000, "{met:?}");
-}
-
-#[test]
-fn minima_in_a_row_are_those_of_a_cold_engine() {
-    many_minima_in_a_row(12_000);
-}
-
-#[test]
-#[ignore = "the same for a minute"]
-fn a_hundred_thousand_minima_in_a_row_are_those_of_a_cold_engine() {
-    many_minima_in_a_row(100_000);
+    let Met { clear, touching, tied, quick, by_heart, near, moved_meshes } = met;
+    assert!(clear > steps / 20 && touching > steps / 20 && tied > steps / 200, "{met:?}");
+    assert!(near.iter().all(|&near| near > steps / 100), "{met:?}");
+    assert!(by_heart.iter().all(|&by_heart| by_heart > steps / 50), "{met:?}");
+    assert!(quick > steps / 20 && moved_meshes > steps / 1000, "{met:?}");
 }
 
 /// A touching robot that rests gets the same answer again, with links that stick out of the mesh,

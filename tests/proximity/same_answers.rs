@@ -3,12 +3,12 @@
 
 use super::tube::from_function;
 use continuum_demo::ventricle;
-use continuum_testing::{Arcs, Random, answered};
+use continuum_testing::{Arcs, Random, WarmAndFresh, answered, rounds};
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{BvhSearch, Clearance, Decision, Proximity, RobotPair};
 use parry_continuum::{Chain, LinearMotion, RigidMotion, Tube, TubeSection};
-use std::sync::{Arc, LazyLock};
+use std::sync::Arc;
 
 /// How many random robots: more for a search for faults.
 const ROUNDS: usize = 6;
@@ -16,16 +16,14 @@ const ROUNDS: usize = 6;
 /// How much larger a scene is than one in millimetres.
 const UNITS: [f64; 3] = [1.0, 1e-3, 1e-6];
 
-static VENTRICLE: LazyLock<(Vec<Vector>, Vec<[u32; 3]>)> = LazyLock::new(|| ventricle::mesh(2_000));
-
 /// The wall of a ventricle, or a plane that a straight tube may lie on.
 fn walls(unit: f64) -> [TriMesh; 2] {
-    let (vertices, indices) = &*VENTRICLE;
+    let (vertices, indices) = ventricle::mesh(6_000);
     let scaled = vertices.iter().map(|vertex| vertex * unit).collect();
     let corners = [[-30.0, -30.0], [30.0, -30.0], [30.0, 30.0], [-30.0, 30.0]];
     let square = corners.map(|[x, z]| Vector::new(x, 0.0, z) * unit).to_vec();
     [
-        TriMesh::new(scaled, indices.clone()).unwrap(),
+        TriMesh::new(scaled, indices).unwrap(),
         TriMesh::new(square, vec![[0, 1, 2], [0, 2, 3]]).unwrap(),
     ]
 }
@@ -93,8 +91,7 @@ fn earlier_queries_never_change_an_answer() {
     for round in 0..ROUNDS {
         let unit = UNITS[round % 3];
         for (is_plane, mesh) in [false, true].into_iter().zip(walls(unit)) {
-            let cold = BvhSearch::new(&mesh).unwrap();
-            let mut warm = cold.clone();
+            let mut both = WarmAndFresh::new(BvhSearch::new(&mesh).unwrap());
             let arcs = arcs(&mut random, unit, round % 2 == 0);
             let tubes = tubes(&mut random, &arcs, unit);
             let start = place(&mut random, &mesh, unit, is_plane);
@@ -103,12 +100,13 @@ fn earlier_queries_never_change_an_answer() {
                 let pose = Pose::from_translation(step * f64::from(k)) * start;
                 for tube in &tubes {
                     let tolerance = [0.5, 0.03, 1e-3, 0.0][random.below(4) as usize] * unit;
-                    let found = warm.clearance(tube, &pose, tolerance).unwrap();
-                    assert_eq!(found, cold.clone().clearance(tube, &pose, tolerance).unwrap());
+                    let found = both
+                        .ask("clearance", |search| search.clearance(tube, &pose, tolerance))
+                        .unwrap();
                     seen.take(&found);
                     let margin = [0.0, found.lower, found.upper * 1.1][random.below(3) as usize];
-                    let decided = warm.clears_tube(tube, &pose, margin, tolerance);
-                    assert_eq!(decided, cold.clone().clears_tube(tube, &pose, margin, tolerance));
+                    let decided = both
+                        .ask(margin, |search| search.clears_tube(tube, &pose, margin, tolerance));
                     seen.clear += usize::from(decided == Ok(Decision::Clear));
                     seen.contact += usize::from(decided == Ok(Decision::Contact));
                 }
@@ -125,12 +123,12 @@ fn earlier_queries_never_change_an_answer_about_two_tubes() {
     let (mut random, mut free, mut touching) = (Random::new(2), 0, 0);
     for round in 0..2 * ROUNDS {
         let unit = UNITS[round % 3];
-        let both = [0, 1].map(|k| {
+        let all = [0, 1].map(|k| {
             // Two straight tubes may lie side by side.
             let arcs = arcs(&mut random, unit, (round + k) % 3 == 0 || round % 4 == 0);
             tubes(&mut random, &arcs, unit)
         });
-        let mut warm = RobotPair::new();
+        let mut both = WarmAndFresh::new(RobotPair::new());
         let aside = [2.0, 2.0 + 1e-12, 1.9, 2.5, 6.0][round % 5] * unit;
         let turn = if round % 2 == 0 { Vector::ZERO } else { random.direction() };
         let step = random.direction() * ([0.02, 1e-9][round % 2] * unit);
@@ -139,25 +137,20 @@ fn earlier_queries_never_change_an_answer_about_two_tubes() {
                 Vector::new(aside, 0.0, random.unit() * unit) + step * f64::from(k),
                 turn,
             );
-            for (a, b) in both[0].iter().zip(&both[1]) {
+            for (a, b) in all[0].iter().zip(&all[1]) {
                 let tolerance = [0.5, 0.03, 1e-3][random.below(3) as usize] * unit;
                 let here = Pose::IDENTITY;
-                let found = warm.clearance(a, &here, b, &pose, tolerance).unwrap();
-                assert_eq!(
-                    found,
-                    RobotPair::new().clearance(a, &here, b, &pose, tolerance).unwrap()
-                );
+                let found = both
+                    .ask("clearance", |pair| pair.clearance(a, &here, b, &pose, tolerance))
+                    .unwrap();
                 if found.lower > 0.0 {
                     free += 1
                 } else {
                     touching += 1
                 }
                 let margin = [0.0, found.lower, found.upper * 1.1][random.below(3) as usize];
-                let decided = warm.clears_tubes(a, &here, b, &pose, margin, tolerance);
-                assert_eq!(
-                    decided,
-                    RobotPair::new().clears_tubes(a, &here, b, &pose, margin, tolerance)
-                );
+                let _ = both
+                    .ask(margin, |pair| pair.clears_tubes(a, &here, b, &pose, margin, tolerance));
             }
         }
     }
@@ -260,7 +253,7 @@ fn a_contact_is_found_before_a_resolution_is_refused() {
     let [mesh, _] = walls(1.0);
     let mut search = BvhSearch::new(&mesh).unwrap();
     let (mut random, mut touching, mut refused) = (Random::new(5), 0, 0);
-    for _ in 0..30 * ROUNDS {
+    for _ in 0..rounds(1800) {
         let curve = arcs(&mut random, 1.0, false);
         // Few samples leave much open.
         let (points, radii) = curve.samples(curve.length() / 8.0, &[]);
@@ -274,15 +267,14 @@ fn a_contact_is_found_before_a_resolution_is_refused() {
         }
         refused += usize::from(decided.is_err());
     }
-    assert!(touching > 10 * ROUNDS && refused > 0, "{touching} {refused}");
+    assert!(touching > rounds(400) && refused > 0, "{touching} {refused}");
 }
 
 #[test]
 fn earlier_queries_never_change_an_answer_about_a_motion() {
     let (mut random, mut clear, mut contact) = (Random::new(6), 0, 0);
     let [mesh, _] = walls(1.0);
-    let cold = BvhSearch::new(&mesh).unwrap();
-    let mut warm = cold.clone();
+    let mut both = WarmAndFresh::new(BvhSearch::new(&mesh).unwrap());
     for round in 0..ROUNDS {
         let arcs = arcs(&mut random, 1.0, round % 2 == 0);
         let (points, radii) = arcs.samples(1.0, &[]);
@@ -292,18 +284,16 @@ fn earlier_queries_never_change_an_answer_about_a_motion() {
         let linear = LinearMotion::chain(&at, &to, &radii).unwrap();
         let end = Pose::from_translation(random.point()) * start;
         let rigid = RigidMotion::new(from_function(&arcs), [start, end]).unwrap();
-        let found = warm.clearance_of_motion(&linear, 0.05).unwrap();
-        assert_eq!(found, cold.clone().clearance_of_motion(&linear, 0.05).unwrap());
+        let found = both.ask("motion", |search| search.clearance_of_motion(&linear, 0.05)).unwrap();
         for margin in [0.0, 0.5 * found.lower, 0.3] {
-            let decided = warm.clears_motion(&rigid, margin, 0.01);
-            assert_eq!(decided, cold.clone().clears_motion(&rigid, margin, 0.01));
+            let decided = both.ask(margin, |search| search.clears_motion(&rigid, margin, 0.01));
             clear += usize::from(decided.as_ref().is_ok_and(|answer| answer.is_clear()));
             contact +=
                 usize::from(decided.is_ok_and(|answer| answer.decision == Decision::Contact));
         }
         // Another question between.
-        warm.clearance(&from_function(&arcs), &start, 0.1).unwrap();
-        warm.minimum(&Chain::cylinders(&at, &radii).unwrap(), &Pose::IDENTITY).unwrap();
+        both.warm.clearance(&from_function(&arcs), &start, 0.1).unwrap();
+        both.warm.minimum(&Chain::cylinders(&at, &radii).unwrap(), &Pose::IDENTITY).unwrap();
     }
     assert!(clear > 0 && contact > ROUNDS / 2, "{clear} {contact}");
 }

@@ -3,7 +3,7 @@
 use super::robots::{beside, robot};
 use super::tube::{all_ways, fine};
 use continuum_testing::narrow_phase::disc_disc;
-use continuum_testing::{Arcs, Random};
+use continuum_testing::{Arcs, Random, rounds};
 use parry_continuum::distance::Vec3;
 use parry_continuum::parry::math::{Pose, Rotation, Vector};
 use parry_continuum::proximity::{
@@ -77,7 +77,7 @@ fn tubes_are_as_near_as_their_discs() {
     let mut random = Random::new(1);
     let (mut pair, mut touching, mut free, mut coarse, mut undecided) =
         (RobotPair::new(), 0, 0, 0, 0);
-    for round in 0..100 {
+    for round in 0..rounds(100) {
         let arcs = [0, 1].map(|_| {
             let frame = random.pose(1.0);
             Arc::new(Arcs::random(&mut random, frame, 0.6))
@@ -124,7 +124,10 @@ fn tubes_are_as_near_as_their_discs() {
     }
     println!("{touching} {free} {coarse} {undecided}");
     assert!(
-        touching > 15 && free > 30 && coarse < 100 && undecided < 200,
+        touching > rounds(15)
+            && free > rounds(30)
+            && coarse < rounds(100)
+            && undecided < rounds(200),
         "{touching} {free} {coarse} {undecided}"
     );
 }
@@ -173,23 +176,6 @@ fn a_scaled_problem_has_the_scaled_answer() {
             assert_eq!(found.lower, unit.lower * scale, "{round}, {power}");
             assert_eq!(found.upper, unit.upper * scale, "{round}, {power}");
             assert_eq!(found.witness.on_second, unit.witness.on_second * scale);
-        }
-    }
-}
-
-/// Earlier queries change where a query begins, and never a bound's validity.
-#[test]
-fn a_memory_of_other_tubes_does_no_harm() {
-    let mut random = Random::new(4);
-    let mut pair = RobotPair::new();
-    let long = quarter(1.0);
-    let short = Tube::from_samples(&[Vector::ZERO, Vector::Z], &[0.3], None).unwrap();
-    for _ in 0..100 {
-        let pose = random.pose(25.0);
-        for (a, b) in [(&long, &long), (&short, &long), (&long, &short), (&short, &short)] {
-            let fresh = RobotPair::new().clearance(a, &Pose::IDENTITY, b, &pose, 0.03).unwrap();
-            let again = pair.clearance(a, &Pose::IDENTITY, b, &pose, 0.03).unwrap();
-            assert!(again.resolved && fresh.lower <= again.upper && again.lower <= fresh.upper);
         }
     }
 }

@@ -6,6 +6,7 @@
 //! - The narrow phase: [`narrow_phase`], its functions compiled once; [`kernels`], every public
 //!   function on one input; [`precision`], one text for `f32` and `f64`.
 //! - Effort: [`rounds`], the number of rounds of a random test.
+//! - Memory: [`WarmAndFresh`], one engine after earlier queries and one without.
 //! - Checks: [`certificate`], proofs in double-double arithmetic; [`rotation`]s without rounding.
 //! - The fuzzer: `fuzz`, bodies that accept any bytes (feature `fuzz`).
 //! - In rapier: `throws`, bodies thrown onto walls (feature `rapier`).
@@ -15,6 +16,7 @@ mod arcs;
 mod cases;
 pub mod certificate;
 pub mod disc_problems;
+mod earlier;
 mod effort;
 #[cfg(feature = "fuzz")]
 pub mod fuzz;
@@ -33,6 +35,7 @@ pub mod throws;
 
 pub use arcs::{Arcs, Stretch};
 pub use cases::{Case, LinkCase, distance_cases, link_cases, read_lines};
+pub use earlier::WarmAndFresh;
 pub use effort::rounds;
 pub use level::{LevelLinks, found_level_links};
 pub use random::Random;

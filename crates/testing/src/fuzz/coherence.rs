@@ -2,12 +2,14 @@
 //! vertices change no answer, and a margin has one meaning everywhere.
 
 use super::source::Source;
+use crate::WarmAndFresh;
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::shape::TriMesh;
 use parry_continuum::proximity::{BvhSearch, Decision, Exhaustive, LinkProximity, Proximity};
 use parry_continuum::{Chain, Tube};
 
 /// A moving mesh, two robots, the number of the queried robot, and that robot's pose.
+#[derive(Debug)]
 struct Scene {
     vertices: Vec<Vector>,
     indices: Vec<[u32; 3]>,
@@ -34,12 +36,14 @@ pub fn coherence(bytes: &[u8]) {
     let (Some(first), Some(second)) = (source.chain(), source.chain()) else { return };
     let mut scene =
         Scene { vertices, indices, robots: [first, second], robot: 0, pose: source.pose() };
-    let Some(mut search) = scene.mesh().and_then(|mesh| BvhSearch::new(&mesh).ok()) else { return };
+    let Some(search) = scene.mesh().and_then(|mesh| BvhSearch::new(&mesh).ok()) else { return };
+    let mut both = WarmAndFresh::new(search);
     for _ in 0..2 + source.below(10) {
-        change(&mut source, &mut scene, &mut search);
+        change(&mut source, &mut scene, &mut both.warm);
         let Some(mesh) = scene.mesh() else { return };
         let Ok(fresh) = BvhSearch::new(&mesh) else { return };
-        ask(&mut source, &scene, &mut search, fresh, &mesh);
+        both.fresh = fresh;
+        ask(&mut source, &scene, &mut both, &mesh);
     }
 }
 
@@ -67,32 +71,25 @@ fn change(source: &mut Source, scene: &mut Scene, search: &mut BvhSearch) {
     }
 }
 
-/// Runs a query on both engines and asserts equal answers.
-fn ask(
-    source: &mut Source,
-    scene: &Scene,
-    search: &mut BvhSearch,
-    mut fresh: BvhSearch,
-    mesh: &TriMesh,
-) {
+/// Runs queries on both engines and asserts equal answers.
+fn ask(source: &mut Source, scene: &Scene, both: &mut WarmAndFresh<BvhSearch>, mesh: &TriMesh) {
     let (robot, pose) = (&scene.robots[scene.robot], &scene.pose);
     let problem = || scene.problem();
-    let (mut ours, mut theirs) = (Vec::new(), Vec::new());
-    let kept = search.per_link(robot, pose, &mut ours);
-    let asked = fresh.per_link(robot, pose, &mut theirs);
-    assert_eq!((kept.is_ok(), &ours), (asked.is_ok(), &theirs), "per link{}", problem());
-    if kept.is_err() {
-        assert!(search.minimum(robot, pose).is_err(), "{}", problem());
+    let Ok(each) = both.ask(scene, |search| {
+        let mut each = Vec::new();
+        search.per_link(robot, pose, &mut each).map(|()| each)
+    }) else {
+        assert!(both.warm.minimum(robot, pose).is_err(), "{}", problem());
         return;
-    }
+    };
     let nearer = |least: LinkProximity, link: &LinkProximity| {
         let (one, other) =
             ((least.distance, least.witness.triangle), (link.distance, link.witness.triangle));
         if other < one { *link } else { least }
     };
     let least =
-        ours.iter().copied().reduce(|least, link| nearer(least, &link)).expect("a robot has links");
-    assert_eq!(search.minimum(robot, pose).as_ref(), Ok(&least), "minimum{}", problem());
+        each.iter().copied().reduce(|least, link| nearer(least, &link)).expect("a robot has links");
+    assert_eq!(both.ask(scene, |search| search.minimum(robot, pose)).as_ref(), Ok(&least));
     let mut exhaustive = Exhaustive::<f32>::new(mesh).expect("a mesh as before");
     assert_eq!(exhaustive.minimum(robot, pose).as_ref(), Ok(&least), "exhaustive{}", problem());
 
@@ -110,7 +107,7 @@ fn ask(
         _ => source.number(),
     };
     for _ in 0..2 {
-        match search.clears(robot, pose, margin) {
+        match both.ask(scene, |search| search.clears(robot, pose, margin)) {
             Ok(clears) => {
                 assert!(
                     margin >= 0.0 && clears == (distance > margin),
@@ -120,7 +117,7 @@ fn ask(
             }
             Err(_) => assert!(margin.is_nan() || margin < 0.0, "clears {margin}{}", problem()),
         }
-        match search.minimum_within(robot, pose, margin) {
+        match both.ask(scene, |search| search.minimum_within(robot, pose, margin)) {
             Ok(Some(found)) => {
                 assert!(found == least && distance <= margin, "{margin} {found:?}{}", problem())
             }
@@ -132,11 +129,12 @@ fn ask(
             }
         }
     }
-    let (mut contacts, mut others) = (Vec::new(), Vec::new());
-    let kept = search.contacts_within(robot, pose, margin, 0.0, &mut contacts);
-    let asked = fresh.contacts_within(robot, pose, margin, 0.0, &mut others);
-    assert_eq!((kept.is_ok(), &contacts), (asked.is_ok(), &others), "within {margin}{}", problem());
-    assert_eq!(kept.is_ok(), margin >= 0.0, "within {margin}{}", problem());
+    let found = both.ask(scene, |search| {
+        let mut contacts = Vec::new();
+        search.contacts_within(robot, pose, margin, 0.0, &mut contacts).map(|()| contacts)
+    });
+    assert_eq!(found.is_ok(), margin >= 0.0, "within {margin}{}", problem());
+    let contacts = found.unwrap_or_default();
     assert!(
         contacts.iter().all(|contact| contact.distance <= margin),
         "beyond {margin}{}",
@@ -149,28 +147,29 @@ fn ask(
 
     let places: Vec<_> = (0..source.below(4)).map(|_| (robot, source.nudged(*pose))).collect();
     let mut batch = Vec::new();
-    if search.minimum_batch(&places, &mut batch).is_ok() {
+    if both.warm.minimum_batch(&places, &mut batch).is_ok() {
         for ((robot, place), answer) in places.iter().zip(&batch) {
-            assert_eq!(fresh.minimum(robot, place), *answer, "{place:?}{}", problem());
+            assert_eq!(both.fresh.minimum(robot, place), *answer, "{place:?}{}", problem());
         }
     }
-    tube(search, scene, distance, margin);
+    tube(both, scene, distance, margin);
 }
 
 /// Asserts that the bounds of a chain's tube contain the chain's distance, at poses without
 /// rounding.
-fn tube(search: &mut BvhSearch, scene: &Scene, distance: f64, margin: f64) {
+fn tube(both: &mut WarmAndFresh<BvhSearch>, scene: &Scene, distance: f64, margin: f64) {
     let tube = Tube::from(&scene.robots[scene.robot]);
     if scene.pose != Pose::IDENTITY {
         return;
     }
     let tolerance = 1e-3 * tube.length();
     for _ in 0..2 {
-        if let Ok(found) = search.clearance(&tube, &scene.pose, tolerance) {
+        if let Ok(found) = both.ask(scene, |search| search.clearance(&tube, &scene.pose, tolerance))
+        {
             let holds = found.lower <= distance && distance <= found.upper;
             assert!(holds, "{found:?} for {distance}{}", scene.problem());
         }
-        match search.clears_tube(&tube, &scene.pose, margin, tolerance) {
+        match both.ask(scene, |search| search.clears_tube(&tube, &scene.pose, margin, tolerance)) {
             Ok(Decision::Clear) => {
                 assert!(distance > margin, "clear of {margin} at {distance}{}", scene.problem())
             }
