@@ -3,7 +3,7 @@
 use crate::composites::composites;
 use crate::draw::Draw;
 use crate::scene::parts;
-use continuum_testing::Random;
+use continuum_testing::{Random, rounds};
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::query::{NonlinearRigidMotion, QueryDispatcher, ShapeCastOptions};
 use parry_continuum::parry::shape::{HeightField, Shape};
@@ -71,7 +71,7 @@ fn nonlinear_casts_stop_at_the_first_part_that_is_met() {
     let dispatcher = ContinuumDispatcher::default();
     let mut random = Random::new(44);
     let (mut hits, mut misses) = (0, 0);
-    for _ in 0..6 {
+    for _ in 0..rounds(6) {
         for (name, robot, other, pos12) in composites(&mut random) {
             for (first, second, pos12) in
                 [(&robot, &other, pos12), (&other, &robot, pos12.inverse())]
@@ -119,7 +119,7 @@ fn nonlinear_casts_stop_at_the_first_part_that_is_met() {
             }
         }
     }
-    assert!(hits > 50 && misses > 5, "{hits} hits, {misses} misses");
+    assert!(hits > rounds(50) && misses > rounds(5), "{hits} hits, {misses} misses");
 }
 
 /// A cast along a floor, which parry's own casts against height fields miss beyond the starting

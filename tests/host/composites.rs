@@ -2,8 +2,8 @@
 
 use crate::dispatcher::ROUNDING;
 use crate::scene::{floor_field, floor_mesh, heap, parts, tube, zigzag};
-use continuum_testing::Random;
 use continuum_testing::placements::{Placement, Wall};
+use continuum_testing::{Random, rounds};
 use parry_continuum::parry::math::{IVector, Pose, Real, Vector};
 use parry_continuum::parry::query::{
     ClosestPoints, ContactManifold, NonlinearRigidMotion, PersistentQueryDispatcher,
@@ -56,7 +56,7 @@ fn composites_get_the_best_of_their_parts() {
     let dispatcher = ContinuumDispatcher::default();
     let mut random = Random::new(42);
     let mut visits = std::collections::BTreeMap::new();
-    for _ in 0..40 {
+    for _ in 0..rounds(40) {
         for (name, robot, other, pos12) in composites(&mut random) {
             for (first, second, pos12) in
                 [(&robot, &other, pos12), (&other, &robot, pos12.inverse())]
@@ -156,7 +156,7 @@ fn composites_get_the_best_of_their_parts() {
             }
         }
     }
-    assert!(visits.len() == 5 && visits.values().flatten().all(|&n| n >= 5), "{visits:?}");
+    assert!(visits.len() == 5 && visits.values().flatten().all(|&n| n >= rounds(5)), "{visits:?}");
 }
 
 /// parry's routines for voxels have absolute tolerances, so links refuse them in every query.

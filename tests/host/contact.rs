@@ -1,8 +1,8 @@
 //! Contacts: exact while apart, and otherwise the least translation that separates.
 
 use crate::draw::{Draw, U, extent};
-use continuum_testing::Random;
 use continuum_testing::narrow_phase::segment_triangle;
+use continuum_testing::{Random, rounds};
 use parry_continuum::distance::Vec3;
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::query::{Contact, PointQuery, QueryDispatcher};
@@ -167,7 +167,7 @@ fn no_sampled_direction_separates_sooner() {
     let mut random = Random::new(64);
     // By whether the link has a flat cap, and whether its axis crosses the triangle.
     let mut checked = [[0; 2]; 2];
-    for _ in 0..4000 {
+    for _ in 0..rounds(4000) {
         let Some((link, triangle)) = crossing(&mut random) else { continue };
         let found = contact(&link, &triangle);
         let vec3 = |v: Vector| Vec3::from(v.to_array());
@@ -192,5 +192,5 @@ fn no_sampled_direction_separates_sooner() {
         let rounding = 32.0 * U * (extent(&link, triangle.a).max(extent(&link, triangle.b)) + 4.0);
         assert!(best.0 <= found.dist + rounding, "{link:?} {triangle:?}: {found:?}, but {best:?}");
     }
-    assert!(checked.iter().flatten().all(|&n| n > 100), "{checked:?}");
+    assert!(checked.iter().flatten().all(|&n| n > rounds(100)), "{checked:?}");
 }

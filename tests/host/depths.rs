@@ -7,7 +7,7 @@
 //! are written anew here.
 
 use crate::draw::{CAPS, Draw};
-use continuum_testing::Random;
+use continuum_testing::{Random, rounds};
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::query::{
     Contact, ContactManifold, PersistentQueryDispatcher, QueryDispatcher,
@@ -133,7 +133,7 @@ fn depths_are_the_least_but_for_what_the_table_says() {
     let mut bad = Vec::new();
     for (name, allowed) in EXCESS {
         let (mut worst, mut over, mut total) = ((0.0, String::new()), 0, 0);
-        for _ in 0..100 {
+        for _ in 0..rounds(100) {
             let caps =
                 if ["round link", "capsule"].contains(&name) { CAPS[1] } else { random.caps() };
             let (half, radius) = (size(&mut random), size(&mut random));
@@ -170,7 +170,7 @@ fn depths_are_the_least_but_for_what_the_table_says() {
     println!("{seen:?}");
     assert!(bad.is_empty(), "{}", bad.join("\n"));
     assert!(
-        EXCESS.iter().all(|(name, _)| seen.get(&(name, "coaxial")).is_some_and(|&n| n > 5)),
+        EXCESS.iter().all(|(name, _)| seen.get(&(name, "coaxial")).is_some_and(|&n| n > rounds(5))),
         "{seen:?}"
     );
 }

@@ -3,8 +3,8 @@
 
 use crate::depths::gap;
 use crate::draw::{CAPS, Draw};
-use continuum_testing::Random;
 use continuum_testing::placements::Wall;
+use continuum_testing::{Random, rounds};
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::query::{
     ContactManifold, PersistentQueryDispatcher, PointQuery, QueryDispatcher,
@@ -54,7 +54,7 @@ fn lens_support([r1, r2]: [Real; 2], apart: Real, turn: Real) -> Real {
 fn posts_stand_on_all_that_their_caps_share() {
     let mut random = Random::new(461);
     let (mut narrow, mut whole) = (0, 0);
-    for round in 0..600 {
+    for round in 0..rounds(600) {
         let radii =
             [random.between(0.2, 1.0), if round % 3 == 0 { 0.5 } else { random.between(0.2, 1.0) }];
         let radii = if round % 6 == 0 { [0.5; 2] } else { radii };
@@ -96,7 +96,7 @@ fn posts_stand_on_all_that_their_caps_share() {
         }
         if apart > 0.5 * most { narrow += 1 } else { whole += 1 }
     }
-    assert!(narrow > 50 && whole > 300, "{narrow} {whole}");
+    assert!(narrow > rounds(50) && whole > rounds(300), "{narrow} {whole}");
 }
 
 /// Turned about its axis by a little, or shifted by a little, a post keeps the names of its points.

@@ -3,8 +3,8 @@
 //! height field turn normals and remove no contact.
 
 use crate::draw::{CAPS, Draw, scaled};
-use continuum_testing::Random;
 use continuum_testing::placements::Wall;
+use continuum_testing::{Random, rounds};
 use parry_continuum::parry::math::{Pose, Real, Rot3, Vector};
 use parry_continuum::parry::query::{ContactManifold, PersistentQueryDispatcher, QueryDispatcher};
 use parry_continuum::parry::shape::{
@@ -229,7 +229,7 @@ fn a_slot_of_a_height_field_holds_a_rod_under_every_flag() {
 fn a_flag_turns_normals_and_removes_no_contact() {
     let mut random = Random::new(97);
     let (mut near, mut turned) = ([0; 4], 0);
-    for round in 0..1500 {
+    for round in 0..rounds(1500) {
         let placement = random.placement(if round % 2 == 0 { Wall::BoxMesh } else { Wall::Plate });
         let mesh = placement.wall.as_trimesh().unwrap();
         let turn = if round % 3 == 0 { random.direction() * 0.3 } else { Vector::ZERO };
@@ -253,7 +253,7 @@ fn a_flag_turns_normals_and_removes_no_contact() {
             }
         }
     }
-    assert!(near.iter().all(|&n| n > 1000) && turned > 3000, "{near:?} {turned}");
+    assert!(near.iter().all(|&n| n > rounds(1000)) && turned > rounds(3000), "{near:?} {turned}");
 }
 
 /// Inside a closed mesh and outside, links are held under every flag; also a chain, and in small

@@ -5,7 +5,7 @@
 //! shape. The links one by one are answered as in parry's `Compound`, which has no joints.
 
 use crate::draw::Draw;
-use continuum_testing::Random;
+use continuum_testing::{Random, rounds};
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::query::{
     ContactManifold, PersistentQueryDispatcher, QueryDispatcher, TrackedContact,
@@ -197,7 +197,7 @@ fn a_joint_does_not_catch_on_a_box() {
 
 #[test]
 fn a_chain_touches_as_deep_as_its_links_one_by_one() {
-    visit(101, 600);
+    visit(101, rounds(600));
 }
 
 #[test]

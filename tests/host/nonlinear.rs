@@ -2,7 +2,7 @@
 
 use crate::draw::Draw;
 use crate::scene::tube;
-use continuum_testing::Random;
+use continuum_testing::{Random, rounds};
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::query::{NonlinearRigidMotion, QueryDispatcher, ShapeCastStatus};
 use parry_continuum::parry::shape::{HalfSpace, Shape, SharedShape, Triangle};
@@ -30,7 +30,7 @@ fn distance(
 fn casts_are_never_late_and_end_where_the_shapes_touch() {
     let (mut random, dispatcher) = (Random::new(121), ContinuumDispatcher::default());
     let (mut hits, mut misses, mut unfinished) = ([0; 3], [0; 3], 0);
-    for _ in 0..1500 {
+    for _ in 0..rounds(1500) {
         let chain = tube(&mut random);
         let link = random.link();
         let triangle = Triangle::new(random.vector(2.0), random.vector(2.0), random.vector(2.0));
@@ -85,7 +85,10 @@ fn casts_are_never_late_and_end_where_the_shapes_touch() {
             }
         }
     }
-    assert!(hits.iter().chain(&misses).all(|&n| n > 200), "{hits:?} hits, {misses:?} misses");
+    assert!(
+        hits.iter().chain(&misses).all(|&n| n > rounds(200)),
+        "{hits:?} hits, {misses:?} misses"
+    );
     assert_eq!(unfinished, 0);
 }
 
@@ -100,7 +103,7 @@ fn what_touches_at_the_start_does_not_get_through() {
         Vector::new(0.0, 0.0, 90.0),
     );
     let still = NonlinearRigidMotion::identity();
-    for _ in 0..2000 {
+    for _ in 0..rounds(2000) {
         let radius = random.log_between(0.02, 0.4);
         let link = ModifiedCylinder::new(-Vector::X, Vector::X, radius, random.caps()).unwrap();
         let turn = random.direction() * random.between(0.0, 3.0);
@@ -142,7 +145,7 @@ fn what_touches_at_the_start_does_not_get_through() {
             }
         }
     }
-    assert!(held > 500 && free > 100, "{held} held, {free} free");
+    assert!(held > rounds(500) && free > rounds(100), "{held} held, {free} free");
 }
 
 /// A ball whose centre is nearly on a wall has no depth left within rounding. If there is some,

@@ -1,7 +1,7 @@
 //! Lengths that are small beside the unit of length: gaps, balls, overlaps below the prediction,
 //! and boxes that touch within rounding.
 
-use continuum_testing::Random;
+use continuum_testing::{Random, rounds};
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::query::{ClosestPoints, Contact, QueryDispatcher, ShapeCastOptions};
 use parry_continuum::parry::shape::{Ball, Capsule, Compound, Cuboid, Shape, SharedShape};
@@ -87,7 +87,7 @@ fn a_tiny_ball_beside_a_tiny_link_does_not_touch_it() {
 #[test]
 fn a_cast_that_grazes_a_part_is_not_rounded_past_the_whole() {
     let (mut random, mut met) = (Random::new(311), 0);
-    for _ in 0..4000 {
+    for _ in 0..rounds(4000) {
         let [r, half, beside, long] = [0; 4].map(|_| random.between(0.1, 3.0));
         let link = ModifiedCylinder::capsule(Vector::ZERO, Vector::Z * long, r).unwrap();
         let part = Cuboid::new(Vector::splat(half));
@@ -111,7 +111,7 @@ fn a_cast_that_grazes_a_part_is_not_rounded_past_the_whole() {
             assert!(cast(&pos12, &whole, &chain), "{r} {half} {beside}");
         }
     }
-    assert!(met > 1000, "{met}");
+    assert!(met > rounds(1000), "{met}");
 }
 
 /// The same at rest: what touches a part touches the whole.

@@ -3,7 +3,7 @@
 
 use crate::draw::Draw;
 use crate::scene::floor_mesh;
-use continuum_testing::Random;
+use continuum_testing::{Random, rounds};
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::query::{QueryDispatcher, ShapeCastOptions, ShapeCastStatus};
 use parry_continuum::parry::shape::{Shape, SharedShape, Triangle};
@@ -78,13 +78,13 @@ fn stops_in_time(
 #[test]
 fn straight_casts_stop_where_the_two_are_as_near_as_they_may() {
     let (mut random, mut counts) = (Random::new(151), [0; 2]);
-    for _ in 0..3000 {
+    for _ in 0..rounds(3000) {
         let (link, triangle, pose, velocity) = scene(&mut random);
         let found = stops_in_time(&mut random, (&link, &triangle), pose, velocity, EARLY);
         counts = [0, 1].map(|k| counts[k] + found[k]);
     }
     let [hits, misses] = counts;
-    assert!(hits > 1500 && misses > 500, "{hits} hits, {misses} misses");
+    assert!(hits > rounds(1500) && misses > rounds(500), "{hits} hits, {misses} misses");
 }
 
 /// A convex shape of about size 1.
@@ -106,14 +106,14 @@ fn convex(random: &mut Random) -> SharedShape {
 #[test]
 fn straight_casts_meet_convex_shapes_in_time() {
     let (mut random, mut counts) = (Random::new(155), [0; 2]);
-    for _ in 0..2000 {
+    for _ in 0..rounds(2000) {
         let (link, wall, pose) = (random.link(), convex(&mut random), random.pose(5.0));
         let velocity = link.start() - pose.translation + random.vector(1.5);
         let found = stops_in_time(&mut random, (&link, &*wall), pose, velocity, ITERATED);
         counts = [0, 1].map(|k| counts[k] + found[k]);
     }
     let [hits, misses] = counts;
-    assert!(hits > 1000 && misses > 300, "{hits} hits, {misses} misses");
+    assert!(hits > rounds(1000) && misses > rounds(300), "{hits} hits, {misses} misses");
 }
 
 #[test]

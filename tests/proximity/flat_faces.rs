@@ -115,5 +115,5 @@ fn a_flat_tip_meets_a_wall_at_margin_0() {
         level += usize::from(tilt < 1e-6);
         tilted += usize::from(tilt >= 1e-6);
     }
-    assert!(level >= 20 && tilted >= 20, "{level} {tilted}");
+    assert!(level >= rounds(150) && tilted >= rounds(150), "{level} {tilted}");
 }

@@ -3,7 +3,7 @@
 
 use crate::agreement::{UNIT, engines};
 use crate::scenes::{mesh_of, nasty_mesh};
-use continuum_testing::Random;
+use continuum_testing::{Random, rounds};
 use parry_continuum::Chain;
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::shape::{Ball, TriMesh};
@@ -49,7 +49,7 @@ fn is_of(answer: &LinkProximity, robot: &Chain, pose: &Pose, mesh: &TriMesh) -> 
 #[test]
 fn after_the_mesh_moved_an_answer_is_right_or_an_error() {
     let (mut stale, mut still_right, mut fresh, mut touching) = (0, 0, 0, 0);
-    for seed in 0..60 {
+    for seed in 0..rounds(60) {
         let random = &mut Random::new(seed);
         let (mesh, robot, pose) = (wall(random), robot(random), random.pose(0.3));
         // Every vertex moves, or the vertices of one side alone.
@@ -125,7 +125,13 @@ fn after_the_mesh_moved_an_answer_is_right_or_an_error() {
         }
     }
     let seen = [stale, still_right, fresh, touching];
-    assert!(stale > 300 && still_right > 50 && fresh > 500 && touching > 30, "{seen:?}");
+    assert!(
+        stale > rounds(300)
+            && still_right > rounds(50)
+            && fresh > rounds(500)
+            && touching > rounds(30),
+        "{seen:?}"
+    );
 }
 
 /// Clones share a mesh until one of them moves it.
@@ -179,7 +185,7 @@ fn rounded(answer: LinkProximity, random: &mut Random) -> LinkProximity {
 #[test]
 fn every_answer_fits() {
     let (mut touching, mut far, mut small, mut large) = (0, 0, 0, 0);
-    for seed in 0..240 {
+    for seed in 0..rounds(240) {
         let random = &mut Random::new(seed);
         let unit = 2.0_f64.powi([0, -300, -40, 40, 300][seed as usize % 5]);
         // How far out link and triangle are, beside what they measure.
@@ -230,7 +236,7 @@ fn every_answer_fits() {
         }
     }
     let seen = [touching, far, small, large];
-    assert!(seen.iter().all(|&count| count > 200), "{seen:?}");
+    assert!(seen.iter().all(|&count| count > rounds(200)), "{seen:?}");
 }
 
 /// Each field of an answer, changed by much more than rounding explains, is found out; so is what
@@ -404,7 +410,7 @@ fn engines_from_triangles() {
 #[test]
 fn the_tightest_of_several_meshes_where_a_margin_is_violated() {
     let (mut violated, mut beyond) = (0, 0);
-    for seed in 0..200 {
+    for seed in 0..rounds(200) {
         let random = &mut Random::new(seed);
         let robot = robot(random);
         let meshes: Vec<_> = (0..3)
@@ -437,7 +443,7 @@ fn the_tightest_of_several_meshes_where_a_margin_is_violated() {
             assert_eq!(all[tightest.unwrap()], least, "{name}, {seed}");
         }
     }
-    assert!(violated > 300 && beyond > 30, "{violated} {beyond}");
+    assert!(violated > rounds(300) && beyond > rounds(30), "{violated} {beyond}");
 }
 
 #[test]

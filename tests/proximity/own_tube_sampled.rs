@@ -331,7 +331,7 @@ fn ask(query: &mut SelfQuery, arcs: Arcs, margins: &[f64], seen: &mut Seen, name
 fn winding_tubes_are_as_near_to_themselves_as_their_discs() {
     let mut random = Random::new(1);
     let (mut query, mut seen) = (SelfQuery::new(), Seen::default());
-    for round in 0..40 {
+    for round in 0..rounds(40) {
         ask(
             &mut query,
             winding(&mut random),
@@ -340,7 +340,7 @@ fn winding_tubes_are_as_near_to_themselves_as_their_discs() {
             &format!("{round}"),
         );
     }
-    assert!(seen.touching > 5 && seen.free > 10, "{seen:?}");
+    assert!(seen.touching >= rounds(5) && seen.free >= rounds(10), "{seen:?}");
 }
 
 /// Arcs of quarters of a turn in planes at right angles, straight stretches between, and few radii:
@@ -373,7 +373,7 @@ fn aligned(random: &mut Random) -> Arcs {
 fn aligned_tubes_are_as_near_to_themselves_as_their_discs() {
     let mut random = Random::new(2);
     let (mut query, mut seen) = (SelfQuery::new(), Seen::default());
-    for round in 0..120 {
+    for round in 0..rounds(120) {
         ask(
             &mut query,
             aligned(&mut random),
@@ -382,7 +382,10 @@ fn aligned_tubes_are_as_near_to_themselves_as_their_discs() {
             &format!("{round}"),
         );
     }
-    assert!(seen.touching > 5 && seen.free > 10 && seen.none > 10, "{seen:?}");
+    assert!(
+        seen.touching >= rounds(5) && seen.free >= rounds(10) && seen.none >= rounds(10),
+        "{seen:?}"
+    );
 }
 
 /// Two bends that bring the tip back to the tube's side. The nearest place in front of the tip's
@@ -422,5 +425,5 @@ fn beside_a_tip_only_local_minima_count() {
         ask(&mut query, tip_beside_bend(&mut random), &[], &mut seen, &format!("{round}"));
     }
     assert_eq!(seen.beside, 0, "{seen:?}");
-    assert!(seen.contact > 20 && seen.clear > 40, "{seen:?}");
+    assert!(seen.contact > rounds(20) && seen.clear > rounds(40), "{seen:?}");
 }

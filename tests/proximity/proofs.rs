@@ -4,8 +4,8 @@
 use super::contacts::{small_mesh, small_robot};
 use continuum_demo::joint_motion::JointMotion;
 use continuum_demo::{ctr, ventricle};
-use continuum_testing::Random;
 use continuum_testing::narrow_phase::triangle_modified_cylinder;
+use continuum_testing::{Random, rounds};
 use parry_continuum::distance::Vec3;
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::shape::Ball;
@@ -222,7 +222,7 @@ fn what_was_tampered_with_is_refused() {
     };
     let planes: Vec<_> =
         (0..good().steps.len()).filter(|&k| good().steps[k].contains(',')).collect();
-    for round in 0..25 {
+    for round in 0..rounds(25) {
         // A plane with the robot on its wrong side, or none.
         let mut lines = good();
         let at = planes[random.below(planes.len() as u32) as usize];
@@ -337,7 +337,7 @@ fn what_was_tampered_with_is_refused() {
     for (said, what) in tampered.iter().zip(&what) {
         assert!(!said.is_yes, "{what}: {said:?}");
     }
-    assert!(tampered.len() >= 200, "{}", tampered.len());
+    assert!(tampered.len() >= rounds(200), "{}", tampered.len());
     for (said, expected) in left.iter().zip(&harmless) {
         assert!(said.is_yes && said.text.contains(expected), "{expected}: {said:?}");
     }
@@ -360,7 +360,7 @@ fn triangle_and_its_name(corners: [Vector; 3]) -> (BvhSearch, String, String) {
 #[test]
 fn short_pieces_with_one_flat_end_hold_the_half_ball() {
     let (mut checks, mut shorter) = (Checks::new("half-balls"), 0);
-    for seed in 0..60 {
+    for seed in 0..rounds(60) {
         let random = &mut Random::new(seed);
         let pose = if seed % 2 == 0 { Pose::IDENTITY } else { random.pose(3.0) };
         let radius = random.between(0.3, 2.0);
@@ -392,7 +392,7 @@ fn short_pieces_with_one_flat_end_hold_the_half_ball() {
     }
     let Some(said) = checks.run() else { return };
     assert!(said.iter().all(|said| said.is_yes), "{said:?}");
-    assert!(shorter > 40 && said.len() == 4 * shorter, "{shorter}");
+    assert!(shorter > rounds(40) && said.len() == 4 * shorter, "{shorter}");
 }
 
 /// Pieces as the page defines them, with the largest bend, length and offset that it allows, beside
@@ -400,7 +400,7 @@ fn short_pieces_with_one_flat_end_hold_the_half_ball() {
 #[test]
 fn what_is_believed_of_a_piece_is_true_of_its_discs_and_half_balls() {
     let (mut checks, mut nearest, mut flats) = (Checks::new("pieces"), Vec::new(), 0);
-    for seed in 0..100 {
+    for seed in 0..rounds(100) {
         let random = &mut Random::new(seed);
         let pose = random.pose(2.0);
         let length = random.between(0.05, 3.0);
@@ -487,7 +487,7 @@ fn what_is_believed_of_a_piece_is_true_of_its_discs_and_half_balls() {
         );
         believed += usize::from(said.is_yes);
     }
-    assert!(believed > 75 && flats > 50, "{believed} {flats}");
+    assert!(believed > rounds(75) && flats > rounds(50), "{believed} {flats}");
 }
 
 /// Files that are not proofs or not meshes of triangles: one line refuses them, and its quotes are

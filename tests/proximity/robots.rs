@@ -1,7 +1,7 @@
 //! Two robots: the nearest of all pairs of links, however they are found.
 
-use continuum_testing::Random;
 use continuum_testing::narrow_phase::modified_cylinder_modified_cylinder;
+use continuum_testing::{Random, rounds};
 use parry_continuum::distance::Vec3;
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::proximity::{ProximityError, RobotPair, RobotProximity, SelfQuery};
@@ -85,7 +85,7 @@ fn slack(first: &[ModifiedCylinder], second: &[ModifiedCylinder]) -> f64 {
 fn the_nearest_of_all_pairs_is_found() {
     let mut random = Random::new(1);
     let (mut pair, mut touching, mut apart, mut many) = (RobotPair::new(), 0, 0, 0);
-    for round in 0..1500 {
+    for round in 0..rounds(1500) {
         // Sometimes enough links to descend the link trees.
         let most = if round % 30 == 0 { 200 } else { 20 };
         let (a, b) = (robot(&mut random, most), robot(&mut random, most));
@@ -145,7 +145,10 @@ fn the_nearest_of_all_pairs_is_found() {
         }
         if d == 0.0 { touching += 1 } else { apart += 1 }
     }
-    assert!(touching > 300 && apart > 300 && many > 10, "{touching} {apart} {many}");
+    assert!(
+        touching > rounds(300) && apart > rounds(300) && many > rounds(10),
+        "{touching} {apart} {many}"
+    );
 }
 
 /// The definition, over the whole table: groups of equal neighbours without a nearer neighbour.

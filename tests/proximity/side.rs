@@ -6,7 +6,7 @@ use continuum_demo::field::{Body, Tube, round};
 use continuum_demo::remesh::remesh;
 use continuum_demo::surface::extract;
 use continuum_demo::{cavity, ctr, lumen, subdivide, ventricle};
-use continuum_testing::Random;
+use continuum_testing::{Random, rounds};
 use parry_continuum::Chain;
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::shape::{Ball, Cuboid, TriMesh};
@@ -148,7 +148,7 @@ impl Wall for TriMesh {
 
 #[test]
 fn a_closed_mesh_is_never_mistaken() {
-    never_wrong(1000);
+    never_wrong(rounds(1000));
 }
 
 /// A million points: `cargo test --release --test proximity -- side::a_million --ignored`
@@ -197,7 +197,7 @@ fn an_opening_leaves_doubt_where_it_fills_the_view() {
     let mut random = Random::new(53);
     let bounds = open.local_aabb();
     let mut seen = [0; 3];
-    for _ in 0..6_000 {
+    for _ in 0..rounds(6_000) {
         let point = if random.below(2) == 0 {
             bounds.center() + random.point() * bounds.half_extents() * 1.3
         } else {
@@ -211,7 +211,7 @@ fn an_opening_leaves_doubt_where_it_fills_the_view() {
         }
         seen[found as usize] += 1;
     }
-    assert!(seen.iter().all(|&count| count > 200), "{seen:?}");
+    assert!(seen.iter().all(|&count| count > rounds(200)), "{seen:?}");
 }
 
 /// Triangles that are missing or there twice cast doubt on their surroundings, and mislead nowhere.
@@ -226,7 +226,7 @@ fn flaws_of_a_wall_mislead_nowhere() {
     let mesh = TriMesh::new(vertices, flawed).unwrap();
     let search = BvhSearch::new(&mesh).unwrap();
     let mut seen = [0; 3];
-    for _ in 0..2000 {
+    for _ in 0..rounds(2000) {
         let triangle = mesh.triangle(random.below(mesh.indices().len() as u32));
         let point =
             triangle.center() + random.direction() * 10.0_f64.powf(random.between(-2.0, 1.0));
@@ -237,7 +237,7 @@ fn flaws_of_a_wall_mislead_nowhere() {
         }
         seen[found as usize] += 1;
     }
-    assert!(seen[0] > 400 && seen[1] > 400 && seen[2] > 20, "{seen:?}");
+    assert!(seen[0] > rounds(400) && seen[1] > rounds(400) && seen[2] > rounds(20), "{seen:?}");
 }
 
 /// The unit, the distance of the mesh from the origin and a triangle far out do not matter.

@@ -1,9 +1,9 @@
 //! Links far longer than thick beside triangles stretched along them: a bound of the search that is
 //! tilted by rounding would rule out the nearest.
 
-use continuum_testing::Random;
 use continuum_testing::narrow_phase::triangle_modified_cylinder;
 use continuum_testing::precision::{Precision, extent};
+use continuum_testing::{Random, rounds};
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::query::QueryDispatcher;
 use parry_continuum::parry::shape::TriMesh;
@@ -77,7 +77,7 @@ fn no_bound_rules_out_the_nearest_triangle() {
     let mut random = Random::new(71);
     let (mut apart, mut touching, mut wrong) = (0, 0, 0);
     let mut worst = std::collections::BTreeMap::<_, Real>::new();
-    for _ in 0..1500 {
+    for _ in 0..rounds(1500) {
         let scene = Scene::new(&mut random);
         let mesh = scene.mesh();
         let unit = scene.extent() * Real::EPSILON / 2.0;
@@ -114,7 +114,7 @@ fn no_bound_rules_out_the_nearest_triangle() {
         }
     }
     println!("{apart} apart, {touching} touching, {wrong} wrong: {worst:?}");
-    assert!(apart > 1000 && touching > 100);
+    assert!(apart > rounds(1000) && touching > rounds(100));
     assert_eq!(wrong, 0, "clear of what they found");
     assert!(worst.values().all(|worst| *worst <= 16.0), "{worst:?}");
 }

@@ -6,7 +6,7 @@
 //! chance that no build uses the pool. `PARRY_CONTINUUM_ROUNDS` sets the rounds, such as a
 //! thousand.
 
-use continuum_testing::{Random, answered};
+use continuum_testing::{Random, answered, rounds};
 use parry_continuum::parry::math::{Pose, Vector};
 use parry_continuum::parry::shape::{Ball, TriMesh};
 use parry_continuum::proximity::{BvhSearch, Exhaustive, Proximity, Side};
@@ -73,7 +73,7 @@ fn borrowed(robots: &[(Chain, Pose)]) -> Vec<(&Chain, Pose)> {
 #[test]
 fn batches_of_far_robots_end() {
     let (mesh, robots) = (ball(SMALL), far(&robots(64)));
-    in_time(80, move |_| {
+    in_time(rounds(80), move |_| {
         let mut search = BvhSearch::new(&mesh).unwrap();
         let mut out = Vec::new();
         search.minimum_batch(&borrowed(&robots), &mut out).unwrap();
@@ -84,7 +84,7 @@ fn batches_of_far_robots_end() {
 #[test]
 fn batches_beside_a_wide_wall_end() {
     let (mesh, robots) = (ball(WIDE), robots(300));
-    in_time(16, move |_| {
+    in_time(rounds(16), move |_| {
         let mut search = BvhSearch::new(&mesh).unwrap();
         let mut out = Vec::new();
         search.clears_batch(&borrowed(&robots), 0.1, &mut out).unwrap();
@@ -109,7 +109,7 @@ fn batches_beside_a_wide_wall_end() {
 fn batches_of_tubes_end() {
     let (mesh, robots) = (ball(SMALL), robots(32));
     let tubes: Vec<_> = robots.iter().map(|(robot, pose)| (Tube::from(robot), *pose)).collect();
-    in_time(16, move |round| {
+    in_time(rounds(16), move |round| {
         let mut search = BvhSearch::new(&mesh).unwrap();
         let away = if round % 2 == 0 { Vector::ZERO } else { Vector::new(4.0e4, 1.0e4, 0.0) };
         let asked: Vec<_> =
@@ -164,7 +164,7 @@ fn ask_all(
 fn questions_from_a_callers_tasks_end() {
     let (mesh, near) = (ball(SMALL), robots(64));
     let far = far(&near);
-    in_time(40, move |round| {
+    in_time(rounds(40), move |round| {
         let (search, scan) =
             (BvhSearch::new(&mesh).unwrap(), Exhaustive::<f32>::new(&mesh).unwrap());
         let robots = if round % 2 == 0 { &near } else { &far };
@@ -178,7 +178,7 @@ fn questions_from_a_callers_tasks_end() {
 #[test]
 fn the_side_of_points_from_a_callers_tasks_is_found() {
     let mesh = ball(WIDE);
-    in_time(16, move |_| {
+    in_time(rounds(16), move |_| {
         let search = BvhSearch::new(&mesh).unwrap();
         let inside = |k: u32| search.side(Vector::X * (0.1 * f64::from(k))) == Side::Inside;
         assert_eq!((0..200).into_par_iter().filter(|&k| inside(k)).count(), 100);
@@ -190,7 +190,7 @@ fn the_side_of_points_from_a_callers_tasks_is_found() {
 fn questions_from_threads_and_tasks_together_end() {
     let (mesh, near) = (ball(SMALL), robots(24));
     let far = far(&near);
-    in_time(24, move |round| {
+    in_time(rounds(24), move |round| {
         let (search, scan) =
             (BvhSearch::new(&mesh).unwrap(), Exhaustive::<f32>::new(&mesh).unwrap());
         let robots = if round % 2 == 0 { &near } else { &far };
@@ -211,7 +211,7 @@ fn questions_from_threads_and_tasks_together_end() {
 #[test]
 fn motions_from_a_callers_tasks_are_judged() {
     let (mesh, robots) = (ball(SMALL), robots(16));
-    in_time(16, move |round| {
+    in_time(rounds(16), move |round| {
         let search = BvhSearch::new(&mesh).unwrap();
         let away = if round % 2 == 0 { 0.0 } else { 4.0e4 };
         robots.par_iter().for_each(|(robot, _)| {

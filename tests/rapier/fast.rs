@@ -6,7 +6,7 @@
 //! `src/host/link_cast.rs`) holds them there.
 
 use crate::drop::{Drop, attitudes, links, mesh, world};
-use continuum_testing::Random;
+use continuum_testing::{Random, rounds};
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::{Cap, Chain, ModifiedCylinder};
 use rapier3d_f64::prelude::*;
@@ -101,7 +101,7 @@ fn none_gets_through(throws: usize) {
 
 #[test]
 fn thin_links_do_not_get_through_in_any_attitude() {
-    none_gets_through(50);
+    none_gets_through(rounds(50));
     // The scene is one in which things do get through.
     assert!(through("parry's cylinder", 0.02, 300.0, 50) > 0);
 }

@@ -3,7 +3,7 @@
 use std::env;
 
 /// The share of its rounds that a random test runs by default. It keeps `cargo test` short.
-const DEFAULT: f64 = 0.25;
+const DEFAULT: f64 = 0.1;
 
 /// Returns the number of rounds to run of a random test that has `full` rounds: at least one.
 ///

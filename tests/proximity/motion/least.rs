@@ -98,7 +98,7 @@ fn judge(
 
 #[test]
 fn bounds_hold_for_edges_of_a_planner() {
-    edges(90, 21);
+    edges(rounds(90), 21);
 }
 
 fn edges(count: usize, seed: u64) {

@@ -2,7 +2,7 @@
 //! number of steps. Motions with correct bounds are never refused.
 
 use super::speeds::Understated;
-use continuum_testing::Random;
+use continuum_testing::{Random, rounds};
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::{
     BendingMotion, BendingSection, DisplacementBound, LinearMotion, Motion, RigidMotion,
@@ -98,7 +98,9 @@ fn each_alone() -> [Arc; 4] {
     ]
 }
 
-const STEPS: [u32; 5] = [1, 10, 100, 1000, 3000];
+fn step_counts() -> [u32; 5] {
+    [1, 10, 100, rounds(1000), rounds(3000)]
+}
 
 #[test]
 fn each_term_alone_is_missed() {
@@ -106,7 +108,7 @@ fn each_term_alone_is_missed() {
         for given in
             [Given::Samples(10), Given::Samples(40), Given::Rough(40, 0.1), Given::Rough(10, 0.5)]
         {
-            for steps in STEPS {
+            for steps in step_counts() {
                 let mut motion = Arc { given, ..motion };
                 assert_eq!(verify_motion(&motion, steps), Ok(()), "{motion:?}, {steps}");
                 motion.stated[term] = 0.0;
@@ -129,7 +131,7 @@ fn each_term_alone_is_missed() {
 fn turns_alone_are_missed() {
     for motion in [Arc { bending: 0.01, ..STILL }, Arc { turn: Vector::X * 0.2, ..STILL }] {
         for (count, share) in [(10, 0.0), (40, 0.0), (10, 1.0 / 1.1), (40, 1.0 / 1.1)] {
-            for steps in STEPS {
+            for steps in step_counts() {
                 let motion = Arc { given: Given::Samples(count), turn_stated: share, ..motion };
                 let refused = verify_motion(&motion, steps);
                 assert!(
@@ -236,7 +238,7 @@ fn a_bound_for_a_part_of_a_range_is_missed() {
         }),
     ];
     for is_course in [false, true] {
-        for steps in STEPS {
+        for steps in step_counts() {
             let right = Turning { stated: |shares: [Real; 2]| shares[1], is_course };
             assert_eq!(verify_motion(&right, steps), Ok(()), "{is_course} {steps}");
             for (name, stated) in understated {
@@ -261,7 +263,7 @@ fn a_bound_for_a_part_of_a_range_is_missed() {
 #[test]
 fn honest_motions_pass() {
     let (mut random, mut rigid_ones, mut found) = (Random::new(12), 0, 0);
-    for round in 0..150 {
+    for round in 0..rounds(150) {
         let size = [1e-6, 1.0, 1e6][round % 3];
         let far = [0.0, 1e7][random.below(2) as usize] * size;
         // Three show the bend of an arc.
@@ -334,5 +336,5 @@ fn honest_motions_pass() {
             found += u32::from(verify_motion(&Understated(&rigid, 0.3), steps).is_err());
         }
     }
-    assert!(rigid_ones > 50 && found > rigid_ones / 2, "{found} of {rigid_ones}");
+    assert!(rigid_ones > rounds(50) && found > rigid_ones / 2, "{found} of {rigid_ones}");
 }

@@ -1,6 +1,7 @@
 //! A base that moves while the robot bends and grows: each term of its speed alone, left out, is
 //! found.
 
+use continuum_testing::rounds;
 use parry_continuum::parry::math::{Pose, Real, Rotation, Vector};
 use parry_continuum::proximity::BvhSearch;
 use parry_continuum::{
@@ -61,7 +62,7 @@ fn each_term_that_is_left_out_is_found() {
     for (name, [from, to], end, stated) in cases {
         let inner = BendingMotion::new(&[from], &[to], Pose::IDENTITY).unwrap();
         let motion = MovingBase::new(inner.clone(), [place, end]).unwrap();
-        for steps in [1, 7, 100, 1000] {
+        for steps in [1, 7, 100, rounds(1000)] {
             let mut states = States { motion: motion.clone(), inner: inner.clone(), stated: all };
             assert_eq!(verify_motion(&states, steps), Ok(()), "{name}, {steps}");
             states.stated = stated;
@@ -85,7 +86,7 @@ fn all_at_once_is_stated() {
     let inner = BendingMotion::new(&from, &to, Pose::new(Vector::X, Vector::Y * 0.1)).unwrap();
     let ends = [Pose::IDENTITY, Pose::new(Vector::Z * 3.0, Vector::new(0.1, 0.0, 0.5))];
     let motion = MovingBase::new(inner, ends).unwrap();
-    for steps in [1, 10, 500] {
+    for steps in [1, 10, rounds(500)] {
         assert_eq!(verify_motion(&motion, steps), Ok(()));
     }
     let refused =

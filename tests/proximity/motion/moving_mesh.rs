@@ -2,7 +2,7 @@
 
 use super::{anatomy, random_edge};
 use continuum_demo::{ctr, ventricle};
-use continuum_testing::Random;
+use continuum_testing::{Random, rounds};
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::proximity::{BvhSearch, Decision, MeshError, Proximity, ProximityError};
 use parry_continuum::{Chain, LinearMotion, Motion, RigidMotion, Tube};
@@ -96,7 +96,7 @@ fn no_motion_in_a_moving_mesh_is_misjudged() {
     let (search, robot, mut random) = (anatomy(), ctr::three_tubes(), Random::new(41));
     let from = search.vertices().to_vec();
     let (mut moving, mut still) = (Seen::default(), Seen::default());
-    for round in 0..40 {
+    for round in 0..rounds(40) {
         let size = [0.1, 0.5, 2.0, 6.0][round % 4];
         let (shift, wave) = (random.point() * size, random.point() * size);
         let phase = random.direction() * random.between(0.05, 0.4);
@@ -110,9 +110,14 @@ fn no_motion_in_a_moving_mesh_is_misjudged() {
     }
     println!("{moving:?}\n{still:?}");
     for seen in [&moving, &still] {
-        assert!(seen.clear > 20 && seen.contact > 40 && seen.undecided < 8, "{seen:?}");
+        assert!(
+            seen.clear > rounds(20) && seen.contact > rounds(40) && seen.undecided < rounds(8),
+            "{seen:?}"
+        );
     }
-    assert!(moving.both_ends_clear + still.both_ends_clear > 0, "{moving:?} {still:?}");
+    // One of 40 motions is seldom, but not never, clear at both ends only.
+    let both_ends_clear = moving.both_ends_clear + still.both_ends_clear;
+    assert!(both_ends_clear >= rounds(40) / 40, "{moving:?} {still:?}");
 }
 
 const SQUARE: [[u32; 3]; 2] = [[0, 1, 2], [0, 2, 3]];

@@ -3,7 +3,7 @@
 use super::{Steps, anatomy, arcs, random_edge};
 use continuum_demo::joint_motion::JointMotion;
 use continuum_demo::{ctr, ventricle};
-use continuum_testing::Random;
+use continuum_testing::{Random, rounds};
 use parry_continuum::parry::math::{Real, Vector};
 use parry_continuum::proximity::{BvhSearch, Decision, MotionAnswer, ProximityError};
 use parry_continuum::{Chain, RobotError};
@@ -51,7 +51,7 @@ fn deviation(motion: &JointMotion, steps: u32) -> Real {
 fn no_path_is_misjudged() {
     let (mut search, robot, mut random) = (anatomy(), ctr::three_tubes(), Random::new(31));
     let (mut clear, mut contact, mut undecided) = (0, 0, 0);
-    for round in 0..60 {
+    for round in 0..rounds(60) {
         let motion = random_edge(&robot, &mut random, [1.0, 3.0, 8.0][round % 3]);
         let steps = 1 + random.below(6);
         let radii: Vec<_> = motion
@@ -98,7 +98,10 @@ fn no_path_is_misjudged() {
         }
     }
     println!("{clear} {contact} {undecided}");
-    assert!(clear > 15 && contact > 60 && undecided < 100, "{clear} {contact} {undecided}");
+    assert!(
+        clear > rounds(15) && contact > rounds(60) && undecided < rounds(100),
+        "{clear} {contact} {undecided}"
+    );
 }
 
 /// A wall across z.

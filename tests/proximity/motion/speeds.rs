@@ -2,7 +2,7 @@
 
 use super::{polyline, random_edge};
 use continuum_demo::{ctr, ventricle};
-use continuum_testing::Random;
+use continuum_testing::{Random, rounds};
 use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::{
     BendingMotion, LinearMotion, Motion, RigidMotion, RobotError, Speed, Tube, verify_motion,
@@ -26,7 +26,7 @@ impl<M: Motion> Motion for Understated<'_, M> {
 fn speeds_that_are_too_low_are_found() {
     let (robot, mut random) = (ctr::three_tubes(), Random::new(6));
     let mut found = [0; 4];
-    for _ in 0..60 {
+    for _ in 0..rounds(60) {
         let joints = random_edge(&robot, &mut random, 5.0);
         verify_motion(&joints, 60).unwrap();
         let bending =
@@ -58,5 +58,5 @@ fn speeds_that_are_too_low_are_found() {
         found[2] += too_low(verify_motion(&Understated(&rigid, 0.3), 60), 0.3);
         found[3] += too_low(verify_motion(&Understated(&linear, 0.99), 60), 0.99);
     }
-    assert!(found.iter().all(|found| *found > 50), "{found:?}");
+    assert!(found.iter().all(|found| *found > rounds(50)), "{found:?}");
 }

@@ -3,7 +3,7 @@
 use super::speeds::Understated;
 use super::{polyline, random_edge};
 use continuum_demo::{ctr, ventricle};
-use continuum_testing::Random;
+use continuum_testing::{Random, rounds};
 use parry_continuum::parry::math::{Pose, Real, Rotation, Vector};
 use parry_continuum::proximity::{Decision, ProximityError, RobotMotionAnswer, RobotPair};
 use parry_continuum::{
@@ -202,7 +202,7 @@ fn assert_true(
 fn two_motions_are_clear_where_their_steps_are() {
     let (mut random, mut pair) = (Random::new(41), RobotPair::new());
     let mut counts = [[0_usize; 3]; 5];
-    for round in 0..150 {
+    for round in 0..rounds(150) {
         let kind = round % 5;
         let [first, second] = motions(&mut random, kind);
         let both = [&first, &second];
@@ -236,8 +236,11 @@ fn two_motions_are_clear_where_their_steps_are() {
             }
         }
     }
-    for kind in counts {
-        assert!(kind[0] >= 20 && kind[1] >= 20, "{counts:?}");
+    for decision in [0, 1] {
+        let of_kinds = counts.map(|kind| kind[decision]);
+        assert!(of_kinds.iter().sum::<usize>() >= rounds(150), "{counts:?}");
+        // Of each kind where there are many rounds.
+        assert!(of_kinds.iter().all(|&count| count >= rounds(20) / 10), "{counts:?}");
     }
 }
 
@@ -267,9 +270,9 @@ fn a_pass_between_two_steps_is_seen() {
 
 #[test]
 fn robots_of_many_links_may_be_fast() {
-    // All links of one may meet all of the other in the first interval: 160,000 pairs, more than
+    // All links of one may meet all of the other in the first interval: 67,600 pairs, more than
     // are listed.
-    let count = 400;
+    let count = 260;
     let at = |y: Real, x: Real| -> Vec<_> {
         (0..=count).map(|k| Vector::new(x, y, Real::from(k) - 0.5 * Real::from(count))).collect()
     };
@@ -288,7 +291,7 @@ fn robots_of_many_links_may_be_fast() {
         }),
         speed: Box::new(move |_, _, _| Speed { point, turn }),
         legs: 1,
-        sections: 400,
+        sections: 260,
         radius: 0.25,
     };
     for (motion, kind) in [
@@ -311,10 +314,10 @@ fn robots_of_many_links_may_be_fast() {
 
 #[test]
 fn a_fast_link_far_from_many_slow_ones_is_seen() {
-    // Two robots at rest beside one another, 160,000 pairs of links. One has a last link far away,
+    // Two robots at rest beside one another, 67,600 pairs of links. One has a last link far away,
     // that swings to the other.
-    let (count, radii) = (400, vec![0.1; 402]);
-    let beside = |x: Real| (0..=count).map(move |k| Vector::new(x, 0.0, 0.5 * Real::from(k)));
+    let (count, radii) = (260, vec![0.1; 262]);
+    let beside = |x: Real| (0..=count).map(move |k| Vector::new(x, 0.0, Real::from(k) / 1.3));
     let resting: Vec<_> = beside(0.0).collect();
     let slow = LinearMotion::chain(&resting, &resting, &radii[2..]).unwrap();
     let swinging = |y: Real| -> Vec<_> {
@@ -329,7 +332,7 @@ fn a_fast_link_far_from_many_slow_ones_is_seen() {
             pair.clears_motions(&slow, &fast, 0.1, 1e-3).unwrap()
         };
         let contact = found.contact.unwrap();
-        assert!((contact.t - 0.7).abs() < 1e-2 && contact.sections.contains(&401), "{contact:?}");
+        assert!((contact.t - 0.7).abs() < 1e-2 && contact.sections.contains(&261), "{contact:?}");
     }
 }
 
