@@ -307,7 +307,7 @@ test("markups state their frame, and the robot is turned into the wall's", async
 test("the frame of a robot can be chosen, and a doubt says when", async () => {
   await page.fill("#radius", "");
   await page.setInputFiles("#robot-file", file("turned.csv", "-30,-30,20,1\n-30,-30,40,1\n"));
-  await shows("doubts", /do not overlap; they are 29\.000 apart; with the robot's frame RAS they fit/);
+  await shows("doubts", /do not overlap; they are 30\.000 apart; with the robot's frame RAS they fit/);
   await page.selectOption("#robot-frame", "RAS");
   await answers(20);
   assert.equal(await text("doubts"), "left out of cube.obj: 1 faces without area");
