@@ -13,9 +13,12 @@ import contextlib
 import gzip
 import itertools
 import json
+import multiprocessing
 import subprocess
 import sys
 import tempfile
+from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
 from pathlib import Path
 
 import meshio
@@ -418,12 +421,17 @@ def damaged(whole, draws):
 
 def faces_of(file):
     """The most triangles with three different corners that another reader finds."""
+    vtk.vtkObject.GlobalWarningDisplayOff()
     readers = {
         "trimesh": lambda: trimesh.load(file, process=False, force="mesh").faces,
         "meshio": lambda: [face for block in meshio.read(file).cells if block.type in ("triangle", "quad", "polygon")
                            for face in block.data],
         "vtk": lambda: pyvista.read(file).extract_surface().triangulate().faces.reshape(-1, 4)[:, 1:],
     }
+    # VTK takes damaged text for a binary file, and counts triangles by the file's length.
+    whole = file.read_bytes()
+    if file.suffix == ".stl" and whole.startswith(b"solid") and b"\0" not in whole:
+        del readers["vtk"]
     most, finder = 0, ""
     for name, reader in readers.items():
         try:
@@ -439,7 +447,8 @@ def faces_of(file):
 
 
 def damaged_surfaces():
-    vtk.vtkObject.GlobalWarningDisplayOff()
+    # In a process of its own, because damaged files break VTK.
+    pool = ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("fork"))
     small = trimesh.creation.icosphere(subdivisions=1, radius=7.25)
     data = pyvista.wrap(small)
     data.point_data["ids"] = np.arange(data.n_points)
@@ -465,7 +474,11 @@ def damaged_surfaces():
                 if "error" in answer:
                     continue
                 read += 1
-                most, finder = faces_of(file)
+                try:
+                    most, finder = pool.submit(faces_of, file).result()
+                except BrokenProcessPool:
+                    pool = ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("fork"))
+                    continue
                 own = len(answer["triangles"]) + answer["skipped"]
                 check(f"{file}: {finder} finds {most} faces, not {own}", own >= most, answer)
         print(f"{kind}: {read} of {ROUNDS} damaged files are read")
