@@ -5,7 +5,10 @@ use super::wgsl::{self, CONVEX};
 use crate::threads::Lazy;
 use gpu_batch::wgpu::{BindGroupLayout, ComputePipeline};
 use gpu_batch::{Adapter, Binding, Device, DeviceError, DeviceFailure, Precision, Shader, Watch};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError, Weak};
+
+/// The GPUs that are open, one for each precision.
+static OPEN: [Mutex<Weak<Opened>>; 2] = [const { Mutex::new(Weak::new()) }; 2];
 
 /// An open GPU with compiled kernels. Opening takes a moment, so engines for several meshes can
 /// share one.
@@ -15,7 +18,8 @@ use std::sync::Arc;
 pub struct Gpu(pub(super) Arc<Opened>);
 
 impl Gpu {
-    /// Opens the fastest GPU of this machine for searches in this precision.
+    /// Opens the fastest GPU of this machine for searches in this precision. While one is open and
+    /// has not been lost, all callers on all threads share it.
     ///
     /// The distances are those of double precision either way. The environment variables of `wgpu`,
     /// such as `WGPU_BACKEND`, narrow the choice.
@@ -24,6 +28,16 @@ impl Gpu {
     /// There is no GPU; its driver refuses it or a kernel; or it lacks double precision and
     /// `precision` asks for it.
     pub fn open(precision: Precision) -> Result<Self, GpuError> {
+        let is_open = |opened: &Opened| opened.device.watch().check().is_ok();
+        let open = &OPEN[usize::from(precision == Precision::F64)];
+        share(open, is_open, || Ok(Self::open_another(precision)?.0)).map(Self)
+    }
+
+    /// Opens a GPU that no other caller gets.
+    ///
+    /// # Errors
+    /// As [`Gpu::open`].
+    pub(super) fn open_another(precision: Precision) -> Result<Self, GpuError> {
         Ok(Self(Arc::new(Opened::new(Device::open(precision)?)?)))
     }
 
@@ -59,6 +73,21 @@ impl Gpu {
     pub fn device(&self) -> &Device {
         &self.0.device
     }
+}
+
+/// Returns what is open, if it is still usable; otherwise opens it, while other callers wait.
+fn share<T, E>(
+    shared: &Mutex<Weak<T>>,
+    is_usable: impl Fn(&T) -> bool,
+    open: impl FnOnce() -> Result<Arc<T>, E>,
+) -> Result<Arc<T>, E> {
+    let mut shared = shared.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(open) = shared.upgrade().filter(|open| is_usable(open)) {
+        return Ok(open);
+    }
+    let opened = open()?;
+    *shared = Arc::downgrade(&opened);
+    Ok(opened)
 }
 
 impl std::fmt::Debug for Gpu {
@@ -121,5 +150,38 @@ impl Opened {
     pub(super) fn every_pair(&self, route: &str) -> Result<ComputePipeline, DeviceError> {
         let kernel = wgsl::nearest(self.device.precision(), route);
         self.device.compile("nearest, every pair", &kernel, &self.query_layout, &[("CULLING", 0.0)])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::Barrier;
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    /// Sixteen threads at once open one. Without users it is closed; what is lost, or failed to
+    /// open, is opened anew.
+    #[test]
+    fn many_threads_open_one() {
+        let (shared, opened, barrier) =
+            (Mutex::new(Weak::new()), AtomicUsize::new(0), Barrier::new(16));
+        let open = |is_usable: bool| {
+            let open = || Ok::<_, ()>(Arc::new(opened.fetch_add(1, Ordering::Relaxed)));
+            share(&shared, |_| is_usable, open).unwrap()
+        };
+        let all: Vec<_> = std::thread::scope(|scope| {
+            let wait_and_open = || {
+                barrier.wait();
+                open(true)
+            };
+            let threads: Vec<_> = (0..16).map(|_| scope.spawn(wait_and_open)).collect();
+            threads.into_iter().map(|thread| thread.join().unwrap()).collect()
+        });
+        assert!(all.iter().all(|one| Arc::ptr_eq(one, &all[0])));
+        assert_eq!(*open(false), 1, "the first is lost");
+        drop(all);
+        assert_eq!(*open(true), 2, "nobody has the second");
+        assert_eq!(share(&shared, |_| true, || Err(7)), Err(7));
+        assert_eq!(*open(true), 3);
     }
 }

@@ -1,10 +1,11 @@
 //! The GPU of this machine, opened once for all tests of a program.
 //!
-//! On a machine without a GPU these tests pass without doing anything. They fail there if
+//! On a machine without a GPU these tests print that they are skipped, and pass. They fail there if
 //! `PARRY_CONTINUUM_REQUIRE_GPU` is set.
 
 use parry_continuum::gpu::{DeviceError, Gpu, GpuError, GpuSearch, Precision};
 use parry_continuum::parry::shape::TriMesh;
+use std::io::Write;
 use std::sync::OnceLock;
 
 /// The precisions and their names in messages.
@@ -29,7 +30,22 @@ pub fn open(precision: Precision) -> Option<&'static Gpu> {
         }
         Err(error) => panic!("{error}"),
     };
-    opened.get_or_init(open).as_ref()
+    let opened = opened.get_or_init(open).as_ref();
+    if opened.is_none() {
+        print_skipped();
+    }
+    opened
+}
+
+/// Prints the name of the running test, and that it is skipped for want of a GPU.
+///
+/// It writes to the error stream directly, because the test harness hides what tests that pass
+/// print.
+pub fn print_skipped() {
+    let thread = std::thread::current();
+    let test = thread.name().unwrap_or("a test");
+    // A closed error stream fails no test.
+    let _ = writeln!(std::io::stderr(), "{test}: skipped, because this machine has no GPU");
 }
 
 /// Returns the search on the GPU, for queries of any size; `None` if there is no GPU and none is

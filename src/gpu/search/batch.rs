@@ -19,7 +19,7 @@
 //!    `upper + e <= margin` settles the robot.
 //! 3. **Second pass**, on the device (`gather`): the parts in which a wanted triangle found no room
 //!    gather all wanted triangles for the final D and T. For all triangles within a margin this is
-//!    the only pass.
+//!    the only pass. It counts before it writes; a part whose two counts differ is left to the CPU.
 //! 4. **Repeat**: if the candidates of a chunk find too little room, the chunk is searched once
 //!    more, with the room that they need.
 //! 5. **Measure**, on the CPU: all candidates, in double precision. The best is the answer.
@@ -36,13 +36,15 @@
 //! 1. `lower(t) - e <= d(t)`, and d(t) is at most each `max(upper + e, 0)`, so `lower(t) <= D + e`.
 //! 2. If T is a triangle, it touches. So d(t) = 0, and t is not higher than T.
 //!
-//! The same holds for every link of the part that has t. Boxes are left out only if they hold no
+//! The same holds for every link of the part that has t. It holds in each other part of the robot
+//! with a link at the distance d(t) from t: no triangle is nearer to that part, and of equals t is
+//! the lowest there. So ties go to the lowest link of all that have t. Boxes are left out only if they hold no
 //! wanted triangle: claim 1 of `bounds`. So t is among the candidates, unless it found no room in
 //! the first pass; then the part takes the second pass, where t is wanted too. The CPU measures all
 //! candidates with the function that measures in every engine. For a margin, every triangle within
 //! it is wanted, and a decision is settled early only if a link is certainly within it.
 
-use super::chunk::{COUNTERS, Chunk, ENTRY, HEAD, Layout, TASK_SIZE, chunk_from};
+use super::chunk::{COUNTERS, Chunk, ENTRY, HEAD, Layout, TASK_SIZE, chunk_from, room_for};
 use super::device::{DeviceTree, SearchKernels};
 #[cfg(doc)]
 use super::kernels::ROOM;
@@ -206,7 +208,8 @@ impl Batches {
                 let needed = counters.next().unwrap_or(0);
                 *room = next_room(*room, least, needed, slot.items);
                 let has_room = needed <= slot.room.into();
-                is_read = is_last || has_room || slot.room_of(device, *room) <= slot.room;
+                let next = room_for(*room, slot.items, device.largest_binding());
+                is_read = is_last || has_room || next <= slot.room;
                 if !is_read {
                     return Ok(());
                 }
@@ -319,6 +322,164 @@ impl Heads<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::gpu::search::robots::Robots;
+    use crate::robot::Chain;
+    use continuum_testing::Random;
+    use parry3d_f64::math::{Pose, Vector};
+
+    /// What a device returns for a chunk: a head for each part, in any order of their entries. The
+    /// candidate of link k of a robot has the number 1000 robot + k, once for each of `each`.
+    fn returned(random: &mut Random, chunk: &Chunk, each: &[u32]) -> (Vec<u32>, Vec<u32>) {
+        let mut heads = vec![0; 2 * chunk.parts as usize];
+        let mut entries = Vec::new();
+        let parts = |(robot, layout): (usize, &Layout)| {
+            let (first, links) = (layout.first_part, layout.links);
+            (0..links.div_ceil(PART)).map(move |part| (robot, first + part, part * PART, links))
+        };
+        let mut all: Vec<_> = chunk.robots.clone().zip(&chunk.layouts).flat_map(parts).collect();
+        for place in (1..all.len()).rev() {
+            all.swap(place, random.below(place as u32 + 1) as usize);
+        }
+        for (robot, part, first_link, links) in all {
+            let lanes = (links - first_link).min(PART);
+            let begin = entries.len() as u32 / 2;
+            for lane in (0..lanes).rev() {
+                for _ in 0..each[robot] {
+                    entries.extend([lane, 1000 * robot as u32 + first_link + lane]);
+                }
+            }
+            heads[2 * part as usize] = begin;
+            heads[2 * part as usize + 1] = FOUND + entries.len() as u32 / 2 - begin;
+        }
+        (heads, entries)
+    }
+
+    fn bytes(words: &[u32]) -> Vec<u8> {
+        words.iter().flat_map(|word| word.to_ne_bytes()).collect()
+    }
+
+    fn chains(links: &[usize]) -> Vec<Chain> {
+        let chain = |&links: &usize| {
+            let points: Vec<_> = (0..=links).map(|k| Vector::Z * k as f64).collect();
+            Chain::capsules(&points, &vec![0.25; links]).unwrap()
+        };
+        links.iter().map(chain).collect()
+    }
+
+    /// Each robot gets the candidates of all of its parts, with the numbers of its links.
+    #[test]
+    fn candidates_come_back_to_their_robots_and_links() {
+        let random = &mut Random::new(43);
+        let (mut several_parts, mut hits, mut left_over) = (0, 0, 0);
+        for _ in 0..100 {
+            let count = 1 + random.below(6) as usize;
+            let links: Vec<_> = (0..count)
+                .map(|_| [1, 5, 31, 32, 33, 64, 65, 100][random.below(8) as usize])
+                .collect();
+            let chains = chains(&links);
+            let robots: Vec<_> = chains.iter().map(|chain| (chain, Pose::IDENTITY)).collect();
+            let first = random.below(count as u32) as usize;
+            let robots = Robots::Batch(&robots);
+            let mut chunk = Chunk::default();
+            chunk.lay_out(robots, first..count);
+            let needed: usize = links[first..].iter().map(|links| links.div_ceil(32)).sum();
+            assert_eq!(chunk.parts as usize, needed);
+            let each: Vec<_> = (0..count).map(|_| random.below(3)).collect();
+            let (mut heads, entries) = returned(random, &chunk, &each);
+            // Some parts are hit, or have no room.
+            let mut status = vec![0; count];
+            for (robot, layout) in (first..).zip(&chunk.layouts) {
+                let parts = layout.links.div_ceil(PART);
+                several_parts += usize::from(parts > 1);
+                if random.below(3) == 0 {
+                    status[robot] = [HIT, FULL, STOPPED][random.below(3) as usize];
+                    let part = layout.first_part + random.below(parts);
+                    heads[2 * part as usize + 1] = status[robot];
+                }
+            }
+            let room = entries.len() as u32 / 2;
+            let (heads, entries) = (bytes(&heads), bytes(&entries));
+            let answers = Heads { heads: &heads, entries: &entries, room };
+            let mut out = vec![Ok(Vec::new()); count - first];
+            let answer = |robot: usize, found: Found, out: &mut Result<_, _>| {
+                let mut all: Vec<_> = found.candidates.to_vec();
+                all.sort_unstable();
+                assert_eq!(found.is_hit, status[robot] == HIT);
+                *out = Ok(all);
+                true
+            };
+            let left = answers.answer(first, &chunk.layouts, &mut out, &answer).unwrap();
+            let expected: Vec<_> =
+                (first..count).filter(|&robot| [FULL, STOPPED].contains(&status[robot])).collect();
+            assert_eq!(left, expected);
+            left_over += left.len();
+            hits += status.iter().filter(|&&status| status == HIT).count();
+            for (robot, found) in (first..).zip(out) {
+                if status[robot] != 0 {
+                    continue;
+                }
+                let links = 0..links[robot] as u32;
+                let expected: Vec<_> = links
+                    .flat_map(|link| {
+                        let entry = (link, 1000 * robot as u32 + link);
+                        std::iter::repeat_n(entry, each[robot] as usize)
+                    })
+                    .collect();
+                assert_eq!(found.unwrap(), expected, "{robot}");
+            }
+        }
+        assert!(several_parts > 50 && hits > 10 && left_over > 20, "{several_parts} {hits}");
+    }
+
+    /// An entry beyond the room, and a part without an answer, fail the batch.
+    #[test]
+    fn what_did_not_come_back_is_no_answer() {
+        let chains = chains(&[40]);
+        let robots = [(&chains[0], Pose::IDENTITY)];
+        let mut chunk = Chunk::default();
+        chunk.lay_out(Robots::Batch(&robots), 0..1);
+        let entries = bytes(&[0, 7, 1, 8]);
+        for (heads, is_answered) in [
+            ([0, FOUND + 2, 0, FOUND], true),
+            ([0, FOUND + 1, 1, FOUND + 1], true),
+            ([0, FOUND + 1, 1, FOUND + 2], false),
+            ([2, FOUND + 1, 0, FOUND], false),
+            ([0, FOUND + 2, 0, 0], false),
+        ] {
+            let heads = bytes(&heads);
+            let heads = Heads { heads: &heads, entries: &entries, room: 2 };
+            let mut out = [Ok(0)];
+            let found = heads.answer(0, &chunk.layouts, &mut out, &|_, _, _| true);
+            assert_eq!(found.is_ok(), is_answered);
+        }
+    }
+
+    /// A chunk whose candidates find too little room is searched at most once more. Then all find
+    /// room, unless the largest buffer is too small for them.
+    #[test]
+    fn a_second_search_has_room() {
+        let random = &mut Random::new(47);
+        let (mut once, mut again, mut too_many) = (0, 0, 0);
+        for _ in 0..2000 {
+            let items = 1 + u64::from(random.below(100_000));
+            let needed = items * u64::from(random.below(200)) / (1 + u64::from(random.below(20)));
+            let largest = 1 << (16 + random.below(14));
+            let mut each = 4 + u64::from(random.below(40));
+            let first = room_for(each, items, largest);
+            each = next_room(each, 4, needed, items);
+            let second = room_for(each, items, largest);
+            if needed <= first.into() {
+                once += 1;
+            } else if second <= first {
+                assert_eq!(u64::from(first), largest / ENTRY);
+                too_many += 1;
+            } else {
+                assert!(needed <= second.into() || u64::from(second) == largest / ENTRY);
+                again += 1;
+            }
+        }
+        assert!(once > 200 && again > 200 && too_many > 200, "{once} {again} {too_many}");
+    }
 
     #[test]
     fn the_room_grows_at_once_and_shrinks_slowly() {

@@ -118,6 +118,14 @@ pub(super) fn chunk_from<R: Packed>(robots: R, first: usize) -> Range<usize> {
     first..end
 }
 
+/// The room for the entries of a chunk of `items`, for this room for each item. `largest` is the
+/// number of bytes of the largest buffer.
+pub(super) fn room_for(room: u64, items: u64, largest: u64) -> u32 {
+    let room = (room * items).max(LEAST_ENTRIES);
+    // No rank of a candidate or a byte exceeds a word.
+    room.min(largest / ENTRY).min(1 << 28) as u32
+}
+
 impl Chunk {
     /// Uploads robots and has the device search for them. Writes the errors of bad robots to `out`,
     /// the answers of the batch.
@@ -141,7 +149,7 @@ impl Chunk {
     }
 
     /// Step 1.
-    fn lay_out(&mut self, robots: impl Packed, chunk: Range<usize>) {
+    pub(super) fn lay_out(&mut self, robots: impl Packed, chunk: Range<usize>) {
         let first = chunk.start;
         self.layouts.clear();
         self.layouts.resize(chunk.len(), Layout::default());
@@ -257,13 +265,6 @@ impl Chunk {
         Ok(())
     }
 
-    /// The room for the entries of the chunk, for this room for each item.
-    pub(super) fn room_of(&self, device: &Device, room: u64) -> u32 {
-        let room = (room * self.items).max(LEAST_ENTRIES);
-        // No rank of a candidate or a byte exceeds a word.
-        room.min(device.largest_binding() / ENTRY).min(1 << 28) as u32
-    }
-
     /// Step 3, for the robots that were uploaded.
     ///
     /// # Errors
@@ -278,7 +279,7 @@ impl Chunk {
         let Searched { gpu, kernels, frame, .. } = searched;
         let (device, parts) = (&gpu.device, u64::from(self.parts));
         self.items = if question.is_about_links() { self.links } else { parts };
-        self.room = self.room_of(device, room);
+        self.room = room_for(room, self.items, device.largest_binding());
         let room = u64::from(self.room);
         let Some(inputs) = self.inputs.as_ref().filter(|_| parts > 0) else { return Ok(()) };
         let sizes = [parts, room];

@@ -40,6 +40,17 @@ impl SearchKernels {
     /// # Errors
     /// The driver does not compile a kernel.
     pub(in crate::gpu) fn new(device: &Device, counts_work: bool) -> Result<Self, DeviceError> {
+        Self::with_passes(device, |kind| passes(kind, counts_work))
+    }
+
+    /// The kernels with these passes for each kind of question.
+    ///
+    /// # Errors
+    /// The driver does not compile a kernel.
+    pub(in crate::gpu) fn with_passes(
+        device: &Device,
+        passes: impl Fn(usize) -> Vec<Shader>,
+    ) -> Result<Self, DeviceError> {
         use Binding::{Read, Uniform, Write};
         let corners_layout = device.layout(&[Read, Read, Write]);
         let refit_layout = device.layout(&[Uniform, Read, Read, Write]);
@@ -49,9 +60,8 @@ impl SearchKernels {
         let compile = |kernel: Shader, layout: &BindGroupLayout| {
             device.compile(kernel.entry_point, &kernel, layout, &[])
         };
-        let passes_of = |kind| {
-            passes(kind, counts_work).into_iter().map(|pass| compile(pass, &query_layout)).collect()
-        };
+        let passes_of =
+            |kind| passes(kind).into_iter().map(|pass| compile(pass, &query_layout)).collect();
         Ok(Self {
             corners: compile(corners(), &corners_layout)?,
             refit: compile(refit(), &refit_layout)?,

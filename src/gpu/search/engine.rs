@@ -254,6 +254,19 @@ impl GpuSearch {
         self.batches.work
     }
 
+    /// Has batches run with these kernels.
+    #[cfg(test)]
+    pub(in crate::gpu) fn set_kernels(&mut self, kernels: SearchKernels) {
+        self.counting = Some(kernels);
+        self.batches.forget();
+    }
+
+    /// Whether the CPU has not refitted its hierarchy since the last move.
+    #[cfg(test)]
+    pub(in crate::gpu) fn is_cpu_stale(&self) -> bool {
+        self.is_cpu_stale
+    }
+
     /// The search on the CPU, refitted if the mesh has moved.
     pub(super) fn refitted(&mut self) -> &mut BvhSearch {
         if std::mem::take(&mut self.is_cpu_stale) {

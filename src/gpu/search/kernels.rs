@@ -31,7 +31,7 @@ pub(super) const FOUND: u32 = 5;
 
 /// The question of a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Question {
+pub(in crate::gpu) enum Question {
     PerLink,
     Minimum,
     /// Is the robot farther than this margin?
@@ -45,7 +45,7 @@ const WITHIN: usize = 3;
 
 impl Question {
     /// The kinds of questions. Each has its own kernels.
-    pub(super) const KINDS: usize = 4;
+    pub(in crate::gpu) const KINDS: usize = 4;
 
     pub(super) fn kind(self) -> usize {
         match self {
@@ -133,7 +133,7 @@ pub(super) fn bend() -> Shader {
 
 /// The passes of a kind of question. If `counts_work`, the first pass of a search counts nodes,
 /// leaves and links.
-pub(super) fn passes(kind: usize, counts_work: bool) -> Vec<Shader> {
+pub(in crate::gpu) fn passes(kind: usize, counts_work: bool) -> Vec<Shader> {
     let sizes = [
         ("PART", PART),
         ("ROOM", ROOM),

@@ -85,6 +85,9 @@ impl GpuSearch {
         let question = Question::Clears(margin);
         self.search(bent, question, out, answer).inspect_err(|_| out.clear())?;
         let left = self.take_left();
+        if left.is_empty() {
+            return Ok(());
+        }
         let some: Vec<_> = left.iter().map(|&robot| robots[robot].as_ref()).collect();
         let mut answers = Vec::new();
         let cpu = self.refitted();

@@ -15,7 +15,7 @@ fn a_lost_device_is_an_error_of_every_query() {
     if gpu().is_none() {
         return;
     }
-    let gpu = Gpu::open(Precision::F32).unwrap();
+    let gpu = Gpu::open_another(Precision::F32).unwrap();
     let mesh = ball();
     let mut engine = GpuExhaustive::on(&gpu, &mesh).unwrap();
     let (robot, pose) = robot(1);
@@ -43,7 +43,7 @@ fn a_refused_command_is_an_error_of_every_engine_once() {
     if gpu().is_none() {
         return;
     }
-    let gpu = Gpu::open(Precision::F32).unwrap();
+    let gpu = Gpu::open_another(Precision::F32).unwrap();
     let mesh = ball();
     let (robot, pose) = robot(1);
     let expected = Exhaustive::<f64>::new(&mesh).unwrap().minimum(&robot, &pose).unwrap();
@@ -75,7 +75,7 @@ fn an_upload_that_is_refused_is_an_error_of_the_query_and_done_again() {
     if gpu().is_none() {
         return;
     }
-    let gpu = Gpu::open(Precision::F32).unwrap();
+    let gpu = Gpu::open_another(Precision::F32).unwrap();
     let mesh = ball();
     let moved: Vec<_> = mesh.vertices().iter().map(|&v| Vector::new(0.4 * v.x, v.y, v.z)).collect();
     let (robot, pose) = robot(2);
@@ -111,7 +111,7 @@ fn what_was_not_written_is_no_answer() {
     let mesh = ball();
     // Crosses the wall.
     let robot = Chain::capsules(&[Vector::ZERO, Vector::X * 20.0], &[0.5]).unwrap();
-    let mut gpu = Gpu::open(Precision::F32).unwrap();
+    let mut gpu = Gpu::open_another(Precision::F32).unwrap();
     let idle = Shader::new("idle", "@compute @workgroup_size(1) fn idle() {}");
     let layout = gpu.0.query_layout.clone();
     let idle = gpu.0.device.compile("idle", &idle, &layout, &[]).unwrap();

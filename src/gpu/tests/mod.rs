@@ -1,5 +1,5 @@
 //! Cases that no caller can bring about: small buffers, failing devices and drivers. Without a GPU
-//! these tests pass without a check, unless PARRY_CONTINUUM_REQUIRE_GPU is set.
+//! these tests print that they are skipped, unless PARRY_CONTINUUM_REQUIRE_GPU is set.
 
 mod failures;
 mod search;
@@ -29,7 +29,11 @@ pub(super) fn gpu() -> Option<&'static Gpu> {
             None
         }
     };
-    GPU.get_or_init(open).as_ref()
+    let gpu = GPU.get_or_init(open).as_ref();
+    if gpu.is_none() {
+        continuum_testing::gpu::print_skipped();
+    }
+    gpu
 }
 
 /// Parts of at most `part` triangles, few threads with several pairs each, and small rounds and

@@ -2,12 +2,15 @@
 
 use super::{ball, gpu, robot};
 use crate::answer::{LinkProximity, ProximityError};
+use crate::curve::BendingSection;
 use crate::engine::{BvhSearch, Proximity};
 use crate::gpu::opened::Gpu;
+use crate::gpu::search::SearchKernels;
+use crate::gpu::search::kernels::{Question, passes};
 use crate::gpu::{GpuError, GpuSearch, Precision};
 use crate::robot::Chain;
 use continuum_testing::Random;
-use gpu_batch::{DeviceError, DeviceFailure, wgpu};
+use gpu_batch::{DeviceError, DeviceFailure, Shader, wgpu};
 use parry3d_f64::math::{Pose, Real, Vector};
 use parry3d_f64::shape::TriMesh;
 
@@ -163,32 +166,88 @@ fn a_moved_mesh_is_the_same_as_a_new_one() {
     }
 }
 
+/// After a move the device decides about robots of sections, and the CPU refits nothing for them.
+#[test]
+fn a_batch_of_sections_refits_no_cpu_without_need() {
+    let Some(gpu) = gpu() else { return };
+    let mesh = ball();
+    let mut engine = search(gpu, &mesh);
+    let section = |bend: Real| BendingSection { length: 5.0, radius: 0.2, bend: [bend, 0.1] };
+    let robots: Vec<_> = (0..50).map(|k| [section(0.006 * Real::from(k)), section(-0.2)]).collect();
+    let (mut out, mut expected) = (Vec::new(), Vec::new());
+    for stretch in [1.1, 0.5] {
+        let moved: Vec<_> = mesh.vertices().iter().map(|&corner| corner * stretch).collect();
+        engine.set_vertices(&moved).unwrap();
+        engine.clears_sections_batch(&robots, 8, &Pose::IDENTITY, 0.2, &mut out).unwrap();
+        assert_eq!(engine.answered_on_cpu(), 0);
+        assert!(engine.is_cpu_stale(), "nothing was left for the CPU");
+        let mut moved = BvhSearch::from_triangles(&moved, mesh.indices()).unwrap();
+        moved.clears_sections_batch(&robots, 8, &Pose::IDENTITY, 0.2, &mut expected).unwrap();
+        assert_eq!(out, expected);
+    }
+}
+
+/// A fan of triangles whose tips meet below robots: more are equally near than a thread has room
+/// for.
+fn fan(count: usize) -> (TriMesh, Vec<(Chain, Pose)>) {
+    let angle = |k: usize| (k as Real * 0.001, k as Real / 16.0);
+    let mut vertices = vec![Vector::ZERO];
+    for k in 0..count {
+        let (rise, turn) = angle(k);
+        vertices.push(Vector::new(turn.cos(), turn.sin(), 1.0 + rise));
+        vertices.push(Vector::new((turn + 0.1).cos(), (turn + 0.1).sin(), 1.0 + rise));
+    }
+    let indices = (0..count as u32).map(|k| [0, 2 * k + 1, 2 * k + 2]).collect();
+    let mesh = TriMesh::new(vertices, indices).unwrap();
+    let points: Vec<_> = (0..6).map(|k| Vector::new(Real::from(k) - 2.5, 0.0, -1.0)).collect();
+    let robots = (0..4).map(|k| {
+        let robot = Chain::capsules(&points, &[0.1; 5]).unwrap();
+        (robot, Pose::from_translation(Vector::Z * (0.05 * Real::from(k))))
+    });
+    (mesh, robots.collect())
+}
+
 /// More triangles are equally near than a thread, a part or a chunk has room for.
 #[test]
 fn many_equals_take_the_second_pass_and_then_the_cpu() {
     let Some(gpu) = gpu() else { return };
-    // A fan of triangles whose tips meet, and another of far more.
+    // A fan of triangles, and another of far more.
     for (count, is_left) in [(600, false), (4200, true)] {
-        let angle = |k: usize| (k as Real * 0.001, k as Real / 16.0);
-        let mut vertices = vec![Vector::ZERO];
-        for k in 0..count {
-            let (rise, turn) = angle(k);
-            vertices.push(Vector::new(turn.cos(), turn.sin(), 1.0 + rise));
-            vertices.push(Vector::new((turn + 0.1).cos(), (turn + 0.1).sin(), 1.0 + rise));
-        }
-        let indices = (0..count as u32).map(|k| [0, 2 * k + 1, 2 * k + 2]).collect();
-        let mesh = TriMesh::new(vertices, indices).unwrap();
-        let points: Vec<_> = (0..6).map(|k| Vector::new(Real::from(k) - 2.5, 0.0, -1.0)).collect();
-        let robots: Vec<_> = (0..4)
-            .map(|k| {
-                let robot = Chain::capsules(&points, &[0.1; 5]).unwrap();
-                (robot, Pose::from_translation(Vector::Z * (0.05 * Real::from(k))))
-            })
-            .collect();
+        let (mesh, robots) = fan(count);
         let mut engine = search(gpu, &mesh);
         check(&mut engine, &mesh, &refs(&robots));
         // The candidates have no room at first; the chunk is then searched once more.
         assert_eq!(engine.answered_on_cpu() > 0, is_left, "{count}");
+    }
+}
+
+/// A compiler that fuses the visit which counts and the visit which writes differently: the second
+/// finds more candidates than the first, or fewer. Such parts are left to the CPU.
+#[test]
+fn a_part_whose_two_counts_differ_is_left_to_the_cpu() {
+    let Some(gpu) = gpu() else { return };
+    let (mesh, robots) = fan(600);
+    let test = "bounds.lower <= bound + link.error &&";
+    for shift in ["0.05", "-0.05"] {
+        let other =
+            format!("bounds.lower <= bound + link.error + select(0.0, {shift}, room > 0u) &&");
+        let mut edited = 0;
+        let kernels = SearchKernels::with_passes(&gpu.0.device, |kind| {
+            let edit = |mut pass: Shader| {
+                pass.text = pass.text.replace(test, &other);
+                pass
+            };
+            passes(kind, false).into_iter().map(edit).collect()
+        });
+        for kind in 0..Question::KINDS {
+            let texts = passes(kind, false);
+            edited += texts.iter().filter(|pass| pass.text.contains(test)).count();
+        }
+        assert_eq!(edited, Question::KINDS, "each kind gathers once");
+        let mut engine = search(gpu, &mesh);
+        engine.set_kernels(kernels.unwrap());
+        check(&mut engine, &mesh, &refs(&robots));
+        assert!(engine.answered_on_cpu() > 0, "{shift}");
     }
 }
 
@@ -197,7 +256,7 @@ fn a_lost_device_is_an_error_of_every_query_but_those_on_the_cpu() {
     if gpu().is_none() {
         return;
     }
-    let gpu = Gpu::open(Precision::F32).unwrap();
+    let gpu = Gpu::open_another(Precision::F32).unwrap();
     let mesh = ball();
     let mut engine = search(&gpu, &mesh);
     let (robot, pose) = robot(1);
@@ -222,7 +281,7 @@ fn a_refused_command_is_an_error_once() {
     if gpu().is_none() {
         return;
     }
-    let gpu = Gpu::open(Precision::F32).unwrap();
+    let gpu = Gpu::open_another(Precision::F32).unwrap();
     let mesh = ball();
     let (robot, pose) = robot(1);
     let expected = BvhSearch::new(&mesh).unwrap().minimum(&robot, &pose);

@@ -1,6 +1,11 @@
 // Gathers all candidates of a link within a bound. The second pass of a search: for the parts with
 // more candidates than room, within the bounds that the first pass has found. The only pass of
 // WITHIN: for all parts, within the margin. The twin of TwinTree::gather in gpu/search/twin.rs.
+//
+// Each link is visited twice: to count its candidates, and to write them. A compiler may fuse the
+// two visits differently, so that their counts differ. Both find all wanted triangles (claim of
+// gpu/search/batch.rs). So the second visit writes at most what the first has counted, and a part
+// whose counts differ is FULL: the CPU searches for it.
 
 var<workgroup> part_count: atomic<u32>;
 var<workgroup> part_full: atomic<u32>;
@@ -21,8 +26,16 @@ fn limit_of(number: u32, lane: u32) -> vec2<u32> {
     return limits[number * PART + lane];
 }
 
-// Visits the candidates of a link. Counts them; or, from `first` on, writes them.
-fn gather_link(link: SearchedLink, lane: u32, bound: f32, below: u32, first: u32) -> u32 {
+// Visits the candidates of a link and counts them. Writes the first `room` of them, from `first`
+// on.
+fn gather_link(
+    link: SearchedLink,
+    lane: u32,
+    bound: f32,
+    below: u32,
+    first: u32,
+    room: u32,
+) -> u32 {
     let limit = box_limit(link, bound);
     var waiting = 1u;
     stack[0] = 0u;
@@ -35,7 +48,7 @@ fn gather_link(link: SearchedLink, lane: u32, bound: f32, below: u32, first: u32
                 let triangle = triangles[leaf_first(place) + k];
                 let bounds = triangle_bounds(link, triangle.a, triangle.b, triangle.c);
                 if (bounds.lower <= bound + link.error && triangle.number <= below) {
-                    if (first != NOTHING) {
+                    if (found < room) {
                         entries[first + found] = vec2<u32>(lane, triangle.number);
                     }
                     found++;
@@ -71,15 +84,16 @@ fn gather(
     workgroupBarrier();
     var is_link = false;
     var own_first = 0u;
+    var own_count = 0u;
     if (is_asked(number)) {
         let part = parts[number];
         is_link = lane < part.links;
         if (is_link) {
             let limit = limit_of(number, lane);
             let bound = bitcast<f32>(limit.x);
-            let found = gather_link(robot_link(part, lane), lane, bound, limit.y, NOTHING);
-            own_first = atomicAdd(&part_count, found);
-            if (found > MOST_GATHERED) {
+            own_count = gather_link(robot_link(part, lane), lane, bound, limit.y, 0u, 0u);
+            own_first = atomicAdd(&part_count, own_count);
+            if (own_count > MOST_GATHERED) {
                 atomicStore(&part_full, 1u);
             }
         }
@@ -102,8 +116,16 @@ fn gather(
         let limit = limit_of(number, lane);
         let bound = bitcast<f32>(limit.x);
         let link = robot_link(parts[number], lane);
-        gather_link(link, lane, bound, limit.y, part_first + own_first);
+        let first = part_first + own_first;
+        if (gather_link(link, lane, bound, limit.y, first, own_count) != own_count) {
+            atomicStore(&part_full, 1u);
+        }
     }
+    workgroupBarrier();
+    if (lane == 0u && part_first != NOTHING && atomicLoad(&part_full) != 0u) {
+        heads[number] = vec2<u32>(0u, FULL);
+    }
+    storageBarrier();
     if (is_link && !loops_run()) {
         heads[number] = vec2<u32>(0u, STOPPED);
     }
