@@ -113,13 +113,16 @@ pub struct Contact {
     ///
     /// Beside the link and beyond a round cap it points from the triangle to the link's axis. At a
     /// flat cap, and if the axis crosses the triangle, it points to the nearer side. It is `None`
-    /// if the opposite way out is as short, up to rounding (16 u of the extent). The axis then lies
-    /// in the plane of the triangle and meets the triangle, and neither side is the robot's.
+    /// if the opposite way out is as short, up to rounding (16 u of the extent). Then neither side
+    /// is the robot's: the axis lies in the plane of the triangle and meets it, or that plane cuts
+    /// the link in equal halves.
     pub normal: Option<Vector>,
     /// The two closest points and their places. The arc length belongs to `fraction`.
     pub witness: Witness,
     /// The vector from the point of the axis at `fraction` to the link's closest point, or to the
-    /// point that separates last. It is the lever arm of that point in a turn of the link.
+    /// point that separates last. It is the lever arm of that point in a turn of the link. Beside
+    /// the link and beyond a round cap it is parallel to `normal`; in an overlap it then ends where
+    /// the triangle is, inside the link, and a turn has the same rate for both points.
     pub lever: Vector,
     /// Whether the distance, or the depth, has a kink here. The derivative then depends on the
     /// direction of the motion; the computed derivative is that of the points named here. Up to

@@ -44,7 +44,8 @@ pub trait Proximity: Engine {
         self.ask_per_link(PlacedRobot::new(robot, pose)?, out)
     }
 
-    /// Returns the closest link of the whole robot and its closest triangle.
+    /// Returns the closest link of the whole robot and its closest triangle. Of equal distances the
+    /// lowest triangle counts, then the lowest link.
     ///
     /// # Errors
     /// The pose is not finite, or it moves a link out of range.
@@ -407,8 +408,8 @@ pub trait Proximity: Engine {
     ///   triangles.
     /// - [`side`](super::BvhSearch::side), [`clears_inside`](super::BvhSearch::clears_inside): the
     ///   far field of each node.
-    /// - Any query, if single precision is too coarse: nothing. The move itself refits the second
-    ///   hierarchy, if that was built, and then takes two to three times as long.
+    /// - Any query, if single precision is too coarse: the second hierarchy, unless it was built
+    ///   before. If it was, the move itself refits it, and takes two to three times as long.
     ///
     /// The engine keeps the places of its last answers as seeds of the next searches. It drops the
     /// cached distances.

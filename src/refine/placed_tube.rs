@@ -109,14 +109,15 @@ impl<'a> PlacedTube<'a> {
     }
 
     /// The same tube, if its pose is the product of its pose in a scene and the inverse of the
-    /// mesh's pose there. `size`: the largest coordinate of the mesh and of its pose.
+    /// mesh's pose there. `size`: the largest coordinate of the mesh and of its pose. `products`:
+    /// how many such products are rounded, one for a mesh at rest.
     ///
     /// **Rounding.** Let M be the largest coordinate of tube and mesh in the scene. A rotation
     /// keeps lengths, so `M <= 2 reach + size`. Two poses whose product is rounded place a point
     /// less than 400 u M from its place (`scene::distance_cache`, step 3). That is less than the
-    /// slack of 8 (reach + size).
-    pub(crate) fn posed(self, size: Real) -> Self {
-        let more = 8.0 * (self.reach + size);
+    /// slack of 8 (reach + size). The errors of several products add up.
+    pub(crate) fn posed(self, size: Real, products: Real) -> Self {
+        let more = 8.0 * products * (self.reach + size);
         Self { slack: self.slack + slack_for(more), reach: self.reach + more, ..self }
     }
 

@@ -29,6 +29,7 @@ use crate::answer::{
     RobotsInContact, SceneError, SceneMotionAnswer, SceneMotionClearance, SceneMotionContact,
     ScenePlace, UndecidedReason,
 };
+use crate::curve::Tube;
 use crate::engine::SceneMotion;
 use crate::motion::Motion;
 use crate::query::check_not_negative;
@@ -244,7 +245,8 @@ impl Scene {
             }
             let structure = &mut self.structures[number];
             let Some(margin) = structure.margin else { continue };
-            let (motion, frame) = (robots[robot].in_mesh(structure), structure.frame());
+            let motion = robots[robot].in_mesh(structure);
+            let frame = structure.frame().map(|size| (size, 1.0));
             let asked = SceneMotion { motion: &motion, frame, to: None };
             let MotionClearance { lower, upper, uncertainty, t, section, witness, .. } = structure
                 .search
@@ -494,17 +496,18 @@ fn decide_structure(
     let motion = robot.in_mesh(structure);
     let mut answer = match end {
         None => {
-            let asked = SceneMotion { motion: &motion, frame: structure.frame(), to: None };
+            let frame = structure.frame().map(|size| (size, 1.0));
+            let asked = SceneMotion { motion: &motion, frame, to: None };
             structure.search.ask_margin(asked, wanted, sought)?
         }
         Some(MovingStructure::Deformed { to, size, .. }) => {
-            let asked = SceneMotion { motion: &motion, frame: Some(*size), to: Some(to) };
+            let asked = SceneMotion { motion: &motion, frame: Some((*size, 1.0)), to: Some(to) };
             structure.search.ask_margin(asked, wanted, sought)?
         }
         Some(MovingStructure::Posed { bases, size, .. }) => {
             let motion = seen_from(robot.in_scene(), *bases)?;
             // Twice as many products of poses as in a structure at rest.
-            let asked = SceneMotion { motion: &motion, frame: Some(2.0 * size), to: None };
+            let asked = SceneMotion { motion: &motion, frame: Some((*size, 2.0)), to: None };
             structure.search.ask_margin(asked, wanted, sought)?
         }
     };
@@ -517,9 +520,14 @@ fn decide_structure(
     Ok(answer)
 }
 
-/// Attributes an error of two motions to the robot that causes it.
+/// Attributes an error of two motions to the robot that causes it: of two that have the section,
+/// the faster one. A motion is never asked for a section that its robot does not have.
 fn of_motions(robots: [usize; 2], motions: [&dyn Motion; 2], error: ProximityError) -> SceneError {
     let ProximityError::TooFast { section, .. } = error else { return of_pair(robots)(error) };
-    let [first, second] = motions.map(|motion| motion.speed(section, [0.0, 1.0], [0.0, 1.0]).point);
+    let [first, second] = motions.map(|motion| {
+        let mut tube = Tube::empty();
+        let has_it = motion.shape(0.5, &mut tube).is_ok() && section < tube.sections().len();
+        has_it.then(|| motion.speed(section, [0.0, 1.0], [0.0, 1.0]).point)
+    });
     of_robot(robots[usize::from(second > first)])(error)
 }

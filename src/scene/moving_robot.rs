@@ -57,21 +57,33 @@ const MAX_PARTS: usize = 64;
 /// Memory that is reused. Nothing in it enters a later answer.
 #[derive(Clone, Debug, Default)]
 pub(super) struct MovingRobotMemory {
-    shapes: KnownShapes,
+    shapes: Vec<KnownShape>,
     tube: Option<Tube>,
     pieces: Vec<Piece>,
     swept: Vec<SweptBody>,
 }
 
+/// A shape at a time.
+type KnownShape = (Real, Pose, Tube);
+
 /// The shapes of one motion at some times.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug)]
 struct KnownShapes {
-    shapes: Vec<(Real, Pose, Tube)>,
-    /// How many of them belong to the current motion.
+    shapes: Vec<KnownShape>,
+    /// How many of them belong to this motion. The others are memory of earlier motions.
     used: usize,
 }
 
 impl KnownShapes {
+    /// No shapes yet. Those of an earlier motion are memory that is written over.
+    fn in_memory(shapes: Vec<KnownShape>) -> Self {
+        Self { shapes, used: 0 }
+    }
+
+    fn into_memory(self) -> Vec<KnownShape> {
+        self.shapes
+    }
+
     fn at(&self, t: Real) -> Option<&(Real, Pose, Tube)> {
         self.shapes[..self.used].iter().find(|known| known.0.to_bits() == t.to_bits())
     }
@@ -156,8 +168,15 @@ impl RestingTube {
 
 fn at_least(swept: &[SweptBody], structure: &Structure) -> Real {
     let (around, size) = (structure.around_in_scene(), structure.size());
-    let bounds = swept.iter().map(|body| body.at_least(&around, size));
-    bounds.fold(Real::INFINITY, |least, bound| if bound >= least { least } else { bound })
+    least(swept.iter().map(|body| body.at_least(&around, size)))
+}
+
+/// Returns the least of some lower bounds; NaN, which counts as near, if one is NaN.
+fn least(bounds: impl Iterator<Item = Real>) -> Real {
+    let lesser = |least: Real, bound: Real| {
+        if least <= bound || least.is_nan() { least } else { bound }
+    };
+    bounds.fold(Real::INFINITY, lesser)
 }
 
 /// A motion of a robot in a scene.
@@ -177,9 +196,8 @@ impl<'a> MovingRobot<'a> {
         memory: &mut MovingRobotMemory,
     ) -> Result<Self, ProximityError> {
         let MovingRobotMemory { shapes, tube, pieces, swept } = memory;
-        let mut shapes = std::mem::take(shapes);
+        let shapes = KnownShapes::in_memory(std::mem::take(shapes));
         let mut swept = std::mem::take(swept);
-        shapes.used = 0;
         swept.clear();
         let mut robot = Self { motion, shapes: RefCell::new(shapes), swept };
         let bounded = robot.bound(tube.get_or_insert_with(Tube::empty), pieces);
@@ -192,7 +210,7 @@ impl<'a> MovingRobot<'a> {
 
     /// Returns the memory after the last query.
     pub fn give_back(self, memory: &mut MovingRobotMemory) {
-        memory.shapes = self.shapes.into_inner();
+        memory.shapes = self.shapes.into_inner().into_memory();
         memory.swept = self.swept;
     }
 
@@ -222,17 +240,12 @@ impl<'a> MovingRobot<'a> {
 
     /// [`at_least`](Self::at_least) for a structure that moves.
     pub fn at_least_moving(&self, structure: &Structure, end: &MovingStructure) -> Real {
-        let mut least = Real::INFINITY;
-        for part in self.swept.chunk_by(|one, other| one.times == other.times) {
+        let parts = self.swept.chunk_by(|one, other| one.times == other.times);
+        least(parts.flat_map(|part| {
             let (around, way) = end.around(structure, part[0].times);
             let size = end.size() + way;
-            for body in part {
-                let bound = body.at_least(&around, size) - way;
-                // Written so that NaN is near.
-                least = if bound >= least { least } else { bound };
-            }
-        }
-        least
+            part.iter().map(move |body| body.at_least(&around, size) - way)
+        }))
     }
 
     /// A lower bound on the distance from another robot that moves at the same time: by the boxes
@@ -345,5 +358,40 @@ impl Motion for PlacedMotion<'_, '_> {
 
     fn time_parts(&self) -> usize {
         self.robot.motion.time_parts()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use parry3d_f64::math::Vector;
+
+    /// A bound that is not a number counts as near, wherever it stands.
+    #[test]
+    fn a_bound_that_is_no_number_is_near() {
+        assert_eq!(least([3.0, 1.0, 2.0].into_iter()), 1.0);
+        for place in 0..3 {
+            let mut bounds = [3.0, 1.0, 2.0];
+            bounds[place] = Real::NAN;
+            assert!(least(bounds.into_iter()).is_nan(), "{place}");
+        }
+    }
+
+    /// Shapes of one motion are not those of the next in the same memory.
+    #[test]
+    fn the_next_motion_starts_without_shapes() {
+        let shape = |x: Real| {
+            let points = [Vector::ZERO, Vector::new(x, 0.0, 1.0)];
+            Tube::from_samples(&points, &[0.1], None).unwrap()
+        };
+        let at = |x: Real| Pose::translation(x, 0.0, 0.0);
+        let mut first = KnownShapes::in_memory(Vec::new());
+        first.keep(0.5, at(1.0), &shape(1.0));
+        first.keep(0.25, at(2.0), &shape(2.0));
+        let mut second = KnownShapes::in_memory(first.into_memory());
+        assert!(second.at(0.5).is_none() && second.at(0.25).is_none());
+        second.keep(0.25, at(3.0), &shape(3.0));
+        assert_eq!(second.at(0.25).map(|known| known.1), Some(at(3.0)));
+        assert!(second.at(0.5).is_none());
     }
 }

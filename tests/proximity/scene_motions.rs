@@ -612,6 +612,31 @@ fn an_error_names_the_robot() {
     };
     assert!(matches!(fault, RobotError::SectionsChange { .. }));
 
+    /// Capsules along z, of this many sections. The last is as fast as this; no other is asked for.
+    struct Sections(usize, Real);
+    impl Motion for Sections {
+        fn shape(&self, t: Real, tube: &mut Tube) -> Result<Pose, RobotError> {
+            let across = Vector::Y * (0.6 * (self.0 as Real) + self.1.min(1.0) * t);
+            let points: Vec<_> = (0..=self.0).map(|k| across + Vector::Z * k as Real).collect();
+            tube.set_samples(&points, &vec![0.1; self.0], None)?;
+            Ok(Pose::IDENTITY)
+        }
+        fn speed(&self, section: usize, _: [Real; 2], _: [Real; 2]) -> Speed {
+            assert!(section < self.0, "a section that the robot does not have");
+            Speed { point: if section + 1 == self.0 { self.1 } else { 0.0 }, turn: 0.0 }
+        }
+    }
+    let (short, long) = (Sections(1, 0.0), Sections(3, 1e12));
+    for (robots, faster) in [([&short, &long], 1), ([&long, &short], 0)] {
+        let too_fast = ask(&mut scene, &robots.map(|robot| robot as &dyn Motion), 1e-9);
+        let Err(SceneError::Robot { robot, error: ProximityError::TooFast { section, .. } }) =
+            too_fast
+        else {
+            panic!("{too_fast:?}")
+        };
+        assert_eq!((robot, section), (faster, 2));
+    }
+
     let errors = [-1.0, Real::NAN].map(|resolution| ask(&mut scene, &[&fine], resolution));
     for error in errors {
         assert_eq!(error.map_err(|error| error.kind()), Err("negative"));

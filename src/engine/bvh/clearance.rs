@@ -330,7 +330,7 @@ impl<'a> Context<'a> {
     ) -> Result<(TubeInMesh<'a>, &'a mut TubeMemory), ProximityError> {
         let (search, last) = self.search();
         let tube = PlacedTube::new(tube, pose, search.hierarchy.reach)?;
-        let tube = frame.map_or(tube, |size| tube.posed(size));
+        let tube = frame.map_or(tube, |size| tube.posed(size, 1.0));
         Ok((TubeInMesh { search: PlacedMeshSearch::at_rest(search), tube }, &mut last.tube))
     }
 }

@@ -300,7 +300,7 @@ impl BvhSearch {
 pub(crate) struct SceneMotion<'a> {
     pub motion: &'a dyn Motion,
     /// As in [`MotionSearch`].
-    pub frame: Option<Real>,
+    pub frame: Option<(Real, Real)>,
     /// The vertices at the end of the motion, if they move.
     pub to: Option<&'a [Vector]>,
 }
@@ -342,7 +342,7 @@ impl BvhSearch {
 }
 
 impl<'a> Context<'a> {
-    /// A search along a motion, with the warm start of the last one.
+    /// A search along a motion, with the memory of the last one. No earlier answer enters it.
     fn motion(self, motion: &'a dyn Motion) -> MotionSearch<'a> {
         let (search, Remembered { motion: memory, .. }) = self.search();
         MotionSearch { search, memory, motion, last: None, does_mesh_move: false, frame: None }

@@ -405,3 +405,57 @@ pub(crate) fn contacts_by_all_triangles(
     }
     contacts.finish();
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::Mesh;
+    use crate::robot::Chain;
+    use continuum_testing::Random;
+    use parry3d_f64::math::{Pose, Vector};
+
+    /// Adds all links, and all triangles to each. Writes the contacts if the query is not abandoned.
+    fn ask(
+        mesh: &Mesh,
+        robot: &Chain,
+        minima: &mut LocalMinima,
+        is_abandoned: bool,
+    ) -> Vec<Contact> {
+        let robot = PlacedRobot::new(robot, &Pose::IDENTITY).unwrap();
+        let (query, mut out) = (ContactQuery { margin: 2.0, prominence: 0.1 }, Vec::new());
+        let mut contacts =
+            ContactCollector::new(Level::new(), Wall::of(mesh), robot, query, minima, &mut out);
+        for number in 0..robot.links().len() {
+            contacts.add(number, |_, near| near.add_unclassified(0..mesh.len() as u32));
+        }
+        if !is_abandoned {
+            contacts.finish();
+        }
+        out
+    }
+
+    /// A query answers as one with fresh memory, after queries about other meshes and robots, and
+    /// after one that was abandoned half way.
+    #[test]
+    fn earlier_queries_leave_nothing_behind() {
+        let random = &mut Random::new(53);
+        let (mut minima, mut found) = (LocalMinima::default(), 0);
+        for round in 0..60 {
+            let count = 3 + random.below(12);
+            let corners = (0..count).map(|_| random.point() * 2.0).collect();
+            let triangles = (0..2 * count).map(|_| [0; 3].map(|_| random.below(count))).collect();
+            let mesh = Mesh::of(corners, triangles);
+            let points: Vec<_> =
+                (0..2 + random.below(4)).map(|_| random.point()).collect::<Vec<Vector>>();
+            let robot = Chain::capsules(&points, &vec![0.1; points.len() - 1]).unwrap();
+            if round % 3 == 0 {
+                ask(&mesh, &robot, &mut minima, true);
+            } else {
+                let fresh = ask(&mesh, &robot, &mut LocalMinima::default(), false);
+                assert_eq!(ask(&mesh, &robot, &mut minima, false), fresh, "{round}");
+                found += fresh.len();
+            }
+        }
+        assert!(found > 100, "{found}");
+    }
+}

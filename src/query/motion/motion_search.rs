@@ -115,8 +115,8 @@ pub(crate) struct MotionSearch<'a> {
     /// Whether the mesh moves too, as stored in the memory.
     pub does_mesh_move: bool,
     /// The largest coordinate of the mesh and of its pose, if the motion's poses are products with
-    /// the inverse of that pose.
-    pub frame: Option<Real>,
+    /// the inverse of that pose; and how many products.
+    pub frame: Option<(Real, Real)>,
 }
 
 impl MotionSearch<'_> {
@@ -226,7 +226,7 @@ impl MotionSearch<'_> {
             (hierarchy.reach, MeshSpeed::default(), PlacedMeshSearch::at_rest(search))
         };
         let tube = PlacedTube::new(&current.tube, &pose, reach)?.moving();
-        let tube = self.frame.map_or(tube, |size| tube.posed(size));
+        let tube = self.frame.map_or(tube, |(size, products)| tube.posed(size, products));
         let mut tube = TubeInMesh { search, tube };
         pieces.clear();
         let left = interval.pieces.clone().map_or(&[][..], |left| &unresolved[left]);

@@ -50,9 +50,7 @@ impl Progress {
             let earlier = |first: [Real; 2], times: [Real; 2]| {
                 if times[0] < first[0] { [times[0], times[1].max(near[1])] } else { first }
             };
-            let reason =
-                if self.is_exhausted { UndecidedReason::Work } else { UndecidedReason::Near };
-            return Some((left.fold(near, earlier), reason));
+            return Some((left.fold(near, earlier), self.reason()));
         }
         if shapes < MAX_SHAPES {
             return None;
@@ -63,6 +61,29 @@ impl Progress {
 
     /// Returns the first undecided interval and the reason, after all intervals were tested.
     pub(super) fn undecided(&self) -> Option<([Real; 2], UndecidedReason)> {
-        self.undecided.map(|first| (first, UndecidedReason::Near))
+        self.undecided.map(|first| (first, self.reason()))
+    }
+
+    /// Returns why an interval is undecided.
+    fn reason(&self) -> UndecidedReason {
+        if self.is_exhausted { UndecidedReason::Work } else { UndecidedReason::Near }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The last interval of a query reaches a limit of work: the reason is the work, although no
+    /// interval is left.
+    #[test]
+    fn the_last_interval_names_its_reason() {
+        for (gives_up, reason) in [(true, UndecidedReason::Work), (false, UndecidedReason::Near)] {
+            let mut progress = Progress::default();
+            let mut result = IntervalResult::<()>::empty();
+            (result.is_undecided, result.gives_up) = (true, gives_up);
+            progress.record([0.5, 1.0], &result, 1);
+            assert_eq!(progress.undecided(), Some(([0.5, 1.0], reason)));
+        }
     }
 }

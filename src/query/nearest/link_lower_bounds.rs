@@ -33,6 +33,7 @@
 use super::outline::{PlacedOutline, ROUNDING, ReferenceOutline};
 use crate::pair::PlacedRobot;
 use parry3d_f64::math::Real;
+use std::mem::take;
 use std::ops::Range;
 
 /// Cached bounds must skip at least one link in four; otherwise they are cleared.
@@ -67,12 +68,12 @@ struct LinkLowerBound {
 }
 
 impl LinkLowerBounds {
+    /// Forgets everything: fields that are not named here start anew, the lists keep memory alone.
     pub(crate) fn forget(&mut self) {
-        self.links.clear();
-        self.capsule = None;
-        self.now.clear();
-        self.look_ahead = LookAhead::default();
-        self.has_looked_ahead = false;
+        let Self { links, now, .. } = self;
+        links.clear();
+        now.clear();
+        *self = Self { links: take(links), now: take(now), ..Self::default() };
     }
 
     /// Returns true if every link is proven farther than `margin` from the mesh.
@@ -125,8 +126,9 @@ impl LinkLowerBounds {
         extra
     }
 
-    /// Clears the cached bounds if the last query looked ahead and its bounds exclude fewer than
-    /// 1/4 of the `count` links.
+    /// Clears the cached bounds if they exclude fewer than 1/4 of the `count` links, and counts a
+    /// failure of the look-ahead. Only if the query before looked ahead: other bounds are no
+    /// evidence about it.
     pub(crate) fn drop_if_useless(&mut self, count: usize, bound: Real) {
         if self.has_looked_ahead
             && MIN_SKIPPED_SHARE * self.count_open(0..count, bound)
@@ -300,8 +302,10 @@ impl LookAhead {
     /// Records the cost of a query with look-ahead. Returns false if the next query should search
     /// without look-ahead and without the cached bounds.
     ///
-    /// The first query of a trial fills the bounds for the others, so its cost does not count. The
-    /// trial fails once its n - 1 later queries cost more than n queries at the baseline cost.
+    /// `tried` counts the queries of this trial, this one included. The first of them fills the
+    /// bounds for the others, so its cost does not count; after a successful trial this is the last
+    /// query of that trial. The trial fails once the other `tried - 1` queries together cost more
+    /// than `tried` queries at the baseline cost.
     fn record_trial_cost(&mut self, cost: u64) -> bool {
         if self.tried > 0 {
             self.trial_cost += cost;
@@ -358,6 +362,8 @@ pub(crate) enum ClearedBy {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::robot::Chain;
+    use parry3d_f64::math::{Pose, Vector};
 
     /// Counts the queries with look-ahead, out of `queries`. The first of a run costs `first`, each
     /// other one `later`, and one without look-ahead 100.
@@ -390,5 +396,26 @@ mod tests {
             let count = queries_that_look_ahead(25_600, 400, later);
             assert!((100..110 * most).contains(&count), "{count} where another costs {later}");
         }
+    }
+
+    /// Forgotten bounds answer no later query, and a pause of the look-ahead ends.
+    #[test]
+    fn forgotten_bounds_are_unknown() {
+        let points = [Vector::ZERO, Vector::X, Vector::X * 2.0];
+        let robot = Chain::capsules(&points, &[0.1; 2]).unwrap();
+        let robot = PlacedRobot::new(&robot, &Pose::IDENTITY).unwrap();
+        let mut bounds = LinkLowerBounds::default();
+        bounds.look_ahead.record_failure();
+        bounds.set_all(robot, 3.0, ClearedBy::Capsule, 1.0);
+        assert!(bounds.all_exceed(robot, 2.0));
+        bounds.set(robot, 0..2, 3.0, Some(7), 1.0);
+        bounds.refresh(robot);
+        assert_eq!(bounds.count_open(0..2, 2.0), 0);
+        bounds.forget();
+        assert!(!bounds.all_exceed(robot, 2.0));
+        assert_eq!(bounds.count_open(0..2, 2.0), 2);
+        bounds.refresh(robot);
+        assert_eq!(bounds.count_open(0..2, 2.0), 2);
+        assert_eq!((bounds.approximate_nearest(0), bounds.look_ahead.rest), (None, 0));
     }
 }

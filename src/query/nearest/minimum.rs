@@ -133,7 +133,8 @@ impl<'a> BranchAndBound<'a> {
             self.offer(first, nearest);
         }
         self.lower_bounds.drop_if_useless(count, self.upper);
-        // As wide as the robot or the mesh, a look-ahead would prune nothing: the robot jumped.
+        // A look-ahead as long as the robot's axis and last diameter, or as wide as the mesh, would
+        // prune little: the robot jumped.
         let (last, before) = (&robot.links()[count - 1], robot.length_before(count - 1));
         let size = before + last.length() + 2.0 * last.radius();
         self.look_ahead = self.lower_bounds.look_ahead(robot, self.upper, size.min(reach), reach);

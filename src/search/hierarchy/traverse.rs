@@ -100,7 +100,7 @@ impl<E: Lane> Target<'_, E> {
     fn is_settled(&self) -> bool {
         match &self.goal {
             Goal::Nearest(..) => self.below == 0,
-            // Once a triangle meets the axis, the limit is 0 and no bound is below it.
+            // Even a triangle that meets the axis leaves a limit: three errors of the bounds.
             Goal::Guess(_, leaves) => *leaves == 0,
             Goal::Any(found) => *found,
         }
