@@ -57,6 +57,8 @@
 
 pub use super::world_dispatcher::WorldDispatcher;
 use parry3d_f64::math::Real;
+/// The rapier whose worlds [`install`] prepares.
+pub use rapier3d_f64;
 use rapier3d_f64::dynamics::IntegrationParameters;
 use rapier3d_f64::geometry::NarrowPhase;
 use thiserror::Error;

@@ -13,8 +13,8 @@ use parry_continuum::parry::math::{Pose, Real, Vector};
 use parry_continuum::parry::query::QueryDispatcher;
 use parry_continuum::parry::shape::{Compound, HeightField, TriMesh};
 use parry_continuum::parry::utils::Array2;
+use parry_continuum::rapier::rapier3d_f64::prelude::*;
 use parry_continuum::{Chain, ContinuumDispatcher, ModifiedCylinder, rapier};
-use rapier3d_f64::prelude::*;
 
 /// The radius of all bodies. They are 3 long.
 pub const RADIUS: Real = 0.08;
