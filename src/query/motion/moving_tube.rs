@@ -50,7 +50,9 @@ impl<'m> RelativeMotion<TubeInMesh<'m>, PendingPiece> for MovingTube<'_> {
             let placed = &tube.tube;
             let of = CarriedPiece::new(placed.tube, &placed.pose, placed.section(section), shares);
             let seen = |frame| self.motion.speeds(speed, &of, &frame).seen;
-            with_shift = seen(CommonFrame::shifting(shift)).point;
+            if shift != Vector::ZERO {
+                with_shift = seen(CommonFrame::shifting(shift)).point;
+            }
             speed = seen(CommonFrame::REST);
         }
         let ApproachSpeed { centreline, rim } = ApproachSpeed::of(speed, &stretch)?;
