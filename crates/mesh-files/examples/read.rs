@@ -36,7 +36,7 @@ fn main() {
             match load_with(name, &options) {
                 Ok(mesh) => json!({
                     "vertices": mesh.vertices, "triangles": mesh.triangles, "frame": frame(mesh.frame),
-                    "skipped": mesh.skipped_faces,
+                    "skipped": mesh.skipped_faces, "doubts": mesh.doubts,
                 }),
                 Err(error) => json!({ "error": error.to_string() }),
             }

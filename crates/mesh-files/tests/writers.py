@@ -304,6 +304,25 @@ def label_maps():
     spacing = np.array(nibabel.load(file).header.get_zooms())
     check_map("zero sform alone, allowed", file, box(lambda v: spacing * v), None, options=["--no-position"])
 
+    # Two forms that differ: nibabel takes the sform, and SimpleITK the one that is named.
+    for s, q, shift in itertools.product([1, 2, 4], [1, 2], [0.0, 3.0]):
+        image = nibabel.Nifti1Image(BLOCK, turned())
+        image.set_sform(turned(), code=s)
+        other = turned()
+        other[:3, 3] += shift
+        image.set_qform(other, code=q)
+        file = path("a.nii")
+        image.to_filename(file)
+        affine = nibabel.load(file).affine
+        assert np.allclose(affine, turned(), atol=1e-4)
+        name = f"forms {s} {q} {shift}"
+        check_map(name, file, box(lambda v: affine[:3, :3] @ v + affine[:3, 3]), "Ras")
+        answer = ask(f"{file}:3")
+        origin = np.array(sitk.ReadImage(str(file)).GetOrigin()) * [-1, -1, 1]
+        takes = "nibabel and ITK do" if np.allclose(origin, turned()[:3, 3], atol=1e-3) else "ITK and 3D Slicer take the qform"
+        doubts = answer.get("doubts", [])
+        check(name + " doubt", takes in doubts[0] if shift and doubts else not shift and not doubts, answer)
+
     # nibabel and SimpleITK read a negative spacing differently.
     for form in ["s", "q"]:
         image = nibabel.Nifti1Image(BLOCK, turned())
