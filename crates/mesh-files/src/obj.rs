@@ -100,13 +100,14 @@ impl Reader {
                     "line {line} has the statement '{word}', whose surface is not read; export it as polygons"
                 ));
             }
-            Some(word) if !IGNORED.contains(&word) && !(self.may_go_on && is_number(word)) => {
+            Some(word) if IGNORED.contains(&word) || self.may_go_on && is_number(word) => {}
+            Some(word) => {
                 return Err(format!(
                     "line {line} has the unknown statement '{}'; remove the line if it is no face",
                     shown(word)
                 ));
             }
-            _ => {}
+            None => {}
         }
         Ok(())
     }

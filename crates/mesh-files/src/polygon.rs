@@ -80,8 +80,7 @@ struct Cutter {
 }
 
 impl Cutter {
-    /// Adds the triangles of a face. Returns false, without adding any, if they are those of the
-    /// fan.
+    /// Adds the triangles of a face. Returns false, without adding any, if the fan is right.
     fn cut_ears(&mut self, corners: &[u32], mesh: &mut Mesh) -> Result<bool, String> {
         self.corners.clear();
         self.corners.extend(corners);

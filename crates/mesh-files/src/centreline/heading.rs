@@ -457,7 +457,7 @@ fn triples(names: &[Name], is_free: &dyn Fn(usize) -> bool) -> Vec<Triple> {
     triples
 }
 
-/// Returns whether names contain those of three coordinates.
+/// Returns whether three of the names are coordinates.
 pub fn has_coordinates(names: &[Name]) -> bool {
     !triples(names, &|_| true).is_empty()
 }
@@ -473,8 +473,8 @@ fn position(
     // A column of t is a torque beside forces, and a translation otherwise.
     let has_forces = triples.iter().any(|triple| triple.stem == "f");
     let may_be = |triple: &&Triple| {
-        !NO_POSITION.contains(&triple.stem.replace('_', "").as_str())
-            && !(has_forces && triple.stem == "t")
+        let is_torque = has_forces && triple.stem == "t";
+        !is_torque && !NO_POSITION.contains(&triple.stem.replace('_', "").as_str())
     };
     let candidates = if exact.is_empty() { triples.iter().filter(may_be).collect() } else { exact };
     let written = |triple: &Triple| {

@@ -419,7 +419,7 @@ fn bare(line: &str) -> &str {
     let inside = line.trim_matches([' ', '\r']);
     let inside = inside.strip_suffix("],").unwrap_or(inside);
     let bare = inside.trim_matches(['[', ']', ' ']);
-    // More brackets are those of units.
+    // More brackets enclose units.
     if bare.contains('[') { inside } else { bare }
 }
 
@@ -462,7 +462,7 @@ fn separator(line: &str) -> Option<char> {
 }
 
 /// Returns the words of a line. `mark` is the separator of the heading.
-fn columns<'a>(line: usize, text: &'a str, mark: Option<char>) -> Result<Vec<&'a str>, Fault> {
+fn columns(line: usize, text: &str, mark: Option<char>) -> Result<Vec<&str>, Fault> {
     let mark = mark.filter(|&mark| has(text, mark)).or_else(|| separator(text));
     let words: Vec<_> = split(text, mark).take(MOST_COLUMNS + 1).collect();
     if words.len() > MOST_COLUMNS {

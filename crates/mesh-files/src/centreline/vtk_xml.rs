@@ -42,7 +42,7 @@ fn noted_space(field: &Element, arrays: &Arrays) -> Option<Frame> {
     frame_named(letters?.split(|&letter| letter == 0).next()?)
 }
 
-/// Reads a piece, and compares the counts that it states with what it holds.
+/// Reads a piece. Its points and cells must agree with the counts that it states.
 fn piece(piece: &Element, arrays: &Arrays) -> Result<PolyData, String> {
     let points = only(piece, "Points")?.and_then(|points| points.child("DataArray"));
     let points = points.map(|points| arrays.read(points)).transpose()?;

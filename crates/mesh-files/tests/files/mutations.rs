@@ -247,7 +247,8 @@ fn faces_of_many_corners_are_cut_soon() {
         let [x, y] = comb(i, count);
         [x + 2.0 * y, y + 2.0 * x]
     };
-    let outlines: [(&str, &mut dyn FnMut(usize, usize) -> Corner); 4] = [
+    type Outline<'a> = &'a mut dyn FnMut(usize, usize) -> Corner;
+    let outlines: [(&str, Outline<'_>); 4] = [
         ("comb", &mut { comb }),
         ("leaning", &mut { leaning }),
         ("spiral", &mut { spiral }),
