@@ -2,7 +2,7 @@
 use super::GpuError;
 use super::search::SearchKernels;
 use super::wgsl::{self, CONVEX};
-use crate::threads::Lazy;
+use crate::threads::{Lazy, on_this_thread};
 use gpu_batch::wgpu::{BindGroupLayout, ComputePipeline};
 use gpu_batch::{Adapter, Binding, Device, DeviceError, DeviceFailure, Precision, Shader, Watch};
 use std::sync::{Arc, Mutex, PoisonError, Weak};
@@ -75,7 +75,8 @@ impl Gpu {
     }
 }
 
-/// Returns what is open, if it is still usable; otherwise opens it, while other callers wait.
+/// Returns what is open, if it is still usable; otherwise opens it on this thread alone, while other
+/// callers wait. So nobody who holds the lock waits for a pool.
 fn share<T, E>(
     shared: &Mutex<Weak<T>>,
     is_usable: impl Fn(&T) -> bool,
@@ -85,7 +86,7 @@ fn share<T, E>(
     if let Some(open) = shared.upgrade().filter(|open| is_usable(open)) {
         return Ok(open);
     }
-    let opened = open()?;
+    let opened = on_this_thread(open)?;
     *shared = Arc::downgrade(&opened);
     Ok(opened)
 }

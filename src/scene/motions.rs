@@ -21,7 +21,7 @@
 use super::Scene;
 use super::least_slack::{BoundedSlack, LeastSlack};
 use super::moving_robot::{MovingRobot, MovingRobotMemory};
-use super::queries::{nearest_first, of_pair, of_robot, of_structure, pairs_apart};
+use super::queries::{of_pair, of_robot, of_structure, pairs_apart};
 use super::structure::{Structure, place_witness};
 use super::structure_end::{MovingStructure, StructureEnd, seen_from};
 use crate::answer::{
@@ -260,14 +260,19 @@ impl Scene {
         let Some(margin) = self.robot_margin else { return Ok(least) };
         let mut order: Vec<_> = pairs_apart(robots.len(), &self.nested)
             .map(|pair| {
-                let slack = robots[pair[0]].at_least_from(&robots[pair[1]]) - margin;
+                let [at_least, middle] = robots[pair[0]].at_least_from(&robots[pair[1]]);
+                let slack = at_least.max(0.0) - margin;
                 // An infinite margin and an infinite bound.
-                (if slack.is_nan() { Real::NEG_INFINITY } else { slack.next_down() }, pair)
+                let bound = if slack.is_nan() { Real::NEG_INFINITY } else { slack.next_down() };
+                (bound, middle, pair)
             })
             .collect();
-        order.sort_unstable_by(nearest_first);
+        order.sort_unstable_by(|one, other| {
+            let by_bound = one.0.total_cmp(&other.0).then(one.1.total_cmp(&other.1));
+            by_bound.then(one.2.cmp(&other.2))
+        });
         let mut left = MAX_PAIRS_FOR_BOUNDS;
-        for (bound, pair) in order {
+        for (bound, _, pair) in order {
             if bound > least.upper() {
                 break;
             }

@@ -250,31 +250,38 @@ impl<'a> MovingRobot<'a> {
 
     /// A lower bound on the distance from another robot that moves at the same time: by the boxes
     /// around the bodies of the parts that share a time. It errs as that from a structure does.
-    pub fn at_least_from(&self, other: &Self) -> Real {
+    ///
+    /// The second number is the distance of the boxes around the middle shapes: it says which of
+    /// two pairs is nearer if both bounds are 0.
+    pub fn at_least_from(&self, other: &Self) -> [Real; 2] {
         let boxes = |robot: &Self| -> Vec<_> {
             let around = |part: &[SweptBody]| {
-                let parts = part.iter().map(|SweptBody { body, way, .. }| {
-                    let ends = [body.start(), body.end()].into_iter();
-                    BoundingBox::points(ends).grown(body.radius() + way)
+                let parts = [1.0, 0.0].map(|share| {
+                    let bodies = part.iter().map(|SweptBody { body, way, .. }| {
+                        let ends = [body.start(), body.end()].into_iter();
+                        BoundingBox::points(ends).grown(body.radius() + share * way)
+                    });
+                    bodies.fold(BoundingBox::default(), BoundingBox::and)
                 });
                 let reach = part.iter().fold(0.0, |most: Real, body| most.max(body.reach));
-                (part[0].times, parts.fold(BoundingBox::default(), BoundingBox::and), reach)
+                (part[0].times, parts, reach)
             };
             robot.swept.chunk_by(|one, other| one.times == other.times).map(around).collect()
         };
         let (here, there) = (boxes(self), boxes(other));
-        let mut least = Real::INFINITY;
-        for (times, around, reach) in &here {
-            for (others, beside, size) in &there {
+        let mut least = [Real::INFINITY; 2];
+        for (times, [around, middle], reach) in &here {
+            for (others, [beside, other], size) in &there {
                 if times[0] >= others[1] || others[0] >= times[1] {
                     continue;
                 }
                 let largest = reach + size;
                 if largest < COORDINATE_LIMIT / 16.0 {
                     let rounding = 1024.0 * Real::UNIT_ROUNDOFF * largest;
-                    least = least.min(around.gap(beside) - rounding);
+                    let gaps = [around.gap(beside) - rounding, middle.gap(other)];
+                    least = [least[0].min(gaps[0]), least[1].min(gaps[1])];
                 } else {
-                    return Real::NEG_INFINITY;
+                    return [Real::NEG_INFINITY; 2];
                 }
             }
         }

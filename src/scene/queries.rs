@@ -661,7 +661,7 @@ impl Scene {
 }
 
 /// Orders pairs by the lower bound on their slack, then by their numbers.
-pub(super) fn nearest_first(one: &(Real, [usize; 2]), other: &(Real, [usize; 2])) -> Ordering {
+fn nearest_first(one: &(Real, [usize; 2]), other: &(Real, [usize; 2])) -> Ordering {
     one.0.total_cmp(&other.0).then(one.1.cmp(&other.1))
 }
 

@@ -4,4 +4,6 @@ mod lazy;
 mod parallel;
 
 pub(crate) use lazy::Lazy;
+#[cfg(feature = "gpu")]
+pub(crate) use parallel::on_this_thread;
 pub(crate) use parallel::{both, each, in_chunks, threads, with_clones};

@@ -166,12 +166,12 @@ fn check_random<T: Precision>(each: u32, finest: f64) {
 
 #[test]
 fn answers_lie_within_proven_bounds_in_double_precision() {
-    check_random::<f64>(rounds(600), -17.0);
+    check_random::<f64>(rounds(1500), -17.0);
 }
 
 #[test]
 fn answers_lie_within_proven_bounds_in_single_precision() {
-    check_random::<f32>(rounds(600), -8.0);
+    check_random::<f32>(rounds(1500), -8.0);
 }
 
 /// Small integers make ties, parallels and zeros that random numbers never do.

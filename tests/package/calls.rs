@@ -6,7 +6,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Calls of other libraries that pages name.
-const FOREIGN: [&str; 13] = [
+const FOREIGN: [&str; 14] = [
+    "ccd_enabled",
     "fcl::collide",
     "fcl::continuousCollide",
     "fcl::distance",

@@ -618,7 +618,9 @@ fn an_error_names_the_robot() {
         fn shape(&self, t: Real, tube: &mut Tube) -> Result<Pose, RobotError> {
             let across = Vector::Y * (0.6 * (self.0 as Real) + self.1.min(1.0) * t);
             let points: Vec<_> = (0..=self.0).map(|k| across + Vector::Z * k as Real).collect();
-            tube.set_samples(&points, &vec![0.1; self.0], None)?;
+            // Different radii: equal ones in a straight line are one section.
+            let radii: Vec<_> = (0..self.0).map(|k| 0.1 + 0.01 * k as Real).collect();
+            tube.set_samples(&points, &radii, None)?;
             Ok(Pose::IDENTITY)
         }
         fn speed(&self, section: usize, _: [Real; 2], _: [Real; 2]) -> Speed {
