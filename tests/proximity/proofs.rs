@@ -744,7 +744,9 @@ fn a_motion_whose_parts_jump_is_refused() {
     };
     let first = [[0.0, 0.0], [0.0, 10.0], [0.0, 20.0]];
     let second = |y: f64, z: f64| [[0.1, 0.0], [y, z], [0.1, 20.0]];
-    let cases: [(&[[f64; 2]], [&[f64]; 2], &str); 8] = [
+    /// Points of the second shape, the radii of both, and what the checker says.
+    type Case<'a> = (&'a [[f64; 2]], [&'a [f64]; 2], &'a str);
+    let cases: [Case; 8] = [
         (&second(0.2, 10.0), [&[1.0; 2], &[1.0; 2]], "yes"),
         // The same in other pieces, and a joint that moves along the robot where no radius shows it.
         (&[[0.1, 0.0], [0.2, 5.0], [0.2, 10.0], [0.1, 20.0]], [&[1.0; 2], &[1.0; 3]], "yes"),

@@ -385,7 +385,7 @@ fn rounding_of_the_radius_is_no_step() {
         for kind in 0..3 {
             let radius = |k: usize| match kind {
                 0 => 1.0 + noise * f64::from(u8::from(k >= 150)),
-                1 => 1.0 + noise * f64::from(u8::from(k % 2 == 0)),
+                1 => 1.0 + noise * f64::from(u8::from(k.is_multiple_of(2))),
                 _ => 1.0 + noise * random.unit(),
             };
             let radii: Vec<_> = (0..300).map(radius).collect();

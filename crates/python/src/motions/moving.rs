@@ -2,8 +2,8 @@
 
 use parry_continuum::parry::math::Pose;
 use parry_continuum::{
-    BendingMotion, CommonFrame, DisplacementBound, LinearMotion, Motion, MotionPath, MovingBase, RigidMotion,
-    RobotError, Speed, Tube,
+    BendingMotion, CommonFrame, DisplacementBound, LinearMotion, Motion, MotionPath, MovingBase,
+    RigidMotion, RobotError, Speed, Tube,
 };
 
 /// One motion of a batch, of any kind.
