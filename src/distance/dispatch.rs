@@ -14,9 +14,10 @@ macro_rules! dispatch {
     ($level:expr, $token:ident => $work:expr) => {
         fearless_simd::dispatch!($level, $token => $work)
     };
-    ($is_wide:expr, $level:expr, $token:ident => $work:expr) => {
+    ($is_wide:expr, $level:expr, $token:ident => $work:expr) => {{
+        let _ = $is_wide;
         fearless_simd::dispatch!($level, $token => $work)
-    };
+    }};
 }
 
 /// Runs `work` with the token of the widest instruction set that `level` proves to be present.
