@@ -2,7 +2,7 @@
 //!
 //! # Definitions
 //! - *Moving step*: the velocity after the step moves an end of the body by more than
-//!   [`SLOW`] lengths a second.
+//!   `SLOW` lengths a second.
 //! - *Held step*: a moving step in which the end that moves fastest moves by less than 1 % of what
 //!   its velocity says. The velocity is the one after the step, so no contact pushes it back.
 //! - *Rise*: the largest energy above the least energy before, as a share of `m g u`, where `u` is

@@ -141,7 +141,7 @@ fn two_that_are_carried_together_cost_as_at_rest() {
         let found = pair.clears_motions(&on_base[0], &on_base[1], margin, resolution).unwrap();
         assert!(found.is_clear(), "{found:?}");
     }
-    assert!(seen * 2 > rounds(24) && turned * 3 > seen, "{seen} {turned}");
+    assert!(seen * 2 > rounds(24) && turned * 4 >= seen, "{seen} {turned}");
 }
 
 /// A robot and a mesh that are shifted together, and a structure that moves as the robot does.
