@@ -5,7 +5,8 @@ use super::scene_motions::{Asked, Case, Each, Edge, RESOLUTION, STEPS, asked, ba
 use continuum_testing::{Random, rounds};
 use parry_continuum::parry::math::{Pose, Real, Rotation, Vector};
 use parry_continuum::proximity::{
-    BvhSearch, Decision, Proximity, Scene, SceneError, SceneMotionContact, ScenePlace, StructureEnd,
+    BvhSearch, Decision, Proximity, ProximityError, Scene, SceneError, SceneMotionContact,
+    ScenePlace, StructureEnd,
 };
 use parry_continuum::{Chain, LinearMotion, Motion, RigidMotion, Tube};
 use std::f64::consts::{FRAC_PI_2, SQRT_2};
@@ -38,7 +39,11 @@ fn the_first_violation_is_the_earliest_of_all_questions() {
         }
         let edges = edges(random, 3);
         let motions: Vec<_> = edges.iter().map(Edge::motion).collect();
-        let answer = case.scene.time_of_contact(&motions.each(), RESOLUTION).unwrap();
+        let answer = match case.scene.time_of_contact(&motions.each(), RESOLUTION) {
+            // A joint that is sharp only for some time.
+            Err(SceneError::Robot { error: ProximityError::JointTooSharp { .. }, .. }) => continue,
+            answer => answer.unwrap(),
+        };
         let any = case.scene.clears_motion(&motions.each(), RESOLUTION).unwrap();
         let [clear_until, t] = answer.interval;
         let mut first = Real::INFINITY;
