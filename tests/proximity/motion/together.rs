@@ -315,7 +315,7 @@ fn a_false_frame_is_refused() {
     }
     // All ready motions state frames of their own that hold.
     let (mut random, mut framed) = (Random::new(11), 0);
-    for _ in 0..20 {
+    for _ in 0..rounds(20) {
         let start = random.point() * 5.0;
         let (points, radii) = polyline(&mut random, start);
         let shift = random.point() * 30.0;
@@ -334,7 +334,7 @@ fn a_false_frame_is_refused() {
         let all: [&dyn Motion; 4] = [&linear, &path, &once, &twice];
         framed += all.iter().filter(|motion| motion.common_frame([0.1, 0.2]).is_some()).count();
     }
-    assert_eq!(framed, 80);
+    assert_eq!(framed, 4 * rounds(20));
 }
 
 /// Two robots that are carried in different ways: the bounds contain the distances of fine steps.
