@@ -34,7 +34,7 @@
 //!   [`Cap::Flat`] or [`Cap::Round`]. [`Chain::from_centreline`] chooses the caps;
 //!   [`Chain::capsules`] and [`Chain::cylinders`] are the simpler models. [`simplify`] finds
 //!   few links within a tolerance of a sampled curve.
-//! - **The curve.** A [`Tube`] is the robot as a curve, without links: samples or a function. Each
+//! - **The curve** (feature `tubes`). A [`Tube`] is the robot as a curve, without links: samples or a function. Each
 //!   query names its tolerance. [`BvhSearch::clearance`](proximity::BvhSearch::clearance) bounds
 //!   the clearance from both sides.
 //! - **The kinematics.** [`ConstantCurvature`] computes points from curvatures;
@@ -45,9 +45,9 @@
 //!   [`BvhSearch`](proximity::BvhSearch) or [`Exhaustive`](proximity::Exhaustive), with the same
 //!   answers. The feature `gpu` adds `gpu::GpuSearch`. The first page of [`proximity`] lists
 //!   the call for each question.
-//! - **The motion.** [`BvhSearch::clears_motion`](proximity::BvhSearch::clears_motion) proves that
+//! - **The motion** (feature `tubes`). [`BvhSearch::clears_motion`](proximity::BvhSearch::clears_motion) proves that
 //!   a [`Motion`] keeps a margin at every time.
-//! - **Several robots.** [`RobotPair`](proximity::RobotPair) answers about two robots, or one robot
+//! - **Several robots** (feature `robots`). [`RobotPair`](proximity::RobotPair) answers about two robots, or one robot
 //!   and itself. A [`Scene`](proximity::Scene) has several structures, each with its margin: see
 //!   [`book::robots`].
 //! - **Threads.** Each thread has a clone of the engine: see [`book::threads`].
@@ -64,6 +64,17 @@
 //! - **The book.** [`book`] explains the shape, the queries, accuracy against time, certificates
 //!   and limits. It leads [from CT to clearance](book::from_ct), and shows what changes for users
 //!   who [come from](book::coming_from) capsules, FCL or parry.
+//!
+//! # Features
+//! | feature | for |
+//! |---|---|
+//! | none | chains of links in a mesh: distances, margins, contacts, sides; parry's shapes and queries |
+//! | `tubes` | robots as curves, motions, and proofs for others |
+//! | `robots` | two robots, a robot beside itself, scenes of several meshes; turns on `tubes` |
+//! | `rapier` | robots in a rapier world |
+//! | `gpu` | batches on the GPU |
+//! | `serde-serialize` | robots and answers as data |
+//! | `parallel` (on by default) | batches on all cores |
 //!
 //! # What an answer means
 //! Distances are to the mesh's surface and unsigned: 0 if a link touches or crosses it. A robot
@@ -87,6 +98,7 @@ pub use parry3d_f64 as parry;
 
 mod answer;
 pub mod book;
+#[cfg(feature = "tubes")]
 mod curve;
 pub mod distance;
 mod engine;
@@ -94,26 +106,32 @@ mod engine;
 pub mod gpu;
 mod host;
 mod mesh;
+#[cfg(feature = "tubes")]
 mod motion;
 mod pair;
 pub mod proximity;
 mod query;
+#[cfg(feature = "tubes")]
 mod refine;
 mod robot;
+#[cfg(feature = "robots")]
 mod scene;
 mod search;
 mod threads;
 
-pub use curve::{BendingSection, ConstantCurvature, Tube, TubeSection};
+#[cfg(feature = "tubes")]
+pub use curve::{Tube, TubeSection};
 pub use host::ContinuumDispatcher;
 #[cfg(feature = "rapier")]
 pub use host::rapier;
+#[cfg(feature = "tubes")]
 pub use motion::{
     BendingMotion, BendingRates, CommonFrame, DisplacementBound, LinearMotion, Motion, MotionPath,
     MovingBase, RigidMotion, Speed, bending_displacement, bending_speed, verify_motion,
 };
 pub use robot::{
-    Cap, Chain, MatrixError, ModifiedCylinder, RobotError, pose_from_matrix, simplify,
+    BendingSection, Cap, Chain, ConstantCurvature, MatrixError, ModifiedCylinder, RobotError,
+    pose_from_matrix, simplify,
 };
 
 /// Runs the code of the README as doc-tests. One example needs rapier.

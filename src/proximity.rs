@@ -18,7 +18,7 @@
 //! | the derivative by each end, the radius and each vertex | [`derivative`] |
 //! | a proof of an answer | [`LinkProximity::certify`], [`certify_among_all`] |
 //!
-//! **A curve, between bounds**
+//! **A curve, between bounds** (feature `tubes`)
 //!
 //! | question | call |
 //! |---|---|
@@ -26,7 +26,7 @@
 //! | the same, with the pieces of the division | [`clearance_pieces`] |
 //! | does a tube keep a margin? | [`clears_tube`] |
 //!
-//! **A motion, proven at every instant**
+//! **A motion, proven at every instant** (feature `tubes`)
 //!
 //! | question | call |
 //! |---|---|
@@ -36,7 +36,7 @@
 //! | when does it first lose the margin? | [`time_of_contact`] |
 //! | how near does it come to the mesh, when and where? | [`clearance_of_motion`] |
 //!
-//! **A proof for others**
+//! **A proof for others** (feature `tubes`)
 //!
 //! | question | call |
 //! |---|---|
@@ -51,7 +51,7 @@
 //! | on which side is every link? | [`link_sides`] |
 //! | is the mesh open, and how wide? do its triangles face the same way? | [`surface`] |
 //!
-//! **Two robots**
+//! **Two robots** (feature `robots`)
 //!
 //! | question | call |
 //! |---|---|
@@ -66,7 +66,7 @@
 //! | the least clearance of two moving robots, between two bounds | [`RobotPair::clearance_of_motion`] |
 //! | a proof of the distance of two links | [`RobotProximity::certify`] |
 //!
-//! **One robot and itself**
+//! **One robot and itself** (feature `robots`)
 //!
 //! | question | call |
 //! |---|---|
@@ -75,7 +75,7 @@
 //! | does a tube keep a margin to itself? | [`SelfQuery::clears_tube`] |
 //! | does a robot keep it while it moves? | [`SelfQuery::clears_motion`] |
 //!
-//! **Several structures and robots**
+//! **Several structures and robots** (feature `robots`)
 //!
 //! | question | call |
 //! |---|---|
@@ -171,13 +171,24 @@
 
 #[cfg(feature = "gpu")]
 pub use crate::answer::DeviceFailure;
+#[cfg(feature = "robots")]
 pub use crate::answer::{
-    Between, Certificate, Clearance, Contact, ContactFeature, Decision, Derivative, InsideAnswer,
-    LinkFeature, LinkProximity, MeshError, MotionAnswer, MotionClearance, Opening, PairWitness,
-    PlacementFault, Proof, ProximityError, RobotClearance, RobotMotionAnswer, RobotMotionClearance,
-    RobotProximity, RobotsInContact, SceneClearance, SceneContact, SceneError, SceneMotionAnswer,
-    SceneMotionClearance, SceneMotionContact, ScenePlace, ShapeInContact, Side, StructureProximity,
-    SurfaceReport, Tightest, TriangleFeature, TubePiece, UndecidedReason, Witness, Work,
+    Between, PairWitness, RobotClearance, RobotMotionAnswer, RobotMotionClearance, RobotProximity,
+    RobotsInContact, SceneClearance, SceneContact, SceneError, SceneMotionAnswer,
+    SceneMotionClearance, SceneMotionContact, ScenePlace, StructureProximity, Tightest,
 };
-pub use crate::engine::{BvhSearch, Exhaustive, Proximity, RobotPair, SearchPrecision, SelfQuery};
+pub use crate::answer::{
+    Certificate, Contact, ContactFeature, Derivative, InsideAnswer, LinkFeature, LinkProximity,
+    MeshError, Opening, PlacementFault, ProximityError, Side, SurfaceReport, TriangleFeature,
+    Witness, Work,
+};
+#[cfg(feature = "tubes")]
+pub use crate::answer::{
+    Clearance, Decision, MotionAnswer, MotionClearance, Proof, ShapeInContact, TubePiece,
+    UndecidedReason,
+};
+pub use crate::engine::{BvhSearch, Exhaustive, Proximity, SearchPrecision};
+#[cfg(feature = "robots")]
+pub use crate::engine::{RobotPair, SelfQuery};
+#[cfg(feature = "robots")]
 pub use crate::scene::{Scene, StructureEnd};

@@ -1,6 +1,5 @@
 //! Errors of meshes and queries. Each message names the value at fault and what to change.
 
-use crate::curve::TooSharp;
 use crate::robot::{RobotError, number};
 #[cfg(feature = "gpu")]
 use gpu_batch::DeviceFailure;
@@ -332,21 +331,9 @@ impl MeshError {
     }
 }
 
-impl From<TooSharp> for ProximityError {
-    fn from(too_sharp: TooSharp) -> Self {
-        match too_sharp {
-            TooSharp::Joint { joint, angle, radius, length } => {
-                Self::JointTooSharp { joint, angle, radius, length }
-            }
-            TooSharp::Bend { arc_length, curvature, radius } => {
-                Self::BendsWithinRadius { arc_length, curvature, radius }
-            }
-        }
-    }
-}
-
 impl ProximityError {
     /// Attributes the error to one of two robots, whose pose or motion has this parameter name.
+    #[cfg(feature = "robots")]
     pub(crate) fn of_robot(self, parameter: &'static str) -> Self {
         let fault = match self {
             Self::PoseNotFinite => PlacementFault::PoseNotFinite,

@@ -4,7 +4,8 @@ use super::checked_fields::checked_fields;
 #[cfg(feature = "serde-serialize")]
 use super::checked_fields::{check_bounds, check_distance, check_motion, check_shape, check_time};
 use super::tube::resolve;
-use super::{Decision, PairWitness, UndecidedReason};
+use super::{Decision, PairWitness, ProximityError, UndecidedReason};
+use crate::curve::TooSharp;
 use parry3d_f64::math::Real;
 
 /// The place where two links are closest, one of each robot, in the frame and unit of the poses.
@@ -243,3 +244,16 @@ checked_fields!(
     |&Fields { lower, upper, uncertainty, t, .. }| check_bounds([lower, upper], uncertainty)
         .and(check_time(t))
 );
+
+impl From<TooSharp> for ProximityError {
+    fn from(too_sharp: TooSharp) -> Self {
+        match too_sharp {
+            TooSharp::Joint { joint, angle, radius, length } => {
+                Self::JointTooSharp { joint, angle, radius, length }
+            }
+            TooSharp::Bend { arc_length, curvature, radius } => {
+                Self::BendsWithinRadius { arc_length, curvature, radius }
+            }
+        }
+    }
+}

@@ -5,7 +5,7 @@ use super::centreline::{Curve, TICKS};
 use super::section::{EndFace, Section};
 use super::{Tube, check_faces};
 use crate::distance::Scalar;
-use crate::robot::{RobotError, check_place, check_radii, direction};
+use crate::robot::{RobotError, check_place, check_sections, direction};
 use parry3d_f64::math::{Real, Vector};
 use std::sync::Arc;
 
@@ -52,7 +52,8 @@ impl Tube {
         sections: &[TubeSection],
         curve: impl Fn(Real) -> (Vector, Vector) + Send + Sync + 'static,
     ) -> Result<Self, RobotError> {
-        check_sections("sections", sections)?;
+        let numbers = |given: &TubeSection| [given.length, given.radius, given.curvature];
+        check_sections("sections", sections.iter().map(numbers))?;
         let mut tube = Self::empty();
         let mut start = 0.0;
         for (index, given) in sections.iter().enumerate() {
@@ -116,35 +117,6 @@ impl Tube {
         tube.curve = Curve::Function(Arc::new(curve));
         Ok(tube)
     }
-}
-
-/// Checks sections before they are used.
-///
-/// # Errors
-/// No section; a length that is not positive, a radius or a curvature that is negative, or one that
-/// is not finite.
-pub(super) fn check_sections(
-    parameter: &'static str,
-    sections: &[TubeSection],
-) -> Result<(), RobotError> {
-    if sections.is_empty() {
-        return Err(RobotError::NoSections { parameter });
-    }
-    for (index, section) in sections.iter().enumerate() {
-        if !(section.length > 0.0 && section.length < Real::INFINITY) {
-            return Err(RobotError::BadLength { parameter, index, value: section.length });
-        }
-        check_radii(parameter, &[section.radius]).map_err(|_| RobotError::BadRadius {
-            parameter,
-            index,
-            value: section.radius,
-            limit: crate::robot::COORDINATE_LIMIT,
-        })?;
-        if !(0.0..Real::INFINITY).contains(&section.curvature) {
-            return Err(RobotError::BadCurvature { parameter, index, value: section.curvature });
-        }
-    }
-    Ok(())
 }
 
 impl Tube {

@@ -20,15 +20,14 @@ mod smoothing_spline;
 #[cfg(test)]
 mod tests;
 mod tube_builder;
+#[cfg(feature = "robots")]
 mod turns;
 mod uncertainty;
 
 pub(crate) use cap_persistence::{CapPersistence, Drift};
-pub(crate) use constant_curvature::check_bending;
-pub use constant_curvature::{BendingSection, ConstantCurvature};
 pub use function::TubeSection;
-use function::check_sections;
 pub(crate) use section::{EndFace, Section};
+#[cfg(feature = "robots")]
 pub(crate) use turns::{TooSharp, TubeTurns};
 
 use crate::robot::{Cap, RobotError, direction, radius_for_all};

@@ -55,6 +55,7 @@ pub(crate) use face::Face;
 pub(crate) use modified_cylinder_modified_cylinder::TwoLinks;
 pub(crate) use point_modified_cylinder::{Link, gives_direction};
 pub(crate) use scalar::Mask;
+#[cfg(feature = "robots")]
 pub(crate) use segment_segment::parameters as segment_parameters;
 pub(crate) use triangle_modified_cylinder::Axial;
 

@@ -209,6 +209,7 @@ impl<T: Scalar> TwoLinks<T> {
     /// the second link.
     ///
     /// The first link must have a length. `may` is as in [`closest`](Self::closest).
+    #[cfg(feature = "robots")]
     #[inline(always)]
     pub(crate) fn closest_to_cap(
         &self,
@@ -233,6 +234,7 @@ impl<T: Scalar> TwoLinks<T> {
     }
 
     /// Same as [`closest_to_cap`](Self::closest_to_cap), for a flat cap of each link.
+    #[cfg(feature = "robots")]
     #[inline(always)]
     pub(crate) fn closest_caps(&self, centres: [Vec3<T>; 2]) -> Closest<T> {
         let everywhere = self.first.radius.le(self.first.radius);

@@ -5,15 +5,20 @@ pub(crate) mod bvh;
 mod definitions;
 mod exhaustive;
 mod proximity;
+#[cfg(feature = "robots")]
 mod robot_pair;
+#[cfg(feature = "robots")]
 mod self_query;
 
 pub use bvh::BvhSearch;
+#[cfg(feature = "robots")]
 pub(crate) use bvh::SceneMotion;
 pub use exhaustive::{Exhaustive, SearchPrecision};
 pub use proximity::Proximity;
 #[cfg(feature = "gpu")]
 pub(crate) use proximity::placed;
 pub(crate) use proximity::{Engine, any_triangle};
+#[cfg(feature = "robots")]
 pub use robot_pair::RobotPair;
+#[cfg(feature = "robots")]
 pub use self_query::SelfQuery;

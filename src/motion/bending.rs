@@ -50,9 +50,9 @@
 //! that.
 
 use super::{DisplacementBound, Motion, Speed, rigid_pose};
-use crate::curve::check_bending;
-use crate::curve::{BendingSection, ConstantCurvature, Tube};
+use crate::curve::Tube;
 use crate::distance::Scalar;
+use crate::robot::{BendingSection, ConstantCurvature, check_bending};
 use crate::robot::{RobotError, length};
 use parry3d_f64::math::{Pose, Real, Vector};
 

@@ -162,6 +162,7 @@ impl CommonFrame {
     }
 
     /// This frame in another frame at rest, into which `pose` leads.
+    #[cfg(feature = "robots")]
     pub(crate) fn seen_from(self, pose: &Pose) -> Self {
         Self {
             at: pose * self.at,
@@ -284,6 +285,7 @@ pub(crate) struct CarriedMotion<'a> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CarriedSpeed {
     /// U: relative to its own frame.
+    #[cfg_attr(not(feature = "robots"), expect(dead_code, reason = "pairs alone need it"))]
     pub own: Speed,
     /// Relative to the other frame.
     pub seen: Speed,
@@ -302,6 +304,7 @@ impl<'a> CarriedMotion<'a> {
     }
 
     /// Whether the stated speeds are relative to the field F itself.
+    #[cfg(feature = "robots")]
     pub(crate) fn is_exact(&self) -> bool {
         self.frame.is_none_or(|frame| frame.off == 0.0 && frame.turn_off == 0.0)
     }

@@ -5,7 +5,8 @@ use super::{
     BendingMotion, BendingRates, DisplacementBound, LinearMotion, Motion, MotionPath, MovingBase,
     RigidMotion, ShapePath, Speed, bending_displacement,
 };
-use crate::curve::{BendingSection, ConstantCurvature, Tube};
+use crate::curve::Tube;
+use crate::robot::{BendingSection, ConstantCurvature};
 use crate::robot::{Chain, RobotError};
 use continuum_testing::Random;
 use parry3d_f64::math::{Pose, Real, Vector};

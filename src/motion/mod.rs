@@ -24,6 +24,7 @@ pub use linear::LinearMotion;
 pub use motion_path::MotionPath;
 pub use moving_base::MovingBase;
 pub use rigid::RigidMotion;
+#[cfg(feature = "robots")]
 pub(crate) use rigid::RigidPath;
 pub(crate) use section_signature::{MotionDrift, SectionSignature};
 pub(crate) use shape_path::ShapePath;

@@ -4,7 +4,8 @@ use super::{
     BendingMotion, CarriedMotion, CarriedPiece, CommonFrame, LinearMotion, Motion, MotionPath,
     MovingBase, RigidMotion, RigidPath, Speed,
 };
-use crate::curve::{BendingSection, Tube};
+use crate::curve::Tube;
+use crate::robot::BendingSection;
 use crate::robot::RobotError;
 use continuum_testing::Random;
 use parry3d_f64::math::{Pose, Real, Vector};

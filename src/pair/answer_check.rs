@@ -1,10 +1,9 @@
 //! The checks of a robot and its pose that every engine makes; and whether an answer belongs to a
-//! link and a triangle, or to two links, as they are now. The mesh or the robots may have moved
-//! since, or may be others.
+//! link and a triangle as they are now. The mesh may have moved since, or may be another.
 
 use super::coordinates::Nearest;
 use super::placed_link::PlacedLink;
-use crate::answer::{LinkProximity, ProximityError, RobotProximity};
+use crate::answer::{LinkProximity, ProximityError};
 use crate::distance::Scalar;
 use crate::mesh::{check_triangle, check_vertex, in_range};
 use crate::robot::{COORDINATE_LIMIT, Chain, LinkNode, ModifiedCylinder, NotRigid, rigid};
@@ -91,50 +90,9 @@ impl LinkProximity {
     }
 }
 
-impl RobotProximity {
-    /// Checks this answer against two links: each point lies in its link, and `distance` is the
-    /// distance both of the two points and of the two links.
-    ///
-    /// # Errors
-    /// The answer does not fit.
-    pub(super) fn check_answer(&self, links: [PlacedLink; 2]) -> Result<(), ProximityError> {
-        let [first, second] = &links;
-        let measured = first.measure_link(second);
-        // Every query returns the measured result, bit for bit.
-        if self.distance == measured.distance
-            && self.witness.on_first == measured.on_first
-            && self.witness.on_second == measured.on_second
-        {
-            return Ok(());
-        }
-        let far = links.iter().flat_map(|link| [link.start(), link.end()]);
-        let far = far.fold(0.0, |most: Real, point| most.max(point.abs().max_element()));
-        let reach = far + first.radius().max(second.radius());
-        // The extent is at most the reach of the links on either side.
-        let limit = ROUNDED * (far + 2.0 * reach);
-        let links_of_answer = self.links;
-        let check = check_within(limit, |field, off| ProximityError::LinksDoNotFit {
-            links: links_of_answer,
-            field,
-            off,
-            limit,
-        });
-        let points = [self.witness.on_first, self.witness.on_second];
-        for ((field, point), link) in ["on_first", "on_second"].into_iter().zip(points).zip(&links)
-        {
-            check_reach(&check, field, point, link, 2.0 * reach)?;
-            let ball = PlacedLink::between(point, point, 0.0, [false; 2]);
-            check(field, ball.measure_link(link).distance)?;
-        }
-        let [from, to] = points.map(|point| PlacedLink::between(point, point, 0.0, [false; 2]));
-        check("distance", (from.measure_link(&to).distance - self.distance).abs())?;
-        check("distance", (measured.distance - self.distance).abs())
-    }
-}
-
 /// Returns the check of one field of an answer: `off`, by which the field is wrong, is at most
 /// `limit`. `refuse` makes the error.
-fn check_within(
+pub(super) fn check_within(
     limit: Real,
     refuse: impl Fn(&'static str, Real) -> ProximityError,
 ) -> impl Fn(&'static str, Real) -> Result<(), ProximityError> {
@@ -144,7 +102,7 @@ fn check_within(
 
 /// Refuses a point with a coordinate beyond `reach`, the reach of the shapes: measuring it could
 /// overflow.
-fn check_reach(
+pub(super) fn check_reach(
     check: impl Fn(&'static str, Real) -> Result<(), ProximityError>,
     field: &'static str,
     point: Vector,

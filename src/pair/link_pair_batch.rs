@@ -1,10 +1,11 @@
 //! Several pairs of links in double precision, one pack at a time, with the bits of
 //! [`PlacedLink::measure_link`](super::PlacedLink::measure_link) on every instruction set.
 
+use super::links_of_robots::capsules_apart;
 use super::measure_batch::narrowed;
 use super::pair_lanes::{BATCH, Rows, link, put_link, store};
 use super::placed_link::PlacedLink;
-use super::two_links::{NearestOfLinks, capsules_apart};
+use super::two_links::NearestOfLinks;
 use crate::distance::lanes::{Pack, set_bits};
 use crate::distance::{Unfused, dispatch};
 use fearless_simd::Level;

@@ -2,12 +2,18 @@
 //! certificate, for one pair and for batches.
 
 mod answer_check;
+#[cfg(feature = "robots")]
 mod beside_itself;
 mod certificate;
 mod contact;
 mod coordinates;
 mod link_lanes;
+#[cfg(feature = "robots")]
 mod link_pair_batch;
+#[cfg(feature = "robots")]
+mod links_certificate;
+#[cfg(feature = "robots")]
+mod links_of_robots;
 mod measure_batch;
 mod nearest_features;
 mod pair_lanes;
@@ -17,10 +23,12 @@ mod segment_batch;
 mod two_links;
 
 pub(crate) use answer_check::rigid_pose;
+#[cfg(feature = "robots")]
 pub(crate) use beside_itself::{JoinedLink, MovedLinks, Tolerance};
 pub(crate) use contact::{PlacedPair, add_contacts, contact, contacts, derivative};
 pub(crate) use coordinates::Nearest;
 pub(crate) use link_lanes::{LinkLanes, Nearer, SearchLink};
+#[cfg(feature = "robots")]
 pub(crate) use link_pair_batch::{LinkPairBatch, PlacedEnds};
 pub(crate) use measure_batch::{Best, Ranked, rank_each, rounding};
 pub(crate) use pair_lanes::BATCH;

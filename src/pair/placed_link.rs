@@ -57,6 +57,7 @@ impl PlacedLink {
         LinkProximity { link: number as u32, distance, witness }
     }
 
+    #[cfg(feature = "tubes")]
     pub(crate) fn is_finite(&self) -> bool {
         self.start.is_finite() && self.end.is_finite() && self.radius.is_finite()
     }

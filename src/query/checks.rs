@@ -18,6 +18,7 @@ pub(crate) fn check_not_negative(
 }
 
 /// A margin, and how near to it the clearance must be for the answer to stay open.
+#[cfg(feature = "tubes")]
 pub(crate) fn check_decision(margin: Real, resolution: Real) -> Result<(), ProximityError> {
     check_margin(margin)?;
     check_not_negative("resolution", resolution)

@@ -73,6 +73,9 @@ use crate::robot::{Cap, ModifiedCylinder};
 use parry3d_f64::math::{Real, Vector};
 use std::f64::consts::FRAC_PI_2;
 
+/// How many cores are tried for a body that overlaps a triangle or another body.
+pub(super) const MOST_CORES: u32 = 4;
+
 /// A convex body around a piece.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BoundingBody {
@@ -100,6 +103,7 @@ impl Body for BoundingBody {
 pub(crate) struct SectionRange<'a> {
     pub section: u32,
     /// The range along the section, as shares of its length.
+    #[cfg_attr(not(feature = "robots"), expect(dead_code, reason = "pairs alone need it"))]
     pub shares: [Real; 2],
     /// Its body in the current shape.
     pub outer: &'a BoundingBody,
@@ -108,6 +112,7 @@ pub(crate) struct SectionRange<'a> {
 
 impl PlacedTube<'_> {
     /// Returns a piece as a range of its section, which is the same in every shape, with its body.
+    #[cfg(feature = "robots")]
     pub(super) fn section_range<'o>(
         &self,
         piece: &Piece,

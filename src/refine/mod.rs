@@ -1,19 +1,23 @@
 //! A tube divided into pieces: bounding volumes, points inside the tube, and the two loops that
 //! divide it (`depth_first` and `best_first`).
 
+#[cfg(feature = "robots")]
 mod ball_tree;
 mod best_first;
 mod bounding_body;
 mod depth_first;
 mod placed_tube;
+#[cfg(feature = "robots")]
 mod section_motions;
 #[cfg(test)]
 mod section_motions_tests;
 #[cfg(test)]
 mod tests;
 mod tube_in_mesh;
+#[cfg(feature = "robots")]
 mod tube_pair;
 mod tube_point;
+#[cfg(feature = "robots")]
 mod tube_with_itself;
 
 pub(crate) use best_first::{Examined, MOST_LEVELS, PendingPiece, PendingPieces, PieceState};
@@ -23,7 +27,10 @@ pub(crate) use depth_first::{
     refine,
 };
 pub(crate) use placed_tube::{Piece, PlacedTube};
+#[cfg(feature = "robots")]
 pub(crate) use section_motions::{MAX_EXTRA_TURN, SectionMotion, SectionMotions};
 pub(crate) use tube_in_mesh::{MeshUpperBound, TubeInMesh};
+#[cfg(feature = "robots")]
 pub(crate) use tube_pair::{PairQueue, PairUpperBound, PiecePair, TubePair};
+#[cfg(feature = "robots")]
 pub(crate) use tube_with_itself::{SelfPair, SelfPairQueue, TubeWithItself};

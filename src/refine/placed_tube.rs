@@ -93,6 +93,7 @@ impl<'a> PlacedTube<'a> {
     }
 
     /// Uses another tube as the obstacle, in place of the mesh.
+    #[cfg(feature = "robots")]
     pub(super) fn beside(&mut self, other: &Self) {
         self.slack = slack_for(self.reach + other.reach);
     }
@@ -294,6 +295,7 @@ impl PlacedTube<'_> {
 
     /// Whether a place of a piece may be a disc that is no ball, in this shape or another one of
     /// its motion.
+    #[cfg(feature = "robots")]
     pub(super) fn may_have_discs(&self, section: &Section, arcs: [Real; 2]) -> bool {
         near_faces(section.faces, section, arcs) != [false; 2]
     }

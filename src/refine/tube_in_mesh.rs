@@ -1,9 +1,8 @@
 //! A tube in a mesh: bounding bodies of its pieces, their nearest triangles, and upper bounds.
 
-use super::bounding_body::BoundingBody;
+use super::bounding_body::{BoundingBody, MOST_CORES};
 use super::depth_first::{Refinable, UpperBound, WorkItem};
 use super::placed_tube::{Piece, PlacedTube};
-use super::tube_pair::MOST_CORES;
 use super::tube_point::TubePoint;
 use crate::answer::{ProximityError, Witness};
 use crate::pair::{Best, Nearest, PlacedLink};

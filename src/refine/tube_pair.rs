@@ -19,7 +19,7 @@
 //! 3. **Halve** the piece whose body becomes narrower by more.
 
 use super::ball_tree::{BallTree, WaitingRuns, near_pairs, pays};
-use super::bounding_body::{BoundingBody, SectionRange};
+use super::bounding_body::{BoundingBody, MOST_CORES, SectionRange};
 use super::depth_first::{Body, Refinable, UpperBound, WorkItem};
 use super::placed_tube::{Piece, PlacedTube};
 use super::tube_point::TubePoint;
@@ -33,9 +33,6 @@ const MAX_MOVES: u32 = 4;
 /// How far y moves towards a tube, as a share of the way to its surface: more than 1, to end
 /// inside.
 const INTO: Real = 1.125;
-
-/// How many cores are tried for two overlapping bodies.
-pub(super) const MOST_CORES: u32 = 4;
 
 /// Two tubes in one frame.
 #[derive(Clone, Copy)]

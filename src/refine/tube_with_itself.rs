@@ -101,11 +101,11 @@
 //! (`tube_point`).
 
 use super::ball_tree::{BallTree, WaitingRuns, near_pairs, pays};
-use super::bounding_body::{BoundingBody, SectionRange};
+use super::bounding_body::{BoundingBody, MOST_CORES, SectionRange};
 use super::depth_first::{Body, Refinable, WorkItem};
 use super::placed_tube::{Piece, PlacedTube};
 use super::section_motions::{SectionMotion, SectionMotions};
-use super::tube_pair::{MOST_CORES, NearestPairs, PairUpperBound, TubePair, found_from, half_way};
+use super::tube_pair::{NearestPairs, PairUpperBound, TubePair, found_from, half_way};
 use super::tube_point::TubePoint;
 use crate::answer::ProximityError;
 use crate::curve::{EndFace, Section, Tube, TubeTurns};

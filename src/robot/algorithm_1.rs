@@ -54,6 +54,7 @@ pub(super) fn from_segment_radii(points: &[Vector], radii: &[Real], caps: &mut V
 
 /// As [`from_segment_radii`], for segments that are all links. While a robot moves, a link may have
 /// no length at one instant.
+#[cfg(feature = "tubes")]
 pub(crate) fn from_link_radii(points: &[Vector], radii: &[Real], caps: &mut Vec<[Cap; 2]>) {
     from_radii(points, radii, caps, |_| true);
 }

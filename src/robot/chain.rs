@@ -249,6 +249,7 @@ impl Chain {
     }
 
     /// Whether the robot has the same caps in every shape: all links have one cap by definition.
+    #[cfg(feature = "tubes")]
     pub(crate) fn is_uniform(&self) -> bool {
         self.is_uniform
     }

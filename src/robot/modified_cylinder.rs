@@ -135,6 +135,7 @@ impl ModifiedCylinder {
     }
 
     /// Returns the [`length`](Self::length) and the [`axis`](Self::axis).
+    #[cfg(feature = "robots")]
     pub(crate) fn length_and_axis(&self) -> (Real, Vector) {
         scale::length_and_direction(self.end - self.start)
     }

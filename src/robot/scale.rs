@@ -10,6 +10,7 @@ use parry3d_f64::math::{Real, Vector};
 
 /// Axes that open by less than this angle (rad) run level. It exceeds the rounding that a simulator
 /// leaves in the directions of parallel legs; intended angles are far larger.
+#[cfg(feature = "robots")]
 pub(crate) const LEVEL: Real = 1.0 / (1_u64 << 24) as Real;
 
 /// Squares of lengths in this range lose no significant bit.

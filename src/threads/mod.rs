@@ -6,4 +6,6 @@ mod parallel;
 pub(crate) use lazy::Lazy;
 #[cfg(feature = "gpu")]
 pub(crate) use parallel::on_this_thread;
-pub(crate) use parallel::{both, each, in_chunks, threads, with_clones};
+#[cfg(feature = "robots")]
+pub(crate) use parallel::with_clones;
+pub(crate) use parallel::{both, each, in_chunks, threads};

@@ -85,6 +85,7 @@ pub(crate) fn in_chunks<Q: Sync, A: Send, M: Default + Send>(
 
 /// Answers questions in chunks, each chunk with its own clone of `original`. Replaces the content
 /// of `answers`; until a question is answered, its place holds `unanswered`.
+#[cfg(feature = "robots")]
 pub(crate) fn with_clones<S: Clone + Send + Sync, Q: Sync, A: Send>(
     original: &S,
     questions: &[Q],

@@ -13,10 +13,10 @@
 //! not do, because a body with flat ends is wider beside them than a body with round ends. So
 //! either body may give the tighter bound.
 
-use super::search::{BvhSearch, Context};
+use super::search::{BvhSearch, Context, Remembered};
 use crate::answer::{Clearance, Decision, ProximityError, TubePiece};
 use crate::curve::Tube;
-use crate::query::clearance::{MeshPieces, TubeMemory, clearance, clears_tube};
+use crate::query::clearance::{LastPlace, MeshPieces, TubeMemory, clearance, clears_tube};
 use crate::query::motion::MarginQuery;
 use crate::query::{check_decision, check_not_negative};
 use crate::refine::{PendingPiece, PlacedTube, TubeInMesh};
@@ -140,31 +140,6 @@ impl BvhSearch {
         self.context().clears_tube(tube, pose, MarginQuery { margin, resolution }, None)
     }
 
-    /// [`clears_tube`](Self::clears_tube) for a tube in a scene. The margin and the resolution are
-    /// checked. `frame`: the largest coordinate of the mesh and of its pose in the scene, if `pose`
-    /// is the product of the tube's pose there and the inverse of the mesh's pose.
-    pub(crate) fn ask_clears_tube(
-        &mut self,
-        tube: &Tube,
-        pose: &Pose,
-        wanted: MarginQuery,
-        frame: Option<Real>,
-    ) -> Result<Decision, ProximityError> {
-        self.context().clears_tube(tube, pose, wanted, frame)
-    }
-
-    /// [`clearance`](Self::clearance) for a tube in a scene. The tolerance is checked; `frame` is
-    /// as for `ask_clears_tube`.
-    pub(crate) fn ask_clearance(
-        &mut self,
-        tube: &Tube,
-        pose: &Pose,
-        tolerance: Real,
-        frame: Option<Real>,
-    ) -> Result<Clearance, ProximityError> {
-        self.context().clearance(tube, pose, tolerance, frame)
-    }
-
     /// [`clearance`](Self::clearance) for many tubes, on all cores.
     ///
     /// Writes one result per tube to `out`, in order.
@@ -230,17 +205,21 @@ impl BvhSearch {
     }
 }
 
+/// A placed tube, memory, and the warm start.
+type TubeQuery<'a> = (TubeInMesh<'a>, &'a mut TubeMemory, &'a mut Option<LastPlace>);
+
 /// Step 1: the clearance of a tube as if no turn had been stated, and its pieces. `None` if none
 /// was stated.
 fn clearance_without_turn<'m>(
     tube: &mut TubeInMesh,
     memory: &'m mut TubeMemory,
+    last: &mut Option<LastPlace>,
     tolerance: Real,
 ) -> Result<Option<(Clearance, &'m MeshPieces)>, ProximityError> {
     let placed = tube.tube;
     let Some(less_known) = placed.without_turn() else { return Ok(None) };
     tube.tube = less_known;
-    let answer = clearance(tube, memory, tolerance);
+    let answer = clearance(tube, memory, last, tolerance);
     tube.tube = placed;
     answer.map(Some)
 }
@@ -268,16 +247,17 @@ fn report_pieces(
 }
 
 impl<'a> Context<'a> {
-    fn clearance(
+    pub(super) fn clearance(
         self,
         tube: &'a Tube,
         pose: &Pose,
         tolerance: Real,
         frame: Option<Real>,
     ) -> Result<Clearance, ProximityError> {
-        let (mut tube, memory) = self.tube_in_mesh(tube, pose, frame)?;
-        let known = clearance_without_turn(&mut tube, memory, tolerance)?.map(|(known, _)| known);
-        let (answer, _) = clearance(&mut tube, memory, tolerance)?;
+        let (mut tube, memory, last) = self.tube_in_mesh(tube, pose, frame)?;
+        let known =
+            clearance_without_turn(&mut tube, memory, last, tolerance)?.map(|(known, _)| known);
+        let (answer, _) = clearance(&mut tube, memory, last, tolerance)?;
         Ok(known.map_or(answer, |known| known.and(answer, tolerance)))
     }
 
@@ -288,37 +268,37 @@ impl<'a> Context<'a> {
         tolerance: Real,
         out: &mut Vec<TubePiece>,
     ) -> Result<Clearance, ProximityError> {
-        let (mut tube, memory) = self.tube_in_mesh(tube, pose, None)?;
+        let (mut tube, memory, last) = self.tube_in_mesh(tube, pose, None)?;
         let placed = tube.tube;
         let mut known = None;
-        let without_turn = clearance_without_turn(&mut tube, memory, tolerance)?;
+        let without_turn = clearance_without_turn(&mut tube, memory, last, tolerance)?;
         if let (Some(less_known), Some((answer, pieces))) = (placed.without_turn(), without_turn) {
             report_pieces(&less_known, pieces, out)?;
             known = Some(answer);
         }
-        let (answer, pieces) = clearance(&mut tube, memory, tolerance)?;
+        let (answer, pieces) = clearance(&mut tube, memory, last, tolerance)?;
         if known.is_none_or(|known| answer.lower >= known.lower) {
             report_pieces(&placed, pieces, out)?;
         }
         Ok(known.map_or(answer, |known| known.and(answer, tolerance)))
     }
 
-    fn clears_tube(
+    pub(super) fn clears_tube(
         self,
         tube: &'a Tube,
         pose: &Pose,
         MarginQuery { margin, resolution }: MarginQuery,
         frame: Option<Real>,
     ) -> Result<Decision, ProximityError> {
-        let (mut tube, memory) = self.tube_in_mesh(tube, pose, frame)?;
+        let (mut tube, memory, last) = self.tube_in_mesh(tube, pose, frame)?;
         let placed = tube.tube;
         let Some(less_known) = placed.without_turn() else {
-            return clears_tube(&mut tube, memory, margin, resolution);
+            return clears_tube(&mut tube, memory, last, margin, resolution);
         };
         tube.tube = less_known;
-        let decision = clears_tube(&mut tube, memory, margin, resolution);
+        let decision = clears_tube(&mut tube, memory, last, margin, resolution);
         tube.tube = placed;
-        Decision::better_of(decision, || clears_tube(&mut tube, memory, margin, resolution))
+        Decision::better_of(decision, || clears_tube(&mut tube, memory, last, margin, resolution))
     }
 
     /// Places the tube in the mesh's frame and returns it with the warm start of tube queries.
@@ -327,10 +307,11 @@ impl<'a> Context<'a> {
         tube: &'a Tube,
         pose: &Pose,
         frame: Option<Real>,
-    ) -> Result<(TubeInMesh<'a>, &'a mut TubeMemory), ProximityError> {
-        let (search, last) = self.search();
+    ) -> Result<TubeQuery<'a>, ProximityError> {
+        let (search, Remembered { tube: memory, places, .. }) = self.search();
         let tube = PlacedTube::new(tube, pose, search.hierarchy.reach)?;
         let tube = frame.map_or(tube, |size| tube.posed(size, 1.0));
-        Ok((TubeInMesh { search: PlacedMeshSearch::at_rest(search), tube }, &mut last.tube))
+        let tube = TubeInMesh { search: PlacedMeshSearch::at_rest(search), tube };
+        Ok((tube, memory, &mut places.tube))
     }
 }

@@ -3,7 +3,7 @@
 //! Each query is a [`MotionSearch`]. It reuses memory; answers do not depend on earlier queries.
 
 use super::search::{BvhSearch, Context, Remembered};
-use crate::answer::{MotionAnswer, MotionClearance, ProximityError};
+use crate::answer::{MeshError, MotionAnswer, MotionClearance, ProximityError};
 use crate::motion::{Motion, ShapePath};
 use crate::query::motion::{MarginQuery, MotionSearch, Sought};
 use crate::query::{check_decision, check_not_negative};
@@ -294,56 +294,19 @@ impl BvhSearch {
         });
         Ok(())
     }
-}
 
-/// A motion in a structure of a scene. The numbers of the queries are checked.
-pub(crate) struct SceneMotion<'a> {
-    pub motion: &'a dyn Motion,
-    /// As in [`MotionSearch`].
-    pub frame: Option<(Real, Real)>,
-    /// The vertices at the end of the motion, if they move.
-    pub to: Option<&'a [Vector]>,
-}
-
-impl BvhSearch {
-    /// [`clears_motion`](Self::clears_motion) or [`time_of_contact`](Self::time_of_contact) in a
-    /// scene.
-    pub(crate) fn ask_margin(
-        &mut self,
-        asked: SceneMotion,
-        wanted: MarginQuery,
-        sought: Sought,
-    ) -> Result<MotionAnswer, ProximityError> {
-        self.scene_motion(asked).decide(wanted, sought)
-    }
-
-    /// [`clearance_of_motion`](Self::clearance_of_motion) in a scene; or a lower bound of at least
-    /// `limit`.
-    pub(crate) fn ask_clearance_of_motion(
-        &mut self,
-        asked: SceneMotion,
-        tolerance: Real,
-        limit: Real,
-    ) -> Result<MotionClearance, ProximityError> {
-        self.scene_motion(asked).clearance(tolerance, limit)
-    }
-
-    fn scene_motion<'a>(
-        &'a mut self,
-        SceneMotion { motion, frame, to }: SceneMotion<'a>,
-    ) -> MotionSearch<'a> {
-        let mut search = self.context().motion(motion);
-        search.frame = frame;
-        if let Some(to) = to {
-            search.move_mesh(to);
-        }
-        search
+    /// Checks that the vertices can move to these places.
+    ///
+    /// # Errors
+    /// Their number differs, or one is not finite or out of range.
+    pub(crate) fn check_moved(&self, vertices: &[Vector]) -> Result<(), MeshError> {
+        self.prepared().hierarchy.mesh.check_moved(vertices)
     }
 }
 
 impl<'a> Context<'a> {
     /// A search along a motion, with the memory of the last one. No earlier answer enters it.
-    fn motion(self, motion: &'a dyn Motion) -> MotionSearch<'a> {
+    pub(super) fn motion(self, motion: &'a dyn Motion) -> MotionSearch<'a> {
         let (search, Remembered { motion: memory, .. }) = self.search();
         MotionSearch { search, memory, motion, last: None, does_mesh_move: false, frame: None }
     }

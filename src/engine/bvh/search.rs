@@ -12,8 +12,10 @@ use crate::answer::{Contact, LinkProximity, MeshError, ProximityError, Work};
 use crate::engine::{Engine, Proximity, any_triangle};
 use crate::mesh::Mesh;
 use crate::pair::PlacedRobot;
-use crate::query::clearance::TubeMemory;
+#[cfg(feature = "tubes")]
+use crate::query::clearance::{LastPlace, TubeMemory};
 use crate::query::contacts::{ContactQuery, ContactSearch, LocalMinima};
+#[cfg(feature = "tubes")]
 use crate::query::motion::MotionMemory;
 use crate::query::nearest::{
     ClearsMemory, ClearsSearch, PerLinkMemory, WarmStart, minimum_within, per_link,
@@ -88,8 +90,19 @@ pub(super) struct Remembered {
     /// For the lids of openings.
     pub lids: ClearsMemory,
     pub contacts: LocalMinima,
+    /// Where the next queries of other kinds begin.
+    pub places: LastPlaces,
+    #[cfg(feature = "tubes")]
     pub tube: TubeMemory,
+    #[cfg(feature = "tubes")]
     pub motion: MotionMemory,
+}
+
+/// The places of the last answers, one for each kind of query that begins at one.
+#[derive(Clone, Default)]
+pub(super) struct LastPlaces {
+    #[cfg(feature = "tubes")]
+    pub tube: Option<LastPlace>,
 }
 
 impl Remembered {
@@ -98,7 +111,7 @@ impl Remembered {
         self.minimum.forget();
         self.clears.forget();
         self.lids.forget();
-        self.tube.forget();
+        self.places = LastPlaces::default();
     }
 
     /// Forgets the cached distances, which hold only while the mesh rests.
@@ -227,24 +240,6 @@ impl BvhSearch {
                 answer(Context { level, mesh, memory }, robot, out);
             }
         });
-    }
-
-    /// Returns whether a robot that probably clears the mesh is farther than `margin`.
-    ///
-    /// Skips the guess at a link that crosses the wall, and the lower bounds of the last query.
-    pub(crate) fn clears_unless_crossing(&mut self, robot: PlacedRobot, margin: Real) -> bool {
-        let (search, last) = self.context().search();
-        ClearsSearch { search, sides: None, robot, memory: &mut last.clears }
-            .cleared_by(margin)
-            .is_some()
-    }
-
-    /// Checks that the vertices can move to these places.
-    ///
-    /// # Errors
-    /// Their number differs, or one is not finite or out of range.
-    pub(crate) fn check_moved(&self, vertices: &[Vector]) -> Result<(), MeshError> {
-        self.prepared().hierarchy.mesh.check_moved(vertices)
     }
 
     pub(super) fn prepared(&self) -> &PreparedMesh {

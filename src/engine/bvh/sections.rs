@@ -2,9 +2,9 @@
 
 use super::search::BvhSearch;
 use crate::answer::ProximityError;
-use crate::curve::{BendingSection, ConstantCurvature};
 use crate::pair::{PlacedRobot, rigid_pose};
 use crate::query::check_margin;
+use crate::robot::{BendingSection, ConstantCurvature};
 #[cfg(doc)]
 use crate::{engine::Proximity, robot::Chain};
 use parry3d_f64::math::{Pose, Real};

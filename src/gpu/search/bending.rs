@@ -60,10 +60,10 @@
 use super::bounds::{FLAT_ERROR, SearchCap, TURN_ERROR, UNIT};
 use super::robots::{Packed, bytes_of, is_fine};
 use crate::answer::ProximityError;
-use crate::curve::{BendingSection, ConstantCurvature};
 use crate::distance::Scalar;
 use crate::distance::lanes::Lane;
 use crate::mesh::SearchFrame;
+use crate::robot::{BendingSection, ConstantCurvature};
 use crate::robot::{COORDINATE_LIMIT, Chain, RobotError};
 use gpu_batch::wgpu::WriteOnly;
 use gpu_batch::{record, wgsl};

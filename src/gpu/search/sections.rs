@@ -7,12 +7,12 @@ use super::engine::{GpuSearch, Measure};
 use super::kernels::Question;
 use super::robots::Packed;
 use crate::answer::ProximityError;
-use crate::curve::BendingSection;
 #[cfg(doc)]
 use crate::engine::BvhSearch;
 use crate::mesh::Mesh;
 use crate::pair::{PlacedRobot, rigid_pose};
 use crate::query::check_margin;
+use crate::robot::BendingSection;
 use parry3d_f64::math::{Pose, Real};
 
 /// The least number of links per core of the CPU for which a batch runs on the device. An estimate:

@@ -2,12 +2,12 @@
 
 use super::{ball, gpu, robot};
 use crate::answer::{LinkProximity, ProximityError};
-use crate::curve::BendingSection;
 use crate::engine::{BvhSearch, Proximity};
 use crate::gpu::opened::Gpu;
 use crate::gpu::search::SearchKernels;
 use crate::gpu::search::kernels::{Question, passes};
 use crate::gpu::{GpuError, GpuSearch, Precision};
+use crate::robot::BendingSection;
 use crate::robot::Chain;
 use continuum_testing::Random;
 use gpu_batch::{DeviceError, DeviceFailure, Shader, wgpu};

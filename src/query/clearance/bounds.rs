@@ -48,9 +48,10 @@ pub(super) const MOST_DIVISIONS: u32 = 1 << 15;
 pub(crate) fn clearance<'m>(
     tube: &mut TubeInMesh,
     memory: &'m mut TubeMemory,
+    last: &mut Option<LastPlace>,
     tolerance: Real,
 ) -> Result<(Clearance, &'m MeshPieces), ProximityError> {
-    let mut hint = Hint { upper: Real::INFINITY, triangle: memory.last.map(|last| last.triangle) };
+    let mut hint = Hint { upper: Real::INFINITY, triangle: last.map(|last| last.triangle) };
     // If the mesh is much larger than the tube, a near mesh allows a smaller `slack`. The bound for
     // it must not depend on earlier queries.
     if tube.gains_from_tightening() {
@@ -58,9 +59,7 @@ pub(crate) fn clearance<'m>(
         tube.tighten_slack(first.upper);
         hint.take(&tube.bound_at(first.section, first.witness.arc_length, first.witness.triangle));
     }
-    if let Some(last) =
-        memory.last.filter(|last| (last.section as usize) < tube.tube.sections().len())
-    {
+    if let Some(last) = last.filter(|last| (last.section as usize) < tube.tube.sections().len()) {
         hint.take(&tube.bound_at(last.section, last.arc, last.triangle));
     }
     tube.begin_coarse(&mut memory.begun);
@@ -73,7 +72,7 @@ pub(crate) fn clearance<'m>(
     let best = bounds.best;
     let best = best.unwrap_or_else(|| bounds.tube.first_bound());
     let BoundedClearance { lower, resolved, uncertainty } = bounds.answer(best.upper);
-    memory.last = Some((&best).into());
+    *last = Some((&best).into());
     let MeshUpperBound { upper, section, witness } = best;
     let answer = Clearance { lower, upper, resolved, uncertainty, section, witness };
     Ok((answer, &memory.pieces))
@@ -231,7 +230,7 @@ impl<'a, T: Refinable> BoundsSearch<'a, T> {
     }
 }
 
-/// The place that realised the last answer.
+/// The place that realised the last answer: it warm-starts the next query.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LastPlace {
     pub triangle: u32,
@@ -246,17 +245,10 @@ impl From<&MeshUpperBound> for LastPlace {
     }
 }
 
-/// The place that warm-starts the next query about a tube, and memory that is reused.
+/// Memory that the next query about a tube reuses.
 #[derive(Clone, Default)]
 pub(crate) struct TubeMemory {
     pub pieces: MeshPieces,
     /// The initial pieces of a query.
     pub begun: Vec<Piece>,
-    pub last: Option<LastPlace>,
-}
-
-impl TubeMemory {
-    pub(crate) fn forget(&mut self) {
-        self.last = None;
-    }
 }

@@ -16,7 +16,7 @@
 //!
 //! **Proof.** The sequence of divisions does not depend on the resolution (`refine::best_first`).
 
-use super::bounds::{MOST_DIVISIONS, TubeMemory};
+use super::bounds::{LastPlace, MOST_DIVISIONS, TubeMemory};
 use crate::answer::{Decision, ProximityError};
 use crate::refine::{
     Body, Examined, MOST_LEVELS, PendingPiece, PendingPieces, PieceState, Refinable, TubeInMesh,
@@ -31,12 +31,13 @@ use parry3d_f64::math::Real;
 pub(crate) fn clears_tube(
     tube: &mut TubeInMesh,
     memory: &mut TubeMemory,
+    last: &mut Option<LastPlace>,
     margin: Real,
     resolution: Real,
 ) -> Result<Decision, ProximityError> {
     // Farther triangles do not matter.
     tube.tighten_slack(margin);
-    let TubeMemory { pieces, begun, last } = memory;
+    let TubeMemory { pieces, begun } = memory;
     tube.begin_coarse(begun);
     let start = last.map(|last| last.triangle);
     let (decision, found) =

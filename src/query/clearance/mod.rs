@@ -3,5 +3,9 @@
 mod bounds;
 mod decision;
 
-pub(crate) use bounds::{BoundedClearance, BoundsSearch, Hint, MeshPieces, TubeMemory, clearance};
-pub(crate) use decision::{Wanted, clears_pieces, clears_tube};
+#[cfg(feature = "robots")]
+pub(crate) use bounds::{BoundedClearance, BoundsSearch, Hint};
+pub(crate) use bounds::{LastPlace, MeshPieces, TubeMemory, clearance};
+pub(crate) use decision::clears_tube;
+#[cfg(feature = "robots")]
+pub(crate) use decision::{Wanted, clears_pieces};

@@ -2,12 +2,9 @@
 //! for two motions, and for self contact.
 
 use super::approach_bound::{midpoint, remaining_parts};
-use super::interval_test::{IntervalResult, MarginQuery};
+use super::interval_test::IntervalResult;
 use super::progress::{MAX_SHAPES, PATIENCE, Progress};
-use crate::answer::{
-    PairWitness, ProximityError, RobotMotionAnswer, RobotsInContact, UndecidedReason,
-};
-use crate::refine::PairUpperBound;
+use crate::answer::{ProximityError, UndecidedReason};
 use parry3d_f64::math::Real;
 use std::array::from_fn;
 use std::collections::VecDeque;
@@ -80,21 +77,6 @@ pub(super) enum MarginAnswer<U> {
     Undecided(([Real; 2], UndecidedReason)),
     /// The margin is kept until `clear_until`, and violated at `t`.
     Contact { clear_until: Real, t: Real, found: U },
-}
-
-impl MarginAnswer<PairUpperBound> {
-    pub(super) fn of_robots(self) -> RobotMotionAnswer {
-        match self {
-            Self::Clear => RobotMotionAnswer::clear(),
-            Self::Undecided(first) => RobotMotionAnswer::undecided(first),
-            Self::Contact { clear_until, t, found } => {
-                let PairUpperBound { upper, sections, arcs, points: [on_first, on_second] } = found;
-                let witness = PairWitness { on_first, on_second, arc_lengths: arcs };
-                let contact = RobotsInContact { t, upper, sections, witness };
-                RobotMotionAnswer::contact(clear_until, contact)
-            }
-        }
-    }
 }
 
 /// Decides whether a margin is kept in all intervals. `test_interval` tests the middle shape of
@@ -195,12 +177,6 @@ fn first_contact<U>(
     }
     let first = undecided.or(left.map(|times| (times, UndecidedReason::Work)));
     Ok(first.map_or(MarginAnswer::Clear, MarginAnswer::Undecided))
-}
-
-/// Returns the most pairs of pieces that are tested per interval, the nearest ones. If the motion
-/// exceeds margin and resolution it is 2^16, since a shorter interval has fewer pairs.
-pub(super) fn most_pairs(reach: Real, MarginQuery { margin, resolution }: MarginQuery) -> usize {
-    if reach > margin.max(resolution) { 1 << 16 } else { usize::MAX }
 }
 
 /// Starts with the common parts of all motions' times; `parts` counts the parts of each motion.

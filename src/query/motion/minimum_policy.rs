@@ -63,6 +63,7 @@ impl<'b, V, U: UpperBound> MinimumPolicy<'b, V, U> {
     }
 
     /// The permitted gap between the bounds.
+    #[cfg(feature = "robots")]
     pub fn aim(&self) -> Real {
         self.aim
     }

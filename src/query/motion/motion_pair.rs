@@ -25,7 +25,9 @@ use super::minimum_rounds::{
 use super::moving_pair::{MovingPair, SeenFrom};
 use super::progress::MAX_SHAPES;
 use super::relative_motion::RelativeMotion;
-use crate::answer::{PairWitness, ProximityError, RobotMotionAnswer, RobotMotionClearance};
+use crate::answer::{
+    PairWitness, ProximityError, RobotMotionAnswer, RobotMotionClearance, RobotsInContact,
+};
 use crate::distance::Scalar;
 use crate::motion::{CarriedMotion, CarriedPiece, Motion, check_speed};
 use crate::refine::{
@@ -54,6 +56,27 @@ pub(crate) struct MotionsMemory {
     queue: BinaryHeap<NearestFirst>,
     part_bounds: Vec<Real>,
     settled: Vec<Real>,
+}
+
+impl MarginAnswer<PairUpperBound> {
+    pub(super) fn of_robots(self) -> RobotMotionAnswer {
+        match self {
+            Self::Clear => RobotMotionAnswer::clear(),
+            Self::Undecided(first) => RobotMotionAnswer::undecided(first),
+            Self::Contact { clear_until, t, found } => {
+                let PairUpperBound { upper, sections, arcs, points: [on_first, on_second] } = found;
+                let witness = PairWitness { on_first, on_second, arc_lengths: arcs };
+                let contact = RobotsInContact { t, upper, sections, witness };
+                RobotMotionAnswer::contact(clear_until, contact)
+            }
+        }
+    }
+}
+
+/// Returns the most pairs of pieces that are tested per interval, the nearest ones. If the motion
+/// exceeds margin and resolution it is 2^16, since a shorter interval has fewer pairs.
+pub(super) fn most_pairs(reach: Real, MarginQuery { margin, resolution }: MarginQuery) -> usize {
+    if reach > margin.max(resolution) { 1 << 16 } else { usize::MAX }
 }
 
 /// Two motions beside one another.
@@ -123,8 +146,7 @@ impl MotionPair<'_> {
         let MarginQuery { margin, resolution } = wanted;
         let (scale, upper) =
             (margin.max(resolution).max(0.25 * reach), margin + reach + tubes.slack());
-        let is_all =
-            tubes.begin(scale, upper, intervals::most_pairs(reach, wanted), beginning, pairs)?;
+        let is_all = tubes.begin(scale, upper, most_pairs(reach, wanted), beginning, pairs)?;
         if !is_all {
             let (fastest, speed) = speeds.fastest();
             check_subdivision(speed, resolution, || (fastest, speed))?;

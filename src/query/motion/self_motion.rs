@@ -9,6 +9,7 @@ use super::approach_bound::{ApproachBound, check_subdivision, half_length, midpo
 use super::current_shape::CurrentShape;
 use super::interval_test::{IntervalResult, IntervalTest, MarginQuery};
 use super::intervals::{self, Interval, MarginAnswer, Sought, TestedInterval};
+use super::motion_pair::most_pairs;
 use super::moving_tube_with_itself::MovingTubeWithItself;
 use super::relative_motion::RelativeMotion;
 use crate::answer::{ProximityError, RobotMotionAnswer};
@@ -88,7 +89,7 @@ fn test_interval(
     let (fastest, points) = moves.farthest();
     let reach = 2.0 * points * (1.0 + 4.0 * Real::UNIT_ROUNDOFF);
     let (scale, upper) = (margin.max(resolution).max(0.25 * reach), margin + reach + own.slack());
-    let is_all = own.begin(scale, upper, intervals::most_pairs(reach, wanted), beginning, pairs)?;
+    let is_all = own.begin(scale, upper, most_pairs(reach, wanted), beginning, pairs)?;
     if !is_all {
         let speed = points / half_length(times);
         check_subdivision(speed, resolution, || (fastest, speed))?;

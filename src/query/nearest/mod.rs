@@ -9,6 +9,7 @@ mod side_grid;
 
 pub(crate) use clears::{ClearsMemory, ClearsSearch};
 pub(crate) use minimum::{WarmStart, minimum_within};
+#[cfg(feature = "robots")]
 pub(crate) use outline::{PlacedOutline, ROUNDING};
 pub(crate) use per_link::{PerLinkMemory, per_link};
 pub(crate) use side_grid::SideGrid;

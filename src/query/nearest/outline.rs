@@ -92,6 +92,7 @@ impl PlacedOutline {
     }
 
     /// The length with one radius added at each end.
+    #[cfg(feature = "robots")]
     pub(crate) fn size(&self) -> Real {
         length(self.along()) + 2.0 * self.radius
     }

@@ -1,7 +1,6 @@
 //! The search through a mesh for one convex body, in the precision that resolves it.
 
 use super::build::WideBvh;
-use super::moving_mesh::MeshAt;
 use super::traverse::{Stack, Traversal};
 use crate::answer::Work;
 use crate::distance::Scalar;
@@ -26,15 +25,6 @@ pub(crate) struct MeshSearch<'a> {
     pub scratch: &'a mut Scratch,
 }
 
-/// A search through a mesh at rest, or at its placement at one instant.
-///
-/// It has only the queries that know the placement, so that no query can ignore it.
-pub(crate) struct PlacedMeshSearch<'a> {
-    search: MeshSearch<'a>,
-    /// The placement of a moving mesh.
-    moved: Option<MeshAt<'a>>,
-}
-
 /// Runs `$ask` on the traversal in the precision that resolves a link. Runs `$out_of_reach` if
 /// neither precision does.
 macro_rules! resolved {
@@ -52,6 +42,9 @@ macro_rules! resolved {
         }
     };
 }
+
+#[cfg(feature = "tubes")]
+pub(super) use resolved;
 
 impl<'a> MeshSearch<'a> {
     pub(crate) fn new(level: Level, hierarchy: &'a Hierarchy, scratch: &'a mut Scratch) -> Self {
@@ -151,27 +144,9 @@ impl MeshSearch<'_> {
         )
     }
 
-    /// Writes to `found` all triangles that may be at most `bound` from a link, in no order.
-    /// Returns false if there are more than `most`, or if they are unknown.
-    fn gather(
-        &mut self,
-        link: &PlacedLink,
-        bound: Real,
-        most: usize,
-        found: &mut Vec<u32>,
-    ) -> bool {
-        found.clear();
-        resolved!(
-            self,
-            link,
-            |traversal, searched| traversal.gather(&searched, bound, most, found),
-            { !self.is_near(link, bound) }
-        )
-    }
-
     /// Returns true if a mesh that is tiny beside a link may be at most `bound` from it. Such a
     /// mesh lies about where its first triangle is.
-    fn is_near(&self, link: &PlacedLink, bound: Real) -> bool {
+    pub(super) fn is_near(&self, link: &PlacedLink, bound: Real) -> bool {
         let (first, size) = (self.any(link).distance, self.hierarchy.size);
         let extent = link.along().abs().max_element() + link.radius();
         first - 2.0 * size - 64.0 * Real::UNIT_ROUNDOFF * (first + size + extent) <= bound
@@ -192,72 +167,6 @@ impl MeshSearch<'_> {
         let tree = self.hierarchy.double(self.level);
         let Scratch { double: stack, work, .. } = &mut *self.scratch;
         Traversal { level: self.level, mesh: &self.hierarchy.mesh, tree, stack, work }
-    }
-}
-
-impl<'a> PlacedMeshSearch<'a> {
-    pub(crate) fn at_rest(search: MeshSearch<'a>) -> Self {
-        Self { search, moved: None }
-    }
-
-    pub(crate) fn moved(search: MeshSearch<'a>, moved: MeshAt<'a>) -> Self {
-        Self { search, moved: Some(moved) }
-    }
-}
-
-impl PlacedMeshSearch<'_> {
-    /// Returns the nearest triangle of a link, or `best` if no triangle improves on it. The `start`
-    /// triangle is tested first.
-    pub(crate) fn nearest(&mut self, link: &PlacedLink, best: Best, start: Option<u32>) -> Best {
-        let Some(moved) = &mut self.moved else {
-            return self.search.nearest(link, best, [start, None]);
-        };
-        let MeshSearch { hierarchy, scratch, .. } = &mut self.search;
-        moved.nearest(&hierarchy.mesh, hierarchy.single(), link, best, start, &mut scratch.work)
-    }
-
-    /// Returns true if any triangle may be at most `bound` from a capsule. False is a proof, true
-    /// is not.
-    pub(crate) fn may_meet(&mut self, capsule: &PlacedLink, bound: Real) -> bool {
-        match &mut self.moved {
-            Some(moved) => moved.may_meet(self.search.hierarchy.single(), capsule, bound),
-            None => self.search.may_meet(capsule, bound),
-        }
-    }
-
-    /// Writes to `found` all triangles that may be at most `bound` from a link, in no order.
-    /// Returns false if there are more than `most`, or if they are unknown.
-    pub(crate) fn gather(
-        &mut self,
-        link: &PlacedLink,
-        bound: Real,
-        most: usize,
-        found: &mut Vec<u32>,
-    ) -> bool {
-        let Some(moved) = &mut self.moved else {
-            return self.search.gather(link, bound, most, found);
-        };
-        found.clear();
-        let hierarchy = self.search.hierarchy;
-        moved.gather(&hierarchy.mesh, hierarchy.single(), link, bound, most, found)
-    }
-
-    /// Returns the distance of the first triangle, for a link whose search finds none.
-    pub(crate) fn any(&self, link: &PlacedLink) -> Nearest {
-        link.measure(0, self.corners(0))
-    }
-
-    /// Returns the corners of a triangle at its placement.
-    pub(crate) fn corners(&self, triangle: u32) -> [Vector; 3] {
-        let mesh = &self.search.hierarchy.mesh;
-        self.moved
-            .as_ref()
-            .map_or_else(|| mesh.corners(triangle), |moved| moved.corners(mesh, triangle))
-    }
-
-    /// Returns the longest edge of the mesh at rest.
-    pub(crate) fn longest_at_rest(&self) -> Real {
-        self.search.hierarchy.longest()
     }
 }
 

@@ -207,21 +207,6 @@ impl<E: Lane> Traversal<'_, E> {
         matches!(target.goal, Goal::Any(true))
     }
 
-    /// Adds to `found` all triangles that may be at most `bound` from the link, in no order.
-    /// Returns false if there are more than `most`.
-    pub(crate) fn gather(
-        &mut self,
-        searched: &SearchLink<E>,
-        bound: f64,
-        most: usize,
-        found: &mut Vec<u32>,
-    ) -> bool {
-        let limit = searched.axis_limit(bound);
-        let mut near = CappedGather { limit, most, found, is_overfull: false };
-        dispatch!(E::HAS_WIDE_SEARCH, self.level, simd => self.visit_leaves::<E::Pack<_>>(simd, searched, limit, &mut near));
-        !near.is_overfull
-    }
-
     /// Calls `visitor` for every leaf that may hold a triangle within the limit, in the order of
     /// the traversal.
     #[inline(always)]
@@ -501,57 +486,6 @@ pub(crate) trait LeafVisitor<E: Lane> {
         mesh: &Mesh,
         leaf: u32,
     );
-}
-
-/// The triangles gathered so far. The tests are the same as in a search for the nearest triangle
-/// (`traverse`).
-struct CappedGather<'a, E> {
-    /// A gathered triangle has an axis distance below this.
-    pub limit: E,
-    /// The most triangles to gather.
-    pub most: usize,
-    /// The triangles so far.
-    pub found: &'a mut Vec<u32>,
-    /// Whether there are more than `most`.
-    pub is_overfull: bool,
-}
-
-impl<E: Lane> LeafVisitor<E> for CappedGather<'_, E> {
-    #[inline(always)]
-    fn visit<L: Pack<Element = E>>(
-        &mut self,
-        token: L::Token,
-        lanes: &LinkLanes<L>,
-        tree: &WideBvh<E>,
-        _: &Mesh,
-        number: u32,
-    ) {
-        if self.is_overfull {
-            return;
-        }
-        let leaf = &tree.leaves[number as usize];
-        let limit = L::splat(token, self.limit);
-        for lane in (0..BLOCK).step_by(L::LANES) {
-            let vertices = load_vertices::<L>(token, &leaf.rows, lane);
-            if lanes.not_excluded_by_plane(vertices, limit) == 0 {
-                continue;
-            }
-            let mut near = lanes.may_be_nearer(&Face::in_order(vertices), limit).nearer;
-            while near != 0 {
-                let triangle = leaf.triangles[lane + near.trailing_zeros() as usize];
-                near &= near - 1;
-                // A leaf that is not full repeats its last triangle.
-                if self.found.last() == Some(&triangle) {
-                    continue;
-                }
-                if self.found.len() == self.most {
-                    self.is_overfull = true;
-                    return;
-                }
-                self.found.push(triangle);
-            }
-        }
-    }
 }
 
 #[cfg(test)]
