@@ -1,9 +1,14 @@
 //! Work on all cores, and lazy values that one thread builds while others may wait for them.
 
 mod lazy;
+mod one_thread;
 mod parallel;
+#[cfg(feature = "parallel")]
+mod pool;
 
 pub(crate) use lazy::Lazy;
+#[cfg(not(feature = "parallel"))]
+use one_thread as pool;
 #[cfg(feature = "gpu")]
 pub(crate) use parallel::on_this_thread;
 #[cfg(feature = "robots")]

@@ -1,8 +1,6 @@
-//! The same work for many items, on all cores (feature `parallel`). No other file uses a thread
-//! pool.
+//! The same work for many items, on all cores (feature `parallel`) or on one.
 
-#[cfg(feature = "parallel")]
-use rayon::prelude::*;
+use super::{one_thread, pool};
 use std::cell::Cell;
 
 thread_local! {
@@ -26,39 +24,23 @@ pub(crate) fn on_this_thread<T>(work: impl FnOnce() -> T) -> T {
 
 /// The number of threads that may work.
 pub(crate) fn threads() -> usize {
-    #[cfg(feature = "parallel")]
-    if !IS_ALONE.get() {
-        return rayon::current_num_threads();
-    }
-    1
+    if IS_ALONE.get() { one_thread::threads() } else { pool::threads() }
 }
 
 /// Calls `work` with the index of every item, and the item. An item should take some microseconds.
-pub(crate) fn each<T: Send>(items: &mut [T], work: impl Fn(usize, &mut T) + Sync + Send) {
+pub(crate) fn each<T: Send>(items: &mut [T], work: impl Fn(usize, &mut T) + Sync) {
     // Waking another thread takes longer than one item.
-    #[cfg(feature = "parallel")]
-    if items.len() > 1 && !IS_ALONE.get() {
-        return items.par_iter_mut().enumerate().for_each(|(place, item)| work(place, item));
-    }
-    items.iter_mut().enumerate().for_each(|(place, item)| work(place, item));
+    let each = if items.len() > 1 && threads() > 1 { pool::each } else { one_thread::each };
+    each(items, &work);
 }
 
 /// Runs two closures, on two cores if that is worth it.
-#[cfg(feature = "parallel")]
 pub(crate) fn both(is_worth_it: bool, one: impl FnOnce() + Send, other: impl FnOnce() + Send) {
-    if is_worth_it && !IS_ALONE.get() {
-        rayon::join(one, other);
+    if is_worth_it && threads() > 1 {
+        pool::join(one, other);
     } else {
-        one();
-        other();
+        one_thread::join(one, other);
     }
-}
-
-/// Runs two closures.
-#[cfg(not(feature = "parallel"))]
-pub(crate) fn both(_: bool, one: impl FnOnce(), other: impl FnOnce()) {
-    one();
-    other();
 }
 
 /// Answers questions in chunks, each chunk with its own memory.
@@ -68,19 +50,15 @@ pub(crate) fn in_chunks<Q: Sync, A: Send, M: Default + Send>(
     memories: &mut Vec<M>,
     answer: impl Fn(&mut M, &[Q], &mut [A]) + Sync + Send,
 ) {
-    #[cfg(feature = "parallel")]
-    if !IS_ALONE.get() {
-        // Four chunks per thread balance the load, because questions differ in their time.
-        let share = questions.len().div_ceil(4 * threads()).max(1);
-        memories.resize_with(questions.len().div_ceil(share), M::default);
-        let shares = questions.par_chunks(share).zip(answers.par_chunks_mut(share));
-        shares
-            .zip(memories)
-            .for_each(|((questions, answers), memory)| answer(memory, questions, answers));
-        return;
+    let threads = threads();
+    if threads == 1 {
+        memories.resize_with(1, M::default);
+        return one_thread::in_chunks(questions.len().max(1), questions, answers, memories, answer);
     }
-    memories.resize_with(1, M::default);
-    memories.iter_mut().for_each(|memory| answer(memory, questions, answers));
+    // Four chunks per thread balance the load, because questions differ in their time.
+    let share = questions.len().div_ceil(4 * threads).max(1);
+    memories.resize_with(questions.len().div_ceil(share), M::default);
+    pool::in_chunks(share, questions, answers, memories, answer);
 }
 
 /// Answers questions in chunks, each chunk with its own clone of `original`. Replaces the content

@@ -18,7 +18,7 @@ const WAITING: [&str; 9] = [
 const MAY_WAIT: [&str; 3] = ["src/threads/lazy.rs", "src/robot/chain.rs", "src/gpu/opened.rs"];
 
 /// The only file that gives work to a pool.
-const POOL: &str = "src/threads/parallel.rs";
+const POOL: &str = "src/threads/pool.rs";
 
 #[test]
 fn nobody_who_holds_a_lock_can_wait_for_a_pool() {
