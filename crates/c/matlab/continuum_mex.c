@@ -435,7 +435,7 @@ COMMAND(mesh) {
     return new_entry(MESH, made);
 }
 
-COMMAND(load) {
+COMMAND(load_mesh) {
     static const char *const frames[] = {"", "RAS", "LPS"};
     options_t options;
     pc_mesh *made;
@@ -578,7 +578,7 @@ COMMAND(prove) {
 
 /* The derivative with respect to all points, in the robot's frame, and to all radii. */
 COMMAND(distance_and_gradient) {
-    static const char *const names[] = {"value", "points", "radii", "kink"};
+    static const char *names[] = {"value", "points", "radii", "kink"};
     one_t one = one_of(count, given);
     pc_derivative found;
     mxArray *answer, *points, *radii;
@@ -963,7 +963,7 @@ static const struct {
     const char *name;
     mxArray *(*run)(int, const mxArray *const *);
 } COMMANDS[] = {{"mesh", mesh},
-                {"load", load},
+                {"load_mesh", load_mesh},
                 {"free", free_handle},
                 {"surface", surface},
                 {"minimum", minimum},

@@ -93,10 +93,11 @@ static void ask_everything(pc_mesh *mesh, pc_pair *pair, pc_self_query *alone,
     pc_tube *tube;
     pc_clearance clearance;
     pc_decision decision;
-    ANSWER(pc_tube_new(start, points, radii, points - 1, NULL, 0, 0, NAN, &tube), {
-        ANSWER(pc_mesh_clearance(mesh, tube, pose, FINE, &clearance), put_clearance(&clearance));
-        ANSWER(pc_mesh_clears_tube(mesh, tube, pose, margin, FINE, &decision), put(decision));
-    });
+    /* Without a tube both questions are refused. */
+    if (pc_tube_new(start, points, radii, points - 1, NULL, 0, 0, NAN, &tube) != PC_OK)
+        tube = NULL;
+    ANSWER(pc_mesh_clearance(mesh, tube, pose, FINE, &clearance), put_clearance(&clearance));
+    ANSWER(pc_mesh_clears_tube(mesh, tube, pose, margin, FINE, &decision), put(decision));
     pc_tube_free(tube);
     pc_motion *motion;
     pc_motion_answer answer;

@@ -88,10 +88,9 @@ void ask_everything(Mesh& mesh, RobotPair& pair, SelfQuery& alone, const Chain& 
         put(inside.crosses_opening);
         put(inside.holds);
     });
+    answer([&] { put_clearance(mesh.clearance(Tube(start, radii), fine, pose)); });
     answer([&] {
-        const Tube tube(start, radii);
-        answer([&] { put_clearance(mesh.clearance(tube, fine, pose)); });
-        answer([&] { put(static_cast<double>(mesh.clears_tube(tube, margin, fine, pose))); });
+        put(static_cast<double>(mesh.clears_tube(Tube(start, radii), margin, fine, pose)));
     });
     answer([&] {
         const Motion motion = Motion::linear(start, end, radii);

@@ -370,13 +370,15 @@ fn answer(input: &str, output: &str) -> Fallible<()> {
                 out.truth(found.crosses_opening);
                 out.truth(found.holds());
             });
-            let tube = Tube::from_samples(&case.start, &case.radii, None);
-            out.add(tube, |out, tube| {
-                let found = search.clearance(&tube, &pose, FINE);
-                out.add(found, |out, found| out.clearance(&found));
-                let found = search.clears_tube(&tube, &pose, margin, FINE);
-                out.add(found, |out, found| out.decision(found));
-            });
+            match Tube::from_samples(&case.start, &case.radii, None) {
+                Err(_) => out.numbers([f64::NAN; 2]),
+                Ok(tube) => {
+                    let found = search.clearance(&tube, &pose, FINE);
+                    out.add(found, |out, found| out.clearance(&found));
+                    let found = search.clears_tube(&tube, &pose, margin, FINE);
+                    out.add(found, |out, found| out.decision(found));
+                }
+            }
             let motion = LinearMotion::chain(&case.start, &case.end, &case.radii);
             out.add(motion, |out, motion| {
                 let found = search.clears_motion(&motion, margin, FINE);
