@@ -28,7 +28,7 @@
 //! - A finer tolerance continues the same sequence. No `lower` falls and no upper bound rises, so
 //!   its bounds are never looser.
 
-use super::depth_first::{Body, Refinable, UpperBound};
+use super::refinable::{Body, Refinable, UpperBound};
 use crate::answer::ProximityError;
 use parry3d_f64::math::Real;
 use std::cmp::Ordering;

@@ -64,8 +64,8 @@
 //!
 //! If directions may be off by a stated turn, w reaches farther along d by r times that turn.
 
-use super::depth_first::Body;
 use super::placed_tube::{Piece, PlacedTube};
+use super::refinable::Body;
 use crate::answer::{ProximityError, TubePiece};
 use crate::curve::{CurveBound, Section};
 use crate::pair::PlacedLink;

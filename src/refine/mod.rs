@@ -1,12 +1,12 @@
-//! A tube divided into pieces: bounding volumes, points inside the tube, and the two loops that
-//! divide it (`depth_first` and `best_first`).
+//! A tube divided into pieces: bounding volumes, points inside the tube, and the order in which
+//! pieces are divided (`best_first`).
 
 #[cfg(feature = "robots")]
 mod ball_tree;
 mod best_first;
 mod bounding_body;
-mod depth_first;
 mod placed_tube;
+mod refinable;
 #[cfg(feature = "robots")]
 mod section_motions;
 #[cfg(test)]
@@ -22,11 +22,8 @@ mod tube_with_itself;
 
 pub(crate) use best_first::{Examined, MOST_LEVELS, PendingPiece, PendingPieces, PieceState};
 pub(crate) use bounding_body::{BoundingBody, SectionRange};
-pub(crate) use depth_first::{
-    Body, BodyQuery, BoundedPiece, Refinable, RefineAction, RefinePolicy, UpperBound, WorkItem,
-    refine,
-};
 pub(crate) use placed_tube::{Piece, PlacedTube};
+pub(crate) use refinable::{Body, Refinable, UpperBound};
 #[cfg(feature = "robots")]
 pub(crate) use section_motions::{MAX_EXTRA_TURN, SectionMotion, SectionMotions};
 pub(crate) use tube_in_mesh::{MeshUpperBound, TubeInMesh};

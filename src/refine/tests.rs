@@ -1,7 +1,7 @@
 //! Tests each bound against dense sampling of curves of known curvature.
 
-use super::depth_first::Body;
 use super::placed_tube::{Piece, PlacedTube};
+use super::refinable::Body;
 use crate::curve::{Section, Tube, TubeSection};
 use crate::distance::{Vec3, point_modified_cylinder};
 use continuum_testing::{Arcs, Random, Stretch};

@@ -1,8 +1,8 @@
 //! A tube in a mesh: bounding bodies of its pieces, their nearest triangles, and upper bounds.
 
 use super::bounding_body::{BoundingBody, MOST_CORES};
-use super::depth_first::{Refinable, UpperBound, WorkItem};
 use super::placed_tube::{Piece, PlacedTube};
+use super::refinable::{Refinable, UpperBound};
 use super::tube_point::TubePoint;
 use crate::answer::{ProximityError, Witness};
 use crate::pair::{Best, Nearest, PlacedLink};
@@ -41,16 +41,6 @@ impl UpperBound for MeshUpperBound {
 
     fn tie(&self) -> [u32; 2] {
         [self.witness.triangle, self.section]
-    }
-}
-
-impl WorkItem<TubeInMesh<'_>> for Piece {
-    fn piece(&self, _: &TubeInMesh) -> Piece {
-        *self
-    }
-
-    fn halves(self, _: &TubeInMesh, halves: [Piece; 2]) -> [Self; 2] {
-        halves
     }
 }
 

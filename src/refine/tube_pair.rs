@@ -20,8 +20,8 @@
 
 use super::ball_tree::{BallTree, WaitingRuns, near_pairs, pays};
 use super::bounding_body::{BoundingBody, MOST_CORES, SectionRange};
-use super::depth_first::{Body, Refinable, UpperBound, WorkItem};
 use super::placed_tube::{Piece, PlacedTube};
+use super::refinable::{Body, Refinable, UpperBound};
 use super::tube_point::TubePoint;
 use crate::answer::ProximityError;
 use crate::pair::{NearestOfLinks, PlacedLink};
@@ -92,16 +92,6 @@ impl UpperBound for PairUpperBound {
 
     fn tie(&self) -> [u32; 2] {
         self.sections
-    }
-}
-
-impl WorkItem<TubePair<'_>> for PiecePair {
-    fn piece(&self, _: &TubePair) -> PiecePair {
-        *self
-    }
-
-    fn halves(self, _: &TubePair, halves: [PiecePair; 2]) -> [Self; 2] {
-        halves
     }
 }
 

@@ -102,8 +102,8 @@
 
 use super::ball_tree::{BallTree, WaitingRuns, near_pairs, pays};
 use super::bounding_body::{BoundingBody, MOST_CORES, SectionRange};
-use super::depth_first::{Body, Refinable, WorkItem};
 use super::placed_tube::{Piece, PlacedTube};
+use super::refinable::{Body, Refinable};
 use super::section_motions::{SectionMotion, SectionMotions};
 use super::tube_pair::{NearestPairs, PairUpperBound, TubePair, found_from, half_way};
 use super::tube_point::TubePoint;
@@ -164,16 +164,6 @@ impl Body for SelfPair {
 
     fn is_flat(&self) -> bool {
         self.outers.is_flat()
-    }
-}
-
-impl WorkItem<TubeWithItself<'_>> for SelfPair {
-    fn piece(&self, _: &TubeWithItself) -> SelfPair {
-        *self
-    }
-
-    fn halves(self, _: &TubeWithItself, halves: [SelfPair; 2]) -> [Self; 2] {
-        halves
     }
 }
 

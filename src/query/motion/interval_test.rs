@@ -19,11 +19,10 @@
 //! 4. **Halve** otherwise.
 
 use super::approach_bound::{Approach, ApproachBound, check_subdivision};
+use super::refinement::{BodyQuery, BoundedPiece, RefineAction, RefinePolicy};
 use super::relative_motion::RelativeMotion;
 use crate::answer::ProximityError;
-use crate::refine::{
-    Body, BodyQuery, BoundedPiece, Refinable, RefineAction, RefinePolicy, UpperBound,
-};
+use crate::refine::{Body, Refinable, UpperBound};
 use parry3d_f64::math::Real;
 
 /// The extra turn (rad) beyond the middle shape up to which that shape decides.
@@ -70,8 +69,6 @@ pub(crate) struct IntervalTest<V, F> {
 }
 
 impl<D: Refinable, P, V: RelativeMotion<D, P>> RefinePolicy<D, P> for IntervalTest<V, D::Upper> {
-    type OfPart = Approach;
-
     const NEARER_HALF_FIRST: bool = false;
 
     fn is_done(&self) -> bool {
@@ -94,8 +91,6 @@ impl<D: Refinable, P, V: RelativeMotion<D, P>> RefinePolicy<D, P> for IntervalTe
         let bound = self.bound(&approach, tube.slack());
         Ok((BodyQuery { bound, is_wide, aim, start: self.moving.seed_triangle() }, approach))
     }
-
-    fn on_cleared(&mut self, _: &D::Piece, _: &D::Body, _: Real) {}
 
     fn decide(
         &mut self,

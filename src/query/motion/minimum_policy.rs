@@ -16,11 +16,10 @@
 
 use super::approach_bound::{Approach, ApproachBound};
 use super::minimum_rounds::{MinimumBounds, UnresolvedGap};
+use super::refinement::{BodyQuery, BoundedPiece, RefineAction, RefinePolicy};
 use super::relative_motion::RelativeMotion;
 use crate::answer::ProximityError;
-use crate::refine::{
-    Body, BodyQuery, BoundedPiece, Refinable, RefineAction, RefinePolicy, UpperBound,
-};
+use crate::refine::{Body, Refinable, UpperBound};
 use parry3d_f64::math::Real;
 
 /// The most pieces processed per shape; after them no piece is halved.
@@ -104,8 +103,6 @@ fn lower_bound<D: Refinable, P>(tube: &D, near: &BoundedPiece<D, P>, approach: &
 impl<D: Refinable, P, V: RelativeMotion<D, P>> RefinePolicy<D, P>
     for MinimumPolicy<'_, V, D::Upper>
 {
-    type OfPart = Approach;
-
     const NEARER_HALF_FIRST: bool = true;
 
     /// A clearance below 0 does not exist.
@@ -133,7 +130,7 @@ impl<D: Refinable, P, V: RelativeMotion<D, P>> RefinePolicy<D, P>
         Ok((BodyQuery { bound, is_wide, aim, start }, approach))
     }
 
-    fn on_cleared(&mut self, _: &D::Piece, _: &D::Body, _: Real) {
+    fn on_cleared(&mut self) {
         self.settle(self.known.upper());
     }
 

@@ -19,6 +19,7 @@ mod moving_tube;
 mod moving_tube_with_itself;
 mod pending_piece;
 mod progress;
+mod refinement;
 mod relative_motion;
 #[cfg(feature = "robots")]
 mod self_motion;

@@ -8,8 +8,9 @@ use super::minimum_policy::MinimumPolicy;
 use super::minimum_rounds::{Minimized, Minimum, MinimumBounds, RoundMemory, minimum};
 use super::motion_search::MotionSearch;
 use super::moving_tube::Left;
+use super::refinement::refine;
 use crate::answer::{MotionClearance, ProximityError};
-use crate::refine::{MeshUpperBound, Refinable, TubeInMesh, refine};
+use crate::refine::{MeshUpperBound, Refinable, TubeInMesh};
 use parry3d_f64::math::Real;
 
 impl MotionSearch<'_> {

@@ -24,15 +24,14 @@ use super::minimum_rounds::{
 };
 use super::moving_pair::{MovingPair, SeenFrom};
 use super::progress::MAX_SHAPES;
+use super::refinement::refine;
 use super::relative_motion::RelativeMotion;
 use crate::answer::{
     PairWitness, ProximityError, RobotMotionAnswer, RobotMotionClearance, RobotsInContact,
 };
 use crate::distance::Scalar;
 use crate::motion::{CarriedMotion, CarriedPiece, Motion, check_speed};
-use crate::refine::{
-    PairQueue, PairUpperBound, PiecePair, PlacedTube, Refinable, TubePair, refine,
-};
+use crate::refine::{PairQueue, PairUpperBound, PiecePair, PlacedTube, Refinable, TubePair};
 use crate::robot::RobotError;
 use parry3d_f64::math::Real;
 use std::collections::{BinaryHeap, VecDeque};

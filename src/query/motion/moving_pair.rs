@@ -2,12 +2,23 @@
 
 use super::approach_bound::Approach;
 use super::approach_speed::ApproachSpeed;
+use super::refinement::{BoundedPiece, WorkItem};
 use super::relative_motion::RelativeMotion;
 use crate::answer::ProximityError;
 use crate::motion::{CarriedMotion, CarriedPiece, CommonFrame, Speed};
-use crate::refine::{BoundedPiece, BoundingBody, PiecePair, SectionRange, TubePair};
+use crate::refine::{BoundingBody, PiecePair, SectionRange, TubePair};
 use crate::robot::RobotError;
 use parry3d_f64::math::Real;
+
+impl WorkItem<TubePair<'_>> for PiecePair {
+    fn piece(&self, _: &TubePair) -> PiecePair {
+        *self
+    }
+
+    fn halves(self, _: &TubePair, halves: [PiecePair; 2]) -> [Self; 2] {
+        halves
+    }
+}
 
 /// Pairs of pieces of two moving robots in an interval of time.
 pub(super) struct MovingPair<'a> {

@@ -5,6 +5,7 @@ use super::approach_bound::{Approach, midpoint};
 use super::approach_speed::ApproachSpeed;
 use super::half_displacement::HalfDisplacement;
 use super::pending_piece::PendingPiece;
+use super::refinement::BoundedPiece;
 use super::relative_motion::RelativeMotion;
 use super::separating_planes::{PlaneTest, SeparatingPlanes};
 use super::unresolved_piece::{MAX_DISPLACED_PIECES, UnresolvedPiece, UnresolvedPieces};
@@ -12,7 +13,7 @@ use crate::answer::ProximityError;
 use crate::distance::Scalar;
 use crate::motion::{CarriedMotion, CarriedPiece, CommonFrame, DisplacementBound};
 use crate::pair::Nearest;
-use crate::refine::{BoundedPiece, BoundingBody, Piece, Refinable, SectionRange, TubeInMesh};
+use crate::refine::{BoundingBody, Piece, Refinable, SectionRange, TubeInMesh};
 use crate::search::hierarchy::MeshSpeed;
 use parry3d_f64::math::{Real, Vector};
 

@@ -2,11 +2,22 @@
 
 use super::approach_bound::Approach;
 use super::approach_speed::ApproachSpeed;
+use super::refinement::{BoundedPiece, WorkItem};
 use super::relative_motion::RelativeMotion;
 use crate::answer::ProximityError;
 use crate::motion::CarriedMotion;
-use crate::refine::{BoundedPiece, SelfPair, TubeWithItself};
+use crate::refine::{SelfPair, TubeWithItself};
 use parry3d_f64::math::Real;
+
+impl WorkItem<TubeWithItself<'_>> for SelfPair {
+    fn piece(&self, _: &TubeWithItself) -> SelfPair {
+        *self
+    }
+
+    fn halves(self, _: &TubeWithItself, halves: [SelfPair; 2]) -> [Self; 2] {
+        halves
+    }
+}
 
 /// Pairs of pieces of a moving robot in an interval of time.
 pub(super) struct MovingTubeWithItself<'a> {

@@ -1,6 +1,7 @@
 //! A pending piece of a moving robot, independent of the shape.
 
-use crate::refine::{Piece, PlacedTube, TubeInMesh, WorkItem};
+use super::refinement::WorkItem;
+use crate::refine::{Piece, PlacedTube, TubeInMesh};
 use parry3d_f64::math::Real;
 
 /// A range of shares of a section.

@@ -1,8 +1,9 @@
 //! The trait of moving parts beside an obstacle or each other.
 
 use super::approach_bound::Approach;
+use super::refinement::BoundedPiece;
 use crate::answer::ProximityError;
-use crate::refine::{BoundedPiece, Refinable};
+use crate::refine::Refinable;
 use parry3d_f64::math::Real;
 
 /// Parts that move in an interval of time.

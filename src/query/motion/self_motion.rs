@@ -11,6 +11,7 @@ use super::interval_test::{IntervalResult, IntervalTest, MarginQuery};
 use super::intervals::{self, Interval, MarginAnswer, Sought, TestedInterval};
 use super::motion_pair::most_pairs;
 use super::moving_tube_with_itself::MovingTubeWithItself;
+use super::refinement::refine;
 use super::relative_motion::RelativeMotion;
 use crate::answer::{ProximityError, RobotMotionAnswer};
 use crate::curve::{Section, TubeTurns};
@@ -18,7 +19,7 @@ use crate::distance::Scalar;
 use crate::motion::{CarriedMotion, Motion, check_speed};
 use crate::refine::{
     MAX_EXTRA_TURN, PairUpperBound, Refinable, SectionMotion, SectionMotions, SelfPair,
-    SelfPairQueue, TubeWithItself, refine,
+    SelfPairQueue, TubeWithItself,
 };
 use parry3d_f64::math::Real;
 use std::collections::VecDeque;
