@@ -1,5 +1,5 @@
-// A control loop of 1 kHz that allocates nothing: distance, closest link, margin and tube of a robot
-// that bends, in the memory that it has. `control_loop SECONDS`.
+// A control loop of 1 kHz that allocates nothing: distance, closest link, margin and tube of a
+// robot that bends, in the memory that it has. `control_loop SECONDS`.
 #include "vessel.hpp"
 
 #include <algorithm>

@@ -57,7 +57,8 @@ int main() {
             std::printf("%-9s  %.7f  %.7f  %+.1e\n", is_cylinder ? "cylinder" : "capsule", theirs,
                         here, difference);
     }
-    std::printf("largest difference of 100 each: capsules %.1e, cylinders %.1e\n", worst[0], worst[1]);
+    std::printf("largest difference of 100 each: capsules %.1e, cylinders %.1e\n", worst[0],
+                worst[1]);
     // FCL iterates: its answers are near the exact ones, not equal.
     return worst[0] < 0.05 && worst[1] < 0.05 ? 0 : 1;
 }

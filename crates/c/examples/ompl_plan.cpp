@@ -80,8 +80,8 @@ int main() {
     // A vessel with thin strings across it, such as chordae or trabeculae.
     Triangles walls = vessel(9, 50, 40, 40);
     for (int k = 0; k < 5; ++k)
-        walls.add_rod({k % 2 ? -1.5 : 2.0, -9.5, 12.0 + 6 * k}, {k % 2 ? 2.5 : -2.0, 9.5, 12.0 + 6 * k},
-                      0.05);
+        walls.add_rod({k % 2 ? -1.5 : 2.0, -9.5, 12.0 + 6 * k},
+                      {k % 2 ? 2.5 : -2.0, 9.5, 12.0 + 6 * k}, 0.05);
     Mesh mesh = walls.mesh();
 
     auto space = std::make_shared<ob::RealVectorStateSpace>(6);
@@ -112,8 +112,9 @@ int main() {
     setup.setPlanner(std::make_shared<og::RRTConnect>(information));
     setup.setup();
     const bool is_solved = setup.solve(20.0) == ob::PlannerStatus::EXACT_SOLUTION;
-    std::printf("RRT-Connect: %s, %u states, each edge proven\n", is_solved ? "solved" : "not solved",
-                is_solved ? static_cast<unsigned>(setup.getSolutionPath().getStateCount()) : 0U);
+    const auto states = is_solved ? setup.getSolutionPath().getStateCount() : 0;
+    std::printf("RRT-Connect: %s, %zu states, each edge proven\n",
+                is_solved ? "solved" : "not solved", states);
 
     // The same random edges for both validators.
     const ob::DiscreteMotionValidator discrete(information.get());
@@ -124,8 +125,10 @@ int main() {
     for (int edge = 0; edge < 2000; ++edge) {
         if (!sampler->sample(a) || !sampler->sampleNear(b, a, 4.0))
             continue;
-        const MotionAnswer found = mesh.clears_motion(motion(a, b), 0, resolution);
-        const bool keeps = mesh.clears_motion(motion(a, b), margin, resolution).decision == PC_CLEAR;
+        const Motion edge_motion = motion(a, b);
+        const MotionAnswer found = mesh.clears_motion(edge_motion, 0, resolution);
+        const bool keeps =
+            mesh.clears_motion(edge_motion, margin, resolution).decision == PC_CLEAR;
         const bool accepts = discrete.checkMotion(a, b);
         accepted += accepts;
         proven += keeps;

@@ -3,13 +3,13 @@
 // Generated from crates/c/src by cbindgen: `.ci/c header --write`. Do not edit.
 //
 // Lengths are in one unit of your choice, the same for meshes and robots. Points are three doubles
-// each, one after another. A pose is 16 doubles, the rows of a 4x4 matrix, from the robot's frame to
-// the mesh's; NULL is the identity. Segments, triangles and robots are counted from 0.
+// each, one after another. A pose is 16 doubles, the rows of a 4x4 matrix, from the robot's frame
+// to the mesh's; NULL is the identity. Segments, triangles and robots are counted from 0.
 //
-// Every function returns `PC_OK` or what is wrong; `pc_error_message` says what to change. A pointer
-// that is NULL or misaligned, or a length that does not fit, is an error. Any other pointer must
-// point to as many items as its length says. After an error the places of answers are undefined,
-// except that the place of a new handle is NULL.
+// Every function returns `PC_OK` or what is wrong; `pc_error_message` says what to change. A
+// pointer that is NULL or misaligned, or a length that does not fit, is an error. Any other pointer
+// must point to as many items as its length says. After an error the places of answers are
+// undefined, except that the place of a new handle is NULL.
 //
 // A handle may move from thread to thread, and belongs to one at a time. Chains, tubes and motions
 // may be read by any number of threads. `pc_mesh_clone` gives each thread a mesh of its own, which
@@ -290,7 +290,7 @@ typedef struct {
   double on_second[3];
   // How far along the centreline of each from its base.
   double arc_lengths[2];
-  // The link of each: its segments, without those of no length.
+  // The link of each robot. Segments without length are no links.
   uint32_t links[2];
 } pc_robot_proximity;
 
@@ -334,7 +334,7 @@ typedef struct {
   double arc_lengths[2];
 } pc_robot_motion_answer;
 
-// What is near what in a scene: a structure and a robot, two robots, or a robot and itself.
+// A place in a scene: of a structure and a robot, of two robots, or of a robot and itself.
 typedef struct {
   // A point of the first robot.
   double on_first[3];
@@ -505,8 +505,8 @@ pc_status pc_mesh_clears_batch(pc_mesh *mesh,
                                bool *clears,
                                pc_status *statuses);
 
-// Finds every contact within the margin: all local minima of the distance. Those that rise by less
-// than `prominence` before a nearer one are left out; 0 keeps all.
+// Finds every contact within the margin: all local minima of the distance. Contacts
+// that rise by less than `prominence` before a nearer one are left out; 0 keeps all.
 pc_status pc_mesh_contacts_within(pc_mesh *mesh,
                                   const pc_chain *robot,
                                   const double *pose,
@@ -626,7 +626,7 @@ pc_status pc_mesh_clears_path(pc_mesh *mesh,
 
 // Proves that a robot keeps more than the margin away. Writes the proof to `path`, and the mesh
 // beside it with the extension `.obj`, for `docs/book/check_proof.py`. Writes nothing, and sets
-// `proven` to false, if the margin is not kept, or by no more than rounding.
+// `proven` to false, if the margin is not kept, or exceeded by at most rounding.
 pc_status pc_mesh_prove(pc_mesh *mesh,
                         const pc_chain *robot,
                         const double *pose,

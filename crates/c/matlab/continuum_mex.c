@@ -132,8 +132,9 @@ static rows_t rows_of(const mxArray *array, size_t columns, const char *name) {
     char text[160];
     check_double(array, name);
     if (dimensions > 3 || shape[1] != columns) {
-        snprintf(text, sizeof text, "`%s` must be N x %d, or N x %d x B; transpose it if it is %d x N",
-                 name, (int)columns, (int)columns, (int)columns);
+        snprintf(text, sizeof text,
+                 "`%s` must be N x %d, or N x %d x B; transpose it if it is %d x N", name,
+                 (int)columns, (int)columns, (int)columns);
         fail("bad_shape", text);
     }
     rows.rows = shape[0];

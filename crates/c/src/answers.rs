@@ -185,7 +185,7 @@ pub struct pc_robot_proximity {
     pub on_second: [f64; 3],
     /// How far along the centreline of each from its base.
     pub arc_lengths: [f64; 2],
-    /// The link of each: its segments, without those of no length.
+    /// The link of each robot. Segments without length are no links.
     pub links: [u32; 2],
 }
 
@@ -259,7 +259,7 @@ pub struct pc_scene_contact {
     pub robot: u32,
 }
 
-/// What is near what in a scene: a structure and a robot, two robots, or a robot and itself.
+/// A place in a scene: of a structure and a robot, of two robots, or of a robot and itself.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct pc_scene_place {
@@ -534,7 +534,10 @@ macro_rules! clearance {
         }
     )*};
 }
-clearance!(Clearance at |_: &rust::Clearance| 0.0, MotionClearance at |found: &rust::MotionClearance| found.t);
+clearance!(
+    Clearance at |_: &rust::Clearance| 0.0,
+    MotionClearance at |found: &rust::MotionClearance| found.t
+);
 
 macro_rules! robot_clearance {
     ($($from:ident at $t:expr),*) => {$(

@@ -19,8 +19,8 @@ macro_rules! border {
             $(
                 #[allow(unused_mut)] // places of answers change
                 let mut $name =
-                    // SAFETY: the caller keeps the header's rules: what is neither null nor
-                    // misaligned has as many items as the length says, and nobody else writes them.
+                    // SAFETY: the caller keeps the header's rules: a pointer to aligned memory has
+                    // as many items as the length says, and nobody else writes them.
                     unsafe { $crate::border::$kind($name, stringify!($name) $(, $length)?) }?;
             )*
             $body
@@ -90,7 +90,7 @@ fn check_items<T>(pointer: *const T, name: &str, count: usize) -> Result<(), Fau
 #[inline]
 pub(crate) unsafe fn shared<'a, T>(pointer: *const T, name: &str) -> Result<&'a T, Fault> {
     check(pointer, name)?;
-    // SAFETY: it is neither null nor misaligned, and so valid by the caller's promise.
+    // SAFETY: `check` accepts it, so it is valid by the caller's promise.
     Ok(unsafe { &*pointer })
 }
 
@@ -113,7 +113,7 @@ pub(crate) unsafe fn items<'a, T>(
     if count == 0 {
         return Ok(&[]);
     }
-    // SAFETY: it is neither null nor misaligned, and `count` items long by the caller's promise.
+    // SAFETY: `check_items` accepts it, so it has `count` items by the caller's promise.
     Ok(unsafe { slice::from_raw_parts(pointer, count) })
 }
 

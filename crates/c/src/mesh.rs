@@ -302,8 +302,8 @@ pub unsafe extern "C" fn pc_mesh_clears_batch(
     })
 }
 
-/// Finds every contact within the margin: all local minima of the distance. Those that rise by less
-/// than `prominence` before a nearer one are left out; 0 keeps all.
+/// Finds every contact within the margin: all local minima of the distance. Contacts
+/// that rise by less than `prominence` before a nearer one are left out; 0 keeps all.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_mesh_contacts_within(
     mesh: *mut pc_mesh,
@@ -601,7 +601,7 @@ fn write_proof(
 
 /// Proves that a robot keeps more than the margin away. Writes the proof to `path`, and the mesh
 /// beside it with the extension `.obj`, for `docs/book/check_proof.py`. Writes nothing, and sets
-/// `proven` to false, if the margin is not kept, or by no more than rounding.
+/// `proven` to false, if the margin is not kept, or exceeded by at most rounding.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_mesh_prove(
     mesh: *mut pc_mesh,

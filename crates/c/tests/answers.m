@@ -63,7 +63,8 @@ function answers(cases, found)
             continue
         end
         answer(@() rows_in(continuum.per_link(mesh, robot{:}), @minimum_row));
-        answer(@() rows_in(continuum.contacts_within(mesh, robot{:}, 'margin', margin), @contact_row));
+        answer(@() rows_in(continuum.contacts_within(mesh, robot{:}, 'margin', margin), ...
+                           @contact_row));
         answer(@() continuum.side(mesh, from(1, :)));
         answer(@() inside_row(continuum.clears_inside(mesh, robot{:}, 'margin', margin)));
         pose_of = {'pose', pose};
@@ -82,8 +83,8 @@ function answers(cases, found)
         answer(@() distance_row(continuum.self_minimum(from, radii, 'caps', caps)));
         scene = continuum.scene('robot_margin', 0.1);
         continuum.scene_add(scene, 'wall', mesh, 'margin', margin);
-        answer(@() tightest_row(continuum.scene_tightest(scene, {from, radii, pose; to, radii, []}, ...
-                                                     'caps', caps)));
+        both = {from, radii, pose; to, radii, []};
+        answer(@() tightest_row(continuum.scene_tightest(scene, both, 'caps', caps)));
         continuum.free(scene);
     end
     for k = 1:rows_of(last)
@@ -122,7 +123,8 @@ function values = inside_row(found)
 end
 
 function values = clearance_row(found)
-    values = [found.lower, found.upper, found.uncertainty, found.t, place_row(found), found.resolved];
+    values = [found.lower, found.upper, found.uncertainty, found.t, place_row(found), ...
+              found.resolved];
 end
 
 function values = motion_answer_row(found)

@@ -1,4 +1,4 @@
-//! The answers of Rust to a file of cases, for comparison with those of C, C++ and Octave.
+//! The answers of Rust to a file of cases. C, C++ and Octave must give the same bits.
 //!
 //! `answers write CASES` writes the cases: the reference cases of `tests/data`, and 10,000 random
 //! robots. `answers CASES ANSWERS` answers them. Both files are doubles alone, so that every

@@ -218,7 +218,8 @@ static void fuzz(long rounds) {
         double *vertices = any_numbers(3 * points, memory + 3);
         double *pose = any_numbers(16, memory + 4);
         if (pose == memory[4] && bits() % 4 != 0)
-            for (int k = 0; k < 16; ++k) pose[k] = k % 5 == 0 ? 1 : k % 4 == 3 && k < 12 ? unit() : 0;
+            for (int k = 0; k < 16; ++k)
+                pose[k] = k % 5 == 0 ? 1 : k % 4 == 3 && k < 12 ? unit() : 0;
         const size_t triangles = bits() % 6;
         uint32_t *faces = (uint32_t *)malloc(triangles * 3 * sizeof(uint32_t) + 1);
         for (size_t k = 0; k < 3 * triangles; ++k)
@@ -260,7 +261,8 @@ static void fuzz(long rounds) {
         answers += pc_mesh_minimum(asked, one, pose, &minimum) == PC_OK;
         answers += pc_mesh_clears(asked, one, pose, margin, &truth) == PC_OK;
         answers += pc_mesh_per_link(asked, one, pose, &links, &many) == PC_OK;
-        answers += pc_mesh_contacts_within(asked, one, pose, margin, fine, &contacts, &many) == PC_OK;
+        answers += pc_mesh_contacts_within(asked, one, pose, margin, fine, &contacts, &many) ==
+                   PC_OK;
         answers += pc_mesh_clears_inside(asked, one, pose, margin, &inside) == PC_OK;
         answers += pc_mesh_derivative(asked, one, pose, &derivative) == PC_OK;
         answers += pc_mesh_minimum_batch(asked, both, NULL, bits() % 3, minima, statuses) == PC_OK;

@@ -20,7 +20,8 @@ function gateway(folder)
     assert(field(continuum.contacts_within(mesh, robot, radii, 'margin', 2), 'distance')(1) == 1.5);
     assert(isequal(size(continuum.side(mesh, robot)), [3 1]));
     assert(field(continuum.clears_inside(mesh, robot, radii, 'margin', 1), 'clears'));
-    assert(~field(continuum.surface(mesh), 'is_sound') && field(continuum.surface(mesh), 'triangles') == 1);
+    surface = continuum.surface(mesh);
+    assert(~surface.is_sound && surface.triangles == 1);
     assert(ischar(continuum.version()));
 
     % The gradient by differences.
@@ -50,11 +51,13 @@ function gateway(folder)
 
     found = continuum.pair_minimum(robot, radii, robot + [0 5 0], radii);
     assert(found.distance == 4);
-    assert(continuum.pair_clears(robot, radii, robot, radii, 'margin', 3, 'pose_b', 5 * up - 4 * eye(4)));
+    high = 5 * up - 4 * eye(4);
+    assert(continuum.pair_clears(robot, radii, robot, radii, 'margin', 3, 'pose_b', high));
     assert(field(continuum.self_minimum(robot, radii), 'distance') == Inf);
     scene = continuum.scene('robot_margin', 0.1);
     assert(continuum.scene_add(scene, 'floor', mesh, 'margin', 1) == 1);
-    assert(field(continuum.scene_tightest(scene, {robot, radii; robot + [0 5 0], radii}), 'slack') == 0.5);
+    two = {robot, radii; robot + [0 5 0], radii};
+    assert(field(continuum.scene_tightest(scene, two), 'slack') == 0.5);
     assert(continuum.scene_clears(scene, {robot, radii, up}));
     assert(continuum.scene_clears_motion(scene, linear, 'resolution', 0.01) == 1);
     proof = fullfile(folder, 'octave.txt');
@@ -115,7 +118,8 @@ function refuses(kind, ask)
     try
         ask();
     catch error
-        assert(strcmp(error.identifier, ['continuum:' kind]), [error.identifier ': ' error.message]);
+        text = [error.identifier ': ' error.message];
+        assert(strcmp(error.identifier, ['continuum:' kind]), text);
         assert(numel(error.message) > 10);
         return
     end
