@@ -6,8 +6,14 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Calls of other libraries that pages name.
-const FOREIGN: [&str; 14] = [
+const FOREIGN: [&str; 21] = [
     "ccd_enabled",
+    "coal::collide",
+    "CollisionRequest::security_margin",
+    "CollisionResult::getContact",
+    "DistanceResult::nearest_points",
+    "fcl::BVHModel",
+    "fcl::Capsule",
     "fcl::collide",
     "fcl::continuousCollide",
     "fcl::distance",
@@ -18,14 +24,15 @@ const FOREIGN: [&str; 14] = [
     "static_contact_softness.natural_frequency",
     "contacts_enabled",
     "map_init",
+    "num_max_contacts",
     "ray.init",
     "security_margin",
     "trimesh.load_mesh",
 ];
 
 /// Endings of file names: a span such as `Cargo.toml` is no call.
-const EXTENSIONS: [&str; 10] =
-    ["cff", "csv", "h5", "ipynb", "json", "md", "png", "py", "svg", "toml"];
+const EXTENSIONS: [&str; 11] =
+    ["cff", "csv", "h5", "hpp", "ipynb", "json", "md", "png", "py", "svg", "toml"];
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
