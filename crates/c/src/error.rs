@@ -67,6 +67,28 @@ impl Fault {
     }
 }
 
+/// The library's names of parameters, and the names here.
+const NAMES: [(&str, &str); 4] = [
+    ("`segment_radii`", "`radii`"),
+    ("`end_tangents`", "`tangents`"),
+    ("`from`", "`start`"),
+    ("`to`", "`end`"),
+];
+/// The same for the poses of a motion.
+const POSES: [(&str, &str); 2] = [("`from`", "`start_pose`"), ("`to`", "`end_pose`")];
+
+impl From<RobotError> for Fault {
+    fn from(error: RobotError) -> Self {
+        let names: &[_] = match error {
+            RobotError::BadPose { .. } | RobotError::PoseNotRigid { .. } => &POSES,
+            _ => &NAMES,
+        };
+        let text = error.to_string();
+        let text = names.iter().fold(text, |text, (rust, c)| text.replace(rust, c));
+        Self::new(pc_status::PC_REFUSED, error.kind(), text)
+    }
+}
+
 macro_rules! refused {
     ($($error:ty),*) => {$(
         impl From<$error> for Fault {
@@ -76,7 +98,7 @@ macro_rules! refused {
         }
     )*};
 }
-refused!(RobotError, MatrixError, ProximityError, MeshError, SceneError);
+refused!(MatrixError, ProximityError, MeshError, SceneError);
 
 impl From<MeshFileError> for Fault {
     fn from(error: MeshFileError) -> Self {

@@ -114,6 +114,7 @@ static void arguments(const char *folder) {
     REFUSES(pc_chain_new(POINTS, 3, RADII, 2, 3, &chain), PC_BAD_ARGUMENT, "bad_caps");
     REFUSES(pc_chain_new(POINTS, 0, RADII, 1, 0, &chain), PC_REFUSED, "too_few_points");
     REFUSES(pc_chain_new(POINTS, 3, RADII, 0, 0, &chain), PC_REFUSED, "lengths_differ");
+    IS_TRUE(strstr(pc_error_message(), "in `radii`") != NULL);
     REFUSES(pc_chain_new(POINTS, 3, NULL, 0, 0, NULL), PC_BAD_ARGUMENT, "null_pointer");
     REFUSES(pc_chain_set(robot, nan_points, 2, RADII, 1), PC_REFUSED, "point_not_finite");
     ANSWERS(pc_mesh_minimum(mesh, robot, NULL, &minimum));
@@ -129,6 +130,10 @@ static void arguments(const char *folder) {
             "bad_length");
     REFUSES(pc_motion_path(NULL, 0, &moved), PC_REFUSED, "no_motions");
 
+    pose[3] = 1e300;
+    REFUSES(pc_motion_rigid(robot, pose, NULL, &moved), PC_REFUSED, "bad_pose");
+    IS_TRUE(strstr(pc_error_message(), "`start_pose`") != NULL);
+    pose[3] = 0;
     pose[0] = 2;
     REFUSES(pc_mesh_minimum(mesh, robot, pose, &minimum), PC_REFUSED, "no_rotation");
     pose[0] = 1;
