@@ -58,7 +58,7 @@
 //! the rim of a flat cap moves by less than `4 delta r / c` with it.
 
 use super::bounds::{FLAT_ERROR, SearchCap, TURN_ERROR, UNIT};
-use super::robots::{Packed, bytes_of, is_fine};
+use super::robots::{BendingQuery, Packed, bytes_of, is_fine};
 use crate::answer::ProximityError;
 use crate::distance::Scalar;
 use crate::distance::lanes::Lane;
@@ -66,25 +66,16 @@ use crate::mesh::SearchFrame;
 use crate::robot::{BendingSection, ConstantCurvature};
 use crate::robot::{COORDINATE_LIMIT, Chain, RobotError};
 use gpu_batch::wgpu::WriteOnly;
-use gpu_batch::{record, wgsl};
+use gpu_batch::wgsl;
 use parry3d_f64::math::{Pose, Real, Vector};
 use std::f64::consts::{PI, TAU};
 
 /// The degree of the polynomials.
 const DEGREE: u32 = 9;
-/// Numbers of the base: its place, its quaternion, and one that is unused.
+/// How many `f32` the base takes: its position, its quaternion, and one that is unused.
 pub(super) const BASE_SIZE: u32 = 8;
 /// The least ratio of two radii at which the wider link certainly ends in a flat cap.
 const STEP: Real = 1.0 + 1.0 / 1_048_576.0;
-
-record! {
-    /// The robots whose points are computed.
-    pub(super) struct BendingQuery {
-        pub robots: u32,
-        pub sections: u32,
-        pub segments: u32,
-    }
-}
 
 /// Robots of sections of constant curvature, in one pose. Each section has as many links as there
 /// are segments.

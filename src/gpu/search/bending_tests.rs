@@ -100,13 +100,13 @@ fn twin<const FUSED: bool>(numbers: &[f32], robots: Bent, robot: usize, point: u
     };
     let mut at = [numbers[0], numbers[1], numbers[2]];
     let mut axis = [numbers[3], numbers[4], numbers[5]];
-    let (mut w, mut left) = (numbers[6], point);
+    let (mut w, mut remaining) = (numbers[6], point);
     for section in 0.. {
-        if left == 0 {
+        if remaining == 0 {
             break;
         }
-        let steps = left.min(robots.segments);
-        left -= steps;
+        let steps = remaining.min(robots.segments);
+        remaining -= steps;
         let share = steps as f32 / robots.segments as f32;
         let place = BASE_SIZE as usize + 3 * (robot * robots.each + section);
         let [length, x, y] = [0, 1, 2].map(|k| numbers[place + k] * share);

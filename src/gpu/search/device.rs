@@ -75,6 +75,15 @@ impl SearchKernels {
     }
 }
 
+/// The mesh as a batch searches it.
+#[derive(Clone, Copy)]
+pub(super) struct Searched<'a> {
+    pub gpu: &'a Opened,
+    pub kernels: &'a SearchKernels,
+    pub tree: &'a DeviceTree,
+    pub frame: &'a SearchFrame,
+}
+
 /// A tree in the device's memory.
 #[derive(Debug)]
 pub(super) struct DeviceTree {
@@ -190,8 +199,8 @@ impl DeviceTree {
         pass.set_bind_group(0, &self.corners_group, &[]);
         device.dispatch(&mut pass, (mesh.len() as u32).div_ceil(REFIT_THREADS));
         pass.set_pipeline(&kernels.refit);
-        for (place, &nodes) in (0..).zip(&self.levels) {
-            let offset = place * device.uniform_stride::<RefitLevel>() as u32;
+        for (level, &nodes) in (0..).zip(&self.levels) {
+            let offset = level * device.uniform_stride::<RefitLevel>() as u32;
             pass.set_bind_group(0, &self.refit_group, &[offset]);
             device.dispatch(&mut pass, nodes.div_ceil(REFIT_THREADS));
         }

@@ -5,8 +5,9 @@
 //! a [`BvhSearch`] on the CPU. After a move that search must be refitted first, so a large mesh is
 //! then searched on the device however small the batch is.
 
-use super::batch::{Batches, Found, Searched};
-use super::device::{DeviceTree, SearchKernels};
+use super::answer::{Answer, Clears, Measure, Minimum, PerLink, Within};
+use super::batch::Batches;
+use super::device::{DeviceTree, SearchKernels, Searched};
 use super::kernels::Question;
 use super::robots::{Packed, Robots};
 use super::tree::{MOST_TRIANGLES, SearchTree};
@@ -14,7 +15,7 @@ use crate::answer::{Contact, LinkProximity, ProximityError};
 use crate::engine::{BvhSearch, Engine, Proximity};
 use crate::gpu::{Adapter, Gpu, GpuError, Precision};
 use crate::mesh::{Mesh, SearchFrame};
-use crate::pair::{Best, Nearest, PlacedRobot, rank_each};
+use crate::pair::PlacedRobot;
 use crate::query::contacts::{ContactCollector, ContactQuery, LocalMinima, Wall};
 use crate::robot::Chain;
 use crate::threads::threads;
@@ -27,8 +28,6 @@ use std::time::Duration;
 /// The least number of links per core of the CPU for which a batch runs on the device, for each
 /// kind of question. Estimates: they were not measured with this engine. Contacts have no batch.
 const MIN_LINKS: [usize; Question::KINDS] = [240, 480, 15_000, usize::MAX];
-/// Candidates that are measured at once for a decision.
-const AT_ONCE: usize = 64;
 /// From this number of triangles on, a refit after a move takes longer on the CPU than on the
 /// device.
 const MANY_TRIANGLES: usize = 1 << 16;
@@ -43,7 +42,7 @@ const MANY_TRIANGLES: usize = 1 << 16;
 /// - **Batches.** [`minimum_batch`](Proximity::minimum_batch),
 ///   [`per_link_batch`](Proximity::per_link_batch) and
 ///   [`clears_batch`](Proximity::clears_batch) upload the points of the robots and read back the
-///   candidates. The CPU measures one part of a batch while the device searches the next.
+///   candidates. The CPU measures one chunk of a batch while the device searches the next.
 /// - **Small batches** and single queries run on the CPU, which is faster there: see
 ///   [`set_min_links`](Self::set_min_links).
 /// - **Moving meshes.** [`set_vertices`](Proximity::set_vertices) keeps the vertices. The next
@@ -59,7 +58,7 @@ const MANY_TRIANGLES: usize = 1 << 16;
 ///
 /// Robots that single precision does not resolve are searched on the CPU. So are robots with a link
 /// that has more than 2,048 candidates, with more than a million links, robots whose candidates
-/// find no room in the device's largest buffer, and robots for which the driver stops a long loop.
+/// do not fit into the device's largest buffer, and robots for which the driver stops a long loop.
 /// [`answered_on_cpu`](Self::answered_on_cpu) counts them.
 ///
 /// ```no_run
@@ -294,17 +293,15 @@ impl GpuSearch {
             })
     }
 
-    /// Answers all robots on the device except the robots in [`Batches::left`]. `answer` gets the
-    /// number of a robot.
+    /// Answers all robots on the device except the robots in [`Batches::for_cpu`].
     ///
     /// # Errors
     /// The device has failed.
-    pub(super) fn search<A: Send>(
+    pub(super) fn search<A: Answer>(
         &mut self,
         robots: impl Packed,
-        question: Question,
-        out: &mut [Result<A, ProximityError>],
-        answer: impl Fn(Level, &Mesh, usize, Found, &mut Result<A, ProximityError>) -> bool + Sync,
+        answer: &A,
+        out: &mut [Result<A::Value, ProximityError>],
     ) -> Result<(), ProximityError> {
         let Self { gpu, level, mesh, frame, tree, on_device, batches, counting, .. } = self;
         let gpu = &*gpu.0;
@@ -321,138 +318,62 @@ impl GpuSearch {
         let mut uploaded = uploaded.ok_or(DeviceFailure::OutOfMemory)?;
         uploaded.update(gpu, kernels, frame, mesh);
         let searched = Searched { gpu, kernels, tree: &uploaded, frame };
-        batches.run(searched, robots, question, out, |robot, found, out| {
-            answer(*level, mesh, robot, found, out)
-        })?;
+        batches.run(searched, robots, answer, Measure { level: *level, mesh }, out)?;
         *on_device = Some(uploaded);
-        self.answered_on_cpu += self.batches.left.len() as u64;
+        self.answered_on_cpu += self.batches.for_cpu.len() as u64;
         Ok(())
     }
 
-    /// The robots that the last batch left to the CPU.
-    pub(super) fn take_left(&mut self) -> Vec<usize> {
-        std::mem::take(&mut self.batches.left)
+    /// The robots of the last batch that the CPU must search for.
+    pub(super) fn take_for_cpu(&mut self) -> Vec<usize> {
+        std::mem::take(&mut self.batches.for_cpu)
     }
 
     /// Answers a batch on the device, and the remaining robots on the CPU.
     ///
     /// # Errors
     /// The device has failed.
-    fn search_batch<A: Send>(
+    fn search_batch<A: Answer>(
         &mut self,
         robots: &[(&Chain, Pose)],
-        question: Question,
-        out: &mut Vec<Result<A, ProximityError>>,
-        unanswered: impl Fn() -> A,
-        answer: impl Fn(Level, &Mesh, usize, Found, &mut Result<A, ProximityError>) -> bool + Sync,
+        answer: &A,
+        out: &mut Vec<Result<A::Value, ProximityError>>,
         on_cpu: impl FnOnce(
             &mut BvhSearch,
             &[(&Chain, Pose)],
-            &mut Vec<Result<A, ProximityError>>,
+            &mut Vec<Result<A::Value, ProximityError>>,
         ) -> Result<(), ProximityError>,
     ) -> Result<(), ProximityError> {
-        out.resize_with(robots.len(), || Ok(unanswered()));
-        self.search(Robots::Batch(robots), question, out, answer)?;
-        let left = self.take_left();
-        if left.is_empty() {
+        out.resize_with(robots.len(), || Ok(answer.placeholder()));
+        self.search(Robots::Batch(robots), answer, out)?;
+        let for_cpu = self.take_for_cpu();
+        if for_cpu.is_empty() {
             return Ok(());
         }
-        let some: Vec<_> = left.iter().map(|&robot| robots[robot]).collect();
+        let some: Vec<_> = for_cpu.iter().map(|&robot| robots[robot]).collect();
         let mut answers = Vec::new();
         on_cpu(self.refitted(), &some, &mut answers)?;
-        left.into_iter().zip(answers).for_each(|(robot, answer)| out[robot] = answer);
+        for_cpu.into_iter().zip(answers).for_each(|(robot, answer)| out[robot] = answer);
         Ok(())
     }
 
-    /// Answers one robot on the device. `None` if it is left to the CPU.
+    /// Answers one robot on the device. `None` if the question is not for the device, or if the CPU
+    /// must search for the robot.
     ///
     /// # Errors
     /// The device has failed.
-    fn search_one<A: Send>(
+    fn search_one<A: Answer>(
         &mut self,
         robot: &PlacedRobot,
-        question: Question,
-        unanswered: A,
-        answer: impl Fn(Level, &Mesh, usize, Found, &mut Result<A, ProximityError>) -> bool + Sync,
-    ) -> Result<Option<A>, ProximityError> {
-        let mut out = [Ok(unanswered)];
-        self.search(Robots::One(robot), question, &mut out, answer)?;
-        let [out] = out;
-        if self.batches.left.is_empty() { out.map(Some) } else { Ok(None) }
-    }
-}
-
-/// A robot whose candidates are measured.
-pub(super) struct Measure<'a> {
-    pub level: Level,
-    pub mesh: &'a Mesh,
-    pub robot: &'a PlacedRobot<'a>,
-}
-
-impl Measure<'_> {
-    /// Writes the nearest triangle of each link. Returns false if a link has no candidate.
-    fn per_link(self, found: Found, out: &mut Result<Vec<LinkProximity>, ProximityError>) -> bool {
-        let Self { level, mesh, robot } = self;
-        let links: Vec<_> = robot.placed_links().collect();
-        let mut best = vec![Best::within(Real::INFINITY); links.len()];
-        let link_of = |place: usize| found.candidates[place].0 as usize;
-        let pairs =
-            found.candidates.iter().map(|&(link, triangle)| (&links[link as usize], triangle));
-        let mut place = 0;
-        rank_each(level, mesh, pairs, |ranked| {
-            best[link_of(place)].take(ranked.nearest);
-            place += 1;
-        });
-        let mut answers = std::mem::replace(out, Ok(Vec::new())).unwrap_or_default();
-        answers.clear();
-        answers.extend(
-            links
-                .iter()
-                .zip(best)
-                .enumerate()
-                .map_while(|(number, (link, best))| Some(link.answer(number, &best.nearest()?))),
-        );
-        let is_complete = answers.len() == links.len();
-        *out = Ok(answers);
-        is_complete
-    }
-
-    /// Returns the closest candidate. Ties go to the lowest triangle, then to the lowest link.
-    fn minimum(self, found: Found) -> Option<LinkProximity> {
-        let Self { level, mesh, robot } = self;
-        let links: Vec<_> =
-            found.candidates.iter().map(|&(link, _)| robot.link(link as usize)).collect();
-        let pairs =
-            links.iter().zip(found.candidates).map(|(link, &(_, triangle))| (link, triangle));
-        let mut best: Option<((Real, u32, u32), usize, Nearest)> = None;
-        let mut place = 0;
-        rank_each(level, mesh, pairs, |ranked| {
-            let nearest = ranked.nearest;
-            let key = (nearest.distance, nearest.triangle, found.candidates[place].0);
-            if best.is_none_or(|(least, ..)| key < least) {
-                best = Some((key, place, nearest));
-            }
-            place += 1;
-        });
-        let ((.., link), place, nearest) = best?;
-        Some(links[place].answer(link as usize, &nearest))
-    }
-
-    /// Returns whether every link is farther than the margin.
-    pub(super) fn clears(self, found: Found, margin: Real) -> bool {
-        let Self { level, mesh, robot } = self;
-        if found.is_hit {
-            return false;
+        answer: &A,
+    ) -> Result<Option<A::Value>, ProximityError> {
+        if !self.is_for_device(Robots::One(robot), answer.question()) {
+            return Ok(None);
         }
-        // A few at a time, because the first within the margin decides.
-        found.candidates.chunks(AT_ONCE).all(|candidates| {
-            let links: Vec<_> =
-                candidates.iter().map(|&(link, _)| robot.link(link as usize)).collect();
-            let pairs = links.iter().zip(candidates).map(|(link, &(_, triangle))| (link, triangle));
-            let mut is_clear = true;
-            rank_each(level, mesh, pairs, |ranked| is_clear &= ranked.nearest.distance > margin);
-            is_clear
-        })
+        let mut out = [Ok(answer.placeholder())];
+        self.search(Robots::One(robot), answer, &mut out)?;
+        let [out] = out;
+        if self.batches.for_cpu.is_empty() { out.map(Some) } else { Ok(None) }
     }
 }
 
@@ -466,15 +387,13 @@ impl Engine for GpuSearch {
         robot: PlacedRobot,
         out: &mut Vec<LinkProximity>,
     ) -> Result<(), ProximityError> {
-        let one = Robots::One(&robot);
-        if self.is_for_device(one, Question::PerLink)
-            && let Some(answers) =
-                self.search_one(&robot, Question::PerLink, Vec::new(), per_link_of(one))?
-        {
-            *out = answers;
-            return Ok(());
+        match self.search_one(&robot, &PerLink(Robots::One(&robot)))? {
+            Some(answers) => {
+                *out = answers;
+                Ok(())
+            }
+            None => self.refitted().ask_per_link(robot, out),
         }
-        self.refitted().ask_per_link(robot, out)
     }
 
     fn ask_nearest(
@@ -482,29 +401,17 @@ impl Engine for GpuSearch {
         robot: PlacedRobot,
         bound: Real,
     ) -> Result<Option<LinkProximity>, ProximityError> {
-        let one = Robots::One(&robot);
-        if self.is_for_device(one, Question::Minimum)
-            && let Some(least) = self.search_one(
-                &robot,
-                Question::Minimum,
-                LinkProximity::placeholder(),
-                minimum_of(one),
-            )?
-        {
-            return Ok((least.distance <= bound).then_some(least));
+        match self.search_one(&robot, &Minimum(Robots::One(&robot)))? {
+            Some(least) => Ok((least.distance <= bound).then_some(least)),
+            None => self.refitted().ask_nearest(robot, bound),
         }
-        self.refitted().ask_nearest(robot, bound)
     }
 
     fn ask_clears(&mut self, robot: PlacedRobot, margin: Real) -> Result<bool, ProximityError> {
-        let (question, one) = (Question::Clears(margin), Robots::One(&robot));
-        if self.is_for_device(one, question)
-            && let Some(clears) =
-                self.search_one(&robot, question, false, clears_of(one, margin))?
-        {
-            return Ok(clears);
+        match self.search_one(&robot, &Clears { robots: Robots::One(&robot), margin })? {
+            Some(clears) => Ok(clears),
+            None => self.refitted().ask_clears(robot, margin),
         }
-        self.refitted().ask_clears(robot, margin)
     }
 
     /// The device finds the triangles within the margin. The CPU finds the contacts among them.
@@ -514,28 +421,17 @@ impl Engine for GpuSearch {
         query: ContactQuery,
         out: &mut Vec<Contact>,
     ) -> Result<(), ProximityError> {
-        let question = Question::Within(query.margin);
-        if self.is_for_device(Robots::One(&robot), question)
-            && let Some(mut near) =
-                self.search_one(&robot, question, Vec::new(), |_, _, _, found, out| {
-                    *out = Ok(found.candidates.to_vec());
-                    true
-                })?
-        {
-            // The threads of the device write in any order; a tree of a single leaf has it twice.
-            near.sort_unstable();
-            near.dedup();
-            let Self { level, mesh, minima, .. } = self;
-            let wall = Wall::of(mesh);
-            let mut contacts = ContactCollector::new(*level, wall, robot, query, minima, out);
-            for of_link in near.chunk_by(|one, other| one.0 == other.0) {
-                let triangles = of_link.iter().map(|candidate| candidate.1);
-                contacts.add(of_link[0].0 as usize, |_, near| near.add_unclassified(triangles));
-            }
-            contacts.finish();
-            return Ok(());
+        let Some(candidates) = self.search_one(&robot, &Within { margin: query.margin })? else {
+            return self.refitted().ask_contacts(robot, query, out);
+        };
+        let Self { level, mesh, minima, .. } = self;
+        let mut contacts = ContactCollector::new(*level, Wall::of(mesh), robot, query, minima, out);
+        for of_link in candidates.chunk_by(|one, other| one.link == other.link) {
+            let triangles = of_link.iter().map(|candidate| candidate.triangle);
+            contacts.add(of_link[0].link as usize, |_, near| near.add_unclassified(triangles));
         }
-        self.refitted().ask_contacts(robot, query, out)
+        contacts.finish();
+        Ok(())
     }
 
     fn ask_per_link_batch(
@@ -543,18 +439,13 @@ impl Engine for GpuSearch {
         robots: &[(&Chain, Pose)],
         out: &mut Vec<Result<Vec<LinkProximity>, ProximityError>>,
     ) -> Result<(), ProximityError> {
-        let question = Question::PerLink;
-        if !self.is_for_device(Robots::Batch(robots), question) {
+        let answer = PerLink(Robots::Batch(robots));
+        if !self.is_for_device(Robots::Batch(robots), answer.question()) {
             return self.refitted().ask_per_link_batch(robots, out);
         }
-        self.search_batch(
-            robots,
-            question,
-            out,
-            Vec::new,
-            per_link_of(Robots::Batch(robots)),
-            |cpu, robots, out| cpu.ask_per_link_batch(robots, out),
-        )
+        self.search_batch(robots, &answer, out, |cpu, robots, out| {
+            cpu.ask_per_link_batch(robots, out)
+        })
     }
 
     fn ask_minimum_batch(
@@ -562,18 +453,13 @@ impl Engine for GpuSearch {
         robots: &[(&Chain, Pose)],
         out: &mut Vec<Result<LinkProximity, ProximityError>>,
     ) -> Result<(), ProximityError> {
-        let question = Question::Minimum;
-        if !self.is_for_device(Robots::Batch(robots), question) {
+        let answer = Minimum(Robots::Batch(robots));
+        if !self.is_for_device(Robots::Batch(robots), answer.question()) {
             return self.refitted().ask_minimum_batch(robots, out);
         }
-        self.search_batch(
-            robots,
-            question,
-            out,
-            LinkProximity::placeholder,
-            minimum_of(Robots::Batch(robots)),
-            |cpu, robots, out| cpu.ask_minimum_batch(robots, out),
-        )
+        self.search_batch(robots, &answer, out, |cpu, robots, out| {
+            cpu.ask_minimum_batch(robots, out)
+        })
     }
 
     fn ask_clears_batch(
@@ -582,18 +468,13 @@ impl Engine for GpuSearch {
         margin: Real,
         out: &mut Vec<Result<bool, ProximityError>>,
     ) -> Result<(), ProximityError> {
-        let question = Question::Clears(margin);
-        if !self.is_for_device(Robots::Batch(robots), question) {
+        let answer = Clears { robots: Robots::Batch(robots), margin };
+        if !self.is_for_device(Robots::Batch(robots), answer.question()) {
             return self.refitted().ask_clears_batch(robots, margin, out);
         }
-        self.search_batch(
-            robots,
-            question,
-            out,
-            || false,
-            clears_of(Robots::Batch(robots), margin),
-            |cpu, robots, out| cpu.ask_clears_batch(robots, margin, out),
-        )
+        self.search_batch(robots, &answer, out, |cpu, robots, out| {
+            cpu.ask_clears_batch(robots, margin, out)
+        })
     }
 
     fn move_vertices(&mut self, vertices: &[Vector]) {
@@ -603,50 +484,6 @@ impl Engine for GpuSearch {
         if let Some(tree) = &mut self.on_device {
             tree.invalidate();
         }
-    }
-}
-
-/// Writes the nearest triangle of each link of a robot. The function returns false if a link has no
-/// candidate.
-fn per_link_of(
-    robots: Robots,
-) -> impl Fn(Level, &Mesh, usize, Found, &mut Result<Vec<LinkProximity>, ProximityError>) -> bool + Sync
-{
-    move |level, mesh, robot, found, out| {
-        let placed = robots.placed(robot);
-        placed.is_ok_and(|robot| Measure { level, mesh, robot: &robot }.per_link(found, out))
-    }
-}
-
-/// Writes the minimum of a robot. The function returns false if it has no candidate.
-fn minimum_of(
-    robots: Robots,
-) -> impl Fn(Level, &Mesh, usize, Found, &mut Result<LinkProximity, ProximityError>) -> bool + Sync
-{
-    move |level, mesh, robot, found, out| {
-        let Ok(robot) = robots.placed(robot) else { return false };
-        let least = Measure { level, mesh, robot: &robot }.minimum(found);
-        least.is_some_and(|least| {
-            *out = Ok(least);
-            true
-        })
-    }
-}
-
-/// Writes whether a robot clears the margin. Most robots need not be placed for that.
-fn clears_of(
-    robots: Robots,
-    margin: Real,
-) -> impl Fn(Level, &Mesh, usize, Found, &mut Result<bool, ProximityError>) -> bool + Sync {
-    move |level, mesh, robot, found, out| {
-        if let Some(decision) = found.decision() {
-            *out = Ok(decision);
-            return true;
-        }
-        robots.placed(robot).is_ok_and(|robot| {
-            *out = Ok(Measure { level, mesh, robot: &robot }.clears(found, margin));
-            true
-        })
     }
 }
 

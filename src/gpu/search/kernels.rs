@@ -1,16 +1,16 @@
 //! The text of the kernels, and the constants and records that they share with the host.
 
-use super::bending::BendingQuery;
+use super::robots::BendingQuery;
 use super::tree::{LEAF, LEAF_SIZE, MAX_DEPTH};
 use super::{bending, bounds};
 use gpu_batch::wgsl::constant;
 use gpu_batch::{Record, Shader, record};
 use parry3d_f64::math::Real;
 
-/// Links per workgroup, a thread each.
-pub(super) const PART: u32 = 32;
-/// Candidates that a thread has room for in the first pass. More take a second pass.
-pub(super) const ROOM: u32 = 8;
+/// The most links of a link group. A workgroup searches a link group, with a thread for each link.
+pub(super) const GROUP_SIZE: u32 = 32;
+/// The candidates that a thread has slots for in the first pass. More take a second pass.
+pub(super) const SLOTS: u32 = 8;
 /// The most candidates of a link that are gathered.
 pub(super) const MOST_GATHERED: u32 = 1 << 11;
 /// Threads per workgroup of a refit.
@@ -20,13 +20,15 @@ pub(super) const BENDING_THREADS: u32 = 64;
 /// No triangle, and no node.
 pub(super) const NOTHING: u32 = u32::MAX;
 
-/// The status of a part: a link is certainly within the margin; no room for its candidates; waiting
-/// for the second pass; the driver has stopped a loop. [`FOUND`] plus the number of its candidates
-/// otherwise; 0 is no answer.
+/// Status of a link group: a link is certainly within the margin. (0 is no answer.)
 pub(super) const HIT: u32 = 1;
+/// Status: the candidates do not fit into the entries, or into [`MOST_GATHERED`].
 pub(super) const FULL: u32 = 2;
+/// Status: the second pass gathers the candidates.
 const SECOND: u32 = 3;
+/// Status: the driver has stopped a loop.
 pub(super) const STOPPED: u32 = 4;
+/// Status, plus the number of candidates: all candidates were found.
 pub(super) const FOUND: u32 = 5;
 
 /// The question of a search.
@@ -63,7 +65,7 @@ impl Question {
         }
     }
 
-    /// Whether the room for candidates is in proportion to the links, not to the parts.
+    /// Whether the number of entries is in proportion to the links, not to the link groups.
     pub(super) fn is_about_links(self) -> bool {
         matches!(self, Self::PerLink | Self::Within(_))
     }
@@ -72,12 +74,13 @@ impl Question {
 record! {
     /// The parameters of a search.
     pub(super) struct SearchQuery {
-        pub parts: u32,
-        /// The margin rounded up, and rounded down, as the bits of an `f32`.
-        pub margin: u32,
-        pub certain: u32,
-        /// The number of entries that have room.
-        pub room: u32,
+        pub groups: u32,
+        /// The margin rounded up, as the bits of an `f32`: a farther triangle is not wanted.
+        pub margin_up: u32,
+        /// The margin rounded down: a triangle that is certainly within it is a hit.
+        pub margin_down: u32,
+        /// The most entries that come back.
+        pub capacity: u32,
     }
 }
 
@@ -135,8 +138,8 @@ pub(super) fn bend() -> Shader {
 /// leaves and links.
 pub(in crate::gpu) fn passes(kind: usize, counts_work: bool) -> Vec<Shader> {
     let sizes = [
-        ("PART", PART),
-        ("ROOM", ROOM),
+        ("GROUP_SIZE", GROUP_SIZE),
+        ("SLOTS", SLOTS),
         ("MOST_GATHERED", MOST_GATHERED),
         ("DEPTH", MAX_DEPTH + 2),
         ("HIT", HIT),

@@ -1,10 +1,12 @@
-//! The search on the GPU: a tree of boxes, a workgroup for each robot, a thread for each link.
+//! The search on the GPU: a tree of boxes; a workgroup for up to 32 links of a robot, a thread
+//! for each link.
 //!
 //! | file | contents |
 //! |---|---|
 //! | `engine` | the engine: [`GpuSearch`] |
 //! | `batch` | a batch: the two passes, measuring, and the proof that no answer is lost |
-//! | `chunk` | a chunk of a batch: layout, upload and submission |
+//! | `answer` | the questions, and their answers from candidates |
+//! | `chunk` | a chunk of a batch: its submission; `chunk_layout` and `chunk_upload` |
 //! | `robots` | the robots of a batch, and how chains are packed |
 //! | `sections`, `bending` | robots of sections of constant curvature: the device computes points |
 //! | `bounds` | the bounds in single precision, with their rounding; `twin` repeats the kernels |
@@ -12,12 +14,15 @@
 //! | `device` | the tree in the device's memory, and its refit |
 //! | `kernels` | the text of the kernels, from `shaders/search` |
 
+mod answer;
 mod batch;
 mod bending;
 #[cfg(test)]
 mod bending_tests;
 mod bounds;
 mod chunk;
+mod chunk_layout;
+mod chunk_upload;
 mod device;
 mod engine;
 pub(super) mod kernels;

@@ -1,6 +1,5 @@
 //! The robots of a batch in the form that the device gets.
 
-use super::bending::BendingQuery;
 use super::bounds::{ErrorBound, SearchCap};
 use crate::answer::ProximityError;
 use crate::distance::Vec3;
@@ -8,13 +7,25 @@ use crate::distance::lanes::Lane;
 use crate::mesh::{SearchFrame, round};
 use crate::pair::PlacedRobot;
 use crate::robot::{Chain, ModifiedCylinder};
+use gpu_batch::record;
 use gpu_batch::wgpu::WriteOnly;
 use parry3d_f64::math::{Pose, Real, Vector};
 
-/// The robots of a batch. A **shape** is what the device gets of a robot beside its radii and caps.
+record! {
+    /// The parameters with which the device computes the points of a chunk of robots.
+    pub(super) struct BendingQuery {
+        pub robots: u32,
+        /// The sections of each robot, and the segments of each section.
+        pub sections: u32,
+        pub segments: u32,
+    }
+}
+
+/// The robots of a batch. A **shape** is what the device gets of a robot beside its radii and caps:
+/// its points, or the sections from which the device computes its points.
 pub(super) trait Packed: Copy + Sync {
-    /// Parts of a chunk at most, but at least a robot. Larger chunks overlap less; smaller chunks
-    /// wait more often.
+    /// The most link groups of a chunk, which has at least one robot. Larger chunks overlap less;
+    /// smaller chunks wait more often.
     const CHUNK: usize;
 
     fn len(self) -> usize;
@@ -25,14 +36,14 @@ pub(super) trait Packed: Copy + Sync {
     /// Whether a robot is known to have the radii and caps of the robot before.
     fn is_like_before(self, robot: usize) -> bool;
 
-    /// Writes the radius and the caps of each link, or nothing into no bytes.
+    /// Writes the radius and the caps of each link; nothing if `bytes` is empty.
     fn write_radii(self, robot: usize, frame: &SearchFrame, bytes: WriteOnly<[u8]>);
 
     /// The parameters with which the device computes the points of a chunk of robots; `None` if the
     /// shapes are the points.
     fn bending(self, robots: usize) -> Option<BendingQuery>;
 
-    /// Appends what comes before all shapes.
+    /// Appends the numbers that all robots share, which come before their shapes.
     fn write_base(self, frame: &SearchFrame, bytes: &mut Vec<u8>);
 
     /// The bytes of the shape of a robot with this number of links; 0 for none.
@@ -132,16 +143,17 @@ impl Packed for Robots<'_> {
             }
         };
         let ([x, y, z], origin) = robot.axes_in(frame);
-        let place = |point: Vector| round(x * point.x + y * point.y + z * point.z + origin);
-        let mut start = place(links[0].start());
+        let placed = |point: Vector| round(x * point.x + y * point.y + z * point.z + origin);
+        let mut start = placed(links[0].start());
         write(start);
         let mut bound = ErrorBound::default();
         for link in links {
-            let end = place(link.end());
+            let end = placed(link.end());
             write(end);
             bound.add([start, end], radius_of(link, frame), link.flat());
             start = end;
         }
+        // R of the module `bounds`.
         let reach = Real::from(bound.reach());
         let is_resolved = is_fine(frame)
             // The links are measured where another formula places them.

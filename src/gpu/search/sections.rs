@@ -1,15 +1,14 @@
 //! Decisions about robots of sections of constant curvature: the device computes their points and
 //! decides about most of them; the CPU builds the chains of the others.
 
-use super::batch::Found;
+use super::answer::{Answer, Found, Measure};
 use super::bending::BentRobots;
-use super::engine::{GpuSearch, Measure};
+use super::engine::GpuSearch;
 use super::kernels::Question;
 use super::robots::Packed;
 use crate::answer::ProximityError;
 #[cfg(doc)]
 use crate::engine::BvhSearch;
-use crate::mesh::Mesh;
 use crate::pair::{PlacedRobot, rigid_pose};
 use crate::query::check_margin;
 use crate::robot::BendingSection;
@@ -67,32 +66,56 @@ impl GpuSearch {
             return cpu.clears_sections_batch(robots, segments, pose, margin, out);
         }
         out.resize(robots.len(), Ok(false));
-        let answer = |level, mesh: &Mesh, robot, found: Found, out: &mut _| {
-            if let Some(decision) = found.decision() {
-                *out = Ok(decision);
-                return true;
-            }
-            // Where a segment has lost its length, the links of the chain have other numbers.
-            let chain = bent.chain(robot).ok();
-            let Some(chain) = chain.filter(|chain| chain.links().len() == bent.links(robot)) else {
-                return false;
-            };
-            PlacedRobot::new(&chain, pose).is_ok_and(|robot| {
-                *out = Ok(Measure { level, mesh, robot: &robot }.clears(found, margin));
-                true
-            })
-        };
-        let question = Question::Clears(margin);
-        self.search(bent, question, out, answer).inspect_err(|_| out.clear())?;
-        let left = self.take_left();
-        if left.is_empty() {
+        self.search(bent, &BentClears { robots: bent, pose, margin }, out)
+            .inspect_err(|_| out.clear())?;
+        let for_cpu = self.take_for_cpu();
+        if for_cpu.is_empty() {
             return Ok(());
         }
-        let some: Vec<_> = left.iter().map(|&robot| robots[robot].as_ref()).collect();
+        let some: Vec<_> = for_cpu.iter().map(|&robot| robots[robot].as_ref()).collect();
         let mut answers = Vec::new();
         let cpu = self.refitted();
         cpu.clears_sections_batch(&some, segments, pose, margin, &mut answers)?;
-        left.into_iter().zip(answers).for_each(|(robot, answer)| out[robot] = answer);
+        for_cpu.into_iter().zip(answers).for_each(|(robot, answer)| out[robot] = answer);
         Ok(())
+    }
+}
+
+/// Whether a robot of sections clears a margin. Most robots need no chain for that.
+struct BentClears<'a, S> {
+    robots: BentRobots<'a, S>,
+    /// The pose of the chains, as the user gave it.
+    pose: &'a Pose,
+    margin: Real,
+}
+
+impl<S: AsRef<[BendingSection]> + Sync> Answer for BentClears<'_, S> {
+    type Value = bool;
+
+    fn question(&self) -> Question {
+        Question::Clears(self.margin)
+    }
+
+    fn placeholder(&self) -> bool {
+        false
+    }
+
+    fn answer(
+        &self,
+        measure: Measure,
+        robot: usize,
+        found: Found,
+        _: &mut Result<bool, ProximityError>,
+    ) -> Option<bool> {
+        if let decision @ Some(_) = found.decision() {
+            return decision;
+        }
+        let chain = self.robots.chain(robot).ok()?;
+        // Where a segment has lost its length, the links of the chain have other numbers.
+        if chain.links().len() != self.robots.links(robot) {
+            return None;
+        }
+        let placed = PlacedRobot::new(&chain, self.pose).ok()?;
+        Some(measure.clears(&placed, found, self.margin))
     }
 }

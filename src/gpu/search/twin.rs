@@ -1,7 +1,7 @@
 //! The kernels of the search on the CPU, step by step, and the tests that compare the two.
 
 use super::bounds::{FAR, SearchedLink};
-use super::kernels::{MOST_GATHERED, NOTHING, ROOM};
+use super::kernels::{MOST_GATHERED, NOTHING, SLOTS};
 use super::tree::{LEAF, SearchTree, leaf_range};
 use crate::distance::Vec3;
 use crate::mesh::{Mesh, SearchFrame};
@@ -29,11 +29,11 @@ pub(super) struct TwinWork {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Wanted {
     pub bound: f32,
-    pub below: u32,
+    pub highest: u32,
 }
 
 impl Wanted {
-    pub(super) const ANY: Self = Self { bound: FAR, below: NOTHING };
+    pub(super) const ANY: Self = Self { bound: FAR, highest: NOTHING };
 }
 
 fn low_of(a: Point, b: Point) -> Point {
@@ -68,7 +68,7 @@ impl<'a> TwinTree<'a> {
     }
 
     /// search.wgsl for one link: its candidates, what is wanted in the end, and whether a wanted
-    /// triangle found no room.
+    /// triangle found no slot.
     pub(super) fn search<const FUSED: bool>(
         &self,
         link: &SearchedLink<FUSED>,
@@ -76,10 +76,10 @@ impl<'a> TwinTree<'a> {
         work: &mut TwinWork,
     ) -> (Vec<u32>, Wanted, bool) {
         let mut candidates: Vec<(f32, u32)> = Vec::new();
-        let mut lost = FAR;
+        let mut least_overflow = FAR;
         let mut waiting = vec![(0.0, 0)];
         let far = |wanted: Wanted, lower: f32, triangle: u32| {
-            lower > wanted.bound + link.error || triangle > wanted.below
+            lower > wanted.bound + link.error || triangle > wanted.highest
         };
         while let Some((squared, place)) = waiting.pop() {
             if squared > link.box_limit(wanted.bound) {
@@ -89,17 +89,17 @@ impl<'a> TwinTree<'a> {
                 work.nodes += 1;
                 let node = &self.tree.nodes[place as usize];
                 let limit = link.box_limit(wanted.bound);
-                let mut near = Vec::new();
+                let mut visited = Vec::new();
                 for ((child, lowest), [low, high]) in
                     node.children.into_iter().zip(node.lowest).zip(self.boxes[place as usize])
                 {
                     let squared = link.box_distance_squared(low, high);
-                    if squared <= limit && lowest <= wanted.below {
-                        near.push((squared, child));
+                    if squared <= limit && lowest <= wanted.highest {
+                        visited.push((squared, child));
                     }
                 }
-                near.sort_by(|a, b| b.0.total_cmp(&a.0));
-                waiting.extend(near);
+                visited.sort_by(|a, b| b.0.total_cmp(&a.0));
+                waiting.extend(visited);
                 continue;
             }
             work.leaves += 1;
@@ -109,24 +109,26 @@ impl<'a> TwinTree<'a> {
                 if far(wanted, bounds.lower, triangle) {
                     continue;
                 }
-                let certain = bounds.upper + link.error;
-                wanted.bound = wanted.bound.min(certain.max(0.0));
-                if certain < 0.0 {
-                    wanted.below = wanted.below.min(triangle);
+                let at_most = bounds.upper + link.error;
+                wanted.bound = wanted.bound.min(at_most.max(0.0));
+                if at_most < 0.0 {
+                    wanted.highest = wanted.highest.min(triangle);
                 }
-                if candidates.len() == ROOM as usize {
+                if candidates.len() == SLOTS as usize {
                     candidates.retain(|&(lower, triangle)| !far(wanted, lower, triangle));
                 }
                 candidates.push((bounds.lower, triangle));
-                if candidates.len() > ROOM as usize {
+                if candidates.len() > SLOTS as usize {
                     candidates.sort_by(|a, b| a.0.total_cmp(&b.0));
-                    lost = candidates.pop().map_or(lost, |(lower, _)| lost.min(lower));
+                    let dropped = candidates.pop();
+                    least_overflow =
+                        dropped.map_or(least_overflow, |(lower, _)| least_overflow.min(lower));
                 }
             }
         }
         candidates.retain(|&(lower, triangle)| !far(wanted, lower, triangle));
-        let is_lost = lost <= wanted.bound + link.error;
-        (candidates.into_iter().map(|candidate| candidate.1).collect(), wanted, is_lost)
+        let overflows = least_overflow <= wanted.bound + link.error;
+        (candidates.into_iter().map(|candidate| candidate.1).collect(), wanted, overflows)
     }
 
     /// gather.wgsl for one link. `None` if there are too many.
@@ -142,7 +144,7 @@ impl<'a> TwinTree<'a> {
                 for at in leaf_range(place) {
                     let triangle = self.tree.triangles[at];
                     let lower = link.bounds(self.triangles[at]).lower;
-                    if lower <= wanted.bound + link.error && triangle <= wanted.below {
+                    if lower <= wanted.bound + link.error && triangle <= wanted.highest {
                         found.push(triangle);
                     }
                 }
@@ -156,7 +158,7 @@ impl<'a> TwinTree<'a> {
                 node.children.into_iter().zip(node.lowest).zip(self.boxes[place as usize])
             {
                 let squared = link.box_distance_squared(low, high);
-                if lowest <= wanted.below && squared <= link.box_limit(wanted.bound) {
+                if lowest <= wanted.highest && squared <= link.box_limit(wanted.bound) {
                     waiting.push(child);
                 }
             }
@@ -424,8 +426,8 @@ mod tests {
                     SearchCap::of(link.flat()),
                 );
                 let mut work = TwinWork::default();
-                let (mut found, wanted, is_lost) = twin.search(&searched, Wanted::ANY, &mut work);
-                if is_lost {
+                let (mut found, wanted, overflows) = twin.search(&searched, Wanted::ANY, &mut work);
+                if overflows {
                     second += 1;
                     match twin.gather(&searched, wanted) {
                         Some(gathered) => found = gathered,

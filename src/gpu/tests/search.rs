@@ -21,7 +21,7 @@ fn search(gpu: &Gpu, mesh: &TriMesh) -> GpuSearch {
     search
 }
 
-/// Robots of each model in the ball and through its wall, some with more links than a part.
+/// Robots of each model in the ball and through its wall, some with more links than a link group.
 fn robots(count: u32) -> Vec<(Chain, Pose)> {
     let mut random = Random::new(61);
     (0..count)
@@ -187,7 +187,7 @@ fn a_batch_of_sections_refits_no_cpu_without_need() {
     }
 }
 
-/// A fan of triangles whose tips meet below robots: more are equally near than a thread has room
+/// A fan of triangles whose tips meet below robots: more are equally near than a thread has slots
 /// for.
 fn fan(count: usize) -> (TriMesh, Vec<(Chain, Pose)>) {
     let angle = |k: usize| (k as Real * 0.001, k as Real / 16.0);
@@ -207,7 +207,7 @@ fn fan(count: usize) -> (TriMesh, Vec<(Chain, Pose)>) {
     (mesh, robots.collect())
 }
 
-/// More triangles are equally near than a thread, a part or a chunk has room for.
+/// More triangles are equally near than a thread has slots for, or a chunk has entries for.
 #[test]
 fn many_equals_take_the_second_pass_and_then_the_cpu() {
     let Some(gpu) = gpu() else { return };
@@ -216,21 +216,21 @@ fn many_equals_take_the_second_pass_and_then_the_cpu() {
         let (mesh, robots) = fan(count);
         let mut engine = search(gpu, &mesh);
         check(&mut engine, &mesh, &refs(&robots));
-        // The candidates have no room at first; the chunk is then searched once more.
+        // The candidates do not fit at first; the chunk is then searched once more.
         assert_eq!(engine.answered_on_cpu() > 0, is_left, "{count}");
     }
 }
 
 /// A compiler that fuses the visit which counts and the visit which writes differently: the second
-/// finds more candidates than the first, or fewer. Such parts are left to the CPU.
+/// finds more candidates than the first, or fewer. Such robots are left to the CPU.
 #[test]
-fn a_part_whose_two_counts_differ_is_left_to_the_cpu() {
+fn a_group_whose_two_counts_differ_is_left_to_the_cpu() {
     let Some(gpu) = gpu() else { return };
     let (mesh, robots) = fan(600);
     let test = "bounds.lower <= bound + link.error &&";
     for shift in ["0.05", "-0.05"] {
         let other =
-            format!("bounds.lower <= bound + link.error + select(0.0, {shift}, room > 0u) &&");
+            format!("bounds.lower <= bound + link.error + select(0.0, {shift}, slots > 0u) &&");
         let mut edited = 0;
         let kernels = SearchKernels::with_passes(&gpu.0.device, |kind| {
             let edit = |mut pass: Shader| {

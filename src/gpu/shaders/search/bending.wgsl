@@ -50,10 +50,10 @@ fn bend(
     var at = vec3<f32>(sections[0], sections[1], sections[2]);
     var axis = vec3<f32>(sections[3], sections[4], sections[5]);
     var w = sections[6];
-    var left = number % points;
-    for (var section = 0u; left > 0u; section++) {
-        let steps = min(left, bending.segments);
-        left -= steps;
+    var remaining = number % points;
+    for (var section = 0u; remaining > 0u; section++) {
+        let steps = min(remaining, bending.segments);
+        remaining -= steps;
         let share = f32(steps) / f32(bending.segments);
         let arc = arc_of(BASE_SIZE + 3u * (robot * bending.sections + section), share);
         at += rotated(axis, w, arc.step);

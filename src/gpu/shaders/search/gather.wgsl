@@ -1,40 +1,40 @@
-// Gathers all candidates of a link within a bound. The second pass of a search: for the parts with
-// more candidates than room, within the bounds that the first pass has found. The only pass of
-// WITHIN: for all parts, within the margin. The twin of TwinTree::gather in gpu/search/twin.rs.
+// Gathers all candidates of a link within a bound. The second pass of a search: for the link groups
+// in which a candidate found no slot, within the bounds of the first pass. The only pass of WITHIN:
+// for all link groups, within the margin. The twin of TwinTree::gather in gpu/search/twin.rs.
 //
 // Each link is visited twice: to count its candidates, and to write them. A compiler may fuse the
 // two visits differently, so that their counts differ. Both find all wanted triangles (claim of
-// gpu/search/batch.rs). So the second visit writes at most what the first has counted, and a part
-// whose counts differ is FULL: the CPU searches for it.
+// gpu/search/batch.rs). So the second visit writes at most what the first has counted, and a
+// link group whose counts differ is FULL: the CPU searches for the robot.
 
-var<workgroup> part_count: atomic<u32>;
-var<workgroup> part_full: atomic<u32>;
-var<workgroup> part_first: u32;
+var<workgroup> group_count: atomic<u32>;
+var<workgroup> group_full: atomic<u32>;
+var<workgroup> group_first: u32;
 
 var<private> stack: array<u32, DEPTH>;
 
-// Whether the candidates of a part are to be gathered.
-fn is_asked(number: u32) -> bool {
-    return number < query.parts && (QUESTION == WITHIN || heads[number].y == SECOND);
+// Whether the candidates of a link group are to be gathered.
+fn is_gathered(number: u32) -> bool {
+    return number < query.groups && (QUESTION == WITHIN || heads[number].y == SECOND);
 }
 
-// The bound of a link, and its lowest triangle that certainly touches.
+// D and T of a link: the bound, and the highest wanted triangle.
 fn limit_of(number: u32, lane: u32) -> vec2<u32> {
     if (QUESTION == WITHIN) {
-        return vec2<u32>(query.margin, NOTHING);
+        return vec2<u32>(query.margin_up, NOTHING);
     }
-    return limits[number * PART + lane];
+    return limits[number * GROUP_SIZE + lane];
 }
 
-// Visits the candidates of a link and counts them. Writes the first `room` of them, from `first`
-// on.
+// Visits the candidates of a link and returns their number. Writes the first `slots` of them to
+// `entries`, from the index `first` on.
 fn gather_link(
     link: SearchedLink,
     lane: u32,
     bound: f32,
-    below: u32,
+    highest: u32,
     first: u32,
-    room: u32,
+    slots: u32,
 ) -> u32 {
     let limit = box_limit(link, bound);
     var waiting = 1u;
@@ -42,13 +42,13 @@ fn gather_link(
     var found = 0u;
     while (waiting > 0u && found <= MOST_GATHERED) {
         waiting--;
-        let place = stack[waiting];
-        if (is_leaf(place)) {
-            for (var k = 0u; k < leaf_count(place); k++) {
-                let triangle = triangles[leaf_first(place) + k];
+        let child = stack[waiting];
+        if (is_leaf(child)) {
+            for (var k = 0u; k < leaf_count(child); k++) {
+                let triangle = triangles[leaf_first(child) + k];
                 let bounds = triangle_bounds(link, triangle.a, triangle.b, triangle.c);
-                if (bounds.lower <= bound + link.error && triangle.number <= below) {
-                    if (found < room) {
+                if (bounds.lower <= bound + link.error && triangle.number <= highest) {
+                    if (found < slots) {
                         entries[first + found] = vec2<u32>(lane, triangle.number);
                     }
                     found++;
@@ -56,12 +56,12 @@ fn gather_link(
             }
             continue;
         }
-        let node = nodes[place];
-        if (node.lowest0 <= below && box_distance_squared(link, node.low0, node.high0) <= limit) {
+        let node = nodes[child];
+        if (node.lowest0 <= highest && box_distance_squared(link, node.low0, node.high0) <= limit) {
             stack[waiting] = node.child0;
             waiting++;
         }
-        if (node.lowest1 <= below && box_distance_squared(link, node.low1, node.high1) <= limit) {
+        if (node.lowest1 <= highest && box_distance_squared(link, node.low1, node.high1) <= limit) {
             stack[waiting] = node.child1;
             waiting++;
         }
@@ -69,7 +69,7 @@ fn gather_link(
     return found;
 }
 
-@compute @workgroup_size(PART)
+@compute @workgroup_size(GROUP_SIZE)
 fn gather(
     @builtin(workgroup_id) workgroup: vec3<u32>,
     @builtin(num_workgroups) workgroups: vec3<u32>,
@@ -77,52 +77,52 @@ fn gather(
 ) {
     let number = workgroup.y * workgroups.x + workgroup.x;
     if (lane == 0u) {
-        atomicStore(&part_count, 0u);
-        atomicStore(&part_full, 0u);
-        part_first = NOTHING;
+        atomicStore(&group_count, 0u);
+        atomicStore(&group_full, 0u);
+        group_first = NOTHING;
     }
     workgroupBarrier();
     var is_link = false;
     var own_first = 0u;
     var own_count = 0u;
-    if (is_asked(number)) {
-        let part = parts[number];
-        is_link = lane < part.links;
+    if (is_gathered(number)) {
+        let group = groups[number];
+        is_link = lane < group.links;
         if (is_link) {
             let limit = limit_of(number, lane);
             let bound = bitcast<f32>(limit.x);
-            own_count = gather_link(robot_link(part, lane), lane, bound, limit.y, 0u, 0u);
-            own_first = atomicAdd(&part_count, own_count);
+            own_count = gather_link(robot_link(group, lane), lane, bound, limit.y, 0u, 0u);
+            own_first = atomicAdd(&group_count, own_count);
             if (own_count > MOST_GATHERED) {
-                atomicStore(&part_full, 1u);
+                atomicStore(&group_full, 1u);
             }
         }
     }
     workgroupBarrier();
-    if (lane == 0u && is_asked(number)) {
-        let total = atomicLoad(&part_count);
+    if (lane == 0u && is_gathered(number)) {
+        let total = atomicLoad(&group_count);
         heads[number] = vec2<u32>(0u, FULL);
-        if (atomicLoad(&part_full) == 0u) {
+        if (atomicLoad(&group_full) == 0u) {
             let first = atomicAdd(&counters[0], total);
-            if (first + total <= query.room) {
-                part_first = first;
+            if (first + total <= query.capacity) {
+                group_first = first;
                 heads[number] = vec2<u32>(first, FOUND + total);
             }
         }
     }
     workgroupBarrier();
     storageBarrier();
-    if (is_link && part_first != NOTHING) {
+    if (is_link && group_first != NOTHING) {
         let limit = limit_of(number, lane);
         let bound = bitcast<f32>(limit.x);
-        let link = robot_link(parts[number], lane);
-        let first = part_first + own_first;
+        let link = robot_link(groups[number], lane);
+        let first = group_first + own_first;
         if (gather_link(link, lane, bound, limit.y, first, own_count) != own_count) {
-            atomicStore(&part_full, 1u);
+            atomicStore(&group_full, 1u);
         }
     }
     workgroupBarrier();
-    if (lane == 0u && part_first != NOTHING && atomicLoad(&part_full) != 0u) {
+    if (lane == 0u && group_first != NOTHING && atomicLoad(&group_full) != 0u) {
         heads[number] = vec2<u32>(0u, FULL);
     }
     storageBarrier();

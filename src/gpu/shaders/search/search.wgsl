@@ -1,42 +1,43 @@
-// The first pass: the candidates of every link, nearest boxes first. The twin of Twin::search in
-// gpu/search/twin.rs; gpu/search/batch.rs proves that no answer is lost.
+// The first pass: the candidates of every link, nearest boxes first. The twin of TwinTree::search in
+// gpu/search/twin.rs. gpu/search/batch.rs defines D, T and wanted triangles, and proves that no
+// answer is lost.
 
-var<workgroup> part_bound: atomic<u32>;
-var<workgroup> part_below: atomic<u32>;
-var<workgroup> part_hit: atomic<u32>;
-var<workgroup> part_lost: atomic<u32>;
-var<workgroup> part_count: atomic<u32>;
-var<workgroup> part_first: u32;
+var<workgroup> group_bound: atomic<u32>;
+var<workgroup> group_highest_wanted: atomic<u32>;
+var<workgroup> group_hit: atomic<u32>;
+var<workgroup> group_overflows: atomic<u32>;
+var<workgroup> group_count: atomic<u32>;
+var<workgroup> group_first: u32;
 
 var<private> own_bound: f32;
-var<private> own_below: u32;
-var<private> candidates: array<u32, ROOM>;
-var<private> lowers: array<f32, ROOM>;
+var<private> own_highest_wanted: u32;
+var<private> candidates: array<u32, SLOTS>;
+var<private> lowers: array<f32, SLOTS>;
 var<private> count: u32;
-// The least lower bound of a candidate that found no room.
-var<private> lost: f32;
+// The least lower bound of a candidate that found no slot.
+var<private> least_overflow: f32;
 var<private> stack: array<vec2<u32>, DEPTH>;
 
-// An upper bound on the distance: of the link, of the robot, or the margin.
+// D: an upper bound on the distance of the link or of the link group, or the margin.
 fn bound() -> f32 {
     if (QUESTION == MINIMUM) {
-        return bitcast<f32>(atomicLoad(&part_bound));
+        return bitcast<f32>(atomicLoad(&group_bound));
     }
     return own_bound;
 }
 
-// The lowest triangle that certainly touches; higher ones are not wanted.
-fn below() -> u32 {
+// T: the lowest triangle that certainly touches. Higher ones are not wanted.
+fn highest_wanted() -> u32 {
     if (QUESTION == MINIMUM) {
-        return atomicLoad(&part_below);
+        return atomicLoad(&group_highest_wanted);
     }
-    return own_below;
+    return own_highest_wanted;
 }
 
-fn drop_far_candidates(limit: f32, lowest: u32) {
+fn drop_unwanted_candidates(limit: f32, highest: u32) {
     var kept = 0u;
     for (var i = 0u; i < count; i++) {
-        if (lowers[i] <= limit && candidates[i] <= lowest) {
+        if (lowers[i] <= limit && candidates[i] <= highest) {
             candidates[kept] = candidates[i];
             lowers[kept] = lowers[i];
             kept++;
@@ -45,28 +46,29 @@ fn drop_far_candidates(limit: f32, lowest: u32) {
     count = kept;
 }
 
-fn keep(triangle: u32, lower: f32, limit: f32) {
-    if (count == ROOM) {
-        drop_far_candidates(limit, below());
+// Keeps a wanted triangle if a slot is free, or else the nearer ones by their lower bounds.
+fn add_candidate(triangle: u32, lower: f32, limit: f32) {
+    if (count == SLOTS) {
+        drop_unwanted_candidates(limit, highest_wanted());
     }
-    if (count < ROOM) {
+    if (count < SLOTS) {
         candidates[count] = triangle;
         lowers[count] = lower;
         count++;
         return;
     }
     var worst = 0u;
-    for (var i = 1u; i < ROOM; i++) {
+    for (var i = 1u; i < SLOTS; i++) {
         if (lowers[worst] < lowers[i]) {
             worst = i;
         }
     }
     if (lower < lowers[worst]) {
-        lost = min(lost, lowers[worst]);
+        least_overflow = min(least_overflow, lowers[worst]);
         candidates[worst] = triangle;
         lowers[worst] = lower;
     } else {
-        lost = min(lost, lower);
+        least_overflow = min(least_overflow, lower);
     }
 }
 
@@ -75,57 +77,59 @@ fn visit_leaf(link: SearchedLink, leaf: u32) {
     for (var k = 0u; k < leaf_count(leaf); k++) {
         let triangle = triangles[first + k];
         let bounds = triangle_bounds(link, triangle.a, triangle.b, triangle.c);
-        if (bounds.lower > bound() + link.error || triangle.number > below()) {
+        if (bounds.lower > bound() + link.error || triangle.number > highest_wanted()) {
             continue;
         }
-        let certain = bounds.upper + link.error;
+        // The triangle is at most this far from the link; if negative, it certainly touches.
+        let at_most = bounds.upper + link.error;
         if (QUESTION == CLEARS) {
-            if (certain <= bitcast<f32>(query.certain)) {
-                atomicStore(&part_hit, 1u);
+            if (at_most <= bitcast<f32>(query.margin_down)) {
+                atomicStore(&group_hit, 1u);
                 return;
             }
         } else if (QUESTION == MINIMUM) {
-            if (certain < bound()) {
-                atomicMin(&part_bound, bitcast<u32>(max(certain, 0.0)));
+            if (at_most < bound()) {
+                atomicMin(&group_bound, bitcast<u32>(max(at_most, 0.0)));
             }
-            if (certain < 0.0) {
-                atomicMin(&part_below, triangle.number);
+            if (at_most < 0.0) {
+                atomicMin(&group_highest_wanted, triangle.number);
             }
         } else {
-            own_bound = min(own_bound, max(certain, 0.0));
-            if (certain < 0.0) {
-                own_below = min(own_below, triangle.number);
+            own_bound = min(own_bound, max(at_most, 0.0));
+            if (at_most < 0.0) {
+                own_highest_wanted = min(own_highest_wanted, triangle.number);
             }
         }
-        keep(triangle.number, bounds.lower, bound() + link.error);
+        add_candidate(triangle.number, bounds.lower, bound() + link.error);
     }
 }
 
 fn search_link(link: SearchedLink) {
     var waiting = 0u;
-    var place = 0u;
+    // The node or leaf to visit; 0 is the root.
+    var child = 0u;
     var visited = 0u;
     var leaves = 0u;
     loop {
         var next = NOTHING;
-        if (is_leaf(place)) {
+        if (is_leaf(child)) {
             leaves++;
-            visit_leaf(link, place);
-            if (QUESTION == CLEARS && atomicLoad(&part_hit) != 0u) {
+            visit_leaf(link, child);
+            if (QUESTION == CLEARS && atomicLoad(&group_hit) != 0u) {
                 break;
             }
         } else {
             visited++;
-            let node = nodes[place];
+            let node = nodes[child];
             let limit = box_limit(link, bound());
-            let lowest = below();
+            let highest = highest_wanted();
             let d0 = box_distance_squared(link, node.low0, node.high0);
             let d1 = box_distance_squared(link, node.low1, node.high1);
-            let near0 = d0 <= limit && node.lowest0 <= lowest;
-            let near1 = d1 <= limit && node.lowest1 <= lowest;
-            let first0 = near0 && (!near1 || d0 <= d1);
-            next = select(select(NOTHING, node.child1, near1), node.child0, first0);
-            if (near0 && near1) {
+            let visits0 = d0 <= limit && node.lowest0 <= highest;
+            let visits1 = d1 <= limit && node.lowest1 <= highest;
+            let first0 = visits0 && (!visits1 || d0 <= d1);
+            next = select(select(NOTHING, node.child1, visits1), node.child0, first0);
+            if (visits0 && visits1) {
                 stack[waiting] = select(
                     vec2<u32>(node.child0, bitcast<u32>(d0)),
                     vec2<u32>(node.child1, bitcast<u32>(d1)),
@@ -143,7 +147,7 @@ fn search_link(link: SearchedLink) {
         if (next == NOTHING) {
             break;
         }
-        place = next;
+        child = next;
     }
     if (COUNTS_WORK) {
         atomicAdd(&counters[1], visited);
@@ -152,7 +156,7 @@ fn search_link(link: SearchedLink) {
     }
 }
 
-@compute @workgroup_size(PART)
+@compute @workgroup_size(GROUP_SIZE)
 fn search(
     @builtin(workgroup_id) workgroup: vec3<u32>,
     @builtin(num_workgroups) workgroups: vec3<u32>,
@@ -160,24 +164,24 @@ fn search(
 ) {
     let number = workgroup.y * workgroups.x + workgroup.x;
     if (lane == 0u) {
-        atomicStore(&part_bound, bitcast<u32>(FAR));
-        atomicStore(&part_below, NOTHING);
-        atomicStore(&part_hit, 0u);
-        atomicStore(&part_lost, 0u);
-        atomicStore(&part_count, 0u);
+        atomicStore(&group_bound, bitcast<u32>(FAR));
+        atomicStore(&group_highest_wanted, NOTHING);
+        atomicStore(&group_hit, 0u);
+        atomicStore(&group_overflows, 0u);
+        atomicStore(&group_count, 0u);
     }
     workgroupBarrier();
     count = 0u;
-    lost = FAR;
-    own_bound = select(FAR, bitcast<f32>(query.margin), QUESTION == CLEARS);
-    own_below = NOTHING;
+    least_overflow = FAR;
+    own_bound = select(FAR, bitcast<f32>(query.margin_up), QUESTION == CLEARS);
+    own_highest_wanted = NOTHING;
     var error = 0.0;
     var is_link = false;
-    if (number < query.parts) {
-        let part = parts[number];
-        is_link = lane < part.links;
+    if (number < query.groups) {
+        let group = groups[number];
+        is_link = lane < group.links;
         if (is_link) {
-            let link = robot_link(part, lane);
+            let link = robot_link(group, lane);
             error = link.error;
             search_link(link);
         }
@@ -186,25 +190,25 @@ fn search(
     var own_first = 0u;
     if (is_link) {
         let limit = bound() + error;
-        drop_far_candidates(limit, below());
-        if (lost <= limit) {
-            atomicStore(&part_lost, 1u);
+        drop_unwanted_candidates(limit, highest_wanted());
+        if (least_overflow <= limit) {
+            atomicStore(&group_overflows, 1u);
         }
-        own_first = atomicAdd(&part_count, count);
-        limits[number * PART + lane] = vec2<u32>(bitcast<u32>(bound()), below());
+        own_first = atomicAdd(&group_count, count);
+        limits[number * GROUP_SIZE + lane] = vec2<u32>(bitcast<u32>(bound()), highest_wanted());
     }
     workgroupBarrier();
-    if (lane == 0u && number < query.parts) {
-        part_first = NOTHING;
-        let total = atomicLoad(&part_count);
-        if (atomicLoad(&part_hit) != 0u) {
+    if (lane == 0u && number < query.groups) {
+        group_first = NOTHING;
+        let total = atomicLoad(&group_count);
+        if (atomicLoad(&group_hit) != 0u) {
             heads[number] = vec2<u32>(0u, HIT);
-        } else if (atomicLoad(&part_lost) != 0u) {
+        } else if (atomicLoad(&group_overflows) != 0u) {
             heads[number] = vec2<u32>(0u, SECOND);
         } else {
             let first = atomicAdd(&counters[0], total);
-            if (first + total <= query.room) {
-                part_first = first;
+            if (first + total <= query.capacity) {
+                group_first = first;
                 heads[number] = vec2<u32>(first, FOUND + total);
             } else {
                 heads[number] = vec2<u32>(0u, FULL);
@@ -213,9 +217,9 @@ fn search(
     }
     workgroupBarrier();
     storageBarrier();
-    if (is_link && part_first != NOTHING) {
+    if (is_link && group_first != NOTHING) {
         for (var i = 0u; i < count; i++) {
-            entries[part_first + own_first + i] = vec2<u32>(lane, candidates[i]);
+            entries[group_first + own_first + i] = vec2<u32>(lane, candidates[i]);
         }
     }
     if (is_link && !loops_run()) {
