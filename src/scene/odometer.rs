@@ -21,7 +21,7 @@
 //! the number of links change, the step is unknown and the odometer starts again at 0.
 //!
 //! # Rounding
-//! - A step errs relatively by less than [`ROUNDING`], and x by `3 u`. The derivative of
+//! - A step errs relatively by less than [`MOVED_ROUNDING`], and x by `3 u`. The derivative of
 //!   `2 r x (1 + 2 x)` is at most `6 r`, so that is `18 u` of the radius. Both are added.
 //! - Sums are rounded upwards. So no difference of two readings is less than the steps between
 //!   them.
@@ -30,7 +30,7 @@
 
 use crate::distance::Scalar;
 use crate::pair::PlacedRobot;
-use crate::query::nearest::{PlacedOutline, ROUNDING};
+use crate::query::nearest::{MOVED_ROUNDING, PlacedOutline};
 use parry3d_f64::math::{Real, Vector};
 
 /// The summed displacement of links that are queried again and again.
@@ -58,7 +58,7 @@ impl Odometer {
             self.step = self.step_to(robot, before.max(extent));
         } else {
             self.links.clear();
-            self.links.extend(PlacedOutline::of_all(robot));
+            self.links.extend(PlacedOutline::of_all(robot).map(|(_, link)| link));
             // The next step computes the lever.
             (self.step, self.lever) = (Real::INFINITY, Real::INFINITY);
         }
@@ -77,7 +77,7 @@ impl Odometer {
         let squared = |way: Vector| (way * scale).length_squared();
         let mut is_known = true;
         let [mut shift, mut turn, mut rim, mut lever, mut grown, mut radius]: [Real; 6] = [0.0; 6];
-        for (then, now) in self.links.iter_mut().zip(PlacedOutline::of_all(robot)) {
+        for (then, (_, now)) in self.links.iter_mut().zip(PlacedOutline::of_all(robot)) {
             is_known &= then.flat == now.flat;
             let [start, end] =
                 [squared(now.ends[0] - then.ends[0]), squared(now.ends[1] - then.ends[1])];
@@ -98,7 +98,7 @@ impl Odometer {
         self.lever = 1.0 + 4.0 * lever.sqrt();
         let turned = 2.0 * rim.sqrt() * (1.0 + 2.0 * turn.sqrt());
         let step = (shift.sqrt() + turned) / scale + grown;
-        if is_known { step + ROUNDING * (step + radius) } else { Real::INFINITY }
+        if is_known { step + MOVED_ROUNDING * (step + radius) } else { Real::INFINITY }
     }
 
     /// Returns the last step; infinite if unknown.

@@ -309,7 +309,7 @@ impl<'a> Context<'a> {
         frame: Option<Real>,
     ) -> Result<TubeQuery<'a>, ProximityError> {
         let (search, Remembered { tube: memory, places, .. }) = self.search();
-        let tube = PlacedTube::new(tube, pose, search.hierarchy.reach)?;
+        let tube = PlacedTube::new(tube, pose, search.hierarchy.mesh_reach)?;
         let tube = frame.map_or(tube, |size| tube.posed(size, 1.0));
         let tube = TubeInMesh { search: PlacedMeshSearch::at_rest(search), tube };
         Ok((tube, memory, &mut places.tube))

@@ -88,7 +88,7 @@ impl BvhSearch {
         if self.clears_tube(tube, pose, margin, resolution)? != Decision::Clear {
             return Ok(None);
         }
-        let placed = PlacedTube::new(tube, pose, self.prepared().hierarchy.reach)?;
+        let placed = PlacedTube::new(tube, pose, self.prepared().hierarchy.mesh_reach)?;
         let mut plane_search = self.plane_search();
         // Step 3: coarse pieces first, finer ones as long as planes are missing.
         let finest = (0.25 * resolution).max(placed.slack());
@@ -145,7 +145,7 @@ impl BvhSearch {
         if !self.clears_motion(motion, margin, resolution)?.is_clear() {
             return Ok(None);
         }
-        let reach = self.prepared().hierarchy.reach;
+        let reach = self.prepared().hierarchy.mesh_reach;
         let mut plane_search = self.plane_search();
         let shapes = motion_proof(&mut plane_search, reach, motion, margin, resolution)?;
         Ok(shapes.map(|shapes| write_proof(plane_search.mesh(), margin, Kind::Motion, &shapes)))

@@ -220,11 +220,11 @@ impl MotionSearch<'_> {
         let MeshSearch { level, hierarchy, .. } = self.search;
         let search = MeshSearch::new(level, hierarchy, &mut *self.search.scratch);
         let (reach, mesh_speed, search) = if self.does_mesh_move {
-            let (reach, speed) = (hierarchy.reach.max(mesh.reach()), mesh.speed);
+            let (reach, speed) = (hierarchy.mesh_reach.max(mesh.reach()), mesh.speed);
             let moved = MeshAt { moving: mesh, share: t };
             (reach, speed, PlacedMeshSearch::moved(search, moved))
         } else {
-            (hierarchy.reach, MeshSpeed::default(), PlacedMeshSearch::at_rest(search))
+            (hierarchy.mesh_reach, MeshSpeed::default(), PlacedMeshSearch::at_rest(search))
         };
         let tube = PlacedTube::new(&current.tube, &pose, reach)?.moving();
         let tube = self.frame.map_or(tube, |(size, products)| tube.posed(size, products));

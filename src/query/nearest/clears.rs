@@ -72,15 +72,15 @@ pub(crate) struct ClearsSearch<'a> {
 impl ClearsSearch<'_> {
     /// Returns true if every link is farther than `margin` from the mesh.
     pub(crate) fn clears(&mut self, margin: Real) -> bool {
-        let (robot, reach) = (self.robot, self.search.hierarchy.reach);
+        let (robot, mesh_reach) = (self.robot, self.search.hierarchy.mesh_reach);
         if self.memory.lower_bounds.all_exceed(robot, margin) {
             return true;
         }
         if let Some(wider) =
-            self.memory.lower_bounds.look_ahead(robot, margin, Real::INFINITY, reach)
+            self.memory.lower_bounds.choose_look_ahead(robot, margin, Real::INFINITY, mesh_reach)
         {
             if let Some(known) = self.cleared_by(margin + wider) {
-                self.memory.lower_bounds.set_all(robot, margin + wider, known, reach);
+                self.memory.lower_bounds.set_all(robot, margin + wider, known, mesh_reach);
                 return true;
             }
             self.memory.lower_bounds.record_miss();

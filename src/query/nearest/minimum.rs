@@ -86,7 +86,7 @@ struct BranchAndBound<'a> {
     lower_bounds: &'a mut LinkLowerBounds,
     upper: Real,
     best: Option<LinkHit>,
-    /// Extra search radius; none if the search is no wider than `upper`.
+    /// Extra search radius. None: search only to `upper`.
     look_ahead: Option<Real>,
 }
 
@@ -116,7 +116,7 @@ impl<'a> BranchAndBound<'a> {
 
     /// Steps 1 to 4.
     fn run(&mut self, last: Option<(usize, u32)>) {
-        let (robot, reach) = (self.robot, self.search.hierarchy.reach);
+        let (robot, mesh_reach) = (self.robot, self.search.hierarchy.mesh_reach);
         let count = robot.links().len();
         self.lower_bounds.refresh(robot);
         if self.lower_bounds.count_open(0..count, self.upper) == 0 {
@@ -135,22 +135,24 @@ impl<'a> BranchAndBound<'a> {
         self.lower_bounds.drop_if_useless(count, self.upper);
         // A look-ahead as long as the robot's axis and last diameter, or as wide as the mesh, would
         // prune little: the robot jumped.
-        let (last, before) = (&robot.links()[count - 1], robot.length_before(count - 1));
-        let size = before + last.length() + 2.0 * last.radius();
-        self.look_ahead = self.lower_bounds.look_ahead(robot, self.upper, size.min(reach), reach);
+        let (tip, length_before_tip) = (&robot.links()[count - 1], robot.length_before(count - 1));
+        let size = length_before_tip + tip.length() + 2.0 * tip.radius();
+        let most = size.min(mesh_reach);
+        self.look_ahead = self.lower_bounds.choose_look_ahead(robot, self.upper, most, mesh_reach);
         if self.look_ahead.is_some()
             && let Some((_, nearest)) = self.best
         {
-            self.lower_bounds.set(robot, first..first + 1, nearest.distance, None, reach);
+            self.lower_bounds.set(robot, first..first + 1, nearest.distance, None, mesh_reach);
         }
         let tree = robot.link_tree();
-        let (mut place, mut link) = (0, 0);
-        while let Some(node) = tree.get(place) {
+        // The index in the tree, and the number of the first link below it.
+        let (mut index, mut link) = (0, 0);
+        while let Some(node) = tree.get(index) {
             let links = link..link + node.links();
             match node {
                 LinkNode::Inner { bound: capsule, below } => {
                     if self.can_prune(capsule, links.clone()) {
-                        place += below;
+                        index += below;
                         link = links.end;
                     }
                 }
@@ -161,7 +163,7 @@ impl<'a> BranchAndBound<'a> {
                     link += 1;
                 }
             }
-            place += 1;
+            index += 1;
         }
     }
 
@@ -175,11 +177,17 @@ impl<'a> BranchAndBound<'a> {
         }
         let capsule = self.robot.bound(capsule);
         let Some(radius) = self.search_radius() else {
-            return !self.search.may_meet_below(&capsule, self.upper, self.triangle_limit());
+            return !self.search.may_meet_lower(&capsule, self.upper, self.triangle_limit());
         };
         let is_beyond = !self.search.may_meet(&capsule, radius);
         if is_beyond {
-            self.lower_bounds.set(self.robot, links, radius, None, self.search.hierarchy.reach);
+            self.lower_bounds.set(
+                self.robot,
+                links,
+                radius,
+                None,
+                self.search.hierarchy.mesh_reach,
+            );
         }
         is_beyond
     }
@@ -193,14 +201,14 @@ impl<'a> BranchAndBound<'a> {
                 &link,
                 wanted,
                 radius,
-                [self.lower_bounds.approximate_nearest(number), None],
+                [self.lower_bounds.recorded_triangle(number), None],
             );
             self.lower_bounds.set(
                 self.robot,
                 number..number + 1,
                 lower,
                 triangle,
-                self.search.hierarchy.reach,
+                self.search.hierarchy.mesh_reach,
             );
             best
         } else {
@@ -239,7 +247,7 @@ impl<'a> BranchAndBound<'a> {
         let Some(LinkNode::Inner { bound: capsule, .. }) = self.robot.link_tree().first() else {
             return (0, 0);
         };
-        let triangle = self.search.approximate_nearest(&self.robot.bound(capsule)).unwrap_or(0);
+        let triangle = self.search.search_guess(&self.robot.bound(capsule)).unwrap_or(0);
         let [a, b, c] = self.search.hierarchy.mesh.corners(triangle);
         let centre = self.robot.in_robot_frame(a / 3.0 + b / 3.0 + c / 3.0);
         let distances = self

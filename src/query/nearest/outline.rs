@@ -6,10 +6,16 @@ use crate::robot::{LinkNode, ModifiedCylinder, length};
 use parry3d_f64::math::{Real, Vector};
 use std::slice;
 
-/// Bounds the rounding of two distances and of the motion between them, relative to coordinates of
-/// size 1: 256 u. It covers `16 u` of the extent, which is at most 2, for each distance. It also
-/// covers `8 u` for the ends of each link and their differences.
-pub(crate) const ROUNDING: Real = 256.0 * Real::UNIT_ROUNDOFF;
+/// A bound on the rounding of a distance that is known for one placement of a link and used for
+/// another: 256 u, relative to the coordinates of mesh and link.
+///
+/// **Derivation.** Let all coordinates be at most 1.
+/// - Each of the two distances errs by `16 u` of its extent, which is at most 2: `64 u`.
+/// - The ends of a link and their differences err by `8 u` at each placement: `16 u`.
+/// - The turn of a flat cap errs by `18 u` ([`ReferenceOutline::moved_to`]).
+///
+/// The sum of 98 u is less than half of the constant.
+pub(crate) const MOVED_ROUNDING: Real = 256.0 * Real::UNIT_ROUNDOFF;
 
 /// A link in the mesh's frame.
 #[derive(Clone, Copy, Debug)]
@@ -31,20 +37,20 @@ pub(crate) struct ReferenceOutline {
     per_length: Real,
 }
 
-/// The links of a robot from the tip to the base.
+/// The links of a robot with their numbers, from the tip to the base.
 struct FromTip<'a> {
     robot: PlacedRobot<'a>,
     links: slice::Iter<'a, ModifiedCylinder>,
-    /// The start of the link before, in the robot's frame and placed.
+    /// The start of the link after this one, in the robot's frame and placed.
     shared: Option<[Vector; 2]>,
 }
 
 impl Iterator for FromTip<'_> {
-    type Item = PlacedOutline;
+    type Item = (usize, PlacedOutline);
 
     // A call costs as much as a link.
     #[inline(always)]
-    fn next(&mut self) -> Option<PlacedOutline> {
+    fn next(&mut self) -> Option<Self::Item> {
         let link = self.links.next_back()?;
         let end = match self.shared {
             Some([point, placed]) if point == link.end() => placed,
@@ -52,7 +58,10 @@ impl Iterator for FromTip<'_> {
         };
         let start = self.robot.placed(link.start());
         self.shared = Some([link.start(), start]);
-        Some(PlacedOutline { ends: [start, end], radius: link.radius(), flat: link.flat() })
+        let ends = [start, end];
+        let outline = PlacedOutline { ends, radius: link.radius(), flat: link.flat() };
+        // The number of links before this one is its number.
+        Some((self.links.len(), outline))
     }
 
     fn size_hint(&self) -> (usize, Option<usize>) {
@@ -81,8 +90,9 @@ impl PlacedOutline {
         Self { ends: robot.ends(), radius: tip.radius(), flat: tip.flat() }
     }
 
-    /// All links from the tip to the base. An end that two links share is placed once.
-    pub(crate) fn of_all(robot: PlacedRobot) -> impl Iterator<Item = Self> {
+    /// All links with their numbers, from the tip to the base. An end that two links share is placed
+    /// once.
+    pub(crate) fn of_all(robot: PlacedRobot) -> impl Iterator<Item = (usize, Self)> {
         FromTip { robot, links: robot.links().iter(), shared: None }
     }
 
@@ -103,9 +113,9 @@ impl PlacedOutline {
 }
 
 impl ReferenceOutline {
-    /// `reach` is the largest coordinate of the mesh.
-    pub(crate) fn new(link: PlacedOutline, reach: Real) -> Self {
-        let scale = (reach + link.extent()).power_of_two_to_unity();
+    /// `mesh_reach` is the largest coordinate of the mesh.
+    pub(crate) fn new(link: PlacedOutline, mesh_reach: Real) -> Self {
+        let scale = (mesh_reach + link.extent()).power_of_two_to_unity();
         let per_length =
             if link.flat == [false; 2] { 0.0 } else { 0.5 / (length(link.along()) * scale) };
         Self { link, scale, unit: 1.0 / scale, per_length }
@@ -133,8 +143,8 @@ impl ReferenceOutline {
     ///    rim farther than `2 r`.
     ///
     /// **Rounding.** d and d' err by u of themselves, and so x by less than `3 u` for `x <= 1/2`.
-    /// The derivative of t is at most `6 r`, so t errs by `18 u r`, which [`ROUNDING`] times the
-    /// extent includes. A square vanishes if its root is below 2^-537 of the extent and the mesh.
+    /// The derivative of t is at most `6 r`, so t errs by `18 u r`, which [`MOVED_ROUNDING`] times
+    /// the extent includes. A square vanishes if its root is below 2^-537 of the extent and the mesh.
     /// The radius of a flat cap is less than 2^400 lengths of its axis, so at most 2^-136 of the
     /// extent is lost.
     #[inline(always)] // in the loop over all links

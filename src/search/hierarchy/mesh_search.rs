@@ -117,29 +117,30 @@ impl MeshSearch<'_> {
         )
     }
 
-    /// Returns a triangle about nearest to a capsule around links. None if the capsule is out of
-    /// reach.
-    pub(crate) fn approximate_nearest(&mut self, capsule: &PlacedLink) -> Option<u32> {
-        resolved!(
-            self,
-            capsule,
-            |traversal, searched| traversal.approximate_nearest(&searched),
-            None
-        )
+    /// Searches a triangle about nearest to a capsule around links. None if neither precision
+    /// resolves the capsule.
+    pub(crate) fn search_guess(&mut self, capsule: &PlacedLink) -> Option<u32> {
+        resolved!(self, capsule, |traversal, searched| traversal.search_guess(&searched), None)
     }
 
     /// Returns true if any triangle may be at most `bound` from a capsule around links.
     /// False is a proof, true is not.
     pub(crate) fn may_meet(&mut self, capsule: &PlacedLink, bound: Real) -> bool {
-        self.may_meet_below(capsule, bound, u32::MAX)
+        self.may_meet_lower(capsule, bound, u32::MAX)
     }
 
-    /// The same for the triangles with a number less than `below`.
-    pub(crate) fn may_meet_below(&mut self, capsule: &PlacedLink, bound: Real, below: u32) -> bool {
+    /// Returns true if any triangle with a number less than `triangle_limit` may be at most `bound`
+    /// from a capsule around links. False is a proof, true is not.
+    pub(crate) fn may_meet_lower(
+        &mut self,
+        capsule: &PlacedLink,
+        bound: Real,
+        triangle_limit: u32,
+    ) -> bool {
         resolved!(
             self,
             capsule,
-            |traversal, searched| traversal.may_meet(&searched, bound, below),
+            |traversal, searched| traversal.may_meet(&searched, bound, triangle_limit),
             { self.is_near(capsule, bound) }
         )
     }
@@ -152,7 +153,7 @@ impl MeshSearch<'_> {
         first - 2.0 * size - 64.0 * Real::UNIT_ROUNDOFF * (first + size + extent) <= bound
     }
 
-    /// Returns the distance of the first triangle, for a link whose search finds none.
+    /// Measures the first triangle of the mesh, for a link whose search finds none.
     pub(crate) fn any(&self, link: &PlacedLink) -> Nearest {
         link.measure(0, self.hierarchy.mesh.corners(0))
     }
@@ -175,7 +176,7 @@ impl MeshSearch<'_> {
 pub(crate) struct Hierarchy {
     pub mesh: Mesh,
     /// The largest coordinate of a triangle.
-    pub reach: Real,
+    pub mesh_reach: Real,
     /// The longest side of the box around all triangles.
     pub size: Real,
     /// An upper bound on the longest edge, computed on first use.
@@ -187,8 +188,8 @@ pub(crate) struct Hierarchy {
 
 impl Hierarchy {
     pub(crate) fn new(level: Level, mesh: Mesh) -> Self {
-        let (single, [reach, size]) = (WideBvh::new(level, &mesh), extent(mesh.bounds()));
-        Self { single, double: Lazy::new(), longest: Lazy::new(), reach, size, mesh }
+        let (single, [mesh_reach, size]) = (WideBvh::new(level, &mesh), extent(mesh.bounds()));
+        Self { single, double: Lazy::new(), longest: Lazy::new(), mesh_reach, size, mesh }
     }
 
     pub(crate) fn double(&self, level: Level) -> &WideBvh<f64> {
@@ -226,7 +227,7 @@ impl Hierarchy {
     /// Moves the vertices, which the caller has checked, and refits.
     pub(crate) fn set_vertices(&mut self, level: Level, vertices: &[Vector]) {
         self.mesh.set_vertices(vertices);
-        [self.reach, self.size] = extent(self.mesh.bounds());
+        [self.mesh_reach, self.size] = extent(self.mesh.bounds());
         self.single.refit(level, &self.mesh);
         if let Some(double) = self.double.get_mut() {
             double.refit(level, &self.mesh);

@@ -10,7 +10,7 @@
 //!   The distance d of the triangle satisfies `lower - r - e < d < upper - r + e`; if the right
 //!   side is not positive, d is 0.
 //! - `limit`: an axis distance; no triangle with `lower >= limit` is wanted. It never grows.
-//! - `below`: no triangle with this number or a higher one can win (exclusive limit).
+//! - `triangle_limit`: no triangle with this number or a higher one can win.
 //!
 //! All comparisons are in the precision of the search.
 //!
@@ -29,8 +29,8 @@
 //! **Proof.** A triangle that does not certainly overlap has `upper' + e >= r`, so its distance is
 //! `d' <= upper' - r + e`. Let another triangle have `lower >= upper' + 2 e`. Then `d > lower - r -
 //! e >= upper' - r + e >= d'`. So such a triangle is strictly farther, and all ties are measured. A
-//! triangle at the initial `limit` or beyond is farther than the bound. A triangle numbered `below`
-//! or higher loses the tie at distance 0. A node's bound is compared conservatively: see
+//! triangle at the initial `limit` or beyond is farther than the bound. A triangle numbered
+//! `triangle_limit` or higher loses the tie at distance 0. A node's bound is compared conservatively: see
 //! [`SearchLink::limit_of_bounds`].
 
 use super::build::WideBvh;
@@ -76,7 +76,7 @@ struct Target<'a, E> {
     /// A wanted triangle has an axis distance below this.
     limit: E,
     /// A wanted triangle has a number below this.
-    below: u32,
+    triangle_limit: u32,
     goal: Goal<'a>,
 }
 
@@ -99,7 +99,7 @@ impl<E: Lane> Target<'_, E> {
     /// Returns true if nothing can change the answer any more.
     fn is_settled(&self) -> bool {
         match &self.goal {
-            Goal::Nearest(..) => self.below == 0,
+            Goal::Nearest(..) => self.triangle_limit == 0,
             // Even a triangle that meets the axis leaves a limit: three errors of the bounds.
             Goal::Guess(_, leaves) => *leaves == 0,
             Goal::Any(found) => *found,
@@ -118,8 +118,9 @@ impl<E: Lane> Traversal<'_, E> {
         start: [Option<u32>; 2],
     ) -> Best {
         let limit = searched.axis_limit(best.bound());
-        let below = best.triangle_limit();
-        let mut target = Target { searched, limit, below, goal: Goal::Nearest(link, best) };
+        let triangle_limit = best.triangle_limit();
+        let mut target =
+            Target { searched, limit, triangle_limit, goal: Goal::Nearest(link, best) };
         self.search(&mut target, start);
         self.settle(&mut target);
         if let Goal::Nearest(_, best) = target.goal { best } else { best }
@@ -139,7 +140,7 @@ impl<E: Lane> Traversal<'_, E> {
     ) -> Option<Best> {
         let (limit, best) = (searched.axis_limit(f64::INFINITY), Best::within(f64::INFINITY));
         let mut target =
-            Target { searched, limit, below: u32::MAX, goal: Goal::Nearest(link, best) };
+            Target { searched, limit, triangle_limit: u32::MAX, goal: Goal::Nearest(link, best) };
         self.search(&mut target, start);
         self.drop_candidates(&target);
         let candidates = &mut self.stack.candidates;
@@ -172,8 +173,9 @@ impl<E: Lane> Traversal<'_, E> {
         far: f64,
         start: [Option<u32>; 2],
     ) -> (Best, f64, Option<u32>) {
-        let (limit, below) = (searched.axis_limit(far), best.triangle_limit());
-        let mut target = Target { searched, limit, below, goal: Goal::Nearest(link, best) };
+        let (limit, triangle_limit) = (searched.axis_limit(far), best.triangle_limit());
+        let mut target =
+            Target { searched, limit, triangle_limit, goal: Goal::Nearest(link, best) };
         self.search(&mut target, start);
         let mut least = (target.limit, None);
         for &(lower, triangle) in &self.stack.candidates {
@@ -184,25 +186,31 @@ impl<E: Lane> Traversal<'_, E> {
         target.limit = target.limit.min(searched.axis_limit(best.bound()));
         self.settle(&mut target);
         let best = if let Goal::Nearest(_, best) = target.goal { best } else { best };
-        let apart = searched.at_least(least.0.into());
-        (best, best.nearest().map_or(apart, |nearest| apart.min(nearest.distance)), least.1)
+        let at_least = searched.at_least(least.0.into());
+        let lower = best.nearest().map_or(at_least, |nearest| at_least.min(nearest.distance));
+        (best, lower, least.1)
     }
 
     /// Returns a triangle about as near as the nearest, or any that overlaps the link.
-    pub(crate) fn approximate_nearest(&mut self, searched: &SearchLink<E>) -> Option<u32> {
+    pub(crate) fn search_guess(&mut self, searched: &SearchLink<E>) -> Option<u32> {
         let limit = searched.axis_limit(f64::INFINITY);
-        let below = u32::MAX;
+        let triangle_limit = u32::MAX;
         let mut target =
-            Target { searched, limit, below, goal: Goal::Guess(None, LEAVES_FOR_A_GUESS) };
+            Target { searched, limit, triangle_limit, goal: Goal::Guess(None, LEAVES_FOR_A_GUESS) };
         self.search(&mut target, [None; 2]);
         if let Goal::Guess(found, _) = target.goal { found } else { None }
     }
 
-    /// Returns true if a triangle with a number less than `below` may be at most `bound` from the
+    /// Returns true if a triangle with a number less than `triangle_limit` may be at most `bound` from the
     /// link. False is a proof, true is not: leaves do not compare the numbers.
-    pub(crate) fn may_meet(&mut self, searched: &SearchLink<E>, bound: f64, below: u32) -> bool {
+    pub(crate) fn may_meet(
+        &mut self,
+        searched: &SearchLink<E>,
+        bound: f64,
+        triangle_limit: u32,
+    ) -> bool {
         let limit = searched.axis_limit(bound);
-        let mut target = Target { searched, limit, below, goal: Goal::Any(false) };
+        let mut target = Target { searched, limit, triangle_limit, goal: Goal::Any(false) };
         self.search(&mut target, [None; 2]);
         matches!(target.goal, Goal::Any(true))
     }
@@ -303,7 +311,7 @@ impl<E: Lane> Traversal<'_, E> {
         while near != 0 {
             let child = near.trailing_zeros() as usize;
             near &= near - 1;
-            if node.lowest[child] >= target.below {
+            if node.lowest[child] >= target.triangle_limit {
                 continue;
             }
             // Insertion sort: there are few new entries.
@@ -345,7 +353,7 @@ impl<E: Lane> Traversal<'_, E> {
         }
         match &mut target.goal {
             Goal::Any(found) => {
-                // `below` is ignored here.
+                // `triangle_limit` is ignored here.
                 *found = near != 0;
                 return;
             }
@@ -359,7 +367,7 @@ impl<E: Lane> Traversal<'_, E> {
             let lane = near.trailing_zeros() as usize;
             near &= near - 1;
             let triangle = leaf.triangles[lane];
-            if lower[lane] >= target.limit || triangle >= target.below {
+            if lower[lane] >= target.limit || triangle >= target.triangle_limit {
                 continue;
             }
             if let Goal::Guess(found, _) = &mut target.goal {
@@ -388,7 +396,7 @@ impl<E: Lane> Traversal<'_, E> {
     fn drop_candidates(&mut self, target: &Target<E>) {
         self.stack
             .candidates
-            .retain(|candidate| candidate.0 < target.limit && candidate.1 < target.below);
+            .retain(|candidate| candidate.0 < target.limit && candidate.1 < target.triangle_limit);
     }
 
     /// Measures the candidates in batches. Those with the least bounds come first, because they
@@ -421,7 +429,7 @@ impl<E: Lane> Traversal<'_, E> {
         self.work.measured += 1;
         if best.measure(link, triangle, self.mesh.corners(triangle)) {
             target.limit = target.limit.min(target.searched.axis_limit(best.bound()));
-            target.below = best.triangle_limit();
+            target.triangle_limit = best.triangle_limit();
         }
     }
 }
