@@ -199,7 +199,7 @@ fn points_of_the_device_err_by_less_than_the_bound() {
         let group = device.group(
             &kernels.bending_layout,
             &[
-                device.uniform_binding::<super::bending::BendingQuery>(&query_buffer),
+                device.uniform_binding::<super::robots::BendingQuery>(&query_buffer),
                 shapes.as_entire_binding(),
                 found.as_entire_binding(),
             ],
