@@ -14,7 +14,7 @@
 //! | `clears` | whether `d(k, i) > margin` for all k and i | [`PassGoal::Within`] |
 //! | `contacts_within` | for each k the local minima along the wall with `d(k, i) <= margin` | [`PassGoal::Every`] |
 //!
-//! [`LocalMinima`] defines a local minimum. `definitions.rs` has each row as a plain loop, and
+//! `query/contacts/local_minima.rs` defines a local minimum. `definitions.rs` has each row as a plain loop, and
 //! compares the engines with these loops; `contacts_within` only for robots that touch nothing, and
 //! without a prominence. The queries of [`BvhSearch`](super::BvhSearch) alone
 //! follow from the same distance:
@@ -36,7 +36,7 @@ use super::proximity::{Engine, Proximity, any_triangle, placed};
 use crate::answer::{Contact, LinkProximity, MeshError, ProximityError, Work};
 use crate::mesh::Mesh;
 use crate::pair::PlacedRobot;
-use crate::query::contacts::{ContactCollector, ContactQuery, LocalMinima, Wall};
+use crate::query::contacts::{ContactCollector, ContactMemory, ContactQuery, Wall};
 use crate::robot::Chain;
 use crate::search::exhaustive::{Kernels, Pass, PassGoal, Triangles};
 use fearless_simd::Level;
@@ -77,7 +77,7 @@ pub struct Exhaustive<T: SearchPrecision> {
     culling: bool,
     work: Work,
     pass: Pass<T>,
-    minima: LocalMinima,
+    contact_memory: ContactMemory,
 }
 
 /// A precision in which [`Exhaustive`] can search: `f32` or `f64`.
@@ -95,7 +95,7 @@ impl<T: SearchPrecision> Clone for Exhaustive<T> {
             culling: self.culling,
             work: Work::default(),
             pass: Pass::default(),
-            minima: LocalMinima::default(),
+            contact_memory: ContactMemory::default(),
         }
     }
 }
@@ -135,7 +135,7 @@ impl<T: SearchPrecision> Exhaustive<T> {
             culling: true,
             work: Work::default(),
             pass: Pass::default(),
-            minima: LocalMinima::default(),
+            contact_memory: ContactMemory::default(),
         }
     }
 
@@ -260,10 +260,22 @@ impl<T: SearchPrecision> Engine for Exhaustive<T> {
     ) -> Result<(), ProximityError> {
         // Takes links together as long as a pass can keep all their pairs within the margin.
         let Self {
-            level, culling, ref triangles, ref mut pass, ref mut minima, ref mut work, ..
+            level,
+            culling,
+            ref triangles,
+            ref mut pass,
+            ref mut contact_memory,
+            ref mut work,
+            ..
         } = *self;
-        let mut contacts =
-            ContactCollector::new(level, Wall::of(&triangles.mesh), robot, query, minima, out);
+        let mut contacts = ContactCollector::new(
+            level,
+            Wall::of(&triangles.mesh),
+            robot,
+            query,
+            contact_memory,
+            out,
+        );
         let (links, mut first, mut count) = (robot.links().len(), 0, robot.links().len());
         while first < links {
             let end = first + count;
@@ -282,7 +294,7 @@ impl<T: SearchPrecision> Engine for Exhaustive<T> {
             for pairs in within.chunk_by(|one, other| one.0 == other.0) {
                 let triangles = pairs.iter().map(|pair| pair.1);
                 contacts
-                    .add(first + pairs[0].0 as usize, |_, near| near.add_unclassified(triangles));
+                    .add(first + pairs[0].0 as usize, |_, found| found.add_unclassified(triangles));
             }
             first = end;
         }

@@ -14,7 +14,7 @@ use crate::mesh::Mesh;
 use crate::pair::PlacedRobot;
 #[cfg(feature = "tubes")]
 use crate::query::clearance::{LastPlace, TubeMemory};
-use crate::query::contacts::{ContactQuery, ContactSearch, LocalMinima};
+use crate::query::contacts::{ContactMemory, ContactQuery, ContactSearch};
 #[cfg(feature = "tubes")]
 use crate::query::motion::MotionMemory;
 use crate::query::nearest::{
@@ -89,7 +89,7 @@ pub(super) struct Remembered {
     pub clears: ClearsMemory,
     /// For the lids of openings.
     pub lids: ClearsMemory,
-    pub contacts: LocalMinima,
+    pub contacts: ContactMemory,
     /// Where the next queries of other kinds begin.
     pub places: LastPlaces,
     #[cfg(feature = "tubes")]

@@ -16,7 +16,7 @@ use crate::engine::{BvhSearch, Engine, Proximity};
 use crate::gpu::{Adapter, Gpu, GpuError, Precision};
 use crate::mesh::{Mesh, SearchFrame};
 use crate::pair::PlacedRobot;
-use crate::query::contacts::{ContactCollector, ContactQuery, LocalMinima, Wall};
+use crate::query::contacts::{ContactCollector, ContactMemory, ContactQuery, Wall};
 use crate::robot::Chain;
 use crate::threads::threads;
 use fearless_simd::Level;
@@ -113,8 +113,7 @@ pub struct GpuSearch {
     /// The search on the CPU. Its mesh is stale after a move, until it is needed.
     cpu: BvhSearch,
     is_cpu_stale: bool,
-    /// Memory of the contacts.
-    minima: LocalMinima,
+    contact_memory: ContactMemory,
     min_links: Option<usize>,
     answered_on_cpu: u64,
     /// Kernels that count their work, if they are selected.
@@ -190,7 +189,7 @@ impl GpuSearch {
             on_device: Some(on_device),
             batches: Batches::new(watch),
             is_cpu_stale: false,
-            minima: LocalMinima::default(),
+            contact_memory: ContactMemory::default(),
             min_links: None,
             answered_on_cpu: 0,
             counting: None,
@@ -424,11 +423,12 @@ impl Engine for GpuSearch {
         let Some(candidates) = self.search_one(&robot, &Within { margin: query.margin })? else {
             return self.refitted().ask_contacts(robot, query, out);
         };
-        let Self { level, mesh, minima, .. } = self;
-        let mut contacts = ContactCollector::new(*level, Wall::of(mesh), robot, query, minima, out);
+        let Self { level, mesh, contact_memory, .. } = self;
+        let mut contacts =
+            ContactCollector::new(*level, Wall::of(mesh), robot, query, contact_memory, out);
         for of_link in candidates.chunk_by(|one, other| one.link == other.link) {
             let triangles = of_link.iter().map(|candidate| candidate.triangle);
-            contacts.add(of_link[0].link as usize, |_, near| near.add_unclassified(triangles));
+            contacts.add(of_link[0].link as usize, |_, found| found.add_unclassified(triangles));
         }
         contacts.finish();
         Ok(())

@@ -90,7 +90,12 @@ impl<L: Pack> LinkLanes<L> {
     /// `across` are the opposite corners of the neighbours beyond the edges ab, bc and ca; NaN if
     /// there is no neighbour. `error` is the link's.
     #[inline(always)]
-    pub(crate) fn descends(&self, [a, b, c]: [Vec3<L>; 3], across: [Vec3<L>; 3], error: L) -> u64 {
+    pub(crate) fn culled_by_descent(
+        &self,
+        [a, b, c]: [Vec3<L>; 3],
+        across: [Vec3<L>; 3],
+        error: L,
+    ) -> u64 {
         let (zero, one, half) = (error.zero(), error.one(), error.lit(0.5));
         let centre = (a + b + c) * error.lit(1.0 / 3.0);
         let up = self.offset_from_axis(centre);
@@ -115,13 +120,15 @@ impl<L: Pack> LinkLanes<L> {
         let (way, touching) = self.way_to(nearest);
         let (apart, fall) = (way.norm(), way.dot(along));
         let gap = edge.gap(apart, (fall * share).max(fall * (share - one)));
-        let kept = edge.kept(apart, gap);
+        let edge_at_least = edge.at_least(apart, gap);
 
         let to_corner = beyond - nearest;
         let step = self.steps_to_lowest(way, nearest, to_corner).max(zero).min(one);
         let beyond_edge = self.way_to(nearest.along(to_corner, step)).0.norm_squared();
         L::bits(
-            edge.holds_nearest(way, apart, gap) & touching.lt(kept) & beyond_edge.lt(kept * kept),
+            edge.holds_nearest(way, apart, gap)
+                & touching.lt(edge_at_least)
+                & beyond_edge.lt(edge_at_least * edge_at_least),
         )
     }
 
@@ -142,7 +149,8 @@ impl<L: Pack> LinkLanes<L> {
         self.way_from_start(point - self.start)
     }
 
-    /// Returns the same for a point relative to the link's start.
+    /// Returns W of a point that is given relative to the link's start, and the length of W for
+    /// points that touch.
     #[inline(always)]
     pub(crate) fn way_from_start(&self, relative: Vec3<L>) -> (Vec3<L>, L) {
         let (zero, radius) = (self.length.zero(), self.link.radius);
@@ -188,7 +196,7 @@ impl<L: Pack> Edge<L> {
 
     /// A lower bound on D on the edge, less the margin by which the neighbour must be nearer.
     #[inline(always)]
-    fn kept(&self, apart: L, gap: L) -> L {
+    fn at_least(&self, apart: L, gap: L) -> L {
         apart - gap.over(apart) - self.error * gap.lit(12.0)
     }
 }
@@ -231,7 +239,8 @@ mod tests {
         let (mut descents, error) = (0, L::splat(token, searched.error));
         for lane in (0..BLOCK).step_by(L::LANES) {
             let corners = load_vertices(token, rows, lane);
-            descents |= lanes.descends(corners, load_vertices(token, across, lane), error) << lane;
+            descents |=
+                lanes.culled_by_descent(corners, load_vertices(token, across, lane), error) << lane;
         }
         descents
     }

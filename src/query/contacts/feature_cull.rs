@@ -60,9 +60,9 @@ pub(crate) struct FeatureMask {
 }
 
 /// Two measured distances certainly differ, beyond their own rounding, if the computed axis
-/// distances differ by this many `error`. One `error` is for each axis distance; two are for double
-/// precision, ties included.
-pub(crate) const CERTAIN: f64 = 4.0;
+/// distances differ by this many `error`: one for each axis distance, and one for the rounding of
+/// each measured distance, which is `32 u extent` in double precision (`local_minima`).
+pub(crate) const CERTAIN_GAP: f64 = 4.0;
 
 impl<L: Pack> LinkLanes<L> {
     /// Returns which triangles may be nearer than the bound whose axis limit is `limit`, and where
@@ -79,7 +79,7 @@ impl<L: Pack> LinkLanes<L> {
         let face = Face::in_order(corners).seen_from(self.start);
         let axial = Axial::new(&self.link, &face);
         let nearer = self.nearer(&axial, &face, limit);
-        let certain = error * error.lit(CERTAIN);
+        let certain = error * error.lit(CERTAIN_GAP);
         let away = self.corners_away(corners, &axial, error);
         // Triangles that may touch tie at distance 0.
         let is_apart = (self.link.radius + certain).lt(nearer.lower);

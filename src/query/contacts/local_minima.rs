@@ -58,6 +58,10 @@
 //!    minima, the piece with that minimum ends. (This is the elder rule of persistent homology.)
 //! 4. **Report** the first triangle of each piece that has not ended.
 //!
+//! The *rank* of a triangle is its number in the order of step 2, counted from 1. Union-find (Galler
+//! and Fischer) has the pieces: each rank names an earlier rank of the same piece, or itself if it
+//! is the first.
+//!
 //! If the least point of T lies on f, d(f) is d(T) and is not computed. That holds for nearly all
 //! f.
 //!
@@ -95,7 +99,7 @@
 //! # Cost
 //! A triangle queries all triangles that share a corner or an edge with it: whether one is nearer
 //! by far or culled, and which came first. The answers are the same for the whole ring, so a long
-//! ring is evaluated once (`wall_components`). So the cost grows linearly with the triangles near a
+//! ring is evaluated once ([`LongRings`]). So the cost grows linearly with the triangles near a
 //! link and around their corners.
 //!
 //! # Overlap
@@ -103,359 +107,286 @@
 //! and one contact. Its representative is the triangle nearest to the axis; ties go to the lowest
 //! triangle.
 
-use super::prominence::{ContactQuery, LinkNeighbourhood, Prominence};
-use super::triangle_candidates::{CandidateEnd, CandidateIndex, TriangleCandidates, Wall};
-use super::wall_components::{CULLED, FEW, IncidentTriangles, LongRings, NONE, WallComponents};
-use crate::answer::{Contact, LinkProximity};
-use crate::pair::{PlacedLink, PlacedPair, PlacedRobot, Ranked, add_contacts, rank_each};
-use fearless_simd::Level;
-use parry3d_f64::math::Real;
-use std::ops::Range;
+use super::long_rings::{LongRings, SHORT_RING};
+use super::triangle_candidates::NearLink;
+use crate::mesh::{PARTS, ends_of};
+use crate::pair::{Nearest, PlacedLink, Ranked, rounding};
+use parry3d_f64::math::{Real, Vector};
 
-/// Links are collected until more triangles than this are to be measured. More fill the packs
-/// better; fewer need less memory.
-const FLUSH_AT: usize = 1 << 12;
+/// The rank of all culled triangles: they count as one piece, nearer than any other.
+pub(crate) const CULLED: u32 = 0;
 
-/// State of a query; its memory is reused by later queries.
-#[derive(Clone, Default)]
-pub(crate) struct LocalMinima {
-    /// The links that may be near the wall.
-    links: Vec<ActiveLink>,
-    /// The triangles that may be within the margin, link by link.
-    triangles: TriangleCandidates,
-    /// For each candidate its index in the sorted triangles of its link, counted from 1; or
-    /// [`CULLED`] or [`NONE`].
-    places: Vec<u32>,
-    /// The index of the candidates of the current link.
-    index: CandidateIndex,
-    /// The triangles to measure, link by link.
-    measured: Vec<u32>,
-    /// The measurement of each triangle in `measured`.
-    ranked: Vec<Ranked>,
-    /// Long rings, as they concern a triangle that may be culled, and one that may be joined.
-    lowest: LongRings<Lowest>,
-    around: LongRings<IncidentTriangles>,
-    /// Union-find: for each index an earlier one of the same piece, or itself.
-    piece: Vec<u32>,
-    /// The minima that were found.
-    found: Vec<LinkProximity>,
-    prominence: Prominence,
-    /// For each contact whether it is prominent.
-    keep: Vec<bool>,
-}
-
-/// A link that may be near the wall.
-#[derive(Clone)]
-struct ActiveLink {
-    number: usize,
-    link: PlacedLink,
-    /// The begin and end of its candidates.
-    triangles: [CandidateEnd; 2],
-    measured: Range<usize>,
-}
+/// No rank: a triangle that is not within the margin.
+pub(crate) const NONE: u32 = u32::MAX;
 
 /// The ring of a corner or an edge, as it concerns a triangle whose nearest point lies there.
 #[derive(Clone)]
-struct Lowest {
+pub(super) struct CullRing {
     /// The least upper bound on the distance of a candidate in the ring.
     upper: Real,
     /// Whether a triangle of the ring is culled.
-    is_left_out: bool,
+    has_culled: bool,
 }
 
-impl Default for Lowest {
+impl Default for CullRing {
     fn default() -> Self {
-        Self { upper: Real::INFINITY, is_left_out: false }
+        Self { upper: Real::INFINITY, has_culled: false }
     }
 }
 
-/// Collects the contacts of a robot in `out`, link by link.
-pub(crate) struct ContactCollector<'a> {
-    level: Level,
-    wall: Wall<'a>,
-    robot: PlacedRobot<'a>,
-    query: ContactQuery,
-    minima: &'a mut LocalMinima,
-    out: &'a mut Vec<Contact>,
-    /// The number of triangles measured.
-    measured: u64,
-}
-
-impl<'a> ContactCollector<'a> {
-    /// A collector without contacts.
-    pub(crate) fn new(
-        level: Level,
-        wall: Wall<'a>,
-        robot: PlacedRobot<'a>,
-        query: ContactQuery,
-        minima: &'a mut LocalMinima,
-        out: &'a mut Vec<Contact>,
-    ) -> Self {
-        minima.clear();
-        Self { level, wall, robot, query, minima, out, measured: 0 }
-    }
-
-    /// Adds the next link. `near` adds the triangles that may be within the margin, each once; some
-    /// may be farther.
-    pub(crate) fn add(
-        &mut self,
-        number: usize,
-        near: impl FnOnce(&PlacedLink, &mut TriangleCandidates),
-    ) {
-        let (link, minima) = (self.robot.link(number), &mut *self.minima);
-        let (begin, measured) = (minima.triangles.end(), minima.measured.len());
-        near(&link, &mut minima.triangles);
-        let triangles = [begin, minima.triangles.end()];
-        minima.cull(self.wall, triangles);
-        let measured = measured..minima.measured.len();
-        minima.links.push(ActiveLink { number, link, triangles, measured });
-        if minima.measured.len() > FLUSH_AT {
-            self.flush();
-        }
-    }
-
-    /// Writes the contacts of all links, nearest first for each link. Returns the number of
-    /// triangles measured.
-    pub(crate) fn finish(mut self) -> u64 {
-        self.flush();
-        self.measured
-    }
-
-    /// Finds the contacts of the links collected so far.
-    fn flush(&mut self) {
-        let Self { level, wall, robot, query, .. } = *self;
-        self.minima.find_minima(level, wall, query.margin);
-        let mut links = self.minima.links.iter().peekable();
-        let place = |found: &LinkProximity| {
-            // Both are in the order of links.
-            while links.next_if(|at| at.number < found.link as usize).is_some() {}
-            let link = links.peek().map_or_else(|| robot.link(found.link as usize), |at| at.link);
-            PlacedPair {
-                ends: [link.start(), link.end()],
-                radius: link.radius(),
-                flat: link.flat(),
-                corners: wall.mesh.corners(found.witness.triangle),
-                before: robot.length_before(found.link as usize),
+/// Step 1: gives the rank [`CULLED`] to the candidates that certainly lie on a slope towards a
+/// nearer triangle.
+pub(super) fn cull(near: NearLink, ranks: &mut [u32], rings: &mut LongRings<CullRing>) {
+    rings.clear();
+    // A culled triangle may cull another; the second round finds most such cases.
+    for _ in 0..2 {
+        for candidate in 0..near.candidates.triangles.len() {
+            if ranks[candidate] != CULLED && lies_on_slope(near, candidate, ranks, rings) {
+                ranks[candidate] = CULLED;
+                rings.change_rings_of(candidate, |ring| ring.has_culled = true);
             }
-        };
-        let first = self.out.len();
-        add_contacts(level, &self.minima.found, place, self.out);
-        if query.prominence > 0.0 {
-            self.minima.keep_prominent(level, wall, query, first, self.out);
         }
-        self.measured += self.minima.measured.len() as u64;
-        self.minima.clear();
     }
 }
 
-impl LocalMinima {
-    fn clear(&mut self) {
-        self.links.clear();
-        self.triangles.clear();
-        self.places.clear();
-        self.measured.clear();
+/// Returns true if the nearest point of a candidate certainly lies on a corner or an edge that it
+/// shares with a culled triangle, or with one that is nearer by far.
+fn lies_on_slope(
+    near: NearLink,
+    candidate: usize,
+    ranks: &[u32],
+    rings: &mut LongRings<CullRing>,
+) -> bool {
+    let (triangles, shared) = (near.candidates.triangles, near.wall.mesh.parts());
+    let known = &triangles[candidate];
+    let Some(part) = known.nearest_feature().filter(|_| !shared.is_loose(known.triangle)) else {
+        return false;
+    };
+    let mut others = shared.others(known.triangle, part);
+    let culls = |other: u32| match near.index_of(other) {
+        Some(index) => triangles[index].upper < known.lower || ranks[index] == CULLED,
+        None => near.is_culled(other),
+    };
+    if others.by_ref().take(SHORT_RING).any(culls) {
+        return true;
     }
-
-    /// Step 1: culls the candidates of a link that certainly lie on a slope towards a nearer
-    /// triangle.
-    fn cull(&mut self, wall: Wall, triangles: [CandidateEnd; 2]) {
-        let near = self.triangles.between(triangles);
-        if near.in_question.is_empty() {
-            return;
-        }
-        self.index.number(near, wall.mesh.len());
-        let shared = wall.mesh.parts();
-        let first = self.places.len();
-        self.places.resize(first + near.in_question.len(), NONE);
-        let places = &mut self.places[first..];
-        self.lowest.clear();
-        // A culled triangle may cull another; the second round finds most such cases.
-        for _ in 0..2 {
-            for (place, known) in near.in_question.iter().enumerate() {
-                let Some(foot) = known.nearest_feature().filter(|_| places[place] != CULLED) else {
-                    continue;
-                };
-                if shared.is_loose(known.triangle) {
-                    continue;
-                }
-                let mut others = shared.others(known.triangle, foot);
-                let leaves_out = |other: u32| match near.index(&self.index, other) {
-                    Some(index) => {
-                        near.in_question[index].upper < known.lower || places[index] == CULLED
-                    }
-                    None => near.is_culled(&self.index, wall.place_of(), other),
-                };
-                let mut is_left_out = others.by_ref().take(FEW).any(leaves_out);
-                if !is_left_out && others.next().is_some() {
-                    let add = |lowest: &mut Lowest, other: u32, index: Option<usize>| match index {
-                        Some(index) => {
-                            lowest.upper = lowest.upper.min(near.in_question[index].upper);
-                            lowest.is_left_out |= places[index] == CULLED;
-                        }
-                        None => {
-                            lowest.is_left_out |=
-                                near.is_culled(&self.index, wall.place_of(), other)
-                        }
-                    };
-                    let lowest = self.lowest.around(shared, near, &self.index, [place, foot], add);
-                    // The ring includes the triangle itself, but its `upper` is not below its
-                    // `lower`.
-                    is_left_out = lowest.is_left_out || lowest.upper < known.lower;
-                }
-                if is_left_out {
-                    places[place] = CULLED;
-                    self.lowest.all_around(place, |lowest| lowest.is_left_out = true);
-                }
-            }
-        }
-        let others = near.in_question.iter().zip(places).filter(|(_, place)| **place != CULLED);
-        self.measured.extend(others.map(|(known, _)| known.triangle));
+    if others.next().is_none() {
+        return false;
     }
-
-    /// Steps 2 to 4: finds the local minima of all links, nearest first for each link.
-    fn find_minima(&mut self, level: Level, wall: Wall, margin: Real) {
-        self.ranked.clear();
-        let of_link = |at: &ActiveLink| self.measured[at.measured.clone()].iter();
-        let pairs =
-            self.links.iter().flat_map(|at| of_link(at).map(|&triangle| (&at.link, triangle)));
-        rank_each(level, wall.mesh, pairs, |ranked| self.ranked.push(ranked));
-        self.found.clear();
-        for ActiveLink { number: link_number, link, triangles, measured } in &self.links {
-            let near = self.triangles.between(*triangles);
-            let ranked = nearest_first(&mut self.ranked[measured.clone()], margin);
-            if ranked.is_empty() {
-                continue;
-            }
-            self.index.number(near, wall.mesh.len());
-            let places = &mut self.places[triangles[0].in_question..triangles[1].in_question];
-            for (place, ranked) in (1..).zip(ranked) {
-                if let Some(index) = near.index(&self.index, ranked.nearest.triangle) {
-                    places[index] = place;
-                }
-            }
-            self.around.clear();
-            let (index, piece, around) = (&self.index, &mut self.piece, &mut self.around);
-            let mut pieces =
-                WallComponents { link, wall, near, places, index, ranked, piece, around };
-            self.found
-                .extend(pieces.first_triangles().map(|nearest| link.answer(*link_number, nearest)));
+    let add = |ring: &mut CullRing, other: u32, index: Option<usize>| match index {
+        Some(index) => {
+            ring.upper = ring.upper.min(triangles[index].upper);
+            ring.has_culled |= ranks[index] == CULLED;
         }
-    }
-
-    /// Drops the contacts, from `first` on, that are not prominent.
-    fn keep_prominent(
-        &mut self,
-        level: Level,
-        wall: Wall,
-        query: ContactQuery,
-        first: usize,
-        contacts: &mut Vec<Contact>,
-    ) {
-        self.keep.clear();
-        let mut of_links =
-            contacts[first..].chunk_by(|one, other| one.link == other.link).peekable();
-        for ActiveLink { number, link, triangles, .. } in &self.links {
-            let Some(of_link) = of_links.next_if(|of_link| of_link[0].link as usize == *number)
-            else {
-                continue;
-            };
-            let near = self.triangles.between(*triangles);
-            self.index.number(near, wall.mesh.len());
-            let around =
-                LinkNeighbourhood { link, wall, near, index: &self.index, margin: query.margin };
-            self.prominence.keep_prominent(
-                level,
-                around,
-                query.prominence,
-                of_link,
-                &mut self.keep,
-            );
-        }
-        let mut keep = std::iter::repeat_n(true, first).chain(self.keep.iter().copied());
-        contacts.retain(|_| keep.next().unwrap_or(true));
-    }
+        None => ring.has_culled |= near.is_culled(other),
+    };
+    // The ring includes the triangle itself, but its `upper` is not below its `lower`.
+    let ring = rings.ring_of(near, [candidate, part], add);
+    ring.has_culled || ring.upper < known.lower
 }
 
-/// Sorts the triangles, nearest first, and returns those within the margin.
-fn nearest_first(ranked: &mut [Ranked], margin: Real) -> &[Ranked] {
+/// Step 2: sorts the triangles, nearest first, and returns those within the margin.
+pub(super) fn nearest_first(measured: &mut [Ranked], margin: Real) -> &[Ranked] {
     // Triangles beyond the margin come last, because their rank is their distance.
-    ranked.sort_unstable_by(|a, b| {
+    measured.sort_unstable_by(|a, b| {
         a.rank.total_cmp(&b.rank).then(a.nearest.triangle.cmp(&b.nearest.triangle))
     });
-    let count = ranked.partition_point(|ranked| ranked.nearest.distance <= margin);
-    &ranked[..count]
+    let count = measured.partition_point(|ranked| ranked.nearest.distance <= margin);
+    &measured[..count]
 }
 
-/// The contacts of a robot, for an engine without its own search for contacts.
-#[cfg(feature = "gpu")]
-pub(crate) fn contacts_by_all_triangles(
-    wall: Wall,
-    robot: PlacedRobot,
-    query: ContactQuery,
-    out: &mut Vec<Contact>,
-) {
-    let mut minima = LocalMinima::default();
-    let mut contacts = ContactCollector::new(Level::new(), wall, robot, query, &mut minima, out);
-    for number in 0..robot.links().len() {
-        contacts.add(number, |link, near| {
-            let may_meet =
-                |triangle: &u32| link.at_least(wall.mesh.corners(*triangle)) <= query.margin;
-            near.add_unclassified((0..wall.mesh.len() as u32).filter(may_meet));
-        });
-    }
-    contacts.finish();
+/// The sweep of steps 3 and 4 over the wall near one link.
+pub(super) struct Sweep<'a> {
+    pub link: &'a PlacedLink,
+    pub near: NearLink<'a>,
+    /// The rank of each candidate.
+    pub ranks: &'a [u32],
+    /// The triangles within the margin, nearest first.
+    pub ranked: &'a [Ranked],
+    /// Union-find: for each rank an earlier one of the same piece, or itself.
+    pub piece: &'a mut Vec<u32>,
+    pub rings: &'a mut LongRings<SweepRing>,
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::mesh::Mesh;
-    use crate::robot::Chain;
-    use continuum_testing::Random;
-    use parry3d_f64::math::{Pose, Vector};
-
-    /// Adds all links, and all triangles to each. Writes the contacts if the query is not abandoned.
-    fn ask(
-        mesh: &Mesh,
-        robot: &Chain,
-        minima: &mut LocalMinima,
-        is_abandoned: bool,
-    ) -> Vec<Contact> {
-        let robot = PlacedRobot::new(robot, &Pose::IDENTITY).unwrap();
-        let (query, mut out) = (ContactQuery { margin: 2.0, prominence: 0.1 }, Vec::new());
-        let mut contacts =
-            ContactCollector::new(Level::new(), Wall::of(mesh), robot, query, minima, &mut out);
-        for number in 0..robot.links().len() {
-            contacts.add(number, |_, near| near.add_unclassified(0..mesh.len() as u32));
+impl Sweep<'_> {
+    /// Runs the sweep. Returns the first triangles of the pieces that have not ended, nearest
+    /// first.
+    pub(super) fn first_triangles(&mut self) -> impl Iterator<Item = &Nearest> {
+        self.piece.clear();
+        self.piece.push(CULLED);
+        for rank in 1..=self.ranked.len() {
+            self.add(rank as u32);
         }
-        if !is_abandoned {
-            contacts.finish();
-        }
-        out
+        let pieces = self.ranked.iter().zip(&self.piece[1..]).zip(1..);
+        pieces.filter(|((_, piece), rank)| *piece == rank).map(|((ranked, _), _)| &ranked.nearest)
     }
 
-    /// A query answers as one with fresh memory, after queries about other meshes and robots, and
-    /// after one that was abandoned half way.
-    #[test]
-    fn earlier_queries_leave_nothing_behind() {
-        let random = &mut Random::new(53);
-        let (mut minima, mut found) = (LocalMinima::default(), 0);
-        for round in 0..60 {
-            let count = 3 + random.below(12);
-            let corners = (0..count).map(|_| random.point() * 2.0).collect();
-            let triangles = (0..2 * count).map(|_| [0; 3].map(|_| random.below(count))).collect();
-            let mesh = Mesh::of(corners, triangles);
-            let points: Vec<_> =
-                (0..2 + random.below(4)).map(|_| random.point()).collect::<Vec<Vector>>();
-            let robot = Chain::capsules(&points, &vec![0.1; points.len() - 1]).unwrap();
-            if round % 3 == 0 {
-                ask(&mesh, &robot, &mut minima, true);
-            } else {
-                let fresh = ask(&mesh, &robot, &mut LocalMinima::default(), false);
-                assert_eq!(ask(&mesh, &robot, &mut minima, false), fresh, "{round}");
-                found += fresh.len();
+    /// Starts a piece at the triangle of a rank, and merges it with the pieces of nearer triangles
+    /// (step 3).
+    fn add(&mut self, rank: u32) {
+        self.piece.push(rank);
+        let Ranked { nearest, rounding: own_rounding, .. } = self.ranked[rank as usize - 1];
+        let (near, mesh) = (self.near, self.near.wall.mesh);
+        let Some(candidate) = near.index_of(nearest.triangle) else { return };
+        let (known, shared) = (near.candidates.triangles[candidate], mesh.parts());
+        let corners = mesh.corners(nearest.triangle);
+        let is_loose = shared.is_loose(nearest.triangle);
+        // Which piece it meets at which part, and whether its least point is on that part.
+        let (mut met, mut count) = ([(0, CULLED, false); 2 * PARTS], 0);
+        for part in (0..PARTS).filter(|&part| is_loose || !known.is_beyond(part)) {
+            let add = |ring: &mut SweepRing, other: u32, index: Option<usize>| match index {
+                Some(index) => {
+                    ring.add(self.ranks[index], near.candidates.triangles[index].lower);
+                }
+                None => ring.has_culled |= near.is_culled(other),
+            };
+            let (mut ring, mut others) =
+                (SweepRing::default(), shared.others(nearest.triangle, part));
+            for other in others.by_ref().take(SHORT_RING) {
+                add(&mut ring, other, near.index_of(other));
+            }
+            if others.next().is_some() {
+                ring = *self.rings.ring_of(near, [candidate, part], add);
+            }
+            // If a culled triangle is certainly farther than this one, so is each part that they
+            // share.
+            let meets_culled = ring.has_culled || ring.culled_lower < known.upper;
+            let first = ring.first;
+            let others = [meets_culled.then_some(CULLED), (first < rank).then_some(first)];
+            if others == [None; 2] {
+                continue;
+            }
+            let holds_least_point = is_on(nearest.on_mesh, ends_of(corners, part), own_rounding);
+            for with in others.into_iter().flatten() {
+                met[count] = (part, with, holds_least_point);
+                count += 1;
             }
         }
-        assert!(found > 100, "{found}");
+        let gaps = match is_loose {
+            true => mesh.indices()[nearest.triangle as usize].map(|end| shared.gap(end)),
+            false => [0.0; 3],
+        };
+        // Parts with the least point come first: they are met at the triangle's own distance.
+        for met_there in [true, false] {
+            for &(part, with, holds_least_point) in &met[..count] {
+                if holds_least_point == met_there {
+                    let [one, other] = ends_of(gaps, part);
+                    let gap = one.max(other);
+                    self.meet([rank, with], ends_of(corners, part), gap, holds_least_point);
+                }
+            }
+            if is_loose {
+                self.meet_across_seams(rank, met_there);
+            }
+        }
     }
+
+    /// Merges a triangle with the pieces of nearer triangles beyond its seams; those that hold its
+    /// least point, or the others.
+    fn meet_across_seams(&mut self, rank: u32, met_there: bool) {
+        let Ranked { nearest, rounding: own_rounding, .. } = self.ranked[rank as usize - 1];
+        let mesh = self.near.wall.mesh;
+        for seam in mesh.parts().seams(nearest.triangle) {
+            // A triangle with a seam is never culled.
+            let candidate = self.near.index_of(seam.other);
+            let with = candidate.map_or(NONE, |candidate| self.ranks[candidate]);
+            let ends = seam.ends.map(|end| mesh.vertices()[end as usize]);
+            let holds_least_point = is_on(nearest.on_mesh, ends, own_rounding + 2.0 * seam.gap);
+            if with < rank && holds_least_point == met_there {
+                self.meet([rank, with], ends, seam.gap, holds_least_point);
+            }
+        }
+    }
+
+    /// Merges the pieces of two triangles if a part that both share is at most `2 t` above the
+    /// farther of the two minima.
+    #[inline(always)]
+    fn meet(
+        &mut self,
+        ranks: [u32; 2],
+        [from, to]: [Vector; 2],
+        gap: Real,
+        holds_least_point: bool,
+    ) {
+        let [one, other] = ranks.map(|rank| find_root(self.piece, rank));
+        if one == other {
+            return;
+        }
+        let merge_limit = self.minimum_with_rounding(one).max(self.minimum_with_rounding(other))
+            + rounding(self.link.extent_with([from, to, to]))
+            + gap;
+        if self.ranked[ranks[0] as usize - 1].nearest.distance <= merge_limit
+            && (holds_least_point || self.link.comes_within(merge_limit, from, to))
+        {
+            // The merged piece appeared with the nearer of the two.
+            self.piece[one.max(other) as usize] = one.min(other);
+        }
+    }
+
+    /// Returns the minimum of a piece plus its rounding; a piece that merges below this (and the
+    /// rounding of the pass) ends.
+    fn minimum_with_rounding(&self, piece: u32) -> Real {
+        let ranked = (piece as usize).checked_sub(1).map(|index| &self.ranked[index]);
+        ranked.map_or(Real::NEG_INFINITY, |ranked| ranked.nearest.distance + ranked.rounding)
+    }
+}
+
+/// The ring of a corner or an edge, as it concerns a triangle that may be joined there.
+#[derive(Clone, Copy)]
+pub(super) struct SweepRing {
+    /// The least lower bound on the distance of a culled candidate in the ring.
+    culled_lower: Real,
+    /// Whether the search has culled a triangle of the ring.
+    has_culled: bool,
+    /// The least rank of a triangle in the ring. If it is the rank of the triangle that is added,
+    /// that triangle joins none there.
+    first: u32,
+}
+
+impl Default for SweepRing {
+    fn default() -> Self {
+        Self { culled_lower: Real::INFINITY, has_culled: false, first: NONE }
+    }
+}
+
+impl SweepRing {
+    /// Adds a candidate.
+    #[inline(always)]
+    fn add(&mut self, rank: u32, lower: Real) {
+        if rank == CULLED {
+            self.culled_lower = self.culled_lower.min(lower);
+        } else {
+            self.first = self.first.min(rank);
+        }
+    }
+}
+
+/// Returns true if a point lies on a segment, within rounding.
+fn is_on(point: Vector, [from, to]: [Vector; 2], rounding: Real) -> bool {
+    let (edge, relative) = (to - from, point - from);
+    let share = relative.dot(edge) / edge.length_squared();
+    // For a segment without length this is 0 / 0; the comparison turns NaN into 0.
+    let share = if share > 0.0 { share.min(1.0) } else { 0.0 };
+    (relative - edge * share).abs().max_element() <= 0.5 * rounding
+}
+
+/// Returns the first item of a set, and halves the path to it.
+#[inline(always)]
+pub(crate) fn find_root(joined: &mut [u32], mut item: u32) -> u32 {
+    while joined[item as usize] != item {
+        let next = joined[item as usize];
+        joined[item as usize] = joined[next as usize];
+        item = next;
+    }
+    item
+}
+
+/// Unites the sets of two items. Returns the first item of the united set, then the former first
+/// item of the other set; both are equal if the items were in one set.
+#[inline(always)]
+pub(crate) fn unite(joined: &mut [u32], one: u32, other: u32) -> [u32; 2] {
+    let (one, other) = (find_root(joined, one), find_root(joined, other));
+    let firsts = [one.min(other), one.max(other)];
+    joined[firsts[1] as usize] = firsts[0];
+    firsts
 }

@@ -71,8 +71,8 @@
 //! 5. Repeat from step 2. If no step reaches anything, the minimum is not reached. The closed
 //!    triangles become open for the next, greater distance.
 
-use super::triangle_candidates::{CandidateIndex, LinkCandidates, Wall};
-use super::wall_components::{NONE, find_root, unite};
+use super::local_minima::{NONE, find_root, unite};
+use super::triangle_candidates::NearLink;
 use crate::answer::Contact;
 use crate::mesh::{Seam, ends_of};
 use crate::pair::{Height, PlacedLink, measure_points, measure_segments};
@@ -100,18 +100,18 @@ pub(super) struct Prominence {
 }
 
 impl Prominence {
-    /// Appends to `keep`, for each contact of one link, nearest first, whether it has the
+    /// Appends to `are_prominent`, for each contact of one link, nearest first, whether it has the
     /// prominence.
-    pub(super) fn keep_prominent(
+    pub(super) fn find_prominent(
         &mut self,
         level: Level,
         around: LinkNeighbourhood,
         prominence: Real,
         contacts: &[Contact],
-        keep: &mut Vec<bool>,
+        are_prominent: &mut Vec<bool>,
     ) {
         if contacts.len() < 2 {
-            keep.extend(contacts.iter().map(|_| true));
+            are_prominent.extend(contacts.iter().map(|_| true));
             return;
         }
         let Self { flood, kept } = self;
@@ -119,31 +119,31 @@ impl Prominence {
         kept.clear();
         for (minimum, contact) in (0..).zip(contacts) {
             let is_near = contact.normal.is_some() && around.holds(contact.witness.triangle);
-            let stands_for_it = |other: u32| {
+            let represents = |other: u32| {
                 let normals = contact.normal.zip(contacts[other as usize].normal);
                 normals.is_some_and(|(one, other)| MIN_COSINE <= one.dot(other))
             };
             let below = contact.distance + prominence;
-            let is_left_out = is_near
-                && is_represented(kept, stands_for_it)
-                && flood.reaches(level, around, contact.witness.triangle, below, stands_for_it);
-            if is_near && !is_left_out {
+            let is_dropped = is_near
+                && is_represented(kept, represents)
+                && flood.reaches(level, around, contact.witness.triangle, below, represents);
+            if is_near && !is_dropped {
                 flood.keep(around, contact.witness.triangle, minimum);
                 kept.push(minimum);
             }
-            keep.push(!is_left_out);
+            are_prominent.push(!is_dropped);
         }
     }
 }
 
 /// Returns true if a kept minimum can represent another one. Moves it to the front, because the
 /// next minimum is mostly beside this one.
-fn is_represented(kept: &mut [u32], stands_for_it: impl Fn(u32) -> bool) -> bool {
-    let place = kept.iter().position(|&other| stands_for_it(other));
-    if let Some(place) = place {
-        kept.swap(0, place);
+fn is_represented(kept: &mut [u32], represents: impl Fn(u32) -> bool) -> bool {
+    let found = kept.iter().position(|&other| represents(other));
+    if let Some(found) = found {
+        kept.swap(0, found);
     }
-    place.is_some()
+    found.is_some()
 }
 
 /// The reached part of the wall near one link; memory is reused by later queries.
@@ -154,7 +154,7 @@ struct Flood {
     /// For each triangle of the mesh its index in `reached`. Stale values are harmless, because the
     /// triangle there is compared.
     of_triangle: Vec<u32>,
-    /// The corners of the reached triangles, one for each place.
+    /// The corners of the reached triangles, one for each position.
     corners: Vec<Corner>,
     /// The distances of the first corners; the others are not measured yet.
     heights: Vec<Height>,
@@ -182,7 +182,7 @@ struct Reached {
 
 #[derive(Clone, Copy)]
 struct Corner {
-    /// The first vertex at its place.
+    /// The first vertex at its position.
     vertex: u32,
     /// Whether all near triangles around it were reached and are one piece.
     is_followed: bool,
@@ -191,7 +191,7 @@ struct Corner {
 impl Flood {
     /// Starts again for a link, without reached triangles.
     pub(super) fn begin(&mut self, around: LinkNeighbourhood) {
-        let mesh = around.wall.mesh;
+        let mesh = around.near.wall.mesh;
         self.of_triangle.resize(mesh.len(), 0);
         self.of_vertex.resize(mesh.vertices().len(), 0);
         self.reached.clear();
@@ -204,8 +204,8 @@ impl Flood {
 
     /// Adds a kept minimum at a near triangle.
     pub(super) fn keep(&mut self, around: LinkNeighbourhood, triangle: u32, minimum: u32) {
-        let place = self.reach(around, triangle);
-        self.kept.put(find_root(&mut self.joined, place), minimum);
+        let item = self.reach(around, triangle);
+        self.kept.put(find_root(&mut self.joined, item), minimum);
     }
 
     /// Returns true if a path below the distance `below` leads from a triangle to a kept minimum
@@ -218,12 +218,12 @@ impl Flood {
         below: Real,
         stands_for: impl Fn(u32) -> bool,
     ) -> bool {
-        let place = self.reach(around, triangle);
+        let item = self.reach(around, triangle);
         self.closed.clear();
         // The closed triangles whose edges have been followed.
         let mut ended = 0;
         let is_reached = loop {
-            let piece = find_root(&mut self.joined, place);
+            let piece = find_root(&mut self.joined, item);
             if self.kept.find(piece, &stands_for) {
                 break true;
             }
@@ -238,17 +238,17 @@ impl Flood {
                 break false;
             }
         };
-        let piece = find_root(&mut self.joined, place);
-        self.closed.iter().for_each(|&place| self.open.put(piece, place));
+        let piece = find_root(&mut self.joined, item);
+        self.closed.iter().for_each(|&item| self.open.put(piece, item));
         is_reached
     }
 
     /// Returns the index of a near triangle in `reached`, and appends the triangle if it is new.
     fn reach(&mut self, around: LinkNeighbourhood, triangle: u32) -> u32 {
-        if let Some(place) = self.place(triangle) {
-            return place;
+        if let Some(item) = self.index_of(triangle) {
+            return item;
         }
-        let mesh = around.wall.mesh;
+        let mesh = around.near.wall.mesh;
         let corners = mesh.indices()[triangle as usize].map(|vertex| {
             let vertex = mesh.parts().first_at(vertex);
             let at = &mut self.of_vertex[vertex as usize];
@@ -258,40 +258,40 @@ impl Flood {
             }
             *at
         });
-        let place = self.reached.len() as u32;
-        self.of_triangle[triangle as usize] = place;
+        let item = self.reached.len() as u32;
+        self.of_triangle[triangle as usize] = item;
         self.reached.push(Reached { triangle, corners });
-        self.joined.push(place);
+        self.joined.push(item);
         self.open.begin();
         self.kept.begin();
-        self.open.put(place, place);
-        place
+        self.open.put(item, item);
+        item
     }
 
     /// Returns the index of a triangle in `reached`, if it was reached.
     #[inline(always)]
-    fn place(&self, triangle: u32) -> Option<u32> {
-        let place = self.of_triangle[triangle as usize];
-        let reached = self.reached.get(place as usize)?;
-        (reached.triangle == triangle).then_some(place)
+    fn index_of(&self, triangle: u32) -> Option<u32> {
+        let item = self.of_triangle[triangle as usize];
+        let reached = self.reached.get(item as usize)?;
+        (reached.triangle == triangle).then_some(item)
     }
 
     /// Reaches all near triangles around a corner or an edge of a reached triangle, and unites
     /// their pieces.
     fn follow(&mut self, around: LinkNeighbourhood, triangle: u32, part: usize) {
         let own = self.reach(around, triangle);
-        for other in around.wall.mesh.parts().others(triangle, part) {
+        for other in around.near.wall.mesh.parts().others(triangle, part) {
             self.unite_with(around, own, other);
         }
     }
 
     /// Reaches a triangle if it is near, and unites its piece with the piece of a reached one.
     fn unite_with(&mut self, around: LinkNeighbourhood, own: u32, other: u32) {
-        if self.place(other).is_none() && !around.holds(other) {
+        if self.index_of(other).is_none() && !around.holds(other) {
             return;
         }
-        let place = self.reach(around, other);
-        let [first, second] = unite(&mut self.joined, own, place);
+        let item = self.reach(around, other);
+        let [first, second] = unite(&mut self.joined, own, item);
         if first != second {
             self.open.append(second, first);
             self.kept.append(second, first);
@@ -301,13 +301,13 @@ impl Flood {
     /// Step 3: follows the corners of the wave that are passes below a distance, and closes
     /// triangles with a corner that is no pass.
     fn follow_corners(&mut self, level: Level, around: LinkNeighbourhood, below: Real) {
-        let (vertices, parts) = (around.wall.mesh.vertices(), around.wall.mesh.parts());
+        let (vertices, parts) = (around.near.wall.mesh.vertices(), around.near.wall.mesh.parts());
         let unknown = self.corners[self.heights.len()..].iter();
         let points = unknown.map(|corner| vertices[corner.vertex as usize]);
         measure_points(level, around.link, points, |height| self.heights.push(height));
         let wave = std::mem::take(&mut self.wave);
-        for &place in &wave {
-            let Reached { triangle, corners } = self.reached[place as usize];
+        for &item in &wave {
+            let Reached { triangle, corners } = self.reached[item as usize];
             let mut is_closed = false;
             for (part, corner) in corners.map(|corner| corner as usize).into_iter().enumerate() {
                 if self.corners[corner].is_followed {
@@ -322,11 +322,11 @@ impl Flood {
                 }
             }
             if parts.is_loose(triangle) {
-                self.seams.extend(parts.seams(triangle).iter().map(|&seam| (place, seam)));
+                self.seams.extend(parts.seams(triangle).iter().map(|&seam| (item, seam)));
                 is_closed = true;
             }
             if is_closed {
-                self.closed.push(place);
+                self.closed.push(item);
             }
         }
         self.wave = wave;
@@ -337,7 +337,7 @@ impl Flood {
 
     /// Follows the seams of the wave that are passes below a distance.
     fn follow_seams(&mut self, level: Level, around: LinkNeighbourhood, below: Real) {
-        let vertices = around.wall.mesh.vertices();
+        let vertices = around.near.wall.mesh.vertices();
         let seams = std::mem::take(&mut self.seams);
         let segments =
             seams.iter().map(|(_, seam)| in_order(seam.ends.map(|end| vertices[end as usize])));
@@ -356,11 +356,11 @@ impl Flood {
     /// Step 4: follows the edges of the closed triangles, from one of them on, that are passes
     /// below a distance although their ends are none.
     fn follow_edges(&mut self, level: Level, around: LinkNeighbourhood, below: Real, from: usize) {
-        let mesh = around.wall.mesh;
+        let mesh = around.near.wall.mesh;
         self.edges.clear();
         let closed = std::mem::take(&mut self.closed);
-        for &place in &closed[from..] {
-            let Reached { triangle, corners } = self.reached[place as usize];
+        for &item in &closed[from..] {
+            let Reached { triangle, corners } = self.reached[item as usize];
             let points = mesh.corners(triangle);
             for part in 3..6 {
                 let ends = ends_of(corners, part).map(|corner| corner as usize);
@@ -406,8 +406,8 @@ impl Flood {
         part: usize,
     ) -> bool {
         let own = self.reach(around, triangle);
-        for other in around.wall.mesh.parts().others(triangle, part) {
-            if let Some(other) = self.place(other) {
+        for other in around.near.wall.mesh.parts().others(triangle, part) {
+            if let Some(other) = self.index_of(other) {
                 return find_root(&mut self.joined, other) != find_root(&mut self.joined, own);
             }
             if around.holds(other) {
@@ -498,9 +498,7 @@ impl DisjointLists {
 #[derive(Clone, Copy)]
 pub(super) struct LinkNeighbourhood<'a> {
     pub link: &'a PlacedLink,
-    pub wall: Wall<'a>,
-    pub near: LinkCandidates<'a>,
-    pub index: &'a CandidateIndex,
+    pub near: NearLink<'a>,
     /// The greatest distance of a pass.
     pub margin: Real,
 }
@@ -509,8 +507,7 @@ impl LinkNeighbourhood<'_> {
     /// Returns true if a triangle may be within the margin.
     #[inline(always)]
     pub(super) fn holds(&self, triangle: u32) -> bool {
-        self.near.index(self.index, triangle).is_some()
-            || self.near.is_culled(self.index, self.wall.place_of(), triangle)
+        self.near.index_of(triangle).is_some() || self.near.is_culled(triangle)
     }
 
     /// Returns true if a corner, edge or seam at this distance is a pass below `below`. `gap` is

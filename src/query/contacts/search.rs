@@ -4,8 +4,8 @@
 //! Triangles of a leaf that are excluded by a plane or culled on a slope are left out. The others
 //! are collected with bounds and features until they fill a block, and are then tested together.
 
-use super::feature_cull::CERTAIN;
-use super::local_minima::{ContactCollector, LocalMinima};
+use super::contact_collector::{ContactCollector, ContactMemory};
+use super::feature_cull::CERTAIN_GAP;
 use super::prominence::ContactQuery;
 use super::triangle_candidates::{TriangleCandidate, TriangleCandidates, Wall};
 use crate::answer::Contact;
@@ -32,31 +32,32 @@ impl ContactSearch<'_> {
         &mut self,
         robot: PlacedRobot,
         query: ContactQuery,
-        minima: &mut LocalMinima,
+        memory: &mut ContactMemory,
         out: &mut Vec<Contact>,
     ) {
         let (level, hierarchy) = (self.search.level, self.search.hierarchy);
         let wall = Wall { mesh: &hierarchy.mesh, tree: Some(hierarchy.single()) };
-        let mut contacts = ContactCollector::new(level, wall, robot, query, minima, out);
-        let (tree, mut place) = (robot.link_tree(), 0);
-        while let Some(node) = tree.get(place) {
+        let mut contacts = ContactCollector::new(level, wall, robot, query, memory, out);
+        let (tree, mut index) = (robot.link_tree(), 0);
+        while let Some(node) = tree.get(index) {
             match node {
                 LinkNode::Inner { bound, below } => {
                     if !self.search.may_meet(&robot.bound(bound), query.margin) {
-                        place += below;
+                        index += below;
                     }
                 }
                 LinkNode::Leaf(link) => {
-                    contacts.add(*link, |link, near| self.near(link, query.margin, near));
+                    contacts
+                        .add(*link, |link, found| self.find_candidates(link, query.margin, found));
                 }
             }
-            place += 1;
+            index += 1;
         }
         self.search.scratch.work.measured += contacts.finish();
     }
 
     /// Adds to `found` the triangles that may be at most `bound` from a link.
-    fn near(&mut self, link: &PlacedLink, bound: Real, found: &mut TriangleCandidates) {
+    fn find_candidates(&mut self, link: &PlacedLink, bound: Real, found: &mut TriangleCandidates) {
         let hierarchy = self.search.hierarchy;
         match hierarchy.in_resolving_precision(self.search.level, link) {
             Searched::Single(searched) => {
@@ -121,25 +122,25 @@ impl<E: Lane> LeafVisitor<E> for CandidateGather<'_, E> {
     ) {
         let leaf = &tree.leaves[number as usize];
         let across = self.across.map(|across| across.of(number, tree, mesh));
-        let (mut in_question, mut descents) = (0, 0);
+        let (mut remaining, mut culled) = (0, 0);
         let (limit_of_all, error) =
             (L::splat(token, self.limit), L::splat(token, self.searched.error));
         for lane in (0..BLOCK).step_by(L::LANES) {
             let vertices = load_vertices::<L>(token, &leaf.rows, lane);
-            let near = lanes.not_excluded_by_plane(vertices, limit_of_all);
-            in_question |= near << lane;
-            if near != 0
+            let within = lanes.not_excluded_by_plane(vertices, limit_of_all);
+            remaining |= within << lane;
+            if within != 0
                 && let Some(across) = across
             {
                 let across = load_vertices::<L>(token, &across.rows, lane);
-                descents |= (near & lanes.descends(vertices, across, error)) << lane;
+                culled |= (within & lanes.culled_by_descent(vertices, across, error)) << lane;
             }
         }
-        self.found.add_culled(number, descents);
-        in_question &= !descents;
-        while in_question != 0 {
-            let lane = in_question.trailing_zeros() as usize;
-            in_question &= in_question - 1;
+        self.found.add_culled(number, culled);
+        remaining &= !culled;
+        while remaining != 0 {
+            let lane = remaining.trailing_zeros() as usize;
+            remaining &= remaining - 1;
             // A leaf that is not full repeats its last triangle.
             if lane > 0 && leaf.triangles[lane - 1] == leaf.triangles[lane] {
                 continue;
@@ -195,15 +196,15 @@ impl<'a, E: Lane> CandidateGather<'a, E> {
     /// Tests the pending triangles and adds each that may be within the limit.
     #[inline(never)] // compiled once for all searches
     fn measure_pending(&mut self) {
-        dispatch!(E::HAS_WIDE_SEARCH, self.level, simd => self.take::<E::Pack<_>>(simd));
+        dispatch!(E::HAS_WIDE_SEARCH, self.level, simd => self.test_pending::<E::Pack<_>>(simd));
         self.waiting = 0;
     }
 
     #[inline(always)]
-    fn take<L: Pack<Element = E>>(&mut self, token: L::Token) {
+    fn test_pending<L: Pack<Element = E>>(&mut self, token: L::Token) {
         let lanes = LinkLanes::<L>::new(token, self.searched);
         let (limit, error) = (L::splat(token, self.limit), L::splat(token, self.searched.error));
-        let certain = CERTAIN * self.searched.error.into();
+        let certain = CERTAIN_GAP * self.searched.error.into();
         let (mut lower, mut upper) = ([E::default(); BLOCK], [E::default(); BLOCK]);
         for first in (0..self.waiting).step_by(L::LANES) {
             self.computed += L::LANES as u64;
@@ -212,23 +213,23 @@ impl<'a, E: Lane> CandidateGather<'a, E> {
             bounds.lower.store(&mut lower);
             bounds.upper.store(&mut upper);
             // The lanes behind the pending triangles hold stale values.
-            let mut near = bounds.nearer & ((1 << (self.waiting - first).min(L::LANES)) - 1);
-            while near != 0 {
-                let lane = near.trailing_zeros() as usize;
-                near &= near - 1;
+            let mut within = bounds.nearer & ((1 << (self.waiting - first).min(L::LANES)) - 1);
+            while within != 0 {
+                let lane = within.trailing_zeros() as usize;
+                within &= within - 1;
                 let (lower, upper): (f64, f64) = (lower[lane].into(), upper[lane].into());
                 let is_apart = self.searched.radius.into() + certain < lower;
-                let place = first + lane;
-                self.found.in_question.push(TriangleCandidate {
-                    triangle: self.triangles[place],
+                let pending = first + lane;
+                self.found.triangles.push(TriangleCandidate {
+                    triangle: self.triangles[pending],
                     lower: lower - certain,
                     upper,
                     away: if is_apart {
-                        three_bits(features.away, lane, self.firsts[place])
+                        three_bits(features.away, lane, self.firsts[pending])
                     } else {
                         0
                     },
-                    beyond: three_bits(features.beyond, lane, self.firsts[place]),
+                    beyond: three_bits(features.beyond, lane, self.firsts[pending]),
                 });
             }
         }

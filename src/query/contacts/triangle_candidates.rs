@@ -8,24 +8,24 @@ use parry3d_f64::math::Real;
 /// The triangles that may be within a margin of the links of a robot, link by link.
 #[derive(Clone, Default)]
 pub(crate) struct TriangleCandidates {
-    /// Candidates: triangles that may hold a local minimum.
-    pub in_question: Vec<TriangleCandidate>,
-    /// Triangles that certainly lie on a slope.
-    descents: Vec<CulledLeaf>,
+    /// The triangles that may hold a local minimum.
+    pub triangles: Vec<TriangleCandidate>,
+    /// The triangles that certainly lie on a slope, leaf by leaf.
+    culled: Vec<CulledLeaf>,
 }
 
 /// The end of the triangles of one link.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct CandidateEnd {
-    pub in_question: usize,
-    descents: usize,
+    pub triangles: usize,
+    culled: usize,
 }
 
 /// The triangles that may be within a margin of one link.
 #[derive(Clone, Copy)]
 pub(crate) struct LinkCandidates<'a> {
-    pub in_question: &'a [TriangleCandidate],
-    descents: &'a [CulledLeaf],
+    pub triangles: &'a [TriangleCandidate],
+    culled: &'a [CulledLeaf],
 }
 
 /// A triangle that may be within a margin of a link.
@@ -51,82 +51,85 @@ struct CulledLeaf {
     lanes: u64,
 }
 
-/// The index of each triangle of one link. Stale values of other links are harmless, because the
-/// triangle there is compared.
+/// The index of each candidate of one link. Indices of other links stay in it. They are harmless,
+/// because the triangle at the index is compared.
 #[derive(Clone, Default)]
 pub(crate) struct CandidateIndex {
     /// For each triangle of the mesh its index among the candidates.
     of_triangle: Vec<u32>,
-    /// For each leaf of the search its index among the slopes.
+    /// For each leaf of the search its index among the culled leaves.
     of_leaf: Vec<u32>,
 }
 
 impl TriangleCandidates {
     pub(crate) fn clear(&mut self) {
-        self.in_question.clear();
-        self.descents.clear();
+        self.triangles.clear();
+        self.culled.clear();
     }
 
     /// Adds triangles without bounds.
     pub(crate) fn add_unclassified(&mut self, triangles: impl Iterator<Item = u32>) {
-        self.in_question.extend(triangles.map(TriangleCandidate::unclassified));
+        self.triangles.extend(triangles.map(TriangleCandidate::unclassified));
     }
 
     /// Adds the triangles of a leaf that certainly lie on a slope, one bit per triangle.
     pub(crate) fn add_culled(&mut self, leaf: u32, lanes: u64) {
         if lanes != 0 {
-            self.descents.push(CulledLeaf { leaf, lanes });
+            self.culled.push(CulledLeaf { leaf, lanes });
         }
     }
 
     /// Returns the current end, where the triangles of the next link begin.
     pub(crate) fn end(&self) -> CandidateEnd {
-        CandidateEnd { in_question: self.in_question.len(), descents: self.descents.len() }
+        CandidateEnd { triangles: self.triangles.len(), culled: self.culled.len() }
     }
 
     /// Returns the triangles of one link.
     pub(crate) fn between(&self, [from, to]: [CandidateEnd; 2]) -> LinkCandidates<'_> {
         LinkCandidates {
-            in_question: &self.in_question[from.in_question..to.in_question],
-            descents: &self.descents[from.descents..to.descents],
+            triangles: &self.triangles[from.triangles..to.triangles],
+            culled: &self.culled[from.culled..to.culled],
         }
     }
 }
 
-impl LinkCandidates<'_> {
+/// The candidates near one link, and where each triangle of the wall is among them.
+#[derive(Clone, Copy)]
+pub(crate) struct NearLink<'a> {
+    pub wall: Wall<'a>,
+    pub candidates: LinkCandidates<'a>,
+    pub index: &'a CandidateIndex,
+}
+
+impl NearLink<'_> {
     /// Returns the index of a triangle among the candidates, if it is one.
     #[inline(always)]
-    pub(crate) fn index(&self, index: &CandidateIndex, triangle: u32) -> Option<usize> {
-        let index = index.of_triangle[triangle as usize] as usize;
-        self.in_question.get(index).filter(|known| known.triangle == triangle).map(|_| index)
+    pub(crate) fn index_of(&self, triangle: u32) -> Option<usize> {
+        let index = self.index.of_triangle[triangle as usize] as usize;
+        let known = self.candidates.triangles.get(index);
+        known.filter(|known| known.triangle == triangle).map(|_| index)
     }
 
-    /// Returns true if a triangle certainly lies on a slope. `place_of` gives the place of each
-    /// triangle of the mesh in the leaves of the search; it is empty without such a search.
+    /// Returns true if the search has culled a triangle, because it certainly lies on a slope.
     #[inline(always)]
-    pub(crate) fn is_culled(
-        &self,
-        index: &CandidateIndex,
-        place_of: &[u32],
-        triangle: u32,
-    ) -> bool {
-        let Some(&place) = place_of.get(triangle as usize) else { return false };
-        let (leaf, lane) = (place / BLOCK as u32, place as usize % BLOCK);
-        let at = index.of_leaf.get(leaf as usize);
-        let descents = at.and_then(|&at| self.descents.get(at as usize));
-        descents.is_some_and(|descents| descents.leaf == leaf && descents.lanes >> lane & 1 == 1)
+    pub(crate) fn is_culled(&self, triangle: u32) -> bool {
+        let Some(&position) = self.wall.place_of().get(triangle as usize) else { return false };
+        let (leaf, lane) = (position / BLOCK as u32, position as usize % BLOCK);
+        let index = self.index.of_leaf.get(leaf as usize);
+        let culled = index.and_then(|&index| self.candidates.culled.get(index as usize));
+        culled.is_some_and(|culled| culled.leaf == leaf && culled.lanes >> lane & 1 == 1)
     }
 }
 
 impl CandidateIndex {
     /// Indexes the triangles of a link, in a mesh of `triangles` triangles.
-    pub(crate) fn number(&mut self, near: LinkCandidates, triangles: usize) {
+    pub(crate) fn number(&mut self, candidates: LinkCandidates, triangles: usize) {
         self.of_triangle.resize(triangles, 0);
-        for (index, known) in (0..).zip(near.in_question) {
+        for (index, known) in (0..).zip(candidates.triangles) {
             self.of_triangle[known.triangle as usize] = index;
         }
-        for (index, descents) in (0..).zip(near.descents) {
-            let leaf = descents.leaf as usize;
+        for (index, culled) in (0..).zip(candidates.culled) {
+            let leaf = culled.leaf as usize;
             if leaf >= self.of_leaf.len() {
                 // Every leaf has a triangle.
                 self.of_leaf.resize(triangles, 0);
@@ -170,7 +173,8 @@ impl<'a> Wall<'a> {
         Self { mesh, tree: None }
     }
 
-    /// Returns the place of each triangle in the leaves of the search; empty without such a search.
+    /// Returns the position of each triangle among the lanes of all leaves of the search; empty
+    /// without such a search.
     #[inline(always)]
     pub(super) fn place_of(&self) -> &'a [u32] {
         self.tree.map_or(&[], |tree| &tree.place_of)
