@@ -12,8 +12,8 @@
 //! cylinders side by side whose ends are level.
 //!
 //! # Rule
-//! If a flat cap decides, a computed distance of at most [`ROUNDING`] `u extent` becomes 0. The
-//! witness of both bodies is the midpoint of the two points, at most half of [`ROUNDING`]
+//! If a flat cap decides, a computed distance of at most [`SETTLED_DISTANCE`] `u extent` becomes 0. The
+//! witness of both bodies is the midpoint of the two points, at most half of [`SETTLED_DISTANCE`]
 //! `u extent` from either.
 //!
 //! # Claim
@@ -41,11 +41,11 @@
 
 use super::{Closest, Scalar, Vec3};
 
-/// The largest computed distance of one and the same point, in units of `u extent`.
+/// The largest computed distance that counts as 0, in units of `u extent`.
 ///
 /// A larger value reports contact for bodies that are apart; a smaller value misses overlaps. The
 /// measured errors are at most 6.1 (head of this file).
-const ROUNDING: f64 = 8.0;
+const SETTLED_DISTANCE: f64 = 8.0;
 
 /// The largest `extent` in a frame where no coordinate exceeds 2 in magnitude.
 const MOST: f64 = 4.0;
@@ -53,7 +53,8 @@ const MOST: f64 = 4.0;
 /// Returns whether [`settle`] may change this distance, in a frame where no coordinate exceeds 2.
 #[inline(always)]
 pub(crate) fn is_doubtful<T: Scalar>(distance: T) -> T::Mask {
-    distance.zero().lt(distance) & distance.le(distance.lit(MOST * ROUNDING * T::UNIT_ROUNDOFF))
+    distance.zero().lt(distance)
+        & distance.le(distance.lit(MOST * SETTLED_DISTANCE * T::UNIT_ROUNDOFF))
 }
 
 /// Returns the largest coordinate difference between two of these points and the origin, or
@@ -72,7 +73,7 @@ pub(crate) fn extent<T: Scalar, const N: usize>(points: [Vec3<T>; N], length: T)
 /// it becomes 0 with one common point.
 #[inline(always)]
 pub(crate) fn settle<T: Scalar>(closest: Closest<T>, at_cap: T::Mask, extent: T) -> Closest<T> {
-    let (zero, limit) = (extent.zero(), extent * extent.lit(ROUNDING * T::UNIT_ROUNDOFF));
+    let (zero, limit) = (extent.zero(), extent * extent.lit(SETTLED_DISTANCE * T::UNIT_ROUNDOFF));
     let meets = at_cap & zero.lt(closest.distance) & closest.distance.le(limit);
     let middle = (closest.point1 + closest.point2) * zero.lit(0.5);
     Closest::select(meets, Closest { distance: zero, point1: middle, point2: middle }, closest)

@@ -25,7 +25,7 @@
 use super::{Closest, Convex, DiscSolver, Scalar, Vec3, face::Face, frame::Frame, plane_disc};
 
 /// How far rounding may move a point of the triangle off it, in units of `u` and numbers near one.
-const ROUNDING: f64 = 32.0;
+const OFF_FACE_ROUNDING: f64 = 32.0;
 
 /// Returns the distance between a triangle and a solid disc, and the closest points; (22) to (25).
 ///
@@ -82,7 +82,8 @@ pub(crate) fn from_centre<S: DiscSolver<T>, T: Scalar>(
     let projection = face.project(nearest.point);
     // If the height of a sliver is within rounding, distant points may seem to lie inside. But no
     // point of a triangle is farther from its longest edge than the triangle's height.
-    let within_height = edges.distance.le(face.height() + radius.lit(ROUNDING * T::UNIT_ROUNDOFF));
+    let within_height =
+        edges.distance.le(face.height() + radius.lit(OFF_FACE_ROUNDING * T::UNIT_ROUNDOFF));
     let crosses = nearest.distance.le(radius.zero()) & within_height;
     let apart = Closest {
         distance: projection.residual.norm(),

@@ -18,8 +18,9 @@ pub(super) const BLOCK_BOUNDS: u64 = 8;
 
 /// Vectors of four numbers per triangle (shared/face_record.wgsl).
 pub(super) const FACE_VECTORS: u32 = 4;
-/// Larger than any distance in a search frame, where coordinates are near 1.
-pub(super) const FAR: f32 = f32::from_bits((127 + 100) << 23);
+/// A limit that excludes nothing: larger than any distance in a search frame, where coordinates are
+/// near 1.
+pub(super) const UNBOUNDED: f32 = f32::from_bits((127 + 100) << 23);
 
 record! {
     /// The kernels' parameters for one round of links and one part of the mesh.

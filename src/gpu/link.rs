@@ -1,6 +1,6 @@
 //! A link in the device's frame and precision, and the conversion of its results.
 use super::Precision;
-use super::layout::{FAR, LinkRecord};
+use super::layout::{LinkRecord, UNBOUNDED};
 use crate::distance::Vec3;
 use crate::distance::lanes::Lane;
 use crate::mesh::SearchFrame;
@@ -50,9 +50,10 @@ impl DeviceLink {
         let number = |value: E| -> Real { value.into() };
         let point = |Vec3 { x, y, z }: Vec3<E>| [x, y, z].map(number);
         let [flat_start, flat_end] = link.flat.map(|flat| if flat { 1.0 } else { 0.0 });
-        // A bound is rounded up. A bound above FAR excludes nothing.
-        let limit =
-            bound.map_or(FAR, |bound| (number(link.axis_limit(bound)) as f32).next_up().min(FAR));
+        // A bound is rounded up. A bound above UNBOUNDED excludes nothing.
+        let limit = bound.map_or(UNBOUNDED, |bound| {
+            (number(link.axis_limit(bound)) as f32).next_up().min(UNBOUNDED)
+        });
         let record = LinkRecord {
             start: point(link.start),
             length: number(link.length),
@@ -73,7 +74,7 @@ impl DeviceLink {
 
     /// Returns whether only triangles within a margin are candidates.
     pub(super) fn has_margin(&self) -> bool {
-        self.limit < FAR
+        self.limit < UNBOUNDED
     }
 
     /// A lower bound on a triangle's distance from the link, in the mesh's unit, from the distance

@@ -5,7 +5,7 @@
 //! before it where needed. It does the same in the same order. `real` is `f32` or `f64`.
 
 use super::layout::{
-    CAPACITY, FACE_VECTORS, FAR, LinkRecord, MOST_LINKS, Round, SAMPLES, SLOT, THREADS,
+    CAPACITY, FACE_VECTORS, LinkRecord, MOST_LINKS, Round, SAMPLES, SLOT, THREADS, UNBOUNDED,
 };
 use crate::distance::Scalar;
 use gpu_batch::wgsl::{constant, prelude};
@@ -78,7 +78,7 @@ fn of_query(entry_point: &'static str, kernel: &str, precision: Precision, route
     ];
     let text = prelude(precision)
         + &constants(&sizes)
-        + &constant("FAR", format_args!("{FAR:e}f"))
+        + &constant("UNBOUNDED", format_args!("{UNBOUNDED:e}f"))
         + &Round::wgsl()
         + &LinkRecord::wgsl()
         + &narrow_phase(precision)

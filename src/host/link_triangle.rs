@@ -21,7 +21,7 @@
 
 use super::axial::{AxisFoot, power_of_two, unit};
 pub(super) use crate::distance::depth::face_normal;
-use crate::distance::depth::{self, ROUNDING};
+use crate::distance::depth::{self, GAP_ROUNDING as ROUNDING};
 use crate::distance::{Link, Vec3, segment_triangle, single};
 use crate::robot::{Cap, ModifiedCylinder};
 use parry3d_f64::math::{Real, Vector};

@@ -12,7 +12,7 @@
 //!
 //! **Proof.** [`ExactLink`] computes the least `<n, x>` and the distance from a point for the
 //! numbers as given: a direction that is not exactly a unit vector, and a point that is rounded,
-//! are valid arguments. [`SLACK`] covers the rounding of the bounds.
+//! are valid arguments. [`CERTIFICATE_ROUNDING`] covers the rounding of the bounds.
 //!
 //! # Choice of points and direction
 //! The narrow phase at twice the precision supplies the points and `n`. The rounding of `n` would
@@ -237,7 +237,7 @@ pub(super) fn tightened<I: Iterator<Item = Number>>(
 ) -> (Number, Number) {
     let is_tight = (upper - lower).le((2.0 * f64::EPSILON).into());
     let lower = if is_tight { lower } else { by_features().fold(lower, Scalar::max) };
-    (lower - SLACK.into(), upper + SLACK.into())
+    (lower - CERTIFICATE_ROUNDING.into(), upper + CERTIFICATE_ROUNDING.into())
 }
 
 pub(super) type Number = DoubleDouble;
@@ -245,7 +245,7 @@ pub(super) type ExactPoint = Vec3<DoubleDouble>;
 
 /// The largest rounding error of any bound of a certificate, where no coordinate exceeds 2: a
 /// hundred operations, each wrong by 2^-102 of numbers below 16, plus underflow.
-pub(super) const SLACK: f64 = f64::from_bits((1023 - 88) << 52);
+pub(super) const CERTIFICATE_ROUNDING: f64 = f64::from_bits((1023 - 88) << 52);
 
 /// Returns the largest magnitude of a coordinate.
 pub(super) fn largest<const N: usize>(points: [Vector; N]) -> Real {
@@ -360,7 +360,12 @@ impl ExactLink {
         let lowest = |height: Number, inward: Number, flat: bool| {
             // A round cap extends by its ball in directions from beyond its end, otherwise only by
             // its rim.
-            height - if flat || inward.lt((-SLACK).into()) { across } else { self.radius }
+            height
+                - if flat || inward.lt((-CERTIFICATE_ROUNDING).into()) {
+                    across
+                } else {
+                    self.radius
+                }
         };
         let start = lowest(self.start.dot(direction), along, self.flat[0]);
         start.min(lowest(self.end().dot(direction), -along, self.flat[1]))

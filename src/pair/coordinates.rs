@@ -8,11 +8,17 @@
 use crate::distance::{Closest, Link, Scalar, Vec3, gives_direction};
 use parry3d_f64::math::{Real, Vector};
 
-/// The largest rounding error of a bound of a pair, where all numbers are below 2.
+/// The most by which a lower bound on the measured distance of a pair may be too large by rounding,
+/// in its own coordinates: all numbers are below 2, and the extent is below 4.
 ///
-/// It is the sum of 64 u for the bound, and 64 u by which a distance at a flat cap may be too
-/// short: 16 u of an extent below 4.
-pub(super) const SLACK: Real = 128.0 * f64::UNIT_ROUNDOFF;
+/// **Derivation.**
+/// 1. A bound by an axis distance of the narrow phase errs by 16 u of the extent: 64 u
+///    (`distance/touching.rs`).
+/// 2. A bound by a plane across n: two inner products of three terms err by 3 u of at most
+///    `2 sqrt(3) |n|` each; their difference, `|n|` and the division by 5 u of a distance below 7;
+///    the difference to the radius by 2 u. The sum is less than 64 u.
+/// 3. The measured distance at a flat cap may be too short by another 16 u of the extent: 64 u.
+pub(super) const BOUND_ROUNDING: Real = 128.0 * f64::UNIT_ROUNDOFF;
 
 /// A link in the mesh's frame, or a pack of links.
 #[derive(Clone, Copy)]
@@ -69,7 +75,7 @@ impl Pair<Real> {
         let normal = offset_from_axis(&self.link, centre);
         let beyond =
             normal.dot(a).min(normal.dot(b)).min(normal.dot(c)) - self.link.reach_along(normal);
-        beyond.over(normal.norm()) - self.link.radius - SLACK
+        beyond.over(normal.norm()) - self.link.radius - BOUND_ROUNDING
     }
 
     /// Returns an answer in the mesh's frame. `start` is the pair's origin and `unit` the length of

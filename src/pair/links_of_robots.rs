@@ -2,7 +2,7 @@
 //! of a measured pair, and whether an answer belongs to two links as they are now.
 
 use super::answer_check::{ROUNDED, check_reach, check_within};
-use super::coordinates::SLACK;
+use super::coordinates::BOUND_ROUNDING;
 use super::placed_link::PlacedLink;
 use super::two_links::NearestOfLinks;
 use crate::answer::{PairWitness, ProximityError, RobotProximity};
@@ -135,7 +135,7 @@ impl RobotProximity {
 /// of the axes.
 #[inline(always)]
 pub(super) fn capsules_apart<T: Scalar>(pair: &TwoLinks<T>, axes: T) -> T {
-    axes - pair.first.radius - pair.second.radius - axes.lit(SLACK)
+    axes - pair.first.radius - pair.second.radius - axes.lit(BOUND_ROUNDING)
 }
 
 /// Returns an end of a link, relative to its start.

@@ -25,7 +25,7 @@
 //! **Gap.** Coordinates are below 2. Each is rounded by at most `u` in the input, and once more
 //! relative to the link's start. So two points are at most `2 sqrt(3) 2 u < 7 u` farther apart or
 //! nearer than they should be, and a result errs by less than 9 u more. A gap of at most 16 u
-//! ([`ROUNDING`]) counts as none: its direction, with any number of digits, is that of the
+//! ([`GAP_ROUNDING`]) counts as none: its direction, with any number of digits, is that of the
 //! rounding.
 //!
 //! # Kinks
@@ -52,7 +52,7 @@
 use super::coordinates::{Nearest, Pair};
 use super::placed_link::{PlacedLink, place_exactly};
 use crate::answer::{LinkFeature, TriangleFeature};
-use crate::distance::depth::{LinkTriangle, ROUNDING, WayOut};
+use crate::distance::depth::{GAP_ROUNDING, LinkTriangle, WayOut};
 use crate::distance::{
     Axial, Closest, DoubleDouble, Face, Link, Mask, Scalar, Vec3, point_triangle, single,
 };
@@ -64,8 +64,8 @@ const TIE: Real = 64.0 * f64::UNIT_ROUNDOFF;
 /// A normal from a shorter gap is computed again with more digits.
 const SHORT: Real = 1.0 / 256.0;
 
-/// A value larger than any distance, for numbers near one.
-const FAR: Real = 16.0;
+/// The distance to a flat end where the end is round: more than any distance, for numbers near one.
+const NO_END: Real = 16.0;
 
 /// Parts that overlap by less than this share a single point: [`TIE`] allows each of their ends
 /// this much.
@@ -182,11 +182,11 @@ impl<T: Scalar> NearestParts<T> {
         let from_axis = link.end * axial.s - axial.on_triangle;
         let apart = Vec3::select(at_flat_cap, from_cap, from_axis);
         let (gap, depth) = (apart.norm(), axial.axis_squared.sqrt() - link.radius);
-        let rounding = gap.lit(ROUNDING);
-        // The distance of a flat end along the axis; [`FAR`] if that end is round.
-        let (length, far) = (link.end.dot(link.axis), gap.lit(FAR));
-        let to_start = link.flat[0].select(axial.s * length, far);
-        let to_end = link.flat[1].select((one - axial.s) * length, far);
+        let rounding = gap.lit(GAP_ROUNDING);
+        // The distance to a flat end along the axis.
+        let (length, no_end) = (link.end.dot(link.axis), gap.lit(NO_END));
+        let to_start = link.flat[0].select(axial.s * length, no_end);
+        let to_end = link.flat[1].select((one - axial.s) * length, no_end);
         // The rounding of a short axis turns a wide cap.
         let turn = one.max(link.radius.over(length));
         let is_capsule =

@@ -1,6 +1,6 @@
 //! A link in the mesh's frame, and its distance from a triangle.
 
-use super::coordinates::{Nearest, Pair, Placed, SLACK, offset_from_axis};
+use super::coordinates::{BOUND_ROUNDING, Nearest, Pair, Placed, offset_from_axis};
 use crate::answer::{LinkProximity, Witness};
 use crate::distance::{DoubleDouble, Face, Link, Scalar, Vec3, segment_segment, single};
 use crate::robot::ModifiedCylinder;
@@ -140,7 +140,7 @@ impl PlacedLink {
         let axial = single::axial(&pair.link, &face);
         let closest = if !axial.beyond_flat_cap() {
             axial.without_caps(&pair.link)
-        } else if (axial.cap_bounds(&pair.link, &face).0 - SLACK) * pair.unit > bound {
+        } else if (axial.cap_bounds(&pair.link, &face).0 - BOUND_ROUNDING) * pair.unit > bound {
             return None;
         } else {
             single::with_caps(&axial, &pair.link, &face)
@@ -155,7 +155,7 @@ impl PlacedLink {
         let pair = self.pair([from, to, to]);
         let [from, to, _] = pair.triangle;
         let axis = segment_segment([Vec3::zero(0.0), pair.link.end], [from, to]).distance;
-        if (axis - pair.link.radius - SLACK) * pair.unit > bound {
+        if (axis - pair.link.radius - BOUND_ROUNDING) * pair.unit > bound {
             return false;
         }
         let edge = Face::new(pair.triangle);
@@ -204,7 +204,7 @@ impl PlacedLink {
         let normal = offset_from_axis(&link, centre);
         let corner = half.dot(Vector::from(normal).abs());
         let beyond = normal.dot(centre) - link.reach_along(normal) - corner;
-        ((beyond.over(normal.norm()) - link.radius - SLACK) / scale).max(0.0)
+        ((beyond.over(normal.norm()) - link.radius - BOUND_ROUNDING) / scale).max(0.0)
     }
 }
 

@@ -22,11 +22,12 @@ use super::separation;
 use crate::distance::{Face, Link, Vec3};
 use parry3d_f64::math::{Real, Vector};
 
-/// The rounding error of a distance or a gap, for numbers near one.
-pub(crate) const ROUNDING: Real = 8.0 * Real::EPSILON;
+/// A bound on the rounding of a distance or a gap, for numbers near one: 16 u
+/// (`distance/touching.rs`).
+pub(crate) const GAP_ROUNDING: Real = 8.0 * Real::EPSILON;
 
 /// A gap must exceed the best one by this amount to replace it in the least translation.
-const NO_GAIN: Real = 0.25 * ROUNDING;
+const NO_GAIN: Real = 0.25 * GAP_ROUNDING;
 
 /// A link and a triangle, relative to the link's start and near one.
 #[derive(Clone, Copy)]
@@ -56,7 +57,7 @@ impl LinkTriangle {
     /// edges and the axis. Returns early with the first gap that is at least `enough`, within
     /// rounding.
     pub(crate) fn widest_gap(&self, more: [Option<Vector>; 2], enough: Real) -> Way {
-        let enough = enough - ROUNDING;
+        let enough = enough - GAP_ROUNDING;
         let [a, b, c] = self.triangle;
         let edges = [b - a, c - b, a - c];
         let axis = Vector::from(self.link.axis);

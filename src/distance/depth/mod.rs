@@ -13,6 +13,6 @@ mod way_out;
 pub(crate) use direction::{perpendicular, unit, unit_across};
 pub(crate) use foot::to_flat;
 pub(crate) use link_link::{LinkLink, SolidLink};
-pub(crate) use link_triangle::{LinkTriangle, ROUNDING, Way, face_normal};
+pub(crate) use link_triangle::{GAP_ROUNDING, LinkTriangle, Way, face_normal};
 pub(crate) use separation::across_rim;
 pub(crate) use way_out::WayOut;

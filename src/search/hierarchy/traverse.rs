@@ -233,10 +233,10 @@ impl<E: Lane> Traversal<'_, E> {
         while let Some(node) = waiting.pop() {
             self.work.nodes += 1;
             let node = &self.tree.nodes[node as usize];
-            let mut near = near_children(token, node, &lanes, searched, squared_limit).0;
-            while near != 0 {
-                let child = near.trailing_zeros() as usize;
-                near &= near - 1;
+            let mut within = children_within(token, node, &lanes, searched, squared_limit).0;
+            while within != 0 {
+                let child = within.trailing_zeros() as usize;
+                within &= within - 1;
                 match Child::unpack(node.children[child]) {
                     Child::Node(node) => waiting.push(node),
                     Child::Leaf(leaf) => {
@@ -305,12 +305,13 @@ impl<E: Lane> Traversal<'_, E> {
         self.work.nodes += 1;
         let node = &self.tree.nodes[node as usize];
         let squared_limit = target.squared_limit_of_bounds();
-        let (mut near, bounds) = near_children(token, node, lanes, target.searched, squared_limit);
+        let (mut within, bounds) =
+            children_within(token, node, lanes, target.searched, squared_limit);
         let waiting = &mut self.stack.waiting;
         let bottom = waiting.len();
-        while near != 0 {
-            let child = near.trailing_zeros() as usize;
-            near &= near - 1;
+        while within != 0 {
+            let child = within.trailing_zeros() as usize;
+            within &= within - 1;
             if node.lowest[child] >= target.triangle_limit {
                 continue;
             }
@@ -338,7 +339,7 @@ impl<E: Lane> Traversal<'_, E> {
         self.work.visited += BLOCK as u64;
         let leaf = &self.tree.leaves[leaf as usize];
         let (mut lower, mut upper) = ([E::default(); BLOCK], [E::default(); BLOCK]);
-        let mut near = 0;
+        let mut nearer = 0;
         let limit = L::splat(token, target.limit);
         for lane in (0..BLOCK).step_by(L::LANES) {
             let vertices = load_vertices::<L>(token, &leaf.rows, lane);
@@ -349,12 +350,12 @@ impl<E: Lane> Traversal<'_, E> {
             let bounds = lanes.may_be_nearer(&Face::in_order(vertices), limit);
             bounds.lower.store(&mut lower[lane..]);
             bounds.upper.store(&mut upper[lane..]);
-            near |= bounds.nearer << lane;
+            nearer |= bounds.nearer << lane;
         }
         match &mut target.goal {
             Goal::Any(found) => {
                 // `triangle_limit` is ignored here.
-                *found = near != 0;
+                *found = nearer != 0;
                 return;
             }
             Goal::Guess(_, leaves) => *leaves -= 1,
@@ -363,9 +364,9 @@ impl<E: Lane> Traversal<'_, E> {
         let (error, radius) = (target.searched.error, target.searched.radius);
         // The lowest triangle that certainly overlaps: no higher one is wanted.
         let mut overlapping = u32::MAX;
-        while near != 0 {
-            let lane = near.trailing_zeros() as usize;
-            near &= near - 1;
+        while nearer != 0 {
+            let lane = nearer.trailing_zeros() as usize;
+            nearer &= nearer - 1;
             let triangle = leaf.triangles[lane];
             if lower[lane] >= target.limit || triangle >= target.triangle_limit {
                 continue;
@@ -437,7 +438,7 @@ impl<E: Lane> Traversal<'_, E> {
 /// Returns the children of a node whose squared bound is below a limit, one bit each, and the
 /// squared bounds.
 #[inline(always)]
-fn near_children<L: Pack>(
+fn children_within<L: Pack>(
     token: L::Token,
     node: &Node<L::Element>,
     lanes: &LinkLanes<L>,
@@ -451,13 +452,13 @@ where
     // The plane test gains nothing for a link that is shorter than the children.
     let plane_may_exclude = node.largest < searched.length;
     let mut bounds = [L::Element::default(); WIDTH];
-    let mut near = 0;
+    let mut within = 0;
     for lane in (0..WIDTH).step_by(L::LANES) {
         let squared = node.bounds::<L>(token, lane).squared_distances(lanes, plane_may_exclude);
         squared.store(&mut bounds[lane..]);
-        near |= L::bits(squared.lt(limit)) << lane;
+        within |= L::bits(squared.lt(limit)) << lane;
     }
-    (near & node.used(), bounds)
+    (within & node.used(), bounds)
 }
 
 /// Moves the candidates with the least bounds to the first `count` places.

@@ -18,8 +18,8 @@ fn nearest(@builtin(workgroup_id) workgroup: vec3<u32>, @builtin(local_invocatio
     let count = min(round.links_at_once, round.links - first);
     if (lane < count) {
         own_limits[lane] = load_limit(round.first_link + first + lane);
-        atomicStore(&least_lower[lane], bitcast<u32>(FAR));
-        atomicStore(&least_upper[lane], bitcast<u32>(FAR));
+        atomicStore(&least_lower[lane], bitcast<u32>(UNBOUNDED));
+        atomicStore(&least_upper[lane], bitcast<u32>(UNBOUNDED));
     }
     workgroupBarrier();
     for (var k = 0u; k < round.triangles_at_once; k++) {

@@ -7,10 +7,10 @@ var<workgroup> least: atomic<u32>;
 @compute @workgroup_size(THREADS)
 fn reduce(@builtin(workgroup_id) workgroup: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
     if (lane == 0u) {
-        atomicStore(&least, bitcast<u32>(FAR));
+        atomicStore(&least, bitcast<u32>(UNBOUNDED));
     }
     workgroupBarrier();
-    var nearest = bitcast<u32>(FAR);
+    var nearest = bitcast<u32>(UNBOUNDED);
     for (var block = lane; block < round.blocks; block += THREADS) {
         nearest = min(nearest, block_bounds[workgroup.x * round.blocks + block].y);
     }
