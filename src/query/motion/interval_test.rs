@@ -21,7 +21,7 @@
 use super::approach_bound::{Approach, ApproachBound, check_subdivision};
 use super::refinement::{BodyQuery, BoundedPiece, RefineAction, RefinePolicy};
 use super::relative_motion::RelativeMotion;
-use crate::answer::ProximityError;
+use crate::answer::{ProximityError, UndecidedReason};
 use crate::refine::{Body, Refinable, UpperBound};
 use parry3d_f64::math::Real;
 
@@ -41,13 +41,12 @@ pub(crate) struct IntervalResult<F> {
     pub contact: Option<F>,
     /// Whether the place moves by at most half of the resolution in the interval.
     pub is_fine: bool,
-    /// Whether a piece was given up, because no shorter interval decides it.
-    pub is_undecided: bool,
+    /// Why the interval stays undecided, if it does. `Near`: no shorter interval decides a piece.
+    /// `Work`: a limit of work stopped the test, and with it the query.
+    pub undecided: Option<UndecidedReason>,
     /// Whether the upper bound of this shape exceeds the margin by at most the resolution and
     /// stated uncertainty. It limits the number of further shapes.
     pub is_near: bool,
-    /// Whether a limit of work stopped the test, and with it the query.
-    pub gives_up: bool,
     /// Why the samples allow no decision for a piece. A contact elsewhere takes precedence.
     pub too_fine: Option<ProximityError>,
 }
@@ -55,8 +54,7 @@ pub(crate) struct IntervalResult<F> {
 impl<F> IntervalResult<F> {
     /// The result before any test.
     pub(super) fn empty() -> Self {
-        let (is_fine, is_undecided, is_near, gives_up) = (false, false, false, false);
-        Self { contact: None, is_fine, is_undecided, is_near, gives_up, too_fine: None }
+        Self { contact: None, is_fine: false, undecided: None, is_near: false, too_fine: None }
     }
 }
 
@@ -119,7 +117,7 @@ impl<D: Refinable, P, V: RelativeMotion<D, P>> RefinePolicy<D, P> for IntervalTe
         // Step 3.
         let apart = upper - D::distance(near.nearest) - tube.uncertainty(near.piece);
         if self.is_fine(approach) && apart <= 0.5 * self.wanted.resolution {
-            self.result.is_undecided = true;
+            self.result.undecided = Some(UndecidedReason::Near);
             return Ok(RefineAction::Settled);
         }
         // Step 4.
@@ -138,7 +136,8 @@ impl<D: Refinable, P, V: RelativeMotion<D, P>> RefinePolicy<D, P> for IntervalTe
             let possible = near.found.upper() - D::distance(near.nearest) - stated;
             if let Err(error) = tube.check_resolved(possible, resolution) {
                 self.result.too_fine.get_or_insert(error);
-                (self.result.is_undecided, self.result.is_near) = (true, true);
+                self.result.undecided = Some(UndecidedReason::Near);
+                self.result.is_near = true;
                 return Ok(());
             }
         }
@@ -146,7 +145,7 @@ impl<D: Refinable, P, V: RelativeMotion<D, P>> RefinePolicy<D, P> for IntervalTe
         let is_open_end_decided =
             moved <= resolution / 128.0 || self.approach_bound.caps_change_too_fast(resolution);
         if self.is_fine(approach) && (!may_open || is_open_end_decided) {
-            self.result.is_undecided = true;
+            self.result.undecided = Some(UndecidedReason::Near);
             return Ok(());
         }
         self.record_unresolved(tube, near, approach)

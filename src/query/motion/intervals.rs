@@ -102,8 +102,8 @@ fn any_contact<U>(
 ) -> Result<MarginAnswer<U>, ProximityError> {
     let (mut progress, mut shapes, mut too_fine) = (Progress::default(), 0, None);
     while let Some(interval) = intervals.pop_front() {
-        let left = intervals.iter().chain([&interval]).map(|interval| interval.times);
-        if let Some(first) = progress.is_exhausted(shapes, left) {
+        let untested = intervals.iter().chain([&interval]).map(|interval| interval.times);
+        if let Some(first) = progress.at_limit(shapes, untested) {
             return too_fine.map_or(Ok(MarginAnswer::Undecided(first)), Err);
         }
         let (result, rest) = test_interval(&interval)?;
@@ -140,13 +140,11 @@ fn first_contact<U>(
         let Some(interval) = next else { break };
         let (result, rest) = test_interval(&interval)?;
         shapes += 1;
-        if result.is_undecided && undecided.is_none() {
-            let reason =
-                if result.gives_up { UndecidedReason::Work } else { UndecidedReason::Near };
+        if let (Some(reason), None) = (result.undecided, undecided) {
             undecided = Some((interval.times, reason));
             most = most.min(shapes + PATIENCE);
         }
-        if result.gives_up {
+        if result.undecided == Some(UndecidedReason::Work) {
             intervals.push_back(interval);
             break;
         }
@@ -165,17 +163,17 @@ fn first_contact<U>(
         too_fine = too_fine.or(result.too_fine);
         intervals.extend(rest.into_iter().rev().flatten());
     }
-    let left = intervals.iter().map(|interval| interval.times);
-    let left = left.min_by(|a, b| a[0].total_cmp(&b[0]));
+    let untested = intervals.iter().map(|interval| interval.times);
+    let first_untested = untested.min_by(|a, b| a[0].total_cmp(&b[0]));
     if let Some((t, found)) = contact {
-        let unknown = undecided.map(|(times, _)| times).into_iter().chain(left);
+        let unknown = undecided.map(|(times, _)| times).into_iter().chain(first_untested);
         let clear_until = unknown.fold(clear_until, |first, times| first.min(times[0]));
         return Ok(MarginAnswer::Contact { clear_until, t, found });
     }
     if let Some(error) = too_fine {
         return Err(error);
     }
-    let first = undecided.or(left.map(|times| (times, UndecidedReason::Work)));
+    let first = undecided.or(first_untested.map(|times| (times, UndecidedReason::Work)));
     Ok(first.map_or(MarginAnswer::Clear, MarginAnswer::Undecided))
 }
 

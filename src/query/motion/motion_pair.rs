@@ -28,6 +28,7 @@ use super::refinement::refine;
 use super::relative_motion::RelativeMotion;
 use crate::answer::{
     PairWitness, ProximityError, RobotMotionAnswer, RobotMotionClearance, RobotsInContact,
+    UndecidedReason,
 };
 use crate::distance::Scalar;
 use crate::motion::{CarriedMotion, CarriedPiece, Motion, check_speed};
@@ -157,7 +158,7 @@ impl MotionPair<'_> {
         refine(&mut tubes, pairs, &mut test)?;
         let IntervalTest { moving, approach_bound, mut result, .. } = test;
         if moving.is_exhausted() && result.contact.is_none() {
-            (result.is_undecided, result.gives_up) = (true, true);
+            result.undecided = Some(UndecidedReason::Work);
         }
         Ok((result, interval.rest(if is_all { approach_bound.hold } else { 0.0 })))
     }

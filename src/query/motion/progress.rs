@@ -29,33 +29,32 @@ impl Progress {
         if result.is_near && self.near.is_none() {
             self.near = Some((times, shapes + PATIENCE));
         }
-        if result.gives_up {
+        if result.undecided == Some(UndecidedReason::Work) {
             self.near = Some((times, shapes));
             self.is_exhausted = true;
         }
-        if result.is_undecided && self.undecided.is_none_or(|first| times[0] < first[0]) {
+        if result.undecided.is_some() && self.undecided.is_none_or(|first| times[0] < first[0]) {
             self.undecided = Some(times);
         }
     }
 
-    /// Returns the first undecided interval and the reason, if a limit of work is reached. `left`:
-    /// the untested intervals.
-    pub(super) fn is_exhausted(
+    /// Returns the first undecided interval and the reason, if a limit of work is reached.
+    pub(super) fn at_limit(
         &self,
         shapes: u64,
-        left: impl Iterator<Item = [Real; 2]>,
+        untested: impl Iterator<Item = [Real; 2]>,
     ) -> Option<([Real; 2], UndecidedReason)> {
-        let left = left.chain(self.undecided);
+        let undecided = untested.chain(self.undecided);
         if let Some((near, _)) = self.near.filter(|(_, most)| shapes >= *most) {
             let earlier = |first: [Real; 2], times: [Real; 2]| {
                 if times[0] < first[0] { [times[0], times[1].max(near[1])] } else { first }
             };
-            return Some((left.fold(near, earlier), self.reason()));
+            return Some((undecided.fold(near, earlier), self.reason()));
         }
         if shapes < MAX_SHAPES {
             return None;
         }
-        let first = left.min_by(|a, b| a[0].total_cmp(&b[0]))?;
+        let first = undecided.min_by(|a, b| a[0].total_cmp(&b[0]))?;
         Some((first, UndecidedReason::Work))
     }
 
@@ -78,10 +77,10 @@ mod tests {
     /// interval is left.
     #[test]
     fn the_last_interval_names_its_reason() {
-        for (gives_up, reason) in [(true, UndecidedReason::Work), (false, UndecidedReason::Near)] {
+        for reason in [UndecidedReason::Work, UndecidedReason::Near] {
             let mut progress = Progress::default();
             let mut result = IntervalResult::<()>::empty();
-            (result.is_undecided, result.gives_up) = (true, gives_up);
+            result.undecided = Some(reason);
             progress.record([0.5, 1.0], &result, 1);
             assert_eq!(progress.undecided(), Some(([0.5, 1.0], reason)));
         }

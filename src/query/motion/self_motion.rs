@@ -13,7 +13,7 @@ use super::motion_pair::most_pairs;
 use super::moving_tube_with_itself::MovingTubeWithItself;
 use super::refinement::refine;
 use super::relative_motion::RelativeMotion;
-use crate::answer::{ProximityError, RobotMotionAnswer};
+use crate::answer::{ProximityError, RobotMotionAnswer, UndecidedReason};
 use crate::curve::{Section, TubeTurns};
 use crate::distance::Scalar;
 use crate::motion::{CarriedMotion, Motion, check_speed};
@@ -105,7 +105,7 @@ fn test_interval(
     refine(&mut own, pairs, &mut test)?;
     let IntervalTest { moving, approach_bound, mut result, .. } = test;
     if moving.is_exhausted() && result.contact.is_none() {
-        (result.is_undecided, result.gives_up) = (true, true);
+        result.undecided = Some(UndecidedReason::Work);
     }
     if let Some(found) = &mut result.contact {
         found.points = found.points.map(|point| pose * point);
