@@ -34,9 +34,10 @@
 //!   [`Cap::Flat`] or [`Cap::Round`]. [`Chain::from_centreline`] chooses the caps;
 //!   [`Chain::capsules`] and [`Chain::cylinders`] are the simpler models. [`simplify`] finds
 //!   few links within a tolerance of a sampled curve.
-//! - **The curve** (feature `tubes`). A [`Tube`] is the robot as a curve, without links: samples or a function. Each
-//!   query names its tolerance. [`BvhSearch::clearance`](proximity::BvhSearch::clearance) bounds
-//!   the clearance from both sides.
+//! - **The curve** (feature `tubes`). A [`Tube`] is the robot as a curve, without links: samples or
+//!   a function. Each query names its tolerance.
+//!   [`BvhSearch::clearance`](proximity::BvhSearch::clearance) bounds the clearance from both
+//!   sides.
 //! - **The kinematics.** [`ConstantCurvature`] computes points from curvatures;
 //!   [`book::kinematics`] covers other models.
 //! - **Inside or outside.** [`BvhSearch::side`](proximity::BvhSearch::side) decides by the mesh's
@@ -45,11 +46,12 @@
 //!   [`BvhSearch`](proximity::BvhSearch) or [`Exhaustive`](proximity::Exhaustive), with the same
 //!   answers. The feature `gpu` adds `gpu::GpuSearch`. The first page of [`proximity`] lists
 //!   the call for each question.
-//! - **The motion** (feature `tubes`). [`BvhSearch::clears_motion`](proximity::BvhSearch::clears_motion) proves that
-//!   a [`Motion`] keeps a margin at every time.
-//! - **Several robots** (feature `robots`). [`RobotPair`](proximity::RobotPair) answers about two robots, or one robot
-//!   and itself. A [`Scene`](proximity::Scene) has several structures, each with its margin: see
-//!   [`book::robots`].
+//! - **The motion** (feature `tubes`).
+//!   [`BvhSearch::clears_motion`](proximity::BvhSearch::clears_motion) proves that a [`Motion`]
+//!   keeps a margin at every time.
+//! - **Several robots** (feature `robots`). [`RobotPair`](proximity::RobotPair) answers about two
+//!   robots, or one robot and itself. A [`Scene`](proximity::Scene) has several structures, each
+//!   with its margin: see [`book::robots`].
 //! - **Threads.** Each thread has a clone of the engine: see [`book::threads`].
 //! - **Contacts.** [`contacts_within`](proximity::Proximity::contacts_within) finds every place
 //!   where the robot is near the wall, with its normal and its derivative by the joints.

@@ -12,9 +12,9 @@
 //! cylinders side by side whose ends are level.
 //!
 //! # Rule
-//! If a flat cap decides, a computed distance of at most [`SETTLED_DISTANCE`] `u extent` becomes 0. The
-//! witness of both bodies is the midpoint of the two points, at most half of [`SETTLED_DISTANCE`]
-//! `u extent` from either.
+//! If a flat cap decides, a computed distance of at most [`SETTLED_DISTANCE`] `u extent` becomes 0.
+//! The witness of both bodies is the midpoint of the two points, at most half of
+//! [`SETTLED_DISTANCE`] `u extent` from either.
 //!
 //! # Claim
 //! If the kernel errs by at most `8 u extent`, every overlap has distance 0, and the answer errs by

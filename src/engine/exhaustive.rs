@@ -14,9 +14,9 @@
 //! | `clears` | whether `d(k, i) > margin` for all k and i | [`PassGoal::Within`] |
 //! | `contacts_within` | for each k the local minima along the wall with `d(k, i) <= margin` | [`PassGoal::Every`] |
 //!
-//! `query/contacts/local_minima.rs` defines a local minimum. `definitions.rs` has each row as a plain loop, and
-//! compares the engines with these loops; `contacts_within` only for robots that touch nothing, and
-//! without a prominence. The queries of [`BvhSearch`](super::BvhSearch) alone
+//! `query/contacts/local_minima.rs` defines a local minimum. `definitions.rs` has each row as a
+//! plain loop, and compares the engines with these loops; `contacts_within` only for robots that
+//! touch nothing, and without a prominence. The queries of [`BvhSearch`](super::BvhSearch) alone
 //! follow from the same distance:
 //! - `side` of a point: the sum of the solid angles of all triangles, which `definitions.rs` has
 //!   too.

@@ -182,8 +182,8 @@ impl SelfQuery {
     /// - `Undecided`: the robot comes within `resolution` of the margin, beyond the errors that it
     ///   states of itself. Or margin or samples are among the cases that
     ///   [`clears_tube`](Self::clears_tube) leaves undecided. Or an end that comes near turns from
-    ///   flat to round. The [reason](RobotMotionAnswer::reason) of all these is `Near`. It is `Work`
-    ///   if the query ends after 65,536 shapes, or after 262,144 pairs of pieces in total.
+    ///   flat to round. The [reason](RobotMotionAnswer::reason) of all these is `Near`. It is
+    ///   `Work` if the query ends after 65,536 shapes, or after 262,144 pairs of pieces in total.
     ///
     /// The work is one query about a tube and itself for each time that the proof needs. It needs
     /// four to eight times per rad that a part of the robot turns, and more near a contact.

@@ -75,8 +75,8 @@ impl Gpu {
     }
 }
 
-/// Returns what is open, if it is still usable; otherwise opens it on this thread alone, while other
-/// callers wait. So nobody who holds the lock waits for a pool.
+/// Returns what is open, if it is still usable; otherwise opens it on this thread alone, while
+/// other callers wait. So nobody who holds the lock waits for a pool.
 fn share<T, E>(
     shared: &Mutex<Weak<T>>,
     is_usable: impl Fn(&T) -> bool,

@@ -3,8 +3,8 @@
 //!
 //! # Definitions
 //! - T: the time since the middle of the interval; h: half of its length.
-//! - F: the velocity field of a frame, `F(x) = v + w x (x - a - v T)`. The frame turns at w, and its
-//!   point a (at T = 0) moves straight at v.
+//! - F: the velocity field of a frame, `F(x) = v + w x (x - a - v T)`. The frame turns at w, and
+//!   its point a (at T = 0) moves straight at v.
 //! - off, e: the true field of the frame differs from F at x by at most `off + e |x - a - v T|`.
 //! - p(t): a point of the robot. u: a bound on its speed relative to the true field. So p has the
 //!   velocity `F(p) + d` with `|d| <= U`, where `U = u + off + e D`, and D bounds `|p - a - v T|`.
@@ -19,14 +19,15 @@
 //!
 //! # Claim 2
 //! Let G be the field of another frame, with v', w', a'. In the interval `|F(p) - G(p)|` is at most
-//! its value at T = 0 plus h times `|w - w'| (g + U) + |w' x (v - v')|`. If w' = 0 it is also at most
-//! `|v - v'| + g`.
+//! its value at T = 0 plus h times `|w - w'| (g + U) + |w' x (v - v')|`. If w' = 0 it is also at
+//! most `|v - v'| + g`.
 //!
 //! **Proof.** The rate of F(p) - G(p) is `w x (p' - v) - w' x (p' - v')`, which is
 //! `(w - w') x (p' - v) - w' x (v - v')`; and `|p' - v| <= g + U`.
 //!
 //! # Claim 3
-//! Two points p and q, carried by F and G, come nearer at most at the rate `U + U' + |F(p) - G(p)|`.
+//! Two points p and q, carried by F and G, come nearer at most at the rate
+//! `U + U' + |F(p) - G(p)|`.
 //! **Proof.** `F(p) + d - G(q) - d'` is `F(p) - G(p) + G(p) - G(q) + d - d'`, and `G(p) - G(q)` is
 //! perpendicular to `p - q`. So what moves together comes no nearer.
 //!
@@ -40,8 +41,9 @@
 //! # A frame on a base
 //! A base has the field F1 with w1, v1, its origin b. In its frame another field F2 carries the
 //! robot. R is the base's rotation at T = 0. The point `c = b + R a2` of both moves at
-//! `v = v1 + w1 x R a2 + R v2`, and both turn at `w = w1 + R w2`. At the time T the rotation differs
-//! from R by a turn about w1 of at most `|w1| h`, which moves a vector y by at most `|w1 x y| h`. So
+//! `v = v1 + w1 x R a2 + R v2`, and both turn at `w = w1 + R w2`. At the time T the rotation
+//! differs from R by a turn about w1 of at most `|w1| h`, which moves a vector y by at most
+//! `|w1 x y| h`. So
 //! - w errs by at most `k = |w1 x R w2| h`;
 //! - the velocity of the carried point c(T) errs by `h |w1| (|w1 x R a2| + |w1| h |v2| + 2 |v2|)`,
 //!   which is at most off1;
@@ -133,8 +135,8 @@ impl CommonFrame {
     }
 
     /// This frame, which carries a robot in the frame of a base, in the frame in which the base
-    /// moves. `pose`: the base in the middle of the interval. `half`: half of the interval. `None` if
-    /// the interval is so long that this frame is not known better than its own speed.
+    /// moves. `pose`: the base in the middle of the interval. `half`: half of the interval. `None`
+    /// if the interval is so long that this frame is not known better than its own speed.
     pub(super) fn on_base(self, base: &Self, pose: &Pose, half: Real) -> Option<Self> {
         let is_shift = self.turn == Vector::ZERO && self.turn_off == 0.0;
         let at = if is_shift { Vector::ZERO } else { self.at };

@@ -10,8 +10,9 @@
 //!    is compared with the least bound over many ranges that contain it: the place alone, `[0, s]`,
 //!    `[s, 1]`, the dyadic ranges at [`LEVELS`] levels, and one drawn range per step. A bound that
 //!    considers one end of its range only is too low for some of them.
-//! 4. **Common frame.** If the motion states a frame, each shape is also compared with the earlier one
-//!    that the frame carries along. Only the speeds that are stated relative to the frame may remain.
+//! 4. **Common frame.** If the motion states a frame, each shape is also compared with the earlier
+//!    one that the frame carries along. Only the speeds that are stated relative to the frame may
+//!    remain.
 //! 5. **Displacements.** A stated displacement is compared with three shapes: at both ends of its
 //!    time, and at the middle, where a point of constant acceleration is farthest from it.
 

@@ -194,8 +194,8 @@ impl<T: Scalar> NearestParts<T> {
         let asks_way_out = gap.le(rounding) | (closest.distance.le(zero) & !is_capsule);
         let has_normal = zero.lt(apart.largest()) & !(!at_flat_cap & axial.axis_squared.le(zero));
         let normal = apart.normalised();
-        // In an overlap the lever ends at the triangle. Its length does not matter: it is parallel to
-        // the normal, so a turn moves its end across the normal only.
+        // In an overlap the lever ends at the triangle. Its length does not matter: it is parallel
+        // to the normal, so a turn moves its end across the normal only.
         let from_side = Vec3::select(has_normal, normal * -gap.min(link.radius), Vec3::zero(zero));
         let on_triangle = Vec3::select(at_flat_cap, closest.point1, axial.on_triangle);
         let [a, b, c] = *triangle;

@@ -1,7 +1,8 @@
 //! Few links in place of a finely sampled centreline, as short as its bends require.
 //!
 //! # Definitions
-//! - Run: the vertices between two changes of radius; rounding is no change ([`is_same`]). Station: a vertex that stays.
+//! - Run: the vertices between two changes of radius; rounding is no change ([`is_same`]). Station:
+//!   a vertex that stays.
 //! - Chord: a segment between two vertices of a run; it replaces the part of the run between them.
 //! - A chord *holds* if it and the part that it replaces are within the tolerance of each other
 //!   (Hausdorff distance), and its length is not 0.

@@ -1,6 +1,6 @@
-//! No NaN leaves a query whose input is finite: every number of an answer is finite and every normal
-//! has a direction, or the pair is `Unsupported`. Shapes have degenerate sizes, and placements are
-//! concentric, aligned and touching as often as general.
+//! No NaN leaves a query whose input is finite: every number of an answer is finite and every
+//! normal has a direction, or the pair is `Unsupported`. Shapes have degenerate sizes, and
+//! placements are concentric, aligned and touching as often as general.
 
 use crate::draw::Draw;
 use continuum_testing::{Random, rounds};

@@ -351,8 +351,8 @@ fn points_are_named_after_features() {
     assert_eq!(point.fid1.unpack(), FeatureId::Face(1));
 }
 
-/// Under the flags that fix internal edges, too, a pair of points is as far apart along the normal as
-/// its `dist` says, for links deeper than their radius.
+/// Under the flags that fix internal edges, too, a pair of points is as far apart along the normal
+/// as its `dist` says, for links deeper than their radius.
 #[test]
 fn points_of_deep_links_stay_together_under_every_flag() {
     let mut random = Random::new(92);
@@ -391,7 +391,8 @@ fn points_of_deep_links_stay_together_under_every_flag() {
     }
 }
 
-/// A triangle that fills a crack, with corners on a line but for rounding, makes contacts on itself.
+/// A triangle that fills a crack, with corners on a line but for rounding, makes contacts on
+/// itself.
 #[test]
 fn points_of_filler_triangles_lie_on_them() {
     let mut random = Random::new(93);

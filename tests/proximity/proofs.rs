@@ -748,7 +748,8 @@ fn a_motion_whose_parts_jump_is_refused() {
     type Case<'a> = (&'a [[f64; 2]], [&'a [f64]; 2], &'a str);
     let cases: [Case; 8] = [
         (&second(0.2, 10.0), [&[1.0; 2], &[1.0; 2]], "yes"),
-        // The same in other pieces, and a joint that moves along the robot where no radius shows it.
+        // The same in other pieces, and a joint that moves along the robot where no radius shows
+        // it.
         (&[[0.1, 0.0], [0.2, 5.0], [0.2, 10.0], [0.1, 20.0]], [&[1.0; 2], &[1.0; 3]], "yes"),
         (&second(0.1, 12.0), [&[1.0; 2], &[1.0; 2]], "does not reach"),
         (&second(0.2, 10.0), [&[1.0, 2.0], &[1.0, 2.0]], "yes"),

@@ -32,8 +32,8 @@ fn a_size_that_is_none_changes_nothing() {
     }
 }
 
-/// A chain on a chain, beside a compound: saved as the book says, loaded, and continued as if it had
-/// never been saved. JSON has no keys for rapier's pairs of parts.
+/// A chain on a chain, beside a compound: saved as the book says, loaded, and continued as if it
+/// had never been saved. JSON has no keys for rapier's pairs of parts.
 #[test]
 fn a_world_with_composites_near_each_other_is_saved_and_continued() {
     let mut world = PhysicsWorld { gravity: -9.81 * Vector::Y, ..Default::default() };

@@ -1,5 +1,5 @@
-//! Thrown robots fall, slide and come to rest as parry's compounds do: nothing hangs in the air, and
-//! nothing gains energy. `docs/RAPIER.md` has the table of many more throws.
+//! Thrown robots fall, slide and come to rest as parry's compounds do: nothing hangs in the air,
+//! and nothing gains energy. `docs/RAPIER.md` has the table of many more throws.
 //!
 //! rapier sweeps every fast body. An exact sweep of a link stops it at each step at which it slides
 //! along a wall or leaves it, because the solver lets them overlap by its allowed error.

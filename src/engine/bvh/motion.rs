@@ -189,9 +189,9 @@ impl BvhSearch {
     ///
     /// A robot at rest is a [`RigidMotion`](crate::RigidMotion) from a pose to the same pose. Each
     /// call visits all triangles once. The speed of the fastest vertex counts as the speed of the
-    /// whole mesh. If all vertices share a shift, only the speed of the robot relative to it counts,
-    /// and how much the vertices differ from it. If the mesh turns as a whole, move the robot
-    /// instead ([`MovingBase`](crate::MovingBase)).
+    /// whole mesh. If all vertices share a shift, only the speed of the robot relative to it
+    /// counts, and how much the vertices differ from it. If the mesh turns as a whole, move the
+    /// robot instead ([`MovingBase`](crate::MovingBase)).
     ///
     /// ```
     /// use parry_continuum::{Chain, RigidMotion, Tube, parry::{math::{Pose, Vector}, shape::Ball}};

@@ -20,12 +20,12 @@
 //!    the nearer child first. A thread keeps up to [`SLOTS`] wanted triangles that it meets. At the
 //!    end it keeps only the triangles that are still wanted. For a margin, a triangle with
 //!    `upper + e <= margin` settles the robot.
-//! 3. **Second pass**, on the device (`gather`): the groups in which a wanted triangle found no slot
-//!    gather all wanted triangles for the final D and T. For all triangles within a margin this is
-//!    the only pass. It counts before it writes; the CPU searches for a robot whose two counts
-//!    differ.
-//! 4. **Repeat**: if the candidates of a chunk exceed its capacity, the chunk is searched once more,
-//!    with the entries that they need.
+//! 3. **Second pass**, on the device (`gather`): the groups in which a wanted triangle found no
+//!    slot gather all wanted triangles for the final D and T. For all triangles within a margin
+//!    this is the only pass. It counts before it writes; the CPU searches for a robot whose two
+//!    counts differ.
+//! 4. **Repeat**: if the candidates of a chunk exceed its capacity, the chunk is searched once
+//!    more, with the entries that they need.
 //! 5. **Measure**, on the CPU: all candidates, in double precision. The best is the answer.
 //! 6. **Remainder**, on the CPU: robots that the device cannot represent, whose candidates do not
 //!    fit, or whose loops the driver stopped take the search on the CPU. They are counted.
@@ -44,9 +44,10 @@
 //! with a link at the distance d(t) from t: no triangle is nearer to that group, and of equals t is
 //! the lowest there. So ties go to the lowest link of all that have t. A box is skipped only if it
 //! holds no wanted triangle: claim 1 of `bounds`. So t is among the candidates, unless it found no
-//! slot in the first pass; then the group takes the second pass, where t is wanted too. The CPU measures all
-//! candidates with the function that measures in every engine. For a margin, every triangle within
-//! it is wanted, and a decision is settled early only if a link is certainly within it.
+//! slot in the first pass; then the group takes the second pass, where t is wanted too. The CPU
+//! measures all candidates with the function that measures in every engine. For a margin, every
+//! triangle within it is wanted, and a decision is settled early only if a link is certainly within
+//! it.
 
 use super::answer::{Answer, Candidate, Found, Measure};
 use super::chunk::{COUNTER_BYTES, Chunk, ENTRY_BYTES, HEAD_BYTES, capacity_for};
@@ -223,8 +224,8 @@ impl Batches {
     }
 }
 
-/// The entries per item after a chunk of `items` that needed `needed` entries. They grow at once and
-/// shrink slowly, because all entries of a chunk are read back.
+/// The entries per item after a chunk of `items` that needed `needed` entries. They grow at once
+/// and shrink slowly, because all entries of a chunk are read back.
 fn next_entries_per_item(before: u64, least: u64, needed: u64, items: u64) -> u64 {
     let each = (needed + needed / 8).div_ceil(items.max(1));
     each.max(before - before / 8).max(least)
@@ -340,8 +341,9 @@ mod tests {
     use fearless_simd::Level;
     use parry3d_f64::math::{Pose, Vector};
 
-    /// What a device returns for a chunk: a head for each link group, in any order of their entries. The
-    /// candidate of link k of a robot has the number 1000 robot + k, once for each of `each`.
+    /// What a device returns for a chunk: a head for each link group, in any order of their
+    /// entries. The candidate of link k of a robot has the number 1000 robot + k, once for each of
+    /// `each`.
     fn returned(random: &mut Random, chunk: &ChunkLayout, each: &[u32]) -> (Vec<u32>, Vec<u32>) {
         let mut heads = vec![0; 2 * chunk.groups as usize];
         let mut entries = Vec::new();

@@ -254,7 +254,8 @@ mod tests {
     use continuum_testing::Random;
     use parry3d_f64::math::{Pose, Vector};
 
-    /// Adds all links, and all triangles to each. Writes the contacts if the query is not abandoned.
+    /// Adds all links, and all triangles to each. Writes the contacts if the query is not
+    /// abandoned.
     fn ask(
         mesh: &Mesh,
         robot: &Chain,

@@ -58,9 +58,9 @@
 //!    minima, the piece with that minimum ends. (This is the elder rule of persistent homology.)
 //! 4. **Report** the first triangle of each piece that has not ended.
 //!
-//! The *rank* of a triangle is its number in the order of step 2, counted from 1. Union-find (Galler
-//! and Fischer) has the pieces: each rank names an earlier rank of the same piece, or itself if it
-//! is the first.
+//! The *rank* of a triangle is its number in the order of step 2, counted from 1. Union-find
+//! (Galler and Fischer) has the pieces: each rank names an earlier rank of the same piece, or
+//! itself if it is the first.
 //!
 //! If the least point of T lies on f, d(f) is d(T) and is not computed. That holds for nearly all
 //! f.

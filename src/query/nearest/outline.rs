@@ -90,8 +90,8 @@ impl PlacedOutline {
         Self { ends: robot.ends(), radius: tip.radius(), flat: tip.flat() }
     }
 
-    /// All links with their numbers, from the tip to the base. An end that two links share is placed
-    /// once.
+    /// All links with their numbers, from the tip to the base. An end that two links share is
+    /// placed once.
     pub(crate) fn of_all(robot: PlacedRobot) -> impl Iterator<Item = (usize, Self)> {
         FromTip { robot, links: robot.links().iter(), shared: None }
     }
@@ -144,9 +144,9 @@ impl ReferenceOutline {
     ///
     /// **Rounding.** d and d' err by u of themselves, and so x by less than `3 u` for `x <= 1/2`.
     /// The derivative of t is at most `6 r`, so t errs by `18 u r`, which [`MOVED_ROUNDING`] times
-    /// the extent includes. A square vanishes if its root is below 2^-537 of the extent and the mesh.
-    /// The radius of a flat cap is less than 2^400 lengths of its axis, so at most 2^-136 of the
-    /// extent is lost.
+    /// the extent includes. A square vanishes if its root is below 2^-537 of the extent and the
+    /// mesh. The radius of a flat cap is less than 2^400 lengths of its axis, so at most 2^-136 of
+    /// the extent is lost.
     #[inline(always)] // in the loop over all links
     pub(crate) fn moved_to(&self, now: &PlacedOutline) -> Real {
         let then = &self.link;

@@ -81,7 +81,8 @@ fn classify_edges(mesh: &Mesh, parts: &SharedParts) -> (SurfaceReport, Vec<[u32;
             if is_counted[triangle as usize][edge] {
                 continue;
             }
-            // The faces at the edge, and how many of them have it from the lower place to the other.
+            // The faces at the edge, and how many of them have it from the lower place to the
+            // other.
             let (mut faces, mut ascending) = (0, 0);
             let mut ends = [0; 2];
             for (triangle, edge) in parts.ring(triangle, edge) {

@@ -30,8 +30,8 @@
 //! `d' <= upper' - r + e`. Let another triangle have `lower >= upper' + 2 e`. Then `d > lower - r -
 //! e >= upper' - r + e >= d'`. So such a triangle is strictly farther, and all ties are measured. A
 //! triangle at the initial `limit` or beyond is farther than the bound. A triangle numbered
-//! `triangle_limit` or higher loses the tie at distance 0. A node's bound is compared conservatively: see
-//! [`SearchLink::limit_of_bounds`].
+//! `triangle_limit` or higher loses the tie at distance 0. A node's bound is compared
+//! conservatively: see [`SearchLink::limit_of_bounds`].
 
 use super::build::WideBvh;
 use super::node::{Child, Node, WIDTH};
@@ -201,8 +201,8 @@ impl<E: Lane> Traversal<'_, E> {
         if let Goal::Guess(found, _) = target.goal { found } else { None }
     }
 
-    /// Returns true if a triangle with a number less than `triangle_limit` may be at most `bound` from the
-    /// link. False is a proof, true is not: leaves do not compare the numbers.
+    /// Returns true if a triangle with a number less than `triangle_limit` may be at most `bound`
+    /// from the link. False is a proof, true is not: leaves do not compare the numbers.
     pub(crate) fn may_meet(
         &mut self,
         searched: &SearchLink<E>,

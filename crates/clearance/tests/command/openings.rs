@@ -81,7 +81,8 @@ fn inside_asks_for_every_link_and_for_the_margin() {
         (closed, within, &[][..], 0, "inside: every link"),
         (open, within, &[], 0, "inside: every link"),
         (closed, within, &["--margin", "7"], 0, "inside: every link"),
-        // The base is 10 from the wall, less the radius in other directions; its face is 10 from it.
+        // The base is 10 from the wall, less the radius in other directions; its face is 10 from
+        // it.
         (closed, within, &["--margin", "11"], 1, "inside: every link"),
         (closed, beside, &[], 1, "inside: not every link"),
         (closed, beside, &["--margin", "200"], 1, "inside: not every link"),

@@ -290,8 +290,8 @@ const LINES: [&str; 26] = [
     "segment",
 ];
 
-/// Stems of names with x, y, z that are no position: rotations, quaternions, directions, curvatures,
-/// velocities, forces, statistics, and places that are not in a unit of length.
+/// Stems of names with x, y, z that are no position: rotations, quaternions, directions,
+/// curvatures, velocities, forces, statistics, and places that are not in a unit of length.
 const NO_POSITION: [&str; 80] = [
     "r",
     "rot",

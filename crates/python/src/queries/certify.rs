@@ -151,8 +151,8 @@ impl Mesh {
     /// ------
     /// ContinuumError
     ///     The answer does not fit robot, pose and mesh: a point is not where it says, the distance
-    ///     or the arc length is another, a segment without length has numbers, or the shapes differ.
-    ///     Or as for `distance`.
+    ///     or the arc length is another, a segment without length has numbers, or the shapes
+    ///     differ. Or as for `distance`.
     ///
     /// Examples
     /// --------

@@ -54,7 +54,8 @@ impl Mesh {
     /// Parameters
     /// ----------
     /// start, end : (N, 3) or (B, N, 3) arrays
-    ///     With as many points each; of a batch and one, the one stands for all. Or a `Motion`, or a batch of them, as `start` alone.
+    ///     With as many points each; of a batch and one, the one stands for all. Or a `Motion`, or
+    ///     a batch of them, as `start` alone.
     /// radii : float, (N - 1,) or (B, N - 1) array
     ///     One radius for each segment.
     /// margin : float

@@ -48,9 +48,9 @@ fn box_limit(link: SearchedLink, bound: f32) -> f32 {
     return limit * limit;
 }
 
-// Whether loops still run to their ends. A driver may stop them: once all loops of a thread together
-// have taken 65,535 rounds, Mesa's llvmpipe leaves each loop after one round. This loop has two, and
-// its count is not known to the compiler.
+// Whether loops still run to their ends. A driver may stop them: once all loops of a thread
+// together have taken 65,535 rounds, Mesa's llvmpipe leaves each loop after one round. This loop
+// has two, and its count is not known to the compiler.
 fn loops_run() -> bool {
     var rounds = 0u;
     for (var k = 0u; k < 2u * min(query.groups, 1u); k++) {

@@ -1,5 +1,5 @@
-// The first pass: the candidates of every link, nearest boxes first. The twin of TwinTree::search in
-// gpu/search/twin.rs. gpu/search/batch.rs defines D, T and wanted triangles, and proves that no
+// The first pass: the candidates of every link, nearest boxes first. The twin of TwinTree::search
+// in gpu/search/twin.rs. gpu/search/batch.rs defines D, T and wanted triangles, and proves that no
 // answer is lost.
 
 var<workgroup> group_bound: atomic<u32>;

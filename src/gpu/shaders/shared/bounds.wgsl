@@ -1,4 +1,5 @@
-// Bounds on the distance to a flat cap: the twin of distance/triangle_modified_cylinder.rs, which has the derivation.
+// Bounds on the distance to a flat cap: the twin of distance/triangle_modified_cylinder.rs, which
+// has the derivation.
 
 struct Bounds {
     lower: real,
