@@ -1,5 +1,5 @@
-//! The instruction sets that the kernels are compiled for: those of `fearless_simd`, with SSE2 in
-//! place of SSE4.2 on 64-bit x86.
+//! The instruction sets that the kernels are compiled for: the levels of `fearless_simd`, with SSE2
+//! in place of SSE4.2 on 64-bit x86.
 //!
 //! SSE2 has as many lanes as SSE4.2. Measured with the exhaustive engine, both are equally fast:
 //! 30.2 ns a pair against 30.8 in single precision, 64.0 against 65.2 in double. Each instruction

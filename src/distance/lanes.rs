@@ -30,7 +30,7 @@ pub(crate) trait Pack: Scalar {
     fn bits(mask: Self::Mask) -> u64;
 }
 
-/// Returns the indices of the bits that are set, such as those of [`Pack::bits`], lowest first.
+/// Returns the indices of the bits that are set, lowest first. [`Pack::bits`] returns such bits.
 pub(crate) fn set_bits(mut left: u64) -> impl Iterator<Item = usize> {
     std::iter::from_fn(move || {
         let bit = (left != 0).then(|| left.trailing_zeros() as usize)?;

@@ -169,7 +169,7 @@ pub fn triangle_modified_cylinder_by<S: DiscSolver<T>, T: Scalar>(
 ///      \_______________________/
 /// ```
 ///
-/// The arguments are those of [`triangle_modified_cylinder`], with two round caps.
+/// The arguments are the same as for [`triangle_modified_cylinder`], with two round caps.
 #[inline(always)]
 pub fn triangle_capsule<T: Scalar>(
     triangle: [Vec3<T>; 3],

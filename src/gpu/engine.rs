@@ -25,10 +25,10 @@ use std::time::Duration;
 ///
 /// The mesh is uploaded once. A query uploads the links and reads back, for each link, the few
 /// triangles that rounding does not exclude. The CPU measures these candidates in double precision.
-/// So the distances are those of [`Exhaustive<f64>`](crate::proximity::Exhaustive) in either
-/// precision of the search. A link with more than 64 candidates, for example a cylinder along a
-/// flat wall, is measured against all triangles on the CPU; [`GpuExhaustive::answered_on_cpu`]
-/// counts such links. Answers repeat exactly on one device.
+/// So the distances equal the distances of [`Exhaustive<f64>`](crate::proximity::Exhaustive) in
+/// either precision of the search. A link with more than 64 candidates, for example a cylinder
+/// along a flat wall, is measured against all triangles on the CPU;
+/// [`GpuExhaustive::answered_on_cpu`] counts such links. Answers repeat exactly on one device.
 ///
 /// ```no_run
 /// use parry_continuum::gpu::{GpuExhaustive, Precision};

@@ -21,7 +21,7 @@ impl Gpu {
     /// Opens the fastest GPU of this machine for searches in this precision. While one is open and
     /// has not been lost, all callers on all threads share it.
     ///
-    /// The distances are those of double precision either way. The environment variables of `wgpu`,
+    /// The distances have double precision either way. The environment variables of `wgpu`,
     /// such as `WGPU_BACKEND`, narrow the choice.
     ///
     /// # Errors

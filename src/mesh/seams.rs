@@ -16,7 +16,7 @@
 //!
 //! # Rounding
 //! A tool that computes a point of an edge errs by 5 u m. A rotation and a shift of the mesh move
-//! each corner by less than 6 u m more, on both sides of the seam. 32 u m holds all of these twice.
+//! each corner by less than 6 u m more, on both sides of the seam. 32 u m is twice the sum.
 //!
 //! # Cost
 //! A closed mesh with equal corners has no open edge and costs one test per edge. Otherwise the
@@ -308,7 +308,8 @@ impl CornerTree {
             let [low, high] = node.bounds;
             let size = (high - low) * 0.5 + rounding;
             let apart = middle - (low + high) * 0.5;
-            // The separating axes of a segment and a box: those of the box, and those across both.
+            // The separating axes of a segment and a box: the axes of the box, and the directions
+            // across the segment and an axis.
             let across = half.cross(apart).abs();
             let limit = Vector::new(
                 size.y * reach.z + size.z * reach.y,

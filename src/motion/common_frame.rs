@@ -32,10 +32,10 @@
 //! perpendicular to `p - q`. So what moves together comes no nearer.
 //!
 //! # Directions
-//! A disc moves with its centre and with the tangent t, whatever it does about t. Seen from G, the
-//! tangent turns at most at the rate `turn + |(w - w') x t|`, where `turn` bounds its turn relative
-//! to F. `|w x t|` changes at most at the rate `|w| turn`, because the frame's own turn keeps it.
-//! If w' differs from 0, `|(w - w') x t|` changes at most at the rate
+//! A disc moves with its centre and with the tangent t, and may spin about t at any rate. Seen from
+//! G, the tangent turns at most at the rate `turn + |(w - w') x t|`, where `turn` bounds its turn
+//! relative to F. `|w x t|` changes at most at the rate `|w| turn`, because the frame's own turn
+//! keeps it. If w' differs from 0, `|(w - w') x t|` changes at most at the rate
 //! `|w - w'| (|w| + turn)`, and is at most `|w - w'|`.
 //!
 //! # A frame on a base

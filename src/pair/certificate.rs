@@ -212,7 +212,7 @@ impl ExactLinkTriangle {
             (point - from - edge * t).norm()
         };
         let edges = on_edge(a, b).min(on_edge(b, c)).min(on_edge(c, a));
-        // Non-negative weights give a point of the triangle, whatever their rounding.
+        // Non-negative weights give a point of the triangle, also if they are rounded.
         let normal = (b - a).cross(c - a);
         let area = |p: ExactPoint, q: ExactPoint| {
             normal.dot((p - point).cross(q - point)).max(Number::ZERO)

@@ -18,7 +18,8 @@ pub(crate) type PlacedEnds = ([Vector; 2], Real, [bool; 2]);
 /// Pairs of links in one frame, and their closest points.
 ///
 /// All pairs are stored before the first is measured. A pack is written number by number and read
-/// as a whole, and a processor stalls if it reads what it has just written in smaller parts.
+/// as a whole, and a processor stalls if it reads numbers together that it has just written one by
+/// one.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct LinkPairBatch {
     packs: Vec<PackOfPairs>,

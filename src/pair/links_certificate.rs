@@ -1,6 +1,6 @@
 //! Certificates of two links: proven bounds on their distance, in double-double arithmetic.
 //!
-//! The two bounds, and why they hold, are those of `certificate.rs`.
+//! `certificate.rs` has the two bounds, and why they hold.
 //!
 //! # Definitions
 //! - `n`: a unit direction; the lower bound is the separation of the links by planes across it.

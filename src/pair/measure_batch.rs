@@ -40,7 +40,7 @@ impl Best {
         let mut answers = NearestRows::new();
         let near = measure_pack(level, link, mesh, triangles, self.bound(), &mut answers);
         for lane in set_bits(near) {
-            // Most triangles within the bound tie with it, and most of these do not improve the
+            // Most triangles within the bound tie with it, and most ties do not improve the
             // best: test before building the result.
             if self.is_improved_by(answers.distance(lane), triangles[lane]) {
                 is_best |= self.take(answers.nearest(lane, triangles[lane]));

@@ -36,7 +36,7 @@ use std::sync::OnceLock;
 ///
 /// # Repeated points
 /// Planners repeat centreline points. A segment without length has no direction and makes no link.
-/// Its radius makes no step, whatever it is: repeating a point changes no link. The exception is
+/// No radius of such a segment makes a step: repeating a point changes no link. The exception is
 /// [`from_vertex_radii`](Self::from_vertex_radii), whose printed rule has a radius per point.
 ///
 /// [`segments_of`](Self::segments_of) counts such a segment to the link before it, or to the first

@@ -175,7 +175,7 @@ pub enum RobotError {
         /// The angular speed that the motion states, rad per unit of time.
         stated: Real,
     },
-    /// A motion's centreline leaves the frame that the motion states, faster than it states.
+    /// A motion's centreline leaves the stated frame faster than the motion states.
     #[error(
         "around t = {t} the centreline at share {share} of section {section} {} at {found} relative to the common \
          frame, more than the {stated} stated; state another frame, or more",

@@ -48,7 +48,7 @@ pub(super) fn build(links: &[ModifiedCylinder], nodes: &mut Vec<LinkNode>) {
     append(links, 0, nodes);
 }
 
-/// Appends the subtree over `links`, the first of which has the index `first`.
+/// Appends the subtree over `links`. The first of the links has the index `first`.
 fn append(links: &[ModifiedCylinder], first: usize, nodes: &mut Vec<LinkNode>) {
     let [start, .., end] = links else {
         nodes.extend((!links.is_empty()).then_some(LinkNode::Leaf(first)));

@@ -174,7 +174,7 @@ fn a_disc_and_a_concentric_ball_are_answered() {
         assert!(is_sound(&contact) && (contact.dist + 0.7).abs() < 0.01 * 0.7, "{contact:?}");
         assert!(ask(&pose, &ball, &round, 0.1, "round cylinder"));
     }
-    // A link across the disc's rim touches it, whatever its caps.
+    // A link across the disc's rim touches it, with any caps.
     for caps in [Cap::Flat, Cap::Round] {
         let link = ModifiedCylinder::new(-Vector::X, Vector::X, 0.1, [caps; 2]).unwrap();
         let at_rim = Pose::from_translation(Vector::new(0.5, 0.05, 0.0));

@@ -391,7 +391,7 @@ fn points_of_deep_links_stay_together_under_every_flag() {
     }
 }
 
-/// A triangle that fills a crack, with corners on a line but for rounding, makes contacts on
+/// A triangle that fills a crack, with corners on a line up to rounding, makes contacts on
 /// itself.
 #[test]
 fn points_of_filler_triangles_lie_on_them() {

@@ -186,7 +186,7 @@ fn a_ball_whose_centre_is_on_a_wall_is_not_refused() {
     }
 }
 
-/// The first hit of two chains is the first of all pairs of their links, whatever their speeds.
+/// The first hit of two chains is the first of all pairs of their links, at any speeds.
 #[test]
 fn chains_meet_where_the_first_of_their_links_do() {
     let (mut random, dispatcher) = (Random::new(123), ContinuumDispatcher::default());

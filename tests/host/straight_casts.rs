@@ -274,7 +274,7 @@ mod as_parry_asks {
             .unwrap()
     }
 
-    /// A cube of 1e-10, from as near and from as far as a cube of 1 would be.
+    /// A cube of 1e-10, from the same distances as a cube of 1.
     #[test]
     fn a_tiny_mesh_is_met_as_a_large_one_is() {
         let wall = cuboid(Vector::splat(0.5e-10));

@@ -9,7 +9,7 @@ fn read(path: &str) -> String {
     fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(path)).unwrap()
 }
 
-/// The texts of a folder's files with one of these endings.
+/// The texts of a folder's files with one of the endings.
 fn texts(folder: &str, endings: &[&str], found: &mut Vec<(String, String)>) {
     for entry in fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join(folder)).unwrap() {
         let entry = entry.unwrap();

@@ -69,7 +69,7 @@ fn a_robot_of_many_sections_is_decided_as_its_links() {
     }
 }
 
-/// A coil of radius 1 and pitch 0.5 by a wire of radius 0.4 overlaps itself by 0.3, whatever the
+/// A coil of radius 1 and pitch 0.5 by a wire of radius 0.4 overlaps itself by 0.3, for every
 /// number of frames.
 #[test]
 fn a_coil_from_frames_meets_itself_with_any_number_of_frames() {
@@ -94,7 +94,7 @@ fn a_coil_from_frames_meets_itself_with_any_number_of_frames() {
     }
 }
 
-/// More than pi is no more than every direction.
+/// A turn of more than pi allows every direction, as a turn of pi does.
 #[test]
 fn a_stated_turn_of_more_than_pi_is_pi() {
     let points: Vec<_> = (0..=20)

@@ -612,7 +612,8 @@ fn an_error_names_the_robot() {
     };
     assert!(matches!(fault, RobotError::SectionsChange { .. }));
 
-    /// Capsules along z, of this many sections. The last is as fast as this; no other is asked for.
+    /// Capsules along z, of this many sections. The last has this speed; no query needs another
+    /// speed.
     struct Sections(usize, Real);
     impl Motion for Sections {
         fn shape(&self, t: Real, tube: &mut Tube) -> Result<Pose, RobotError> {

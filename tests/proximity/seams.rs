@@ -78,7 +78,7 @@ fn capsule(ends: [Vector; 2], radius: Real) -> Chain {
 
 /// A wall over a grid of squares, each of two triangles. `height` gives the height of each corner.
 /// Each triangle is a fan around its centre. Its fan has further corners on its edges: in the first
-/// wall its own, as T-vertices; in the second those of the neighbour, too.
+/// wall its own, as T-vertices; in the second also the corners of the neighbour.
 struct Twins {
     with_t_vertices: Vec<Triangle>,
     conforming: Vec<Triangle>,
@@ -370,7 +370,7 @@ fn a_chain_of_corners_is_one_place() {
     assert_eq!(contacts(&three, &robot, 2.0, 0.0).len(), 1);
 }
 
-/// After the vertices moved, the seams are those of the new places.
+/// After the vertices moved, the seams follow from the new positions.
 #[test]
 fn seams_follow_the_vertices() {
     let (mut closed, mut torn) = (0, 0);

@@ -94,8 +94,8 @@ fn openings_are_as_wide_as_they_are() {
 /// A slit is as wide as its gap. Corners on an edge within rounding are a seam: no opening.
 #[test]
 fn a_slit_is_narrow_and_a_seam_is_closed() {
-    // A square of two halves, whose inner edges meet at their ends, and one of which has a corner
-    // in the middle that is `gap` away.
+    // A square of two halves, whose inner edges meet at their ends. One half has a corner in the
+    // middle of its inner edge that is `gap` away.
     let halves = |gap: f64, pose: &Pose| -> Mesh {
         let places = [(-9.0, 0.0), (9.0, 0.0), (0.0, 30.0), (0.0, -30.0), (1.0, -gap)];
         let vertices = places.map(|(x, y)| *pose * Vector::new(x, y, 0.0));

@@ -323,7 +323,7 @@ fn repeated_points() {
             (vec![Vector::ZERO, Vector::X, Vector::X * 2.0], vec![0.1, 0.2])
         );
     }
-    // A segment without length makes no change, whatever its radius is.
+    // A segment without length makes no change, with any radius.
     let (kept, kept_radii) = simplify(&points, &[0.1, 0.1, 0.1, 0.5, 0.1, 0.1], 10.0).unwrap();
     assert_eq!((kept.len(), kept_radii), (2, vec![0.1]));
 }

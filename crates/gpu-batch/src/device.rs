@@ -238,7 +238,7 @@ impl Device {
             .next_multiple_of(self.limits().min_uniform_buffer_offset_alignment.into())
     }
 
-    /// The binding of a buffer of uniforms, of which each dispatch names one by its offset.
+    /// The binding of a buffer of uniforms. Each dispatch names one uniform by its offset.
     pub fn uniform_binding<'a, R: Record>(
         &self,
         buffer: &'a wgpu::Buffer,

@@ -196,7 +196,7 @@ fn read_element(
         }
         let is_of_corners = CORNERS.contains(&property.name.as_str());
         let is_needed = is_of_faces && is_of_corners;
-        // Other elements, such as those of range grids, name at most one vertex.
+        // Other elements, such as range grids, name at most one vertex.
         if is_of_corners && !is_needed && length >= 3.0 {
             return Err(format!("its element '{name}' has faces; name the element 'face'"));
         }

@@ -11,8 +11,8 @@
 //! **Claim.** If no triangle is turned over, the triangles cover each point of the plane as often
 //! as the outline winds around it: once inside an outline without crossings, and never outside.
 //! **Proof.** The triangles form a disc whose boundary is the outline. A point that is on no edge
-//! is covered as often by triangles that turn left, minus those that turn right, as the boundary
-//! winds around it. No triangle turns right.
+//! is covered by triangles that turn left, minus triangles that turn right, as often as the
+//! boundary winds around it. No triangle turns right.
 //! **Rounding.** A triangle counts as turned over if its cross product is less than `-ROUNDING`.
 
 use crate::ears::{Ears, ROUNDING, turn};

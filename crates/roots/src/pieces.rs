@@ -2,11 +2,11 @@
 //!
 //! The upper hull of the points (k, log2 |a_k|), Newton's polygon, tells the roots' sizes: an edge
 //! from i to j stands for j - i roots of magnitude about (|a_i| / |a_j|)^(1 / (j - i)). Where two
-//! edges meet at k and their magnitudes lie far apart, the roots on either side are nearly those of
-//! a_i .. a_k and of a_k .. a_j by themselves, off by about the ratio of their sizes; the polish on
-//! the whole polynomial removes that. So the polynomial is cut there, and each piece is scaled by
-//! powers of two, in x and in value, until nothing in it overflows or vanishes. That makes every
-//! range of coefficients the same to a finder.
+//! edges meet at k and their magnitudes lie far apart, the roots on either side are nearly the
+//! roots of a_i .. a_k and of a_k .. a_j by themselves, off by about the ratio of their sizes; the
+//! polish on the whole polynomial removes that. So the polynomial is cut there, and each piece is
+//! scaled by powers of two, in x and in value, until nothing in it overflows or vanishes. That
+//! makes every range of coefficients the same to a finder.
 
 use super::Real;
 

@@ -32,7 +32,7 @@ pub enum ThrownBody {
     Chain,
     /// The links of that chain as parry's compound.
     CompoundOfLinks,
-    /// Capsules in place of these links.
+    /// Capsules in place of the links.
     CompoundOfCapsules,
 }
 

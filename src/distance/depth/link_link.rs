@@ -222,8 +222,8 @@ impl LinkLink {
             for end in 0..2 {
                 let centre = other.centre(end);
                 // If the centre is on the axis, all directions across are equally good. A flat end
-                // has no half ball, but for parallel axes this is also the direction from axis to
-                // axis.
+                // has no half ball. If the axes are parallel, this is also the direction from axis
+                // to axis.
                 let lateral = one.axis.map(|axis| {
                     unit_across(centre - one.start, axis).unwrap_or_else(|| perpendicular(axis))
                 });

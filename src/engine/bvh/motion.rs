@@ -183,7 +183,7 @@ impl BvhSearch {
     /// registration, or a step of a tissue simulation.
     ///
     /// `Clear` is proven for every instant, as for [`clears_motion`](Self::clears_motion). A
-    /// `Contact` names the time; its points are those of robot and mesh at that time. The engine's
+    /// `Contact` names the time; its points are points of robot and mesh at that time. The engine's
     /// mesh stays where it is: [`set_vertices`](crate::proximity::Proximity::set_vertices) moves it
     /// to `to`.
     ///

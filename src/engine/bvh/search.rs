@@ -35,9 +35,9 @@ use std::sync::Arc;
 ///
 /// The engine has its own hierarchy of the mesh, in single precision, with 16 children per node and
 /// 16 triangles per leaf. It measures every candidate again in double precision, so the answers
-/// equal those of [`Exhaustive`](crate::proximity::Exhaustive). If single precision is too coarse,
-/// because a triangle or the robot lies very far out, a second hierarchy in double precision
-/// replaces the first. The engine builds it at first use.
+/// equal the answers of [`Exhaustive`](crate::proximity::Exhaustive). If single precision is too
+/// coarse, because a triangle or the robot lies very far out, a second hierarchy in double
+/// precision replaces the first. The engine builds it at first use.
 ///
 /// The last answers warm-start the next query. Any robot and pose may follow; small motions are
 /// answered fastest. [`BvhSearch::forget`] drops the warm start.

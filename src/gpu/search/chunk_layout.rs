@@ -20,7 +20,7 @@ const _: () = assert!(MOST_LINKS as u64 * (MOST_GATHERED as u64) < 1 << 32);
 pub(super) struct ChunkLayout {
     /// The robots of the batch.
     pub robots: Range<usize>,
-    /// The layout of each of these robots.
+    /// The layout of each robot of the chunk.
     pub layouts: Vec<RobotLayout>,
     /// How many link groups all robots have.
     pub groups: u32,
@@ -114,7 +114,8 @@ impl RobotLayout {
         if self.links == 0 { 0 } else { 3 * (self.links + 1) }
     }
 
-    /// How many `f32` its radii and caps take; 0 if it uses those of the robot before.
+    /// How many `f32` its radii and caps take; 0 if it uses the radii and caps of the
+    /// robot before.
     pub(super) fn radii_size(&self) -> u32 {
         if self.shares_radii { 0 } else { 2 * self.links }
     }

@@ -1,7 +1,7 @@
 //! Collects the contacts of a robot, link by link.
 //!
-//! 1. The search adds each link with the triangles that may be within the margin. Those that
-//!    certainly hold no reported minimum are culled at once.
+//! 1. The search adds each link with the triangles that may be within the margin. Triangles
+//!    that certainly hold no reported minimum are culled at once.
 //! 2. When enough triangles are to be measured, all links so far are *flushed*: their triangles are
 //!    measured together, their local minima found (`local_minima` has the definition and the
 //!    algorithm), and the contacts computed. With a prominence, shallow contacts are dropped.

@@ -281,8 +281,8 @@ impl Sweep<'_> {
         }
     }
 
-    /// Merges a triangle with the pieces of nearer triangles beyond its seams; those that hold its
-    /// least point, or the others.
+    /// Merges a triangle with the pieces of nearer triangles beyond its seams: beyond the seams
+    /// that hold its least point, or beyond the other seams.
     fn meet_across_seams(&mut self, rank: u32, met_there: bool) {
         let Ranked { nearest, rounding: own_rounding, .. } = self.ranked[rank as usize - 1];
         let mesh = self.near.wall.mesh;

@@ -1,5 +1,5 @@
-//! Whether, and how far, a query searches farther than it must, so that later queries can reuse its
-//! lower bounds.
+//! Look-ahead: a search beyond its bound, so that later queries can reuse its lower bounds. This
+//! controller decides whether a query looks ahead, and how far.
 //!
 //! A slightly wider search costs slightly more. The width follows from the robot's displacement
 //! since the last query. The controller compares the measured cost of queries with and without

@@ -376,7 +376,7 @@ fn bounds_hold_for_robots_that_are_carried_apart() {
     assert!(seen[1] > 0, "{seen:?}");
 }
 
-/// Three robots, two of which overlap: the nearest pair is bounded first, whatever their order.
+/// Two of three robots overlap: the nearest pair is bounded first, in every order of the robots.
 #[test]
 fn the_nearest_pair_of_a_scene_is_bounded_first() {
     let bending = |y: Real| {

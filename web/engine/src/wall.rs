@@ -17,7 +17,7 @@ use wasm_bindgen::prelude::wasm_bindgen;
 pub struct Wall {
     search: BvhSearch,
     name: String,
-    /// Where tubes come in, and in which direction; `None` until tubes are asked about.
+    /// Where tubes come in, and in which direction; `None` until the first query about tubes.
     entry: Option<Pose>,
     stated_frame: Option<Frame>,
     chosen_frame: Option<Frame>,
@@ -192,7 +192,7 @@ impl Wall {
     }
 
     /// The proof that the robot keeps more than the margin, for `check_proof.py`. Nothing if the
-    /// robot does not keep the margin, or keeps it by no more than rounding.
+    /// robot does not keep the margin, or keeps it only within rounding.
     ///
     /// # Errors
     /// As [`ask`](Self::ask); or the margin is negative.

@@ -1,5 +1,5 @@
 //! Tables of points: units of headings, the position among other triples, several lines in a file,
-//! and the tables of 3D Slicer. The right values of `tests/data/tables` are those of its makers.
+//! and the tables of 3D Slicer. The expected values of `tests/data/tables` come from its makers.
 
 use crate::{Vertex, refused};
 use mesh_files::{Centreline, Frame, Options, centreline_from_bytes, load_centreline};
@@ -256,7 +256,7 @@ fn steps_back_are_found_in_any_frame_and_unit() {
     let mut split = 0;
     for round in 0..300 {
         let scale = 2_f64.powi([-30, 0, 30][round % 3]);
-        // A walk of steps of 1 that leads on; and a second one from one of its points, or none.
+        // A walk of steps of 1; and a second walk from one of its points, or none.
         let walk = |from: Vertex, way: Vertex, count: usize, draw: &mut dyn FnMut() -> f64| {
             let mut points = vec![from];
             for _ in 0..count {

@@ -1,4 +1,4 @@
-//! Whether a robot keeps a margin from a mesh that moves meanwhile.
+//! Whether a moving robot keeps a margin from a mesh that moves too.
 
 use super::motion_answer::motion_answer;
 use super::way::{Arguments, Question};

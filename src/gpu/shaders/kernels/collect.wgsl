@@ -8,7 +8,7 @@
 // For each slot: the number of blocks that have answered, times the submission's number; the number
 // of candidates; and the triangles of the first CAPACITY candidates.
 @group(0) @binding(6) var<storage, read_write> found: array<atomic<u32>>;
-// The distances of these candidates.
+// The distances of the candidates.
 @group(0) @binding(7) var<storage, read_write> distances: array<real>;
 
 var<workgroup> survives: array<u32, MOST_LINKS>;

@@ -120,8 +120,8 @@ fn axial_way_in(axial: Axial, cap: LinkCap, radius: real, face: Face) -> WayIn {
     return WayIn(real(0.0) < depth && norm_squared(radial) <= radius * radius, cap.centre + radial);
 }
 
-// The centre and the outward normal of the cap that the triangle's point is beyond; those of the
-// start if neither.
+// The centre and the outward normal of the cap that the triangle's point is beyond; of the start if
+// it is beyond neither.
 fn axial_cap(axial: Axial, link: Link) -> LinkCap {
     return LinkCap(
         select(zero(), link.end, axial.at_flat_end),
