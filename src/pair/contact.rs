@@ -31,7 +31,7 @@ pub(crate) fn contact(
     pose: &Pose,
     answer: &LinkProximity,
 ) -> Result<Contact, ProximityError> {
-    let (link, corners, measured) = near(mesh, robot, pose, answer)?;
+    let (link, corners, measured) = measured_answer(mesh, robot, pose, answer)?;
     let (length, before) = (length(link.along()), robot.length_before(answer.link as usize));
     let found = measured.features(|| NearPair::exactly(&link, corners));
     Ok(contact_of(answer, length, before, &found))
@@ -49,17 +49,17 @@ pub(crate) fn contacts(
     out: &mut Vec<Contact>,
 ) -> Result<(), ProximityError> {
     out.clear();
-    let place = |answer: &LinkProximity| {
+    let pair_of = |answer: &LinkProximity| {
         let link = transformed_link(answer, robot, pose)?;
         let corners = corners(mesh.vertices(), mesh.indices(), answer.witness.triangle as usize)?;
         let before = robot.length_before(answer.link as usize);
         let ends = [link.start(), link.end()];
         Ok(PlacedPair { ends, radius: link.radius(), flat: link.flat(), corners, before })
     };
-    let check = |answer: &LinkProximity, place: &PlacedPair, measured: &Nearest| {
-        answer.check_answer_of(measured, || place.link(), place.corners)
+    let check = |answer: &LinkProximity, pair: &PlacedPair, measured: &Nearest| {
+        answer.check_answer_of(measured, || pair.link(), pair.corners)
     };
-    try_add_contacts(Level::new(), answers, place, check, out).inspect_err(|_| out.clear())
+    try_add_contacts(Level::new(), answers, pair_of, check, out).inspect_err(|_| out.clear())
 }
 
 /// Returns the link and the triangle's vertices of an answer that fits them, and both measured.
@@ -67,7 +67,7 @@ pub(crate) fn contacts(
 /// # Errors
 /// One of them does not exist, the pose is not finite or moves the link out of range, or the answer
 /// does not fit.
-pub(crate) fn near(
+pub(crate) fn measured_answer(
     mesh: &Mesh,
     robot: &Chain,
     pose: &Pose,
@@ -134,19 +134,19 @@ impl PlacedPair {
     }
 }
 
-/// Appends the contacts of `answers`, each at the place that `place` returns.
+/// Appends the contacts of `answers`, each about the link and triangle that `pair_of` returns.
 pub(crate) fn add_contacts(
     level: Level,
     answers: &[LinkProximity],
-    mut place: impl FnMut(&LinkProximity) -> PlacedPair,
+    mut pair_of: impl FnMut(&LinkProximity) -> PlacedPair,
     out: &mut Vec<Contact>,
 ) {
-    let place = |answer: &LinkProximity| Ok::<_, Infallible>(place(answer));
-    let add = try_add_contacts(level, answers, place, |_, _, _| Ok(()), out);
+    let pair_of = |answer: &LinkProximity| Ok::<_, Infallible>(pair_of(answer));
+    let add = try_add_contacts(level, answers, pair_of, |_, _, _| Ok(()), out);
     add.unwrap_or_else(|never| match never {});
 }
 
-/// Same as [`add_contacts`]; `place` may fail, and `check` may refuse an answer after the
+/// Same as [`add_contacts`]; `pair_of` may fail, and `check` may refuse an answer after the
 /// measurement.
 ///
 /// # Errors
@@ -154,31 +154,31 @@ pub(crate) fn add_contacts(
 fn try_add_contacts<E>(
     level: Level,
     answers: &[LinkProximity],
-    mut place: impl FnMut(&LinkProximity) -> Result<PlacedPair, E>,
+    mut pair_of: impl FnMut(&LinkProximity) -> Result<PlacedPair, E>,
     check: impl Fn(&LinkProximity, &PlacedPair, &Nearest) -> Result<(), E>,
     out: &mut Vec<Contact>,
 ) -> Result<(), E> {
     let mut rows = [[0.0; BATCH]; 18];
     for answers in answers.chunks(BATCH) {
-        let mut places = [None; BATCH];
+        let mut pairs = [None; BATCH];
         for (lane, answer) in answers.iter().enumerate() {
             let PlacedPair { ends, radius, flat, corners, .. } =
-                *places[lane].insert(place(answer)?);
+                *pairs[lane].insert(pair_of(answer)?);
             put_pair(&mut rows, lane, corners, ends, radius, flat);
         }
         let parts = parts_at(level, &rows, answers.len());
-        let with_places = answers.iter().zip(places.iter().flatten());
-        for (lane, (answer, place)) in with_places.clone().enumerate() {
-            check(answer, place, &parts.nearest.nearest(lane, answer.witness.triangle))?;
+        let with_pairs = answers.iter().zip(pairs.iter().flatten());
+        for (lane, (answer, pair)) in with_pairs.clone().enumerate() {
+            check(answer, pair, &parts.nearest.nearest(lane, answer.witness.triangle))?;
         }
-        out.extend(with_places.enumerate().map(|(lane, (answer, place))| {
-            let [start, end] = place.ends;
+        out.extend(with_pairs.enumerate().map(|(lane, (answer, pair))| {
+            let [start, end] = pair.ends;
             let found = if parts.needs_closer_look >> lane & 1 == 1 {
-                NearestFeatures::of(&place.link(), place.corners)
+                NearestFeatures::of(&pair.link(), pair.corners)
             } else {
                 parts.of(lane)
             };
-            contact_of(answer, length(end - start), place.before, &found)
+            contact_of(answer, length(end - start), pair.before, &found)
         }));
     }
     Ok(())
@@ -258,7 +258,7 @@ pub(crate) fn derivative(
     pose: &Pose,
     answer: &LinkProximity,
 ) -> Result<Option<Derivative>, ProximityError> {
-    let (link, corners, measured) = near(mesh, robot, pose, answer)?;
+    let (link, corners, measured) = measured_answer(mesh, robot, pose, answer)?;
     let way_out = || measured.pair.parting().derivative(|number| number);
     if measured.pair.parts.asks_way_out {
         return Ok(way_out());
@@ -305,7 +305,7 @@ mod tests {
     use continuum_testing::Random;
 
     /// Returns a random link and triangle, often parallel, level or touching.
-    fn place(random: &mut Random) -> PlacedPair {
+    fn pair(random: &mut Random) -> PlacedPair {
         let (size, level) = (2.0_f64.powi(random.below(41) as i32 - 20), random.below(3) == 0);
         let mut point = || {
             let point = random.point();
@@ -326,29 +326,29 @@ mod tests {
         let (mut kinks, mut touching, mut at_cap, mut parts) = (0, 0, 0, [0; 3]);
         for seed in 0..4000 {
             let random = &mut Random::new(seed);
-            let places: Vec<_> = (0..1 + seed as usize % 19).map(|_| place(random)).collect();
-            let link = |place: &PlacedPair| {
-                let [start, end] = place.ends;
-                PlacedLink::between(start, end, place.radius, place.flat)
+            let pairs: Vec<_> = (0..1 + seed as usize % 19).map(|_| pair(random)).collect();
+            let link = |pair: &PlacedPair| {
+                let [start, end] = pair.ends;
+                PlacedLink::between(start, end, pair.radius, pair.flat)
             };
-            let measured = places.iter().enumerate();
+            let measured = pairs.iter().enumerate();
             let answers: Vec<_> = measured
-                .map(|(k, place)| link(place).answer(k, &link(place).measure(0, place.corners)))
+                .map(|(k, pair)| link(pair).answer(k, &link(pair).measure(0, pair.corners)))
                 .collect();
             let alone = |answer: &LinkProximity| {
-                let place = &places[answer.link as usize];
-                let length = length(place.ends[1] - place.ends[0]);
+                let pair = &pairs[answer.link as usize];
+                let length = length(pair.ends[1] - pair.ends[0]);
                 contact_of(
                     answer,
                     length,
-                    place.before,
-                    &NearestFeatures::of(&link(place), place.corners),
+                    pair.before,
+                    &NearestFeatures::of(&link(pair), pair.corners),
                 )
             };
             let alone: Vec<_> = answers.iter().map(alone).collect();
             for level in levels() {
                 let mut together = Vec::new();
-                add_contacts(level, &answers, |answer| places[answer.link as usize], &mut together);
+                add_contacts(level, &answers, |answer| pairs[answer.link as usize], &mut together);
                 // The text distinguishes -0 from 0.
                 assert_eq!(format!("{together:?}"), format!("{alone:?}"), "{level:?}, {seed}");
             }
@@ -356,8 +356,8 @@ mod tests {
                 kinks += usize::from(contact.kink);
                 touching += usize::from(contact.distance <= 0.0);
                 let at_flat = match contact.feature.link {
-                    LinkFeature::StartCap => places[contact.link as usize].flat[0],
-                    LinkFeature::EndCap => places[contact.link as usize].flat[1],
+                    LinkFeature::StartCap => pairs[contact.link as usize].flat[0],
+                    LinkFeature::EndCap => pairs[contact.link as usize].flat[1],
                     LinkFeature::Side => false,
                 };
                 at_cap += usize::from(contact.distance > 0.0 && at_flat);

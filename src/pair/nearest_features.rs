@@ -178,20 +178,22 @@ impl<T: Scalar> NearestParts<T> {
         let (zero, one) = (axial.s.zero(), axial.s.one());
         let (at_flat_cap, [_, at_end]) = (axial.beyond_flat_cap(), axial.at_flat);
         let (centre, _) = axial.cap(link);
+        // The vector from the triangle's point to the link: to a flat cap, or to the axis.
         let from_cap = closest.point2 - closest.point1;
         let from_axis = link.end * axial.s - axial.on_triangle;
         let apart = Vec3::select(at_flat_cap, from_cap, from_axis);
         let (gap, depth) = (apart.norm(), axial.axis_squared.sqrt() - link.radius);
         let rounding = gap.lit(GAP_ROUNDING);
-        // The distance to a flat end along the axis.
+        // In an overlap the shortest way out leads through the side if both flat ends are farther
+        // along the axis than the depth. Without an overlap the depth counts as 0.
         let (length, no_end) = (link.end.dot(link.axis), gap.lit(NO_END));
         let to_start = link.flat[0].select(axial.s * length, no_end);
         let to_end = link.flat[1].select((one - axial.s) * length, no_end);
         // The rounding of a short axis turns a wide cap.
         let turn = one.max(link.radius.over(length));
-        let is_capsule =
+        let leaves_through_side =
             !at_flat_cap & (rounding * turn - depth.min(zero)).lt(to_start.min(to_end));
-        let asks_way_out = gap.le(rounding) | (closest.distance.le(zero) & !is_capsule);
+        let asks_way_out = gap.le(rounding) | (closest.distance.le(zero) & !leaves_through_side);
         let has_normal = zero.lt(apart.largest()) & !(!at_flat_cap & axial.axis_squared.le(zero));
         let normal = apart.normalised();
         // In an overlap the lever ends at the triangle. Its length does not matter: it is parallel

@@ -163,9 +163,9 @@ impl<T: Kernels> Pass<T> {
         ranges.clear();
         let frame = &triangles.blocks.frame;
         let is_double = T::UNIT_ROUNDOFF <= f64::UNIT_ROUNDOFF;
-        let mut place = 0;
+        let mut index = 0;
         for (number, robot) in robots.enumerate() {
-            let first = place;
+            let first = index;
             let robot = match robot {
                 Ok(robot) => robot,
                 Err(error) => {
@@ -174,46 +174,46 @@ impl<T: Kernels> Pass<T> {
                 }
             };
             for link in robot.placed_links().take(of_each.end).skip(of_each.start) {
-                let bound = if aim == PassGoal::EachLink { place } else { number };
+                let bound = if aim == PassGoal::EachLink { index } else { number };
                 let searched = SearchLink::new(&link, frame);
                 if is_double
                     || searched.as_ref().is_some_and(|searched| searched.is_resolved(frame))
                 {
-                    links.push(JobLink { link, searched, place, bound });
+                    links.push(JobLink { link, searched, index, bound });
                 } else {
                     let searched = SearchLink::new(&link, &triangles.double(level).frame);
-                    double.push(JobLink { link, searched, place, bound });
+                    double.push(JobLink { link, searched, index, bound });
                 }
                 placed.push(link);
-                place += 1;
+                index += 1;
             }
-            ranges.push(Ok(first..place));
+            ranges.push(Ok(first..index));
         }
-        place
+        index
     }
 
     /// The result of the last pass for a link.
-    fn found(&self, place: usize) -> Option<Nearest> {
-        self.findings[0].nearest[place]
+    fn found(&self, index: usize) -> Option<Nearest> {
+        self.findings[0].nearest[index]
     }
 
-    /// The places of a robot's links, or the error of a refused robot.
+    /// The indices of a robot's links, or the error of a refused robot.
     pub(crate) fn links_of(&self, robot: usize) -> Result<Range<usize>, ProximityError> {
         self.robots[robot].clone()
     }
 
     /// The first link of a robot that is not refused.
     pub(crate) fn first_link(&self, robot: usize) -> &PlacedLink {
-        &self.placed[self.links_of(robot).map_or(0, |places| places.start)]
+        &self.placed[self.links_of(robot).map_or(0, |indices| indices.start)]
     }
 
     /// The nearest triangle of each link of a robot.
     pub(crate) fn answers(&self, robot: usize) -> impl Iterator<Item = LinkProximity> {
-        let places = self.links_of(robot).unwrap_or_default();
+        let indices = self.links_of(robot).unwrap_or_default();
         // Without a bound some triangle is always the nearest.
-        places
+        indices
             .enumerate()
-            .filter_map(|(link, place)| Some(self.placed[place].answer(link, &self.found(place)?)))
+            .filter_map(|(link, index)| Some(self.placed[index].answer(link, &self.found(index)?)))
     }
 
     /// The triangles that may be within the bound of the last pass, sorted by link, each pair once.
@@ -228,7 +228,7 @@ impl<T: Kernels> Pass<T> {
 
     /// Returns true if the pass found nothing for a robot.
     pub(crate) fn is_clear(&self, robot: usize) -> bool {
-        self.links_of(robot).unwrap_or_default().all(|place| self.found(place).is_none())
+        self.links_of(robot).unwrap_or_default().all(|index| self.found(index).is_none())
     }
 }
 

@@ -44,7 +44,7 @@ pub(crate) struct JobLink<E> {
     /// The link in the precision of the search; none if it is too far out.
     pub searched: Option<SearchLink<E>>,
     /// The index of the link in the findings.
-    pub place: usize,
+    pub index: usize,
     /// The index of its bound. Links whose common nearest triangle is wanted share one.
     pub bound: usize,
 }
@@ -157,17 +157,17 @@ impl<E: Lane> Job<'_, E> {
             if blocks.start * BLOCK > touching as usize {
                 continue;
             }
-            let best = Best::resume(bound, findings.nearest[link.place]);
+            let best = Best::resume(bound, findings.nearest[link.index]);
             let best = best.touching_below(touching.saturating_add(1));
             let ThreadFindings { within, work, .. } = &mut *findings;
             let mut scan =
-                LinkScan { job: self, link: &link.link, place: link.place, best, within, work };
+                LinkScan { job: self, link: &link.link, index: link.index, best, within, work };
             match &link.searched {
                 Some(searched) => scan.run::<L>(token, searched, blocks.clone()),
                 None => scan.measure_all(blocks.clone()),
             }
             let best = scan.best;
-            findings.nearest[link.place] = best.nearest();
+            findings.nearest[link.index] = best.nearest();
             if self.stop_at_first && best.nearest().is_some() {
                 shared.end();
             } else if let Some(nearest) = best.nearest().filter(|nearest| nearest.distance <= 0.0) {
@@ -183,7 +183,7 @@ impl<E: Lane> Job<'_, E> {
 struct LinkScan<'a, E> {
     job: &'a Job<'a, E>,
     link: &'a PlacedLink,
-    place: usize,
+    index: usize,
     best: Best,
     within: &'a mut Vec<(u32, u32)>,
     work: &'a mut Work,
@@ -246,7 +246,7 @@ impl<E: Lane> LinkScan<'_, E> {
         }
         if let Some(most) = self.job.every {
             if self.within.len() < most {
-                self.within.push((self.place as u32, triangle as u32));
+                self.within.push((self.index as u32, triangle as u32));
             }
             return false;
         }
