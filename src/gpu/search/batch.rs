@@ -7,15 +7,16 @@
 //!   its **capacity**.
 //! - d(t): the distance of triangle t from a link. `lower`, `upper`, e: its bounds on the device
 //!   and their error (see the module `bounds`), `lower - e <= d <= max(upper + e, 0)`.
-//! - D: an upper bound on the distance that is wanted: `max(upper + e, 0)` of some triangle of the
-//!   link (per link) or of the group (minimum), or the margin, rounded up (clears, within). D never
-//!   grows.
-//! - T: the lowest triangle with `upper + e < 0` so far, of the link or the group; none at first,
-//!   and never for a margin. Such a triangle certainly touches.
+//! - D (`bound` in the shaders): an upper bound on the distance that is wanted: `max(upper + e, 0)`
+//!   of some triangle of the link (per link) or of the group (minimum), or the margin, rounded up
+//!   (clears, within). D never grows.
+//! - T (`highest_wanted` in the shaders): the lowest triangle with `upper + e < 0` so far, of the
+//!   link or the group; none at first, and never for a margin. Such a triangle certainly touches.
 //! - t is **wanted** if `lower <= D + e` and `t <= T`.
 //!
 //! # Algorithm
-//! 1. **Pack**, on the CPU: the points and radii of a chunk of robots, in the search frame.
+//! 1. **Pack**, on the CPU: the points and radii of a chunk of robots, in the search frame
+//!    (`chunk`, `robots`).
 //! 2. **First pass**, on the device (`search`): visit the boxes that may hold a wanted triangle,
 //!    the nearer child first. A thread keeps up to [`SLOTS`] wanted triangles that it meets. At the
 //!    end it keeps only the triangles that are still wanted. For a margin, a triangle with
@@ -26,9 +27,10 @@
 //!    counts differ.
 //! 4. **Repeat**: if the candidates of a chunk exceed its capacity, the chunk is searched once
 //!    more, with the entries that they need.
-//! 5. **Measure**, on the CPU: all candidates, in double precision. The best is the answer.
-//! 6. **Remainder**, on the CPU: robots that the device cannot represent, whose candidates do not
-//!    fit, or whose loops the driver stopped take the search on the CPU. They are counted.
+//! 5. **Measure**, on the CPU: all candidates, in double precision. The best is the answer
+//!    (`answer`).
+//! 6. **Remainder**, on the CPU (`engine`): the CPU searches for robots that the device cannot
+//!    represent, whose candidates do not fit, or whose loops the driver stopped. They are counted.
 //!
 //! Chunks overlap: the CPU packs a chunk and measures the chunk before while the device works.
 //!
@@ -70,8 +72,8 @@ const LEAST_ENTRIES_PER_ITEM: [u64; Question::KINDS] = [4, 16, 1, 32];
 /// Memory of the batches, here and on the device, reused by the next.
 pub(super) struct Batches {
     watch: Watch,
-    /// Two chunks in turn.
-    slots: [Chunk; 2],
+    /// Two chunks in turn: one is answered while the device searches the other.
+    chunks: [Chunk; 2],
     /// For each kind of question: see [`LEAST_ENTRIES_PER_ITEM`].
     entries_per_item: [u64; Question::KINDS],
     /// The robots of the last batch that the CPU must search for.
@@ -87,7 +89,7 @@ impl Batches {
     pub(super) fn new(watch: Watch) -> Self {
         Self {
             watch,
-            slots: Default::default(),
+            chunks: Default::default(),
             entries_per_item: LEAST_ENTRIES_PER_ITEM,
             for_cpu: Vec::new(),
             device_time: None,
@@ -97,7 +99,7 @@ impl Batches {
 
     /// Drops the buffers, after a failure or with another tree.
     pub(super) fn forget(&mut self) {
-        self.slots = Default::default();
+        self.chunks = Default::default();
     }
 
     /// Answers all robots except the robots in [`Batches::for_cpu`].
@@ -122,9 +124,9 @@ impl Batches {
     /// Waits for the chunks that the device still has. A buffer that vanishes while it is waited
     /// for would be reported as another failure.
     fn abandon(&mut self, device: &Device) {
-        let Self { watch, slots, .. } = self;
-        for slot in slots {
-            if let Some((submitted, readback)) = slot.submitted.take().zip(slot.readback()) {
+        let Self { watch, chunks, .. } = self;
+        for chunk in chunks {
+            if let Some((submitted, readback)) = chunk.submitted.take().zip(chunk.readback()) {
                 // The batch has failed already.
                 let _ = device.read(watch, submitted, readback, |_| Ok(()));
             }
@@ -143,33 +145,35 @@ impl Batches {
         self.work = [0; 3];
         self.device_time = searched.gpu.device.tick().map(|_| Duration::ZERO);
         let question = answer.question();
-        let (mut next, mut slot) = (0, 0);
+        // The first robot of the next chunk, and which of the two chunks has its turn.
+        let (mut next, mut turn) = (0, 0);
         let mut pending = None;
         while next < robots.len() {
-            let chunk = chunk_from(robots, next);
-            next = chunk.end;
+            let range = chunk_from(robots, next);
+            next = range.end;
             let entries = self.entries_per_item[question.kind()];
-            let Self { slots, watch, .. } = self;
-            slots[slot].start(searched, robots, chunk, question, entries, out, watch)?;
-            if let Some(before) = pending.replace(slot) {
+            let Self { chunks, watch, .. } = self;
+            chunks[turn].start(searched, robots, range, question, entries, out, watch)?;
+            if let Some(before) = pending.replace(turn) {
                 self.finish(before, searched, answer, measure, out)?;
             }
-            slot = 1 - slot;
+            turn = 1 - turn;
         }
         pending.map_or(Ok(()), |last| self.finish(last, searched, answer, measure, out))
     }
 
-    /// Steps 4 and 5, for the chunk in a slot.
+    /// Steps 4 and 5, for one of the two chunks.
     fn finish<A: Answer>(
         &mut self,
-        slot: usize,
+        turn: usize,
         searched: Searched,
         answer: &A,
         measure: Measure,
         out: &mut [Result<A::Value, ProximityError>],
     ) -> Result<(), DeviceFailure> {
-        let Self { watch, slots, entries_per_item, for_cpu, device_time, work } = self;
-        let (chunk, device, question) = (&mut slots[slot], &searched.gpu.device, answer.question());
+        let Self { watch, chunks, entries_per_item, for_cpu, device_time, work } = self;
+        let (chunk, device, question) =
+            (&mut chunks[turn], &searched.gpu.device, answer.question());
         let robots = chunk.layout.robots.clone();
         let numbered = robots.clone().zip(&chunk.layout.layouts);
         for_cpu.extend(numbered.filter(|(_, layout)| layout.is_for_cpu).map(|(robot, _)| robot));
