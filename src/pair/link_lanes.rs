@@ -32,7 +32,7 @@ pub(crate) struct LinkLanes<L: Scalar> {
     pub start: Vec3<L>,
     pub length: L,
     /// The link relative to its start.
-    pub link: Link<L>,
+    pub shape: Link<L>,
     has_flat_cap: bool,
     error: L,
 }
@@ -45,7 +45,7 @@ impl<L: Pack> LinkLanes<L> {
         Self {
             start: splat(token, link.start),
             length: L::splat(token, link.length),
-            link: Link {
+            shape: Link {
                 end: splat(token, link.along),
                 axis: splat(token, link.axis),
                 radius,
@@ -65,8 +65,8 @@ impl<L: Pack> LinkLanes<L> {
     #[inline(always)]
     pub(crate) fn offset_from_axis(&self, point: Vec3<L>) -> Vec3<L> {
         let relative = point - self.start;
-        let t = relative.dot(self.link.axis).max(self.length.zero()).min(self.length);
-        relative.along(self.link.axis, -t)
+        let t = relative.dot(self.shape.axis).max(self.length.zero()).min(self.length);
+        relative.along(self.shape.axis, -t)
     }
 
     /// Returns upper bounds on the axis distances of the contents of spheres: some point of a
@@ -75,7 +75,7 @@ impl<L: Pack> LinkLanes<L> {
     pub(crate) fn reach_of_spheres(&self, centre: Vec3<L>, radius: L) -> L {
         // Any point of a triangle gives an upper bound on F. Beyond a flat cap it bounds the
         // distance itself, so the radius is added.
-        let beyond = if self.has_flat_cap { self.link.radius } else { self.length.zero() };
+        let beyond = if self.has_flat_cap { self.shape.radius } else { self.length.zero() };
         self.offset_from_axis(centre).norm() + radius + beyond
     }
 
@@ -92,7 +92,7 @@ impl<L: Pack> LinkLanes<L> {
     pub(crate) fn not_excluded_by_plane(&self, [a, b, c]: [Vec3<L>; 3], limit: L) -> u64 {
         let centre = (a + b + c) * self.length.lit(1.0 / 3.0);
         let v = self.offset_from_axis(centre);
-        let axis = v.dot(self.start) + self.link.reach_along(v);
+        let axis = v.dot(self.start) + self.shape.reach_along(v);
         let ahead = (v.dot(a).min(v.dot(b)).min(v.dot(c)) - axis).max(limit.zero());
         // A centre on the axis excludes nothing, and neither does a square that underflows.
         L::bits(!(limit * limit * v.norm_squared()).lt(ahead * ahead))
@@ -118,16 +118,16 @@ impl<L: Pack> LinkLanes<L> {
     /// Returns which points, relative to the start, certainly do not lie beyond a flat cap.
     #[inline(always)]
     fn is_behind_flat_caps(&self, point: Vec3<L>) -> L::Mask {
-        let along = point.dot(self.link.axis);
+        let along = point.dot(self.shape.axis);
         let behind = [self.error.lt(along), along.lt(self.length - self.error)];
-        (behind[0] | !self.link.flat[0]) & (behind[1] | !self.link.flat[1])
+        (behind[0] | !self.shape.flat[0]) & (behind[1] | !self.shape.flat[1])
     }
 
     /// Returns the bounds of a pack of triangles against the bound with the axis limit `limit`.
     #[inline(always)]
     pub(crate) fn may_be_nearer(&self, face: &Face<L>, limit: L) -> Nearer<L> {
         let face = face.seen_from(self.start);
-        self.nearer(&Axial::new(&self.link, &face), &face, limit)
+        self.nearer(&Axial::new(&self.shape, &face), &face, limit)
     }
 
     /// Same as [`may_be_nearer`](Self::may_be_nearer), for a face relative to the link's start.
@@ -138,15 +138,15 @@ impl<L: Pack> LinkLanes<L> {
         if nearer == 0 || !self.has_flat_cap {
             return Nearer { nearer, lower: axis, upper: axis };
         }
-        let (lower, upper) = axial.cap_bounds(&self.link, face);
+        let (lower, upper) = axial.cap_bounds(&self.shape, face);
         let beyond_cap = axial.beyond_flat_cap();
-        let lower = beyond_cap.select(axis.max(lower + self.link.radius), axis);
-        let mut upper = beyond_cap.select(upper + self.link.radius, axis);
-        if L::bits(upper.lt(self.link.radius)) != 0 {
+        let lower = beyond_cap.select(axis.max(lower + self.shape.radius), axis);
+        let mut upper = beyond_cap.select(upper + self.shape.radius, axis);
+        if L::bits(upper.lt(self.shape.radius)) != 0 {
             // Rounding may have put p* behind a flat cap. Then there is a gap, however near the
             // axis is.
             let behind = self.is_behind_flat_caps(axial.on_triangle);
-            upper = behind.select(upper, upper.max(self.link.radius));
+            upper = behind.select(upper, upper.max(self.shape.radius));
         }
         Nearer { nearer: L::bits(lower.lt(limit)), lower, upper }
     }
@@ -156,11 +156,11 @@ impl<L: Pack> LinkLanes<L> {
     #[inline(always)]
     pub(crate) fn distances(&self, face: &Face<L>) -> L {
         let face = face.seen_from(self.start);
-        let axial = Axial::new(&self.link, &face);
+        let axial = Axial::new(&self.shape, &face);
         if self.has_flat_cap && L::bits(axial.beyond_flat_cap()) != 0 {
-            axial.with_caps(&self.link, &face).distance
+            axial.with_caps(&self.shape, &face).distance
         } else {
-            (axial.axis_squared.sqrt() - self.link.radius).max(self.length.zero())
+            (axial.axis_squared.sqrt() - self.shape.radius).max(self.length.zero())
         }
     }
 }

@@ -137,9 +137,9 @@ impl<L: Pack> LinkLanes<L> {
     #[inline(always)]
     fn steps_to_lowest(&self, way: Vec3<L>, point: Vec3<L>, step: Vec3<L>) -> L {
         let zero = self.length.zero();
-        let height = (point - self.start).dot(self.link.axis);
+        let height = (point - self.start).dot(self.shape.axis);
         let is_beside = zero.lt(height) & height.lt(self.length);
-        let along_axis = is_beside.select(step.dot(self.link.axis), zero);
+        let along_axis = is_beside.select(step.dot(self.shape.axis), zero);
         -way.dot(step) / (step.norm_squared() - along_axis * along_axis)
     }
 
@@ -153,15 +153,15 @@ impl<L: Pack> LinkLanes<L> {
     /// points that touch.
     #[inline(always)]
     pub(crate) fn way_from_start(&self, relative: Vec3<L>) -> (Vec3<L>, L) {
-        let (zero, radius) = (self.length.zero(), self.link.radius);
-        let height = relative.dot(self.link.axis);
-        let from_axis = relative.along(self.link.axis, -height.max(zero).min(self.length));
+        let (zero, radius) = (self.length.zero(), self.shape.radius);
+        let height = relative.dot(self.shape.axis);
+        let from_axis = relative.along(self.shape.axis, -height.max(zero).min(self.length));
         if !self.has_flat_cap() {
             return (from_axis, radius);
         }
-        let [start, end] = self.link.flat;
+        let [start, end] = self.shape.flat;
         let is_beyond_disc = (start & height.lt(zero)) | (end & self.length.lt(height));
-        let arm = Vec3::select(is_beyond_disc, relative.along(self.link.axis, -height), from_axis);
+        let arm = Vec3::select(is_beyond_disc, relative.along(self.shape.axis, -height), from_axis);
         // Over a disc or inside the link, W has no part across the axis.
         let reach = arm.norm();
         let share = radius.lt(reach).select(radius.over(reach), zero.one());

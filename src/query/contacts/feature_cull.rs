@@ -77,12 +77,12 @@ impl<L: Pack> LinkLanes<L> {
         error: L,
     ) -> (Nearer<L>, FeatureMask) {
         let face = Face::in_order(corners).seen_from(self.start);
-        let axial = Axial::new(&self.link, &face);
+        let axial = Axial::new(&self.shape, &face);
         let nearer = self.nearer(&axial, &face, limit);
         let certain = error * error.lit(CERTAIN_GAP);
         let away = self.corners_away(corners, &axial, error);
         // Triangles that may touch tie at distance 0.
-        let is_apart = (self.link.radius + certain).lt(nearer.lower);
+        let is_apart = (self.shape.radius + certain).lt(nearer.lower);
         let upper = nearer.upper + certain;
         let [first, second, third] = axial.edges_squared;
         let beyond = [

@@ -101,14 +101,14 @@ impl<L: Pack> NodeBounds<L> {
         let reach = v.dot(self.tangent).abs().mul_add(self.half.y, reach);
         let reach = v.dot(third).abs().mul_add(self.half.z, reach);
         let relative = self.centre - link.start;
-        ((v.dot(relative) - link.link.reach_along(v) - reach).max(zero), v.norm_squared())
+        ((v.dot(relative) - link.shape.reach_along(v) - reach).max(zero), v.norm_squared())
     }
 
     /// Returns the squared lengths of the gaps between the boxes and the axis, along the three axes
     /// of the boxes.
     #[inline(always)]
     fn squared_gaps(&self, link: &LinkLanes<L>, third: Vec3<L>) -> L {
-        let half = link.link.end * self.half.x.lit(0.5);
+        let half = link.shape.end * self.half.x.lit(0.5);
         let middle = link.start + half - self.centre;
         let along_normal = gap(middle, half, self.normal, self.half.x);
         let along_tangent = gap(middle, half, self.tangent, self.half.y);
